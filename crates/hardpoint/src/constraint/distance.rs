@@ -1,0 +1,31 @@
+//! Distance constraint: `|d| = L` with `d = P_j - P_i` (paper Eq. 4.10, unsquared).
+
+use super::{EndRates, Ends, force_rates, point_rates};
+use crate::space::{Real, Wrench};
+
+#[inline(always)]
+pub(super) fn residual<T: Real>(ends: &Ends<T>, target: T) -> T {
+    (ends.j.r - ends.i.r).norm() - target
+}
+
+/// The unit force u = d / |d| along the rod.
+#[inline(always)]
+pub(super) fn wrench<T: Real>(ends: &Ends<T>) -> Wrench<T> {
+    let d = ends.j.r - ends.i.r;
+    Wrench::force(d * (d.x.like(1.0) / d.norm()), ends.j.r)
+}
+
+#[inline(always)]
+pub(super) fn wrench_rates<T: Real>(ends: &Ends<T>, rates: &EndRates<T>) -> [Wrench<T>; 2] {
+    let p_i = point_rates(ends.i.r, rates.v_i, rates.a_i);
+    let p_j = point_rates(ends.j.r, rates.v_j, rates.a_j);
+    let d = [p_j[0] - p_i[0], p_j[1] - p_i[1], p_j[2] - p_i[2]];
+    let inverse = d[0].x.like(1.0) / d[0].norm();
+    // u = d / L;  u. = (d. - u L.) / L;  u.. = (d.. - 2 u. L. - u L..) / L
+    let u0 = d[0] * inverse;
+    let l1 = u0.dot(d[1]);
+    let u1 = (d[1] - u0 * l1) * inverse;
+    let l2 = u1.dot(d[1]) + u0.dot(d[2]);
+    let u2 = (d[2] - u1 * (l1 + l1) - u0 * l2) * inverse;
+    force_rates([u0, u1, u2], p_j)
+}

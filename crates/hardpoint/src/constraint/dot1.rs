@@ -1,0 +1,27 @@
+//! Dot-1 constraint: `a_i . b_j = 0` (paper Eq. 4.1).
+
+use super::{EndRates, Ends, axis, cross_rates, direction_rates};
+use crate::space::{Real, Wrench};
+
+#[inline(always)]
+pub(super) fn residual<T: Real>(a: usize, b: usize, ends: &Ends<T>) -> T {
+    axis(&ends.i.rot, a).dot(axis(&ends.j.rot, b))
+}
+
+/// The moment `b_j x a_i`.
+#[inline(always)]
+pub(super) fn wrench<T: Real>(a: usize, b: usize, ends: &Ends<T>) -> Wrench<T> {
+    Wrench::moment(axis(&ends.j.rot, b).cross(axis(&ends.i.rot, a)))
+}
+
+#[inline(always)]
+pub(super) fn wrench_rates<T: Real>(
+    a: usize,
+    b: usize,
+    ends: &Ends<T>,
+    rates: &EndRates<T>,
+) -> [Wrench<T>; 2] {
+    let a = direction_rates(axis(&ends.i.rot, a), rates.v_i, rates.a_i);
+    let b = direction_rates(axis(&ends.j.rot, b), rates.v_j, rates.a_j);
+    cross_rates(b, a).map(Wrench::moment)
+}

@@ -1,0 +1,23 @@
+//! Dot-2 constraint: `a_i . d = f` with `d = P_j - P_i` (paper Eq. 4.4; f is a driver's value or 0).
+
+use super::{EndRates, Ends, axis, direction_rates, force_rates, point_rates};
+use crate::space::{Real, Wrench};
+
+#[inline(always)]
+pub(super) fn residual<T: Real>(a: usize, ends: &Ends<T>, target: T) -> T {
+    axis(&ends.i.rot, a).dot(ends.j.r - ends.i.r) - target
+}
+
+/// The force a_i through P_j.
+#[inline(always)]
+pub(super) fn wrench<T: Real>(a: usize, ends: &Ends<T>) -> Wrench<T> {
+    Wrench::force(axis(&ends.i.rot, a), ends.j.r)
+}
+
+#[inline(always)]
+pub(super) fn wrench_rates<T: Real>(a: usize, ends: &Ends<T>, rates: &EndRates<T>) -> [Wrench<T>; 2] {
+    force_rates(
+        direction_rates(axis(&ends.i.rot, a), rates.v_i, rates.a_i),
+        point_rates(ends.j.r, rates.v_j, rates.a_j),
+    )
+}

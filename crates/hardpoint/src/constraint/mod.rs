@@ -1,0 +1,272 @@
+//! The paper's elementary constraints, one file each, as residuals and wrenches.
+//!
+//! Each constraint row stands between marker i and marker j. Its wrench `l` says how any motion W of
+//! the two markers violates it, `d(phi) = l . (W_j - W_i)` (`docs/theory.md` (5)); Jacobian, velocity,
+//! acceleration and every sensitivity are made of `l` and its two time derivatives.
+
+mod angle;
+mod distance;
+mod dot1;
+mod dot2;
+mod spherical;
+
+use crate::space::{Mat3, Pose, Real, Twist, Vec3, Wrench};
+
+/// One elementary constraint equation between two markers. Axes are 0, 1, 2 for x, y, z.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Row {
+    /// One component, along a world axis, of the spherical constraint `d = 0` (paper Eq. 4.7).
+    Point(usize),
+    /// `a_i . b_j = 0`: axis a of marker i square to axis b of marker j (paper Eq. 4.1).
+    Dot1(usize, usize),
+    /// `a_i . d = f`: displacement of marker j along axis a of marker i (paper Eq. 4.4).
+    Dot2(usize),
+    /// `|d| = L + f` (paper Eq. 4.10, unsquared so that its residual is a length).
+    Distance,
+    /// Angle of marker j about z_i equals f, where z_i and z_j are parallel.
+    Angle,
+}
+
+/// d = 0.
+pub(crate) const COINCIDE: [Row; 3] = [Row::Point(0), Row::Point(1), Row::Point(2)];
+/// z_j parallel to z_i.
+pub(crate) const PARALLEL_Z: [Row; 2] = [Row::Dot1(2, 0), Row::Dot1(2, 1)];
+/// No relative rotation.
+pub(crate) const PARALLEL_FRAMES: [Row; 3] = [Row::Dot1(2, 0), Row::Dot1(2, 1), Row::Dot1(0, 1)];
+/// P_j on the line through P_i along z_i.
+pub(crate) const ON_LINE: [Row; 2] = [Row::Dot2(0), Row::Dot2(1)];
+
+/// The two markers of a joint in the world, and how their bodies move.
+#[derive(Clone, Copy, Debug)]
+pub struct Ends<T> {
+    /// Marker i in the world.
+    pub i: Pose<T>,
+    /// Marker j in the world.
+    pub j: Pose<T>,
+}
+
+/// Twists of the two bodies, and the time derivatives of those twists.
+#[derive(Clone, Copy, Debug)]
+pub struct EndRates<T> {
+    /// Twist V of body i.
+    pub v_i: Twist<T>,
+    /// Twist V of body j.
+    pub v_j: Twist<T>,
+    /// dV/dt of body i.
+    pub a_i: Twist<T>,
+    /// dV/dt of body j.
+    pub a_j: Twist<T>,
+}
+
+impl Row {
+    /// By how much the constraint fails; `target` is the length of a rod, or the driver's value.
+    #[inline(always)]
+    pub fn residual<T: Real>(self, ends: &Ends<T>, target: T) -> T {
+        match self {
+            Self::Point(k) => spherical::residual(k, ends),
+            Self::Dot1(a, b) => dot1::residual(a, b, ends),
+            Self::Dot2(a) => dot2::residual(a, ends, target),
+            Self::Distance => distance::residual(ends, target),
+            Self::Angle => angle::residual(ends, target),
+        }
+    }
+
+    /// The wrench l.
+    #[inline(always)]
+    pub fn wrench<T: Real>(self, ends: &Ends<T>) -> Wrench<T> {
+        match self {
+            Self::Point(k) => spherical::wrench(k, ends),
+            Self::Dot1(a, b) => dot1::wrench(a, b, ends),
+            Self::Dot2(a) => dot2::wrench(a, ends),
+            Self::Distance => distance::wrench(ends),
+            Self::Angle => angle::wrench(ends),
+        }
+    }
+
+    /// The first and second time derivatives of the wrench.
+    #[inline(always)]
+    pub fn wrench_rates<T: Real>(self, ends: &Ends<T>, rates: &EndRates<T>) -> [Wrench<T>; 2] {
+        match self {
+            Self::Point(k) => spherical::wrench_rates(k, ends, rates),
+            Self::Dot1(a, b) => dot1::wrench_rates(a, b, ends, rates),
+            Self::Dot2(a) => dot2::wrench_rates(a, ends, rates),
+            Self::Distance => distance::wrench_rates(ends, rates),
+            Self::Angle => angle::wrench_rates(ends, rates),
+        }
+    }
+
+    /// Whether its residual is a length (else it is an angle or a cosine).
+    pub fn is_length(self) -> bool {
+        matches!(self, Self::Point(_) | Self::Dot2(_) | Self::Distance)
+    }
+
+    /// What it asks for, in words.
+    pub fn describe(self) -> String {
+        const AXIS: [&str; 3] = ["x", "y", "z"];
+        match self {
+            Self::Point(k) => format!("points coincide along global {}", AXIS[k]),
+            Self::Dot1(a, b) => format!("Dot-1: {}_i square to {}_j", AXIS[a], AXIS[b]),
+            Self::Dot2(a) => format!("Dot-2: d square to {}_i", AXIS[a]),
+            Self::Distance => "distance".into(),
+            Self::Angle => "angle about z_i".into(),
+        }
+    }
+}
+
+/// A direction fixed in a body with twist `v` and twist rate `a`, and its first two time derivatives.
+#[inline(always)]
+fn direction_rates<T: Real>(e: Vec3<T>, v: Twist<T>, a: Twist<T>) -> [Vec3<T>; 3] {
+    let d = v.w.cross(e);
+    [e, d, a.w.cross(e) + v.w.cross(d)]
+}
+
+/// A point fixed in a body with twist `v` and twist rate `a`, and its first two time derivatives.
+#[inline(always)]
+fn point_rates<T: Real>(p: Vec3<T>, v: Twist<T>, a: Twist<T>) -> [Vec3<T>; 3] {
+    let d = v.at(p);
+    [p, d, a.at(p) + v.w.cross(d)]
+}
+
+/// First and second derivative of the vector product of two vectors with known derivatives.
+#[inline(always)]
+fn cross_rates<T: Real>(a: [Vec3<T>; 3], b: [Vec3<T>; 3]) -> [Vec3<T>; 2] {
+    let two = a[0].x.like(2.0);
+    [
+        a[1].cross(b[0]) + a[0].cross(b[1]),
+        a[2].cross(b[0]) + a[1].cross(b[1]) * two + a[0].cross(b[2]),
+    ]
+}
+
+/// Rates of a force `f` through a moving point `p`.
+#[inline(always)]
+fn force_rates<T: Real>(f: [Vec3<T>; 3], p: [Vec3<T>; 3]) -> [Wrench<T>; 2] {
+    let [m1, m2] = cross_rates(p, f);
+    [Wrench { m: m1, f: f[1] }, Wrench { m: m2, f: f[2] }]
+}
+
+/// Unit vectors of a marker.
+#[inline(always)]
+fn axis<T: Real>(frame: &Mat3<T>, k: usize) -> Vec3<T> {
+    frame.cols[k]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Every kind of row; a new constraint joins the battery here.
+    const BATTERY: [Row; 12] = [
+        Row::Point(0),
+        Row::Point(1),
+        Row::Point(2),
+        Row::Dot1(2, 0),
+        Row::Dot1(2, 1),
+        Row::Dot1(0, 1),
+        Row::Dot1(1, 1),
+        Row::Dot2(0),
+        Row::Dot2(1),
+        Row::Dot2(2),
+        Row::Distance,
+        Row::Angle,
+    ];
+
+    /// A small generator of numbers in (-1, 1), the same every time.
+    fn numbers(seed: u64) -> impl FnMut() -> f64 {
+        let mut state = seed;
+        move || {
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            (state >> 11) as f64 / (1u64 << 52) as f64 - 1.0
+        }
+    }
+
+    fn moved(pose: Pose, v: Twist, a: Twist, t: f64) -> Pose {
+        // X(t) whose twist is v and twist rate a at t = 0: exp of v t + a t^2 / 2 is short by order t^3.
+        let turn = Mat3::from_rotation_vector(v.w * t + a.w * (0.5 * t * t));
+        let p = point_rates(pose.r, v, a);
+        Pose { rot: turn * pose.rot, r: p[0] + p[1] * t + p[2] * (0.5 * t * t) }
+    }
+
+    fn random_ends(row: Row, next: &mut impl FnMut() -> f64) -> Ends<f64> {
+        let mut v = || Vec3::new(next(), next(), next());
+        let i = Pose { rot: Mat3::from_rotation_vector(v() * 2.0), r: v() };
+        let mut j = Pose { rot: Mat3::from_rotation_vector(v() * 2.0), r: v() };
+        match row {
+            // These wrenches hold on the manifold: markers together, or z axes parallel.
+            Row::Point(_) => j.r = i.r,
+            Row::Angle => {
+                let (s, c) = 0.7_f64.sin_cos();
+                j.rot = i.rot.turned(2, s, c);
+            }
+            _ => {}
+        }
+        Ends { i, j }
+    }
+
+    #[test]
+    fn wrench_is_the_gradient_of_the_residual_for_every_row() {
+        let mut next = numbers(3);
+        for row in BATTERY {
+            for _ in 0..20 {
+                let ends = random_ends(row, &mut next);
+                let mut twist = || Twist { w: Vec3::new(next(), next(), next()), v: Vec3::new(next(), next(), next()) };
+                let (mut wi, mut wj) = (twist(), twist());
+                if row == Row::Angle {
+                    // Only motions that keep z parallel are motions of this coordinate.
+                    (wi.w, wj.w) = (ends.i.rot.cols[2] * 0.3, ends.i.rot.cols[2] * -0.9);
+                }
+                let target = match row {
+                    Row::Angle => 0.7,
+                    _ => 0.1,
+                };
+                let rate = row.wrench(&ends).on(wj - wi);
+                let error = |h: f64| {
+                    let at = |h: f64| {
+                        let e = Ends {
+                            i: moved(ends.i, wi, Twist::ZERO, h),
+                            j: moved(ends.j, wj, Twist::ZERO, h),
+                        };
+                        row.residual(&e, target)
+                    };
+                    ((at(h) - at(-h)) / (2.0 * h) - rate).abs()
+                };
+                // Central differences: the error falls by four when h halves, until round-off.
+                let (coarse, fine, best) = (error(2e-3), error(1e-3), error(1e-5));
+                assert!(best < 1e-9, "{row:?}: {best}");
+                assert!(coarse < 1e-9 || (coarse / fine - 4.0).abs() < 0.2, "{row:?}: {coarse} {fine}");
+                assert!(row.wrench(&ends).f.norm() + row.wrench(&ends).m.norm() > 1e-3, "{row:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn wrench_rates_match_differences_for_every_row() {
+        let mut next = numbers(11);
+        for row in BATTERY {
+            for _ in 0..20 {
+                let ends = random_ends(row, &mut next);
+                let mut twist = || Twist { w: Vec3::new(next(), next(), next()), v: Vec3::new(next(), next(), next()) };
+                let rates = EndRates { v_i: twist(), v_j: twist(), a_i: twist(), a_j: twist() };
+                let l = |t: f64| {
+                    row.wrench(&Ends {
+                        i: moved(ends.i, rates.v_i, rates.a_i, t),
+                        j: moved(ends.j, rates.v_j, rates.a_j, t),
+                    })
+                };
+                let [l1, l2] = row.wrench_rates(&ends, &rates);
+                let h = 1e-4;
+                let (p, o, m) = (l(h), l(0.0), l(-h));
+                let d1 = |p: Vec3, m: Vec3| (p - m) * (0.5 / h);
+                let d2 = |p: Vec3, o: Vec3, m: Vec3| (p + m - o * 2.0) * (1.0 / (h * h));
+                let scale = 1.0 + o.m.norm() + l1.m.norm() + l2.m.norm() + l2.f.norm();
+                for (got, want, tolerance) in [
+                    (l1.m, d1(p.m, m.m), 1e-6),
+                    (l1.f, d1(p.f, m.f), 1e-6),
+                    (l2.m, d2(p.m, o.m, m.m), 1e-5),
+                    (l2.f, d2(p.f, o.f, m.f), 1e-5),
+                ] {
+                    assert!((got - want).norm() < tolerance * scale.powi(3), "{row:?}: {got:?} {want:?}");
+                }
+            }
+        }
+    }
+}

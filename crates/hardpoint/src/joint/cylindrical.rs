@@ -1,0 +1,16 @@
+//! Cylindrical: a shaft that slides and turns.
+
+use super::{Freedom, JointType, Need, angle, displacement};
+use crate::constraint::{ON_LINE, PARALLEL_Z};
+
+/// z_j parallel to z_i and d parallel to z_i: four constraints, a displacement and an angle.
+pub static CYLINDRICAL: JointType = JointType {
+    name: "cylindrical",
+    summary: "slides along its axis and turns about it",
+    places: 1,
+    axis: Need::Required,
+    axis2: Need::Unused,
+    freedoms: Some(&[Freedom::Slide(2), Freedom::Turn(2)]),
+    rows: &[ON_LINE[0], ON_LINE[1], PARALLEL_Z[0], PARALLEL_Z[1]],
+    coordinates: &[displacement(0), angle(1)],
+};

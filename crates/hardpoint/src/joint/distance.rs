@@ -1,0 +1,16 @@
+//! Distance: a rod of constant length between two ball ends.
+
+use super::{JointType, LENGTH, Need};
+use crate::constraint::Row;
+
+/// |d| = design length: one constraint.
+pub static DISTANCE: JointType = JointType {
+    name: "distance",
+    summary: "a rod of constant length between two points",
+    places: 2,
+    axis: Need::Unused,
+    axis2: Need::Unused,
+    freedoms: None,
+    rows: &[Row::Distance],
+    coordinates: &[LENGTH],
+};

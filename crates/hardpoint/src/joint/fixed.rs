@@ -1,0 +1,20 @@
+//! Fixed: body j is part of body i.
+
+use super::{JointType, Need};
+use crate::constraint::{COINCIDE, PARALLEL_FRAMES, Row};
+
+/// d = 0 and no relative rotation: six constraints.
+pub static FIXED: JointType = JointType {
+    name: "fixed",
+    summary: "no relative motion",
+    places: 1,
+    axis: Need::Unused,
+    axis2: Need::Unused,
+    freedoms: Some(&[]),
+    rows: &{
+        let [x, y, z] = COINCIDE;
+        let [a, b, c] = PARALLEL_FRAMES;
+        [x, y, z, a, b, c] as [Row; 6]
+    },
+    coordinates: &[],
+};

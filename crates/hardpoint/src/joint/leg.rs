@@ -1,0 +1,15 @@
+//! Leg: a rod whose length a driver prescribes (an actuator, a spring), or only a measure reads.
+
+use super::{JointType, LENGTH, Need};
+
+/// No constraint of its own; its length is a coordinate.
+pub static LEG: JointType = JointType {
+    name: "leg",
+    summary: "a length between two points that a driver prescribes or a measure reads",
+    places: 2,
+    axis: Need::Unused,
+    axis2: Need::Unused,
+    freedoms: None,
+    rows: &[],
+    coordinates: &[LENGTH],
+};

@@ -1,0 +1,174 @@
+//! The joint types: one file each, all of the same shape.
+//!
+//! A joint is data. As a *tree* joint it is a chain of [`Freedom`]s that carries body j from body i;
+//! as a *cut* joint it is a list of elementary constraints ([`Row`]) between its two markers. The
+//! engine knows freedoms and rows, never joints, so a new joint is one file and one line in [`ALL`].
+
+mod cylindrical;
+mod distance;
+mod fixed;
+mod leg;
+mod revolute;
+mod spherical;
+mod translational;
+mod universal;
+
+use crate::constraint::Row;
+
+pub use cylindrical::CYLINDRICAL;
+pub use distance::DISTANCE;
+pub use fixed::FIXED;
+pub use leg::LEG;
+pub use revolute::REVOLUTE;
+pub use spherical::SPHERICAL;
+pub use translational::TRANSLATIONAL;
+pub use universal::UNIVERSAL;
+
+/// Every joint type that a model may use.
+pub const ALL: &[&JointType] = &[
+    &FIXED,
+    &REVOLUTE,
+    &TRANSLATIONAL,
+    &CYLINDRICAL,
+    &SPHERICAL,
+    &UNIVERSAL,
+    &DISTANCE,
+    &LEG,
+];
+
+/// What a joint type is: its geometry, its freedoms as a tree joint, its constraints as a cut joint.
+///
+/// Both markers have their z axis along the joint's `axis` and their x axis along `axis2` (or any
+/// direction square to `axis`, the same for both), and coincide in orientation at the design
+/// configuration.
+#[derive(Debug)]
+pub struct JointType {
+    /// The name in model files.
+    pub name: &'static str,
+    /// One line for documentation and editors.
+    pub summary: &'static str,
+    /// How many hardpoints place it: 1 shared by both bodies, or 2, one on each.
+    pub places: usize,
+    /// Whether it needs an axis.
+    pub axis: Need,
+    /// Whether it needs a second axis, square to the first.
+    pub axis2: Need,
+    /// Motions of body j relative to body i, in order from i to j; `None` if it is always cut.
+    pub freedoms: Option<&'static [Freedom]>,
+    /// Elementary constraints where it is cut (paper, section 4).
+    pub rows: &'static [Row],
+    /// The coordinates that a driver or a measure may name.
+    pub coordinates: &'static [CoordinateType],
+}
+
+/// Whether a piece of geometry belongs to a joint type.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Need {
+    /// Must be given.
+    Required,
+    /// Has no meaning for this joint.
+    Unused,
+}
+
+/// One step of a tree joint's chain, in the axes of the frame reached so far.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Freedom {
+    /// A turn about axis 0, 1 or 2 (x, y, z).
+    Turn(usize),
+    /// A slide along axis 0, 1 or 2.
+    Slide(usize),
+    /// Any rotation: three quasi-coordinates about the axes of the frame reached so far.
+    Ball,
+}
+
+impl Freedom {
+    /// How many coordinates it has.
+    pub const fn coordinates(self) -> usize {
+        match self {
+            Self::Turn(_) | Self::Slide(_) => 1,
+            Self::Ball => 3,
+        }
+    }
+}
+
+/// A coordinate of a joint: what a driver prescribes or a measure reads.
+#[derive(Debug)]
+pub struct CoordinateType {
+    /// The name in model files: `angle`, `displacement`, `length`.
+    pub name: &'static str,
+    /// What it measures, hence its unit.
+    pub quantity: Quantity,
+    /// Which freedom of the tree joint it is, if the joint has freedoms.
+    pub freedom: Option<usize>,
+    /// The constraint that a driver on a cut joint adds.
+    pub row: Row,
+}
+
+/// Angle of body j relative to body i about z_i, counter-clockwise, rad.
+pub(crate) const fn angle(freedom: usize) -> CoordinateType {
+    CoordinateType { name: "angle", quantity: Quantity::Angle, freedom: Some(freedom), row: Row::Angle }
+}
+
+/// Displacement of marker j along z_i, m.
+pub(crate) const fn displacement(freedom: usize) -> CoordinateType {
+    CoordinateType {
+        name: "displacement",
+        quantity: Quantity::Length,
+        freedom: Some(freedom),
+        row: Row::Dot2(2),
+    }
+}
+
+/// Change of the distance between the two markers from the design length, m.
+pub(crate) const LENGTH: CoordinateType =
+    CoordinateType { name: "length", quantity: Quantity::Length, freedom: None, row: Row::Distance };
+
+/// What a number measures; the user's units follow from it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Quantity {
+    /// Metres inside.
+    Length,
+    /// Radians inside.
+    Angle,
+    /// A plain number: the parameter tau of a velocity field.
+    Number,
+}
+
+/// The joint type of that name.
+pub fn named(name: &str) -> Option<&'static JointType> {
+    ALL.iter().copied().find(|t| t.name == name)
+}
+
+impl JointType {
+    /// The coordinate of that name.
+    pub fn coordinate(&self, name: &str) -> Option<(usize, &CoordinateType)> {
+        self.coordinates.iter().enumerate().find(|(_, c)| c.name == name)
+    }
+
+    /// How many coordinates the joint has in the tree; `None` if it is always cut.
+    pub fn freedom_count(&self) -> Option<usize> {
+        self.freedoms.map(|f| f.iter().map(|f| f.coordinates()).sum())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn freedoms_and_constraints_of_every_joint_add_up_to_six() {
+        for t in ALL {
+            if let Some(n) = t.freedom_count() {
+                assert_eq!(n + t.rows.len(), 6, "{}", t.name);
+            }
+        }
+    }
+
+    #[test]
+    fn names_are_unique_and_found() {
+        for t in ALL {
+            assert!(std::ptr::eq(named(t.name).unwrap(), *t));
+        }
+        assert!(named("hinge").is_none());
+    }
+}

@@ -1,0 +1,16 @@
+//! Spherical: a ball joint.
+
+use super::{Freedom, JointType, Need};
+use crate::constraint::COINCIDE;
+
+/// d = 0: three constraints.
+pub static SPHERICAL: JointType = JointType {
+    name: "spherical",
+    summary: "a ball joint: turns every way about its point",
+    places: 1,
+    axis: Need::Unused,
+    axis2: Need::Unused,
+    freedoms: Some(&[Freedom::Ball]),
+    rows: &COINCIDE,
+    coordinates: &[],
+};

@@ -1,0 +1,532 @@
+//! Reading the text of a law.
+//!
+//! Tokens are cut by `winnow`; the grammar is a descent with one token in hand, which knows at every error what the
+//! author was about to write:
+//!
+//! ```text
+//! sum     = product (("+" | "-") product)*
+//! product = signed (("*" | "/") signed)*
+//! signed  = ("+" | "-")* power
+//! power   = primary ("^" signed)?
+//! primary = number | "t" | "pi" | function "(" arguments ")" | "(" sum ")"
+//! ```
+
+use std::ops::{Add, Div, Mul, Neg, Range, Sub};
+
+use winnow::ascii::{digit0, digit1};
+use winnow::combinator::{alt, eof, opt};
+use winnow::error::EmptyError;
+use winnow::prelude::*;
+use winnow::stream::LocatingSlice;
+use winnow::token::{any, one_of, take_while};
+
+use super::jet::TimeJet;
+use super::program::{MAX_WAITING, Operation, Program};
+
+/// What is wrong with the text of a law.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("{message}")]
+pub struct ExpressionError {
+    /// Where, as a range of bytes of the expression's text; on character boundaries.
+    pub span: Range<usize>,
+    /// What, in words that stand alone.
+    pub message: String,
+    /// What to write instead, where that can be said.
+    pub help: Option<String>,
+}
+
+/// The most parentheses, calls and exponents that may be open at once.
+const MAX_NESTING: usize = 64;
+
+/// How a name that is followed by arguments becomes an operation.
+#[derive(Clone, Copy)]
+enum Function {
+    One(fn(TimeJet) -> TimeJet),
+    Two(fn(TimeJet, TimeJet) -> TimeJet),
+    /// Of two or more arguments, taken two at a time.
+    Fold(fn(TimeJet, TimeJet) -> TimeJet),
+    Power,
+    Step,
+    If,
+}
+
+/// The functions in the order in which help lists them, with the way to call them.
+const FUNCTIONS: [(&str, &str, Function); 21] = [
+    ("sin", "sin(x)", Function::One(TimeJet::sin)),
+    ("cos", "cos(x)", Function::One(TimeJet::cos)),
+    ("tan", "tan(x)", Function::One(TimeJet::tan)),
+    ("asin", "asin(x)", Function::One(TimeJet::asin)),
+    ("acos", "acos(x)", Function::One(TimeJet::acos)),
+    ("atan", "atan(x)", Function::One(TimeJet::atan)),
+    ("atan2", "atan2(y, x)", Function::Two(TimeJet::atan2)),
+    ("sinh", "sinh(x)", Function::One(TimeJet::sinh)),
+    ("cosh", "cosh(x)", Function::One(TimeJet::cosh)),
+    ("tanh", "tanh(x)", Function::One(TimeJet::tanh)),
+    ("exp", "exp(x)", Function::One(TimeJet::exp)),
+    ("ln", "ln(x)", Function::One(TimeJet::ln)),
+    ("log10", "log10(x)", Function::One(TimeJet::log10)),
+    ("sqrt", "sqrt(x)", Function::One(TimeJet::sqrt)),
+    ("pow", "pow(x, p)", Function::Power),
+    ("hypot", "hypot(x, y)", Function::Two(TimeJet::hypot)),
+    ("abs", "abs(x)", Function::One(TimeJet::abs)),
+    ("min", "min(a, b, ...)", Function::Fold(TimeJet::min)),
+    ("max", "max(a, b, ...)", Function::Fold(TimeJet::max)),
+    ("step", "step(x, x0, h0, x1, h1)", Function::Step),
+    ("if", "if(a < b, x, y)", Function::If),
+];
+
+/// The program that `text` writes.
+pub(super) fn parse(text: &str) -> Result<Program, ExpressionError> {
+    let mut descent = Descent::new(text);
+    if descent.token == Token::End {
+        let help = "write an expression in the time t, such as `0.1*sin(2*pi*t)`";
+        return Err(error(0..text.len(), "the expression is empty", Some(help)));
+    }
+    descent.sum()?;
+    match descent.token {
+        Token::End => Ok(descent.program),
+        _ => Err(descent.unexpected()),
+    }
+}
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Token<'a> {
+    Number(f64),
+    Name(&'a str),
+    Symbol(&'a str),
+    End,
+}
+
+type Input<'a> = LocatingSlice<&'a str>;
+
+fn token<'a>(input: &mut Input<'a>) -> Result<Token<'a>, EmptyError> {
+    alt((
+        number.map(Token::Number),
+        name.map(Token::Name),
+        alt(("**", "<=", ">=", "==", "!=", "&&", "||")).map(Token::Symbol),
+        any.take().map(Token::Symbol),
+        eof.value(Token::End),
+    ))
+    .parse_next(input)
+}
+
+fn number(input: &mut Input<'_>) -> Result<f64, EmptyError> {
+    let mantissa = alt(((digit1, opt(('.', digit0))).void(), ('.', digit1).void()));
+    let exponent = (one_of(['e', 'E']), opt(one_of(['+', '-'])), digit1);
+    (mantissa, opt(exponent))
+        .take()
+        .parse_to()
+        .parse_next(input)
+}
+
+fn name<'a>(input: &mut Input<'a>) -> Result<&'a str, EmptyError> {
+    let first = one_of(|c: char| c.is_alphabetic() || c == '_');
+    let rest = take_while(0.., |c: char| {
+        c.is_alphabetic() || c.is_ascii_digit() || c == '_'
+    });
+    (first, rest).take().parse_next(input)
+}
+
+/// The descent; each rule leaves one operand in the program.
+struct Descent<'a> {
+    text: &'a str,
+    rest: Input<'a>,
+    token: Token<'a>,
+    span: Range<usize>,
+    /// The span of the token before; empty at the start.
+    previous: Range<usize>,
+    nesting: usize,
+    program: Program,
+}
+
+impl<'a> Descent<'a> {
+    fn new(text: &'a str) -> Self {
+        let mut descent = Self {
+            text,
+            rest: LocatingSlice::new(text),
+            token: Token::End,
+            span: 0..0,
+            previous: 0..0,
+            nesting: 0,
+            program: Program::default(),
+        };
+        descent.read();
+        descent
+    }
+
+    fn sum(&mut self) -> Result<(), ExpressionError> {
+        self.product()?;
+        loop {
+            let operator = match self.token {
+                Token::Symbol("+") => TimeJet::add,
+                Token::Symbol("-") => TimeJet::sub,
+                _ => return Ok(()),
+            };
+            self.advance();
+            self.product()?;
+            self.program.emit(Operation::Two(operator));
+        }
+    }
+
+    fn product(&mut self) -> Result<(), ExpressionError> {
+        self.signed()?;
+        loop {
+            let operator: fn(TimeJet, TimeJet) -> TimeJet = match self.token {
+                Token::Symbol("*") => TimeJet::mul,
+                Token::Symbol("/") => TimeJet::div,
+                _ => return Ok(()),
+            };
+            self.advance();
+            self.signed()?;
+            self.program.emit(Operation::Two(operator));
+        }
+    }
+
+    fn signed(&mut self) -> Result<(), ExpressionError> {
+        let mut is_negative = false;
+        while let Token::Symbol(sign @ ("+" | "-")) = self.token {
+            is_negative ^= sign == "-";
+            self.advance();
+        }
+        self.power()?;
+        if is_negative {
+            self.program.emit(Operation::One(TimeJet::neg));
+        }
+        Ok(())
+    }
+
+    fn power(&mut self) -> Result<(), ExpressionError> {
+        self.primary()?;
+        if self.token == Token::Symbol("^") {
+            self.advance();
+            self.nested(Self::signed)?;
+            self.program.emit_power();
+        }
+        Ok(())
+    }
+
+    fn primary(&mut self) -> Result<(), ExpressionError> {
+        match self.token {
+            Token::Number(value) if value.is_finite() => self.leaf(Operation::Constant(value)),
+            Token::Number(_) => Err(error(
+                self.span.clone(),
+                "the number is too large",
+                Some("the largest is 1.79e308"),
+            )),
+            Token::Name("t") => self.leaf(Operation::Time),
+            Token::Name("pi") => self.leaf(Operation::Constant(std::f64::consts::PI)),
+            Token::Name(name) => match FUNCTIONS.iter().find(|(known, ..)| *known == name) {
+                Some(&(name, signature, function)) => self.call(name, signature, function),
+                None => Err(self.unknown_name(name)),
+            },
+            Token::Symbol("(") => {
+                let open = self.span.clone();
+                self.advance();
+                self.nested(Self::sum)?;
+                self.close(open)
+            }
+            _ => Err(self.missing_value()),
+        }
+    }
+
+    fn leaf(&mut self, operation: Operation) -> Result<(), ExpressionError> {
+        if self.program.is_full() {
+            return Err(self.too_deep(&format!(
+                "at most {MAX_WAITING} operands may wait for their operator"
+            )));
+        }
+        self.program.emit(operation);
+        self.advance();
+        Ok(())
+    }
+
+    fn call(
+        &mut self,
+        name: &str,
+        signature: &str,
+        function: Function,
+    ) -> Result<(), ExpressionError> {
+        let name_start = self.span.start;
+        self.advance();
+        if self.token != Token::Symbol("(") {
+            let message = format!("`{name}` is a function and needs parentheses");
+            return Err(error(
+                self.previous.clone(),
+                message,
+                Some(&format!("write `{signature}`")),
+            ));
+        }
+        let open = self.span.clone();
+        self.advance();
+
+        let (fewest, most) = match function {
+            Function::One(_) => (1, 1),
+            Function::Two(_) | Function::Power => (2, 2),
+            Function::Fold(_) => (2, usize::MAX),
+            Function::If => (3, 3),
+            Function::Step => (5, 5),
+        };
+        let mut holds: fn(&f64, &f64) -> bool = f64::lt;
+        let mut arguments = Vec::new(); // where each begins in the program, and its span
+        while self.token != Token::Symbol(")") || !arguments.is_empty() {
+            let (first_operation, start) = (self.program.len(), self.span.start);
+            if matches!(function, Function::If) && arguments.is_empty() {
+                holds = self.condition()?;
+            } else {
+                self.nested(Self::sum)?;
+            }
+            arguments.push((first_operation, start..self.previous.end));
+            match function {
+                Function::Fold(fold) if arguments.len() > 1 => {
+                    self.program.emit(Operation::Two(fold))
+                }
+                // To be counted only.
+                _ if arguments.len() > most => self.program.drop_operand(first_operation),
+                _ => {}
+            }
+            if self.token != Token::Symbol(",") {
+                break;
+            }
+            self.advance();
+        }
+        self.close(open)?;
+
+        if arguments.len() < fewest || arguments.len() > most {
+            let wanted = match function {
+                Function::One(_) => "1 argument".to_owned(),
+                Function::Fold(_) => "2 or more arguments".to_owned(),
+                _ => format!("{fewest} arguments"),
+            };
+            let message = format!("`{name}` takes {wanted}, not {}", arguments.len());
+            return Err(error(
+                name_start..self.previous.end,
+                message,
+                Some(&format!("write `{signature}`")),
+            ));
+        }
+        match function {
+            Function::One(function) => self.program.emit(Operation::One(function)),
+            Function::Two(function) => self.program.emit(Operation::Two(function)),
+            Function::Fold(_) => {} // emitted one by one above
+            Function::Power => self.program.emit_power(),
+            Function::If => self.program.emit(Operation::Select(holds)),
+            Function::Step => {
+                self.check_step_order(&arguments)?;
+                self.program.emit(Operation::Step);
+            }
+        }
+        Ok(())
+    }
+
+    /// Reads `a < b`, leaves a and b in the program.
+    fn condition(&mut self) -> Result<fn(&f64, &f64) -> bool, ExpressionError> {
+        let start = self.span.start;
+        self.nested(Self::sum)?;
+        let holds = match self.token {
+            Token::Symbol("<") => f64::lt,
+            Token::Symbol("<=") => f64::le,
+            Token::Symbol(">") => f64::gt,
+            Token::Symbol(">=") => f64::ge,
+            Token::Symbol(symbol @ ("=" | "==" | "!=")) => {
+                let message = format!("a law is not compared with `{symbol}`");
+                return Err(error(
+                    self.span.clone(),
+                    message,
+                    Some("use `<`, `<=`, `>` or `>=`"),
+                ));
+            }
+            Token::Symbol("," | ")") | Token::End => {
+                let message = "the first argument of `if` must be a comparison";
+                let help = "compare with `<`, `<=`, `>` or `>=`, as in `if(t < 1, x, y)`";
+                return Err(error(start..self.previous.end, message, Some(help)));
+            }
+            _ => return Err(self.unexpected()),
+        };
+        self.advance();
+        self.nested(Self::sum)?;
+        if let Token::Symbol("<" | "<=" | ">" | ">=" | "=" | "==" | "!=" | "&&" | "||") = self.token
+        {
+            let message = "an `if` has one comparison only";
+            return Err(error(
+                self.span.clone(),
+                message,
+                Some("nest a second `if` for a second comparison"),
+            ));
+        }
+        Ok(holds)
+    }
+
+    /// Where the ends of a step are plain numbers, wrong order is an error here and not a NaN later.
+    fn check_step_order(&self, arguments: &[(usize, Range<usize>)]) -> Result<(), ExpressionError> {
+        let [_, x0, h0, x1, h1] = arguments else {
+            return Ok(());
+        };
+        let number =
+            |from: usize, to: usize| self.program.constant_at(from).filter(|_| to == from + 1);
+        match (number(x0.0, h0.0), number(x1.0, h1.0)) {
+            (Some(x0_value), Some(x1_value)) if x0_value >= x1_value => {
+                let message = format!(
+                    "`step` must rise from x0 to x1, but x0 = {x0_value} and x1 = {x1_value}"
+                );
+                let help = "write `step(x, x0, h0, x1, h1)` with x0 < x1; h1 may be less than h0";
+                Err(error(x0.1.start..x1.1.end, message, Some(help)))
+            }
+            _ => Ok(()),
+        }
+    }
+
+    fn close(&mut self, open: Range<usize>) -> Result<(), ExpressionError> {
+        match self.token {
+            Token::Symbol(")") => {
+                self.advance();
+                Ok(())
+            }
+            Token::End => Err(error(open, "missing `)`: this `(` is not closed", None)),
+            _ => Err(self.unexpected()),
+        }
+    }
+
+    fn nested<T>(
+        &mut self,
+        rule: impl FnOnce(&mut Self) -> Result<T, ExpressionError>,
+    ) -> Result<T, ExpressionError> {
+        if self.nesting == MAX_NESTING {
+            let help =
+                format!("at most {MAX_NESTING} parentheses and exponents may be open at once");
+            return Err(self.too_deep(&help));
+        }
+        self.nesting += 1;
+        let result = rule(self)?;
+        self.nesting -= 1;
+        Ok(result)
+    }
+
+    fn advance(&mut self) {
+        self.previous = self.span.clone();
+        self.read();
+    }
+
+    fn read(&mut self) {
+        let end = self.text.len()..self.text.len();
+        let spaces = take_while::<_, _, EmptyError>(0.., char::is_whitespace);
+        (self.token, self.span) = (spaces, token.with_span())
+            .map(|(_, token)| token)
+            .parse_next(&mut self.rest)
+            .unwrap_or((Token::End, end));
+    }
+
+    /// The error that an operand was wanted where the current token stands.
+    fn missing_value(&self) -> ExpressionError {
+        match self.token {
+            Token::Symbol("*" | "/" | "^" | "**" | "<" | "<=" | ">" | ">=" | ")" | ",")
+            | Token::End => {}
+            _ => return self.unexpected(),
+        }
+        if self.previous.is_empty() {
+            return error(
+                self.span.clone(),
+                format!("a value is missing before `{}`", self.shown(&self.span)),
+                None,
+            );
+        }
+        error(
+            self.previous.clone(),
+            format!("a value is missing after `{}`", self.shown(&self.previous)),
+            None,
+        )
+    }
+
+    /// The error that the current token can not follow the operand before it.
+    fn unexpected(&self) -> ExpressionError {
+        let (before, shown) = (self.shown(&self.previous), self.shown(&self.span));
+        let (message, help) = match self.token {
+            Token::Number(_) | Token::Name(_) | Token::Symbol("(") => {
+                let is_plain_number =
+                    before.parse::<f64>().is_ok() && matches!(self.token, Token::Number(_));
+                let help =
+                    (!is_plain_number).then(|| format!("for a product write `{before}*{shown}`"));
+                (
+                    format!("an operator is missing between `{before}` and `{shown}`"),
+                    help,
+                )
+            }
+            Token::Symbol(")") => ("this `)` closes nothing".to_owned(), None),
+            Token::Symbol("<" | "<=" | ">" | ">=" | "=" | "==" | "!=") => {
+                let help = "compare as in `if(t < 1, x, y)`".to_owned();
+                (
+                    "only the first argument of `if` can be a comparison".to_owned(),
+                    Some(help),
+                )
+            }
+            Token::Symbol(symbol) => {
+                let help = match symbol {
+                    "," => Some("write decimal numbers with a point, such as `0.5`"),
+                    "**" => Some("for a power write `^`"),
+                    "\u{b2}" | "\u{b3}" => Some("for a power write `^2` or `^3`"),
+                    "\u{b7}" | "\u{d7}" => Some("for a product write `*`"),
+                    "\u{f7}" | ":" => Some("for a quotient write `/`"),
+                    "\u{2212}" | "\u{2013}" => Some("for minus write the plain `-`"),
+                    "[" | "]" | "{" | "}" => Some("use round parentheses"),
+                    "&&" | "||" => Some("nest a second `if` for a second comparison"),
+                    _ => None,
+                };
+                (format!("unexpected `{shown}`"), help.map(str::to_owned))
+            }
+            Token::End => ("unexpected end".to_owned(), None),
+        };
+        ExpressionError {
+            span: self.span.clone(),
+            message,
+            help,
+        }
+    }
+
+    fn unknown_name(&self, name: &str) -> ExpressionError {
+        let functions: Vec<&str> = FUNCTIONS.iter().map(|(known, ..)| *known).collect();
+        let lower = name.to_lowercase();
+        let hint = match lower.as_str() {
+            "e" => Some("for Euler's number write `exp(1)`; ".to_owned()),
+            "log" => Some("write `ln` or `log10`; ".to_owned()),
+            "time" => Some("the time is `t`; ".to_owned()),
+            "\u{3c0}" => Some("did you mean `pi`? ".to_owned()),
+            _ => ["t", "pi"]
+                .iter()
+                .chain(&functions)
+                .map(|known| (strsim::jaro_winkler(&lower, known), known))
+                .max_by(|a, b| a.0.total_cmp(&b.0))
+                .filter(|(likeness, _)| *likeness > 0.8)
+                .map(|(_, known)| format!("did you mean `{known}`? ")),
+        };
+        let help = format!(
+            "{}known are t, pi, {}",
+            hint.unwrap_or_default(),
+            functions.join(", ")
+        );
+        error(
+            self.span.clone(),
+            format!("unknown name `{name}`"),
+            Some(&help),
+        )
+    }
+
+    fn too_deep(&self, help: &str) -> ExpressionError {
+        error(
+            self.span.clone(),
+            "the expression is nested too deeply",
+            Some(help),
+        )
+    }
+
+    /// The text at `span`, with control characters made visible.
+    fn shown(&self, span: &Range<usize>) -> String {
+        self.text[span.clone()].escape_debug().to_string()
+    }
+}
+
+fn error(span: Range<usize>, message: impl Into<String>, help: Option<&str>) -> ExpressionError {
+    ExpressionError {
+        span,
+        message: message.into(),
+        help: help.map(str::to_owned),
+    }
+}

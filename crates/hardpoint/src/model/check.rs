@@ -1,0 +1,619 @@
+//! From a draft to a model: every reference resolved, every fault found.
+
+use super::fault::did_you_mean;
+use super::*;
+use crate::joint::{self, CoordinateType, Need};
+
+/// How far `axis2` may be from square to `axis`, as a cosine: typed unit vectors are good to this.
+const SQUARE_TOLERANCE: f64 = 1e-6;
+/// Points closer than this part of the mechanism's size are the same point.
+const SAME_POINT: f64 = 1e-9;
+
+impl Model {
+    /// Checks a draft and resolves its names.
+    ///
+    /// # Errors
+    /// Every [`Fault`] of the draft, in its order: unknown or duplicate names, axes that are null or
+    /// missing or not square, places that do not fit the joint type, drivers on coordinates that a joint
+    /// does not have, laws that are not finite at an output time, times that do not increase.
+    ///
+    /// ```
+    /// use hardpoint::model::{Draft, Model};
+    /// let faults = Model::from_draft(&Draft::default()).unwrap_err();
+    /// assert_eq!(faults[0].message, "the model has no bodies");
+    /// ```
+    pub fn from_draft(draft: &Draft) -> Result<Self, Vec<Fault>> {
+        let mut c = Check::new(draft);
+        c.names();
+        c.bodies();
+        c.joints();
+        c.default_frames();
+        c.drivers();
+        c.points();
+        c.measures();
+        c.variables();
+        c.times();
+        if c.faults.is_empty() { Ok(c.model) } else { Err(c.faults) }
+    }
+}
+
+/// A place in the draft that is being looked at.
+#[derive(Clone, Copy)]
+struct Here {
+    section: Section,
+    index: usize,
+}
+
+impl Here {
+    fn key(self, key: &'static str) -> Locus {
+        Locus { section: self.section, index: self.index, key, item: None }
+    }
+
+    fn item(self, key: &'static str, item: usize) -> Locus {
+        Locus { item: Some(item), ..self.key(key) }
+    }
+}
+
+struct Check<'a> {
+    draft: &'a Draft,
+    model: Model,
+    faults: Vec<Fault>,
+    /// Which drafted joint became which joint; `None` for those that are faulty.
+    joint_ids: Vec<Option<JointId>>,
+}
+
+impl<'a> Check<'a> {
+    fn new(draft: &'a Draft) -> Self {
+        let model = Model {
+            name: draft.name.clone(),
+            hardpoints: draft
+                .hardpoints
+                .iter()
+                .map(|h| Hardpoint { name: h.name.clone(), position: h.position, unnamed: false })
+                .collect(),
+            bodies: vec![Body { name: "ground".into(), frame: Pose::IDENTITY }],
+            joints: Vec::new(),
+            drivers: Vec::new(),
+            variables: Vec::new(),
+            points: Vec::new(),
+            measures: Vec::new(),
+            times: draft.times.clone(),
+        };
+        Self { draft, model, faults: Vec::new(), joint_ids: Vec::new() }
+    }
+
+    fn fault(&mut self, code: &'static str, at: Locus, message: impl Into<String>) -> &mut Fault {
+        self.faults.push(Fault { code, at, message: message.into(), notes: Vec::new(), help: None });
+        self.faults.last_mut().expect("just pushed")
+    }
+
+    /// HP0201: empty and duplicate names; HP0202: coordinates that are not finite.
+    fn names(&mut self) {
+        let d = self.draft;
+        let lists: [(Section, &str, Vec<&str>); 7] = [
+            (Section::Hardpoints, "hardpoint", d.hardpoints.iter().map(|x| x.name.as_str()).collect()),
+            (Section::Bodies, "body", d.bodies.iter().map(|x| x.name.as_str()).collect()),
+            (Section::Joints, "joint", d.joints.iter().map(|x| x.name.as_str()).collect()),
+            (Section::Drivers, "driver", d.drivers.iter().map(|x| x.name.as_str()).collect()),
+            (Section::Design, "design variable", d.design.iter().map(|x| x.name.as_str()).collect()),
+            (Section::Points, "point", d.points.iter().map(|x| x.name.as_str()).collect()),
+            (Section::Measures, "measure", d.measures.iter().map(|x| x.name.as_str()).collect()),
+        ];
+        for (section, what, names) in lists {
+            for (index, name) in names.iter().enumerate() {
+                let at = Here { section, index }.key("name");
+                if name.trim().is_empty() {
+                    self.fault("HP0201", at, format!("a {what} has an empty name"));
+                } else if let Some(first) = names[..index].iter().position(|n| n == name) {
+                    self.fault("HP0201", at, format!("there are two {what}s named `{name}`")).notes.push(
+                        format!("the first is number {} of the {what}s, this is number {}", first + 1, index + 1),
+                    );
+                } else if section == Section::Bodies && *name == "ground" {
+                    self.fault("HP0201", at, "`ground` is the name of the body that does not move").help =
+                        Some("it is always there and need not be declared; give this body another name".into());
+                }
+            }
+        }
+        for (index, h) in d.hardpoints.iter().enumerate() {
+            if !h.position.is_finite() {
+                let at = Here { section: Section::Hardpoints, index }.key("position");
+                self.fault("HP0202", at, format!("a coordinate of hardpoint `{}` is not a finite number", h.name));
+            }
+        }
+        if d.bodies.is_empty() {
+            let at = Here { section: Section::Bodies, index: 0 }.key("");
+            self.fault("HP0203", at, "the model has no bodies").help =
+                Some("declare at least one body besides `ground`".into());
+        }
+    }
+
+    /// Looks a name up among candidates, or says what is there instead.
+    fn find<'n>(
+        &mut self,
+        what: &str,
+        name: &str,
+        at: Locus,
+        candidates: impl Iterator<Item = &'n str> + Clone,
+    ) -> Option<usize> {
+        if let Some(k) = candidates.clone().position(|c| c == name) {
+            return Some(k);
+        }
+        let close = did_you_mean(name, candidates.clone());
+        let valid: Vec<String> = candidates.map(|c| format!("`{c}`")).collect();
+        let fault = self.fault("HP0204", at, format!("there is no {what} named `{name}`"));
+        if !valid.is_empty() {
+            fault.notes.push(format!("valid names: {}", valid.join(", ")));
+        }
+        fault.help = match close {
+            Some(close) => Some(format!("did you mean `{close}`?")),
+            None if valid.is_empty() => Some(format!("the model declares no {what}")),
+            None => None,
+        };
+        None
+    }
+
+    fn body(&mut self, name: &str, at: Locus) -> Option<BodyId> {
+        let draft = self.draft;
+        let names = std::iter::once("ground").chain(draft.bodies.iter().map(|b| b.name.as_str()));
+        self.find("body", name, at, names).map(BodyId)
+    }
+
+    fn hardpoint(&mut self, name: &str, at: Locus) -> Option<HardpointId> {
+        let draft = self.draft;
+        self.find("hardpoint", name, at, draft.hardpoints.iter().map(|h| h.name.as_str())).map(HardpointId)
+    }
+
+    /// The joint of that name; `None`, without a second fault, where the joint itself is faulty.
+    fn joint(&mut self, name: &str, at: Locus) -> Option<JointId> {
+        let draft = self.draft;
+        let k = self.find("joint", name, at, draft.joints.iter().map(|j| j.name.as_str()))?;
+        self.joint_ids[k]
+    }
+
+    /// A hardpoint for a place; coordinates become an unnamed one.
+    fn place(&mut self, place: &Place, owner: &str, at: Locus) -> Option<HardpointId> {
+        match place {
+            Place::Hardpoint(name) => self.hardpoint(name, at),
+            Place::At(p) if p.is_finite() => {
+                self.model.hardpoints.push(Hardpoint { name: owner.into(), position: *p, unnamed: true });
+                Some(HardpointId(self.model.hardpoints.len() - 1))
+            }
+            Place::At(_) => {
+                self.fault("HP0202", at, format!("a coordinate of `{owner}` is not a finite number"));
+                None
+            }
+        }
+    }
+
+    fn position(&self, h: HardpointId) -> Vec3 {
+        self.model.hardpoints[h.0].position
+    }
+
+    /// A direction, and its unit vector at the design configuration.
+    fn line(&mut self, line: &Line, owner: &str, here: Here, key: &'static str) -> Option<(Direction, Vec3)> {
+        match line {
+            Line::Along(v) => match v.unit() {
+                Some(u) => Some((Direction::Along(u), u)),
+                None => {
+                    self.fault("HP0205", here.key(key), format!("the {key} of `{owner}` has no direction"))
+                        .notes
+                        .push(format!("it is written as [{}, {}, {}]", v.x, v.y, v.z));
+                    None
+                }
+            },
+            Line::Through(a, b) => {
+                let a_id = self.hardpoint(a, here.item(key, 0));
+                let b_id = self.hardpoint(b, here.item(key, 1));
+                let (a_id, b_id) = (a_id?, b_id?);
+                let d = self.position(b_id) - self.position(a_id);
+                match d.unit() {
+                    Some(u) if d.norm() > SAME_POINT * self.model.size() => {
+                        Some((Direction::Through(a_id, b_id), u))
+                    }
+                    _ => {
+                        let message = format!("the {key} of `{owner}` passes through one point only");
+                        self.fault("HP0205", here.key(key), message).notes.push(if a == b {
+                            format!("both of its hardpoints are `{a}`")
+                        } else {
+                            format!("hardpoints `{a}` and `{b}` are at the same place")
+                        });
+                        None
+                    }
+                }
+            }
+        }
+    }
+
+    fn bodies(&mut self) {
+        let draft = self.draft;
+        for (index, b) in draft.bodies.iter().enumerate() {
+            let here = Here { section: Section::Bodies, index };
+            let mut frame = Pose::IDENTITY;
+            match &b.frame {
+                FrameDraft::Default => {}
+                FrameDraft::Pose(pose) => {
+                    if !(pose.r.is_finite() && pose.rot.cols.iter().all(|c| c.is_finite())) {
+                        self.fault("HP0202", here.key("frame"), format!("the frame of body `{}` is not finite", b.name));
+                    }
+                    frame = *pose;
+                }
+                FrameDraft::Points(origin, x, xy) => {
+                    let mut at = |k: usize, p: &Place| match p {
+                        Place::At(v) if v.is_finite() => Some(*v),
+                        Place::At(_) => {
+                            let message = format!("a coordinate of the frame of `{}` is not a finite number", b.name);
+                            self.fault("HP0202", here.item("frame", k), message);
+                            None
+                        }
+                        Place::Hardpoint(name) => {
+                            self.hardpoint(name, here.item("frame", k)).map(|h| self.position(h))
+                        }
+                    };
+                    let points = (at(0, origin), at(1, x), at(2, xy));
+                    if let (Some(o), Some(x), Some(p)) = points {
+                        let f = (x - o).unit();
+                        let h = f.and_then(|f| f.cross(p - o).unit());
+                        match (f, h) {
+                            (Some(f), Some(h)) => {
+                                frame = Pose { rot: Mat3 { cols: [f, h.cross(f), h] }, r: o };
+                            }
+                            _ => {
+                                let message = format!("the frame points of body `{}` lie on one line", b.name);
+                                self.fault("HP0206", here.key("frame"), message).help =
+                                    Some("give an origin, a point on the x axis, and a third point off that axis".into());
+                            }
+                        }
+                    }
+                }
+            }
+            self.model.bodies.push(Body { name: b.name.clone(), frame });
+        }
+    }
+
+    fn joints(&mut self) {
+        let draft = self.draft;
+        for (index, j) in draft.joints.iter().enumerate() {
+            let before = self.faults.len();
+            let joint = self.one_joint(j, Here { section: Section::Joints, index });
+            let id = match joint {
+                Some(joint) if self.faults.len() == before => {
+                    self.model.joints.push(joint);
+                    Some(JointId(self.model.joints.len() - 1))
+                }
+                _ => None,
+            };
+            self.joint_ids.push(id);
+        }
+    }
+
+    fn one_joint(&mut self, j: &JointDraft, here: Here) -> Option<Joint> {
+        let name = &j.name;
+        let kind = self.find("joint type", &j.kind, here.key("type"), joint::ALL.iter().map(|t| t.name));
+        let body_i = self.body(&j.bodies[0], here.item("bodies", 0));
+        let body_j = self.body(&j.bodies[1], here.item("bodies", 1));
+        if body_i.is_some() && body_i == body_j {
+            let message = format!("joint `{name}` connects body `{}` with itself", j.bodies[0]);
+            self.fault("HP0207", here.key("bodies"), message);
+        }
+        let kind = joint::ALL[kind?];
+        let [axis, axis2] = [(&j.axis, kind.axis, "axis"), (&j.axis2, kind.axis2, "axis2")].map(|(line, need, key)| {
+            match (line, need) {
+                (Some(line), Need::Required) => self.line(line, name, here, key),
+                (None, Need::Required) => {
+                    let message = format!("joint `{name}` needs `{key}`");
+                    self.fault("HP0208", here.key("type"), message)
+                        .notes
+                        .push(format!("a {} joint is {}", kind.name, kind.summary));
+                    None
+                }
+                (Some(_), Need::Unused) => {
+                    let message = format!("a {} joint has no `{key}`", kind.name);
+                    self.fault("HP0208", here.key(key), message).help = Some(format!("remove `{key}` from `{name}`"));
+                    None
+                }
+                (None, Need::Unused) => None,
+            }
+        });
+        let at = self.joint_places(j, kind, axis.map(|a| a.0), here);
+        let frame = match (axis, axis2) {
+            (Some((_, z)), Some((_, x))) => {
+                if z.dot(x).abs() > SQUARE_TOLERANCE {
+                    let angle = z.dot(x).clamp(-1.0, 1.0).acos().to_degrees();
+                    let message = format!("the axes of joint `{name}` are not square to each other");
+                    self.fault("HP0209", here.key("axis2"), message)
+                        .notes
+                        .push(format!("the angle between `axis` and `axis2` is {angle:.4} deg"));
+                }
+                frame_along(z, (x - z * z.dot(x)).unit()?)
+            }
+            (Some((_, z)), None) => frame_along(z, z.any_square()),
+            _ => Mat3::IDENTITY,
+        };
+        let (axis, axis2) = (axis.map(|a| a.0), axis2.map(|a| a.0));
+        let bodies = [body_i?, body_j?];
+        Some(Joint { name: name.clone(), kind, bodies, at: at?, axis, axis2, frame, cut: j.cut })
+    }
+
+    /// The hardpoints of the two markers: one shared, or one on each body.
+    fn joint_places(
+        &mut self,
+        j: &JointDraft,
+        kind: &'static JointType,
+        axis: Option<Direction>,
+        here: Here,
+    ) -> Option<[HardpointId; 2]> {
+        let name = &j.name;
+        if let (true, Some(Direction::Through(a, _))) = (j.at.is_empty() && kind.places == 1, axis) {
+            return Some([a, a]);
+        }
+        if j.at.len() != kind.places {
+            let message = match kind.places {
+                1 => format!("joint `{name}` needs one hardpoint in `at`, not {}", j.at.len()),
+                _ => format!("joint `{name}` needs two hardpoints in `at`, one on each body, not {}", j.at.len()),
+            };
+            let at = if j.at.is_empty() { here.key("type") } else { here.key("at") };
+            self.fault("HP0210", at, message)
+                .notes
+                .push(format!("a {} joint is {}", kind.name, kind.summary));
+            return None;
+        }
+        let places: Vec<_> =
+            j.at.iter().enumerate().map(|(k, p)| self.place(p, name, here.item("at", k))).collect();
+        let (first, last) = (places[0]?, places[kind.places - 1]?);
+        if kind.places == 2
+            && (self.position(last) - self.position(first)).norm() <= SAME_POINT * self.model.size()
+        {
+            self.fault("HP0211", here.key("at"), format!("the two ends of `{name}` are at the same place"));
+        }
+        Some([first, last])
+    }
+
+    /// HP0212 for bodies that nothing holds; default frames for the others that gave none.
+    fn default_frames(&mut self) {
+        for (index, b) in self.draft.bodies.iter().enumerate() {
+            let id = BodyId(index + 1);
+            let mut ends = Vec::new();
+            for j in &self.model.joints {
+                for e in (0..2).filter(|&e| j.bodies[e] == id) {
+                    ends.push(self.model.hardpoints[j.at[e].0].position);
+                }
+            }
+            let named = self.draft.joints.iter().any(|j| j.bodies.contains(&b.name));
+            if !named {
+                let at = Here { section: Section::Bodies, index }.key("name");
+                self.fault("HP0212", at, format!("no joint holds body `{}`", b.name)).help =
+                    Some("connect it with a joint, or remove it".into());
+            }
+            if matches!(b.frame, FrameDraft::Default) && !ends.is_empty() {
+                let sum = ends.iter().fold(Vec3::ZERO, |s, &p| s + p);
+                self.model.bodies[id.0].frame.r = sum * (1.0 / ends.len() as f64);
+            }
+        }
+    }
+
+    /// A coordinate of a joint, by name or as its only one.
+    fn coordinate(&mut self, joint: JointId, name: Option<&str>, here: Here) -> Option<usize> {
+        let kind = self.model.joints[joint.0].kind;
+        let list = |c: &[CoordinateType]| c.iter().map(|c| format!("`{}`", c.name)).collect::<Vec<_>>().join(", ");
+        let joint_name = self.model.joints[joint.0].name.clone();
+        let (message, key) = match (name, kind.coordinates) {
+            (_, []) => (format!("a {} joint has no coordinate to name", kind.name), "joint"),
+            (None, [_]) => return Some(0),
+            (None, _) => (format!("joint `{joint_name}` has more than one coordinate"), "joint"),
+            (Some(name), coordinates) => match coordinates.iter().position(|c| c.name == name) {
+                Some(k) => return Some(k),
+                None => (format!("a {} joint has no coordinate `{name}`", kind.name), "coordinate"),
+            },
+        };
+        let fault = self.fault("HP0213", here.key(key), message);
+        fault.notes.push(format!("`{joint_name}` is {}: {}", kind.name, kind.summary));
+        fault.help = Some(if kind.coordinates.is_empty() {
+            "name a joint that has one: a revolute, translational or cylindrical joint, a rod or a leg".into()
+        } else {
+            format!("its coordinates: {}", list(kind.coordinates))
+        });
+        None
+    }
+
+    fn drivers(&mut self) {
+        let draft = self.draft;
+        for (index, d) in draft.drivers.iter().enumerate() {
+            let here = Here { section: Section::Drivers, index };
+            if let Some(&t) = draft.times.iter().find(|&&t| !(d.law.at(t).is_finite())) {
+                let message = format!("the law of driver `{}` has no finite value at t = {t} s", d.name);
+                self.fault("HP0214", here.key("law"), message).notes.push(format!("the law is `{}`", d.law));
+            }
+            let Some(joint) = self.joint(&d.joint, here.key("joint")) else { continue };
+            let Some(coordinate) = self.coordinate(joint, d.coordinate.as_deref(), here) else { continue };
+            if let Some(other) =
+                self.model.drivers.iter().find(|o| o.joint == joint && o.coordinate == coordinate)
+            {
+                let message = format!("drivers `{}` and `{}` prescribe the same coordinate", other.name, d.name);
+                let c = self.model.joints[joint.0].kind.coordinates[coordinate].name;
+                self.fault("HP0215", here.key("joint"), message)
+                    .notes
+                    .push(format!("the {c} of joint `{}`", d.joint));
+                continue;
+            }
+            if self.model.joints[joint.0].kind.name == "distance" {
+                let message = format!("driver `{}` prescribes the length of a rod, which is constant", d.name);
+                self.fault("HP0213", here.key("joint"), message).help =
+                    Some(format!("make `{}` a `leg`: a rod whose length a driver prescribes", d.joint));
+                continue;
+            }
+            self.model.drivers.push(Driver { name: d.name.clone(), joint, coordinate, law: d.law.clone() });
+        }
+    }
+
+    fn points(&mut self) {
+        let draft = self.draft;
+        for (index, p) in draft.points.iter().enumerate() {
+            let here = Here { section: Section::Points, index };
+            let body = self.body(&p.body, here.key("body"));
+            let at = self.place(&p.at, &p.name, here.key("at"));
+            // A faulty point keeps its place in the list, so that later names still resolve.
+            let (body, at) = (body.unwrap_or(GROUND), at.unwrap_or(HardpointId(0)));
+            self.model.points.push(BodyPoint { name: p.name.clone(), body, at, unnamed: false });
+        }
+    }
+
+    fn point(&mut self, p: &PointRef, owner: &str, at: Locus) -> Option<PointId> {
+        match p {
+            PointRef::Named(name) => {
+                let draft = self.draft;
+                self.find("point", name, at, draft.points.iter().map(|p| p.name.as_str())).map(PointId)
+            }
+            PointRef::On { body, at: place } => {
+                let body = self.body(body, at.clone());
+                let place = self.place(place, owner, at);
+                let (body, at) = (body?, place?);
+                self.model.points.push(BodyPoint { name: owner.into(), body, at, unnamed: true });
+                Some(PointId(self.model.points.len() - 1))
+            }
+        }
+    }
+
+    fn measures(&mut self) {
+        let draft = self.draft;
+        for (index, m) in draft.measures.iter().enumerate() {
+            let here = Here { section: Section::Measures, index };
+            if let Some(kind) = self.one_measure(m, here) {
+                self.model.measures.push(Measure { name: m.name.clone(), kind });
+            }
+        }
+    }
+
+    fn one_measure(&mut self, m: &MeasureDraft, here: Here) -> Option<MeasureKind> {
+        Some(match &m.kind {
+            MeasureKindDraft::Coordinate { joint, coordinate } => {
+                let joint = self.joint(joint, here.key("joint"))?;
+                let coordinate = self.coordinate(joint, coordinate.as_deref(), here)?;
+                MeasureKind::Coordinate { joint, coordinate }
+            }
+            MeasureKindDraft::Distance { from, to } => {
+                let (a, b) = (self.point(from, &m.name, here.key("from")), self.point(to, &m.name, here.key("to")));
+                let (from, to) = (a?, b?);
+                if from == to {
+                    let message = format!("measure `{}` is the distance of a point from itself", m.name);
+                    self.fault("HP0216", here.key("to"), message);
+                }
+                MeasureKind::Distance { from, to }
+            }
+            MeasureKindDraft::Coordinates { point, along } => {
+                let point = self.point(point, &m.name, here.key("point"));
+                let (_, along) = self.line(&Line::Along(*along), &m.name, here, "along")?;
+                MeasureKind::Coordinates { point: point?, along }
+            }
+            MeasureKindDraft::Toe { body, spin_axis } | MeasureKindDraft::Camber { body, spin_axis } => {
+                let body = self.body(body, here.key("body"));
+                let (spin_axis, _) = self.line(spin_axis, &m.name, here, "spin_axis")?;
+                let body = body?;
+                match &m.kind {
+                    MeasureKindDraft::Toe { .. } => MeasureKind::Toe { body, spin_axis },
+                    _ => MeasureKind::Camber { body, spin_axis },
+                }
+            }
+        })
+    }
+
+    fn variables(&mut self) {
+        let draft = self.draft;
+        for (index, v) in draft.design.iter().enumerate() {
+            let here = Here { section: Section::Design, index };
+            if v.changes.is_empty() {
+                let message = format!("design variable `{}` changes nothing", v.name);
+                self.fault("HP0217", here.key("name"), message).help =
+                    Some("say which hardpoint it moves, which joint it tilts, or give a velocity field".into());
+            }
+            let mut quantity: Option<Quantity> = None;
+            let mut changes = Vec::new();
+            for (k, change) in v.changes.iter().enumerate() {
+                let Some((change, q)) = self.one_change(change, &v.name, here, k) else { continue };
+                quantity = Some(if quantity.is_none_or(|before| before == q) { q } else { Quantity::Number });
+                changes.push(change);
+            }
+            self.model.variables.push(DesignVariable {
+                name: v.name.clone(),
+                quantity: quantity.unwrap_or(Quantity::Number),
+                changes,
+                fixed_length: v.fixed_length,
+            });
+        }
+    }
+
+    fn one_change(&mut self, change: &ChangeDraft, owner: &str, here: Here, k: usize) -> Option<(Change, Quantity)> {
+        let at = here.item("changes", k);
+        let null = |check: &mut Self| {
+            let message = format!("a velocity of design variable `{owner}` is null or not finite");
+            check.fault("HP0217", here.item("changes", k), message);
+        };
+        let is_null = |a: Vec3, b: Vec3| {
+            !(a.is_finite() && b.is_finite()) || (a.norm() < 1e-12 && b.norm() < 1e-12)
+        };
+        match change {
+            ChangeDraft::Move { hardpoint, velocity } => {
+                let hardpoint = self.hardpoint(hardpoint, at)?;
+                if is_null(*velocity, Vec3::ZERO) {
+                    null(self);
+                }
+                Some((Change::Move { hardpoint, velocity: *velocity }, Quantity::Length))
+            }
+            ChangeDraft::Tilt { joint, about } => {
+                let joint = self.joint(joint, at)?;
+                let (_, rotation) = self.line(about, owner, here, "about")?;
+                let change = Change::Marker { joint, end: End::Both, position: Vec3::ZERO, rotation };
+                Some((change, Quantity::Angle))
+            }
+            ChangeDraft::Marker { joint, end, position, rotation } => {
+                let joint = self.joint(joint, at)?;
+                if is_null(*position, *rotation) {
+                    null(self);
+                }
+                let quantity = match (position.norm() > 0.0, rotation.norm() > 0.0) {
+                    (_, false) => Quantity::Length,
+                    (false, true) => Quantity::Angle,
+                    (true, true) => Quantity::Number,
+                };
+                let change = Change::Marker { joint, end: *end, position: *position, rotation: *rotation };
+                Some((change, quantity))
+            }
+            ChangeDraft::Field { joint, body, v, u } => {
+                let joint = self.joint(joint, at.clone());
+                let body = self.body(body, at.clone());
+                let (joint, body) = (joint?, body?);
+                if is_null(*v, *u) {
+                    null(self);
+                }
+                let bodies = self.model.joints[joint.0].bodies;
+                let Some(end) = bodies.iter().position(|b| *b == body) else {
+                    let names = bodies.map(|b| format!("`{}`", self.model.bodies[b.0].name)).join(" and ");
+                    let message = format!(
+                        "joint `{}` has no marker on body `{}`",
+                        self.model.joints[joint.0].name, self.model.bodies[body.0].name
+                    );
+                    self.fault("HP0218", at, message).notes.push(format!("it connects {names}"));
+                    return None;
+                };
+                Some((Change::Field { joint, end, v: *v, u: *u }, Quantity::Number))
+            }
+        }
+    }
+
+    fn times(&mut self) {
+        let times = &self.draft.times;
+        let here = Here { section: Section::Time, index: 0 };
+        if times.is_empty() {
+            self.fault("HP0219", here.key(""), "there are no output times").help =
+                Some("give a `[time]` table with `end` and `steps`".into());
+        } else if let Some(k) = (0..times.len()).find(|&k| !times[k].is_finite() || (k > 0 && times[k] <= times[k - 1])) {
+            self.fault("HP0219", here.key(""), "output times must be finite and increase")
+                .notes
+                .push(format!("time number {} is {} s", k + 1, times[k]));
+        }
+    }
+}
+
+/// The frame with z along `z` and x along `x`, two unit vectors square to each other.
+fn frame_along(z: Vec3, x: Vec3) -> Mat3 {
+    Mat3 { cols: [x, z.cross(x), z] }
+}

@@ -1,0 +1,82 @@
+//! Diagnostics about a draft: what is wrong, where, and what to do.
+
+use std::fmt;
+
+/// One thing that is wrong with a draft. All faults of a draft are found at once.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[error("{message}")]
+pub struct Fault {
+    /// Stable code, `HP02..`; documented in `docs/diagnostics.md`.
+    pub code: &'static str,
+    /// Where in the draft.
+    pub at: Locus,
+    /// The headline, enough alone.
+    pub message: String,
+    /// Facts, with units.
+    pub notes: Vec<String>,
+    /// What to do.
+    pub help: Option<String>,
+}
+
+/// A list of the draft, and the table of the model file that it comes from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum Section {
+    /// The draft as a whole.
+    Model,
+    /// [`super::Draft::hardpoints`].
+    Hardpoints,
+    /// [`super::Draft::bodies`].
+    Bodies,
+    /// [`super::Draft::joints`].
+    Joints,
+    /// [`super::Draft::drivers`].
+    Drivers,
+    /// [`super::Draft::design`].
+    Design,
+    /// [`super::Draft::points`].
+    Points,
+    /// [`super::Draft::measures`].
+    Measures,
+    /// [`super::Draft::times`].
+    Time,
+}
+
+/// A place in a draft.
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
+pub struct Locus {
+    /// Which list.
+    pub section: Section,
+    /// Which entry of it.
+    pub index: usize,
+    /// Which of the entry's fields, by its name in model files (`axis`, `bodies`, `name`, ...).
+    pub key: &'static str,
+    /// Which element of the field, where it is a list (`at`, `bodies`, `changes`, `through`).
+    pub item: Option<usize>,
+}
+
+impl fmt::Display for Section {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Model => "model",
+            Self::Hardpoints => "hardpoints",
+            Self::Bodies => "bodies",
+            Self::Joints => "joints",
+            Self::Drivers => "drivers",
+            Self::Design => "design",
+            Self::Points => "points",
+            Self::Measures => "measures",
+            Self::Time => "time",
+        })
+    }
+}
+
+/// The candidate that the user most likely meant, if any is close.
+pub fn did_you_mean<'a>(name: &str, candidates: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
+    let lower = name.to_lowercase();
+    candidates
+        .into_iter()
+        .map(|c| (strsim::damerau_levenshtein(&lower, &c.to_lowercase()), c))
+        .filter(|(d, c)| *d <= 1 + c.chars().count().min(name.chars().count()) / 4)
+        .min_by_key(|(d, _)| *d)
+        .map(|(_, c)| c)
+}

@@ -1,0 +1,319 @@
+//! The mechanism as the user means it: named, checked, in SI units and radians.
+//!
+//! A [`Draft`] is what somebody wrote, with names as references; [`Model::from_draft`] checks all of it
+//! at once and gives either a [`Model`] or every [`Fault`] that it found. A model never changes during
+//! an analysis; a changed design is a [`Geometry`] made from it.
+
+mod check;
+mod design;
+mod draft;
+mod fault;
+
+pub use design::{Field, Geometry, MarkerField};
+pub use draft::{
+    BodyDraft, ChangeDraft, Draft, DriverDraft, FrameDraft, HardpointDraft, JointDraft, Line, MeasureDraft,
+    MeasureKindDraft, Place, PointDraft, PointRef, VariableDraft,
+};
+pub use fault::{Fault, Locus, Section};
+
+use crate::joint::{JointType, Quantity};
+use crate::law::Law;
+use crate::space::{Mat3, Pose, Vec3};
+
+macro_rules! ids {
+    ($($(#[$doc:meta])* $name:ident)*) => {$(
+        $(#[$doc])*
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+        pub struct $name(pub usize);
+    )*};
+}
+
+ids! {
+    /// A hardpoint's place in [`Model::hardpoints`].
+    HardpointId
+    /// A body's place in [`Model::bodies`]; 0 is ground.
+    BodyId
+    /// A joint's place in [`Model::joints`].
+    JointId
+    /// A driver's place in [`Model::drivers`].
+    DriverId
+    /// A design variable's place in [`Model::variables`].
+    VariableId
+    /// A body point's place in [`Model::points`].
+    PointId
+    /// A measure's place in [`Model::measures`].
+    MeasureId
+}
+
+/// The body that does not move.
+pub const GROUND: BodyId = BodyId(0);
+
+/// A checked mechanism: every reference is an id, every axis a direction, every name unique.
+#[derive(Clone, Debug)]
+pub struct Model {
+    /// Its name.
+    pub name: String,
+    /// Named points of the design configuration, then the unnamed ones that joints and points gave.
+    pub hardpoints: Vec<Hardpoint>,
+    /// Ground, then the bodies.
+    pub bodies: Vec<Body>,
+    /// Joints, in the order of the file.
+    pub joints: Vec<Joint>,
+    /// Drivers, in the order of the file.
+    pub drivers: Vec<Driver>,
+    /// Design variables, in the order of the file.
+    pub variables: Vec<DesignVariable>,
+    /// Body-fixed points to follow; those that only a measure names come last, unnamed.
+    pub points: Vec<BodyPoint>,
+    /// Measures, in the order of the file.
+    pub measures: Vec<Measure>,
+    /// Output times, s, increasing.
+    pub times: Vec<f64>,
+}
+
+/// A named point of the design configuration.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Hardpoint {
+    /// Its name, or that of the joint or point that gave its coordinates.
+    pub name: String,
+    /// Global position in the design configuration, m.
+    pub position: Vec3,
+    /// Whether coordinates were written where a hardpoint's name could stand.
+    pub unnamed: bool,
+}
+
+/// A rigid body.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Body {
+    /// Its name.
+    pub name: String,
+    /// Its reference frame x'-y'-z' in the design configuration; a design change leaves it there.
+    pub frame: Pose,
+}
+
+/// Where an axis points.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Direction {
+    /// A fixed direction, unit length.
+    Along(Vec3),
+    /// From one hardpoint to another; follows them when the design moves them.
+    Through(HardpointId, HardpointId),
+}
+
+/// A joint between two bodies.
+#[derive(Clone, Debug)]
+pub struct Joint {
+    /// Its name.
+    pub name: String,
+    /// Its type.
+    pub kind: &'static JointType,
+    /// The bodies i and j; coordinates are those of j relative to i.
+    pub bodies: [BodyId; 2],
+    /// The hardpoints of marker i and marker j (the same one unless the joint has two places).
+    pub at: [HardpointId; 2],
+    /// Direction of the markers' z axis, if the joint has one.
+    pub axis: Option<Direction>,
+    /// Direction of the markers' x axis, if the joint has one.
+    pub axis2: Option<Direction>,
+    /// Orientation of both markers in the world, in the design configuration.
+    pub frame: Mat3,
+    /// Whether the user asks for it to be cut.
+    pub cut: bool,
+}
+
+/// A prescribed motion of one joint coordinate, measured from the design configuration.
+#[derive(Clone, Debug)]
+pub struct Driver {
+    /// Its name.
+    pub name: String,
+    /// The joint that it drives.
+    pub joint: JointId,
+    /// Which of the joint type's coordinates.
+    pub coordinate: usize,
+    /// The coordinate over time, m or rad.
+    pub law: Law,
+}
+
+/// One scalar b (the paper's tau) that the design depends on; nominal value 0.
+#[derive(Clone, Debug, PartialEq)]
+pub struct DesignVariable {
+    /// Its name.
+    pub name: String,
+    /// What b measures: m, rad, or a plain number.
+    pub quantity: Quantity,
+    /// What changes with it.
+    pub changes: Vec<Change>,
+    /// Whether rods keep their lengths while it moves their ends.
+    pub fixed_length: bool,
+}
+
+/// Which marker of a joint.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum End {
+    /// Marker on body i.
+    I,
+    /// Marker on body j.
+    J,
+    /// Both markers alike.
+    Both,
+}
+
+impl End {
+    /// Whether marker 0 (i) or 1 (j) is meant.
+    pub fn covers(self, end: usize) -> bool {
+        match self {
+            Self::I => end == 0,
+            Self::J => end == 1,
+            Self::Both => true,
+        }
+    }
+}
+
+/// A part of a design variable's velocity field, per unit of b.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Change {
+    /// The hardpoint moves with this global velocity; markers, axes and points on it follow.
+    Move {
+        /// Which hardpoint.
+        hardpoint: HardpointId,
+        /// Global velocity.
+        velocity: Vec3,
+    },
+    /// The markers of a joint move by `position` and turn by the rotation vector `rotation`, global.
+    Marker {
+        /// Which joint.
+        joint: JointId,
+        /// Which markers.
+        end: End,
+        /// Global velocity of the marker's origin.
+        position: Vec3,
+        /// Global rotation vector rate of the marker's axes, about its origin.
+        rotation: Vec3,
+    },
+    /// The paper's design velocity of one marker: V of its place and U of its 3-1-3 Euler angles, both
+    /// in its own body's frame (Eqs. 3.2, 3.3).
+    Field {
+        /// Which joint.
+        joint: JointId,
+        /// Which marker: 0 on body i, 1 on body j.
+        end: usize,
+        /// V = ds'/d(tau), body frame.
+        v: Vec3,
+        /// U = d(theta)/d(tau), rad.
+        u: Vec3,
+    },
+}
+
+/// A point fixed in a body.
+#[derive(Clone, Debug, PartialEq)]
+pub struct BodyPoint {
+    /// Its name, or that of the measure that it serves.
+    pub name: String,
+    /// The body that carries it.
+    pub body: BodyId,
+    /// Where it is in the design configuration; a named hardpoint takes it along when it moves.
+    pub at: HardpointId,
+    /// Whether it was only written inside a measure.
+    pub unnamed: bool,
+}
+
+/// A number that follows from the motion.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Measure {
+    /// Its name.
+    pub name: String,
+    /// What is measured.
+    pub kind: MeasureKind,
+}
+
+/// What a measure measures. Formulas and signs are in `docs/measures.md`.
+#[derive(Clone, Debug, PartialEq)]
+pub enum MeasureKind {
+    /// A joint's coordinate: angle (unwrapped), displacement, or length (the whole of it).
+    Coordinate {
+        /// Which joint.
+        joint: JointId,
+        /// Which of its type's coordinates.
+        coordinate: usize,
+    },
+    /// Distance between two body points.
+    Distance {
+        /// From this point.
+        from: PointId,
+        /// To this one.
+        to: PointId,
+    },
+    /// Global position of a point along a direction.
+    Coordinates {
+        /// Which point.
+        point: PointId,
+        /// Unit direction, global.
+        along: Vec3,
+    },
+    /// Toe of a left wheel: `atan2(e_x, e_y)` of the spin axis e.
+    Toe {
+        /// The body that the wheel turns on.
+        body: BodyId,
+        /// Spin axis in the design configuration, pointing outboard.
+        spin_axis: Direction,
+    },
+    /// Camber of a left wheel: `-asin(e_z)` of the spin axis e.
+    Camber {
+        /// The body that the wheel turns on.
+        body: BodyId,
+        /// Spin axis in the design configuration, pointing outboard.
+        spin_axis: Direction,
+    },
+}
+
+impl Model {
+    /// The joint coordinate that a driver prescribes.
+    pub fn driven(&self, driver: &Driver) -> &'static crate::joint::CoordinateType {
+        &self.joints[driver.joint.0].kind.coordinates[driver.coordinate]
+    }
+
+    /// What a measure's value is: a length or an angle.
+    pub fn measured(&self, measure: &Measure) -> Quantity {
+        match measure.kind {
+            MeasureKind::Coordinate { joint, coordinate } => {
+                self.joints[joint.0].kind.coordinates[coordinate].quantity
+            }
+            MeasureKind::Distance { .. } | MeasureKind::Coordinates { .. } => Quantity::Length,
+            MeasureKind::Toe { .. } | MeasureKind::Camber { .. } => Quantity::Angle,
+        }
+    }
+
+    /// The size of the mechanism, m: the diagonal of the box around its hardpoints (1 if that is 0).
+    ///
+    /// Lengths are compared with it wherever a tolerance must not depend on the units of the model.
+    pub fn size(&self) -> f64 {
+        let mut low = Vec3::new(f64::INFINITY, f64::INFINITY, f64::INFINITY);
+        let mut high = -low;
+        for p in self.hardpoints.iter().map(|h| h.position) {
+            low = Vec3::new(low.x.min(p.x), low.y.min(p.y), low.z.min(p.z));
+            high = Vec3::new(high.x.max(p.x), high.y.max(p.y), high.z.max(p.z));
+        }
+        let size = (high - low).norm();
+        if size > 0.0 && size.is_finite() { size } else { 1.0 }
+    }
+
+    /// The variable of that name.
+    pub fn variable(&self, name: &str) -> Option<VariableId> {
+        self.variables.iter().position(|v| v.name == name).map(VariableId)
+    }
+
+    /// The body of that name.
+    pub fn body(&self, name: &str) -> Option<BodyId> {
+        self.bodies.iter().position(|b| b.name == name).map(BodyId)
+    }
+
+    /// The measure of that name.
+    pub fn measure(&self, name: &str) -> Option<MeasureId> {
+        self.measures.iter().position(|m| m.name == name).map(MeasureId)
+    }
+
+    /// The point of that name.
+    pub fn point(&self, name: &str) -> Option<PointId> {
+        self.points.iter().position(|p| !p.unnamed && p.name == name).map(PointId)
+    }
+}

@@ -1,0 +1,91 @@
+//! Rotation matrices.
+
+use super::{Real, Vec3};
+use std::ops::Mul;
+
+/// A rotation, as the unit vectors of the turned frame: `A = [f g h]` (paper Eq. 2.1).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Mat3<T = f64> {
+    /// Columns f, g, h: the frame's x, y and z axes.
+    pub cols: [Vec3<T>; 3],
+}
+
+impl Mat3<f64> {
+    /// No rotation.
+    pub const IDENTITY: Self = Self { cols: Vec3::AXES };
+
+    /// The same rotation in every lane of `witness`.
+    #[inline(always)]
+    pub fn spread<T: Real>(self, witness: T) -> Mat3<T> {
+        Mat3 { cols: self.cols.map(|c| c.spread(witness)) }
+    }
+
+    /// The rotation by the rotation vector `v` (angle = length, in rad; axis = direction).
+    pub fn from_rotation_vector(v: Vec3) -> Self {
+        let angle = v.norm();
+        if angle == 0.0 {
+            return Self::IDENTITY;
+        }
+        let axis = v * (1.0 / angle);
+        let (s, c) = angle.sin_cos();
+        let turn = |e: Vec3| e * c + axis.cross(e) * s + axis * (axis.dot(e) * (1.0 - c));
+        Self { cols: Vec3::AXES.map(turn) }
+    }
+
+    /// The smallest rotation that carries unit vector `a` into unit vector `b` (not opposite to it).
+    pub fn between(a: Vec3, b: Vec3) -> Self {
+        let v = a.cross(b);
+        let k = 1.0 / (1.0 + a.dot(b));
+        let turn = |e: Vec3| e + v.cross(e) + v.cross(v.cross(e)) * k;
+        Self { cols: Vec3::AXES.map(turn) }
+    }
+}
+
+impl<T: Real> Mat3<T> {
+    /// Transpose, which is the inverse rotation.
+    #[inline(always)]
+    pub fn transpose(self) -> Self {
+        let [f, g, h] = self.cols;
+        Self {
+            cols: [Vec3::new(f.x, g.x, h.x), Vec3::new(f.y, g.y, h.y), Vec3::new(f.z, g.z, h.z)],
+        }
+    }
+
+    /// The transpose times a vector: components of a world vector in the turned frame.
+    #[inline(always)]
+    pub fn transpose_mul(self, v: Vec3<T>) -> Vec3<T> {
+        Vec3::new(self.cols[0].dot(v), self.cols[1].dot(v), self.cols[2].dot(v))
+    }
+
+    /// Turned further about its own axis `k` by the angle with this sine and cosine.
+    #[inline(always)]
+    pub fn turned(self, k: usize, sin: T, cos: T) -> Self {
+        let (a, b) = ((k + 1) % 3, (k + 2) % 3);
+        let mut cols = self.cols;
+        cols[a] = self.cols[a] * cos + self.cols[b] * sin;
+        cols[b] = self.cols[b] * cos - self.cols[a] * sin;
+        Self { cols }
+    }
+
+    /// The rotation of lane `k`.
+    #[inline(always)]
+    pub fn lane(self, k: usize) -> Mat3<f64> {
+        Mat3 { cols: self.cols.map(|c| c.lane(k)) }
+    }
+}
+
+impl<T: Real> Mul<Vec3<T>> for Mat3<T> {
+    type Output = Vec3<T>;
+    #[inline(always)]
+    fn mul(self, v: Vec3<T>) -> Vec3<T> {
+        self.cols[0] * v.x + self.cols[1] * v.y + self.cols[2] * v.z
+    }
+}
+
+impl<T: Real> Mul for Mat3<T> {
+    type Output = Self;
+    #[inline(always)]
+    fn mul(self, o: Self) -> Self {
+        Self { cols: o.cols.map(|c| self * c) }
+    }
+}

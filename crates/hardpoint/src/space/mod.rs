@@ -1,0 +1,28 @@
+//! Points, rotations, poses, twists and wrenches, generic over the scalar.
+//!
+//! Everything here is written once over [`Real`] and runs with one `f64` or with eight designs (or
+//! times) at a time in SIMD lanes. A [`Twist`] is what moves, a [`Wrench`] is what resists; their
+//! product is the rate at which a constraint is violated (`docs/theory.md`, section 1).
+
+mod euler;
+mod jet;
+mod mat3;
+mod matrix;
+mod pose;
+mod quat;
+mod real;
+mod twist;
+mod vec3;
+
+pub use euler::{euler_313_from_rotation, euler_rates, rotation_from_euler_313};
+pub use jet::Jet;
+pub use mat3::Mat3;
+pub(crate) use matrix::{Elimination, FullPivot};
+pub use pose::Pose;
+pub use quat::Quat;
+pub use real::Real;
+pub use twist::{Twist, Wrench};
+pub use vec3::Vec3;
+
+/// Eight scalars in SIMD registers: the [`Real`] that solves eight designs at once.
+pub type Lanes<S> = fearless_simd::f64x8<S>;

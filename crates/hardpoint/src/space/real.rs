@@ -1,0 +1,214 @@
+//! The scalar that the hot path is generic over.
+
+use std::fmt::Debug;
+use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
+
+use fearless_simd::{Simd, SimdBase, SimdFloat, f64x8};
+
+/// One `f64`, or several of them side by side in SIMD lanes.
+///
+/// A lane value carries the proof that the CPU has the instructions, so constants are made from a
+/// value at hand: `x.like(2.0)`. Nothing here fuses a multiplication with an addition: a lane and a
+/// scalar run of the same design give the same bits wherever their pivots agree.
+pub trait Real:
+    Copy
+    + Debug
+    + Send
+    + Sync
+    + 'static
+    + Add<Output = Self>
+    + Sub<Output = Self>
+    + Mul<Output = Self>
+    + Div<Output = Self>
+    + Neg<Output = Self>
+    + AddAssign
+    + SubAssign
+{
+    /// How many scalars sit side by side.
+    const LANES: usize;
+
+    /// The constant `x` in every lane.
+    fn like(self, x: f64) -> Self;
+
+    /// A value made lane by lane.
+    fn like_lanes(self, lane: impl FnMut(usize) -> f64) -> Self;
+
+    /// The scalar in lane `k`.
+    fn lane(self, k: usize) -> f64;
+
+    /// Square root, lane by lane.
+    fn sqrt(self) -> Self;
+
+    /// Magnitude, lane by lane.
+    fn abs(self) -> Self;
+
+    /// Nearest integer, lane by lane.
+    fn round(self) -> Self;
+
+    /// Runs `f` compiled for the CPU that this value was made for. Large functions of the hot path
+    /// begin with it, so that they need not be inlined into their callers to get wide instructions.
+    fn within<R>(self, f: impl FnOnce() -> R) -> R;
+
+    /// The largest lane; NaN if any lane is NaN.
+    #[inline(always)]
+    fn largest(self) -> f64 {
+        let mut most = self.lane(0);
+        for k in 1..Self::LANES {
+            let x = self.lane(k);
+            if x.is_nan() || x > most {
+                most = x;
+            }
+        }
+        most
+    }
+
+    /// The smallest lane; NaN if any lane is NaN.
+    #[inline(always)]
+    fn smallest(self) -> f64 {
+        -(-self).largest()
+    }
+
+    /// Zero in every lane.
+    #[inline(always)]
+    fn zero(self) -> Self {
+        self.like(0.0)
+    }
+
+    /// Sine and cosine, lane by lane, to about one unit in the last place for |x| up to 1e5 turns.
+    ///
+    /// Reduced by multiples of pi/2 in three parts (Cody and Waite), then the polynomials of
+    /// fdlibm's kernels. The scalar and the lanes share these operations, so they agree bit for bit.
+    #[inline(always)]
+    fn sin_cos(self) -> (Self, Self) {
+        const PIO2_1: f64 = 1.570_796_326_734_125_6;
+        const PIO2_2: f64 = 6.077_100_506_303_966e-11;
+        const PIO2_3: f64 = 2.022_266_248_795_950_6e-21;
+        let c = |x: f64| self.like(x);
+        let n = (self * c(std::f64::consts::FRAC_2_PI)).round();
+        let r = ((self - n * c(PIO2_1)) - n * c(PIO2_2)) - n * c(PIO2_3);
+        let z = r * r;
+        let s = c(-2.505_076_025_340_686_3e-8) + z * c(1.589_690_995_211_55e-10);
+        let s = c(8.333_333_333_322_489e-3)
+            + z * (c(-1.984_126_982_985_795e-4) + z * (c(2.755_731_370_707_006_8e-6) + z * s));
+        let sin = r + r * z * (c(-1.666_666_666_666_663_2e-1) + z * s);
+        let k = c(2.087_572_321_298_175e-9) + z * c(-1.135_964_755_778_819_5e-11);
+        let k = c(-1.388_888_888_887_411e-3)
+            + z * (c(2.480_158_728_947_673e-5) + z * (c(-2.755_731_435_139_066_3e-7) + z * k));
+        let half = c(0.5) * z;
+        let cos = c(1.0) - (half - z * z * (c(4.166_666_666_666_66e-2) + z * k));
+        // The quadrant as numbers 0 or +-1, so that no lane branches: (cos, sin) of n * 90 degrees.
+        let q = n - c(4.0) * (n * c(0.25)).round(); // -2, -1, 0, 1, 2
+        let odd = q * q * (c(4.0) - q * q) * c(1.0 / 3.0); // 1 where |q| = 1, else 0
+        let odd = odd.round();
+        let quarter_sin = q * odd; // +-1 where |q| = 1
+        let quarter_cos = c(1.0) - odd - c(2.0) * (q * q * (q * q - c(1.0)) * c(1.0 / 12.0)).round();
+        (
+            sin * quarter_cos + cos * quarter_sin,
+            cos * quarter_cos - sin * quarter_sin,
+        )
+    }
+}
+
+impl Real for f64 {
+    const LANES: usize = 1;
+    #[inline(always)]
+    fn like(self, x: f64) -> Self {
+        x
+    }
+    #[inline(always)]
+    fn like_lanes(self, mut lane: impl FnMut(usize) -> f64) -> Self {
+        lane(0)
+    }
+    #[inline(always)]
+    fn lane(self, _: usize) -> f64 {
+        self
+    }
+    #[inline(always)]
+    fn sqrt(self) -> Self {
+        f64::sqrt(self)
+    }
+    #[inline(always)]
+    fn abs(self) -> Self {
+        f64::abs(self)
+    }
+    #[inline(always)]
+    fn round(self) -> Self {
+        // Adding and taking away 1.5 * 2^52 rounds to the nearest integer without the library call
+        // that `round_ties_even` is on a baseline CPU; exact for |x| < 2^51.
+        const SHIFT: f64 = 6_755_399_441_055_744.0;
+        (self + SHIFT) - SHIFT
+    }
+    #[inline(always)]
+    fn within<R>(self, f: impl FnOnce() -> R) -> R {
+        f()
+    }
+}
+
+impl<S: Simd> Real for f64x8<S> {
+    const LANES: usize = 8;
+    #[inline(always)]
+    fn like(self, x: f64) -> Self {
+        f64x8::splat(self.simd, x)
+    }
+    #[inline(always)]
+    fn like_lanes(self, lane: impl FnMut(usize) -> f64) -> Self {
+        f64x8::from_fn(self.simd, lane)
+    }
+    #[inline(always)]
+    fn lane(self, k: usize) -> f64 {
+        self.as_slice()[k]
+    }
+    #[inline(always)]
+    fn sqrt(self) -> Self {
+        SimdFloat::sqrt(self)
+    }
+    #[inline(always)]
+    fn abs(self) -> Self {
+        SimdBase::abs(self)
+    }
+    #[inline(always)]
+    fn round(self) -> Self {
+        self.round_ties_even()
+    }
+    #[inline(always)]
+    fn within<R>(self, f: impl FnOnce() -> R) -> R {
+        self.simd.vectorize(f)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use fearless_simd::{Level, dispatch};
+
+    #[test]
+    fn sine_and_cosine_agree_with_the_library_over_many_turns() {
+        for k in -40_000..40_000 {
+            let x = f64::from(k) * 0.007_853;
+            let (s, c) = Real::sin_cos(x);
+            assert!((s - x.sin()).abs() < 4e-16 && (c - x.cos()).abs() < 4e-16, "at {x}: {s} {c}");
+        }
+        for k in -8..=8 {
+            let x = f64::from(k) * std::f64::consts::FRAC_PI_2;
+            let (s, c) = Real::sin_cos(x);
+            assert!((s - x.sin()).abs() < 4e-16 && (c - x.cos()).abs() < 4e-16, "at {k} quarters");
+        }
+    }
+
+    #[test]
+    fn lanes_and_scalar_give_the_same_bits() {
+        dispatch!(Level::new(), simd => {
+            let w = f64x8::splat(simd, 0.0);
+            let x = w.like_lanes(|k| 0.37 * (k as f64) * (k as f64) - 3.0);
+            let (s, c) = Real::sin_cos(x);
+            for k in 0..8 {
+                let (sk, ck) = Real::sin_cos(x.lane(k));
+                assert_eq!((s.lane(k), c.lane(k)), (sk, ck));
+                assert_eq!(Real::sqrt(Real::abs(x)).lane(k), x.lane(k).abs().sqrt());
+            }
+            assert_eq!(x.largest(), x.lane(7));
+            assert_eq!(x.smallest(), -3.0);
+            assert!(w.like_lanes(|k| if k == 5 { f64::NAN } else { 1.0 }).largest().is_nan());
+        });
+    }
+}

@@ -1,0 +1,131 @@
+//! Twists and wrenches, all at the world origin and in world components.
+
+use super::{Real, Vec3};
+use std::ops::{Add, AddAssign, Mul, Neg, Sub};
+
+/// A first-order motion of a body: angular part, and velocity of the body point at the world origin.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Twist<T = f64> {
+    /// Angular part, rad per unit.
+    pub w: Vec3<T>,
+    /// Velocity of the body point that passes the world origin, m per unit.
+    pub v: Vec3<T>,
+}
+
+/// What a constraint resists with: moment about the world origin, and force.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Wrench<T = f64> {
+    /// Moment about the world origin.
+    pub m: Vec3<T>,
+    /// Force.
+    pub f: Vec3<T>,
+}
+
+impl Twist<f64> {
+    /// No motion.
+    pub const ZERO: Self = Self { w: Vec3::ZERO, v: Vec3::ZERO };
+
+    /// The same twist in every lane of `witness`.
+    #[inline(always)]
+    pub fn spread<T: Real>(self, witness: T) -> Twist<T> {
+        Twist { w: self.w.spread(witness), v: self.v.spread(witness) }
+    }
+}
+
+impl<T: Real> Twist<T> {
+    /// No motion, in the lanes of `witness`.
+    #[inline(always)]
+    pub fn zero(witness: T) -> Self {
+        Self { w: Vec3::zero(witness), v: Vec3::zero(witness) }
+    }
+
+    /// The turn at unit rate about the line through `point` along `axis`.
+    #[inline(always)]
+    pub fn turn(axis: Vec3<T>, point: Vec3<T>) -> Self {
+        Self { w: axis, v: point.cross(axis) }
+    }
+
+    /// The slide at unit rate along `axis`.
+    #[inline(always)]
+    pub fn slide(axis: Vec3<T>) -> Self {
+        Self { w: Vec3::zero(axis.x), v: axis }
+    }
+
+    /// Rate of a twist fixed in a body that moves with `self`: `ad(self) o` (`docs/theory.md` (3)).
+    #[inline(always)]
+    pub fn ad(self, o: Self) -> Self {
+        Self { w: self.w.cross(o.w), v: self.w.cross(o.v) + self.v.cross(o.w) }
+    }
+
+    /// Velocity of the body point at `p`.
+    #[inline(always)]
+    pub fn at(self, p: Vec3<T>) -> Vec3<T> {
+        self.v + self.w.cross(p)
+    }
+
+    /// The twist of lane `k`.
+    #[inline(always)]
+    pub fn lane(self, k: usize) -> Twist<f64> {
+        Twist { w: self.w.lane(k), v: self.v.lane(k) }
+    }
+}
+
+impl<T: Real> Wrench<T> {
+    /// The force `f` acting through `point`.
+    #[inline(always)]
+    pub fn force(f: Vec3<T>, point: Vec3<T>) -> Self {
+        Self { m: point.cross(f), f }
+    }
+
+    /// The pure moment `m`.
+    #[inline(always)]
+    pub fn moment(m: Vec3<T>) -> Self {
+        Self { m, f: Vec3::zero(m.x) }
+    }
+
+    /// Power on a motion: `m . w + f . v`.
+    #[inline(always)]
+    pub fn on(self, t: Twist<T>) -> T {
+        self.m.dot(t.w) + self.f.dot(t.v)
+    }
+}
+
+impl<T: Real> Add for Twist<T> {
+    type Output = Self;
+    #[inline(always)]
+    fn add(self, o: Self) -> Self {
+        Self { w: self.w + o.w, v: self.v + o.v }
+    }
+}
+
+impl<T: Real> Sub for Twist<T> {
+    type Output = Self;
+    #[inline(always)]
+    fn sub(self, o: Self) -> Self {
+        Self { w: self.w - o.w, v: self.v - o.v }
+    }
+}
+
+impl<T: Real> Neg for Twist<T> {
+    type Output = Self;
+    #[inline(always)]
+    fn neg(self) -> Self {
+        Self { w: -self.w, v: -self.v }
+    }
+}
+
+impl<T: Real> Mul<T> for Twist<T> {
+    type Output = Self;
+    #[inline(always)]
+    fn mul(self, k: T) -> Self {
+        Self { w: self.w * k, v: self.v * k }
+    }
+}
+
+impl<T: Real> AddAssign for Twist<T> {
+    #[inline(always)]
+    fn add_assign(&mut self, o: Self) {
+        self.w += o.w;
+        self.v += o.v;
+    }
+}

@@ -1,0 +1,167 @@
+//! Vectors of three components.
+
+use super::Real;
+use std::ops::{Add, AddAssign, Index, Mul, Neg, Sub, SubAssign};
+
+/// A point or a direction with components along x, y and z.
+#[derive(Clone, Copy, Debug, PartialEq, Default)]
+pub struct Vec3<T = f64> {
+    /// Component along x.
+    pub x: T,
+    /// Component along y.
+    pub y: T,
+    /// Component along z.
+    pub z: T,
+}
+
+impl Vec3<f64> {
+    /// The null vector.
+    pub const ZERO: Self = Self::new(0.0, 0.0, 0.0);
+    /// Unit vectors along x, y and z.
+    pub const AXES: [Self; 3] = [Self::new(1.0, 0.0, 0.0), Self::new(0.0, 1.0, 0.0), Self::new(0.0, 0.0, 1.0)];
+
+    /// The same vector in every lane of `witness`.
+    #[inline(always)]
+    pub fn spread<T: Real>(self, witness: T) -> Vec3<T> {
+        Vec3::new(witness.like(self.x), witness.like(self.y), witness.like(self.z))
+    }
+
+    /// Components as an array.
+    pub fn to_array(self) -> [f64; 3] {
+        [self.x, self.y, self.z]
+    }
+
+    /// Whether every component is a finite number.
+    pub fn is_finite(self) -> bool {
+        self.x.is_finite() && self.y.is_finite() && self.z.is_finite()
+    }
+
+    /// The unit vector along this one, or `None` if it is shorter than `1e-12` or not finite.
+    pub fn unit(self) -> Option<Self> {
+        let n = self.norm();
+        (n > 1e-12 && n.is_finite()).then(|| self * (1.0 / n))
+    }
+
+    /// A unit vector square to this unit vector, chosen the same way every time.
+    pub fn any_square(self) -> Self {
+        let a = self.to_array().map(f64::abs);
+        let k = (0..3).fold(0, |best, k| if a[k] < a[best] { k } else { best });
+        let e = Self::AXES[k];
+        let s = e - self * self.dot(e);
+        s * (1.0 / s.norm())
+    }
+}
+
+impl From<[f64; 3]> for Vec3 {
+    fn from([x, y, z]: [f64; 3]) -> Self {
+        Self { x, y, z }
+    }
+}
+
+impl<T> Vec3<T> {
+    /// The vector with these components.
+    #[inline(always)]
+    pub const fn new(x: T, y: T, z: T) -> Self {
+        Self { x, y, z }
+    }
+}
+
+impl<T: Real> Vec3<T> {
+    /// The null vector, in the lanes of `witness`.
+    #[inline(always)]
+    pub fn zero(witness: T) -> Self {
+        let o = witness.zero();
+        Self::new(o, o, o)
+    }
+
+    /// Scalar product.
+    #[inline(always)]
+    pub fn dot(self, o: Self) -> T {
+        self.x * o.x + self.y * o.y + self.z * o.z
+    }
+
+    /// Vector product.
+    #[inline(always)]
+    pub fn cross(self, o: Self) -> Self {
+        Self::new(
+            self.y * o.z - self.z * o.y,
+            self.z * o.x - self.x * o.z,
+            self.x * o.y - self.y * o.x,
+        )
+    }
+
+    /// Length.
+    #[inline(always)]
+    pub fn norm(self) -> T {
+        self.dot(self).sqrt()
+    }
+
+    /// The vector of lane `k`.
+    #[inline(always)]
+    pub fn lane(self, k: usize) -> Vec3<f64> {
+        Vec3::new(self.x.lane(k), self.y.lane(k), self.z.lane(k))
+    }
+}
+
+impl<T> Index<usize> for Vec3<T> {
+    type Output = T;
+    #[inline(always)]
+    fn index(&self, k: usize) -> &T {
+        match k {
+            0 => &self.x,
+            1 => &self.y,
+            2 => &self.z,
+            _ => panic!("a vector has components 0, 1 and 2, not {k}"),
+        }
+    }
+}
+
+impl<T: Add<Output = T>> Add for Vec3<T> {
+    type Output = Self;
+    #[inline(always)]
+    fn add(self, o: Self) -> Self {
+        Self::new(self.x + o.x, self.y + o.y, self.z + o.z)
+    }
+}
+
+impl<T: Sub<Output = T>> Sub for Vec3<T> {
+    type Output = Self;
+    #[inline(always)]
+    fn sub(self, o: Self) -> Self {
+        Self::new(self.x - o.x, self.y - o.y, self.z - o.z)
+    }
+}
+
+impl<T: Neg<Output = T>> Neg for Vec3<T> {
+    type Output = Self;
+    #[inline(always)]
+    fn neg(self) -> Self {
+        Self::new(-self.x, -self.y, -self.z)
+    }
+}
+
+impl<T: Mul<Output = T> + Copy> Mul<T> for Vec3<T> {
+    type Output = Self;
+    #[inline(always)]
+    fn mul(self, k: T) -> Self {
+        Self::new(self.x * k, self.y * k, self.z * k)
+    }
+}
+
+impl<T: AddAssign> AddAssign for Vec3<T> {
+    #[inline(always)]
+    fn add_assign(&mut self, o: Self) {
+        self.x += o.x;
+        self.y += o.y;
+        self.z += o.z;
+    }
+}
+
+impl<T: SubAssign> SubAssign for Vec3<T> {
+    #[inline(always)]
+    fn sub_assign(&mut self, o: Self) {
+        self.x -= o.x;
+        self.y -= o.y;
+        self.z -= o.z;
+    }
+}
