@@ -419,7 +419,7 @@ impl<'a> Check<'a> {
         let draft = self.draft;
         for (index, d) in draft.drivers.iter().enumerate() {
             let here = Here { section: Section::Drivers, index };
-            if let Some(&t) = draft.times.iter().find(|&&t| !(d.law.at(t).is_finite())) {
+            if let Some(&t) = draft.times.iter().find(|&&t| !(d.law.at(t).derivatives()[..3].iter().all(|x| x.is_finite()))) {
                 let message = format!("the law of driver `{}` has no finite value at t = {t} s", d.name);
                 self.fault("HP0214", here.key("law"), message).notes.push(format!("the law is `{}`", d.law));
             }

@@ -14,7 +14,7 @@ pub use draft::{
     BodyDraft, ChangeDraft, Draft, DriverDraft, FrameDraft, HardpointDraft, JointDraft, Line, MeasureDraft,
     MeasureKindDraft, Place, PointDraft, PointRef, VariableDraft,
 };
-pub use fault::{Fault, Locus, Section};
+pub use fault::{Fault, Locus, Section, did_you_mean};
 
 use crate::joint::{JointType, Quantity};
 use crate::law::Law;

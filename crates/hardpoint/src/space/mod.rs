@@ -24,5 +24,4 @@ pub use real::Real;
 pub use twist::{Twist, Wrench};
 pub use vec3::Vec3;
 
-/// Eight scalars in SIMD registers: the [`Real`] that solves eight designs at once.
-pub type Lanes<S> = fearless_simd::f64x8<S>;
+pub(crate) use real::{LANES, lanes};

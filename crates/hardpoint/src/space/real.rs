@@ -144,8 +144,17 @@ impl Real for f64 {
     }
 }
 
+/// How many designs are solved side by side in lanes.
+pub(crate) const LANES: usize = 8;
+
+/// Zero in every lane, for the CPU that `simd` proves.
+#[inline(always)]
+pub(crate) fn lanes<S: Simd>(simd: S) -> f64x8<S> {
+    f64x8::splat(simd, 0.0)
+}
+
 impl<S: Simd> Real for f64x8<S> {
-    const LANES: usize = 8;
+    const LANES: usize = LANES;
     #[inline(always)]
     fn like(self, x: f64) -> Self {
         f64x8::splat(self.simd, x)

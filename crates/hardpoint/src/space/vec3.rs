@@ -64,6 +64,12 @@ impl<T> Vec3<T> {
     pub const fn new(x: T, y: T, z: T) -> Self {
         Self { x, y, z }
     }
+
+    /// The vector with `f` of every component.
+    #[inline(always)]
+    pub fn map<U>(self, f: impl Fn(T) -> U) -> Vec3<U> {
+        Vec3::new(f(self.x), f(self.y), f(self.z))
+    }
 }
 
 impl<T: Real> Vec3<T> {

@@ -1,0 +1,245 @@
+//! Diagnostics: what is wrong, where in the text, and what to do, in the look of `rustc`.
+
+use std::fmt;
+use std::ops::Range;
+use std::sync::Arc;
+
+use annotate_snippets::{AnnotationKind, Group, Level, Origin, Renderer, Snippet};
+use serde::Serialize;
+
+/// How many diagnostics are shown at most; the others are counted.
+const SHOWN: usize = 50;
+/// Lines longer than this are not shown, only named.
+const LONG_LINE: usize = 2000;
+/// Texts from the file are cut to this many characters inside messages.
+const SHOWN_NAME: usize = 60;
+
+/// How bad it is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Severity {
+    /// Nothing can be computed before it is put right.
+    Error,
+    /// The result may not be what the user means.
+    Warning,
+}
+
+/// One thing to tell about a model file.
+///
+/// Serialised for `--json` as `{severity, code, message, file, line, column, label, notes, help}`.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Diagnostic {
+    /// How bad it is.
+    pub severity: Severity,
+    /// Stable code; `docs/diagnostics.md` lists them.
+    pub code: &'static str,
+    /// The headline, enough alone.
+    pub message: String,
+    /// The file's name as it was given.
+    pub file: String,
+    /// Line of the file, from 1; none where the file as a whole is meant.
+    pub line: Option<usize>,
+    /// Column of the line in characters, from 1.
+    pub column: Option<usize>,
+    /// Range of bytes of the text that is underlined.
+    #[serde(skip)]
+    pub span: Option<Range<usize>>,
+    /// What to write at the underlined place.
+    pub label: Option<String>,
+    /// Facts, with units.
+    pub notes: Vec<String>,
+    /// What to do.
+    pub help: Option<String>,
+}
+
+impl Diagnostic {
+    /// With one more fact.
+    #[must_use]
+    pub fn note(mut self, note: impl Into<String>) -> Self {
+        self.notes.push(printable(note.into()));
+        self
+    }
+
+    /// With a remedy.
+    #[must_use]
+    pub fn help(mut self, help: impl Into<String>) -> Self {
+        self.help = Some(printable(help.into()));
+        self
+    }
+
+    /// With words at the underlined place.
+    #[must_use]
+    pub fn label(mut self, label: impl Into<String>) -> Self {
+        self.label = Some(printable(label.into()));
+        self
+    }
+}
+
+/// Everything that is wrong with a file, in the order of the text.
+#[derive(Clone, Debug)]
+pub struct Diagnostics {
+    source: Source,
+    list: Vec<Diagnostic>,
+}
+
+impl Diagnostics {
+    pub(crate) fn new(source: Source, mut list: Vec<Diagnostic>) -> Self {
+        // What concerns the file as a whole comes first.
+        list.sort_by_key(|d| d.span.as_ref().map(|s| (s.start, s.end)));
+        list.dedup_by(|a, b| (a.code, &a.span, &a.message) == (b.code, &b.span, &b.message));
+        Self { source, list }
+    }
+
+    /// The diagnostics, never none.
+    pub fn list(&self) -> &[Diagnostic] {
+        &self.list
+    }
+
+    /// All of it for a terminal; with `color`, ANSI escapes.
+    pub fn render(&self, color: bool) -> String {
+        let mut text = String::new();
+        for d in self.list.iter().take(SHOWN) {
+            text.push_str(&self.source.render(d, color));
+            text.push_str("\n\n");
+        }
+        if self.list.len() > SHOWN {
+            text.push_str(&format!("... and {} more like these\n\n", self.list.len() - SHOWN));
+        }
+        text.push_str(&match self.list.len() {
+            1 => format!("{}: 1 problem", self.source.file),
+            n => format!("{}: {n} problems", self.source.file),
+        });
+        text
+    }
+}
+
+impl fmt::Display for Diagnostics {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.render(false))
+    }
+}
+
+impl std::error::Error for Diagnostics {}
+
+impl Serialize for Diagnostics {
+    fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        self.list.serialize(serializer)
+    }
+}
+
+/// A file's name and text, with its lines counted.
+#[derive(Clone, Debug)]
+pub(crate) struct Source {
+    pub file: Arc<str>,
+    pub text: Arc<str>,
+    /// Where each line begins.
+    lines: Arc<[usize]>,
+}
+
+impl Source {
+    pub fn new(file: &str, text: &str) -> Self {
+        let lines = std::iter::once(0).chain(text.match_indices('\n').map(|(k, _)| k + 1)).collect();
+        Self { file: printable(file.to_owned()).into(), text: text.into(), lines }
+    }
+
+    /// Line and column of a byte, both from 1, the column in characters.
+    pub fn line_column(&self, at: usize) -> (usize, usize) {
+        let at = self.boundary(at);
+        let line = self.lines.partition_point(|&start| start <= at) - 1;
+        (line + 1, self.text[self.lines[line]..at].chars().count() + 1)
+    }
+
+    /// A diagnostic at a range of the text, or about the file as a whole.
+    pub fn diagnostic(
+        &self,
+        severity: Severity,
+        code: &'static str,
+        message: impl Into<String>,
+        span: Option<Range<usize>>,
+    ) -> Diagnostic {
+        let span = span.map(|s| {
+            let start = self.boundary(s.start);
+            start..self.boundary(s.end).max(start)
+        });
+        let (line, column) = span.as_ref().map(|s| self.line_column(s.start)).unzip();
+        Diagnostic {
+            severity,
+            code,
+            message: printable(message.into()),
+            file: self.file.to_string(),
+            line,
+            column,
+            span,
+            label: None,
+            notes: Vec::new(),
+            help: None,
+        }
+    }
+
+    /// The look of one diagnostic. Only the lines around it are handed to the renderer, so that a report
+    /// on a large file costs no more than one on a small file.
+    pub fn render(&self, d: &Diagnostic, color: bool) -> String {
+        let level = match d.severity {
+            Severity::Error => Level::ERROR,
+            Severity::Warning => Level::WARNING,
+        };
+        let mut group: Group<'_> = Group::with_title(level.primary_title(d.message.as_str()).id(d.code));
+        let window = d.span.as_ref().map(|s| (s, self.window(s)));
+        group = match (window, d.line, d.column) {
+            (Some((span, window)), Some(line), Some(column)) => {
+                if window.len() > LONG_LINE {
+                    group.element(Origin::path(&*self.file).line(line).char_column(column))
+                } else {
+                    let inside = span.start - window.start..span.end.min(window.end) - window.start;
+                    let annotation = AnnotationKind::Primary.span(inside).label(d.label.as_deref());
+                    group.element(
+                        Snippet::source(&self.text[window])
+                            .path(&*self.file)
+                            .line_start(line)
+                            .annotation(annotation),
+                    )
+                }
+            }
+            _ => group.element(Origin::path(&*self.file)),
+        };
+        group = group.elements(d.notes.iter().map(|n| Level::NOTE.message(n.as_str())));
+        group = group.elements(d.help.iter().map(|h| Level::HELP.message(h.as_str())));
+        let renderer = if color { Renderer::styled() } else { Renderer::plain() };
+        renderer.render(&[group])
+    }
+
+    /// The whole lines that a span touches; of a long span, the first line only.
+    fn window(&self, span: &Range<usize>) -> Range<usize> {
+        let first = self.lines.partition_point(|&start| start <= span.start) - 1;
+        let last = self.lines.partition_point(|&start| start < span.end.max(span.start + 1)) - 1;
+        let last = if last - first > 4 { first } else { last };
+        let end = self.lines.get(last + 1).map_or(self.text.len(), |next| next - 1);
+        self.lines[first]..end
+    }
+
+    fn boundary(&self, at: usize) -> usize {
+        self.text.floor_char_boundary(at.min(self.text.len()))
+    }
+}
+
+/// A text of the file for use in a message: cut where it is long.
+pub(crate) fn shown(name: &str) -> String {
+    match name.char_indices().nth(SHOWN_NAME) {
+        Some((end, _)) => format!("{}...", &name[..end]),
+        None => name.to_owned(),
+    }
+}
+
+/// Control characters in a file must not reach the terminal.
+fn printable(text: String) -> String {
+    if text.chars().any(char::is_control) {
+        text.chars().map(|c| if c.is_control() { c.escape_debug().to_string() } else { c.to_string() }).collect()
+    } else {
+        text
+    }
+}
+
+/// The candidate that the user most likely meant; none for texts too long to be a name.
+pub(crate) fn closest<'a>(name: &str, candidates: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
+    if name.len() > 2 * SHOWN_NAME { None } else { hardpoint::model::did_you_mean(name, candidates) }
+}

@@ -1,0 +1,346 @@
+//! Model files of Hardpoint: from text to a checked [`Model`], or to everything that is wrong with it.
+//!
+//! ```
+//! let text = r#"
+//! name = "pendulum"
+//! units = { length = "mm", angle = "deg" }
+//! hardpoints = { pivot = [0, 0, 500], bob = [0, 0, 200] }
+//! bodies = { arm = {} }
+//! joints.hinge = { type = "revolute", bodies = ["ground", "arm"], at = "pivot", axis = "y" }
+//! drivers.swing = { joint = "hinge", law = "30*sin(2*pi*t)" }
+//! points.bob = { body = "arm", at = "bob" }
+//! time = { end = 1.0, steps = 100 }
+//! "#;
+//! let file = hardpoint_file::parse(text, "pendulum.toml").unwrap();
+//! assert_eq!(file.model.hardpoints[0].position.z, 0.5); // metres inside
+//! assert_eq!(file.model.times.len(), 101);
+//! ```
+//!
+//! The ideas:
+//!
+//! * The format is TOML, described in `docs/file-format.md`; [`schema`] is its JSON Schema for editors.
+//! * Units are named once per file. [`Units`] converts, here and at every other edge; inside all is SI.
+//! * This crate knows keys, types and units. Whether the mechanism makes sense is checked by
+//!   [`Model::from_draft`], whose faults are shown here at the place of the text that they are about.
+//! * Nothing stops at the first problem: [`Diagnostics`] holds all that were found. Only a file that is
+//!   not TOML is not looked at further.
+//! * No text makes this crate panic, and none keeps it busy for long: names, tables and lists have limits
+//!   far above any mechanism.
+//!
+//! What is not here: includes, parameters and expressions outside of drivers' laws.
+
+mod diagnostic;
+mod places;
+mod read;
+mod schema;
+mod tree;
+mod units;
+
+use std::path::Path;
+
+use hardpoint::model::{Fault, Model, Section};
+use toml::de::DeTable;
+
+pub use diagnostic::{Diagnostic, Diagnostics, Severity};
+pub use schema::schema;
+pub use units::{AngleUnit, LengthUnit, Units};
+
+use diagnostic::{Source, closest, shown};
+use places::Places;
+use tree::Reader;
+
+/// Files larger than this are not read, bytes.
+const LARGEST_FILE: u64 = 64 << 20;
+/// How many syntax errors are shown: after a few, they follow from the ones before.
+const SYNTAX_ERRORS: usize = 5;
+
+/// A model, and the text that it was read from.
+#[derive(Clone, Debug)]
+pub struct ModelFile {
+    /// The checked model, in SI units.
+    pub model: Model,
+    /// The file's units, for everything that is shown.
+    pub units: Units,
+    /// What the file says about itself.
+    pub description: Option<String>,
+    source: Source,
+    places: Places,
+}
+
+impl ModelFile {
+    /// The name of the file as it was given.
+    pub fn file_name(&self) -> &str {
+        &self.source.file
+    }
+
+    /// The text of the file.
+    pub fn text(&self) -> &str {
+        &self.source.text
+    }
+
+    /// Line and column, from 1, of the name of an entry: `index` counts as in the lists of [`Model`].
+    ///
+    /// None for what has no entry of its own: ground, coordinates written in place of a hardpoint's name.
+    pub fn place(&self, section: Section, index: usize) -> Option<(usize, usize)> {
+        self.span(section, index).map(|s| self.source.line_column(s.start))
+    }
+
+    fn span(&self, section: Section, index: usize) -> Option<std::ops::Range<usize>> {
+        // Ground is the model's first body and is not in the file.
+        let index = if section == Section::Bodies { index.checked_sub(1)? } else { index };
+        let at = hardpoint::model::Locus { section, index, key: "", item: None };
+        self.places.find(&at)
+    }
+
+    /// A diagnostic about an entry of the model, or about all of it, for [`render`](Self::render).
+    ///
+    /// ```
+    /// # let text = r#"
+    /// # name = "pendulum"
+    /// # units = { length = "mm", angle = "deg" }
+    /// # hardpoints = { pivot = [0, 0, 500] }
+    /// # bodies = { arm = {} }
+    /// # joints.hinge = { type = "revolute", bodies = ["ground", "arm"], at = "pivot", axis = "y" }
+    /// # time = { end = 1.0, steps = 100 }
+    /// # "#;
+    /// # let file = hardpoint_file::parse(text, "pendulum.toml").unwrap();
+    /// use hardpoint::model::Section;
+    /// use hardpoint_file::Severity;
+    ///
+    /// let d = file
+    ///     .diagnostic(Severity::Error, "HP0411", "the mechanism does not move", Some((Section::Joints, 0)))
+    ///     .help("add a driver for `hinge`");
+    /// assert!(file.render(&d, false).contains("pendulum.toml:6:8"));
+    /// ```
+    pub fn diagnostic(
+        &self,
+        severity: Severity,
+        code: &'static str,
+        message: impl Into<String>,
+        about: Option<(Section, usize)>,
+    ) -> Diagnostic {
+        let span = about.and_then(|(section, index)| self.span(section, index));
+        self.source.diagnostic(severity, code, message, span)
+    }
+
+    /// A diagnostic about this file as text for a terminal; with `color`, ANSI escapes.
+    pub fn render(&self, diagnostic: &Diagnostic, color: bool) -> String {
+        self.source.render(diagnostic, color)
+    }
+}
+
+/// Why there is no model.
+#[derive(Debug)]
+pub enum ReadError {
+    /// The file could not be opened or is not a text.
+    Unreadable(Diagnostics),
+    /// The text is not a valid model.
+    Invalid(Diagnostics),
+}
+
+impl ReadError {
+    /// What to show.
+    pub fn diagnostics(&self) -> &Diagnostics {
+        match self {
+            Self::Unreadable(d) | Self::Invalid(d) => d,
+        }
+    }
+}
+
+impl std::fmt::Display for ReadError {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        self.diagnostics().fmt(f)
+    }
+}
+
+impl std::error::Error for ReadError {}
+
+/// Reads and checks a model file.
+///
+/// # Errors
+/// What is wrong with the file or with the model in it.
+pub fn read(path: &Path) -> Result<ModelFile, ReadError> {
+    let name = path.display().to_string();
+    let bytes = bytes_of(path).map_err(|(message, note, help)| {
+        let source = Source::new(&name, "");
+        let mut d = source.diagnostic(Severity::Error, "HP0101", message, None);
+        d = note.into_iter().fold(d, Diagnostic::note);
+        d = help.into_iter().fold(d, Diagnostic::help);
+        ReadError::Unreadable(Diagnostics::new(source, vec![d]))
+    })?;
+    match String::from_utf8(bytes) {
+        Ok(text) => parse(&text, &name).map_err(ReadError::Invalid),
+        Err(error) => {
+            let valid = error.utf8_error().valid_up_to();
+            let bytes = error.into_bytes();
+            let line = 1 + bytes[..valid].iter().filter(|b| **b == b'\n').count();
+            let source = Source::new(&name, "");
+            let d = source
+                .diagnostic(Severity::Error, "HP0101", "the file is not a text in UTF-8", None)
+                .note(format!("byte {} (on line {line}) is {:#04x}", valid + 1, bytes[valid]))
+                .help("save the model as UTF-8 text; Hardpoint reads TOML files");
+            Err(ReadError::Unreadable(Diagnostics::new(source, vec![d])))
+        }
+    }
+}
+
+/// The file's bytes, or message, note and help.
+fn bytes_of(path: &Path) -> Result<Vec<u8>, (String, Option<String>, Option<String>)> {
+    use std::io::Read;
+    let shown = path.display();
+    let io = |e: std::io::Error| match e.kind() {
+        std::io::ErrorKind::NotFound => {
+            let (note, help) = neighbours(path);
+            (format!("there is no file `{shown}`"), note, help)
+        }
+        std::io::ErrorKind::PermissionDenied => {
+            (format!("the file `{shown}` may not be read"), None, Some("check its permissions".into()))
+        }
+        _ => (format!("the file `{shown}` cannot be read"), Some(e.to_string()), None),
+    };
+    let meta = std::fs::metadata(path).map_err(io)?;
+    if meta.is_dir() {
+        let (note, _) = neighbours(&path.join("x"));
+        return Err((format!("`{shown}` is a folder"), note, Some("name a model file".into())));
+    }
+    let too_large = |size: String| {
+        let limit = LARGEST_FILE >> 20;
+        let note = format!("it has {size}; at most {limit} MiB are read");
+        (format!("the file `{shown}` is too large for a model"), Some(note), None)
+    };
+    if meta.len() > LARGEST_FILE {
+        return Err(too_large(format!("{} MiB", meta.len() >> 20)));
+    }
+    // A pipe or device tells no length beforehand.
+    let mut bytes = Vec::new();
+    let file = std::fs::File::open(path).map_err(io)?;
+    file.take(LARGEST_FILE + 1).read_to_end(&mut bytes).map_err(io)?;
+    if bytes.len() as u64 > LARGEST_FILE {
+        return Err(too_large(format!("more than {} MiB", LARGEST_FILE >> 20)));
+    }
+    Ok(bytes)
+}
+
+/// The model files beside a missing one, and the one that was probably meant.
+fn neighbours(path: &Path) -> (Option<String>, Option<String>) {
+    let folder = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    let Ok(entries) = std::fs::read_dir(folder) else {
+        return (Some(format!("there is no folder `{}`", folder.display())), None);
+    };
+    let mut names: Vec<String> = entries
+        .flatten()
+        .filter_map(|e| e.file_name().into_string().ok())
+        .filter(|n| n.ends_with(".toml"))
+        .collect();
+    names.sort();
+    if names.is_empty() {
+        return (Some(format!("the folder `{}` has no .toml files", folder.display())), None);
+    }
+    let wanted = path.file_stem().and_then(|n| n.to_str()).unwrap_or_default();
+    let stems = names.iter().filter_map(|n| n.strip_suffix(".toml"));
+    let help = closest(wanted, stems).map(|stem| {
+        format!("did you mean `{}`?", folder.join(format!("{stem}.toml")).display())
+    });
+    let more = names.len().saturating_sub(12);
+    let list = names.iter().take(12).map(|n| format!("`{}`", shown(n))).collect::<Vec<_>>().join(", ");
+    let more = if more > 0 { format!(" and {more} more") } else { String::new() };
+    (Some(format!("the .toml files in `{}`: {list}{more}", folder.display())), help)
+}
+
+/// Reads and checks the text of a model file; `file_name` is for the diagnostics only.
+///
+/// # Errors
+/// Everything that is wrong with it, in the order of the text.
+///
+/// ```
+/// let diagnostics = hardpoint_file::parse("nmae = \"x\"", "x.toml").unwrap_err();
+/// let first = &diagnostics.list()[0];
+/// assert_eq!((first.code, first.line), ("HP0104", None));
+/// ```
+pub fn parse(text: &str, file_name: &str) -> Result<ModelFile, Diagnostics> {
+    let source = Source::new(file_name, text);
+    let (document, errors) = DeTable::parse_recoverable(&source.text);
+    if !errors.is_empty() {
+        let list = syntax_errors(&source, &errors);
+        drop(document);
+        return Err(Diagnostics::new(source, list));
+    }
+    let mut reader = Reader { source: &source, units: Units::default(), found: Vec::new() };
+    let raw = reader.model(document.get_ref());
+    let (units, mut found) = (reader.units, reader.found);
+    let model = match Model::from_draft(&raw.draft) {
+        Ok(model) => Some(model),
+        Err(faults) => {
+            let own = faults.into_iter().filter(|f| !follows(f, &raw.places));
+            found.extend(own.map(|f| shown_fault(&source, &raw.places, f)));
+            None
+        }
+    };
+    drop(document);
+    match model {
+        Some(model) if found.is_empty() => {
+            Ok(ModelFile { model, units, description: raw.description, source, places: raw.places })
+        }
+        _ => Err(Diagnostics::new(source, found)),
+    }
+}
+
+fn syntax_errors(source: &Source, errors: &[toml::de::Error]) -> Vec<Diagnostic> {
+    let mut list: Vec<Diagnostic> = Vec::new();
+    for error in errors {
+        let span = error.span().unwrap_or(source.text.len()..source.text.len());
+        let message = format!("the file is not valid TOML: {}", error.message());
+        let d = source.diagnostic(Severity::Error, "HP0102", message, Some(span));
+        // What comes later on the same line is a consequence.
+        if list.iter().all(|other| other.line != d.line) {
+            list.push(d);
+        }
+        if list.len() == SYNTAX_ERRORS {
+            break;
+        }
+    }
+    if let Some(last) = list.last_mut() {
+        last.notes.push("the rest of the model is checked when the syntax is right".into());
+    }
+    list
+}
+
+/// The tables that names are looked up in, and how the core says that a name is not there.
+const LOOKED_UP: [(&str, &str); 4] = [
+    ("hardpoints", "no hardpoint named"),
+    ("bodies", "no body named"),
+    ("joints", "no joint named"),
+    ("points", "no point named"),
+];
+
+/// Whether a fault only follows from something that could not be read and is reported already.
+fn follows(fault: &Fault, places: &Places) -> bool {
+    let at = &fault.at;
+    // Of a table that could not be read, nothing can be found.
+    let lost = |table: &str| places.any_unread(Section::Model, &[table]);
+    if fault.code == "HP0203" && lost("bodies")
+        || fault.code == "HP0204" && LOOKED_UP.iter().any(|(t, one)| lost(t) && fault.message.contains(one))
+        || fault.code == "HP0212" && lost("joints")
+    {
+        return true;
+    }
+    let Some(entry) = places.entry(at.section, at.index) else { return false };
+    let geometry = matches!(fault.code, "HP0205" | "HP0206" | "HP0209" | "HP0211");
+    entry.unread.contains(&at.key)
+        || !entry.unread.is_empty() && matches!(fault.code, "HP0208" | "HP0210" | "HP0217" | "HP0219")
+        || geometry && places.any_unread(Section::Hardpoints, &[])
+        || fault.code == "HP0212" && places.any_unread(Section::Joints, &["bodies"])
+}
+
+fn shown_fault(source: &Source, places: &Places, fault: Fault) -> Diagnostic {
+    let Fault { code, mut at, message, notes, help } = fault;
+    // A move along a null direction: the direction is what is wrong, not the hardpoint.
+    let along = hardpoint::model::Locus { key: "along", item: None, ..at.clone() };
+    if code == "HP0217" && places.entry(at.section, at.index).is_some_and(|e| e.has("along")) {
+        at = along;
+    }
+    let span = places.find(&at);
+    let mut d = source.diagnostic(Severity::Error, code, message, span);
+    d = notes.into_iter().fold(d, Diagnostic::note);
+    help.into_iter().fold(d, Diagnostic::help)
+}

@@ -1,0 +1,101 @@
+//! Which text of the file became which entry of the model.
+
+use std::ops::Range;
+
+use hardpoint::model::{Locus, Section};
+
+use crate::tree::{Fields, Value};
+
+/// Where one entry of a list stands.
+#[derive(Clone, Debug)]
+pub(crate) struct EntryPlace {
+    name: Range<usize>,
+    keys: Vec<(&'static str, Range<usize>, Vec<Range<usize>>)>,
+    /// Keys whose values could not be read: what the core says about them is only a consequence.
+    pub unread: Vec<&'static str>,
+}
+
+impl EntryPlace {
+    pub fn at(name: Range<usize>) -> Self {
+        Self { name, keys: Vec::new(), unread: Vec::new() }
+    }
+
+    /// The place of a table's name and of all its values and their elements.
+    pub fn of(fields: &Fields<'_>) -> Self {
+        let mut place = Self::at(fields.at.clone());
+        for f in fields.iter() {
+            place.key(f.key, f.value);
+        }
+        place
+    }
+
+    pub fn key(&mut self, key: &'static str, value: &Value<'_>) {
+        let items = value.get_ref().as_array().map_or(Vec::new(), |list| list.iter().map(|v| v.span()).collect());
+        self.keys.push((key, value.span(), items));
+    }
+
+    /// The places of a field's elements where they are not simply those of the list.
+    pub fn items(&mut self, key: &'static str, items: Vec<Range<usize>>) {
+        match self.keys.iter_mut().find(|k| k.0 == key) {
+            Some(k) => k.2 = items,
+            None => self.keys.push((key, self.name.clone(), items)),
+        }
+    }
+
+    pub fn unread(&mut self, key: &'static str) {
+        self.unread.push(key);
+    }
+
+    fn find(&self, key: &str, item: Option<usize>) -> Range<usize> {
+        match self.keys.iter().find(|k| k.0 == key) {
+            Some((_, value, items)) => item.and_then(|k| items.get(k)).unwrap_or(value).clone(),
+            None => self.name.clone(),
+        }
+    }
+
+    pub fn has(&self, key: &str) -> bool {
+        self.keys.iter().any(|k| k.0 == key)
+    }
+}
+
+const SECTIONS: [Section; 9] = [
+    Section::Model,
+    Section::Hardpoints,
+    Section::Bodies,
+    Section::Joints,
+    Section::Drivers,
+    Section::Design,
+    Section::Points,
+    Section::Measures,
+    Section::Time,
+];
+
+/// The places of all entries, by section and place in the draft's list.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Places([Vec<EntryPlace>; SECTIONS.len()]);
+
+impl Places {
+    pub fn list(&self, section: Section) -> &[EntryPlace] {
+        let k = SECTIONS.iter().position(|s| *s == section).expect("all sections are listed");
+        &self.0[k]
+    }
+
+    pub fn push(&mut self, section: Section, place: EntryPlace) {
+        let k = SECTIONS.iter().position(|s| *s == section).expect("all sections are listed");
+        self.0[k].push(place);
+    }
+
+    pub fn entry(&self, section: Section, index: usize) -> Option<&EntryPlace> {
+        self.list(section).get(index)
+    }
+
+    /// The range of the text that a locus of the draft means; none for what the file does not have.
+    pub fn find(&self, at: &Locus) -> Option<Range<usize>> {
+        Some(self.entry(at.section, at.index)?.find(at.key, at.item))
+    }
+
+    /// Whether any entry of the section, with any of these keys if some are given, could not be read.
+    pub fn any_unread(&self, section: Section, keys: &[&str]) -> bool {
+        self.list(section).iter().any(|p| p.unread.iter().any(|k| keys.is_empty() || keys.contains(k)))
+    }
+}

@@ -1,0 +1,375 @@
+//! Reading typed values out of a parsed TOML tree, with a diagnostic for each that does not fit.
+//!
+//! Nothing here stops at the first problem: a value that cannot be read is reported and left out.
+
+use std::ops::Range;
+
+use hardpoint::model::{Line, Place};
+use hardpoint::space::Vec3;
+use toml::Spanned;
+use toml::de::{DeTable, DeValue};
+
+use crate::diagnostic::{Diagnostic, Severity, Source, closest, shown};
+use crate::units::Units;
+
+pub(crate) type Value<'a> = Spanned<DeValue<'a>>;
+
+/// Names longer than this are surely not meant as names.
+const LONGEST_NAME: usize = 100;
+/// The most entries that a table or list may have. It bounds the time that any text can take.
+pub(crate) const MOST_ENTRIES: usize = 5000;
+
+/// A key that a table may have, and a value to show where it is missing or wrong.
+pub(crate) type Key = (&'static str, &'static str);
+
+/// One `key = value` of a table.
+#[derive(Clone, Copy)]
+pub(crate) struct Field<'a> {
+    pub key: &'static str,
+    pub value: &'a Value<'a>,
+}
+
+/// The known keys of one table of the file.
+pub(crate) struct Fields<'a> {
+    /// What the table is, as messages say it: "joint `J1`".
+    pub what: String,
+    /// Where its name stands.
+    pub at: Range<usize>,
+    keys: &'static [Key],
+    list: Vec<Field<'a>>,
+}
+
+impl<'a> Fields<'a> {
+    pub fn get(&self, key: &str) -> Option<Field<'a>> {
+        self.list.iter().copied().find(|f| f.key == key)
+    }
+
+    pub fn iter(&self) -> impl Iterator<Item = Field<'a>> {
+        self.list.iter().copied()
+    }
+
+    fn example(&self, key: &str) -> String {
+        let example = self.keys.iter().find(|k| k.0 == key).map_or("...", |k| k.1);
+        format!("`{key} = {example}`")
+    }
+
+    /// How messages name the value of one key.
+    pub fn subject(&self, key: &str) -> Subject {
+        Subject { name: format!("`{key}` of {}", self.what), example: format!("for example {}", self.example(key)) }
+    }
+}
+
+/// What a value is called in messages, and how to write it.
+pub(crate) struct Subject {
+    pub name: String,
+    pub example: String,
+}
+
+/// The text being read and what was found wrong with it.
+pub(crate) struct Reader<'s> {
+    pub source: &'s Source,
+    pub units: Units,
+    pub found: Vec<Diagnostic>,
+}
+
+impl Reader<'_> {
+    pub fn report(&mut self, code: &'static str, at: Range<usize>, message: impl Into<String>) -> &mut Diagnostic {
+        self.found.push(self.source.diagnostic(Severity::Error, code, message, Some(at)));
+        self.found.last_mut().expect("just pushed")
+    }
+
+    /// HP0105: a value of the wrong type or shape.
+    pub fn wrong(&mut self, value: &Value<'_>, subject: &Subject, expected: &str) {
+        let message = format!("{} must be {expected}", subject.name);
+        let d = self.report("HP0105", value.span(), message);
+        d.label = Some(format!("this is {}", kind(value.get_ref())));
+        d.help = Some(subject.example.clone());
+    }
+
+    /// HP0106: a word that is none of the known ones.
+    pub fn unknown_word(&mut self, at: Range<usize>, subject: &Subject, word: &str, known: &[&str]) {
+        let message = format!("{} cannot be `{}`", subject.name, shown(word));
+        let close = closest(word, known.iter().copied());
+        let d = self.report("HP0106", at, message);
+        d.notes.push(format!("possible: {}", quoted(known)));
+        d.help = close.map(|c| format!("did you mean `{c}`?"));
+    }
+
+    /// HP0109: a value of the right type that makes no sense.
+    pub fn senseless(&mut self, at: Range<usize>, message: impl Into<String>) -> &mut Diagnostic {
+        self.report("HP0109", at, message)
+    }
+
+    /// The fields of a table; keys that it should not have are reported. A misspelt key is then read as
+    /// the one that was meant, so that it is reported once and not again as missing.
+    pub fn fields<'a>(
+        &mut self,
+        what: impl Into<String>,
+        at: Range<usize>,
+        table: &'a DeTable<'a>,
+        keys: &'static [Key],
+    ) -> Fields<'a> {
+        let mut fields = Fields { what: what.into(), at, keys, list: Vec::new() };
+        let names = || keys.iter().map(|k| k.0);
+        let known = |key: &str| names().find(|k| *k == key);
+        for (key, value) in table.iter().take(MOST_ENTRIES) {
+            if let Some(key) = known(key.get_ref()) {
+                fields.list.push(Field { key, value });
+            }
+        }
+        for (key, value) in table.iter().take(MOST_ENTRIES) {
+            let name = key.get_ref();
+            if known(name).is_some() {
+                continue;
+            }
+            let missing: Vec<_> = names().filter(|k| fields.get(k).is_none()).collect();
+            let close = closest(name, missing.iter().copied());
+            let what = &fields.what;
+            let message = match close {
+                Some(close) => format!("unknown key `{}` in {what}; did you mean `{close}`?", shown(name)),
+                None => format!("unknown key `{}` in {what}", shown(name)),
+            };
+            let list: Vec<_> = names().collect();
+            let d = self.report("HP0103", key.span(), message);
+            d.notes.push(format!("valid keys: {}", quoted(&list)));
+            d.help = match close {
+                Some(close) => Some(format!("write `{close}`")),
+                None => Some(format!("remove `{}`", shown(name))),
+            };
+            if let Some(key) = missing.into_iter().find(|k| Some(*k) == close) {
+                fields.list.push(Field { key, value });
+            }
+        }
+        if table.len() > MOST_ENTRIES {
+            let what = fields.what.clone();
+            self.too_many(fields.at.clone(), &what, table.len());
+        }
+        fields
+    }
+
+    /// HP0104 where it is missing.
+    pub fn need<'a>(&mut self, fields: &Fields<'a>, key: &str) -> Option<Field<'a>> {
+        let field = fields.get(key);
+        if field.is_none() {
+            let example = fields.example(key);
+            self.report("HP0104", fields.at.clone(), format!("{} has no `{key}`", fields.what)).help =
+                Some(format!("add it, for example {example}"));
+        }
+        field
+    }
+
+    /// HP0107 for a key that does not go with the others.
+    pub fn out_of_place(&mut self, fields: &Fields<'_>, key: &str, why: impl Into<String>) {
+        if let Some(field) = fields.get(key) {
+            let message = format!("`{key}` has no meaning in {}", fields.what);
+            self.report("HP0107", field.value.span(), message).notes.push(why.into());
+        }
+    }
+
+    pub fn too_many(&mut self, at: Range<usize>, what: &str, count: usize) {
+        self.senseless(at, format!("{what} has {count} entries")).notes.push(format!("at most {MOST_ENTRIES} are read"));
+    }
+
+    pub fn table<'a>(&mut self, value: &'a Value<'a>, subject: &Subject, expected: &str) -> Option<&'a DeTable<'a>> {
+        let table = value.get_ref().as_table();
+        if table.is_none() {
+            self.wrong(value, subject, expected);
+        }
+        table
+    }
+
+    pub fn list<'a>(&mut self, value: &'a Value<'a>, subject: &Subject, expected: &str) -> Option<Vec<&'a Value<'a>>> {
+        let Some(list) = value.get_ref().as_array() else {
+            self.wrong(value, subject, expected);
+            return None;
+        };
+        if list.len() > MOST_ENTRIES {
+            self.too_many(value.span(), &subject.name, list.len());
+            return None;
+        }
+        Some(list.iter().collect())
+    }
+
+    pub fn boolean(&mut self, value: &Value<'_>, subject: &Subject) -> Option<bool> {
+        let b = value.get_ref().as_bool();
+        if b.is_none() {
+            self.wrong(value, subject, "`true` or `false`");
+        }
+        b
+    }
+
+    /// A text that is a name of something.
+    pub fn name(&mut self, value: &Value<'_>, subject: &Subject, expected: &str) -> Option<String> {
+        match value.get_ref().as_str() {
+            Some(s) => self.short(s, value.span(), &subject.name),
+            None => {
+                self.wrong(value, subject, expected);
+                None
+            }
+        }
+    }
+
+    /// A name, unless it is too long to be one.
+    pub fn short(&mut self, s: &str, at: Range<usize>, what: &str) -> Option<String> {
+        let count = s.chars().count();
+        if count > LONGEST_NAME {
+            let message = format!("{what} is {count} characters long");
+            self.senseless(at, message).notes.push(format!("names have at most {LONGEST_NAME} characters"));
+            return None;
+        }
+        Some(s.to_owned())
+    }
+
+    /// A finite number as it is written.
+    pub fn number(&mut self, value: &Value<'_>, subject: &Subject) -> Option<f64> {
+        let x = match value.get_ref() {
+            DeValue::Integer(i) if i.radix() == 10 => i.as_str().parse().ok(),
+            DeValue::Integer(i) => i64::from_str_radix(i.as_str(), i.radix()).ok().map(|i| i as f64),
+            DeValue::Float(f) => f.as_str().parse::<f64>().ok(),
+            DeValue::String(s) => {
+                let with_unit = s.trim_start().starts_with(|c: char| c.is_ascii_digit() || "+-.".contains(c));
+                let units = self.units;
+                self.wrong(value, subject, "a number");
+                if with_unit && let Some(d) = self.found.last_mut() {
+                    d.help = Some(format!(
+                        "write the number without quotes and unit; lengths of this file are in {}, angles in {}",
+                        units.length.symbol(),
+                        units.angle.symbol()
+                    ));
+                }
+                return None;
+            }
+            _ => {
+                self.wrong(value, subject, "a number");
+                return None;
+            }
+        };
+        match x {
+            Some(x) if x.is_finite() => Some(x),
+            _ => {
+                self.senseless(value.span(), format!("{} is not a finite number", subject.name));
+                None
+            }
+        }
+    }
+
+    /// Exactly `N` numbers; `expected` says what they are.
+    pub fn numbers<const N: usize>(
+        &mut self,
+        value: &Value<'_>,
+        subject: &Subject,
+        expected: &str,
+    ) -> Option<[f64; N]> {
+        let list = match value.get_ref().as_array() {
+            Some(list) if list.len() == N => list,
+            Some(list) => {
+                let n = list.len();
+                self.wrong(value, subject, expected);
+                if let Some(d) = self.found.last_mut() {
+                    d.label = Some(format!("{n} value{} instead of {N}", if n == 1 { "" } else { "s" }));
+                }
+                return None;
+            }
+            None => {
+                self.wrong(value, subject, expected);
+                return None;
+            }
+        };
+        let mut numbers = [0.0; N];
+        let mut complete = true;
+        for (k, v) in list.iter().enumerate() {
+            let subject =
+                Subject { name: format!("number {} of {}", k + 1, subject.name), example: subject.example.clone() };
+            match self.number(v, &subject) {
+                Some(x) => numbers[k] = x,
+                None => complete = false,
+            }
+        }
+        complete.then_some(numbers)
+    }
+
+    /// Global coordinates, in m.
+    pub fn coordinates(&mut self, value: &Value<'_>, subject: &Subject, expected: &str) -> Option<Vec3> {
+        let p = self.numbers::<3>(value, subject, expected)?;
+        Some(p.map(|x| self.units.length.metres(x)).into())
+    }
+
+    /// The name of a hardpoint, or coordinates.
+    pub fn place(&mut self, value: &Value<'_>, subject: &Subject) -> Option<Place> {
+        let expected = "a hardpoint's name or three coordinates";
+        match value.get_ref() {
+            DeValue::String(name) => self.short(name, value.span(), &subject.name).map(Place::Hardpoint),
+            _ => self.coordinates(value, subject, expected).map(Place::At),
+        }
+    }
+
+    /// A direction by name or vector, of any length.
+    pub fn vector(&mut self, value: &Value<'_>, subject: &Subject) -> Option<Vec3> {
+        match value.get_ref() {
+            DeValue::String(word) => {
+                let v = axis_named(word);
+                if v.is_none() {
+                    self.unknown_word(value.span(), subject, word, &["x", "y", "z", "-x", "-y", "-z"]);
+                }
+                v
+            }
+            DeValue::Table(_) => {
+                self.wrong(value, subject, "a fixed direction: `\"x\"`, `\"y\"`, `\"z\"` or three numbers");
+                None
+            }
+            _ => self.numbers::<3>(value, subject, "a direction: `\"z\"` or three numbers").map(Vec3::from),
+        }
+    }
+
+    /// A direction, or `{ through = [...] }`; with the places of the two hardpoints' names.
+    pub fn line(&mut self, value: &Value<'_>, subject: &Subject) -> Option<(Line, Vec<Range<usize>>)> {
+        let Some(table) = value.get_ref().as_table() else {
+            return self.vector(value, subject).map(|v| (Line::Along(v), Vec::new()));
+        };
+        const KEYS: &[Key] = &[("through", "[\"A\", \"B\"]")];
+        let fields = self.fields(subject.name.clone(), value.span(), table, KEYS);
+        let through = self.need(&fields, "through")?;
+        let subject = fields.subject("through");
+        let names = match through.value.get_ref().as_array() {
+            Some(list) if list.len() == 2 => list,
+            _ => {
+                self.wrong(through.value, &subject, "the names of two hardpoints");
+                return None;
+            }
+        };
+        let [a, b] = [0, 1].map(|k| self.name(&names[k], &subject, "the names of two hardpoints"));
+        let spans = names.iter().map(Spanned::span).collect();
+        Some((Line::Through(a?, b?), spans))
+    }
+}
+
+/// `"x"` to `"-z"`.
+pub(crate) fn axis_named(word: &str) -> Option<Vec3> {
+    let (sign, letter) = match word.strip_prefix('-') {
+        Some(rest) => (-1.0, rest),
+        None => (1.0, word.strip_prefix('+').unwrap_or(word)),
+    };
+    let k = ["x", "y", "z"].iter().position(|l| *l == letter)?;
+    Some(Vec3::AXES[k] * sign)
+}
+
+pub(crate) fn quoted(words: &[&str]) -> String {
+    words.iter().map(|w| format!("`{w}`")).collect::<Vec<_>>().join(", ")
+}
+
+/// What a value is, in words.
+fn kind(value: &DeValue<'_>) -> String {
+    match value {
+        DeValue::String(s) if s.is_empty() => "an empty text".into(),
+        DeValue::String(_) => "a text".into(),
+        DeValue::Integer(_) | DeValue::Float(_) => "a number".into(),
+        DeValue::Boolean(b) => format!("`{b}`"),
+        DeValue::Datetime(_) => "a date or time".into(),
+        DeValue::Array(list) => match list.len() {
+            0 => "an empty list".into(),
+            1 => "a list of one value".into(),
+            n => format!("a list of {n} values"),
+        },
+        DeValue::Table(_) => "a table".into(),
+    }
+}

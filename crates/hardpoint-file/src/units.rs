@@ -1,0 +1,185 @@
+//! The user's units: converted here and nowhere else.
+//!
+//! Inside, everything is in metres, radians and seconds. A file says once which units its numbers are in;
+//! results go back to the user in the same ones. Time is always in seconds.
+
+use hardpoint::joint::Quantity;
+use serde::Serialize;
+
+/// A unit of length.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+pub enum LengthUnit {
+    /// Millimetre.
+    #[serde(rename = "mm")]
+    Millimetre,
+    /// Centimetre.
+    #[serde(rename = "cm")]
+    Centimetre,
+    /// Metre.
+    #[default]
+    #[serde(rename = "m")]
+    Metre,
+    /// Inch, 25.4 mm.
+    #[serde(rename = "in")]
+    Inch,
+}
+
+impl LengthUnit {
+    /// All of them.
+    pub const ALL: [Self; 4] = [Self::Millimetre, Self::Centimetre, Self::Metre, Self::Inch];
+
+    /// How files and results write it.
+    pub const fn symbol(self) -> &'static str {
+        match self {
+            Self::Millimetre => "mm",
+            Self::Centimetre => "cm",
+            Self::Metre => "m",
+            Self::Inch => "in",
+        }
+    }
+
+    /// How many of it make a metre.
+    pub const fn per_metre(self) -> f64 {
+        match self {
+            Self::Millimetre => 1000.0,
+            Self::Centimetre => 100.0,
+            Self::Metre => 1.0,
+            Self::Inch => 1.0 / 0.0254,
+        }
+    }
+
+    /// A length of so many units, in m.
+    pub fn metres(self, length: f64) -> f64 {
+        // Multiplying by 1e-3 would round twice: 345.44 mm must be the double nearest to 0.34544 m.
+        match self {
+            Self::Inch => length * 0.0254,
+            unit => length / unit.per_metre(),
+        }
+    }
+}
+
+/// A unit of angle.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+pub enum AngleUnit {
+    /// Degree.
+    #[serde(rename = "deg")]
+    Degree,
+    /// Radian.
+    #[default]
+    #[serde(rename = "rad")]
+    Radian,
+}
+
+impl AngleUnit {
+    /// Both of them.
+    pub const ALL: [Self; 2] = [Self::Degree, Self::Radian];
+
+    /// How files and results write it.
+    pub const fn symbol(self) -> &'static str {
+        match self {
+            Self::Degree => "deg",
+            Self::Radian => "rad",
+        }
+    }
+
+    /// How many of it make a radian.
+    pub const fn per_radian(self) -> f64 {
+        match self {
+            Self::Degree => 180.0 / std::f64::consts::PI,
+            Self::Radian => 1.0,
+        }
+    }
+
+    /// An angle of so many units, in rad.
+    pub fn radians(self, angle: f64) -> f64 {
+        match self {
+            Self::Degree => angle.to_radians(),
+            Self::Radian => angle,
+        }
+    }
+}
+
+/// The units of a file; metres and radians unless it says otherwise.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+pub struct Units {
+    /// Of every length.
+    pub length: LengthUnit,
+    /// Of every angle.
+    pub angle: AngleUnit,
+}
+
+impl Units {
+    /// The unit's symbol, and how many of it make one SI unit.
+    ///
+    /// ```
+    /// use hardpoint::joint::Quantity;
+    /// use hardpoint_file::{AngleUnit, LengthUnit, Units};
+    ///
+    /// let units = Units { length: LengthUnit::Millimetre, angle: AngleUnit::Degree };
+    /// assert_eq!(units.of(Quantity::Length), ("mm", 1000.0));
+    /// assert_eq!(units.of(Quantity::Number), ("", 1.0));
+    /// ```
+    pub const fn of(self, quantity: Quantity) -> (&'static str, f64) {
+        match quantity {
+            Quantity::Length => (self.length.symbol(), self.length.per_metre()),
+            Quantity::Angle => (self.angle.symbol(), self.angle.per_radian()),
+            Quantity::Number => ("", 1.0),
+        }
+    }
+
+    /// A value in the user's unit, in SI.
+    pub fn to_si(self, quantity: Quantity, value: f64) -> f64 {
+        match quantity {
+            Quantity::Length => self.length.metres(value),
+            Quantity::Angle => self.angle.radians(value),
+            Quantity::Number => value,
+        }
+    }
+
+    /// A value in SI, in the user's unit.
+    pub fn from_si(self, quantity: Quantity, value: f64) -> f64 {
+        value * self.of(quantity).1
+    }
+
+    /// A derivative "`of` per `by`" in SI, in the user's units.
+    ///
+    /// ```
+    /// use hardpoint::joint::Quantity;
+    /// use hardpoint_file::{AngleUnit, LengthUnit, Units};
+    ///
+    /// // A toe that changes by 1 rad per metre changes by 0.0573 deg per millimetre.
+    /// let units = Units { length: LengthUnit::Millimetre, angle: AngleUnit::Degree };
+    /// let slope = units.derivative_from_si(Quantity::Angle, Quantity::Length, 1.0);
+    /// assert!((slope - 0.0572958).abs() < 1e-7);
+    /// ```
+    pub fn derivative_from_si(self, of: Quantity, by: Quantity, value: f64) -> f64 {
+        value * (self.of(of).1 / self.of(by).1)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_unit_converts_there_and_back() {
+        for length in LengthUnit::ALL {
+            for angle in AngleUnit::ALL {
+                let units = Units { length, angle };
+                for q in [Quantity::Length, Quantity::Angle, Quantity::Number] {
+                    let back = units.from_si(q, units.to_si(q, 12.34));
+                    assert!((back - 12.34).abs() < 1e-14, "{units:?} {q:?}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn decimal_millimetres_are_the_nearest_double_in_metres() {
+        for (mm, m) in [(345.44, 0.34544), (-59.69, -0.05969), (0.1, 0.0001), (574.803759, 0.574803759)] {
+            assert_eq!(LengthUnit::Millimetre.metres(mm), m);
+        }
+        assert_eq!(LengthUnit::Inch.metres(10.0), 0.254);
+        assert_eq!(AngleUnit::Degree.radians(180.0), std::f64::consts::PI);
+    }
+}

@@ -1,0 +1,258 @@
+//! What a user sees for each kind of mistake: the full texts are in `tests/snapshots`.
+
+use hardpoint_file::{parse, read};
+
+const VALID: &str = r#"name = "four-bar"
+units = { length = "mm", angle = "deg" }
+
+[hardpoints]
+A = [0, 0, 0]
+B = [100, 50, 0]
+C = [300, 200, 0]
+D = [400, 0, 0]
+
+[bodies]
+crank = {}
+coupler = {}
+rocker = {}
+
+[joints.J1]
+type = "revolute"
+bodies = ["ground", "crank"]
+at = "A"
+axis = "z"
+
+[joints.J2]
+type = "spherical"
+bodies = ["crank", "coupler"]
+at = "B"
+
+[joints.J3]
+type = "universal"
+bodies = ["coupler", "rocker"]
+at = "C"
+axis = "z"
+axis2 = "x"
+
+[joints.J4]
+type = "cylindrical"
+bodies = ["ground", "rocker"]
+at = "D"
+axis = "z"
+
+[drivers.turn]
+joint = "J1"
+law = "360*t"
+
+[design.B]
+move = "B"
+along = "xyz"
+
+[design.lean]
+tilt = "J4"
+about = "x"
+
+[points.P]
+body = "coupler"
+at = [200, 150, 20]
+
+[measures.height]
+type = "position"
+point = "P"
+along = "y"
+
+[time]
+end = 1.0
+steps = 100
+"#;
+
+fn snapshot(name: &str, text: &str) {
+    let error = parse(text, "four-bar.toml").expect_err(name);
+    let shown = error.to_string();
+    assert!(!error.list().is_empty(), "{name}");
+    insta::with_settings!({ prepend_module_to_snapshot => false, omit_expression => true, description => name }, {
+        insta::assert_snapshot!(name, shown);
+    });
+}
+
+/// The valid model with some of its text replaced.
+fn broken(name: &str, replacements: &[(&str, &str)]) {
+    let mut text = VALID.to_owned();
+    for (old, new) in replacements {
+        assert!(text.contains(old), "{name}: {old}");
+        text = text.replacen(old, new, 1);
+    }
+    snapshot(name, &text);
+}
+
+#[test]
+fn the_valid_model_is_valid() {
+    parse(VALID, "four-bar.toml").unwrap_or_else(|e| panic!("{e}"));
+}
+
+#[test]
+fn keys() {
+    broken("unknown_key", &[("at = \"A\"", "at = \"A\"\ncolour = \"red\"")]);
+    broken("misspelt_key", &[("at = \"A\"", "att = \"A\"")]);
+    broken("misspelt_table", &[("[hardpoints]", "[hardpoint]")]);
+    broken("missing_key", &[("law = \"360*t\"\n", "")]);
+    broken("missing_name", &[("name = \"four-bar\"\n", "")]);
+    broken("missing_units", &[("units = { length = \"mm\", angle = \"deg\" }\n", "")]);
+    broken("missing_bodies_of_joint", &[("bodies = [\"ground\", \"crank\"]\n", "")]);
+    broken("missing_time", &[("[time]\nend = 1.0\nsteps = 100\n", "")]);
+    broken("missing_axis", &[("axis = \"z\"\n\n[joints.J2]", "\n[joints.J2]")]);
+    broken("axis_not_wanted", &[("at = \"B\"", "at = \"B\"\naxis = \"z\"")]);
+    broken("two_kinds_of_change", &[("along = \"xyz\"", "along = \"xyz\"\ntilt = \"J1\"")]);
+    broken("no_kind_of_change", &[("move = \"B\"\nalong = \"xyz\"\n", "fixed_length = true\n")]);
+    broken("measure_without_type", &[("type = \"position\"\n", "")]);
+    broken("key_of_another_measure", &[("along = \"y\"", "along = \"y\"\nspin_axis = \"y\"")]);
+    broken("time_given_twice", &[("end = 1.0", "at = [0, 1]\nend = 1.0")]);
+}
+
+#[test]
+fn types() {
+    broken("wrong_type_of_key", &[("at = \"B\"", "at = \"B\"\ncut = \"yes\"")]);
+    broken("wrong_type_of_entry", &[("crank = {}", "crank = 3")]);
+    broken("wrong_type_of_table", &[("[bodies]\ncrank = {}\ncoupler = {}\nrocker = {}", "[[bodies]]\nname = \"crank\"")]);
+    broken("two_coordinates", &[("B = [100, 50, 0]", "B = [100, 50]")]);
+    broken("coordinate_with_unit", &[("B = [100, 50, 0]", "B = [\"100 mm\", 50, 0]")]);
+    broken("coordinate_not_finite", &[("B = [100, 50, 0]", "B = [100, nan, 1e400]")]);
+    broken("one_body", &[("bodies = [\"ground\", \"crank\"]", "bodies = \"crank\"")]);
+    broken("steps_not_whole", &[("steps = 100", "steps = 0.1")]);
+    broken("end_before_start", &[("end = 1.0", "start = 2.0\nend = 1.0")]);
+    broken("times_fall", &[("end = 1.0\nsteps = 100", "at = [0, 0.5, 0.25]")]);
+}
+
+#[test]
+fn words() {
+    broken("unknown_unit", &[("\"mm\"", "\"milimeter\"")]);
+    broken("unknown_angle_unit", &[("\"deg\"", "\"degrees\"")]);
+    broken("unknown_joint_type", &[("\"revolute\"", "\"revolut\"")]);
+    broken("unknown_measure_type", &[("\"position\"", "\"positon\"")]);
+    broken("unknown_direction", &[("along = \"xyz\"", "along = \"up\"")]);
+    broken("unknown_body", &[("[\"crank\", \"coupler\"]", "[\"crank\", \"copler\"]")]);
+    broken("unknown_hardpoint", &[("move = \"B\"", "move = \"Bee\"")]);
+    broken("unknown_point", &[("point = \"P\"", "point = \"wheel\"")]);
+    broken("unknown_joint", &[("joint = \"J1\"", "joint = \"pivot\"")]);
+}
+
+#[test]
+fn laws() {
+    broken("bad_law", &[("360*t", "360*sinn(2*pi*t)")]);
+    broken("law_cut_short", &[("360*t", "30*(1 + t")]);
+    broken("empty_law", &[("360*t", "")]);
+    broken("law_not_finite", &[("360*t", "1/t")]);
+    broken("law_with_escapes", &[("\"360*t\"", "\"\\u0033 + q\"")]);
+}
+
+#[test]
+fn mechanism() {
+    broken("zero_axis", &[("axis = \"z\"", "axis = [0, 0, 0]")]);
+    broken("axis_through_one_point", &[("axis = \"z\"", "axis = { through = [\"A\", \"A\"] }")]);
+    broken("axes_not_square", &[("axis2 = \"x\"", "axis2 = [1, 0, 0.5]")]);
+    broken("two_places_for_one", &[("at = \"B\"", "at = [\"B\", \"C\"]")]);
+    broken("one_place_for_two", &[("type = \"spherical\"", "type = \"distance\"")]);
+    broken("joint_of_one_body", &[("[\"crank\", \"coupler\"]", "[\"crank\", \"crank\"]")]);
+    broken("loose_body", &[("rocker = {}", "rocker = {}\nspare = {}")]);
+    broken("declared_ground", &[("crank = {}", "crank = {}\nground = {}")]);
+    broken("no_such_coordinate", &[("joint = \"J1\"", "joint = \"J1\"\ncoordinate = \"length\"")]);
+    broken("coordinate_not_said", &[("joint = \"J1\"", "joint = \"J4\"")]);
+    broken("driver_on_ball", &[("joint = \"J1\"", "joint = \"J2\"")]);
+    broken("names_collide", &[("[design.lean]", "[design.B_x]")]);
+    broken("null_move", &[("along = \"xyz\"", "along = [0, 0, 0]")]);
+    broken(
+        "frame_points_on_a_line",
+        &[("crank = {}", "crank = { frame = { origin = \"A\", x = [1, 0, 0], xy = [2, 0, 0] } }")],
+    );
+    broken("field_on_foreign_body", &[(
+        "[design.lean]\ntilt = \"J4\"\nabout = \"x\"",
+        "[design.tau]\nfields = [{ joint = \"J1\", body = \"rocker\", V = [1, 0, 0] }]",
+    )]);
+}
+
+#[test]
+fn syntax() {
+    broken("duplicate_key", &[("at = \"A\"", "at = \"A\"\nat = \"B\"")]);
+    broken("duplicate_table", &[("[joints.J2]", "[joints.J1]")]);
+    broken("open_text", &[("at = \"A\"", "at = \"A")]);
+    broken("open_list", &[("A = [0, 0, 0]", "A = [0, 0, 0")]);
+    broken("comma_decimal", &[("B = [100, 50, 0]", "B = [100,5; 50; 0]")]);
+    broken("no_quotes", &[("at = \"A\"", "at = A")]);
+    snapshot("empty_file", "");
+    snapshot("binary_garbage", "\u{0}\u{1}\u{7f}ELF\u{2}\u{1b}[31m\n\u{fffd}\u{fffd} = \u{8}");
+    snapshot("deep_nesting", &format!("name = {}", "[".repeat(100_000)));
+}
+
+#[test]
+fn several_problems_at_once() {
+    broken(
+        "several_problems",
+        &[
+            ("\"mm\"", "\"milimetre\""),
+            ("C = [300, 200, 0]", "C = [300, 200]"),
+            ("type = \"revolute\"", "typ = \"revolute\""),
+            ("at = \"B\"", "at = \"BB\""),
+            ("\"rocker\"]", "\"roker\"]"),
+            ("360*t", "360*u"),
+            ("point = \"P\"", "point = \"Q\""),
+            ("steps = 100", "steps = -5"),
+        ],
+    );
+}
+
+#[test]
+fn color_only_adds_escapes() {
+    let error = parse(&VALID.replace("at = \"A\"", "att = \"A\""), "four-bar.toml").unwrap_err();
+    let colored = error.render(true);
+    assert!(colored.contains("\u{1b}["));
+    let mut plain = String::new();
+    let mut rest = colored.as_str();
+    while let Some((before, after)) = rest.split_once("\u{1b}[") {
+        plain.push_str(before);
+        rest = after.split_once('m').unwrap().1;
+    }
+    plain.push_str(rest);
+    assert_eq!(plain, error.render(false));
+}
+
+#[test]
+fn json_has_the_place() {
+    let error = parse(&VALID.replace("at = \"A\"", "att = \"A\""), "four-bar.toml").unwrap_err();
+    let json = serde_json::to_value(&error).unwrap();
+    let first = &json[0];
+    assert_eq!(first["severity"], "error");
+    assert_eq!(first["code"], "HP0103");
+    assert_eq!((first["line"].as_u64(), first["column"].as_u64()), (Some(18), Some(1)));
+    assert_eq!(first["file"], "four-bar.toml");
+}
+
+#[test]
+fn unreadable_files() {
+    let dir = tempfile::tempdir().unwrap();
+    let path = |name: &str| dir.path().join(name);
+    std::fs::write(path("strut.toml"), VALID).unwrap();
+    std::fs::write(path("latin1.toml"), b"name = \"Lenker\"\n# vorn \xfcber\n").unwrap();
+    let folder = dir.path().display().to_string();
+    let shown = |name: &str| read(&path(name)).unwrap_err().to_string().replace(&folder, "DIR");
+    let all = ["strutt.toml", "nowhere/x.toml", "", "latin1.toml"].map(shown).join("\n\n");
+    insta::with_settings!({ prepend_module_to_snapshot => false, omit_expression => true }, {
+        insta::assert_snapshot!("unreadable_files", all);
+    });
+    let huge = std::fs::File::create(path("huge.toml")).unwrap();
+    huge.set_len(65 << 20).unwrap();
+    assert!(shown("huge.toml").contains("it has 65 MiB; at most 64 MiB are read"));
+    assert!(read(&path("strut.toml")).is_ok());
+}
+
+#[test]
+fn many_problems_are_cut_short() {
+    let mut text = VALID.to_owned();
+    for k in 0..3000 {
+        text.push_str(&format!("[points.X{k}]\nbody = \"nobody{k}\"\nat = \"nowhere{k}\"\n"));
+    }
+    let error = parse(&text, "many.toml").unwrap_err();
+    assert_eq!(error.list().len(), 6000);
+    let shown = error.to_string();
+    assert!(shown.contains("... and 5950 more like these"));
+    assert!(shown.len() < 100_000, "{}", shown.len());
+}

@@ -1,0 +1,390 @@
+//! The HTML report: one file that opens from disk, asks the network for nothing and shows the motion
+//! in 3D beside its curves, design sensitivities and checks.
+//!
+//! [`Payload`] is everything the page knows. [`html`] puts it, the page's code and its style into one file.
+//! The page itself is TypeScript under `web/`; its built bundle is kept in this crate's `page/` folder, so
+//! building the crate needs no JavaScript tools. `web/src/payload.ts` is written by a test in this file.
+
+use base64::{Engine, prelude::BASE64_STANDARD};
+use serde::{Serialize, Serializer};
+
+#[cfg(test)]
+use ts_rs::TS;
+
+/// One number per output step, stored as `f32`; NaN means "no value at this step" and is drawn as a gap.
+///
+/// Serialised as base64 of little-endian `f32`: a third of the size of decimal text, and the page
+/// shows no more digits than that.
+///
+/// ```
+/// use hardpoint_report::page::Curve;
+/// let curve = Curve::from(&[1.0, -2.0][..]);
+/// assert_eq!(serde_json::to_string(&curve).unwrap(), r#""AACAPwAAAMA=""#);
+/// ```
+#[derive(Clone, Debug, Default, PartialEq)]
+#[cfg_attr(test, derive(TS), ts(type = "string"))]
+pub struct Curve(Vec<f32>);
+
+impl From<&[f64]> for Curve {
+    fn from(values: &[f64]) -> Self {
+        values.iter().copied().collect()
+    }
+}
+
+impl FromIterator<f64> for Curve {
+    fn from_iter<I: IntoIterator<Item = f64>>(values: I) -> Self {
+        Self(values.into_iter().map(|value| value as f32).collect())
+    }
+}
+
+impl Serialize for Curve {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let bytes: Vec<u8> = self
+            .0
+            .iter()
+            .flat_map(|value| value.to_le_bytes())
+            .collect();
+        serializer.serialize_str(&BASE64_STANDARD.encode(bytes))
+    }
+}
+
+/// Everything one report shows. Lengths, angles and times are in [`Payload::units`].
+#[derive(Clone, Debug, Serialize)]
+#[cfg_attr(test, derive(TS))]
+pub struct Payload {
+    /// Headline, usually the model's title.
+    pub title: String,
+    /// Name of the model file.
+    pub file: String,
+    /// Program and version that made the report.
+    pub generator: String,
+    /// The user's units.
+    pub units: Units,
+    /// Whether the whole motion was solved.
+    pub status: Status,
+    /// A handful of figures for the top of the page.
+    pub summary: Vec<Fact>,
+    /// Output times, `n` steps, ascending.
+    pub times: Curve,
+    /// Bodies; the first is ground, whose pose is constant.
+    pub bodies: Vec<BodyTrack>,
+    /// Joints and constraints that have a place to be drawn at.
+    pub joints: Vec<JointMark>,
+    /// What can be plotted over time.
+    pub quantities: Vec<Quantity>,
+    /// Design variables with their sensitivities.
+    pub variables: Vec<Variable>,
+    /// Facts about the model: bodies, joints, constraints, redundancy, admissibility.
+    pub checks: Vec<Table>,
+}
+
+/// Unit symbols as the user writes them.
+#[derive(Clone, Debug, Serialize)]
+#[cfg_attr(test, derive(TS))]
+pub struct Units {
+    /// For example `mm`.
+    pub length: String,
+    /// For example `deg`.
+    pub angle: String,
+    /// For example `s`.
+    pub time: String,
+}
+
+/// How the run ended.
+#[derive(Clone, Debug, Serialize)]
+#[cfg_attr(test, derive(TS))]
+pub struct Status {
+    /// False when the motion stops before its last step; the page then says so in a banner.
+    pub complete: bool,
+    /// One sentence.
+    pub message: String,
+}
+
+/// A labelled figure, already formatted with its unit.
+#[derive(Clone, Debug, Serialize)]
+#[cfg_attr(test, derive(TS))]
+pub struct Fact {
+    /// What it is.
+    pub label: String,
+    /// The figure.
+    pub value: String,
+}
+
+/// A body, its hardpoints and where it was.
+#[derive(Clone, Debug, Serialize)]
+#[cfg_attr(test, derive(TS))]
+pub struct BodyTrack {
+    /// The user's name.
+    pub name: String,
+    /// Pose in the world, 7 numbers per step: x y z, then the unit quaternion w x y z (`world_from_body`).
+    pub poses: Curve,
+    /// Hardpoints in the body frame.
+    pub skeleton: Vec<[f64; 3]>,
+    /// Names of the hardpoints, in the order of `skeleton`.
+    pub labels: Vec<String>,
+}
+
+/// A joint or constraint between two bodies.
+#[derive(Clone, Debug, Serialize)]
+#[cfg_attr(test, derive(TS))]
+pub struct JointMark {
+    /// The user's name.
+    pub name: String,
+    /// `revolute`, `spherical`, `translational`, `distance`, ...; an unknown kind gets a neutral mark.
+    pub kind: String,
+    /// Index into [`Payload::bodies`].
+    pub body_i: usize,
+    /// Index into [`Payload::bodies`].
+    pub body_j: usize,
+    /// Place on body i, in its frame.
+    pub at_i: [f64; 3],
+    /// Place on body j, in its frame.
+    pub at_j: [f64; 3],
+    /// Unit vector along the joint's axis in the frame of body i, where the kind has one.
+    pub axis: Option<[f64; 3]>,
+    /// Whether the joint closes a loop instead of carrying body j.
+    pub cut: bool,
+}
+
+/// Something that can be plotted over time, with its two time derivatives.
+#[derive(Clone, Debug, Serialize)]
+#[cfg_attr(test, derive(TS))]
+pub struct Quantity {
+    /// The user's name, for example `toe`.
+    pub name: String,
+    /// Unit of `value`.
+    pub unit: String,
+    /// Unit of `rate`.
+    pub rate_unit: String,
+    /// Unit of `accel`.
+    pub accel_unit: String,
+    /// Heading under which it is offered: `measure`, `point`, `body` or `joint`.
+    pub group: String,
+    /// The quantity, `n` steps.
+    pub value: Curve,
+    /// Its first time derivative.
+    pub rate: Curve,
+    /// Its second time derivative.
+    pub accel: Curve,
+}
+
+/// A design variable: what it moves, whether the mechanism can follow, and what follows from it.
+#[derive(Clone, Debug, Serialize)]
+#[cfg_attr(test, derive(TS))]
+pub struct Variable {
+    /// The user's name.
+    pub name: String,
+    /// What it means, in a few words; may be empty.
+    pub description: String,
+    /// Unit of the variable, `1` for a pure number.
+    pub unit: String,
+    /// Whether every joint stays intact under this design change.
+    pub admissibility: Admissibility,
+    /// A sentence with the joints concerned and their defect; empty when there is nothing to say.
+    pub note: String,
+    /// The design velocity at the hardpoints it moves.
+    pub arrows: Vec<Arrow>,
+    /// Sensitivities, at most one per quantity; empty when the mechanism cannot follow.
+    pub sensitivities: Vec<Sensitivity>,
+}
+
+/// Whether a mechanism can follow a design variable.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[cfg_attr(test, derive(TS))]
+#[serde(rename_all = "snake_case")]
+pub enum Admissibility {
+    /// Every joint stays intact at the design configuration.
+    Admissible,
+    /// Some joint would open; the mechanism closes it again by moving.
+    Reassembled,
+    /// No motion closes the joint that opens: there is no sensitivity.
+    CannotFollow,
+}
+
+/// Design velocity of one hardpoint, per unit of the variable, in the frame of its body.
+#[derive(Clone, Debug, Serialize)]
+#[cfg_attr(test, derive(TS))]
+pub struct Arrow {
+    /// Index into [`Payload::bodies`].
+    pub body: usize,
+    /// Where the hardpoint is.
+    pub at: [f64; 3],
+    /// How its location changes.
+    pub v: [f64; 3],
+    /// How its orientation turns.
+    pub turn: [f64; 3],
+}
+
+/// Total derivative of one quantity and of its rates with respect to one design variable.
+#[derive(Clone, Debug, Serialize)]
+#[cfg_attr(test, derive(TS))]
+pub struct Sensitivity {
+    /// Index into [`Payload::quantities`].
+    pub quantity: usize,
+    /// Derivative of the quantity, `n` steps.
+    pub value: Curve,
+    /// Derivative of its first time derivative.
+    pub rate: Curve,
+    /// Derivative of its second time derivative.
+    pub accel: Curve,
+    /// The same by re-solving a changed design, when that was asked for.
+    pub fd: Option<FiniteDifference>,
+}
+
+/// Central differences of re-solved designs, to be compared with a [`Sensitivity`].
+#[derive(Clone, Debug, Serialize)]
+#[cfg_attr(test, derive(TS))]
+pub struct FiniteDifference {
+    /// Difference quotient of the quantity, `n` steps.
+    pub value: Curve,
+    /// Difference quotient of its first time derivative.
+    pub rate: Curve,
+    /// Difference quotient of its second time derivative.
+    pub accel: Curve,
+    /// Change of the variable to either side.
+    pub step: f64,
+    /// Unit of `step`.
+    pub step_unit: String,
+    /// Largest relative disagreement over time in value, rate and accel.
+    pub worst: [f64; 3],
+}
+
+/// A table of facts, its cells already formatted.
+#[derive(Clone, Debug, Serialize)]
+#[cfg_attr(test, derive(TS))]
+pub struct Table {
+    /// Heading.
+    pub title: String,
+    /// A sentence under the heading; may be empty.
+    pub note: String,
+    /// Column headings.
+    pub header: Vec<String>,
+    /// Rows, each as long as `header`.
+    pub rows: Vec<Vec<String>>,
+}
+
+/// Assembles the report as one self-contained HTML file.
+///
+/// # Errors
+/// When the payload does not serialise, which plain numbers and strings never do.
+pub fn html(payload: &Payload) -> Result<String, serde_json::Error> {
+    // An HTML parser ends a script element at the first `</script`, wherever it stands; in JSON and in
+    // JavaScript strings the escaped forms mean the same.
+    let data = serde_json::to_string(payload)?.replace('<', "\\u003c");
+    let code = include_str!("../page/app.js").replace("</script", "<\\/script");
+    Ok(fill(
+        include_str!("../page/report.html"),
+        |slot| match slot {
+            "title" => escape_text(&payload.title),
+            "style" => include_str!("../page/app.css").to_owned(),
+            "payload" => data.clone(),
+            "code" => code.clone(),
+            _ => panic!("the report template names an unknown slot `{slot}`"),
+        },
+    ))
+}
+
+/// Replaces every `{{slot}}` of the template; what is put in is never searched for slots again.
+fn fill(template: &str, content: impl Fn(&str) -> String) -> String {
+    let mut pieces = template.split("{{");
+    let mut page = pieces.next().unwrap_or_default().to_owned();
+    for piece in pieces {
+        let (slot, text) = piece
+            .split_once("}}")
+            .expect("the report template closes its slots");
+        page += &content(slot);
+        page += text;
+    }
+    page
+}
+
+fn escape_text(text: &str) -> String {
+    text.replace('&', "&amp;")
+        .replace('<', "&lt;")
+        .replace('>', "&gt;")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::{fs, path::Path};
+
+    fn payload(title: &str) -> Payload {
+        Payload {
+            title: title.into(),
+            file: "sample.toml".into(),
+            generator: "hardpoint".into(),
+            units: Units {
+                length: "mm".into(),
+                angle: "deg".into(),
+                time: "s".into(),
+            },
+            status: Status {
+                complete: true,
+                message: "solved".into(),
+            },
+            summary: vec![],
+            times: Curve::default(),
+            bodies: vec![],
+            joints: vec![],
+            quantities: vec![],
+            variables: vec![],
+            checks: vec![],
+        }
+    }
+
+    #[test]
+    fn curve_is_little_endian_f32_and_keeps_gaps() {
+        let text = serde_json::to_value(Curve::from(&[0.5, f64::NAN][..])).unwrap();
+        let bytes = BASE64_STANDARD.decode(text.as_str().unwrap()).unwrap();
+        assert_eq!(bytes[..4], 0.5_f32.to_le_bytes());
+        assert!(f32::from_le_bytes(bytes[4..].try_into().unwrap()).is_nan());
+    }
+
+    #[test]
+    fn text_of_the_model_cannot_end_the_script_or_name_a_slot() {
+        let page = html(&payload("</script><b>{{code}}")).unwrap();
+        assert!(page.contains("<title>&lt;/script&gt;&lt;b&gt;{{code}}</title>"));
+        assert!(page.contains(r#""title":"\u003c/script>\u003cb>{{code}}""#));
+        assert_eq!(
+            page.matches("</script").count(),
+            2,
+            "one end for the payload, one for the code"
+        );
+    }
+
+    #[test]
+    fn page_asks_the_network_for_nothing() {
+        let page = html(&payload("sample")).unwrap();
+        let markup = &page[..page.find("<style>").unwrap()];
+        assert!(!markup.contains("src=") && !markup.contains("href="));
+        assert!(!include_str!("../page/app.css").contains("url("));
+        assert!(!include_str!("../page/app.js").contains("import("));
+    }
+
+    #[test]
+    fn typescript_types_are_those_of_the_payload() {
+        let config = ts_rs::Config::default();
+        let mut expected = String::from(
+            "// Written by the tests of `crates/hardpoint-report/src/page.rs`; change the structs there.\n",
+        );
+        macro_rules! declare {
+            ($($name:ident)*) => { $(
+                expected += "\n";
+                expected += &<$name as TS>::docs().unwrap_or_default();
+                expected += &format!("export {}\n", <$name as TS>::decl(&config)).replace(" \n", "\n");
+            )* };
+        }
+        declare!(
+            Curve Payload Units Status Fact BodyTrack JointMark Quantity Variable Admissibility Arrow
+            Sensitivity FiniteDifference Table
+        );
+        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../web/src/payload.ts");
+        if fs::read_to_string(&path).ok().as_deref() != Some(&expected) {
+            fs::write(&path, expected).unwrap();
+            panic!(
+                "web/src/payload.ts was out of date and has been rewritten: rebuild the page and commit both"
+            );
+        }
+    }
+}

@@ -1,0 +1,249 @@
+//! Measures and followed points: numbers that a person asks for, with rates and sensitivities.
+//!
+//! A measure is written once, as a function of [`Jet`]s; its rate, acceleration and the design
+//! derivatives of all three follow by the product and chain rules.
+
+mod bodies;
+
+pub use bodies::BodyJet;
+
+use crate::joint::Quantity;
+use crate::model::{BodyId, Field, Geometry, JointId, Measure, MeasureKind, Model, PointId, VariableId};
+use crate::motion::Motion;
+use crate::sensitivity::{BodySensitivity, Sensitivities};
+use crate::space::{Jet, Vec3};
+use crate::topology::Topology;
+
+/// A column of [`Measured`].
+#[derive(Clone, Debug, PartialEq)]
+pub struct Output {
+    /// `toe` for a measure, `wheel_centre.z` for a point's component.
+    pub name: String,
+    /// What its value measures.
+    pub quantity: Quantity,
+    /// Where it comes from.
+    pub source: OutputSource,
+}
+
+/// Where an output comes from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum OutputSource {
+    /// A measure of the model.
+    Measure(usize),
+    /// Component 0, 1 or 2 of a point of the model.
+    Point(PointId, usize),
+}
+
+/// Measures and point components over a motion, with their sensitivities.
+#[derive(Clone, Debug, Default)]
+pub struct Measured {
+    /// The columns: all measures, then x, y, z of all named points.
+    pub outputs: Vec<Output>,
+    /// How many design variables there are.
+    pub variables: usize,
+    /// `values[k * outputs + m]`: value, rate and acceleration; m or rad, per s, per s^2.
+    values: Vec<[f64; 3]>,
+    /// `d[(k * variables + b) * outputs + m]`: derivatives of those by variable b at fixed t.
+    d: Vec<[f64; 3]>,
+}
+
+impl Measured {
+    /// The column of that name.
+    pub fn index(&self, name: &str) -> Option<usize> {
+        self.outputs.iter().position(|o| o.name == name)
+    }
+
+    /// Value, rate and acceleration of output m at time k.
+    pub fn value(&self, k: usize, m: usize) -> [f64; 3] {
+        self.values[k * self.outputs.len() + m]
+    }
+
+    /// Their derivatives by variable b; those of a variable that the mechanism cannot follow are NaN and
+    /// mean nothing: ask [`Sensitivities::admissibility`] first.
+    pub fn d(&self, k: usize, b: VariableId, m: usize) -> [f64; 3] {
+        self.d[(k * self.variables + b.0) * self.outputs.len() + m]
+    }
+
+    /// How many output times there are.
+    pub fn len(&self) -> usize {
+        if self.outputs.is_empty() { 0 } else { self.values.len() / self.outputs.len() }
+    }
+
+    /// Whether there is nothing.
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+}
+
+/// The columns that a model's measures and points give.
+pub fn outputs(model: &Model) -> Vec<Output> {
+    let measures = model.measures.iter().enumerate().map(|(k, m)| Output {
+        name: m.name.clone(),
+        quantity: model.measured(m),
+        source: OutputSource::Measure(k),
+    });
+    let points = model.points.iter().enumerate().filter(|(_, p)| !p.unnamed).flat_map(|(k, p)| {
+        ["x", "y", "z"].into_iter().enumerate().map(move |(axis, letter)| Output {
+            name: format!("{}.{letter}", p.name),
+            quantity: Quantity::Length,
+            source: OutputSource::Point(PointId(k), axis),
+        })
+    });
+    measures.chain(points).collect()
+}
+
+/// Evaluates all outputs over a motion, and their derivatives by the variables with these fields.
+pub(crate) fn evaluate(
+    model: &Model,
+    topology: &Topology,
+    geometry: &Geometry,
+    fields: &[Field],
+    motion: &Motion,
+    sensitivities: &Sensitivities,
+) -> Measured {
+    let outputs = outputs(model);
+    let mut measured = Measured { variables: fields.len(), ..Measured::default() };
+    let none = Field::default();
+    let still = vec![BodySensitivity::ZERO; motion.bodies];
+    for k in 0..motion.len() {
+        let first = measured.values.len();
+        let at = |field, d| Moment { model, geometry, field, states: motion.at(k), d };
+        for output in &outputs {
+            let [value, _] = at(&none, &still).output(output).c;
+            measured.values.push(value);
+        }
+        unwrap_angles(model, topology, motion, k, &outputs, &mut measured.values, first);
+        for (b, field) in fields.iter().enumerate() {
+            match sensitivities.at(k, b) {
+                Some(d) => {
+                    let moment = at(field, d);
+                    measured.d.extend(outputs.iter().map(|o| moment.output(o).c[1]));
+                }
+                None => measured.d.extend(outputs.iter().map(|_| [f64::NAN; 3])),
+            }
+        }
+    }
+    measured.outputs = outputs;
+    measured
+}
+
+/// Joint angles counted through whole turns: from the tree coordinate, from the driver, or, for a cut
+/// joint, from the turn before and the rates since.
+fn unwrap_angles(
+    model: &Model,
+    topology: &Topology,
+    motion: &Motion,
+    k: usize,
+    outputs: &[Output],
+    values: &mut [[f64; 3]],
+    first: usize,
+) {
+    const TURN: f64 = 2.0 * std::f64::consts::PI;
+    for (m, output) in outputs.iter().enumerate() {
+        let OutputSource::Measure(index) = output.source else { continue };
+        let MeasureKind::Coordinate { joint, coordinate } = model.measures[index].kind else { continue };
+        if output.quantity != Quantity::Angle {
+            continue;
+        }
+        let driver = model.drivers.iter().find(|d| d.joint == joint && d.coordinate == coordinate);
+        let near = if let Some(d) = driver {
+            d.law.at(motion.times[k]).value()
+        } else if let Some(q) = tree_coordinate(model, topology, joint, coordinate) {
+            motion.coordinates[k * topology.coordinates.len() + q]
+        } else if k > 0 {
+            let before = values[first - outputs.len() + m];
+            let h = motion.times[k] - motion.times[k - 1];
+            before[0] + 0.5 * h * (before[1] + values[first + m][1])
+        } else {
+            0.0
+        };
+        let value = &mut values[first + m][0];
+        *value += TURN * ((near - *value) / TURN).round();
+    }
+}
+
+/// The tree coordinate that a joint's coordinate is, if the joint is in the tree.
+fn tree_coordinate(model: &Model, topology: &Topology, joint: JointId, coordinate: usize) -> Option<usize> {
+    let link = topology.links.iter().find(|l| l.joint == Some(joint))?;
+    let freedom = model.joints[joint.0].kind.coordinates[coordinate].freedom?;
+    let step = if link.parent_end == 0 { freedom } else { link.steps.len() - 1 - freedom };
+    Some(link.steps[step].first)
+}
+
+/// Everything that a measure can ask for at one time and for one design variable.
+struct Moment<'a> {
+    model: &'a Model,
+    geometry: &'a Geometry,
+    field: &'a Field,
+    states: &'a [crate::motion::BodyState],
+    d: &'a [BodySensitivity],
+}
+
+impl Moment<'_> {
+    fn body(&self, body: BodyId) -> BodyJet<'_> {
+        BodyJet { state: &self.states[body.0], d: &self.d[body.0] }
+    }
+
+    fn output(&self, output: &Output) -> Jet {
+        match output.source {
+            OutputSource::Measure(k) => self.measure(k, &self.model.measures[k]),
+            OutputSource::Point(p, axis) => self.point(p)[axis],
+        }
+    }
+
+    fn point(&self, p: PointId) -> Vec3<Jet> {
+        let speed = self.field.points.iter().find(|(k, _)| *k == p).map_or(Vec3::ZERO, |(_, v)| *v);
+        self.body(self.model.points[p.0].body).point(self.geometry.points[p.0], speed)
+    }
+
+    /// Formulas and signs: `docs/measures.md`.
+    fn measure(&self, k: usize, measure: &Measure) -> Jet {
+        match measure.kind {
+            MeasureKind::Coordinate { joint, coordinate } => self.coordinate(joint, coordinate),
+            MeasureKind::Distance { from, to } => (self.point(to) - self.point(from)).norm_jet(),
+            MeasureKind::Coordinates { point, along } => along.map(Jet::constant).dot_jet(self.point(point)),
+            MeasureKind::Toe { body, .. } => {
+                let e = self.spin_axis(k, body);
+                e.x.atan2(e.y)
+            }
+            MeasureKind::Camber { body, .. } => -self.spin_axis(k, body).z.asin(),
+        }
+    }
+
+    fn spin_axis(&self, k: usize, body: BodyId) -> Vec3<Jet> {
+        let rate = self.field.spin_axes.iter().find(|(m, _)| m.0 == k).map_or(Vec3::ZERO, |(_, v)| *v);
+        self.body(body).direction(self.geometry.spin_axes[k], rate)
+    }
+
+    /// A joint's coordinate between its two markers, whether the joint is cut or not.
+    fn coordinate(&self, joint: JointId, coordinate: usize) -> Jet {
+        let j = &self.model.joints[joint.0];
+        let axis = |end: usize, k: usize| {
+            let (body, twist) = self.marker(joint, end);
+            let e = self.geometry.markers[joint.0][end].rot.cols[k];
+            self.body(body).direction(e, twist.w.cross(e))
+        };
+        let origin = |end: usize| {
+            let (body, twist) = self.marker(joint, end);
+            let s = self.geometry.markers[joint.0][end].r;
+            self.body(body).point(s, twist.at(s))
+        };
+        use crate::constraint::Row;
+        match j.kind.coordinates[coordinate].row {
+            Row::Angle => axis(0, 1).dot_jet(axis(1, 0)).atan2(axis(0, 0).dot_jet(axis(1, 0))),
+            Row::Dot2(k) => axis(0, k).dot_jet(origin(1) - origin(0)),
+            _ => (origin(1) - origin(0)).norm_jet(),
+        }
+    }
+
+    /// The body of a marker, and the marker's body-fixed design twist.
+    fn marker(&self, joint: JointId, end: usize) -> (BodyId, crate::space::Twist) {
+        let twist = self
+            .field
+            .markers
+            .iter()
+            .find(|m| m.joint == joint && m.end == end)
+            .map_or(crate::space::Twist::ZERO, |m| m.twist);
+        (self.model.joints[joint.0].bodies[end], twist)
+    }
+}

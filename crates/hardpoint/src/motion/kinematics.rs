@@ -1,0 +1,475 @@
+//! One step: position by Newton, then velocity and acceleration from the same factors.
+//!
+//! This is the hot path. It is generic over its scalar, allocates nothing, and walks the lists of
+//! [`Topology`]; the sensitivities use the same [`level`] with the same factors.
+
+use crate::constraint::{EndRates, Ends};
+use crate::joint::Freedom;
+use crate::model::Model;
+use crate::space::{Elimination, Pose, Quat, Real, Twist, Wrench};
+use crate::topology::{Block, Source, Topology};
+
+use super::parts::Parts;
+
+/// A correction below this (rad, or sizes) leaves an error of its square, which is round-off.
+const QUADRATIC: f64 = 1e-8;
+/// A correction below this is round-off itself: nothing is applied.
+const ROUND_OFF: f64 = 1e-14;
+/// Newton from a good prediction needs 1 to 3 iterations; one that needs this many is lost.
+const MAX_ITERATIONS: usize = 12;
+/// A pivot ratio below this is a singular position: velocities would lose all their digits.
+const SINGULAR: f64 = 1e-12;
+
+/// Everything that one step computes.
+#[derive(Clone, Debug)]
+pub(crate) struct State<T> {
+    pub witness: T,
+    /// Per coordinate: value (unused for balls), speed and acceleration.
+    pub q: Vec<T>,
+    pub qd: Vec<T>,
+    pub qdd: Vec<T>,
+    /// Per coordinate that begins a ball: its rotation.
+    pub balls: Vec<Quat<T>>,
+    /// Per body: pose, twist, and time derivative of the twist.
+    pub pose: Vec<Pose<T>>,
+    pub v: Vec<Twist<T>>,
+    pub a: Vec<Twist<T>>,
+    /// Per coordinate: world unit twist and its time derivatives.
+    pub x: Vec<Twist<T>>,
+    pub xd: Vec<Twist<T>>,
+    pub xdd: Vec<Twist<T>>,
+    /// Per row: wrench and its time derivatives.
+    pub l: Vec<Wrench<T>>,
+    pub ld: Vec<Wrench<T>>,
+    pub ldd: Vec<Wrench<T>>,
+    /// Per closure: its markers in the world.
+    pub ends: Vec<Ends<T>>,
+    pub factors: Vec<Elimination<T>>,
+    /// Right-hand side of a block.
+    pub rhs: Vec<T>,
+    /// Per link and per row: what a level adds besides the unknowns.
+    pub bias: Vec<Twist<T>>,
+    pub row_rhs: Vec<T>,
+    /// Per block: smallest over largest pivot, and the sign of the determinant.
+    pub pivots: Vec<(f64, bool)>,
+    /// Size of the mechanism, m.
+    pub size: f64,
+    pub iterations: usize,
+}
+
+/// Why a position was not found.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum PositionFailure {
+    /// The Jacobian of this block is singular.
+    Singular { block: usize },
+    /// Newton did not converge, or would have gone further than the prediction can be trusted.
+    NoConvergence { block: usize },
+}
+
+impl<T: Real> State<T> {
+    /// The design configuration.
+    pub fn new(model: &Model, topology: &Topology, witness: T) -> Self {
+        let (n, o) = (topology.coordinates.len(), witness.zero());
+        let none = Twist::zero(witness);
+        let no_wrench = Wrench { m: none.w, f: none.v };
+        let frame = Pose::IDENTITY.spread(witness);
+        let rows = topology.rows.len();
+        let bodies = model.bodies.len();
+        let widest = topology.blocks.iter().map(|b| b.unknowns.len()).max().unwrap_or(0);
+        Self {
+            witness,
+            q: vec![o; n],
+            qd: vec![o; n],
+            qdd: vec![o; n],
+            balls: vec![Quat::IDENTITY.spread(witness); n],
+            pose: vec![frame; bodies],
+            v: vec![none; bodies],
+            a: vec![none; bodies],
+            x: vec![none; n],
+            xd: vec![none; n],
+            xdd: vec![none; n],
+            l: vec![no_wrench; rows],
+            ld: vec![no_wrench; rows],
+            ldd: vec![no_wrench; rows],
+            ends: vec![Ends { i: frame, j: frame }; topology.closures.len()],
+            factors: topology.blocks.iter().map(|b| Elimination::new(b.unknowns.len(), witness)).collect(),
+            rhs: vec![o; widest],
+            bias: vec![none; topology.links.len()],
+            row_rhs: vec![o; rows],
+            pivots: vec![(1.0, true); topology.blocks.len()],
+            size: model.size(),
+            iterations: 0,
+        }
+    }
+
+    /// Places the children of these links and their unit twists (`docs/theory.md` (4)).
+    #[inline(always)]
+    fn place(&mut self, topology: &Topology, parts: &Parts<T>, links: std::ops::Range<usize>) {
+        for k in links {
+            let link = &topology.links[k];
+            let mut frame = self.pose[link.parent.0].compose(parts.parent_marker[k]);
+            for step in &link.steps {
+                for c in 0..step.freedom.coordinates() {
+                    self.x[step.first + c] = step.twist(c, &frame.rot, frame.r);
+                }
+                let q = self.q[step.first] * self.witness.like(step.sign);
+                match step.freedom {
+                    Freedom::Turn(axis) => {
+                        let (sin, cos) = q.sin_cos();
+                        frame.rot = frame.rot.turned(axis, sin, cos);
+                    }
+                    Freedom::Slide(axis) => frame.r += frame.rot.cols[axis] * q,
+                    Freedom::Ball => frame.rot = frame.rot * self.balls[step.first].rotation(),
+                }
+            }
+            self.pose[link.child.0] = frame.compose(parts.child_from_marker[k]);
+        }
+    }
+
+    /// Markers of a closure in the world.
+    #[inline(always)]
+    fn place_ends(&mut self, topology: &Topology, parts: &Parts<T>, closure: usize) {
+        let [i, j] = topology.closures[closure].bodies;
+        let [m_i, m_j] = parts.ends[closure];
+        self.ends[closure] = Ends { i: self.pose[i.0].compose(m_i), j: self.pose[j.0].compose(m_j) };
+    }
+
+    /// What row r must reach: a rod's length, a driver's value, or nothing.
+    #[inline(always)]
+    fn target(&self, topology: &Topology, parts: &Parts<T>, drivers: &[[T; 3]], r: usize) -> T {
+        let place = topology.rows[r];
+        let closure = &topology.closures[place.closure];
+        let driven = closure.driver.map_or(self.witness.zero(), |d| drivers[d.0][0]);
+        match closure.rows[place.index] {
+            crate::constraint::Row::Distance => parts.lengths[place.closure] + driven,
+            _ => driven,
+        }
+    }
+
+    /// Residuals, wrenches and factors of block b where it stands; returns the largest residual.
+    #[inline(always)]
+    fn linearise(&mut self, topology: &Topology, parts: &Parts<T>, drivers: &[[T; 3]], b: usize) -> f64 {
+        let block: &Block = &topology.blocks[b];
+        for &c in &block.closures {
+            self.place_ends(topology, parts, c);
+        }
+        let mut worst = 0.0_f64;
+        let zero = self.witness.zero();
+        for (k, &r) in block.selected.iter().enumerate() {
+            let place = topology.rows[r];
+            let closure = &topology.closures[place.closure];
+            let (row, ends) = (closure.rows[place.index], &self.ends[place.closure]);
+            let wrench = row.wrench(ends);
+            let residual = row.residual(ends, self.target(topology, parts, drivers, r));
+            worst = worst.max(residual.abs().largest());
+            self.rhs[k] = -residual;
+            self.l[r] = wrench;
+            let out = self.factors[b].row_mut(k);
+            out.fill(zero);
+            for &(column, coordinate, side) in &closure.entries {
+                out[column] = wrench.on(self.x[coordinate]) * zero.like(side);
+            }
+        }
+        let found = self.factors[b].factor();
+        self.pivots[b] = (found.pivot_ratio, found.positive);
+        worst
+    }
+
+    /// Solves all blocks for the drivers' values, from the prediction in `q` and `balls`.
+    ///
+    /// `trust` bounds the first correction (rad, or sizes): a longer one may land on another branch.
+    pub fn solve_position(
+        &mut self,
+        topology: &Topology,
+        parts: &Parts<T>,
+        drivers: &[[T; 3]],
+        trust: f64,
+    ) -> Result<(), PositionFailure> {
+        let witness = self.witness;
+        witness.within(
+            #[inline(always)]
+            || {
+                for (c, coordinate) in topology.coordinates.iter().enumerate() {
+                    if let Source::Driven(d) = coordinate.source {
+                        self.q[c] = drivers[d.0][0];
+                    }
+                }
+                self.place(topology, parts, topology.driven_links());
+                for b in 0..topology.blocks.len() {
+                    self.newton(topology, parts, drivers, b, trust)?;
+                }
+                Ok(())
+            },
+        )
+    }
+
+    #[inline(always)]
+    fn newton(
+        &mut self,
+        topology: &Topology,
+        parts: &Parts<T>,
+        drivers: &[[T; 3]],
+        b: usize,
+        trust: f64,
+    ) -> Result<(), PositionFailure> {
+        let links = topology.blocks[b].links.clone();
+        let mut before = trust;
+        for _ in 0..MAX_ITERATIONS {
+            self.place(topology, parts, links.clone());
+            self.linearise(topology, parts, drivers, b);
+            self.iterations += 1;
+            if !(self.pivots[b].0 > SINGULAR) {
+                return Err(PositionFailure::Singular { block: b });
+            }
+            if before <= QUADRATIC {
+                return Ok(());
+            }
+            self.factors[b].solve(&mut self.rhs);
+            let correction = self.correction(topology, b);
+            if correction <= ROUND_OFF {
+                return Ok(());
+            }
+            // Written so that NaN fails. Newton must contract; the first step must be within trust.
+            if !(correction <= before) {
+                return Err(PositionFailure::NoConvergence { block: b });
+            }
+            self.apply(topology, b);
+            before = if correction <= QUADRATIC { correction } else { 0.5 * correction };
+        }
+        Err(PositionFailure::NoConvergence { block: b })
+    }
+
+    /// Largest component of the correction in `rhs`, lengths in sizes.
+    #[inline(always)]
+    fn correction(&self, topology: &Topology, b: usize) -> f64 {
+        let mut most = 0.0_f64;
+        for (k, &c) in topology.blocks[b].unknowns.iter().enumerate() {
+            let d = self.rhs[k].abs().largest();
+            let d = if topology.coordinates[c].is_length { d / self.size } else { d };
+            // `max` would drop a NaN.
+            if !(d <= most) {
+                most = d;
+            }
+        }
+        most
+    }
+
+    /// Adds the correction in `rhs` to the unknowns of block b.
+    #[inline(always)]
+    fn apply(&mut self, topology: &Topology, b: usize) {
+        for (k, &c) in topology.blocks[b].unknowns.iter().enumerate() {
+            self.q[c] += self.rhs[k];
+        }
+        self.turn_balls(topology, topology.blocks[b].links.clone());
+    }
+
+    /// Moves the increments that stand in the `q` of balls into their rotations.
+    #[inline(always)]
+    pub fn turn_balls(&mut self, topology: &Topology, links: std::ops::Range<usize>) {
+        let zero = self.witness.zero();
+        for link in &topology.links[links] {
+            for step in link.steps.iter().filter(|s| s.freedom == Freedom::Ball) {
+                let k = step.first;
+                let d = crate::space::Vec3::new(self.q[k], self.q[k + 1], self.q[k + 2]);
+                self.balls[k] = self.balls[k].nudged(d);
+                self.q[k..k + 3].fill(zero);
+            }
+        }
+    }
+
+    /// Velocity and acceleration of all bodies for the drivers' first and second derivatives, with the
+    /// factors that the position left (`docs/theory.md` (9), (10)).
+    pub fn solve_rates(&mut self, topology: &Topology, parts: &Parts<T>, drivers: &[[T; 3]]) {
+        let witness = self.witness;
+        witness.within(
+            #[inline(always)]
+            || {
+                self.finish_rows(topology, parts);
+                self.set_driven(topology, drivers, 1);
+                self.bias.fill(Twist::zero(witness));
+                for r in 0..topology.rows.len() {
+                    self.row_rhs[r] = demand(topology, drivers, r, 1, witness);
+                }
+                let s = self;
+                level(topology, &mut s.factors, &s.x, &s.l, &s.bias, &s.row_rhs, &mut s.qd, &mut s.v, &mut s.rhs);
+                s.rates_of_twists(topology, 1);
+                s.rates_of_wrenches(topology, 1);
+                s.set_driven(topology, drivers, 2);
+                for (k, link) in topology.links.iter().enumerate() {
+                    s.bias[k] = s.sum_over_link(link, &s.xd, &s.qd);
+                }
+                for r in 0..topology.rows.len() {
+                    let [i, j] = topology.closures[topology.rows[r].closure].bodies;
+                    s.row_rhs[r] = demand(topology, drivers, r, 2, witness) - s.ld[r].on(s.v[j.0] - s.v[i.0]);
+                }
+                level(topology, &mut s.factors, &s.x, &s.l, &s.bias, &s.row_rhs, &mut s.qdd, &mut s.a, &mut s.rhs);
+            },
+        );
+    }
+
+    /// Second derivatives of twists and wrenches, which only sensitivities need.
+    pub fn finish_rates(&mut self, topology: &Topology) {
+        let witness = self.witness;
+        witness.within(
+            #[inline(always)]
+            || {
+                self.rates_of_twists(topology, 2);
+                self.rates_of_wrenches(topology, 2);
+            },
+        );
+    }
+
+    /// Markers and wrenches of the rows that Newton did not need: those left out.
+    #[inline(always)]
+    fn finish_rows(&mut self, topology: &Topology, parts: &Parts<T>) {
+        for c in 0..topology.closures.len() {
+            let closure = &topology.closures[c];
+            if closure.block.is_none() {
+                self.place_ends(topology, parts, c);
+            }
+            for (k, row) in closure.rows.iter().enumerate() {
+                if !topology.rows[closure.first_row + k].selected {
+                    self.l[closure.first_row + k] = row.wrench(&self.ends[c]);
+                }
+            }
+        }
+    }
+
+    /// Largest residual over all rows, left-out ones included, in each kind's own unit, with its row.
+    pub fn worst_residual(&self, topology: &Topology, parts: &Parts<T>, drivers: &[[T; 3]]) -> (f64, usize) {
+        let mut worst = (0.0, 0);
+        for (r, place) in topology.rows.iter().enumerate() {
+            let row = topology.closures[place.closure].rows[place.index];
+            let target = self.target(topology, parts, drivers, r);
+            let residual = row.residual(&self.ends[place.closure], target).abs().largest();
+            if !(residual <= worst.0) {
+                worst = (residual, r);
+            }
+        }
+        worst
+    }
+
+    #[inline(always)]
+    fn set_driven(&mut self, topology: &Topology, drivers: &[[T; 3]], order: usize) {
+        let out = if order == 1 { &mut self.qd } else { &mut self.qdd };
+        for (c, coordinate) in topology.coordinates.iter().enumerate() {
+            if let Source::Driven(d) = coordinate.source {
+                out[c] = drivers[d.0][order];
+            }
+        }
+    }
+
+    /// Sum of twists times speeds over a link's coordinates.
+    #[inline(always)]
+    pub fn sum_over_link(&self, link: &crate::topology::Link, twists: &[Twist<T>], speeds: &[T]) -> Twist<T> {
+        let mut sum = Twist::zero(self.witness);
+        for step in &link.steps {
+            for c in step.first..step.first + step.freedom.coordinates() {
+                sum += twists[c] * speeds[c];
+            }
+        }
+        sum
+    }
+
+    /// First or second time derivative of the unit twists, each carried by the frame before its freedom.
+    #[inline(always)]
+    fn rates_of_twists(&mut self, topology: &Topology, order: usize) {
+        for link in &topology.links {
+            let mut v = self.v[link.parent.0];
+            let mut a = self.a[link.parent.0];
+            for step in &link.steps {
+                let range = step.first..step.first + step.freedom.coordinates();
+                for c in range.clone() {
+                    if order == 1 {
+                        self.xd[c] = v.ad(self.x[c]);
+                    } else {
+                        self.xdd[c] = a.ad(self.x[c]) + v.ad(self.xd[c]);
+                    }
+                }
+                for c in range {
+                    v += self.x[c] * self.qd[c];
+                    a += self.x[c] * self.qdd[c] + self.xd[c] * self.qd[c];
+                }
+            }
+        }
+    }
+
+    /// First or second time derivative of the wrenches.
+    #[inline(always)]
+    fn rates_of_wrenches(&mut self, topology: &Topology, order: usize) {
+        for (c, closure) in topology.closures.iter().enumerate() {
+            let [i, j] = closure.bodies;
+            let rates = EndRates { v_i: self.v[i.0], v_j: self.v[j.0], a_i: self.a[i.0], a_j: self.a[j.0] };
+            for (k, row) in closure.rows.iter().enumerate() {
+                let [first, second] = row.wrench_rates(&self.ends[c], &rates);
+                if order == 1 {
+                    self.ld[closure.first_row + k] = first;
+                } else {
+                    self.ldd[closure.first_row + k] = second;
+                }
+            }
+        }
+    }
+}
+
+/// A driver row's derivative of that order; 0 for the other rows.
+#[inline(always)]
+fn demand<T: Real>(topology: &Topology, drivers: &[[T; 3]], r: usize, order: usize, witness: T) -> T {
+    match topology.closures[topology.rows[r].closure].driver {
+        Some(d) => drivers[d.0][order],
+        None => witness.zero(),
+    }
+}
+
+/// Solves one linear level: the motion `out` of all bodies with
+///
+/// ```text
+/// out_child = out_parent + bias_link + sum x_a u_a      for every link,
+/// l_r . (out_j - out_i) = row_rhs_r                     for every selected row,
+/// ```
+///
+/// where `u` holds the driven coordinates' values on entry and the unknown ones on return. Velocity,
+/// acceleration and the three orders of every sensitivity are this, with one set of factors
+/// (`docs/theory.md` (7)).
+#[inline(always)]
+#[expect(clippy::too_many_arguments, reason = "the arrays are borrowed from one state, some of them mutably")]
+pub(crate) fn level<T: Real>(
+    topology: &Topology,
+    factors: &mut [Elimination<T>],
+    x: &[Twist<T>],
+    l: &[Wrench<T>],
+    bias: &[Twist<T>],
+    row_rhs: &[T],
+    u: &mut [T],
+    out: &mut [Twist<T>],
+    rhs: &mut [T],
+) {
+    let carry = |links: std::ops::Range<usize>, u: &[T], out: &mut [Twist<T>]| {
+        for k in links {
+            let link = &topology.links[k];
+            let mut w = out[link.parent.0] + bias[k];
+            for step in &link.steps {
+                for c in step.first..step.first + step.freedom.coordinates() {
+                    w += x[c] * u[c];
+                }
+            }
+            out[link.child.0] = w;
+        }
+    };
+    carry(topology.driven_links(), u, out);
+    for (b, block) in topology.blocks.iter().enumerate() {
+        for &c in &block.unknowns {
+            u[c] = row_rhs[block.selected[0]].zero();
+        }
+        carry(block.links.clone(), u, out);
+        for (k, &r) in block.selected.iter().enumerate() {
+            let [i, j] = topology.closures[topology.rows[r].closure].bodies;
+            rhs[k] = row_rhs[r] - l[r].on(out[j.0] - out[i.0]);
+        }
+        factors[b].solve(rhs);
+        for (k, &c) in block.unknowns.iter().enumerate() {
+            u[c] = rhs[k];
+        }
+        carry(block.links.clone(), u, out);
+    }
+}

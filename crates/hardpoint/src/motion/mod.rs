@@ -1,0 +1,112 @@
+//! Position, velocity and acceleration of every body over time.
+//!
+//! One step is: Newton on each block in turn, then velocity and acceleration from the same factors
+//! ([`kinematics`]). The steps are joined by a second-order predictor that watches for limits and
+//! branches ([`stepper`]).
+
+pub(crate) mod kinematics;
+pub(crate) mod parts;
+pub(crate) mod stepper;
+mod stop;
+
+pub use stop::{Stop, StopKind};
+
+use crate::model::{BodyId, Model};
+use crate::space::{Mat3, Quat, Real, Vec3};
+
+use kinematics::State;
+
+/// How a body stands and moves, in global components; position, velocity and acceleration are those of
+/// its frame's origin.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BodyState {
+    /// Position, m.
+    pub r: Vec3,
+    /// Orientation A: body to global components.
+    pub rotation: Mat3,
+    /// Velocity, m/s.
+    pub v: Vec3,
+    /// Angular velocity, rad/s.
+    pub omega: Vec3,
+    /// Acceleration, m/s^2.
+    pub a: Vec3,
+    /// Angular acceleration, rad/s^2.
+    pub alpha: Vec3,
+}
+
+impl BodyState {
+    /// A body at rest in its design configuration.
+    pub fn at_design(model: &Model, body: BodyId) -> Self {
+        let frame = model.bodies[body.0].frame;
+        let o = Vec3::ZERO;
+        Self { r: frame.r, rotation: frame.rot, v: o, omega: o, a: o, alpha: o }
+    }
+
+    /// Orientation as a quaternion `[w, x, y, z]` with w >= 0.
+    pub fn quaternion(&self) -> [f64; 4] {
+        Quat::from_rotation(self.rotation).to_array()
+    }
+
+    /// The state of body `b` in lane `lane`.
+    pub(crate) fn of_lane<T: Real>(state: &State<T>, b: usize, lane: usize) -> Self {
+        let (pose, v, a) = (state.pose[b].lane(lane), state.v[b].lane(lane), state.a[b].lane(lane));
+        let velocity = v.at(pose.r);
+        Self {
+            r: pose.r,
+            rotation: pose.rot,
+            v: velocity,
+            omega: v.w,
+            a: a.at(pose.r) + v.w.cross(velocity),
+            alpha: a.w,
+        }
+    }
+}
+
+/// A solved history. It may be shorter than the model's output times: then something stopped it.
+#[derive(Clone, Debug, Default)]
+pub struct Motion {
+    /// Output times that were solved, s.
+    pub times: Vec<f64>,
+    /// `states[k * bodies + b]` at time k of body b; body 0 is ground.
+    pub states: Vec<BodyState>,
+    /// How many bodies there are, ground included.
+    pub bodies: usize,
+    /// `coordinates[k * n + c]`: tree coordinates, m or rad, angles unwrapped; 0 for those of a ball.
+    pub coordinates: Vec<f64>,
+    /// What it took.
+    pub effort: Effort,
+}
+
+/// What a solution took, and how well the constraints hold.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Effort {
+    /// Output steps solved.
+    pub steps: usize,
+    /// Steps in between that the predictor needed.
+    pub substeps: usize,
+    /// Newton iterations.
+    pub iterations: usize,
+    /// Largest residual of any constraint row at an output step, redundant rows included; m or rad.
+    pub worst_residual: f64,
+    /// Smallest ratio of smallest to largest pivot: 0 at a singular position.
+    pub least_pivot_ratio: f64,
+    /// Time of that.
+    pub least_pivot_time: f64,
+}
+
+impl Motion {
+    /// States of all bodies at output time k.
+    pub fn at(&self, k: usize) -> &[BodyState] {
+        &self.states[k * self.bodies..(k + 1) * self.bodies]
+    }
+
+    /// How many output times were solved.
+    pub fn len(&self) -> usize {
+        self.times.len()
+    }
+
+    /// Whether not even the first output time was solved.
+    pub fn is_empty(&self) -> bool {
+        self.times.is_empty()
+    }
+}

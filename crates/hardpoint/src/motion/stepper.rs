@@ -1,0 +1,319 @@
+//! From one output time to the next: predict, correct, watch for limits and branches.
+
+use crate::constraint::Row;
+use crate::joint::Freedom;
+use crate::model::{DriverId, Model};
+use crate::space::{FullPivot, Quat, Real};
+use crate::topology::{Source, Topology};
+
+use super::kinematics::{PositionFailure, State};
+use super::parts::Parts;
+use super::{Effort, Stop, StopKind};
+
+/// A first correction (rad, or sizes) up to this is accepted whatever the prediction's own length is.
+const TRUST_FLOOR: f64 = 0.02;
+/// The first correction may be this part of the predicted move: more means a prediction gone wrong.
+const TRUST: f64 = 0.5;
+/// A step is halved at most this often: 2^-40 of an output step decides nothing that a user could see.
+const MAX_HALVINGS: u32 = 40;
+/// A left-out constraint that fails by more than this part of the mechanism's size is no round-off of
+/// typed coordinates (six digits): the mechanism locks.
+pub(crate) const LOCKED: f64 = 1e-6;
+/// When the pivot ratio has fallen to this part of its first value, other rows may serve better.
+const RESELECT: f64 = 1e-3;
+
+/// A mechanism on its way through time, one design per lane.
+pub(crate) struct Stepper<'m, T> {
+    model: &'m Model,
+    /// Own copy: the selection of independent rows may change on the way.
+    pub topology: Topology,
+    pub parts: Parts<T>,
+    pub state: State<T>,
+    pub drivers: Vec<[T; 3]>,
+    /// The last accepted position.
+    saved: Saved<T>,
+    time: f64,
+    /// Per block: sign of the determinant on this branch, and the first pivot ratio.
+    branch: Vec<(bool, f64)>,
+    pub effort: Effort,
+}
+
+#[derive(Clone)]
+struct Saved<T> {
+    q: Vec<T>,
+    qd: Vec<T>,
+    qdd: Vec<T>,
+    balls: Vec<Quat<T>>,
+}
+
+/// What the drivers follow.
+#[derive(Clone, Copy, PartialEq)]
+enum Path {
+    /// From the design configuration, where all drivers are zero, to their values at the start time;
+    /// the parameter runs from 0 to 1.
+    Ramp { start: f64 },
+    /// Their laws, over time.
+    Laws,
+}
+
+/// Why a step was refused.
+enum Refusal {
+    Position(PositionFailure),
+    Branch { block: usize },
+    Locked { row: usize, residual: f64 },
+    Law { driver: usize },
+}
+
+impl<'m, T: Real> Stepper<'m, T> {
+    pub fn new(model: &'m Model, topology: &Topology, parts: Parts<T>, witness: T) -> Self {
+        let state = State::new(model, topology, witness);
+        let saved = Saved {
+            q: state.q.clone(),
+            qd: state.qd.clone(),
+            qdd: state.qdd.clone(),
+            balls: state.balls.clone(),
+        };
+        let branch = vec![(true, 0.0); topology.blocks.len()];
+        let drivers = vec![[witness.zero(); 3]; model.drivers.len()];
+        let effort = Effort { least_pivot_ratio: f64::INFINITY, ..Effort::default() };
+        Self { model, topology: topology.clone(), parts, state, drivers, saved, time: 0.0, branch, effort }
+    }
+
+    /// Solves the design configuration, then moves on to the first output time.
+    ///
+    /// A changed design starts from the nominal design configuration and closes there first.
+    pub fn start(&mut self, t: f64) -> Result<(), Stop> {
+        let ramp = Path::Ramp { start: t };
+        self.time = 0.0;
+        self.attempt(ramp, 0.0, 0.0, true).map_err(|r| self.stop(ramp, 0.0, r, false))?;
+        self.save(0.0);
+        self.walk(ramp, 1.0)?;
+        // The rates left by the ramp are per unit of ramp; solve once more with the laws' own.
+        self.time = t;
+        self.attempt(Path::Laws, t, 0.0, false).map_err(|r| self.stop(Path::Laws, t, r, false))?;
+        self.save(t);
+        self.count();
+        Ok(())
+    }
+
+    /// Moves on to the output time t.
+    pub fn advance(&mut self, t: f64) -> Result<(), Stop> {
+        self.walk(Path::Laws, t)?;
+        self.count();
+        Ok(())
+    }
+
+    fn count(&mut self) {
+        let (worst, _) = self.state.worst_residual(&self.topology, &self.parts, &self.drivers);
+        self.effort.steps += 1;
+        self.effort.iterations = self.state.iterations;
+        self.effort.worst_residual = self.effort.worst_residual.max(worst);
+        for &(ratio, _) in &self.state.pivots {
+            if ratio < self.effort.least_pivot_ratio {
+                (self.effort.least_pivot_ratio, self.effort.least_pivot_time) = (ratio, self.time);
+            }
+        }
+    }
+
+    fn walk(&mut self, path: Path, target: f64) -> Result<(), Stop> {
+        let whole = target - self.time;
+        let mut h = whole;
+        let shortest = whole * 0.5_f64.powi(MAX_HALVINGS as i32);
+        loop {
+            let rest = target - self.time;
+            let last = h >= rest;
+            let step = if last { rest } else { h };
+            let t = if last { target } else { self.time + step };
+            match self.attempt(path, t, step, false) {
+                Ok(()) => {
+                    self.save(t);
+                    if last {
+                        return Ok(());
+                    }
+                    self.effort.substeps += 1;
+                    h = 2.0 * step;
+                }
+                Err(refusal) => {
+                    h = 0.5 * step;
+                    let final_refusal = matches!(refusal, Refusal::Law { .. });
+                    if h < shortest || final_refusal || self.time + h == self.time {
+                        return Err(self.stop(path, t, refusal, true));
+                    }
+                }
+            }
+        }
+    }
+
+    /// Sets the drivers for the path at t.
+    fn drive(&mut self, path: Path, t: f64) -> Result<(), Refusal> {
+        for (k, d) in self.model.drivers.iter().enumerate() {
+            let [f, fd, fdd, _] = match path {
+                Path::Laws => d.law.at(t).derivatives(),
+                Path::Ramp { start } => {
+                    let f = d.law.at(start).value();
+                    [t * f, f, 0.0, 0.0]
+                }
+            };
+            if !(f.is_finite() && fd.is_finite() && fdd.is_finite()) {
+                return Err(Refusal::Law { driver: k });
+            }
+            self.drivers[k] = [f, fd, fdd].map(|x| self.state.witness.like(x));
+        }
+        Ok(())
+    }
+
+    /// Tries the position at t, a step h beyond the saved one. `first` sets the branch to stay on.
+    fn attempt(&mut self, path: Path, t: f64, h: f64, first: bool) -> Result<(), Refusal> {
+        self.drive(path, t)?;
+        let moved = self.predict(h);
+        // A changed design may close some way off the nominal one, so the first correction is free.
+        let trust = if first { f64::INFINITY } else { (TRUST * moved).max(TRUST_FLOOR) };
+        self.state
+            .solve_position(&self.topology, &self.parts, &self.drivers, trust)
+            .map_err(Refusal::Position)?;
+        for (b, &(ratio, positive)) in self.state.pivots.iter().enumerate() {
+            if first {
+                self.branch[b] = (positive, ratio);
+            } else if positive != self.branch[b].0 {
+                return Err(Refusal::Branch { block: b });
+            }
+        }
+        self.state.solve_rates(&self.topology, &self.parts, &self.drivers);
+        if self.topology.rows.iter().any(|r| !r.selected) {
+            let (residual, row) = self.state.worst_residual(&self.topology, &self.parts, &self.drivers);
+            let place = self.topology.rows[row];
+            let is_length = self.topology.closures[place.closure].rows[place.index].is_length();
+            if !(residual <= LOCKED * if is_length { self.state.size } else { 1.0 }) {
+                return Err(Refusal::Locked { row, residual });
+            }
+            self.reselect();
+        }
+        Ok(())
+    }
+
+    /// `q + h qd + h^2/2 qdd` from the saved position; returns the largest move (rad, or sizes).
+    fn predict(&mut self, h: f64) -> f64 {
+        let (s, saved) = (&mut self.state, &self.saved);
+        let (h1, h2) = (s.witness.like(h), s.witness.like(0.5 * h * h));
+        let mut most = 0.0_f64;
+        for (c, coordinate) in self.topology.coordinates.iter().enumerate() {
+            let step = saved.qd[c] * h1 + saved.qdd[c] * h2;
+            s.q[c] = saved.q[c] + step;
+            if let Source::Unknown { .. } = coordinate.source {
+                let size = if coordinate.is_length { s.size } else { 1.0 };
+                most = most.max(step.abs().largest() / size);
+            }
+        }
+        s.balls.copy_from_slice(&saved.balls);
+        s.turn_balls(&self.topology, 0..self.topology.links.len());
+        most
+    }
+
+    fn save(&mut self, t: f64) {
+        let (s, saved) = (&self.state, &mut self.saved);
+        saved.q.copy_from_slice(&s.q);
+        saved.qd.copy_from_slice(&s.qd);
+        saved.qdd.copy_from_slice(&s.qdd);
+        saved.balls.copy_from_slice(&s.balls);
+        self.time = t;
+    }
+
+    /// Chooses other independent rows for blocks whose present ones have become nearly dependent.
+    fn reselect(&mut self) {
+        for b in 0..self.topology.blocks.len() {
+            if self.state.pivots[b].0 >= RESELECT * self.branch[b].1 {
+                continue;
+            }
+            let (block, s) = (&self.topology.blocks[b], &self.state);
+            let rows: Vec<usize> = block
+                .closures
+                .iter()
+                .flat_map(|&c| {
+                    let closure = &self.topology.closures[c];
+                    closure.first_row..closure.first_row + closure.rows.len()
+                })
+                .collect();
+            if rows.len() == block.unknowns.len() {
+                continue;
+            }
+            let dense = rows
+                .iter()
+                .map(|&r| {
+                    let place = self.topology.rows[r];
+                    let closure = &self.topology.closures[place.closure];
+                    let scale = if closure.rows[place.index].is_length() { 1.0 / s.size } else { 1.0 };
+                    let mut row = vec![0.0; block.unknowns.len()];
+                    for &(column, c, side) in &closure.entries {
+                        let unit = if self.topology.coordinates[c].is_length { s.size } else { 1.0 };
+                        row[column] = scale * unit * side * s.l[r].on(s.x[c]).lane(0);
+                    }
+                    row
+                })
+                .collect();
+            let pivots = FullPivot::of(dense, block.unknowns.len(), f64::MIN_POSITIVE);
+            let mut selected: Vec<usize> = pivots.rows.iter().map(|&r| rows[r]).collect();
+            selected.sort_unstable();
+            if selected.len() < block.unknowns.len() || selected == block.selected {
+                continue;
+            }
+            for &r in &rows {
+                self.topology.rows[r].selected = selected.contains(&r);
+            }
+            self.topology.blocks[b].selected = selected;
+            // The same position, seen through other rows: new factors, and a new sign to stay with.
+            if self
+                .state
+                .solve_position(&self.topology, &self.parts, &self.drivers, f64::INFINITY)
+                .is_ok()
+            {
+                let (ratio, positive) = self.state.pivots[b];
+                self.branch[b] = (positive, ratio);
+                self.state.solve_rates(&self.topology, &self.parts, &self.drivers);
+            }
+        }
+    }
+
+    fn stop(&self, path: Path, t: f64, refusal: Refusal, moved: bool) -> Stop {
+        let (kind, block) = match refusal {
+            Refusal::Position(PositionFailure::Singular { block } | PositionFailure::NoConvergence { block }) => {
+                (StopKind::Limit, Some(block))
+            }
+            Refusal::Branch { block } => (StopKind::BranchChange, Some(block)),
+            Refusal::Locked { row, residual } => {
+                let place = self.topology.rows[row];
+                let closure = &self.topology.closures[place.closure];
+                let row: Row = closure.rows[place.index];
+                let kind = StopKind::Locked { joint: closure.joint, residual, is_length: row.is_length() };
+                (kind, closure.block)
+            }
+            Refusal::Law { driver } => (StopKind::LawNotFinite { driver: DriverId(driver) }, None),
+        };
+        let ramp_start = match path {
+            Path::Ramp { start } => Some(start),
+            Path::Laws => None,
+        };
+        Stop {
+            kind,
+            last_time: (moved && ramp_start.is_none()).then_some(self.time),
+            failed_time: ramp_start.unwrap_or(t),
+            drivers: self
+                .model
+                .drivers
+                .iter()
+                .map(|d| match ramp_start {
+                    Some(start) => self.time * d.law.at(start).value(),
+                    None => d.law.at(self.time).value(),
+                })
+                .collect(),
+            pivot_ratio: block.map_or(1.0, |b| self.state.pivots[b].0),
+            joints: block.map_or_else(Vec::new, |b| self.topology.joints_of_block(b)),
+        }
+    }
+
+    /// Values of the tree coordinates, lane 0; 0 for those of balls.
+    pub fn coordinates(&self) -> impl Iterator<Item = f64> + '_ {
+        let ball = self.topology.links.iter().flat_map(|l| &l.steps).filter(|s| s.freedom == Freedom::Ball);
+        debug_assert!(ball.map(|s| self.state.q[s.first].lane(0)).all(|q| q == 0.0));
+        self.state.q.iter().map(|q| q.lane(0))
+    }
+}

@@ -1,0 +1,94 @@
+//! Why a motion ended before its last output time.
+
+use crate::model::{JointId, Model};
+
+/// A run that could not go on. What was solved before is kept.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Stop {
+    /// What happened.
+    pub kind: StopKind,
+    /// The last time that was solved, s; `None` if not even the start was reached.
+    pub last_time: Option<f64>,
+    /// The earliest time known to fail, s.
+    pub failed_time: f64,
+    /// Values of all drivers at the last solved position, m or rad.
+    pub drivers: Vec<f64>,
+    /// Smallest over largest pivot of the loop in question there: near 0 at a limit position.
+    pub pivot_ratio: f64,
+    /// The joints of that loop.
+    pub joints: Vec<JointId>,
+}
+
+/// What ended a run.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum StopKind {
+    /// The drivers ask for a position that the mechanism cannot reach (HP0401).
+    Limit,
+    /// A dead point or change point: beyond it the mechanism may take another branch (HP0402).
+    BranchChange,
+    /// Redundant constraints contradict each other there: the mechanism locks (HP0403).
+    Locked {
+        /// The joint whose constraint fails.
+        joint: JointId,
+        /// By how much, m or as a cosine.
+        residual: f64,
+        /// Whether that is a length.
+        is_length: bool,
+    },
+    /// A driver's law has no finite value (HP0404).
+    LawNotFinite {
+        /// Which driver.
+        driver: crate::model::DriverId,
+    },
+    /// The caller asked to stop (HP0405).
+    Interrupted,
+}
+
+impl Stop {
+    /// Stable code.
+    pub fn code(&self) -> &'static str {
+        match self.kind {
+            StopKind::Limit => "HP0401",
+            StopKind::BranchChange => "HP0402",
+            StopKind::Locked { .. } => "HP0403",
+            StopKind::LawNotFinite { .. } => "HP0404",
+            StopKind::Interrupted => "HP0405",
+        }
+    }
+
+    /// The headline.
+    pub fn headline(&self, model: &Model) -> String {
+        let t = self.failed_time;
+        match self.kind {
+            StopKind::Limit => format!("the mechanism cannot move beyond t = {t:.6} s"),
+            StopKind::BranchChange => format!("the mechanism passes a dead point at t = {t:.6} s"),
+            StopKind::Locked { joint, .. } => {
+                format!("the mechanism locks at t = {t:.6} s: joint `{}` cannot stay closed", model.joints[joint.0].name)
+            }
+            StopKind::LawNotFinite { driver } => {
+                format!("the law of driver `{}` has no finite value at t = {t:.6} s", model.drivers[driver.0].name)
+            }
+            StopKind::Interrupted => format!("interrupted at t = {t:.6} s"),
+        }
+    }
+
+    /// What to do.
+    pub fn help(&self) -> Option<&'static str> {
+        Some(match self.kind {
+            StopKind::Limit => {
+                "a limit position: shorten the sweep of the drivers, or move the hardpoints of these joints so that \
+                 the loop reaches further"
+            }
+            StopKind::BranchChange => {
+                "at a dead point the loop may continue on either of two branches and its velocities are not defined; \
+                 shorten the sweep, or drive another joint of the loop"
+            }
+            StopKind::Locked { .. } => {
+                "the loop has redundant constraints that agree at the design configuration only; check that its axes \
+                 are exactly parallel (or meet in one point), or give a joint more freedom"
+            }
+            StopKind::LawNotFinite { .. } => "change the law, or end the run before that time",
+            StopKind::Interrupted => return None,
+        })
+    }
+}

@@ -1,0 +1,76 @@
+//! Kinematic admissibility of a design variable: can the joints stay closed, and how.
+
+use crate::constraint::{Ends, Row};
+use crate::model::{Field, JointId, Model};
+use crate::space::{Pose, Twist};
+
+/// Whether and how a mechanism follows a design variable.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Admissibility {
+    /// Every joint stays closed with all bodies where they are: no re-assembly (paper, section 4).
+    Admissible,
+    /// Some joints open at the design configuration, and the mechanism closes again on its branch: its
+    /// sensitivities are those of the re-assembled mechanism.
+    Reassembled {
+        /// The joints that open.
+        joints: Vec<JointDefect>,
+    },
+    /// The redundant constraints contradict each other under the change: there is no sensitivity.
+    CannotFollow {
+        /// The joints that resist, with their largest defect over the motion.
+        joints: Vec<JointDefect>,
+        /// The time of the largest defect, s.
+        time: f64,
+    },
+    /// The motion was not solved, so only the design configuration is known to be closed.
+    Unknown,
+}
+
+/// By how much a joint opens per unit of a design variable.
+#[derive(Clone, Debug, PartialEq)]
+pub struct JointDefect {
+    /// The joint.
+    pub joint: JointId,
+    /// The elementary constraint that fails most.
+    pub row: Row,
+    /// Defect per unit of the variable: m or a cosine, per m, rad or unit of tau.
+    pub value: f64,
+}
+
+/// A defect below this part of the field's speed is round-off.
+const OPEN: f64 = 1e-9;
+
+/// The joints that a variable opens at the design configuration while all bodies stay: those with
+/// `l . (z_j - z_i) - L' != 0` for one of their elementary constraints (`docs/theory.md` (8), paper
+/// section 4). Empty means admissible there.
+pub fn admissibility_at_design(model: &Model, field: &Field) -> Vec<JointDefect> {
+    let scale = field.markers.iter().map(|m| m.twist.w.norm().max(m.twist.v.norm())).fold(0.0, f64::max);
+    let mut joints = Vec::new();
+    for (k, joint) in model.joints.iter().enumerate() {
+        let mut z = [Twist::ZERO; 2];
+        for m in field.markers.iter().filter(|m| m.joint.0 == k) {
+            z[m.end] = model.bodies[joint.bodies[m.end].0].frame.carry(m.twist);
+        }
+        let length: f64 = field.lengths.iter().filter(|(j, _)| j.0 == k).map(|(_, l)| *l).sum();
+        let [i, j] = joint.at.map(|h| Pose { rot: joint.frame, r: model.position(h) });
+        // A driven coordinate is a constraint too: it must stay at zero in the design configuration.
+        let driven = model.drivers.iter().filter(|d| d.joint.0 == k).map(|d| model.driven(d).row);
+        let worst = joint
+            .kind
+            .rows
+            .iter()
+            .copied()
+            .chain(driven)
+            .map(|row| {
+                let rate = if row == Row::Distance { length } else { 0.0 };
+                (row, (row.wrench(&Ends { i, j }).on(z[1] - z[0]) - rate).abs())
+            })
+            .max_by(|a, b| a.1.total_cmp(&b.1));
+        if let Some((row, value)) = worst
+            && value > OPEN * scale
+        {
+            joints.push(JointDefect { joint: JointId(k), row, value });
+        }
+    }
+    joints
+}

@@ -1,0 +1,242 @@
+//! How the mechanism is solved: which joints carry the tree, which are cut, in what order.
+//!
+//! Worked out once per model, at its design configuration. A spanning tree of joints places the bodies;
+//! every other joint is cut into elementary constraints. Unknown coordinates and constraint rows fall
+//! into *blocks* (in classical linkages: the Assur groups) that are solved one after another, so that
+//! the cost grows linearly with the number of independent loops (`docs/theory.md`, section 3).
+
+mod blocks;
+mod fault;
+mod mobility;
+mod tree;
+
+pub use fault::TopologyFault;
+
+use crate::constraint::Row;
+use crate::joint::Freedom;
+use crate::model::{BodyId, DriverId, JointId, Model};
+use crate::space::{Mat3, Pose, Twist};
+
+/// Which coordinates describe the mechanism.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+pub enum Formulation {
+    /// Joint coordinates of a spanning tree that leaves the fewest unknowns (paper, section 6.2).
+    #[default]
+    Relative,
+    /// Six coordinates for every body; every joint is cut (paper, section 5).
+    Absolute,
+}
+
+/// The plan of solution. All indices are resolved; the hot path only walks these lists.
+#[derive(Clone, Debug)]
+pub struct Topology {
+    /// The formulation that it was made for.
+    pub formulation: Formulation,
+    /// Tree joints in the order of solution: parents before children, earlier stages first.
+    pub links: Vec<Link>,
+    /// Coordinates of all links, each link's in a row.
+    pub coordinates: Vec<Coordinate>,
+    /// Cut joints, and drivers that act across cut joints.
+    pub closures: Vec<Closure>,
+    /// Groups of unknowns that are solved together, in order.
+    pub blocks: Vec<Block>,
+    /// For every row of every closure (numbered through): where it stands.
+    pub rows: Vec<RowPlace>,
+    /// Degrees of freedom without drivers, at the design configuration.
+    pub mobility: usize,
+    /// Why each joint is in the tree or cut, by joint.
+    pub roles: Vec<Role>,
+}
+
+/// A joint's part in the solution.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Role {
+    /// It places a body.
+    Tree {
+        /// The body that it places.
+        child: BodyId,
+        /// How many unknown coordinates that leaves.
+        unknowns: usize,
+    },
+    /// It is cut into constraint rows.
+    Cut(CutReason),
+}
+
+/// Why a joint is cut.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum CutReason {
+    /// Its type has no tree form: a rod or a leg.
+    AlwaysCut,
+    /// Both of its bodies are placed by other joints, which leave fewer unknowns.
+    ClosesLoop,
+    /// The model asks for it.
+    Asked,
+    /// In absolute coordinates every joint is cut.
+    Absolute,
+}
+
+/// A joint of the tree (or the free motion of a body), seen from parent to child.
+#[derive(Clone, Debug)]
+pub struct Link {
+    /// The joint; `None` for a body that moves freely from ground.
+    pub joint: Option<JointId>,
+    /// The body that carries it.
+    pub parent: BodyId,
+    /// The body that it places.
+    pub child: BodyId,
+    /// Which end of the joint is on the parent: 0 (i) or 1 (j).
+    pub parent_end: usize,
+    /// Its chain of freedoms from parent to child.
+    pub steps: Vec<Step>,
+    /// 0 if drivers alone place the child, k + 1 if block k does.
+    pub stage: usize,
+}
+
+/// One freedom of a link.
+#[derive(Clone, Copy, Debug)]
+pub struct Step {
+    /// Which motion.
+    pub freedom: Freedom,
+    /// -1 where the link runs from body j to body i, so that coordinates stay those of j relative to i.
+    pub sign: f64,
+    /// Its first coordinate in [`Topology::coordinates`].
+    pub first: usize,
+}
+
+/// A coordinate of the tree.
+#[derive(Clone, Copy, Debug)]
+pub struct Coordinate {
+    /// Its link.
+    pub link: usize,
+    /// Where its value comes from.
+    pub source: Source,
+    /// Whether it is a length (else an angle).
+    pub is_length: bool,
+}
+
+/// Where a coordinate's value comes from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Source {
+    /// A driver prescribes it.
+    Driven(DriverId),
+    /// Column `column` of block `block`.
+    Unknown {
+        /// Which block.
+        block: usize,
+        /// Which of the block's unknowns.
+        column: usize,
+    },
+}
+
+/// Constraint rows between the two markers of one joint.
+#[derive(Clone, Debug)]
+pub struct Closure {
+    /// The joint whose markers they stand between.
+    pub joint: JointId,
+    /// The driver, if these rows prescribe a coordinate of a cut joint.
+    pub driver: Option<DriverId>,
+    /// Bodies i and j.
+    pub bodies: [BodyId; 2],
+    /// The elementary constraints.
+    pub rows: Vec<Row>,
+    /// Number of the first row in [`Topology::rows`].
+    pub first_row: usize,
+    /// The block that solves it; `None` if no unknown moves it.
+    pub block: Option<usize>,
+    /// Its columns in that block: column, coordinate, and +1 or -1 for the side of j or i.
+    pub entries: Vec<(usize, usize, f64)>,
+    /// All links around the loop that it closes.
+    pub links: Vec<(usize, f64)>,
+}
+
+/// Where a constraint row stands.
+#[derive(Clone, Copy, Debug)]
+pub struct RowPlace {
+    /// Its closure.
+    pub closure: usize,
+    /// Which of the closure's rows.
+    pub index: usize,
+    /// Whether it is one of the independent rows that are solved with; else it is redundant and watched.
+    pub selected: bool,
+}
+
+/// Unknowns and rows that are solved together.
+#[derive(Clone, Debug)]
+pub struct Block {
+    /// Coordinates, by column.
+    pub unknowns: Vec<usize>,
+    /// The closures whose rows belong to it.
+    pub closures: Vec<usize>,
+    /// The independent rows that it is solved with, as many as unknowns.
+    pub selected: Vec<usize>,
+    /// Range of [`Topology::links`] that it places.
+    pub links: std::ops::Range<usize>,
+}
+
+impl Topology {
+    /// Plans the solution of a model.
+    ///
+    /// # Errors
+    /// A [`TopologyFault`] where the drivers leave motions free, prescribe more than can move, or stand at
+    /// a dead point of the design configuration.
+    pub fn of(model: &Model, formulation: Formulation) -> Result<Self, TopologyFault> {
+        let mut topology = tree::grow(model, formulation);
+        blocks::split(model, &mut topology)?;
+        mobility::examine(model, &mut topology)?;
+        Ok(topology)
+    }
+
+    /// Links placed by drivers alone.
+    pub fn driven_links(&self) -> std::ops::Range<usize> {
+        0..self.blocks.first().map_or(self.links.len(), |b| b.links.start)
+    }
+
+    /// How many coordinates are unknown.
+    pub fn unknowns(&self) -> usize {
+        self.blocks.iter().map(|b| b.unknowns.len()).sum()
+    }
+
+    /// The rows that are left out because the others imply them, with their joints.
+    pub fn redundant(&self) -> impl Iterator<Item = (&Closure, Row)> {
+        self.rows.iter().filter(|r| !r.selected).map(|r| {
+            let c = &self.closures[r.closure];
+            (c, c.rows[r.index])
+        })
+    }
+
+    /// Joints whose motion or closing a block decides.
+    pub fn joints_of_block(&self, block: usize) -> Vec<JointId> {
+        let block = &self.blocks[block];
+        let tree = block.unknowns.iter().filter_map(|&c| self.links[self.coordinates[c].link].joint);
+        let cut = block.closures.iter().map(|&c| self.closures[c].joint);
+        let mut joints: Vec<JointId> = tree.chain(cut).collect();
+        joints.sort_unstable();
+        joints.dedup();
+        joints
+    }
+}
+
+impl Link {
+    /// The frame in which its freedoms start, at the design configuration, in the world.
+    fn frame_at_design(&self, model: &Model) -> Pose {
+        match self.joint {
+            Some(j) => {
+                let joint = &model.joints[j.0];
+                Pose { rot: joint.frame, r: model.position(joint.at[self.parent_end]) }
+            }
+            None => model.bodies[self.child.0].frame,
+        }
+    }
+}
+
+impl Step {
+    /// World unit twist of its coordinate k (0, or 0 to 2 for a ball) where its frame is `frame`.
+    #[inline(always)]
+    pub fn twist<T: crate::space::Real>(&self, k: usize, rot: &Mat3<T>, r: crate::space::Vec3<T>) -> Twist<T> {
+        match self.freedom {
+            Freedom::Turn(axis) => Twist::turn(rot.cols[axis] * r.x.like(self.sign), r),
+            Freedom::Slide(axis) => Twist::slide(rot.cols[axis] * r.x.like(self.sign)),
+            Freedom::Ball => Twist::turn(rot.cols[k], r),
+        }
+    }
+}

@@ -1,0 +1,65 @@
+type Child = Node | string | undefined | false
+type Attributes = Record<string, string | number | boolean | undefined | ((event: never) => void)>
+
+/** An element with attributes, `on...` listeners and children. */
+export function el<K extends keyof HTMLElementTagNameMap>(
+  tag: K,
+  attributes: Attributes = {},
+  ...children: Child[]
+): HTMLElementTagNameMap[K] {
+  const element = document.createElement(tag)
+  for (const [name, value] of Object.entries(attributes)) {
+    if (typeof value === 'function') element.addEventListener(name.slice(2), value as EventListener)
+    else if (value !== undefined && value !== false) element.setAttribute(name, value === true ? '' : String(value))
+  }
+  element.append(...children.filter((child) => child !== undefined && child !== false))
+  return element
+}
+
+/** A sentence with its `names` set as code. */
+export function prose(text: string): (Node | string)[] {
+  return text.split('`').map((part, k) => (k % 2 === 1 ? el('code', {}, part) : part))
+}
+
+/** Renders anew and gives the focus back to the button of the same name. */
+export function keepFocus(container: HTMLElement, render: () => void): void {
+  const focused = container.querySelector<HTMLButtonElement>('button:focus')
+  render()
+  for (const button of container.querySelectorAll('button')) if (button.name === focused?.name) button.focus()
+}
+
+const SVG = 'http://www.w3.org/2000/svg'
+
+export function svg<K extends keyof SVGElementTagNameMap>(
+  tag: K,
+  attributes: Record<string, string | number> = {},
+  ...children: Node[]
+): SVGElementTagNameMap[K] {
+  const element = document.createElementNS(SVG, tag)
+  for (const [name, value] of Object.entries(attributes)) element.setAttribute(name, String(value))
+  element.append(...children)
+  return element
+}
+
+/** A custom property of the style sheet, for what is drawn on a canvas. */
+export function css(name: string): string {
+  return getComputedStyle(document.documentElement).getPropertyValue(name).trim()
+}
+
+/** Calls back when what is drawn on a canvas needs other colours; paper is light, whatever the screen. */
+export function onSchemeChange(callback: () => void): void {
+  matchMedia('(prefers-color-scheme: dark)').addEventListener('change', callback)
+  for (const [event, printing] of [['beforeprint', true], ['afterprint', false]] as const) {
+    addEventListener(event, () => {
+      document.documentElement.classList.toggle('printing', printing)
+      callback()
+    })
+  }
+}
+
+/** Categorical colours that colour-blind readers can tell apart (Okabe and Ito), tuned per scheme in the style sheet. */
+export const HUES = 8
+
+export function hue(index: number): string {
+  return css(`--hue-${index % HUES}`)
+}

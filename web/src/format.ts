@@ -1,0 +1,45 @@
+const DIGITS = 5
+
+/** About five significant digits, without trailing zeros; a dash where there is no value. */
+export function number(value: number, digits = DIGITS): string {
+  if (!Number.isFinite(value)) return '–'
+  if (value === 0) return '0'
+  const size = Math.abs(value)
+  const text =
+    size >= 1e6 || size < 1e-4
+      ? value.toExponential(digits - 1).replace(/\.?0+e/, 'e').replace('e+', 'e')
+      : String(Number(value.toPrecision(digits)))
+  return text.replaceAll('-', '−')
+}
+
+/** A number with its unit; the pure number `1` shows none. */
+export function figure(value: number, unit: string): string {
+  const shown = pretty(unit)
+  return shown ? `${number(value)} ${shown}` : number(value)
+}
+
+/** `deg/s^2` as `deg/s²`; nothing for a pure number. */
+export function pretty(unit: string): string {
+  return unit === '1' ? '' : unit.replaceAll('^2', '²').replaceAll('^3', '³').replaceAll('*', '·')
+}
+
+/** Unit of a derivative: `deg/s` per `mm` is `deg/(s·mm)`. */
+export function per(unit: string, by: string): string {
+  if (by === '1') return pretty(unit)
+  const [top, ...below] = pretty(unit || '1').split('/')
+  const bottom = [...below.map((part) => part.replace(/^\((.*)\)$/, '$1')), pretty(by)]
+  return `${top || '1'}/${bottom.length > 1 ? `(${bottom.join('·')})` : bottom[0]}`
+}
+
+/** `name [unit]`, as on an axis. */
+export function titled(name: string, unit: string): string {
+  const shown = pretty(unit)
+  return shown ? `${name} [${shown}]` : name
+}
+
+/** The nearest of 1, 2 and 5 times a power of ten below a positive number. */
+export function roundBelow(value: number): number {
+  const power = 10 ** Math.floor(Math.log10(value))
+  const lead = value / power
+  return (lead >= 5 ? 5 : lead >= 2 ? 2 : 1) * power
+}

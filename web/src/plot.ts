@@ -1,0 +1,152 @@
+import uPlot from 'uplot'
+import 'uplot/dist/uPlot.min.css'
+import { css, el, keepFocus, prose } from './dom'
+import { number, pretty, titled } from './format'
+import { valueAt, type Curve, withGaps } from './curve'
+import type { State } from './state'
+
+const HEIGHT = 190
+/** Wide enough for `−1.234e-5`, and the same for all plots, so that their time axes line up. */
+const AXIS = 66
+/** A curve that varies less than this share of its size is drawn as the constant that it is. */
+const RESOLUTION = 1e-5
+
+export interface Line {
+  label: string
+  color: string
+  curve: Curve
+  /** Thinned values drawn as circles instead of a line. */
+  marks?: (number | null)[]
+  width?: number
+  dash?: number[]
+  pick?: () => void
+}
+
+export interface Content {
+  title: string
+  /** Unit of the vertical axis, empty for a pure number. */
+  unit: string
+  lines: Line[]
+  caption?: string
+  /** Shown in place of the plot. */
+  message?: string
+}
+
+/** Curves over time with a legend that reads the values at the moment shown; dragging moves the time. */
+export class Plot {
+  readonly element: HTMLElement
+  #title = el('h3')
+  #area = el('div', { class: 'area' })
+  #legend = el('ul', { class: 'legend' })
+  #caption = el('p', { class: 'caption' })
+  #marker = el('div', { class: 'now' })
+  #uplot?: uPlot
+  #readings: { curve: Curve; output: HTMLElement }[] = []
+
+  constructor(
+    private readonly state: State,
+    testId: string,
+    ...extras: HTMLElement[]
+  ) {
+    const head = el('figcaption', {}, this.#title, ...extras)
+    this.element = el('figure', { class: 'plot', 'data-testid': testId }, head, this.#area, this.#legend, this.#caption)
+    new ResizeObserver(() => this.#uplot?.setSize({ width: this.#area.clientWidth, height: HEIGHT })).observe(this.#area)
+    state.onTime(() => this.#showTime())
+  }
+
+  show(content: Content): void {
+    this.#uplot?.destroy()
+    this.#uplot = undefined
+    this.#title.textContent = titled(content.title, content.message ? '' : content.unit)
+    this.#caption.textContent = content.caption ?? ''
+    this.#area.replaceChildren()
+    this.#area.setAttribute('role', 'img')
+    this.#area.setAttribute('aria-label', content.message ?? `${titled(content.title, content.unit)} over time`)
+    this.#readings = []
+    if (content.message) {
+      this.#legend.replaceChildren()
+      this.#area.append(el('p', { class: 'message' }, ...prose(content.message)))
+      return
+    }
+    keepFocus(this.#legend, () => this.#legend.replaceChildren(...content.lines.map((line) => this.#entry(line))))
+    this.#uplot = new uPlot(this.#options(content), data(this.state, content.lines), this.#area)
+    this.#uplot.over.append(this.#marker)
+    this.#scrub(this.#uplot)
+    this.#showTime()
+  }
+
+  #options(content: Content): uPlot.Options {
+    const { units } = this.state.report
+    const ink = css('--muted')
+    const grid = { stroke: css('--rule'), width: 1 }
+    const axis = { stroke: ink, grid, ticks: { ...grid, size: 4 }, font: css('--plot-font'), labelFont: css('--plot-font') }
+    const values = (_: uPlot, splits: number[]) => splits.map((value) => number(value, 6))
+    return {
+      width: this.#area.clientWidth || 400,
+      height: HEIGHT,
+      legend: { show: false },
+      cursor: { drag: { x: false, y: false, setScale: false }, sync: { key: 'time' }, points: { size: 6 } },
+      scales: { x: { time: false }, y: { range: (_, low, high) => padded(low, high) } },
+      axes: [
+        { ...axis, values, size: 30, label: titled('time', units.time), labelSize: 18, labelGap: 0, gap: 3 },
+        { ...axis, values, size: AXIS, label: pretty(content.unit) || '1', labelSize: 18, gap: 4 },
+      ],
+      series: [{}, ...content.lines.map(series)],
+    }
+  }
+
+  #entry(line: Line): HTMLElement {
+    const output = el('output')
+    this.#readings.push({ curve: line.curve, output })
+    const swatch = el('span', { class: line.marks ? 'swatch ring' : 'swatch', style: `--swatch: ${line.color}` })
+    const parts = [swatch, el('span', { class: 'label' }, line.label), output]
+    const selected = line.pick && (line.width ?? 0) > 2
+    return el('li', {}, line.pick
+      ? el('button', { type: 'button', name: line.label, onclick: line.pick, 'aria-pressed': String(!!selected) }, ...parts)
+      : el('span', {}, ...parts))
+  }
+
+  #scrub(uplot: uPlot): void {
+    const move = (event: PointerEvent) => {
+      if (event.buttons !== 1) return
+      this.state.pause()
+      this.state.goToTime(uplot.posToVal(event.clientX - uplot.over.getBoundingClientRect().left, 'x'))
+    }
+    uplot.over.addEventListener('pointerdown', (event) => {
+      uplot.over.setPointerCapture(event.pointerId)
+      move(event)
+    })
+    uplot.over.addEventListener('pointermove', move)
+  }
+
+  #showTime(): void {
+    if (!this.#uplot) return
+    this.#marker.style.left = `${this.#uplot.valToPos(this.state.time, 'x')}px`
+    for (const { curve, output } of this.#readings) {
+      output.textContent = number(valueAt(curve, this.state.step))
+    }
+  }
+}
+
+function series(line: Line): uPlot.Series {
+  const width = line.width ?? 1.8
+  if (!line.marks) return { stroke: line.color, width, dash: line.dash, points: { show: false } }
+  return {
+    stroke: line.color,
+    paths: () => null,
+    points: { show: true, size: 7, width: 1.5, stroke: line.color, fill: css('--page') },
+  }
+}
+
+function data(state: State, lines: Line[]): uPlot.AlignedData {
+  return [Array.from(state.report.times), ...lines.map((line) => line.marks ?? withGaps(line.curve))]
+}
+
+function padded(low: number | null, high: number | null): [number, number] {
+  if (low === null || high === null) return [-1, 1]
+  const size = Math.max(Math.abs(low), Math.abs(high))
+  const least = size > 0 ? RESOLUTION * size : 2
+  const middle = (low + high) / 2
+  const half = 0.56 * Math.max(high - low, least)
+  return [middle - half, middle + half]
+}

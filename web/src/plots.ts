@@ -1,0 +1,127 @@
+import { thinned } from './curve'
+import { el, hue, HUES, css, onSchemeChange } from './dom'
+import { figure, number, pretty } from './format'
+import { Plot, type Content, type Line } from './plot'
+import { derivativeName, derivativeUnit, groups, ORDERS, orderedName, ranking, type Order } from './report'
+import type { State } from './state'
+
+/** How many sensitivities are drawn before the reader asks for all: one per colour. */
+const FEW = HUES
+const MARKS = 36
+
+/** The quantity, its sensitivities side by side, and the selected one against finite differences. */
+export function plots(state: State): HTMLElement {
+  const hasVariables = state.report.variables.length > 0
+  const all = el('input', { type: 'checkbox', 'data-testid': 'all', onchange: () => state.choose({ all: all.checked }) })
+  const toggle = el('label', { class: 'toggle' }, all, 'all variables')
+  const value = new Plot(state, 'plot-value')
+  const peers = new Plot(state, 'plot-peers', toggle)
+  const check = new Plot(state, 'plot-check')
+  // The legend keeps its height when the unit, and with it the number of lines, changes.
+  peers.element.classList.toggle('many', state.report.variables.length > FEW / 2)
+  const show = () => {
+    value.show(valueContent(state))
+    if (!hasVariables) return
+    const content = peersContent(state)
+    toggle.hidden = content.total <= FEW
+    peers.show(content)
+    check.show(checkContent(state))
+  }
+  state.onChoice(show)
+  onSchemeChange(show)
+  const derivatives = hasVariables ? [peers.element, check.element] : []
+  const column = el('div', { class: 'plots' }, chooser(state), value.element, ...derivatives)
+  // uPlot measures its place, so it has to be in the page first.
+  queueMicrotask(show)
+  return column
+}
+
+function chooser(state: State): HTMLElement {
+  const options = groups(state.report).map(([name, members]) =>
+    el('optgroup', { label: plural(name) }, ...members.map(({ index, name }) => el('option', { value: index }, name))),
+  )
+  const quantity = el(
+    'select',
+    { 'data-testid': 'quantity', onchange: () => state.choose({ quantity: Number(quantity.value) }) },
+    ...options,
+  )
+  const orders = ORDERS.map((name, index) => {
+    const input = el('input', {
+      type: 'radio',
+      name: 'order',
+      value: index,
+      'data-testid': `order-${name}`,
+      onchange: () => state.choose({ order: index as Order }),
+    })
+    return el('label', {}, input, el('span', {}, name))
+  })
+  const sync = () => {
+    quantity.value = String(state.choice.quantity)
+    orders.forEach((label, index) => (label.control as HTMLInputElement).checked = index === state.choice.order)
+  }
+  state.onChoice(sync)
+  sync()
+  return el(
+    'div',
+    { class: 'bar' },
+    el('label', { class: 'field' }, el('span', {}, 'Quantity'), quantity),
+    el('fieldset', { class: 'segments' }, el('legend', { class: 'hidden' }, 'Order'), ...orders),
+  )
+}
+
+function plural(group: string): string {
+  return group === 'body' ? 'bodies' : `${group}s`
+}
+
+function valueContent({ report, choice }: State): Content {
+  const quantity = report.quantities[choice.quantity]
+  const title = orderedName(quantity, choice.order)
+  const unit = quantity.units[choice.order]
+  const line = { label: title, color: css('--ink'), curve: quantity.curves[choice.order] }
+  return { title, unit, lines: [line] }
+}
+
+function peersContent(state: State): Content & { total: number } {
+  const { report, choice } = state
+  const quantity = report.quantities[choice.quantity]
+  const selected = report.variables[choice.variable]
+  const ranks = ranking(report, quantity, choice.order)
+  // A variable that cannot be followed has no curves, but those of its unit are still worth seeing.
+  const unit = selected && ranks.has(selected.unit) ? selected.unit : [...ranks.keys()][0]
+  const peers = ranks.get(unit) ?? []
+  const symbol = derivativeUnit(quantity, choice.order, { unit })
+  const shown = peers.filter(({ variable }, rank) => choice.all || rank < FEW || variable === selected)
+  const name = orderedName(quantity, choice.order)
+  const content = { title: `d ${name} / d each variable in ${pretty(unit) || 'pure numbers'}`, unit: symbol }
+  const lines = shown.map(({ variable, sensitivity }, rank): Line => ({
+    label: variable.name,
+    color: hue(rank),
+    curve: sensitivity.curves[choice.order],
+    width: variable === selected ? 3 : 1.4,
+    dash: rank < HUES ? undefined : [6, 3],
+    pick: () => state.choose({ variable: variable.index }),
+  }))
+  if (lines.length === 0) return { ...content, lines, message: 'No sensitivities were computed.', total: 0 }
+  const left = peers.length - shown.length
+  const caption = left > 0 ? `The ${shown.length} largest of ${peers.length}.` : undefined
+  return { ...content, lines, caption, total: peers.length }
+}
+
+function checkContent({ report, choice }: State): Content {
+  const quantity = report.quantities[choice.quantity]
+  const variable = report.variables[choice.variable]
+  const { order } = choice
+  const title = derivativeName(quantity, order, variable)
+  const sensitivity = variable.sensitivities.get(quantity.index)
+  const unit = derivativeUnit(quantity, order, variable)
+  if (!sensitivity) return { title, unit, lines: [], message: variable.note || `There is no ${title}.` }
+  const lines: Line[] = [{ label: 'analytic', color: css('--accent'), curve: sensitivity.curves[order], width: 2 }]
+  const { differences } = sensitivity
+  if (!differences) return { title, unit, lines, caption: 'Not compared with finite differences in this run.' }
+  const curve = differences.curves[order]
+  lines.push({ label: 'finite difference', color: css('--ink'), curve, marks: thinned(curve, MARKS) })
+  const caption =
+    `Designs re-solved ±${figure(differences.step, differences.unit)} away; ` +
+    `largest relative disagreement ${number(differences.worst[order], 2)}.`
+  return { title, unit, lines, caption }
+}

@@ -1,0 +1,134 @@
+import { type Curve, decode, peak } from './curve'
+import { per } from './format'
+import type * as wire from './payload'
+
+/** 0 the quantity itself, 1 its velocity, 2 its acceleration. */
+export type Order = 0 | 1 | 2
+export const ORDERS = ['value', 'velocity', 'acceleration'] as const
+
+type ByOrder<T> = readonly [T, T, T]
+type Curves = { value: wire.Curve; rate: wire.Curve; accel: wire.Curve }
+
+export interface Body extends Omit<wire.BodyTrack, 'poses'> {
+  /** 7 numbers per step: x y z, quaternion w x y z. */
+  poses: Curve
+}
+
+export interface Quantity {
+  index: number
+  name: string
+  group: string
+  units: ByOrder<string>
+  curves: ByOrder<Curve>
+}
+
+export interface Sensitivity {
+  curves: ByOrder<Curve>
+  /** Largest magnitude over time. */
+  peaks: ByOrder<number>
+  differences?: { curves: ByOrder<Curve>; worst: ByOrder<number>; step: number; unit: string }
+}
+
+export interface Variable extends Omit<wire.Variable, 'sensitivities'> {
+  index: number
+  /** By the quantity's index. */
+  sensitivities: Map<number, Sensitivity>
+}
+
+/** The payload with its curves decoded. */
+export interface Report extends Omit<wire.Payload, 'times' | 'bodies' | 'quantities' | 'variables'> {
+  times: Curve
+  bodies: Body[]
+  quantities: Quantity[]
+  variables: Variable[]
+}
+
+export function read(payload: wire.Payload): Report {
+  return {
+    ...payload,
+    times: decode(payload.times),
+    bodies: payload.bodies.map((body) => ({ ...body, poses: decode(body.poses) })),
+    quantities: payload.quantities.map((quantity, index) => ({
+      index,
+      name: quantity.name,
+      group: quantity.group,
+      units: [quantity.unit, quantity.rate_unit, quantity.accel_unit],
+      curves: curves(quantity),
+    })),
+    variables: payload.variables.map((variable, index) => ({
+      ...variable,
+      index,
+      sensitivities: new Map(variable.sensitivities.map((item) => [item.quantity, sensitivity(item)])),
+    })),
+  }
+}
+
+function curves(item: Curves): ByOrder<Curve> {
+  return [decode(item.value), decode(item.rate), decode(item.accel)]
+}
+
+function sensitivity(item: wire.Sensitivity): Sensitivity {
+  const analytic = curves(item)
+  return {
+    curves: analytic,
+    peaks: [peak(analytic[0]), peak(analytic[1]), peak(analytic[2])],
+    differences: item.fd
+      ? { curves: curves(item.fd), worst: item.fd.worst, step: item.fd.step, unit: item.fd.step_unit }
+      : undefined,
+  }
+}
+
+/** `toe`, `toe velocity`. */
+export function orderedName(quantity: Quantity, order: Order): string {
+  return order === 0 ? quantity.name : `${quantity.name} ${ORDERS[order]}`
+}
+
+/** `d toe / d lca_x`. */
+export function derivativeName(quantity: Quantity, order: Order, variable: Variable): string {
+  return `d ${orderedName(quantity, order)} / d ${variable.name}`
+}
+
+export function derivativeUnit(quantity: Quantity, order: Order, variable: { unit: string }): string {
+  return per(quantity.units[order], variable.unit)
+}
+
+export interface Ranked {
+  variable: Variable
+  sensitivity: Sensitivity
+  peak: number
+  /** Peak relative to the largest among variables of the same unit, 0 to 1. */
+  share: number
+}
+
+/** Below this share of the largest, a sensitivity is rounding noise and not an influence. */
+const NOISE = 1e-9
+
+/** Variables with a sensitivity of the quantity, largest first within each unit. */
+export function ranking(report: Report, quantity: Quantity, order: Order): Map<string, Ranked[]> {
+  const byUnit = new Map<string, Ranked[]>()
+  for (const variable of report.variables) {
+    const sensitivity = variable.sensitivities.get(quantity.index)
+    if (!sensitivity) continue
+    const peers = byUnit.get(variable.unit) ?? []
+    byUnit.set(variable.unit, peers)
+    peers.push({ variable, sensitivity, peak: sensitivity.peaks[order], share: 0 })
+  }
+  for (const peers of byUnit.values()) {
+    peers.sort((a, b) => b.peak - a.peak || a.variable.index - b.variable.index)
+    const largest = peers[0].peak
+    for (const item of peers) {
+      item.share = largest > 0 ? item.peak / largest : 0
+      if (item.share < NOISE) item.share = 0
+    }
+  }
+  return byUnit
+}
+
+/** The groups in the order of first appearance, measures first. */
+export function groups(report: Report): [name: string, members: Quantity[]][] {
+  const found = new Map<string, Quantity[]>()
+  for (const quantity of report.quantities) {
+    found.set(quantity.group, [...(found.get(quantity.group) ?? []), quantity])
+  }
+  return [...found].sort(([a], [b]) => Number(b === 'measure') - Number(a === 'measure'))
+}

@@ -1,0 +1,63 @@
+import { el, HUES } from './dom'
+import type { Look } from './scene/camera'
+import { hasWebGL, View } from './scene/view'
+import type { State } from './state'
+import { transport } from './transport'
+
+const LOOKS: [look: Look, title: string][] = [
+  ['iso', 'seen from the front corner'],
+  ['x', 'seen along x'],
+  ['y', 'seen along y'],
+  ['z', 'seen along z'],
+]
+
+/** The 3D view with its playback, buttons and key to the colours, or a plain message where there is no WebGL. */
+export function stage(state: State): HTMLElement[] {
+  if (!hasWebGL()) {
+    const message = 'This browser offers no WebGL, so the 3D view is left out. Curves and tables are complete.'
+    return [el('div', { class: 'view', 'data-testid': 'no-webgl' }, el('p', { class: 'message' }, message)), transport(state)]
+  }
+  const view = new View(state)
+  const looks = LOOKS.map(([look, title]) =>
+    el('button', { type: 'button', title, onclick: () => view.look(look) }, look === 'iso' ? 'corner' : look),
+  )
+  view.element.append(el('div', { class: 'looks' }, ...looks))
+  return [view.element, transport(state), el('div', { class: 'under' }, key(state), tracer(state))]
+}
+
+function key({ report }: State): HTMLElement {
+  const entry = (color: string, label: string, shape = '') =>
+    el('li', {}, el('span', { class: `swatch ${shape}`, style: `--swatch: var(${color})` }), label)
+  const bodies = report.bodies.slice(1).map(({ name }, index) => entry(`--hue-${index % HUES}`, name))
+  return el(
+    'ul',
+    { class: 'key' },
+    ...bodies,
+    entry('--ground', report.bodies[0]?.name ?? 'ground', 'square'),
+    entry('--tree-joint', 'joint', 'square'),
+    report.joints.some(({ cut }) => cut) && entry('--cut-joint', 'cut joint', 'square'),
+    report.variables.length > 0 && entry('--accent', 'design velocity', 'arrow'),
+  )
+}
+
+function tracer(state: State): HTMLElement {
+  const select = el(
+    'select',
+    {
+      'data-testid': 'trace',
+      onchange: () => {
+        const [body, point] = select.value.split(' ').map(Number)
+        state.choose({ trace: select.value ? [body, point] : undefined })
+      },
+    },
+    el('option', { value: '' }, 'none'),
+    ...state.report.bodies.slice(1).map((body, index) =>
+      el(
+        'optgroup',
+        { label: body.name },
+        ...body.labels.map((label, point) => el('option', { value: `${index + 1} ${point}` }, label)),
+      ),
+    ),
+  )
+  return el('label', { class: 'field' }, el('span', {}, 'Path of'), select)
+}

@@ -1,0 +1,65 @@
+import { el, svg } from './dom'
+import { number, pretty, roundBelow } from './format'
+import type { State } from './state'
+
+/** Seconds that one pass takes at the speed first offered. */
+const PASS = 6
+
+const TRIANGLE = 'M2 1v10l9-5z'
+const BARS = 'M2 1h3v10h-3zM7 1h3v10h-3z'
+
+/** Play, scrub, speed, and the keys that do the same. */
+export function transport(state: State): HTMLElement {
+  const { report } = state
+  const time = pretty(report.units.time)
+  const play = el('button', { type: 'button', class: 'play', 'data-testid': 'play', onclick: () => state.toggle() })
+  const slider = el('input', {
+    type: 'range',
+    min: 0,
+    max: state.lastStep,
+    step: 1,
+    'aria-label': 'time',
+    'data-testid': 'scrub',
+    oninput: () => {
+      state.pause()
+      state.goToStep(Number(slider.value))
+    },
+  })
+  const readout = el('output', { class: 'readout', 'data-testid': 'time' })
+
+  const duration = report.times[state.lastStep] - report.times[0]
+  const usual = duration > 0 ? Math.min(1, roundBelow(duration / PASS)) : 1
+  state.speed = usual
+  const speeds = [0.1, 0.2, 0.5, 1, 2, 5].map((factor) => Number((usual * factor).toPrecision(3)))
+  const speed = el(
+    'select',
+    { 'aria-label': 'playback speed', onchange: () => (state.speed = Number(speed.value)) },
+    ...speeds.map((value) => el('option', { value, selected: value === usual }, `${number(value)}×`)),
+  )
+
+  const show = () => {
+    play.replaceChildren(svg('svg', { viewBox: '0 0 12 12', 'aria-hidden': 'true' }, svg('path', { d: state.playing ? BARS : TRIANGLE })))
+    play.setAttribute('aria-label', state.playing ? 'pause' : 'play')
+    slider.value = String(Math.round(state.step))
+    const moment = `${number(state.time, 4)} ${time}`
+    slider.setAttribute('aria-valuetext', moment)
+    readout.textContent = moment
+  }
+  state.onTime(show)
+  show()
+  document.addEventListener('keydown', (event) => onKey(event, state))
+  return el('div', { class: 'transport' }, play, slider, readout, speed)
+}
+
+function onKey(event: KeyboardEvent, state: State): void {
+  const target = event.target as HTMLElement
+  const modified = event.ctrlKey || event.metaKey || event.altKey
+  // Controls keep the keys that mean something to them; the slider steps by itself but knows no space.
+  if (modified || target.closest('select, input:not([type=range])')) return
+  if (event.key === ' ' && !target.closest('button, summary')) state.toggle()
+  else if (target.closest('input')) return
+  else if (event.key === 'ArrowLeft') state.nudge(-1)
+  else if (event.key === 'ArrowRight') state.nudge(1)
+  else return
+  event.preventDefault()
+}

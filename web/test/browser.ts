@@ -1,0 +1,44 @@
+import { existsSync } from 'node:fs'
+import { delimiter, join } from 'node:path'
+import { type Browser, type BrowserContext, chromium, type LaunchOptions } from 'playwright-core'
+
+/** Draws WebGL in software, so that the tests need neither a graphics card nor a screen. */
+const SOFTWARE_3D = ['--use-angle=swiftshader', '--enable-unsafe-swiftshader']
+const QUIET = [
+  '--no-sandbox',
+  '--disable-quic',
+  '--no-first-run',
+  '--disable-background-networking',
+  '--disable-component-update',
+  '--disable-sync',
+]
+export const NO_3D = ['--disable-gpu', '--disable-software-rasterizer', '--disable-3d-apis']
+
+/** `CHROMIUM` names the browser where it is not `chromium` on the path. */
+function chromiumPath(): string {
+  const onPath = (process.env.PATH ?? '').split(delimiter).map((folder) => join(folder, 'chromium'))
+  const found = process.env.CHROMIUM ?? onPath.find((path) => existsSync(path))
+  if (!found) throw new Error('no chromium on the path: install it, or name it in the variable CHROMIUM')
+  return found
+}
+
+export function launch(graphics: string[] = SOFTWARE_3D, options: LaunchOptions = {}): Promise<Browser> {
+  return chromium.launch({ executablePath: chromiumPath(), headless: true, args: [...QUIET, ...graphics], ...options })
+}
+
+export interface Visit {
+  page: Awaited<ReturnType<BrowserContext['newPage']>>
+  /** Console errors, uncaught exceptions and requests to anything but the file itself. */
+  complaints: string[]
+}
+
+export async function visit(browser: Browser, url: string, options = {}): Promise<Visit> {
+  const page = await browser.newPage({ viewport: { width: 1400, height: 900 }, ...options })
+  const complaints: string[] = []
+  page.on('console', (message) => message.type() === 'error' && complaints.push(`console: ${message.text()}`))
+  page.on('pageerror', (error) => complaints.push(`exception: ${error.message}`))
+  page.on('request', (request) => request.url() !== url && complaints.push(`request: ${request.url()}`))
+  await page.goto(url)
+  await page.waitForSelector('.uplot')
+  return { page, complaints }
+}

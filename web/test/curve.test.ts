@@ -1,0 +1,41 @@
+import { expect, test } from 'vitest'
+import { decode, peak, stepAt, thinned, valueAt, withGaps } from '../src/curve'
+
+const curve = (...values: number[]) => Float32Array.from(values)
+
+test('base64 is read as little-endian f32', () => {
+  // The example in the documentation of the Rust type.
+  expect([...decode('AACAPwAAAMA=')]).toEqual([1, -2])
+  expect(decode('').length).toBe(0)
+})
+
+test('NaN survives the encoding and becomes a gap', () => {
+  expect(withGaps(decode('AADAfwAAgD8='))).toEqual([null, 1])
+})
+
+test('peak is the largest magnitude and passes over gaps', () => {
+  expect(peak(curve(1, NaN, -3))).toBe(3)
+  expect(peak(curve(NaN))).toBe(0)
+})
+
+test('thinning keeps every stride-th value in its place', () => {
+  expect(thinned(curve(0, 1, 2, 3, 4, 5), 3)).toEqual([0, null, 2, null, 4, null])
+  expect(thinned(curve(7, NaN), 9)).toEqual([7, null])
+})
+
+test('values between steps are interpolated', () => {
+  expect(valueAt(curve(2, 4), 0.25)).toBe(2.5)
+  expect(valueAt(curve(2, 4), 1)).toBe(4)
+})
+
+test('a gap does not reach the step before it', () => {
+  expect(valueAt(curve(2, NaN), 0)).toBe(2)
+  expect(valueAt(curve(2, NaN), 0.5)).toBeNaN()
+})
+
+test('time and step are inverse to each other on uneven steps', () => {
+  const times = curve(0, 1, 4, 5)
+  for (const step of [0, 0.5, 1, 1.75, 3]) expect(stepAt(times, valueAt(times, step))).toBe(step)
+  expect(stepAt(times, -1)).toBe(0)
+  expect(stepAt(times, 9)).toBe(3)
+})

@@ -1,0 +1,58 @@
+import { expect, test } from 'vitest'
+import type { Payload, Variable } from '../src/payload'
+import { derivativeName, derivativeUnit, groups, ranking, read } from '../src/report'
+
+const encode = (...values: number[]) => Buffer.from(Float32Array.from(values).buffer).toString('base64')
+const curves = (scale: number) => ({ value: encode(scale, -2 * scale), rate: encode(0, 0), accel: encode(0, scale) })
+
+const variable = (name: string, unit: string, scale?: number): Variable => ({
+  name,
+  unit,
+  description: '',
+  admissibility: scale === undefined ? 'cannot_follow' : 'admissible',
+  note: '',
+  arrows: [],
+  sensitivities: scale === undefined ? [] : [{ quantity: 0, ...curves(scale), fd: null }],
+})
+
+const quantity = (name: string, group: string) =>
+  ({ name, group, unit: 'deg', rate_unit: 'deg/s', accel_unit: 'deg/s^2', ...curves(1) })
+
+const payload: Payload = {
+  title: '',
+  file: '',
+  generator: '',
+  units: { length: 'mm', angle: 'deg', time: 's' },
+  status: { complete: true, message: '' },
+  summary: [],
+  times: encode(0, 1),
+  bodies: [],
+  joints: [],
+  quantities: [quantity('hub.x', 'point'), quantity('toe', 'measure')],
+  variables: [variable('small', 'mm', 1), variable('tilt', 'deg', 5), variable('large', 'mm', -4), variable('stuck', 'mm')],
+  checks: [],
+}
+const report = read(payload)
+const [hub] = report.quantities
+
+test('variables are ranked by their largest magnitude within one unit', () => {
+  const ranks = ranking(report, hub, 0)
+  expect([...ranks.keys()]).toEqual(['mm', 'deg'])
+  expect(ranks.get('mm')!.map(({ variable, peak, share }) => [variable.name, peak, share])).toEqual([
+    ['large', 8, 1],
+    ['small', 2, 0.25],
+  ])
+})
+
+test('where nothing has an influence no share is given', () => {
+  expect(ranking(report, hub, 1).get('mm')!.map(({ share }) => share)).toEqual([0, 0])
+})
+
+test('measures are offered before other quantities', () => {
+  expect(groups(report).map(([name]) => name)).toEqual(['measure', 'point'])
+})
+
+test('derivatives are named and measured by what they divide', () => {
+  expect(derivativeName(hub, 1, report.variables[0])).toBe('d hub.x velocity / d small')
+  expect(derivativeUnit(hub, 1, report.variables[0])).toBe('deg/(s·mm)')
+})

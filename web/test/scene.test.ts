@@ -1,0 +1,83 @@
+import { MeshBasicMaterial, Vector3 } from 'three'
+import { describe, expect, test } from 'vitest'
+import { cameraFor, Extent, fit, type Look } from '../src/scene/camera'
+import { arrow, ringArrow } from '../src/scene/parts'
+import { path, poseAt } from '../src/scene/poses'
+
+const QUARTER = Math.SQRT1_2
+/** At the origin, then at (2, 0, 0) and turned by 90° about z, then not solved. */
+const poses = Float32Array.from([0, 0, 0, 1, 0, 0, 0, 2, 0, 0, QUARTER, 0, 0, QUARTER, ...Array(7).fill(NaN)])
+
+const close = (actual: Vector3, x: number, y: number, z: number) =>
+  expect(actual.distanceTo(new Vector3(x, y, z))).toBeLessThan(1e-6)
+
+test('a pose carries body points into the world', () => {
+  close(path(poses, new Vector3(1, 0, 0))[1], 2, 1, 0)
+})
+
+test('between two steps the body is half way and half turned', () => {
+  const { place, turn } = poseAt(poses, 0.5)!
+  close(place, 1, 0, 0)
+  close(new Vector3(1, 0, 0).applyQuaternion(turn), QUARTER, QUARTER, 0)
+})
+
+test('steps that were not solved have no pose and leave no path', () => {
+  expect(poseAt(poses, 2)).toBeUndefined()
+  expect(poseAt(poses, 1.5)).toBeUndefined()
+  expect(path(poses, new Vector3())).toHaveLength(2)
+})
+
+describe('the camera', () => {
+  const flat = [new Vector3(-50, -50, 3), new Vector3(200, 50, 3)]
+  const spatial = [...flat, new Vector3(20, 10, 700)]
+
+  test('looks at a planar mechanism straight along z with y upwards', () => {
+    const extent = new Extent(flat)
+    const camera = cameraFor(extent)
+    fit(camera, extent, 'z', 1.4)
+    expect(extent.planar).toBe(true)
+    const right = new Vector3(1, 0, 0).applyQuaternion(camera.quaternion)
+    expect(right.x).toBeCloseTo(1)
+    expect(new Vector3(0, 1, 0).applyQuaternion(camera.quaternion).y).toBeCloseTo(1)
+  })
+
+  test.each<Look>(['iso', 'x', 'y', 'z'])('sees the whole motion from %s', (look) => {
+    for (const points of [flat, spatial]) {
+      for (const aspect of [0.6, 1.4]) {
+        const extent = new Extent(points)
+        const camera = cameraFor(extent)
+        fit(camera, extent, look, aspect)
+        camera.updateMatrixWorld()
+        for (const point of points) {
+          const seen = point.clone().project(camera)
+          for (const side of seen.toArray()) expect(Math.abs(side)).toBeLessThan(1)
+        }
+      }
+    }
+  })
+
+  test('has something to look at in an empty model', () => {
+    expect(new Extent([]).size).toBe(1)
+  })
+})
+
+describe('design velocities', () => {
+  const material = new MeshBasicMaterial()
+
+  test('arrows end where the point would go', () => {
+    const drawn = arrow(new Vector3(1, 2, 3), new Vector3(0, 0, 5), 0.1, material)
+    drawn.updateMatrixWorld()
+    close(drawn.localToWorld(new Vector3()), 1, 2, 3)
+    close(drawn.localToWorld(new Vector3(0, 5, 0)), 1, 2, 8)
+  })
+
+  test('rings turn in the right-handed sense', () => {
+    const axis = new Vector3(1, 2, -2).normalize()
+    const ring = ringArrow(new Vector3(), axis, 1, 0.02, material)
+    ring.updateMatrixWorld()
+    const tip = ring.children[0].children[1]
+    const place = tip.getWorldPosition(new Vector3())
+    const heading = tip.localToWorld(new Vector3(0, 1, 0)).sub(place)
+    expect(axis.clone().cross(place.normalize()).dot(heading)).toBeGreaterThan(0.99)
+  })
+})
