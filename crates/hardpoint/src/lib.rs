@@ -8,6 +8,7 @@ pub mod model;
 pub mod motion;
 pub mod sensitivity;
 pub mod space;
+pub mod study;
 pub mod topology;
 
 pub use analysis::{Analysis, Progress, Solution};

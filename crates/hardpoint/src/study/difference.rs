@@ -1,0 +1,103 @@
+//! Finite differences by re-solving moved designs: the slow, inexact way, to check the exact one.
+
+use crate::analysis::{Analysis, Solution};
+use crate::joint::Quantity;
+use crate::model::{Model, VariableId};
+use crate::motion::{BodyState, Stop};
+use crate::sensitivity::BodySensitivity;
+use crate::space::Vec3;
+
+/// Central difference quotients of a whole motion by one design variable.
+#[derive(Clone, Debug)]
+pub struct Difference {
+    /// The variable.
+    pub variable: VariableId,
+    /// Half the distance between the two designs, m, rad, or units of tau.
+    pub step: f64,
+    /// `bodies[k * n + i]`: of body i at time k.
+    pub bodies: Vec<BodySensitivity>,
+    /// `outputs[k * m + j]`: of value, rate and acceleration of output j at time k.
+    pub outputs: Vec<[f64; 3]>,
+}
+
+/// The change of a variable that moves the farthest marker by the mechanism's size, or turns it by 1 rad.
+///
+/// Steps are given as parts of it, so that they mean the same for every variable and model.
+pub fn natural_step(model: &Model, variable: VariableId) -> f64 {
+    let size = model.size();
+    let geometry = model.geometry(&[]);
+    let speed = model
+        .field(variable)
+        .markers
+        .iter()
+        .map(|m| {
+            let s = geometry.markers[m.joint.0][m.end].r;
+            m.twist.w.norm().max(m.twist.at(s).norm() / size)
+        })
+        .fold(0.0, f64::max);
+    if speed > 0.0 { 1.0 / speed } else { size }
+}
+
+/// Re-solves the design at +h and -h of each variable, eight designs at a time, and divides.
+///
+/// # Errors
+/// Per entry: the [`Stop`] of the moved design that did not run to the end.
+pub fn central_differences(analysis: &Analysis<'_>, steps: &[(VariableId, f64)]) -> Vec<Result<Difference, Stop>> {
+    let mut out = Vec::with_capacity(steps.len());
+    // Few at a time: a solution holds its whole motion.
+    for group in steps.chunks(4) {
+        let designs: Vec<Vec<f64>> = group
+            .iter()
+            .flat_map(|&(v, h)| {
+                [h, -h].map(|b| {
+                    let mut design = vec![0.0; analysis.model().variables.len()];
+                    design[v.0] = b;
+                    design
+                })
+            })
+            .collect();
+        let solutions = analysis.run_designs(&designs);
+        for (&(variable, step), pair) in group.iter().zip(solutions.chunks(2)) {
+            let stop = pair.iter().find_map(|s| s.stop.clone());
+            out.push(match stop {
+                Some(stop) => Err(stop),
+                None => Ok(quotient(variable, step, &pair[0], &pair[1])),
+            });
+        }
+    }
+    out
+}
+
+fn quotient(variable: VariableId, step: f64, plus: &Solution, minus: &Solution) -> Difference {
+    let k = 0.5 / step;
+    let bodies = plus.motion.states.iter().zip(&minus.motion.states).map(|(p, m)| body_quotient(p, m, k)).collect();
+    let outputs = (0..plus.measured.len())
+        .flat_map(|t| (0..plus.measured.outputs.len()).map(move |m| (t, m)))
+        .map(|(t, m)| {
+            let (p, q) = (plus.measured.value(t, m), minus.measured.value(t, m));
+            let mut d = [p[0] - q[0], p[1] - q[1], p[2] - q[2]];
+            if plus.measured.outputs[m].quantity == Quantity::Angle {
+                // Both designs' angles may have been counted through different turns.
+                let turn = 2.0 * std::f64::consts::PI;
+                d[0] -= turn * (d[0] / turn).round();
+            }
+            d.map(|x| k * x)
+        })
+        .collect();
+    Difference { variable, step, bodies, outputs }
+}
+
+fn body_quotient(p: &BodyState, m: &BodyState, k: f64) -> BodySensitivity {
+    // dA/db A^T is skew; its vector is half the sum of the columns' cross products.
+    let columns = |c: usize| (p.rotation.cols[c] + m.rotation.cols[c]) * 0.5;
+    let turned = |c: usize| columns(c).cross(p.rotation.cols[c] - m.rotation.cols[c]);
+    let dpi: Vec3 = (turned(0) + turned(1) + turned(2)) * (0.5 * k);
+    BodySensitivity {
+        dr: (p.r - m.r) * k,
+        dpi,
+        dv: (p.v - m.v) * k,
+        domega: (p.omega - m.omega) * k,
+        da: (p.a - m.a) * k,
+        dalpha: (p.alpha - m.alpha) * k,
+    }
+}

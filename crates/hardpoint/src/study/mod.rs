@@ -1,0 +1,9 @@
+//! Studies: questions that take many solutions.
+
+mod difference;
+mod verify;
+
+pub use difference::{Difference, central_differences, natural_step};
+pub use verify::{
+    Check, CheckOutcome, PASS, StepError, Verification, VerifyOptions, compare_with_difference, verify,
+};
