@@ -8,6 +8,10 @@ use crate::joint::{self, CoordinateType, Need};
 const SQUARE_TOLERANCE: f64 = 1e-6;
 /// Points closer than this part of the mechanism's size are the same point.
 const SAME_POINT: f64 = 1e-9;
+/// A fault lists at most this many valid names.
+const LISTED_NAMES: usize = 24;
+/// The first so many faults guess which name was meant.
+const GUESSES: usize = 50;
 
 impl Model {
     /// Checks a draft and resolves its names.
@@ -138,11 +142,15 @@ impl<'a> Check<'a> {
         if let Some(k) = candidates.clone().position(|c| c == name) {
             return Some(k);
         }
-        let close = did_you_mean(name, candidates.clone());
-        let valid: Vec<String> = candidates.map(|c| format!("`{c}`")).collect();
+        // A guess compares with every name; past the faults that anybody reads it would only cost time.
+        let guess = self.faults.len() < GUESSES;
+        let close = if guess { did_you_mean(name, candidates.clone()) } else { None };
+        let valid: Vec<String> = candidates.clone().take(LISTED_NAMES).map(|c| format!("`{c}`")).collect();
+        let more = candidates.count() - valid.len();
         let fault = self.fault("HP0204", at, format!("there is no {what} named `{name}`"));
         if !valid.is_empty() {
-            fault.notes.push(format!("valid names: {}", valid.join(", ")));
+            let more = if more > 0 { format!(" and {more} more") } else { String::new() };
+            fault.notes.push(format!("valid names: {}{more}", valid.join(", ")));
         }
         fault.help = match close {
             Some(close) => Some(format!("did you mean `{close}`?")),

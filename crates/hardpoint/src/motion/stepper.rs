@@ -14,6 +14,14 @@ use super::{Effort, Stop, StopKind};
 const TRUST_FLOOR: f64 = 0.02;
 /// The first correction may be this part of the predicted move: more means a prediction gone wrong.
 const TRUST: f64 = 0.5;
+/// Speeds after a step may differ from the predicted ones by this part of the fastest coordinate. At a
+/// dead point two branches meet with different speeds: a step onto the other one shows here however
+/// short it is, while on a smooth motion the difference vanishes with the step.
+const SPEED_TRUST: f64 = 0.25;
+/// Differences below this part of the drivers' fastest speed do not count: a start from rest.
+const SPEED_FLOOR: f64 = 1e-3;
+/// Coordinates this much faster than the fastest driver are on their way to a limit position.
+const RUNAWAY: f64 = 1e3;
 /// A step is halved at most this often: 2^-40 of an output step decides nothing that a user could see.
 const MAX_HALVINGS: u32 = 40;
 /// A left-out constraint that fails by more than this part of the mechanism's size is no round-off of
@@ -35,6 +43,8 @@ pub(crate) struct Stepper<'m, T> {
     time: f64,
     /// Per block: sign of the determinant on this branch, and the first pivot ratio.
     branch: Vec<(bool, f64)>,
+    /// Fastest driver on the present path (rad, or sizes, per unit of its parameter).
+    fastest_driver: f64,
     pub effort: Effort,
 }
 
@@ -76,7 +86,7 @@ impl<'m, T: Real> Stepper<'m, T> {
         let branch = vec![(true, 0.0); topology.blocks.len()];
         let drivers = vec![[witness.zero(); 3]; model.drivers.len()];
         let effort = Effort { least_pivot_ratio: f64::INFINITY, ..Effort::default() };
-        Self { model, topology: topology.clone(), parts, state, drivers, saved, time: 0.0, branch, effort }
+        Self { model, topology: topology.clone(), parts, state, drivers, saved, time: 0.0, branch, fastest_driver: 0.0, effort }
     }
 
     /// Solves the design configuration, then moves on to the first output time.
@@ -89,6 +99,7 @@ impl<'m, T: Real> Stepper<'m, T> {
         self.save(0.0);
         self.walk(ramp, 1.0)?;
         // The rates left by the ramp are per unit of ramp; solve once more with the laws' own.
+        self.fastest_driver = 0.0;
         self.time = t;
         self.attempt(Path::Laws, t, 0.0, false).map_err(|r| self.stop(Path::Laws, t, r, false))?;
         self.save(t);
@@ -116,6 +127,9 @@ impl<'m, T: Real> Stepper<'m, T> {
     }
 
     fn walk(&mut self, path: Path, target: f64) -> Result<(), Stop> {
+        if self.drive(path, target).is_ok() {
+            self.fastest_driver = self.driver_speed();
+        }
         let whole = target - self.time;
         let mut h = whole;
         let shortest = whole * 0.5_f64.powi(MAX_HALVINGS as i32);
@@ -179,6 +193,9 @@ impl<'m, T: Real> Stepper<'m, T> {
             }
         }
         self.state.solve_rates(&self.topology, &self.parts, &self.drivers);
+        if h != 0.0 && !self.speeds_are_smooth(h) {
+            return Err(Refusal::Branch { block: self.least_regular_block() });
+        }
         if self.topology.rows.iter().any(|r| !r.selected) {
             let (residual, row) = self.state.worst_residual(&self.topology, &self.parts, &self.drivers);
             let place = self.topology.rows[row];
@@ -207,6 +224,48 @@ impl<'m, T: Real> Stepper<'m, T> {
         s.balls.copy_from_slice(&saved.balls);
         s.turn_balls(&self.topology, 0..self.topology.links.len());
         most
+    }
+
+    /// Speed of the fastest driver (rad, or sizes, per unit of the path's parameter), now or before.
+    fn driver_speed(&self) -> f64 {
+        self.model.drivers.iter().zip(&self.drivers).fold(self.fastest_driver, |most, (d, f)| {
+            let length = self.model.driven(d).quantity == crate::joint::Quantity::Length;
+            most.max(f[1].abs().largest() / if length { self.state.size } else { 1.0 })
+        })
+    }
+
+    /// Whether the speeds are those of the same branch as before the step.
+    fn speeds_are_smooth(&self, h: f64) -> bool {
+        let (s, saved) = (&self.state, &self.saved);
+        let (mut fastest, mut difference) = (0.0_f64, 0.0_f64);
+        for (c, coordinate) in self.topology.coordinates.iter().enumerate() {
+            if let Source::Unknown { .. } = coordinate.source {
+                let size = if coordinate.is_length { s.size } else { 1.0 };
+                let predicted = saved.qd[c] + saved.qdd[c] * s.witness.like(h);
+                fastest = fastest.max(s.qd[c].abs().largest().max(saved.qd[c].abs().largest()) / size);
+                let d = (s.qd[c] - predicted).abs().largest() / size;
+                // Written so that NaN counts as infinitely far.
+                difference = if d <= difference { difference } else if d.is_nan() { f64::INFINITY } else { d };
+            }
+        }
+        difference <= (SPEED_TRUST * fastest).max(SPEED_FLOOR * self.fastest_driver.max(self.driver_speed()))
+    }
+
+    /// Speed of the fastest unknown at the saved position.
+    fn saved_speed(&self) -> f64 {
+        self.topology.coordinates.iter().enumerate().fold(0.0, |most, (c, coordinate)| {
+            let size = if coordinate.is_length { self.state.size } else { 1.0 };
+            match coordinate.source {
+                Source::Unknown { .. } => most.max(self.saved.qd[c].abs().largest() / size),
+                Source::Driven(_) => most,
+            }
+        })
+    }
+
+    /// The block whose Jacobian is nearest to singular, compared with where it started.
+    fn least_regular_block(&self) -> usize {
+        let regularity = |b: &usize| self.state.pivots[*b].0 / self.branch[*b].1;
+        (0..self.state.pivots.len()).min_by(|a, b| regularity(a).total_cmp(&regularity(b))).unwrap_or(0)
     }
 
     fn save(&mut self, t: f64) {
@@ -276,6 +335,10 @@ impl<'m, T: Real> Stepper<'m, T> {
     fn stop(&self, path: Path, t: f64, refusal: Refusal, moved: bool) -> Stop {
         let (kind, block) = match refusal {
             Refusal::Position(PositionFailure::Singular { block } | PositionFailure::NoConvergence { block }) => {
+                (StopKind::Limit, Some(block))
+            }
+            // At a limit the speeds grow without bound; where branches cross they stay finite.
+            Refusal::Branch { block } if self.saved_speed() > RUNAWAY * self.fastest_driver => {
                 (StopKind::Limit, Some(block))
             }
             Refusal::Branch { block } => (StopKind::BranchChange, Some(block)),

@@ -168,23 +168,30 @@ pub fn compare_with_difference(analysis: &Analysis<'_>, solution: &Solution, d: 
         errors.push(StepError { step: d.step, error, worst: name, time: times[k] });
     };
 
+    // The motion's own magnitude at orders 0, 1, 2: lengths in sizes, angles in rad.
+    let magnitude = solution.motion.states.iter().fold([1.0_f64, 0.0, 0.0], |m, s| {
+        [m[0], m[1].max(s.omega.norm()).max(s.v.norm() / size), m[2].max(s.alpha.norm()).max(s.a.norm() / size)]
+    });
+    let floor = |order: usize, quantity: Quantity| {
+        let unit = if quantity == Quantity::Length { size } else { 1.0 };
+        NEGLIGIBLE * magnitude[order] * unit / natural
+    };
+
     type Of = fn(&crate::sensitivity::BodySensitivity) -> Vec3;
-    type State = fn(&crate::motion::BodyState) -> Vec3;
-    let kinds: [(&str, Of, State, f64); 6] = [
-        ("position", |s| s.dr, |_| Vec3::ZERO, size),
-        ("orientation", |s| s.dpi, |_| Vec3::ZERO, 1.0),
-        ("velocity", |s| s.dv, |s| s.v, 0.0),
-        ("angular velocity", |s| s.domega, |s| s.omega, 0.0),
-        ("acceleration", |s| s.da, |s| s.a, 0.0),
-        ("angular acceleration", |s| s.dalpha, |s| s.alpha, 0.0),
+    let kinds: [(&str, Of, usize, Quantity); 6] = [
+        ("position", |s| s.dr, 0, Quantity::Length),
+        ("orientation", |s| s.dpi, 0, Quantity::Angle),
+        ("velocity", |s| s.dv, 1, Quantity::Length),
+        ("angular velocity", |s| s.domega, 1, Quantity::Angle),
+        ("acceleration", |s| s.da, 2, Quantity::Length),
+        ("angular acceleration", |s| s.dalpha, 2, Quantity::Angle),
     ];
     let n = solution.motion.bodies;
-    for (kind, of, state, least) in kinds {
+    for (kind, of, order, quantity) in kinds {
         let analytic = |k: usize, i: usize| solution.sensitivities.at(k, d.variable.0).map(|s| of(&s[i]));
         let everywhere = (0..steps).flat_map(|k| (0..n).map(move |i| (k, i)));
         let largest = everywhere.filter_map(|(k, i)| analytic(k, i)).map(Vec3::norm).fold(0.0, f64::max);
-        let motion = solution.motion.states.iter().map(|s| state(s).norm()).fold(least, f64::max);
-        let scale = largest.max(NEGLIGIBLE * motion / natural);
+        let scale = largest.max(floor(order, quantity));
         for i in 1..n {
             let name = format!("{} {kind}", model.bodies[i].name);
             let mut deviations = (0..steps)
@@ -198,13 +205,7 @@ pub fn compare_with_difference(analysis: &Analysis<'_>, solution: &Solution, d: 
         for (order, label) in ["value", "rate", "acceleration"].into_iter().enumerate() {
             let analytic = |k: usize| measured.d(k, d.variable, m)[order];
             let largest = (0..steps).map(|k| analytic(k).abs()).fold(0.0, f64::max);
-            let least = match (order, output.quantity) {
-                (0, Quantity::Length) => size,
-                (0, _) => 1.0,
-                _ => 0.0,
-            };
-            let motion = (0..steps).map(|k| measured.value(k, m)[order].abs()).fold(least, f64::max);
-            let scale = largest.max(NEGLIGIBLE * motion / natural);
+            let scale = largest.max(floor(order, output.quantity));
             let mut deviations = (0..steps).map(|k| (analytic(k) - d.outputs[k * columns + m][order]).abs());
             push(format!("{} {label}", output.name), scale, &mut deviations);
         }

@@ -4,11 +4,10 @@
 //! of another folder. A case that needs a joint type, driver or measure that does not exist is a failure
 //! that names it.
 
-mod reference_case;
 
 use hardpoint::topology::Formulation;
 use hardpoint::{Analysis, model::Model};
-use reference_case::{Case, Comparison};
+use crate::reference_case::{Case, Comparison};
 use std::path::PathBuf;
 
 /// Largest deviation, as a part of a quantity's largest magnitude in the case (at least 1).
@@ -33,7 +32,7 @@ fn cases() -> Vec<PathBuf> {
 }
 
 #[test]
-fn reference_cases_hold_in_both_formulations() {
+fn every_number_of_every_case_holds_in_both_formulations() {
     let mut failures = Vec::new();
     for file in cases() {
         let name = file.file_stem().unwrap().to_string_lossy().into_owned();

@@ -1,6 +1,5 @@
 //! Sensitivities against re-solved designs, on every reference mechanism.
 
-mod reference_case;
 
 use hardpoint::model::Model;
 use hardpoint::study::{CheckOutcome, VerifyOptions, verify};
@@ -12,14 +11,13 @@ fn sensitivities_match_resolved_designs_and_the_error_falls_with_the_square_of_t
     let mut falling = 0;
     for name in ["slider_crank", "macpherson", "rssr", "hooke", "double_wishbone", "jansen"] {
         let file = format!("{}/tests/reference/{name}.json", env!("CARGO_MANIFEST_DIR"));
-        let case = reference_case::Case::read(file.as_ref()).unwrap();
+        let case = crate::reference_case::Case::read(file.as_ref()).unwrap();
         let model = Model::from_draft(&case.draft).unwrap();
         let analysis = Analysis::new(&model).unwrap();
         let solution = analysis.run();
         let report = verify(&analysis, &solution, &VerifyOptions::default(), |_| ControlFlow::Continue(()));
         for check in &report.checks {
             let variable = &model.variables[check.variable.0].name;
-            println!("{name} {variable} {:?} {:?}", check.outcome, check.best());
             if check.outcome == CheckOutcome::CannotFollow {
                 continue;
             }

@@ -1,0 +1,157 @@
+//! Design variables as users write them, against the elementary marker changes that they stand for.
+
+use hardpoint::Analysis;
+use hardpoint::model::*;
+use hardpoint::sensitivity::Admissibility;
+use hardpoint::space::Vec3;
+
+use crate::workbench::*;
+
+/// The strut with named hardpoints, axes through two of them, and one variable per change.
+fn strut_with_hardpoints(design: Vec<VariableDraft>) -> Model {
+    let mut d = reference_draft("macpherson");
+    let pivots = [("lca_rear", [-0.04318, 0.37338, -0.12573]), ("lca_front", [0.27051, 0.34544, -0.05969])];
+    d.hardpoints = pivots
+        .into_iter()
+        .chain([("ball", [0.02794, 0.66294, -0.10414]), ("tie_rod_outer", [-0.2, 0.574803759, -0.00127])])
+        .map(|(name, p)| HardpointDraft { name: name.into(), position: p.into() })
+        .collect();
+    for j in &mut d.joints {
+        match j.name.as_str() {
+            "lca_pivot" => {
+                j.at = Vec::new();
+                j.axis = Some(Line::Through("lca_rear".into(), "lca_front".into()));
+            }
+            "ball_B" => j.at = vec![Place::Hardpoint("ball".into())],
+            "tie_rod" => j.at[0] = Place::Hardpoint("tie_rod_outer".into()),
+            _ => {}
+        }
+    }
+    d.design = design;
+    Model::from_draft(&d).unwrap()
+}
+
+fn moves(name: &str, hardpoint: &str, velocity: Vec3) -> VariableDraft {
+    VariableDraft {
+        name: name.into(),
+        changes: vec![ChangeDraft::Move { hardpoint: hardpoint.into(), velocity }],
+        fixed_length: false,
+    }
+}
+
+#[test]
+fn moving_a_hardpoint_is_the_reference_change_of_every_marker_on_it() {
+    let x = Vec3::AXES;
+    let model = strut_with_hardpoints(vec![
+        moves("lca_rear_pivot_x", "lca_rear", x[0]),
+        moves("lca_rear_pivot_y", "lca_rear", x[1]),
+        moves("lca_front_pivot_z", "lca_front", x[2]),
+        moves("B_x", "ball", x[0]),
+    ]);
+    let reference = reference("macpherson");
+    let (ours, theirs) = (Analysis::new(&model).unwrap().run(), Analysis::new(&reference).unwrap().run());
+    let mut compared = 0;
+    for (v, variable) in model.variables.iter().enumerate() {
+        let Some(w) = reference.variable(&variable.name) else { continue };
+        compared += 1;
+        for k in 0..ours.motion.len() {
+            for (a, b) in ours.sensitivities.at(k, v).unwrap().iter().zip(theirs.sensitivities.at(k, w.0).unwrap()) {
+                for (p, q) in [(a.dr, b.dr), (a.dpi, b.dpi), (a.da, b.da), (a.dalpha, b.dalpha)] {
+                    assert!(apart(p, q) < 1e-11, "{}: {p:?} {q:?}", variable.name);
+                }
+            }
+        }
+    }
+    assert!(compared >= 3, "only {compared} of the variables are in the reference");
+}
+
+#[test]
+fn the_field_is_the_derivative_of_the_geometry_for_every_kind_of_change() {
+    let joint = || "lca_pivot".to_string();
+    let x = Vec3::AXES;
+    let changes: Vec<(&str, ChangeDraft)> = vec![
+        ("move an end of an axis", ChangeDraft::Move { hardpoint: "lca_front".into(), velocity: x[2] }),
+        ("move a rod's end", ChangeDraft::Move { hardpoint: "tie_rod_outer".into(), velocity: Vec3::new(0.3, 1.0, 0.2) }),
+        ("tilt", ChangeDraft::Tilt { joint: joint(), about: Line::Along(x[1]) }),
+        (
+            "one marker",
+            ChangeDraft::Marker { joint: "top_E".into(), end: End::J, position: x[0], rotation: Vec3::new(0.1, 0.0, 0.5) },
+        ),
+        (
+            "the paper's V and U",
+            ChangeDraft::Field { joint: joint(), body: "lca".into(), v: Vec3::new(0.1, 0.2, 0.3), u: Vec3::new(0.4, -0.7, 0.9) },
+        ),
+        (
+            "V and U on the strut's slide",
+            ChangeDraft::Field { joint: "strut_slide".into(), body: "knuckle".into(), v: x[1], u: Vec3::new(-0.2, 0.3, 0.5) },
+        ),
+    ];
+    for (name, change) in changes {
+        for fixed_length in [false, true] {
+            let model = strut_with_hardpoints(vec![VariableDraft { name: name.into(), changes: vec![change.clone()], fixed_length }]);
+            let field = model.field(VariableId(0));
+            let error = |h: f64| {
+                let (p, m) = (model.geometry(&[h]), model.geometry(&[-h]));
+                let nominal = model.geometry(&[]);
+                let mut worst = 0.0_f64;
+                for j in 0..model.joints.len() {
+                    for end in 0..2 {
+                        let (p, m, o) = (p.markers[j][end], m.markers[j][end], nominal.markers[j][end]);
+                        let twist = field.markers.iter().find(|f| f.joint.0 == j && f.end == end);
+                        let (w, v) = twist.map_or((Vec3::ZERO, Vec3::ZERO), |f| (f.twist.w, f.twist.at(o.r)));
+                        worst = worst.max(((p.r - m.r) * (0.5 / h) - v).norm());
+                        for c in 0..3 {
+                            let d = (p.rot.cols[c] - m.rot.cols[c]) * (0.5 / h);
+                            worst = worst.max((d - w.cross(o.rot.cols[c])).norm());
+                        }
+                    }
+                    let rate: f64 = field.lengths.iter().filter(|(k, _)| k.0 == j).map(|(_, l)| *l).sum();
+                    worst = worst.max(((p.lengths[j] - m.lengths[j]) / (2.0 * h) - rate).abs());
+                }
+                worst
+            };
+            assert!(field.markers.iter().any(|m| m.twist.w.norm() + m.twist.v.norm() > 0.1), "{name}: no field");
+            let (coarse, fine, best) = (error(2e-2), error(1e-2), error(1e-6));
+            assert!(best < 1e-9, "{name}: {best:e}");
+            assert!(coarse < 1e-10 || (3.5..4.5).contains(&(coarse / fine)), "{name}: {coarse:e} {fine:e}");
+        }
+    }
+}
+
+#[test]
+fn a_rod_of_fixed_length_is_reassembled_and_one_that_follows_is_admissible() {
+    let velocity = Vec3::AXES[1];
+    let mut fixed = moves("fixed", "tie_rod_outer", velocity);
+    fixed.fixed_length = true;
+    let model = strut_with_hardpoints(vec![moves("follows", "tie_rod_outer", velocity), fixed]);
+    let solution = Analysis::new(&model).unwrap().run();
+    assert_eq!(solution.sensitivities.admissibility[0], Admissibility::Admissible);
+    let Admissibility::Reassembled { joints } = &solution.sensitivities.admissibility[1] else {
+        panic!("{:?}", solution.sensitivities.admissibility[1]);
+    };
+    assert_eq!(model.joints[joints[0].joint.0].name, "tie_rod");
+    // Toe answers at once to a tie rod that keeps its length, and not at all at the design configuration to
+    // one that follows.
+    let toe = solution.measured.index("toe").unwrap();
+    let d = [0, 1].map(|v| solution.measured.d(0, VariableId(v), toe)[0]);
+    assert!(d[0].abs() < 1e-12 && d[1].abs() > 1.0, "{d:?}");
+}
+
+#[test]
+fn a_point_on_a_hardpoint_follows_it_and_a_point_at_coordinates_stays_in_its_body() {
+    let mut draft = reference_draft("slider_crank");
+    draft.hardpoints = vec![HardpointDraft { name: "P".into(), position: Vec3::new(0.3, 0.2, 0.05) }];
+    draft.points = vec![
+        PointDraft { name: "on".into(), body: "rod".into(), at: Place::Hardpoint("P".into()) },
+        PointDraft { name: "off".into(), body: "rod".into(), at: Place::At(Vec3::new(0.3, 0.2, 0.05)) },
+    ];
+    draft.design = vec![moves("P_y", "P", Vec3::AXES[1])];
+    let model = Model::from_draft(&draft).unwrap();
+    let solution = Analysis::new(&model).unwrap().run();
+    let column = |name: &str| solution.measured.index(name).unwrap();
+    for k in 0..solution.motion.len() {
+        let f = solution.motion.at(k)[2].rotation * model.bodies[2].frame.rot.transpose_mul(Vec3::AXES[1]);
+        assert!((solution.measured.d(k, VariableId(0), column("on.y"))[0] - f.y).abs() < 1e-13);
+        assert_eq!(solution.measured.d(k, VariableId(0), column("off.y"))[0], 0.0);
+    }
+}

@@ -1,0 +1,161 @@
+//! Under-driven, over-driven, locked, at a limit: each is told apart, and names what it is about.
+
+use hardpoint::motion::StopKind;
+use hardpoint::topology::{Formulation, TopologyFault};
+use hardpoint::{Analysis, model::*};
+
+use crate::workbench::*;
+
+const CRANK_ROCKER: [[f64; 2]; 4] = [[0.0, 0.0], [0.0, 0.1], [0.3, 0.25], [0.3, 0.0]];
+
+fn fault(draft: &Draft, formulation: Formulation) -> TopologyFault {
+    Analysis::with(&Model::from_draft(draft).unwrap(), formulation).unwrap_err()
+}
+
+#[test]
+fn a_mechanism_without_its_driver_is_under_driven_and_names_what_moves() {
+    let mut draft = four_bar(CRANK_ROCKER, "t", &[0.0]);
+    draft.drivers.clear();
+    for formulation in [Formulation::Relative, Formulation::Absolute] {
+        let fault = fault(&draft, formulation);
+        let TopologyFault::UnderDriven { freedom, joint_names, bodies, .. } = &fault else { panic!("{fault:?}") };
+        assert_eq!(*freedom, 1);
+        for body in ["`crank`", "`coupler`", "`rocker`"] {
+            assert!(bodies.iter().any(|b| b == body), "{bodies:?}");
+        }
+        assert!(joint_names.len() >= 3, "{joint_names:?}");
+        assert_eq!(fault.code(), "HP0301");
+    }
+}
+
+#[test]
+fn a_second_motor_is_over_driven_and_names_both() {
+    let mut draft = four_bar(CRANK_ROCKER, "t", &[0.0]);
+    draft.drivers.push(driver("second", "D", "0.2*t"));
+    for formulation in [Formulation::Relative, Formulation::Absolute] {
+        let fault = fault(&draft, formulation);
+        let TopologyFault::OverDriven { driver_names, .. } = &fault else { panic!("{fault:?}") };
+        assert_eq!(driver_names, &["`motor`", "`second`"], "{formulation:?}");
+        assert_eq!(fault.code(), "HP0302");
+    }
+}
+
+#[test]
+fn a_driven_structure_is_over_driven() {
+    // A triangle of bars has no motion for its motor.
+    let z = Some([0.0, 0.0, 1.0]);
+    let draft = Draft {
+        name: "triangle".into(),
+        bodies: ["a", "b"].map(body).into(),
+        joints: vec![
+            joint("P", "revolute", ["ground", "a"], &[[0.0, 0.0, 0.0]], z),
+            joint("Q", "revolute", ["a", "b"], &[[0.5, 0.8, 0.0]], z),
+            joint("R", "revolute", ["b", "ground"], &[[1.0, 0.0, 0.0]], z),
+        ],
+        drivers: vec![driver("motor", "P", "t")],
+        times: vec![0.0],
+        ..Draft::default()
+    };
+    for formulation in [Formulation::Relative, Formulation::Absolute] {
+        let fault = fault(&draft, formulation);
+        let TopologyFault::OverDriven { driver_names, .. } = &fault else { panic!("{fault:?}") };
+        assert_eq!(driver_names, &["`motor`"]);
+    }
+}
+
+#[test]
+fn redundant_constraints_of_a_planar_mechanism_are_counted_and_named() {
+    let model = Model::from_draft(&four_bar(CRANK_ROCKER, "t", &[0.0])).unwrap();
+    for formulation in [Formulation::Relative, Formulation::Absolute] {
+        let analysis = Analysis::with(&model, formulation).unwrap();
+        assert_eq!(analysis.topology().redundant().count(), 3, "{formulation:?}");
+        assert_eq!(analysis.topology().mobility, 1);
+    }
+}
+
+#[test]
+fn a_crank_that_cannot_turn_fully_stops_at_its_limit_and_keeps_what_was_solved() {
+    // Non-Grashof: the crank of 0.5 stalls where coupler and rocker (0.4 and 0.3) are stretched out.
+    let points = [[0.0, 0.0], [0.3, 0.4], [0.5, 0.3], [0.6, 0.0]];
+    let model = Model::from_draft(&four_bar(points, "2*pi*t", &times(1.0, 100))).unwrap();
+    let (b, c, d) = (points[1], points[2], points[3]);
+    let length = |p: [f64; 2], q: [f64; 2]| (p[0] - q[0]).hypot(p[1] - q[1]);
+    let (a, reach, ground) = (length([0.0; 2], b), length(b, c) + length(c, d), length([0.0; 2], d));
+    // At the limit the triangle A B D has the sides a, reach, ground.
+    let cosine = (a * a + ground * ground - reach * reach) / (2.0 * a * ground);
+    let limit = (cosine.acos() - f64::atan2(b[1], b[0])) / (2.0 * std::f64::consts::PI);
+    for formulation in [Formulation::Relative, Formulation::Absolute] {
+        let solution = Analysis::with(&model, formulation).unwrap().run();
+        let stop = solution.stop.expect("the crank cannot turn fully");
+        assert_eq!(stop.kind, StopKind::Limit, "{stop:?}");
+        assert!((stop.failed_time - limit).abs() < 1e-6, "{} {limit}", stop.failed_time);
+        assert_eq!(solution.motion.len(), (limit * 100.0) as usize + 1);
+        assert!(stop.joints.len() >= 3);
+        assert!(solution.motion.states.iter().all(|s| s.r.is_finite() && s.a.is_finite()));
+    }
+}
+
+#[test]
+fn a_parallelogram_stops_at_its_change_point() {
+    let model = Model::from_draft(&four_bar(
+        [[0.0, 0.0], [0.0, 0.2], [0.5, 0.2], [0.5, 0.0]],
+        "2*pi*t",
+        &times(1.0, 90),
+    ))
+    .unwrap();
+    let stop = Analysis::new(&model).unwrap().run().stop.expect("flat at a quarter turn");
+    assert_eq!(stop.kind, StopKind::BranchChange);
+    assert!((stop.failed_time - 0.25).abs() < 1e-4, "{stop:?}");
+}
+
+#[test]
+fn a_rocker_driven_back_and_forth_stays_on_its_branch() {
+    let model = Model::from_draft(&four_bar(CRANK_ROCKER, "2*pi*t", &times(3.0, 60))).unwrap();
+    let solution = Analysis::new(&model).unwrap().run();
+    assert!(solution.stop.is_none(), "{:?}", solution.stop);
+    let rocker = solution.measured.index("rocker").unwrap();
+    for k in 0..=20 {
+        let [a, b, c] = [0, 20, 40].map(|turn| solution.measured.value(k + turn, rocker)[0]);
+        assert!((a - b).abs() < 1e-11 && (a - c).abs() < 1e-11);
+    }
+}
+
+#[test]
+fn a_planar_linkage_with_a_tilted_pin_locks() {
+    let mut draft = four_bar(CRANK_ROCKER, "2*pi*t", &times(1.0, 50));
+    draft.joints[2].axis = Some(Line::Along([0.0, 0.02, 1.0].into()));
+    let model = Model::from_draft(&draft).unwrap();
+    for formulation in [Formulation::Relative, Formulation::Absolute] {
+        // Tilted by a degree, it has no motion at all: found already at the design configuration.
+        let fault = Analysis::with(&model, formulation).unwrap_err();
+        assert!(matches!(fault, TopologyFault::OverDriven { .. }), "{fault:?}");
+    }
+}
+
+#[test]
+fn a_law_without_a_value_is_a_fault_of_the_model() {
+    let faults = Model::from_draft(&four_bar(CRANK_ROCKER, "sqrt(t - 1)", &[0.0, 2.0])).unwrap_err();
+    assert_eq!(faults[0].code, "HP0214");
+    assert!(faults[0].message.contains("t = 0"), "{}", faults[0].message);
+}
+
+#[test]
+fn a_law_that_jumps_between_two_output_times_ends_the_run_there() {
+    // 1/(t - 0.5)^2 is finite at all output times, and asks for the impossible in between.
+    let model = Model::from_draft(&four_bar(CRANK_ROCKER, "1e-3/(t - 0.505)^2", &times(1.0, 100))).unwrap();
+    let solution = Analysis::new(&model).unwrap().run();
+    if let Some(stop) = solution.stop {
+        assert!(stop.failed_time > 0.45 && stop.failed_time < 0.56, "{stop:?}");
+    }
+    assert!(solution.motion.states.iter().all(|s| s.a.is_finite()));
+}
+
+#[test]
+fn an_interrupted_run_keeps_what_it_has() {
+    let model = Model::from_draft(&four_bar(CRANK_ROCKER, "2*pi*t", &times(1.0, 100))).unwrap();
+    let solution = Analysis::new(&model).unwrap().run_with(|p| {
+        if p.done == 10 { std::ops::ControlFlow::Break(()) } else { std::ops::ControlFlow::Continue(()) }
+    });
+    assert_eq!(solution.motion.len(), 10);
+    assert_eq!(solution.stop.unwrap().kind, StopKind::Interrupted);
+}

@@ -1,0 +1,228 @@
+//! What must be equal, is: formulations, lanes, moved and turned mechanisms, swapped bodies.
+
+use hardpoint::model::*;
+use hardpoint::space::{Mat3, Pose, Vec3};
+use hardpoint::topology::Formulation;
+use hardpoint::{Analysis, Solution};
+
+use crate::workbench::*;
+
+/// Largest relative difference of all body states and sensitivities of two solutions.
+fn difference(a: &Solution, b: &Solution) -> f64 {
+    assert_eq!(a.motion.times, b.motion.times);
+    let state = |s: &hardpoint::motion::BodyState| {
+        [s.r, s.v, s.omega, s.a, s.alpha, s.rotation.cols[0], s.rotation.cols[1]]
+    };
+    let sensitivity = |s: &hardpoint::sensitivity::BodySensitivity| [s.dr, s.dpi, s.dv, s.domega, s.da, s.dalpha];
+    let mut most = 0.0_f64;
+    let mut compare = |x: &[Vec3], y: &[Vec3], scale: &mut [f64]| {
+        for (k, (x, y)) in x.iter().zip(y).enumerate() {
+            scale[k] = scale[k].max(x.norm());
+            most = most.max((*x - *y).norm() / scale[k]);
+        }
+    };
+    let mut scale = [1.0; 7];
+    for (x, y) in a.motion.states.iter().zip(&b.motion.states) {
+        compare(&state(x), &state(y), &mut scale);
+    }
+    let mut scale = [1.0; 6];
+    for k in 0..a.motion.len() {
+        for v in 0..a.sensitivities.variables {
+            if let (Some(x), Some(y)) = (a.sensitivities.at(k, v), b.sensitivities.at(k, v)) {
+                for (x, y) in x.iter().zip(y) {
+                    compare(&sensitivity(x), &sensitivity(y), &mut scale);
+                }
+            }
+        }
+    }
+    most
+}
+
+#[test]
+fn absolute_and_relative_coordinates_agree_on_every_mechanism() {
+    for name in REFERENCES {
+        let model = reference(name);
+        let relative = Analysis::new(&model).unwrap().run();
+        let absolute = Analysis::with(&model, Formulation::Absolute).unwrap().run();
+        assert!(relative.stop.is_none() && absolute.stop.is_none(), "{name}");
+        let d = difference(&relative, &absolute);
+        assert!(d < 1e-10, "{name}: {d:e}");
+        for (r, a) in relative.sensitivities.admissibility.iter().zip(&absolute.sensitivities.admissibility) {
+            assert_eq!(std::mem::discriminant(r), std::mem::discriminant(a), "{name}: {r:?} {a:?}");
+        }
+    }
+}
+
+#[test]
+fn eight_designs_in_lanes_are_the_same_as_one_by_one() {
+    for name in REFERENCES {
+        let model = reference(name);
+        let analysis = Analysis::new(&model).unwrap();
+        let nominal = analysis.run();
+        let followed: Vec<usize> =
+            (0..model.variables.len()).filter(|&v| nominal.sensitivities.at(0, v).is_some()).collect();
+        // Eleven designs: a full group of lanes and a part of one.
+        let designs: Vec<Vec<f64>> = (0..11)
+            .map(|k| {
+                let mut design = vec![0.0; model.variables.len()];
+                design[followed[k % followed.len()]] = 1e-3 * (k as f64 - 5.0);
+                design
+            })
+            .collect();
+        for (design, lane) in designs.iter().zip(analysis.run_designs(&designs)) {
+            let single = analysis.run_design(design);
+            assert!(lane.stop.is_none() && single.stop.is_none());
+            // Round-off differs only where lanes share a pivot order that one design alone would not choose.
+            let d = difference(&lane, &single);
+            assert!(d < 1e-11, "{name}: {d:e}");
+        }
+    }
+}
+
+#[test]
+fn a_moved_and_turned_mechanism_has_the_same_measures_and_turned_motion() {
+    let placed = Pose {
+        rot: Mat3::from_rotation_vector(Vec3::new(0.4, -1.1, 0.7)),
+        r: Vec3::new(3.0, -2.0, 0.5),
+    };
+    for name in REFERENCES {
+        let draft = reference_draft(name);
+        let moved = moved_draft(&draft, placed);
+        let (a, b) = (Model::from_draft(&draft).unwrap(), Model::from_draft(&moved).unwrap());
+        let (a, b) = (Analysis::new(&a).unwrap().run(), Analysis::new(&b).unwrap().run());
+        for (k, (x, y)) in a.motion.states.iter().zip(&b.motion.states).enumerate() {
+            if k % a.motion.bodies != 0 {
+                assert!(apart(placed.point(x.r), y.r) < 1e-11, "{name}");
+                assert!(apart(placed.rot * x.alpha, y.alpha) < 1e-8 * (1.0 + x.alpha.norm()), "{name}");
+            }
+        }
+        for k in 0..a.motion.len() {
+            for (m, output) in a.measured.outputs.iter().enumerate() {
+                // Toe, camber and global coordinates are meant to depend on where the mechanism stands.
+                if output.name.contains('.') || ["toe", "camber"].contains(&output.name.as_str()) {
+                    continue;
+                }
+                let (x, y) = (a.measured.value(k, m), b.measured.value(k, m));
+                for order in 0..3 {
+                    assert!((x[order] - y[order]).abs() < 1e-9 * (1.0 + x[order].abs()), "{name} {}", output.name);
+                }
+                for v in (0..a.sensitivities.variables).map(VariableId) {
+                    if a.sensitivities.at(k, v.0).is_some() {
+                        let (x, y) = (a.measured.d(k, v, m), b.measured.d(k, v, m));
+                        let scale = 1.0 + x[2].abs();
+                        assert!((0..3).all(|o| (x[o] - y[o]).abs() < 1e-8 * scale), "{name} {}", output.name);
+                    }
+                }
+            }
+        }
+    }
+}
+
+fn moved_draft(draft: &Draft, to: Pose) -> Draft {
+    let mut d = draft.clone();
+    let place = |p: &mut Place| {
+        if let Place::At(v) = p {
+            *v = to.point(*v);
+        }
+    };
+    let line = |l: &mut Option<Line>| {
+        if let Some(Line::Along(v)) = l {
+            *v = to.rot * *v;
+        }
+    };
+    for b in &mut d.bodies {
+        if let FrameDraft::Pose(p) = &mut b.frame {
+            *p = to.compose(*p);
+        }
+    }
+    for j in &mut d.joints {
+        j.at.iter_mut().for_each(place);
+        line(&mut j.axis);
+        line(&mut j.axis2);
+    }
+    for v in &mut d.design {
+        for c in &mut v.changes {
+            if let ChangeDraft::Marker { position, rotation, .. } = c {
+                (*position, *rotation) = (to.rot * *position, to.rot * *rotation);
+            }
+        }
+    }
+    for p in &mut d.points {
+        place(&mut p.at);
+    }
+    for m in &mut d.measures {
+        if let MeasureKindDraft::Distance { from: PointRef::On { at, .. }, to: PointRef::On { at: other, .. } } =
+            &mut m.kind
+        {
+            place(at);
+            place(other);
+        }
+    }
+    d
+}
+
+#[test]
+fn swapping_the_bodies_of_every_joint_only_turns_the_signs_of_its_coordinates() {
+    for name in REFERENCES {
+        let draft = reference_draft(name);
+        let mut swapped = draft.clone();
+        for j in &mut swapped.joints {
+            // A universal joint's two pins belong to body i and body j, so swap those too.
+            j.bodies.swap(0, 1);
+            j.at.reverse();
+            if j.axis2.is_some() {
+                std::mem::swap(&mut j.axis, &mut j.axis2);
+            }
+        }
+        for d in &mut swapped.drivers {
+            if draft.joints.iter().any(|j| j.name == d.joint && j.kind != "leg") {
+                d.law = d.law.clone().scaled(-1.0);
+            }
+        }
+        for v in &mut swapped.design {
+            for c in &mut v.changes {
+                if let ChangeDraft::Marker { end, .. } = c {
+                    *end = match end {
+                        End::I => End::J,
+                        End::J => End::I,
+                        End::Both => End::Both,
+                    };
+                }
+            }
+        }
+        let (a, b) = (Model::from_draft(&draft).unwrap(), Model::from_draft(&swapped).unwrap());
+        let (a, b) = (Analysis::new(&a).unwrap().run(), Analysis::new(&b).unwrap().run());
+        let d = difference(&a, &b);
+        assert!(d < 1e-10, "{name}: {d:e}");
+    }
+}
+
+#[test]
+fn an_admissible_design_leaves_every_body_where_it_is_while_all_drivers_are_zero() {
+    // The slider-crank's driver sin(2 pi t) is zero at t = 1.5 and 2, the strut's and rack's at t = 10.
+    for (name, k) in [("slider_crank", 7), ("slider_crank", 8), ("macpherson", 8), ("macpherson", 0)] {
+        let model = reference(name);
+        let solution = Analysis::new(&model).unwrap().run();
+        for v in 0..model.variables.len() {
+            if solution.sensitivities.admissibility[v] == hardpoint::sensitivity::Admissibility::Admissible {
+                for s in solution.sensitivities.at(k, v).unwrap() {
+                    assert!(s.dr.norm() < 1e-12 && s.dpi.norm() < 1e-12, "{name} {}", model.variables[v].name);
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn null_variables_have_exactly_no_effect() {
+    let model = reference("slider_crank");
+    let solution = Analysis::new(&model).unwrap().run();
+    for name in ["J2_z", "J4_x", "J4_y", "J4_rx"] {
+        let v = model.variable(name).unwrap().0;
+        for k in 0..solution.motion.len() {
+            for s in solution.sensitivities.at(k, v).unwrap() {
+                assert!(s.da.norm() < 1e-11 && s.dalpha.norm() < 1e-11 && s.dr.norm() < 1e-14, "{name}");
+            }
+        }
+    }
+}

@@ -1,0 +1,9 @@
+//! The library as its users see it: whole mechanisms, from draft to sensitivities.
+
+mod design_variables;
+mod diagnosis;
+mod identities;
+mod reference;
+mod reference_case;
+mod verify;
+mod workbench;
