@@ -233,7 +233,9 @@ pub(crate) fn shown(name: &str) -> String {
 /// Control characters in a file must not reach the terminal.
 fn printable(text: String) -> String {
     if text.chars().any(char::is_control) {
-        text.chars().map(|c| if c.is_control() { c.escape_debug().to_string() } else { c.to_string() }).collect()
+        text.chars()
+            .map(|c| if c.is_control() { c.escape_debug().to_string() } else { c.to_string() })
+            .collect()
     } else {
         text
     }

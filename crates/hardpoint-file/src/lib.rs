@@ -238,9 +238,8 @@ fn neighbours(path: &Path) -> (Option<String>, Option<String>) {
     }
     let wanted = path.file_stem().and_then(|n| n.to_str()).unwrap_or_default();
     let stems = names.iter().filter_map(|n| n.strip_suffix(".toml"));
-    let help = closest(wanted, stems).map(|stem| {
-        format!("did you mean `{}`?", folder.join(format!("{stem}.toml")).display())
-    });
+    let help = closest(wanted, stems)
+        .map(|stem| format!("did you mean `{}`?", folder.join(format!("{stem}.toml")).display()));
     let more = names.len().saturating_sub(12);
     let list = names.iter().take(12).map(|n| format!("`{}`", shown(n))).collect::<Vec<_>>().join(", ");
     let more = if more > 0 { format!(" and {more} more") } else { String::new() };
@@ -259,6 +258,12 @@ fn neighbours(path: &Path) -> (Option<String>, Option<String>) {
 /// ```
 pub fn parse(text: &str, file_name: &str) -> Result<ModelFile, Diagnostics> {
     let source = Source::new(file_name, text);
+    if text.trim().is_empty() {
+        let d = source
+            .diagnostic(Severity::Error, "HP0104", "the file is empty", None)
+            .help("a model has `name`, `units`, `[hardpoints]`, `[bodies]`, `[joints]` and `[time]`");
+        return Err(Diagnostics::new(source, vec![d]));
+    }
     let (document, errors) = DeTable::parse_recoverable(&source.text);
     if !errors.is_empty() {
         let list = syntax_errors(&source, &errors);
@@ -287,15 +292,44 @@ pub fn parse(text: &str, file_name: &str) -> Result<ModelFile, Diagnostics> {
 
 fn syntax_errors(source: &Source, errors: &[toml::de::Error]) -> Vec<Diagnostic> {
     let mut list: Vec<Diagnostic> = Vec::new();
+    let mut last = (0, "");
     for error in errors {
         let span = error.span().unwrap_or(source.text.len()..source.text.len());
-        let message = format!("the file is not valid TOML: {}", error.message());
-        let d = source.diagnostic(Severity::Error, "HP0102", message, Some(span));
-        // What comes later on the same line is a consequence.
-        if list.iter().all(|other| other.line != d.line) {
-            list.push(d);
+        let line = source.line_column(span.start).0;
+        // The same complaint on this or the next lines follows from the first.
+        let follows =
+            list.iter().any(|d| d.line == Some(line)) || last.1 == error.message() && line <= last.0 + 2;
+        last = (line, error.message());
+        if follows {
+            continue;
         }
-        if list.len() == SYNTAX_ERRORS {
+        let (what, help) = match error.message() {
+            "duplicate key" => {
+                let key = source.text.get(span.clone()).unwrap_or_default();
+                let what = format!("`{}` is already there in this table", shown(key));
+                (what, Some("rename or remove one of the two; every name is used once in its table"))
+            }
+            m if m.starts_with("string values must be quoted") => {
+                (m.to_owned(), Some("write texts in quotes, and numbers with a decimal point"))
+            }
+            m if m.starts_with("missing comma between array") => {
+                (m.to_owned(), Some("close every `[` with `]`, and put `,` between the values"))
+            }
+            m if m.starts_with("invalid basic string") => {
+                (m.to_owned(), Some("close the text on the same line"))
+            }
+            m if m.starts_with("key with no value") => (m.to_owned(), Some("write `key = value`")),
+            m => (m.to_owned(), None),
+        };
+        let d = source.diagnostic(
+            Severity::Error,
+            "HP0102",
+            format!("this is not valid TOML: {what}"),
+            Some(span),
+        );
+        list.push(help.into_iter().fold(d, Diagnostic::help));
+        // Inside a list that is not closed, all the rest of the file looks wrong.
+        if list.len() == SYNTAX_ERRORS || error.message().contains("array") {
             break;
         }
     }
@@ -333,14 +367,13 @@ fn follows(fault: &Fault, places: &Places) -> bool {
 }
 
 fn shown_fault(source: &Source, places: &Places, fault: Fault) -> Diagnostic {
-    let Fault { code, mut at, message, notes, help } = fault;
-    // A move along a null direction: the direction is what is wrong, not the hardpoint.
-    let along = hardpoint::model::Locus { key: "along", item: None, ..at.clone() };
-    if code == "HP0217" && places.entry(at.section, at.index).is_some_and(|e| e.has("along")) {
-        at = along;
-    }
+    let Fault { code, at, message, notes, help } = fault;
     let span = places.find(&at);
     let mut d = source.diagnostic(Severity::Error, code, message, span);
     d = notes.into_iter().fold(d, Diagnostic::note);
+    if code == "HP0201" && at.section == Section::Design {
+        d = d
+            .help("`along = \"xyz\"` makes three variables NAME_x, NAME_y and NAME_z; rename one of the two");
+    }
     help.into_iter().fold(d, Diagnostic::help)
 }

@@ -10,9 +10,17 @@ use crate::tree::{Fields, Value};
 #[derive(Clone, Debug)]
 pub(crate) struct EntryPlace {
     name: Range<usize>,
-    keys: Vec<(&'static str, Range<usize>, Vec<Range<usize>>)>,
+    keys: Vec<KeyPlace>,
     /// Keys whose values could not be read: what the core says about them is only a consequence.
     pub unread: Vec<&'static str>,
+}
+
+/// Where the value of one key stands, and its elements if it is a list.
+#[derive(Clone, Debug)]
+struct KeyPlace {
+    key: &'static str,
+    value: Range<usize>,
+    items: Vec<Range<usize>>,
 }
 
 impl EntryPlace {
@@ -30,15 +38,16 @@ impl EntryPlace {
     }
 
     pub fn key(&mut self, key: &'static str, value: &Value<'_>) {
-        let items = value.get_ref().as_array().map_or(Vec::new(), |list| list.iter().map(|v| v.span()).collect());
-        self.keys.push((key, value.span(), items));
+        let items =
+            value.get_ref().as_array().map_or(Vec::new(), |list| list.iter().map(|v| v.span()).collect());
+        self.keys.push(KeyPlace { key, value: value.span(), items });
     }
 
     /// The places of a field's elements where they are not simply those of the list.
     pub fn items(&mut self, key: &'static str, items: Vec<Range<usize>>) {
-        match self.keys.iter_mut().find(|k| k.0 == key) {
-            Some(k) => k.2 = items,
-            None => self.keys.push((key, self.name.clone(), items)),
+        match self.keys.iter_mut().find(|k| k.key == key) {
+            Some(k) => k.items = items,
+            None => self.keys.push(KeyPlace { key, value: self.name.clone(), items }),
         }
     }
 
@@ -47,14 +56,10 @@ impl EntryPlace {
     }
 
     fn find(&self, key: &str, item: Option<usize>) -> Range<usize> {
-        match self.keys.iter().find(|k| k.0 == key) {
-            Some((_, value, items)) => item.and_then(|k| items.get(k)).unwrap_or(value).clone(),
+        match self.keys.iter().find(|k| k.key == key) {
+            Some(k) => item.and_then(|i| k.items.get(i)).unwrap_or(&k.value).clone(),
             None => self.name.clone(),
         }
-    }
-
-    pub fn has(&self, key: &str) -> bool {
-        self.keys.iter().any(|k| k.0 == key)
     }
 }
 

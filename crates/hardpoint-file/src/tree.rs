@@ -26,6 +26,8 @@ pub(crate) type Key = (&'static str, &'static str);
 #[derive(Clone, Copy)]
 pub(crate) struct Field<'a> {
     pub key: &'static str,
+    /// Where the key stands.
+    pub at: (usize, usize),
     pub value: &'a Value<'a>,
 }
 
@@ -55,7 +57,10 @@ impl<'a> Fields<'a> {
 
     /// How messages name the value of one key.
     pub fn subject(&self, key: &str) -> Subject {
-        Subject { name: format!("`{key}` of {}", self.what), example: format!("for example {}", self.example(key)) }
+        Subject {
+            name: format!("`{key}` of {}", self.what),
+            example: format!("for example {}", self.example(key)),
+        }
     }
 }
 
@@ -73,8 +78,15 @@ pub(crate) struct Reader<'s> {
 }
 
 impl Reader<'_> {
-    pub fn report(&mut self, code: &'static str, at: Range<usize>, message: impl Into<String>) -> &mut Diagnostic {
-        self.found.push(self.source.diagnostic(Severity::Error, code, message, Some(at)));
+    pub fn report(
+        &mut self,
+        code: &'static str,
+        at: Range<usize>,
+        message: impl Into<String>,
+    ) -> &mut Diagnostic {
+        // The model as a whole has no place of its own.
+        let at = Some(at).filter(|at| *at != (0..0));
+        self.found.push(self.source.diagnostic(Severity::Error, code, message, at));
         self.found.last_mut().expect("just pushed")
     }
 
@@ -113,8 +125,9 @@ impl Reader<'_> {
         let names = || keys.iter().map(|k| k.0);
         let known = |key: &str| names().find(|k| *k == key);
         for (key, value) in table.iter().take(MOST_ENTRIES) {
+            let at = (key.span().start, key.span().end);
             if let Some(key) = known(key.get_ref()) {
-                fields.list.push(Field { key, value });
+                fields.list.push(Field { key, at, value });
             }
         }
         for (key, value) in table.iter().take(MOST_ENTRIES) {
@@ -132,12 +145,13 @@ impl Reader<'_> {
             let list: Vec<_> = names().collect();
             let d = self.report("HP0103", key.span(), message);
             d.notes.push(format!("valid keys: {}", quoted(&list)));
-            d.help = match close {
-                Some(close) => Some(format!("write `{close}`")),
-                None => Some(format!("remove `{}`", shown(name))),
-            };
+            if close.is_none() {
+                let remove = || format!("remove `{}`", shown(name));
+                d.help = Some(above_tables(name).unwrap_or_else(remove));
+            }
+            let at = (key.span().start, key.span().end);
             if let Some(key) = missing.into_iter().find(|k| Some(*k) == close) {
-                fields.list.push(Field { key, value });
+                fields.list.push(Field { key, at, value });
             }
         }
         if table.len() > MOST_ENTRIES {
@@ -162,15 +176,22 @@ impl Reader<'_> {
     pub fn out_of_place(&mut self, fields: &Fields<'_>, key: &str, why: impl Into<String>) {
         if let Some(field) = fields.get(key) {
             let message = format!("`{key}` has no meaning in {}", fields.what);
-            self.report("HP0107", field.value.span(), message).notes.push(why.into());
+            self.report("HP0107", field.at.0..field.at.1, message).notes.push(why.into());
         }
     }
 
     pub fn too_many(&mut self, at: Range<usize>, what: &str, count: usize) {
-        self.senseless(at, format!("{what} has {count} entries")).notes.push(format!("at most {MOST_ENTRIES} are read"));
+        self.senseless(at, format!("{what} has {count} entries"))
+            .notes
+            .push(format!("at most {MOST_ENTRIES} are read"));
     }
 
-    pub fn table<'a>(&mut self, value: &'a Value<'a>, subject: &Subject, expected: &str) -> Option<&'a DeTable<'a>> {
+    pub fn table<'a>(
+        &mut self,
+        value: &'a Value<'a>,
+        subject: &Subject,
+        expected: &str,
+    ) -> Option<&'a DeTable<'a>> {
         let table = value.get_ref().as_table();
         if table.is_none() {
             self.wrong(value, subject, expected);
@@ -178,7 +199,12 @@ impl Reader<'_> {
         table
     }
 
-    pub fn list<'a>(&mut self, value: &'a Value<'a>, subject: &Subject, expected: &str) -> Option<Vec<&'a Value<'a>>> {
+    pub fn list<'a>(
+        &mut self,
+        value: &'a Value<'a>,
+        subject: &Subject,
+        expected: &str,
+    ) -> Option<Vec<&'a Value<'a>>> {
         let Some(list) = value.get_ref().as_array() else {
             self.wrong(value, subject, expected);
             return None;
@@ -278,8 +304,10 @@ impl Reader<'_> {
         let mut numbers = [0.0; N];
         let mut complete = true;
         for (k, v) in list.iter().enumerate() {
-            let subject =
-                Subject { name: format!("number {} of {}", k + 1, subject.name), example: subject.example.clone() };
+            let subject = Subject {
+                name: format!("value {} of {}", k + 1, subject.name),
+                example: subject.example.clone(),
+            };
             match self.number(v, &subject) {
                 Some(x) => numbers[k] = x,
                 None => complete = false,
@@ -351,6 +379,13 @@ pub(crate) fn axis_named(word: &str) -> Option<Vec3> {
     };
     let k = ["x", "y", "z"].iter().position(|l| *l == letter)?;
     Some(Vec3::AXES[k] * sign)
+}
+
+/// The remedy for a key of the model that stands below a `[table]` and so became a part of that.
+pub(crate) fn above_tables(name: &str) -> Option<String> {
+    ["name", "description", "units"]
+        .contains(&name)
+        .then(|| format!("`{name}` belongs to the model as a whole: write it above the first `[...]` line"))
 }
 
 pub(crate) fn quoted(words: &[&str]) -> String {

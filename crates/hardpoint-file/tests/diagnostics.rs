@@ -98,6 +98,14 @@ fn keys() {
     broken("missing_key", &[("law = \"360*t\"\n", "")]);
     broken("missing_name", &[("name = \"four-bar\"\n", "")]);
     broken("missing_units", &[("units = { length = \"mm\", angle = \"deg\" }\n", "")]);
+    broken(
+        "key_below_a_table",
+        &[
+            ("units = { length = \"mm\", angle = \"deg\" }\n", ""),
+            ("[hardpoints]\n", "[hardpoints]\nunits = { length = \"mm\", angle = \"deg\" }\n"),
+            ("steps = 100", "steps = 100\ndescription = \"?\""),
+        ],
+    );
     broken("missing_bodies_of_joint", &[("bodies = [\"ground\", \"crank\"]\n", "")]);
     broken("missing_time", &[("[time]\nend = 1.0\nsteps = 100\n", "")]);
     broken("missing_axis", &[("axis = \"z\"\n\n[joints.J2]", "\n[joints.J2]")]);
@@ -113,7 +121,10 @@ fn keys() {
 fn types() {
     broken("wrong_type_of_key", &[("at = \"B\"", "at = \"B\"\ncut = \"yes\"")]);
     broken("wrong_type_of_entry", &[("crank = {}", "crank = 3")]);
-    broken("wrong_type_of_table", &[("[bodies]\ncrank = {}\ncoupler = {}\nrocker = {}", "[[bodies]]\nname = \"crank\"")]);
+    broken(
+        "wrong_type_of_table",
+        &[("[bodies]\ncrank = {}\ncoupler = {}\nrocker = {}", "[[bodies]]\nname = \"crank\"")],
+    );
     broken("two_coordinates", &[("B = [100, 50, 0]", "B = [100, 50]")]);
     broken("coordinate_with_unit", &[("B = [100, 50, 0]", "B = [\"100 mm\", 50, 0]")]);
     broken("coordinate_not_finite", &[("B = [100, 50, 0]", "B = [100, nan, 1e400]")]);
@@ -164,10 +175,13 @@ fn mechanism() {
         "frame_points_on_a_line",
         &[("crank = {}", "crank = { frame = { origin = \"A\", x = [1, 0, 0], xy = [2, 0, 0] } }")],
     );
-    broken("field_on_foreign_body", &[(
-        "[design.lean]\ntilt = \"J4\"\nabout = \"x\"",
-        "[design.tau]\nfields = [{ joint = \"J1\", body = \"rocker\", V = [1, 0, 0] }]",
-    )]);
+    broken(
+        "field_on_foreign_body",
+        &[(
+            "[design.lean]\ntilt = \"J4\"\nabout = \"x\"",
+            "[design.tau]\nfields = [{ joint = \"J1\", body = \"rocker\", V = [1, 0, 0] }]",
+        )],
+    );
 }
 
 #[test]
@@ -198,6 +212,53 @@ fn several_problems_at_once() {
             ("steps = 100", "steps = -5"),
         ],
     );
+}
+
+/// What only follows from another problem is not reported.
+#[test]
+fn consequences_are_not_reported() {
+    let long = "x".repeat(101);
+    for (old, new) in [
+        (
+            "[hardpoints]\nA = [0, 0, 0]\nB = [100, 50, 0]\nC = [300, 200, 0]\nD = [400, 0, 0]",
+            "[[hardpoints]]",
+        ),
+        ("[bodies]\ncrank = {}\ncoupler = {}\nrocker = {}", "[[bodies]]"),
+        ("A = [0, 0, 0]", "A = [0, \"0\", 0]"),
+        ("crank = {}", "crank = { frame = 3 }"),
+        ("bodies = [\"ground\", \"crank\"]", "bodies = [\"ground\", 3]"),
+        ("type = \"revolute\"", "type = 3"),
+        ("type = \"revolute\"", "type = \"hinge\""),
+        ("axis = \"z\"", "axis = \"w\""),
+        ("at = \"A\"", "at = 3"),
+        ("joint = \"J1\"", "joint = 3"),
+        ("law = \"360*t\"", "law = true"),
+        ("move = \"B\"", "move = [1, 2]"),
+        ("along = \"xyz\"", "along = 3"),
+        ("tilt = \"J4\"", "titl = \"J4\""),
+        ("body = \"coupler\"", "body = 3"),
+        ("type = \"position\"", "type = \"height\""),
+        ("steps = 100", "steps = \"many\""),
+        ("end = 1.0", "ende = 1.0"),
+        ("move = \"B\"", &format!("move = \"{long}\"")),
+    ] {
+        let text = VALID.replacen(old, new, 1);
+        let error = parse(&text, "x.toml").unwrap_err();
+        let expected = if new.contains("[1, 2]") { 2 } else { 1 };
+        assert_eq!(error.list().len(), expected, "{new}: {error}");
+    }
+}
+
+#[test]
+fn line_ends_and_byte_order_mark_do_not_matter() {
+    let bad = VALID.replacen("at = \"A\"", "at = \"ä\", colour = 1", 1);
+    let place = |text: &str| {
+        let e = parse(text, "x.toml").unwrap_err();
+        (e.list()[0].line, e.list()[0].column)
+    };
+    assert_eq!(place(&bad), place(&bad.replace('\n', "\r\n")));
+    assert!(parse(&format!("\u{feff}{VALID}"), "x.toml").is_ok());
+    assert!(parse(&VALID.replace('\n', "\r\n"), "x.toml").is_ok());
 }
 
 #[test]

@@ -54,7 +54,10 @@ fn published_schema_is_the_schema() {
         std::fs::write(&path, schema()).unwrap();
     }
     let published = std::fs::read_to_string(&path).unwrap_or_default();
-    assert!(published == schema(), "run the tests with UPDATE_SCHEMA=1 and commit models/hardpoint.schema.json");
+    assert!(
+        published == schema(),
+        "run the tests with UPDATE_SCHEMA=1 and commit models/hardpoint.schema.json"
+    );
 }
 
 #[test]

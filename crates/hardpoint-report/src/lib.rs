@@ -1,5 +1,25 @@
-//! Shows results to people: the self-contained HTML report.
+//! Shows results to people and to other programs: tables, CSV, JSON and the self-contained HTML report.
 //!
-//! Nothing here computes: a caller hands over finished curves and facts in the user's units.
+//! Nothing here computes: the core has solved, and this crate converts to the user's units and formats.
+//!
+//! | module | what it makes |
+//! |---|---|
+//! | [`facts`] | what is known of the mechanism; shown alike by `check`, the summary and the page |
+//! | [`summary`] | `summary.json`: the facts, how the run went, the largest sensitivities |
+//! | [`verdict`] | `verify.json`: sensitivities against re-solved designs |
+//! | [`csv`] | `motion.csv` and `sensitivity.csv` |
+//! | [`payload`], [`page`] | `report.html` |
+//! | [`diagnose`] | why a run is impossible or ended early, as diagnostics of the model file |
+//! | [`figures`] | numbers and units as text |
 
+pub mod csv;
+pub mod diagnose;
+pub mod facts;
+pub mod figures;
 pub mod page;
+pub mod payload;
+pub mod summary;
+pub mod verdict;
+
+/// Program and version, for everything that is written.
+pub const GENERATOR: &str = concat!("hardpoint ", env!("CARGO_PKG_VERSION"));

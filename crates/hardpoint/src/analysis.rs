@@ -49,6 +49,7 @@ use crate::topology::{Formulation, Topology, TopologyFault};
 pub struct Analysis<'m> {
     model: &'m Model,
     topology: Topology,
+    measures: bool,
 }
 
 /// What a run found. Everything that was solved is here, also where something stopped it.
@@ -87,7 +88,12 @@ impl<'m> Analysis<'m> {
     /// # Errors
     /// As [`Analysis::new`].
     pub fn with(model: &'m Model, formulation: Formulation) -> Result<Self, TopologyFault> {
-        Ok(Self { model, topology: Topology::of(model, formulation)? })
+        Ok(Self { model, topology: Topology::of(model, formulation)?, measures: true })
+    }
+
+    /// The same analysis for callers that want the bodies only: [`Solution::measured`] stays empty.
+    pub fn bodies_only(self) -> Self {
+        Self { measures: false, ..self }
     }
 
     /// The plan.
@@ -159,8 +165,21 @@ impl<'m> Analysis<'m> {
         }
         motion.effort = stepper.effort;
         let sensitivities = sensing.finish(motion.is_empty());
-        let measured = measure::evaluate(model, &self.topology, geometry, &fields, &motion, &sensitivities);
+        let measured = self.measure(geometry, &fields, &motion, &sensitivities);
         Solution { motion, sensitivities, measured, stop }
+    }
+
+    fn measure(
+        &self,
+        geometry: &Geometry,
+        fields: &[Field],
+        motion: &Motion,
+        sensitivities: &Sensitivities,
+    ) -> Measured {
+        if !self.measures {
+            return Measured::default();
+        }
+        measure::evaluate(self.model, &self.topology, geometry, fields, motion, sensitivities)
     }
 
     /// Motions of many changed designs, eight at a time in SIMD lanes, in the order given.
@@ -176,7 +195,7 @@ impl<'m> Analysis<'m> {
                 Some(motions) => {
                     for (motion, geometry) in motions.into_iter().zip(&geometries) {
                         let none = Sensitivities::default();
-                        let measured = measure::evaluate(self.model, &self.topology, geometry, &[], &motion, &none);
+                        let measured = self.measure(geometry, &[], &motion, &none);
                         solutions.push(Solution { motion, sensitivities: none, measured, stop: None });
                     }
                 }

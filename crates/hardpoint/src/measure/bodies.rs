@@ -16,6 +16,7 @@ pub struct BodyJet<'a> {
 impl BodyJet<'_> {
     /// The direction `e` of the body's frame, in global components; the design turns it in the body at
     /// rate `de`.
+    #[inline]
     pub fn direction(&self, e: Vec3, de: Vec3) -> Vec3<Jet> {
         let (s, d) = (self.state, self.d);
         let e0 = s.rotation * e;
@@ -29,6 +30,7 @@ impl BodyJet<'_> {
 
     /// The point `s` of the body's frame, in global components; the design moves it in the body at
     /// velocity `ds`.
+    #[inline]
     pub fn point(&self, s: Vec3, ds: Vec3) -> Vec3<Jet> {
         let (state, d) = (self.state, self.d);
         let origin = Vec3::from_derivatives([[state.r, state.v, state.a], [d.dr, d.dv, d.da]]);

@@ -108,17 +108,11 @@ pub(crate) fn evaluate(
     for k in 0..motion.len() {
         let first = measured.values.len();
         let at = |field, d| Moment { model, geometry, field, states: motion.at(k), d };
-        for output in &outputs {
-            let [value, _] = at(&none, &still).output(output).c;
-            measured.values.push(value);
-        }
+        at(&none, &still).all(|jet| measured.values.push(jet.c[0]));
         unwrap_angles(model, topology, motion, k, &outputs, &mut measured.values, first);
         for (b, field) in fields.iter().enumerate() {
             match sensitivities.at(k, b) {
-                Some(d) => {
-                    let moment = at(field, d);
-                    measured.d.extend(outputs.iter().map(|o| moment.output(o).c[1]));
-                }
+                Some(d) => at(field, d).all(|jet| measured.d.push(jet.c[1])),
                 None => measured.d.extend(outputs.iter().map(|_| [f64::NAN; 3])),
             }
         }
@@ -184,10 +178,16 @@ impl Moment<'_> {
         BodyJet { state: &self.states[body.0], d: &self.d[body.0] }
     }
 
-    fn output(&self, output: &Output) -> Jet {
-        match output.source {
-            OutputSource::Measure(k) => self.measure(k, &self.model.measures[k]),
-            OutputSource::Point(p, axis) => self.point(p)[axis],
+    /// All outputs, in the order of [`outputs`].
+    fn all(&self, mut out: impl FnMut(Jet)) {
+        for (k, measure) in self.model.measures.iter().enumerate() {
+            out(self.measure(k, measure));
+        }
+        for (k, _) in self.model.points.iter().enumerate().filter(|(_, p)| !p.unnamed) {
+            let p = self.point(PointId(k));
+            out(p.x);
+            out(p.y);
+            out(p.z);
         }
     }
 

@@ -50,6 +50,7 @@ impl BodySensitivity {
 
     /// From the design twist W of a body and its time derivatives (`docs/theory.md` (14)):
     /// `V' = W. + ad(W) V`, `A' = W.. + ad(W.) V + ad(W) A`.
+    #[inline]
     pub(crate) fn from_twists([w0, w1, w2]: [Twist; 3], pose: Pose, v: Twist, a: Twist) -> Self {
         let dv = w1 + w0.ad(v);
         let da = w2 + w1.ad(v) + w0.ad(a);

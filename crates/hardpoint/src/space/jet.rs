@@ -26,6 +26,7 @@ impl Jet {
     }
 
     /// `g(self)`, from g and its first three derivatives at the value.
+    #[inline]
     fn chain(self, g: [f64; 4]) -> Self {
         let [[_, t, tt], [b, bt, btt]] = self.c;
         Self {
@@ -76,6 +77,7 @@ impl Jet {
 
 impl Add for Jet {
     type Output = Self;
+    #[inline]
     fn add(self, o: Self) -> Self {
         Self { c: std::array::from_fn(|i| std::array::from_fn(|j| self.c[i][j] + o.c[i][j])) }
     }
@@ -97,6 +99,7 @@ impl Neg for Jet {
 
 impl Mul for Jet {
     type Output = Self;
+    #[inline]
     fn mul(self, o: Self) -> Self {
         let time = |f: [f64; 3], g: [f64; 3]| {
             [f[0] * g[0], f[1] * g[0] + f[0] * g[1], f[2] * g[0] + 2.0 * f[1] * g[1] + f[0] * g[2]]
@@ -108,6 +111,7 @@ impl Mul for Jet {
 
 impl Vec3<Jet> {
     /// Scalar product of jets.
+    #[inline]
     pub fn dot_jet(self, o: Self) -> Jet {
         self.x * o.x + self.y * o.y + self.z * o.z
     }
@@ -118,6 +122,7 @@ impl Vec3<Jet> {
     }
 
     /// A vector of jets from its derivatives: `c[i][j]` as in [`Jet`].
+    #[inline]
     pub fn from_derivatives(c: [[Vec3; 3]; 2]) -> Self {
         let component = |k: usize| Jet { c: c.map(|row| row.map(|v| v[k])) };
         Self::new(component(0), component(1), component(2))

@@ -1,0 +1,46 @@
+//! The paper's two examples: motion only, motion with all sensitivities, eight designs in lanes.
+//!
+//! Figures are per run; `docs/performance.md` has them per step, as ratios within one run.
+
+use divan::Bencher;
+use divan::counter::ItemsCount;
+use hardpoint::Analysis;
+
+const MODELS: [&str; 2] = ["slider_crank", "macpherson"];
+
+fn main() {
+    divan::main();
+}
+
+/// Position, velocity and acceleration of all bodies at all output times.
+#[divan::bench(args = MODELS)]
+fn motion(bencher: Bencher, name: &str) {
+    let model = hardpoint_bench::model(name);
+    let analysis = Analysis::new(&model).unwrap().bodies_only();
+    bencher.counter(ItemsCount::new(model.times.len())).bench(|| analysis.run_motion());
+}
+
+/// The same with all sensitivities of all bodies by all design variables.
+#[divan::bench(args = MODELS)]
+fn all_sensitivities(bencher: Bencher, name: &str) {
+    let model = hardpoint_bench::model(name);
+    let analysis = Analysis::new(&model).unwrap().bodies_only();
+    bencher.counter(ItemsCount::new(model.times.len())).bench(|| analysis.run());
+}
+
+/// The same with all measures and points, and their sensitivities.
+#[divan::bench(args = MODELS)]
+fn all_sensitivities_and_measures(bencher: Bencher, name: &str) {
+    let model = hardpoint_bench::model(name);
+    let analysis = Analysis::new(&model).unwrap();
+    bencher.counter(ItemsCount::new(model.times.len())).bench(|| analysis.run());
+}
+
+/// Motions of eight designs side by side in SIMD lanes.
+#[divan::bench(args = MODELS)]
+fn eight_designs(bencher: Bencher, name: &str) {
+    let model = hardpoint_bench::model(name);
+    let analysis = Analysis::new(&model).unwrap().bodies_only();
+    let designs: Vec<Vec<f64>> = (0..8).map(|k| vec![1e-5 * f64::from(k); 1]).collect();
+    bencher.counter(ItemsCount::new(8 * model.times.len())).bench(|| analysis.run_designs(&designs));
+}

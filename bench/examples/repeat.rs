@@ -1,0 +1,26 @@
+//! Runs one model again and again, for profilers and instruction counters:
+//! `repeat MODEL motion|sensitivities|designs TIMES`.
+
+use hardpoint::Analysis;
+
+fn main() {
+    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    let [name, what, times] = arguments.as_slice() else {
+        panic!("usage: repeat MODEL motion|sensitivities|designs TIMES");
+    };
+    let model = hardpoint_bench::model(name);
+    let analysis = Analysis::new(&model).expect("a model that can be driven").bodies_only();
+    let designs = vec![vec![1e-5]; 8];
+    let mut steps = 0;
+    let before = std::time::Instant::now();
+    for _ in 0..times.parse().expect("a number of times") {
+        steps += match what.as_str() {
+            "motion" => analysis.run_motion().motion.len(),
+            "sensitivities" => analysis.run().motion.len(),
+            _ => analysis.run_designs(&designs).iter().map(|s| s.motion.len()).sum(),
+        };
+    }
+    let seconds = before.elapsed().as_secs_f64();
+    let iterations = analysis.run_motion().motion.effort;
+    println!("{steps} steps, {:.3} us each; {iterations:?}", 1e6 * seconds / steps as f64);
+}

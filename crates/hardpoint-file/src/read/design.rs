@@ -1,0 +1,236 @@
+//! Design variables.
+
+use hardpoint::joint::Quantity;
+use hardpoint::model::{ChangeDraft, End, Section, VariableDraft};
+use hardpoint::space::Vec3;
+use toml::de::DeValue;
+
+use super::Raw;
+use crate::places::EntryPlace;
+use crate::tree::{Fields, Key, Reader, axis_named};
+
+const DESIGN: &[Key] = &[
+    ("move", "\"A\""),
+    ("along", "\"z\""),
+    ("tilt", "\"J1\""),
+    ("about", "\"x\""),
+    ("fields", "[{ joint = \"J1\", body = \"crank\", V = [1, 0, 0] }]"),
+    ("markers", "[{ joint = \"J1\", on = \"j\", move = [0, 0, 1] }]"),
+    ("fixed_length", "true"),
+];
+const FIELD: &[Key] = &[("joint", "\"J1\""), ("body", "\"crank\""), ("V", "[1, 0, 0]"), ("U", "[0, 0, 0]")];
+const MARKER: &[Key] = &[("joint", "\"J1\""), ("on", "\"j\""), ("move", "[0, 0, 1]"), ("turn", "[0, 0, 0]")];
+
+impl Reader<'_> {
+    pub(super) fn design(&mut self, model: &Fields<'_>, raw: &mut Raw) {
+        for entry in self.entries(model, "design", "design variable") {
+            let fields = self.entry("design variable", &entry, DESIGN);
+            let mut place = EntryPlace::of(&fields);
+            let kinds: Vec<_> = ["move", "tilt", "fields", "markers"]
+                .into_iter()
+                .filter(|k| fields.get(k).is_some())
+                .collect();
+            let fixed_length = fields.get("fixed_length");
+            let fixed_length =
+                fixed_length.and_then(|f| self.boolean(f.value, &fields.subject("fixed_length")));
+            let (first, rest) = match kinds.split_first() {
+                Some((first, rest)) => (*first, rest),
+                None => {
+                    let message = format!("{} does not say what it changes", fields.what);
+                    self.report("HP0104", fields.at.clone(), message).help = Some(
+                        "give one of `move` (with `along`), `tilt` (with `about`), `fields`, `markers`; \
+                         for example `move = \"A\"` and `along = \"z\"`"
+                            .into(),
+                    );
+                    place.unread("name");
+                    ("", &[][..])
+                }
+            };
+            for key in rest {
+                self.out_of_place(&fields, key, format!("this variable is given by `{first}` already"));
+            }
+            if first != "move" {
+                self.out_of_place(&fields, "along", "`along` goes with `move`");
+            }
+            if first != "tilt" {
+                self.out_of_place(&fields, "about", "`about` goes with `tilt`");
+            }
+            let variables = match first {
+                "move" => self.moves(&fields, &entry.0, &mut place),
+                "tilt" => self.tilt(&fields, &mut place).map(|c| vec![(entry.0.clone(), vec![c])]),
+                "fields" => self.velocity_fields(&fields, &mut place).map(|c| vec![(entry.0.clone(), c)]),
+                "markers" => self.markers(&fields, &mut place).map(|c| vec![(entry.0.clone(), c)]),
+                _ => None,
+            };
+            let variables = variables.unwrap_or_else(|| {
+                place.unread("name");
+                vec![(entry.0.clone(), Vec::new())]
+            });
+            for (name, changes) in variables {
+                raw.places.push(Section::Design, place.clone());
+                raw.draft.design.push(VariableDraft {
+                    name,
+                    changes,
+                    fixed_length: fixed_length.unwrap_or(false),
+                });
+            }
+        }
+    }
+
+    /// Hardpoints that move together along one direction, or along each of the three axes.
+    fn moves(
+        &mut self,
+        fields: &Fields<'_>,
+        name: &str,
+        place: &mut EntryPlace,
+    ) -> Option<Vec<(String, Vec<ChangeDraft>)>> {
+        let f = fields.get("move")?;
+        let subject = fields.subject("move");
+        let expected = "a hardpoint's name or a list of names";
+        let hardpoints: Option<Vec<String>> = match f.value.get_ref() {
+            DeValue::String(_) => {
+                place.items("changes", vec![f.value.span()]);
+                self.name(f.value, &subject, expected).map(|n| vec![n])
+            }
+            _ => self.list(f.value, &subject, expected).and_then(|list| {
+                place.items("changes", list.iter().map(|v| v.span()).collect());
+                let names: Vec<_> = list.iter().map(|v| self.name(v, &subject, expected)).collect();
+                names.into_iter().collect()
+            }),
+        };
+        let along = self.need(fields, "along").and_then(|f| match f.value.get_ref().as_str() {
+            Some("xyz") => {
+                Some(["x", "y", "z"].map(|a| (format!("{name}_{a}"), axis_named(a))).into_iter().collect())
+            }
+            Some(word) if axis_named(word).is_none() => {
+                let known = ["x", "y", "z", "-x", "-y", "-z", "xyz"];
+                self.unknown_word(f.value.span(), &fields.subject("along"), word, &known);
+                None
+            }
+            _ => {
+                let subject = fields.subject("along");
+                let unit = self.vector(f.value, &subject)?.unit();
+                if unit.is_none() {
+                    self.senseless(f.value.span(), format!("{} has no direction", subject.name)).help =
+                        Some(subject.example);
+                }
+                Some(vec![(name.to_owned(), Some(unit?))])
+            }
+        });
+        let (hardpoints, along): (_, Vec<(String, Option<Vec3>)>) = (hardpoints?, along?);
+        let changes = |v: Option<Vec3>| {
+            let velocity = v.unwrap_or(Vec3::ZERO);
+            hardpoints.iter().map(|h| ChangeDraft::Move { hardpoint: h.clone(), velocity }).collect()
+        };
+        Some(along.into_iter().map(|(name, v)| (name, changes(v))).collect())
+    }
+
+    fn tilt(&mut self, fields: &Fields<'_>, place: &mut EntryPlace) -> Option<ChangeDraft> {
+        let f = fields.get("tilt")?;
+        place.items("changes", vec![f.value.span()]);
+        let joint = self.name(f.value, &fields.subject("tilt"), "the name of a joint");
+        let about = self.need(fields, "about").and_then(|f| self.line_of(fields, f, place));
+        Some(ChangeDraft::Tilt { joint: joint?, about: about? })
+    }
+
+    fn velocity_fields(&mut self, fields: &Fields<'_>, place: &mut EntryPlace) -> Option<Vec<ChangeDraft>> {
+        let items = self.tables(fields, "fields", FIELD, place)?;
+        let units = self.units;
+        let changes: Vec<_> = items
+            .iter()
+            .map(|f| {
+                let joint = self.required(f, "joint", "the name of a joint");
+                let body = self.required(f, "body", "the name of a body");
+                let v = self.optional_vector(f, "V")?;
+                let u = self.optional_vector(f, "U")?;
+                let (v, u) = (v.map(|x| units.length.metres(x)), u.map(|x| units.angle.radians(x)));
+                Some(ChangeDraft::Field { joint: joint?, body: body?, v: v.into(), u: u.into() })
+            })
+            .collect();
+        changes.into_iter().collect()
+    }
+
+    fn markers(&mut self, fields: &Fields<'_>, place: &mut EntryPlace) -> Option<Vec<ChangeDraft>> {
+        let items = self.tables(fields, "markers", MARKER, place)?;
+        let read: Vec<_> = items
+            .iter()
+            .map(|f| {
+                let joint = self.required(f, "joint", "the name of a joint");
+                let end = match f.get("on") {
+                    None => Some(End::Both),
+                    Some(on) => {
+                        let subject = f.subject("on");
+                        match self.name(on.value, &subject, "`\"i\"`, `\"j\"` or `\"both\"`")?.as_str() {
+                            "i" => Some(End::I),
+                            "j" => Some(End::J),
+                            "both" => Some(End::Both),
+                            word => {
+                                self.unknown_word(on.value.span(), &subject, word, &["i", "j", "both"]);
+                                None
+                            }
+                        }
+                    }
+                };
+                let position = self.optional_vector(f, "move")?;
+                let rotation = self.optional_vector(f, "turn")?;
+                Some((joint?, end?, position, rotation))
+            })
+            .collect();
+        let read: Vec<_> = read.into_iter().collect::<Option<_>>()?;
+        // A variable that only moves is a length and one that only turns is an angle: per unit of it the
+        // numbers are directions. One that does both is a plain number, so its velocities have units.
+        let moves = read.iter().any(|m| m.2 != [0.0; 3]);
+        let turns = read.iter().any(|m| m.3 != [0.0; 3]);
+        let (length, angle) = match moves && turns {
+            true => (self.units.to_si(Quantity::Length, 1.0), self.units.to_si(Quantity::Angle, 1.0)),
+            false => (1.0, 1.0),
+        };
+        Some(
+            read.into_iter()
+                .map(|(joint, end, position, rotation)| ChangeDraft::Marker {
+                    joint,
+                    end,
+                    position: Vec3::from(position) * length,
+                    rotation: Vec3::from(rotation) * angle,
+                })
+                .collect(),
+        )
+    }
+
+    /// A list of inline tables.
+    fn tables<'a>(
+        &mut self,
+        fields: &Fields<'a>,
+        key: &'static str,
+        keys: &'static [Key],
+        place: &mut EntryPlace,
+    ) -> Option<Vec<Fields<'a>>> {
+        let f = fields.get(key)?;
+        let subject = fields.subject(key);
+        let list = self.list(f.value, &subject, "a list of tables")?;
+        place.items("changes", list.iter().map(|v| v.span()).collect());
+        let tables: Vec<_> = list
+            .into_iter()
+            .enumerate()
+            .map(|(k, v)| {
+                let table = self.table(v, &subject, "a list of tables")?;
+                let what = format!("entry {} of `{key}` in {}", k + 1, fields.what);
+                Some(self.fields(what, v.span(), table, keys))
+            })
+            .collect();
+        tables.into_iter().collect()
+    }
+
+    pub(super) fn required(&mut self, fields: &Fields<'_>, key: &str, expected: &str) -> Option<String> {
+        let f = self.need(fields, key)?;
+        self.name(f.value, &fields.subject(key), expected)
+    }
+
+    /// Three numbers as written; zeros where they are left out.
+    fn optional_vector(&mut self, fields: &Fields<'_>, key: &str) -> Option<[f64; 3]> {
+        match fields.get(key) {
+            None => Some([0.0; 3]),
+            Some(f) => self.numbers::<3>(f.value, &fields.subject(key), "three numbers"),
+        }
+    }
+}

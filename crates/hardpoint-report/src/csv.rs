@@ -1,0 +1,124 @@
+//! `motion.csv` and `sensitivity.csv`: every solved number, in the user's units, with all its digits.
+//!
+//! Numbers are the shortest decimals that read back as the same double. A column's unit stands in its
+//! header. In `sensitivity.csv` that is the unit of the numerator; that of the denominator is in column `per`.
+
+use std::io::Write;
+
+use csv::WriterBuilder;
+use hardpoint::Solution;
+use hardpoint::joint::Quantity::{self, Angle, Length};
+use hardpoint::model::{Model, VariableId};
+use hardpoint::motion::BodyState;
+use hardpoint::sensitivity::BodySensitivity;
+use hardpoint::space::Vec3;
+use hardpoint_file::Units;
+
+use crate::figures::{order_unit, symbol};
+
+const ORDERS: [&str; 3] = ["", " rate", " acceleration"];
+
+/// Writes time, state of every body but ground, then value, rate and acceleration of every output.
+///
+/// # Errors
+/// Where `out` cannot be written.
+pub fn write_motion(model: &Model, units: Units, solution: &Solution, out: impl Write) -> csv::Result<()> {
+    let mut header = vec!["t [s]".to_owned()];
+    for body in &model.bodies[1..] {
+        let name = &body.name;
+        header.extend(components(name, "", units, Length, 0));
+        header.extend(["qw", "qx", "qy", "qz"].map(|q| format!("{name}.{q}")));
+        header.extend(components(name, "v", units, Length, 1));
+        header.extend(components(name, "omega_", units, Angle, 1));
+        header.extend(components(name, "a", units, Length, 2));
+        header.extend(components(name, "alpha_", units, Angle, 2));
+    }
+    header.extend(output_headers(solution, units, ""));
+    let mut writer = WriterBuilder::new().has_headers(false).from_writer(out);
+    writer.write_record(&header)?;
+    let mut row = Vec::with_capacity(header.len());
+    for (k, &t) in solution.motion.times.iter().enumerate() {
+        row.clear();
+        row.push(t);
+        for state in &solution.motion.at(k)[1..] {
+            push_state(&mut row, units, state);
+        }
+        for (m, output) in solution.measured.outputs.iter().enumerate() {
+            row.extend(solution.measured.value(k, m).map(|x| units.from_si(output.quantity, x)));
+        }
+        writer.serialize(&row)?;
+    }
+    writer.flush()?;
+    Ok(())
+}
+
+/// Writes one row per output time and design variable: derivatives of everything in `motion.csv` by that
+/// variable, orientation as a rotation vector `pi`. Variables that the mechanism cannot follow have no rows.
+///
+/// # Errors
+/// Where `out` cannot be written.
+pub fn write_sensitivity(model: &Model, units: Units, solution: &Solution, out: impl Write) -> csv::Result<()> {
+    let mut header = vec!["t [s]".to_owned(), "variable".to_owned(), "per".to_owned()];
+    for body in &model.bodies[1..] {
+        let name = format!("d {}", body.name);
+        header.extend(components(&name, "", units, Length, 0));
+        header.extend(components(&name, "pi_", units, Angle, 0));
+        header.extend(components(&name, "v", units, Length, 1));
+        header.extend(components(&name, "omega_", units, Angle, 1));
+        header.extend(components(&name, "a", units, Length, 2));
+        header.extend(components(&name, "alpha_", units, Angle, 2));
+    }
+    header.extend(output_headers(solution, units, "d "));
+    let mut writer = WriterBuilder::new().has_headers(false).from_writer(out);
+    writer.write_record(&header)?;
+    let mut row = Vec::with_capacity(header.len());
+    for (k, &t) in solution.motion.times.iter().enumerate() {
+        for (b, variable) in model.variables.iter().enumerate() {
+            let Some(bodies) = solution.sensitivities.at(k, b) else { continue };
+            row.clear();
+            for d in &bodies[1..] {
+                push_sensitivity(&mut row, units, variable.quantity, d);
+            }
+            for (m, output) in solution.measured.outputs.iter().enumerate() {
+                let d = solution.measured.d(k, VariableId(b), m);
+                row.extend(d.map(|x| units.derivative_from_si(output.quantity, variable.quantity, x)));
+            }
+            writer.serialize((t, &variable.name, symbol(units, variable.quantity), &row))?;
+        }
+    }
+    writer.flush()?;
+    Ok(())
+}
+
+fn components(body: &str, prefix: &str, units: Units, quantity: Quantity, order: usize) -> [String; 3] {
+    let unit = order_unit(units, quantity, order);
+    ["x", "y", "z"].map(|c| format!("{body}.{prefix}{c} [{unit}]"))
+}
+
+fn output_headers(solution: &Solution, units: Units, prefix: &str) -> Vec<String> {
+    let outputs = solution.measured.outputs.iter();
+    outputs
+        .flat_map(|o| {
+            [0, 1, 2].map(|k| format!("{prefix}{}{} [{}]", o.name, ORDERS[k], order_unit(units, o.quantity, k)))
+        })
+        .collect()
+}
+
+fn push_state(row: &mut Vec<f64>, units: Units, s: &BodyState) {
+    let mut push = |q: Quantity, v: Vec3| row.extend(v.to_array().map(|x| units.from_si(q, x)));
+    push(Length, s.r);
+    row.extend(s.quaternion());
+    let mut push = |q: Quantity, v: Vec3| row.extend(v.to_array().map(|x| units.from_si(q, x)));
+    push(Length, s.v);
+    push(Angle, s.omega);
+    push(Length, s.a);
+    push(Angle, s.alpha);
+}
+
+fn push_sensitivity(row: &mut Vec<f64>, units: Units, by: Quantity, d: &BodySensitivity) {
+    let parts =
+        [(Length, d.dr), (Angle, d.dpi), (Length, d.dv), (Angle, d.domega), (Length, d.da), (Angle, d.dalpha)];
+    for (of, v) in parts {
+        row.extend(v.to_array().map(|x| units.derivative_from_si(of, by, x)));
+    }
+}

@@ -1,0 +1,130 @@
+//! Numbers and units as text, for tables and messages. Files for machines carry full digits instead.
+
+use hardpoint::joint::Quantity;
+use hardpoint_file::Units;
+
+/// A number with five significant digits at most, without trailing zeros.
+///
+/// ```
+/// use hardpoint_report::figures::number;
+/// assert_eq!(number(0.123456789), "0.12346");
+/// assert_eq!(number(1250.0), "1250");
+/// assert_eq!(number(-3.2e-9), "-3.2e-9");
+/// ```
+pub fn number(value: f64) -> String {
+    rounded(value, 5)
+}
+
+/// A number with so many significant digits at most, without trailing zeros.
+pub fn rounded(value: f64, digits: usize) -> String {
+    if value == 0.0 || !value.is_finite() {
+        return format!("{}", value + 0.0);
+    }
+    // Rounding first: 9.999999 has another power of ten than its five digits.
+    let text = format!("{value:.*e}", digits - 1);
+    let (_, power) = text.split_once('e').unwrap_or((&text, "0"));
+    let power: i32 = power.parse().unwrap_or(0);
+    if (-4..6).contains(&power) {
+        let decimals = (digits as i32 - 1 - power).max(0) as usize;
+        let plain = format!("{value:.decimals$}");
+        if plain.contains('.') { plain.trim_end_matches('0').trim_end_matches('.').into() } else { plain }
+    } else {
+        let (lead, power) = text.split_once('e').unwrap_or((&text, "0"));
+        let lead = if lead.contains('.') { lead.trim_end_matches('0').trim_end_matches('.') } else { lead };
+        format!("{lead}e{power}")
+    }
+}
+
+/// A relative error: two digits.
+pub fn error(value: f64) -> String {
+    if value == 0.0 { "0".into() } else { format!("{value:.1e}") }
+}
+
+/// A duration in the unit that suits it.
+pub fn seconds(value: f64) -> String {
+    match value {
+        v if v < 1e-3 => format!("{} µs", rounded(v * 1e6, 3)),
+        v if v < 1.0 => format!("{} ms", rounded(v * 1e3, 3)),
+        v => format!("{} s", rounded(v, 3)),
+    }
+}
+
+/// A number with its unit; a plain number has none.
+pub fn with_unit(value: f64, unit: &str) -> String {
+    if unit.is_empty() || unit == "1" { number(value) } else { format!("{} {unit}", number(value)) }
+}
+
+/// The symbol of a quantity's unit; `1` for a plain number.
+pub fn symbol(units: Units, quantity: Quantity) -> &'static str {
+    match units.of(quantity).0 {
+        "" => "1",
+        symbol => symbol,
+    }
+}
+
+/// The unit of the quantity's time derivative of order 0, 1 or 2: `mm`, `mm/s`, `mm/s^2`.
+pub fn order_unit(units: Units, quantity: Quantity, order: usize) -> String {
+    format!("{}{}", symbol(units, quantity), ["", "/s", "/s^2"][order])
+}
+
+/// The unit of a derivative: `deg/mm`, `mm/s per mm` as `mm/(s*mm)`.
+///
+/// ```
+/// use hardpoint_report::figures::per;
+/// assert_eq!(per("deg", "mm"), "deg/mm");
+/// assert_eq!(per("deg/s", "mm"), "deg/(s*mm)");
+/// assert_eq!(per("deg", "1"), "deg");
+/// ```
+pub fn per(of: &str, by: &str) -> String {
+    match (of.split_once('/'), by) {
+        (_, "1") => of.into(),
+        (Some((top, below)), by) => format!("{top}/({below}*{by})"),
+        (None, by) => format!("{of}/{by}"),
+    }
+}
+
+/// Names with separators: `` `a`, `b` and `c` ``.
+pub fn names<'a>(names: impl IntoIterator<Item = &'a str>) -> String {
+    let quoted: Vec<String> = names.into_iter().map(|n| format!("`{n}`")).collect();
+    match quoted.split_last() {
+        Some((last, rest)) if !rest.is_empty() => format!("{} and {last}", rest.join(", ")),
+        Some((last, _)) => last.clone(),
+        None => String::new(),
+    }
+}
+
+/// `1 step`, `2 steps`.
+pub fn count(n: usize, one: &str) -> String {
+    if n == 1 { format!("1 {one}") } else { format!("{n} {one}s") }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_carry_the_digits_asked_for_and_no_more() {
+        let cases: [(f64, &str); 9] = [
+            (0.0, "0"),
+            (-0.0, "0"),
+            (1.0, "1"),
+            (99999.96, "100000"),
+            (1234567.0, "1.2346e6"),
+            (0.00012345678, "0.00012346"),
+            (0.00001, "1e-5"),
+            (-345.44, "-345.44"),
+            (1e-300, "1e-300"),
+        ];
+        for (value, text) in cases {
+            assert_eq!(number(value), text);
+        }
+        assert_eq!(rounded(9.99, 2), "10");
+        assert_eq!(seconds(0.01234), "12.3 ms");
+    }
+
+    #[test]
+    fn lists_read_as_a_sentence() {
+        assert_eq!(names(["a"]), "`a`");
+        assert_eq!(names(["a", "b", "c"]), "`a`, `b` and `c`");
+    }
+}

@@ -1,0 +1,384 @@
+//! From a solution to everything that the page shows, in the user's units.
+//!
+//! All measures and named points, and the origins of all bodies, are offered as quantities with their
+//! sensitivities; each is compared with central differences of re-solved designs where the caller has them.
+//! A long motion is thinned and, where that is not enough, the bodies lose their sensitivities, so that the
+//! page stays small enough to open at once: the CSV files hold everything.
+
+use std::path::Path;
+
+use hardpoint::joint::Quantity as Kind;
+use hardpoint::measure::OutputSource;
+use hardpoint::model::{BodyId, HardpointId, JointId, Model, VariableId};
+use hardpoint::sensitivity::BodySensitivity;
+use hardpoint::space::Vec3;
+use hardpoint::study::{Difference, compare_with_difference};
+use hardpoint::topology::Role;
+use hardpoint::{Analysis, Solution};
+use hardpoint_file::{ModelFile, Units};
+
+use crate::facts::{Answer, Facts};
+use crate::figures::{count, error, number, order_unit, seconds, symbol};
+use crate::page::{
+    Admissibility, Arrow, BodyTrack, Curve, Fact, FiniteDifference, JointMark, Payload, Quantity, Sensitivity, Status,
+    Units as PageUnits, Variable,
+};
+use crate::summary::{RoundOff, RunStatus, Summary};
+
+/// The page shows at most about this many output times.
+const MOST_STEPS: usize = 1000;
+/// All curves together take at most about this many bytes of the page.
+const MOST_BYTES: usize = 9 << 20;
+/// A value of a curve in the page: 4 bytes in base64.
+const BYTES_PER_VALUE: f64 = 16.0 / 3.0;
+const AXES: [&str; 3] = ["x", "y", "z"];
+
+/// Everything that the page shows of a run. `differences[b]` are those of variable b, where there are any.
+pub fn payload(
+    file: &ModelFile,
+    analysis: &Analysis<'_>,
+    solution: &Solution,
+    differences: &[Option<Difference>],
+    summary: &Summary,
+) -> Payload {
+    let (model, units) = (&file.model, file.units);
+    let detail = Detail::that_fits(model, solution, differences.iter().any(Option::is_some));
+    let steps: Vec<usize> = (0..solution.motion.len()).step_by(detail.stride).collect();
+    let compose = Compose { model, units, analysis, solution, steps, detail };
+    Payload {
+        title: model.name.clone(),
+        file: file_name(file.file_name()),
+        generator: crate::GENERATOR.into(),
+        units: PageUnits { length: units.length.symbol().into(), angle: units.angle.symbol().into(), time: "s".into() },
+        status: status(summary, detail),
+        summary: headline(summary),
+        times: compose.curve(|k| solution.motion.times[k]),
+        bodies: compose.bodies(),
+        joints: compose.joints(),
+        quantities: compose.quantities(),
+        variables: compose.variables(&summary.model, differences),
+        checks: summary.model.tables(),
+    }
+}
+
+/// How much the page shows.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+struct Detail {
+    /// Every so many steps.
+    stride: usize,
+    /// Sensitivities of body origins.
+    bodies: bool,
+    /// Their comparison with differences.
+    body_differences: bool,
+}
+
+impl Detail {
+    fn that_fits(model: &Model, solution: &Solution, compared: bool) -> Self {
+        let steps = solution.motion.len();
+        let bodies = model.bodies.len() - 1;
+        let variables = model.variables.len();
+        let outputs = solution.measured.outputs.len();
+        let bytes = |d: Self| {
+            let both = if compared { 2 } else { 1 };
+            let of_bodies = if d.body_differences { 3 * bodies * both } else { 3 * bodies * usize::from(d.bodies) };
+            let curves = 3 * (outputs + 3 * bodies) + 7 * (bodies + 1) + 3 * variables * (outputs * both + of_bodies);
+            (curves * steps.div_ceil(d.stride)) as f64 * BYTES_PER_VALUE
+        };
+        let stride = steps.div_ceil(MOST_STEPS).max(1);
+        let all = Self { stride, bodies: true, body_differences: true };
+        let levels = [all, Self { body_differences: false, ..all }, Self { body_differences: false, bodies: false, ..all }];
+        let fits = |d: &Self| bytes(*d) <= MOST_BYTES as f64;
+        let coarser = (stride..).map(|stride| Self { stride, ..levels[2] });
+        let coarser = coarser.take_while(|d| steps.div_ceil(d.stride) >= MOST_STEPS / 10);
+        levels.into_iter().chain(coarser).find(fits).unwrap_or(levels[2])
+    }
+}
+
+fn file_name(file: &str) -> String {
+    Path::new(file).file_name().map_or_else(|| file.into(), |n| n.to_string_lossy().into_owned())
+}
+
+fn status(summary: &Summary, detail: Detail) -> Status {
+    let steps = &summary.steps;
+    let mut message = match (&summary.stop, summary.status) {
+        (Some(stop), RunStatus::Stopped) => {
+            let (code, what) = (stop.code, &stop.message);
+            format!("Solved {} of {} steps; then {what} ({code}).", steps.solved, steps.asked)
+        }
+        (_, RunStatus::Interrupted) => {
+            format!("Solved {} of {} steps; then the run was interrupted.", steps.solved, steps.asked)
+        }
+        _ => format!("All {} steps were solved.", steps.asked),
+    };
+    if detail.stride > 1 {
+        message += &format!(" This page shows every {}th step; the CSV files hold all of them.", detail.stride);
+    }
+    if !detail.bodies && summary.model.counts.bodies > 0 && !summary.model.variables.is_empty() {
+        message += " Sensitivities of body origins are in the CSV file only.";
+    }
+    Status { complete: summary.status == RunStatus::Complete, message }
+}
+
+/// The handful of figures at the top.
+fn headline(summary: &Summary) -> Vec<Fact> {
+    let fact = |label: &str, value: String| Fact { label: label.into(), value };
+    let (model, steps) = (&summary.model, &summary.steps);
+    let cut = model.joints.iter().filter(|j| j.role == "cut").count();
+    let span = format!("{} to {} s", number(steps.start), number(steps.last_solved.unwrap_or(steps.start)));
+    let bodies = match model.counts.bodies {
+        1 => "1 body".to_owned(),
+        n => format!("{n} bodies"),
+    };
+    let mut facts = vec![
+        fact("degrees of freedom", model.freedom_line()),
+        fact("bodies and joints", format!("{bodies}, {} ({cut} cut)", count(model.counts.joints, "joint"))),
+        fact("loops", model.loops_line()),
+    ];
+    if model.counts.redundant_constraints > 0 {
+        facts.push(fact("redundant constraints", model.counts.redundant_constraints.to_string()));
+    }
+    facts.push(fact("steps", format!("{}, {span}", steps.solved)));
+    facts.push(fact("worst residual", format!("{} m or rad", error(summary.effort.worst_residual_si))));
+    if !model.variables.is_empty() {
+        facts.push(fact("design variables", model.variables_line()));
+    }
+    facts.push(fact("solved in", seconds(summary.timings.solve)));
+    facts
+}
+
+struct Compose<'a> {
+    model: &'a Model,
+    units: Units,
+    analysis: &'a Analysis<'a>,
+    solution: &'a Solution,
+    /// The output times that are shown.
+    steps: Vec<usize>,
+    detail: Detail,
+}
+
+/// Orders of time derivative of a body's origin.
+type Orders = [fn(&BodySensitivity) -> Vec3; 3];
+const ORIGIN: Orders = [|s| s.dr, |s| s.dv, |s| s.da];
+
+impl Compose<'_> {
+    fn curve(&self, value: impl Fn(usize) -> f64) -> Curve {
+        self.steps.iter().map(|&k| value(k)).collect()
+    }
+
+    fn curves(&self, value: impl Fn(usize, usize) -> f64) -> [Curve; 3] {
+        [0, 1, 2].map(|order| self.curve(|k| value(k, order)))
+    }
+
+    fn length(&self, v: Vec3) -> [f64; 3] {
+        v.to_array().map(|x| self.units.from_si(Kind::Length, x))
+    }
+
+    fn bodies(&self) -> Vec<BodyTrack> {
+        let geometry = self.model.geometry(&[]);
+        let mut points: Vec<Vec<(Vec3, String)>> = vec![Vec::new(); self.model.bodies.len()];
+        let mut add = |body: BodyId, at: Vec3, label: &str| {
+            let near = |p: &Vec3| (*p - at).norm() <= 1e-9 * self.model.size();
+            let list = &mut points[body.0];
+            match list.iter_mut().find(|(p, _)| near(p)) {
+                Some((_, labels)) if labels.split(", ").any(|l| l == label) => {}
+                Some((_, labels)) => *labels += &format!(", {label}"),
+                None => list.push((at, label.into())),
+            }
+        };
+        for (j, joint) in self.model.joints.iter().enumerate() {
+            for end in 0..2 {
+                add(joint.bodies[end], geometry.markers[j][end].r, self.label(joint.at[end], &joint.name));
+            }
+        }
+        for (p, point) in self.model.points.iter().enumerate().filter(|(_, p)| !p.unnamed) {
+            add(point.body, geometry.points[p], &point.name);
+        }
+        let states = &self.solution.motion;
+        let track = |(b, points): (usize, Vec<(Vec3, String)>)| {
+            let poses = self.steps.iter().flat_map(|&k| {
+                let s = &states.at(k)[b];
+                let [x, y, z] = self.length(s.r);
+                let [qw, qx, qy, qz] = s.quaternion();
+                [x, y, z, qw, qx, qy, qz]
+            });
+            let (skeleton, labels) = points.into_iter().map(|(p, label)| (self.length(p), label)).unzip();
+            BodyTrack { name: self.model.bodies[b].name.clone(), poses: poses.collect(), skeleton, labels }
+        };
+        points.into_iter().enumerate().map(track).collect()
+    }
+
+    /// The hardpoint's name, or that of the joint whose coordinates were written in its place.
+    fn label<'m>(&'m self, at: HardpointId, joint: &'m str) -> &'m str {
+        let hardpoint = &self.model.hardpoints[at.0];
+        if hardpoint.unnamed { joint } else { &hardpoint.name }
+    }
+
+    fn joints(&self) -> Vec<JointMark> {
+        let geometry = self.model.geometry(&[]);
+        let roles = &self.analysis.topology().roles;
+        let mark = |(j, joint): (usize, &hardpoint::model::Joint)| {
+            let [i, k] = &geometry.markers[j];
+            JointMark {
+                name: joint.name.clone(),
+                kind: joint.kind.name.into(),
+                body_i: joint.bodies[0].0,
+                body_j: joint.bodies[1].0,
+                at_i: self.length(i.r),
+                at_j: self.length(k.r),
+                axis: joint.axis.map(|_| i.rot.cols[2].to_array()),
+                cut: matches!(roles[j], Role::Cut(_)),
+            }
+        };
+        self.model.joints.iter().enumerate().map(mark).collect()
+    }
+
+    /// All outputs, then x, y and z of every body's origin.
+    fn quantities(&self) -> Vec<Quantity> {
+        let measured = &self.solution.measured;
+        let outputs = measured.outputs.iter().enumerate().map(|(m, output)| {
+            let value = |k, order: usize| self.units.from_si(output.quantity, measured.value(k, m)[order]);
+            let group = if matches!(output.source, OutputSource::Measure(_)) { "measure" } else { "point" };
+            self.quantity(&output.name, output.quantity, group, value)
+        });
+        let origins = (1..self.model.bodies.len()).flat_map(|b| (0..3).map(move |axis| (b, axis))).map(|(b, axis)| {
+            let name = format!("{}.{}", self.model.bodies[b].name, AXES[axis]);
+            let value = |k, order: usize| {
+                let s = &self.solution.motion.at(k)[b];
+                self.length([s.r, s.v, s.a][order])[axis]
+            };
+            self.quantity(&name, Kind::Length, "body", value)
+        });
+        outputs.chain(origins).collect()
+    }
+
+    fn quantity(&self, name: &str, kind: Kind, group: &str, value: impl Fn(usize, usize) -> f64) -> Quantity {
+        let [unit, rate_unit, accel_unit] = [0, 1, 2].map(|order| order_unit(self.units, kind, order));
+        let [value, rate, accel] = self.curves(value);
+        Quantity { name: name.into(), unit, rate_unit, accel_unit, group: group.into(), value, rate, accel }
+    }
+
+    fn variables(&self, facts: &Facts, differences: &[Option<Difference>]) -> Vec<Variable> {
+        let round_off = RoundOff::new(self.model, self.solution);
+        let variable = |(b, fact): (usize, &crate::facts::VariableFact)| {
+            let known = matches!(fact.answer, Answer::Admissible | Answer::Reassembled);
+            let difference = differences.get(b).and_then(Option::as_ref);
+            Variable {
+                name: fact.name.clone(),
+                description: fact.change.replace('`', ""),
+                unit: fact.unit.into(),
+                admissibility: match fact.answer {
+                    Answer::Admissible | Answer::Unknown => Admissibility::Admissible,
+                    Answer::Reassembled => Admissibility::Reassembled,
+                    Answer::CannotFollow => Admissibility::CannotFollow,
+                },
+                note: fact.note(),
+                arrows: self.arrows(VariableId(b)),
+                sensitivities: if known { self.sensitivities(b, difference, &round_off) } else { Vec::new() },
+            }
+        };
+        facts.variables.iter().enumerate().map(variable).collect()
+    }
+
+    /// The design velocity of every marker and named point that the variable moves, in its body's frame.
+    fn arrows(&self, variable: VariableId) -> Vec<Arrow> {
+        let geometry = self.model.geometry(&[]);
+        let field = self.model.field(variable);
+        let by = self.model.variables[variable.0].quantity;
+        let speed = |v: Vec3| v.to_array().map(|x| self.units.derivative_from_si(Kind::Length, by, x));
+        let markers = field.markers.iter().map(|m| {
+            let JointId(j) = m.joint;
+            let s = geometry.markers[j][m.end].r;
+            Arrow {
+                body: self.model.joints[j].bodies[m.end].0,
+                at: self.length(s),
+                v: speed(m.twist.at(s)),
+                turn: m.twist.w.to_array().map(|x| self.units.derivative_from_si(Kind::Angle, by, x)),
+            }
+        });
+        let points = field.points.iter().map(|(p, v)| Arrow {
+            body: self.model.points[p.0].body.0,
+            at: self.length(geometry.points[p.0]),
+            v: speed(*v),
+            turn: [0.0; 3],
+        });
+        markers.chain(points).collect()
+    }
+
+    fn sensitivities(&self, b: usize, difference: Option<&Difference>, round_off: &RoundOff) -> Vec<Sensitivity> {
+        let measured = &self.solution.measured;
+        let columns = measured.outputs.len();
+        let bodies = self.model.bodies.len();
+        let agreement = difference.map(|d| Agreement::new(self, d));
+        let mut list = Vec::new();
+        for (m, output) in measured.outputs.iter().enumerate() {
+            let overlay = difference.zip(agreement.as_ref()).map(|(d, agreement)| {
+                (d, agreement.of_output(m), move |k: usize, order: usize| d.outputs[k * columns + m][order])
+            });
+            let exact = |k: usize, order: usize| measured.d(k, VariableId(b), m)[order];
+            list.push(self.sensitivity(list.len(), output.quantity, b, exact, overlay, round_off));
+        }
+        for (body, axis) in (1..bodies).flat_map(|body| (0..3).map(move |axis| (body, axis))) {
+            if !self.detail.bodies {
+                break;
+            }
+            let of = |s: &BodySensitivity, order: usize| ORIGIN[order](s).to_array()[axis];
+            let overlay = difference.zip(agreement.as_ref()).filter(|_| self.detail.body_differences);
+            let overlay = overlay.map(|(d, agreement)| {
+                (d, agreement.of_body(body), move |k: usize, order: usize| of(&d.bodies[k * bodies + body], order))
+            });
+            let exact = |k: usize, order: usize| {
+                self.solution.sensitivities.at(k, b).map_or(f64::NAN, |s| of(&s[body], order))
+            };
+            list.push(self.sensitivity(list.len(), Kind::Length, b, exact, overlay, round_off));
+        }
+        list
+    }
+
+    /// One sensitivity, with the comparison where there is one; what is round-off all the time becomes 0.
+    fn sensitivity<'d, F: Fn(usize, usize) -> f64>(
+        &self,
+        quantity: usize,
+        kind: Kind,
+        b: usize,
+        exact: impl Fn(usize, usize) -> f64,
+        overlay: Option<(&'d Difference, [f64; 3], F)>,
+        round_off: &RoundOff,
+    ) -> Sensitivity {
+        let by = self.model.variables[b].quantity;
+        let shown = |x: f64| self.units.derivative_from_si(kind, by, x);
+        let steps = self.solution.motion.len();
+        let matters =
+            [0, 1, 2].map(|order| (0..steps).any(|k| !(exact(k, order).abs() <= round_off.of(b, kind, order))));
+        let [value, rate, accel] =
+            self.curves(|k, order| if matters[order] { shown(exact(k, order)) } else { 0.0 });
+        let fd = overlay.map(|(d, worst, difference)| {
+            let [value, rate, accel] = self.curves(|k, order| shown(difference(k, order)));
+            let step = self.units.from_si(by, d.step);
+            FiniteDifference { value, rate, accel, step, step_unit: symbol(self.units, by).into(), worst }
+        });
+        Sensitivity { quantity, value, rate, accel, fd }
+    }
+}
+
+/// How well a difference agrees with the exact sensitivities, in the order in which the core compares:
+/// six kinds of motion of every body, then three orders of every output.
+struct Agreement {
+    errors: Vec<f64>,
+    bodies: usize,
+}
+
+impl Agreement {
+    fn new(compose: &Compose<'_>, difference: &Difference) -> Self {
+        let list = compare_with_difference(compose.analysis, compose.solution, difference);
+        Self { errors: list.into_iter().map(|e| e.error).collect(), bodies: compose.model.bodies.len() - 1 }
+    }
+
+    /// Of a body's position, velocity and acceleration.
+    fn of_body(&self, body: usize) -> [f64; 3] {
+        [0, 2, 4].map(|kind| self.errors[kind * self.bodies + body - 1])
+    }
+
+    fn of_output(&self, m: usize) -> [f64; 3] {
+        [0, 1, 2].map(|order| self.errors[6 * self.bodies + 3 * m + order])
+    }
+}

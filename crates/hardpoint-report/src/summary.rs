@@ -1,0 +1,273 @@
+//! `summary.json`: what was run, how it went, and the largest sensitivities.
+
+use hardpoint::joint::Quantity;
+use hardpoint::measure::OutputSource;
+use hardpoint::model::{Model, VariableId};
+use hardpoint::motion::StopKind;
+use hardpoint::study::natural_step;
+use hardpoint::Solution;
+use hardpoint_file::{Diagnostic, ModelFile, Units};
+use serde::Serialize;
+
+use crate::facts::Facts;
+use crate::figures::{order_unit, per, symbol};
+
+/// Everything that `summary.json` holds. Figures are in the model's units, times in s.
+#[derive(Clone, Debug, Serialize)]
+pub struct Summary {
+    /// Program and version.
+    pub generator: &'static str,
+    /// How the run ended.
+    pub status: RunStatus,
+    /// The mechanism.
+    pub model: Facts,
+    /// Output times.
+    pub steps: Steps,
+    /// What the solution took.
+    pub effort: EffortFact,
+    /// Why it ended early, if it did.
+    pub stop: Option<StopFact>,
+    /// The largest sensitivities of every measure.
+    pub sensitivities: Vec<Ranking>,
+    /// Where the time went.
+    pub timings: Timings,
+    /// The files that were written.
+    pub files: Vec<String>,
+    /// Warnings and errors, also those shown on the terminal.
+    pub diagnostics: Vec<Diagnostic>,
+}
+
+/// How a run ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum RunStatus {
+    /// At its last output time.
+    Complete,
+    /// The mechanism could not go on; the part before is there.
+    Stopped,
+    /// The user ended it; the part before is there.
+    Interrupted,
+}
+
+/// Output times, s.
+#[derive(Clone, Debug, Serialize)]
+pub struct Steps {
+    /// How many were solved.
+    pub solved: usize,
+    /// How many were asked for.
+    pub asked: usize,
+    /// The first one.
+    pub start: f64,
+    /// The last one asked for.
+    pub end: f64,
+    /// The last one solved.
+    pub last_solved: Option<f64>,
+}
+
+/// What the solution took.
+#[derive(Clone, Debug, Serialize)]
+pub struct EffortFact {
+    /// Newton iterations over all steps.
+    pub iterations: usize,
+    /// Steps in between that the predictor needed.
+    pub substeps: usize,
+    /// Largest residual of any constraint, m or rad whatever the model's units.
+    pub worst_residual_si: f64,
+    /// Smallest over largest pivot; 0 at a limit position.
+    pub least_pivot_ratio: f64,
+    /// Time of that, s.
+    pub least_pivot_time: f64,
+}
+
+/// Why a run ended early.
+#[derive(Clone, Debug, Serialize)]
+pub struct StopFact {
+    /// Stable code.
+    pub code: &'static str,
+    /// In a sentence.
+    pub message: String,
+    /// The last time that was solved, s.
+    pub last_time: Option<f64>,
+    /// The earliest time known to fail, s.
+    pub failed_time: f64,
+    /// Drivers at the last solved position.
+    pub drivers: Vec<DriverValue>,
+    /// Smallest over largest pivot of the loop there.
+    pub pivot_ratio: f64,
+    /// The joints of that loop.
+    pub joints: Vec<String>,
+}
+
+/// A driver's value.
+#[derive(Clone, Debug, Serialize)]
+pub struct DriverValue {
+    /// Its name.
+    pub name: String,
+    /// Its value.
+    pub value: f64,
+    /// Its unit.
+    pub unit: &'static str,
+}
+
+/// The design variables that move a measure, largest first within each unit of variables.
+#[derive(Clone, Debug, Serialize)]
+pub struct Ranking {
+    /// The measure.
+    pub measure: String,
+    /// `value`, `rate` or `acceleration`.
+    pub order: &'static str,
+    /// Sensitivities above round-off.
+    pub largest: Vec<Ranked>,
+}
+
+/// The largest sensitivity of a measure by one variable over the motion.
+#[derive(Clone, Debug, Serialize)]
+pub struct Ranked {
+    /// The variable.
+    pub variable: String,
+    /// The variable's unit; only sensitivities by the same unit can be compared.
+    pub per: &'static str,
+    /// The sensitivity of largest magnitude, with its sign.
+    pub value: f64,
+    /// Its unit.
+    pub unit: String,
+    /// Its time, s.
+    pub time: f64,
+}
+
+/// Where the time went, s.
+#[derive(Clone, Copy, Debug, Default, Serialize)]
+pub struct Timings {
+    /// Reading and checking the file, planning the solution.
+    pub read: f64,
+    /// Motion and sensitivities.
+    pub solve: f64,
+    /// Re-solving moved designs to compare with.
+    pub compare: f64,
+    /// Writing the files, but for this one.
+    pub write: f64,
+    /// All of it.
+    pub total: f64,
+}
+
+impl Summary {
+    /// The summary of a run, without files.
+    pub fn new(file: &ModelFile, facts: Facts, solution: &Solution) -> Self {
+        let (model, effort) = (&file.model, solution.motion.effort);
+        Self {
+            generator: crate::GENERATOR,
+            status: match &solution.stop {
+                None => RunStatus::Complete,
+                Some(s) if s.kind == StopKind::Interrupted => RunStatus::Interrupted,
+                Some(_) => RunStatus::Stopped,
+            },
+            model: facts,
+            steps: Steps {
+                solved: solution.motion.len(),
+                asked: model.times.len(),
+                start: model.times.first().copied().unwrap_or_default(),
+                end: model.times.last().copied().unwrap_or_default(),
+                last_solved: solution.motion.times.last().copied(),
+            },
+            effort: EffortFact {
+                iterations: effort.iterations,
+                substeps: effort.substeps,
+                worst_residual_si: effort.worst_residual,
+                least_pivot_ratio: effort.least_pivot_ratio,
+                least_pivot_time: effort.least_pivot_time,
+            },
+            stop: stop_fact(file, solution),
+            sensitivities: rankings(model, file.units, solution),
+            timings: Timings::default(),
+            files: Vec::new(),
+            diagnostics: Vec::new(),
+        }
+    }
+}
+
+fn stop_fact(file: &ModelFile, solution: &Solution) -> Option<StopFact> {
+    let (model, units) = (&file.model, file.units);
+    let stop = solution.stop.as_ref()?;
+    let drivers = model.drivers.iter().zip(&stop.drivers).map(|(driver, value)| {
+        let quantity = model.driven(driver).quantity;
+        DriverValue {
+            name: driver.name.clone(),
+            value: units.from_si(quantity, *value),
+            unit: symbol(units, quantity),
+        }
+    });
+    Some(StopFact {
+        code: stop.code(),
+        message: stop.headline(model),
+        last_time: stop.last_time,
+        failed_time: stop.failed_time,
+        drivers: drivers.collect(),
+        pivot_ratio: stop.pivot_ratio,
+        joints: stop.joints.iter().map(|j| model.joints[j.0].name.clone()).collect(),
+    })
+}
+
+fn rankings(model: &Model, units: Units, solution: &Solution) -> Vec<Ranking> {
+    let measured = &solution.measured;
+    let round_off = RoundOff::new(model, solution);
+    let mut rankings = Vec::new();
+    for (m, output) in measured.outputs.iter().enumerate() {
+        if !matches!(output.source, OutputSource::Measure(_)) || model.variables.is_empty() {
+            continue;
+        }
+        for (order, name) in ["value", "rate", "acceleration"].into_iter().enumerate() {
+            let mut largest = Vec::new();
+            for (b, variable) in model.variables.iter().enumerate() {
+                if solution.motion.is_empty() || solution.sensitivities.at(0, b).is_none() {
+                    continue;
+                }
+                let d = |k: usize| measured.d(k, VariableId(b), m)[order];
+                let Some(k) = (0..measured.len()).max_by(|&p, &q| d(p).abs().total_cmp(&d(q).abs())) else { continue };
+                if d(k).abs() <= round_off.of(b, output.quantity, order) {
+                    continue;
+                }
+                largest.push(Ranked {
+                    variable: variable.name.clone(),
+                    per: symbol(units, variable.quantity),
+                    value: units.derivative_from_si(output.quantity, variable.quantity, d(k)),
+                    unit: per(&order_unit(units, output.quantity, order), symbol(units, variable.quantity)),
+                    time: solution.motion.times[k],
+                });
+            }
+            let kinds = [Quantity::Length, Quantity::Angle, Quantity::Number].map(|q| symbol(units, q));
+            let kind = |r: &Ranked| kinds.iter().position(|unit| *unit == r.per);
+            largest.sort_by(|a, b| kind(a).cmp(&kind(b)).then(b.value.abs().total_cmp(&a.value.abs())));
+            rankings.push(Ranking { measure: output.name.clone(), order: name, largest });
+        }
+    }
+    rankings
+}
+
+/// What counts as no sensitivity at all: a change of the design by the size of the mechanism, or by 1 rad,
+/// would change the quantity by less than this part of the whole motion.
+const NOTHING: f64 = 1e-10;
+
+/// The level below which a sensitivity is round-off and is shown as 0.
+pub(crate) struct RoundOff {
+    size: f64,
+    /// Of the motion at orders 0, 1 and 2: lengths in sizes, angles in rad.
+    magnitude: [f64; 3],
+    natural: Vec<f64>,
+}
+
+impl RoundOff {
+    pub fn new(model: &Model, solution: &Solution) -> Self {
+        let size = model.size();
+        let magnitude = solution.motion.states.iter().fold([1.0_f64, 0.0, 0.0], |m, s| {
+            [m[0], m[1].max(s.omega.norm()).max(s.v.norm() / size), m[2].max(s.alpha.norm()).max(s.a.norm() / size)]
+        });
+        let natural = (0..model.variables.len()).map(|b| natural_step(model, VariableId(b))).collect();
+        Self { size, magnitude, natural }
+    }
+
+    /// For a quantity's derivative by variable b, SI.
+    pub fn of(&self, b: usize, quantity: Quantity, order: usize) -> f64 {
+        let unit = if quantity == Quantity::Length { self.size } else { 1.0 };
+        NOTHING * self.magnitude[order] * unit / self.natural[b]
+    }
+}

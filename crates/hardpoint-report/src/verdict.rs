@@ -1,0 +1,198 @@
+//! `verify.json`: exact sensitivities against re-solved designs.
+
+use hardpoint::Analysis;
+use hardpoint::study::{CheckOutcome, PASS, StepError, Verification, natural_step};
+use hardpoint_file::{ModelFile, Units};
+use serde::Serialize;
+
+use crate::figures::{error, number, rounded, symbol};
+use crate::page::Table;
+
+/// Everything that `verify.json` holds. Steps are in the variable's unit, times in s.
+#[derive(Clone, Debug, Serialize)]
+pub struct Verdict {
+    /// Program and version.
+    pub generator: &'static str,
+    /// The mechanism's name.
+    pub name: String,
+    /// The model file, as it was given.
+    pub file: String,
+    /// The units.
+    pub units: Units,
+    /// Whether every variable that has sensitivities passed.
+    pub passed: bool,
+    /// Whether it was ended before all variables were checked.
+    pub interrupted: bool,
+    /// The best agreement must not exceed this.
+    pub tolerance: f64,
+    /// The variable whose best agreement is worst.
+    pub worst: Option<Worst>,
+    /// One entry per variable that was checked.
+    pub checks: Vec<CheckFact>,
+    /// Time taken, s.
+    pub seconds: f64,
+}
+
+/// Where the best agreement is worst.
+#[derive(Clone, Debug, Serialize)]
+pub struct Worst {
+    /// The variable.
+    pub variable: String,
+    /// The quantity.
+    pub quantity: String,
+    /// Largest relative deviation at the best step.
+    pub error: f64,
+}
+
+/// The check of one variable.
+#[derive(Clone, Debug, Serialize)]
+pub struct CheckFact {
+    /// The variable.
+    pub variable: String,
+    /// Its unit; `1` for a plain number.
+    pub unit: &'static str,
+    /// What came of it.
+    pub outcome: Outcome,
+    /// The step that agrees best.
+    pub best: Option<StepFact>,
+    /// All steps that could be solved, from coarse to fine.
+    pub sweep: Vec<StepFact>,
+}
+
+/// What came of a check.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Outcome {
+    /// The best step agrees.
+    Passed,
+    /// No step agrees.
+    Failed,
+    /// The mechanism cannot follow the variable: nothing to compare.
+    CannotFollow,
+    /// No moved design could be solved to the end.
+    NotSolved,
+}
+
+/// Analytic against finite difference at one step.
+#[derive(Clone, Debug, Serialize)]
+pub struct StepFact {
+    /// The step as part of the change that moves the farthest marker by the mechanism's size, or by 1 rad.
+    pub part: f64,
+    /// The step, in the variable's unit.
+    pub step: f64,
+    /// Largest relative deviation over all times and quantities.
+    pub error: f64,
+    /// The quantity where it is.
+    pub quantity: String,
+    /// The time where it is, s.
+    pub time: f64,
+}
+
+impl Verdict {
+    /// The verdict of a finished verification.
+    pub fn new(file: &ModelFile, analysis: &Analysis<'_>, verification: &Verification, seconds: f64) -> Self {
+        let (model, units) = (analysis.model(), file.units);
+        let check = |c: &hardpoint::study::Check| {
+            let variable = &model.variables[c.variable.0];
+            let natural = natural_step(model, c.variable);
+            let step = |s: &StepError| StepFact {
+                part: s.step / natural,
+                step: units.from_si(variable.quantity, s.step),
+                error: s.error,
+                quantity: s.worst.clone(),
+                time: s.time,
+            };
+            CheckFact {
+                variable: variable.name.clone(),
+                unit: symbol(units, variable.quantity),
+                outcome: match c.outcome {
+                    CheckOutcome::Passed => Outcome::Passed,
+                    CheckOutcome::Failed => Outcome::Failed,
+                    CheckOutcome::CannotFollow => Outcome::CannotFollow,
+                    CheckOutcome::NotSolved => Outcome::NotSolved,
+                },
+                best: c.best().map(step),
+                sweep: c.sweep.iter().map(step).collect(),
+            }
+        };
+        let checks: Vec<CheckFact> = verification.checks.iter().map(check).collect();
+        let worst = checks
+            .iter()
+            .filter_map(|c| c.best.as_ref().map(|b| (c, b)))
+            .max_by(|a, b| a.1.error.total_cmp(&b.1.error))
+            .map(|(c, b)| Worst { variable: c.variable.clone(), quantity: b.quantity.clone(), error: b.error });
+        Self {
+            generator: crate::GENERATOR,
+            name: model.name.clone(),
+            file: file.file_name().into(),
+            units,
+            passed: verification.passed(),
+            interrupted: verification.interrupted,
+            tolerance: PASS,
+            worst,
+            checks,
+            seconds,
+        }
+    }
+
+    /// Best agreement per variable.
+    pub fn table(&self) -> Table {
+        let row = |c: &CheckFact| {
+            let outcome = match c.outcome {
+                Outcome::Passed => "passed",
+                Outcome::Failed => "FAILED",
+                Outcome::CannotFollow => "cannot follow",
+                Outcome::NotSolved => "NOT SOLVED",
+            };
+            let mut row = vec![c.variable.clone(), outcome.to_owned()];
+            match &c.best {
+                Some(b) => row.extend([
+                    error(b.error),
+                    step_text(b.step, c.unit),
+                    b.quantity.clone(),
+                    format!("{} s", number(b.time)),
+                ]),
+                None => row.extend(std::iter::repeat_n(String::new(), 4)),
+            }
+            row
+        };
+        Table {
+            title: "Best agreement of each variable".into(),
+            note: String::new(),
+            header: ["variable", "outcome", "best agreement", "at step", "worst quantity", "at t"]
+                .map(String::from)
+                .to_vec(),
+            rows: self.checks.iter().map(row).collect(),
+        }
+    }
+
+    /// Error against step, one row per variable; steps as parts of the natural step.
+    pub fn sweep_table(&self) -> Table {
+        let mut parts: Vec<f64> = Vec::new();
+        for s in self.checks.iter().flat_map(|c| &c.sweep) {
+            if !parts.iter().any(|p| same(*p, s.part)) {
+                parts.push(s.part);
+            }
+        }
+        parts.sort_by(|a, b| b.total_cmp(a));
+        let row = |c: &CheckFact| {
+            let at = |p: &f64| c.sweep.iter().find(|s| same(s.part, *p)).map_or("–".into(), |s| error(s.error));
+            std::iter::once(c.variable.clone()).chain(parts.iter().map(at)).collect()
+        };
+        Table {
+            title: "Largest relative deviation against step".into(),
+            note: "A step of 1 moves the farthest marker by the mechanism's size, or turns it by 1 rad.".into(),
+            header: std::iter::once("variable".to_owned()).chain(parts.iter().map(|p| error(*p))).collect(),
+            rows: self.checks.iter().filter(|c| !c.sweep.is_empty()).map(row).collect(),
+        }
+    }
+}
+
+fn same(a: f64, b: f64) -> bool {
+    (a - b).abs() <= 1e-6 * a.abs()
+}
+
+fn step_text(step: f64, unit: &str) -> String {
+    let step = rounded(step, 2);
+    if unit == "1" { step } else { format!("{step} {unit}") }
+}
