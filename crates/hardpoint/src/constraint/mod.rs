@@ -131,10 +131,7 @@ fn point_rates<T: Real>(p: Vec3<T>, v: Twist<T>, a: Twist<T>) -> [Vec3<T>; 3] {
 #[inline(always)]
 fn cross_rates<T: Real>(a: [Vec3<T>; 3], b: [Vec3<T>; 3]) -> [Vec3<T>; 2] {
     let two = a[0].x.like(2.0);
-    [
-        a[1].cross(b[0]) + a[0].cross(b[1]),
-        a[2].cross(b[0]) + a[1].cross(b[1]) * two + a[0].cross(b[2]),
-    ]
+    [a[1].cross(b[0]) + a[0].cross(b[1]), a[2].cross(b[0]) + a[1].cross(b[1]) * two + a[0].cross(b[2])]
 }
 
 /// Rates of a force `f` through a moving point `p`.
@@ -208,7 +205,8 @@ mod tests {
         for row in BATTERY {
             for _ in 0..20 {
                 let ends = random_ends(row, &mut next);
-                let mut twist = || Twist { w: Vec3::new(next(), next(), next()), v: Vec3::new(next(), next(), next()) };
+                let mut twist =
+                    || Twist { w: Vec3::new(next(), next(), next()), v: Vec3::new(next(), next(), next()) };
                 let (mut wi, mut wj) = (twist(), twist());
                 if row == Row::Angle {
                     // Only motions that keep z parallel are motions of this coordinate.
@@ -244,7 +242,8 @@ mod tests {
         for row in BATTERY {
             for _ in 0..20 {
                 let ends = random_ends(row, &mut next);
-                let mut twist = || Twist { w: Vec3::new(next(), next(), next()), v: Vec3::new(next(), next(), next()) };
+                let mut twist =
+                    || Twist { w: Vec3::new(next(), next(), next()), v: Vec3::new(next(), next(), next()) };
                 let rates = EndRates { v_i: twist(), v_j: twist(), a_i: twist(), a_j: twist() };
                 let l = |t: f64| {
                     row.wrench(&Ends {

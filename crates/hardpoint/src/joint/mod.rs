@@ -25,16 +25,8 @@ pub use translational::TRANSLATIONAL;
 pub use universal::UNIVERSAL;
 
 /// Every joint type that a model may use.
-pub const ALL: &[&JointType] = &[
-    &FIXED,
-    &REVOLUTE,
-    &TRANSLATIONAL,
-    &CYLINDRICAL,
-    &SPHERICAL,
-    &UNIVERSAL,
-    &DISTANCE,
-    &LEG,
-];
+pub const ALL: &[&JointType] =
+    &[&FIXED, &REVOLUTE, &TRANSLATIONAL, &CYLINDRICAL, &SPHERICAL, &UNIVERSAL, &DISTANCE, &LEG];
 
 /// What a joint type is: its geometry, its freedoms as a tree joint, its constraints as a cut joint.
 ///

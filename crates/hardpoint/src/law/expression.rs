@@ -113,17 +113,12 @@ fn token<'a>(input: &mut Input<'a>) -> Result<Token<'a>, EmptyError> {
 fn number(input: &mut Input<'_>) -> Result<f64, EmptyError> {
     let mantissa = alt(((digit1, opt(('.', digit0))).void(), ('.', digit1).void()));
     let exponent = (one_of(['e', 'E']), opt(one_of(['+', '-'])), digit1);
-    (mantissa, opt(exponent))
-        .take()
-        .parse_to()
-        .parse_next(input)
+    (mantissa, opt(exponent)).take().parse_to().parse_next(input)
 }
 
 fn name<'a>(input: &mut Input<'a>) -> Result<&'a str, EmptyError> {
     let first = one_of(|c: char| c.is_alphabetic() || c == '_');
-    let rest = take_while(0.., |c: char| {
-        c.is_alphabetic() || c.is_ascii_digit() || c == '_'
-    });
+    let rest = take_while(0.., |c: char| c.is_alphabetic() || c.is_ascii_digit() || c == '_');
     (first, rest).take().parse_next(input)
 }
 
@@ -208,11 +203,9 @@ impl<'a> Descent<'a> {
     fn primary(&mut self) -> Result<(), ExpressionError> {
         match self.token {
             Token::Number(value) if value.is_finite() => self.leaf(Operation::Constant(value)),
-            Token::Number(_) => Err(error(
-                self.span.clone(),
-                "the number is too large",
-                Some("the largest is 1.79e308"),
-            )),
+            Token::Number(_) => {
+                Err(error(self.span.clone(), "the number is too large", Some("the largest is 1.79e308")))
+            }
             Token::Name("t") => self.leaf(Operation::Time),
             Token::Name("pi") => self.leaf(Operation::Constant(std::f64::consts::PI)),
             Token::Name(name) => match FUNCTIONS.iter().find(|(known, ..)| *known == name) {
@@ -231,30 +224,19 @@ impl<'a> Descent<'a> {
 
     fn leaf(&mut self, operation: Operation) -> Result<(), ExpressionError> {
         if self.program.is_full() {
-            return Err(self.too_deep(&format!(
-                "at most {MAX_WAITING} operands may wait for their operator"
-            )));
+            return Err(self.too_deep(&format!("at most {MAX_WAITING} operands may wait for their operator")));
         }
         self.program.emit(operation);
         self.advance();
         Ok(())
     }
 
-    fn call(
-        &mut self,
-        name: &str,
-        signature: &str,
-        function: Function,
-    ) -> Result<(), ExpressionError> {
+    fn call(&mut self, name: &str, signature: &str, function: Function) -> Result<(), ExpressionError> {
         let name_start = self.span.start;
         self.advance();
         if self.token != Token::Symbol("(") {
             let message = format!("`{name}` is a function and needs parentheses");
-            return Err(error(
-                self.previous.clone(),
-                message,
-                Some(&format!("write `{signature}`")),
-            ));
+            return Err(error(self.previous.clone(), message, Some(&format!("write `{signature}`"))));
         }
         let open = self.span.clone();
         self.advance();
@@ -277,9 +259,7 @@ impl<'a> Descent<'a> {
             }
             arguments.push((first_operation, start..self.previous.end));
             match function {
-                Function::Fold(fold) if arguments.len() > 1 => {
-                    self.program.emit(Operation::Two(fold))
-                }
+                Function::Fold(fold) if arguments.len() > 1 => self.program.emit(Operation::Two(fold)),
                 // To be counted only.
                 _ if arguments.len() > most => self.program.drop_operand(first_operation),
                 _ => {}
@@ -298,11 +278,7 @@ impl<'a> Descent<'a> {
                 _ => format!("{fewest} arguments"),
             };
             let message = format!("`{name}` takes {wanted}, not {}", arguments.len());
-            return Err(error(
-                name_start..self.previous.end,
-                message,
-                Some(&format!("write `{signature}`")),
-            ));
+            return Err(error(name_start..self.previous.end, message, Some(&format!("write `{signature}`"))));
         }
         match function {
             Function::One(function) => self.program.emit(Operation::One(function)),
@@ -329,11 +305,7 @@ impl<'a> Descent<'a> {
             Token::Symbol(">=") => f64::ge,
             Token::Symbol(symbol @ ("=" | "==" | "!=")) => {
                 let message = format!("a law is not compared with `{symbol}`");
-                return Err(error(
-                    self.span.clone(),
-                    message,
-                    Some("use `<`, `<=`, `>` or `>=`"),
-                ));
+                return Err(error(self.span.clone(), message, Some("use `<`, `<=`, `>` or `>=`")));
             }
             Token::Symbol("," | ")") | Token::End => {
                 let message = "the first argument of `if` must be a comparison";
@@ -344,8 +316,7 @@ impl<'a> Descent<'a> {
         };
         self.advance();
         self.nested(Self::sum)?;
-        if let Token::Symbol("<" | "<=" | ">" | ">=" | "=" | "==" | "!=" | "&&" | "||") = self.token
-        {
+        if let Token::Symbol("<" | "<=" | ">" | ">=" | "=" | "==" | "!=" | "&&" | "||") = self.token {
             let message = "an `if` has one comparison only";
             return Err(error(
                 self.span.clone(),
@@ -361,13 +332,11 @@ impl<'a> Descent<'a> {
         let [_, x0, h0, x1, h1] = arguments else {
             return Ok(());
         };
-        let number =
-            |from: usize, to: usize| self.program.constant_at(from).filter(|_| to == from + 1);
+        let number = |from: usize, to: usize| self.program.constant_at(from).filter(|_| to == from + 1);
         match (number(x0.0, h0.0), number(x1.0, h1.0)) {
             (Some(x0_value), Some(x1_value)) if x0_value >= x1_value => {
-                let message = format!(
-                    "`step` must rise from x0 to x1, but x0 = {x0_value} and x1 = {x1_value}"
-                );
+                let message =
+                    format!("`step` must rise from x0 to x1, but x0 = {x0_value} and x1 = {x1_value}");
                 let help = "write `step(x, x0, h0, x1, h1)` with x0 < x1; h1 may be less than h0";
                 Err(error(x0.1.start..x1.1.end, message, Some(help)))
             }
@@ -391,8 +360,7 @@ impl<'a> Descent<'a> {
         rule: impl FnOnce(&mut Self) -> Result<T, ExpressionError>,
     ) -> Result<T, ExpressionError> {
         if self.nesting == MAX_NESTING {
-            let help =
-                format!("at most {MAX_NESTING} parentheses and exponents may be open at once");
+            let help = format!("at most {MAX_NESTING} parentheses and exponents may be open at once");
             return Err(self.too_deep(&help));
         }
         self.nesting += 1;
@@ -418,8 +386,7 @@ impl<'a> Descent<'a> {
     /// The error that an operand was wanted where the current token stands.
     fn missing_value(&self) -> ExpressionError {
         match self.token {
-            Token::Symbol("*" | "/" | "^" | "**" | "<" | "<=" | ">" | ">=" | ")" | ",")
-            | Token::End => {}
+            Token::Symbol("*" | "/" | "^" | "**" | "<" | "<=" | ">" | ">=" | ")" | ",") | Token::End => {}
             _ => return self.unexpected(),
         }
         if self.previous.is_empty() {
@@ -441,22 +408,14 @@ impl<'a> Descent<'a> {
         let (before, shown) = (self.shown(&self.previous), self.shown(&self.span));
         let (message, help) = match self.token {
             Token::Number(_) | Token::Name(_) | Token::Symbol("(") => {
-                let is_plain_number =
-                    before.parse::<f64>().is_ok() && matches!(self.token, Token::Number(_));
-                let help =
-                    (!is_plain_number).then(|| format!("for a product write `{before}*{shown}`"));
-                (
-                    format!("an operator is missing between `{before}` and `{shown}`"),
-                    help,
-                )
+                let is_plain_number = before.parse::<f64>().is_ok() && matches!(self.token, Token::Number(_));
+                let help = (!is_plain_number).then(|| format!("for a product write `{before}*{shown}`"));
+                (format!("an operator is missing between `{before}` and `{shown}`"), help)
             }
             Token::Symbol(")") => ("this `)` closes nothing".to_owned(), None),
             Token::Symbol("<" | "<=" | ">" | ">=" | "=" | "==" | "!=") => {
                 let help = "compare as in `if(t < 1, x, y)`".to_owned();
-                (
-                    "only the first argument of `if` can be a comparison".to_owned(),
-                    Some(help),
-                )
+                ("only the first argument of `if` can be a comparison".to_owned(), Some(help))
             }
             Token::Symbol(symbol) => {
                 let help = match symbol {
@@ -474,11 +433,7 @@ impl<'a> Descent<'a> {
             }
             Token::End => ("unexpected end".to_owned(), None),
         };
-        ExpressionError {
-            span: self.span.clone(),
-            message,
-            help,
-        }
+        ExpressionError { span: self.span.clone(), message, help }
     }
 
     fn unknown_name(&self, name: &str) -> ExpressionError {
@@ -497,24 +452,12 @@ impl<'a> Descent<'a> {
                 .filter(|(likeness, _)| *likeness > 0.8)
                 .map(|(_, known)| format!("did you mean `{known}`? ")),
         };
-        let help = format!(
-            "{}known are t, pi, {}",
-            hint.unwrap_or_default(),
-            functions.join(", ")
-        );
-        error(
-            self.span.clone(),
-            format!("unknown name `{name}`"),
-            Some(&help),
-        )
+        let help = format!("{}known are t, pi, {}", hint.unwrap_or_default(), functions.join(", "));
+        error(self.span.clone(), format!("unknown name `{name}`"), Some(&help))
     }
 
     fn too_deep(&self, help: &str) -> ExpressionError {
-        error(
-            self.span.clone(),
-            "the expression is nested too deeply",
-            Some(help),
-        )
+        error(self.span.clone(), "the expression is nested too deeply", Some(help))
     }
 
     /// The text at `span`, with control characters made visible.
@@ -524,9 +467,5 @@ impl<'a> Descent<'a> {
 }
 
 fn error(span: Range<usize>, message: impl Into<String>, help: Option<&str>) -> ExpressionError {
-    ExpressionError {
-        span,
-        message: message.into(),
-        help: help.map(str::to_owned),
-    }
+    ExpressionError { span, message: message.into(), help: help.map(str::to_owned) }
 }

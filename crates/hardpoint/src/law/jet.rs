@@ -63,9 +63,7 @@ impl TimeJet {
 
     /// Whether the value and all three derivatives are finite.
     pub fn is_finite(self) -> bool {
-        self.derivatives
-            .iter()
-            .all(|derivative| derivative.is_finite())
+        self.derivatives.iter().all(|derivative| derivative.is_finite())
     }
 
     /// The sine of an angle in radians.
@@ -104,12 +102,7 @@ impl TimeJet {
     pub fn atan(self) -> Self {
         let x = self.value();
         let g_d = 1.0 / (1.0 + x * x);
-        self.compose([
-            x.atan(),
-            g_d,
-            -2.0 * x * g_d * g_d,
-            (6.0 * x * x - 2.0) * g_d * g_d * g_d,
-        ])
+        self.compose([x.atan(), g_d, -2.0 * x * g_d * g_d, (6.0 * x * x - 2.0) * g_d * g_d * g_d])
     }
 
     /// The angle from the x axis to the point (`x`, `self`), in radians from -π to π.
@@ -157,12 +150,7 @@ impl TimeJet {
     /// The natural logarithm.
     pub fn ln(self) -> Self {
         let inverse = 1.0 / self.value();
-        self.compose([
-            self.value().ln(),
-            inverse,
-            -inverse * inverse,
-            2.0 * inverse * inverse * inverse,
-        ])
+        self.compose([self.value().ln(), inverse, -inverse * inverse, 2.0 * inverse * inverse * inverse])
     }
 
     /// The logarithm to base 10.
@@ -177,28 +165,19 @@ impl TimeJet {
         let sqrt = self.value().sqrt();
         let inverse = 1.0 / self.value();
         let g_d = 0.5 / sqrt;
-        self.compose([
-            sqrt,
-            g_d,
-            -0.5 * g_d * inverse,
-            0.75 * g_d * inverse * inverse,
-        ])
+        self.compose([sqrt, g_d, -0.5 * g_d * inverse, 0.75 * g_d * inverse * inverse])
     }
 
     /// The power with a constant whole exponent.
     pub fn powi(self, exponent: i32) -> Self {
         let x = self.value();
-        self.compose_power(f64::from(exponent), |lowered_by| {
-            x.powi(exponent.saturating_sub(lowered_by))
-        })
+        self.compose_power(f64::from(exponent), |lowered_by| x.powi(exponent.saturating_sub(lowered_by)))
     }
 
     /// The power with a constant exponent.
     pub fn powf(self, exponent: f64) -> Self {
         let x = self.value();
-        self.compose_power(exponent, |lowered_by| {
-            x.powf(exponent - f64::from(lowered_by))
-        })
+        self.compose_power(exponent, |lowered_by| x.powf(exponent - f64::from(lowered_by)))
     }
 
     /// The power with an exponent that may vary in time; the base is then to be positive.
@@ -222,11 +201,7 @@ impl TimeJet {
 
     /// The absolute value, differentiated on the side that is active just after this instant.
     pub fn abs(self) -> Self {
-        if self.cmp_just_after(Self::constant(0.0)) == Some(Ordering::Less) {
-            -self
-        } else {
-            self
-        }
+        if self.cmp_just_after(Self::constant(0.0)) == Some(Ordering::Less) { -self } else { self }
     }
 
     /// The smaller of the two just after this instant; not a number if either is.
@@ -283,19 +258,10 @@ impl TimeJet {
         // g⁽ᵏ⁾ = p (p - 1) ... (p - k + 1) x^(p - k). A vanishing coefficient wins over an infinite power: the
         // third derivative of x² is zero at x = 0 also.
         let term = |coefficient: f64, k| {
-            if coefficient == 0.0 {
-                0.0
-            } else {
-                coefficient * lowered(k)
-            }
+            if coefficient == 0.0 { 0.0 } else { coefficient * lowered(k) }
         };
         let p = exponent;
-        self.compose([
-            lowered(0),
-            term(p, 1),
-            term(p * (p - 1.0), 2),
-            term(p * (p - 1.0) * (p - 2.0), 3),
-        ])
+        self.compose([lowered(0), term(p, 1), term(p * (p - 1.0), 2), term(p * (p - 1.0) * (p - 2.0), 3)])
     }
 
     /// How the two quantities compare at the next instant: ties are decided by the first derivative that differs.
@@ -305,15 +271,7 @@ impl TimeJet {
 
     /// The one of two incomparable jets that holds the NaN, so that it is not lost.
     fn undecided(self, other: Self) -> Self {
-        if self
-            .derivatives
-            .iter()
-            .any(|derivative| derivative.is_nan())
-        {
-            self
-        } else {
-            other
-        }
+        if self.derivatives.iter().any(|derivative| derivative.is_nan()) { self } else { other }
     }
 }
 
@@ -407,15 +365,10 @@ mod tests {
 
     fn assert_agrees(name: &str, ours: TimeJet, oracle: Dual3_64) {
         let oracle = [oracle.re, oracle.v1, oracle.v2, oracle.v3];
-        let size = oracle
-            .iter()
-            .fold(1.0, |size: f64, derivative| size.max(derivative.abs()));
+        let size = oracle.iter().fold(1.0, |size: f64, derivative| size.max(derivative.abs()));
         for order in 0..4 {
             let error = (ours.derivatives()[order] - oracle[order]).abs();
-            assert!(
-                error <= TOLERANCE * size,
-                "{name}, order {order}: {ours:?} is not {oracle:?}"
-            );
+            assert!(error <= TOLERANCE * size, "{name}, order {order}: {ours:?} is not {oracle:?}");
         }
     }
 
@@ -426,20 +379,10 @@ mod tests {
 
     #[test]
     fn functions_of_one_argument_agree_with_num_dual_to_third_order() {
-        type Case = (
-            &'static str,
-            fn(TimeJet) -> TimeJet,
-            fn(Dual3_64) -> Dual3_64,
-            &'static [f64],
-        );
+        type Case = (&'static str, fn(TimeJet) -> TimeJet, fn(Dual3_64) -> Dual3_64, &'static [f64]);
         let cases: [Case; 19] = [
             ("neg", |x| -x, |x| -x, &[-1.2, 0.0, 0.4]),
-            (
-                "times a number",
-                |x| x * 2.5,
-                |x| x * 2.5,
-                &[-1.2, 0.0, 0.4],
-            ),
+            ("times a number", |x| x * 2.5, |x| x * 2.5, &[-1.2, 0.0, 0.4]),
             ("sin", TimeJet::sin, |x| x.sin(), &[-1.2, 0.0, 0.4, 7.0]),
             ("cos", TimeJet::cos, |x| x.cos(), &[-1.2, 0.0, 0.4, 7.0]),
             ("tan", TimeJet::tan, |x| x.tan(), &[-1.2, 0.0, 0.4, 7.0]),
@@ -454,24 +397,9 @@ mod tests {
             ("log10", TimeJet::log10, |x| x.log10(), &[0.3, 1.0, 9.0]),
             ("sqrt", TimeJet::sqrt, |x| x.sqrt(), &[0.3, 1.0, 9.0]),
             ("powi(5)", |x| x.powi(5), |x| x.powi(5), &[-1.3, 0.6, 2.0]),
-            (
-                "powi(-2)",
-                |x| x.powi(-2),
-                |x| x.powi(-2),
-                &[-1.3, 0.6, 2.0],
-            ),
-            (
-                "powf(2.4)",
-                |x| x.powf(2.4),
-                |x| x.powf(2.4),
-                &[0.3, 1.0, 2.0],
-            ),
-            (
-                "powf(-0.5)",
-                |x| x.powf(-0.5),
-                |x| x.powf(-0.5),
-                &[0.3, 1.0, 2.0],
-            ),
+            ("powi(-2)", |x| x.powi(-2), |x| x.powi(-2), &[-1.3, 0.6, 2.0]),
+            ("powf(2.4)", |x| x.powf(2.4), |x| x.powf(2.4), &[0.3, 1.0, 2.0]),
+            ("powf(-0.5)", |x| x.powf(-0.5), |x| x.powf(-0.5), &[0.3, 1.0, 2.0]),
         ];
         for (name, ours, oracle, points) in cases {
             for x in arguments(points) {
@@ -493,24 +421,9 @@ mod tests {
             ("sub", |x, y| x - y, |x, y| x - y, &[-1.2, 0.4, 3.0]),
             ("mul", |x, y| x * y, |x, y| x * y, &[-1.2, 0.4, 3.0]),
             ("div", |x, y| x / y, |x, y| x / y, &[-1.2, 0.6, 3.0]),
-            (
-                "atan2",
-                TimeJet::atan2,
-                |y, x| y.atan2(x),
-                &[-1.2, 0.6, 3.0],
-            ),
-            (
-                "hypot",
-                TimeJet::hypot,
-                |x, y| (x * x + y * y).sqrt(),
-                &[-1.2, 0.6, 3.0],
-            ),
-            (
-                "pow",
-                TimeJet::pow,
-                |x, p| (p * x.ln()).exp(),
-                &[0.5, 1.0, 2.0],
-            ),
+            ("atan2", TimeJet::atan2, |y, x| y.atan2(x), &[-1.2, 0.6, 3.0]),
+            ("hypot", TimeJet::hypot, |x, y| (x * x + y * y).sqrt(), &[-1.2, 0.6, 3.0]),
+            ("pow", TimeJet::pow, |x, p| (p * x.ln()).exp(), &[0.5, 1.0, 2.0]),
         ];
         for (name, ours, oracle, points) in cases {
             for x in arguments(points) {
@@ -555,13 +468,7 @@ mod tests {
     #[test]
     fn a_value_that_is_not_a_number_is_never_hidden() {
         let (nan, one) = (TimeJet::constant(f64::NAN), TimeJet::constant(1.0));
-        for hidden in [
-            nan.min(one),
-            one.min(nan),
-            nan.max(one),
-            one.max(nan),
-            nan.abs(),
-        ] {
+        for hidden in [nan.min(one), one.min(nan), nan.max(one), one.max(nan), nan.abs()] {
             assert!(hidden.value().is_nan());
         }
         assert!(nan.step(one, one, one * 2.0, one).value().is_nan());
@@ -570,31 +477,16 @@ mod tests {
 
     #[test]
     fn whole_powers_of_zero_have_finite_derivatives() {
-        assert_eq!(
-            TimeJet::time(0.0).powi(2).derivatives(),
-            [0.0, 0.0, 2.0, 0.0]
-        );
-        assert_eq!(
-            TimeJet::time(0.0).powf(3.0).derivatives(),
-            [0.0, 0.0, 0.0, 6.0]
-        );
-        assert_eq!(
-            TimeJet::time(0.0).pow(TimeJet::constant(1.0)).derivatives(),
-            [0.0, 1.0, 0.0, 0.0]
-        );
-        assert_eq!(
-            TimeJet::time(0.0).powi(0).derivatives(),
-            [1.0, 0.0, 0.0, 0.0]
-        );
+        assert_eq!(TimeJet::time(0.0).powi(2).derivatives(), [0.0, 0.0, 2.0, 0.0]);
+        assert_eq!(TimeJet::time(0.0).powf(3.0).derivatives(), [0.0, 0.0, 0.0, 6.0]);
+        assert_eq!(TimeJet::time(0.0).pow(TimeJet::constant(1.0)).derivatives(), [0.0, 1.0, 0.0, 0.0]);
+        assert_eq!(TimeJet::time(0.0).powi(0).derivatives(), [1.0, 0.0, 0.0, 0.0]);
         assert!(!TimeJet::time(0.0).sqrt().is_finite());
     }
 
     #[test]
     fn huge_lengths_overflow_neither_angle_nor_length() {
-        let (x, y) = (
-            TimeJet::from_derivatives([3e200, 3.0, 0.0, 0.0]),
-            TimeJet::constant(4e200),
-        );
+        let (x, y) = (TimeJet::from_derivatives([3e200, 3.0, 0.0, 0.0]), TimeJet::constant(4e200));
         assert!((x.hypot(y).d() - 1.8).abs() <= TOLERANCE);
         assert!((y.atan2(x).d() * 1e200 + 0.48).abs() <= TOLERANCE);
     }

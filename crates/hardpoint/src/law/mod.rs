@@ -72,22 +72,14 @@ impl Law {
     /// assert!(error.help.unwrap().starts_with("did you mean `sin`?"));
     /// ```
     pub fn parse(text: &str) -> Result<Self, ExpressionError> {
-        Ok(Self {
-            text: text.to_owned(),
-            factor: 1.0,
-            program: expression::parse(text)?,
-        })
+        Ok(Self { text: text.to_owned(), factor: 1.0, program: expression::parse(text)? })
     }
 
     /// The law that holds `value` at all times, in the driver's own unit.
     pub fn constant(value: f64) -> Self {
         let mut program = Program::default();
         program.emit(Operation::Constant(value));
-        Self {
-            text: value.to_string(),
-            factor: 1.0,
-            program,
-        }
+        Self { text: value.to_string(), factor: 1.0, program }
     }
 
     /// This law times `factor`, as for a change of unit. The text remains as written.
@@ -129,10 +121,7 @@ impl fmt::Display for Law {
 impl fmt::Debug for Law {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         // The program holds function addresses, which differ from run to run; the text says all of it.
-        f.debug_struct("Law")
-            .field("text", &self.text)
-            .field("factor", &self.factor)
-            .finish_non_exhaustive()
+        f.debug_struct("Law").field("text", &self.text).field("factor", &self.factor).finish_non_exhaustive()
     }
 }
 

@@ -73,8 +73,7 @@ impl Program {
         self.operations.push(operation);
         // What does not depend on t has no derivatives, also where its jet's are infinite times zero: sqrt(0). An
         // operand that is a number is one operation, so the operands are all numbers if that many operations are.
-        if operation.operands() > 0
-            && (start..self.len() - 1).all(|index| self.constant_at(index).is_some())
+        if operation.operands() > 0 && (start..self.len() - 1).all(|index| self.constant_at(index).is_some())
         {
             let value = evaluate::<USUALLY_WAITING>(&self.operations[start..], f64::NAN).value();
             self.operations.truncate(start);
@@ -127,12 +126,9 @@ fn evaluate<const N: usize>(operations: &[Operation], t: f64) -> TimeJet {
             Operation::Two(function) => function(stack[len], stack[len + 1]),
             Operation::Powi(exponent) => stack[len].powi(exponent),
             Operation::Powf(exponent) => stack[len].powf(exponent),
-            Operation::Step => stack[len].step(
-                stack[len + 1],
-                stack[len + 2],
-                stack[len + 3],
-                stack[len + 4],
-            ),
+            Operation::Step => {
+                stack[len].step(stack[len + 1], stack[len + 2], stack[len + 3], stack[len + 4])
+            }
             Operation::Select(holds) => {
                 let (a, b) = (stack[len].value(), stack[len + 1].value());
                 if a.is_nan() || b.is_nan() {

@@ -103,24 +103,17 @@ fn derivatives_are_the_limits_of_central_differences() {
         let t = 0.7;
         let exact = law.at(t).derivatives();
         for order in 1..4 {
-            assert!(
-                exact[order].abs() > 1e-3,
-                "{text}: derivative {order} says nothing, {exact:?}"
-            );
+            assert!(exact[order].abs() > 1e-3, "{text}: derivative {order} says nothing, {exact:?}");
             let errors: Vec<f64> = (5..20)
                 .map(|halvings| {
                     let h = 0.5_f64.powi(halvings);
-                    let [after, before] =
-                        [t + h, t - h].map(|t| law.at(t).derivatives()[order - 1]);
+                    let [after, before] = [t + h, t - h].map(|t| law.at(t).derivatives()[order - 1]);
                     ((after - before) / (2.0 * h) - exact[order]).abs() / exact[order].abs()
                 })
                 .collect();
             for pair in errors[..4].windows(2) {
                 let ratio = pair[0] / pair[1];
-                assert!(
-                    (3.8..4.2).contains(&ratio),
-                    "{text}, derivative {order}: {ratio} in {errors:?}"
-                );
+                assert!((3.8..4.2).contains(&ratio), "{text}, derivative {order}: {ratio} in {errors:?}");
             }
             let best = errors.iter().copied().fold(f64::INFINITY, f64::min);
             assert!(best < 1e-8, "{text}, derivative {order}: {errors:?}");
@@ -131,14 +124,7 @@ fn derivatives_are_the_limits_of_central_differences() {
 #[test]
 fn what_does_not_depend_on_time_has_no_derivatives() {
     // The jets of these have infinite derivatives times zero.
-    for text in [
-        "sqrt(0)",
-        "asin(1)",
-        "0^0.5",
-        "hypot(0, 0)",
-        "abs(3 - 5)^1.5",
-        "if(1 < 2, sqrt(0), 1)",
-    ] {
+    for text in ["sqrt(0)", "asin(1)", "0^0.5", "hypot(0, 0)", "abs(3 - 5)^1.5", "if(1 < 2, sqrt(0), 1)"] {
         assert_eq!(law(text).at(0.0).derivatives()[1..], [0.0; 3], "{text}");
     }
     // Not so here, where the truth, 2, can not be had from three derivatives of t^4.
@@ -150,10 +136,7 @@ fn undefined_values_are_returned_and_do_not_spread_into_the_other_branch() {
     assert!(value("sqrt(t)", -1.0).is_nan());
     assert_eq!(value("1/t", 0.0), f64::INFINITY);
     assert!(value("if(sqrt(t) < 1, 1, 2)", -1.0).is_nan());
-    assert_eq!(
-        law("if(t > 0, sqrt(t), 0)").at(-1.0),
-        TimeJet::constant(0.0)
-    );
+    assert_eq!(law("if(t > 0, sqrt(t), 0)").at(-1.0), TimeJet::constant(0.0));
 }
 
 #[test]
@@ -177,10 +160,7 @@ fn a_constant_law_is_the_same_as_its_text_parsed() {
 
 #[test]
 fn debug_output_is_the_same_in_every_run() {
-    assert_eq!(
-        format!("{:?}", law("sin(t)")),
-        "Law { text: \"sin(t)\", factor: 1.0, .. }"
-    );
+    assert_eq!(format!("{:?}", law("sin(t)")), "Law { text: \"sin(t)\", factor: 1.0, .. }");
 }
 
 #[test]
@@ -198,111 +178,31 @@ fn errors_name_the_place_and_the_remedy() {
         ("2 + * t", 2..3, "a value is missing after `+`", ""),
         ("()", 0..1, "a value is missing after `(`", ""),
         ("sin(t", 3..4, "missing `)`: this `(` is not closed", ""),
-        (
-            "2*(t + (1)",
-            2..3,
-            "missing `)`: this `(` is not closed",
-            "",
-        ),
+        ("2*(t + (1)", 2..3, "missing `)`: this `(` is not closed", ""),
         ("(t))", 3..4, "this `)` closes nothing", ""),
-        (
-            "2t",
-            1..2,
-            "an operator is missing between `2` and `t`",
-            "for a product write `2*t`",
-        ),
-        (
-            "2(t + 1)",
-            1..2,
-            "an operator is missing between `2` and `(`",
-            "for a product write `2*(`",
-        ),
-        (
-            "t(1)",
-            1..2,
-            "an operator is missing between `t` and `(`",
-            "for a product write `t*(`",
-        ),
-        (
-            "1 000",
-            2..5,
-            "an operator is missing between `1` and `000`",
-            "",
-        ),
-        (
-            "1.2.3",
-            3..5,
-            "an operator is missing between `1.2` and `.3`",
-            "",
-        ),
+        ("2t", 1..2, "an operator is missing between `2` and `t`", "for a product write `2*t`"),
+        ("2(t + 1)", 1..2, "an operator is missing between `2` and `(`", "for a product write `2*(`"),
+        ("t(1)", 1..2, "an operator is missing between `t` and `(`", "for a product write `t*(`"),
+        ("1 000", 2..5, "an operator is missing between `1` and `000`", ""),
+        ("1.2.3", 3..5, "an operator is missing between `1.2` and `.3`", ""),
         ("0,5*t", 1..2, "unexpected `,`", decimal_help),
         ("(0,5)", 2..3, "unexpected `,`", decimal_help),
         ("t**2", 1..3, "unexpected `**`", "for a power write `^`"),
         ("3·t", 1..3, "unexpected `·`", "for a product write `*`"),
-        (
-            "1 − t",
-            2..5,
-            "unexpected `−`",
-            "for minus write the plain `-`",
-        ),
-        (
-            "−t",
-            0..3,
-            "unexpected `−`",
-            "for minus write the plain `-`",
-        ),
-        (
-            "t²",
-            1..3,
-            "unexpected `²`",
-            "for a power write `^2` or `^3`",
-        ),
+        ("1 − t", 2..5, "unexpected `−`", "for minus write the plain `-`"),
+        ("−t", 0..3, "unexpected `−`", "for minus write the plain `-`"),
+        ("t²", 1..3, "unexpected `²`", "for a power write `^2` or `^3`"),
         ("2*[t]", 2..3, "unexpected `[`", "use round parentheses"),
         ("t # note", 2..3, "unexpected `#`", ""),
         ("t \u{7}", 2..3, "unexpected `\\u{7}`", ""),
-        (
-            "1e999*t",
-            0..5,
-            "the number is too large",
-            "the largest is 1.79e308",
-        ),
-        (
-            "sin t",
-            0..3,
-            "`sin` is a function and needs parentheses",
-            "write `sin(x)`",
-        ),
-        (
-            "sin()",
-            0..5,
-            "`sin` takes 1 argument, not 0",
-            "write `sin(x)`",
-        ),
-        (
-            "1 + cos(t, 2*t, 3)",
-            4..18,
-            "`cos` takes 1 argument, not 3",
-            "write `cos(x)`",
-        ),
-        (
-            "atan2(t)",
-            0..8,
-            "`atan2` takes 2 arguments, not 1",
-            "write `atan2(y, x)`",
-        ),
-        (
-            "min(t)",
-            0..6,
-            "`min` takes 2 or more arguments, not 1",
-            "write `min(a, b, ...)`",
-        ),
+        ("1e999*t", 0..5, "the number is too large", "the largest is 1.79e308"),
+        ("sin t", 0..3, "`sin` is a function and needs parentheses", "write `sin(x)`"),
+        ("sin()", 0..5, "`sin` takes 1 argument, not 0", "write `sin(x)`"),
+        ("1 + cos(t, 2*t, 3)", 4..18, "`cos` takes 1 argument, not 3", "write `cos(x)`"),
+        ("atan2(t)", 0..8, "`atan2` takes 2 arguments, not 1", "write `atan2(y, x)`"),
+        ("min(t)", 0..6, "`min` takes 2 or more arguments, not 1", "write `min(a, b, ...)`"),
         ("max(t, )", 5..6, "a value is missing after `,`", ""),
-        (
-            "step(t, 0, 1)",
-            0..13,
-            "`step` takes 5 arguments, not 3",
-            "write `step(x, x0, h0, x1, h1)`",
-        ),
+        ("step(t, 0, 1)", 0..13, "`step` takes 5 arguments, not 3", "write `step(x, x0, h0, x1, h1)`"),
         (
             "step(t, 2, 0, 2*0.5, 5)",
             8..19,
@@ -324,32 +224,13 @@ fn errors_name_the_place_and_the_remedy() {
             "compare with `<`, `<=`, `>` or `>=`, as in `if(t < 1, x, y)`",
         ),
         ("if(t < 1", 2..3, "missing `)`: this `(` is not closed", ""),
-        (
-            "if(t == 1, 1, 2)",
-            5..7,
-            "a law is not compared with `==`",
-            "use `<`, `<=`, `>` or `>=`",
-        ),
-        (
-            "if(0 < t < 1, 1, 2)",
-            9..10,
-            "an `if` has one comparison only",
-            nest_help,
-        ),
-        (
-            "if(t < 1, 2)",
-            0..12,
-            "`if` takes 3 arguments, not 2",
-            "write `if(a < b, x, y)`",
-        ),
+        ("if(t == 1, 1, 2)", 5..7, "a law is not compared with `==`", "use `<`, `<=`, `>` or `>=`"),
+        ("if(0 < t < 1, 1, 2)", 9..10, "an `if` has one comparison only", nest_help),
+        ("if(t < 1, 2)", 0..12, "`if` takes 3 arguments, not 2", "write `if(a < b, x, y)`"),
     ];
     for (text, span, message, help) in cases {
         let error = Law::parse(text).expect_err(text);
-        assert_eq!(
-            (error.message.as_str(), error.help.as_deref().unwrap_or("")),
-            (message, help),
-            "{text}"
-        );
+        assert_eq!((error.message.as_str(), error.help.as_deref().unwrap_or("")), (message, help), "{text}");
         assert_eq!(error.span, span, "{text}");
         assert_eq!(error.to_string(), message);
     }
@@ -372,10 +253,7 @@ fn an_unknown_name_is_answered_with_the_known_ones() {
     ];
     for (text, span, hint) in cases {
         let error = Law::parse(text).expect_err(text);
-        assert_eq!(
-            error.message,
-            format!("unknown name `{}`", &text[span.clone()])
-        );
+        assert_eq!(error.message, format!("unknown name `{}`", &text[span.clone()]));
         assert_eq!(error.help, Some(format!("{hint}{KNOWN}")), "{text}");
         assert_eq!(error.span, span, "{text}");
     }
@@ -396,41 +274,24 @@ fn deep_nesting_is_an_error_and_no_stack_overflow() {
     ];
     for text in texts {
         let error = Law::parse(&text).unwrap_err();
-        assert_eq!(
-            error.message,
-            "the expression is nested too deeply",
-            "{}",
-            &text[..10]
-        );
-        assert_eq!(
-            error.help.as_deref(),
-            Some("at most 64 parentheses and exponents may be open at once")
-        );
+        assert_eq!(error.message, "the expression is nested too deeply", "{}", &text[..10]);
+        assert_eq!(error.help.as_deref(), Some("at most 64 parentheses and exponents may be open at once"));
     }
 
     let error = Law::parse(&"step(t, 0, 0, 1, 1 + 2*".repeat(60)).unwrap_err();
     assert_eq!(error.message, "the expression is nested too deeply");
-    assert_eq!(
-        error.help.as_deref(),
-        Some("at most 256 operands may wait for their operator")
-    );
+    assert_eq!(error.help.as_deref(), Some("at most 256 operands may wait for their operator"));
 }
 
 #[test]
 fn length_alone_is_no_limit() {
     let long = 100_000;
-    assert_eq!(
-        value(&("t".to_owned() + &"+t".repeat(long)), 1.0),
-        100_001.0
-    );
+    assert_eq!(value(&("t".to_owned() + &"+t".repeat(long)), 1.0), 100_001.0);
     assert_eq!(value(&("-".repeat(long) + "t"), 1.0), 1.0);
     assert_eq!(value(&format!("max(t{})", ", 2*t".repeat(long)), 1.0), 2.0);
     assert_eq!(value(&("(".repeat(60) + "t" + &")".repeat(60)), 1.0), 1.0);
     // More operands wait than fit the small stack.
-    assert_eq!(
-        value(&("t + (2*t + ".repeat(30) + "t" + &")".repeat(30)), 1.0),
-        91.0
-    );
+    assert_eq!(value(&("t + (2*t + ".repeat(30) + "t" + &")".repeat(30)), 1.0), 91.0);
 }
 
 /// Parsing may fail, but then in the text; what parses also evaluates.
@@ -441,19 +302,15 @@ fn check_any_text(text: &str) -> Result<(), TestCaseError> {
             prop_assert_eq!(law.to_string(), text);
         }
         Err(error) => {
-            prop_assert!(
-                text.get(error.span.clone()).is_some(),
-                "{:?} is not in {:?}",
-                error.span,
-                text
-            );
+            prop_assert!(text.get(error.span.clone()).is_some(), "{:?} is not in {:?}", error.span, text);
             prop_assert!(!error.message.is_empty());
         }
     }
     Ok(())
 }
 
-const VALID: &str = "step(t, 0, -1e-3, 2*pi, if(t^2 <= .5, max(1, t, 3), atan2(-t, 4.5))) - pow(t, 2)/(1 + sqrt(abs(t)))";
+const VALID: &str =
+    "step(t, 0, -1e-3, 2*pi, if(t^2 <= .5, max(1, t, 3), atan2(-t, 4.5))) - pow(t, 2)/(1 + sqrt(abs(t)))";
 
 #[test]
 fn the_text_to_mutate_is_valid() {

@@ -107,27 +107,33 @@ impl<'a> Check<'a> {
             for (index, name) in names.iter().enumerate() {
                 let at = Here { section, index }.key("name");
                 if name.trim().is_empty() {
-                    self.fault("HP0201", at, format!("a {what} has an empty name"));
+                    self.fault("HP0201", at, format!("a {what} has an empty name")).help("give it a name");
                 } else if let Some(first) = names[..index].iter().position(|n| n == name) {
-                    self.fault("HP0201", at, format!("there are two {what}s named `{name}`")).notes.push(
-                        format!("the first is number {} of the {what}s, this is number {}", first + 1, index + 1),
-                    );
+                    self.fault("HP0201", at, format!("there are two {what}s named `{name}`")).note(format!(
+                        "the first is number {} of the {what}s, this is number {}",
+                        first + 1,
+                        index + 1
+                    ));
                 } else if section == Section::Bodies && *name == "ground" {
-                    self.fault("HP0201", at, "`ground` is the name of the body that does not move").help =
-                        Some("it is always there and need not be declared; give this body another name".into());
+                    self.fault("HP0201", at, "`ground` is the name of the body that does not move")
+                        .help("it is always there and need not be declared; give this body another name");
                 }
             }
         }
         for (index, h) in d.hardpoints.iter().enumerate() {
             if !h.position.is_finite() {
                 let at = Here { section: Section::Hardpoints, index }.key("position");
-                self.fault("HP0202", at, format!("a coordinate of hardpoint `{}` is not a finite number", h.name));
+                self.fault(
+                    "HP0202",
+                    at,
+                    format!("a coordinate of hardpoint `{}` is not a finite number", h.name),
+                );
             }
         }
         if d.bodies.is_empty() {
             let at = Here { section: Section::Bodies, index: 0 }.key("");
-            self.fault("HP0203", at, "the model has no bodies").help =
-                Some("declare at least one body besides `ground`".into());
+            self.fault("HP0203", at, "the model has no bodies")
+                .help("declare at least one body besides `ground`");
         }
     }
 
@@ -150,13 +156,13 @@ impl<'a> Check<'a> {
         let fault = self.fault("HP0204", at, format!("there is no {what} named `{name}`"));
         if !valid.is_empty() {
             let more = if more > 0 { format!(" and {more} more") } else { String::new() };
-            fault.notes.push(format!("valid names: {}{more}", valid.join(", ")));
+            fault.note(format!("valid names: {}{more}", valid.join(", ")));
         }
-        fault.help = match close {
-            Some(close) => Some(format!("did you mean `{close}`?")),
-            None if valid.is_empty() => Some(format!("the model declares no {what}")),
-            None => None,
-        };
+        match close {
+            Some(close) => drop(fault.help(format!("did you mean `{close}`?"))),
+            None if valid.is_empty() => drop(fault.help(format!("the model declares no {what}"))),
+            None => {}
+        }
         None
     }
 
@@ -204,8 +210,8 @@ impl<'a> Check<'a> {
                 Some(u) => Some((Direction::Along(u), u)),
                 None => {
                     self.fault("HP0205", here.key(key), format!("the {key} of `{owner}` has no direction"))
-                        .notes
-                        .push(format!("it is written as [{}, {}, {}]", v.x, v.y, v.z));
+                        .note(format!("it is written as [{}, {}, {}]", v.x, v.y, v.z))
+                        .help("give a vector of any length but zero, like [0, 0, 1]");
                     None
                 }
             },
@@ -220,11 +226,13 @@ impl<'a> Check<'a> {
                     }
                     _ => {
                         let message = format!("the {key} of `{owner}` passes through one point only");
-                        self.fault("HP0205", here.key(key), message).notes.push(if a == b {
-                            format!("both of its hardpoints are `{a}`")
-                        } else {
-                            format!("hardpoints `{a}` and `{b}` are at the same place")
-                        });
+                        self.fault("HP0205", here.key(key), message)
+                            .note(if a == b {
+                                format!("both of its hardpoints are `{a}`")
+                            } else {
+                                format!("hardpoints `{a}` and `{b}` are at the same place")
+                            })
+                            .help("name two hardpoints that lie apart");
                         None
                     }
                 }
@@ -241,7 +249,11 @@ impl<'a> Check<'a> {
                 FrameDraft::Default => {}
                 FrameDraft::Pose(pose) => {
                     if !(pose.r.is_finite() && pose.rot.cols.iter().all(|c| c.is_finite())) {
-                        self.fault("HP0202", here.key("frame"), format!("the frame of body `{}` is not finite", b.name));
+                        self.fault(
+                            "HP0202",
+                            here.key("frame"),
+                            format!("the frame of body `{}` is not finite", b.name),
+                        );
                     }
                     frame = *pose;
                 }
@@ -249,7 +261,8 @@ impl<'a> Check<'a> {
                     let mut at = |k: usize, p: &Place| match p {
                         Place::At(v) if v.is_finite() => Some(*v),
                         Place::At(_) => {
-                            let message = format!("a coordinate of the frame of `{}` is not a finite number", b.name);
+                            let message =
+                                format!("a coordinate of the frame of `{}` is not a finite number", b.name);
                             self.fault("HP0202", here.item("frame", k), message);
                             None
                         }
@@ -266,9 +279,11 @@ impl<'a> Check<'a> {
                                 frame = Pose { rot: Mat3 { cols: [f, h.cross(f), h] }, r: o };
                             }
                             _ => {
-                                let message = format!("the frame points of body `{}` lie on one line", b.name);
-                                self.fault("HP0206", here.key("frame"), message).help =
-                                    Some("give an origin, a point on the x axis, and a third point off that axis".into());
+                                let message =
+                                    format!("the frame points of body `{}` lie on one line", b.name);
+                                self.fault("HP0206", here.key("frame"), message).help(
+                                    "give an origin, a point on the x axis, and a third point off that axis",
+                                );
                             }
                         }
                     }
@@ -301,27 +316,32 @@ impl<'a> Check<'a> {
         let body_j = self.body(&j.bodies[1], here.item("bodies", 1));
         if body_i.is_some() && body_i == body_j {
             let message = format!("joint `{name}` connects body `{}` with itself", j.bodies[0]);
-            self.fault("HP0207", here.key("bodies"), message);
+            self.fault("HP0207", here.key("bodies"), message)
+                .help("name two different bodies, or `ground` for one");
         }
         let kind = joint::ALL[kind?];
-        let [axis, axis2] = [(&j.axis, kind.axis, "axis"), (&j.axis2, kind.axis2, "axis2")].map(|(line, need, key)| {
-            match (line, need) {
-                (Some(line), Need::Required) => self.line(line, name, here, key),
-                (None, Need::Required) => {
-                    let message = format!("joint `{name}` needs `{key}`");
-                    self.fault("HP0208", here.key("type"), message)
-                        .notes
-                        .push(format!("a {} joint is {}", kind.name, kind.summary));
-                    None
+        let [axis, axis2] =
+            [(&j.axis, kind.axis, "axis"), (&j.axis2, kind.axis2, "axis2")].map(|(line, need, key)| {
+                match (line, need) {
+                    (Some(line), Need::Required) => self.line(line, name, here, key),
+                    (None, Need::Required) => {
+                        let message = format!("joint `{name}` needs `{key}`");
+                        self.fault("HP0208", here.key("type"), message)
+                        .note(format!("{}: {}", kind.name, kind.summary))
+                        .help(format!(
+                            "add a direction, like `{key} = [0, 0, 1]`, or let it pass through two hardpoints"
+                        ));
+                        None
+                    }
+                    (Some(_), Need::Unused) => {
+                        let message = format!("a {} joint has no `{key}`", kind.name);
+                        self.fault("HP0208", here.key(key), message)
+                            .help(format!("remove `{key}` from `{name}`"));
+                        None
+                    }
+                    (None, Need::Unused) => None,
                 }
-                (Some(_), Need::Unused) => {
-                    let message = format!("a {} joint has no `{key}`", kind.name);
-                    self.fault("HP0208", here.key(key), message).help = Some(format!("remove `{key}` from `{name}`"));
-                    None
-                }
-                (None, Need::Unused) => None,
-            }
-        });
+            });
         let at = self.joint_places(j, kind, axis.map(|a| a.0), here);
         let frame = match (axis, axis2) {
             (Some((_, z)), Some((_, x))) => {
@@ -329,8 +349,8 @@ impl<'a> Check<'a> {
                     let angle = z.dot(x).clamp(-1.0, 1.0).acos().to_degrees();
                     let message = format!("the axes of joint `{name}` are not square to each other");
                     self.fault("HP0209", here.key("axis2"), message)
-                        .notes
-                        .push(format!("the angle between `axis` and `axis2` is {angle:.4} deg"));
+                        .note(format!("the angle between `axis` and `axis2` is {angle:.4} deg"))
+                        .help("turn one of them until they are square");
                 }
                 frame_along(z, (x - z * z.dot(x)).unit()?)
             }
@@ -357,12 +377,21 @@ impl<'a> Check<'a> {
         if j.at.len() != kind.places {
             let message = match kind.places {
                 1 => format!("joint `{name}` needs one hardpoint in `at`, not {}", j.at.len()),
-                _ => format!("joint `{name}` needs two hardpoints in `at`, one on each body, not {}", j.at.len()),
+                _ => format!(
+                    "joint `{name}` needs two hardpoints in `at`, one on each body, not {}",
+                    j.at.len()
+                ),
             };
             let at = if j.at.is_empty() { here.key("type") } else { here.key("at") };
-            self.fault("HP0210", at, message)
-                .notes
-                .push(format!("a {} joint is {}", kind.name, kind.summary));
+            let fault = self.fault("HP0210", at, message);
+            fault.note(format!("{}: {}", kind.name, kind.summary));
+            fault.help(match (kind.places, j.at.len()) {
+                (1, 2) => {
+                    "both bodies share one hardpoint; between two points use a `distance` or a `leg`".into()
+                }
+                (1, _) => "name the hardpoint where the bodies meet".to_string(),
+                _ => format!("first the point on `{}`, then the point on `{}`", j.bodies[0], j.bodies[1]),
+            });
             return None;
         }
         let places: Vec<_> =
@@ -371,7 +400,8 @@ impl<'a> Check<'a> {
         if kind.places == 2
             && (self.position(last) - self.position(first)).norm() <= SAME_POINT * self.model.size()
         {
-            self.fault("HP0211", here.key("at"), format!("the two ends of `{name}` are at the same place"));
+            self.fault("HP0211", here.key("at"), format!("the two ends of `{name}` are at the same place"))
+                .help("a rod needs two points that lie apart");
         }
         Some([first, last])
     }
@@ -389,8 +419,8 @@ impl<'a> Check<'a> {
             let named = self.draft.joints.iter().any(|j| j.bodies.contains(&b.name));
             if !named {
                 let at = Here { section: Section::Bodies, index }.key("name");
-                self.fault("HP0212", at, format!("no joint holds body `{}`", b.name)).help =
-                    Some("connect it with a joint, or remove it".into());
+                self.fault("HP0212", at, format!("no joint holds body `{}`", b.name))
+                    .help("connect it with a joint, or remove it");
             }
             if matches!(b.frame, FrameDraft::Default) && !ends.is_empty() {
                 let sum = ends.iter().fold(Vec3::ZERO, |s, &p| s + p);
@@ -402,7 +432,8 @@ impl<'a> Check<'a> {
     /// A coordinate of a joint, by name or as its only one.
     fn coordinate(&mut self, joint: JointId, name: Option<&str>, here: Here) -> Option<usize> {
         let kind = self.model.joints[joint.0].kind;
-        let list = |c: &[CoordinateType]| c.iter().map(|c| format!("`{}`", c.name)).collect::<Vec<_>>().join(", ");
+        let list =
+            |c: &[CoordinateType]| c.iter().map(|c| format!("`{}`", c.name)).collect::<Vec<_>>().join(", ");
         let joint_name = self.model.joints[joint.0].name.clone();
         let (message, key) = match (name, kind.coordinates) {
             (_, []) => (format!("a {} joint has no coordinate to name", kind.name), "joint"),
@@ -414,8 +445,8 @@ impl<'a> Check<'a> {
             },
         };
         let fault = self.fault("HP0213", here.key(key), message);
-        fault.notes.push(format!("`{joint_name}` is {}: {}", kind.name, kind.summary));
-        fault.help = Some(if kind.coordinates.is_empty() {
+        fault.note(format!("type of `{joint_name}`: {} ({})", kind.name, kind.summary));
+        fault.help(if kind.coordinates.is_empty() {
             "name a joint that has one: a revolute, translational or cylindrical joint, a rod or a leg".into()
         } else {
             format!("its coordinates: {}", list(kind.coordinates))
@@ -427,26 +458,33 @@ impl<'a> Check<'a> {
         let draft = self.draft;
         for (index, d) in draft.drivers.iter().enumerate() {
             let here = Here { section: Section::Drivers, index };
-            if let Some(&t) = draft.times.iter().find(|&&t| !(d.law.at(t).derivatives()[..3].iter().all(|x| x.is_finite()))) {
+            let finite = |t: f64| d.law.at(t).derivatives()[..3].iter().all(|x| x.is_finite());
+            if let Some(&t) = draft.times.iter().find(|&&t| !finite(t)) {
+                let [f, fd, fdd, _] = d.law.at(t).derivatives();
                 let message = format!("the law of driver `{}` has no finite value at t = {t} s", d.name);
-                self.fault("HP0214", here.key("law"), message).notes.push(format!("the law is `{}`", d.law));
+                self.fault("HP0214", here.key("law"), message)
+                    .note(format!("value {f}, first derivative {fd}, second derivative {fdd} there"))
+                    .help("change the law, or the times, so that all three are finite");
             }
             let Some(joint) = self.joint(&d.joint, here.key("joint")) else { continue };
             let Some(coordinate) = self.coordinate(joint, d.coordinate.as_deref(), here) else { continue };
             if let Some(other) =
                 self.model.drivers.iter().find(|o| o.joint == joint && o.coordinate == coordinate)
             {
-                let message = format!("drivers `{}` and `{}` prescribe the same coordinate", other.name, d.name);
+                let message =
+                    format!("drivers `{}` and `{}` prescribe the same coordinate", other.name, d.name);
                 let c = self.model.joints[joint.0].kind.coordinates[coordinate].name;
                 self.fault("HP0215", here.key("joint"), message)
-                    .notes
-                    .push(format!("the {c} of joint `{}`", d.joint));
+                    .note(format!("the {c} of joint `{}`", d.joint))
+                    .help("remove one of them");
                 continue;
             }
-            if self.model.joints[joint.0].kind.name == "distance" {
-                let message = format!("driver `{}` prescribes the length of a rod, which is constant", d.name);
-                self.fault("HP0213", here.key("joint"), message).help =
-                    Some(format!("make `{}` a `leg`: a rod whose length a driver prescribes", d.joint));
+            let kind = self.model.joints[joint.0].kind;
+            if kind.rows.contains(&kind.coordinates[coordinate].row) {
+                let message =
+                    format!("driver `{}` prescribes the length of a rod, which is constant", d.name);
+                self.fault("HP0213", here.key("joint"), message)
+                    .help(format!("make `{}` a `leg`: a rod whose length a driver prescribes", d.joint));
                 continue;
             }
             self.model.drivers.push(Driver { name: d.name.clone(), joint, coordinate, law: d.law.clone() });
@@ -499,7 +537,8 @@ impl<'a> Check<'a> {
                 MeasureKind::Coordinate { joint, coordinate }
             }
             MeasureKindDraft::Distance { from, to } => {
-                let (a, b) = (self.point(from, &m.name, here.key("from")), self.point(to, &m.name, here.key("to")));
+                let (a, b) =
+                    (self.point(from, &m.name, here.key("from")), self.point(to, &m.name, here.key("to")));
                 let (from, to) = (a?, b?);
                 if from == to {
                     let message = format!("measure `{}` is the distance of a point from itself", m.name);
@@ -530,8 +569,8 @@ impl<'a> Check<'a> {
             let here = Here { section: Section::Design, index };
             if v.changes.is_empty() {
                 let message = format!("design variable `{}` changes nothing", v.name);
-                self.fault("HP0217", here.key("name"), message).help =
-                    Some("say which hardpoint it moves, which joint it tilts, or give a velocity field".into());
+                self.fault("HP0217", here.key("name"), message)
+                    .help("say which hardpoint it moves, which joint it tilts, or give a velocity field");
             }
             let mut quantity: Option<Quantity> = None;
             let mut changes = Vec::new();
@@ -549,15 +588,20 @@ impl<'a> Check<'a> {
         }
     }
 
-    fn one_change(&mut self, change: &ChangeDraft, owner: &str, here: Here, k: usize) -> Option<(Change, Quantity)> {
+    fn one_change(
+        &mut self,
+        change: &ChangeDraft,
+        owner: &str,
+        here: Here,
+        k: usize,
+    ) -> Option<(Change, Quantity)> {
         let at = here.item("changes", k);
         let null = |check: &mut Self| {
             let message = format!("a velocity of design variable `{owner}` is null or not finite");
             check.fault("HP0217", here.item("changes", k), message);
         };
-        let is_null = |a: Vec3, b: Vec3| {
-            !(a.is_finite() && b.is_finite()) || (a.norm() < 1e-12 && b.norm() < 1e-12)
-        };
+        let is_null =
+            |a: Vec3, b: Vec3| !(a.is_finite() && b.is_finite()) || (a.norm() < 1e-12 && b.norm() < 1e-12);
         match change {
             ChangeDraft::Move { hardpoint, velocity } => {
                 let hardpoint = self.hardpoint(hardpoint, at)?;
@@ -599,7 +643,7 @@ impl<'a> Check<'a> {
                         "joint `{}` has no marker on body `{}`",
                         self.model.joints[joint.0].name, self.model.bodies[body.0].name
                     );
-                    self.fault("HP0218", at, message).notes.push(format!("it connects {names}"));
+                    self.fault("HP0218", at, message).note(format!("it connects {names}"));
                     return None;
                 };
                 Some((Change::Field { joint, end, v: *v, u: *u }, Quantity::Number))
@@ -611,12 +655,16 @@ impl<'a> Check<'a> {
         let times = &self.draft.times;
         let here = Here { section: Section::Time, index: 0 };
         if times.is_empty() {
-            self.fault("HP0219", here.key(""), "there are no output times").help =
-                Some("give a `[time]` table with `end` and `steps`".into());
-        } else if let Some(k) = (0..times.len()).find(|&k| !times[k].is_finite() || (k > 0 && times[k] <= times[k - 1])) {
-            self.fault("HP0219", here.key(""), "output times must be finite and increase")
-                .notes
-                .push(format!("time number {} is {} s", k + 1, times[k]));
+            self.fault("HP0219", here.key(""), "there are no output times")
+                .help("give a `[time]` table with `end` and `steps`");
+        } else if let Some(k) =
+            (0..times.len()).find(|&k| !times[k].is_finite() || (k > 0 && times[k] <= times[k - 1]))
+        {
+            self.fault("HP0219", here.key(""), "output times must be finite and increase").note(format!(
+                "time number {} is {} s",
+                k + 1,
+                times[k]
+            ));
         }
     }
 }

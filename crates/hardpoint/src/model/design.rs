@@ -65,11 +65,8 @@ impl Model {
                 (k - i).norm()
             })
             .collect();
-        let points = self
-            .points
-            .iter()
-            .map(|p| self.bodies[p.body.0].frame.inverse().point(places[p.at.0]))
-            .collect();
+        let points =
+            self.points.iter().map(|p| self.bodies[p.body.0].frame.inverse().point(places[p.at.0])).collect();
         let spin_axes = self
             .measures
             .iter()
@@ -169,7 +166,11 @@ impl Model {
                     let frame = self.bodies[joint.bodies[end].0].frame;
                     let s = frame.inverse().point(self.position(joint.at[end]));
                     let (p, w) = (frame.rot.transpose_mul(p), frame.rot.transpose_mul(w));
-                    field.markers.push(MarkerField { joint: JointId(j), end, twist: Twist { w, v: p - w.cross(s) } });
+                    field.markers.push(MarkerField {
+                        joint: JointId(j),
+                        end,
+                        twist: Twist { w, v: p - w.cross(s) },
+                    });
                 }
             }
             if !v.fixed_length {

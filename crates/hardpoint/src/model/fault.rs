@@ -18,6 +18,18 @@ pub struct Fault {
     pub help: Option<String>,
 }
 
+impl Fault {
+    pub(super) fn note(&mut self, note: impl Into<String>) -> &mut Self {
+        self.notes.push(note.into());
+        self
+    }
+
+    pub(super) fn help(&mut self, help: impl Into<String>) -> &mut Self {
+        self.help = Some(help.into());
+        self
+    }
+}
+
 /// A list of the draft, and the table of the model file that it comes from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Section {
@@ -70,13 +82,20 @@ impl fmt::Display for Section {
     }
 }
 
-/// The candidate that the user most likely meant, if any is close.
+/// The candidate that the user most likely meant, if any is close: at most a third of its letters differ.
 pub fn did_you_mean<'a>(name: &str, candidates: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
     let lower = name.to_lowercase();
+    let length = name.chars().count();
     candidates
         .into_iter()
-        .map(|c| (strsim::damerau_levenshtein(&lower, &c.to_lowercase()), c))
-        .filter(|(d, c)| *d <= 1 + c.chars().count().min(name.chars().count()) / 4)
+        .filter_map(|c| {
+            let other = c.chars().count();
+            let allowed = (usize::min(length, other) + 1) / 3;
+            // The distance is at least the difference in length; most candidates need no more than that.
+            let distance = (length.abs_diff(other) <= allowed)
+                .then(|| strsim::damerau_levenshtein(&lower, &c.to_lowercase()))?;
+            (distance <= allowed).then_some((distance, c))
+        })
         .min_by_key(|(d, _)| *d)
         .map(|(_, c)| c)
 }

@@ -291,7 +291,17 @@ impl<T: Real> State<T> {
                     self.row_rhs[r] = demand(topology, drivers, r, 1, witness);
                 }
                 let s = self;
-                level(topology, &mut s.factors, &s.x, &s.l, &s.bias, &s.row_rhs, &mut s.qd, &mut s.v, &mut s.rhs);
+                level(
+                    topology,
+                    &mut s.factors,
+                    &s.x,
+                    &s.l,
+                    &s.bias,
+                    &s.row_rhs,
+                    &mut s.qd,
+                    &mut s.v,
+                    &mut s.rhs,
+                );
                 s.rates_of_twists(topology, 1);
                 s.rates_of_wrenches(topology, 1);
                 s.set_driven(topology, drivers, 2);
@@ -302,7 +312,17 @@ impl<T: Real> State<T> {
                     let [i, j] = topology.closures[topology.rows[r].closure].bodies;
                     s.row_rhs[r] = demand(topology, drivers, r, 2, witness) - s.ld[r].on(s.v[j.0] - s.v[i.0]);
                 }
-                level(topology, &mut s.factors, &s.x, &s.l, &s.bias, &s.row_rhs, &mut s.qdd, &mut s.a, &mut s.rhs);
+                level(
+                    topology,
+                    &mut s.factors,
+                    &s.x,
+                    &s.l,
+                    &s.bias,
+                    &s.row_rhs,
+                    &mut s.qdd,
+                    &mut s.a,
+                    &mut s.rhs,
+                );
             },
         );
     }

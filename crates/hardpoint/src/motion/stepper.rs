@@ -86,7 +86,18 @@ impl<'m, T: Real> Stepper<'m, T> {
         let branch = vec![(true, 0.0); topology.blocks.len()];
         let drivers = vec![[witness.zero(); 3]; model.drivers.len()];
         let effort = Effort { least_pivot_ratio: f64::INFINITY, ..Effort::default() };
-        Self { model, topology: topology.clone(), parts, state, drivers, saved, time: 0.0, branch, fastest_driver: 0.0, effort }
+        Self {
+            model,
+            topology: topology.clone(),
+            parts,
+            state,
+            drivers,
+            saved,
+            time: 0.0,
+            branch,
+            fastest_driver: 0.0,
+            effort,
+        }
     }
 
     /// Solves the design configuration, then moves on to the first output time.
@@ -245,7 +256,13 @@ impl<'m, T: Real> Stepper<'m, T> {
                 fastest = fastest.max(s.qd[c].abs().largest().max(saved.qd[c].abs().largest()) / size);
                 let d = (s.qd[c] - predicted).abs().largest() / size;
                 // Written so that NaN counts as infinitely far.
-                difference = if d <= difference { difference } else if d.is_nan() { f64::INFINITY } else { d };
+                difference = if d <= difference {
+                    difference
+                } else if d.is_nan() {
+                    f64::INFINITY
+                } else {
+                    d
+                };
             }
         }
         difference <= (SPEED_TRUST * fastest).max(SPEED_FLOOR * self.fastest_driver.max(self.driver_speed()))
@@ -320,11 +337,7 @@ impl<'m, T: Real> Stepper<'m, T> {
             }
             self.topology.blocks[b].selected = selected;
             // The same position, seen through other rows: new factors, and a new sign to stay with.
-            if self
-                .state
-                .solve_position(&self.topology, &self.parts, &self.drivers, f64::INFINITY)
-                .is_ok()
-            {
+            if self.state.solve_position(&self.topology, &self.parts, &self.drivers, f64::INFINITY).is_ok() {
                 let (ratio, positive) = self.state.pivots[b];
                 self.branch[b] = (positive, ratio);
                 self.state.solve_rates(&self.topology, &self.parts, &self.drivers);
@@ -334,9 +347,9 @@ impl<'m, T: Real> Stepper<'m, T> {
 
     fn stop(&self, path: Path, t: f64, refusal: Refusal, moved: bool) -> Stop {
         let (kind, block) = match refusal {
-            Refusal::Position(PositionFailure::Singular { block } | PositionFailure::NoConvergence { block }) => {
-                (StopKind::Limit, Some(block))
-            }
+            Refusal::Position(
+                PositionFailure::Singular { block } | PositionFailure::NoConvergence { block },
+            ) => (StopKind::Limit, Some(block)),
             // At a limit the speeds grow without bound; where branches cross they stay finite.
             Refusal::Branch { block } if self.saved_speed() > RUNAWAY * self.fastest_driver => {
                 (StopKind::Limit, Some(block))

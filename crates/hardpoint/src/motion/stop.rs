@@ -63,10 +63,16 @@ impl Stop {
             StopKind::Limit => format!("the mechanism cannot move beyond t = {t:.6} s"),
             StopKind::BranchChange => format!("the mechanism passes a dead point at t = {t:.6} s"),
             StopKind::Locked { joint, .. } => {
-                format!("the mechanism locks at t = {t:.6} s: joint `{}` cannot stay closed", model.joints[joint.0].name)
+                format!(
+                    "the mechanism locks at t = {t:.6} s: joint `{}` cannot stay closed",
+                    model.joints[joint.0].name
+                )
             }
             StopKind::LawNotFinite { driver } => {
-                format!("the law of driver `{}` has no finite value at t = {t:.6} s", model.drivers[driver.0].name)
+                format!(
+                    "the law of driver `{}` has no finite value at t = {t:.6} s",
+                    model.drivers[driver.0].name
+                )
             }
             StopKind::Interrupted => format!("interrupted at t = {t:.6} s"),
         }

@@ -196,7 +196,8 @@ impl<T: Real> Direct<T> {
             let terms = [self.w[0][j.0], z_j, -self.w[0][i.0], -z_i].map(|w| state.l[r].on(w).lane(0));
             let defect = terms.iter().sum::<f64>() - length;
             let size = terms.iter().fold(length.abs(), |m, x| m.max(x.abs()));
-            let is_defect = !(defect.abs() <= DEFECT_TOLERANCE * size) && defect.abs() > DEFECT_FLOOR * field.scale;
+            let is_defect =
+                !(defect.abs() <= DEFECT_TOLERANCE * size) && defect.abs() > DEFECT_FLOOR * field.scale;
             if is_defect && worst.is_none_or(|w| defect.abs() > w.value) {
                 worst = Some(Defect { row: r, value: defect.abs() });
             }

@@ -160,9 +160,15 @@ mod tests {
     #[test]
     fn jets_agree_with_hyper_duals() {
         let k = Jet::constant;
-        assert_same(ours(|t, b| (t * t * b + k(2.0) * b).sqrt()), partials(|t, b| (t * t * b + b * 2.0).sqrt()));
+        assert_same(
+            ours(|t, b| (t * t * b + k(2.0) * b).sqrt()),
+            partials(|t, b| (t * t * b + b * 2.0).sqrt()),
+        );
         assert_same(ours(|t, b| (t * b * b + t).recip()), partials(|t, b| (t * b * b + t).recip()));
         assert_same(ours(|t, b| (t * t * b + t).asin()), partials(|t, b| (t * t * b + t).asin()));
-        assert_same(ours(|t, b| (t * t - b).atan2(b * t - k(1.0))), partials(|t, b| (t * t - b).atan2(b * t - 1.0)));
+        assert_same(
+            ours(|t, b| (t * t - b).atan2(b * t - k(1.0))),
+            partials(|t, b| (t * t - b).atan2(b * t - 1.0)),
+        );
     }
 }

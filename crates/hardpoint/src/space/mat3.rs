@@ -46,9 +46,7 @@ impl<T: Real> Mat3<T> {
     #[inline(always)]
     pub fn transpose(self) -> Self {
         let [f, g, h] = self.cols;
-        Self {
-            cols: [Vec3::new(f.x, g.x, h.x), Vec3::new(f.y, g.y, h.y), Vec3::new(f.z, g.z, h.z)],
-        }
+        Self { cols: [Vec3::new(f.x, g.x, h.x), Vec3::new(f.y, g.y, h.y), Vec3::new(f.z, g.z, h.z)] }
     }
 
     /// The transpose times a vector: components of a world vector in the turned frame.

@@ -82,7 +82,13 @@ impl<T: Real> Elimination<T> {
                 }
             }
         }
-        let pivot_ratio = if n == 0 { 1.0 } else if split { 0.0 } else { least / most };
+        let pivot_ratio = if n == 0 {
+            1.0
+        } else if split {
+            0.0
+        } else {
+            least / most
+        };
         Factored { pivot_ratio, positive }
     }
 
@@ -110,28 +116,22 @@ impl<T: Real> Elimination<T> {
     }
 }
 
-/// Complete-pivoting elimination of an m x n matrix: its rank, an independent set of rows, the
-/// motions it leaves free and the dependencies among its rows.
+/// Complete-pivoting elimination of an m x n matrix: an independent set of its rows, and the motions it
+/// leaves free.
 #[derive(Clone, Debug)]
 pub(crate) struct FullPivot {
-    /// Independent rows, best pivot first.
+    /// Independent rows, best pivot first; their number is the rank.
     pub rows: Vec<usize>,
-    /// The columns those pivots stand in.
-    pub columns: Vec<usize>,
-    /// For every row left out: its index and its combination with the independent rows,
-    /// `sum_k combination[k] * row_k = 0`.
-    pub dependent: Vec<(usize, Vec<f64>)>,
     /// A basis of the columns' null space, one vector of length n each.
     pub free: Vec<Vec<f64>>,
 }
 
 impl FullPivot {
-    /// Rows of the matrix in `a`; a pivot below `tolerance` times the largest counts as zero.
+    /// Rows of the matrix in `a`; a pivot below `tolerance`, or below `tolerance` times the largest, counts
+    /// as zero.
     pub fn of(mut a: Vec<Vec<f64>>, n: usize, tolerance: f64) -> Self {
         let m = a.len();
-        let mut combos: Vec<Vec<f64>> =
-            (0..m).map(|r| (0..m).map(|c| f64::from(u8::from(r == c))).collect()).collect();
-        let mut order: Vec<usize> = (0..m).collect();
+        let mut rows: Vec<usize> = (0..m).collect();
         let mut columns: Vec<usize> = Vec::new();
         let mut used = vec![false; n];
         let mut largest = 0.0;
@@ -151,12 +151,11 @@ impl FullPivot {
                 break;
             }
             a.swap(r, k);
-            combos.swap(r, k);
-            order.swap(r, k);
+            rows.swap(r, k);
             used[c] = true;
             columns.push(c);
             let inverse = 1.0 / a[k][c];
-            for x in a[k].iter_mut().chain(combos[k].iter_mut()) {
+            for x in &mut a[k] {
                 *x *= inverse;
             }
             for r in (0..m).filter(|&r| r != k) {
@@ -166,14 +165,9 @@ impl FullPivot {
                         let x = a[k][j];
                         a[r][j] -= f * x;
                     }
-                    for j in 0..m {
-                        let x = combos[k][j];
-                        combos[r][j] -= f * x;
-                    }
                 }
             }
         }
-        let rank = columns.len();
         let free = (0..n)
             .filter(|&c| !used[c])
             .map(|c| {
@@ -185,9 +179,8 @@ impl FullPivot {
                 v
             })
             .collect();
-        let dependent = (rank..m).map(|k| (order[k], combos[k].clone())).collect();
-        order.truncate(rank);
-        Self { rows: order, columns, dependent, free }
+        rows.truncate(columns.len());
+        Self { rows, free }
     }
 }
 
@@ -209,23 +202,15 @@ mod tests {
         for k in 0..3 {
             assert!((b[k] - x[k]).abs() < 1e-14);
         }
-        let det = 0.0 - 2.0 * (1.0 * 0.2 - 3.0 * 4.0) + -1.0 * (-1.0 - 0.5 * 4.0);
+        let det = -2.0 * (1.0 * 0.2 - 3.0 * 4.0) - (-1.0 - 0.5 * 4.0);
         assert_eq!(found.positive, det > 0.0);
     }
 
     #[test]
-    fn full_pivot_finds_rank_dependencies_and_free_motions() {
+    fn full_pivot_finds_rank_and_free_motions() {
         let a = vec![vec![1.0, 2.0, 3.0], vec![2.0, 4.0, 6.0], vec![0.0, 1.0, 1.0], vec![1.0, 3.0, 4.0]];
         let p = FullPivot::of(a.clone(), 3, 1e-10);
         assert_eq!(p.rows.len(), 2);
-        assert_eq!(p.dependent.len(), 2);
-        for (row, combo) in &p.dependent {
-            assert!(combo[*row] != 0.0);
-            for c in 0..3 {
-                let sum: f64 = combo.iter().zip(&a).map(|(k, row)| k * row[c]).sum();
-                assert!(sum.abs() < 1e-12);
-            }
-        }
         assert_eq!(p.free.len(), 1);
         for row in &a {
             let s: f64 = row.iter().zip(&p.free[0]).map(|(x, y)| x * y).sum();

@@ -79,6 +79,7 @@ pub trait Real:
     /// Reduced by multiples of pi/2 in three parts (Cody and Waite), then the polynomials of
     /// fdlibm's kernels. The scalar and the lanes share these operations, so they agree bit for bit.
     #[inline(always)]
+    #[expect(clippy::excessive_precision, reason = "the constants are written as published")]
     fn sin_cos(self) -> (Self, Self) {
         const PIO2_1: f64 = 1.570_796_326_734_125_6;
         const PIO2_2: f64 = 6.077_100_506_303_966e-11;
@@ -102,10 +103,7 @@ pub trait Real:
         let odd = odd.round();
         let quarter_sin = q * odd; // +-1 where |q| = 1
         let quarter_cos = c(1.0) - odd - c(2.0) * (q * q * (q * q - c(1.0)) * c(1.0 / 12.0)).round();
-        (
-            sin * quarter_cos + cos * quarter_sin,
-            cos * quarter_cos - sin * quarter_sin,
-        )
+        (sin * quarter_cos + cos * quarter_sin, cos * quarter_cos - sin * quarter_sin)
     }
 }
 

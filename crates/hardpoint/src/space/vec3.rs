@@ -18,7 +18,8 @@ impl Vec3<f64> {
     /// The null vector.
     pub const ZERO: Self = Self::new(0.0, 0.0, 0.0);
     /// Unit vectors along x, y and z.
-    pub const AXES: [Self; 3] = [Self::new(1.0, 0.0, 0.0), Self::new(0.0, 1.0, 0.0), Self::new(0.0, 0.0, 1.0)];
+    pub const AXES: [Self; 3] =
+        [Self::new(1.0, 0.0, 0.0), Self::new(0.0, 1.0, 0.0), Self::new(0.0, 0.0, 1.0)];
 
     /// The same vector in every lane of `witness`.
     #[inline(always)]
@@ -89,11 +90,7 @@ impl<T: Real> Vec3<T> {
     /// Vector product.
     #[inline(always)]
     pub fn cross(self, o: Self) -> Self {
-        Self::new(
-            self.y * o.z - self.z * o.y,
-            self.z * o.x - self.x * o.z,
-            self.x * o.y - self.y * o.x,
-        )
+        Self::new(self.y * o.z - self.z * o.y, self.z * o.x - self.x * o.z, self.x * o.y - self.y * o.x)
     }
 
     /// Length.

@@ -42,7 +42,10 @@ pub fn natural_step(model: &Model, variable: VariableId) -> f64 {
 ///
 /// # Errors
 /// Per entry: the [`Stop`] of the moved design that did not run to the end.
-pub fn central_differences(analysis: &Analysis<'_>, steps: &[(VariableId, f64)]) -> Vec<Result<Difference, Stop>> {
+pub fn central_differences(
+    analysis: &Analysis<'_>,
+    steps: &[(VariableId, f64)],
+) -> Vec<Result<Difference, Stop>> {
     let mut out = Vec::with_capacity(steps.len());
     // Few at a time: a solution holds its whole motion.
     for group in steps.chunks(4) {
@@ -70,7 +73,8 @@ pub fn central_differences(analysis: &Analysis<'_>, steps: &[(VariableId, f64)])
 
 fn quotient(variable: VariableId, step: f64, plus: &Solution, minus: &Solution) -> Difference {
     let k = 0.5 / step;
-    let bodies = plus.motion.states.iter().zip(&minus.motion.states).map(|(p, m)| body_quotient(p, m, k)).collect();
+    let bodies =
+        plus.motion.states.iter().zip(&minus.motion.states).map(|(p, m)| body_quotient(p, m, k)).collect();
     let outputs = (0..plus.measured.len())
         .flat_map(|t| (0..plus.measured.outputs.len()).map(move |m| (t, m)))
         .map(|(t, m)| {

@@ -87,7 +87,10 @@ impl Verification {
     /// Whether every variable that has sensitivities passed.
     pub fn passed(&self) -> bool {
         !self.interrupted
-            && self.checks.iter().all(|c| matches!(c.outcome, CheckOutcome::Passed | CheckOutcome::CannotFollow))
+            && self
+                .checks
+                .iter()
+                .all(|c| matches!(c.outcome, CheckOutcome::Passed | CheckOutcome::CannotFollow))
     }
 }
 
@@ -131,7 +134,12 @@ fn check_variable(
             let worst = compare_with_difference(analysis, solution, &d)
                 .into_iter()
                 .max_by(|a, b| a.error.total_cmp(&b.error));
-            worst.unwrap_or(StepError { step: d.step, error: 0.0, worst: "nothing to compare".into(), time: 0.0 })
+            worst.unwrap_or(StepError {
+                step: d.step,
+                error: 0.0,
+                worst: "nothing to compare".into(),
+                time: 0.0,
+            })
         })
         .collect();
     let best = sweep.iter().map(|s| s.error).fold(f64::INFINITY, f64::min);
@@ -148,13 +156,17 @@ fn check_variable(
 /// A deviation is relative to the largest sensitivity of its kind over all bodies and times, or, where
 /// the design hardly matters, to what one natural step would have to change for one part in a thousand of
 /// the motion itself.
-pub fn compare_with_difference(analysis: &Analysis<'_>, solution: &Solution, d: &Difference) -> Vec<StepError> {
+pub fn compare_with_difference(
+    analysis: &Analysis<'_>,
+    solution: &Solution,
+    d: &Difference,
+) -> Vec<StepError> {
     /// A sensitivity that moves a quantity by less than this part of it per natural step counts as zero.
     const NEGLIGIBLE: f64 = 1e-3;
     let model = analysis.model();
     let natural = natural_step(model, d.variable);
     let mut errors = Vec::new();
-    let Some(times) = (!solution.motion.is_empty()).then(|| &solution.motion.times) else { return errors };
+    let Some(times) = (!solution.motion.is_empty()).then_some(&solution.motion.times) else { return errors };
     let steps = times.len();
     let size = model.size();
 
@@ -170,7 +182,11 @@ pub fn compare_with_difference(analysis: &Analysis<'_>, solution: &Solution, d: 
 
     // The motion's own magnitude at orders 0, 1, 2: lengths in sizes, angles in rad.
     let magnitude = solution.motion.states.iter().fold([1.0_f64, 0.0, 0.0], |m, s| {
-        [m[0], m[1].max(s.omega.norm()).max(s.v.norm() / size), m[2].max(s.alpha.norm()).max(s.a.norm() / size)]
+        [
+            m[0],
+            m[1].max(s.omega.norm()).max(s.v.norm() / size),
+            m[2].max(s.alpha.norm()).max(s.a.norm() / size),
+        ]
     });
     let floor = |order: usize, quantity: Quantity| {
         let unit = if quantity == Quantity::Length { size } else { 1.0 };

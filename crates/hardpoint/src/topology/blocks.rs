@@ -57,7 +57,8 @@ pub(super) fn split(model: &Model, topology: &mut Topology) -> Result<(), Topolo
         _ => {
             let all: Vec<usize> = (0..unknown.len()).filter(|&c| unknown[c]).collect();
             let groups = if all.is_empty() { Vec::new() } else { vec![all] };
-            assign(topology, &jacobian, &groups).map_err(|free| fault::under_driven(model, topology, &free))?;
+            assign(topology, &jacobian, &groups)
+                .map_err(|free| fault::under_driven(model, topology, &free))?;
             groups
         }
     };
@@ -66,7 +67,11 @@ pub(super) fn split(model: &Model, topology: &mut Topology) -> Result<(), Topolo
 }
 
 /// Strongly connected groups of unknowns, in order of solution; `None` where loops alone do not decide.
-fn independent_groups(topology: &Topology, jacobian: &[SparseRow], unknown: &[bool]) -> Option<Vec<Vec<usize>>> {
+fn independent_groups(
+    topology: &Topology,
+    jacobian: &[SparseRow],
+    unknown: &[bool],
+) -> Option<Vec<Vec<usize>>> {
     // Rows that are independent within their own closure, with the closure's unknowns as pattern.
     let mut graph: UnGraph<(), ()> = UnGraph::default();
     let columns: Vec<usize> = (0..unknown.len()).filter(|&c| unknown[c]).collect();
@@ -119,7 +124,11 @@ fn independent_groups(topology: &Topology, jacobian: &[SparseRow], unknown: &[bo
 
 /// Makes blocks of the groups and selects their rows. The error is a basis of motions left free, each a
 /// value per coordinate.
-fn assign(topology: &mut Topology, jacobian: &[SparseRow], groups: &[Vec<usize>]) -> Result<(), Vec<Vec<f64>>> {
+fn assign(
+    topology: &mut Topology,
+    jacobian: &[SparseRow],
+    groups: &[Vec<usize>],
+) -> Result<(), Vec<Vec<f64>>> {
     let n = topology.coordinates.len();
     for (block, group) in groups.iter().enumerate() {
         for (column, &c) in group.iter().enumerate() {

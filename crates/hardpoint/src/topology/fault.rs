@@ -101,10 +101,8 @@ pub(super) fn under_driven(model: &Model, topology: &Topology, free: &[Vec<f64>]
         .collect();
     let mut joints: Vec<JointId> = moving.iter().filter_map(|&k| topology.links[k].joint).collect();
     let mut bodies: Vec<BodyId> = moving.iter().map(|&k| topology.links[k].child).collect();
-    for list in [&mut bodies] {
-        list.sort_unstable();
-        list.dedup();
-    }
+    bodies.sort_unstable();
+    bodies.dedup();
     joints.sort_unstable();
     joints.dedup();
     if topology.formulation == Formulation::Absolute {
@@ -142,10 +140,8 @@ pub(super) fn over_driven(
             None => format!("`{}` ({})", model.joints[closure.joint.0].name, row.describe()),
         });
     }
-    for list in [&mut drivers] {
-        list.sort_unstable();
-        list.dedup();
-    }
+    drivers.sort_unstable();
+    drivers.dedup();
     joints.sort_unstable();
     joints.dedup();
     joint_names.dedup();

@@ -58,7 +58,8 @@ pub(super) fn examine(model: &Model, topology: &mut Topology) -> Result<(), Topo
         let fails: Vec<DriverId> = (0..drivers)
             .filter(|&d| {
                 let sum: f64 = jacobian[r].iter().map(|&(c, x)| x * speeds[c][d]).sum();
-                let scale = 1.0 + jacobian[r].iter().map(|&(c, x)| (x * speeds[c][d]).abs()).fold(0.0, f64::max);
+                let scale =
+                    1.0 + jacobian[r].iter().map(|&(c, x)| (x * speeds[c][d]).abs()).fold(0.0, f64::max);
                 (sum - demand(row, d)).abs() > RANK_TOLERANCE.sqrt() * scale
             })
             .map(DriverId)

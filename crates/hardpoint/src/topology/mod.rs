@@ -232,7 +232,12 @@ impl Link {
 impl Step {
     /// World unit twist of its coordinate k (0, or 0 to 2 for a ball) where its frame is `frame`.
     #[inline(always)]
-    pub fn twist<T: crate::space::Real>(&self, k: usize, rot: &Mat3<T>, r: crate::space::Vec3<T>) -> Twist<T> {
+    pub fn twist<T: crate::space::Real>(
+        &self,
+        k: usize,
+        rot: &Mat3<T>,
+        r: crate::space::Vec3<T>,
+    ) -> Twist<T> {
         match self.freedom {
             Freedom::Turn(axis) => Twist::turn(rot.cols[axis] * r.x.like(self.sign), r),
             Freedom::Slide(axis) => Twist::slide(rot.cols[axis] * r.x.like(self.sign)),

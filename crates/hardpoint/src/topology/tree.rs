@@ -71,7 +71,13 @@ pub(super) fn grow(model: &Model, formulation: Formulation) -> Topology {
         }
         for (d, driver) in model.drivers.iter().enumerate().filter(|(_, d)| d.joint.0 == k) {
             if cut {
-                add_closure(&mut topology, JointId(k), Some(DriverId(d)), joint.bodies, vec![model.driven(driver).row]);
+                add_closure(
+                    &mut topology,
+                    JointId(k),
+                    Some(DriverId(d)),
+                    joint.bodies,
+                    vec![model.driven(driver).row],
+                );
             }
         }
     }
@@ -153,7 +159,16 @@ fn add_closure(
         topology.rows.push(RowPlace { closure, index, selected: false });
     }
     let links = loop_links(topology, bodies);
-    topology.closures.push(Closure { joint, driver, bodies, rows, first_row, block: None, entries: Vec::new(), links });
+    topology.closures.push(Closure {
+        joint,
+        driver,
+        bodies,
+        rows,
+        first_row,
+        block: None,
+        entries: Vec::new(),
+        links,
+    });
 }
 
 /// Links from j (+1) and from i (-1) down to where their ways to ground meet.

@@ -55,7 +55,9 @@ fn moving_a_hardpoint_is_the_reference_change_of_every_marker_on_it() {
         let Some(w) = reference.variable(&variable.name) else { continue };
         compared += 1;
         for k in 0..ours.motion.len() {
-            for (a, b) in ours.sensitivities.at(k, v).unwrap().iter().zip(theirs.sensitivities.at(k, w.0).unwrap()) {
+            for (a, b) in
+                ours.sensitivities.at(k, v).unwrap().iter().zip(theirs.sensitivities.at(k, w.0).unwrap())
+            {
                 for (p, q) in [(a.dr, b.dr), (a.dpi, b.dpi), (a.da, b.da), (a.dalpha, b.dalpha)] {
                     assert!(apart(p, q) < 1e-11, "{}: {p:?} {q:?}", variable.name);
                 }
@@ -71,24 +73,46 @@ fn the_field_is_the_derivative_of_the_geometry_for_every_kind_of_change() {
     let x = Vec3::AXES;
     let changes: Vec<(&str, ChangeDraft)> = vec![
         ("move an end of an axis", ChangeDraft::Move { hardpoint: "lca_front".into(), velocity: x[2] }),
-        ("move a rod's end", ChangeDraft::Move { hardpoint: "tie_rod_outer".into(), velocity: Vec3::new(0.3, 1.0, 0.2) }),
+        (
+            "move a rod's end",
+            ChangeDraft::Move { hardpoint: "tie_rod_outer".into(), velocity: Vec3::new(0.3, 1.0, 0.2) },
+        ),
         ("tilt", ChangeDraft::Tilt { joint: joint(), about: Line::Along(x[1]) }),
         (
             "one marker",
-            ChangeDraft::Marker { joint: "top_E".into(), end: End::J, position: x[0], rotation: Vec3::new(0.1, 0.0, 0.5) },
+            ChangeDraft::Marker {
+                joint: "top_E".into(),
+                end: End::J,
+                position: x[0],
+                rotation: Vec3::new(0.1, 0.0, 0.5),
+            },
         ),
         (
             "the paper's V and U",
-            ChangeDraft::Field { joint: joint(), body: "lca".into(), v: Vec3::new(0.1, 0.2, 0.3), u: Vec3::new(0.4, -0.7, 0.9) },
+            ChangeDraft::Field {
+                joint: joint(),
+                body: "lca".into(),
+                v: Vec3::new(0.1, 0.2, 0.3),
+                u: Vec3::new(0.4, -0.7, 0.9),
+            },
         ),
         (
             "V and U on the strut's slide",
-            ChangeDraft::Field { joint: "strut_slide".into(), body: "knuckle".into(), v: x[1], u: Vec3::new(-0.2, 0.3, 0.5) },
+            ChangeDraft::Field {
+                joint: "strut_slide".into(),
+                body: "knuckle".into(),
+                v: x[1],
+                u: Vec3::new(-0.2, 0.3, 0.5),
+            },
         ),
     ];
     for (name, change) in changes {
         for fixed_length in [false, true] {
-            let model = strut_with_hardpoints(vec![VariableDraft { name: name.into(), changes: vec![change.clone()], fixed_length }]);
+            let model = strut_with_hardpoints(vec![VariableDraft {
+                name: name.into(),
+                changes: vec![change.clone()],
+                fixed_length,
+            }]);
             let field = model.field(VariableId(0));
             let error = |h: f64| {
                 let (p, m) = (model.geometry(&[h]), model.geometry(&[-h]));
@@ -110,7 +134,10 @@ fn the_field_is_the_derivative_of_the_geometry_for_every_kind_of_change() {
                 }
                 worst
             };
-            assert!(field.markers.iter().any(|m| m.twist.w.norm() + m.twist.v.norm() > 0.1), "{name}: no field");
+            assert!(
+                field.markers.iter().any(|m| m.twist.w.norm() + m.twist.v.norm() > 0.1),
+                "{name}: no field"
+            );
             let (coarse, fine, best) = (error(2e-2), error(1e-2), error(1e-6));
             assert!(best < 1e-9, "{name}: {best:e}");
             assert!(coarse < 1e-10 || (3.5..4.5).contains(&(coarse / fine)), "{name}: {coarse:e} {fine:e}");

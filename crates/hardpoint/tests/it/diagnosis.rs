@@ -18,7 +18,9 @@ fn a_mechanism_without_its_driver_is_under_driven_and_names_what_moves() {
     draft.drivers.clear();
     for formulation in [Formulation::Relative, Formulation::Absolute] {
         let fault = fault(&draft, formulation);
-        let TopologyFault::UnderDriven { freedom, joint_names, bodies, .. } = &fault else { panic!("{fault:?}") };
+        let TopologyFault::UnderDriven { freedom, joint_names, bodies, .. } = &fault else {
+            panic!("{fault:?}")
+        };
         assert_eq!(*freedom, 1);
         for body in ["`crank`", "`coupler`", "`rocker`"] {
             assert!(bodies.iter().any(|b| b == body), "{bodies:?}");

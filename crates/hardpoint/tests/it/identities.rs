@@ -13,7 +13,8 @@ fn difference(a: &Solution, b: &Solution) -> f64 {
     let state = |s: &hardpoint::motion::BodyState| {
         [s.r, s.v, s.omega, s.a, s.alpha, s.rotation.cols[0], s.rotation.cols[1]]
     };
-    let sensitivity = |s: &hardpoint::sensitivity::BodySensitivity| [s.dr, s.dpi, s.dv, s.domega, s.da, s.dalpha];
+    let sensitivity =
+        |s: &hardpoint::sensitivity::BodySensitivity| [s.dr, s.dpi, s.dv, s.domega, s.da, s.dalpha];
     let mut most = 0.0_f64;
     let mut compare = |x: &[Vec3], y: &[Vec3], scale: &mut [f64]| {
         for (k, (x, y)) in x.iter().zip(y).enumerate() {
@@ -81,10 +82,8 @@ fn eight_designs_in_lanes_are_the_same_as_one_by_one() {
 
 #[test]
 fn a_moved_and_turned_mechanism_has_the_same_measures_and_turned_motion() {
-    let placed = Pose {
-        rot: Mat3::from_rotation_vector(Vec3::new(0.4, -1.1, 0.7)),
-        r: Vec3::new(3.0, -2.0, 0.5),
-    };
+    let placed =
+        Pose { rot: Mat3::from_rotation_vector(Vec3::new(0.4, -1.1, 0.7)), r: Vec3::new(3.0, -2.0, 0.5) };
     for name in REFERENCES {
         let draft = reference_draft(name);
         let moved = moved_draft(&draft, placed);
@@ -104,7 +103,11 @@ fn a_moved_and_turned_mechanism_has_the_same_measures_and_turned_motion() {
                 }
                 let (x, y) = (a.measured.value(k, m), b.measured.value(k, m));
                 for order in 0..3 {
-                    assert!((x[order] - y[order]).abs() < 1e-9 * (1.0 + x[order].abs()), "{name} {}", output.name);
+                    assert!(
+                        (x[order] - y[order]).abs() < 1e-9 * (1.0 + x[order].abs()),
+                        "{name} {}",
+                        output.name
+                    );
                 }
                 for v in (0..a.sensitivities.variables).map(VariableId) {
                     if a.sensitivities.at(k, v.0).is_some() {
@@ -151,8 +154,10 @@ fn moved_draft(draft: &Draft, to: Pose) -> Draft {
         place(&mut p.at);
     }
     for m in &mut d.measures {
-        if let MeasureKindDraft::Distance { from: PointRef::On { at, .. }, to: PointRef::On { at: other, .. } } =
-            &mut m.kind
+        if let MeasureKindDraft::Distance {
+            from: PointRef::On { at, .. },
+            to: PointRef::On { at: other, .. },
+        } = &mut m.kind
         {
             place(at);
             place(other);
@@ -206,7 +211,11 @@ fn an_admissible_design_leaves_every_body_where_it_is_while_all_drivers_are_zero
         for v in 0..model.variables.len() {
             if solution.sensitivities.admissibility[v] == hardpoint::sensitivity::Admissibility::Admissible {
                 for s in solution.sensitivities.at(k, v).unwrap() {
-                    assert!(s.dr.norm() < 1e-12 && s.dpi.norm() < 1e-12, "{name} {}", model.variables[v].name);
+                    assert!(
+                        s.dr.norm() < 1e-12 && s.dpi.norm() < 1e-12,
+                        "{name} {}",
+                        model.variables[v].name
+                    );
                 }
             }
         }

@@ -4,10 +4,9 @@
 //! of another folder. A case that needs a joint type, driver or measure that does not exist is a failure
 //! that names it.
 
-
+use crate::reference_case::{Case, Comparison};
 use hardpoint::topology::Formulation;
 use hardpoint::{Analysis, model::Model};
-use crate::reference_case::{Case, Comparison};
 use std::path::PathBuf;
 
 /// Largest deviation, as a part of a quantity's largest magnitude in the case (at least 1).
@@ -17,10 +16,8 @@ use std::path::PathBuf;
 const TOLERANCE: f64 = 1e-9;
 
 fn cases() -> Vec<PathBuf> {
-    let folder = std::env::var_os("HARDPOINT_REFERENCE").map_or_else(
-        || PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("tests/reference"),
-        PathBuf::from,
-    );
+    let folder = std::env::var_os("HARDPOINT_REFERENCE")
+        .map_or_else(|| PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("tests/reference"), PathBuf::from);
     let mut files: Vec<PathBuf> = std::fs::read_dir(&folder)
         .unwrap_or_else(|e| panic!("cannot read the folder of cases {}: {e}", folder.display()))
         .map(|f| f.expect("a directory entry").path())

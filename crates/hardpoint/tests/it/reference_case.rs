@@ -73,14 +73,19 @@ impl Case {
         let mut admissible_at_design = Vec::new();
         for v in list(&json, "design_variables") {
             draft.design.push(variable(v)?);
-            admissible_at_design.push((text(v, "name")?, v["admissible_at_design"].as_bool().unwrap_or(true)));
+            admissible_at_design
+                .push((text(v, "name")?, v["admissible_at_design"].as_bool().unwrap_or(true)));
         }
         for v in list(&json, "inadmissible_design_variables") {
             draft.design.push(variable(v)?);
             inadmissible.push(text(v, "name")?);
         }
         for p in list(&json, "points") {
-            draft.points.push(PointDraft { name: text(p, "name")?, body: text(p, "body")?, at: place(&p["location"])? });
+            draft.points.push(PointDraft {
+                name: text(p, "name")?,
+                body: text(p, "body")?,
+                at: place(&p["location"])?,
+            });
         }
         for m in list(&json, "measures") {
             draft.measures.push(measure(m)?);
@@ -113,7 +118,9 @@ impl Case {
             match (&solution.sensitivities.admissibility[b.0], at_design) {
                 (Admissibility::Admissible, true) | (Admissibility::Reassembled { .. }, false) => {}
                 (other, _) => {
-                    return Err(format!("`{name}`: admissible at the design {at_design}, reported as {other:?}"));
+                    return Err(format!(
+                        "`{name}`: admissible at the design {at_design}, reported as {other:?}"
+                    ));
                 }
             }
         }
@@ -142,7 +149,10 @@ impl Case {
                 out.check_quaternion(s.quaternion(), &body["q"], || format!("{name} q at {at}"))?;
                 for (variable, want) in body["d"].as_object().into_iter().flatten() {
                     let b = model.variable(variable).ok_or("unknown variable")?;
-                    let d = solution.sensitivities.at(k, b.0).ok_or_else(|| format!("`{variable}` has no numbers"))?[id.0];
+                    let d = solution
+                        .sensitivities
+                        .at(k, b.0)
+                        .ok_or_else(|| format!("`{variable}` has no numbers"))?[id.0];
                     let all = [
                         ("dr", d.dr),
                         ("dpi", d.dpi),
@@ -161,7 +171,9 @@ impl Case {
                 let m = ["x", "y", "z"].map(|c| solution.measured.index(&format!("{name}.{c}")).unwrap());
                 for (order, key) in ["p", "v", "a"].into_iter().enumerate() {
                     let got = Vec3::from(m.map(|m| solution.measured.value(k, m)[order]));
-                    out.check(&scales, &["points", key], got, &point[key], || format!("{name} {key} at {at}"))?;
+                    out.check(&scales, &["points", key], got, &point[key], || {
+                        format!("{name} {key} at {at}")
+                    })?;
                 }
                 for (variable, want) in point["d"].as_object().into_iter().flatten() {
                     let b = model.variable(variable).ok_or("unknown variable")?;
@@ -178,18 +190,28 @@ impl Case {
                 for (order, key) in ["value", "rate", "accel"].into_iter().enumerate() {
                     let mut got = value[order];
                     let want = measure[key].as_f64().ok_or("no number")?;
-                    if key == "value" && solution.measured.outputs[m].quantity == hardpoint::joint::Quantity::Angle {
+                    if key == "value"
+                        && solution.measured.outputs[m].quantity == hardpoint::joint::Quantity::Angle
+                    {
                         let turn = 2.0 * std::f64::consts::PI;
                         got -= turn * ((got - want) / turn).round();
                     }
-                    out.check_number(&scales, &["measures", key], got, want, || format!("{name} {key} at {at}"));
+                    out.check_number(&scales, &["measures", key], got, want, || {
+                        format!("{name} {key} at {at}")
+                    });
                 }
                 for (variable, want) in measure["d"].as_object().into_iter().flatten() {
                     let b = model.variable(variable).ok_or("unknown variable")?;
                     for (order, key) in ["dvalue", "drate", "daccel"].into_iter().enumerate() {
                         let got = solution.measured.d(k, b, m)[order];
                         let what = || format!("{name} {key} by {variable} at {at}");
-                        out.check_number(&scales, &["measures", "d", key], got, want[key].as_f64().unwrap(), what);
+                        out.check_number(
+                            &scales,
+                            &["measures", "d", key],
+                            got,
+                            want[key].as_f64().unwrap(),
+                            what,
+                        );
                     }
                 }
             }
@@ -234,7 +256,14 @@ impl Scales {
 }
 
 impl Comparison {
-    fn check_number(&mut self, scales: &Scales, path: &[&str], got: f64, want: f64, what: impl Fn() -> String) {
+    fn check_number(
+        &mut self,
+        scales: &Scales,
+        path: &[&str],
+        got: f64,
+        want: f64,
+        what: impl Fn() -> String,
+    ) {
         self.count += 1;
         let deviation = (got - want).abs() / scales.of(path);
         // NaN is the worst deviation of all.
@@ -260,8 +289,14 @@ impl Comparison {
     }
 
     /// Up to sign.
-    fn check_quaternion(&mut self, got: [f64; 4], want: &Value, what: impl Fn() -> String) -> Result<(), String> {
-        let want: Vec<f64> = want.as_array().ok_or("no quaternion")?.iter().map(|x| x.as_f64().unwrap()).collect();
+    fn check_quaternion(
+        &mut self,
+        got: [f64; 4],
+        want: &Value,
+        what: impl Fn() -> String,
+    ) -> Result<(), String> {
+        let want: Vec<f64> =
+            want.as_array().ok_or("no quaternion")?.iter().map(|x| x.as_f64().unwrap()).collect();
         let sign = if got.iter().zip(&want).map(|(a, b)| a * b).sum::<f64>() < 0.0 { -1.0 } else { 1.0 };
         for k in 0..4 {
             self.check_number(&Scales::default(), &["q"], sign * got[k], want[k], &what);

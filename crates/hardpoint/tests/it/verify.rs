@@ -1,9 +1,8 @@
 //! Sensitivities against re-solved designs, on every reference mechanism.
 
-
+use hardpoint::Analysis;
 use hardpoint::model::Model;
 use hardpoint::study::{CheckOutcome, VerifyOptions, verify};
-use hardpoint::Analysis;
 use std::ops::ControlFlow;
 
 #[test]
@@ -24,7 +23,8 @@ fn sensitivities_match_resolved_designs_and_the_error_falls_with_the_square_of_t
             assert_eq!(check.outcome, CheckOutcome::Passed, "{name} {variable}: {:?}", check.sweep);
             // Where truncation rules, well above the best agreement, a step 10 times finer errs 100 times less.
             let best = check.best().unwrap();
-            let coarse = check.sweep.iter().take_while(|s| s.step > best.step && s.error > 100.0 * best.error);
+            let coarse =
+                check.sweep.iter().take_while(|s| s.step > best.step && s.error > 100.0 * best.error);
             let coarse: Vec<_> = coarse.filter(|s| s.error < 1e-2).collect();
             for pair in coarse.windows(3) {
                 let ratio = pair[0].error / pair[2].error;

@@ -18,13 +18,20 @@ pub fn reference_draft(name: &str) -> Draft {
 }
 
 /// All reference mechanisms that the library ships.
-pub const REFERENCES: [&str; 6] = ["slider_crank", "macpherson", "rssr", "hooke", "double_wishbone", "jansen"];
+pub const REFERENCES: [&str; 6] =
+    ["slider_crank", "macpherson", "rssr", "hooke", "double_wishbone", "jansen"];
 
 pub fn body(name: &str) -> BodyDraft {
     BodyDraft { name: name.into(), frame: FrameDraft::Default }
 }
 
-pub fn joint(name: &str, kind: &str, bodies: [&str; 2], at: &[[f64; 3]], axis: Option<[f64; 3]>) -> JointDraft {
+pub fn joint(
+    name: &str,
+    kind: &str,
+    bodies: [&str; 2],
+    at: &[[f64; 3]],
+    axis: Option<[f64; 3]>,
+) -> JointDraft {
     JointDraft {
         name: name.into(),
         kind: kind.into(),
