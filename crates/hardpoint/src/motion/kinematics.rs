@@ -357,16 +357,21 @@ impl<T: Real> State<T> {
 
     /// Largest residual over all rows, left-out ones included, in each kind's own unit, with its row.
     pub fn worst_residual(&self, topology: &Topology, parts: &Parts<T>, drivers: &[[T; 3]]) -> (f64, usize) {
-        let mut worst = (0.0, 0);
-        for (r, place) in topology.rows.iter().enumerate() {
-            let row = topology.closures[place.closure].rows[place.index];
-            let target = self.target(topology, parts, drivers, r);
-            let residual = row.residual(&self.ends[place.closure], target).abs().largest();
-            if !(residual <= worst.0) {
-                worst = (residual, r);
-            }
-        }
-        worst
+        self.witness.within(
+            #[inline(always)]
+            || {
+                let mut worst = (0.0, 0);
+                for (r, place) in topology.rows.iter().enumerate() {
+                    let row = topology.closures[place.closure].rows[place.index];
+                    let target = self.target(topology, parts, drivers, r);
+                    let residual = row.residual(&self.ends[place.closure], target).abs().largest();
+                    if !(residual <= worst.0) {
+                        worst = (residual, r);
+                    }
+                }
+                worst
+            },
+        )
     }
 
     #[inline(always)]
@@ -464,24 +469,12 @@ pub(crate) fn level<T: Real>(
     out: &mut [Twist<T>],
     rhs: &mut [T],
 ) {
-    let carry = |links: std::ops::Range<usize>, u: &[T], out: &mut [Twist<T>]| {
-        for k in links {
-            let link = &topology.links[k];
-            let mut w = out[link.parent.0] + bias[k];
-            for step in &link.steps {
-                for c in step.first..step.first + step.freedom.coordinates() {
-                    w += x[c] * u[c];
-                }
-            }
-            out[link.child.0] = w;
-        }
-    };
-    carry(topology.driven_links(), u, out);
+    carry(topology, topology.driven_links(), x, bias, u, out);
     for (b, block) in topology.blocks.iter().enumerate() {
         for &c in &block.unknowns {
             u[c] = row_rhs[block.selected[0]].zero();
         }
-        carry(block.links.clone(), u, out);
+        carry(topology, block.links.clone(), x, bias, u, out);
         for (k, &r) in block.selected.iter().enumerate() {
             let [i, j] = topology.closures[topology.rows[r].closure].bodies;
             rhs[k] = row_rhs[r] - l[r].on(out[j.0] - out[i.0]);
@@ -490,6 +483,28 @@ pub(crate) fn level<T: Real>(
         for (k, &c) in block.unknowns.iter().enumerate() {
             u[c] = rhs[k];
         }
-        carry(block.links.clone(), u, out);
+        carry(topology, block.links.clone(), x, bias, u, out);
+    }
+}
+
+/// `out_child = out_parent + bias_link + sum x_a u_a` for these links.
+#[inline(always)]
+fn carry<T: Real>(
+    topology: &Topology,
+    links: std::ops::Range<usize>,
+    x: &[Twist<T>],
+    bias: &[Twist<T>],
+    u: &[T],
+    out: &mut [Twist<T>],
+) {
+    for k in links {
+        let link = &topology.links[k];
+        let mut w = out[link.parent.0] + bias[k];
+        for step in &link.steps {
+            for c in step.first..step.first + step.freedom.coordinates() {
+                w += x[c] * u[c];
+            }
+        }
+        out[link.child.0] = w;
     }
 }

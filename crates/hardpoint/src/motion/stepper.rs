@@ -221,20 +221,26 @@ impl<'m, T: Real> Stepper<'m, T> {
 
     /// `q + h qd + h^2/2 qdd` from the saved position; returns the largest move (rad, or sizes).
     fn predict(&mut self, h: f64) -> f64 {
-        let (s, saved) = (&mut self.state, &self.saved);
-        let (h1, h2) = (s.witness.like(h), s.witness.like(0.5 * h * h));
-        let mut most = 0.0_f64;
-        for (c, coordinate) in self.topology.coordinates.iter().enumerate() {
-            let step = saved.qd[c] * h1 + saved.qdd[c] * h2;
-            s.q[c] = saved.q[c] + step;
-            if let Source::Unknown { .. } = coordinate.source {
-                let size = if coordinate.is_length { s.size } else { 1.0 };
-                most = most.max(step.abs().largest() / size);
-            }
-        }
-        s.balls.copy_from_slice(&saved.balls);
-        s.turn_balls(&self.topology, 0..self.topology.links.len());
-        most
+        let witness = self.state.witness;
+        witness.within(
+            #[inline(always)]
+            || {
+                let (s, saved) = (&mut self.state, &self.saved);
+                let (h1, h2) = (s.witness.like(h), s.witness.like(0.5 * h * h));
+                let mut most = 0.0_f64;
+                for (c, coordinate) in self.topology.coordinates.iter().enumerate() {
+                    let step = saved.qd[c] * h1 + saved.qdd[c] * h2;
+                    s.q[c] = saved.q[c] + step;
+                    if let Source::Unknown { .. } = coordinate.source {
+                        let size = if coordinate.is_length { s.size } else { 1.0 };
+                        most = most.max(step.abs().largest() / size);
+                    }
+                }
+                s.balls.copy_from_slice(&saved.balls);
+                s.turn_balls(&self.topology, 0..self.topology.links.len());
+                most
+            },
+        )
     }
 
     /// Speed of the fastest driver (rad, or sizes, per unit of the path's parameter), now or before.
@@ -247,25 +253,32 @@ impl<'m, T: Real> Stepper<'m, T> {
 
     /// Whether the speeds are those of the same branch as before the step.
     fn speeds_are_smooth(&self, h: f64) -> bool {
-        let (s, saved) = (&self.state, &self.saved);
-        let (mut fastest, mut difference) = (0.0_f64, 0.0_f64);
-        for (c, coordinate) in self.topology.coordinates.iter().enumerate() {
-            if let Source::Unknown { .. } = coordinate.source {
-                let size = if coordinate.is_length { s.size } else { 1.0 };
-                let predicted = saved.qd[c] + saved.qdd[c] * s.witness.like(h);
-                fastest = fastest.max(s.qd[c].abs().largest().max(saved.qd[c].abs().largest()) / size);
-                let d = (s.qd[c] - predicted).abs().largest() / size;
-                // Written so that NaN counts as infinitely far.
-                difference = if d <= difference {
-                    difference
-                } else if d.is_nan() {
-                    f64::INFINITY
-                } else {
-                    d
-                };
-            }
-        }
-        difference <= (SPEED_TRUST * fastest).max(SPEED_FLOOR * self.fastest_driver.max(self.driver_speed()))
+        self.state.witness.within(
+            #[inline(always)]
+            || {
+                let (s, saved) = (&self.state, &self.saved);
+                let (mut fastest, mut difference) = (0.0_f64, 0.0_f64);
+                for (c, coordinate) in self.topology.coordinates.iter().enumerate() {
+                    if let Source::Unknown { .. } = coordinate.source {
+                        let size = if coordinate.is_length { s.size } else { 1.0 };
+                        let predicted = saved.qd[c] + saved.qdd[c] * s.witness.like(h);
+                        fastest =
+                            fastest.max(s.qd[c].abs().largest().max(saved.qd[c].abs().largest()) / size);
+                        let d = (s.qd[c] - predicted).abs().largest() / size;
+                        // Written so that NaN counts as infinitely far.
+                        difference = if d <= difference {
+                            difference
+                        } else if d.is_nan() {
+                            f64::INFINITY
+                        } else {
+                            d
+                        };
+                    }
+                }
+                difference
+                    <= (SPEED_TRUST * fastest).max(SPEED_FLOOR * self.fastest_driver.max(self.driver_speed()))
+            },
+        )
     }
 
     /// Speed of the fastest unknown at the saved position.

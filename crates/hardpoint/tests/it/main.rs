@@ -2,6 +2,7 @@
 
 mod design_variables;
 mod diagnosis;
+mod house;
 mod identities;
 mod reference;
 mod reference_case;

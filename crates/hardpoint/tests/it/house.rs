@@ -1,0 +1,108 @@
+//! The directions that data and dependencies may flow in (`ARCHITECTURE.md`), checked in the sources.
+
+use std::path::{Path, PathBuf};
+
+/// The rooms of the core, in the order of the walk: each may use those before it only.
+const ROOMS: [&str; 11] = [
+    "space",
+    "law",
+    "constraint",
+    "joint",
+    "model",
+    "topology",
+    "motion",
+    "sensitivity",
+    "measure",
+    "analysis",
+    "study",
+];
+
+/// Which of our own crates each crate may depend on.
+const CRATES: [(&str, &[&str]); 5] = [
+    ("hardpoint", &[]),
+    ("hardpoint-file", &["hardpoint"]),
+    ("hardpoint-report", &["hardpoint", "hardpoint-file"]),
+    ("hardpoint-cli", &["hardpoint", "hardpoint-file", "hardpoint-report"]),
+    ("hardpoint-bench", &["hardpoint", "hardpoint-file"]),
+];
+
+fn sources(folder: &Path) -> Vec<(PathBuf, String)> {
+    let mut out = Vec::new();
+    for entry in std::fs::read_dir(folder).unwrap() {
+        let path = entry.unwrap().path();
+        if path.is_dir() {
+            out.extend(sources(&path));
+        } else if path.extension().is_some_and(|e| e == "rs") {
+            let text = std::fs::read_to_string(&path).unwrap();
+            out.push((path, text));
+        }
+    }
+    out
+}
+
+#[test]
+fn no_room_of_the_core_uses_a_later_one() {
+    let src = Path::new(env!("CARGO_MANIFEST_DIR")).join("src");
+    let mut looked_at = 0;
+    for (path, text) in sources(&src) {
+        let inside = path.strip_prefix(&src).unwrap();
+        let first = inside.iter().next().unwrap().to_str().unwrap().trim_end_matches(".rs");
+        let Some(room) = ROOMS.iter().position(|r| *r == first) else { continue };
+        looked_at += 1;
+        let code = text.lines().filter(|l| !l.trim_start().starts_with("//"));
+        for (later, name) in ROOMS.iter().enumerate().skip(room + 1) {
+            let mentions = code.clone().any(|l| l.contains(&format!("crate::{name}")));
+            assert!(
+                !mentions,
+                "{} is in the room `{first}` and uses `{name}`, which comes later in the walk: {}",
+                inside.display(),
+                ROOMS[..=later].join(" -> ")
+            );
+        }
+    }
+    assert!(looked_at > 40, "only {looked_at} files found under {}", src.display());
+}
+
+#[test]
+fn the_core_does_no_input_or_output() {
+    let src = Path::new(env!("CARGO_MANIFEST_DIR")).join("src");
+    for (path, text) in sources(&src) {
+        for word in ["std::fs", "std::io", "std::net", "std::env", "println!", "eprintln!"] {
+            let code = text.lines().filter(|l| !l.trim_start().starts_with("//"));
+            assert!(
+                code.clone().all(|l| !l.contains(word)),
+                "{} uses {word}: the core does no I/O",
+                path.display()
+            );
+        }
+    }
+}
+
+#[test]
+fn crates_depend_towards_the_core_only() {
+    let cargo = std::env::var("CARGO").unwrap_or_else(|_| "cargo".into());
+    let output = std::process::Command::new(cargo)
+        .args(["metadata", "--no-deps", "--format-version", "1", "--offline"])
+        .current_dir(env!("CARGO_MANIFEST_DIR"))
+        .output()
+        .expect("cargo metadata runs");
+    let metadata: serde_json::Value = serde_json::from_slice(&output.stdout).expect("cargo metadata is JSON");
+    let packages = metadata["packages"].as_array().unwrap();
+    for package in packages {
+        let name = package["name"].as_str().unwrap();
+        let allowed = CRATES
+            .iter()
+            .find(|(c, _)| *c == name)
+            .unwrap_or_else(|| panic!("crate `{name}` has no place in the house: add it to CRATES"))
+            .1;
+        for d in package["dependencies"].as_array().unwrap() {
+            let on = d["name"].as_str().unwrap();
+            let ours = CRATES.iter().any(|(c, _)| *c == on);
+            assert!(
+                !ours || allowed.contains(&on),
+                "`{name}` must not depend on `{on}`: shells use the core, not the reverse"
+            );
+        }
+    }
+    assert_eq!(packages.len(), CRATES.len());
+}
