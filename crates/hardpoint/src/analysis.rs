@@ -137,7 +137,9 @@ impl<'m> Analysis<'m> {
         let fields: Vec<Field> = variables.iter().map(|v| model.field(*v)).collect();
         let mut sensing = Sensing::new(model, &self.topology, &fields, times.len());
         let mut motion = Motion { bodies: model.bodies.len(), ..Motion::default() };
-        motion.states.reserve(times.len() * motion.bodies);
+        motion.times.reserve_exact(times.len());
+        motion.states.reserve_exact(times.len() * motion.bodies);
+        motion.coordinates.reserve_exact(times.len() * self.topology.coordinates.len());
         let parts = Parts::new(model, &self.topology, std::slice::from_ref(geometry), 0.0);
         let mut stepper = Stepper::new(model, &self.topology, parts, 0.0);
         let mut stop = None;
@@ -248,7 +250,7 @@ impl<'f> Sensing<'f> {
     fn new(model: &'f Model, topology: &Topology, fields: &'f [Field], steps: usize) -> Self {
         let bodies = model.bodies.len();
         let mut out = Sensitivities { variables: fields.len(), bodies, ..Sensitivities::default() };
-        out.states.reserve(steps * fields.len() * bodies);
+        out.states.reserve_exact(steps * fields.len() * bodies);
         Self {
             fields,
             parts: fields.iter().map(|f| FieldParts::new(model, topology, f)).collect(),

@@ -24,9 +24,10 @@ const SPEED_FLOOR: f64 = 1e-3;
 const RUNAWAY: f64 = 1e3;
 /// A step is halved at most this often: 2^-40 of an output step decides nothing that a user could see.
 const MAX_HALVINGS: u32 = 40;
-/// A left-out constraint that fails by more than this part of the mechanism's size is no round-off of
-/// typed coordinates (six digits): the mechanism locks.
-pub(crate) const LOCKED: f64 = 1e-6;
+/// A left-out constraint that fails by more than this part of the mechanism's size (or, for a cosine, by
+/// more than this) is a contradiction: the mechanism locks. Typed coordinates have about six digits, and an
+/// axis through two of them is tilted by some times that.
+pub(crate) const LOCKED: f64 = 1e-5;
 /// When the pivot ratio has fallen to this part of its first value, other rows may serve better.
 const RESELECT: f64 = 1e-3;
 

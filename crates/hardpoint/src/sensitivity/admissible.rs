@@ -37,8 +37,8 @@ pub struct JointDefect {
     pub value: f64,
 }
 
-/// A defect below this part of the field's speed is round-off.
-const OPEN: f64 = 1e-9;
+/// A defect below this part of the field's speed is round-off of typed velocities.
+const OPEN: f64 = 1e-7;
 
 /// The joints that a variable opens at the design configuration while all bodies stay: those with
 /// `l . (z_j - z_i) - L' != 0` for one of their elementary constraints (`docs/theory.md` (8), paper

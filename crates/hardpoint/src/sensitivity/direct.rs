@@ -3,6 +3,7 @@
 use crate::constraint::Row;
 use crate::model::{Field, Model};
 use crate::motion::kinematics::{State, level};
+use crate::motion::stepper::LOCKED;
 use crate::space::{Real, Twist};
 use crate::topology::{Closure, Topology};
 
@@ -68,8 +69,6 @@ pub(crate) struct Defect {
     pub value: f64,
 }
 
-/// A defect below this part of the terms that cancel in it is round-off of typed coordinates.
-const DEFECT_TOLERANCE: f64 = 1e-6;
 /// A defect below this part of the field's own speed is zero, even if nothing else stands in the row.
 const DEFECT_FLOOR: f64 = 1e-9;
 
@@ -196,8 +195,8 @@ impl<T: Real> Direct<T> {
             let terms = [self.w[0][j.0], z_j, -self.w[0][i.0], -z_i].map(|w| state.l[r].on(w).lane(0));
             let defect = terms.iter().sum::<f64>() - length;
             let size = terms.iter().fold(length.abs(), |m, x| m.max(x.abs()));
-            let is_defect =
-                !(defect.abs() <= DEFECT_TOLERANCE * size) && defect.abs() > DEFECT_FLOOR * field.scale;
+            // What typed coordinates may be off by in the motion, they may be off by in the design's terms.
+            let is_defect = !(defect.abs() <= LOCKED * size) && defect.abs() > DEFECT_FLOOR * field.scale;
             if is_defect && worst.is_none_or(|w| defect.abs() > w.value) {
                 worst = Some(Defect { row: r, value: defect.abs() });
             }

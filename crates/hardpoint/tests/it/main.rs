@@ -1,9 +1,11 @@
 //! The library as its users see it: whole mechanisms, from draft to sensitivities.
 
+mod allocation;
 mod design_variables;
 mod diagnosis;
 mod house;
 mod identities;
+mod joints;
 mod reference;
 mod reference_case;
 mod verify;

@@ -1,0 +1,163 @@
+//! Every joint type in a whole mechanism, carried by the tree and cut, against re-solving.
+
+use std::ops::ControlFlow;
+
+use hardpoint::joint::ALL;
+use hardpoint::model::*;
+use hardpoint::study::{VerifyOptions, verify};
+use hardpoint::topology::{Formulation, Role};
+use hardpoint::{Analysis, Solution};
+
+use crate::workbench::*;
+
+/// A spatial slider-crank: its slider may turn on its guide, its pin is a ball, and a plate rides on the rod.
+fn slider_on_a_shaft() -> Draft {
+    let z = Some([0.0, 0.0, 1.0]);
+    let mut on_plate = joint("weld", "fixed", ["rod", "plate"], &[[0.3, 0.2, 0.1]], None);
+    on_plate.cut = false;
+    Draft {
+        name: "slider on a shaft".into(),
+        bodies: ["crank", "rod", "slider", "plate"].map(body).into(),
+        joints: vec![
+            joint("J1", "revolute", ["ground", "crank"], &[[0.0, 0.0, 0.0]], z),
+            joint("J2", "revolute", ["crank", "rod"], &[[0.12, 0.16, 0.0]], z),
+            joint("J3", "spherical", ["rod", "slider"], &[[0.6, 0.05, 0.0]], None),
+            joint("J4", "cylindrical", ["ground", "slider"], &[[0.6, 0.0, 0.0]], Some([1.0, 0.0, 0.0])),
+            on_plate,
+        ],
+        drivers: vec![driver("motor", "J1", "sin(2*pi*t)")],
+        design: vec![
+            marker("J4_ry", "J4", [0.0; 3], [0.0, 1.0, 0.0]),
+            marker("J1_rx", "J1", [0.0; 3], [1.0, 0.0, 0.0]),
+            marker("J3_y", "J3", [0.0, 1.0, 0.0], [0.0; 3]),
+            marker("weld_rz", "weld", [0.0; 3], [0.0, 0.0, 1.0]),
+        ],
+        points: vec![PointDraft {
+            name: "corner".into(),
+            body: "plate".into(),
+            at: Place::At([0.4, 0.3, 0.2].into()),
+        }],
+        measures: vec![MeasureDraft {
+            name: "spin".into(),
+            kind: MeasureKindDraft::Coordinate { joint: "J4".into(), coordinate: Some("angle".into()) },
+        }],
+        times: times(1.0, 10),
+        ..Draft::default()
+    }
+}
+
+fn marker(name: &str, joint: &str, position: [f64; 3], rotation: [f64; 3]) -> VariableDraft {
+    let change = ChangeDraft::Marker {
+        joint: joint.into(),
+        end: End::Both,
+        position: position.into(),
+        rotation: rotation.into(),
+    };
+    VariableDraft { name: name.into(), changes: vec![change], fixed_length: false }
+}
+
+fn mechanisms() -> Vec<Draft> {
+    REFERENCES.iter().map(|n| reference_draft(n)).chain([slider_on_a_shaft()]).collect()
+}
+
+#[test]
+fn every_joint_type_is_in_a_mechanism_that_is_tested() {
+    for t in ALL {
+        assert!(
+            mechanisms().iter().any(|m| m.joints.iter().any(|j| j.kind == t.name)),
+            "add a mechanism with a {} joint to this battery",
+            t.name
+        );
+    }
+}
+
+fn largest_difference(a: &Solution, b: &Solution) -> f64 {
+    let mut worst = 0.0_f64;
+    for k in 0..a.motion.len() {
+        for (m, _) in a.measured.outputs.iter().enumerate() {
+            let scale = 1.0 + a.measured.value(k, m)[2].abs();
+            for o in 0..3 {
+                worst = worst.max((a.measured.value(k, m)[o] - b.measured.value(k, m)[o]).abs() / scale);
+            }
+            for v in (0..a.sensitivities.variables).map(VariableId) {
+                if a.sensitivities.at(k, v.0).is_some() {
+                    let (x, y) = (a.measured.d(k, v, m), b.measured.d(k, v, m));
+                    let scale = 1.0 + x[2].abs();
+                    worst = (0..3).map(|o| (x[o] - y[o]).abs() / scale).fold(worst, f64::max);
+                }
+            }
+        }
+    }
+    worst
+}
+
+#[test]
+fn it_makes_no_difference_which_joint_is_cut() {
+    for draft in mechanisms() {
+        let nominal = Model::from_draft(&draft).unwrap();
+        let want = Analysis::new(&nominal).unwrap().run();
+        let mut tried = 0;
+        for k in 0..draft.joints.len() {
+            let mut other = draft.clone();
+            other.joints[k].cut = true;
+            let model = Model::from_draft(&other).unwrap();
+            let analysis = Analysis::new(&model).unwrap();
+            if analysis.topology().roles == Analysis::new(&nominal).unwrap().topology().roles {
+                continue;
+            }
+            tried += 1;
+            assert!(matches!(analysis.topology().roles[k], Role::Cut(_)));
+            let got = analysis.run();
+            let d = largest_difference(&want, &got);
+            assert!(d < 1e-10, "{}: cut at `{}`: {d:e}", draft.name, draft.joints[k].name);
+        }
+        assert!(tried >= 1, "{}", draft.name);
+    }
+}
+
+#[test]
+fn a_spatial_slider_crank_matches_resolved_designs_in_both_formulations() {
+    let model = Model::from_draft(&slider_on_a_shaft()).unwrap();
+    for formulation in [Formulation::Relative, Formulation::Absolute] {
+        let analysis = Analysis::with(&model, formulation).unwrap();
+        assert_eq!(analysis.topology().redundant().count(), 0);
+        let solution = analysis.run();
+        assert!(solution.stop.is_none());
+        let report = verify(&analysis, &solution, &VerifyOptions::default(), |_| ControlFlow::Continue(()));
+        for check in &report.checks {
+            let best = check.best().unwrap();
+            assert!(best.error < 1e-8, "{}: {best:?}", model.variables[check.variable.0].name);
+        }
+        // Turning the guide turns the slider on it: not a planar mechanism any more.
+        let spin = solution.measured.index("spin").unwrap();
+        let tilt = model.variable("J1_rx").unwrap();
+        let most = (0..solution.motion.len())
+            .map(|k| solution.measured.d(k, tilt, spin)[0].abs())
+            .fold(0.0, f64::max);
+        assert!(most > 0.1, "{most}");
+    }
+}
+
+#[test]
+fn angles_are_counted_through_whole_turns_in_the_tree_and_across_a_cut() {
+    let mut draft = four_bar([[0.0, 0.0], [0.0, 0.1], [0.3, 0.25], [0.3, 0.0]], "2*pi*t", &times(3.0, 90));
+    let measure = |name: &str| MeasureDraft {
+        name: name.into(),
+        kind: MeasureKindDraft::Coordinate { joint: name.into(), coordinate: None },
+    };
+    draft.measures = ["A", "B", "C", "D"].map(measure).into();
+    let model = Model::from_draft(&draft).unwrap();
+    let turn = 2.0 * std::f64::consts::PI;
+    for formulation in [Formulation::Relative, Formulation::Absolute] {
+        let solution = Analysis::with(&model, formulation).unwrap().run();
+        let angle =
+            |k: usize, name: &str| solution.measured.value(k, solution.measured.index(name).unwrap())[0];
+        for (name, turns) in [("A", 3.0), ("B", -3.0), ("C", 0.0), ("D", 0.0)] {
+            assert!(
+                (angle(90, name) - turns * turn).abs() < 1e-9,
+                "{formulation:?} {name}: {}",
+                angle(90, name)
+            );
+        }
+    }
+}
