@@ -54,6 +54,8 @@ struct Saved<T> {
     q: Vec<T>,
     qd: Vec<T>,
     qdd: Vec<T>,
+    /// Jerk, from the accelerations of the last two accepted positions; 0 at the start of a path.
+    jerk: Vec<T>,
     balls: Vec<Quat<T>>,
 }
 
@@ -82,6 +84,7 @@ impl<'m, T: Real> Stepper<'m, T> {
             q: state.q.clone(),
             qd: state.qd.clone(),
             qdd: state.qdd.clone(),
+            jerk: state.qdd.clone(),
             balls: state.balls.clone(),
         };
         let branch = vec![(true, 0.0); topology.blocks.len()];
@@ -108,13 +111,13 @@ impl<'m, T: Real> Stepper<'m, T> {
         let ramp = Path::Ramp { start: t };
         self.time = 0.0;
         self.attempt(ramp, 0.0, 0.0, true).map_err(|r| self.stop(ramp, 0.0, r, false))?;
-        self.save(0.0);
+        self.save(0.0, 0.0);
         self.walk(ramp, 1.0)?;
         // The rates left by the ramp are per unit of ramp; solve once more with the laws' own.
         self.fastest_driver = 0.0;
         self.time = t;
         self.attempt(Path::Laws, t, 0.0, false).map_err(|r| self.stop(Path::Laws, t, r, false))?;
-        self.save(t);
+        self.save(t, 0.0);
         self.count();
         Ok(())
     }
@@ -139,9 +142,6 @@ impl<'m, T: Real> Stepper<'m, T> {
     }
 
     fn walk(&mut self, path: Path, target: f64) -> Result<(), Stop> {
-        if self.drive(path, target).is_ok() {
-            self.fastest_driver = self.driver_speed();
-        }
         let whole = target - self.time;
         let mut h = whole;
         let shortest = whole * 0.5_f64.powi(MAX_HALVINGS as i32);
@@ -152,7 +152,7 @@ impl<'m, T: Real> Stepper<'m, T> {
             let t = if last { target } else { self.time + step };
             match self.attempt(path, t, step, false) {
                 Ok(()) => {
-                    self.save(t);
+                    self.save(t, step);
                     if last {
                         return Ok(());
                     }
@@ -191,6 +191,7 @@ impl<'m, T: Real> Stepper<'m, T> {
     /// Tries the position at t, a step h beyond the saved one. `first` sets the branch to stay on.
     fn attempt(&mut self, path: Path, t: f64, h: f64, first: bool) -> Result<(), Refusal> {
         self.drive(path, t)?;
+        self.fastest_driver = self.driver_speed();
         let moved = self.predict(h);
         // A changed design may close some way off the nominal one, so the first correction is free.
         let trust = if first { f64::INFINITY } else { (TRUST * moved).max(TRUST_FLOOR) };
@@ -220,17 +221,17 @@ impl<'m, T: Real> Stepper<'m, T> {
         Ok(())
     }
 
-    /// `q + h qd + h^2/2 qdd` from the saved position; returns the largest move (rad, or sizes).
+    /// `q + h qd + h^2/2 qdd + h^3/6 jerk` from the saved position; returns the largest move (rad, or sizes).
     fn predict(&mut self, h: f64) -> f64 {
         let witness = self.state.witness;
         witness.within(
             #[inline(always)]
             || {
                 let (s, saved) = (&mut self.state, &self.saved);
-                let (h1, h2) = (s.witness.like(h), s.witness.like(0.5 * h * h));
+                let [h1, h2, h3] = [h, 0.5 * h * h, h * h * h / 6.0].map(|x| s.witness.like(x));
                 let mut most = 0.0_f64;
                 for (c, coordinate) in self.topology.coordinates.iter().enumerate() {
-                    let step = saved.qd[c] * h1 + saved.qdd[c] * h2;
+                    let step = saved.qd[c] * h1 + saved.qdd[c] * h2 + saved.jerk[c] * h3;
                     s.q[c] = saved.q[c] + step;
                     if let Source::Unknown { .. } = coordinate.source {
                         let size = if coordinate.is_length { s.size } else { 1.0 };
@@ -276,8 +277,7 @@ impl<'m, T: Real> Stepper<'m, T> {
                         };
                     }
                 }
-                difference
-                    <= (SPEED_TRUST * fastest).max(SPEED_FLOOR * self.fastest_driver.max(self.driver_speed()))
+                difference <= (SPEED_TRUST * fastest).max(SPEED_FLOOR * self.fastest_driver)
             },
         )
     }
@@ -299,8 +299,13 @@ impl<'m, T: Real> Stepper<'m, T> {
         (0..self.state.pivots.len()).min_by(|a, b| regularity(a).total_cmp(&regularity(b))).unwrap_or(0)
     }
 
-    fn save(&mut self, t: f64) {
+    /// Accepts the position at t, a step h after the one before (0 at the start of a path).
+    fn save(&mut self, t: f64, h: f64) {
         let (s, saved) = (&self.state, &mut self.saved);
+        let per_step = s.witness.like(if h > 0.0 { 1.0 / h } else { 0.0 });
+        for (jerk, (after, before)) in saved.jerk.iter_mut().zip(s.qdd.iter().zip(&saved.qdd)) {
+            *jerk = (*after - *before) * per_step;
+        }
         saved.q.copy_from_slice(&s.q);
         saved.qd.copy_from_slice(&s.qd);
         saved.qdd.copy_from_slice(&s.qdd);
