@@ -22,6 +22,8 @@ const SPEED_TRUST: f64 = 0.25;
 const SPEED_FLOOR: f64 = 1e-3;
 /// Coordinates this much faster than the fastest driver are on their way to a limit position.
 const RUNAWAY: f64 = 1e3;
+/// A pivot ratio that has fallen to this part of its first value is on its way to a singular position.
+const NEARLY_SINGULAR: f64 = 1e-3;
 /// A step is halved at most this often: 2^-40 of an output step decides nothing that a user could see.
 const MAX_HALVINGS: u32 = 40;
 /// A left-out constraint that fails by more than this part of the mechanism's size (or, for a cosine, by
@@ -57,6 +59,7 @@ struct Saved<T> {
     /// Jerk, from the accelerations of the last two accepted positions; 0 at the start of a path.
     jerk: Vec<T>,
     balls: Vec<Quat<T>>,
+    pivots: Vec<(f64, bool)>,
 }
 
 /// What the drivers follow.
@@ -86,6 +89,7 @@ impl<'m, T: Real> Stepper<'m, T> {
             qdd: state.qdd.clone(),
             jerk: state.qdd.clone(),
             balls: state.balls.clone(),
+            pivots: state.pivots.clone(),
         };
         let branch = vec![(true, 0.0); topology.blocks.len()];
         let drivers = vec![[witness.zero(); 3]; model.drivers.len()];
@@ -310,6 +314,7 @@ impl<'m, T: Real> Stepper<'m, T> {
         saved.qd.copy_from_slice(&s.qd);
         saved.qdd.copy_from_slice(&s.qdd);
         saved.balls.copy_from_slice(&s.balls);
+        saved.pivots.copy_from_slice(&s.pivots);
         self.time = t;
     }
 
@@ -364,16 +369,25 @@ impl<'m, T: Real> Stepper<'m, T> {
         }
     }
 
+    /// What kind of position a walk in ever smaller steps has come to.
+    ///
+    /// At a limit the speeds grow without bound; where branches cross they stay finite while the Jacobian
+    /// becomes singular. Where neither is so, the drivers ask for something out of reach.
+    fn obstacle(&self, block: usize, jumped: bool) -> StopKind {
+        let singular = self.saved.pivots[block].0 < NEARLY_SINGULAR * self.branch[block].1;
+        if self.saved_speed() <= RUNAWAY * self.fastest_driver && (jumped || singular) {
+            StopKind::BranchChange
+        } else {
+            StopKind::Limit
+        }
+    }
+
     fn stop(&self, path: Path, t: f64, refusal: Refusal, moved: bool) -> Stop {
         let (kind, block) = match refusal {
             Refusal::Position(
                 PositionFailure::Singular { block } | PositionFailure::NoConvergence { block },
-            ) => (StopKind::Limit, Some(block)),
-            // At a limit the speeds grow without bound; where branches cross they stay finite.
-            Refusal::Branch { block } if self.saved_speed() > RUNAWAY * self.fastest_driver => {
-                (StopKind::Limit, Some(block))
-            }
-            Refusal::Branch { block } => (StopKind::BranchChange, Some(block)),
+            ) => (self.obstacle(block, false), Some(block)),
+            Refusal::Branch { block } => (self.obstacle(block, true), Some(block)),
             Refusal::Locked { row, residual } => {
                 let place = self.topology.rows[row];
                 let closure = &self.topology.closures[place.closure];
@@ -400,7 +414,7 @@ impl<'m, T: Real> Stepper<'m, T> {
                     None => d.law.at(self.time).value(),
                 })
                 .collect(),
-            pivot_ratio: block.map_or(1.0, |b| self.state.pivots[b].0),
+            pivot_ratio: block.map_or(1.0, |b| self.saved.pivots[b].0),
             joints: block.map_or_else(Vec::new, |b| self.topology.joints_of_block(b)),
         }
     }
