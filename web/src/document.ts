@@ -4,11 +4,14 @@ import type { Payload, Table } from './payload'
 /** Tables up to this long are open from the start. */
 const SHORT = 12
 
-export function header({ title, file, generator, status, summary }: Pick<Payload, 'title' | 'file' | 'generator' | 'status' | 'summary'>): HTMLElement {
+type Head = Pick<Payload, 'title' | 'description' | 'file' | 'generator' | 'status' | 'summary'>
+
+export function header({ title, description, file, generator, status, summary }: Head): HTMLElement {
   return el(
     'header',
     {},
     el('div', { class: 'line' }, el('h1', {}, title), el('p', { class: 'origin' }, el('code', {}, file), ` · ${generator}`)),
+    description !== '' && el('p', { class: 'lead' }, description),
     status.complete
       ? el('p', { class: 'status', 'data-testid': 'status' }, ...prose(status.message))
       : el(
@@ -40,7 +43,7 @@ export function checks(tables: Table[]): HTMLElement {
           'table',
           {},
           el('thead', {}, el('tr', {}, ...table.header.map((cell) => el('th', { scope: 'col' }, cell)))),
-          el('tbody', {}, ...table.rows.map((row) => el('tr', {}, ...row.map((cell) => el('td', {}, cell))))),
+          el('tbody', {}, ...table.rows.map((row) => el('tr', {}, ...row.map((cell) => el('td', {}, ...prose(cell)))))),
         )),
       ),
     ),

@@ -21,6 +21,11 @@ export function prose(text: string): (Node | string)[] {
   return text.split('`').map((part, k) => (k % 2 === 1 ? el('code', {}, part) : part))
 }
 
+/** A name that may be broken after each of its words. */
+export function breakable(name: string): (Node | string)[] {
+  return name.split(/(?<=[_.])/).flatMap((part, k) => (k === 0 ? [part] : [el('wbr'), part]))
+}
+
 /** Renders anew and gives the focus back to the button of the same name. */
 export function keepFocus(container: HTMLElement, render: () => void): void {
   const focused = container.querySelector<HTMLButtonElement>('button:focus')

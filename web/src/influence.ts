@@ -1,4 +1,4 @@
-import { el, keepFocus, prose } from './dom'
+import { breakable, el, keepFocus, prose } from './dom'
 import { figure, number, pretty } from './format'
 import { derivativeName, derivativeUnit, groups, orderedName, ORDERS, ranking, type Quantity, type Variable } from './report'
 import type { State } from './state'
@@ -77,7 +77,7 @@ export function heatMap(state: State): HTMLElement {
         el(
           'th',
           { scope: 'col', 'aria-current': String(quantity.index === choice.quantity) },
-          el('button', { type: 'button', class: 'plain', name: quantity.name, onclick: () => state.choose({ quantity: quantity.index }) }, quantity.name),
+          el('button', { type: 'button', class: 'plain', name: quantity.name, onclick: () => state.choose({ quantity: quantity.index }) }, ...breakable(quantity.name)),
         ),
       ),
     )

@@ -23,6 +23,10 @@ export type Payload = {
  */
 title: string,
 /**
+ * What the model file says about itself; may be empty.
+ */
+description: string,
+/**
  * Name of the model file.
  */
 file: string,

@@ -123,7 +123,7 @@ export class Plot {
     if (!this.#uplot) return
     this.#marker.style.left = `${this.#uplot.valToPos(this.state.time, 'x')}px`
     for (const { curve, output } of this.#readings) {
-      output.textContent = number(valueAt(curve, this.state.step))
+      output.textContent = number(valueAt(curve, this.state.step), 4)
     }
   }
 }

@@ -121,7 +121,7 @@ function checkContent({ report, choice }: State): Content {
   const curve = differences.curves[order]
   lines.push({ label: 'finite difference', color: css('--ink'), curve, marks: thinned(curve, MARKS) })
   const caption =
-    `Designs re-solved ±${figure(differences.step, differences.unit)} away; ` +
+    `Designs re-solved ±${figure(Number(differences.step.toPrecision(2)), differences.unit)} away; ` +
     `largest relative disagreement ${number(differences.worst[order], 2)}.`
   return { title, unit, lines, caption }
 }

@@ -1,5 +1,5 @@
 import { valueAt, stepAt } from './curve'
-import { groups, type Order, type Report } from './report'
+import { groups, type Order, type Quantity, type Report } from './report'
 
 export interface Choice {
   quantity: number
@@ -23,7 +23,9 @@ export class State {
   #onTime: (() => void)[] = []
 
   constructor(readonly report: Report) {
-    const first = groups(report)[0]?.[1][0]
+    const offered = groups(report).flatMap(([, members]) => members)
+    const moved = ({ index }: Quantity) => report.variables.some(({ sensitivities }) => (sensitivities.get(index)?.peaks[0] ?? 0) > 0)
+    const first = offered.find(moved) ?? offered[0]
     const able = report.variables.find((variable) => variable.sensitivities.size > 0)
     this.choice = { quantity: first?.index ?? 0, variable: able?.index ?? 0, order: 0, all: false }
   }

@@ -6,7 +6,7 @@ import type { State } from './state'
 
 const BADGES: Record<Admissibility, string> = {
   admissible: '',
-  reassembled: 'reassembled',
+  reassembled: 're-assembled',
   cannot_follow: 'cannot follow',
 }
 

@@ -21,6 +21,7 @@ const quantity = (name: string, group: string) =>
 const payload: Payload = {
   title: '',
   file: '',
+  description: '',
   generator: '',
   units: { length: 'mm', angle: 'deg', time: 's' },
   status: { complete: true, message: '' },

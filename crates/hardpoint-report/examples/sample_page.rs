@@ -47,25 +47,14 @@ fn pin_y(time: Jet, design: Design<Jet>) -> Jet {
 /// The design with one of its three numbers changed by `change` and seeded with `slope`.
 fn design(seeded: usize, change: f64, slope: f64) -> Design<Jet> {
     let number = |index: usize, value: f64| {
-        let (change, slope) = if index == seeded {
-            (change, slope)
-        } else {
-            (0.0, 0.0)
-        };
+        let (change, slope) = if index == seeded { (change, slope) } else { (0.0, 0.0) };
         Jet::from_re(Dual64::new(value + change, slope))
     };
-    Design {
-        crank: number(0, CRANK),
-        rod: number(1, ROD),
-        phase: number(2, 0.0),
-    }
+    Design { crank: number(0, CRANK), rod: number(1, ROD), phase: number(2, 0.0) }
 }
 
 fn at(formula: Formula, time: f64, design: Design<Jet>) -> [Dual64; 3] {
-    let jet = formula(
-        Jet::new(time.into(), Dual64::from(1.0), Dual64::from(0.0)),
-        design,
-    );
+    let jet = formula(Jet::new(time.into(), Dual64::from(1.0), Dual64::from(0.0)), design);
     [jet.re, jet.v1, jet.v2]
 }
 
@@ -80,8 +69,7 @@ fn sensitivity(times: &[f64], quantity: usize, formula: Formula, variable: usize
         (moved(FD_STEP) - moved(-FD_STEP)) / (2.0 * FD_STEP)
     };
     let worst = [0, 1, 2].map(|order| {
-        let largest =
-            |f: &dyn Fn(f64) -> f64| times.iter().map(|&time| f(time).abs()).fold(0.0, f64::max);
+        let largest = |f: &dyn Fn(f64) -> f64| times.iter().map(|&time| f(time).abs()).fold(0.0, f64::max);
         let size = largest(&|time| exact(time, order));
         let gap = largest(&|time| exact(time, order) - difference(time, order));
         if size > 0.0 { gap / size } else { gap }
@@ -89,21 +77,9 @@ fn sensitivity(times: &[f64], quantity: usize, formula: Formula, variable: usize
     let [value, rate, accel] = curves(times, exact);
     let [fd_value, fd_rate, fd_accel] = curves(times, difference);
     let step_unit = if variable == 2 { "deg" } else { "mm" }.into();
-    let fd = FiniteDifference {
-        value: fd_value,
-        rate: fd_rate,
-        accel: fd_accel,
-        step: FD_STEP,
-        step_unit,
-        worst,
-    };
-    Sensitivity {
-        quantity,
-        value,
-        rate,
-        accel,
-        fd: Some(fd),
-    }
+    let fd =
+        FiniteDifference { value: fd_value, rate: fd_rate, accel: fd_accel, step: FD_STEP, step_unit, worst };
+    Sensitivity { quantity, value, rate, accel, fd: Some(fd) }
 }
 
 fn track(
@@ -131,73 +107,36 @@ fn bodies(times: &[f64]) -> Vec<BodyTrack> {
         (CRANK * turn.cos(), CRANK * turn.sin())
     };
     vec![
-        track("ground", times, &[("main bearing", [0.0; 3])], |_| {
-            (0.0, 0.0, 0.0)
+        track("ground", times, &[("main bearing", [0.0; 3])], |_| (0.0, 0.0, 0.0)),
+        track("crank", times, &[("main bearing", [0.0; 3]), ("crank pin", [CRANK, 0.0, 0.0])], |time| {
+            (0.0, 0.0, now(angle, time))
         }),
-        track(
-            "crank",
-            times,
-            &[("main bearing", [0.0; 3]), ("crank pin", [CRANK, 0.0, 0.0])],
-            |time| (0.0, 0.0, now(angle, time)),
-        ),
-        track(
-            "rod",
-            times,
-            &[("crank pin", [0.0; 3]), ("wrist pin", [ROD, 0.0, 0.0])],
-            |time| {
-                let (x, y) = pin(time);
-                (x, y, now(rod_angle, time).to_radians())
-            },
-        ),
-        track("slider", times, &[("wrist pin", [0.0; 3])], |time| {
-            (now(slider_x, time), 0.0, 0.0)
+        track("rod", times, &[("crank pin", [0.0; 3]), ("wrist pin", [ROD, 0.0, 0.0])], |time| {
+            let (x, y) = pin(time);
+            (x, y, now(rod_angle, time).to_radians())
         }),
+        track("slider", times, &[("wrist pin", [0.0; 3])], |time| (now(slider_x, time), 0.0, 0.0)),
     ]
 }
 
 fn joints() -> Vec<JointMark> {
-    let joint =
-        |name: &str, kind: &str, [body_i, body_j]: [usize; 2], at_i, at_j, axis, cut| JointMark {
-            name: name.into(),
-            kind: kind.into(),
-            body_i,
-            body_j,
-            at_i,
-            at_j,
-            axis: Some(axis),
-            cut,
-        };
+    let joint = |name: &str, kind: &str, [body_i, body_j]: [usize; 2], at_i, at_j, axis, cut| JointMark {
+        name: name.into(),
+        kind: kind.into(),
+        body_i,
+        body_j,
+        at_i,
+        at_j,
+        axis: Some(axis),
+        cut,
+    };
     let (z, x) = ([0.0, 0.0, 1.0], [1.0, 0.0, 0.0]);
     let pin = [CRANK, 0.0, 0.0];
     vec![
-        joint(
-            "main_bearing",
-            "revolute",
-            [0, 1],
-            [0.0; 3],
-            [0.0; 3],
-            z,
-            false,
-        ),
+        joint("main_bearing", "revolute", [0, 1], [0.0; 3], [0.0; 3], z, false),
         joint("crank_pin", "revolute", [1, 2], pin, [0.0; 3], z, false),
-        joint(
-            "wrist_pin",
-            "revolute",
-            [2, 3],
-            [ROD, 0.0, 0.0],
-            [0.0; 3],
-            z,
-            true,
-        ),
-        joint(
-            "guide",
-            "translational",
-            [3, 0],
-            [0.0; 3],
-            [0.0; 3],
-            x,
-            false,
-        ),
+        joint("wrist_pin", "revolute", [2, 3], [ROD, 0.0, 0.0], [0.0; 3], z, true),
+        joint("guide", "translational", [3, 0], [0.0; 3], [0.0; 3], x, false),
     ]
 }
 
@@ -209,9 +148,8 @@ const QUANTITIES: [(&str, &str, &str, Formula); 3] = [
 
 fn quantities(times: &[f64]) -> Vec<Quantity> {
     let quantity = |&(name, unit, group, formula): &(&str, &str, &str, Formula)| {
-        let [value, rate, accel] = curves(times, |time, order| {
-            at(formula, time, design(0, 0.0, 0.0))[order].re
-        });
+        let [value, rate, accel] =
+            curves(times, |time, order| at(formula, time, design(0, 0.0, 0.0))[order].re);
         Quantity {
             name: name.into(),
             unit: unit.into(),
@@ -227,18 +165,17 @@ fn quantities(times: &[f64]) -> Vec<Quantity> {
 }
 
 fn variables(times: &[f64]) -> Vec<Variable> {
-    let variable =
-        |index: usize, name: &str, description: &str, unit: &str, body, at, v, turn| Variable {
-            name: name.into(),
-            description: description.into(),
-            unit: unit.into(),
-            admissibility: Admissibility::Admissible,
-            note: String::new(),
-            arrows: vec![Arrow { body, at, v, turn }],
-            sensitivities: (QUANTITIES.iter().enumerate())
-                .map(|(quantity, &(.., formula))| sensitivity(times, quantity, formula, index))
-                .collect(),
-        };
+    let variable = |index: usize, name: &str, description: &str, unit: &str, body, at, v, turn| Variable {
+        name: name.into(),
+        description: description.into(),
+        unit: unit.into(),
+        admissibility: Admissibility::Admissible,
+        note: String::new(),
+        arrows: vec![Arrow { body, at, v, turn }],
+        sensitivities: (QUANTITIES.iter().enumerate())
+            .map(|(quantity, &(.., formula))| sensitivity(times, quantity, formula, index))
+            .collect(),
+    };
     let still = [0.0; 3];
     let crank = variable(
         0,
@@ -252,8 +189,7 @@ fn variables(times: &[f64]) -> Vec<Variable> {
     );
     let rod = Variable {
         admissibility: Admissibility::Reassembled,
-        note: "The joint `wrist_pin` would open by 1 mm per mm; the slider moves to close it."
-            .into(),
+        note: "The joint `wrist_pin` would open by 1 mm per mm; the slider moves to close it.".into(),
         ..variable(
             1,
             "rod_length",
@@ -265,36 +201,13 @@ fn variables(times: &[f64]) -> Vec<Variable> {
             still,
         )
     };
-    let phase = variable(
-        2,
-        "crank_phase",
-        "crank on its shaft",
-        "deg",
-        1,
-        still,
-        still,
-        [0.0, 0.0, 1.0],
-    );
+    let phase = variable(2, "crank_phase", "crank on its shaft", "deg", 1, still, still, [0.0, 0.0, 1.0]);
     let tilt = Variable {
         admissibility: Admissibility::CannotFollow,
         note: "No motion closes `crank_pin`: its axes would part by 1 deg per deg.".into(),
-        arrows: vec![Arrow {
-            body: 1,
-            at: [CRANK, 0.0, 0.0],
-            v: still,
-            turn: [1.0, 0.0, 0.0],
-        }],
+        arrows: vec![Arrow { body: 1, at: [CRANK, 0.0, 0.0], v: still, turn: [1.0, 0.0, 0.0] }],
         sensitivities: vec![],
-        ..variable(
-            0,
-            "crank_pin_tilt",
-            "axis of the crank pin",
-            "deg",
-            1,
-            still,
-            still,
-            still,
-        )
+        ..variable(0, "crank_pin_tilt", "axis of the crank pin", "deg", 1, still, still, still)
     };
     vec![crank, rod, phase, tilt]
 }
@@ -307,13 +220,7 @@ fn checks() -> Vec<Table> {
             note: "A cut joint closes a loop; all others carry their second body.".into(),
             header: words(&["joint", "kind", "bodies", "role", "why"]),
             rows: vec![
-                words(&[
-                    "main_bearing",
-                    "revolute",
-                    "ground – crank",
-                    "tree",
-                    "driven",
-                ]),
+                words(&["main_bearing", "revolute", "ground – crank", "tree", "driven"]),
                 words(&["crank_pin", "revolute", "crank – rod", "tree", ""]),
                 words(&["guide", "translational", "ground – slider", "tree", ""]),
                 words(&[
@@ -340,27 +247,17 @@ fn checks() -> Vec<Table> {
 fn main() -> Result<(), Box<dyn Error>> {
     let arguments: Vec<String> = env::args().skip(1).collect();
     let partial = arguments.iter().any(|argument| argument == "--partial");
-    let path = arguments
-        .iter()
-        .find(|argument| !argument.starts_with("--"))
-        .ok_or("name the file to write")?;
+    let path =
+        arguments.iter().find(|argument| !argument.starts_with("--")).ok_or("name the file to write")?;
     let solved = if partial { STEPS * 3 / 5 } else { STEPS };
-    let times: Vec<f64> = (0..solved)
-        .map(|k| DURATION * k as f64 / (STEPS - 1) as f64)
-        .collect();
-    let fact = |label: &str, value: &str| Fact {
-        label: label.into(),
-        value: value.into(),
-    };
+    let times: Vec<f64> = (0..solved).map(|k| DURATION * k as f64 / (STEPS - 1) as f64).collect();
+    let fact = |label: &str, value: &str| Fact { label: label.into(), value: value.into() };
     let payload = Payload {
         title: "Slider-crank".into(),
+        description: "A crank turns once in two seconds and moves a slider by its rod".into(),
         file: "slider_crank.toml".into(),
         generator: concat!("hardpoint ", env!("CARGO_PKG_VERSION")).into(),
-        units: Units {
-            length: "mm".into(),
-            angle: "deg".into(),
-            time: "s".into(),
-        },
+        units: Units { length: "mm".into(), angle: "deg".into(), time: "s".into() },
         status: Status {
             complete: !partial,
             message: if partial {

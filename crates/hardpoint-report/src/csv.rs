@@ -57,7 +57,12 @@ pub fn write_motion(model: &Model, units: Units, solution: &Solution, out: impl 
 ///
 /// # Errors
 /// Where `out` cannot be written.
-pub fn write_sensitivity(model: &Model, units: Units, solution: &Solution, out: impl Write) -> csv::Result<()> {
+pub fn write_sensitivity(
+    model: &Model,
+    units: Units,
+    solution: &Solution,
+    out: impl Write,
+) -> csv::Result<()> {
     let mut header = vec!["t [s]".to_owned(), "variable".to_owned(), "per".to_owned()];
     for body in &model.bodies[1..] {
         let name = format!("d {}", body.name);
@@ -99,7 +104,8 @@ fn output_headers(solution: &Solution, units: Units, prefix: &str) -> Vec<String
     let outputs = solution.measured.outputs.iter();
     outputs
         .flat_map(|o| {
-            [0, 1, 2].map(|k| format!("{prefix}{}{} [{}]", o.name, ORDERS[k], order_unit(units, o.quantity, k)))
+            [0, 1, 2]
+                .map(|k| format!("{prefix}{}{} [{}]", o.name, ORDERS[k], order_unit(units, o.quantity, k)))
         })
         .collect()
 }
@@ -116,8 +122,14 @@ fn push_state(row: &mut Vec<f64>, units: Units, s: &BodyState) {
 }
 
 fn push_sensitivity(row: &mut Vec<f64>, units: Units, by: Quantity, d: &BodySensitivity) {
-    let parts =
-        [(Length, d.dr), (Angle, d.dpi), (Length, d.dv), (Angle, d.domega), (Length, d.da), (Angle, d.dalpha)];
+    let parts = [
+        (Length, d.dr),
+        (Angle, d.dpi),
+        (Length, d.dv),
+        (Angle, d.domega),
+        (Length, d.da),
+        (Angle, d.dalpha),
+    ];
     for (of, v) in parts {
         row.extend(v.to_array().map(|x| units.derivative_from_si(of, by, x)));
     }

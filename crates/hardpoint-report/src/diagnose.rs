@@ -12,7 +12,13 @@ use crate::figures::{names, number, rounded, symbol, with_unit};
 
 /// The mechanism cannot be driven as it is written.
 pub fn topology_fault(file: &ModelFile, fault: &TopologyFault) -> Diagnostic {
-    let place = fault.joints().first().map(|j| (Section::Joints, j.0));
+    let place = match fault {
+        // Where drivers meet, one of them has to go.
+        TopologyFault::OverDriven { drivers, .. } if drivers.len() > 1 => {
+            Some((Section::Drivers, drivers[0].0))
+        }
+        _ => fault.joints().first().map(|j| (Section::Joints, j.0)),
+    };
     let d = file.diagnostic(Severity::Error, fault.code(), fault.to_string(), place);
     fault.notes().into_iter().fold(d, Diagnostic::note).help(fault.help())
 }
@@ -85,7 +91,10 @@ pub fn variables(file: &ModelFile, facts: &Facts) -> Vec<Diagnostic> {
             d = d.note(format!("`{}` would open by {open} ({})", defect.joint, defect.constraint));
         }
         if let Some(t) = v.time {
-            d = d.note(format!("the defect is largest at t = {} s; there is no sensitivity by this variable", number(t)));
+            d = d.note(format!(
+                "the defect is largest at t = {} s; there is no sensitivity by this variable",
+                number(t)
+            ));
         }
         d.help("give a joint of this loop more freedom, or change the design so that the loop stays closed")
     };

@@ -39,11 +39,7 @@ impl FromIterator<f64> for Curve {
 
 impl Serialize for Curve {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        let bytes: Vec<u8> = self
-            .0
-            .iter()
-            .flat_map(|value| value.to_le_bytes())
-            .collect();
+        let bytes: Vec<u8> = self.0.iter().flat_map(|value| value.to_le_bytes()).collect();
         serializer.serialize_str(&BASE64_STANDARD.encode(bytes))
     }
 }
@@ -54,6 +50,8 @@ impl Serialize for Curve {
 pub struct Payload {
     /// Headline, usually the model's title.
     pub title: String,
+    /// What the model file says about itself; may be empty.
+    pub description: String,
     /// Name of the model file.
     pub file: String,
     /// Program and version that made the report.
@@ -272,16 +270,13 @@ pub fn html(payload: &Payload) -> Result<String, serde_json::Error> {
     // JavaScript strings the escaped forms mean the same.
     let data = serde_json::to_string(payload)?.replace('<', "\\u003c");
     let code = include_str!("../page/app.js").replace("</script", "<\\/script");
-    Ok(fill(
-        include_str!("../page/report.html"),
-        |slot| match slot {
-            "title" => escape_text(&payload.title),
-            "style" => include_str!("../page/app.css").to_owned(),
-            "payload" => data.clone(),
-            "code" => code.clone(),
-            _ => panic!("the report template names an unknown slot `{slot}`"),
-        },
-    ))
+    Ok(fill(include_str!("../page/report.html"), |slot| match slot {
+        "title" => escape_text(&payload.title),
+        "style" => include_str!("../page/app.css").to_owned(),
+        "payload" => data.clone(),
+        "code" => code.clone(),
+        _ => panic!("the report template names an unknown slot `{slot}`"),
+    }))
 }
 
 /// Replaces every `{{slot}}` of the template; what is put in is never searched for slots again.
@@ -289,9 +284,7 @@ fn fill(template: &str, content: impl Fn(&str) -> String) -> String {
     let mut pieces = template.split("{{");
     let mut page = pieces.next().unwrap_or_default().to_owned();
     for piece in pieces {
-        let (slot, text) = piece
-            .split_once("}}")
-            .expect("the report template closes its slots");
+        let (slot, text) = piece.split_once("}}").expect("the report template closes its slots");
         page += &content(slot);
         page += text;
     }
@@ -299,9 +292,7 @@ fn fill(template: &str, content: impl Fn(&str) -> String) -> String {
 }
 
 fn escape_text(text: &str) -> String {
-    text.replace('&', "&amp;")
-        .replace('<', "&lt;")
-        .replace('>', "&gt;")
+    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;")
 }
 
 #[cfg(test)]
@@ -312,17 +303,11 @@ mod tests {
     fn payload(title: &str) -> Payload {
         Payload {
             title: title.into(),
+            description: String::new(),
             file: "sample.toml".into(),
             generator: "hardpoint".into(),
-            units: Units {
-                length: "mm".into(),
-                angle: "deg".into(),
-                time: "s".into(),
-            },
-            status: Status {
-                complete: true,
-                message: "solved".into(),
-            },
+            units: Units { length: "mm".into(), angle: "deg".into(), time: "s".into() },
+            status: Status { complete: true, message: "solved".into() },
             summary: vec![],
             times: Curve::default(),
             bodies: vec![],
@@ -346,11 +331,7 @@ mod tests {
         let page = html(&payload("</script><b>{{code}}")).unwrap();
         assert!(page.contains("<title>&lt;/script&gt;&lt;b&gt;{{code}}</title>"));
         assert!(page.contains(r#""title":"\u003c/script>\u003cb>{{code}}""#));
-        assert_eq!(
-            page.matches("</script").count(),
-            2,
-            "one end for the payload, one for the code"
-        );
+        assert_eq!(page.matches("</script").count(), 2, "one end for the payload, one for the code");
     }
 
     #[test]

@@ -20,8 +20,8 @@ use hardpoint_file::{ModelFile, Units};
 use crate::facts::{Answer, Facts};
 use crate::figures::{count, error, number, order_unit, seconds, symbol};
 use crate::page::{
-    Admissibility, Arrow, BodyTrack, Curve, Fact, FiniteDifference, JointMark, Payload, Quantity, Sensitivity, Status,
-    Units as PageUnits, Variable,
+    Admissibility, Arrow, BodyTrack, Curve, Fact, FiniteDifference, JointMark, Payload, Quantity,
+    Sensitivity, Status, Units as PageUnits, Variable,
 };
 use crate::summary::{RoundOff, RunStatus, Summary};
 
@@ -42,14 +42,26 @@ pub fn payload(
     summary: &Summary,
 ) -> Payload {
     let (model, units) = (&file.model, file.units);
-    let detail = Detail::that_fits(model, solution, differences.iter().any(Option::is_some));
+    let size = Size {
+        steps: solution.motion.len(),
+        bodies: model.bodies.len() - 1,
+        variables: model.variables.len(),
+        outputs: solution.measured.outputs.len(),
+        compared: differences.iter().any(Option::is_some),
+    };
+    let detail = Detail::that_fits(size);
     let steps: Vec<usize> = (0..solution.motion.len()).step_by(detail.stride).collect();
     let compose = Compose { model, units, analysis, solution, steps, detail };
     Payload {
         title: model.name.clone(),
+        description: file.description.clone().unwrap_or_default(),
         file: file_name(file.file_name()),
         generator: crate::GENERATOR.into(),
-        units: PageUnits { length: units.length.symbol().into(), angle: units.angle.symbol().into(), time: "s".into() },
+        units: PageUnits {
+            length: units.length.symbol().into(),
+            angle: units.angle.symbol().into(),
+            time: "s".into(),
+        },
         status: status(summary, detail),
         summary: headline(summary),
         times: compose.curve(|k| solution.motion.times[k]),
@@ -72,25 +84,43 @@ struct Detail {
     body_differences: bool,
 }
 
+/// How much there is to show.
+#[derive(Clone, Copy, Debug)]
+struct Size {
+    steps: usize,
+    /// Without ground.
+    bodies: usize,
+    variables: usize,
+    outputs: usize,
+    /// Whether there are differences to compare with.
+    compared: bool,
+}
+
 impl Detail {
-    fn that_fits(model: &Model, solution: &Solution, compared: bool) -> Self {
-        let steps = solution.motion.len();
-        let bodies = model.bodies.len() - 1;
-        let variables = model.variables.len();
-        let outputs = solution.measured.outputs.len();
-        let bytes = |d: Self| {
-            let both = if compared { 2 } else { 1 };
-            let of_bodies = if d.body_differences { 3 * bodies * both } else { 3 * bodies * usize::from(d.bodies) };
-            let curves = 3 * (outputs + 3 * bodies) + 7 * (bodies + 1) + 3 * variables * (outputs * both + of_bodies);
-            (curves * steps.div_ceil(d.stride)) as f64 * BYTES_PER_VALUE
-        };
-        let stride = steps.div_ceil(MOST_STEPS).max(1);
+    /// All that there is, or as much of it as keeps the page small.
+    fn that_fits(size: Size) -> Self {
+        let stride = size.steps.div_ceil(MOST_STEPS).max(1);
         let all = Self { stride, bodies: true, body_differences: true };
-        let levels = [all, Self { body_differences: false, ..all }, Self { body_differences: false, bodies: false, ..all }];
-        let fits = |d: &Self| bytes(*d) <= MOST_BYTES as f64;
-        let coarser = (stride..).map(|stride| Self { stride, ..levels[2] });
-        let coarser = coarser.take_while(|d| steps.div_ceil(d.stride) >= MOST_STEPS / 10);
-        levels.into_iter().chain(coarser).find(fits).unwrap_or(levels[2])
+        let exact_bodies = Self { body_differences: false, ..all };
+        let least = Self { bodies: false, ..exact_bodies };
+        let coarser = (stride..).map(|stride| Self { stride, ..least });
+        let coarser = coarser.take_while(|d| size.steps.div_ceil(d.stride) >= MOST_STEPS / 10);
+        let mut levels = [all, exact_bodies].into_iter().chain(coarser);
+        levels.find(|d| d.bytes(size) <= MOST_BYTES as f64).unwrap_or(least)
+    }
+
+    /// What the curves of the page take.
+    fn bytes(self, size: Size) -> f64 {
+        let both = if size.compared { 2 } else { 1 };
+        let origins = 3 * size.bodies;
+        let of_origins = match (self.bodies, self.body_differences) {
+            (true, true) => origins * both,
+            (true, false) => origins,
+            (false, _) => 0,
+        };
+        let motion = 3 * (size.outputs + origins) + 7 * (size.bodies + 1);
+        let curves = motion + 3 * size.variables * (size.outputs * both + of_origins);
+        (curves * size.steps.div_ceil(self.stride)) as f64 * BYTES_PER_VALUE
     }
 }
 
@@ -111,7 +141,8 @@ fn status(summary: &Summary, detail: Detail) -> Status {
         _ => format!("All {} steps were solved.", steps.asked),
     };
     if detail.stride > 1 {
-        message += &format!(" This page shows every {}th step; the CSV files hold all of them.", detail.stride);
+        message +=
+            &format!(" This page shows every {}th step; the CSV files hold all of them.", detail.stride);
     }
     if !detail.bodies && summary.model.counts.bodies > 0 && !summary.model.variables.is_empty() {
         message += " Sensitivities of body origins are in the CSV file only.";
@@ -240,14 +271,15 @@ impl Compose<'_> {
             let group = if matches!(output.source, OutputSource::Measure(_)) { "measure" } else { "point" };
             self.quantity(&output.name, output.quantity, group, value)
         });
-        let origins = (1..self.model.bodies.len()).flat_map(|b| (0..3).map(move |axis| (b, axis))).map(|(b, axis)| {
-            let name = format!("{}.{}", self.model.bodies[b].name, AXES[axis]);
-            let value = |k, order: usize| {
-                let s = &self.solution.motion.at(k)[b];
-                self.length([s.r, s.v, s.a][order])[axis]
-            };
-            self.quantity(&name, Kind::Length, "body", value)
-        });
+        let origins =
+            (1..self.model.bodies.len()).flat_map(|b| (0..3).map(move |axis| (b, axis))).map(|(b, axis)| {
+                let name = format!("{}.{}", self.model.bodies[b].name, AXES[axis]);
+                let value = |k, order: usize| {
+                    let s = &self.solution.motion.at(k)[b];
+                    self.length([s.r, s.v, s.a][order])[axis]
+                };
+                self.quantity(&name, Kind::Length, "body", value)
+            });
         outputs.chain(origins).collect()
     }
 
@@ -304,7 +336,12 @@ impl Compose<'_> {
         markers.chain(points).collect()
     }
 
-    fn sensitivities(&self, b: usize, difference: Option<&Difference>, round_off: &RoundOff) -> Vec<Sensitivity> {
+    fn sensitivities(
+        &self,
+        b: usize,
+        difference: Option<&Difference>,
+        round_off: &RoundOff,
+    ) -> Vec<Sensitivity> {
         let measured = &self.solution.measured;
         let columns = measured.outputs.len();
         let bodies = self.model.bodies.len();
@@ -324,7 +361,9 @@ impl Compose<'_> {
             let of = |s: &BodySensitivity, order: usize| ORIGIN[order](s).to_array()[axis];
             let overlay = difference.zip(agreement.as_ref()).filter(|_| self.detail.body_differences);
             let overlay = overlay.map(|(d, agreement)| {
-                (d, agreement.of_body(body), move |k: usize, order: usize| of(&d.bodies[k * bodies + body], order))
+                (d, agreement.of_body(body), move |k: usize, order: usize| {
+                    of(&d.bodies[k * bodies + body], order)
+                })
             });
             let exact = |k: usize, order: usize| {
                 self.solution.sensitivities.at(k, b).map_or(f64::NAN, |s| of(&s[body], order))
@@ -334,25 +373,24 @@ impl Compose<'_> {
         list
     }
 
-    /// One sensitivity, with the comparison where there is one; what is round-off all the time becomes 0.
-    fn sensitivity<'d, F: Fn(usize, usize) -> f64>(
+    /// One sensitivity, with the comparison where there is one; round-off becomes 0.
+    fn sensitivity<F: Fn(usize, usize) -> f64>(
         &self,
         quantity: usize,
         kind: Kind,
         b: usize,
         exact: impl Fn(usize, usize) -> f64,
-        overlay: Option<(&'d Difference, [f64; 3], F)>,
+        overlay: Option<(&Difference, [f64; 3], F)>,
         round_off: &RoundOff,
     ) -> Sensitivity {
         let by = self.model.variables[b].quantity;
-        let shown = |x: f64| self.units.derivative_from_si(kind, by, x);
-        let steps = self.solution.motion.len();
-        let matters =
-            [0, 1, 2].map(|order| (0..steps).any(|k| !(exact(k, order).abs() <= round_off.of(b, kind, order))));
-        let [value, rate, accel] =
-            self.curves(|k, order| if matters[order] { shown(exact(k, order)) } else { 0.0 });
+        let least = [0, 1, 2].map(|order| round_off.of(b, kind, order));
+        let shown = |x: f64, order: usize| {
+            if x.abs() <= least[order] { 0.0 } else { self.units.derivative_from_si(kind, by, x) }
+        };
+        let [value, rate, accel] = self.curves(|k, order| shown(exact(k, order), order));
         let fd = overlay.map(|(d, worst, difference)| {
-            let [value, rate, accel] = self.curves(|k, order| shown(difference(k, order)));
+            let [value, rate, accel] = self.curves(|k, order| shown(difference(k, order), order));
             let step = self.units.from_si(by, d.step);
             FiniteDifference { value, rate, accel, step, step_unit: symbol(self.units, by).into(), worst }
         });
@@ -380,5 +418,36 @@ impl Agreement {
 
     fn of_output(&self, m: usize) -> [f64; 3] {
         [0, 1, 2].map(|order| self.errors[6 * self.bodies + 3 * m + order])
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const STRUT: Size = Size { steps: 501, bodies: 4, variables: 16, outputs: 13, compared: true };
+
+    #[test]
+    fn a_suspension_is_shown_in_full() {
+        let detail = Detail::that_fits(STRUT);
+        assert_eq!(detail, Detail { stride: 1, bodies: true, body_differences: true });
+    }
+
+    #[test]
+    fn a_long_motion_is_thinned() {
+        let detail = Detail::that_fits(Size { steps: 100_001, ..STRUT });
+        assert_eq!(detail.stride, 101);
+        assert!(detail.bytes(Size { steps: 100_001, ..STRUT }) <= MOST_BYTES as f64);
+    }
+
+    #[test]
+    fn many_variables_cost_the_bodies_their_curves() {
+        let many = Size { variables: 30, bodies: 12, ..STRUT };
+        let detail = Detail::that_fits(many);
+        assert_eq!(detail, Detail { stride: 1, bodies: false, body_differences: false });
+        assert!(detail.bytes(many) <= MOST_BYTES as f64);
+        // However much there is, a hundred steps remain.
+        let huge = Detail::that_fits(Size { variables: 5000, ..STRUT });
+        assert!(!huge.bodies && huge.stride <= 5);
     }
 }

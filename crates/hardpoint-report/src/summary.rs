@@ -1,11 +1,11 @@
 //! `summary.json`: what was run, how it went, and the largest sensitivities.
 
+use hardpoint::Solution;
 use hardpoint::joint::Quantity;
 use hardpoint::measure::OutputSource;
 use hardpoint::model::{Model, VariableId};
 use hardpoint::motion::StopKind;
 use hardpoint::study::natural_step;
-use hardpoint::Solution;
 use hardpoint_file::{Diagnostic, ModelFile, Units};
 use serde::Serialize;
 
@@ -222,10 +222,12 @@ fn rankings(model: &Model, units: Units, solution: &Solution) -> Vec<Ranking> {
                     continue;
                 }
                 let d = |k: usize| measured.d(k, VariableId(b), m)[order];
-                let Some(k) = (0..measured.len()).max_by(|&p, &q| d(p).abs().total_cmp(&d(q).abs())) else { continue };
-                if d(k).abs() <= round_off.of(b, output.quantity, order) {
+                let most = (0..measured.len()).map(|k| d(k).abs()).fold(0.0, f64::max);
+                if most <= round_off.of(b, output.quantity, order) {
                     continue;
                 }
+                // Of the periods of a motion the first, whatever its last digits.
+                let k = (0..measured.len()).find(|&k| d(k).abs() >= most * (1.0 - 1e-9)).unwrap_or(0);
                 largest.push(Ranked {
                     variable: variable.name.clone(),
                     per: symbol(units, variable.quantity),
@@ -259,7 +261,11 @@ impl RoundOff {
     pub fn new(model: &Model, solution: &Solution) -> Self {
         let size = model.size();
         let magnitude = solution.motion.states.iter().fold([1.0_f64, 0.0, 0.0], |m, s| {
-            [m[0], m[1].max(s.omega.norm()).max(s.v.norm() / size), m[2].max(s.alpha.norm()).max(s.a.norm() / size)]
+            [
+                m[0],
+                m[1].max(s.omega.norm()).max(s.v.norm() / size),
+                m[2].max(s.alpha.norm()).max(s.a.norm() / size),
+            ]
         });
         let natural = (0..model.variables.len()).map(|b| natural_step(model, VariableId(b))).collect();
         Self { size, magnitude, natural }

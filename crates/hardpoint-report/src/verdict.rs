@@ -120,7 +120,11 @@ impl Verdict {
             .iter()
             .filter_map(|c| c.best.as_ref().map(|b| (c, b)))
             .max_by(|a, b| a.1.error.total_cmp(&b.1.error))
-            .map(|(c, b)| Worst { variable: c.variable.clone(), quantity: b.quantity.clone(), error: b.error });
+            .map(|(c, b)| Worst {
+                variable: c.variable.clone(),
+                quantity: b.quantity.clone(),
+                error: b.error,
+            });
         Self {
             generator: crate::GENERATOR,
             name: model.name.clone(),
@@ -176,12 +180,14 @@ impl Verdict {
         }
         parts.sort_by(|a, b| b.total_cmp(a));
         let row = |c: &CheckFact| {
-            let at = |p: &f64| c.sweep.iter().find(|s| same(s.part, *p)).map_or("–".into(), |s| error(s.error));
+            let at =
+                |p: &f64| c.sweep.iter().find(|s| same(s.part, *p)).map_or("–".into(), |s| error(s.error));
             std::iter::once(c.variable.clone()).chain(parts.iter().map(at)).collect()
         };
         Table {
             title: "Largest relative deviation against step".into(),
-            note: "A step of 1 moves the farthest marker by the mechanism's size, or turns it by 1 rad.".into(),
+            note: "A step of 1 moves the farthest marker by the mechanism's size, or turns it by 1 rad."
+                .into(),
             header: std::iter::once("variable".to_owned()).chain(parts.iter().map(|p| error(*p))).collect(),
             rows: self.checks.iter().filter(|c| !c.sweep.is_empty()).map(row).collect(),
         }

@@ -2,8 +2,8 @@ import { BoxGeometry, CylinderGeometry, Mesh, OctahedronGeometry, SphereGeometry
 import type { JointMark } from '../payload'
 import { named, pointing, solid } from './parts'
 
-/** Distance constraints are drawn as rods between their ends instead. */
-export const isRod = (joint: JointMark) => joint.kind === 'distance'
+/** Rods and legs are drawn between their ends instead. */
+export const isRod = (joint: JointMark) => joint.kind === 'distance' || joint.kind === 'leg'
 
 /** Text under the pointer. */
 export function jointName(joint: JointMark): string {

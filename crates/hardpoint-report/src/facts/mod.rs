@@ -2,6 +2,8 @@
 //!
 //! Built once and shown three times: as text by `hardpoint check`, as JSON, and as tables of the page.
 
+mod text;
+
 use hardpoint::Solution;
 use hardpoint::constraint::Row;
 use hardpoint::joint::Quantity;
@@ -12,8 +14,7 @@ use hardpoint::topology::{CutReason, Formulation, Role, Topology};
 use hardpoint_file::{ModelFile, Units};
 use serde::Serialize;
 
-use crate::figures::{count, names, number, per, symbol, with_unit};
-use crate::page::Table;
+use crate::figures::{count, names, per, symbol};
 
 /// The facts, with all names as the user wrote them and all figures in the user's units.
 #[derive(Clone, Debug, Serialize)]
@@ -230,221 +231,6 @@ impl Facts {
     pub fn answers(&self, answer: Answer) -> usize {
         self.variables.iter().filter(|v| v.answer == answer).count()
     }
-
-    /// `12 (1 admissible, 11 re-assembled)`.
-    pub fn variables_line(&self) -> String {
-        let parts: Vec<String> = [
-            (Answer::Admissible, "admissible"),
-            (Answer::Reassembled, "re-assembled"),
-            (Answer::CannotFollow, "cannot be followed"),
-            (Answer::Unknown, "not examined"),
-        ]
-        .into_iter()
-        .filter(|(a, _)| self.answers(*a) > 0)
-        .map(|(a, words)| format!("{} {words}", self.answers(a)))
-        .collect();
-        if parts.is_empty() { "none".into() } else { format!("{} ({})", self.variables.len(), parts.join(", ")) }
-    }
-
-    /// `2, driven by 2 drivers`.
-    pub fn freedom_line(&self) -> String {
-        match self.counts.mobility {
-            0 => "0 (nothing can move)".into(),
-            n => format!("{n}, prescribed by {}", count(self.counts.drivers, "driver")),
-        }
-    }
-
-    /// `2, solved in 1 block of 5 unknowns`.
-    pub fn loops_line(&self) -> String {
-        let solved = match self.blocks.len() {
-            0 => "no unknowns".into(),
-            1 => format!("solved in 1 block of {}", count(self.counts.unknowns, "unknown")),
-            n => {
-                let sizes: Vec<String> = self.blocks.iter().map(|b| b.unknowns.to_string()).collect();
-                format!("solved in {n} blocks of {} unknowns", sizes.join(" + "))
-            }
-        };
-        format!("{}, {solved}", self.counts.loops)
-    }
-
-    /// `24 of joints; 4 of them written out at cut joints, 1 redundant`.
-    pub fn constraints_line(&self) -> String {
-        let c = &self.counts;
-        let redundant = if c.redundant_constraints > 0 { format!(", {} redundant", c.redundant_constraints) } else { String::new() };
-        format!("{} in joints; {} at cuts{redundant}", c.joint_constraints, c.cut_constraints)
-    }
-
-    /// Everything as tables, for the terminal and the page.
-    pub fn tables(&self) -> Vec<Table> {
-        let mut tables = vec![self.body_table(), self.joint_table()];
-        tables.extend(self.driver_table());
-        tables.push(self.block_table());
-        tables.extend(self.redundant_table());
-        tables.extend(self.variable_table());
-        tables.extend(self.measure_table());
-        tables
-    }
-
-    fn body_table(&self) -> Table {
-        let rows = self.bodies.iter().map(|b| {
-            let by = b.placed_by.clone().unwrap_or_else(|| "its six coordinates".into());
-            vec![b.name.clone(), by, b.carried_by.clone(), b.joints.join(", ")]
-        });
-        table("Bodies", "", ["body", "placed by", "from", "joints on it"], rows)
-    }
-
-    fn joint_table(&self) -> Table {
-        let rows = self.joints.iter().map(|j| {
-            let bodies = format!("{} – {}", j.bodies[0], j.bodies[1]);
-            vec![j.name.clone(), j.kind.into(), bodies, j.role.into(), j.why.clone(), j.constraints.to_string()]
-        });
-        table(
-            "Joints",
-            "A joint of the tree places a body; a cut joint closes a loop by its constraints.",
-            ["joint", "type", "bodies", "role", "why", "constraints"],
-            rows,
-        )
-    }
-
-    fn driver_table(&self) -> Option<Table> {
-        let rows: Vec<Vec<String>> = self
-            .drivers
-            .iter()
-            .map(|d| vec![d.name.clone(), format!("{} {}", d.joint, d.coordinate), d.law.clone(), d.unit.into()])
-            .collect();
-        (!rows.is_empty()).then(|| table("Drivers", "", ["driver", "drives", "law", "unit"], rows))
-    }
-
-    fn block_table(&self) -> Table {
-        let rows = self.blocks.iter().map(|b| {
-            vec![
-                b.number.to_string(),
-                b.unknowns.to_string(),
-                b.joints.join(", "),
-                b.closes.join(", "),
-                b.places.join(", "),
-                if b.redundant == 0 { String::new() } else { b.redundant.to_string() },
-            ]
-        });
-        table(
-            "Blocks",
-            "Independent loops in the order of solution; what drivers alone place comes before.",
-            ["block", "unknowns", "in joints", "closes", "places", "redundant"],
-            rows,
-        )
-    }
-
-    fn redundant_table(&self) -> Option<Table> {
-        let rows: Vec<Vec<String>> = self
-            .redundant
-            .iter()
-            .map(|r| {
-                let whose = match &r.driver {
-                    Some(driver) => format!("{} (driver {driver})", r.joint),
-                    None => r.joint.clone(),
-                };
-                vec![whose, r.constraint.clone()]
-            })
-            .collect();
-        (!rows.is_empty()).then(|| {
-            table(
-                "Redundant constraints",
-                "The others imply them; they are left out of the solution and watched at every step.",
-                ["joint", "constraint"],
-                rows,
-            )
-        })
-    }
-
-    fn variable_table(&self) -> Option<Table> {
-        let rows: Vec<Vec<String>> = self
-            .variables
-            .iter()
-            .map(|v| {
-                let at_design = if v.opens_at_design.is_empty() { "closed" } else { "opens" };
-                let unit = if v.unit == "1" { String::new() } else { v.unit.into() };
-                vec![v.name.clone(), unit, v.change.clone(), at_design.into(), v.answer_text().into(), v.defects_text()]
-            })
-            .collect();
-        (!rows.is_empty()).then(|| {
-            table(
-                "Design variables",
-                "Admissible: every joint stays closed with all bodies where they are. Re-assembled: joints open and \
-                 the mechanism closes them by moving. Cannot follow: no motion closes them, so there is no number. \
-                 A defect is per unit of the variable.",
-                ["variable", "unit", "change", "at design", "over the motion", "joints and their defect"],
-                rows,
-            )
-        })
-    }
-
-    fn measure_table(&self) -> Option<Table> {
-        let rows: Vec<Vec<String>> =
-            self.measures.iter().map(|m| vec![m.name.clone(), m.unit.into(), m.what.clone()]).collect();
-        (!rows.is_empty()).then(|| table("Measures", "", ["measure", "unit", "what"], rows))
-    }
-}
-
-impl VariableFact {
-    /// The answer in the words used everywhere.
-    pub fn answer_text(&self) -> &'static str {
-        match self.answer {
-            Answer::Admissible => "admissible",
-            Answer::Reassembled => "re-assembled",
-            Answer::CannotFollow => "cannot follow",
-            Answer::Unknown => "not examined",
-        }
-    }
-
-    /// The joints concerned, with their defects; empty where every joint stays closed.
-    pub fn defects_text(&self) -> String {
-        let (list, time) = match self.answer {
-            Answer::CannotFollow => (&self.resists, self.time),
-            _ => (&self.opens_at_design, None),
-        };
-        let mut text = list.iter().map(DefectFact::text).collect::<Vec<_>>().join(", ");
-        if let Some(t) = time {
-            text += &format!(", at t = {} s", number(t));
-        }
-        text
-    }
-
-    /// A sentence about what the mechanism makes of the variable; empty for an admissible one.
-    pub fn note(&self) -> String {
-        let defects = |list: &[DefectFact]| {
-            let parts: Vec<String> =
-                list.iter().map(|d| format!("`{}` by {}", d.joint, with_unit(d.defect, &d.unit))).collect();
-            parts.join(", ")
-        };
-        match self.answer {
-            Answer::Admissible | Answer::Unknown => String::new(),
-            Answer::Reassembled => format!("The mechanism closes again what opens: {}.", defects(&self.opens_at_design)),
-            Answer::CannotFollow => {
-                let time = self.time.map_or(String::new(), |t| format!(" (at t = {} s)", number(t)));
-                format!("No motion closes what opens: {}{time}.", defects(&self.resists))
-            }
-        }
-    }
-}
-
-impl DefectFact {
-    fn text(&self) -> String {
-        format!("{} {}", self.joint, with_unit(self.defect, &self.unit))
-    }
-}
-
-fn table<const N: usize>(
-    title: &str,
-    note: &str,
-    header: [&str; N],
-    rows: impl IntoIterator<Item = Vec<String>>,
-) -> Table {
-    Table {
-        title: title.into(),
-        note: note.into(),
-        header: header.map(String::from).to_vec(),
-        rows: rows.into_iter().collect(),
-    }
 }
 
 fn counts(model: &Model, topology: &Topology) -> Counts {
@@ -471,7 +257,12 @@ fn bodies(model: &Model, topology: &Topology) -> Vec<BodyFact> {
             name: model.bodies[b].name.clone(),
             placed_by: link.and_then(|l| l.joint).map(|j| joint_name(model, j)),
             carried_by: link.map_or(String::new(), |l| model.bodies[l.parent.0].name.clone()),
-            joints: model.joints.iter().filter(|j| j.bodies.contains(&BodyId(b))).map(|j| j.name.clone()).collect(),
+            joints: model
+                .joints
+                .iter()
+                .filter(|j| j.bodies.contains(&BodyId(b)))
+                .map(|j| j.name.clone())
+                .collect(),
         }
     };
     (1..model.bodies.len()).map(fact).collect()
@@ -533,7 +324,9 @@ fn blocks(model: &Model, topology: &Topology) -> Vec<BlockFact> {
         joints.dedup();
         let closes = block.closures.iter().map(|&c| {
             let closure = &topology.closures[c];
-            closure.driver.map_or_else(|| joint_name(model, closure.joint), |d| model.drivers[d.0].name.clone())
+            closure
+                .driver
+                .map_or_else(|| joint_name(model, closure.joint), |d| model.drivers[d.0].name.clone())
         });
         let rows = |c: &usize| {
             let closure = &topology.closures[*c];
@@ -544,7 +337,10 @@ fn blocks(model: &Model, topology: &Topology) -> Vec<BlockFact> {
             unknowns: block.unknowns.len(),
             joints,
             closes: closes.collect(),
-            places: topology.links[block.links.clone()].iter().map(|l| model.bodies[l.child.0].name.clone()).collect(),
+            places: topology.links[block.links.clone()]
+                .iter()
+                .map(|l| model.bodies[l.child.0].name.clone())
+                .collect(),
             redundant: block.closures.iter().flat_map(rows).filter(|r| !r.selected).count(),
         }
     };
@@ -631,7 +427,8 @@ fn change_text(model: &Model, changes: &[Change], fixed_length: bool) -> String 
             }
         }
     }
-    let moved = moves.into_iter().map(|(v, list)| format!("moves {} along {}", names(list), direction_text(v)));
+    let moved =
+        moves.into_iter().map(|(v, list)| format!("moves {} along {}", names(list), direction_text(v)));
     let mut text = moved.chain(parts).collect::<Vec<_>>().join("; ");
     if fixed_length {
         text += "; rods keep their lengths";
@@ -687,7 +484,9 @@ fn measures(model: &Model, units: Units) -> Vec<MeasureFact> {
             MeasureKind::Coordinates { point: p, along } => {
                 format!("position of {} along {}", point(*p), direction_text(*along))
             }
-            MeasureKind::Toe { body, spin_axis } => format!("toe of `{}`, {}", model.bodies[body.0].name, axis(spin_axis)),
+            MeasureKind::Toe { body, spin_axis } => {
+                format!("toe of `{}`, {}", model.bodies[body.0].name, axis(spin_axis))
+            }
             MeasureKind::Camber { body, spin_axis } => {
                 format!("camber of `{}`, {}", model.bodies[body.0].name, axis(spin_axis))
             }

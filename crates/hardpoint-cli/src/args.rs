@@ -1,0 +1,156 @@
+//! What can be typed after `hardpoint`.
+
+use std::path::PathBuf;
+
+use clap::{Args, Parser, Subcommand};
+use clap_complete::Shell;
+use hardpoint::topology::Formulation;
+
+const AFTER: &str = "\
+Examples:
+  hardpoint check models/macpherson.toml
+  hardpoint run models/macpherson.toml -o results/macpherson
+  hardpoint verify models/macpherson.toml --sweep
+
+Exit codes:
+    0  done; for verify: every variable passed
+    1  verify: a sensitivity and its re-solved designs disagree
+    2  the command line cannot be understood
+    3  the model file cannot be read, or has errors
+    4  the mechanism cannot be driven as it is written
+    5  the motion ends early (limit position, dead point, lock); run writes the part that was solved
+    6  a result could not be written
+  130  interrupted; run writes the part that was solved
+
+Results go to stdout, everything else to stderr. With --json, stdout carries
+exactly one JSON document, also where there is no result (except after code 2):
+then its \"status\" is \"error\" and its \"diagnostics\" say why.";
+
+/// Motion and exact design sensitivities of mechanisms.
+#[derive(Debug, Parser)]
+#[command(name = "hardpoint", version, after_help = AFTER, max_term_width = 110)]
+pub struct Arguments {
+    /// What to do.
+    #[command(subcommand)]
+    pub command: Command,
+}
+
+/// The subcommands.
+#[derive(Debug, Subcommand)]
+pub enum Command {
+    /// Solve the motion and its sensitivities; write CSV files, a summary and a report
+    Run(Run),
+    /// Examine a model: mobility, loops, redundancy, and whether its design variables can be followed
+    Check(Check),
+    /// Compare the sensitivities with re-solved designs
+    Verify(Verify),
+    /// Print the JSON Schema of model files, for editors
+    #[command(after_help = "Example:\n  hardpoint schema > hardpoint.schema.json")]
+    Schema,
+    /// Print completions for a shell
+    #[command(
+        after_help = "Example:\n  hardpoint completions bash > ~/.local/share/bash-completion/completions/hardpoint"
+    )]
+    Completions {
+        /// The shell
+        shell: Shell,
+    },
+}
+
+/// What all analyses take.
+#[derive(Args, Debug)]
+pub struct Common {
+    /// The model file (TOML)
+    pub model: PathBuf,
+    /// Solve in absolute coordinates: six for every body, every joint cut
+    #[arg(long)]
+    absolute: bool,
+    /// Print one JSON document instead of text
+    #[arg(long)]
+    pub json: bool,
+}
+
+impl Common {
+    /// The coordinates asked for.
+    pub fn formulation(&self) -> Formulation {
+        if self.absolute { Formulation::Absolute } else { Formulation::Relative }
+    }
+}
+
+const AFTER_RUN: &str = "\
+Writes into the folder, each file whole or not at all:
+  report.html      the motion in 3D, curves, sensitivities and checks; opens from disk
+  motion.csv       position, velocity and acceleration of bodies, points and measures
+  sensitivity.csv  their derivatives by every design variable
+  summary.json     the model, how the run went, the largest sensitivities
+
+Examples:
+  hardpoint run models/slider_crank.toml
+  hardpoint run models/macpherson.toml -o results/baseline
+  hardpoint run models/macpherson.toml --json | jq '.sensitivities[0]'";
+
+/// `hardpoint run`.
+#[derive(Args, Debug)]
+#[command(after_help = AFTER_RUN)]
+pub struct Run {
+    #[command(flatten)]
+    pub common: Common,
+    /// The folder for the results [default: results/NAME for NAME.toml]
+    #[arg(short, long, value_name = "DIR")]
+    pub output: Option<PathBuf>,
+    /// Do not re-solve moved designs for the report to compare with
+    #[arg(long)]
+    pub no_compare: bool,
+}
+
+const AFTER_CHECK: &str = "\
+A design variable gets one of three answers:
+  admissible     every joint stays closed with all bodies where they are
+  re-assembled   joints open, and the mechanism closes them again by moving
+  cannot follow  no motion closes them: there is no sensitivity by this variable
+
+Example:
+  hardpoint check models/double_wishbone.toml";
+
+/// `hardpoint check`.
+#[derive(Args, Debug)]
+#[command(after_help = AFTER_CHECK)]
+pub struct Check {
+    #[command(flatten)]
+    pub common: Common,
+}
+
+const AFTER_VERIFY: &str = "\
+Every design variable is moved by +h and -h, both designs are solved, and their
+difference quotient is compared with the sensitivity, over all times and
+quantities. As h falls the deviation falls with its square, then rises by
+round-off; a variable passes on its best step.
+
+Examples:
+  hardpoint verify models/slider_crank.toml
+  hardpoint verify models/macpherson.toml --sweep -o results/macpherson";
+
+/// `hardpoint verify`.
+#[derive(Args, Debug)]
+#[command(after_help = AFTER_VERIFY)]
+pub struct Verify {
+    #[command(flatten)]
+    pub common: Common,
+    /// Also show the deviation at every step
+    #[arg(long)]
+    pub sweep: bool,
+    /// Steps to try, as parts of the change that moves a joint by the mechanism's size or turns it by 1 rad
+    /// [default: half decades from 1e-2 to 1e-6]
+    #[arg(long, value_name = "PARTS", value_delimiter = ',', value_parser = step)]
+    pub steps: Option<Vec<f64>>,
+    /// Write verify.json into this folder
+    #[arg(short, long, value_name = "DIR")]
+    pub output: Option<PathBuf>,
+}
+
+fn step(text: &str) -> Result<f64, String> {
+    match text.trim().parse() {
+        Ok(step) if step > 0.0 && step < 1.0 => Ok(step),
+        _ => Err("a step is a number between 0 and 1".into()),
+    }
+}

@@ -1,0 +1,29 @@
+//! How a command ends, for scripts.
+
+use std::process::ExitCode;
+
+/// How a command ended; `args.rs` explains the codes to the user.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(u8)]
+pub enum Outcome {
+    /// All was done.
+    Done = 0,
+    /// A sensitivity does not agree with re-solved designs.
+    Disagrees = 1,
+    /// The model file has errors or cannot be read.
+    BadModel = 3,
+    /// The mechanism cannot be driven as it is written.
+    CannotBeDriven = 4,
+    /// The motion ended early.
+    Stopped = 5,
+    /// A result could not be written.
+    NotWritten = 6,
+    /// The user ended it: 128 + SIGINT, as shells have it.
+    Interrupted = 130,
+}
+
+impl From<Outcome> for ExitCode {
+    fn from(outcome: Outcome) -> Self {
+        Self::from(outcome as u8)
+    }
+}

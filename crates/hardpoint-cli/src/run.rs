@@ -1,0 +1,207 @@
+//! `hardpoint run`.
+
+use std::io::Write;
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+
+use hardpoint::model::VariableId;
+use hardpoint::study::{Difference, central_differences, natural_step};
+use hardpoint::{Analysis, Solution};
+use hardpoint_file::ModelFile;
+use hardpoint_report::facts::Facts;
+use hardpoint_report::figures::{count, error, number, seconds, with_unit};
+use hardpoint_report::page::Table;
+use hardpoint_report::payload::payload;
+use hardpoint_report::summary::{RunStatus, Summary};
+use hardpoint_report::{csv, diagnose, page};
+
+use crate::args::Run;
+use crate::folder::{Folder, NotWritten};
+use crate::outcome::Outcome;
+use crate::session::{Meter, Session, json_text};
+use crate::text;
+
+/// The step of the differences that the report compares with, as part of the natural step: small enough for
+/// five digits, large enough to stay clear of round-off.
+const STEP: f64 = 1e-4;
+
+/// Solves, writes, and prints the summary.
+pub fn run(options: &Run) -> Outcome {
+    let session = Session::begin(options.common.json);
+    run_in(&session, options).unwrap_or_else(|outcome| outcome)
+}
+
+fn run_in(session: &Session, options: &Run) -> Result<Outcome, Outcome> {
+    let file = session.read(&options.common.model)?;
+    let analysis = session.plan(&file, options.common.formulation())?;
+    let read = session.seconds();
+    let path = options.output.clone().unwrap_or_else(|| default_folder(&options.common.model));
+    let mut folder = Folder::open(&path).map_err(|e| session.not_written(&e))?;
+
+    let started = Instant::now();
+    let solution = session.solve(&analysis);
+    let solve = started.elapsed().as_secs_f64();
+    let facts = Facts::new(&file, analysis.topology(), Some(&solution));
+    let mut summary = Summary::new(&file, facts, &solution);
+    (summary.timings.read, summary.timings.solve) = (read, solve);
+    summary.diagnostics = diagnose::variables(&file, &summary.model);
+    if let Some(stop) = &solution.stop {
+        let outputs = format!("the files in `{}`", path.display());
+        summary.diagnostics.push(diagnose::stop(&file, stop, solution.motion.len(), Some(&outputs)));
+    }
+
+    let started = Instant::now();
+    let differences =
+        if options.no_compare { Vec::new() } else { differences(session, &analysis, &solution) };
+    summary.timings.compare = started.elapsed().as_secs_f64();
+
+    let report = folder.path_of("report.html");
+    if !solution.motion.is_empty() {
+        let results =
+            Results { file: &file, analysis: &analysis, solution: &solution, differences: &differences };
+        results.write(&mut folder, &mut summary, session).map_err(|e| session.not_written(&e))?;
+        folder.commit().map_err(|e| session.not_written(&e))?;
+    } else {
+        summary.timings.total = session.seconds();
+    }
+
+    session.tell(&file, &summary.diagnostics);
+    if options.common.json {
+        session.print_json(&summary);
+    } else {
+        text::print(&summary_text(&summary));
+        if !solution.motion.is_empty() {
+            let partial = if summary.status == RunStatus::Complete { "" } else { " (partial)" };
+            text::print(&format!("\nreport: {}{partial}\n", report.display()));
+        }
+    }
+    Ok(match summary.status {
+        RunStatus::Stopped => Outcome::Stopped,
+        _ if session.interrupted() => Outcome::Interrupted,
+        _ => Outcome::Done,
+    })
+}
+
+/// `results/<stem>` under the current folder.
+fn default_folder(model: &Path) -> PathBuf {
+    Path::new("results").join(model.file_stem().unwrap_or(model.as_os_str()))
+}
+
+/// Differences of a complete motion by every variable that it can follow, as far as the user has patience.
+fn differences(session: &Session, analysis: &Analysis<'_>, solution: &Solution) -> Vec<Option<Difference>> {
+    let model = analysis.model();
+    let mut differences = vec![None; model.variables.len()];
+    if solution.stop.is_some() || solution.motion.is_empty() {
+        return differences;
+    }
+    let variables: Vec<VariableId> = (0..model.variables.len())
+        .filter(|b| solution.sensitivities.at(0, *b).is_some())
+        .map(VariableId)
+        .collect();
+    let mut meter = Meter::new("comparing with re-solved designs", "variables");
+    // Four at a time fill the lanes of the core.
+    for (k, group) in variables.chunks(4).enumerate() {
+        if session.interrupted() {
+            break;
+        }
+        let steps: Vec<(VariableId, f64)> =
+            group.iter().map(|v| (*v, STEP * natural_step(model, *v))).collect();
+        for (variable, difference) in group.iter().zip(central_differences(analysis, &steps)) {
+            differences[variable.0] = difference.ok();
+        }
+        meter.show(4 * k + group.len(), variables.len());
+    }
+    differences
+}
+
+struct Results<'a> {
+    file: &'a ModelFile,
+    analysis: &'a Analysis<'a>,
+    solution: &'a Solution,
+    differences: &'a [Option<Difference>],
+}
+
+impl Results<'_> {
+    fn write(&self, folder: &mut Folder, summary: &mut Summary, session: &Session) -> Result<(), NotWritten> {
+        let (model, units, solution) = (&self.file.model, self.file.units, self.solution);
+        let started = Instant::now();
+        let _working = Meter::working("writing");
+        folder
+            .write("motion.csv", |out| csv::write_motion(model, units, solution, out).map_err(Into::into))?;
+        folder.write("sensitivity.csv", |out| {
+            csv::write_sensitivity(model, units, solution, out).map_err(Into::into)
+        })?;
+        let payload = payload(self.file, self.analysis, solution, self.differences, summary);
+        let html = page::html(&payload).expect("a payload is plain data");
+        folder.write("report.html", |out| out.write_all(html.as_bytes()))?;
+        summary.files = ["motion.csv", "sensitivity.csv", "summary.json", "report.html"]
+            .map(|name| folder.path_of(name).display().to_string())
+            .to_vec();
+        summary.timings.write = started.elapsed().as_secs_f64();
+        summary.timings.total = session.seconds();
+        let json = json_text(summary);
+        folder.write("summary.json", |out| out.write_all(json.as_bytes()))
+    }
+}
+
+fn summary_text(summary: &Summary) -> String {
+    let (model, steps, timings) = (&summary.model, &summary.steps, &summary.timings);
+    let bodies =
+        if model.counts.bodies == 1 { "1 body".into() } else { format!("{} bodies", model.counts.bodies) };
+    let cut: Vec<&str> = model.joints.iter().filter(|j| j.role == "cut").map(|j| j.name.as_str()).collect();
+    let cut = if cut.is_empty() { String::new() } else { format!(", cut: {}", cut.join(", ")) };
+    let mut rows = vec![
+        ("bodies and joints", format!("{bodies}, {}{cut}", count(model.counts.joints, "joint"))),
+        ("degrees of freedom", model.freedom_line()),
+        ("loops", model.loops_line()),
+    ];
+    if model.counts.redundant_constraints > 0 {
+        rows.push(("redundant constraints", model.counts.redundant_constraints.to_string()));
+    }
+    let last = steps
+        .last_solved
+        .map_or("none".into(), |t| format!("t = {} to {} s", number(steps.start), number(t)));
+    rows.push(("steps", format!("{} of {}, {last}", steps.solved, steps.asked)));
+    rows.push(("worst residual", format!("{} m or rad", error(summary.effort.worst_residual_si))));
+    rows.push(("design variables", model.variables_line()));
+    let parts = [("solving", timings.solve), ("comparing", timings.compare), ("writing", timings.write)];
+    let parts: Vec<String> =
+        parts.iter().filter(|(_, s)| *s > 1e-5).map(|(what, s)| format!("{what} {}", seconds(*s))).collect();
+    rows.push(("time taken", format!("{} ({})", seconds(timings.total), parts.join(", "))));
+    let mut out = format!("{}\n{}", text::bold(&model.name), text::pairs(&rows));
+    if let Some(table) = largest(summary) {
+        out += &format!("\n{}", text::table(&table));
+    }
+    out
+}
+
+/// The two largest sensitivities of every measure within each unit of variables.
+fn largest(summary: &Summary) -> Option<Table> {
+    const SHOWN: usize = 2;
+    let mut rows = Vec::new();
+    for ranking in summary.sensitivities.iter().filter(|r| r.order == "value") {
+        let mut name = ranking.measure.clone();
+        if ranking.largest.is_empty() {
+            rows.push(vec![name, "no variable moves it".into(), String::new(), String::new()]);
+            continue;
+        }
+        for (k, r) in ranking.largest.iter().enumerate() {
+            let before = ranking.largest[..k].iter().filter(|other| other.per == r.per).count();
+            if before < SHOWN {
+                let at = format!("{} s", number(r.time));
+                rows.push(vec![
+                    std::mem::take(&mut name),
+                    r.variable.clone(),
+                    with_unit(r.value, &r.unit),
+                    at,
+                ]);
+            }
+        }
+    }
+    (!rows.is_empty()).then(|| Table {
+        title: "Largest sensitivities of each measure over the motion".into(),
+        note: String::new(),
+        header: ["measure", "by variable", "largest", "at t"].map(String::from).to_vec(),
+        rows,
+    })
+}

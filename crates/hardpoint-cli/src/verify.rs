@@ -1,0 +1,107 @@
+//! `hardpoint verify`.
+
+use std::io::Write;
+use std::time::Instant;
+
+use hardpoint::study::{VerifyOptions, verify as verify_designs};
+use hardpoint_report::diagnose;
+use hardpoint_report::facts::Facts;
+use hardpoint_report::figures::{count, error, seconds};
+use hardpoint_report::verdict::{Outcome as Agrees, Verdict};
+
+use crate::args::Verify;
+use crate::folder::Folder;
+use crate::outcome::Outcome;
+use crate::session::{Meter, Session, json_text};
+use crate::text;
+
+/// Re-solves moved designs and prints how well they agree.
+pub fn verify(options: &Verify) -> Outcome {
+    let session = Session::begin(options.common.json);
+    verify_in(&session, options).unwrap_or_else(|outcome| outcome)
+}
+
+fn verify_in(session: &Session, options: &Verify) -> Result<Outcome, Outcome> {
+    let file = session.read(&options.common.model)?;
+    let analysis = session.plan(&file, options.common.formulation())?;
+    let folder = options.output.as_ref().map(|path| Folder::open(path));
+    let folder = folder.transpose().map_err(|e| session.not_written(&e))?;
+
+    let solution = session.solve(&analysis);
+    if let Some(stop) = &solution.stop {
+        let d = diagnose::stop(&file, stop, solution.motion.len(), None);
+        session.fail(&file, &[d]);
+        return Err(if session.interrupted() { Outcome::Interrupted } else { Outcome::Stopped });
+    }
+    session
+        .tell(&file, &diagnose::variables(&file, &Facts::new(&file, analysis.topology(), Some(&solution))));
+
+    let started = Instant::now();
+    let mut sweep = VerifyOptions::default();
+    if let Some(steps) = &options.steps {
+        sweep.steps.clone_from(steps);
+    }
+    let mut meter = Meter::new("re-solving designs", "variables");
+    let verification = verify_designs(&analysis, &solution, &sweep, |done| {
+        meter.show(done, file.model.variables.len());
+        session.go_on()
+    });
+    drop(meter);
+    let verdict = Verdict::new(&file, &analysis, &verification, started.elapsed().as_secs_f64());
+
+    let mut written = None;
+    if let Some(mut folder) = folder {
+        let json = json_text(&verdict);
+        written = Some(folder.path_of("verify.json"));
+        let result =
+            folder.write("verify.json", |out| out.write_all(json.as_bytes())).and_then(|()| folder.commit());
+        result.map_err(|e| session.not_written(&e))?;
+    }
+    if options.common.json {
+        session.print_json(&verdict);
+    } else {
+        text::print(&verdict_text(&verdict, options.sweep));
+        text::print(&written.map_or(String::new(), |path| format!("\nwritten: {}\n", path.display())));
+    }
+    Ok(match (verdict.passed, verdict.interrupted) {
+        (_, true) => Outcome::Interrupted,
+        (true, _) => Outcome::Done,
+        (false, _) => Outcome::Disagrees,
+    })
+}
+
+fn verdict_text(verdict: &Verdict, sweep: bool) -> String {
+    let mut out = format!("{}\n", text::bold(&verdict.name));
+    if verdict.checks.is_empty() {
+        return out + "The model has no design variables: there is nothing to verify.\n";
+    }
+    if sweep {
+        let table = verdict.sweep_table();
+        out += &format!("{}  {}\n\n", text::table(&table), table.note);
+    }
+    out += &text::table(&verdict.table());
+    if let Some(worst) = &verdict.worst {
+        let (variable, quantity) = (&worst.variable, &worst.quantity);
+        out += &format!("\nworst of all: {} in {quantity} by {variable}\n", error(worst.error));
+    }
+    let result = match (verdict.passed, verdict.interrupted) {
+        (_, true) => "interrupted",
+        (true, _) => "passed",
+        (false, _) => "FAILED",
+    };
+    let of = |outcome| verdict.checks.iter().filter(|c| c.outcome == outcome).count();
+    let mut parts =
+        vec![format!("{} of {} agree", of(Agrees::Passed), count(verdict.checks.len(), "variable"))];
+    let others = [
+        (Agrees::Failed, "disagree"),
+        (Agrees::NotSolved, "could not be re-solved"),
+        (Agrees::CannotFollow, "cannot be followed, so there is nothing to compare"),
+    ];
+    parts.extend(others.iter().filter(|(o, _)| of(*o) > 0).map(|(o, words)| format!("{} {words}", of(*o))));
+    out + &format!(
+        "{result}: {}\nA variable agrees if its best step deviates by {} at most; took {}\n",
+        parts.join(", "),
+        error(verdict.tolerance),
+        seconds(verdict.seconds)
+    )
+}

@@ -1,0 +1,5 @@
+//! The command as its users meet it: output, files and exit codes.
+
+mod bench;
+mod golden;
+mod results;
