@@ -7,9 +7,9 @@
 
 use std::path::Path;
 
-use hardpoint::joint::Quantity as Kind;
+use hardpoint::joint::{Freedom, Quantity as Kind};
 use hardpoint::measure::OutputSource;
-use hardpoint::model::{BodyId, HardpointId, JointId, Model, VariableId};
+use hardpoint::model::{BodyId, Change, Direction, HardpointId, Joint, JointId, Model, VariableId};
 use hardpoint::sensitivity::BodySensitivity;
 use hardpoint::space::Vec3;
 use hardpoint::study::{Difference, compare_with_difference};
@@ -219,6 +219,13 @@ impl Compose<'_> {
         for (j, joint) in self.model.joints.iter().enumerate() {
             for end in 0..2 {
                 add(joint.bodies[end], geometry.markers[j][end].r, self.label(joint.at[end], &joint.name));
+                for at in self.hinge_points(joint) {
+                    add(
+                        joint.bodies[end],
+                        self.in_body(joint.bodies[end], at),
+                        &self.model.hardpoints[at.0].name,
+                    );
+                }
             }
         }
         for (p, point) in self.model.points.iter().enumerate().filter(|(_, p)| !p.unnamed) {
@@ -238,6 +245,21 @@ impl Compose<'_> {
         points.into_iter().enumerate().map(track).collect()
     }
 
+    /// The two hardpoints that a hinge's axis passes through: both lie on both of its bodies.
+    fn hinge_points(&self, joint: &Joint) -> impl Iterator<Item = HardpointId> + use<> {
+        let turns = joint.kind.freedoms.is_some_and(|f| f.iter().all(|f| matches!(f, Freedom::Turn(_))));
+        let ends = match joint.axis {
+            Some(Direction::Through(a, b)) if turns && joint.axis2.is_none() => Some([a, b]),
+            _ => None,
+        };
+        ends.into_iter().flatten()
+    }
+
+    /// Where a hardpoint of the design configuration is in a body's frame.
+    fn in_body(&self, body: BodyId, at: HardpointId) -> Vec3 {
+        self.model.bodies[body.0].frame.inverse().point(self.model.hardpoints[at.0].position)
+    }
+
     /// The hardpoint's name, or that of the joint whose coordinates were written in its place.
     fn label<'m>(&'m self, at: HardpointId, joint: &'m str) -> &'m str {
         let hardpoint = &self.model.hardpoints[at.0];
@@ -247,7 +269,7 @@ impl Compose<'_> {
     fn joints(&self) -> Vec<JointMark> {
         let geometry = self.model.geometry(&[]);
         let roles = &self.analysis.topology().roles;
-        let mark = |(j, joint): (usize, &hardpoint::model::Joint)| {
+        let mark = |(j, joint): (usize, &Joint)| {
             let [i, k] = &geometry.markers[j];
             JointMark {
                 name: joint.name.clone(),
@@ -333,7 +355,22 @@ impl Compose<'_> {
             v: speed(*v),
             turn: [0.0; 3],
         });
-        markers.chain(points).collect()
+        // A hinge's marker stands at one end of its axis; show what moves at the other end too.
+        let far_ends = self.model.variables[variable.0].changes.iter().filter_map(|change| match change {
+            Change::Move { hardpoint, velocity } => Some((*hardpoint, *velocity)),
+            _ => None,
+        });
+        let far_ends = far_ends.flat_map(|(at, velocity)| {
+            let hinges = self.model.joints.iter().filter(move |j| j.at[0] != at);
+            let hinges = hinges.filter(move |j| self.hinge_points(j).any(|end| end == at));
+            hinges.flat_map(|j| j.bodies).map(move |body| Arrow {
+                body: body.0,
+                at: self.length(self.in_body(body, at)),
+                v: speed(self.model.bodies[body.0].frame.rot.transpose_mul(velocity)),
+                turn: [0.0; 3],
+            })
+        });
+        markers.chain(points).chain(far_ends).collect()
     }
 
     fn sensitivities(

@@ -277,7 +277,8 @@ impl<'f> Sensing<'f> {
                 let place = topology.rows[defect.row];
                 let closure = &topology.closures[place.closure];
                 let (joints, time) = &mut self.resisting[b];
-                if joints.iter().all(|j| defect.value > j.value) {
+                // A periodic motion comes back to its largest defect: the first time counts, not round-off.
+                if joints.iter().all(|j| defect.value > j.value * (1.0 + 1e-9)) {
                     *time = t;
                 }
                 match joints.iter_mut().find(|j| j.joint == closure.joint) {

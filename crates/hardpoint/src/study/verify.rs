@@ -151,7 +151,9 @@ fn check_variable(
     Check { variable, outcome, sweep }
 }
 
-/// Largest relative deviation of every quantity: six per body, three per output.
+/// Largest relative deviation of every quantity, in this order: position, orientation, velocity, angular
+/// velocity, acceleration, angular acceleration, each of all bodies but ground; then value, rate and
+/// acceleration of every output.
 ///
 /// A deviation is relative to the largest sensitivity of its kind over all bodies and times, or, where
 /// the design hardly matters, to what one natural step would have to change for one part in a thousand of
