@@ -6,13 +6,10 @@ use fearless_simd::{Level, dispatch};
 
 use crate::measure::{self, Measured};
 use crate::model::{BodyId, Field, Geometry, Model, VariableId};
-use crate::motion::kinematics::State;
 use crate::motion::parts::Parts;
 use crate::motion::stepper::Stepper;
-use crate::motion::{BodyState, Motion, Stop, StopKind};
-use crate::sensitivity::{
-    Admissibility, BodySensitivity, Direct, FieldParts, JointDefect, Sensitivities, admissibility_at_design,
-};
+use crate::motion::{BodyState, Effort, Motion, Stop, StopKind};
+use crate::sensitivity::{Sensitivities, sensing};
 use crate::space::{LANES, Real, lanes};
 use crate::topology::{Formulation, Topology, TopologyFault};
 
@@ -135,11 +132,8 @@ impl<'m> Analysis<'m> {
     ) -> Solution {
         let (model, times) = (self.model, &self.model.times);
         let fields: Vec<Field> = variables.iter().map(|v| model.field(*v)).collect();
-        let mut sensing = Sensing::new(model, &self.topology, &fields, times.len());
-        let mut motion = Motion { bodies: model.bodies.len(), ..Motion::default() };
-        motion.times.reserve_exact(times.len());
-        motion.states.reserve_exact(times.len() * motion.bodies);
-        motion.coordinates.reserve_exact(times.len() * self.topology.coordinates.len());
+        let mut sensing = sensing(model, &self.topology, &fields, times.len());
+        let mut motion = self.empty_motion();
         let parts = Parts::new(model, &self.topology, std::slice::from_ref(geometry), 0.0);
         let mut stepper = Stepper::new(model, &self.topology, parts, 0.0);
         let mut stop = None;
@@ -150,7 +144,9 @@ impl<'m> Analysis<'m> {
                 break;
             }
             motion.times.push(t);
-            motion.states.extend((0..motion.bodies).map(|b| BodyState::of_lane(&stepper.state, b, 0)));
+            for b in 0..motion.bodies {
+                BodyState::each_lane(&stepper.state, b, 1, |_, s| motion.states.push(s));
+            }
             motion.coordinates.extend(stepper.coordinates());
             sensing.step(&stepper.topology, &mut stepper.state, t);
             if progress(Progress { done: k + 1, total: times.len() }).is_break() && k + 1 < times.len() {
@@ -166,9 +162,21 @@ impl<'m> Analysis<'m> {
             }
         }
         motion.effort = stepper.effort;
-        let sensitivities = sensing.finish(motion.is_empty());
+        let sensitivities = sensing.finish();
         let measured = self.measure(geometry, &fields, &motion, &sensitivities);
         Solution { motion, sensitivities, measured, stop }
+    }
+
+    /// A motion with room for all output times.
+    fn empty_motion(&self) -> Motion {
+        let (steps, bodies) = (self.model.times.len(), self.model.bodies.len());
+        Motion {
+            times: Vec::with_capacity(steps),
+            states: Vec::with_capacity(steps * bodies),
+            bodies,
+            coordinates: Vec::with_capacity(steps * self.topology.coordinates.len()),
+            effort: Effort::default(),
+        }
     }
 
     fn measure(
@@ -218,13 +226,17 @@ impl<'m> Analysis<'m> {
         let parts = Parts::new(model, &self.topology, geometries, witness);
         let mut stepper = Stepper::new(model, &self.topology, parts, witness);
         let bodies = model.bodies.len();
-        let empty = Motion { bodies, ..Motion::default() };
-        let mut motions = vec![empty; geometries.len()];
+        let mut motions: Vec<Motion> = geometries.iter().map(|_| self.empty_motion()).collect();
         for (k, &t) in model.times.iter().enumerate() {
             if k == 0 { stepper.start(t) } else { stepper.advance(t) }.ok()?;
+            for b in 0..bodies {
+                let states = &mut motions;
+                BodyState::each_lane(&stepper.state, b, geometries.len(), |lane, s| {
+                    states[lane].states.push(s)
+                });
+            }
             for (lane, motion) in motions.iter_mut().enumerate() {
                 motion.times.push(t);
-                motion.states.extend((0..bodies).map(|b| BodyState::of_lane(&stepper.state, b, lane)));
                 motion.coordinates.extend(stepper.state.q.iter().map(|q| q.lane(lane)));
             }
         }
@@ -232,89 +244,6 @@ impl<'m> Analysis<'m> {
             motion.effort = stepper.effort;
         }
         Some(motions)
-    }
-}
-
-/// Sensitivities of all variables, step after step.
-struct Sensing<'f> {
-    fields: &'f [Field],
-    parts: Vec<FieldParts>,
-    direct: Direct<f64>,
-    out: Sensitivities,
-    /// Per variable: the joints that resist, and the time of the largest defect.
-    resisting: Vec<(Vec<JointDefect>, f64)>,
-    model: &'f Model,
-}
-
-impl<'f> Sensing<'f> {
-    fn new(model: &'f Model, topology: &Topology, fields: &'f [Field], steps: usize) -> Self {
-        let bodies = model.bodies.len();
-        let mut out = Sensitivities { variables: fields.len(), bodies, ..Sensitivities::default() };
-        out.states.reserve_exact(steps * fields.len() * bodies);
-        Self {
-            fields,
-            parts: fields.iter().map(|f| FieldParts::new(model, topology, f)).collect(),
-            direct: Direct::new(model, topology, 0.0),
-            out,
-            resisting: vec![(Vec::new(), 0.0); fields.len()],
-            model,
-        }
-    }
-
-    fn step(&mut self, topology: &Topology, state: &mut State<f64>, t: f64) {
-        if self.fields.is_empty() {
-            return;
-        }
-        state.finish_rates(topology);
-        for b in 0..self.fields.len() {
-            self.direct.solve(topology, state, &self.parts[b]);
-            for body in 0..self.model.bodies.len() {
-                let w = [0, 1, 2].map(|order| self.direct.w[order][body]);
-                let s = BodySensitivity::from_twists(w, state.pose[body], state.v[body], state.a[body]);
-                self.out.states.push(s);
-            }
-            if let Some(defect) = self.direct.worst_defect(topology, state, &self.parts[b]) {
-                let place = topology.rows[defect.row];
-                let closure = &topology.closures[place.closure];
-                let (joints, time) = &mut self.resisting[b];
-                // A periodic motion comes back to its largest defect: the first time counts, not round-off.
-                if joints.iter().all(|j| defect.value > j.value * (1.0 + 1e-9)) {
-                    *time = t;
-                }
-                match joints.iter_mut().find(|j| j.joint == closure.joint) {
-                    Some(j) if defect.value > j.value => {
-                        (j.row, j.value) = (closure.rows[place.index], defect.value);
-                    }
-                    Some(_) => {}
-                    None => joints.push(JointDefect {
-                        joint: closure.joint,
-                        row: closure.rows[place.index],
-                        value: defect.value,
-                    }),
-                }
-            }
-        }
-    }
-
-    fn finish(mut self, nothing_solved: bool) -> Sensitivities {
-        self.out.admissibility = self
-            .fields
-            .iter()
-            .zip(self.resisting)
-            .map(|(field, (joints, time))| {
-                let open = admissibility_at_design(self.model, field);
-                if !joints.is_empty() {
-                    Admissibility::CannotFollow { joints, time }
-                } else if nothing_solved {
-                    Admissibility::Unknown
-                } else if open.is_empty() {
-                    Admissibility::Admissible
-                } else {
-                    Admissibility::Reassembled { joints: open }
-                }
-            })
-            .collect();
-        self.out
     }
 }
 

@@ -23,5 +23,6 @@ pub(super) fn wrench_rates<T: Real>(
 ) -> [Wrench<T>; 2] {
     let a = direction_rates(axis(&ends.i.rot, a), rates.v_i, rates.a_i);
     let b = direction_rates(axis(&ends.j.rot, b), rates.v_j, rates.a_j);
-    cross_rates(b, a).map(Wrench::moment)
+    let [m1, m2] = cross_rates(b, a);
+    [Wrench::moment(m1), Wrench::moment(m2)]
 }

@@ -102,6 +102,39 @@ impl<T: Real> State<T> {
         }
     }
 
+    /// Takes over from a scalar state all that the sensitivity levels need, the same in every lane.
+    pub fn spread(&mut self, from: &State<f64>) {
+        fn copy<A: Copy, B>(to: &mut [B], from: &[A], spread: impl Fn(A) -> B) {
+            for (to, x) in to.iter_mut().zip(from) {
+                *to = spread(*x);
+            }
+        }
+        let witness = self.witness;
+        witness.within(
+            #[inline(always)]
+            || {
+                copy(&mut self.pose, &from.pose, |p| p.spread(witness));
+                for (to, from) in [
+                    (&mut self.v, &from.v),
+                    (&mut self.a, &from.a),
+                    (&mut self.x, &from.x),
+                    (&mut self.xd, &from.xd),
+                    (&mut self.xdd, &from.xdd),
+                ] {
+                    copy(to, from, |t| t.spread(witness));
+                }
+                for (to, from) in
+                    [(&mut self.l, &from.l), (&mut self.ld, &from.ld), (&mut self.ldd, &from.ldd)]
+                {
+                    copy(to, from, |l| l.spread(witness));
+                }
+                for (to, from) in self.factors.iter_mut().zip(&from.factors) {
+                    to.spread(from, witness);
+                }
+            },
+        );
+    }
+
     /// Places the children of these links and their unit twists (`docs/theory.md` (4)).
     #[inline(always)]
     fn place(&mut self, topology: &Topology, parts: &Parts<T>, links: std::ops::Range<usize>) {

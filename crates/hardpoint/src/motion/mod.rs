@@ -12,7 +12,7 @@ mod stop;
 pub use stop::{Stop, StopKind};
 
 use crate::model::{BodyId, Model};
-use crate::space::{Mat3, Quat, Real, Vec3};
+use crate::space::{LANES, Mat3, Quat, Real, Vec3};
 
 use kinematics::State;
 
@@ -47,17 +47,35 @@ impl BodyState {
         Quat::from_rotation(self.rotation).to_array()
     }
 
-    /// The state of body `b` in lane `lane`.
-    pub(crate) fn of_lane<T: Real>(state: &State<T>, b: usize, lane: usize) -> Self {
-        let (pose, v, a) = (state.pose[b].lane(lane), state.v[b].lane(lane), state.a[b].lane(lane));
-        let velocity = v.at(pose.r);
-        Self {
-            r: pose.r,
-            rotation: pose.rot,
-            v: velocity,
-            omega: v.w,
-            a: a.at(pose.r) + v.w.cross(velocity),
-            alpha: a.w,
+    /// Gives the state of body `b` in every lane to `out`, lane 0 first.
+    pub(crate) fn each_lane<T: Real>(
+        state: &State<T>,
+        b: usize,
+        lanes: usize,
+        mut out: impl FnMut(usize, Self),
+    ) {
+        // Per component, all lanes: stored wide, read narrow.
+        let mut table = [[0.0; LANES]; 24];
+        state.witness.within(
+            #[inline(always)]
+            || {
+                let (pose, v, a) = (state.pose[b], state.v[b], state.a[b]);
+                let [f, g, h] = pose.rot.cols;
+                let velocity = v.at(pose.r);
+                let acceleration = a.at(pose.r) + v.w.cross(velocity);
+                for (k, x) in [pose.r, f, g, h, velocity, v.w, acceleration, a.w].iter().enumerate() {
+                    x.x.store(&mut table[3 * k]);
+                    x.y.store(&mut table[3 * k + 1]);
+                    x.z.store(&mut table[3 * k + 2]);
+                }
+            },
+        );
+        for lane in 0..lanes {
+            let vector =
+                |k: usize| Vec3::new(table[3 * k][lane], table[3 * k + 1][lane], table[3 * k + 2][lane]);
+            let rotation = Mat3 { cols: [vector(1), vector(2), vector(3)] };
+            let [r, v, omega, a, alpha] = [vector(0), vector(4), vector(5), vector(6), vector(7)];
+            out(lane, Self { r, rotation, v, omega, a, alpha });
         }
     }
 }

@@ -21,12 +21,7 @@ impl<T: Real> Parts<T> {
     /// Lane k takes `designs[k]`, or the last design where there are fewer.
     pub fn new(model: &Model, topology: &Topology, designs: &[Geometry], witness: T) -> Self {
         let lane = |k: usize| &designs[k.min(designs.len() - 1)];
-        let marker = |joint: usize, end: usize| {
-            if T::LANES == 1 {
-                return lane(0).markers[joint][end].spread(witness);
-            }
-            gather(witness, |k| lane(k).markers[joint][end])
-        };
+        let marker = |joint: usize, end: usize| Pose::gather(witness, |k| lane(k).markers[joint][end]);
         Self {
             parent_marker: topology
                 .links
@@ -52,18 +47,4 @@ impl<T: Real> Parts<T> {
                 .collect(),
         }
     }
-}
-
-fn gather<T: Real>(witness: T, pose: impl Fn(usize) -> Pose) -> Pose<T> {
-    let mut out = Pose::IDENTITY.spread(witness);
-    let component = |f: &dyn Fn(Pose) -> f64| witness.like_lanes(|k| f(pose(k)));
-    for c in 0..3 {
-        out.rot.cols[c].x = component(&|p| p.rot.cols[c].x);
-        out.rot.cols[c].y = component(&|p| p.rot.cols[c].y);
-        out.rot.cols[c].z = component(&|p| p.rot.cols[c].z);
-    }
-    out.r.x = component(&|p| p.r.x);
-    out.r.y = component(&|p| p.r.y);
-    out.r.z = component(&|p| p.r.z);
-    out
 }

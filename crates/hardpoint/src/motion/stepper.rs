@@ -232,7 +232,8 @@ impl<'m, T: Real> Stepper<'m, T> {
             #[inline(always)]
             || {
                 let (s, saved) = (&mut self.state, &self.saved);
-                let [h1, h2, h3] = [h, 0.5 * h * h, h * h * h / 6.0].map(|x| s.witness.like(x));
+                let like = s.witness;
+                let (h1, h2, h3) = (like.like(h), like.like(0.5 * h * h), like.like(h * h * h / 6.0));
                 let mut most = 0.0_f64;
                 for (c, coordinate) in self.topology.coordinates.iter().enumerate() {
                     let step = saved.qd[c] * h1 + saved.qdd[c] * h2 + saved.jerk[c] * h3;

@@ -1,48 +1,90 @@
 //! The three levels of one design variable at one step.
 
 use crate::constraint::Row;
-use crate::model::{Field, Model};
+use crate::model::{Field, JointId, Model};
 use crate::motion::kinematics::{State, level};
 use crate::motion::stepper::LOCKED;
 use crate::space::{Real, Twist};
-use crate::topology::{Closure, Topology};
+use crate::topology::Topology;
 
-/// A design velocity laid out for the plan: body-fixed marker twists by link and by closure.
+/// Design velocities laid out for the plan, one variable per lane: body-fixed marker twists by link and
+/// by closure. Lanes without a variable stay at rest.
 #[derive(Clone, Debug)]
-pub(crate) struct FieldParts {
-    /// Link, +1 for the parent's marker or -1 for the child's, body, body-fixed twist.
-    links: Vec<(usize, f64, usize, Twist)>,
-    /// Closure, end (0 is i, 1 is j), body, body-fixed twist.
-    closures: Vec<(usize, usize, usize, Twist)>,
+pub(crate) struct FieldParts<T> {
+    links: Vec<Moving<T>>,
+    closures: Vec<Moving<T>>,
     /// Distance rows whose design length changes, and its rate.
-    lengths: Vec<(usize, f64)>,
-    /// Largest speed in the field: what round-off of a defect is compared with.
-    scale: f64,
+    lengths: Vec<(usize, T)>,
+    /// Largest speed in each field: what round-off of a defect is compared with.
+    scale: T,
 }
 
-impl FieldParts {
-    pub fn new(model: &Model, topology: &Topology, field: &Field) -> Self {
-        let mut parts = Self { links: Vec::new(), closures: Vec::new(), lengths: Vec::new(), scale: 0.0 };
-        for m in &field.markers {
-            let body = model.joints[m.joint.0].bodies[m.end].0;
-            parts.scale = parts.scale.max(m.twist.w.norm()).max(m.twist.v.norm());
-            for (k, link) in topology.links.iter().enumerate().filter(|(_, l)| l.joint == Some(m.joint)) {
-                parts.links.push((k, if link.parent_end == m.end { 1.0 } else { -1.0 }, body, m.twist));
-            }
-            for (k, _) in topology.closures.iter().enumerate().filter(|(_, c)| c.joint == m.joint) {
-                parts.closures.push((k, m.end, body, m.twist));
-            }
-        }
-        for &(joint, rate) in &field.lengths {
-            for c in topology.closures.iter().filter(|c: &&Closure| c.joint == joint) {
-                for (k, row) in c.rows.iter().enumerate() {
-                    if *row == Row::Distance {
-                        parts.lengths.push((c.first_row + k, rate));
-                    }
+/// A marker that some design velocity moves.
+#[derive(Clone, Copy, Debug)]
+struct Moving<T> {
+    /// Which link or closure.
+    at: usize,
+    /// Which marker: 0 is the parent's of a link or i of a closure, 1 the child's or j.
+    end: usize,
+    /// The body that carries it.
+    body: usize,
+    /// Body-fixed twist.
+    e: Twist<T>,
+}
+
+impl<T: Real> Moving<T> {
+    /// z = Ad(X) e, z. = ad(V) z, z.. = ad(A) z + ad(V) z. (`docs/theory.md` (8)).
+    #[inline(always)]
+    fn carried(&self, state: &State<T>) -> [Twist<T>; 3] {
+        let (v, a) = (&state.v[self.body], &state.a[self.body]);
+        let z0 = state.pose[self.body].carry(self.e);
+        let z1 = v.ad(z0);
+        [z0, z1, a.ad(z0) + v.ad(z1)]
+    }
+}
+
+impl<T: Real> FieldParts<T> {
+    /// Lane k takes `fields[k]`; there must be no more fields than lanes.
+    pub fn new(topology: &Topology, fields: &[Field], witness: T) -> Self {
+        let twist_of = |joint: JointId, end: usize| {
+            Twist::gather(witness, |k| {
+                let markers = fields.get(k).map_or(&[][..], |f| &f.markers);
+                markers.iter().find(|m| m.joint == joint && m.end == end).map_or(Twist::ZERO, |m| m.twist)
+            })
+        };
+        let moves = |joint: JointId, end: usize| {
+            fields.iter().any(|f| f.markers.iter().any(|m| m.joint == joint && m.end == end))
+        };
+        let (mut links, mut closures, mut lengths) = (Vec::new(), Vec::new(), Vec::new());
+        for (at, link) in topology.links.iter().enumerate() {
+            let Some(joint) = link.joint else { continue };
+            for (end, body) in [(0, link.parent.0), (1, link.child.0)] {
+                let marker = if end == 0 { link.parent_end } else { 1 - link.parent_end };
+                if moves(joint, marker) {
+                    links.push(Moving { at, end, body, e: twist_of(joint, marker) });
                 }
             }
         }
-        parts
+        for (at, closure) in topology.closures.iter().enumerate() {
+            for end in (0..2).filter(|&end| moves(closure.joint, end)) {
+                let body = closure.bodies[end].0;
+                closures.push(Moving { at, end, body, e: twist_of(closure.joint, end) });
+            }
+            let rate = witness.like_lanes(|k| {
+                let lengths = fields.get(k).map_or(&[][..], |f| &f.lengths);
+                lengths.iter().filter(|(j, _)| *j == closure.joint).map(|(_, l)| *l).sum()
+            });
+            for (k, _) in closure.rows.iter().enumerate().filter(|(_, row)| **row == Row::Distance) {
+                if rate.abs().largest() > 0.0 {
+                    lengths.push((closure.first_row + k, rate));
+                }
+            }
+        }
+        let scale = witness.like_lanes(|k| {
+            let markers = fields.get(k).map_or(&[][..], |f| &f.markers);
+            markers.iter().map(|m| m.twist.w.norm().max(m.twist.v.norm())).fold(0.0, f64::max)
+        });
+        Self { links, closures, lengths, scale }
     }
 }
 
@@ -87,7 +129,7 @@ impl<T: Real> Direct<T> {
     }
 
     /// W, W. and W.. of all bodies for one variable, where `state` stands with all of its rates.
-    pub fn solve(&mut self, topology: &Topology, state: &mut State<T>, field: &FieldParts) {
+    pub fn solve(&mut self, topology: &Topology, state: &mut State<T>, field: &FieldParts<T>) {
         let witness = state.witness;
         witness.within(
             #[inline(always)]
@@ -100,28 +142,24 @@ impl<T: Real> Direct<T> {
         );
     }
 
-    /// z = Ad(X) e, z. = ad(V) z, z.. = ad(A) z + ad(V) z. of every marker of the field.
+    /// The design twists of every marker of the field.
     #[inline(always)]
-    fn set_field(&mut self, state: &State<T>, field: &FieldParts) {
+    fn set_field(&mut self, state: &State<T>, field: &FieldParts<T>) {
         let none = Twist::zero(state.witness);
-        let z = |body: usize, e: Twist| {
-            let (v, a) = (state.v[body], state.a[body]);
-            let z0 = state.pose[body].carry(e.spread(state.witness));
-            let z1 = v.ad(z0);
-            [z0, z1, a.ad(z0) + v.ad(z1)]
-        };
         for order in 0..3 {
             self.z_link[order].fill(none);
             self.z_end[order].fill([none; 2]);
         }
-        for &(link, sign, body, e) in &field.links {
-            for (order, z) in z(body, e).into_iter().enumerate() {
-                self.z_link[order][link] += z * state.witness.like(sign);
+        for m in &field.links {
+            let z = m.carried(state);
+            for order in 0..3 {
+                self.z_link[order][m.at] += if m.end == 0 { z[order] } else { -z[order] };
             }
         }
-        for &(closure, end, body, e) in &field.closures {
-            for (order, z) in z(body, e).into_iter().enumerate() {
-                self.z_end[order][closure][end] = z;
+        for m in &field.closures {
+            let z = m.carried(state);
+            for order in 0..3 {
+                self.z_end[order][m.at][m.end] = z[order];
             }
         }
     }
@@ -136,7 +174,13 @@ impl<T: Real> Direct<T> {
 
     /// `docs/theory.md` (11), (12) or (13).
     #[inline(always)]
-    fn solve_order(&mut self, topology: &Topology, state: &mut State<T>, field: &FieldParts, order: usize) {
+    fn solve_order(
+        &mut self,
+        topology: &Topology,
+        state: &mut State<T>,
+        field: &FieldParts<T>,
+        order: usize,
+    ) {
         let two = state.witness.like(2.0);
         for (k, link) in topology.links.iter().enumerate() {
             let mut bias = self.z_link[order][k];
@@ -167,7 +211,7 @@ impl<T: Real> Direct<T> {
         }
         if order == 0 {
             for &(row, rate) in &field.lengths {
-                self.row_rhs[row] += state.witness.like(rate);
+                self.row_rhs[row] += rate;
             }
         }
         level(
@@ -183,24 +227,40 @@ impl<T: Real> Direct<T> {
         );
     }
 
-    /// The left-out row that fails most under the change, if any does by more than round-off.
+    /// Per lane, the left-out row that fails most under its change, if any does by more than round-off.
     ///
-    /// Speaks of position level, and so must be asked before another variable is solved.
-    pub fn worst_defect(&self, topology: &Topology, state: &State<T>, field: &FieldParts) -> Option<Defect> {
-        let mut worst: Option<Defect> = None;
+    /// Speaks of the variables that were solved last.
+    pub fn worst_defects(
+        &self,
+        topology: &Topology,
+        state: &State<T>,
+        field: &FieldParts<T>,
+        worst: &mut [Option<Defect>],
+    ) {
+        worst.fill(None);
+        let zero = state.witness.zero();
         for (r, place) in topology.rows.iter().enumerate().filter(|(_, p)| !p.selected) {
             let [i, j] = topology.closures[place.closure].bodies;
             let [z_i, z_j] = self.z_end[0][place.closure];
-            let length = field.lengths.iter().filter(|(row, _)| *row == r).map(|(_, l)| *l).sum::<f64>();
-            let terms = [self.w[0][j.0], z_j, -self.w[0][i.0], -z_i].map(|w| state.l[r].on(w).lane(0));
-            let defect = terms.iter().sum::<f64>() - length;
-            let size = terms.iter().fold(length.abs(), |m, x| m.max(x.abs()));
-            // What typed coordinates may be off by in the motion, they may be off by in the design's terms.
-            let is_defect = !(defect.abs() <= LOCKED * size) && defect.abs() > DEFECT_FLOOR * field.scale;
-            if is_defect && worst.is_none_or(|w| defect.abs() > w.value) {
-                worst = Some(Defect { row: r, value: defect.abs() });
+            let rate = field.lengths.iter().find(|(row, _)| *row == r).map_or(zero, |(_, l)| *l);
+            let (l, w) = (state.l[r], &self.w[0]);
+            let terms = state.witness.within(
+                #[inline(always)]
+                || [l.on(w[j.0]), l.on(z_j), -l.on(w[i.0]), -l.on(z_i), -rate],
+            );
+            for (lane, worst) in worst.iter_mut().enumerate() {
+                let (mut defect, mut size) = (0.0, 0.0_f64);
+                for term in &terms {
+                    defect += term.lane(lane);
+                    size = size.max(term.lane(lane).abs());
+                }
+                // What typed coordinates may be off by in the motion, they may be off by in the design's terms.
+                let is_defect =
+                    !(defect.abs() <= LOCKED * size) && defect.abs() > DEFECT_FLOOR * field.scale.lane(lane);
+                if is_defect && worst.is_none_or(|w| defect.abs() > w.value) {
+                    *worst = Some(Defect { row: r, value: defect.abs() });
+                }
             }
         }
-        worst
     }
 }

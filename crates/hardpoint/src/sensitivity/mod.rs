@@ -6,11 +6,12 @@
 
 mod admissible;
 mod direct;
+mod sensing;
 
 pub use admissible::{Admissibility, JointDefect, admissibility_at_design};
-pub(crate) use direct::{Direct, FieldParts};
+pub(crate) use sensing::sensing;
 
-use crate::space::{Pose, Twist, Vec3};
+use crate::space::Vec3;
 
 /// Derivatives by one design variable b of one body's state, global components, per unit of b at fixed t.
 ///
@@ -47,25 +48,6 @@ impl BodySensitivity {
         da: Vec3::ZERO,
         dalpha: Vec3::ZERO,
     };
-
-    /// From the design twist W of a body and its time derivatives (`docs/theory.md` (14)):
-    /// `V' = W. + ad(W) V`, `A' = W.. + ad(W.) V + ad(W) A`.
-    #[inline]
-    pub(crate) fn from_twists([w0, w1, w2]: [Twist; 3], pose: Pose, v: Twist, a: Twist) -> Self {
-        let dv = w1 + w0.ad(v);
-        let da = w2 + w1.ad(v) + w0.ad(a);
-        let (r, dr) = (pose.r, w0.at(pose.r));
-        let velocity = v.at(r);
-        let dvelocity = dv.at(r) + v.w.cross(dr);
-        Self {
-            dr,
-            dpi: w0.w,
-            dv: dvelocity,
-            domega: dv.w,
-            da: da.at(r) + a.w.cross(dr) + dv.w.cross(velocity) + v.w.cross(dvelocity),
-            dalpha: da.w,
-        }
-    }
 }
 
 /// Sensitivities of all bodies over a solved motion.

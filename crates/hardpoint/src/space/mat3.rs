@@ -17,7 +17,8 @@ impl Mat3<f64> {
     /// The same rotation in every lane of `witness`.
     #[inline(always)]
     pub fn spread<T: Real>(self, witness: T) -> Mat3<T> {
-        Mat3 { cols: self.cols.map(|c| c.spread(witness)) }
+        let [f, g, h] = self.cols;
+        Mat3 { cols: [f.spread(witness), g.spread(witness), h.spread(witness)] }
     }
 
     /// The rotation by the rotation vector `v` (angle = length, in rad; axis = direction).
@@ -68,7 +69,8 @@ impl<T: Real> Mat3<T> {
     /// The rotation of lane `k`.
     #[inline(always)]
     pub fn lane(self, k: usize) -> Mat3<f64> {
-        Mat3 { cols: self.cols.map(|c| c.lane(k)) }
+        let [f, g, h] = &self.cols;
+        Mat3 { cols: [f.lane(k), g.lane(k), h.lane(k)] }
     }
 }
 
@@ -84,6 +86,8 @@ impl<T: Real> Mul for Mat3<T> {
     type Output = Self;
     #[inline(always)]
     fn mul(self, o: Self) -> Self {
-        Self { cols: o.cols.map(|c| self * c) }
+        // Written out: `map` would compile the products outside the lanes' instruction set.
+        let [f, g, h] = o.cols;
+        Self { cols: [self * f, self * g, self * h] }
     }
 }

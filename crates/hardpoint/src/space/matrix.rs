@@ -92,6 +92,14 @@ impl<T: Real> Elimination<T> {
         Factored { pivot_ratio, positive }
     }
 
+    /// Takes over the factors of a scalar system, the same in every lane.
+    pub fn spread(&mut self, from: &Elimination<f64>, witness: T) {
+        for (to, x) in self.a.iter_mut().zip(&from.a) {
+            *to = witness.like(*x);
+        }
+        self.order.copy_from_slice(&from.order);
+    }
+
     /// Replaces the right-hand side by the solution.
     #[inline(always)]
     pub fn solve(&mut self, b: &mut [T]) {

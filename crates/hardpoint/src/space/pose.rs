@@ -49,6 +49,12 @@ impl<T: Real> Pose<T> {
         Twist { w, v: self.rot * e.v + self.r.cross(w) }
     }
 
+    /// The poses of all lanes, side by side.
+    pub fn gather(witness: T, lane: impl Fn(usize) -> Pose) -> Self {
+        let column = |c: usize| Vec3::gather(witness, |k| lane(k).rot.cols[c]);
+        Self { rot: Mat3 { cols: [0, 1, 2].map(column) }, r: Vec3::gather(witness, |k| lane(k).r) }
+    }
+
     /// The pose of lane `k`.
     #[inline(always)]
     pub fn lane(self, k: usize) -> Pose<f64> {

@@ -36,6 +36,9 @@ pub trait Real:
     /// The scalar in lane `k`.
     fn lane(self, k: usize) -> f64;
 
+    /// Writes all lanes to the start of `out`.
+    fn store(self, out: &mut [f64]);
+
     /// Square root, lane by lane.
     fn sqrt(self) -> Self;
 
@@ -122,6 +125,10 @@ impl Real for f64 {
         self
     }
     #[inline(always)]
+    fn store(self, out: &mut [f64]) {
+        out[0] = self;
+    }
+    #[inline(always)]
     fn sqrt(self) -> Self {
         f64::sqrt(self)
     }
@@ -164,6 +171,10 @@ impl<S: Simd> Real for f64x8<S> {
     #[inline(always)]
     fn lane(self, k: usize) -> f64 {
         self.as_slice()[k]
+    }
+    #[inline(always)]
+    fn store(self, out: &mut [f64]) {
+        out[..LANES].copy_from_slice(self.as_slice());
     }
     #[inline(always)]
     fn sqrt(self) -> Self {

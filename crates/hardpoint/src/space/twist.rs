@@ -63,10 +63,24 @@ impl<T: Real> Twist<T> {
         self.v + self.w.cross(p)
     }
 
+    /// The twists of all lanes, side by side.
+    #[inline(always)]
+    pub fn gather(witness: T, lane: impl Fn(usize) -> Twist) -> Self {
+        Self { w: Vec3::gather(witness, |k| lane(k).w), v: Vec3::gather(witness, |k| lane(k).v) }
+    }
+
     /// The twist of lane `k`.
     #[inline(always)]
     pub fn lane(self, k: usize) -> Twist<f64> {
         Twist { w: self.w.lane(k), v: self.v.lane(k) }
+    }
+}
+
+impl Wrench<f64> {
+    /// The same wrench in every lane of `witness`.
+    #[inline(always)]
+    pub fn spread<T: Real>(self, witness: T) -> Wrench<T> {
+        Wrench { m: self.m.spread(witness), f: self.f.spread(witness) }
     }
 }
 

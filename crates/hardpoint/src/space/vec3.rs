@@ -99,6 +99,13 @@ impl<T: Real> Vec3<T> {
         self.dot(self).sqrt()
     }
 
+    /// The vectors of all lanes, side by side.
+    #[inline(always)]
+    pub fn gather(witness: T, lane: impl Fn(usize) -> Vec3) -> Self {
+        let component = |axis: usize| witness.like_lanes(|k| lane(k)[axis]);
+        Self::new(component(0), component(1), component(2))
+    }
+
     /// The vector of lane `k`.
     #[inline(always)]
     pub fn lane(self, k: usize) -> Vec3<f64> {
