@@ -9,7 +9,7 @@ use hardpoint::study::{Difference, central_differences, natural_step};
 use hardpoint::{Analysis, Solution};
 use hardpoint_file::ModelFile;
 use hardpoint_report::facts::Facts;
-use hardpoint_report::figures::{count, error, number, seconds, with_unit};
+use hardpoint_report::figures::{count, error, number, seconds, some_of, with_unit};
 use hardpoint_report::page::Table;
 use hardpoint_report::payload::payload;
 use hardpoint_report::summary::{RunStatus, Summary};
@@ -149,7 +149,7 @@ fn summary_text(summary: &Summary) -> String {
     let bodies =
         if model.counts.bodies == 1 { "1 body".into() } else { format!("{} bodies", model.counts.bodies) };
     let cut: Vec<&str> = model.joints.iter().filter(|j| j.role == "cut").map(|j| j.name.as_str()).collect();
-    let cut = if cut.is_empty() { String::new() } else { format!(", cut: {}", cut.join(", ")) };
+    let cut = if cut.is_empty() { String::new() } else { format!(", cut: {}", some_of(&cut, ", ")) };
     let mut rows = vec![
         ("bodies and joints", format!("{bodies}, {}{cut}", count(model.counts.joints, "joint"))),
         ("degrees of freedom", model.freedom_line()),

@@ -128,3 +128,14 @@ fn codes_below(folder: &Path, found: &mut BTreeSet<String>) {
         }
     }
 }
+
+#[test]
+fn the_model_in_the_readme_runs() {
+    let readme = std::fs::read_to_string(root().join("README.md")).unwrap();
+    let text =
+        readme.split("```toml\n").nth(1).and_then(|t| t.split("```").next()).expect("a model in the README");
+    let file = parse(text, "README.md").unwrap_or_else(|e| panic!("{e}"));
+    let solution = hardpoint::Analysis::new(&file.model).unwrap().run();
+    assert!(solution.stop.is_none());
+    assert_eq!(solution.motion.len(), 401);
+}

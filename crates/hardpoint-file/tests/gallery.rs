@@ -3,7 +3,9 @@
 
 use std::path::Path;
 
-use hardpoint::sensitivity::Admissibility;
+use hardpoint::sensitivity::{Admissibility, BodySensitivity};
+use hardpoint::space::Vec3;
+use hardpoint::topology::Formulation;
 use hardpoint::{Analysis, Solution};
 use hardpoint_file::{ModelFile, read};
 
@@ -184,4 +186,52 @@ fn only_the_variables_that_say_so_cannot_be_followed() {
             .collect();
         assert_eq!(found, refused, "{name}");
     }
+}
+
+#[test]
+fn both_formulations_agree_on_every_model_of_the_gallery() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../models");
+    let mut compared = 0;
+    for entry in std::fs::read_dir(&folder).unwrap() {
+        let path = entry.unwrap().path();
+        if path.extension().is_none_or(|e| e != "toml") {
+            continue;
+        }
+        let name = path.file_name().unwrap().to_string_lossy().into_owned();
+        let (file, relative) = solved(&name);
+        let absolute = Analysis::with(&file.model, Formulation::Absolute).unwrap().run();
+        assert!(absolute.stop.is_none(), "{name}: {:?}", absolute.stop);
+        // Every quantity against its own largest magnitude over the motion, at least 1 (SI).
+        let steps = relative.motion.len();
+        let mut agree = |what: String, a: &dyn Fn(usize) -> Vec3, b: &dyn Fn(usize) -> Vec3| {
+            let scale = (0..steps).map(|k| a(k).norm()).fold(1.0, f64::max);
+            for k in 0..steps {
+                let apart = (a(k) - b(k)).norm() / scale;
+                assert!(apart < 1e-10, "{name}: {what} at step {k}: {apart:e}");
+            }
+            compared += 1;
+        };
+        for i in 1..relative.motion.bodies {
+            let body = &file.model.bodies[i].name;
+            agree(format!("{body} acceleration"), &|k| relative.motion.at(k)[i].a, &|k| {
+                absolute.motion.at(k)[i].a
+            });
+            agree(format!("{body} angular acceleration"), &|k| relative.motion.at(k)[i].alpha, &|k| {
+                absolute.motion.at(k)[i].alpha
+            });
+            for (v, variable) in file.model.variables.iter().enumerate() {
+                if relative.sensitivities.at(0, v).is_none() {
+                    assert!(absolute.sensitivities.at(0, v).is_none(), "{name}: {}", variable.name);
+                    continue;
+                }
+                let kinds: [fn(&BodySensitivity) -> Vec3; 3] = [|s| s.dr, |s| s.da, |s| s.dalpha];
+                for of in kinds {
+                    let [a, b] = [&relative, &absolute]
+                        .map(|s| move |k: usize| of(&s.sensitivities.at(k, v).unwrap()[i]));
+                    agree(format!("{body} by {}", variable.name), &a, &b);
+                }
+            }
+        }
+    }
+    assert!(compared > 200, "only {compared} quantities");
 }

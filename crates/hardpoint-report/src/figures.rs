@@ -98,6 +98,16 @@ pub fn count(n: usize, one: &str) -> String {
     if n == 1 { format!("1 {one}") } else { format!("{n} {one}s") }
 }
 
+/// The items with commas between; of a long list the first few, and how many more there are.
+pub fn some_of(items: &[impl AsRef<str>], separator: &str) -> String {
+    const SHOWN: usize = 8;
+    let shown: Vec<&str> = items.iter().take(SHOWN).map(AsRef::as_ref).collect();
+    match items.len().saturating_sub(SHOWN) {
+        0 => shown.join(separator),
+        more => format!("{} and {more} more", shown.join(separator)),
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -126,5 +136,12 @@ mod tests {
     fn lists_read_as_a_sentence() {
         assert_eq!(names(["a"]), "`a`");
         assert_eq!(names(["a", "b", "c"]), "`a`, `b` and `c`");
+    }
+
+    #[test]
+    fn a_long_list_is_cut_short_and_counted() {
+        let names: Vec<String> = (0..200).map(|k| format!("R{k}")).collect();
+        assert_eq!(some_of(&names[..3], ", "), "R0, R1, R2");
+        assert_eq!(some_of(&names, ", "), "R0, R1, R2, R3, R4, R5, R6, R7 and 192 more");
     }
 }

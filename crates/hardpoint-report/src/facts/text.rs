@@ -1,7 +1,7 @@
 //! The facts in words: lines for headings, sentences, and tables for the terminal and the page.
 
 use super::{Answer, DefectFact, Facts, VariableFact};
-use crate::figures::{count, number, with_unit};
+use crate::figures::{count, number, some_of, with_unit};
 use crate::page::Table;
 
 impl Facts {
@@ -36,8 +36,13 @@ impl Facts {
             0 => "no unknowns".into(),
             1 => format!("solved in 1 block of {}", count(self.counts.unknowns, "unknown")),
             n => {
-                let sizes: Vec<String> = self.blocks.iter().map(|b| b.unknowns.to_string()).collect();
-                format!("solved in {n} blocks of {} unknowns", sizes.join(" + "))
+                let size = |b: usize| self.blocks[b].unknowns;
+                if (1..n).all(|b| size(b) == size(0)) {
+                    format!("solved in {n} blocks of {} each", count(size(0), "unknown"))
+                } else {
+                    let sizes: Vec<String> = (0..n).map(|b| size(b).to_string()).collect();
+                    format!("solved in {n} blocks of {} unknowns", some_of(&sizes, " + "))
+                }
             }
         };
         format!("{}, {solved}", self.counts.loops)

@@ -36,7 +36,17 @@ pub enum TopologyFault {
 
 fn under_driven_text(freedom: &usize, bodies: &[String]) -> String {
     let s = if *freedom == 1 { "motion remains" } else { "motions remain" };
-    format!("the mechanism is under-driven: {freedom} {s} free ({})", bodies.join(", "))
+    format!("the mechanism is under-driven: {freedom} {s} free ({})", some_of(bodies))
+}
+
+/// The names with commas between; of a long list the first dozen, and how many more there are.
+fn some_of(names: &[String]) -> String {
+    const SHOWN: usize = 12;
+    let shown = names[..names.len().min(SHOWN)].join(", ");
+    match names.len().saturating_sub(SHOWN) {
+        0 => shown,
+        more => format!("{shown} and {more} more"),
+    }
 }
 
 impl TopologyFault {
@@ -52,12 +62,12 @@ impl TopologyFault {
     pub fn notes(&self) -> Vec<String> {
         match self {
             Self::UnderDriven { joint_names, .. } => {
-                vec![format!("the joints that still move: {}", joint_names.join(", "))]
+                vec![format!("the joints that still move: {}", some_of(joint_names))]
             }
             Self::OverDriven { driver_names, joint_names, excess, .. } => {
-                let mut notes = vec![format!("constraints that cannot follow: {}", joint_names.join(", "))];
+                let mut notes = vec![format!("constraints that cannot follow: {}", some_of(joint_names))];
                 if !driver_names.is_empty() {
-                    notes.push(format!("drivers that meet there: {}", driver_names.join(", ")));
+                    notes.push(format!("drivers that meet there: {}", some_of(driver_names)));
                 }
                 notes.push(format!("{excess} more is prescribed than can move"));
                 notes
