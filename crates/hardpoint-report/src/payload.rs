@@ -207,8 +207,9 @@ impl Compose<'_> {
     fn bodies(&self) -> Vec<BodyTrack> {
         let geometry = self.model.geometry(&[]);
         let mut points: Vec<Vec<(Vec3, String)>> = vec![Vec::new(); self.model.bodies.len()];
+        let same = 1e-9 * self.model.size();
         let mut add = |body: BodyId, at: Vec3, label: &str| {
-            let near = |p: &Vec3| (*p - at).norm() <= 1e-9 * self.model.size();
+            let near = |p: &Vec3| (*p - at).norm() <= same;
             let list = &mut points[body.0];
             match list.iter_mut().find(|(p, _)| near(p)) {
                 Some((_, labels)) if labels.split(", ").any(|l| l == label) => {}

@@ -1,5 +1,7 @@
 //! From a draft to a model: every reference resolved, every fault found.
 
+use std::collections::{BTreeMap, BTreeSet};
+
 use super::fault::did_you_mean;
 use super::*;
 use crate::joint::{self, CoordinateType, Need};
@@ -104,11 +106,13 @@ impl<'a> Check<'a> {
             (Section::Measures, "measure", d.measures.iter().map(|x| x.name.as_str()).collect()),
         ];
         for (section, what, names) in lists {
+            let mut first_of = BTreeMap::new();
             for (index, name) in names.iter().enumerate() {
+                let first = *first_of.entry(name).or_insert(index);
                 let at = Here { section, index }.key("name");
                 if name.trim().is_empty() {
                     self.fault("HP0201", at, format!("a {what} has an empty name")).help("give it a name");
-                } else if let Some(first) = names[..index].iter().position(|n| n == name) {
+                } else if first < index {
                     self.fault("HP0201", at, format!("there are two {what}s named `{name}`")).note(format!(
                         "the first is number {} of the {what}s, this is number {}",
                         first + 1,
@@ -408,23 +412,25 @@ impl<'a> Check<'a> {
 
     /// HP0212 for bodies that nothing holds; default frames for the others that gave none.
     fn default_frames(&mut self) {
-        for (index, b) in self.draft.bodies.iter().enumerate() {
-            let id = BodyId(index + 1);
-            let mut ends = Vec::new();
-            for j in &self.model.joints {
-                for e in (0..2).filter(|&e| j.bodies[e] == id) {
-                    ends.push(self.model.hardpoints[j.at[e].0].position);
-                }
+        let mut ends = vec![(Vec3::ZERO, 0.0); self.model.bodies.len()];
+        for j in &self.model.joints {
+            for (body, at) in j.bodies.iter().zip(j.at) {
+                let (sum, count) = &mut ends[body.0];
+                *sum += self.model.hardpoints[at.0].position;
+                *count += 1.0;
             }
-            let named = self.draft.joints.iter().any(|j| j.bodies.contains(&b.name));
-            if !named {
+        }
+        let named: BTreeSet<&str> =
+            self.draft.joints.iter().flat_map(|j| &j.bodies).map(String::as_str).collect();
+        for (index, b) in self.draft.bodies.iter().enumerate() {
+            if !named.contains(b.name.as_str()) {
                 let at = Here { section: Section::Bodies, index }.key("name");
                 self.fault("HP0212", at, format!("no joint holds body `{}`", b.name))
                     .help("connect it with a joint, or remove it");
             }
-            if matches!(b.frame, FrameDraft::Default) && !ends.is_empty() {
-                let sum = ends.iter().fold(Vec3::ZERO, |s, &p| s + p);
-                self.model.bodies[id.0].frame.r = sum * (1.0 / ends.len() as f64);
+            let (sum, count) = ends[index + 1];
+            if matches!(b.frame, FrameDraft::Default) && count > 0.0 {
+                self.model.bodies[index + 1].frame.r = sum * (1.0 / count);
             }
         }
     }

@@ -1,5 +1,8 @@
 //! The spanning tree that leaves the fewest unknowns.
 
+use std::cmp::Reverse;
+use std::collections::BinaryHeap;
+
 use super::*;
 
 /// Cost of a joint in the tree: a body without any tree joint has six unknowns, so six is never chosen.
@@ -32,47 +35,38 @@ pub(super) fn grow(model: &Model, formulation: Formulation) -> Topology {
     // Prim's algorithm from ground: the joint with the fewest unknowns first, and among equals the one
     // nearest to ground, then the first in the file. Shallow trees keep loops small and independent.
     let mut depth: Vec<Option<usize>> = vec![None; model.bodies.len()];
-    depth[0] = Some(0);
-    while let Some(orphan) = depth.iter().position(Option::is_none) {
-        let next = model
-            .joints
-            .iter()
-            .enumerate()
-            .filter(|_| formulation == Formulation::Relative)
-            .filter_map(|(k, j)| {
-                let parent_end = match j.bodies.map(|b| depth[b.0]) {
-                    [Some(_), None] => 0,
-                    [None, Some(_)] => 1,
-                    _ => return None,
-                };
-                let free = j.kind.freedom_count()? - driven_coordinates(model, JointId(k)).count();
-                let unknowns = if j.cut { ASKED_CUT } else { free };
-                (unknowns < 6).then(|| ((unknowns, depth[j.bodies[parent_end].0], k), parent_end))
-            })
-            .min();
-        match next {
-            Some(((unknowns, parent_depth, k), parent_end)) => {
-                let joint = &model.joints[k];
-                let (parent, child) = (joint.bodies[parent_end], joint.bodies[1 - parent_end]);
-                depth[child.0] = parent_depth.map(|d| d + 1);
-                roles[k] = Role::Tree { child, unknowns };
-                add_joint_link(model, &mut topology, JointId(k), parent, child, parent_end);
+    let mut reachable = Reachable::new(model, formulation);
+    reachable.place(&mut depth, crate::model::GROUND, 0);
+    loop {
+        match reachable.next(&depth) {
+            Some(Candidate { unknowns, depth: parent_depth, joint, parent_end }) => {
+                let bodies = model.joints[joint].bodies;
+                let (parent, child) = (bodies[parent_end], bodies[1 - parent_end]);
+                roles[joint] = Role::Tree { child, unknowns };
+                add_joint_link(model, &mut topology, JointId(joint), parent, child, parent_end);
+                reachable.place(&mut depth, child, parent_depth + 1);
             }
             None => {
-                depth[orphan] = Some(1);
-                add_free_link(&mut topology, BodyId(orphan));
+                let Some(orphan) = depth.iter().position(Option::is_none).map(BodyId) else { break };
+                add_free_link(&mut topology, orphan);
+                reachable.place(&mut depth, orphan, 1);
             }
         }
+    }
+    let mut link_of = vec![None; model.bodies.len()];
+    for (k, link) in topology.links.iter().enumerate() {
+        link_of[link.child.0] = Some(k);
     }
     for (k, joint) in model.joints.iter().enumerate() {
         let cut = matches!(roles[k], Role::Cut(_));
         if cut && !joint.kind.rows.is_empty() {
-            add_closure(&mut topology, JointId(k), None, joint.bodies, joint.kind.rows.to_vec());
+            add_closure(&mut topology, &link_of, JointId(k), None, joint.bodies, joint.kind.rows.to_vec());
         }
         for (d, driver) in model.drivers.iter().enumerate().filter(|(_, d)| d.joint.0 == k) {
             if cut {
                 add_closure(
                     &mut topology,
+                    &link_of,
                     JointId(k),
                     Some(DriverId(d)),
                     joint.bodies,
@@ -83,6 +77,61 @@ pub(super) fn grow(model: &Model, formulation: Formulation) -> Topology {
     }
     topology.roles = roles;
     topology
+}
+
+/// A joint that could carry the tree on; the least is taken first.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+struct Candidate {
+    unknowns: usize,
+    /// Of the body that is placed already.
+    depth: usize,
+    joint: usize,
+    parent_end: usize,
+}
+
+/// The joints between bodies that are placed and bodies that are not.
+struct Reachable<'m> {
+    model: &'m Model,
+    /// Per body: its joints with a tree form, how many unknowns each would leave, and the body's end.
+    joints_of: Vec<Vec<(usize, usize, usize)>>,
+    candidates: BinaryHeap<Reverse<Candidate>>,
+}
+
+impl<'m> Reachable<'m> {
+    fn new(model: &'m Model, formulation: Formulation) -> Self {
+        let mut joints_of = vec![Vec::new(); model.bodies.len()];
+        if formulation == Formulation::Relative {
+            for (k, j) in model.joints.iter().enumerate() {
+                let Some(freedoms) = j.kind.freedom_count() else { continue };
+                let driven = driven_coordinates(model, JointId(k)).count();
+                let unknowns = if j.cut { ASKED_CUT } else { freedoms - driven };
+                if unknowns < ASKED_CUT {
+                    for (end, body) in j.bodies.iter().enumerate() {
+                        joints_of[body.0].push((k, unknowns, end));
+                    }
+                }
+            }
+        }
+        Self { model, joints_of, candidates: BinaryHeap::new() }
+    }
+
+    /// Notes that a body is placed, and what can be reached from it.
+    fn place(&mut self, depth: &mut [Option<usize>], body: BodyId, at: usize) {
+        depth[body.0] = Some(at);
+        for &(joint, unknowns, parent_end) in &self.joints_of[body.0] {
+            self.candidates.push(Reverse(Candidate { unknowns, depth: at, joint, parent_end }));
+        }
+    }
+
+    /// The best joint to a body that is not placed yet.
+    fn next(&mut self, depth: &[Option<usize>]) -> Option<Candidate> {
+        while let Some(Reverse(c)) = self.candidates.pop() {
+            if depth[self.model.joints[c.joint].bodies[1 - c.parent_end].0].is_none() {
+                return Some(c);
+            }
+        }
+        None
+    }
 }
 
 /// Drivers of a joint, and the freedom that each prescribes.
@@ -148,6 +197,7 @@ fn add_link(
 
 fn add_closure(
     topology: &mut Topology,
+    link_of: &[Option<usize>],
     joint: JointId,
     driver: Option<DriverId>,
     bodies: [BodyId; 2],
@@ -158,7 +208,7 @@ fn add_closure(
     for index in 0..rows.len() {
         topology.rows.push(RowPlace { closure, index, selected: false });
     }
-    let links = loop_links(topology, bodies);
+    let links = loop_links(topology, link_of, bodies);
     topology.closures.push(Closure {
         joint,
         driver,
@@ -172,11 +222,11 @@ fn add_closure(
 }
 
 /// Links from j (+1) and from i (-1) down to where their ways to ground meet.
-fn loop_links(topology: &Topology, [i, j]: [BodyId; 2]) -> Vec<(usize, f64)> {
+fn loop_links(topology: &Topology, link_of: &[Option<usize>], [i, j]: [BodyId; 2]) -> Vec<(usize, f64)> {
     let to_ground = |body: BodyId| {
         let mut way = Vec::new();
         let mut at = body;
-        while let Some(k) = topology.links.iter().position(|l| l.child == at) {
+        while let Some(k) = link_of[at.0] {
             way.push(k);
             at = topology.links[k].parent;
         }

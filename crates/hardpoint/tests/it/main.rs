@@ -6,6 +6,7 @@ mod diagnosis;
 mod house;
 mod identities;
 mod joints;
+mod loops;
 mod reference;
 mod reference_case;
 mod verify;
