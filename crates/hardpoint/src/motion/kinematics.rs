@@ -57,6 +57,18 @@ pub(crate) struct State<T> {
     pub iterations: usize,
 }
 
+/// By how much the constraints fail.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Residuals {
+    /// Largest residual, m or rad.
+    pub largest: f64,
+    /// Largest residual, sizes or rad.
+    pub scaled: f64,
+    /// The row where that is, and its residual in its own unit.
+    pub row: usize,
+    pub of_row: f64,
+}
+
 /// Why a position was not found.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum PositionFailure {
@@ -388,18 +400,23 @@ impl<T: Real> State<T> {
         }
     }
 
-    /// Largest residual over all rows, left-out ones included, in each kind's own unit, with its row.
-    pub fn worst_residual(&self, topology: &Topology, parts: &Parts<T>, drivers: &[[T; 3]]) -> (f64, usize) {
+    /// The largest residuals over all rows, left-out ones included.
+    pub fn residuals(&self, topology: &Topology, parts: &Parts<T>, drivers: &[[T; 3]]) -> Residuals {
         self.witness.within(
             #[inline(always)]
             || {
-                let mut worst = (0.0, 0);
+                let mut worst = Residuals { largest: 0.0, scaled: 0.0, of_row: 0.0, row: 0 };
                 for (r, place) in topology.rows.iter().enumerate() {
                     let row = topology.closures[place.closure].rows[place.index];
                     let target = self.target(topology, parts, drivers, r);
                     let residual = row.residual(&self.ends[place.closure], target).abs().largest();
-                    if !(residual <= worst.0) {
-                        worst = (residual, r);
+                    let scaled = if row.is_length() { residual / self.size } else { residual };
+                    // Written so that a NaN is the largest of all.
+                    if !(residual <= worst.largest) {
+                        worst.largest = residual;
+                    }
+                    if !(scaled <= worst.scaled) {
+                        (worst.scaled, worst.of_row, worst.row) = (scaled, residual, r);
                     }
                 }
                 worst

@@ -20,6 +20,8 @@ const TRUST: f64 = 0.5;
 const SPEED_TRUST: f64 = 0.25;
 /// Differences below this part of the drivers' fastest speed do not count: a start from rest.
 const SPEED_FLOOR: f64 = 1e-3;
+/// Within this part of an output step the speed of a smooth law hardly changes.
+const SMOOTH_PART: f64 = 1e-3;
 /// Coordinates this much faster than the fastest driver are on their way to a limit position.
 const RUNAWAY: f64 = 1e3;
 /// A pivot ratio that has fallen to this part of its first value is on its way to a singular position.
@@ -48,6 +50,8 @@ pub(crate) struct Stepper<'m, T> {
     branch: Vec<(bool, f64)>,
     /// Fastest driver on the present path (rad, or sizes, per unit of its parameter).
     fastest_driver: f64,
+    /// A law whose speed changes much within a step shorter than this has a jump there.
+    shortest_smooth: f64,
     pub effort: Effort,
 }
 
@@ -60,6 +64,7 @@ struct Saved<T> {
     jerk: Vec<T>,
     balls: Vec<Quat<T>>,
     pivots: Vec<(f64, bool)>,
+    drivers: Vec<[T; 3]>,
 }
 
 /// What the drivers follow.
@@ -90,9 +95,10 @@ impl<'m, T: Real> Stepper<'m, T> {
             jerk: state.qdd.clone(),
             balls: state.balls.clone(),
             pivots: state.pivots.clone(),
+            drivers: vec![[witness.zero(); 3]; model.drivers.len()],
         };
         let branch = vec![(true, 0.0); topology.blocks.len()];
-        let drivers = vec![[witness.zero(); 3]; model.drivers.len()];
+        let drivers = saved.drivers.clone();
         let effort = Effort { least_pivot_ratio: f64::INFINITY, ..Effort::default() };
         Self {
             model,
@@ -104,6 +110,7 @@ impl<'m, T: Real> Stepper<'m, T> {
             time: 0.0,
             branch,
             fastest_driver: 0.0,
+            shortest_smooth: 0.0,
             effort,
         }
     }
@@ -134,7 +141,7 @@ impl<'m, T: Real> Stepper<'m, T> {
     }
 
     fn count(&mut self) {
-        let (worst, _) = self.state.worst_residual(&self.topology, &self.parts, &self.drivers);
+        let worst = self.state.residuals(&self.topology, &self.parts, &self.drivers).largest;
         self.effort.steps += 1;
         self.effort.iterations = self.state.iterations;
         self.effort.worst_residual = self.effort.worst_residual.max(worst);
@@ -148,6 +155,7 @@ impl<'m, T: Real> Stepper<'m, T> {
     fn walk(&mut self, path: Path, target: f64) -> Result<(), Stop> {
         let whole = target - self.time;
         let mut h = whole;
+        self.shortest_smooth = SMOOTH_PART * whole;
         let shortest = whole * 0.5_f64.powi(MAX_HALVINGS as i32);
         loop {
             let rest = target - self.time;
@@ -210,15 +218,15 @@ impl<'m, T: Real> Stepper<'m, T> {
             }
         }
         self.state.solve_rates(&self.topology, &self.parts, &self.drivers);
-        if h != 0.0 && !self.speeds_are_smooth(h) {
+        // Where a driver's own speed jumps (`abs`, `if`), those of the mechanism may: but only there.
+        let jump = h < self.shortest_smooth && !self.drivers_are_smooth(h);
+        if h != 0.0 && !jump && !self.speeds_are_smooth(h) {
             return Err(Refusal::Branch { block: self.least_regular_block() });
         }
         if self.topology.rows.iter().any(|r| !r.selected) {
-            let (residual, row) = self.state.worst_residual(&self.topology, &self.parts, &self.drivers);
-            let place = self.topology.rows[row];
-            let is_length = self.topology.closures[place.closure].rows[place.index].is_length();
-            if !(residual <= LOCKED * if is_length { self.state.size } else { 1.0 }) {
-                return Err(Refusal::Locked { row, residual });
+            let worst = self.state.residuals(&self.topology, &self.parts, &self.drivers);
+            if !(worst.scaled <= LOCKED) {
+                return Err(Refusal::Locked { row: worst.row, residual: worst.of_row });
             }
             self.reselect();
         }
@@ -256,6 +264,18 @@ impl<'m, T: Real> Stepper<'m, T> {
             let length = self.model.driven(d).quantity == crate::joint::Quantity::Length;
             most.max(f[1].abs().largest() / if length { self.state.size } else { 1.0 })
         })
+    }
+
+    /// Whether no driver's speed jumps within the step.
+    fn drivers_are_smooth(&self, h: f64) -> bool {
+        self.model.drivers.iter().zip(self.drivers.iter().zip(&self.saved.drivers)).all(
+            |(d, (now, before))| {
+                let length = self.model.driven(d).quantity == crate::joint::Quantity::Length;
+                let size = if length { self.state.size } else { 1.0 };
+                let jump = (now[1] - before[1] - before[2] * now[1].like(h)).abs().largest() / size;
+                jump <= SPEED_FLOOR * self.fastest_driver
+            },
+        )
     }
 
     /// Whether the speeds are those of the same branch as before the step.
@@ -316,6 +336,7 @@ impl<'m, T: Real> Stepper<'m, T> {
         saved.qdd.copy_from_slice(&s.qdd);
         saved.balls.copy_from_slice(&s.balls);
         saved.pivots.copy_from_slice(&s.pivots);
+        saved.drivers.copy_from_slice(&self.drivers);
         self.time = t;
     }
 

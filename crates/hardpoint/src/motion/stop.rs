@@ -59,6 +59,9 @@ impl Stop {
     /// The headline.
     pub fn headline(&self, model: &Model) -> String {
         let t = self.failed_time;
+        if self.last_time.is_none() && matches!(self.kind, StopKind::Limit | StopKind::BranchChange) {
+            return format!("the mechanism does not reach its start position at t = {t:.6} s");
+        }
         match self.kind {
             StopKind::Limit => format!("the mechanism cannot move beyond t = {t:.6} s"),
             StopKind::BranchChange => format!("the mechanism passes a dead point at t = {t:.6} s"),

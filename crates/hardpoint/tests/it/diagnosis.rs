@@ -161,3 +161,27 @@ fn an_interrupted_run_keeps_what_it_has() {
     assert_eq!(solution.motion.len(), 10);
     assert_eq!(solution.stop.unwrap().kind, StopKind::Interrupted);
 }
+
+#[test]
+fn a_law_with_a_corner_is_followed_around_it() {
+    // A triangle wave: the speed of the drive jumps twice, which no output time hits.
+    for law in ["asin(sin(2*pi*t + 0.1)) - 0.1", "abs(t - 0.503)", "if(t < 0.4142, t, 0.8284 - t)"] {
+        let model = Model::from_draft(&four_bar(CRANK_ROCKER, law, &times(1.0, 7))).unwrap();
+        for formulation in [Formulation::Relative, Formulation::Absolute] {
+            let solution = Analysis::with(&model, formulation).unwrap().run();
+            assert!(solution.stop.is_none(), "{law}: {:?}", solution.stop);
+            assert!(solution.motion.effort.worst_residual < 1e-12);
+        }
+    }
+}
+
+#[test]
+fn a_start_out_of_reach_says_so() {
+    let points = [[0.0, 0.0], [0.3, 0.4], [0.5, 0.3], [0.6, 0.0]];
+    let model = Model::from_draft(&four_bar(points, "3 + t", &times(1.0, 10))).unwrap();
+    let solution = Analysis::new(&model).unwrap().run();
+    let stop = solution.stop.expect("3 rad are beyond the limit");
+    assert!(solution.motion.is_empty() && stop.last_time.is_none());
+    assert_eq!(stop.headline(&model), "the mechanism does not reach its start position at t = 0.000000 s");
+    assert!(stop.drivers[0] > 0.01 && stop.drivers[0] < 3.0, "{stop:?}");
+}
