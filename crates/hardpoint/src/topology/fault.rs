@@ -18,20 +18,39 @@ pub enum TopologyFault {
         /// Names of the bodies that move in them.
         bodies: Vec<String>,
     },
-    /// Drivers prescribe more than can move, or contradict the joints (HP0302).
-    #[error("the mechanism is over-driven: its joints and drivers contradict each other")]
+    /// Drivers prescribe more than can move (HP0302).
+    #[error(
+        "the mechanism is over-driven: {} prescribe {}",
+        counted(.driver_names.len(), "driver"),
+        counted(*.mobility, "degree of freedom").replace("degree of freedoms", "degrees of freedom")
+    )]
     OverDriven {
-        /// The drivers that meet the contradiction.
+        /// The drivers that contradict each other.
         drivers: Vec<DriverId>,
         /// Their names.
         driver_names: Vec<String>,
+        /// Degrees of freedom without drivers.
+        mobility: usize,
         /// The joints whose constraints fail.
         joints: Vec<JointId>,
         /// Their names, with the constraint that fails.
         joint_names: Vec<String>,
-        /// By how many the constraints and drivers exceed what can move.
-        excess: usize,
     },
+    /// The joints hold each other: nothing that a driver moves can move (HP0303).
+    #[error("the mechanism cannot move: its joints hold each other ({})", some_of(.bodies))]
+    Immovable {
+        /// The joints whose constraints fail as soon as something moves.
+        joints: Vec<JointId>,
+        /// Their names, with the constraint that fails.
+        joint_names: Vec<String>,
+        /// Names of the bodies in their loops.
+        bodies: Vec<String>,
+    },
+}
+
+/// `1 driver`, `2 drivers`.
+fn counted(n: usize, one: &str) -> String {
+    format!("{n} {one}{}", if n == 1 { "" } else { "s" })
 }
 
 fn under_driven_text(freedom: &usize, bodies: &[String]) -> String {
@@ -55,6 +74,7 @@ impl TopologyFault {
         match self {
             Self::UnderDriven { .. } => "HP0301",
             Self::OverDriven { .. } => "HP0302",
+            Self::Immovable { .. } => "HP0303",
         }
     }
 
@@ -64,13 +84,15 @@ impl TopologyFault {
             Self::UnderDriven { joint_names, .. } => {
                 vec![format!("the joints that still move: {}", some_of(joint_names))]
             }
-            Self::OverDriven { driver_names, joint_names, excess, .. } => {
-                let mut notes = vec![format!("constraints that cannot follow: {}", some_of(joint_names))];
-                if !driver_names.is_empty() {
-                    notes.push(format!("drivers that meet there: {}", some_of(driver_names)));
-                }
-                notes.push(format!("{excess} more is prescribed than can move"));
-                notes
+            Self::OverDriven { driver_names, joint_names, .. } => vec![
+                format!("drivers that contradict each other: {}", some_of(driver_names)),
+                format!("where they meet: {}", some_of(joint_names)),
+            ],
+            Self::Immovable { joint_names, .. } => {
+                vec![format!(
+                    "the constraints that fail as soon as something moves: {}",
+                    some_of(joint_names)
+                )]
             }
         }
     }
@@ -84,12 +106,16 @@ impl TopologyFault {
             Self::UnderDriven { freedom, .. } => {
                 format!("add {freedom} drivers on these joints, or joints or rods that hold the motions")
             }
-            Self::OverDriven { driver_names, .. } if driver_names.len() > 1 => {
-                "remove any one of these drivers, or free a joint".into()
+            Self::OverDriven { driver_names, mobility, .. } => {
+                let excess = match driver_names.len().saturating_sub(*mobility) {
+                    0 | 1 => "one".into(),
+                    n => n.to_string(),
+                };
+                format!("remove any {excess} of these drivers, or free a joint")
             }
-            Self::OverDriven { .. } => {
-                "remove the driver, or use joints with more freedom (a universal or spherical joint in place of a \
-                 revolute, a cylindrical joint in place of a slide)"
+            Self::Immovable { .. } => {
+                "make axes that should be parallel exactly so, or use joints with more freedom (a spherical joint in \
+                 place of a revolute, a cylindrical joint in place of a slide)"
                     .into()
             }
         }
@@ -98,7 +124,9 @@ impl TopologyFault {
     /// The joints that it is about.
     pub fn joints(&self) -> &[JointId] {
         match self {
-            Self::UnderDriven { joints, .. } | Self::OverDriven { joints, .. } => joints,
+            Self::UnderDriven { joints, .. }
+            | Self::OverDriven { joints, .. }
+            | Self::Immovable { joints, .. } => joints,
         }
     }
 }
@@ -130,20 +158,26 @@ pub(super) fn under_driven(model: &Model, topology: &Topology, free: &[Vec<f64>]
     }
 }
 
-/// The fault of rows that fail under the drivers' motion.
-pub(super) fn over_driven(
+/// The fault of rows that fail under the drivers' motion, each with its failure per driver.
+pub(super) fn contradicted(
     model: &Model,
     topology: &Topology,
-    contradictions: &[(usize, Vec<DriverId>)],
+    contradictions: &[(usize, Vec<f64>)],
 ) -> TopologyFault {
-    let mut drivers: Vec<DriverId> = contradictions.iter().flat_map(|(_, d)| d.clone()).collect();
+    let mut drivers: Vec<DriverId> = Vec::new();
     let mut joints = Vec::new();
     let mut joint_names: Vec<String> = Vec::new();
-    for (r, _) in contradictions {
+    let mut bodies: Vec<BodyId> = Vec::new();
+    for (r, fails) in contradictions {
         let place = topology.rows[*r];
         let closure = &topology.closures[place.closure];
+        drivers.extend((0..fails.len()).filter(|&d| fails[d] != 0.0).map(DriverId));
         drivers.extend(closure.driver);
         joints.push(closure.joint);
+        bodies.extend(closure.links.iter().map(|(k, _)| topology.links[*k].child));
+        if let Some(block) = closure.block {
+            bodies.extend(topology.links[topology.blocks[block].links.clone()].iter().map(|l| l.child));
+        }
         let row: Row = closure.rows[place.index];
         joint_names.push(match closure.driver {
             Some(d) => format!("driver `{}` ({})", model.drivers[d.0].name, row.describe()),
@@ -155,11 +189,17 @@ pub(super) fn over_driven(
     joints.sort_unstable();
     joints.dedup();
     joint_names.dedup();
+    bodies.sort_unstable();
+    bodies.dedup();
+    if topology.mobility == 0 {
+        let bodies = bodies.iter().map(|b| format!("`{}`", model.bodies[b.0].name)).collect();
+        return TopologyFault::Immovable { joints, joint_names, bodies };
+    }
     TopologyFault::OverDriven {
         driver_names: drivers.iter().map(|d| format!("`{}`", model.drivers[d.0].name)).collect(),
         drivers,
+        mobility: topology.mobility,
         joints,
         joint_names,
-        excess: contradictions.len(),
     }
 }

@@ -2,7 +2,7 @@
 
 use super::blocks::{RANK_TOLERANCE, design_jacobian};
 use super::*;
-use crate::space::Elimination;
+use crate::space::{Elimination, FullPivot};
 
 /// Counts the degrees of freedom; every unknown is already known to be determined.
 ///
@@ -52,22 +52,28 @@ pub(super) fn examine(model: &Model, topology: &mut Topology) -> Result<(), Topo
             }
         }
     }
-    // A contradiction is a left-out row that fails under some driver's motion.
-    let mut contradictions: Vec<(usize, Vec<DriverId>)> = Vec::new();
+    // A contradiction is a left-out row that fails under some driver's motion; by how much, per driver.
+    let mut contradictions: Vec<(usize, Vec<f64>)> = Vec::new();
     for (r, row) in topology.rows.iter().enumerate().filter(|(_, r)| !r.selected) {
-        let fails: Vec<DriverId> = (0..drivers)
-            .filter(|&d| {
+        let fails: Vec<f64> = (0..drivers)
+            .map(|d| {
                 let sum: f64 = jacobian[r].iter().map(|&(c, x)| x * speeds[c][d]).sum();
                 let scale =
                     1.0 + jacobian[r].iter().map(|&(c, x)| (x * speeds[c][d]).abs()).fold(0.0, f64::max);
-                (sum - demand(row, d)).abs() > RANK_TOLERANCE.sqrt() * scale
+                let failure = (sum - demand(row, d)) / scale;
+                if failure.abs() > RANK_TOLERANCE.sqrt() { failure } else { 0.0 }
             })
-            .map(DriverId)
             .collect();
-        if !fails.is_empty() {
+        if fails.iter().any(|f| *f != 0.0) {
             contradictions.push((r, fails));
         }
     }
-    topology.mobility = drivers;
-    if contradictions.is_empty() { Ok(()) } else { Err(fault::over_driven(model, topology, &contradictions)) }
+    // Each independent contradiction forbids one combination of the drivers' speeds.
+    let rows = contradictions.iter().map(|(_, fails)| fails.clone()).collect();
+    topology.mobility = drivers - FullPivot::of(rows, drivers, RANK_TOLERANCE.sqrt()).rows.len();
+    if contradictions.is_empty() {
+        Ok(())
+    } else {
+        Err(fault::contradicted(model, topology, &contradictions))
+    }
 }

@@ -39,11 +39,16 @@ fn a_second_motor_is_over_driven_and_names_both() {
         let TopologyFault::OverDriven { driver_names, .. } = &fault else { panic!("{fault:?}") };
         assert_eq!(driver_names, &["`motor`", "`second`"], "{formulation:?}");
         assert_eq!(fault.code(), "HP0302");
+        assert_eq!(
+            fault.to_string(),
+            "the mechanism is over-driven: 2 drivers prescribe 1 degree of freedom"
+        );
+        assert_eq!(fault.help(), "remove any one of these drivers, or free a joint");
     }
 }
 
 #[test]
-fn a_driven_structure_is_over_driven() {
+fn a_driven_structure_cannot_move() {
     // A triangle of bars has no motion for its motor.
     let z = Some([0.0, 0.0, 1.0]);
     let draft = Draft {
@@ -60,8 +65,10 @@ fn a_driven_structure_is_over_driven() {
     };
     for formulation in [Formulation::Relative, Formulation::Absolute] {
         let fault = fault(&draft, formulation);
-        let TopologyFault::OverDriven { driver_names, .. } = &fault else { panic!("{fault:?}") };
-        assert_eq!(driver_names, &["`motor`"]);
+        let TopologyFault::Immovable { joint_names, bodies, .. } = &fault else { panic!("{fault:?}") };
+        assert_eq!(bodies, &["`a`", "`b`"]);
+        assert!(!joint_names.is_empty());
+        assert_eq!(fault.code(), "HP0303");
     }
 }
 
@@ -130,7 +137,7 @@ fn a_planar_linkage_with_a_tilted_pin_locks() {
     for formulation in [Formulation::Relative, Formulation::Absolute] {
         // Tilted by a degree, it has no motion at all: found already at the design configuration.
         let fault = Analysis::with(&model, formulation).unwrap_err();
-        assert!(matches!(fault, TopologyFault::OverDriven { .. }), "{fault:?}");
+        assert!(matches!(fault, TopologyFault::Immovable { .. }), "{fault:?}");
     }
 }
 
