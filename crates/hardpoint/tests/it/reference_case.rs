@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use hardpoint::Solution;
+use hardpoint::joint::{JointType, Need};
 use hardpoint::law::Law;
 use hardpoint::model::*;
 use hardpoint::sensitivity::Admissibility;
@@ -317,14 +318,17 @@ fn joint(j: &Value) -> Result<JointDraft, String> {
         _ => Vec::new(),
     };
     let pivot_axis = j.get("pivots").and_then(|p| Some(vec3(&p[1])? - vec3(&p[0])?));
+    // A case may give a marker's axes where the joint needs none (a weld's, say): they place nothing.
+    let kind = hardpoint::joint::named(&text(j, "type")?);
+    let needs = |need: fn(&JointType) -> Need| kind.is_none_or(|k| need(k) == Need::Required);
     let axis = |key: &str| j.get(key).and_then(vec3).map(Line::Along);
     Ok(JointDraft {
         name: text(j, "name")?,
         kind: text(j, "type")?,
         bodies: [text(j, "body_i")?, text(j, "body_j")?],
         at,
-        axis: pivot_axis.map(Line::Along).or_else(|| axis("axis")),
-        axis2: axis("axis2"),
+        axis: pivot_axis.map(Line::Along).or_else(|| axis("axis")).filter(|_| needs(|k| k.axis)),
+        axis2: axis("axis2").filter(|_| needs(|k| k.axis2)),
         cut: false,
     })
 }
