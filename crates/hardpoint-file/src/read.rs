@@ -391,13 +391,13 @@ impl Reader<'_> {
         expected: &str,
         place: &mut EntryPlace,
     ) -> Option<String> {
-        let name = self.need(fields, key).and_then(|f| self.name(f.value, &fields.subject(key), expected));
-        if name.is_none() {
+        if self.need(fields, key).is_none() {
             place.unread(key);
         }
-        name
+        self.optional_name(fields, key, expected, place)
     }
 
+    /// A name that may be left out; noted as unread where it is there and no name.
     fn optional_name(
         &mut self,
         fields: &Fields<'_>,

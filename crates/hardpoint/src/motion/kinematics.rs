@@ -58,7 +58,7 @@ pub(crate) struct State<T> {
 }
 
 /// By how much the constraints fail.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Residuals {
     /// Largest residual, m or rad.
     pub largest: f64,
@@ -191,14 +191,13 @@ impl<T: Real> State<T> {
         }
     }
 
-    /// Residuals, wrenches and factors of block b where it stands; returns the largest residual.
+    /// Residuals, wrenches and factors of block b where it stands.
     #[inline(always)]
-    fn linearise(&mut self, topology: &Topology, parts: &Parts<T>, drivers: &[[T; 3]], b: usize) -> f64 {
+    fn linearise(&mut self, topology: &Topology, parts: &Parts<T>, drivers: &[[T; 3]], b: usize) {
         let block: &Block = &topology.blocks[b];
         for &c in &block.closures {
             self.place_ends(topology, parts, c);
         }
-        let mut worst = 0.0_f64;
         let zero = self.witness.zero();
         for (k, &r) in block.selected.iter().enumerate() {
             let place = topology.rows[r];
@@ -206,7 +205,6 @@ impl<T: Real> State<T> {
             let (row, ends) = (closure.rows[place.index], &self.ends[place.closure]);
             let wrench = row.wrench(ends);
             let residual = row.residual(ends, self.target(topology, parts, drivers, r));
-            worst = worst.max(residual.abs().largest());
             self.rhs[k] = -residual;
             self.l[r] = wrench;
             let out = self.factors[b].row_mut(k);
@@ -217,7 +215,6 @@ impl<T: Real> State<T> {
         }
         let found = self.factors[b].factor();
         self.pivots[b] = (found.pivot_ratio, found.positive);
-        worst
     }
 
     /// Solves all blocks for the drivers' values, from the prediction in `q` and `balls`.
@@ -405,7 +402,7 @@ impl<T: Real> State<T> {
         self.witness.within(
             #[inline(always)]
             || {
-                let mut worst = Residuals { largest: 0.0, scaled: 0.0, of_row: 0.0, row: 0 };
+                let mut worst = Residuals::default();
                 for (r, place) in topology.rows.iter().enumerate() {
                     let row = topology.closures[place.closure].rows[place.index];
                     let target = self.target(topology, parts, drivers, r);

@@ -6,7 +6,7 @@ use crate::model::{DriverId, Model};
 use crate::space::{FullPivot, Quat, Real};
 use crate::topology::{Source, Topology};
 
-use super::kinematics::{PositionFailure, State};
+use super::kinematics::{PositionFailure, Residuals, State};
 use super::parts::Parts;
 use super::{Effort, Stop, StopKind};
 
@@ -52,6 +52,8 @@ pub(crate) struct Stepper<'m, T> {
     fastest_driver: f64,
     /// A law whose speed changes much within a step shorter than this has a jump there.
     shortest_smooth: f64,
+    /// By how much the constraints fail at the position tried last.
+    residuals: Residuals,
     pub effort: Effort,
 }
 
@@ -111,6 +113,7 @@ impl<'m, T: Real> Stepper<'m, T> {
             branch,
             fastest_driver: 0.0,
             shortest_smooth: 0.0,
+            residuals: Residuals::default(),
             effort,
         }
     }
@@ -141,10 +144,9 @@ impl<'m, T: Real> Stepper<'m, T> {
     }
 
     fn count(&mut self) {
-        let worst = self.state.residuals(&self.topology, &self.parts, &self.drivers).largest;
         self.effort.steps += 1;
         self.effort.iterations = self.state.iterations;
-        self.effort.worst_residual = self.effort.worst_residual.max(worst);
+        self.effort.worst_residual = self.effort.worst_residual.max(self.residuals.largest);
         for &(ratio, _) in &self.state.pivots {
             if ratio < self.effort.least_pivot_ratio {
                 (self.effort.least_pivot_ratio, self.effort.least_pivot_time) = (ratio, self.time);
@@ -223,14 +225,11 @@ impl<'m, T: Real> Stepper<'m, T> {
         if h != 0.0 && !jump && !self.speeds_are_smooth(h) {
             return Err(Refusal::Branch { block: self.least_regular_block() });
         }
-        if self.topology.rows.iter().any(|r| !r.selected) {
-            let worst = self.state.residuals(&self.topology, &self.parts, &self.drivers);
-            if !(worst.scaled <= LOCKED) {
-                return Err(Refusal::Locked { row: worst.row, residual: worst.of_row });
-            }
-            self.reselect();
+        self.residuals = self.state.residuals(&self.topology, &self.parts, &self.drivers);
+        if !(self.residuals.scaled <= LOCKED) {
+            return Err(Refusal::Locked { row: self.residuals.row, residual: self.residuals.of_row });
         }
-        Ok(())
+        self.reselect()
     }
 
     /// `q + h qd + h^2/2 qdd + h^3/6 jerk` from the saved position; returns the largest move (rad, or sizes).
@@ -341,20 +340,13 @@ impl<'m, T: Real> Stepper<'m, T> {
     }
 
     /// Chooses other independent rows for blocks whose present ones have become nearly dependent.
-    fn reselect(&mut self) {
+    fn reselect(&mut self) -> Result<(), Refusal> {
         for b in 0..self.topology.blocks.len() {
             if self.state.pivots[b].0 >= RESELECT * self.branch[b].1 {
                 continue;
             }
             let (block, s) = (&self.topology.blocks[b], &self.state);
-            let rows: Vec<usize> = block
-                .closures
-                .iter()
-                .flat_map(|&c| {
-                    let closure = &self.topology.closures[c];
-                    closure.first_row..closure.first_row + closure.rows.len()
-                })
-                .collect();
+            let rows = self.topology.rows_of_block(b);
             if rows.len() == block.unknowns.len() {
                 continue;
             }
@@ -378,17 +370,16 @@ impl<'m, T: Real> Stepper<'m, T> {
             if selected.len() < block.unknowns.len() || selected == block.selected {
                 continue;
             }
-            for &r in &rows {
-                self.topology.rows[r].selected = selected.contains(&r);
-            }
-            self.topology.blocks[b].selected = selected;
+            self.topology.select(b, selected);
             // The same position, seen through other rows: new factors, and a new sign to stay with.
-            if self.state.solve_position(&self.topology, &self.parts, &self.drivers, f64::INFINITY).is_ok() {
-                let (ratio, positive) = self.state.pivots[b];
-                self.branch[b] = (positive, ratio);
-                self.state.solve_rates(&self.topology, &self.parts, &self.drivers);
-            }
+            self.state
+                .solve_position(&self.topology, &self.parts, &self.drivers, f64::INFINITY)
+                .map_err(Refusal::Position)?;
+            let (ratio, positive) = self.state.pivots[b];
+            self.branch[b] = (positive, ratio);
+            self.state.solve_rates(&self.topology, &self.parts, &self.drivers);
         }
+        Ok(())
     }
 
     /// What kind of position a walk in ever smaller steps has come to.

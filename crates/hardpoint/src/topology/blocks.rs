@@ -136,7 +136,7 @@ fn assign(
         }
     }
     for row in &mut topology.rows {
-        row.selected = false;
+        row.selected = false; // also the rows that no block has
     }
     let mut blocks: Vec<Block> = groups
         .iter()
@@ -169,16 +169,10 @@ fn assign(
         }
     }
     let mut free = Vec::new();
-    for (b, block) in blocks.iter_mut().enumerate() {
-        let rows: Vec<usize> = block
-            .closures
-            .iter()
-            .flat_map(|&k| {
-                let c = &topology.closures[k];
-                c.first_row..c.first_row + c.rows.len()
-            })
-            .collect();
-        let width = block.unknowns.len();
+    topology.blocks = blocks;
+    for b in 0..groups.len() {
+        let rows = topology.rows_of_block(b);
+        let width = topology.blocks[b].unknowns.len();
         let dense = rows
             .iter()
             .map(|&r| {
@@ -194,20 +188,17 @@ fn assign(
             })
             .collect();
         let pivots = FullPivot::of(dense, width, RANK_TOLERANCE);
-        block.selected = pivots.rows.iter().map(|&r| rows[r]).collect();
-        block.selected.sort_unstable();
-        for &r in &block.selected {
-            topology.rows[r].selected = true;
-        }
+        let mut selected: Vec<usize> = pivots.rows.iter().map(|&r| rows[r]).collect();
+        selected.sort_unstable();
+        topology.select(b, selected);
         for v in pivots.free {
             let mut motion = vec![0.0; n];
-            for (column, &c) in block.unknowns.iter().enumerate() {
+            for (column, &c) in topology.blocks[b].unknowns.iter().enumerate() {
                 motion[c] = v[column];
             }
             free.push(motion);
         }
     }
-    topology.blocks = blocks;
     if free.is_empty() { Ok(()) } else { Err(free) }
 }
 

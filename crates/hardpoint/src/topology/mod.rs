@@ -204,6 +204,20 @@ impl Topology {
         })
     }
 
+    /// All rows of a block's closures, the redundant ones included.
+    pub fn rows_of_block(&self, block: usize) -> Vec<usize> {
+        let closures = self.blocks[block].closures.iter().map(|&c| &self.closures[c]);
+        closures.flat_map(|c| c.first_row..c.first_row + c.rows.len()).collect()
+    }
+
+    /// Solves a block with these independent rows from now on.
+    pub(crate) fn select(&mut self, block: usize, selected: Vec<usize>) {
+        for r in self.rows_of_block(block) {
+            self.rows[r].selected = selected.contains(&r);
+        }
+        self.blocks[block].selected = selected;
+    }
+
     /// Joints whose motion or closing a block decides.
     pub fn joints_of_block(&self, block: usize) -> Vec<JointId> {
         let block = &self.blocks[block];
