@@ -8,7 +8,7 @@ use std::ops::Range;
 use hardpoint::joint::{self, Quantity};
 use hardpoint::law::Law;
 use hardpoint::model::{
-    BodyDraft, Draft, DriverDraft, FrameDraft, HardpointDraft, JointDraft, Line, Place, Section,
+    BodyDraft, Draft, DrivenDraft, DriverDraft, FrameDraft, HardpointDraft, JointDraft, Line, Place, Section,
 };
 use hardpoint::space::{Pose, Quat, Vec3, rotation_from_euler_313};
 use toml::de::{DeTable, DeValue};
@@ -349,6 +349,7 @@ impl Reader<'_> {
                 axis,
                 axis2,
                 cut: cut.unwrap_or(false),
+                ..JointDraft::default()
             });
         }
     }
@@ -427,7 +428,8 @@ impl Reader<'_> {
             let quantity = driven_quantity(&raw.draft.joints, &joint, coordinate.as_deref());
             let law = law.unwrap_or_else(|| Law::constant(0.0)).scaled(self.units.to_si(quantity, 1.0));
             raw.places.push(Section::Drivers, place);
-            raw.draft.drivers.push(DriverDraft { name: entry.0, joint, coordinate, law });
+            let drives = DrivenDraft::Coordinate { joint, coordinate };
+            raw.draft.drivers.push(DriverDraft { name: entry.0, drives, law });
         }
     }
 

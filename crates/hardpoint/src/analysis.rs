@@ -23,10 +23,12 @@ use crate::topology::{Formulation, Topology, TopologyFault};
 ///     joints: vec![JointDraft {
 ///         name: "pivot".into(), kind: "revolute".into(), bodies: ["ground".into(), "crank".into()],
 ///         at: vec![Place::At(Vec3::ZERO)], axis: Some(Line::Along(Vec3::new(0.0, 0.0, 1.0))),
-///         axis2: None, cut: false,
+///         ..JointDraft::default()
 ///     }],
 ///     drivers: vec![DriverDraft {
-///         name: "motor".into(), joint: "pivot".into(), coordinate: None, law: Law::parse("2*pi*t").unwrap(),
+///         name: "motor".into(),
+///         drives: DrivenDraft::Coordinate { joint: "pivot".into(), coordinate: None },
+///         law: Law::parse("2*pi*t").unwrap(),
 ///     }],
 ///     points: vec![PointDraft {
 ///         name: "tip".into(), body: "crank".into(), at: Place::At(Vec3::new(0.2, 0.0, 0.0)),
@@ -157,11 +159,14 @@ impl<'m> Analysis<'m> {
                     drivers: model.drivers.iter().map(|d| d.law.at(t).value()).collect(),
                     pivot_ratio: 1.0,
                     joints: Vec::new(),
+                    remains: Vec::new(),
+                    closed: None,
                 });
                 break;
             }
         }
         motion.effort = stepper.effort;
+        motion.assembly = stepper.assembly;
         let sensitivities = sensing.finish();
         let measured = self.measure(geometry, &fields, &motion, &sensitivities);
         Solution { motion, sensitivities, measured, stop }
@@ -175,6 +180,7 @@ impl<'m> Analysis<'m> {
             states: Vec::with_capacity(steps * bodies),
             bodies,
             coordinates: Vec::with_capacity(steps * self.topology.coordinates.len()),
+            assembly: None,
             effort: Effort::default(),
         }
     }

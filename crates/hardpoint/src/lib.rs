@@ -19,8 +19,7 @@
 //!     bodies: [i.into(), j.into()],
 //!     at: vec![Place::Hardpoint(at.into())],
 //!     axis: Some(Line::Along(axis.into())),
-//!     axis2: None,
-//!     cut: false,
+//!     ..JointDraft::default()
 //! };
 //! let point = |name: &str, x: f64, y: f64| HardpointDraft { name: name.into(), position: Vec3::new(x, y, 0.0) };
 //! let z = [0.0, 0.0, 1.0];
@@ -36,8 +35,7 @@
 //!     ],
 //!     drivers: vec![DriverDraft {
 //!         name: "motor".into(),
-//!         joint: "O".into(),
-//!         coordinate: None,
+//!         drives: DrivenDraft::Coordinate { joint: "O".into(), coordinate: None },
 //!         law: Law::parse("-t").unwrap(), // one radian per second, clockwise
 //!     }],
 //!     design: vec![VariableDraft {

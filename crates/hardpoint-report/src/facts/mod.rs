@@ -421,6 +421,7 @@ fn change_text(model: &Model, changes: &[Change], fixed_length: bool) -> String 
                     parts.push(format!("turns {whose}`{name}` about {}", direction_text(*rotation)));
                 }
             }
+            Change::Length { joint, .. } => parts.push(format!("lengthens `{}`", joint_name(model, *joint))),
             Change::Field { joint, end, .. } => {
                 let marker = ["i", "j"][*end];
                 parts.push(format!("field of marker {marker} of `{}`", joint_name(model, *joint)));

@@ -1,15 +1,56 @@
-//! Angle constraint: marker j is turned by f about z_i, where the joint keeps z_j parallel to z_i.
+//! Angles of marker j relative to marker i: about z_i, about x_j, or seen along z_i.
+//!
+//! All are `atan2(s, c)` of two Dot-1 products. As a constraint their residual is `sin(angle - f)`: zero and of unit
+//! slope at the root, and free of branch cuts over any number of turns.
 
-use super::{EndRates, Ends, axis, direction_rates};
-use crate::space::{Real, Wrench};
+use super::{EndRates, Ends, axis, cross_rates, direction_rates};
+use crate::space::{Real, Vec3, Wrench};
 
-/// `sin(angle - f)`, with tan(angle) = (y_i . x_j) / (x_i . x_j): zero and of unit slope at the root,
-/// and free of branch cuts over any number of turns.
+/// s and c of the angle about z_i: tan(angle) = (y_i . x_j) / (x_i . x_j).
+#[inline(always)]
+fn about_z_i<T: Real>(ends: &Ends<T>) -> [T; 2] {
+    let x_j = axis(&ends.j.rot, 0);
+    [axis(&ends.i.rot, 1).dot(x_j), axis(&ends.i.rot, 0).dot(x_j)]
+}
+
+/// s and c of the angle about x_j: tan(angle) = (z_i . y_j) / (z_i . z_j).
+#[inline(always)]
+fn about_x_j<T: Real>(ends: &Ends<T>) -> [T; 2] {
+    let z_i = axis(&ends.i.rot, 2);
+    [z_i.dot(axis(&ends.j.rot, 1)), z_i.dot(axis(&ends.j.rot, 2))]
+}
+
+#[inline(always)]
+fn sine_of_difference<T: Real>([s, c]: [T; 2], target: T) -> T {
+    let (sin, cos) = target.sin_cos();
+    s * cos - c * sin
+}
+
+/// The angle with this sine and cosine (up to a common factor) that is nearest to `near`.
+#[inline(always)]
+fn unwrapped<T: Real>([s, c]: [T; 2], near: T) -> T {
+    const TURN: f64 = 2.0 * std::f64::consts::PI;
+    near.like_lanes(|lane| {
+        let (angle, near) = (s.lane(lane).atan2(c.lane(lane)), near.lane(lane));
+        angle + TURN * ((near - angle) / TURN).round()
+    })
+}
+
+/// The angle about z_i nearest to `near`.
+#[inline(always)]
+pub(super) fn value<T: Real>(ends: &Ends<T>, near: T) -> T {
+    unwrapped(about_z_i(ends), near)
+}
+
+/// The angle about x_j nearest to `near`.
+#[inline(always)]
+pub(super) fn value_on_j<T: Real>(ends: &Ends<T>, near: T) -> T {
+    unwrapped(about_x_j(ends), near)
+}
+
 #[inline(always)]
 pub(super) fn residual<T: Real>(ends: &Ends<T>, target: T) -> T {
-    let x_j = axis(&ends.j.rot, 0);
-    let (sin, cos) = target.sin_cos();
-    axis(&ends.i.rot, 1).dot(x_j) * cos - axis(&ends.i.rot, 0).dot(x_j) * sin
+    sine_of_difference(about_z_i(ends), target)
 }
 
 /// The moment z_i.
@@ -22,4 +63,67 @@ pub(super) fn wrench<T: Real>(ends: &Ends<T>) -> Wrench<T> {
 pub(super) fn wrench_rates<T: Real>(ends: &Ends<T>, rates: &EndRates<T>) -> [Wrench<T>; 2] {
     let [_, z1, z2] = direction_rates(axis(&ends.i.rot, 2), rates.v_i, rates.a_i);
     [Wrench::moment(z1), Wrench::moment(z2)]
+}
+
+#[inline(always)]
+pub(super) fn residual_on_j<T: Real>(ends: &Ends<T>, target: T) -> T {
+    sine_of_difference(about_x_j(ends), target)
+}
+
+/// The moment x_j.
+#[inline(always)]
+pub(super) fn wrench_on_j<T: Real>(ends: &Ends<T>) -> Wrench<T> {
+    Wrench::moment(axis(&ends.j.rot, 0))
+}
+
+#[inline(always)]
+pub(super) fn wrench_rates_on_j<T: Real>(ends: &Ends<T>, rates: &EndRates<T>) -> [Wrench<T>; 2] {
+    let [_, x1, x2] = direction_rates(axis(&ends.j.rot, 0), rates.v_j, rates.a_j);
+    [Wrench::moment(x1), Wrench::moment(x2)]
+}
+
+/// `sin(angle - f)`, the products divided by the length of x_j seen along z_i.
+#[inline(always)]
+pub(super) fn heading_residual<T: Real>(ends: &Ends<T>, target: T) -> T {
+    let [s, c] = about_z_i(ends);
+    sine_of_difference([s, c], target) / (s * s + c * c).sqrt()
+}
+
+/// The moment `x_j x (c y_i - s x_i) / (s^2 + c^2)`, the gradient of atan2(s, c).
+#[inline(always)]
+pub(super) fn heading_wrench<T: Real>(ends: &Ends<T>) -> Wrench<T> {
+    let [s, c] = about_z_i(ends);
+    let g = axis(&ends.i.rot, 1) * c - axis(&ends.i.rot, 0) * s;
+    Wrench::moment(axis(&ends.j.rot, 0).cross(g) * (s.like(1.0) / (s * s + c * c)))
+}
+
+#[inline(always)]
+pub(super) fn heading_wrench_rates<T: Real>(ends: &Ends<T>, rates: &EndRates<T>) -> [Wrench<T>; 2] {
+    let [x_i, y_i] = [0, 1].map(|k| direction_rates(axis(&ends.i.rot, k), rates.v_i, rates.a_i));
+    let x_j = direction_rates(axis(&ends.j.rot, 0), rates.v_j, rates.a_j);
+    let two = x_j[0].x.like(2.0);
+    let dot = |a: [Vec3<T>; 3], b: [Vec3<T>; 3]| {
+        [
+            a[0].dot(b[0]),
+            a[1].dot(b[0]) + a[0].dot(b[1]),
+            a[2].dot(b[0]) + two * a[1].dot(b[1]) + a[0].dot(b[2]),
+        ]
+    };
+    let times = |a: [T; 3], b: [Vec3<T>; 3]| {
+        [b[0] * a[0], b[0] * a[1] + b[1] * a[0], b[0] * a[2] + b[1] * (two * a[1]) + b[2] * a[0]]
+    };
+    let minus = |a: [Vec3<T>; 3], b: [Vec3<T>; 3]| [a[0] - b[0], a[1] - b[1], a[2] - b[2]];
+    let (s, c) = (dot(y_i, x_j), dot(x_i, x_j));
+    let g = minus(times(c, y_i), times(s, x_i));
+    let [m1, m2] = cross_rates(x_j, g);
+    let moment = [x_j[0].cross(g[0]), m1, m2];
+    // 1 / n with n = s^2 + c^2.
+    let n0 = s[0] * s[0] + c[0] * c[0];
+    let n1 = two * (s[0] * s[1] + c[0] * c[1]);
+    let n2 = two * (s[0] * s[2] + s[1] * s[1] + c[0] * c[2] + c[1] * c[1]);
+    let inverse = two.like(1.0) / n0;
+    let inverse_1 = -n1 * inverse * inverse;
+    let inverse_2 = (two * n1 * n1 * inverse - n2) * inverse * inverse;
+    let [_, d1, d2] = times([inverse, inverse_1, inverse_2], moment);
+    [Wrench::moment(d1), Wrench::moment(d2)]
 }

@@ -1,11 +1,11 @@
-//! Dot-1 constraint: `a_i . b_j = 0` (paper Eq. 4.1).
+//! Dot-1 constraint: `a_i . b_j = c` (paper Eq. 4.1, where c = 0; an angle joint keeps another cosine).
 
 use super::{EndRates, Ends, axis, cross_rates, direction_rates};
 use crate::space::{Real, Wrench};
 
 #[inline(always)]
-pub(super) fn residual<T: Real>(a: usize, b: usize, ends: &Ends<T>) -> T {
-    axis(&ends.i.rot, a).dot(axis(&ends.j.rot, b))
+pub(super) fn residual<T: Real>(a: usize, b: usize, ends: &Ends<T>, target: T) -> T {
+    axis(&ends.i.rot, a).dot(axis(&ends.j.rot, b)) - target
 }
 
 /// The moment `b_j x a_i`.

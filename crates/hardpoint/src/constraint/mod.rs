@@ -5,6 +5,7 @@
 //! acceleration and every sensitivity are made of `l` and its two time derivatives.
 
 mod angle;
+mod convel;
 mod distance;
 mod dot1;
 mod dot2;
@@ -23,8 +24,18 @@ pub enum Row {
     Dot2(usize),
     /// `|d| = L + f` (paper Eq. 4.10, unsquared so that its residual is a length).
     Distance,
-    /// Angle of marker j about z_i equals f, where z_i and z_j are parallel.
+    /// Angle of marker j about z_i equals f, where x_j is square to z_i (z_i parallel to z_j, or a universal joint).
     Angle,
+    /// Angle of marker j about its own x axis equals f, where x_j is square to z_i (a universal joint).
+    AngleOnJ,
+    /// Angle of x_j about z_i, seen along z_i, equals f; the axes may point anywhere.
+    Heading,
+    /// `z_i . z_j` keeps its design value: an angle between two axes (paper Eq. 4.1 with a constant).
+    Cosine,
+    /// `z_i . d` keeps its design value (paper Eq. 4.4 with a constant).
+    Offset,
+    /// Marker j does not turn about the line that halves the angle between z_i and z_j.
+    ConstantVelocity,
 }
 
 /// d = 0.
@@ -58,16 +69,40 @@ pub struct EndRates<T> {
     pub a_j: Twist<T>,
 }
 
+/// A joint coordinate between two markers: its value, for couplers and for what a joint keeps of its design.
 impl Row {
-    /// By how much the constraint fails; `target` is the length of a rod, or the driver's value.
+    /// Whether it holds what it measures at its value in the design configuration, rather than at zero.
+    pub fn keeps_design_value(self) -> bool {
+        matches!(self, Self::Distance | Self::Cosine | Self::Offset)
+    }
+
+    /// What it measures: the residual against a target of zero; angles unwrapped to within half a turn of `near`.
+    #[inline(always)]
+    pub fn value<T: Real>(self, ends: &Ends<T>, near: T) -> T {
+        match self {
+            Self::Angle | Self::Heading => angle::value(ends, near),
+            Self::AngleOnJ => angle::value_on_j(ends, near),
+            _ => self.residual(ends, near.zero()),
+        }
+    }
+}
+
+impl Row {
+    /// By how much the constraint fails; `target` is what it measures at the design configuration (a rod's length),
+    /// or the driver's value.
     #[inline(always)]
     pub fn residual<T: Real>(self, ends: &Ends<T>, target: T) -> T {
         match self {
             Self::Point(k) => spherical::residual(k, ends),
-            Self::Dot1(a, b) => dot1::residual(a, b, ends),
+            Self::Dot1(a, b) => dot1::residual(a, b, ends, target),
+            Self::Cosine => dot1::residual(2, 2, ends, target),
             Self::Dot2(a) => dot2::residual(a, ends, target),
+            Self::Offset => dot2::residual(2, ends, target),
             Self::Distance => distance::residual(ends, target),
             Self::Angle => angle::residual(ends, target),
+            Self::AngleOnJ => angle::residual_on_j(ends, target),
+            Self::Heading => angle::heading_residual(ends, target),
+            Self::ConstantVelocity => convel::residual(ends, target),
         }
     }
 
@@ -77,9 +112,14 @@ impl Row {
         match self {
             Self::Point(k) => spherical::wrench(k, ends),
             Self::Dot1(a, b) => dot1::wrench(a, b, ends),
+            Self::Cosine => dot1::wrench(2, 2, ends),
             Self::Dot2(a) => dot2::wrench(a, ends),
+            Self::Offset => dot2::wrench(2, ends),
             Self::Distance => distance::wrench(ends),
             Self::Angle => angle::wrench(ends),
+            Self::AngleOnJ => angle::wrench_on_j(ends),
+            Self::Heading => angle::heading_wrench(ends),
+            Self::ConstantVelocity => convel::wrench(ends),
         }
     }
 
@@ -89,15 +129,20 @@ impl Row {
         match self {
             Self::Point(k) => spherical::wrench_rates(k, ends, rates),
             Self::Dot1(a, b) => dot1::wrench_rates(a, b, ends, rates),
+            Self::Cosine => dot1::wrench_rates(2, 2, ends, rates),
             Self::Dot2(a) => dot2::wrench_rates(a, ends, rates),
+            Self::Offset => dot2::wrench_rates(2, ends, rates),
             Self::Distance => distance::wrench_rates(ends, rates),
             Self::Angle => angle::wrench_rates(ends, rates),
+            Self::AngleOnJ => angle::wrench_rates_on_j(ends, rates),
+            Self::Heading => angle::heading_wrench_rates(ends, rates),
+            Self::ConstantVelocity => convel::wrench_rates(ends, rates),
         }
     }
 
     /// Whether its residual is a length (else it is an angle or a cosine).
     pub fn is_length(self) -> bool {
-        matches!(self, Self::Point(_) | Self::Dot2(_) | Self::Distance)
+        matches!(self, Self::Point(_) | Self::Dot2(_) | Self::Distance | Self::Offset)
     }
 
     /// What it asks for, in words.
@@ -109,6 +154,11 @@ impl Row {
             Self::Dot2(a) => format!("Dot-2: d square to {}_i", AXIS[a]),
             Self::Distance => "distance".into(),
             Self::Angle => "angle about z_i".into(),
+            Self::AngleOnJ => "angle about x_j".into(),
+            Self::Heading => "angle seen along z_i".into(),
+            Self::Cosine => "Dot-1: angle between z_i and z_j".into(),
+            Self::Offset => "Dot-2: displacement along z_i".into(),
+            Self::ConstantVelocity => "constant velocity: no turn about the halving line".into(),
         }
     }
 }
@@ -152,7 +202,7 @@ mod tests {
     use super::*;
 
     /// Every kind of row; a new constraint joins the battery here.
-    const BATTERY: [Row; 12] = [
+    const BATTERY: [Row; 17] = [
         Row::Point(0),
         Row::Point(1),
         Row::Point(2),
@@ -165,6 +215,11 @@ mod tests {
         Row::Dot2(2),
         Row::Distance,
         Row::Angle,
+        Row::AngleOnJ,
+        Row::Heading,
+        Row::Cosine,
+        Row::Offset,
+        Row::ConstantVelocity,
     ];
 
     /// A small generator of numbers in (-1, 1), the same every time.
@@ -194,6 +249,10 @@ mod tests {
                 let (s, c) = 0.7_f64.sin_cos();
                 j.rot = i.rot.turned(2, s, c);
             }
+            Row::AngleOnJ => {
+                let (s, c) = 0.7_f64.sin_cos();
+                j.rot = i.rot.turned(2, -0.6, 0.8).turned(0, s, c);
+            }
             _ => {}
         }
         Ends { i, j }
@@ -212,8 +271,13 @@ mod tests {
                     // Only motions that keep z parallel are motions of this coordinate.
                     (wi.w, wj.w) = (ends.i.rot.cols[2] * 0.3, ends.i.rot.cols[2] * -0.9);
                 }
+                if row == Row::AngleOnJ {
+                    // Likewise, those that keep x_j square to z_i.
+                    wi.w = wj.w + ends.j.rot.cols[0] * 0.4 + ends.i.rot.cols[2] * 0.2;
+                }
                 let target = match row {
-                    Row::Angle => 0.7,
+                    Row::Angle | Row::AngleOnJ => 0.7,
+                    Row::Heading => row.value(&ends, 0.0),
                     _ => 0.1,
                 };
                 let rate = row.wrench(&ends).on(wj - wi);
@@ -232,6 +296,21 @@ mod tests {
                 assert!(best < 1e-9, "{row:?}: {best}");
                 assert!(coarse < 1e-9 || (coarse / fine - 4.0).abs() < 0.2, "{row:?}: {coarse} {fine}");
                 assert!(row.wrench(&ends).f.norm() + row.wrench(&ends).m.norm() > 1e-3, "{row:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn angles_are_measured_over_many_turns_and_differ_from_targets_by_their_residual() {
+        let mut next = numbers(5);
+        for row in [Row::Angle, Row::AngleOnJ, Row::Heading] {
+            for turns in [-3.0, 0.0, 7.0] {
+                let ends = random_ends(row, &mut next);
+                let whole = 2.0 * std::f64::consts::PI * turns;
+                let value = row.value(&ends, whole + 0.5);
+                assert!((value - whole - 0.5).abs() <= std::f64::consts::PI);
+                assert!(row.residual(&ends, value).abs() < 1e-12, "{row:?}");
+                assert!((row.residual(&ends, value - 0.1) - 0.1_f64.sin()).abs() < 1e-12, "{row:?}");
             }
         }
     }

@@ -6,11 +6,13 @@ use crate::constraint::{ON_LINE, PARALLEL_Z};
 /// z_j parallel to z_i and d parallel to z_i: four constraints, a displacement and an angle.
 pub static CYLINDRICAL: JointType = JointType {
     name: "cylindrical",
+    aliases: &[],
     summary: "slides along its axis and turns about it",
     places: 1,
     axis: Need::Required,
     axis2: Need::Unused,
     freedoms: Some(&[Freedom::Slide(2), Freedom::Turn(2)]),
+    tree_rows: &[],
     rows: &[ON_LINE[0], ON_LINE[1], PARALLEL_Z[0], PARALLEL_Z[1]],
     coordinates: &[displacement(0), angle(1)],
 };

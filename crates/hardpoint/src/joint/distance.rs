@@ -6,11 +6,13 @@ use crate::constraint::Row;
 /// |d| = design length: one constraint.
 pub static DISTANCE: JointType = JointType {
     name: "distance",
+    aliases: &["rod", "spherical_spherical", "universal_spherical"],
     summary: "a rod of constant length between two points",
     places: 2,
     axis: Need::Unused,
     axis2: Need::Unused,
     freedoms: None,
+    tree_rows: &[],
     rows: &[Row::Distance],
     coordinates: &[LENGTH],
 };

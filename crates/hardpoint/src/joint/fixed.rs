@@ -6,11 +6,13 @@ use crate::constraint::{COINCIDE, PARALLEL_FRAMES, Row};
 /// d = 0 and no relative rotation: six constraints.
 pub static FIXED: JointType = JointType {
     name: "fixed",
+    aliases: &[],
     summary: "no relative motion",
     places: 1,
     axis: Need::Unused,
     axis2: Need::Unused,
     freedoms: Some(&[]),
+    tree_rows: &[],
     rows: &{
         let [x, y, z] = COINCIDE;
         let [a, b, c] = PARALLEL_FRAMES;

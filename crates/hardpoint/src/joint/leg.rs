@@ -5,11 +5,13 @@ use super::{JointType, LENGTH, Need};
 /// No constraint of its own; its length is a coordinate.
 pub static LEG: JointType = JointType {
     name: "leg",
+    aliases: &[],
     summary: "a length between two points that a driver prescribes or a measure reads",
     places: 2,
     axis: Need::Unused,
     axis2: Need::Unused,
     freedoms: None,
+    tree_rows: &[],
     rows: &[],
     coordinates: &[LENGTH],
 };

@@ -4,42 +4,91 @@
 //! as a *cut* joint it is a list of elementary constraints ([`Row`]) between its two markers. The
 //! engine knows freedoms and rows, never joints, so a new joint is one file and one line in [`ALL`].
 
+mod angle;
+mod constant_velocity;
 mod cylindrical;
 mod distance;
+mod dot1;
+mod dot2;
 mod fixed;
+mod heading;
+mod inline;
+mod inplane;
 mod leg;
+mod orientation;
+mod parallel;
+mod planar;
 mod revolute;
+mod revolute_spherical;
+mod screw;
 mod spherical;
 mod translational;
+mod travel;
 mod universal;
 
 use crate::constraint::Row;
 
+pub use angle::ANGLE;
+pub use constant_velocity::CONSTANT_VELOCITY;
 pub use cylindrical::CYLINDRICAL;
 pub use distance::DISTANCE;
+pub use dot1::DOT1;
+pub use dot2::DOT2;
 pub use fixed::FIXED;
+pub use heading::HEADING;
+pub use inline::INLINE;
+pub use inplane::INPLANE;
 pub use leg::LEG;
+pub use orientation::ORIENTATION;
+pub use parallel::PARALLEL;
+pub use planar::PLANAR;
 pub use revolute::REVOLUTE;
+pub use revolute_spherical::REVOLUTE_SPHERICAL;
+pub use screw::SCREW;
 pub use spherical::SPHERICAL;
 pub use translational::TRANSLATIONAL;
+pub use travel::TRAVEL;
 pub use universal::UNIVERSAL;
 
 /// Every joint type that a model may use.
-pub const ALL: &[&JointType] =
-    &[&FIXED, &REVOLUTE, &TRANSLATIONAL, &CYLINDRICAL, &SPHERICAL, &UNIVERSAL, &DISTANCE, &LEG];
+pub const ALL: &[&JointType] = &[
+    &FIXED,
+    &REVOLUTE,
+    &TRANSLATIONAL,
+    &CYLINDRICAL,
+    &SPHERICAL,
+    &UNIVERSAL,
+    &CONSTANT_VELOCITY,
+    &PLANAR,
+    &SCREW,
+    &INLINE,
+    &INPLANE,
+    &ORIENTATION,
+    &PARALLEL,
+    &DOT1,
+    &DOT2,
+    &ANGLE,
+    &DISTANCE,
+    &REVOLUTE_SPHERICAL,
+    &LEG,
+    &TRAVEL,
+    &HEADING,
+];
 
 /// What a joint type is: its geometry, its freedoms as a tree joint, its constraints as a cut joint.
 ///
 /// Both markers have their z axis along the joint's `axis` and their x axis along `axis2` (or any
 /// direction square to `axis`, the same for both), and coincide in orientation at the design
-/// configuration.
+/// configuration; only where `axis2` is [`Need::OnBodyJ`] is it the z axis of marker j.
 #[derive(Debug)]
 pub struct JointType {
     /// The name in model files.
     pub name: &'static str,
+    /// Other names by which people know it.
+    pub aliases: &'static [&'static str],
     /// One line for documentation and editors.
     pub summary: &'static str,
-    /// How many hardpoints place it: 1 shared by both bodies, or 2, one on each.
+    /// How many hardpoints place it: 1 shared by both bodies, 2, one on each, or 0 where only directions matter.
     pub places: usize,
     /// Whether it needs an axis.
     pub axis: Need,
@@ -47,6 +96,8 @@ pub struct JointType {
     pub axis2: Need,
     /// Motions of body j relative to body i, in order from i to j; `None` if it is always cut.
     pub freedoms: Option<&'static [Freedom]>,
+    /// Elementary constraints that its freedoms in the tree do not keep by themselves.
+    pub tree_rows: &'static [Row],
     /// Elementary constraints where it is cut (paper, section 4).
     pub rows: &'static [Row],
     /// The coordinates that a driver or a measure may name.
@@ -56,8 +107,12 @@ pub struct JointType {
 /// Whether a piece of geometry belongs to a joint type.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Need {
-    /// Must be given.
+    /// Must be given; a second axis square to the first.
     Required,
+    /// May be given.
+    Optional,
+    /// Must be given, and belongs to body j, at any angle to the axis of body i.
+    OnBodyJ,
     /// Has no meaning for this joint.
     Unused,
 }
@@ -86,7 +141,7 @@ impl Freedom {
 /// A coordinate of a joint: what a driver prescribes or a measure reads.
 #[derive(Debug)]
 pub struct CoordinateType {
-    /// The name in model files: `angle`, `displacement`, `length`.
+    /// The name in model files: `angle`, `displacement`, `length`, ...
     pub name: &'static str,
     /// What it measures, hence its unit.
     pub quantity: Quantity,
@@ -103,12 +158,12 @@ pub(crate) const fn angle(freedom: usize) -> CoordinateType {
 
 /// Displacement of marker j along z_i, m.
 pub(crate) const fn displacement(freedom: usize) -> CoordinateType {
-    CoordinateType {
-        name: "displacement",
-        quantity: Quantity::Length,
-        freedom: Some(freedom),
-        row: Row::Dot2(2),
-    }
+    displacement_along("displacement", 2, freedom)
+}
+
+/// Displacement of marker j along axis 0, 1 or 2 of marker i, m.
+pub(crate) const fn displacement_along(name: &'static str, axis: usize, freedom: usize) -> CoordinateType {
+    CoordinateType { name, quantity: Quantity::Length, freedom: Some(freedom), row: Row::Dot2(axis) }
 }
 
 /// Change of the distance between the two markers from the design length, m.
@@ -126,9 +181,9 @@ pub enum Quantity {
     Number,
 }
 
-/// The joint type of that name.
+/// The joint type of that name, or with that alias.
 pub fn named(name: &str) -> Option<&'static JointType> {
-    ALL.iter().copied().find(|t| t.name == name)
+    ALL.iter().copied().find(|t| t.name == name || t.aliases.contains(&name))
 }
 
 impl JointType {
@@ -151,7 +206,7 @@ mod tests {
     fn freedoms_and_constraints_of_every_joint_add_up_to_six() {
         for t in ALL {
             if let Some(n) = t.freedom_count() {
-                assert_eq!(n + t.rows.len(), 6, "{}", t.name);
+                assert_eq!(n + t.rows.len() - t.tree_rows.len(), 6, "{}", t.name);
             }
         }
     }
@@ -160,6 +215,9 @@ mod tests {
     fn names_are_unique_and_found() {
         for t in ALL {
             assert!(std::ptr::eq(named(t.name).unwrap(), *t));
+            for alias in t.aliases {
+                assert!(std::ptr::eq(named(alias).unwrap(), *t), "{alias} stands for two types");
+            }
         }
         assert!(named("hinge").is_none());
     }

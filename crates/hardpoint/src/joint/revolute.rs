@@ -6,11 +6,13 @@ use crate::constraint::{COINCIDE, PARALLEL_Z};
 /// d = 0 and z_j parallel to z_i: five constraints, one angle.
 pub static REVOLUTE: JointType = JointType {
     name: "revolute",
+    aliases: &[],
     summary: "a hinge: turns about its axis",
     places: 1,
     axis: Need::Required,
     axis2: Need::Unused,
     freedoms: Some(&[Freedom::Turn(2)]),
+    tree_rows: &[],
     rows: &[COINCIDE[0], COINCIDE[1], COINCIDE[2], PARALLEL_Z[0], PARALLEL_Z[1]],
     coordinates: &[angle(0)],
 };

@@ -1,16 +1,22 @@
 //! Universal: a cross between two forks.
 
-use super::{Freedom, JointType, Need};
+use super::{CoordinateType, Freedom, JointType, Need, Quantity, angle};
 use crate::constraint::{COINCIDE, Row};
 
-/// d = 0 and z_i square to x_j: four constraints. `axis` is the pin on body i, `axis2` that on body j.
+/// d = 0 and z_i square to x_j: four constraints. `axis` is the pin on body i, `axis2` that on body j;
+/// `angle` is the turn about the first, `angle2` about the second.
 pub static UNIVERSAL: JointType = JointType {
     name: "universal",
+    aliases: &[],
     summary: "a cross: its pin `axis` turns in body i, its pin `axis2` in body j",
     places: 1,
     axis: Need::Required,
     axis2: Need::Required,
     freedoms: Some(&[Freedom::Turn(2), Freedom::Turn(0)]),
+    tree_rows: &[],
     rows: &[COINCIDE[0], COINCIDE[1], COINCIDE[2], Row::Dot1(2, 0)],
-    coordinates: &[],
+    coordinates: &[
+        angle(0),
+        CoordinateType { name: "angle2", quantity: Quantity::Angle, freedom: Some(1), row: Row::AngleOnJ },
+    ],
 };

@@ -4,6 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use super::fault::did_you_mean;
 use super::*;
+use crate::constraint::Row;
 use crate::joint::{self, CoordinateType, Need};
 
 /// How far `axis2` may be from square to `axis`, as a cosine: typed unit vectors are good to this.
@@ -34,8 +35,10 @@ impl Model {
         c.bodies();
         c.joints();
         c.default_frames();
-        c.drivers();
+        c.places_of_directions();
+        c.couplers();
         c.points();
+        c.drivers();
         c.measures();
         c.variables();
         c.times();
@@ -79,6 +82,7 @@ impl<'a> Check<'a> {
                 .collect(),
             bodies: vec![Body { name: "ground".into(), frame: Pose::IDENTITY }],
             joints: Vec::new(),
+            couplers: Vec::new(),
             drivers: Vec::new(),
             variables: Vec::new(),
             points: Vec::new(),
@@ -96,10 +100,11 @@ impl<'a> Check<'a> {
     /// HP0201: empty and duplicate names; HP0202: coordinates that are not finite.
     fn names(&mut self) {
         let d = self.draft;
-        let lists: [(Section, &str, Vec<&str>); 7] = [
+        let lists: [(Section, &str, Vec<&str>); 8] = [
             (Section::Hardpoints, "hardpoint", d.hardpoints.iter().map(|x| x.name.as_str()).collect()),
             (Section::Bodies, "body", d.bodies.iter().map(|x| x.name.as_str()).collect()),
             (Section::Joints, "joint", d.joints.iter().map(|x| x.name.as_str()).collect()),
+            (Section::Couplers, "coupler", d.couplers.iter().map(|x| x.name.as_str()).collect()),
             (Section::Drivers, "driver", d.drivers.iter().map(|x| x.name.as_str()).collect()),
             (Section::Design, "design variable", d.design.iter().map(|x| x.name.as_str()).collect()),
             (Section::Points, "point", d.points.iter().map(|x| x.name.as_str()).collect()),
@@ -315,7 +320,12 @@ impl<'a> Check<'a> {
 
     fn one_joint(&mut self, j: &JointDraft, here: Here) -> Option<Joint> {
         let name = &j.name;
-        let kind = self.find("joint type", &j.kind, here.key("type"), joint::ALL.iter().map(|t| t.name));
+        let kind = joint::named(&j.kind).or_else(|| {
+            let names =
+                joint::ALL.iter().flat_map(|t| std::iter::once(t.name).chain(t.aliases.iter().copied()));
+            self.find("joint type", &j.kind, here.key("type"), names);
+            None
+        });
         let body_i = self.body(&j.bodies[0], here.item("bodies", 0));
         let body_j = self.body(&j.bodies[1], here.item("bodies", 1));
         if body_i.is_some() && body_i == body_j {
@@ -323,12 +333,15 @@ impl<'a> Check<'a> {
             self.fault("HP0207", here.key("bodies"), message)
                 .help("name two different bodies, or `ground` for one");
         }
-        let kind = joint::ALL[kind?];
+        let kind = kind?;
         let [axis, axis2] =
             [(&j.axis, kind.axis, "axis"), (&j.axis2, kind.axis2, "axis2")].map(|(line, need, key)| {
                 match (line, need) {
-                    (Some(line), Need::Required) => self.line(line, name, here, key),
-                    (None, Need::Required) => {
+                    (Some(line), Need::Required | Need::Optional | Need::OnBodyJ) => {
+                        self.line(line, name, here, key)
+                    }
+                    (None, Need::Optional) => None,
+                    (None, Need::Required | Need::OnBodyJ) => {
                         let message = format!("joint `{name}` needs `{key}`");
                         self.fault("HP0208", here.key("type"), message)
                         .note(format!("{}: {}", kind.name, kind.summary))
@@ -347,23 +360,79 @@ impl<'a> Check<'a> {
                 }
             });
         let at = self.joint_places(j, kind, axis.map(|a| a.0), here);
-        let frame = match (axis, axis2) {
+        let frames = match (axis, axis2) {
+            (Some((_, z)), Some((_, z_j))) if kind.axis2 == Need::OnBodyJ => {
+                let cosine = z.dot(z_j);
+                if std::ptr::eq(kind, &joint::ANGLE) && cosine.abs() > 1.0 - SQUARE_TOLERANCE {
+                    let message =
+                        format!("the axes of joint `{name}` are parallel, where their angle holds nothing");
+                    self.fault("HP0209", here.key("axis2"), message).help("use a `parallel` joint");
+                }
+                if std::ptr::eq(kind, &joint::CONSTANT_VELOCITY) && cosine < SQUARE_TOLERANCE {
+                    let message = format!("the shafts of joint `{name}` point at each other or are square");
+                    self.fault("HP0209", here.key("axis2"), message)
+                        .note(format!(
+                            "the angle between `axis` and `axis2` is {:.4} deg",
+                            degrees_between(z, z_j)
+                        ))
+                        .help("let both point the same way along the train, less than 90 deg apart");
+                }
+                let i = frame_along(z, z.any_square());
+                [i, Mat3::between(z, z_j) * i]
+            }
             (Some((_, z)), Some((_, x))) => {
                 if z.dot(x).abs() > SQUARE_TOLERANCE {
-                    let angle = z.dot(x).clamp(-1.0, 1.0).acos().to_degrees();
+                    let angle = degrees_between(z, x);
                     let message = format!("the axes of joint `{name}` are not square to each other");
                     self.fault("HP0209", here.key("axis2"), message)
                         .note(format!("the angle between `axis` and `axis2` is {angle:.4} deg"))
                         .help("turn one of them until they are square");
                 }
-                frame_along(z, (x - z * z.dot(x)).unit()?)
+                [frame_along(z, (x - z * z.dot(x)).unit()?); 2]
             }
-            (Some((_, z)), None) => frame_along(z, z.any_square()),
-            _ => Mat3::IDENTITY,
+            (Some((_, z)), None) => [frame_along(z, z.any_square()); 2],
+            _ => [Mat3::IDENTITY; 2],
         };
+        let length = self.rod_length(j, kind, here);
+        self.lead(j, kind, here);
         let (axis, axis2) = (axis.map(|a| a.0), axis2.map(|a| a.0));
         let bodies = [body_i?, body_j?];
-        Some(Joint { name: name.clone(), kind, bodies, at: at?, axis, axis2, frame, cut: j.cut })
+        let (name, cut) = (name.clone(), j.cut);
+        Some(Joint { name, kind, bodies, at: at?, axis, axis2, frames, length, cut, unnamed: false })
+    }
+
+    /// HP0223: a length where there is no rod, or that is none.
+    fn rod_length(&mut self, j: &JointDraft, kind: &'static JointType, here: Here) -> Option<f64> {
+        let length = j.length?;
+        if !kind.coordinates.iter().any(|c| c.row == Row::Distance) {
+            self.fault("HP0223", here.key("length"), format!("a {} joint has no `length`", kind.name))
+                .help(format!("remove `length` from `{}`", j.name));
+        } else if !(length > 0.0 && length.is_finite()) {
+            self.fault("HP0223", here.key("length"), format!("the length of `{}` must be positive", j.name))
+                .help("give the distance between its two ends, or leave it out to have it measured");
+        }
+        Some(length)
+    }
+
+    /// HP0223: a screw without a lead, or a lead without a screw.
+    fn lead(&mut self, j: &JointDraft, kind: &'static JointType, here: Here) {
+        let is_screw = std::ptr::eq(kind, &joint::SCREW);
+        match j.lead {
+            Some(_) if !is_screw => {
+                self.fault("HP0223", here.key("lead"), format!("a {} joint has no `lead`", kind.name))
+                    .help(format!("remove `lead` from `{}`, or make it a `screw`", j.name));
+            }
+            Some(lead) if !(lead != 0.0 && lead.is_finite()) => {
+                let message = format!("the lead of screw `{}` must be a number other than zero", j.name);
+                self.fault("HP0223", here.key("lead"), message)
+                    .help("give the advance of one turn; negative for a left-hand thread");
+            }
+            None if is_screw => {
+                self.fault("HP0223", here.key("type"), format!("screw `{}` needs `lead`", j.name))
+                    .help("give the advance of one turn, like `lead = 5`; negative for a left-hand thread");
+            }
+            _ => {}
+        }
     }
 
     /// The hardpoints of the two markers: one shared, or one on each body.
@@ -378,8 +447,17 @@ impl<'a> Check<'a> {
         if let (true, Some(Direction::Through(a, _))) = (j.at.is_empty() && kind.places == 1, axis) {
             return Some([a, a]);
         }
-        if j.at.len() != kind.places {
+        let fits = match kind.places {
+            0 => j.at.len() <= 1,
+            1 => (1..=2).contains(&j.at.len()),
+            _ => j.at.len() == 2,
+        };
+        if fits && j.at.is_empty() {
+            return Some([UNPLACED; 2]);
+        }
+        if !fits {
             let message = match kind.places {
+                0 => format!("joint `{name}` takes at most one hardpoint in `at`, not {}", j.at.len()),
                 1 => format!("joint `{name}` needs one hardpoint in `at`, not {}", j.at.len()),
                 _ => format!(
                     "joint `{name}` needs two hardpoints in `at`, one on each body, not {}",
@@ -390,17 +468,15 @@ impl<'a> Check<'a> {
             let fault = self.fault("HP0210", at, message);
             fault.note(format!("{}: {}", kind.name, kind.summary));
             fault.help(match (kind.places, j.at.len()) {
-                (1, 2) => {
-                    "both bodies share one hardpoint; between two points use a `distance` or a `leg`".into()
-                }
-                (1, _) => "name the hardpoint where the bodies meet".to_string(),
+                (0, _) => "only its directions matter; leave `at` out".to_string(),
+                (1, _) => "name the hardpoint where the bodies meet".into(),
                 _ => format!("first the point on `{}`, then the point on `{}`", j.bodies[0], j.bodies[1]),
             });
             return None;
         }
         let places: Vec<_> =
             j.at.iter().enumerate().map(|(k, p)| self.place(p, name, here.item("at", k))).collect();
-        let (first, last) = (places[0]?, places[kind.places - 1]?);
+        let (first, last) = (places[0]?, places[places.len() - 1]?);
         if kind.places == 2
             && (self.position(last) - self.position(first)).norm() <= SAME_POINT * self.model.size()
         {
@@ -410,10 +486,33 @@ impl<'a> Check<'a> {
         Some([first, last])
     }
 
+    /// Joints that need no place get one all the same, amid the places of their bodies' other joints, for their markers.
+    fn places_of_directions(&mut self) {
+        for k in 0..self.model.joints.len() {
+            if self.model.joints[k].at[0] != UNPLACED {
+                continue;
+            }
+            let bodies = self.model.joints[k].bodies;
+            let (mut sum, mut count) = (Vec3::ZERO, 0.0);
+            for j in self.model.joints.iter().filter(|j| j.at[0] != UNPLACED) {
+                for (body, at) in j.bodies.iter().zip(j.at) {
+                    if *body != GROUND && bodies.contains(body) {
+                        sum += self.model.hardpoints[at.0].position;
+                        count += 1.0;
+                    }
+                }
+            }
+            let position = if count > 0.0 { sum * (1.0 / count) } else { Vec3::ZERO };
+            let name = self.model.joints[k].name.clone();
+            self.model.hardpoints.push(Hardpoint { name, position, unnamed: true });
+            self.model.joints[k].at = [HardpointId(self.model.hardpoints.len() - 1); 2];
+        }
+    }
+
     /// HP0212 for bodies that nothing holds; default frames for the others that gave none.
     fn default_frames(&mut self) {
         let mut ends = vec![(Vec3::ZERO, 0.0); self.model.bodies.len()];
-        for j in &self.model.joints {
+        for j in self.model.joints.iter().filter(|j| j.at[0] != UNPLACED) {
             for (body, at) in j.bodies.iter().zip(j.at) {
                 let (sum, count) = &mut ends[body.0];
                 *sum += self.model.hardpoints[at.0].position;
@@ -437,20 +536,26 @@ impl<'a> Check<'a> {
 
     /// A coordinate of a joint, by name or as its only one.
     fn coordinate(&mut self, joint: JointId, name: Option<&str>, here: Here) -> Option<usize> {
+        self.coordinate_at(joint, name, [here.key("joint"), here.key("coordinate")])
+    }
+
+    /// As [`Check::coordinate`], where the joint and the coordinate are named at these places.
+    fn coordinate_at(&mut self, joint: JointId, name: Option<&str>, at: [Locus; 2]) -> Option<usize> {
+        let [at_joint, at_coordinate] = at;
         let kind = self.model.joints[joint.0].kind;
         let list =
             |c: &[CoordinateType]| c.iter().map(|c| format!("`{}`", c.name)).collect::<Vec<_>>().join(", ");
         let joint_name = self.model.joints[joint.0].name.clone();
-        let (message, key) = match (name, kind.coordinates) {
-            (_, []) => (format!("a {} joint has no coordinate to name", kind.name), "joint"),
+        let (message, at) = match (name, kind.coordinates) {
+            (_, []) => (format!("a {} joint has no coordinate to name", kind.name), at_joint),
             (None, [_]) => return Some(0),
-            (None, _) => (format!("joint `{joint_name}` has more than one coordinate"), "joint"),
+            (None, _) => (format!("joint `{joint_name}` has more than one coordinate"), at_joint),
             (Some(name), coordinates) => match coordinates.iter().position(|c| c.name == name) {
                 Some(k) => return Some(k),
-                None => (format!("a {} joint has no coordinate `{name}`", kind.name), "coordinate"),
+                None => (format!("a {} joint has no coordinate `{name}`", kind.name), at_coordinate),
             },
         };
-        let fault = self.fault("HP0213", here.key(key), message);
+        let fault = self.fault("HP0213", at, message);
         fault.note(format!("type of `{joint_name}`: {} ({})", kind.name, kind.summary));
         fault.help(if kind.coordinates.is_empty() {
             "name a joint that has one: a revolute, translational or cylindrical joint, a rod or a leg".into()
@@ -472,29 +577,190 @@ impl<'a> Check<'a> {
                     .note(format!("value {f}, first derivative {fd}, second derivative {fdd} there"))
                     .help("change the law, or the times, so that all three are finite");
             }
-            let Some(joint) = self.joint(&d.joint, here.key("joint")) else { continue };
-            let Some(coordinate) = self.coordinate(joint, d.coordinate.as_deref(), here) else { continue };
-            if let Some(other) =
-                self.model.drivers.iter().find(|o| o.joint == joint && o.coordinate == coordinate)
-            {
-                let message =
-                    format!("drivers `{}` and `{}` prescribe the same coordinate", other.name, d.name);
-                let c = self.model.joints[joint.0].kind.coordinates[coordinate].name;
-                self.fault("HP0215", here.key("joint"), message)
-                    .note(format!("the {c} of joint `{}`", d.joint))
-                    .help("remove one of them");
-                continue;
-            }
-            let kind = self.model.joints[joint.0].kind;
-            if kind.rows.contains(&kind.coordinates[coordinate].row) {
-                let message =
-                    format!("driver `{}` prescribes the length of a rod, which is constant", d.name);
-                self.fault("HP0213", here.key("joint"), message)
-                    .help(format!("make `{}` a `leg`: a rod whose length a driver prescribes", d.joint));
-                continue;
-            }
+            let Some((joint, coordinate)) = self.driven(d, here) else { continue };
             self.model.drivers.push(Driver { name: d.name.clone(), joint, coordinate, law: d.law.clone() });
         }
+    }
+
+    /// The joint coordinate that a driver prescribes; for what is no joint's, an unnamed joint that has it.
+    fn driven(&mut self, d: &DriverDraft, here: Here) -> Option<(JointId, usize)> {
+        match &d.drives {
+            DrivenDraft::Coordinate { joint: name, coordinate } => {
+                let joint = self.joint(name, here.key("joint"))?;
+                let coordinate = self.coordinate(joint, coordinate.as_deref(), here)?;
+                self.drivable(d, name, joint, coordinate, here).then_some((joint, coordinate))
+            }
+            DrivenDraft::Position { point, along } => {
+                let point = self.point(point, &d.name, here.key("point"));
+                let along = self.line(along, &d.name, here, "along");
+                let (point, (axis, z)) = (point?, along?);
+                let BodyPoint { body, at, .. } = self.model.points[point.0];
+                let axes = Some((axis, frame_along(z, z.any_square())));
+                Some((self.driven_joint(d, &joint::TRAVEL, [GROUND, body], [at, at], axes, here)?, 0))
+            }
+            DrivenDraft::Distance { from, to } => {
+                let (a, b) =
+                    (self.point(from, &d.name, here.key("from")), self.point(to, &d.name, here.key("to")));
+                let [i, j] = [a?, b?].map(|p| self.model.points[p.0].clone());
+                if (self.position(i.at) - self.position(j.at)).norm() <= SAME_POINT * self.model.size() {
+                    let message = format!("the two points of driver `{}` are at the same place", d.name);
+                    self.fault("HP0211", here.key("to"), message)
+                        .help("an actuator needs two points that lie apart");
+                }
+                Some((self.driven_joint(d, &joint::LEG, [i.body, j.body], [i.at, j.at], None, here)?, 0))
+            }
+            DrivenDraft::Orientation { body, relative_to, about } => {
+                let body = self.body(body, here.key("body"));
+                let base = match relative_to {
+                    Some(name) => self.body(name, here.key("relative_to")),
+                    None => Some(GROUND),
+                };
+                let (axis, z) = self.line(about, &d.name, here, "about")?;
+                let (body, base) = (body?, base?);
+                let axes = Some((axis, frame_along(z, z.any_square())));
+                let at = self.model.joints.iter().find(|j| j.bodies.contains(&body)).map(|j| j.at[0])?;
+                Some((self.driven_joint(d, &joint::HEADING, [base, body], [at, at], axes, here)?, 0))
+            }
+        }
+    }
+
+    /// An unnamed joint that has the coordinate that a driver prescribes.
+    fn driven_joint(
+        &mut self,
+        d: &DriverDraft,
+        kind: &'static JointType,
+        bodies: [BodyId; 2],
+        at: [HardpointId; 2],
+        axis: Option<(Direction, Mat3)>,
+        here: Here,
+    ) -> Option<JointId> {
+        if bodies[0] == bodies[1] {
+            let name = &self.model.bodies[bodies[0].0].name;
+            let message = format!("driver `{}` prescribes how `{name}` moves relative to itself", d.name);
+            self.fault("HP0213", here.key("name"), message).help("name two different bodies");
+            return None;
+        }
+        self.model.joints.push(Joint {
+            name: d.name.clone(),
+            kind,
+            bodies,
+            at,
+            axis: axis.map(|a| a.0),
+            axis2: None,
+            frames: [axis.map_or(Mat3::IDENTITY, |a| a.1); 2],
+            length: None,
+            cut: false,
+            unnamed: true,
+        });
+        Some(JointId(self.model.joints.len() - 1))
+    }
+
+    /// Whether a joint's coordinate may be prescribed: by one driver, and not where a constraint keeps it.
+    fn drivable(
+        &mut self,
+        d: &DriverDraft,
+        name: &str,
+        joint: JointId,
+        coordinate: usize,
+        here: Here,
+    ) -> bool {
+        let kind = self.model.joints[joint.0].kind;
+        if let Some(other) =
+            self.model.drivers.iter().find(|o| o.joint == joint && o.coordinate == coordinate)
+        {
+            let message = format!("drivers `{}` and `{}` prescribe the same coordinate", other.name, d.name);
+            let c = kind.coordinates[coordinate].name;
+            self.fault("HP0215", here.key("joint"), message)
+                .note(format!("the {c} of joint `{name}`"))
+                .help("remove one of them");
+            return false;
+        }
+        if kind.rows.contains(&kind.coordinates[coordinate].row) {
+            let message = format!("driver `{}` prescribes the length of a rod, which is constant", d.name);
+            self.fault("HP0213", here.key("joint"), message)
+                .help(format!("make `{name}` a `leg`: a rod whose length a driver prescribes"));
+            return false;
+        }
+        true
+    }
+
+    /// Couplers, then those that screws are.
+    fn couplers(&mut self) {
+        let draft = self.draft;
+        for (index, c) in draft.couplers.iter().enumerate() {
+            let here = Here { section: Section::Couplers, index };
+            let terms = match &c.kind {
+                CouplerKindDraft::Linear(terms) => {
+                    let terms: Vec<_> = terms
+                        .iter()
+                        .enumerate()
+                        .map(|(k, t)| {
+                            let at = here.item("terms", k);
+                            let joint = self.joint(&t.joint, at.clone())?;
+                            let coordinate =
+                                self.coordinate_at(joint, t.coordinate.as_deref(), [at.clone(), at])?;
+                            Some(Term { joint, coordinate, coefficient: t.coefficient })
+                        })
+                        .collect();
+                    terms.into_iter().collect::<Option<Vec<Term>>>()
+                }
+                CouplerKindDraft::Gears { joints, teeth, internal } => {
+                    let sign = if *internal { -1.0 } else { 1.0 };
+                    self.pair(joints, ["angle"; 2], [teeth[0], sign * teeth[1]], here)
+                }
+                CouplerKindDraft::Belt { joints, radii, crossed } => {
+                    let sign = if *crossed { 1.0 } else { -1.0 };
+                    self.pair(joints, ["angle"; 2], [radii[0], sign * radii[1]], here)
+                }
+                CouplerKindDraft::Rack { rack, pinion, radius } => {
+                    let joints = [rack.clone(), pinion.clone()];
+                    self.pair(&joints, ["displacement", "angle"], [1.0, -radius], here)
+                }
+            };
+            let Some(terms) = terms else { continue };
+            if !terms.iter().all(|t| t.coefficient.is_finite() && t.coefficient != 0.0) {
+                let message = format!("coupler `{}` has a ratio that is zero or not finite", c.name);
+                self.fault("HP0224", here.key("name"), message)
+                    .help("give every joint a number of teeth, a radius or a coefficient other than zero");
+            }
+            let twice = (1..terms.len()).any(|k| {
+                terms[..k].iter().any(|t| t.joint == terms[k].joint && t.coordinate == terms[k].coordinate)
+            });
+            if terms.len() < 2 || twice {
+                let message = format!("coupler `{}` must couple at least two different coordinates", c.name);
+                self.fault("HP0224", here.key("name"), message)
+                    .help("name two joints, or two coordinates of one joint");
+            }
+            self.model.couplers.push(Coupler { name: c.name.clone(), terms });
+        }
+        for k in 0..draft.joints.len() {
+            if let (Some(joint), Some(lead)) = (self.joint_ids[k], draft.joints[k].lead) {
+                let coordinate = |name: &str| joint::SCREW.coordinate(name).expect("a screw has it").0;
+                let per_radian = lead / (2.0 * std::f64::consts::PI);
+                let terms = vec![
+                    Term { joint, coordinate: coordinate("displacement"), coefficient: 1.0 },
+                    Term { joint, coordinate: coordinate("angle"), coefficient: -per_radian },
+                ];
+                self.model.couplers.push(Coupler { name: draft.joints[k].name.clone(), terms });
+            }
+        }
+    }
+
+    /// The terms of two joints.
+    fn pair(
+        &mut self,
+        joints: &[String; 2],
+        coordinates: [&str; 2],
+        coefficients: [f64; 2],
+        here: Here,
+    ) -> Option<Vec<Term>> {
+        let terms = [0, 1].map(|k| {
+            let at = here.item("joints", k);
+            let joint = self.joint(&joints[k], at.clone())?;
+            let coordinate = self.coordinate_at(joint, Some(coordinates[k]), [at.clone(), at])?;
+            Some(Term { joint, coordinate, coefficient: coefficients[k] })
+        });
+        terms.into_iter().collect()
     }
 
     fn points(&mut self) {
@@ -635,6 +901,25 @@ impl<'a> Check<'a> {
                 let change = Change::Marker { joint, end: *end, position: *position, rotation: *rotation };
                 Some((change, quantity))
             }
+            ChangeDraft::Length { joint, rate } => {
+                let joint = self.joint(joint, at.clone())?;
+                if !(rate.is_finite() && *rate != 0.0) {
+                    null(self);
+                }
+                let j = &self.model.joints[joint.0];
+                if j.length.is_none() {
+                    let (name, kind) = (j.name.clone(), j.kind.name);
+                    let message = format!("joint `{name}` has no `length` of its own that could change");
+                    let fault = self.fault("HP0225", at, message);
+                    fault.note(format!(
+                        "it is a {kind} joint; the length of a rod is measured between its hardpoints"
+                    ));
+                    fault.help(format!("give rod `{name}` a `length`, or move one of its hardpoints"));
+                    return None;
+                }
+                Some((Change::Length { joint, rate: *rate }, Quantity::Length))
+            }
+            ChangeDraft::Law { .. } => None,
             ChangeDraft::Field { joint, body, v, u } => {
                 let joint = self.joint(joint, at.clone());
                 let body = self.body(body, at.clone());
@@ -673,6 +958,13 @@ impl<'a> Check<'a> {
             ));
         }
     }
+}
+
+/// The place of a joint that needs none, until it gets one.
+const UNPLACED: HardpointId = HardpointId(usize::MAX);
+
+fn degrees_between(a: Vec3, b: Vec3) -> f64 {
+    a.dot(b).clamp(-1.0, 1.0).acos().to_degrees()
 }
 
 /// The frame with z along `z` and x along `x`, two unit vectors square to each other.

@@ -1,6 +1,8 @@
 //! What a design variable does to the markers: exactly for a finite change, and to first order.
 
 use super::*;
+use crate::constraint::Row;
+use crate::joint::Need;
 use crate::space::{Twist, euler_313_from_rotation, euler_rates, rotation_from_euler_313};
 
 /// The body-fixed data of one design: everything that the analysis needs and that a design may change.
@@ -8,12 +10,35 @@ use crate::space::{Twist, euler_313_from_rotation, euler_rates, rotation_from_eu
 pub struct Geometry {
     /// Per joint, marker i in body i and marker j in body j.
     pub markers: Vec<[Pose; 2]>,
-    /// Per joint, the distance between its markers in the design configuration, m.
-    pub lengths: Vec<f64>,
+    /// Per joint, what its constraints may keep of the design configuration.
+    pub kept: Vec<Kept>,
     /// Per point of the model, its position in its body's frame, m.
     pub points: Vec<Vec3>,
     /// Per measure with a spin axis, that unit vector in its body's frame; null for the others.
     pub spin_axes: Vec<Vec3>,
+}
+
+/// What a joint can keep of its design configuration, or the rate at which a design variable changes it.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Kept {
+    /// Distance between its markers, m: the length of a rod.
+    pub distance: f64,
+    /// Displacement of marker j along z_i, m.
+    pub offset: f64,
+    /// Cosine of the angle between z_i and z_j.
+    pub cosine: f64,
+}
+
+impl Kept {
+    /// What this constraint keeps; 0 for those that keep nothing.
+    pub fn by(&self, row: Row) -> f64 {
+        match row {
+            Row::Distance => self.distance,
+            Row::Offset => self.offset,
+            Row::Cosine => self.cosine,
+            _ => 0.0,
+        }
+    }
 }
 
 /// The first-order change of a [`Geometry`] per unit of one design variable: the paper's design
@@ -22,8 +47,8 @@ pub struct Geometry {
 pub struct Field {
     /// The markers that move or turn.
     pub markers: Vec<MarkerField>,
-    /// The rods and legs whose design length changes, and its rate.
-    pub lengths: Vec<(JointId, f64)>,
+    /// The joints whose kept values change, and their rates.
+    pub kept: Vec<(JointId, Kept)>,
     /// The points that move, and their velocity in the body's frame.
     pub points: Vec<(PointId, Vec3)>,
     /// The spin axes that turn, and their rate in the body's frame.
@@ -59,10 +84,15 @@ impl Model {
                 })
             })
             .collect();
-        let lengths = (0..self.joints.len())
+        let kept = (0..self.joints.len())
             .map(|j| {
-                let [i, k] = [0, 1].map(|e| self.marker_in_world(j, e, &for_lengths, &follows).r);
-                (k - i).norm()
+                let [m_i, m_j] = [0, 1].map(|e| self.marker_in_world(j, e, &for_lengths, &follows));
+                let (d, z_i, z_j) = (m_j.r - m_i.r, m_i.rot.cols[2], m_j.rot.cols[2]);
+                let distance = match self.joints[j].length {
+                    Some(length) => length + self.length_change(j, &value),
+                    None => d.norm(),
+                };
+                Kept { distance, offset: z_i.dot(d), cosine: z_i.dot(z_j) }
             })
             .collect();
         let points =
@@ -77,7 +107,19 @@ impl Model {
                 _ => Vec3::ZERO,
             })
             .collect();
-        Geometry { markers, lengths, points, spin_axes }
+        Geometry { markers, kept, points, spin_axes }
+    }
+
+    /// By how much a design has changed the given length of a rod.
+    fn length_change(&self, j: usize, value: &dyn Fn(usize) -> f64) -> f64 {
+        let rates =
+            self.variables.iter().enumerate().flat_map(|(k, v)| v.changes.iter().map(move |c| (k, c)));
+        rates
+            .map(|(k, change)| match change {
+                Change::Length { joint, rate } if joint.0 == j => rate * value(k),
+                _ => 0.0,
+            })
+            .sum()
     }
 
     /// Global positions of all hardpoints.
@@ -96,7 +138,7 @@ impl Model {
     /// Marker e of joint j in the design configuration of a changed design.
     fn marker_in_world(&self, j: usize, e: usize, places: &[Vec3], value: &dyn Fn(usize) -> f64) -> Pose {
         let joint = &self.joints[j];
-        let mut rot = self.followed_frame(joint, places);
+        let mut rot = self.followed_frame(joint, e, places);
         let mut r = places[joint.at[e].0];
         for (k, v) in self.variables.iter().enumerate() {
             let b = value(k);
@@ -125,20 +167,21 @@ impl Model {
 
     /// 3-1-3 Euler angles of a marker in its body's frame, and their rotation C(theta).
     fn euler_of(&self, joint: &Joint, e: usize) -> ([f64; 3], Mat3) {
-        let in_body = self.bodies[joint.bodies[e].0].frame.rot.transpose() * joint.frame;
+        let in_body = self.bodies[joint.bodies[e].0].frame.rot.transpose() * joint.frames[e];
         let theta = euler_313_from_rotation(in_body);
         (theta, rotation_from_euler_313(theta))
     }
 
-    /// The marker frame of a joint whose axes follow the hardpoints they pass through.
+    /// The frame of marker e of a joint whose axes follow the hardpoints they pass through.
     ///
     /// z turns by the smallest rotation to its new direction; x then turns about z with `axis2`.
-    fn followed_frame(&self, joint: &Joint, places: &[Vec3]) -> Mat3 {
-        let mut rot = joint.frame;
-        if let Some(axis @ Direction::Through(..)) = joint.axis {
+    fn followed_frame(&self, joint: &Joint, e: usize, places: &[Vec3]) -> Mat3 {
+        let mut rot = joint.frames[e];
+        let [axis, axis2] = joint.axes_of_marker(e);
+        if let Some(axis @ Direction::Through(..)) = axis {
             rot = Mat3::between(rot.cols[2], direction(axis, places)) * rot;
         }
-        if let Some(axis2 @ Direction::Through(..)) = joint.axis2 {
+        if let Some(axis2 @ Direction::Through(..)) = axis2 {
             let (d, z) = (direction(axis2, places), rot.cols[2]);
             if let Some(x) = (d - z * z.dot(d)).unit() {
                 rot = Mat3 { cols: [x, z.cross(x), z] };
@@ -173,14 +216,9 @@ impl Model {
                     });
                 }
             }
-            if !v.fixed_length {
-                let d = self.position(joint.at[1]) - self.position(joint.at[0]);
-                if let Some(u) = d.unit() {
-                    let rate = u.dot(rates[1].0 - rates[0].0);
-                    if rate != 0.0 {
-                        field.lengths.push((JointId(j), rate));
-                    }
-                }
+            let kept = self.kept_rate(v, j, rates);
+            if kept != Kept::default() {
+                field.kept.push((JointId(j), kept));
             }
         }
         for (k, p) in self.points.iter().enumerate() {
@@ -200,17 +238,40 @@ impl Model {
         field
     }
 
+    /// Rates of what a joint keeps, its markers moving and turning at these rates.
+    fn kept_rate(&self, v: &DesignVariable, j: usize, [(p_i, w_i), (p_j, w_j)]: [(Vec3, Vec3); 2]) -> Kept {
+        let (m_i, m_j) = (self.marker(JointId(j), 0), self.marker(JointId(j), 1));
+        let (d, z_i, z_j) = (m_j.r - m_i.r, m_i.rot.cols[2], m_j.rot.cols[2]);
+        let mut kept = Kept::default();
+        if !v.fixed_length {
+            kept.offset = w_i.cross(z_i).dot(d) + z_i.dot(p_j - p_i);
+            kept.cosine = w_i.cross(z_i).dot(z_j) + z_i.dot(w_j.cross(z_j));
+            if let (None, Some(u)) = (self.joints[j].length, d.unit()) {
+                kept.distance = u.dot(p_j - p_i);
+            }
+        }
+        for change in &v.changes {
+            if let Change::Length { joint, rate } = change
+                && joint.0 == j
+            {
+                kept.distance += rate;
+            }
+        }
+        kept
+    }
+
     /// Velocity of a marker's origin and rotation rate of its axes per unit of a variable, global.
     fn marker_rates(&self, v: &DesignVariable, j: usize, e: usize, speeds: &[Vec3]) -> (Vec3, Vec3) {
         let joint = &self.joints[j];
         let mut p = speeds[joint.at[e].0];
         let mut w = Vec3::ZERO;
-        if let Some(axis) = joint.axis {
-            let z = joint.frame.cols[2];
+        let [axis, axis2] = joint.axes_of_marker(e);
+        if let Some(axis) = axis {
+            let z = joint.frames[e].cols[2];
             w += z.cross(self.direction_rate(axis, speeds));
         }
-        if let Some(axis2) = joint.axis2 {
-            let [_, y, z] = joint.frame.cols;
+        if let Some(axis2) = axis2 {
+            let [_, y, z] = joint.frames[e].cols;
             w += z * y.dot(self.direction_rate(axis2, speeds));
         }
         for change in &v.changes {
@@ -245,6 +306,17 @@ impl Model {
 
     pub(crate) fn position(&self, h: HardpointId) -> Vec3 {
         self.hardpoints[h.0].position
+    }
+}
+
+impl Joint {
+    /// The directions of z and x of marker e, as far as they are given.
+    fn axes_of_marker(&self, e: usize) -> [Option<Direction>; 2] {
+        match (self.kind.axis2, e) {
+            (Need::OnBodyJ, 0) => [self.axis, None],
+            (Need::OnBodyJ, _) => [self.axis2, None],
+            _ => [self.axis, self.axis2],
+        }
     }
 }
 

@@ -16,6 +16,8 @@ pub struct Draft {
     pub bodies: Vec<BodyDraft>,
     /// Joints.
     pub joints: Vec<JointDraft>,
+    /// Couplers between joint coordinates.
+    pub couplers: Vec<CouplerDraft>,
     /// Drivers.
     pub drivers: Vec<DriverDraft>,
     /// Design variables.
@@ -77,7 +79,7 @@ pub enum FrameDraft {
 }
 
 /// A joint.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct JointDraft {
     /// Its name.
     pub name: String,
@@ -86,14 +88,84 @@ pub struct JointDraft {
     /// Names of bodies i and j.
     pub bodies: [String; 2],
     /// Its place, or its two places for a rod or leg. May be empty where the axis passes through
-    /// hardpoints: then it is the first of them.
+    /// hardpoints: then it is the first of them. A joint with one place may be given two that lie apart, on body i and
+    /// on body j, for the mechanism to be assembled there.
     pub at: Vec<Place>,
     /// Direction of the markers' z axis.
     pub axis: Option<Line>,
     /// Direction of the markers' x axis.
     pub axis2: Option<Line>,
+    /// Length of a rod, m; else it is measured between its places.
+    pub length: Option<f64>,
+    /// Advance of a screw, m per turn.
+    pub lead: Option<f64>,
+    /// The curve on body i that a point of body j follows.
+    pub curve: Option<CurveDraft>,
     /// Whether it should be cut rather than carry the tree.
     pub cut: bool,
+}
+
+/// A smooth curve through points in the design configuration, in the plane square to its joint's axis.
+#[derive(Clone, Debug, Default)]
+pub struct CurveDraft {
+    /// The points, in order; the curve of a cam is closed and does not repeat the first one.
+    pub points: Vec<Place>,
+    /// Whether it returns to its first point.
+    pub closed: bool,
+}
+
+/// A coupler.
+#[derive(Clone, Debug)]
+pub struct CouplerDraft {
+    /// Its name.
+    pub name: String,
+    /// What couples what.
+    pub kind: CouplerKindDraft,
+}
+
+/// What a coupler is made of. Angles and displacements count along their joints' own axes, of body j relative to body i.
+#[derive(Clone, Debug)]
+pub enum CouplerKindDraft {
+    /// `sum of coefficient x coordinate = 0`.
+    Linear(Vec<TermDraft>),
+    /// Two gears, spur or bevel: `teeth_1 angle_1 + teeth_2 angle_2 = 0`, or minus for an internal gear.
+    Gears {
+        /// The joints that carry the gears.
+        joints: [String; 2],
+        /// Teeth, or any two numbers in their ratio.
+        teeth: [f64; 2],
+        /// Whether one of them is an internal gear, so that both turn the same way.
+        internal: bool,
+    },
+    /// `displacement = radius x angle`.
+    Rack {
+        /// The joint on which the rack slides.
+        rack: String,
+        /// The joint on which the pinion turns.
+        pinion: String,
+        /// Pitch radius, m; negative where the rack passes the pinion's other side.
+        radius: f64,
+    },
+    /// `radius_1 angle_1 = radius_2 angle_2`, or minus for a crossed belt.
+    Belt {
+        /// The joints that carry the pulleys.
+        joints: [String; 2],
+        /// Their radii, m.
+        radii: [f64; 2],
+        /// Whether the belt crosses between them.
+        crossed: bool,
+    },
+}
+
+/// A joint coordinate times a number.
+#[derive(Clone, Debug)]
+pub struct TermDraft {
+    /// The joint's name.
+    pub joint: String,
+    /// The coordinate's name; may be left out where the joint has only one.
+    pub coordinate: Option<String>,
+    /// The factor, per m or per rad of the coordinate.
+    pub coefficient: f64,
 }
 
 /// A driver.
@@ -101,12 +173,45 @@ pub struct JointDraft {
 pub struct DriverDraft {
     /// Its name.
     pub name: String,
-    /// The joint's name.
-    pub joint: String,
-    /// The coordinate's name; may be left out where the joint has only one.
-    pub coordinate: Option<String>,
-    /// The coordinate over time, m or rad.
+    /// What it prescribes.
+    pub drives: DrivenDraft,
+    /// That over time, counted from the design configuration, m or rad.
     pub law: Law,
+}
+
+/// What a driver prescribes, counted from the design configuration.
+#[derive(Clone, Debug)]
+pub enum DrivenDraft {
+    /// A joint's coordinate.
+    Coordinate {
+        /// The joint's name.
+        joint: String,
+        /// The coordinate's name; may be left out where the joint has only one.
+        coordinate: Option<String>,
+    },
+    /// The way of a point along a global direction.
+    Position {
+        /// The point.
+        point: PointRef,
+        /// The direction, of any length.
+        along: Line,
+    },
+    /// The change of the distance between two points.
+    Distance {
+        /// From this point.
+        from: PointRef,
+        /// To this one.
+        to: PointRef,
+    },
+    /// The angle by which a body has turned, seen along a direction fixed in another.
+    Orientation {
+        /// The body's name.
+        body: String,
+        /// The body that carries the direction; ground if left out.
+        relative_to: Option<String>,
+        /// The direction.
+        about: Line,
+    },
 }
 
 /// A design variable.
@@ -147,6 +252,22 @@ pub enum ChangeDraft {
         position: Vec3,
         /// Global rotation vector rate per unit.
         rotation: Vec3,
+    },
+    /// The length of a rod that has one grows.
+    Length {
+        /// The joint's name.
+        joint: String,
+        /// m per unit of the variable.
+        rate: f64,
+    },
+    /// A parameter of a driver's law grows, like its amplitude.
+    Law {
+        /// The driver's name.
+        driver: String,
+        /// The parameter's name.
+        parameter: String,
+        /// In the parameter's own unit, per unit of the variable.
+        rate: f64,
     },
     /// The paper's V and U of the marker on one body.
     Field {

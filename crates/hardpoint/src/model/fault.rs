@@ -41,6 +41,8 @@ pub enum Section {
     Bodies,
     /// [`super::Draft::joints`].
     Joints,
+    /// [`super::Draft::couplers`].
+    Couplers,
     /// [`super::Draft::drivers`].
     Drivers,
     /// [`super::Draft::design`].
@@ -73,6 +75,7 @@ impl fmt::Display for Section {
             Self::Hardpoints => "hardpoints",
             Self::Bodies => "bodies",
             Self::Joints => "joints",
+            Self::Couplers => "couplers",
             Self::Drivers => "drivers",
             Self::Design => "design",
             Self::Points => "points",

@@ -9,14 +9,15 @@ mod design;
 mod draft;
 mod fault;
 
-pub use design::{Field, Geometry, MarkerField};
+pub use design::{Field, Geometry, Kept, MarkerField};
 pub use draft::{
-    BodyDraft, ChangeDraft, Draft, DriverDraft, FrameDraft, HardpointDraft, JointDraft, Line, MeasureDraft,
-    MeasureKindDraft, Place, PointDraft, PointRef, VariableDraft,
+    BodyDraft, ChangeDraft, CouplerDraft, CouplerKindDraft, CurveDraft, Draft, DrivenDraft, DriverDraft,
+    FrameDraft, HardpointDraft, JointDraft, Line, MeasureDraft, MeasureKindDraft, Place, PointDraft,
+    PointRef, TermDraft, VariableDraft,
 };
 pub use fault::{Fault, Locus, Section, did_you_mean};
 
-use crate::joint::{JointType, Quantity};
+use crate::joint::{CoordinateType, JointType, Quantity};
 use crate::law::Law;
 use crate::space::{Mat3, Pose, Vec3};
 
@@ -57,8 +58,10 @@ pub struct Model {
     pub hardpoints: Vec<Hardpoint>,
     /// Ground, then the bodies.
     pub bodies: Vec<Body>,
-    /// Joints, in the order of the file.
+    /// Joints, in the order of the file, then the unnamed ones that carry a driver.
     pub joints: Vec<Joint>,
+    /// Couplers, in the order of the file, then those of the screws.
+    pub couplers: Vec<Coupler>,
     /// Drivers, in the order of the file.
     pub drivers: Vec<Driver>,
     /// Design variables, in the order of the file.
@@ -115,10 +118,36 @@ pub struct Joint {
     pub axis: Option<Direction>,
     /// Direction of the markers' x axis, if the joint has one.
     pub axis2: Option<Direction>,
-    /// Orientation of both markers in the world, in the design configuration.
-    pub frame: Mat3,
+    /// Orientation of marker i and marker j in the world, in the design configuration; the same unless the joint type
+    /// has its second axis on body j.
+    pub frames: [Mat3; 2],
+    /// Length of a rod that is given by itself rather than by its hardpoints, m.
+    pub length: Option<f64>,
     /// Whether the user asks for it to be cut.
     pub cut: bool,
+    /// Whether it only carries a driver on something that is no joint's coordinate; it has the driver's name.
+    pub unnamed: bool,
+}
+
+/// A linear relation between joint coordinates, each counted from the design configuration and through whole turns:
+/// `sum of coefficient x coordinate = 0`. Gears, racks, belts and screws are such relations.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Coupler {
+    /// Its name; that of the joint for a screw.
+    pub name: String,
+    /// Its terms; no coefficient is zero. A change of the design leaves them alone.
+    pub terms: Vec<Term>,
+}
+
+/// A joint coordinate times a number.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Term {
+    /// Which joint.
+    pub joint: JointId,
+    /// Which of its type's coordinates.
+    pub coordinate: usize,
+    /// The factor, per m or per rad of the coordinate.
+    pub coefficient: f64,
 }
 
 /// A prescribed motion of one joint coordinate, measured from the design configuration.
@@ -189,6 +218,13 @@ pub enum Change {
         position: Vec3,
         /// Global rotation vector rate of the marker's axes, about its origin.
         rotation: Vec3,
+    },
+    /// The length of a rod that is given by itself grows at this rate.
+    Length {
+        /// Which joint.
+        joint: JointId,
+        /// m per unit.
+        rate: f64,
     },
     /// The paper's design velocity of one marker: V of its place and U of its 3-1-3 Euler angles, both
     /// in its own body's frame (Eqs. 3.2, 3.3).
@@ -268,8 +304,24 @@ pub enum MeasureKind {
 
 impl Model {
     /// The joint coordinate that a driver prescribes.
-    pub fn driven(&self, driver: &Driver) -> &'static crate::joint::CoordinateType {
+    pub fn driven(&self, driver: &Driver) -> &'static CoordinateType {
         &self.joints[driver.joint.0].kind.coordinates[driver.coordinate]
+    }
+
+    /// The joint coordinate of a coupler's term.
+    pub fn coupled(&self, term: &Term) -> &'static CoordinateType {
+        &self.joints[term.joint.0].kind.coordinates[term.coordinate]
+    }
+
+    /// Marker e (0 for i, 1 for j) of a joint in the world, in the design configuration.
+    pub(crate) fn marker(&self, joint: JointId, e: usize) -> Pose {
+        let j = &self.joints[joint.0];
+        Pose { rot: j.frames[e], r: self.position(j.at[e]) }
+    }
+
+    /// Joints that a person wrote.
+    pub fn named_joints(&self) -> impl Iterator<Item = (JointId, &Joint)> {
+        self.joints.iter().enumerate().filter(|(_, j)| !j.unnamed).map(|(k, j)| (JointId(k), j))
     }
 
     /// What a measure's value is: a length or an angle.

@@ -50,6 +50,12 @@ pub(crate) struct State<T> {
     /// Per link and per row: what a level adds besides the unknowns.
     pub bias: Vec<Twist<T>>,
     pub row_rhs: Vec<T>,
+    /// Per row of a coupler's term: about what its coordinate is, to count angles through whole turns.
+    pub near: Vec<T>,
+    /// Per row: by how much it failed in the design configuration as drawn, and how much of that is still allowed, with
+    /// its rate: an assembly takes it from 1 to 0.
+    pub gap: Vec<T>,
+    pub gap_left: [f64; 2],
     /// Per block: smallest over largest pivot, and the sign of the determinant.
     pub pivots: Vec<(f64, bool)>,
     /// Size of the mechanism, m.
@@ -108,6 +114,9 @@ impl<T: Real> State<T> {
             rhs: vec![o; widest],
             bias: vec![none; topology.links.len()],
             row_rhs: vec![o; rows],
+            near: vec![o; rows],
+            gap: vec![o; rows],
+            gap_left: [0.0; 2],
             pivots: vec![(1.0, true); topology.blocks.len()],
             size: model.size(),
             iterations: 0,
@@ -149,7 +158,7 @@ impl<T: Real> State<T> {
 
     /// Places the children of these links and their unit twists (`docs/theory.md` (4)).
     #[inline(always)]
-    fn place(&mut self, topology: &Topology, parts: &Parts<T>, links: std::ops::Range<usize>) {
+    pub(super) fn place(&mut self, topology: &Topology, parts: &Parts<T>, links: std::ops::Range<usize>) {
         for k in links {
             let link = &topology.links[k];
             let mut frame = self.pose[link.parent.0].compose(parts.parent_marker[k]);
@@ -173,44 +182,61 @@ impl<T: Real> State<T> {
 
     /// Markers of a closure in the world.
     #[inline(always)]
-    fn place_ends(&mut self, topology: &Topology, parts: &Parts<T>, closure: usize) {
+    pub(super) fn place_ends(&mut self, topology: &Topology, parts: &Parts<T>, closure: usize) {
         let [i, j] = topology.closures[closure].bodies;
         let [m_i, m_j] = parts.ends[closure];
         self.ends[closure] = Ends { i: self.pose[i.0].compose(m_i), j: self.pose[j.0].compose(m_j) };
     }
 
-    /// What row r must reach: a rod's length, a driver's value, or nothing.
+    /// By how much constraint row r fails.
     #[inline(always)]
-    fn target(&self, topology: &Topology, parts: &Parts<T>, drivers: &[[T; 3]], r: usize) -> T {
-        let place = topology.rows[r];
+    pub(super) fn residual(&self, topology: &Topology, parts: &Parts<T>, drivers: &[[T; 3]], r: usize) -> T {
+        let place = &topology.rows[r];
         let closure = &topology.closures[place.closure];
-        let driven = closure.driver.map_or(self.witness.zero(), |d| drivers[d.0][0]);
-        match closure.rows[place.index] {
-            crate::constraint::Row::Distance => parts.lengths[place.closure] + driven,
-            _ => driven,
+        let (row, ends) = (closure.rows[place.index], &self.ends[place.closure]);
+        let gap = self.gap[r] * self.witness.like(self.gap_left[0]);
+        if place.terms.is_empty() {
+            let driven = closure.driver.map_or(self.witness.zero(), |d| drivers[d.0][0]);
+            row.residual(ends, parts.kept[r] + driven) - gap
+        } else {
+            let mut sum = -gap;
+            for (k, factor) in topology.parts_of_row(r) {
+                let place = &topology.rows[k];
+                let row = topology.closures[place.closure].rows[place.index];
+                let value = row.value(&self.ends[place.closure], self.near[k]) - parts.kept[k];
+                sum += value * self.witness.like(factor);
+            }
+            sum
+        }
+    }
+
+    /// Adds a row's wrench, times its factor, to its row of the block's Jacobian.
+    #[inline(always)]
+    fn enter(&mut self, topology: &Topology, b: usize, k: usize, r: usize, factor: f64) {
+        let place = &topology.rows[r];
+        let closure = &topology.closures[place.closure];
+        let wrench = closure.rows[place.index].wrench(&self.ends[place.closure]);
+        self.l[r] = wrench;
+        let out = self.factors[b].row_mut(k);
+        for &(column, coordinate, side) in &closure.entries {
+            out[column] += wrench.on(self.x[coordinate]) * self.witness.like(side * factor);
         }
     }
 
     /// Residuals, wrenches and factors of block b where it stands.
     #[inline(always)]
-    fn linearise(&mut self, topology: &Topology, parts: &Parts<T>, drivers: &[[T; 3]], b: usize) {
+    pub(super) fn linearise(&mut self, topology: &Topology, parts: &Parts<T>, drivers: &[[T; 3]], b: usize) {
         let block: &Block = &topology.blocks[b];
         for &c in &block.closures {
             self.place_ends(topology, parts, c);
         }
         let zero = self.witness.zero();
         for (k, &r) in block.selected.iter().enumerate() {
-            let place = topology.rows[r];
-            let closure = &topology.closures[place.closure];
-            let (row, ends) = (closure.rows[place.index], &self.ends[place.closure]);
-            let wrench = row.wrench(ends);
-            let residual = row.residual(ends, self.target(topology, parts, drivers, r));
-            self.rhs[k] = -residual;
-            self.l[r] = wrench;
-            let out = self.factors[b].row_mut(k);
-            out.fill(zero);
-            for &(column, coordinate, side) in &closure.entries {
-                out[column] = wrench.on(self.x[coordinate]) * zero.like(side);
+            self.rhs[k] = -self.residual(topology, parts, drivers, r);
+            self.factors[b].row_mut(k).fill(zero);
+            self.enter(topology, b, k, r, 1.0);
+            for &(term, factor) in &topology.rows[r].terms {
+                self.enter(topology, b, k, term, factor);
             }
         }
         let found = self.factors[b].factor();
@@ -298,7 +324,7 @@ impl<T: Real> State<T> {
 
     /// Adds the correction in `rhs` to the unknowns of block b.
     #[inline(always)]
-    fn apply(&mut self, topology: &Topology, b: usize) {
+    pub(super) fn apply(&mut self, topology: &Topology, b: usize) {
         for (k, &c) in topology.blocks[b].unknowns.iter().enumerate() {
             self.q[c] += self.rhs[k];
         }
@@ -330,7 +356,8 @@ impl<T: Real> State<T> {
                 self.set_driven(topology, drivers, 1);
                 self.bias.fill(Twist::zero(witness));
                 for r in 0..topology.rows.len() {
-                    self.row_rhs[r] = demand(topology, drivers, r, 1, witness);
+                    self.row_rhs[r] = demand(topology, drivers, r, 1, witness)
+                        + self.gap[r] * witness.like(self.gap_left[1]);
                 }
                 let s = self;
                 level(
@@ -354,6 +381,7 @@ impl<T: Real> State<T> {
                     let [i, j] = topology.closures[topology.rows[r].closure].bodies;
                     s.row_rhs[r] = demand(topology, drivers, r, 2, witness) - s.ld[r].on(s.v[j.0] - s.v[i.0]);
                 }
+                sum_couplers(topology, &mut s.row_rhs);
                 level(
                     topology,
                     &mut s.factors,
@@ -404,9 +432,11 @@ impl<T: Real> State<T> {
             || {
                 let mut worst = Residuals::default();
                 for (r, place) in topology.rows.iter().enumerate() {
+                    if place.is_term {
+                        continue;
+                    }
                     let row = topology.closures[place.closure].rows[place.index];
-                    let target = self.target(topology, parts, drivers, r);
-                    let residual = row.residual(&self.ends[place.closure], target).abs().largest();
+                    let residual = self.residual(topology, parts, drivers, r).abs().largest();
                     let scaled = if row.is_length() { residual / self.size } else { residual };
                     // Written so that a NaN is the largest of all.
                     if !(residual <= worst.largest) {
@@ -419,6 +449,30 @@ impl<T: Real> State<T> {
                 worst
             },
         )
+    }
+
+    /// The coordinate that a coupler's term counts, with its speed and acceleration.
+    pub fn coordinate_of_row(&self, topology: &Topology, r: usize) -> [T; 3] {
+        let place = &topology.rows[r];
+        let closure = &topology.closures[place.closure];
+        let [i, j] = closure.bodies;
+        let (v, a) = (self.v[j.0] - self.v[i.0], self.a[j.0] - self.a[i.0]);
+        let value = closure.rows[place.index].value(&self.ends[place.closure], self.near[r]);
+        [value, self.l[r].on(v), self.l[r].on(a) + self.ld[r].on(v)]
+    }
+
+    /// Constraint row r of the Jacobian in one lane, by column of its block, lengths in sizes.
+    pub fn scaled_row(&self, topology: &Topology, r: usize, lane: usize, out: &mut [f64]) {
+        let place = &topology.rows[r];
+        let first = topology.closures[place.closure].rows[place.index];
+        let scale = if first.is_length() { 1.0 / self.size } else { 1.0 };
+        out.fill(0.0);
+        for (k, factor) in topology.parts_of_row(r) {
+            for &(column, c, side) in &topology.closures[topology.rows[k].closure].entries {
+                let unit = if topology.coordinates[c].is_length { self.size } else { 1.0 };
+                out[column] += scale * unit * side * factor * self.l[k].on(self.x[c]).lane(lane);
+            }
+        }
     }
 
     #[inline(always)]
@@ -484,6 +538,30 @@ impl<T: Real> State<T> {
     }
 }
 
+/// Adds to every coupler's row what its further terms have.
+#[inline(always)]
+pub(crate) fn sum_couplers<T: Real>(topology: &Topology, of_rows: &mut [T]) {
+    for &r in &topology.coupled_rows {
+        for &(term, factor) in &topology.rows[r].terms {
+            let x = of_rows[term];
+            of_rows[r] += x * x.like(factor);
+        }
+    }
+}
+
+/// `l_r . (W_j - W_i)`, summed over a coupler's terms.
+#[inline(always)]
+pub(crate) fn along<T: Real>(topology: &Topology, l: &[Wrench<T>], motion: &[Twist<T>], r: usize) -> T {
+    let place = &topology.rows[r];
+    let [i, j] = topology.closures[place.closure].bodies;
+    let mut sum = l[r].on(motion[j.0] - motion[i.0]);
+    for &(term, factor) in &place.terms {
+        let [i, j] = topology.closures[topology.rows[term].closure].bodies;
+        sum += l[term].on(motion[j.0] - motion[i.0]) * sum.like(factor);
+    }
+    sum
+}
+
 /// A driver row's derivative of that order; 0 for the other rows.
 #[inline(always)]
 fn demand<T: Real>(topology: &Topology, drivers: &[[T; 3]], r: usize, order: usize, witness: T) -> T {
@@ -523,8 +601,7 @@ pub(crate) fn level<T: Real>(
         }
         carry(topology, block.links.clone(), x, bias, u, out);
         for (k, &r) in block.selected.iter().enumerate() {
-            let [i, j] = topology.closures[topology.rows[r].closure].bodies;
-            rhs[k] = row_rhs[r] - l[r].on(out[j.0] - out[i.0]);
+            rhs[k] = row_rhs[r] - along(topology, l, out, r);
         }
         factors[b].solve(rhs);
         for (k, &c) in block.unknowns.iter().enumerate() {

@@ -4,11 +4,13 @@
 //! ([`kinematics`]). The steps are joined by a second-order predictor that watches for limits and
 //! branches ([`stepper`]).
 
+mod assembly;
 pub(crate) mod kinematics;
 pub(crate) mod parts;
 pub(crate) mod stepper;
 mod stop;
 
+pub use assembly::{Assembly, Closing, Gap, Moved};
 pub use stop::{Stop, StopKind};
 
 use crate::model::{BodyId, Model};
@@ -91,6 +93,8 @@ pub struct Motion {
     pub bodies: usize,
     /// `coordinates[k * n + c]`: tree coordinates, m or rad, angles unwrapped; 0 for those of a ball.
     pub coordinates: Vec<f64>,
+    /// How it was closed before it moved, if it was open as drawn.
+    pub assembly: Option<Assembly>,
     /// What it took.
     pub effort: Effort,
 }

@@ -13,8 +13,8 @@ pub(crate) struct Parts<T> {
     pub child_from_marker: Vec<Pose<T>>,
     /// Per closure: marker i in body i, marker j in body j.
     pub ends: Vec<[Pose<T>; 2]>,
-    /// Per closure: design length of its joint.
-    pub lengths: Vec<T>,
+    /// Per row: what it keeps of the design configuration, like the length of a rod; 0 where it keeps nothing.
+    pub kept: Vec<T>,
 }
 
 impl<T: Real> Parts<T> {
@@ -35,15 +35,29 @@ impl<T: Real> Parts<T> {
                 .links
                 .iter()
                 .map(|l| match l.joint {
-                    Some(j) => marker(j.0, 1 - l.parent_end).inverse(),
+                    Some(j) => {
+                        // The freedoms end in a frame that is parallel to their first one in the design configuration;
+                        // where the joint's own markers are not, the child's is turned back.
+                        let frames = &model.joints[j.0].frames;
+                        let (parent, child) = (frames[l.parent_end], frames[1 - l.parent_end]);
+                        let mut m = marker(j.0, 1 - l.parent_end);
+                        if parent != child {
+                            m.rot = m.rot * (child.transpose() * parent).spread(witness);
+                        }
+                        m.inverse()
+                    }
                     None => Pose::IDENTITY.spread(witness),
                 })
                 .collect(),
             ends: topology.closures.iter().map(|c| [marker(c.joint.0, 0), marker(c.joint.0, 1)]).collect(),
-            lengths: topology
-                .closures
+            kept: topology
+                .rows
                 .iter()
-                .map(|c| witness.like_lanes(|k| lane(k).lengths[c.joint.0]))
+                .map(|place| {
+                    let closure = &topology.closures[place.closure];
+                    let row = closure.rows[place.index];
+                    witness.like_lanes(|k| lane(k).kept[closure.joint.0].by(row))
+                })
                 .collect(),
         }
     }

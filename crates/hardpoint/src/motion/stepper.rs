@@ -6,6 +6,7 @@ use crate::model::{DriverId, Model};
 use crate::space::{FullPivot, Quat, Real};
 use crate::topology::{Source, Topology};
 
+use super::assembly::Assembly;
 use super::kinematics::{PositionFailure, Residuals, State};
 use super::parts::Parts;
 use super::{Effort, Stop, StopKind};
@@ -37,7 +38,7 @@ const RESELECT: f64 = 1e-3;
 
 /// A mechanism on its way through time, one design per lane.
 pub(crate) struct Stepper<'m, T> {
-    model: &'m Model,
+    pub(super) model: &'m Model,
     /// Own copy: the selection of independent rows may change on the way.
     pub topology: Topology,
     pub parts: Parts<T>,
@@ -55,6 +56,8 @@ pub(crate) struct Stepper<'m, T> {
     /// By how much the constraints fail at the position tried last.
     residuals: Residuals,
     pub effort: Effort,
+    /// How the mechanism was closed, if it was open as drawn.
+    pub assembly: Option<Assembly>,
 }
 
 #[derive(Clone)]
@@ -67,11 +70,16 @@ struct Saved<T> {
     balls: Vec<Quat<T>>,
     pivots: Vec<(f64, bool)>,
     drivers: Vec<[T; 3]>,
+    /// Per row that is a term of a coupler: its coordinate, with speed and acceleration.
+    coupled: Vec<[T; 3]>,
 }
 
 /// What the drivers follow.
 #[derive(Clone, Copy, PartialEq)]
-enum Path {
+pub(super) enum Path {
+    /// From the configuration as drawn, where joints may be open, to the closed one, all drivers at zero; the
+    /// parameter runs from 0 to 1 and is the part of every gap that is closed.
+    Assembly,
     /// From the design configuration, where all drivers are zero, to their values at the start time;
     /// the parameter runs from 0 to 1.
     Ramp { start: f64 },
@@ -80,7 +88,7 @@ enum Path {
 }
 
 /// Why a step was refused.
-enum Refusal {
+pub(super) enum Refusal {
     Position(PositionFailure),
     Branch { block: usize },
     Locked { row: usize, residual: f64 },
@@ -98,6 +106,7 @@ impl<'m, T: Real> Stepper<'m, T> {
             balls: state.balls.clone(),
             pivots: state.pivots.clone(),
             drivers: vec![[witness.zero(); 3]; model.drivers.len()],
+            coupled: vec![[witness.zero(); 3]; topology.rows.len()],
         };
         let branch = vec![(true, 0.0); topology.blocks.len()];
         let drivers = saved.drivers.clone();
@@ -115,6 +124,7 @@ impl<'m, T: Real> Stepper<'m, T> {
             shortest_smooth: 0.0,
             residuals: Residuals::default(),
             effort,
+            assembly: None,
         }
     }
 
@@ -122,9 +132,11 @@ impl<'m, T: Real> Stepper<'m, T> {
     ///
     /// A changed design starts from the nominal design configuration and closes there first.
     pub fn start(&mut self, t: f64) -> Result<(), Stop> {
+        self.time = 0.0;
+        self.assemble()?;
         let ramp = Path::Ramp { start: t };
         self.time = 0.0;
-        self.attempt(ramp, 0.0, 0.0, true).map_err(|r| self.stop(ramp, 0.0, r, false))?;
+        self.attempt(ramp, 0.0, 0.0, false).map_err(|r| self.stop(ramp, 0.0, r, false))?;
         self.save(0.0, 0.0);
         self.walk(ramp, 1.0)?;
         // The rates left by the ramp are per unit of ramp; solve once more with the laws' own.
@@ -154,7 +166,7 @@ impl<'m, T: Real> Stepper<'m, T> {
         }
     }
 
-    fn walk(&mut self, path: Path, target: f64) -> Result<(), Stop> {
+    pub(super) fn walk(&mut self, path: Path, target: f64) -> Result<(), Stop> {
         let whole = target - self.time;
         let mut h = whole;
         self.shortest_smooth = SMOOTH_PART * whole;
@@ -186,8 +198,10 @@ impl<'m, T: Real> Stepper<'m, T> {
 
     /// Sets the drivers for the path at t.
     fn drive(&mut self, path: Path, t: f64) -> Result<(), Refusal> {
+        self.state.gap_left = if path == Path::Assembly { [1.0 - t, -1.0] } else { [0.0; 2] };
         for (k, d) in self.model.drivers.iter().enumerate() {
             let [f, fd, fdd, _] = match path {
+                Path::Assembly => [0.0; 4],
                 Path::Laws => d.law.at(t).derivatives(),
                 Path::Ramp { start } => {
                     let f = d.law.at(start).value();
@@ -203,11 +217,13 @@ impl<'m, T: Real> Stepper<'m, T> {
     }
 
     /// Tries the position at t, a step h beyond the saved one. `first` sets the branch to stay on.
-    fn attempt(&mut self, path: Path, t: f64, h: f64, first: bool) -> Result<(), Refusal> {
+    pub(super) fn attempt(&mut self, path: Path, t: f64, h: f64, first: bool) -> Result<(), Refusal> {
         self.drive(path, t)?;
-        self.fastest_driver = self.driver_speed();
+        self.fastest_driver = match path {
+            Path::Assembly => self.state.largest_gap(&self.topology),
+            _ => self.driver_speed(),
+        };
         let moved = self.predict(h);
-        // A changed design may close some way off the nominal one, so the first correction is free.
         let trust = if first { f64::INFINITY } else { (TRUST * moved).max(TRUST_FLOOR) };
         self.state
             .solve_position(&self.topology, &self.parts, &self.drivers, trust)
@@ -226,7 +242,9 @@ impl<'m, T: Real> Stepper<'m, T> {
             return Err(Refusal::Branch { block: self.least_regular_block() });
         }
         self.residuals = self.state.residuals(&self.topology, &self.parts, &self.drivers);
-        if !(self.residuals.scaled <= LOCKED) {
+        // On the way to being closed, redundant constraints need not agree yet.
+        let half_open = path == Path::Assembly && t < 1.0;
+        if !half_open && !(self.residuals.scaled <= LOCKED) {
             return Err(Refusal::Locked { row: self.residuals.row, residual: self.residuals.of_row });
         }
         self.reselect()
@@ -252,6 +270,12 @@ impl<'m, T: Real> Stepper<'m, T> {
                 }
                 s.balls.copy_from_slice(&saved.balls);
                 s.turn_balls(&self.topology, 0..self.topology.links.len());
+                for &r in &self.topology.coupled_rows {
+                    for (k, _) in self.topology.parts_of_row(r) {
+                        let [x, v, a] = saved.coupled[k];
+                        s.near[k] = x + v * h1 + a * h2;
+                    }
+                }
                 most
             },
         )
@@ -324,7 +348,7 @@ impl<'m, T: Real> Stepper<'m, T> {
     }
 
     /// Accepts the position at t, a step h after the one before (0 at the start of a path).
-    fn save(&mut self, t: f64, h: f64) {
+    pub(super) fn save(&mut self, t: f64, h: f64) {
         let (s, saved) = (&self.state, &mut self.saved);
         let per_step = s.witness.like(if h > 0.0 { 1.0 / h } else { 0.0 });
         for (jerk, (after, before)) in saved.jerk.iter_mut().zip(s.qdd.iter().zip(&saved.qdd)) {
@@ -336,7 +360,17 @@ impl<'m, T: Real> Stepper<'m, T> {
         saved.balls.copy_from_slice(&s.balls);
         saved.pivots.copy_from_slice(&s.pivots);
         saved.drivers.copy_from_slice(&self.drivers);
+        for &r in &self.topology.coupled_rows {
+            for (k, _) in self.topology.parts_of_row(r) {
+                saved.coupled[k] = s.coordinate_of_row(&self.topology, k);
+            }
+        }
         self.time = t;
+    }
+
+    /// Goes back to the saved position.
+    pub(super) fn restore(&mut self) {
+        self.predict(0.0);
     }
 
     /// Chooses other independent rows for blocks whose present ones have become nearly dependent.
@@ -353,14 +387,8 @@ impl<'m, T: Real> Stepper<'m, T> {
             let dense = rows
                 .iter()
                 .map(|&r| {
-                    let place = self.topology.rows[r];
-                    let closure = &self.topology.closures[place.closure];
-                    let scale = if closure.rows[place.index].is_length() { 1.0 / s.size } else { 1.0 };
                     let mut row = vec![0.0; block.unknowns.len()];
-                    for &(column, c, side) in &closure.entries {
-                        let unit = if self.topology.coordinates[c].is_length { s.size } else { 1.0 };
-                        row[column] = scale * unit * side * s.l[r].on(s.x[c]).lane(0);
-                    }
+                    s.scaled_row(&self.topology, r, 0, &mut row);
                     row
                 })
                 .collect();
@@ -395,14 +423,14 @@ impl<'m, T: Real> Stepper<'m, T> {
         }
     }
 
-    fn stop(&self, path: Path, t: f64, refusal: Refusal, moved: bool) -> Stop {
+    pub(super) fn stop(&self, path: Path, t: f64, refusal: Refusal, moved: bool) -> Stop {
         let (kind, block) = match refusal {
             Refusal::Position(
                 PositionFailure::Singular { block } | PositionFailure::NoConvergence { block },
             ) => (self.obstacle(block, false), Some(block)),
             Refusal::Branch { block } => (self.obstacle(block, true), Some(block)),
             Refusal::Locked { row, residual } => {
-                let place = self.topology.rows[row];
+                let place = &self.topology.rows[row];
                 let closure = &self.topology.closures[place.closure];
                 let row: Row = closure.rows[place.index];
                 let kind = StopKind::Locked { joint: closure.joint, residual, is_length: row.is_length() };
@@ -411,6 +439,7 @@ impl<'m, T: Real> Stepper<'m, T> {
             Refusal::Law { driver } => (StopKind::LawNotFinite { driver: DriverId(driver) }, None),
         };
         let ramp_start = match path {
+            Path::Assembly => Some(0.0),
             Path::Ramp { start } => Some(start),
             Path::Laws => None,
         };
@@ -422,13 +451,16 @@ impl<'m, T: Real> Stepper<'m, T> {
                 .model
                 .drivers
                 .iter()
-                .map(|d| match ramp_start {
-                    Some(start) => self.time * d.law.at(start).value(),
-                    None => d.law.at(self.time).value(),
+                .map(|d| match path {
+                    Path::Assembly => 0.0,
+                    Path::Ramp { start } => self.time * d.law.at(start).value(),
+                    Path::Laws => d.law.at(self.time).value(),
                 })
                 .collect(),
             pivot_ratio: block.map_or(1.0, |b| self.saved.pivots[b].0),
             joints: block.map_or_else(Vec::new, |b| self.topology.joints_of_block(b)),
+            remains: Vec::new(),
+            closed: (path == Path::Assembly).then_some(self.time),
         }
     }
 

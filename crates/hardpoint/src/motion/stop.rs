@@ -1,5 +1,6 @@
 //! Why a motion ended before its last output time.
 
+use super::assembly::{Closing, Gap};
 use crate::model::{JointId, Model};
 
 /// A run that could not go on. What was solved before is kept.
@@ -17,6 +18,10 @@ pub struct Stop {
     pub pivot_ratio: f64,
     /// The joints of that loop.
     pub joints: Vec<JointId>,
+    /// Where the mechanism does not assemble: what stays open at best, largest first.
+    pub remains: Vec<Gap>,
+    /// Where the mechanism was being assembled: the part of its gaps that could be closed together, 0 to 1.
+    pub closed: Option<f64>,
 }
 
 /// What ended a run.
@@ -26,6 +31,8 @@ pub enum StopKind {
     Limit,
     /// A dead point or change point: beyond it the mechanism may take another branch (HP0402).
     BranchChange,
+    /// The configuration as drawn is open and cannot be closed (HP0406).
+    DoesNotAssemble,
     /// Redundant constraints contradict each other there: the mechanism locks (HP0403).
     Locked {
         /// The joint whose constraint fails.
@@ -53,6 +60,7 @@ impl Stop {
             StopKind::Locked { .. } => "HP0403",
             StopKind::LawNotFinite { .. } => "HP0404",
             StopKind::Interrupted => "HP0405",
+            StopKind::DoesNotAssemble => "HP0406",
         }
     }
 
@@ -65,6 +73,16 @@ impl Stop {
         match self.kind {
             StopKind::Limit => format!("the mechanism cannot move beyond t = {t:.6} s"),
             StopKind::BranchChange => format!("the mechanism passes a dead point at t = {t:.6} s"),
+            StopKind::DoesNotAssemble => match self.remains.first() {
+                Some(gap) => format!("the mechanism does not assemble: {} stays open", gap.of.name(model)),
+                None => "the mechanism does not assemble".into(),
+            },
+            StopKind::Locked { joint, .. } if self.closed.is_some() => {
+                format!(
+                    "the mechanism does not assemble: joint `{}` cannot be closed with the others",
+                    model.joints[joint.0].name
+                )
+            }
             StopKind::Locked { joint, .. } => {
                 format!(
                     "the mechanism locks at t = {t:.6} s: joint `{}` cannot stay closed",
@@ -96,8 +114,23 @@ impl Stop {
                 "the loop has redundant constraints that agree at the design configuration only; check that its axes \
                  are exactly parallel (or meet in one point), or give a joint more freedom"
             }
+            StopKind::DoesNotAssemble => {
+                "change the lengths or places of these joints by at least what stays open, or give one of them more \
+                 freedom"
+            }
             StopKind::LawNotFinite { .. } => "change the law, or end the run before that time",
             StopKind::Interrupted => return None,
         })
+    }
+}
+
+impl Closing {
+    /// Its kind and name, for messages.
+    pub fn name(self, model: &Model) -> String {
+        match self {
+            Self::Joint(j) => format!("joint `{}`", model.joints[j.0].name),
+            Self::Driver(d) => format!("driver `{}`", model.drivers[d.0].name),
+            Self::Coupler(c) => format!("coupler `{}`", model.couplers[c].name),
+        }
     }
 }

@@ -1,8 +1,8 @@
 //! Kinematic admissibility of a design variable: can the joints stay closed, and how.
 
 use crate::constraint::{Ends, Row};
-use crate::model::{Field, JointId, Model};
-use crate::space::{Pose, Twist};
+use crate::model::{Field, JointId, Kept, Model};
+use crate::space::Twist;
 
 /// Whether and how a mechanism follows a design variable.
 #[derive(Clone, Debug, PartialEq)]
@@ -51,8 +51,8 @@ pub fn admissibility_at_design(model: &Model, field: &Field) -> Vec<JointDefect>
         for m in field.markers.iter().filter(|m| m.joint.0 == k) {
             z[m.end] = model.bodies[joint.bodies[m.end].0].frame.carry(m.twist);
         }
-        let length: f64 = field.lengths.iter().filter(|(j, _)| j.0 == k).map(|(_, l)| *l).sum();
-        let [i, j] = joint.at.map(|h| Pose { rot: joint.frame, r: model.position(h) });
+        let kept = field.kept.iter().find(|(j, _)| j.0 == k).map_or(Kept::default(), |(_, kept)| *kept);
+        let [i, j] = [0, 1].map(|e| model.marker(JointId(k), e));
         // A driven coordinate is a constraint too: it must stay at zero in the design configuration.
         let driven = model.drivers.iter().filter(|d| d.joint.0 == k).map(|d| model.driven(d).row);
         let worst = joint
@@ -61,10 +61,7 @@ pub fn admissibility_at_design(model: &Model, field: &Field) -> Vec<JointDefect>
             .iter()
             .copied()
             .chain(driven)
-            .map(|row| {
-                let rate = if row == Row::Distance { length } else { 0.0 };
-                (row, (row.wrench(&Ends { i, j }).on(z[1] - z[0]) - rate).abs())
-            })
+            .map(|row| (row, (row.wrench(&Ends { i, j }).on(z[1] - z[0]) - kept.by(row)).abs()))
             .max_by(|a, b| a.1.total_cmp(&b.1));
         if let Some((row, value)) = worst
             && value > OPEN * scale

@@ -1,10 +1,9 @@
 //! The three levels of one design variable at one step.
 
-use crate::constraint::Row;
 use crate::model::{Field, JointId, Model};
-use crate::motion::kinematics::{State, level};
+use crate::motion::kinematics::{State, level, sum_couplers};
 use crate::motion::stepper::LOCKED;
-use crate::space::{Real, Twist};
+use crate::space::{LANES, Real, Twist};
 use crate::topology::Topology;
 
 /// Design velocities laid out for the plan, one variable per lane: body-fixed marker twists by link and
@@ -13,8 +12,8 @@ use crate::topology::Topology;
 pub(crate) struct FieldParts<T> {
     links: Vec<Moving<T>>,
     closures: Vec<Moving<T>>,
-    /// Distance rows whose design length changes, and its rate.
-    lengths: Vec<(usize, T)>,
+    /// Rows whose kept values change, and their rates.
+    kept: Vec<(usize, T)>,
     /// Largest speed in each field: what round-off of a defect is compared with.
     scale: T,
 }
@@ -55,7 +54,7 @@ impl<T: Real> FieldParts<T> {
         let moves = |joint: JointId, end: usize| {
             fields.iter().any(|f| f.markers.iter().any(|m| m.joint == joint && m.end == end))
         };
-        let (mut links, mut closures, mut lengths) = (Vec::new(), Vec::new(), Vec::new());
+        let (mut links, mut closures, mut kept) = (Vec::new(), Vec::new(), Vec::new());
         for (at, link) in topology.links.iter().enumerate() {
             let Some(joint) = link.joint else { continue };
             for (end, body) in [(0, link.parent.0), (1, link.child.0)] {
@@ -70,13 +69,13 @@ impl<T: Real> FieldParts<T> {
                 let body = closure.bodies[end].0;
                 closures.push(Moving { at, end, body, e: twist_of(closure.joint, end) });
             }
-            let rate = witness.like_lanes(|k| {
-                let lengths = fields.get(k).map_or(&[][..], |f| &f.lengths);
-                lengths.iter().filter(|(j, _)| *j == closure.joint).map(|(_, l)| *l).sum()
-            });
-            for (k, _) in closure.rows.iter().enumerate().filter(|(_, row)| **row == Row::Distance) {
+            for (k, row) in closure.rows.iter().enumerate() {
+                let rate = witness.like_lanes(|lane| {
+                    let kept = fields.get(lane).map_or(&[][..], |f| &f.kept);
+                    kept.iter().filter(|(j, _)| *j == closure.joint).map(|(_, rate)| rate.by(*row)).sum()
+                });
                 if rate.abs().largest() > 0.0 {
-                    lengths.push((closure.first_row + k, rate));
+                    kept.push((closure.first_row + k, rate));
                 }
             }
         }
@@ -84,7 +83,7 @@ impl<T: Real> FieldParts<T> {
             let markers = fields.get(k).map_or(&[][..], |f| &f.markers);
             markers.iter().map(|m| m.twist.w.norm().max(m.twist.v.norm())).fold(0.0, f64::max)
         });
-        Self { links, closures, lengths, scale }
+        Self { links, closures, kept, scale }
     }
 }
 
@@ -210,10 +209,11 @@ impl<T: Real> Direct<T> {
             }
         }
         if order == 0 {
-            for &(row, rate) in &field.lengths {
+            for &(row, rate) in &field.kept {
                 self.row_rhs[row] += rate;
             }
         }
+        sum_couplers(topology, &mut self.row_rhs);
         level(
             topology,
             &mut state.factors,
@@ -239,21 +239,28 @@ impl<T: Real> Direct<T> {
     ) {
         worst.fill(None);
         let zero = state.witness.zero();
-        for (r, place) in topology.rows.iter().enumerate().filter(|(_, p)| !p.selected) {
-            let [i, j] = topology.closures[place.closure].bodies;
-            let [z_i, z_j] = self.z_end[0][place.closure];
-            let rate = field.lengths.iter().find(|(row, _)| *row == r).map_or(zero, |(_, l)| *l);
-            let (l, w) = (state.l[r], &self.w[0]);
-            let terms = state.witness.within(
-                #[inline(always)]
-                || [l.on(w[j.0]), l.on(z_j), -l.on(w[i.0]), -l.on(z_i), -rate],
-            );
-            for (lane, worst) in worst.iter_mut().enumerate() {
-                let (mut defect, mut size) = (0.0, 0.0_f64);
-                for term in &terms {
-                    defect += term.lane(lane);
-                    size = size.max(term.lane(lane).abs());
+        for (r, _) in topology.rows.iter().enumerate().filter(|(_, p)| !p.selected && !p.is_term) {
+            // Per lane: the sum of all terms, and the largest of them.
+            let mut sums = [(0.0, 0.0_f64); LANES];
+            for (k, factor) in topology.parts_of_row(r) {
+                let closure = topology.rows[k].closure;
+                let [i, j] = topology.closures[closure].bodies;
+                let [z_i, z_j] = self.z_end[0][closure];
+                let rate = field.kept.iter().find(|(row, _)| *row == k).map_or(zero, |(_, rate)| *rate);
+                let (l, w, factor) = (state.l[k], &self.w[0], zero.like(factor));
+                let terms = state.witness.within(
+                    #[inline(always)]
+                    || [l.on(w[j.0]), l.on(z_j), -l.on(w[i.0]), -l.on(z_i), -rate].map(|x| x * factor),
+                );
+                for (lane, (sum, most)) in sums[..T::LANES].iter_mut().enumerate() {
+                    for term in &terms {
+                        *sum += term.lane(lane);
+                        *most = most.max(term.lane(lane).abs());
+                    }
                 }
+            }
+            for (lane, worst) in worst.iter_mut().enumerate() {
+                let (defect, size): (f64, f64) = sums[lane];
                 // What typed coordinates may be off by in the motion, they may be off by in the design's terms.
                 let is_defect =
                     !(defect.abs() <= LOCKED * size) && defect.abs() > DEFECT_FLOOR * field.scale.lane(lane);

@@ -73,7 +73,7 @@ impl<'f, T: Real> Sensing<'f, T> {
 
     /// Keeps in mind which joint resists variable b most, and when.
     fn note(&mut self, topology: &Topology, b: usize, defect: Defect, t: f64) {
-        let place = topology.rows[defect.row];
+        let place = &topology.rows[defect.row];
         let closure = &topology.closures[place.closure];
         let row = closure.rows[place.index];
         let (joints, time) = &mut self.resisting[b];

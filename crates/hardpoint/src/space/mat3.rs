@@ -33,6 +33,15 @@ impl Mat3<f64> {
         Self { cols: Vec3::AXES.map(turn) }
     }
 
+    /// Angle of the rotation from this orientation to another, 0 to pi.
+    pub fn angle_to(self, o: Self) -> f64 {
+        let d = self.transpose() * o;
+        let [f, g, h] = d.cols;
+        // Half the antisymmetric part is the axis times the sine; exact for small angles, where the trace is not.
+        let sine = 0.5 * Vec3::new(g.z - h.y, h.x - f.z, f.y - g.x).norm();
+        sine.atan2(0.5 * (f.x + g.y + h.z - 1.0))
+    }
+
     /// The smallest rotation that carries unit vector `a` into unit vector `b` (not opposite to it).
     pub fn between(a: Vec3, b: Vec3) -> Self {
         let v = a.cross(b);

@@ -104,6 +104,14 @@ impl<T: Real> Wrench<T> {
     }
 }
 
+impl<T: Real> Sub for Wrench<T> {
+    type Output = Self;
+    #[inline(always)]
+    fn sub(self, o: Self) -> Self {
+        Self { m: self.m - o.m, f: self.f - o.f }
+    }
+}
+
 impl<T: Real> Add for Twist<T> {
     type Output = Self;
     #[inline(always)]

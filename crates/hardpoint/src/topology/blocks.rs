@@ -17,16 +17,35 @@ pub(super) const RANK_TOLERANCE: f64 = 1e-8;
 /// the mechanism's size.
 pub(super) type SparseRow = Vec<(usize, f64)>;
 
-/// The Jacobian of all rows of all closures at the design configuration.
+/// The Jacobian of all rows of all closures at the design configuration; empty for the further terms of a coupler, which
+/// are summed in its row.
 pub(super) fn design_jacobian(model: &Model, topology: &Topology) -> Vec<SparseRow> {
+    let parts = jacobian_of_parts(model, topology);
+    let sum = |(r, place): (usize, &RowPlace)| -> SparseRow {
+        if place.is_term {
+            return Vec::new();
+        }
+        let terms = topology.parts_of_row(r);
+        terms.flat_map(|(k, factor)| parts[k].iter().map(move |&(c, x)| (c, x * factor))).collect()
+    };
+    topology.rows.iter().enumerate().map(sum).collect()
+}
+
+/// The Jacobian of all rows, each by itself.
+///
+/// Scaled so that a row of a length is per size. A coupler between lengths and angles keeps its own proportions: its
+/// row as a whole is scaled like its first term.
+fn jacobian_of_parts(model: &Model, topology: &Topology) -> Vec<SparseRow> {
     let size = model.size();
     let mut rows = Vec::with_capacity(topology.rows.len());
     for closure in &topology.closures {
-        let joint = &model.joints[closure.joint.0];
-        let [i, j] = joint.at.map(|h| Pose { rot: joint.frame, r: model.position(h) });
+        let [i, j] = [0, 1].map(|e| model.marker(closure.joint, e));
         let ends = Ends { i, j };
+        let first =
+            closure.coupler.map_or(&closure.rows[0], |c| &model.coupled(&model.couplers[c].terms[0]).row);
         for row in &closure.rows {
             let wrench = row.wrench(&ends);
+            let row = if closure.coupler.is_some() { first } else { row };
             let scale = if row.is_length() { 1.0 / size } else { 1.0 };
             let mut entries = Vec::new();
             for &(k, side) in &closure.links {
@@ -80,7 +99,7 @@ fn independent_groups(
         node_of[c] = graph.add_node(());
     }
     let mut patterns: Vec<(NodeIndex, &SparseRow)> = Vec::new();
-    for closure in &topology.closures {
+    for closure in topology.closures.iter().filter(|c| !topology.rows[c.first_row].is_term) {
         let range = closure.first_row..closure.first_row + closure.rows.len();
         let dense: Vec<Vec<f64>> = jacobian[range.clone()]
             .iter()
@@ -142,16 +161,24 @@ fn assign(
         .iter()
         .map(|g| Block { unknowns: g.clone(), closures: Vec::new(), selected: Vec::new(), links: 0..0 })
         .collect();
-    for k in 0..topology.closures.len() {
-        let row = topology.closures[k].first_row;
-        let place = |c: usize| match topology.coordinates[c].source {
-            Source::Unknown { block, column } => Some((block, column)),
-            Source::Driven(_) => None,
-        };
-        let pattern = &jacobian[row];
-        let block = pattern.iter().filter_map(|(c, _)| place(*c)).map(|(b, _)| b).max();
+    let place = |c: usize| match topology.coordinates[c].source {
+        Source::Unknown { block, column } => Some((block, column)),
+        Source::Driven(_) => None,
+    };
+    // A closure belongs to the last block that moves it; the terms of a coupler to the last that moves any of them.
+    let block_of: Vec<Option<usize>> =
+        jacobian.iter().map(|row| row.iter().filter_map(|(c, _)| place(*c)).map(|(b, _)| b).max()).collect();
+    let mut block_of_row = block_of.clone();
+    for r in 0..topology.rows.len() {
+        for &(term, _) in &topology.rows[r].terms {
+            block_of_row[term] = block_of[r];
+        }
+    }
+    let mut entries_of = Vec::with_capacity(topology.closures.len());
+    for (k, closure) in topology.closures.iter().enumerate() {
+        let block = block_of_row[closure.first_row];
         let mut entries = Vec::new();
-        for &(link, side) in &topology.closures[k].links {
+        for &(link, side) in &closure.links {
             for step in &topology.links[link].steps {
                 for c in step.first..step.first + step.freedom.coordinates() {
                     if let Some((b, column)) = place(c)
@@ -162,11 +189,14 @@ fn assign(
                 }
             }
         }
-        topology.closures[k].entries = entries;
-        topology.closures[k].block = block;
+        entries_of.push(entries);
         if let Some(b) = block {
             blocks[b].closures.push(k);
         }
+    }
+    for (closure, entries) in topology.closures.iter_mut().zip(entries_of) {
+        closure.block = block_of_row[closure.first_row];
+        closure.entries = entries;
     }
     let mut free = Vec::new();
     topology.blocks = blocks;

@@ -1,7 +1,6 @@
 //! What can be wrong with a mechanism as a whole, in the user's own names.
 
 use super::*;
-use crate::constraint::Row;
 
 /// The mechanism cannot be driven as it is written.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -169,7 +168,7 @@ pub(super) fn contradicted(
     let mut joint_names: Vec<String> = Vec::new();
     let mut bodies: Vec<BodyId> = Vec::new();
     for (r, fails) in contradictions {
-        let place = topology.rows[*r];
+        let place = &topology.rows[*r];
         let closure = &topology.closures[place.closure];
         drivers.extend((0..fails.len()).filter(|&d| fails[d] != 0.0).map(DriverId));
         drivers.extend(closure.driver);
@@ -178,11 +177,7 @@ pub(super) fn contradicted(
         if let Some(block) = closure.block {
             bodies.extend(topology.links[topology.blocks[block].links.clone()].iter().map(|l| l.child));
         }
-        let row: Row = closure.rows[place.index];
-        joint_names.push(match closure.driver {
-            Some(d) => format!("driver `{}` ({})", model.drivers[d.0].name, row.describe()),
-            None => format!("`{}` ({})", model.joints[closure.joint.0].name, row.describe()),
-        });
+        joint_names.push(topology.row_name(model, *r));
     }
     drivers.sort_unstable();
     drivers.dedup();

@@ -54,7 +54,7 @@ pub(super) fn examine(model: &Model, topology: &mut Topology) -> Result<(), Topo
     }
     // A contradiction is a left-out row that fails under some driver's motion; by how much, per driver.
     let mut contradictions: Vec<(usize, Vec<f64>)> = Vec::new();
-    for (r, row) in topology.rows.iter().enumerate().filter(|(_, r)| !r.selected) {
+    for (r, row) in topology.rows.iter().enumerate().filter(|(_, r)| !r.selected && !r.is_term) {
         let fails: Vec<f64> = (0..drivers)
             .map(|d| {
                 let sum: f64 = jacobian[r].iter().map(|&(c, x)| x * speeds[c][d]).sum();

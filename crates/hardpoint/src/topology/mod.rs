@@ -42,6 +42,8 @@ pub struct Topology {
     pub blocks: Vec<Block>,
     /// For every row of every closure (numbered through): where it stands.
     pub rows: Vec<RowPlace>,
+    /// The rows that are couplers.
+    pub coupled_rows: Vec<usize>,
     /// Degrees of freedom without drivers, at the design configuration.
     pub mobility: usize,
     /// Why each joint is in the tree or cut, by joint.
@@ -135,6 +137,8 @@ pub struct Closure {
     pub joint: JointId,
     /// The driver, if these rows prescribe a coordinate of a cut joint.
     pub driver: Option<DriverId>,
+    /// The coupler, if its row is a term of one: an index into [`Model::couplers`].
+    pub coupler: Option<usize>,
     /// Bodies i and j.
     pub bodies: [BodyId; 2],
     /// The elementary constraints.
@@ -150,7 +154,7 @@ pub struct Closure {
 }
 
 /// Where a constraint row stands.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub struct RowPlace {
     /// Its closure.
     pub closure: usize,
@@ -158,6 +162,10 @@ pub struct RowPlace {
     pub index: usize,
     /// Whether it is one of the independent rows that are solved with; else it is redundant and watched.
     pub selected: bool,
+    /// The further terms of a coupler, which this row is the first of: their rows, and their factors.
+    pub terms: Vec<(usize, f64)>,
+    /// Whether it is a further term of a coupler, and no constraint by itself.
+    pub is_term: bool,
 }
 
 /// Unknowns and rows that are solved together.
@@ -198,16 +206,34 @@ impl Topology {
 
     /// The rows that are left out because the others imply them, with their joints.
     pub fn redundant(&self) -> impl Iterator<Item = (&Closure, Row)> {
-        self.rows.iter().filter(|r| !r.selected).map(|r| {
+        self.rows.iter().filter(|r| !r.selected && !r.is_term).map(|r| {
             let c = &self.closures[r.closure];
             (c, c.rows[r.index])
         })
     }
 
-    /// All rows of a block's closures, the redundant ones included.
+    /// All constraint rows of a block's closures, the redundant ones included.
     pub fn rows_of_block(&self, block: usize) -> Vec<usize> {
         let closures = self.blocks[block].closures.iter().map(|&c| &self.closures[c]);
-        closures.flat_map(|c| c.first_row..c.first_row + c.rows.len()).collect()
+        let rows = closures.flat_map(|c| c.first_row..c.first_row + c.rows.len());
+        rows.filter(|&r| !self.rows[r].is_term).collect()
+    }
+
+    /// The rows whose sum, each times its factor, is constraint row r: itself, and a coupler's further terms.
+    pub fn parts_of_row(&self, r: usize) -> impl Iterator<Item = (usize, f64)> + '_ {
+        std::iter::once((r, 1.0)).chain(self.rows[r].terms.iter().copied())
+    }
+
+    /// What a closure's rows are called in messages: the joint with its constraint, the driver, or the coupler.
+    pub(crate) fn row_name(&self, model: &Model, r: usize) -> String {
+        let place = &self.rows[r];
+        let closure = &self.closures[place.closure];
+        let row = closure.rows[place.index].describe();
+        match (closure.driver, closure.coupler) {
+            (Some(d), _) => format!("driver `{}` ({row})", model.drivers[d.0].name),
+            (None, Some(c)) => format!("coupler `{}`", model.couplers[c].name),
+            (None, None) => format!("`{}` ({row})", model.joints[closure.joint.0].name),
+        }
     }
 
     /// Solves a block with these independent rows from now on.
@@ -234,10 +260,7 @@ impl Link {
     /// The frame in which its freedoms start, at the design configuration, in the world.
     fn frame_at_design(&self, model: &Model) -> Pose {
         match self.joint {
-            Some(j) => {
-                let joint = &model.joints[j.0];
-                Pose { rot: joint.frame, r: model.position(joint.at[self.parent_end]) }
-            }
+            Some(j) => model.marker(j, self.parent_end),
             None => model.bodies[self.child.0].frame,
         }
     }

@@ -29,6 +29,7 @@ pub(super) fn grow(model: &Model, formulation: Formulation) -> Topology {
         closures: Vec::new(),
         blocks: Vec::new(),
         rows: Vec::new(),
+        coupled_rows: Vec::new(),
         mobility: 0,
         roles: Vec::new(),
     };
@@ -57,23 +58,38 @@ pub(super) fn grow(model: &Model, formulation: Formulation) -> Topology {
     for (k, link) in topology.links.iter().enumerate() {
         link_of[link.child.0] = Some(k);
     }
+    let mut add = |joint: usize, driver: Option<usize>, coupler: Option<usize>, rows: Vec<Row>| {
+        let owner = Owner { joint: JointId(joint), driver: driver.map(DriverId), coupler };
+        add_closure(&mut topology, &link_of, owner, model.joints[joint].bodies, rows);
+    };
     for (k, joint) in model.joints.iter().enumerate() {
         let cut = matches!(roles[k], Role::Cut(_));
-        if cut && !joint.kind.rows.is_empty() {
-            add_closure(&mut topology, &link_of, JointId(k), None, joint.bodies, joint.kind.rows.to_vec());
+        let rows = if cut { joint.kind.rows } else { joint.kind.tree_rows };
+        if !rows.is_empty() {
+            add(k, None, None, rows.to_vec());
         }
         for (d, driver) in model.drivers.iter().enumerate().filter(|(_, d)| d.joint.0 == k) {
             if cut {
-                add_closure(
-                    &mut topology,
-                    &link_of,
-                    JointId(k),
-                    Some(DriverId(d)),
-                    joint.bodies,
-                    vec![model.driven(driver).row],
-                );
+                add(k, Some(d), None, vec![model.driven(driver).row]);
             }
         }
+    }
+    for (c, coupler) in model.couplers.iter().enumerate() {
+        for term in &coupler.terms {
+            add(term.joint.0, None, Some(c), vec![model.coupled(term).row]);
+        }
+    }
+    let mut first = topology.rows.len() - model.couplers.iter().map(|c| c.terms.len()).sum::<usize>();
+    for coupler in &model.couplers {
+        // Every other row has the factor 1, so a coupler is divided by its first coefficient.
+        let others = coupler.terms.iter().enumerate().skip(1);
+        let factors = others.map(|(k, t)| (first + k, t.coefficient / coupler.terms[0].coefficient));
+        topology.rows[first].terms = factors.collect();
+        topology.coupled_rows.push(first);
+        for k in 1..coupler.terms.len() {
+            topology.rows[first + k].is_term = true;
+        }
+        first += coupler.terms.len();
     }
     topology.roles = roles;
     topology
@@ -195,23 +211,30 @@ fn add_link(
     topology.links.push(Link { joint, parent, child, parent_end, steps, stage: 0 });
 }
 
+/// What the rows of a closure belong to.
+struct Owner {
+    joint: JointId,
+    driver: Option<DriverId>,
+    coupler: Option<usize>,
+}
+
 fn add_closure(
     topology: &mut Topology,
     link_of: &[Option<usize>],
-    joint: JointId,
-    driver: Option<DriverId>,
+    Owner { joint, driver, coupler }: Owner,
     bodies: [BodyId; 2],
     rows: Vec<Row>,
 ) {
     let first_row = topology.rows.len();
     let closure = topology.closures.len();
     for index in 0..rows.len() {
-        topology.rows.push(RowPlace { closure, index, selected: false });
+        topology.rows.push(RowPlace { closure, index, selected: false, terms: Vec::new(), is_term: false });
     }
     let links = loop_links(topology, link_of, bodies);
     topology.closures.push(Closure {
         joint,
         driver,
+        coupler,
         bodies,
         rows,
         first_row,

@@ -129,8 +129,15 @@ fn the_field_is_the_derivative_of_the_geometry_for_every_kind_of_change() {
                             worst = worst.max((d - w.cross(o.rot.cols[c])).norm());
                         }
                     }
-                    let rate: f64 = field.lengths.iter().filter(|(k, _)| k.0 == j).map(|(_, l)| *l).sum();
-                    worst = worst.max(((p.lengths[j] - m.lengths[j]) / (2.0 * h) - rate).abs());
+                    let rate =
+                        field.kept.iter().find(|(k, _)| k.0 == j).map_or(Kept::default(), |(_, kept)| *kept);
+                    for (p, m, rate) in [
+                        (p.kept[j].distance, m.kept[j].distance, rate.distance),
+                        (p.kept[j].offset, m.kept[j].offset, rate.offset),
+                        (p.kept[j].cosine, m.kept[j].cosine, rate.cosine),
+                    ] {
+                        worst = worst.max(((p - m) / (2.0 * h) - rate).abs());
+                    }
                 }
                 worst
             };

@@ -153,6 +153,14 @@ fn moved_draft(draft: &Draft, to: Pose) -> Draft {
     for p in &mut d.points {
         place(&mut p.at);
     }
+    for driver in &mut d.drivers {
+        if let DrivenDraft::Position { point: PointRef::On { at, .. }, along: Line::Along(along) } =
+            &mut driver.drives
+        {
+            place(at);
+            *along = to.rot * *along;
+        }
+    }
     for m in &mut d.measures {
         if let MeasureKindDraft::Distance {
             from: PointRef::On { at, .. },
@@ -172,6 +180,10 @@ fn swapping_the_bodies_of_every_joint_only_turns_the_signs_of_its_coordinates() 
         let draft = reference_draft(name);
         let mut swapped = draft.clone();
         for j in &mut swapped.joints {
+            // What is a line or plane of body i is not one of body j.
+            if ["inline", "inplane", "dot2"].contains(&j.kind.as_str()) {
+                continue;
+            }
             // A universal joint's two pins belong to body i and body j, so swap those too.
             j.bodies.swap(0, 1);
             j.at.reverse();
@@ -180,13 +192,22 @@ fn swapping_the_bodies_of_every_joint_only_turns_the_signs_of_its_coordinates() 
             }
         }
         for d in &mut swapped.drivers {
-            if draft.joints.iter().any(|j| j.name == d.joint && j.kind != "leg") {
+            let DrivenDraft::Coordinate { joint, .. } = &d.drives else { continue };
+            if draft.joints.iter().any(|j| j.name == *joint && j.kind != "leg") {
                 d.law = d.law.clone().scaled(-1.0);
             }
         }
         for v in &mut swapped.design {
             for c in &mut v.changes {
-                if let ChangeDraft::Marker { end, .. } = c {
+                if let ChangeDraft::Marker { joint, end, .. } = c {
+                    let kept = draft
+                        .joints
+                        .iter()
+                        .zip(&swapped.joints)
+                        .any(|(a, b)| a.name == *joint && a.bodies == b.bodies);
+                    if kept {
+                        continue;
+                    }
                     *end = match end {
                         End::I => End::J,
                         End::J => End::I,

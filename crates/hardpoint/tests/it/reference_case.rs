@@ -53,22 +53,36 @@ impl Case {
         for j in list(&json, "joints") {
             draft.joints.push(joint(j)?);
         }
-        if list(&json, "couplers").next().is_some() {
-            return Err("couplers are not built yet".into());
+        for c in list(&json, "couplers") {
+            let terms = list(c, "terms").map(|t| {
+                Ok(TermDraft {
+                    joint: text(t, "joint")?,
+                    coordinate: Some(text(t, "coordinate")?),
+                    coefficient: t["coefficient"].as_f64().ok_or("no coefficient")?,
+                })
+            });
+            let terms: Vec<TermDraft> = terms.collect::<Result<_, String>>()?;
+            draft
+                .couplers
+                .push(CouplerDraft { name: text(c, "name")?, kind: CouplerKindDraft::Linear(terms) });
         }
         for d in list(&json, "drivers") {
-            let coordinate = match text(d, "kind")?.as_str() {
-                "joint_angle" => "angle",
-                "joint_displacement" => "displacement",
-                "joint_length" => "length",
+            let coordinate = |name: &str| -> Result<DrivenDraft, String> {
+                Ok(DrivenDraft::Coordinate { joint: text(d, "joint")?, coordinate: Some(name.into()) })
+            };
+            let law = Law::parse(&text(d, "expression")?).map_err(|e| e.to_string())?;
+            let drives = match text(d, "kind")?.as_str() {
+                "joint_angle" => coordinate("angle")?,
+                "joint_displacement" => coordinate("displacement")?,
+                "joint_length" => coordinate("length")?,
+                "point_coordinate" => {
+                    let along = vec3(&d["direction"]).ok_or("no direction")?;
+                    let point = PointRef::On { body: text(d, "body")?, at: place(&d["location"])? };
+                    DrivenDraft::Position { point, along: Line::Along(along) }
+                }
                 other => return Err(format!("driver kind `{other}` is not built yet")),
             };
-            draft.drivers.push(DriverDraft {
-                name: text(d, "name")?,
-                joint: text(d, "joint")?,
-                coordinate: Some(coordinate.into()),
-                law: Law::parse(&text(d, "expression")?).map_err(|e| e.to_string())?,
-            });
+            draft.drivers.push(DriverDraft { name: text(d, "name")?, drives, law });
         }
         let mut inadmissible = Vec::new();
         let mut admissible_at_design = Vec::new();
@@ -320,7 +334,7 @@ fn joint(j: &Value) -> Result<JointDraft, String> {
     let pivot_axis = j.get("pivots").and_then(|p| Some(vec3(&p[1])? - vec3(&p[0])?));
     // A case may give a marker's axes where the joint needs none (a weld's, say): they place nothing.
     let kind = hardpoint::joint::named(&text(j, "type")?);
-    let needs = |need: fn(&JointType) -> Need| kind.is_none_or(|k| need(k) == Need::Required);
+    let needs = |need: fn(&JointType) -> Need| kind.is_none_or(|k| need(k) != Need::Unused);
     let axis = |key: &str| j.get(key).and_then(vec3).map(Line::Along);
     Ok(JointDraft {
         name: text(j, "name")?,
@@ -329,7 +343,7 @@ fn joint(j: &Value) -> Result<JointDraft, String> {
         at,
         axis: pivot_axis.map(Line::Along).or_else(|| axis("axis")).filter(|_| needs(|k| k.axis)),
         axis2: axis("axis2").filter(|_| needs(|k| k.axis2)),
-        cut: false,
+        ..JointDraft::default()
     })
 }
 

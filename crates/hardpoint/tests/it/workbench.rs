@@ -18,8 +18,16 @@ pub fn reference_draft(name: &str) -> Draft {
 }
 
 /// All reference mechanisms that the library ships.
-pub const REFERENCES: [&str; 6] =
-    ["slider_crank", "macpherson", "rssr", "hooke", "double_wishbone", "jansen"];
+pub const REFERENCES: [&str; 8] = [
+    "slider_crank",
+    "macpherson",
+    "rssr",
+    "hooke",
+    "double_wishbone",
+    "jansen",
+    "drivetrain",
+    "elementary_chain",
+];
 
 pub fn body(name: &str) -> BodyDraft {
     BodyDraft { name: name.into(), frame: FrameDraft::Default }
@@ -38,13 +46,13 @@ pub fn joint(
         bodies: bodies.map(Into::into),
         at: at.iter().map(|&p| Place::At(p.into())).collect(),
         axis: axis.map(|a| Line::Along(a.into())),
-        axis2: None,
-        cut: false,
+        ..JointDraft::default()
     }
 }
 
 pub fn driver(name: &str, joint: &str, law: &str) -> DriverDraft {
-    DriverDraft { name: name.into(), joint: joint.into(), coordinate: None, law: Law::parse(law).unwrap() }
+    let drives = DrivenDraft::Coordinate { joint: joint.into(), coordinate: None };
+    DriverDraft { name: name.into(), drives, law: Law::parse(law).unwrap() }
 }
 
 /// A planar four-bar of 3D revolutes about z through the points A, B, C, D; the crank A-B is driven.

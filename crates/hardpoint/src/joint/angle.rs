@@ -1,0 +1,18 @@
+//! Angle: the angle between an axis of body i and an axis of body j stays.
+
+use super::{JointType, Need};
+use crate::constraint::Row;
+
+/// z_i . z_j keeps its design value: one constraint.
+pub static ANGLE: JointType = JointType {
+    name: "angle",
+    aliases: &[],
+    summary: "the angle between `axis` on body i and `axis2` on body j stays what it is",
+    places: 0,
+    axis: Need::Required,
+    axis2: Need::OnBodyJ,
+    freedoms: None,
+    tree_rows: &[],
+    rows: &[Row::Cosine],
+    coordinates: &[],
+};

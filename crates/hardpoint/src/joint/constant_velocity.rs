@@ -1,0 +1,19 @@
+//! Constant velocity: two shafts that meet in a point and turn alike, whatever the angle between them.
+
+use super::{Freedom, JointType, Need};
+use crate::constraint::{COINCIDE, Row};
+
+/// d = 0 and no turn about the line that halves the shafts' angle: four constraints. `axis` is the shaft on body i,
+/// `axis2` the shaft on body j, both pointing the same way along the train.
+pub static CONSTANT_VELOCITY: JointType = JointType {
+    name: "constant_velocity",
+    aliases: &["cv", "convel"],
+    summary: "a homokinetic joint: shaft `axis` of body i and shaft `axis2` of body j turn alike",
+    places: 1,
+    axis: Need::Required,
+    axis2: Need::OnBodyJ,
+    freedoms: Some(&[Freedom::Ball]),
+    tree_rows: &[Row::ConstantVelocity],
+    rows: &[COINCIDE[0], COINCIDE[1], COINCIDE[2], Row::ConstantVelocity],
+    coordinates: &[],
+};

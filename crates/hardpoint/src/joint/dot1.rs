@@ -1,0 +1,24 @@
+//! Dot-1: an axis of body i square to an axis of body j.
+
+use super::{Freedom, JointType, Need};
+use crate::constraint::Row;
+
+/// z_i . x_j = 0: one constraint (paper Eq. 4.1).
+pub static DOT1: JointType = JointType {
+    name: "dot1",
+    aliases: &["perpendicular", "perpendicular_axes"],
+    summary: "perpendicular axes: `axis` on body i stays square to `axis2` on body j",
+    places: 0,
+    axis: Need::Required,
+    axis2: Need::Required,
+    freedoms: Some(&[
+        Freedom::Slide(0),
+        Freedom::Slide(1),
+        Freedom::Slide(2),
+        Freedom::Turn(2),
+        Freedom::Turn(0),
+    ]),
+    tree_rows: &[],
+    rows: &[Row::Dot1(2, 0)],
+    coordinates: &[],
+};

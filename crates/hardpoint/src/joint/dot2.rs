@@ -1,0 +1,18 @@
+//! Dot-2: the line between two points stays square to an axis.
+
+use super::{JointType, Need};
+use crate::constraint::Row;
+
+/// z_i . d = 0: one constraint (paper Eq. 4.4).
+pub static DOT2: JointType = JointType {
+    name: "dot2",
+    aliases: &[],
+    summary: "the line from the point on body i to the point on body j stays square to `axis` on body i",
+    places: 2,
+    axis: Need::Required,
+    axis2: Need::Unused,
+    freedoms: None,
+    tree_rows: &[],
+    rows: &[Row::Dot2(2)],
+    coordinates: &[],
+};

@@ -1,0 +1,25 @@
+//! Heading: how far body j has turned, seen along an axis of body i.
+
+use super::{CoordinateType, JointType, Need};
+use crate::constraint::Row;
+use crate::joint::Quantity;
+
+/// No constraint of its own; a driver prescribes the angle (a platform's roll), or a measure reads it. `axis2` is the
+/// direction on body j whose angle it is.
+pub static HEADING: JointType = JointType {
+    name: "heading",
+    aliases: &[],
+    summary: "the angle of `axis2` on body j seen along `axis` on body i, that a driver prescribes or a measure reads",
+    places: 0,
+    axis: Need::Required,
+    axis2: Need::Optional,
+    freedoms: None,
+    tree_rows: &[],
+    rows: &[],
+    coordinates: &[CoordinateType {
+        name: "angle",
+        quantity: Quantity::Angle,
+        freedom: None,
+        row: Row::Heading,
+    }],
+};

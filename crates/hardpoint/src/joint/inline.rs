@@ -1,0 +1,18 @@
+//! In-line: a point on a line.
+
+use super::{Freedom, JointType, Need, displacement};
+use crate::constraint::ON_LINE;
+
+/// Body j's point on the line along z_i: two constraints.
+pub static INLINE: JointType = JointType {
+    name: "inline",
+    aliases: &["point_on_line"],
+    summary: "a point of body j stays on the line along `axis` on body i",
+    places: 1,
+    axis: Need::Required,
+    axis2: Need::Unused,
+    freedoms: Some(&[Freedom::Slide(2), Freedom::Ball]),
+    tree_rows: &[],
+    rows: &ON_LINE,
+    coordinates: &[displacement(0)],
+};

@@ -1,0 +1,18 @@
+//! In-plane: a point on a plane.
+
+use super::{Freedom, JointType, Need, displacement_along};
+use crate::constraint::Row;
+
+/// Body j's point on the plane normal to z_i: one constraint.
+pub static INPLANE: JointType = JointType {
+    name: "inplane",
+    aliases: &["point_on_plane"],
+    summary: "a point of body j stays on the plane normal to `axis` on body i",
+    places: 1,
+    axis: Need::Required,
+    axis2: Need::Optional,
+    freedoms: Some(&[Freedom::Slide(0), Freedom::Slide(1), Freedom::Ball]),
+    tree_rows: &[],
+    rows: &[Row::Dot2(2)],
+    coordinates: &[displacement_along("x", 0, 0), displacement_along("y", 1, 1)],
+};

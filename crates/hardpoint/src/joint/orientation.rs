@@ -1,0 +1,18 @@
+//! Orientation: body j does not turn relative to body i, but moves as it likes.
+
+use super::{Freedom, JointType, Need};
+use crate::constraint::PARALLEL_FRAMES;
+
+/// No relative rotation: three constraints.
+pub static ORIENTATION: JointType = JointType {
+    name: "orientation",
+    aliases: &[],
+    summary: "no relative rotation",
+    places: 0,
+    axis: Need::Unused,
+    axis2: Need::Unused,
+    freedoms: Some(&[Freedom::Slide(0), Freedom::Slide(1), Freedom::Slide(2)]),
+    tree_rows: &[],
+    rows: &PARALLEL_FRAMES,
+    coordinates: &[],
+};

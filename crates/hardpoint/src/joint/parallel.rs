@@ -1,0 +1,18 @@
+//! Parallel axes: body j turns about an axis of fixed direction, but moves as it likes.
+
+use super::{Freedom, JointType, Need, angle};
+use crate::constraint::PARALLEL_Z;
+
+/// z_j parallel to z_i: two constraints.
+pub static PARALLEL: JointType = JointType {
+    name: "parallel",
+    aliases: &["parallel_axes"],
+    summary: "`axis` on body j stays parallel to `axis` on body i",
+    places: 0,
+    axis: Need::Required,
+    axis2: Need::Unused,
+    freedoms: Some(&[Freedom::Slide(0), Freedom::Slide(1), Freedom::Slide(2), Freedom::Turn(2)]),
+    tree_rows: &[],
+    rows: &PARALLEL_Z,
+    coordinates: &[angle(3)],
+};

@@ -1,0 +1,18 @@
+//! Planar: body j slides and turns on a plane.
+
+use super::{Freedom, JointType, Need, angle, displacement_along};
+use crate::constraint::{PARALLEL_Z, Row};
+
+/// z_j parallel to z_i and the point on the plane: three constraints. x and y are along and across `axis2`.
+pub static PLANAR: JointType = JointType {
+    name: "planar",
+    aliases: &[],
+    summary: "slides on the plane normal to `axis` and turns about it",
+    places: 1,
+    axis: Need::Required,
+    axis2: Need::Optional,
+    freedoms: Some(&[Freedom::Slide(0), Freedom::Slide(1), Freedom::Turn(2)]),
+    tree_rows: &[],
+    rows: &[PARALLEL_Z[0], PARALLEL_Z[1], Row::Dot2(2)],
+    coordinates: &[angle(2), displacement_along("x", 0, 0), displacement_along("y", 1, 1)],
+};

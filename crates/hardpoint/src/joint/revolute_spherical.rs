@@ -1,0 +1,18 @@
+//! Revolute-spherical rod: a massless link on a hinge of body i, with a ball on body j.
+
+use super::{JointType, LENGTH, Need};
+use crate::constraint::Row;
+
+/// |d| and z_i . d keep their design values: the ball stays on a circle about the hinge's axis. Two constraints.
+pub static REVOLUTE_SPHERICAL: JointType = JointType {
+    name: "revolute_spherical",
+    aliases: &[],
+    summary: "a massless link with a hinge about `axis` on body i and a ball on body j",
+    places: 2,
+    axis: Need::Required,
+    axis2: Need::Unused,
+    freedoms: None,
+    tree_rows: &[],
+    rows: &[Row::Distance, Row::Offset],
+    coordinates: &[LENGTH],
+};

@@ -1,0 +1,19 @@
+//! Screw: a turn that advances along its own axis.
+
+use super::{Freedom, JointType, Need, angle, displacement};
+use crate::constraint::{ON_LINE, PARALLEL_Z};
+
+/// A cylindrical joint whose displacement is coupled to its angle by `lead`, the advance of one turn: five constraints,
+/// the last of which is a coupler ([`crate::model::Coupler`]).
+pub static SCREW: JointType = JointType {
+    name: "screw",
+    aliases: &[],
+    summary: "turns about `axis` and advances along it by `lead` per turn",
+    places: 1,
+    axis: Need::Required,
+    axis2: Need::Unused,
+    freedoms: Some(&[Freedom::Turn(2), Freedom::Slide(2)]),
+    tree_rows: &[],
+    rows: &[PARALLEL_Z[0], PARALLEL_Z[1], ON_LINE[0], ON_LINE[1]],
+    coordinates: &[angle(0), displacement(1)],
+};

@@ -1,0 +1,24 @@
+//! Travel: how far a point of body j has gone along an axis of body i.
+
+use super::{CoordinateType, JointType, Need};
+use crate::constraint::Row;
+use crate::joint::Quantity;
+
+/// No constraint of its own; a driver prescribes the point's coordinate (wheel travel), or a measure reads it.
+pub static TRAVEL: JointType = JointType {
+    name: "travel",
+    aliases: &[],
+    summary: "the way of a point of body j along `axis` on body i, that a driver prescribes or a measure reads",
+    places: 1,
+    axis: Need::Required,
+    axis2: Need::Unused,
+    freedoms: None,
+    tree_rows: &[],
+    rows: &[],
+    coordinates: &[CoordinateType {
+        name: "displacement",
+        quantity: Quantity::Length,
+        freedom: None,
+        row: Row::Dot2(2),
+    }],
+};

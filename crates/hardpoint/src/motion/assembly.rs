@@ -1,0 +1,250 @@
+//! Closing a mechanism whose joints are open in the drawing.
+//!
+//! Lengths and places that don't fit leave gaps in the configuration as drawn. The gaps are closed along a path: the part
+//! of them that is still open runs from 1 to 0 while every driver stays at zero, in steps that watch for limits and
+//! branches like those of any motion. So the mechanism closes on the branch that was drawn, and an assembled one stays as
+//! it is. Where the path ends before the gaps are closed, least squares say how near the joints can come.
+
+use crate::model::{BodyId, DriverId, JointId};
+use crate::space::{Elimination, Real};
+use crate::topology::Topology;
+
+use super::kinematics::State;
+use super::stepper::{Path, Stepper};
+use super::{Stop, StopKind};
+
+/// A gap below this part of the mechanism's size (or, for a cosine, below this) is round-off of the drawing.
+const CLOSED: f64 = 1e-12;
+/// A gap that is worth telling: typed coordinates agree to about this part of the size.
+const WORTH_TELLING: f64 = 1e-7;
+/// The least-squares search ends when a step improves its sum of squares by less than this part.
+const NO_BETTER: f64 = 1e-12;
+/// ... or after so many steps.
+const MAX_SEARCH: usize = 200;
+
+/// How a mechanism that did not close as drawn was closed.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Assembly {
+    /// What was open in the drawing, largest gaps first.
+    pub gaps: Vec<Gap>,
+    /// The bodies that moved, as far as they did.
+    pub moved: Vec<Moved>,
+}
+
+/// A constraint that is open.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Gap {
+    /// What is open.
+    pub of: Closing,
+    /// By how much, m or as a cosine.
+    pub size: f64,
+    /// Whether that is a length.
+    pub is_length: bool,
+}
+
+/// What keeps a mechanism together.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Closing {
+    /// A joint.
+    Joint(JointId),
+    /// A driver across a cut joint.
+    Driver(DriverId),
+    /// A coupler, by its place in the model.
+    Coupler(usize),
+}
+
+/// How far the assembly moved a body from where it was drawn.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Moved {
+    /// Which body.
+    pub body: BodyId,
+    /// By how much its frame's origin moved, m.
+    pub distance: f64,
+    /// By how much it turned, rad.
+    pub angle: f64,
+}
+
+impl<T: Real> State<T> {
+    /// The largest gap of the drawing, in sizes or as a cosine.
+    pub(super) fn largest_gap(&self, topology: &Topology) -> f64 {
+        let scaled =
+            self.gap.iter().enumerate().map(|(r, gap)| gap.abs().largest() / self.scale_of_row(topology, r));
+        scaled.fold(0.0, f64::max)
+    }
+
+    /// What a row's residual is compared with: the size for a length, else 1.
+    fn scale_of_row(&self, topology: &Topology, r: usize) -> f64 {
+        let place = &topology.rows[r];
+        let is_length = topology.closures[place.closure].rows[place.index].is_length();
+        if is_length { self.size } else { 1.0 }
+    }
+}
+
+impl<T: Real> Stepper<'_, T> {
+    /// Closes the mechanism as drawn, all drivers at zero, and stands on its branch.
+    pub(super) fn assemble(&mut self) -> Result<(), Stop> {
+        self.measure_gaps();
+        if !(self.state.largest_gap(&self.topology) > CLOSED) {
+            self.state.gap.fill(self.state.witness.zero());
+        }
+        self.attempt(Path::Assembly, 0.0, 0.0, true).map_err(|r| self.stop(Path::Assembly, 0.0, r, false))?;
+        self.save(0.0, 0.0);
+        if self.state.largest_gap(&self.topology) == 0.0 {
+            return Ok(());
+        }
+        if let Err(stop) = self.walk(Path::Assembly, 1.0) {
+            if matches!(stop.kind, StopKind::Locked { .. }) {
+                return Err(stop);
+            }
+            let remains = self.least_gaps();
+            return Err(Stop { kind: StopKind::DoesNotAssemble, remains, ..stop });
+        }
+        let told = WORTH_TELLING;
+        let gaps = self.gaps(|s, r| s.state.gap[r].lane(0), told);
+        if !gaps.is_empty() {
+            self.assembly = Some(Assembly { gaps, moved: self.moved(told) });
+        }
+        self.state.gap.fill(self.state.witness.zero());
+        self.state.gap_left = [0.0; 2];
+        Ok(())
+    }
+
+    /// By how much every row fails where the tree's joints are closed as drawn.
+    fn measure_gaps(&mut self) {
+        let zero = self.state.witness.zero();
+        self.drivers.fill([zero; 3]);
+        self.state.gap_left = [0.0; 2];
+        self.state.place(&self.topology, &self.parts, 0..self.topology.links.len());
+        for c in 0..self.topology.closures.len() {
+            self.state.place_ends(&self.topology, &self.parts, c);
+        }
+        for r in 0..self.topology.rows.len() {
+            self.state.gap[r] = if self.topology.rows[r].is_term {
+                zero
+            } else {
+                self.state.residual(&self.topology, &self.parts, &self.drivers, r)
+            };
+        }
+    }
+
+    /// The gaps that a value per row gives, summed up per joint, driver or coupler; small ones left out.
+    fn gaps(&self, of_row: impl Fn(&Self, usize) -> f64, least: f64) -> Vec<Gap> {
+        let mut gaps: Vec<Gap> = Vec::new();
+        for (r, place) in self.topology.rows.iter().enumerate().filter(|(_, p)| !p.is_term) {
+            let closure = &self.topology.closures[place.closure];
+            let of = match (closure.driver, closure.coupler) {
+                (Some(d), _) => Closing::Driver(d),
+                (None, Some(c)) => Closing::Coupler(c),
+                (None, None) => Closing::Joint(closure.joint),
+            };
+            let size = of_row(self, r);
+            if !(size.abs() > least * self.state.scale_of_row(&self.topology, r)) {
+                continue;
+            }
+            let is_length = closure.rows[place.index].is_length();
+            match gaps.iter_mut().find(|g| g.of == of && g.is_length == is_length) {
+                Some(gap) => gap.size = gap.size.hypot(size),
+                None => gaps.push(Gap { of, size: size.abs(), is_length }),
+            }
+        }
+        let size = self.state.size;
+        let scaled = |g: &Gap| if g.is_length { g.size / size } else { g.size };
+        gaps.sort_by(|a, b| scaled(b).total_cmp(&scaled(a)));
+        gaps
+    }
+
+    /// How far the bodies are from where they were drawn.
+    fn moved(&self, least: f64) -> Vec<Moved> {
+        let bodies = self.model.bodies.iter().enumerate().skip(1);
+        let moved = bodies.map(|(b, body)| {
+            let pose = &self.state.pose[b];
+            Moved {
+                body: BodyId(b),
+                distance: (pose.r.lane(0) - body.frame.r).norm(),
+                angle: pose.rot.lane(0).angle_to(body.frame.rot),
+            }
+        });
+        moved.filter(|m| m.distance > least * self.state.size || m.angle > least).collect()
+    }
+
+    /// How near the joints can come: least squares over the residuals of all rows, from where the path ended.
+    ///
+    /// Levenberg's and Marquardt's method on the scaled rows; it need not be fast.
+    fn least_gaps(&mut self) -> Vec<Gap> {
+        self.state.gap_left = [0.0; 2];
+        self.restore();
+        let unknowns: Vec<usize> = self.topology.blocks.iter().flat_map(|b| b.unknowns.clone()).collect();
+        let n = unknowns.len();
+        let mut damping = 1e-3;
+        let (mut residuals, mut jacobian) = self.all_rows(&unknowns);
+        let squares = |r: &[f64]| r.iter().map(|x| x * x).sum::<f64>();
+        for _ in 0..MAX_SEARCH {
+            let mut normal = Elimination::new(n, 0.0);
+            let mut step = vec![0.0; n];
+            for k in 0..n {
+                for c in 0..n {
+                    let dot: f64 = jacobian.iter().map(|row| row[k] * row[c]).sum();
+                    normal.row_mut(k)[c] = dot + if k == c { damping } else { 0.0 };
+                }
+                step[k] = -jacobian.iter().zip(&residuals).map(|(row, r)| row[k] * r).sum::<f64>();
+            }
+            normal.factor();
+            normal.solve(&mut step);
+            let before = (self.state.q.clone(), self.state.balls.clone());
+            for (k, &c) in unknowns.iter().enumerate() {
+                let unit = if self.topology.coordinates[c].is_length { self.state.size } else { 1.0 };
+                self.state.q[c] += self.state.witness.like(step[k] * unit);
+            }
+            self.state.turn_balls(&self.topology, 0..self.topology.links.len());
+            let (now, jacobian_now) = self.all_rows(&unknowns);
+            let (old, new) = (squares(&residuals), squares(&now));
+            if new < old {
+                (residuals, jacobian) = (now, jacobian_now);
+                damping *= 0.3;
+                if old - new <= NO_BETTER * old {
+                    break;
+                }
+            } else {
+                (self.state.q, self.state.balls) = before;
+                damping *= 4.0;
+                if damping > 1e12 {
+                    break;
+                }
+            }
+        }
+        self.all_rows(&unknowns);
+        self.gaps(|s, r| s.state.residual(&s.topology, &s.parts, &s.drivers, r).lane(0), WORTH_TELLING)
+    }
+
+    /// Scaled residuals of all constraint rows, and their derivatives by these coordinates, in lane 0.
+    fn all_rows(&mut self, unknowns: &[usize]) -> (Vec<f64>, Vec<Vec<f64>>) {
+        self.state.place(&self.topology, &self.parts, 0..self.topology.links.len());
+        for c in 0..self.topology.closures.len() {
+            self.state.place_ends(&self.topology, &self.parts, c);
+        }
+        let mut residuals = Vec::new();
+        let mut jacobian = Vec::new();
+        for r in (0..self.topology.rows.len()).filter(|&r| !self.topology.rows[r].is_term) {
+            let s = &self.state;
+            let scale = 1.0 / s.scale_of_row(&self.topology, r);
+            residuals.push(scale * s.residual(&self.topology, &self.parts, &self.drivers, r).lane(0));
+            let mut by_coordinate = std::collections::BTreeMap::new();
+            for (k, factor) in self.topology.parts_of_row(r) {
+                let place = &self.topology.rows[k];
+                let closure = &self.topology.closures[place.closure];
+                let wrench = closure.rows[place.index].wrench(&s.ends[place.closure]);
+                for &(link, side) in &closure.links {
+                    for step in &self.topology.links[link].steps {
+                        for c in step.first..step.first + step.freedom.coordinates() {
+                            let unit = if self.topology.coordinates[c].is_length { s.size } else { 1.0 };
+                            *by_coordinate.entry(c).or_insert(0.0) +=
+                                scale * unit * side * factor * wrench.on(s.x[c]).lane(0);
+                        }
+                    }
+                }
+            }
+            jacobian.push(unknowns.iter().map(|c| by_coordinate.get(c).copied().unwrap_or(0.0)).collect());
+        }
+        (residuals, jacobian)
+    }
+}
