@@ -230,7 +230,8 @@ impl Moment<'_> {
         };
         use crate::constraint::Row;
         match j.kind.coordinates[coordinate].row {
-            Row::Angle => axis(0, 1).dot_jet(axis(1, 0)).atan2(axis(0, 0).dot_jet(axis(1, 0))),
+            Row::Angle | Row::Heading => axis(0, 1).dot_jet(axis(1, 0)).atan2(axis(0, 0).dot_jet(axis(1, 0))),
+            Row::AngleOnJ => axis(0, 2).dot_jet(axis(1, 1)).atan2(axis(0, 2).dot_jet(axis(1, 2))),
             Row::Dot2(k) => axis(0, k).dot_jet(origin(1) - origin(0)),
             _ => (origin(1) - origin(0)).norm_jet(),
         }

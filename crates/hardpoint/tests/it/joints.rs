@@ -46,6 +46,191 @@ fn slider_on_a_shaft() -> Draft {
     }
 }
 
+/// A train of shafts, a nut and what hangs on it: the joint types that are rare in linkages, exactly constrained.
+fn shaft_train() -> Draft {
+    let (s, c) = 30.0_f64.to_radians().sin_cos();
+    let shaft = [c, s, 0.0];
+    let on_shaft = |x: f64| [x * c, x * s, 0.0];
+    let with_axis2 = |mut j: JointDraft, axis2: [f64; 3]| {
+        j.axis2 = Some(Line::Along(axis2.into()));
+        j
+    };
+    let mut screw = joint("screw", "screw", ["out", "nut"], &[on_shaft(0.2)], Some(shaft));
+    screw.lead = Some(0.02);
+    let mut stay =
+        joint("stay", "distance", ["ground", "follower"], &[[0.1, 0.8, 0.1], [0.3, 0.45, 0.2]], None);
+    stay.length = Some((0.04_f64 + 0.1225 + 0.01).sqrt() + 0.01);
+    let drives = |body: &str, about: [f64; 3]| DrivenDraft::Orientation {
+        body: body.into(),
+        relative_to: None,
+        about: Line::Along(about.into()),
+    };
+    let law = |text: &str| hardpoint::law::Law::parse(text).unwrap();
+    Draft {
+        name: "shaft train".into(),
+        bodies: ["in", "out", "nut", "follower", "plate", "vane", "arm"].map(body).into(),
+        joints: vec![
+            joint("bearing", "revolute", ["ground", "in"], &[[-0.3, 0.0, 0.0]], Some([1.0, 0.0, 0.0])),
+            with_axis2(
+                joint("cv", "constant_velocity", ["in", "out"], &[[0.0; 3]], Some([1.0, 0.0, 0.0])),
+                shaft,
+            ),
+            joint("steady", "inline", ["ground", "out"], &[on_shaft(0.4)], Some(shaft)),
+            screw,
+            with_axis2(joint("key", "dot1", ["ground", "nut"], &[], Some([0.0, 0.0, 1.0])), [-s, c, 0.0]),
+            joint("no_turn", "orientation", ["ground", "follower"], &[], None),
+            joint(
+                "link",
+                "revolute_spherical",
+                ["nut", "follower"],
+                &[on_shaft(0.2), [0.3, 0.45, 0.15]],
+                Some([0.1, 0.2, 1.0]),
+            ),
+            stay,
+            joint("upright", "parallel", ["follower", "plate"], &[], Some([0.1, 0.0, 1.0])),
+            joint("tie1", "distance", ["ground", "plate"], &[[0.0, 1.0, 0.0], [0.4, 0.6, 0.3]], None),
+            joint("tie2", "distance", ["nut", "plate"], &[on_shaft(0.25), [0.5, 0.7, 0.25]], None),
+            joint("socket", "spherical", ["ground", "vane"], &[[0.0, -0.3, 0.1]], None),
+            with_axis2(joint("lean", "angle", ["in", "vane"], &[], Some([1.0, 0.3, 0.2])), [0.2, 1.0, 0.4]),
+            joint(
+                "slab",
+                "dot2",
+                ["ground", "vane"],
+                &[[0.3, -0.3, 0.1], [0.2, -0.2, 0.1]],
+                Some([0.0, 0.0, 1.0]),
+            ),
+            joint("way", "travel", ["ground", "vane"], &[[0.1, -0.2, 0.3]], Some([0.3, 0.0, 1.0])),
+            joint("course", "heading", ["nut", "plate"], &[], Some([0.3, 0.0, 1.0])),
+            with_axis2(
+                joint("cross", "universal", ["out", "arm"], &[on_shaft(0.4)], Some([0.0, 0.0, 1.0])),
+                [-s, c, 0.0],
+            ),
+        ],
+        drivers: vec![
+            driver("motor", "bearing", "1.5*pi*t"),
+            DriverDraft {
+                name: "yaw".into(),
+                drives: drives("plate", [0.2, 0.1, 1.0]),
+                law: law("0.3*sin(3*t)"),
+            },
+            DriverDraft {
+                name: "nod".into(),
+                drives: drives("vane", [0.0, 0.1, 1.0]),
+                law: law("0.2*sin(2*t)"),
+            },
+            DriverDraft {
+                name: "lift".into(),
+                drives: DrivenDraft::Position {
+                    point: PointRef::On { body: "plate".into(), at: Place::At([0.5, 0.6, 0.4].into()) },
+                    along: Line::Along([0.0, 0.3, 1.0].into()),
+                },
+                law: law("0.02*sin(4*t)"),
+            },
+            DriverDraft {
+                name: "pin1".into(),
+                drives: DrivenDraft::Coordinate { joint: "cross".into(), coordinate: Some("angle".into()) },
+                law: law("0.4*sin(t)"),
+            },
+            DriverDraft {
+                name: "pin2".into(),
+                drives: DrivenDraft::Coordinate { joint: "cross".into(), coordinate: Some("angle2".into()) },
+                law: law("2.5*t"),
+            },
+        ],
+        design: vec![
+            marker("cv_y", "cv", [0.0, 1.0, 0.0], [0.0; 3]),
+            marker("cv_rz", "cv", [0.0; 3], [0.0, 0.0, 1.0]),
+            marker("steady_ry", "steady", [0.0; 3], [0.2, 1.0, 0.0]),
+            marker("screw_x", "screw", [1.0, 0.3, 0.0], [0.1, 0.0, 0.2]),
+            marker("key_rx", "key", [0.0; 3], [1.0, 0.2, 0.3]),
+            marker("no_turn_rx", "no_turn", [0.0; 3], [1.0, 0.2, 0.3]),
+            marker("link_z", "link", [0.0, 0.2, 1.0], [0.3, 0.0, 0.0]),
+            marker("upright_rx", "upright", [0.0; 3], [1.0, 0.2, 0.0]),
+            marker("lean_rz", "lean", [0.0; 3], [0.0, 0.4, 1.0]),
+            marker("slab_y", "slab", [0.0, 1.0, 0.3], [0.2, 0.0, 0.0]),
+            marker("cross_rx", "cross", [0.0, 0.1, 0.0], [1.0, 0.0, 0.0]),
+            VariableDraft {
+                name: "stay_longer".into(),
+                changes: vec![ChangeDraft::Length { joint: "stay".into(), rate: 1.0 }],
+                fixed_length: false,
+            },
+        ],
+        points: ["nut", "plate", "vane", "arm"]
+            .map(|name| PointDraft {
+                name: format!("on {name}"),
+                body: name.into(),
+                at: Place::At([0.1, 0.4, 0.3].into()),
+            })
+            .into(),
+        measures: vec![
+            MeasureDraft {
+                name: "advance".into(),
+                kind: MeasureKindDraft::Coordinate {
+                    joint: "screw".into(),
+                    coordinate: Some("displacement".into()),
+                },
+            },
+            MeasureDraft {
+                name: "turn".into(),
+                kind: MeasureKindDraft::Coordinate {
+                    joint: "screw".into(),
+                    coordinate: Some("angle".into()),
+                },
+            },
+            MeasureDraft {
+                name: "way".into(),
+                kind: MeasureKindDraft::Coordinate { joint: "way".into(), coordinate: None },
+            },
+            MeasureDraft {
+                name: "course".into(),
+                kind: MeasureKindDraft::Coordinate { joint: "course".into(), coordinate: None },
+            },
+            MeasureDraft {
+                name: "pin2".into(),
+                kind: MeasureKindDraft::Coordinate {
+                    joint: "cross".into(),
+                    coordinate: Some("angle2".into()),
+                },
+            },
+        ],
+        times: times(1.0, 10),
+        ..Draft::default()
+    }
+}
+
+#[test]
+fn a_train_of_rare_joints_matches_resolved_designs_in_both_formulations() {
+    let model = Model::from_draft(&shaft_train()).unwrap();
+    let mut solutions = Vec::new();
+    for formulation in [Formulation::Relative, Formulation::Absolute] {
+        let analysis = Analysis::with(&model, formulation).unwrap();
+        assert_eq!(analysis.topology().redundant().count(), 0);
+        let solution = analysis.run();
+        assert!(solution.stop.is_none(), "{:?}", solution.stop);
+        let report = verify(&analysis, &solution, &VerifyOptions::default(), |_| ControlFlow::Continue(()));
+        for check in &report.checks {
+            let best = check.best().unwrap();
+            // Positions hold to 1e-13; differences over the best step (1e-5) see that.
+            assert!(best.error < 5e-8, "{}: {best:?}", model.variables[check.variable.0].name);
+        }
+        // Homokinetic: the nut, kept from turning about the output shaft, sees the motor's own turns. A screw of 20 mm.
+        let [turn, advance, pin2] = ["turn", "advance", "pin2"].map(|m| solution.measured.index(m).unwrap());
+        for k in 0..solution.motion.len() {
+            let [turn, turn_d, turn_dd] = solution.measured.value(k, turn);
+            let t = solution.motion.times[k];
+            assert!((turn + 1.5 * std::f64::consts::PI * t).abs() < 1e-9, "{turn}");
+            assert!((turn_d + 1.5 * std::f64::consts::PI).abs() < 1e-9 && turn_dd.abs() < 1e-8);
+            let [x, x_d, _] = solution.measured.value(k, advance);
+            let per_turn = 0.02 / (2.0 * std::f64::consts::PI);
+            assert!((x - per_turn * turn).abs() < 1e-12 && (x_d - per_turn * turn_d).abs() < 1e-12);
+            assert!((solution.measured.value(k, pin2)[0] - 2.5 * t).abs() < 1e-9);
+        }
+        solutions.push(solution);
+    }
+    let d = largest_difference(&solutions[0], &solutions[1]);
+    assert!(d < 1e-10, "{d:e}");
+}
+
 fn marker(name: &str, joint: &str, position: [f64; 3], rotation: [f64; 3]) -> VariableDraft {
     let change = ChangeDraft::Marker {
         joint: joint.into(),
@@ -57,7 +242,7 @@ fn marker(name: &str, joint: &str, position: [f64; 3], rotation: [f64; 3]) -> Va
 }
 
 fn mechanisms() -> Vec<Draft> {
-    REFERENCES.iter().map(|n| reference_draft(n)).chain([slider_on_a_shaft()]).collect()
+    REFERENCES.iter().map(|n| reference_draft(n)).chain([slider_on_a_shaft(), shaft_train()]).collect()
 }
 
 #[test]
