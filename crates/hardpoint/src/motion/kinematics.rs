@@ -5,7 +5,7 @@
 
 use crate::constraint::{EndRates, Ends};
 use crate::joint::Freedom;
-use crate::model::Model;
+use crate::model::{Contact, Model};
 use crate::space::{Elimination, Pose, Quat, Real, Twist, Wrench};
 use crate::topology::{Block, Source, Topology};
 
@@ -56,6 +56,8 @@ pub(crate) struct State<T> {
     /// its rate: an assembly takes it from 1 to 0.
     pub gap: Vec<T>,
     pub gap_left: [f64; 2],
+    /// Per curve: where the point that follows it touches.
+    pub contacts: Vec<Contact<T>>,
     /// Per block: smallest over largest pivot, and the sign of the determinant.
     pub pivots: Vec<(f64, bool)>,
     /// Size of the mechanism, m.
@@ -117,6 +119,7 @@ impl<T: Real> State<T> {
             near: vec![o; rows],
             gap: vec![o; rows],
             gap_left: [0.0; 2],
+            contacts: Vec::new(),
             pivots: vec![(1.0, true); topology.blocks.len()],
             size: model.size(),
             iterations: 0,
@@ -186,6 +189,36 @@ impl<T: Real> State<T> {
         let [i, j] = topology.closures[closure].bodies;
         let [m_i, m_j] = parts.ends[closure];
         self.ends[closure] = Ends { i: self.pose[i.0].compose(m_i), j: self.pose[j.0].compose(m_j) };
+        if let Some(k) = topology.closures[closure].contact {
+            self.touch(parts, closure, k);
+        }
+    }
+
+    /// Lets marker i of a closure walk along its curve to where it is next to marker j.
+    fn touch(&mut self, parts: &Parts<T>, closure: usize, k: usize) {
+        let Ends { i, j } = self.ends[closure];
+        let p = i.inverse().point(j.r);
+        self.contacts[k] = Contact::nearest(&parts.curves[k], p, self.contacts[k].u);
+        self.ends[closure].i = i.compose(self.contacts[k].frame());
+    }
+
+    /// Rates of a marker i that walks along its curve: those of its body and its own turning.
+    fn walk(&self, closure: usize, k: usize, rates: &EndRates<T>) -> EndRates<T> {
+        let Ends { i: foot, j } = &self.ends[closure];
+        let (v, a, contact) = (rates.v_i, rates.a_i, &self.contacts[k]);
+        // The marker that carries the curve, and the follower's motion seen from it.
+        let i = foot.compose(contact.frame().inverse());
+        let relative = rates.v_j.at(j.r) - v.at(j.r);
+        let acceleration = |v: Twist<T>, a: Twist<T>| a.at(j.r) + v.w.cross(v.at(j.r));
+        let coriolis = v.w.cross(relative) * relative.x.like(2.0);
+        let second = acceleration(rates.v_j, rates.a_j) - acceleration(v, a) - coriolis;
+        let p = [i.inverse().point(j.r), i.rot.transpose_mul(relative), i.rot.transpose_mul(second)];
+        let [turn, turn_rate] = contact.turning(p);
+        let z = i.rot.cols[2];
+        let mut walking = *rates;
+        walking.v_i.w += z * turn;
+        walking.a_i.w += z * turn_rate + v.w.cross(z) * turn;
+        walking
     }
 
     /// By how much constraint row r fails.
@@ -525,7 +558,11 @@ impl<T: Real> State<T> {
     fn rates_of_wrenches(&mut self, topology: &Topology, order: usize) {
         for (c, closure) in topology.closures.iter().enumerate() {
             let [i, j] = closure.bodies;
-            let rates = EndRates { v_i: self.v[i.0], v_j: self.v[j.0], a_i: self.a[i.0], a_j: self.a[j.0] };
+            let mut rates =
+                EndRates { v_i: self.v[i.0], v_j: self.v[j.0], a_i: self.a[i.0], a_j: self.a[j.0] };
+            if let Some(k) = closure.contact {
+                rates = self.walk(c, k, &rates);
+            }
             for (k, row) in closure.rows.iter().enumerate() {
                 let [first, second] = row.wrench_rates(&self.ends[c], &rates);
                 if order == 1 {
