@@ -80,7 +80,7 @@ impl Row {
     }
 
     /// What it measures: the residual against a target of zero; angles unwrapped to within half a turn of `near`.
-    #[inline(always)]
+    #[inline(never)]
     pub fn value<T: Real>(self, ends: &Ends<T>, near: T) -> T {
         match self {
             Self::Angle | Self::Heading => angle::value(ends, near),

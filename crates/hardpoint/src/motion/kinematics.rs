@@ -195,6 +195,7 @@ impl<T: Real> State<T> {
     }
 
     /// Lets marker i of a closure walk along its curve to where it is next to marker j.
+    #[inline(never)]
     fn touch(&mut self, parts: &Parts<T>, closure: usize, k: usize) {
         let Ends { i, j } = self.ends[closure];
         let p = i.inverse().point(j.r);
@@ -203,6 +204,7 @@ impl<T: Real> State<T> {
     }
 
     /// Rates of a marker i that walks along its curve: those of its body and its own turning.
+    #[inline(never)]
     fn walk(&self, closure: usize, k: usize, rates: &EndRates<T>) -> EndRates<T> {
         let Ends { i: foot, j } = &self.ends[closure];
         let (v, a, contact) = (rates.v_i, rates.a_i, &self.contacts[k]);
@@ -232,15 +234,21 @@ impl<T: Real> State<T> {
             let driven = closure.driver.map_or(self.witness.zero(), |d| drivers[d.0][0]);
             row.residual(ends, parts.kept[r] + driven) - gap
         } else {
-            let mut sum = -gap;
-            for (k, factor) in topology.parts_of_row(r) {
-                let place = &topology.rows[k];
-                let row = topology.closures[place.closure].rows[place.index];
-                let value = row.value(&self.ends[place.closure], self.near[k]) - parts.kept[k];
-                sum += value * self.witness.like(factor);
-            }
-            sum
+            self.coupled(topology, parts, r) - gap
         }
+    }
+
+    /// The sum of a coupler's terms. Kept out of the way of the other rows, which are many.
+    #[inline(never)]
+    fn coupled(&self, topology: &Topology, parts: &Parts<T>, r: usize) -> T {
+        let mut sum = self.witness.zero();
+        for (k, factor) in topology.parts_of_row(r) {
+            let place = &topology.rows[k];
+            let row = topology.closures[place.closure].rows[place.index];
+            let value = row.value(&self.ends[place.closure], self.near[k]) - parts.kept[k];
+            sum += value * self.witness.like(factor);
+        }
+        sum
     }
 
     /// Adds a row's wrench, times its factor, to its row of the block's Jacobian.
@@ -256,6 +264,14 @@ impl<T: Real> State<T> {
         }
     }
 
+    /// Adds the further terms of a coupler to its row of the block's Jacobian.
+    #[inline(never)]
+    fn enter_terms(&mut self, topology: &Topology, b: usize, k: usize, r: usize) {
+        for &(term, factor) in &topology.rows[r].terms {
+            self.enter(topology, b, k, term, factor);
+        }
+    }
+
     /// Residuals, wrenches and factors of block b where it stands.
     #[inline(always)]
     pub(super) fn linearise(&mut self, topology: &Topology, parts: &Parts<T>, drivers: &[[T; 3]], b: usize) {
@@ -268,8 +284,8 @@ impl<T: Real> State<T> {
             self.rhs[k] = -self.residual(topology, parts, drivers, r);
             self.factors[b].row_mut(k).fill(zero);
             self.enter(topology, b, k, r, 1.0);
-            for &(term, factor) in &topology.rows[r].terms {
-                self.enter(topology, b, k, term, factor);
+            if !topology.rows[r].terms.is_empty() {
+                self.enter_terms(topology, b, k, r);
             }
         }
         let found = self.factors[b].factor();
