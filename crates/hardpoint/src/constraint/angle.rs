@@ -99,6 +99,14 @@ pub(super) fn heading_wrench<T: Real>(ends: &Ends<T>) -> Wrench<T> {
 
 #[inline(never)]
 pub(super) fn heading_wrench_rates<T: Real>(ends: &Ends<T>, rates: &EndRates<T>) -> [Wrench<T>; 2] {
+    ends.j.r.x.within(
+        #[inline(always)]
+        || heading_wrench_rates_inline(ends, rates),
+    )
+}
+
+#[inline(always)]
+fn heading_wrench_rates_inline<T: Real>(ends: &Ends<T>, rates: &EndRates<T>) -> [Wrench<T>; 2] {
     let [x_i, y_i] = [0, 1].map(|k| direction_rates(axis(&ends.i.rot, k), rates.v_i, rates.a_i));
     let x_j = direction_rates(axis(&ends.j.rot, 0), rates.v_j, rates.a_j);
     let two = x_j[0].x.like(2.0);

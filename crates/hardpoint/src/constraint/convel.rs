@@ -19,6 +19,14 @@ pub(super) fn wrench<T: Real>(ends: &Ends<T>) -> Wrench<T> {
 
 #[inline(never)]
 pub(super) fn wrench_rates<T: Real>(ends: &Ends<T>, rates: &EndRates<T>) -> [Wrench<T>; 2] {
+    ends.j.r.x.within(
+        #[inline(always)]
+        || wrench_rates_inline(ends, rates),
+    )
+}
+
+#[inline(always)]
+fn wrench_rates_inline<T: Real>(ends: &Ends<T>, rates: &EndRates<T>) -> [Wrench<T>; 2] {
     let [p1, p2] = dot1::wrench_rates(1, 0, ends, rates);
     let [m1, m2] = dot1::wrench_rates(0, 1, ends, rates);
     [p1 - m1, p2 - m2]

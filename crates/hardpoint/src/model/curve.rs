@@ -55,6 +55,7 @@ impl<T: Real> Contact<T> {
     }
 
     /// The frame that walks along: x along the curve, y to its left.
+    #[inline(always)]
     pub fn frame(&self) -> Pose<T> {
         let d = self.c[1];
         let x = d * (d.x.like(1.0) / d.norm());
@@ -64,6 +65,7 @@ impl<T: Real> Contact<T> {
 
     /// Rate at which that frame turns about z, and the rate of that, for the first two time derivatives of p, the point that
     /// follows, in the marker's frame: the foot of the perpendicular stays one, `(p - C) . C' = 0`.
+    #[inline(always)]
     pub fn turning(&self, p: [Vec3<T>; 3]) -> [T; 2] {
         let [c, d, dd, ddd] = self.c;
         let two = d.x.like(2.0);

@@ -113,15 +113,12 @@ impl<T: Real> Stepper<'_, T> {
         let zero = self.state.witness.zero();
         self.drivers.fill([zero; 3]);
         self.state.gap_left = [0.0; 2];
-        self.state.place(&self.topology, &self.parts, 0..self.topology.links.len());
-        for c in 0..self.topology.closures.len() {
-            self.state.place_ends(&self.topology, &self.parts, c);
-        }
+        self.state.stand(&self.topology, &self.parts);
         for r in 0..self.topology.rows.len() {
             self.state.gap[r] = if self.topology.rows[r].is_term {
                 zero
             } else {
-                self.state.residual(&self.topology, &self.parts, &self.drivers, r)
+                self.state.residual_of(&self.topology, &self.parts, &self.drivers, r)
             };
         }
     }
@@ -214,21 +211,18 @@ impl Stepper<'_, f64> {
             }
         }
         self.all_rows(&unknowns);
-        self.gaps(|s, r| s.state.residual(&s.topology, &s.parts, &s.drivers, r), WORTH_TELLING)
+        self.gaps(|s, r| s.state.residual_of(&s.topology, &s.parts, &s.drivers, r), WORTH_TELLING)
     }
 
     /// Scaled residuals of all constraint rows, and their derivatives by these coordinates, in lane 0.
     fn all_rows(&mut self, unknowns: &[usize]) -> (Vec<f64>, Vec<Vec<f64>>) {
-        self.state.place(&self.topology, &self.parts, 0..self.topology.links.len());
-        for c in 0..self.topology.closures.len() {
-            self.state.place_ends(&self.topology, &self.parts, c);
-        }
+        self.state.stand(&self.topology, &self.parts);
         let mut residuals = Vec::new();
         let mut jacobian = Vec::new();
         for r in (0..self.topology.rows.len()).filter(|&r| !self.topology.rows[r].is_term) {
             let s = &self.state;
             let scale = 1.0 / s.scale_of_row(&self.topology, r);
-            residuals.push(scale * s.residual(&self.topology, &self.parts, &self.drivers, r));
+            residuals.push(scale * s.residual_of(&self.topology, &self.parts, &self.drivers, r));
             let mut by_coordinate = std::collections::BTreeMap::new();
             for (k, factor) in self.topology.parts_of_row(r) {
                 let place = &self.topology.rows[k];

@@ -206,6 +206,14 @@ impl<T: Real> State<T> {
     /// Rates of a marker i that walks along its curve: those of its body and its own turning.
     #[inline(never)]
     fn walk(&self, closure: usize, k: usize, rates: &EndRates<T>) -> EndRates<T> {
+        self.witness.within(
+            #[inline(always)]
+            || self.walking(closure, k, rates),
+        )
+    }
+
+    #[inline(always)]
+    fn walking(&self, closure: usize, k: usize, rates: &EndRates<T>) -> EndRates<T> {
         let Ends { i: foot, j } = &self.ends[closure];
         let (v, a, contact) = (rates.v_i, rates.a_i, &self.contacts[k]);
         // The marker that carries the curve, and the follower's motion seen from it.
@@ -238,6 +246,29 @@ impl<T: Real> State<T> {
         }
     }
 
+    /// Places everything where the coordinates say, the drivers' own values included.
+    #[inline(never)]
+    pub fn stand(&mut self, topology: &Topology, parts: &Parts<T>) {
+        self.witness.within(
+            #[inline(always)]
+            || {
+                self.place(topology, parts, 0..topology.links.len());
+                for c in 0..topology.closures.len() {
+                    self.place_ends(topology, parts, c);
+                }
+            },
+        );
+    }
+
+    /// [`State::residual`] for callers that are not in a hurry.
+    #[inline(never)]
+    pub fn residual_of(&self, topology: &Topology, parts: &Parts<T>, drivers: &[[T; 3]], r: usize) -> T {
+        self.witness.within(
+            #[inline(always)]
+            || self.residual(topology, parts, drivers, r),
+        )
+    }
+
     /// The sum of a coupler's terms. Kept out of the way of the other rows, which are many.
     #[inline(never)]
     fn coupled(&self, topology: &Topology, parts: &Parts<T>, r: usize) -> T {
@@ -267,9 +298,14 @@ impl<T: Real> State<T> {
     /// Adds the further terms of a coupler to its row of the block's Jacobian.
     #[inline(never)]
     fn enter_terms(&mut self, topology: &Topology, b: usize, k: usize, r: usize) {
-        for &(term, factor) in &topology.rows[r].terms {
-            self.enter(topology, b, k, term, factor);
-        }
+        self.witness.within(
+            #[inline(always)]
+            || {
+                for &(term, factor) in &topology.rows[r].terms {
+                    self.enter(topology, b, k, term, factor);
+                }
+            },
+        );
     }
 
     /// Residuals, wrenches and factors of block b where it stands.
