@@ -8,10 +8,10 @@
 //! product = signed (("*" | "/") signed)*
 //! signed  = ("+" | "-")* power
 //! power   = primary ("^" signed)?
-//! primary = number | "t" | "pi" | function "(" arguments ")" | "(" sum ")"
+//! primary = number | "t" | "pi" | parameter | function "(" arguments ")" | "(" sum ")"
 //! ```
 
-use std::ops::{Add, Div, Mul, Neg, Range, Sub};
+use std::ops::Range;
 
 use winnow::ascii::{digit0, digit1};
 use winnow::combinator::{alt, eof, opt};
@@ -20,7 +20,7 @@ use winnow::prelude::*;
 use winnow::stream::LocatingSlice;
 use winnow::token::{any, one_of, take_while};
 
-use super::jet::TimeJet;
+use super::function::{Binary, Comparison, Unary};
 use super::program::{MAX_WAITING, Operation, Program};
 
 /// What is wrong with the text of a law.
@@ -41,10 +41,10 @@ const MAX_NESTING: usize = 64;
 /// How a name that is followed by arguments becomes an operation.
 #[derive(Clone, Copy)]
 enum Function {
-    One(fn(TimeJet) -> TimeJet),
-    Two(fn(TimeJet, TimeJet) -> TimeJet),
+    One(Unary),
+    Two(Binary),
     /// Of two or more arguments, taken two at a time.
-    Fold(fn(TimeJet, TimeJet) -> TimeJet),
+    Fold(Binary),
     Power,
     Step,
     If,
@@ -52,40 +52,50 @@ enum Function {
 
 /// The functions in the order in which help lists them, with the way to call them.
 const FUNCTIONS: [(&str, &str, Function); 21] = [
-    ("sin", "sin(x)", Function::One(TimeJet::sin)),
-    ("cos", "cos(x)", Function::One(TimeJet::cos)),
-    ("tan", "tan(x)", Function::One(TimeJet::tan)),
-    ("asin", "asin(x)", Function::One(TimeJet::asin)),
-    ("acos", "acos(x)", Function::One(TimeJet::acos)),
-    ("atan", "atan(x)", Function::One(TimeJet::atan)),
-    ("atan2", "atan2(y, x)", Function::Two(TimeJet::atan2)),
-    ("sinh", "sinh(x)", Function::One(TimeJet::sinh)),
-    ("cosh", "cosh(x)", Function::One(TimeJet::cosh)),
-    ("tanh", "tanh(x)", Function::One(TimeJet::tanh)),
-    ("exp", "exp(x)", Function::One(TimeJet::exp)),
-    ("ln", "ln(x)", Function::One(TimeJet::ln)),
-    ("log10", "log10(x)", Function::One(TimeJet::log10)),
-    ("sqrt", "sqrt(x)", Function::One(TimeJet::sqrt)),
+    ("sin", "sin(x)", Function::One(Unary::Sin)),
+    ("cos", "cos(x)", Function::One(Unary::Cos)),
+    ("tan", "tan(x)", Function::One(Unary::Tan)),
+    ("asin", "asin(x)", Function::One(Unary::Asin)),
+    ("acos", "acos(x)", Function::One(Unary::Acos)),
+    ("atan", "atan(x)", Function::One(Unary::Atan)),
+    ("atan2", "atan2(y, x)", Function::Two(Binary::Atan2)),
+    ("sinh", "sinh(x)", Function::One(Unary::Sinh)),
+    ("cosh", "cosh(x)", Function::One(Unary::Cosh)),
+    ("tanh", "tanh(x)", Function::One(Unary::Tanh)),
+    ("exp", "exp(x)", Function::One(Unary::Exp)),
+    ("ln", "ln(x)", Function::One(Unary::Ln)),
+    ("log10", "log10(x)", Function::One(Unary::Log10)),
+    ("sqrt", "sqrt(x)", Function::One(Unary::Sqrt)),
     ("pow", "pow(x, p)", Function::Power),
-    ("hypot", "hypot(x, y)", Function::Two(TimeJet::hypot)),
-    ("abs", "abs(x)", Function::One(TimeJet::abs)),
-    ("min", "min(a, b, ...)", Function::Fold(TimeJet::min)),
-    ("max", "max(a, b, ...)", Function::Fold(TimeJet::max)),
+    ("hypot", "hypot(x, y)", Function::Two(Binary::Hypot)),
+    ("abs", "abs(x)", Function::One(Unary::Abs)),
+    ("min", "min(a, b, ...)", Function::Fold(Binary::Min)),
+    ("max", "max(a, b, ...)", Function::Fold(Binary::Max)),
     ("step", "step(x, x0, h0, x1, h1)", Function::Step),
     ("if", "if(a < b, x, y)", Function::If),
 ];
 
-/// The program that `text` writes.
-pub(super) fn parse(text: &str) -> Result<Program, ExpressionError> {
-    let mut descent = Descent::new(text);
+/// The program that `text` writes, with `parameters` for further names.
+pub(super) fn parse(text: &str, parameters: &[&str]) -> Result<Program, ExpressionError> {
+    let mut descent = Descent::new(text, parameters);
+    for (k, name) in parameters.iter().enumerate() {
+        descent.check_parameter(k, name)?;
+    }
     if descent.token == Token::End {
         let help = "write an expression in the time t, such as `0.1*sin(2*pi*t)`";
         return Err(error(0..text.len(), "the expression is empty", Some(help)));
     }
     descent.sum()?;
     match descent.token {
-        Token::End => Ok(descent.program),
-        _ => Err(descent.unexpected()),
+        Token::End => {}
+        _ => return Err(descent.unexpected()),
+    }
+    match descent.is_used.iter().position(|is_used| !is_used) {
+        Some(unused) => {
+            let message = format!("the parameter `{}` is not used in the expression", parameters[unused]);
+            Err(error(0..text.len(), message, Some("use it, or remove it")))
+        }
+        None => Ok(descent.program),
     }
 }
 
@@ -125,6 +135,8 @@ fn name<'a>(input: &mut Input<'a>) -> Result<&'a str, EmptyError> {
 /// The descent; each rule leaves one operand in the program.
 struct Descent<'a> {
     text: &'a str,
+    parameters: &'a [&'a str],
+    is_used: Vec<bool>,
     rest: Input<'a>,
     token: Token<'a>,
     span: Range<usize>,
@@ -135,9 +147,11 @@ struct Descent<'a> {
 }
 
 impl<'a> Descent<'a> {
-    fn new(text: &'a str) -> Self {
+    fn new(text: &'a str, parameters: &'a [&'a str]) -> Self {
         let mut descent = Self {
             text,
+            parameters,
+            is_used: vec![false; parameters.len()],
             rest: LocatingSlice::new(text),
             token: Token::End,
             span: 0..0,
@@ -149,12 +163,31 @@ impl<'a> Descent<'a> {
         descent
     }
 
+    /// Whether the name of the parameter `k` can be told from all others.
+    fn check_parameter(&self, k: usize, name: &str) -> Result<(), ExpressionError> {
+        let is_known = ["t", "pi"].contains(&name) || FUNCTIONS.iter().any(|(known, ..)| *known == name);
+        let (message, help) = if is_known {
+            (
+                format!("a parameter can not be called `{name}`: the expression knows that name already"),
+                "rename it",
+            )
+        } else if self.parameters[..k].contains(&name) {
+            (format!("two parameters are called `{name}`"), "rename one of them")
+        } else if !(self::name, eof).parse_next(&mut LocatingSlice::new(name)).is_ok() {
+            let help = "use letters, digits and `_`, and begin with a letter or `_`";
+            (format!("`{}` can not be the name of a parameter", name.escape_debug()), help)
+        } else {
+            return Ok(());
+        };
+        Err(error(0..self.text.len(), message, Some(help)))
+    }
+
     fn sum(&mut self) -> Result<(), ExpressionError> {
         self.product()?;
         loop {
             let operator = match self.token {
-                Token::Symbol("+") => TimeJet::add,
-                Token::Symbol("-") => TimeJet::sub,
+                Token::Symbol("+") => Binary::Add,
+                Token::Symbol("-") => Binary::Sub,
                 _ => return Ok(()),
             };
             self.advance();
@@ -166,9 +199,9 @@ impl<'a> Descent<'a> {
     fn product(&mut self) -> Result<(), ExpressionError> {
         self.signed()?;
         loop {
-            let operator: fn(TimeJet, TimeJet) -> TimeJet = match self.token {
-                Token::Symbol("*") => TimeJet::mul,
-                Token::Symbol("/") => TimeJet::div,
+            let operator = match self.token {
+                Token::Symbol("*") => Binary::Mul,
+                Token::Symbol("/") => Binary::Div,
                 _ => return Ok(()),
             };
             self.advance();
@@ -185,7 +218,7 @@ impl<'a> Descent<'a> {
         }
         self.power()?;
         if is_negative {
-            self.program.emit(Operation::One(TimeJet::neg));
+            self.program.emit(Operation::One(Unary::Neg));
         }
         Ok(())
     }
@@ -208,6 +241,11 @@ impl<'a> Descent<'a> {
             }
             Token::Name("t") => self.leaf(Operation::Time),
             Token::Name("pi") => self.leaf(Operation::Constant(std::f64::consts::PI)),
+            Token::Name(name) if self.parameters.contains(&name) => {
+                let parameter = self.parameters.iter().position(|known| *known == name).unwrap_or_default();
+                self.is_used[parameter] = true;
+                self.leaf(Operation::Parameter(parameter))
+            }
             Token::Name(name) => match FUNCTIONS.iter().find(|(known, ..)| *known == name) {
                 Some(&(name, signature, function)) => self.call(name, signature, function),
                 None => Err(self.unknown_name(name)),
@@ -248,12 +286,12 @@ impl<'a> Descent<'a> {
             Function::If => (3, 3),
             Function::Step => (5, 5),
         };
-        let mut holds: fn(&f64, &f64) -> bool = f64::lt;
+        let mut comparison = Comparison::Less;
         let mut arguments = Vec::new(); // where each begins in the program, and its span
         while self.token != Token::Symbol(")") || !arguments.is_empty() {
             let (first_operation, start) = (self.program.len(), self.span.start);
             if matches!(function, Function::If) && arguments.is_empty() {
-                holds = self.condition()?;
+                comparison = self.condition()?;
             } else {
                 self.nested(Self::sum)?;
             }
@@ -285,7 +323,7 @@ impl<'a> Descent<'a> {
             Function::Two(function) => self.program.emit(Operation::Two(function)),
             Function::Fold(_) => {} // emitted one by one above
             Function::Power => self.program.emit_power(),
-            Function::If => self.program.emit(Operation::Select(holds)),
+            Function::If => self.program.emit(Operation::Select(comparison)),
             Function::Step => {
                 self.check_step_order(&arguments)?;
                 self.program.emit(Operation::Step);
@@ -295,14 +333,14 @@ impl<'a> Descent<'a> {
     }
 
     /// Reads `a < b`, leaves a and b in the program.
-    fn condition(&mut self) -> Result<fn(&f64, &f64) -> bool, ExpressionError> {
+    fn condition(&mut self) -> Result<Comparison, ExpressionError> {
         let start = self.span.start;
         self.nested(Self::sum)?;
-        let holds = match self.token {
-            Token::Symbol("<") => f64::lt,
-            Token::Symbol("<=") => f64::le,
-            Token::Symbol(">") => f64::gt,
-            Token::Symbol(">=") => f64::ge,
+        let comparison = match self.token {
+            Token::Symbol("<") => Comparison::Less,
+            Token::Symbol("<=") => Comparison::LessOrEqual,
+            Token::Symbol(">") => Comparison::Greater,
+            Token::Symbol(">=") => Comparison::GreaterOrEqual,
             Token::Symbol(symbol @ ("=" | "==" | "!=")) => {
                 let message = format!("a law is not compared with `{symbol}`");
                 return Err(error(self.span.clone(), message, Some("use `<`, `<=`, `>` or `>=`")));
@@ -324,7 +362,7 @@ impl<'a> Descent<'a> {
                 Some("nest a second `if` for a second comparison"),
             ));
         }
-        Ok(holds)
+        Ok(comparison)
     }
 
     /// Where the ends of a step are plain numbers, wrong order is an error here and not a NaN later.
@@ -446,13 +484,15 @@ impl<'a> Descent<'a> {
             "\u{3c0}" => Some("did you mean `pi`? ".to_owned()),
             _ => ["t", "pi"]
                 .iter()
+                .chain(self.parameters)
                 .chain(&functions)
                 .map(|known| (strsim::jaro_winkler(&lower, known), known))
                 .max_by(|a, b| a.0.total_cmp(&b.0))
                 .filter(|(likeness, _)| *likeness > 0.8)
                 .map(|(_, known)| format!("did you mean `{known}`? ")),
         };
-        let help = format!("{}known are t, pi, {}", hint.unwrap_or_default(), functions.join(", "));
+        let known = [&["t", "pi"], self.parameters, &functions].concat().join(", ");
+        let help = format!("{}known are {known}", hint.unwrap_or_default());
         error(self.span.clone(), format!("unknown name `{name}`"), Some(&help))
     }
 

@@ -4,6 +4,8 @@ use std::cmp::Ordering;
 use std::f64::consts::LN_10;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
+use super::scalar::Scalar;
+
 /// A quantity's value and its first three time derivatives at one instant.
 ///
 /// In the quantity's own unit per s⁰, s, s², s³. Every operation is exact up to rounding: products follow Leibniz'
@@ -15,55 +17,58 @@ use std::ops::{Add, Div, Mul, Neg, Sub};
 /// let t = TimeJet::time(3.0);
 /// assert_eq!((t * t).derivatives(), [9.0, 6.0, 2.0, 0.0]);
 /// ```
+///
+/// `TimeJet` is short for `TimeJet<f64>`; the derivatives of a law by its parameters are taken by the same arithmetic in
+/// numbers that carry one derivative more.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct TimeJet {
-    derivatives: [f64; 4],
+pub struct TimeJet<S = f64> {
+    derivatives: [S; 4],
 }
 
-impl TimeJet {
+impl<S: Scalar> TimeJet<S> {
     /// The quantity that is `value` at all times.
-    pub const fn constant(value: f64) -> Self {
-        Self::from_derivatives([value, 0.0, 0.0, 0.0])
+    pub const fn constant(value: S) -> Self {
+        Self::from_derivatives([value, S::ZERO, S::ZERO, S::ZERO])
     }
 
     /// The time itself, at time `t` in seconds.
-    pub const fn time(t: f64) -> Self {
-        Self::from_derivatives([t, 1.0, 0.0, 0.0])
+    pub const fn time(t: S) -> Self {
+        Self::from_derivatives([t, S::ONE, S::ZERO, S::ZERO])
     }
 
     /// The quantity with the given value, first, second and third derivative.
-    pub const fn from_derivatives(derivatives: [f64; 4]) -> Self {
+    pub const fn from_derivatives(derivatives: [S; 4]) -> Self {
         Self { derivatives }
     }
 
     /// The value and the first, second and third derivative.
-    pub const fn derivatives(self) -> [f64; 4] {
+    pub const fn derivatives(self) -> [S; 4] {
         self.derivatives
     }
 
     /// The value f.
-    pub const fn value(self) -> f64 {
+    pub const fn value(self) -> S {
         self.derivatives[0]
     }
 
     /// The first time derivative df/dt.
-    pub const fn d(self) -> f64 {
+    pub const fn d(self) -> S {
         self.derivatives[1]
     }
 
     /// The second time derivative d²f/dt².
-    pub const fn dd(self) -> f64 {
+    pub const fn dd(self) -> S {
         self.derivatives[2]
     }
 
     /// The third time derivative d³f/dt³.
-    pub const fn ddd(self) -> f64 {
+    pub const fn ddd(self) -> S {
         self.derivatives[3]
     }
 
     /// Whether the value and all three derivatives are finite.
     pub fn is_finite(self) -> bool {
-        self.derivatives.iter().all(|derivative| derivative.is_finite())
+        self.derivatives.iter().all(|derivative| derivative.value().is_finite())
     }
 
     /// The sine of an angle in radians.
@@ -81,9 +86,9 @@ impl TimeJet {
     /// The tangent of an angle in radians.
     pub fn tan(self) -> Self {
         let tan = self.value().tan();
-        let g_d = 1.0 + tan * tan;
-        let g_dd = 2.0 * tan * g_d;
-        self.compose([tan, g_d, g_dd, 2.0 * (g_d * g_d + tan * g_dd)])
+        let g_d = tan * tan + 1.0;
+        let g_dd = tan * g_d * 2.0;
+        self.compose([tan, g_d, g_dd, (g_d * g_d + tan * g_dd) * 2.0])
     }
 
     /// The arc sine, in radians from -π/2 to π/2.
@@ -101,15 +106,15 @@ impl TimeJet {
     /// The arc tangent, in radians from -π/2 to π/2.
     pub fn atan(self) -> Self {
         let x = self.value();
-        let g_d = 1.0 / (1.0 + x * x);
-        self.compose([x.atan(), g_d, -2.0 * x * g_d * g_d, (6.0 * x * x - 2.0) * g_d * g_d * g_d])
+        let g_d = S::ONE / (x * x + 1.0);
+        self.compose([x.atan(), g_d, x * g_d * g_d * -2.0, (x * x * 6.0 + -2.0) * g_d * g_d * g_d])
     }
 
     /// The angle from the x axis to the point (`x`, `self`), in radians from -π to π.
     pub fn atan2(self, x: Self) -> Self {
         // θ' = n / r² with n = x y' - y x'; lengths are scaled out first so that r² can not overflow.
-        let scale = 1.0 / self.value().hypot(x.value());
-        let (x_jet, y_jet) = (x * scale, self * scale);
+        let scale = S::ONE / self.value().hypot(x.value());
+        let (x_jet, y_jet) = (x.times(scale), self.times(scale));
         let (x, y) = (x_jet.derivatives, y_jet.derivatives);
         let n = x[0] * y[1] - y[0] * x[1];
         let n_d = x[0] * y[2] - y[0] * x[2];
@@ -117,7 +122,7 @@ impl TimeJet {
         let [r2, r2_d, r2_dd, _] = (x_jet * x_jet + y_jet * y_jet).derivatives;
         let d = n / r2;
         let dd = (n_d - d * r2_d) / r2;
-        let ddd = (n_dd - 2.0 * dd * r2_d - d * r2_dd) / r2;
+        let ddd = (n_dd - dd * r2_d * 2.0 - d * r2_dd) / r2;
         Self::from_derivatives([y[0].atan2(x[0]), d, dd, ddd])
     }
 
@@ -137,9 +142,9 @@ impl TimeJet {
     pub fn tanh(self) -> Self {
         let (tanh, cosh) = (self.value().tanh(), self.value().cosh());
         // Not 1 - tanh², which loses all digits where tanh is close to 1.
-        let g_d = 1.0 / (cosh * cosh);
-        let g_dd = -2.0 * tanh * g_d;
-        self.compose([tanh, g_d, g_dd, -2.0 * (g_d * g_d + tanh * g_dd)])
+        let g_d = S::ONE / (cosh * cosh);
+        let g_dd = tanh * g_d * -2.0;
+        self.compose([tanh, g_d, g_dd, (g_d * g_d + tanh * g_dd) * -2.0])
     }
 
     /// The exponential function.
@@ -149,8 +154,8 @@ impl TimeJet {
 
     /// The natural logarithm.
     pub fn ln(self) -> Self {
-        let inverse = 1.0 / self.value();
-        self.compose([self.value().ln(), inverse, -inverse * inverse, 2.0 * inverse * inverse * inverse])
+        let inverse = S::ONE / self.value();
+        self.compose([self.value().ln(), inverse, -inverse * inverse, inverse * inverse * inverse * 2.0])
     }
 
     /// The logarithm to base 10.
@@ -163,26 +168,28 @@ impl TimeJet {
     /// The square root.
     pub fn sqrt(self) -> Self {
         let sqrt = self.value().sqrt();
-        let inverse = 1.0 / self.value();
-        let g_d = 0.5 / sqrt;
-        self.compose([sqrt, g_d, -0.5 * g_d * inverse, 0.75 * g_d * inverse * inverse])
+        let inverse = S::ONE / self.value();
+        let g_d = S::fixed(0.5) / sqrt;
+        self.compose([sqrt, g_d, g_d * inverse * -0.5, g_d * inverse * inverse * 0.75])
     }
 
     /// The power with a constant whole exponent.
     pub fn powi(self, exponent: i32) -> Self {
         let x = self.value();
-        self.compose_power(f64::from(exponent), |lowered_by| x.powi(exponent.saturating_sub(lowered_by)))
+        self.compose_power(S::fixed(f64::from(exponent)), |lowered_by| {
+            x.powi(exponent.saturating_sub(lowered_by))
+        })
     }
 
     /// The power with a constant exponent.
-    pub fn powf(self, exponent: f64) -> Self {
+    pub fn powf(self, exponent: S) -> Self {
         let x = self.value();
-        self.compose_power(exponent, |lowered_by| x.powf(exponent - f64::from(lowered_by)))
+        self.compose_power(exponent, |lowered_by| x.powf(exponent + -f64::from(lowered_by)))
     }
 
     /// The power with an exponent that may vary in time; the base is then to be positive.
     pub fn pow(self, exponent: Self) -> Self {
-        if exponent.derivatives[1..] == [0.0; 3] {
+        if exponent.derivatives[1..] == [S::ZERO; 3] {
             return self.powf(exponent.value());
         }
         // xᵖ = exp(p ln x), with the value taken from the more accurate `powf`.
@@ -193,15 +200,15 @@ impl TimeJet {
     /// The length of the vector (`self`, `other`).
     pub fn hypot(self, other: Self) -> Self {
         let length = self.value().hypot(other.value());
-        let (x, y) = (self * (1.0 / length), other * (1.0 / length));
-        let mut hypot = (x * x + y * y).sqrt() * length;
+        let (x, y) = (self.times(S::ONE / length), other.times(S::ONE / length));
+        let mut hypot = (x * x + y * y).sqrt().times(length);
         hypot.derivatives[0] = length;
         hypot
     }
 
     /// The absolute value, differentiated on the side that is active just after this instant.
     pub fn abs(self) -> Self {
-        if self.cmp_just_after(Self::constant(0.0)) == Some(Ordering::Less) { -self } else { self }
+        if self.cmp_just_after(Self::constant(S::ZERO)) == Some(Ordering::Less) { -self } else { self }
     }
 
     /// The smaller of the two just after this instant; not a number if either is.
@@ -227,8 +234,8 @@ impl TimeJet {
     /// Its first derivative is continuous, the second jumps at `x0` and `x1`, where it is that just after this
     /// instant.
     pub fn step(self, x0: Self, h0: Self, x1: Self, h1: Self) -> Self {
-        if x0.value().partial_cmp(&x1.value()) != Some(Ordering::Less) {
-            return Self::from_derivatives([f64::NAN; 4]);
+        if !(x0.value().value() < x1.value().value()) {
+            return Self::undefined();
         }
         match (self.cmp_just_after(x0), self.cmp_just_after(x1)) {
             (Some(Ordering::Less), _) => h0,
@@ -236,54 +243,70 @@ impl TimeJet {
             _ => {
                 // h0 + (h1 - h0) (3 u² - 2 u³)
                 let u = (self - x0) / (x1 - x0);
-                h0 + (h1 - h0) * (u * u * (Self::constant(3.0) - u * 2.0))
+                h0 + (h1 - h0) * (u * u * (Self::constant(S::fixed(3.0)) - u * 2.0))
             }
         }
     }
 
+    /// What has no value.
+    pub(super) fn undefined() -> Self {
+        Self::from_derivatives([S::fixed(f64::NAN); 4])
+    }
+
+    /// This quantity times one that is the same at all times.
+    pub(super) fn times(self, factor: S) -> Self {
+        Self::from_derivatives(self.derivatives.map(|derivative| derivative * factor))
+    }
+
+    /// This quantity plus one that is the same at all times.
+    pub(super) fn plus(mut self, offset: S) -> Self {
+        self.derivatives[0] = self.derivatives[0] + offset;
+        self
+    }
+
     /// g(self), from g and its first three derivatives at the value.
-    fn compose(self, [g, g_d, g_dd, g_ddd]: [f64; 4]) -> Self {
+    fn compose(self, [g, g_d, g_dd, g_ddd]: [S; 4]) -> Self {
         // (g∘u)' = g' u',  (g∘u)'' = g'' u'² + g' u'',  (g∘u)''' = g''' u'³ + 3 g'' u' u'' + g' u'''
         let [_, d, dd, ddd] = self.derivatives;
         Self::from_derivatives([
             g,
             g_d * d,
             g_dd * d * d + g_d * dd,
-            g_ddd * d * d * d + 3.0 * g_dd * d * dd + g_d * ddd,
+            g_ddd * d * d * d + g_dd * d * dd * 3.0 + g_d * ddd,
         ])
     }
 
     /// The power with `exponent`, from the function that gives x^(exponent - k).
-    fn compose_power(self, exponent: f64, lowered: impl Fn(i32) -> f64) -> Self {
+    fn compose_power(self, exponent: S, lowered: impl Fn(i32) -> S) -> Self {
         // g⁽ᵏ⁾ = p (p - 1) ... (p - k + 1) x^(p - k). A vanishing coefficient wins over an infinite power: the
         // third derivative of x² is zero at x = 0 also.
-        let term = |coefficient: f64, k| {
-            if coefficient == 0.0 { 0.0 } else { coefficient * lowered(k) }
+        let term = |coefficient: S, k| {
+            if coefficient == S::ZERO { S::ZERO } else { coefficient * lowered(k) }
         };
         let p = exponent;
-        self.compose([lowered(0), term(p, 1), term(p * (p - 1.0), 2), term(p * (p - 1.0) * (p - 2.0), 3)])
+        self.compose([lowered(0), term(p, 1), term(p * (p + -1.0), 2), term(p * (p + -1.0) * (p + -2.0), 3)])
     }
 
     /// How the two quantities compare at the next instant: ties are decided by the first derivative that differs.
-    fn cmp_just_after(self, other: Self) -> Option<Ordering> {
-        self.derivatives.partial_cmp(&other.derivatives)
+    pub(super) fn cmp_just_after(self, other: Self) -> Option<Ordering> {
+        self.derivatives.map(S::value).partial_cmp(&other.derivatives.map(S::value))
     }
 
     /// The one of two incomparable jets that holds the NaN, so that it is not lost.
     fn undecided(self, other: Self) -> Self {
-        if self.derivatives.iter().any(|derivative| derivative.is_nan()) { self } else { other }
+        if self.derivatives.iter().any(|derivative| derivative.value().is_nan()) { self } else { other }
     }
 }
 
 /// The first three derivatives of the arc sine: s, x s³, (1 + 2 x²) s⁵ with s = 1/√(1 - x²).
-fn asin_derivatives(x: f64) -> [f64; 3] {
+fn asin_derivatives<S: Scalar>(x: S) -> [S; 3] {
     // Factored, because 1 - x² loses digits where |x| is close to 1.
-    let s2 = 1.0 / ((1.0 - x) * (1.0 + x));
+    let s2 = S::ONE / ((-x + 1.0) * (x + 1.0));
     let s = s2.sqrt();
-    [s, x * s * s2, (1.0 + 2.0 * x * x) * s * s2 * s2]
+    [s, x * s * s2, (x * x * 2.0 + 1.0) * s * s2 * s2]
 }
 
-impl Add for TimeJet {
+impl<S: Scalar> Add for TimeJet<S> {
     type Output = Self;
 
     fn add(self, other: Self) -> Self {
@@ -292,7 +315,7 @@ impl Add for TimeJet {
     }
 }
 
-impl Sub for TimeJet {
+impl<S: Scalar> Sub for TimeJet<S> {
     type Output = Self;
 
     fn sub(self, other: Self) -> Self {
@@ -301,7 +324,7 @@ impl Sub for TimeJet {
     }
 }
 
-impl Mul for TimeJet {
+impl<S: Scalar> Mul for TimeJet<S> {
     type Output = Self;
 
     fn mul(self, other: Self) -> Self {
@@ -310,13 +333,13 @@ impl Mul for TimeJet {
         Self::from_derivatives([
             a[0] * b[0],
             a[1] * b[0] + a[0] * b[1],
-            a[2] * b[0] + 2.0 * a[1] * b[1] + a[0] * b[2],
-            a[3] * b[0] + 3.0 * (a[2] * b[1] + a[1] * b[2]) + a[0] * b[3],
+            a[2] * b[0] + a[1] * b[1] * 2.0 + a[0] * b[2],
+            a[3] * b[0] + (a[2] * b[1] + a[1] * b[2]) * 3.0 + a[0] * b[3],
         ])
     }
 }
 
-impl Div for TimeJet {
+impl<S: Scalar> Div for TimeJet<S> {
     type Output = Self;
 
     fn div(self, other: Self) -> Self {
@@ -324,13 +347,13 @@ impl Div for TimeJet {
         let (a, b) = (self.derivatives, other.derivatives);
         let q = a[0] / b[0];
         let q_d = (a[1] - q * b[1]) / b[0];
-        let q_dd = (a[2] - 2.0 * q_d * b[1] - q * b[2]) / b[0];
-        let q_ddd = (a[3] - 3.0 * (q_dd * b[1] + q_d * b[2]) - q * b[3]) / b[0];
+        let q_dd = (a[2] - q_d * b[1] * 2.0 - q * b[2]) / b[0];
+        let q_ddd = (a[3] - (q_dd * b[1] + q_d * b[2]) * 3.0 - q * b[3]) / b[0];
         Self::from_derivatives([q, q_d, q_dd, q_ddd])
     }
 }
 
-impl Mul<f64> for TimeJet {
+impl<S: Scalar> Mul<f64> for TimeJet<S> {
     type Output = Self;
 
     fn mul(self, factor: f64) -> Self {
@@ -338,7 +361,7 @@ impl Mul<f64> for TimeJet {
     }
 }
 
-impl Neg for TimeJet {
+impl<S: Scalar> Neg for TimeJet<S> {
     type Output = Self;
 
     fn neg(self) -> Self {

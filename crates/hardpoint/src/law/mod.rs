@@ -1,11 +1,26 @@
 //! Laws of motion: what a driver prescribes as a function of the time, with exact time derivatives.
 //!
-//! A [`Law`] is read from an expression in `t`:
+//! | kind | made by |
+//! |---|---|
+//! | an expression in `t`, see below | [`Law::parse`]; with named parameters [`Law::parse_with`] |
+//! | a value held for ever | [`Law::constant`] |
+//! | a constant speed | [`Law::constant_speed`] |
+//! | a harmonic | [`Law::harmonic`] |
+//! | a polynomial in `t` | [`Law::polynomial`] |
+//! | a smooth step from one value to another | [`Law::smooth_step`] |
+//! | a spline through points | [`Law::table`] |
+//! | laws one after the other | [`Law::sequence`] |
+//!
+//! Whatever its kind, a law is evaluated by [`Law::at`], has [parameters](Law::parameters) by which it is
+//! [differentiated](Law::derivative), and says [where it is not smooth](Law::jumps).
+//!
+//! # The language of expressions
 //!
 //! | written | meaning |
 //! |---|---|
 //! | `1`, `.5`, `1e-3` | numbers, with a decimal point |
 //! | `t`, `pi` | the time in seconds, and 3.14159... |
+//! | any other name | a parameter, if [`Law::parse_with`] is given one of that name |
 //! | `+ - * / ^`, `( )` | `^` binds first and from the right, then the sign (`-t^2` is `-(t^2)`), then `* /`, then `+ -` |
 //! | `sin cos tan asin acos atan sinh cosh tanh` | of one argument, angles in radians |
 //! | `exp ln log10 sqrt abs` | of one argument |
@@ -14,20 +29,49 @@
 //! | `step(x, x0, h0, x1, h1)` | `h0` up to `x0`, `h1` from `x1` on, between them `h0 + (h1 - h0)(3u² - 2u³)` |
 //! | `if(a < b, x, y)` | `x` where the comparison (`<`, `<=`, `>`, `>=`) holds, else `y` |
 //!
-//! Derivatives are propagated as [`TimeJet`]s, so they carry rounding error only, no step size.
+//! Derivatives are propagated as [`TimeJet`]s, so they carry rounding error only, no step size; `abs`, `min`, `max`, `step`
+//! and `if` are differentiated on the side that is active.
 //!
-//! What is *not* here: a law says nothing of where it is not smooth. `abs`, `min`, `max`, `step` and `if` are
-//! differentiated on the side that is active; see [`Law::at`].
+//! What is *not* here: laws of anything but the time; corners of expressions that no `abs`, `atan2`, `min`, `max`, `step` or
+//! `if` makes, such as those of `asin(sin(t))` or `sqrt(t^2)`, are not among the [jumps](Law::jumps).
 
+mod error;
 mod expression;
+mod formula;
+mod function;
+mod harmonic;
 mod jet;
+mod jumps;
+mod kind;
+mod parameter;
+mod polynomial;
 mod program;
+mod scalar;
+mod sequence;
+mod smooth_step;
+mod speed;
+mod spline;
+mod table;
 
 use std::fmt;
 
+pub use error::LawError;
 pub use expression::ExpressionError;
+use formula::Formula;
+pub use harmonic::Harmonic;
 pub use jet::TimeJet;
-use program::{Operation, Program};
+pub use jumps::Jump;
+use kind::{Kind, Shape};
+use parameter::Seed;
+pub use parameter::{Parameter, ParameterKind};
+use polynomial::Polynomial;
+use scalar::{Dual, Scalar};
+pub use sequence::Piece;
+use sequence::Sequence;
+pub use smooth_step::SmoothStep;
+pub use speed::ConstantSpeed;
+use table::Spline;
+pub use table::{EndRates, Ends, SplineDegree, Table};
 
 /// The law of motion of a driver, f(t), in the driver's own unit with t in seconds.
 ///
@@ -50,9 +94,8 @@ use program::{Operation, Program};
 /// ```
 #[derive(Clone)]
 pub struct Law {
-    text: String,
+    kind: Kind,
     factor: f64,
-    program: Program,
 }
 
 impl Law {
@@ -72,14 +115,156 @@ impl Law {
     /// assert!(error.help.unwrap().starts_with("did you mean `sin`?"));
     /// ```
     pub fn parse(text: &str) -> Result<Self, ExpressionError> {
-        Ok(Self { text: text.to_owned(), factor: 1.0, program: expression::parse(text)? })
+        Self::parse_with(text, &[])
+    }
+
+    /// The law that `text` writes, with the names and values of parameters that it uses.
+    ///
+    /// ```
+    /// use hardpoint::law::Law;
+    ///
+    /// let lift = Law::parse_with("amplitude*t^2", &[("amplitude", 25.0)])?;
+    /// assert_eq!(lift.at(2.0).value(), 100.0);
+    /// assert_eq!(lift.derivative(0, 2.0).value(), 4.0); // t²
+    /// assert_eq!(lift.to_string(), "amplitude*t^2 with amplitude = 25");
+    /// # Ok::<(), hardpoint::law::ExpressionError>(())
+    /// ```
+    ///
+    /// # Errors
+    ///
+    /// As [`parse`](Self::parse); and when a parameter has the name of something else, no proper name, no finite value, or
+    /// is not used. The place is then all of the text.
+    pub fn parse_with(text: &str, parameters: &[(&str, f64)]) -> Result<Self, ExpressionError> {
+        Formula::parse(text, parameters).map(Kind::Formula).map(Self::of)
     }
 
     /// The law that holds `value` at all times, in the driver's own unit.
     pub fn constant(value: f64) -> Self {
-        let mut program = Program::default();
-        program.emit(Operation::Constant(value));
-        Self { text: value.to_string(), factor: 1.0, program }
+        Self::of(Kind::Formula(Formula::constant(value)))
+    }
+
+    /// The law of constant speed: offset + speed t.
+    ///
+    /// ```
+    /// use hardpoint::law::{ConstantSpeed, Law};
+    ///
+    /// let law = Law::constant_speed(ConstantSpeed { speed: 3.0, offset: 1.0 })?;
+    /// assert_eq!(law.at(2.0).value(), 7.0);
+    /// assert_eq!(law.to_string(), "1 + 3*t");
+    /// # Ok::<(), hardpoint::law::LawError>(())
+    /// ```
+    ///
+    /// # Errors
+    ///
+    /// When a number is not finite.
+    pub fn constant_speed(law: ConstantSpeed) -> Result<Self, LawError> {
+        law.check()?;
+        Ok(Self::of(Kind::ConstantSpeed(law)))
+    }
+
+    /// The harmonic law: offset + amplitude sin(2π frequency t + phase).
+    ///
+    /// ```
+    /// use hardpoint::law::{Harmonic, Law};
+    ///
+    /// let law = Law::harmonic(Harmonic { amplitude: 25.0, frequency: 0.5, phase: 0.0, offset: 10.0 })?;
+    /// assert_eq!(law.at(0.5).value(), 35.0); // a quarter of a period
+    /// assert_eq!(law.to_string(), "10 + 25*sin(2*pi*0.5*t)");
+    /// # Ok::<(), hardpoint::law::LawError>(())
+    /// ```
+    ///
+    /// # Errors
+    ///
+    /// When a number is not finite.
+    pub fn harmonic(law: Harmonic) -> Result<Self, LawError> {
+        law.check()?;
+        Ok(Self::of(Kind::Harmonic(law)))
+    }
+
+    /// The polynomial c0 + c1 t + c2 t² + ... The coefficient k is in driver unit per s to the k, and is the parameter `ck`.
+    ///
+    /// ```
+    /// use hardpoint::law::Law;
+    ///
+    /// let law = Law::polynomial(&[5.0, 0.0, 0.25])?;
+    /// assert_eq!(law.at(2.0).derivatives(), [6.0, 1.0, 0.5, 0.0]);
+    /// assert_eq!(law.to_string(), "5 + 0.25*t^2");
+    /// # Ok::<(), hardpoint::law::LawError>(())
+    /// ```
+    ///
+    /// # Errors
+    ///
+    /// When there is no coefficient, or one is not finite.
+    pub fn polynomial(coefficients: &[f64]) -> Result<Self, LawError> {
+        Polynomial::new(coefficients).map(Kind::Polynomial).map(Self::of)
+    }
+
+    /// The law that goes smoothly from one value to another; see [`SmoothStep`].
+    ///
+    /// ```
+    /// use hardpoint::law::{Law, SmoothStep};
+    ///
+    /// let law = Law::smooth_step(SmoothStep { from: 1.0, to: 5.0, start: 0.0, end: 2.0, degree: 5 })?;
+    /// assert_eq!([0.0, 1.0, 7.0].map(|t| law.at(t).value()), [1.0, 3.0, 5.0]);
+    /// assert_eq!(law.at(1.0).d(), 3.75); // 15/8 of the mean speed
+    /// # Ok::<(), hardpoint::law::LawError>(())
+    /// ```
+    ///
+    /// # Errors
+    ///
+    /// When a number is not finite, the step does not end after its start, or the degree is not 3, 5 or 7.
+    pub fn smooth_step(law: SmoothStep) -> Result<Self, LawError> {
+        law.check()?;
+        Ok(Self::of(Kind::SmoothStep(law)))
+    }
+
+    /// The smooth curve through the points of a table.
+    ///
+    /// ```
+    /// use hardpoint::law::{Ends, Law, SplineDegree, Table};
+    ///
+    /// // From rest to rest.
+    /// let (times, values) = (vec![0.0, 1.0, 2.0], vec![0.0, 4.0, 0.0]);
+    /// let law = Law::table(&Table { times, values, degree: SplineDegree::Cubic, ends: Ends::default() })?;
+    /// assert_eq!(law.at(0.5).value(), 2.0); // by symmetry also at rest in the middle
+    /// assert!(law.at(2.5).value().is_nan());
+    /// assert_eq!(law.to_string(), "cubic spline through 3 points");
+    /// # Ok::<(), hardpoint::law::LawError>(())
+    /// ```
+    ///
+    /// # Errors
+    ///
+    /// When there are too few points or not as many values as times, a number is not finite, times do not increase, a
+    /// periodic table does not end with the value it begins with, or an acceleration is given to the end of a cubic.
+    pub fn table(table: &Table) -> Result<Self, LawError> {
+        Spline::new(table).map(Kind::Spline).map(Self::of)
+    }
+
+    /// Laws one after the other, from t = 0 on. Before that, and after the end of a last piece that has one, there is no
+    /// finite value.
+    ///
+    /// ```
+    /// use hardpoint::law::{Law, Piece};
+    ///
+    /// let speed_up = Piece::lasting(2.0, Law::polynomial(&[0.0, 0.0, 1.5])?);
+    /// let keep_going = Piece::open_ended(Law::polynomial(&[0.0, 6.0])?);
+    /// let law = Law::sequence(vec![speed_up, keep_going])?;
+    /// assert_eq!(law.at(1.0).value(), 1.5);
+    /// assert_eq!(law.at(3.0).value(), 12.0); // 6 at the end of the first piece, and 6 more
+    /// assert_eq!(law.to_string(), "1.5*t^2 for 2 s, then 6*t");
+    /// # Ok::<(), hardpoint::law::LawError>(())
+    /// ```
+    ///
+    /// # Errors
+    ///
+    /// When there is no piece, a duration is not a finite number greater than zero, a piece other than the last has none,
+    /// or a piece's law has no finite value at the piece's start or end.
+    pub fn sequence(pieces: Vec<Piece>) -> Result<Self, LawError> {
+        Sequence::new(pieces).map(Kind::Sequence).map(Self::of)
+    }
+
+    fn of(kind: Kind) -> Self {
+        Self { kind, factor: 1.0 }
     }
 
     /// This law times `factor`, as for a change of unit. The text remains as written.
@@ -101,35 +286,140 @@ impl Law {
 
     /// The value and the first three time derivatives at time `t`: driver unit per s⁰, s, s², s³; `t` in seconds.
     ///
-    /// Where the law is not smooth these are the derivatives of one side: `abs`, `min`, `max` and `step` take the
-    /// side that is active just after `t`, `if` the side whose condition holds at `t`.
+    /// Where the law is not smooth these are the derivatives of the side that is active just after `t`; of an `if` the side
+    /// whose condition holds at `t`.
     ///
-    /// Where the law is not defined (`sqrt` of a negative number, a division by zero) the result is not finite;
-    /// reporting that is left to whoever knows the driver's name.
+    /// Where the law is not defined (`sqrt` of a negative number, a division by zero, outside of a table) the result is not
+    /// finite; reporting that is left to whoever knows the driver's name.
     pub fn at(&self, t: f64) -> TimeJet {
-        self.program.evaluate(t) * self.factor
+        self.evaluate(TimeJet::time(t), None)
+    }
+
+    /// The numbers in the law that may be varied: those of its kind in the order that the kind documents; of an expression
+    /// those that [`parse_with`](Self::parse_with) was given; of a sequence those of its pieces, named as in
+    /// `piece[0].amplitude`, with `piece[0].duration` first.
+    ///
+    /// ```
+    /// use hardpoint::law::{ConstantSpeed, Law, ParameterKind};
+    ///
+    /// let in_mm = Law::constant_speed(ConstantSpeed { speed: 30.0, offset: 5.0 })?;
+    /// let speed = &in_mm.scaled(1e-3).parameters()[0];
+    /// assert_eq!((speed.name.as_str(), speed.value), ("speed", 0.03)); // m/s
+    /// assert_eq!(speed.kind, ParameterKind::ValueRate(1));
+    /// # Ok::<(), hardpoint::law::LawError>(())
+    /// ```
+    pub fn parameters(&self) -> Vec<Parameter> {
+        let mut parameters = self.kind.parameters();
+        for parameter in parameters.iter_mut().filter(|parameter| parameter.kind.is_in_driver_unit()) {
+            parameter.value *= self.factor;
+        }
+        parameters
+    }
+
+    /// The partial derivatives of f and of its first three time derivatives at time `t` by one of the
+    /// [parameters](Self::parameters), in the driver's unit and the parameter's. Exact up to rounding.
+    ///
+    /// Where a law is not smooth these are, as those of [`at`](Self::at), of one side.
+    ///
+    /// ```
+    /// use hardpoint::law::{Harmonic, Law};
+    ///
+    /// let law = Law::harmonic(Harmonic { amplitude: 5.0, frequency: 1.0, phase: 0.0, offset: 0.0 })?;
+    /// let phase = law.parameters().iter().position(|parameter| parameter.name == "phase").unwrap();
+    /// assert_eq!(law.derivative(phase, 0.0).value(), 5.0); // amplitude cos(0)
+    /// # Ok::<(), hardpoint::law::LawError>(())
+    /// ```
+    ///
+    /// # Panics
+    ///
+    /// When there is no such parameter.
+    pub fn derivative(&self, parameter: usize, t: f64) -> TimeJet {
+        self.check_index(parameter);
+        let f = self.evaluate::<Dual>(TimeJet::time(Dual::fixed(t)), Some(Seed { parameter, size: 1.0 }));
+        TimeJet::from_derivatives(f.derivatives().map(|derivative| derivative.partial))
+    }
+
+    /// This law with another value of one of its [parameters](Self::parameters).
+    ///
+    /// With a value that makes no sense, such as the end of a step before its start, the law has no finite value; nor has one
+    /// that was [scaled](Self::scaled) by zero, for a parameter in the driver's unit.
+    ///
+    /// ```
+    /// use hardpoint::law::Law;
+    ///
+    /// let law = Law::parse_with("speed*t", &[("speed", 2.0)])?;
+    /// assert_eq!(law.with_parameter(0, 3.0).at(5.0).value(), 15.0);
+    /// # Ok::<(), hardpoint::law::ExpressionError>(())
+    /// ```
+    ///
+    /// # Panics
+    ///
+    /// When there is no such parameter.
+    #[must_use]
+    pub fn with_parameter(&self, parameter: usize, value: f64) -> Self {
+        self.check_index(parameter);
+        let is_in_driver_unit = self.kind.parameter_kind(parameter).is_in_driver_unit();
+        let mut law = self.clone();
+        law.kind.set(parameter, if is_in_driver_unit { value / self.factor } else { value });
+        law
+    }
+
+    /// Where between `from` and `to`, both included, the value, the speed or the acceleration jumps, in the order of time.
+    /// A jump is counted if it is more than 1e-9 of the largest such value, speed or acceleration there.
+    ///
+    /// For expressions the time is cut into 4096 parts: an `abs`, `atan2`, `min`, `max`, `step` or `if` that switches there
+    /// and back within one of them may be missed. Where the law has no finite value it does not jump.
+    ///
+    /// ```
+    /// use hardpoint::law::{Jump, Law};
+    ///
+    /// let law = Law::parse("abs(t - 0.5) + if(t < 2, 0, 3)")?;
+    /// assert_eq!(law.jumps(0.0, 1.0), [Jump { time: 0.5, order: 1, size: 2.0 }]); // from -1 to 1 per second
+    /// assert_eq!(law.jumps(1.0, 5.0)[0].order, 0);
+    /// # Ok::<(), hardpoint::law::ExpressionError>(())
+    /// ```
+    pub fn jumps(&self, from: f64, to: f64) -> Vec<Jump> {
+        jumps::jumps(self, from, to)
+    }
+
+    /// The law over a time that may run backwards, with the derivative by a parameter if there is a seed.
+    fn evaluate<S: Scalar>(&self, time: TimeJet<S>, seed: Option<Seed>) -> TimeJet<S> {
+        let as_written =
+            seed.map(|seed| match self.kind.parameter_kind(seed.parameter).is_in_driver_unit() {
+                true => Seed { size: seed.size / self.factor, ..seed },
+                false => seed,
+            });
+        self.kind.at(time, as_written) * self.factor
+    }
+
+    fn check_index(&self, parameter: usize) {
+        let count = self.kind.parameter_count();
+        assert!(parameter < count, "the law has {count} parameters, so none has the index {parameter}");
     }
 }
 
-/// Shows the text the law was read from, without the factor of [`Law::scaled`].
+/// Shows what the law was made from, without the factor of [`Law::scaled`].
 impl fmt::Display for Law {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(&self.text)
+        self.kind.fmt(f)
     }
 }
 
 impl fmt::Debug for Law {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        // The program holds function addresses, which differ from run to run; the text says all of it.
-        f.debug_struct("Law").field("text", &self.text).field("factor", &self.factor).finish_non_exhaustive()
+        // Programs and splines are long, and follow from what the text says.
+        let text = self.to_string();
+        f.debug_struct("Law").field("text", &text).field("factor", &self.factor).finish_non_exhaustive()
     }
 }
 
 impl PartialEq for Law {
     fn eq(&self, other: &Self) -> bool {
-        self.text == other.text && self.factor == other.factor
+        self.kind == other.kind && self.factor == other.factor
     }
 }
 
+#[cfg(test)]
+mod battery;
 #[cfg(test)]
 mod tests;

@@ -1,9 +1,13 @@
-//! The form in which a law is evaluated: operations in postfix order on a small stack.
+//! The form in which an expression is evaluated: operations in postfix order on a small stack.
 //!
 //! Being flat, a sum of ten thousand terms needs no deep recursion, neither to be evaluated nor to be dropped; and
 //! nothing is allocated per call.
 
+use std::cmp::Ordering;
+
+use super::function::{Binary, Comparison, Unary};
 use super::jet::TimeJet;
+use super::scalar::Scalar;
 
 /// The most operands that may wait for their operation.
 pub(super) const MAX_WAITING: usize = 256;
@@ -15,38 +19,74 @@ const USUALLY_WAITING: usize = 12;
 #[derive(Clone, Copy)]
 pub(super) enum Operation {
     Constant(f64),
+    /// A named parameter, by its place in the list.
+    Parameter(usize),
     Time,
-    One(fn(TimeJet) -> TimeJet),
-    Two(fn(TimeJet, TimeJet) -> TimeJet),
+    One(Unary),
+    Two(Binary),
     Powi(i32),
     Powf(f64),
     /// x, x0, h0, x1, h1
     Step,
     /// Of a, b, x, y: x where the comparison of a with b holds, else y.
-    Select(fn(&f64, &f64) -> bool),
+    Select(Comparison),
+    /// The value alone, of what depends on parameters only.
+    Settle,
 }
 
 impl Operation {
     fn operands(self) -> usize {
         match self {
-            Self::Constant(_) | Self::Time => 0,
-            Self::One(_) | Self::Powi(_) | Self::Powf(_) => 1,
+            Self::Constant(_) | Self::Parameter(_) | Self::Time => 0,
+            Self::One(_) | Self::Powi(_) | Self::Powf(_) | Self::Settle => 1,
             Self::Two(_) => 2,
             Self::Select(_) => 4,
             Self::Step => 5,
         }
     }
+
+    /// Which of its sides an operation with sides takes for these operands. Sides that join smoothly may be told apart.
+    fn side(self, operands: &[TimeJet]) -> Option<u8> {
+        let sign = |order: Option<Ordering>| order.map_or(9, |order| order as u8);
+        let zero = TimeJet::constant(0.0);
+        Some(match self {
+            Self::One(Unary::Abs) => {
+                u8::from(sign(operands[0].cmp_just_after(zero)) == sign(Some(Ordering::Less)))
+            }
+            Self::Two(Binary::Min | Binary::Max) => sign(operands[0].cmp_just_after(operands[1])),
+            // The angle jumps by 2π where the point crosses the negative x axis.
+            Self::Two(Binary::Atan2) if operands[1].value() >= 0.0 => 7,
+            Self::Two(Binary::Atan2) => u8::from(operands[0].value() >= 0.0),
+            Self::Step => {
+                let is_before =
+                    |end: usize| operands[0].cmp_just_after(operands[end]) == Some(Ordering::Less);
+                u8::from(is_before(1)) + u8::from(is_before(3))
+            }
+            Self::Select(comparison) => {
+                comparison.holds(operands[0].value(), operands[1].value()).map_or(9, u8::from)
+            }
+            _ => return None,
+        })
+    }
 }
 
-/// The operations of a law.
+/// The operations of an expression.
 #[derive(Clone, Default)]
 pub(super) struct Program {
     operations: Vec<Operation>,
-    waiting: usize,
+    /// For every operand that waits, whether it depends on the time.
+    waiting: Vec<bool>,
     most_waiting: usize,
 }
 
 impl Program {
+    /// The program that is a number.
+    pub(super) fn constant(value: f64) -> Self {
+        let mut program = Self::default();
+        program.emit(Operation::Constant(value));
+        program
+    }
+
     /// The number of operations so far; an operand begins at the length before it was emitted.
     pub(super) fn len(&self) -> usize {
         self.operations.len()
@@ -54,7 +94,7 @@ impl Program {
 
     /// Whether one more operand would exceed [`MAX_WAITING`].
     pub(super) fn is_full(&self) -> bool {
-        self.waiting == MAX_WAITING
+        self.waiting.len() == MAX_WAITING
     }
 
     /// The number that is the operation at `index`, if it is one.
@@ -67,17 +107,28 @@ impl Program {
 
     /// Appends an operation whose operands are there already.
     pub(super) fn emit(&mut self, operation: Operation) {
-        self.waiting = self.waiting + 1 - operation.operands();
-        self.most_waiting = self.most_waiting.max(self.waiting);
-        let start = self.len() - operation.operands().min(self.len());
+        let operands = operation.operands();
+        let left = self.waiting.len() - operands;
+        let is_timed = matches!(operation, Operation::Time) || self.waiting[left..].contains(&true);
+        self.waiting.truncate(left);
+        self.waiting.push(is_timed);
+        self.most_waiting = self.most_waiting.max(self.waiting.len());
+
+        let start = self.len() - operands.min(self.len());
         self.operations.push(operation);
+        if operands == 0 || is_timed {
+            return;
+        }
         // What does not depend on t has no derivatives, also where its jet's are infinite times zero: sqrt(0). An
         // operand that is a number is one operation, so the operands are all numbers if that many operations are.
-        if operation.operands() > 0 && (start..self.len() - 1).all(|index| self.constant_at(index).is_some())
-        {
-            let value = evaluate::<USUALLY_WAITING>(&self.operations[start..], f64::NAN).value();
+        if (start..self.len() - 1).all(|index| self.constant_at(index).is_some()) {
+            let t = TimeJet::constant(f64::NAN);
+            let value =
+                evaluate::<f64, USUALLY_WAITING>(&self.operations[start..], t, fixed, |_, _| ()).value();
             self.operations.truncate(start);
             self.operations.push(Operation::Constant(value));
+        } else {
+            self.operations.push(Operation::Settle);
         }
     }
 
@@ -85,10 +136,10 @@ impl Program {
     pub(super) fn emit_power(&mut self) {
         let exponent = self.constant_at(self.len() - 1);
         let Some(exponent) = exponent else {
-            return self.emit(Operation::Two(TimeJet::pow));
+            return self.emit(Operation::Two(Binary::Pow));
         };
         self.operations.pop();
-        self.waiting -= 1;
+        self.waiting.pop();
         // Longer products of the base would cost digits.
         let is_small_integer = exponent.fract() == 0.0 && exponent.abs() <= 16.0;
         self.emit(if is_small_integer {
@@ -101,44 +152,89 @@ impl Program {
     /// Drops the last operand, which began at `start`.
     pub(super) fn drop_operand(&mut self, start: usize) {
         self.operations.truncate(start);
-        self.waiting -= 1;
+        self.waiting.pop();
     }
 
-    /// The program's result at time `t`.
-    pub(super) fn evaluate(&self, t: f64) -> TimeJet {
-        if self.most_waiting <= USUALLY_WAITING {
-            evaluate::<USUALLY_WAITING>(&self.operations, t)
-        } else {
-            evaluate::<MAX_WAITING>(&self.operations, t)
+    /// The program with numbers for its parameters: the one that the text with these numbers in it would have given.
+    pub(super) fn with_values(&self, values: &[f64]) -> Self {
+        let mut program = Self::default();
+        for &operation in &self.operations {
+            match operation {
+                Operation::Parameter(parameter) => program.emit(Operation::Constant(values[parameter])),
+                Operation::Two(Binary::Pow) => program.emit_power(),
+                Operation::Settle => {}
+                _ => program.emit(operation),
+            }
         }
+        program
+    }
+
+    /// The program's result at a time, for the given parameters.
+    pub(super) fn evaluate<S: Scalar>(&self, time: TimeJet<S>, parameter: impl Fn(usize) -> S) -> TimeJet<S> {
+        if self.most_waiting <= USUALLY_WAITING {
+            evaluate::<S, USUALLY_WAITING>(&self.operations, time, parameter, |_, _| ())
+        } else {
+            evaluate::<S, MAX_WAITING>(&self.operations, time, parameter, |_, _| ())
+        }
+    }
+
+    /// Whether any operation has sides that it could switch between.
+    pub(super) fn has_sides(&self) -> bool {
+        self.operations.iter().any(|operation| {
+            use Operation::{One, Select, Step, Two};
+            matches!(
+                operation,
+                One(Unary::Abs) | Two(Binary::Min | Binary::Max | Binary::Atan2) | Step | Select(_)
+            )
+        })
+    }
+
+    /// The sides that the operations with sides take at time `t`, in the order of the operations; without parameters.
+    pub(super) fn sides(&self, t: f64, sides: &mut Vec<u8>) {
+        sides.clear();
+        evaluate::<f64, MAX_WAITING>(&self.operations, TimeJet::time(t), fixed, |operation, operands| {
+            sides.extend(operation.side(operands));
+        });
     }
 }
 
-fn evaluate<const N: usize>(operations: &[Operation], t: f64) -> TimeJet {
-    let mut stack = [TimeJet::constant(0.0); N];
+/// The parameters of a program that has none.
+pub(super) fn fixed<S: Scalar>(_: usize) -> S {
+    S::fixed(f64::NAN)
+}
+
+/// Runs the operations; `watch` sees each with its operands first.
+fn evaluate<S: Scalar, const N: usize>(
+    operations: &[Operation],
+    time: TimeJet<S>,
+    parameter: impl Fn(usize) -> S,
+    mut watch: impl FnMut(Operation, &[TimeJet<S>]),
+) -> TimeJet<S> {
+    let mut stack = [TimeJet::constant(S::ZERO); N];
     let mut len = 0;
     for &operation in operations {
-        len -= operation.operands();
+        let operands = operation.operands();
+        len -= operands;
+        watch(operation, &stack[len..len + operands]);
         stack[len] = match operation {
-            Operation::Constant(value) => TimeJet::constant(value),
-            Operation::Time => TimeJet::time(t),
-            Operation::One(function) => function(stack[len]),
-            Operation::Two(function) => function(stack[len], stack[len + 1]),
+            Operation::Constant(value) => TimeJet::constant(S::fixed(value)),
+            Operation::Parameter(index) => TimeJet::constant(parameter(index)),
+            Operation::Time => time,
+            Operation::One(function) => function.apply(stack[len]),
+            Operation::Two(function) => function.apply(stack[len], stack[len + 1]),
             Operation::Powi(exponent) => stack[len].powi(exponent),
-            Operation::Powf(exponent) => stack[len].powf(exponent),
+            Operation::Powf(exponent) => stack[len].powf(S::fixed(exponent)),
             Operation::Step => {
                 stack[len].step(stack[len + 1], stack[len + 2], stack[len + 3], stack[len + 4])
             }
-            Operation::Select(holds) => {
-                let (a, b) = (stack[len].value(), stack[len + 1].value());
-                if a.is_nan() || b.is_nan() {
-                    TimeJet::constant(f64::NAN)
-                } else if holds(&a, &b) {
-                    stack[len + 2]
-                } else {
-                    stack[len + 3]
+            Operation::Select(comparison) => {
+                match comparison.holds(stack[len].value().value(), stack[len + 1].value().value()) {
+                    Some(true) => stack[len + 2],
+                    Some(false) => stack[len + 3],
+                    None => TimeJet::undefined(),
                 }
             }
+            Operation::Settle => TimeJet::constant(stack[len].value()),
         };
         len += 1;
     }

@@ -1,0 +1,91 @@
+//! The law that is an expression in `t`, with named parameters.
+
+use std::fmt;
+
+use super::error::check_finite;
+use super::expression::{self, ExpressionError};
+use super::jet::TimeJet;
+use super::jumps::{Break, find_switches};
+use super::kind::Shape;
+use super::parameter::{Parameter, ParameterKind, Seed, parameter, seeded};
+use super::program::{Program, fixed};
+use super::scalar::Scalar;
+
+/// An expression, its parameters, and what evaluates it.
+#[derive(Clone)]
+pub(super) struct Formula {
+    text: String,
+    names: Vec<String>,
+    values: Vec<f64>,
+    /// With the parameters as such.
+    symbolic: Program,
+    /// With their values in place: what is evaluated unless derivatives by a parameter are wanted.
+    program: Program,
+}
+
+impl Formula {
+    pub(super) fn parse(text: &str, parameters: &[(&str, f64)]) -> Result<Self, ExpressionError> {
+        let (names, values): (Vec<&str>, Vec<f64>) = parameters.iter().copied().unzip();
+        let symbolic = expression::parse(text, &names)?;
+        if let Err(error) = check_finite(parameters.iter().map(|&(name, value)| (name, value))) {
+            return Err(ExpressionError { span: 0..text.len(), message: error.message, help: None });
+        }
+        let program = symbolic.with_values(&values);
+        let names = names.into_iter().map(str::to_owned).collect();
+        Ok(Self { text: text.to_owned(), names, values, symbolic, program })
+    }
+
+    pub(super) fn constant(value: f64) -> Self {
+        let program = Program::constant(value);
+        let (names, values) = (Vec::new(), Vec::new());
+        Self { text: value.to_string(), names, values, symbolic: program.clone(), program }
+    }
+}
+
+impl Shape for Formula {
+    fn at<S: Scalar>(&self, time: TimeJet<S>, seed: Option<Seed>) -> TimeJet<S> {
+        match seed {
+            None => self.program.evaluate(time, fixed),
+            Some(_) => self.symbolic.evaluate(time, |index| seeded(self.values[index], index, seed)),
+        }
+    }
+
+    fn parameters(&self) -> Vec<Parameter> {
+        let named = self.names.iter().zip(&self.values);
+        named.map(|(name, &value)| parameter(name, value, ParameterKind::Number)).collect()
+    }
+
+    fn parameter_count(&self) -> usize {
+        self.names.len()
+    }
+
+    fn parameter_kind(&self, _: usize) -> ParameterKind {
+        ParameterKind::Number
+    }
+
+    fn set(&mut self, parameter: usize, value: f64) {
+        self.values[parameter] = value;
+        self.program = self.symbolic.with_values(&self.values);
+    }
+
+    fn find_breaks(&self, from: f64, to: f64, breaks: &mut Vec<Break>) {
+        find_switches(&self.program, from, to, breaks);
+    }
+}
+
+/// The text, and what its parameters are.
+impl fmt::Display for Formula {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.text)?;
+        for (k, (name, value)) in self.names.iter().zip(&self.values).enumerate() {
+            write!(f, "{}{name} = {value}", if k == 0 { " with " } else { ", " })?;
+        }
+        Ok(())
+    }
+}
+
+impl PartialEq for Formula {
+    fn eq(&self, other: &Self) -> bool {
+        self.text == other.text && self.names == other.names && self.values == other.values
+    }
+}

@@ -1,0 +1,100 @@
+//! The functions of the language of laws, as data: named once, evaluated in any scalar.
+
+use std::cmp::Ordering;
+
+use super::jet::TimeJet;
+use super::scalar::Scalar;
+
+/// A function of one quantity.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Unary {
+    Neg,
+    Sin,
+    Cos,
+    Tan,
+    Asin,
+    Acos,
+    Atan,
+    Sinh,
+    Cosh,
+    Tanh,
+    Exp,
+    Ln,
+    Log10,
+    Sqrt,
+    Abs,
+}
+
+impl Unary {
+    pub(super) fn apply<S: Scalar>(self, x: TimeJet<S>) -> TimeJet<S> {
+        match self {
+            Self::Neg => -x,
+            Self::Sin => x.sin(),
+            Self::Cos => x.cos(),
+            Self::Tan => x.tan(),
+            Self::Asin => x.asin(),
+            Self::Acos => x.acos(),
+            Self::Atan => x.atan(),
+            Self::Sinh => x.sinh(),
+            Self::Cosh => x.cosh(),
+            Self::Tanh => x.tanh(),
+            Self::Exp => x.exp(),
+            Self::Ln => x.ln(),
+            Self::Log10 => x.log10(),
+            Self::Sqrt => x.sqrt(),
+            Self::Abs => x.abs(),
+        }
+    }
+}
+
+/// A function of two quantities.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Binary {
+    Add,
+    Sub,
+    Mul,
+    Div,
+    Atan2,
+    Pow,
+    Hypot,
+    Min,
+    Max,
+}
+
+impl Binary {
+    pub(super) fn apply<S: Scalar>(self, x: TimeJet<S>, y: TimeJet<S>) -> TimeJet<S> {
+        match self {
+            Self::Add => x + y,
+            Self::Sub => x - y,
+            Self::Mul => x * y,
+            Self::Div => x / y,
+            Self::Atan2 => x.atan2(y),
+            Self::Pow => x.pow(y),
+            Self::Hypot => x.hypot(y),
+            Self::Min => x.min(y),
+            Self::Max => x.max(y),
+        }
+    }
+}
+
+/// A comparison of two values.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Comparison {
+    Less,
+    LessOrEqual,
+    Greater,
+    GreaterOrEqual,
+}
+
+impl Comparison {
+    /// Whether `a` compares with `b` in this way; `None` if either is not a number.
+    pub(super) fn holds(self, a: f64, b: f64) -> Option<bool> {
+        let order = a.partial_cmp(&b)?;
+        Some(match self {
+            Self::Less => order == Ordering::Less,
+            Self::LessOrEqual => order != Ordering::Greater,
+            Self::Greater => order == Ordering::Greater,
+            Self::GreaterOrEqual => order != Ordering::Less,
+        })
+    }
+}

@@ -1,0 +1,156 @@
+//! Where a law is not smooth.
+
+use super::Law;
+use super::jet::TimeJet;
+use super::kind::Shape;
+use super::program::Program;
+
+/// A jump of a law, of its speed or of its acceleration.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Jump {
+    /// When, in s.
+    pub time: f64,
+    /// What jumps: 0 for the value, 1 for the speed, 2 for the acceleration. The lowest that does.
+    pub order: usize,
+    /// By how much, from before to after, in the driver's unit per s to the order.
+    pub size: f64,
+}
+
+/// A place where a law may jump: at a time that lies between two others, between which the law is not to be looked at.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Break {
+    time: f64,
+    before: f64,
+    after: f64,
+}
+
+impl Break {
+    /// A break at a time that is known exactly.
+    pub(super) fn exactly(time: f64) -> Self {
+        Self { time, before: time, after: time }
+    }
+
+    /// Whether the law has both its sides, if it begins at `start` and ends at `end`.
+    pub(super) fn is_between(self, start: f64, end: f64) -> bool {
+        let room = SAME_TIME * self.time.abs().max(1.0);
+        self.time > start + room && self.time < end - room
+    }
+
+    /// This break in a law that starts later, with room for the rounding of the difference of times.
+    pub(super) fn delayed(self, by: f64) -> Self {
+        let room = 4.0 * f64::EPSILON * self.time.abs().max(by.abs());
+        Self { time: self.time + by, before: self.before + by - room, after: self.after + by + room }
+    }
+}
+
+/// In how many parts the time is cut to find where an expression switches. What switches there and back between two cuts
+/// is missed.
+const CUTS: u32 = 4096;
+
+/// Sides that change more often than this between two cuts change by rounding.
+const MOST_CHANGES: usize = 4;
+
+/// Breaks nearer to each other than this, relative to the times asked for, are one.
+const SAME_TIME: f64 = 1e-12;
+
+/// A jump counts if it is more than this, relative to the largest that the same derivative is...
+const RELATIVE: f64 = 1e-9;
+
+/// ... and more than rounding may be, relative to the largest value of the law, per second to the order.
+const ROUNDING: f64 = 1e-12;
+
+/// Appends the places between `from` and `to` where an operation of the program changes sides.
+pub(super) fn find_switches(program: &Program, from: f64, to: f64, breaks: &mut Vec<Break>) {
+    if !program.has_sides() {
+        return;
+    }
+    // So that a switch at either end is between two cuts.
+    let margin = 1e-9 * (to - from) + SAME_TIME * from.abs().max(to.abs());
+    let cut = |k: u32| (from - margin) + (to - from + 2.0 * margin) * f64::from(k) / f64::from(CUTS);
+    let (mut before, mut after, mut middle) = (Vec::new(), Vec::new(), Vec::new());
+    program.sides(cut(0), &mut before);
+    for k in 1..=CUTS {
+        program.sides(cut(k), &mut after);
+        for operation in 0..before.len() {
+            let (mut low, mut side) = (cut(k - 1), before[operation]);
+            for _ in 0..MOST_CHANGES {
+                if side == after[operation] {
+                    break;
+                }
+                let mut high = cut(k);
+                loop {
+                    let t = low + 0.5 * (high - low);
+                    if t <= low || t >= high {
+                        break;
+                    }
+                    program.sides(t, &mut middle);
+                    *if middle[operation] == side { &mut low } else { &mut high } = t;
+                }
+                breaks.push(Break { time: high.clamp(from, to), before: low, after: high });
+                program.sides(high, &mut middle);
+                (low, side) = (high, middle[operation]);
+            }
+        }
+        std::mem::swap(&mut before, &mut after);
+    }
+}
+
+/// The jumps of a law from one time to another.
+pub(super) fn jumps(law: &Law, from: f64, to: f64) -> Vec<Jump> {
+    let mut breaks = Vec::new();
+    if !(from <= to && (to - from).is_finite()) {
+        return Vec::new();
+    }
+    law.kind.find_breaks(from, to, &mut breaks);
+    let breaks = merged(breaks, SAME_TIME * from.abs().max(to.abs()));
+    if breaks.is_empty() {
+        return Vec::new();
+    }
+
+    let sides: Vec<_> = breaks.iter().map(|at| (just_before(law, at.before), law.at(at.after))).collect();
+    let samples = (0..=256).map(|k| law.at(from + (to - from) * f64::from(k) / 256.0));
+    let mut largest = [0.0_f64; 3];
+    for jet in samples.chain(sides.iter().flat_map(|&(before, after)| [before, after])) {
+        for (largest, derivative) in largest.iter_mut().zip(jet.derivatives()) {
+            *largest = largest.max(if derivative.is_finite() { derivative.abs() } else { 0.0 });
+        }
+    }
+
+    let mut jumps = Vec::new();
+    for (at, (before, after)) in breaks.iter().zip(sides) {
+        let (before, after) = (before.derivatives(), after.derivatives());
+        // What a smooth law changes by between the two times, rounded as they are.
+        let room = (at.after - at.before) + 4.0 * f64::EPSILON * at.time.abs();
+        let order = (0..3).find(|&n| {
+            let smooth = 2.0 * room * before[n + 1].abs().max(after[n + 1].abs());
+            let size = (after[n] - before[n]).abs();
+            size > RELATIVE * largest[n]
+                + ROUNDING * largest[0]
+                + if smooth.is_finite() { smooth } else { 0.0 }
+        });
+        jumps.extend(order.map(|order| Jump { time: at.time, order, size: after[order] - before[order] }));
+    }
+    jumps
+}
+
+/// The law at `t`, continued from the times before.
+fn just_before(law: &Law, t: f64) -> TimeJet {
+    let [f, d, dd, ddd] = law.evaluate(TimeJet::from_derivatives([t, -1.0, 0.0, 0.0]), None).derivatives();
+    TimeJet::from_derivatives([f, -d, dd, -ddd])
+}
+
+/// The breaks in the order of time, those at the same time as one.
+fn merged(mut breaks: Vec<Break>, same_time: f64) -> Vec<Break> {
+    breaks.sort_by(|a, b| a.time.total_cmp(&b.time));
+    let mut merged: Vec<Break> = Vec::new();
+    for at in breaks {
+        match merged.last_mut() {
+            Some(last) if at.time - last.time <= same_time => {
+                last.before = last.before.min(at.before);
+                last.after = last.after.max(at.after);
+            }
+            _ => merged.push(at),
+        }
+    }
+    merged
+}

@@ -1,0 +1,237 @@
+//! The law that is made of other laws, one after the other.
+
+use std::fmt;
+
+use super::Law;
+use super::error::LawError;
+use super::jet::TimeJet;
+use super::jumps::Break;
+use super::kind::Shape;
+use super::parameter::{Parameter, ParameterKind, Seed, parameter, seeded};
+use super::scalar::Scalar;
+use super::table::ROUNDING_OF_TIME;
+
+/// A piece of a [sequence](Law::sequence).
+#[derive(Clone, Debug, PartialEq)]
+pub struct Piece {
+    /// How long it lasts, in s; for ever if `None`, which only the last piece may be.
+    pub duration: Option<f64>,
+    /// Its law, whose time starts at 0 when the piece does.
+    pub law: Law,
+    /// Whether its values count from where the piece before ended, so that the value does not jump. Without meaning in the
+    /// first piece, whose values are always its law's own.
+    pub continued: bool,
+}
+
+impl Piece {
+    /// A piece of a duration in s, continued.
+    pub fn lasting(duration: f64, law: Law) -> Self {
+        Self { duration: Some(duration), law, continued: true }
+    }
+
+    /// A last piece without an end, continued.
+    pub fn open_ended(law: Law) -> Self {
+        Self { duration: None, law, continued: true }
+    }
+
+    /// This piece with its law's own values.
+    #[must_use]
+    pub fn not_continued(mut self) -> Self {
+        self.continued = false;
+        self
+    }
+}
+
+/// The law of a sequence.
+#[derive(Clone, PartialEq)]
+pub(super) struct Sequence {
+    pieces: Vec<Piece>,
+    /// When each piece starts, and the end of the last.
+    starts: Vec<f64>,
+    /// What is added to each piece's law.
+    offsets: Vec<f64>,
+    /// The index of each piece's first parameter: its duration, if it has one, and then those of its law. Then their number.
+    first_parameters: Vec<usize>,
+}
+
+impl Sequence {
+    pub(super) fn new(pieces: Vec<Piece>) -> Result<Self, LawError> {
+        if pieces.is_empty() {
+            return Err(LawError::new("a sequence has no pieces", "give at least one"));
+        }
+        for (k, piece) in pieces.iter().enumerate() {
+            match piece.duration {
+                None if k + 1 < pieces.len() => {
+                    let message = format!("piece {k} of a sequence has no duration, but is not the last");
+                    return Err(LawError::new(message, "only the last piece may be without end"));
+                }
+                Some(duration) if !(duration > 0.0 && duration.is_finite()) => {
+                    let message = format!("piece {k} of a sequence lasts {duration} s");
+                    return Err(LawError::new(message, "a duration is a finite number greater than zero"));
+                }
+                _ => {}
+            }
+            let ends = [("start", TimeJet::time(0.0)), ("end", backwards(piece.duration.unwrap_or(0.0)))];
+            for (end, time) in ends {
+                if !piece.law.evaluate(time, None).value().is_finite() {
+                    let message = format!(
+                        "the law of piece {k} of a sequence has no finite value at the piece's {end}"
+                    );
+                    let help =
+                        "the law's own time starts at 0 when the piece does, and ends with its duration";
+                    return Err(LawError::new(message, help));
+                }
+            }
+        }
+        let mut sequence =
+            Self { pieces, starts: Vec::new(), offsets: Vec::new(), first_parameters: Vec::new() };
+        let mut parameters = 0;
+        for piece in &sequence.pieces {
+            sequence.first_parameters.push(parameters);
+            parameters += usize::from(piece.duration.is_some()) + piece.law.kind.parameter_count();
+        }
+        sequence.first_parameters.push(parameters);
+        sequence.lay_out();
+        Ok(sequence)
+    }
+
+    /// Works out where every piece starts.
+    fn lay_out(&mut self) {
+        let places: Vec<(f64, f64)> = (0..=self.pieces.len()).map(|k| self.place(k, None)).collect();
+        (self.starts, self.offsets) = places.into_iter().unzip();
+    }
+
+    /// When the piece k starts and what is added to its law. One beyond the last: when that ends.
+    fn place<S: Scalar>(&self, k: usize, seed: Option<Seed>) -> (S, S) {
+        let (mut start, mut offset) = (S::ZERO, S::ZERO);
+        for j in 0..k {
+            let duration: S = self.duration(j, seed);
+            let end = self.pieces[j].law.evaluate(backwards(duration), self.seed_in(j, seed)).value();
+            start = start + duration;
+            offset = match self.pieces.get(j + 1) {
+                Some(next) if next.continued => {
+                    let next_start = next.law.evaluate(TimeJet::time(S::ZERO), self.seed_in(j + 1, seed));
+                    offset + end - next_start.value()
+                }
+                _ => S::ZERO,
+            };
+        }
+        (start, offset)
+    }
+
+    fn duration<S: Scalar>(&self, k: usize, seed: Option<Seed>) -> S {
+        match self.pieces[k].duration {
+            Some(duration) => seeded(duration, self.first_parameters[k], seed),
+            None => S::fixed(f64::INFINITY),
+        }
+    }
+
+    /// The seed as the law of the piece k counts its parameters, if it is one of them.
+    fn seed_in(&self, k: usize, seed: Option<Seed>) -> Option<Seed> {
+        let Seed { parameter, size } = seed?;
+        match self.owner(parameter) {
+            (owner, Some(parameter)) if owner == k => Some(Seed { parameter, size }),
+            _ => None,
+        }
+    }
+
+    /// The piece that a parameter belongs to, and its index there; `None` for the piece's duration.
+    fn owner(&self, parameter: usize) -> (usize, Option<usize>) {
+        let k = self.first_parameters.partition_point(|&first| first <= parameter) - 1;
+        let within = parameter - self.first_parameters[k];
+        (k, if self.pieces[k].duration.is_some() { within.checked_sub(1) } else { Some(within) })
+    }
+}
+
+impl Shape for Sequence {
+    fn at<S: Scalar>(&self, time: TimeJet<S>, seed: Option<Seed>) -> TimeJet<S> {
+        let (t, is_backwards) = (time.value().value(), time.d().value() < 0.0);
+        let end = self.starts[self.pieces.len()];
+        let slack = ROUNDING_OF_TIME * t.abs().max(1.0);
+        // Durations that were changed to something impossible leave no order of pieces.
+        let is_ordered = self.starts.windows(2).all(|pair| pair[0] < pair[1]);
+        if !(t >= -slack && t <= end + slack && is_ordered) {
+            return TimeJet::undefined();
+        }
+        let begun = &self.starts[..self.pieces.len()];
+        let begun = begun.partition_point(|&start| if is_backwards { start < t } else { start <= t });
+        let k = begun.saturating_sub(1);
+        let (start, offset) = match seed {
+            None => (S::fixed(self.starts[k]), S::fixed(self.offsets[k])),
+            Some(_) => self.place(k, seed),
+        };
+        self.pieces[k].law.evaluate(time.plus(-start), self.seed_in(k, seed)).plus(offset)
+    }
+
+    fn parameters(&self) -> Vec<Parameter> {
+        let mut parameters = Vec::new();
+        for (k, piece) in self.pieces.iter().enumerate() {
+            let duration =
+                piece.duration.map(|duration| parameter("duration", duration, ParameterKind::Time));
+            for parameter in duration.into_iter().chain(piece.law.parameters()) {
+                let name = format!("piece[{k}].{}", parameter.name);
+                parameters.push(Parameter { name, ..parameter });
+            }
+        }
+        parameters
+    }
+
+    fn parameter_count(&self) -> usize {
+        self.first_parameters[self.pieces.len()]
+    }
+
+    fn parameter_kind(&self, parameter: usize) -> ParameterKind {
+        match self.owner(parameter) {
+            (k, Some(of_law)) => self.pieces[k].law.kind.parameter_kind(of_law),
+            (_, None) => ParameterKind::Time,
+        }
+    }
+
+    fn set(&mut self, parameter: usize, value: f64) {
+        let (k, of_law) = self.owner(parameter);
+        let piece = &mut self.pieces[k];
+        match of_law {
+            Some(of_law) => piece.law = piece.law.with_parameter(of_law, value),
+            None => piece.duration = Some(value),
+        }
+        self.lay_out();
+    }
+
+    fn find_breaks(&self, from: f64, to: f64, breaks: &mut Vec<Break>) {
+        let mut found = Vec::new();
+        for (k, piece) in self.pieces.iter().enumerate() {
+            let (start, end) = (self.starts[k], self.starts[k + 1]);
+            if k > 0 && (from..=to).contains(&start) {
+                breaks.push(Break::exactly(start));
+            }
+            let (from, to) = (from.max(start), to.min(end));
+            if from <= to {
+                piece.law.kind.find_breaks(from - start, to - start, &mut found);
+                let found = found.drain(..).map(|found| found.delayed(start));
+                // At its own ends a sequence has one side only.
+                breaks.extend(found.filter(|found| found.is_between(0.0, self.starts[self.pieces.len()])));
+            }
+        }
+    }
+}
+
+/// The time `t`, running backwards: what is asked there is what holds just before.
+fn backwards<S: Scalar>(t: S) -> TimeJet<S> {
+    TimeJet::from_derivatives([t, -S::ONE, S::ZERO, S::ZERO])
+}
+
+impl fmt::Display for Sequence {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        for (k, piece) in self.pieces.iter().enumerate() {
+            f.write_str(if k == 0 { "" } else { ", then " })?;
+            write!(f, "{}", piece.law)?;
+            if let Some(duration) = piece.duration {
+                write!(f, " for {duration} s")?;
+            }
+            if k > 0 && !piece.continued {
+                f.write_str(" (not continued)")?;
+            }
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,168 @@
+//! The law that goes smoothly from one value to another.
+
+use std::cmp::Ordering;
+use std::fmt;
+
+use super::error::{LawError, check_finite};
+use super::jet::TimeJet;
+use super::jumps::Break;
+use super::kind::Shape;
+use super::parameter::{Parameter, ParameterKind, Seed, parameter, seeded};
+use super::polynomial::sum_of_powers;
+use super::scalar::Scalar;
+
+/// A law that holds `from` up to `start`, `to` from `end` on, and is a polynomial between them:
+/// from + (to - from) s(u) with u = (t - start) / (end - start).
+///
+/// | degree | s(u) | at both ends |
+/// |---|---|---|
+/// | 3 | 3u² - 2u³ | the acceleration jumps by 6 (to - from) / (end - start)² |
+/// | 5 | 10u³ - 15u⁴ + 6u⁵ | the acceleration is continuous, the jerk jumps |
+/// | 7 | 35u⁴ - 84u⁵ + 70u⁶ - 20u⁷ | the jerk is continuous too |
+///
+/// Its parameters, in this order: `from`, `to`, `start`, `end`. Where a changed `start` is no longer before `end` the law
+/// has no finite value.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SmoothStep {
+    /// The value before, in the driver's unit.
+    pub from: f64,
+    /// The value after, in the driver's unit.
+    pub to: f64,
+    /// Where it begins, in s.
+    pub start: f64,
+    /// Where it ends, in s; after `start`.
+    pub end: f64,
+    /// The degree of the polynomial: 3, 5 or 7.
+    pub degree: u32,
+}
+
+impl SmoothStep {
+    /// The degree to take where none is asked for: the lowest whose acceleration does not jump.
+    pub const USUAL_DEGREE: u32 = 5;
+
+    pub(super) fn check(&self) -> Result<(), LawError> {
+        let Self { from, to, start, end, degree } = *self;
+        check_finite([("`from`", from), ("`to`", to), ("`start`", start), ("`end`", end)])?;
+        if start >= end {
+            let message =
+                format!("a smooth step must start before it ends, but start = {start} s and end = {end} s");
+            return Err(LawError::new(message, "swap `from` and `to` if the other direction is meant"));
+        }
+        if ![3, 5, 7].contains(&degree) {
+            let message = format!("a smooth step has degree 3, 5 or 7, not {degree}");
+            let help = "with 3 the acceleration jumps at both ends, with 5 the jerk, with 7 neither";
+            return Err(LawError::new(message, help));
+        }
+        Ok(())
+    }
+}
+
+impl Shape for SmoothStep {
+    fn at<S: Scalar>(&self, time: TimeJet<S>, seed: Option<Seed>) -> TimeJet<S> {
+        let [from, to]: [S; 2] = [seeded(self.from, 0, seed), seeded(self.to, 1, seed)];
+        let [start, end]: [S; 2] = [seeded(self.start, 2, seed), seeded(self.end, 3, seed)];
+        if !(self.start < self.end) {
+            return TimeJet::undefined();
+        }
+        let is_before = |instant: S| time.cmp_just_after(TimeJet::constant(instant)) == Some(Ordering::Less);
+        if time.value().value().is_nan() {
+            TimeJet::undefined()
+        } else if is_before(start) {
+            TimeJet::constant(from)
+        } else if !is_before(end) {
+            TimeJet::constant(to)
+        } else {
+            let u = time.plus(-start).times(S::ONE / (end - start));
+            let (lowest, coefficients): (i32, &[f64]) = match self.degree {
+                3 => (2, &[3.0, -2.0]),
+                5 => (3, &[10.0, -15.0, 6.0]),
+                _ => (4, &[35.0, -84.0, 70.0, -20.0]),
+            };
+            let s = u.powi(lowest) * sum_of_powers(coefficients.iter().map(|&c| S::fixed(c)), u);
+            s.times(to - from).plus(from)
+        }
+    }
+
+    fn parameters(&self) -> Vec<Parameter> {
+        vec![
+            parameter("from", self.from, ParameterKind::Value),
+            parameter("to", self.to, ParameterKind::Value),
+            parameter("start", self.start, ParameterKind::Time),
+            parameter("end", self.end, ParameterKind::Time),
+        ]
+    }
+
+    fn parameter_count(&self) -> usize {
+        4
+    }
+
+    fn parameter_kind(&self, parameter: usize) -> ParameterKind {
+        if parameter < 2 { ParameterKind::Value } else { ParameterKind::Time }
+    }
+
+    fn set(&mut self, parameter: usize, value: f64) {
+        *match parameter {
+            0 => &mut self.from,
+            1 => &mut self.to,
+            2 => &mut self.start,
+            _ => &mut self.end,
+        } = value;
+    }
+
+    fn find_breaks(&self, from: f64, to: f64, breaks: &mut Vec<Break>) {
+        let ends = [self.start, self.end].into_iter().filter(|t| (from..=to).contains(t));
+        breaks.extend(ends.map(Break::exactly));
+    }
+}
+
+impl fmt::Display for SmoothStep {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { from, to, start, end, degree } = self;
+        write!(f, "smooth step of degree {degree} from {from} at {start} s to {to} at {end} s")
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_step_needs_finite_numbers_a_duration_and_a_known_degree() {
+        let good = SmoothStep { from: 1.0, to: 0.0, start: 0.0, end: 2.0, degree: SmoothStep::USUAL_DEGREE };
+        assert_eq!(good.check(), Ok(()));
+        let cases = [
+            (
+                SmoothStep { start: 2.0, ..good },
+                "a smooth step must start before it ends, but start = 2 s and end = 2 s",
+                Some("swap `from` and `to` if the other direction is meant"),
+            ),
+            (
+                SmoothStep { degree: 4, ..good },
+                "a smooth step has degree 3, 5 or 7, not 4",
+                Some("with 3 the acceleration jumps at both ends, with 5 the jerk, with 7 neither"),
+            ),
+            (SmoothStep { to: f64::NAN, ..good }, "the `to` of a law must be a finite number, not NaN", None),
+        ];
+        for (step, message, help) in cases {
+            let error = step.check().unwrap_err();
+            assert_eq!((error.message.as_str(), error.help.as_deref()), (message, help));
+        }
+    }
+
+    #[test]
+    fn as_many_derivatives_vanish_at_the_ends_as_the_degree_says() {
+        for (degree, vanishing) in [(3, 1), (5, 2), (7, 3)] {
+            let step = SmoothStep { from: 1.0, to: 4.0, start: 1.0, end: 3.0, degree };
+            for (time, value) in [(TimeJet::time(1.0), 1.0), (-TimeJet::time(-3.0), 4.0)] {
+                let inside = step.at(time, None).derivatives();
+                assert_eq!(inside[0], value, "{degree}");
+                assert!(
+                    inside[1..=vanishing].iter().all(|derivative| derivative.abs() < 1e-12),
+                    "{inside:?}"
+                );
+                assert!(inside[vanishing + 1..].iter().all(|derivative| *derivative != 0.0), "{inside:?}");
+            }
+            assert_eq!(step.at(TimeJet::time(2.0), None).value(), 2.5, "halfway");
+        }
+    }
+}

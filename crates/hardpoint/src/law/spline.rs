@@ -1,0 +1,211 @@
+//! Interpolating splines of degree 3 and 5.
+//!
+//! The spline of degree 2m - 1 through given points is the curve through them with the least ∫ (f⁽ᵐ⁾)² dt. Between two
+//! knots it is the Hermite polynomial of the values and the m - 1 derivatives at both, so that integral is a quadratic form
+//! in the derivatives at the knots. Its matrix is positive definite and has entries between neighbours only: Cholesky's
+//! method needs no pivots, time and room grow with the number of knots. Ends that are free come out natural, ends that are
+//! fixed are no unknowns, and in a periodic spline the last knot *is* the first.
+
+use std::sync::OnceLock;
+
+/// The coefficients between two knots: of 1, s, s², ... with s the time since the first of the two.
+pub(super) type Segment = [f64; 6];
+
+/// What is known at the ends.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum EndKind {
+    Natural,
+    Clamped,
+    Periodic,
+}
+
+/// The gradient of h^(2m-1)/2 ∫ (f⁽ᵐ⁾)² dt by the scaled derivatives h d, h² dd at both ends; rows and columns in the order
+/// value, derivatives, value, derivatives; the rows of the values are not needed.
+const CUBIC: [[f64; 4]; 4] = [[0.0; 4], [6.0, 4.0, -6.0, 2.0], [0.0; 4], [6.0, 2.0, -6.0, 4.0]];
+const QUINTIC: [[f64; 6]; 6] = [
+    [0.0; 6],
+    [360.0, 192.0, 36.0, -360.0, 168.0, -24.0],
+    [60.0, 36.0, 9.0, -60.0, 24.0, -3.0],
+    [0.0; 6],
+    [360.0, 168.0, 24.0, -360.0, 192.0, -36.0],
+    [-60.0, -24.0, -3.0, 60.0, -36.0, 9.0],
+];
+
+/// Where the value or a derivative at a knot comes from.
+enum Source {
+    /// From the data that the spline is made for.
+    Data(usize),
+    /// It is an unknown.
+    Unknown(usize),
+}
+
+/// All splines with the same knots and the same kind of ends: they are linear in their data, which are the values at the
+/// knots (but the last, if periodic), then, if clamped, the derivatives at the start and those at the end.
+#[derive(Debug)]
+pub(super) struct Basis {
+    times: Vec<f64>,
+    /// How many derivatives belong to a knot: 1 for cubics, 2 for quintics.
+    rates: usize,
+    ends: EndKind,
+    /// The Cholesky factor L: of every row, the columns from its first that is not zero to the diagonal.
+    factor: Vec<Vec<f64>>,
+    /// For every datum, the spline whose data are zero but for this one, which is one.
+    cardinals: Vec<OnceLock<Vec<Segment>>>,
+}
+
+impl Basis {
+    /// The splines with these knots, strictly increasing; two at least, three if periodic or natural and quintic.
+    pub(super) fn new(times: &[f64], rates: usize, ends: EndKind) -> Self {
+        let times = times.to_vec();
+        let mut basis = Self { times, rates, ends, factor: Vec::new(), cardinals: Vec::new() };
+        let data = match ends {
+            EndKind::Natural => basis.times.len(),
+            EndKind::Clamped => basis.times.len() + 2 * rates,
+            EndKind::Periodic => basis.times.len() - 1,
+        };
+        basis.cardinals.resize_with(data, OnceLock::new);
+        basis.factor = basis.factorised();
+        basis
+    }
+
+    /// The number of data.
+    pub(super) fn len(&self) -> usize {
+        self.cardinals.len()
+    }
+
+    /// The spline for these data, segment by segment.
+    pub(super) fn segments(&self, data: &[f64]) -> Vec<Segment> {
+        let mut unknowns = vec![0.0; self.factor.len()];
+        self.for_entries(|row, column, entry| {
+            if let Source::Data(datum) = column {
+                unknowns[row] -= entry * data[datum];
+            }
+        });
+        self.solve(&mut unknowns);
+
+        let at = |knot: usize, order: usize| match self.source(knot, order) {
+            Source::Data(datum) => data[datum],
+            Source::Unknown(unknown) => unknowns[unknown],
+        };
+        let pairs = self.times.windows(2).enumerate();
+        pairs.map(|(k, t)| hermite(t[1] - t[0], self.rates, |end, order| at(k + end, order))).collect()
+    }
+
+    /// The spline that is the derivative of [`segments`](Self::segments) by one of the data.
+    pub(super) fn cardinal(&self, datum: usize) -> &[Segment] {
+        self.cardinals[datum].get_or_init(|| {
+            let mut data = vec![0.0; self.len()];
+            data[datum] = 1.0;
+            self.segments(&data)
+        })
+    }
+
+    fn source(&self, knot: usize, order: usize) -> Source {
+        let last = self.times.len() - 1;
+        let knot = if self.ends == EndKind::Periodic { knot % last } else { knot };
+        let is_clamped = self.ends == EndKind::Clamped;
+        if order == 0 {
+            Source::Data(knot)
+        } else if is_clamped && knot == 0 {
+            Source::Data(last + order)
+        } else if is_clamped && knot == last {
+            Source::Data(last + self.rates + order)
+        } else {
+            Source::Unknown((knot - usize::from(is_clamped)) * self.rates + order - 1)
+        }
+    }
+
+    /// Calls with the row of an unknown, a column, and what a segment adds to the matrix there.
+    fn for_entries(&self, mut add: impl FnMut(usize, Source, f64)) {
+        let m = self.rates + 1;
+        for (k, t) in self.times.windows(2).enumerate() {
+            let h = t[1] - t[0];
+            for row in 0..2 * m {
+                let Source::Unknown(unknown) = self.source(k + row / m, row % m) else {
+                    continue;
+                };
+                for column in 0..2 * m {
+                    let scaled = if m == 2 { CUBIC[row][column] } else { QUINTIC[row][column] };
+                    let power = (row % m + column % m + 1) as i32 - 2 * m as i32;
+                    add(unknown, self.source(k + column / m, column % m), scaled * h.powi(power));
+                }
+            }
+        }
+    }
+
+    /// The factor L of the matrix L Lᵀ.
+    fn factorised(&self) -> Vec<Vec<f64>> {
+        let mut entries = Vec::new();
+        self.for_entries(|row, column, entry| match column {
+            Source::Unknown(column) if column <= row => entries.push((row, column, entry)),
+            _ => {}
+        });
+        let mut rows: Vec<Vec<f64>> = Vec::new();
+        for &(row, column, _) in &entries {
+            rows.resize_with(rows.len().max(row + 1), Vec::new);
+            let room = rows[row].len().max(row + 1 - column);
+            rows[row].resize(room, 0.0);
+        }
+        for (row, column, entry) in entries {
+            let first = row + 1 - rows[row].len();
+            rows[row][column - first] += entry;
+        }
+        for i in 0..rows.len() {
+            let (above, rest) = rows.split_at_mut(i);
+            let row = &mut rest[0];
+            let first = i + 1 - row.len();
+            for j in first..i {
+                // L_ij = (a_ij - Σ_k L_ik L_jk) / L_jj
+                let other = &above[j];
+                let other_first = j + 1 - other.len();
+                let from = first.max(other_first);
+                let sum: f64 = (from..j).map(|k| row[k - first] * other[k - other_first]).sum();
+                row[j - first] = (row[j - first] - sum) / other[j - other_first];
+            }
+            let (diagonal, left) = row.split_last_mut().expect("a row reaches to its diagonal");
+            *diagonal = (*diagonal - left.iter().map(|entry| entry * entry).sum::<f64>()).sqrt();
+        }
+        rows
+    }
+
+    /// Solves L Lᵀ x = b in place.
+    fn solve(&self, b: &mut [f64]) {
+        let parts = |i: usize| {
+            let (diagonal, left) = self.factor[i].split_last().expect("a row reaches to its diagonal");
+            (*diagonal, left, i - left.len())
+        };
+        for i in 0..b.len() {
+            let (diagonal, left, first) = parts(i);
+            let sum: f64 = left.iter().zip(&b[first..i]).map(|(l, x)| l * x).sum();
+            b[i] = (b[i] - sum) / diagonal;
+        }
+        for i in (0..b.len()).rev() {
+            let (diagonal, left, first) = parts(i);
+            b[i] /= diagonal;
+            for (k, l) in left.iter().enumerate() {
+                b[first + k] -= l * b[i];
+            }
+        }
+    }
+}
+
+/// The polynomial over a duration h with the values and derivatives `at(end, order)` at its ends.
+fn hermite(h: f64, rates: usize, at: impl Fn(usize, usize) -> f64) -> Segment {
+    // In u = s/h, with v = h d and a = h² dd.
+    let rise = at(1, 0) - at(0, 0);
+    let [v0, v1] = [at(0, 1) * h, at(1, 1) * h];
+    let scaled = if rates == 1 {
+        [at(0, 0), v0, 3.0 * rise - 2.0 * v0 - v1, v0 + v1 - 2.0 * rise, 0.0, 0.0]
+    } else {
+        let [a0, a1] = [at(0, 2) * h * h, at(1, 2) * h * h];
+        [
+            at(0, 0),
+            v0,
+            0.5 * a0,
+            10.0 * rise - 6.0 * v0 - 4.0 * v1 - 1.5 * a0 + 0.5 * a1,
+            -15.0 * rise + 8.0 * v0 + 7.0 * v1 + 1.5 * a0 - a1,
+            6.0 * rise - 3.0 * (v0 + v1) + 0.5 * (a1 - a0),
+        ]
+    };
+    std::array::from_fn(|k| scaled[k] / h.powi(k as i32))
+}
