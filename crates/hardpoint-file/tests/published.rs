@@ -217,9 +217,8 @@ fn six_bar_near_lock_up_matches_pmks() {
             let solution = solve(&file, formulation);
             for (name, velocity) in printed {
                 let [x, y] = [".x", ".y"].map(|c| sign * measure(&solution, 0, &format!("{name}{c}"))[1]);
-                let scale = f64::hypot(velocity[0], velocity[1]);
-                near(&format!("{name} speed x"), x, velocity[0], 5e-9 * scale);
-                near(&format!("{name} speed y"), y, velocity[1], 5e-9 * scale);
+                near(&format!("{name} speed x"), x, velocity[0], 5e-9);
+                near(&format!("{name} speed y"), y, velocity[1], 5e-9);
             }
             for (k, t) in file.model.times.iter().enumerate() {
                 let (s, c) = (sign * 10.0 * t).sin_cos();
@@ -288,7 +287,7 @@ fn bricard_has_one_freedom_and_one_redundant_constraint_and_moves() {
 }
 
 /// IFToMM library, A02 (N-four-bar mechanism): links of 1 m, singular where all of them are flat.
-fn a02(crank_angle: f64, law: &str) -> ModelFile {
+fn a02(crank_angle: f64, law: &str, steps: usize) -> ModelFile {
     let (s, c) = crank_angle.sin_cos();
     linkage(
         &[("A", [0.0, 0.0]), ("B", [c, s]), ("C", [1.0 + c, s]), ("D", [1.0, 0.0])],
@@ -299,45 +298,54 @@ fn a02(crank_angle: f64, law: &str) -> ModelFile {
             ("D", ["ground", "rocker"], "D"),
         ],
         law,
-        "end = 1\nsteps = 50",
+        &format!("end = 1\nsteps = {steps}"),
     )
 }
 
 #[test]
 fn a_four_bar_that_runs_into_its_flat_position_stops_there_as_at_a_dead_point() {
-    for formulation in BOTH {
-        // From 90 deg downwards, flat at t = 0.5. On the way every bar stays parallel to its partner: no branch is left.
-        let file = a02(0.25 * TAU, "-pi*t");
+    // From 90 deg downwards, flat at t = 0.5: between output times, at one, and among very many.
+    for (formulation, steps) in BOTH.iter().flat_map(|f| [7, 50, 1001].map(|n| (*f, n))) {
+        let file = a02(0.25 * TAU, "-pi*t", steps);
         let solution = Analysis::with(&file.model, formulation).unwrap().run();
         let stop = solution.stop.as_ref().expect("flat at half time");
-        // In absolute coordinates the speeds blow up by round-off so near to it, and it goes by the other name.
+        // In absolute coordinates the same position may be taken for a limit, but it never passes unnoticed.
         let named = match formulation {
             Formulation::Relative => stop.kind == StopKind::BranchChange,
             Formulation::Absolute => matches!(stop.kind, StopKind::BranchChange | StopKind::Limit),
         };
-        assert!(named, "{formulation:?}: {stop:?}");
+        assert!(named, "{formulation:?}, {steps} steps: {stop:?}");
         near("time of the flat position", stop.failed_time, 0.5, 1e-4);
         assert!(stop.joints.len() >= 3, "{stop:?}");
         if formulation == Formulation::Relative {
             assert_eq!(stop.code(), "HP0402");
-            assert_eq!(stop.headline(&file.model), "the mechanism passes a dead point at t = 0.500000 s");
+            let headline = stop.headline(&file.model);
+            assert!(headline.starts_with("the mechanism passes a dead point at t = 0."), "{headline}");
         }
-        let coupler = file.model.body("coupler").unwrap();
-        let rocker = file.model.body("rocker").unwrap();
-        let crank = file.model.body("crank").unwrap();
-        assert!((24..=26).contains(&solution.motion.len()), "{}", solution.motion.len());
+        let [crank, coupler, rocker] = ["crank", "coupler", "rocker"].map(|b| file.model.body(b).unwrap());
+        assert!(solution.motion.len().abs_diff(steps / 2 + 1) <= 1, "{}", solution.motion.len());
         for k in 0..solution.motion.len() {
-            assert!(solution.body(k, coupler).rotation.cols[0].y.abs() < 1e-6, "the coupler stays level");
+            // Until then it is a parallelogram: no branch is left.
+            assert!(solution.body(k, coupler).rotation.cols[0].y.abs() < 1e-6);
             let apart = solution.body(k, rocker).rotation.cols[0] - solution.body(k, crank).rotation.cols[0];
-            assert!(apart.norm() < 1e-6, "rocker and crank stay parallel");
+            assert!(apart.norm() < 1e-6);
         }
     }
 }
 
 #[test]
 fn a_four_bar_that_starts_flat_is_refused_before_it_moves() {
+    // Brought there from an upright design configuration, before the first output time.
     for formulation in BOTH {
-        let file = a02(0.0, "0.1*t");
+        let file = a02(0.25 * TAU, "-pi/2 - 0.1*t", 50);
+        let solution = Analysis::with(&file.model, formulation).unwrap().run();
+        let stop = solution.stop.as_ref().expect("flat at the start");
+        assert!(matches!(stop.kind, StopKind::BranchChange | StopKind::Limit), "{formulation:?}: {stop:?}");
+        assert!(solution.motion.is_empty() && stop.last_time.is_none(), "{formulation:?}: {stop:?}");
+    }
+    // Drawn flat: one more motion is possible there than the driver prescribes.
+    for formulation in BOTH {
+        let file = a02(0.0, "0.1*t", 50);
         match Analysis::with(&file.model, formulation) {
             Err(fault) => {
                 assert!(matches!(fault, TopologyFault::UnderDriven { .. }), "{formulation:?}: {fault:?}");
