@@ -6,7 +6,7 @@
 use crate::constraint::{EndRates, Ends};
 use crate::joint::Freedom;
 use crate::model::Model;
-use crate::space::{Elimination, Pose, Quat, Real, Twist, Wrench};
+use crate::space::{Factors, LARGEST_DENSE, Pose, Quat, Real, Twist, Wrench};
 use crate::topology::{Block, Source, Topology};
 
 use super::parts::Parts;
@@ -44,7 +44,7 @@ pub(crate) struct State<T> {
     pub ldd: Vec<Wrench<T>>,
     /// Per closure: its markers in the world.
     pub ends: Vec<Ends<T>>,
-    pub factors: Vec<Elimination<T>>,
+    pub factors: Vec<Factors<T>>,
     /// Right-hand side of a block.
     pub rhs: Vec<T>,
     /// Per link and per row: what a level adds besides the unknowns.
@@ -104,7 +104,11 @@ impl<T: Real> State<T> {
             ld: vec![no_wrench; rows],
             ldd: vec![no_wrench; rows],
             ends: vec![Ends { i: frame, j: frame }; topology.closures.len()],
-            factors: topology.blocks.iter().map(|b| Elimination::new(b.unknowns.len(), witness)).collect(),
+            factors: topology
+                .blocks
+                .iter()
+                .map(|b| factors_of(topology, b, LARGEST_DENSE, witness))
+                .collect(),
             rhs: vec![o; widest],
             bias: vec![none; topology.links.len()],
             row_rhs: vec![o; rows],
@@ -207,11 +211,12 @@ impl<T: Real> State<T> {
             let residual = row.residual(ends, self.target(topology, parts, drivers, r));
             self.rhs[k] = -residual;
             self.l[r] = wrench;
-            let out = self.factors[b].row_mut(k);
-            out.fill(zero);
-            for &(column, coordinate, side) in &closure.entries {
-                out[column] = wrench.on(self.x[coordinate]) * zero.like(side);
-            }
+            let x = &self.x;
+            let entries = closure.entries.iter().map(
+                #[inline(always)]
+                |&(column, coordinate, side)| (column, wrench.on(x[coordinate]) * zero.like(side)),
+            );
+            self.factors[b].set_row(k, entries, zero);
         }
         let found = self.factors[b].factor();
         self.pivots[b] = (found.pivot_ratio, found.positive);
@@ -484,6 +489,20 @@ impl<T: Real> State<T> {
     }
 }
 
+/// Room for the factors of a block with the rows that it is solved with now.
+pub(crate) fn factors_of<T: Real>(
+    topology: &Topology,
+    block: &Block,
+    largest_dense: usize,
+    witness: T,
+) -> Factors<T> {
+    let columns = |k: usize| {
+        let closure = &topology.closures[topology.rows[block.selected[k]].closure];
+        closure.entries.iter().map(|e| e.0).collect()
+    };
+    Factors::new(block.selected.len(), columns, largest_dense, witness)
+}
+
 /// A driver row's derivative of that order; 0 for the other rows.
 #[inline(always)]
 fn demand<T: Real>(topology: &Topology, drivers: &[[T; 3]], r: usize, order: usize, witness: T) -> T {
@@ -507,7 +526,7 @@ fn demand<T: Real>(topology: &Topology, drivers: &[[T; 3]], r: usize, order: usi
 #[expect(clippy::too_many_arguments, reason = "the arrays are borrowed from one state, some of them mutably")]
 pub(crate) fn level<T: Real>(
     topology: &Topology,
-    factors: &mut [Elimination<T>],
+    factors: &mut [Factors<T>],
     x: &[Twist<T>],
     l: &[Wrench<T>],
     bias: &[Twist<T>],

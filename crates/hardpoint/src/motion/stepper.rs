@@ -3,10 +3,10 @@
 use crate::constraint::Row;
 use crate::joint::Freedom;
 use crate::model::{DriverId, Model};
-use crate::space::{FullPivot, Quat, Real};
+use crate::space::{FullPivot, LARGEST_DENSE, Quat, Real};
 use crate::topology::{Source, Topology};
 
-use super::kinematics::{PositionFailure, Residuals, State};
+use super::kinematics::{PositionFailure, Residuals, State, factors_of};
 use super::parts::Parts;
 use super::{Effort, Stop, StopKind};
 
@@ -350,27 +350,29 @@ impl<'m, T: Real> Stepper<'m, T> {
             if rows.len() == block.unknowns.len() {
                 continue;
             }
-            let dense = rows
+            let matrix = rows
                 .iter()
                 .map(|&r| {
                     let place = self.topology.rows[r];
                     let closure = &self.topology.closures[place.closure];
                     let scale = if closure.rows[place.index].is_length() { 1.0 / s.size } else { 1.0 };
-                    let mut row = vec![0.0; block.unknowns.len()];
-                    for &(column, c, side) in &closure.entries {
+                    let entry = |&(column, c, side): &(usize, usize, f64)| {
                         let unit = if self.topology.coordinates[c].is_length { s.size } else { 1.0 };
-                        row[column] = scale * unit * side * s.l[r].on(s.x[c]).lane(0);
-                    }
-                    row
+                        (column, scale * unit * side * s.l[r].on(s.x[c]).lane(0))
+                    };
+                    closure.entries.iter().map(entry).collect()
                 })
                 .collect();
-            let pivots = FullPivot::of(dense, block.unknowns.len(), f64::MIN_POSITIVE);
+            let pivots = FullPivot::of_sparse(matrix, block.unknowns.len(), f64::MIN_POSITIVE);
             let mut selected: Vec<usize> = pivots.rows.iter().map(|&r| rows[r]).collect();
             selected.sort_unstable();
             if selected.len() < block.unknowns.len() || selected == block.selected {
                 continue;
             }
             self.topology.select(b, selected);
+            // Other rows have entries in other places.
+            let block = &self.topology.blocks[b];
+            self.state.factors[b] = factors_of(&self.topology, block, LARGEST_DENSE, self.state.witness);
             // The same position, seen through other rows: new factors, and a new sign to stay with.
             self.state
                 .solve_position(&self.topology, &self.parts, &self.drivers, f64::INFINITY)

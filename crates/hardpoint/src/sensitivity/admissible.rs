@@ -45,16 +45,20 @@ const OPEN: f64 = 1e-7;
 /// section 4). Empty means admissible there.
 pub fn admissibility_at_design(model: &Model, field: &Field) -> Vec<JointDefect> {
     let scale = field.markers.iter().map(|m| m.twist.w.norm().max(m.twist.v.norm())).fold(0.0, f64::max);
+    let mut drivers_of = vec![Vec::new(); model.joints.len()];
+    for d in &model.drivers {
+        drivers_of[d.joint.0].push(d);
+    }
     let mut joints = Vec::new();
     for (k, joint) in model.joints.iter().enumerate() {
-        let mut z = [Twist::ZERO; 2];
-        for m in field.markers.iter().filter(|m| m.joint.0 == k) {
-            z[m.end] = model.bodies[joint.bodies[m.end].0].frame.carry(m.twist);
-        }
-        let length: f64 = field.lengths.iter().filter(|(j, _)| j.0 == k).map(|(_, l)| *l).sum();
+        let z = [0, 1].map(|end| {
+            let twist = field.twist_of(JointId(k), end).unwrap_or(Twist::ZERO);
+            model.bodies[joint.bodies[end].0].frame.carry(twist)
+        });
+        let length = field.length_rate(JointId(k));
         let [i, j] = joint.at.map(|h| Pose { rot: joint.frame, r: model.position(h) });
         // A driven coordinate is a constraint too: it must stay at zero in the design configuration.
-        let driven = model.drivers.iter().filter(|d| d.joint.0 == k).map(|d| model.driven(d).row);
+        let driven = drivers_of[k].iter().map(|d| model.driven(d).row);
         let worst = joint
             .kind
             .rows

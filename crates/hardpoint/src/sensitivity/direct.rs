@@ -13,7 +13,7 @@ use crate::topology::Topology;
 pub(crate) struct FieldParts<T> {
     links: Vec<Moving<T>>,
     closures: Vec<Moving<T>>,
-    /// Distance rows whose design length changes, and its rate.
+    /// Distance rows whose design length changes, in order, and its rate.
     lengths: Vec<(usize, T)>,
     /// Largest speed in each field: what round-off of a defect is compared with.
     scale: T,
@@ -46,15 +46,11 @@ impl<T: Real> Moving<T> {
 impl<T: Real> FieldParts<T> {
     /// Lane k takes `fields[k]`; there must be no more fields than lanes.
     pub fn new(topology: &Topology, fields: &[Field], witness: T) -> Self {
+        let twist_in = |k: usize, joint, end| fields.get(k).and_then(|f| f.twist_of(joint, end));
         let twist_of = |joint: JointId, end: usize| {
-            Twist::gather(witness, |k| {
-                let markers = fields.get(k).map_or(&[][..], |f| &f.markers);
-                markers.iter().find(|m| m.joint == joint && m.end == end).map_or(Twist::ZERO, |m| m.twist)
-            })
+            Twist::gather(witness, |k| twist_in(k, joint, end).unwrap_or(Twist::ZERO))
         };
-        let moves = |joint: JointId, end: usize| {
-            fields.iter().any(|f| f.markers.iter().any(|m| m.joint == joint && m.end == end))
-        };
+        let moves = |joint: JointId, end: usize| (0..fields.len()).any(|k| twist_in(k, joint, end).is_some());
         let (mut links, mut closures, mut lengths) = (Vec::new(), Vec::new(), Vec::new());
         for (at, link) in topology.links.iter().enumerate() {
             let Some(joint) = link.joint else { continue };
@@ -70,10 +66,7 @@ impl<T: Real> FieldParts<T> {
                 let body = closure.bodies[end].0;
                 closures.push(Moving { at, end, body, e: twist_of(closure.joint, end) });
             }
-            let rate = witness.like_lanes(|k| {
-                let lengths = fields.get(k).map_or(&[][..], |f| &f.lengths);
-                lengths.iter().filter(|(j, _)| *j == closure.joint).map(|(_, l)| *l).sum()
-            });
+            let rate = witness.like_lanes(|k| fields.get(k).map_or(0.0, |f| f.length_rate(closure.joint)));
             for (k, _) in closure.rows.iter().enumerate().filter(|(_, row)| **row == Row::Distance) {
                 if rate.abs().largest() > 0.0 {
                     lengths.push((closure.first_row + k, rate));
@@ -242,7 +235,7 @@ impl<T: Real> Direct<T> {
         for (r, place) in topology.rows.iter().enumerate().filter(|(_, p)| !p.selected) {
             let [i, j] = topology.closures[place.closure].bodies;
             let [z_i, z_j] = self.z_end[0][place.closure];
-            let rate = field.lengths.iter().find(|(row, _)| *row == r).map_or(zero, |(_, l)| *l);
+            let rate = field.lengths.binary_search_by_key(&r, |l| l.0).map_or(zero, |k| field.lengths[k].1);
             let (l, w) = (state.l[r], &self.w[0]);
             let terms = state.witness.within(
                 #[inline(always)]

@@ -131,11 +131,13 @@ impl TopologyFault {
     }
 }
 
-/// The fault of motions left free, each given as a speed per coordinate.
-pub(super) fn under_driven(model: &Model, topology: &Topology, free: &[Vec<f64>]) -> TopologyFault {
-    let moving: Vec<usize> = (0..topology.coordinates.len())
-        .filter(|&c| free.iter().any(|v| v[c].abs() > 1e-6))
-        .map(|c| topology.coordinates[c].link)
+/// The fault of motions left free, each given as coordinates with their speeds.
+pub(super) fn under_driven(model: &Model, topology: &Topology, free: &[Vec<(usize, f64)>]) -> TopologyFault {
+    let moving: Vec<usize> = free
+        .iter()
+        .flatten()
+        .filter(|(_, x)| x.abs() > 1e-6)
+        .map(|&(c, _)| topology.coordinates[c].link)
         .collect();
     let mut joints: Vec<JointId> = moving.iter().filter_map(|&k| topology.links[k].joint).collect();
     let mut bodies: Vec<BodyId> = moving.iter().map(|&k| topology.links[k].child).collect();
@@ -146,7 +148,7 @@ pub(super) fn under_driven(model: &Model, topology: &Topology, free: &[Vec<f64>]
     if topology.formulation == Formulation::Absolute {
         // No joint carries a coordinate there: name those of the moving bodies.
         joints = (0..model.joints.len())
-            .filter(|&j| model.joints[j].bodies.iter().any(|b| bodies.contains(b)))
+            .filter(|&j| model.joints[j].bodies.iter().any(|b| bodies.binary_search(b).is_ok()))
             .map(JointId)
             .collect();
     }

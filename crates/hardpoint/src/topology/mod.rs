@@ -7,6 +7,7 @@
 
 mod blocks;
 mod fault;
+mod matching;
 mod mobility;
 mod tree;
 
@@ -210,10 +211,10 @@ impl Topology {
         closures.flat_map(|c| c.first_row..c.first_row + c.rows.len()).collect()
     }
 
-    /// Solves a block with these independent rows from now on.
+    /// Solves a block with these independent rows, in ascending order, from now on.
     pub(crate) fn select(&mut self, block: usize, selected: Vec<usize>) {
         for r in self.rows_of_block(block) {
-            self.rows[r].selected = selected.contains(&r);
+            self.rows[r].selected = selected.binary_search(&r).is_ok();
         }
         self.blocks[block].selected = selected;
     }
