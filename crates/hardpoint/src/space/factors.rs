@@ -38,9 +38,7 @@ impl<T: Real> Factors<T> {
                 }
             }
             Self::Sparse(lu) => {
-                for (to, (_, x)) in lu.row_mut(k).iter_mut().zip(entries) {
-                    *to = x;
-                }
+                lu.set_row(k, entries.map(|(_, x)| x));
             }
         }
     }

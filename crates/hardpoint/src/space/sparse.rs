@@ -25,6 +25,8 @@ pub(crate) struct SparseLu<T> {
     pattern: SymbolicSparseColMat<usize>,
     /// Row after row, in the order of the pattern.
     values: Vec<T>,
+    /// Row after row, in the order in which they are filled: where an entry stands in `values`.
+    place: Vec<usize>,
     /// Order of elimination, and its inverse.
     order: [Vec<usize>; 2],
     /// Whether that order is an odd permutation.
@@ -68,14 +70,19 @@ impl<T: Real> SparseLu<T> {
     /// Factors of the n x n matrix that may have entries in these columns of its rows.
     pub fn new(rows: &[Vec<usize>], witness: T) -> Self {
         let n = rows.len();
-        let starts: Vec<usize> = std::iter::once(0)
-            .chain(rows.iter().scan(0, |sum, r| {
-                *sum += r.len();
-                Some(*sum)
-            }))
-            .collect();
-        let columns: Vec<usize> = rows.iter().flatten().copied().collect();
-        let pattern = SymbolicSparseColMat::new_unsorted_checked(n, n, starts, None, columns);
+        // faer 0.24 orders unsorted patterns wrongly (it panics), so entries get their sorted places here.
+        let (mut starts, mut columns, mut place) = (vec![0], Vec::new(), Vec::new());
+        for row in rows {
+            let mut slots: Vec<usize> = (0..row.len()).collect();
+            slots.sort_unstable_by_key(|&slot| row[slot]);
+            place.resize(columns.len() + row.len(), 0);
+            for slot in slots {
+                place[starts[starts.len() - 1] + slot] = columns.len();
+                columns.push(row[slot]);
+            }
+            starts.push(columns.len());
+        }
+        let pattern = SymbolicSparseColMat::new_checked(n, n, starts, None, columns);
         let params = LuSymbolicParams {
             supernodal_flop_ratio_threshold: SupernodalThreshold::FORCE_SIMPLICIAL,
             ..LuSymbolicParams::default()
@@ -97,6 +104,7 @@ impl<T: Real> SparseLu<T> {
             rhs: vec![0.0; n * T::LANES],
             memory: Memory { need, buffer: MemBuffer::new(need) },
             pattern,
+            place,
             order,
         }
     }
@@ -105,11 +113,13 @@ impl<T: Real> SparseLu<T> {
         self.order[0].len()
     }
 
-    /// The entries of row r, in the order of its pattern.
+    /// Fills row r with its entries, in the order of the columns given to [`SparseLu::new`].
     #[inline(always)]
-    pub fn row_mut(&mut self, r: usize) -> &mut [T] {
+    pub fn set_row(&mut self, r: usize, entries: impl Iterator<Item = T>) {
         let starts = self.pattern.col_ptr();
-        &mut self.values[starts[r]..starts[r + 1]]
+        for (&at, x) in self.place[starts[r]..starts[r + 1]].iter().zip(entries) {
+            self.values[at] = x;
+        }
     }
 
     /// Factors what the rows were filled with, each lane on its own.
@@ -239,6 +249,7 @@ mod tests {
         let mut columns = vec![(r + 1) % n, r, (r + 5) % n, (r * r + 3) % n];
         columns.sort_unstable();
         columns.dedup();
+        columns.rotate_left(1); // rows need not be sorted
         columns.into_iter().map(|c| (c, if c == r { 1e-3 * x(c) } else { 2.0 * x(c) })).collect()
     }
 
@@ -252,12 +263,10 @@ mod tests {
                 let mut sparse = SparseLu::new(&columns, zero);
                 let mut scalar = SparseLu::new(&columns, 0.0);
                 for r in 0..n {
-                    for (slot, (c, _)) in row(r, n, 0.0).into_iter().enumerate() {
-                        let at = |k: usize| row(r, n, k as f64)[slot];
-                        assert_eq!(at(1).0, c);
-                        sparse.row_mut(r)[slot] = zero.like_lanes(|k| at(k).1);
-                        scalar.row_mut(r)[slot] = at(0).1;
-                    }
+                    let at = |k: usize| row(r, n, k as f64);
+                    let width = at(0).len();
+                    sparse.set_row(r, (0..width).map(|slot| zero.like_lanes(|k| at(k)[slot].1)));
+                    scalar.set_row(r, at(0).into_iter().map(|e| e.1));
                 }
                 sparse.factor();
                 let found = scalar.factor();
@@ -298,8 +307,8 @@ mod tests {
         for (values, good) in
             [([1.0, 2.0, 2.0, 4.0], false), ([1.0, 2.0, 2.0, 5.0], true), ([f64::NAN; 4], false)]
         {
-            lu.row_mut(0).copy_from_slice(&values[..2]);
-            lu.row_mut(1).copy_from_slice(&values[2..]);
+            lu.set_row(0, values[..2].iter().copied());
+            lu.set_row(1, values[2..].iter().copied());
             assert_eq!(lu.factor().pivot_ratio > 1e-12, good, "{values:?}");
         }
     }

@@ -176,8 +176,11 @@ pub(super) fn contradicted(
         drivers.extend((0..fails.len()).filter(|&d| fails[d] != 0.0).map(DriverId));
         drivers.extend(closure.driver);
         joints.push(closure.joint);
-        bodies.extend(closure.links.iter().map(|(k, _)| topology.links[*k].child));
+        let around = |c: &Closure| c.links.iter().map(|(k, _)| topology.links[*k].child).collect::<Vec<_>>();
+        bodies.extend(around(closure));
         if let Some(block) = closure.block {
+            bodies
+                .extend(topology.blocks[block].closures.iter().flat_map(|&c| around(&topology.closures[c])));
             bodies.extend(topology.links[topology.blocks[block].links.clone()].iter().map(|l| l.child));
         }
         let row: Row = closure.rows[place.index];
