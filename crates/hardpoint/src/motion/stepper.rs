@@ -441,3 +441,97 @@ impl<'m, T: Real> Stepper<'m, T> {
         self.state.q.iter().map(|q| q.lane(0))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use fearless_simd::{Level, dispatch};
+
+    use super::*;
+    use crate::law::Law;
+    use crate::model::*;
+    use crate::space::{Vec3, lanes};
+    use crate::topology::Formulation;
+
+    /// Nodes on two slides each, tied by rods to the two nodes before; a leg pushes at the last.
+    fn truss(n: usize) -> Model {
+        let place = |k: usize| Place::At(Vec3::new(0.5 * k as f64, 0.8 * (k % 2) as f64, 0.0));
+        let node = |k: usize| if k == 0 { "ground".to_owned() } else { format!("node{k}") };
+        let joint =
+            |name: String, kind: &str, bodies: [String; 2], at: Vec<Place>, axis: Option<usize>| JointDraft {
+                name,
+                kind: kind.into(),
+                bodies,
+                at,
+                axis: axis.map(|k| Line::Along(Vec3::AXES[k])),
+                axis2: None,
+                cut: false,
+            };
+        let mut draft = Draft { times: vec![0.0, 0.1, 0.2], ..Draft::default() };
+        for k in 1..n {
+            let slider = format!("slider{k}");
+            for name in [slider.clone(), node(k)] {
+                draft.bodies.push(BodyDraft { name, frame: FrameDraft::Default });
+            }
+            let bodies = ["ground".into(), slider.clone()];
+            draft.joints.push(joint(format!("x{k}"), "translational", bodies, vec![place(k)], Some(0)));
+            let bodies = [slider, node(k)];
+            draft.joints.push(joint(format!("y{k}"), "translational", bodies, vec![place(k)], Some(1)));
+            for other in k.saturating_sub(2)..k {
+                let (ends, at) = ([node(other), node(k)], vec![place(other), place(k)]);
+                draft.joints.push(joint(format!("rod{other}_{k}"), "distance", ends, at, None));
+            }
+        }
+        let at = vec![Place::At(Vec3::new(0.5 * n as f64, -1.0, 0.3)), place(n - 1)];
+        draft.joints.push(joint("push".into(), "leg", ["ground".into(), node(n - 1)], at, None));
+        draft.drivers.push(DriverDraft {
+            name: "motor".into(),
+            joint: "push".into(),
+            coordinate: None,
+            law: Law::parse("0.1*sin(2*pi*t)").unwrap(),
+        });
+        Model::from_draft(&draft).unwrap()
+    }
+
+    /// The states of all bodies at the last output time, with blocks up to this size factored densely.
+    fn last<T: Real>(
+        model: &Model,
+        topology: &Topology,
+        largest_dense: usize,
+        zero: T,
+    ) -> (State<T>, Vec<bool>) {
+        let designs = [model.geometry(&[])];
+        let mut stepper = Stepper::new(model, topology, Parts::new(model, topology, &designs, zero), zero);
+        let blocks = topology.blocks.iter();
+        stepper.state.factors = blocks.map(|b| factors_of(topology, b, largest_dense, zero)).collect();
+        stepper.start(model.times[0]).unwrap();
+        model.times[1..].iter().for_each(|t| stepper.advance(*t).unwrap());
+        let signs = stepper.state.pivots.iter().map(|p| p.1).collect();
+        (stepper.state, signs)
+    }
+
+    #[test]
+    fn sparse_and_dense_factors_give_the_same_motion() {
+        for n in [5, 30] {
+            let model = truss(n);
+            let topology = Topology::of(&model, Formulation::Relative).unwrap();
+            let size = model.size();
+            let (dense, dense_signs) = last(&model, &topology, usize::MAX, 0.0);
+            let (sparse, sparse_signs) = last(&model, &topology, 0, 0.0);
+            assert_eq!(dense_signs, sparse_signs);
+            let apart = |a: Vec3, b: Vec3| (a - b).norm();
+            for b in 0..model.bodies.len() {
+                assert!(apart(dense.pose[b].r, sparse.pose[b].r) < 1e-12 * size, "body {b} of {n}");
+                assert!(apart(dense.v[b].v, sparse.v[b].v) < 1e-11 * size, "body {b} of {n}");
+            }
+            dispatch!(Level::new(), simd => {
+                let (side_by_side, signs) = last(&model, &topology, 0, lanes(simd));
+                assert_eq!(signs, sparse_signs);
+                for b in 0..model.bodies.len() {
+                    let r = side_by_side.pose[b].r;
+                    let r = Vec3::new(r.x.lane(3), r.y.lane(3), r.z.lane(3));
+                    assert!(apart(dense.pose[b].r, r) < 1e-12 * size, "body {b} of {n} in lanes");
+                }
+            });
+        }
+    }
+}
