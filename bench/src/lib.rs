@@ -65,7 +65,7 @@ pub fn chain(n: usize, steps: usize) -> Draft {
 /// pushes at its last: one block of 2 (n - 1) unknowns, none of which can be found before the others.
 pub fn truss(n: usize, steps: usize) -> Draft {
     let mut draft = driven(format!("truss of {n}"), "push", "0.02*sin(2*pi*t)", steps);
-    let at = |k: usize| [0.5 * k as f64, if k % 2 == 0 { 0.0 } else { 0.8 }];
+    let at = |k: usize| [0.5 * k as f64, 0.8 * (k % 2) as f64];
     let node = |k: usize| if k == 0 { "ground".to_owned() } else { format!("node{k}") };
     for k in 1..n {
         let slider = format!("slider{k}");
