@@ -1,6 +1,8 @@
-//! Models to measure with: those of `models/`, read as a user's file is read.
+//! Models to measure with: those of `models/`, read as a user's file is read, and generated ones of any size.
 
-use hardpoint::model::Model;
+use hardpoint::law::Law;
+use hardpoint::model::{BodyDraft, Draft, DriverDraft, FrameDraft, JointDraft, Line, Model, Place};
+use hardpoint::space::Vec3;
 
 /// The model `models/NAME.toml`.
 ///
@@ -9,4 +11,112 @@ use hardpoint::model::Model;
 pub fn model(name: &str) -> Model {
     let path = format!("{}/../models/{name}.toml", env!("CARGO_MANIFEST_DIR"));
     hardpoint_file::read(path.as_ref()).unwrap_or_else(|e| panic!("{e}")).model
+}
+
+fn body(name: String) -> BodyDraft {
+    BodyDraft { name, frame: FrameDraft::Default }
+}
+
+fn joint(name: String, kind: &str, bodies: [&str; 2], at: &[[f64; 2]], axis: Option<[f64; 3]>) -> JointDraft {
+    JointDraft {
+        name,
+        kind: kind.into(),
+        bodies: bodies.map(Into::into),
+        at: at.iter().map(|&[x, y]| Place::At(Vec3::new(x, y, 0.0))).collect(),
+        axis: axis.map(|a| Line::Along(a.into())),
+        ..JointDraft::default()
+    }
+}
+
+fn driven(name: String, joint: &str, law: &str, steps: usize) -> Draft {
+    let law = Law::parse(law).expect("a law");
+    let drives = DrivenDraft::Coordinate { joint: joint.into(), coordinate: None };
+    let driver = DriverDraft { name: "motor".into(), drives, law };
+    let times = (0..=steps).map(|k| k as f64 / 100.0).collect();
+    Draft { name, drivers: vec![driver], times, ..Draft::default() }
+}
+
+const Z: Option<[f64; 3]> = Some([0.0, 0.0, 1.0]);
+
+/// N parallelograms side by side, each driven by the one before: N loops of two unknowns.
+pub fn chain(n: usize, steps: usize) -> Draft {
+    let mut draft = driven(format!("chain of {n}"), "pivot0", "0.5*sin(2*pi*t)", steps);
+    for k in 0..=n {
+        let (x, bar, coupler) = (k as f64, format!("bar{k}"), format!("coupler{k}"));
+        draft.bodies.push(body(bar.clone()));
+        draft.joints.push(joint(format!("pivot{k}"), "revolute", ["ground", &bar], &[[x, 0.0]], Z));
+        if k < n {
+            draft.bodies.push(body(coupler.clone()));
+            let next = format!("bar{}", k + 1);
+            draft.joints.push(joint(format!("left{k}"), "revolute", [&bar, &coupler], &[[x, 1.0]], Z));
+            draft.joints.push(joint(
+                format!("right{k}"),
+                "revolute",
+                [&coupler, &next],
+                &[[x + 1.0, 1.0]],
+                Z,
+            ));
+        }
+    }
+    draft
+}
+
+/// A truss of n nodes, each tied by rods to the two before, that turns about its first node while a leg
+/// pushes at its last: one block of 2 (n - 1) unknowns, none of which can be found before the others.
+pub fn truss(n: usize, steps: usize) -> Draft {
+    let mut draft = driven(format!("truss of {n}"), "push", "0.02*sin(2*pi*t)", steps);
+    let at = |k: usize| [0.5 * k as f64, 0.8 * (k % 2) as f64];
+    let node = |k: usize| if k == 0 { "ground".to_owned() } else { format!("node{k}") };
+    for k in 1..n {
+        let slider = format!("slider{k}");
+        draft.bodies.extend([slider.clone(), node(k)].map(body));
+        let along = [Some([1.0, 0.0, 0.0]), Some([0.0, 1.0, 0.0])];
+        let this = node(k);
+        let (x, y) = (["ground", slider.as_str()], [slider.as_str(), this.as_str()]);
+        draft.joints.push(joint(format!("x{k}"), "translational", x, &[at(k)], along[0]));
+        draft.joints.push(joint(format!("y{k}"), "translational", y, &[at(k)], along[1]));
+        for other in k.saturating_sub(2)..k {
+            let ends = [node(other), node(k)];
+            let ends = [ends[0].as_str(), ends[1].as_str()];
+            draft.joints.push(joint(format!("rod{other}_{k}"), "distance", ends, &[at(other), at(k)], None));
+        }
+    }
+    let tip = at(n - 1);
+    let last = node(n - 1);
+    draft.joints.push(joint(
+        "push".into(),
+        "leg",
+        ["ground", &last],
+        &[[tip[0] + 0.3, tip[1] - 1.0], tip],
+        None,
+    ));
+    draft
+}
+
+/// n x m scissors, pinned to each other at their corners, that open and close together.
+pub fn scissors(n: usize, m: usize, steps: usize) -> Draft {
+    let mut draft = driven(format!("{n} x {m} scissors"), "cross0_0", "0.3*sin(2*pi*t)", steps);
+    // Bars rise or fall from left to right; those that end at a corner are pinned to the first of them there.
+    let mut at_corner: std::collections::BTreeMap<(usize, usize), Vec<String>> = Default::default();
+    for i in 0..n {
+        for j in 0..m {
+            let (up, down) = (format!("up{i}_{j}"), format!("down{i}_{j}"));
+            for (corner, bar) in
+                [((i, j), &up), ((i + 1, j + 1), &up), ((i, j + 1), &down), ((i + 1, j), &down)]
+            {
+                at_corner.entry(corner).or_default().push(bar.clone());
+            }
+            let centre = [i as f64 + 0.5, j as f64 + 0.5];
+            draft.joints.push(joint(format!("cross{i}_{j}"), "revolute", [&up, &down], &[centre], Z));
+            draft.bodies.extend([up, down].map(body));
+        }
+    }
+    draft.joints.push(joint("base".into(), "fixed", ["ground", "up0_0"], &[[0.0, 0.0]], None));
+    for ((i, j), bars) in at_corner {
+        for (k, bar) in bars.iter().enumerate().skip(1) {
+            let name = format!("pin{i}_{j}_{k}");
+            draft.joints.push(joint(name, "revolute", [&bars[0], bar], &[[i as f64, j as f64]], Z));
+        }
+    }
+    draft
 }

@@ -3,6 +3,7 @@
 mod design;
 mod results;
 
+use std::collections::HashMap;
 use std::ops::Range;
 
 use hardpoint::joint::{self, Quantity};
@@ -72,6 +73,9 @@ pub(crate) struct Raw {
     pub draft: Draft,
     pub description: Option<String>,
     pub places: Places,
+    /// Which number a hardpoint and a joint have; of equal names, the first. Only looked up, never walked.
+    hardpoint_numbers: HashMap<String, usize>,
+    joint_numbers: HashMap<String, usize>,
 }
 
 impl Reader<'_> {
@@ -212,6 +216,7 @@ impl Reader<'_> {
                 Vec3::new(0.317 + k, 0.1 + 1.7 * k, 0.7 - 0.9 * k * k)
             });
             raw.places.push(Section::Hardpoints, place);
+            raw.hardpoint_numbers.entry(name.clone()).or_insert(index);
             raw.draft.hardpoints.push(HardpointDraft { name, position });
         }
     }
@@ -222,7 +227,7 @@ impl Reader<'_> {
             let mut place = EntryPlace::of(&fields);
             let frame = match fields.get("frame") {
                 None => FrameDraft::Default,
-                Some(f) => self.frame(&fields, f, &mut place, &raw.draft.hardpoints).unwrap_or_else(|| {
+                Some(f) => self.frame(&fields, f, &mut place, raw).unwrap_or_else(|| {
                     place.unread("frame");
                     FrameDraft::Default
                 }),
@@ -237,7 +242,7 @@ impl Reader<'_> {
         body: &Fields<'a>,
         f: Field<'a>,
         place: &mut EntryPlace,
-        hardpoints: &[HardpointDraft],
+        raw: &Raw,
     ) -> Option<FrameDraft> {
         let subject = body.subject("frame");
         let table = self.table(f.value, &subject, "a table with a position or three points")?;
@@ -258,7 +263,7 @@ impl Reader<'_> {
         let position = self.need(&fields, "position");
         let r = position.and_then(|f| match self.place(f.value, &fields.subject("position"))? {
             Place::At(r) => Some(r),
-            Place::Hardpoint(name) => self.hardpoint_position(&name, f, hardpoints),
+            Place::Hardpoint(name) => self.hardpoint_position(&name, f, raw),
         });
         let rot = match (fields.get("euler"), fields.get("quaternion")) {
             (Some(f), other) => {
@@ -285,17 +290,14 @@ impl Reader<'_> {
     }
 
     /// A frame's position is wanted at once, so its hardpoint is looked up here.
-    fn hardpoint_position(
-        &mut self,
-        name: &str,
-        f: Field<'_>,
-        hardpoints: &[HardpointDraft],
-    ) -> Option<Vec3> {
-        let found = hardpoints.iter().find(|h| h.name == name);
+    fn hardpoint_position(&mut self, name: &str, f: Field<'_>, raw: &Raw) -> Option<Vec3> {
+        let hardpoints = &raw.draft.hardpoints;
+        let found = raw.hardpoint_numbers.get(name).map(|k| &hardpoints[*k]);
         if found.is_none() {
-            // Past the problems that anybody reads, a guess would only cost time.
+            // Past the problems that anybody reads, and among more names than that, a guess would only cost time.
             let names = hardpoints.iter().map(|h| h.name.as_str());
-            let close = if self.found.len() < 50 { closest(name, names) } else { None };
+            let guess = self.found.len() < 50 && hardpoints.len() <= 5000;
+            let close = if guess { closest(name, names) } else { None };
             self.report("HP0204", f.value.span(), format!("there is no hardpoint named `{name}`")).help =
                 close.map(|c| format!("did you mean `{c}`?"));
         }
@@ -341,6 +343,7 @@ impl Reader<'_> {
             });
             let cut = fields.get("cut").and_then(|f| self.boolean(f.value, &fields.subject("cut")));
             raw.places.push(Section::Joints, place);
+            raw.joint_numbers.entry(entry.0.clone()).or_insert(raw.draft.joints.len());
             raw.draft.joints.push(JointDraft {
                 name: entry.0,
                 kind: kind.unwrap_or_default(),
@@ -425,7 +428,7 @@ impl Reader<'_> {
             if law.is_none() {
                 place.unread("law");
             }
-            let quantity = driven_quantity(&raw.draft.joints, &joint, coordinate.as_deref());
+            let quantity = driven_quantity(raw, &joint, coordinate.as_deref());
             let law = law.unwrap_or_else(|| Law::constant(0.0)).scaled(self.units.to_si(quantity, 1.0));
             raw.places.push(Section::Drivers, place);
             let drives = DrivenDraft::Coordinate { joint, coordinate };
@@ -474,8 +477,9 @@ impl Reader<'_> {
 static EMPTY: std::sync::OnceLock<DeTable<'static>> = std::sync::OnceLock::new();
 
 /// What the law's value is, as far as joint and coordinate are known; the core reports the rest.
-fn driven_quantity(joints: &[JointDraft], joint: &str, coordinate: Option<&str>) -> Quantity {
-    let kind = joints.iter().find(|j| j.name == joint).and_then(|j| joint::named(&j.kind));
+fn driven_quantity(raw: &Raw, joint: &str, coordinate: Option<&str>) -> Quantity {
+    let joint = raw.joint_numbers.get(joint).map(|k| &raw.draft.joints[*k]);
+    let kind = joint.and_then(|j| joint::named(&j.kind));
     let coordinate = kind.and_then(|kind| match coordinate {
         Some(name) => kind.coordinate(name).map(|c| c.1),
         None => kind.coordinates.first(),

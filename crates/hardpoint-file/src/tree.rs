@@ -17,7 +17,7 @@ pub(crate) type Value<'a> = Spanned<DeValue<'a>>;
 /// Names longer than this are surely not meant as names.
 const LONGEST_NAME: usize = 100;
 /// The most entries that a table or list may have. It bounds the time that any text can take.
-pub(crate) const MOST_ENTRIES: usize = 5000;
+pub(crate) const MOST_ENTRIES: usize = 200_000;
 
 /// A key that a table may have, and a value to show where it is missing or wrong.
 pub(crate) type Key = (&'static str, &'static str);

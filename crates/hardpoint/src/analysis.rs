@@ -144,8 +144,8 @@ impl<'m> Analysis<'m> {
         for (k, &t) in times.iter().enumerate() {
             let step = if k == 0 { stepper.start(t) } else { stepper.advance(t) };
             if let Err(mut s) = step {
-                if s.kind == StopKind::DoesNotAssemble {
-                    s.remains = stepper.least_gaps();
+                if let (StopKind::DoesNotAssemble, Some(block)) = (s.kind, s.block) {
+                    s.remains = stepper.least_gaps(block);
                 }
                 stop = Some(s);
                 break;
@@ -165,6 +165,7 @@ impl<'m> Analysis<'m> {
                     last_time: Some(t),
                     failed_time: t,
                     drivers: model.drivers.iter().map(|d| d.law.at(t).value()).collect(),
+                    block: None,
                     pivot_ratio: 1.0,
                     joints: Vec::new(),
                     remains: Vec::new(),

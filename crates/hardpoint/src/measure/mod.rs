@@ -7,8 +7,12 @@ mod bodies;
 
 pub use bodies::BodyJet;
 
+use std::collections::BTreeMap;
+
 use crate::joint::Quantity;
-use crate::model::{BodyId, Field, Geometry, JointId, Measure, MeasureKind, Model, PointId, VariableId};
+use crate::model::{
+    BodyId, DriverId, Field, Geometry, JointId, Measure, MeasureId, MeasureKind, Model, PointId, VariableId,
+};
 use crate::motion::Motion;
 use crate::sensitivity::{BodySensitivity, Sensitivities};
 use crate::space::{Jet, Vec3};
@@ -105,11 +109,12 @@ pub(crate) fn evaluate(
     let mut measured = Measured { variables: fields.len(), ..Measured::default() };
     let none = Field::default();
     let still = vec![BodySensitivity::ZERO; motion.bodies];
+    let turns = turns(model, topology, &outputs);
     for k in 0..motion.len() {
         let first = measured.values.len();
         let at = |field, d| Moment { model, geometry, field, states: motion.at(k), d };
         at(&none, &still).all(|jet| measured.values.push(jet.c[0]));
-        unwrap_angles(model, topology, motion, k, &outputs, &mut measured.values, first);
+        unwrap_angles(model, topology, motion, k, &turns, &mut measured.values, first);
         for (b, field) in fields.iter().enumerate() {
             match sensitivities.at(k, b) {
                 Some(d) => at(field, d).all(|jet| measured.d.push(jet.c[1])),
@@ -121,47 +126,74 @@ pub(crate) fn evaluate(
     measured
 }
 
-/// Joint angles counted through whole turns: from the tree coordinate, from the driver, or, for a cut
-/// joint, from the turn before and the rates since.
+/// What tells how many whole turns a joint's angle has made.
+enum Turns {
+    /// The driver's law.
+    Driver(DriverId),
+    /// The tree coordinate, which is the angle itself.
+    Coordinate(usize),
+    /// For a cut joint: the turn before and the rates since.
+    Rates,
+}
+
+/// The outputs that are joint angles, and what tells their turns.
+fn turns(model: &Model, topology: &Topology, outputs: &[Output]) -> Vec<Option<Turns>> {
+    let mut link_of = vec![None; model.joints.len()];
+    for link in &topology.links {
+        if let Some(j) = link.joint {
+            link_of[j.0] = Some(link);
+        }
+    }
+    let driver_of: BTreeMap<_, _> =
+        model.drivers.iter().enumerate().map(|(k, d)| ((d.joint, d.coordinate), DriverId(k))).collect();
+    let of_joint = |joint: JointId, coordinate: usize| {
+        if let Some(&d) = driver_of.get(&(joint, coordinate)) {
+            return Turns::Driver(d);
+        }
+        let freedom = model.joints[joint.0].kind.coordinates[coordinate].freedom;
+        let Some((link, freedom)) = link_of[joint.0].zip(freedom) else { return Turns::Rates };
+        let step = if link.parent_end == 0 { freedom } else { link.steps.len() - 1 - freedom };
+        Turns::Coordinate(link.steps[step].first)
+    };
+    let of_output = |output: &Output| {
+        let OutputSource::Measure(index) = output.source else { return None };
+        let MeasureKind::Coordinate { joint, coordinate } = model.measures[index].kind else { return None };
+        (output.quantity == Quantity::Angle).then(|| of_joint(joint, coordinate))
+    };
+    outputs.iter().map(of_output).collect()
+}
+
+/// Counts joint angles through whole turns.
 fn unwrap_angles(
     model: &Model,
     topology: &Topology,
     motion: &Motion,
     k: usize,
-    outputs: &[Output],
+    turns: &[Option<Turns>],
     values: &mut [[f64; 3]],
     first: usize,
 ) {
     const TURN: f64 = 2.0 * std::f64::consts::PI;
-    for (m, output) in outputs.iter().enumerate() {
-        let OutputSource::Measure(index) = output.source else { continue };
-        let MeasureKind::Coordinate { joint, coordinate } = model.measures[index].kind else { continue };
-        if output.quantity != Quantity::Angle {
-            continue;
-        }
-        let driver = model.drivers.iter().find(|d| d.joint == joint && d.coordinate == coordinate);
-        let near = if let Some(d) = driver {
-            d.law.at(motion.times[k]).value()
-        } else if let Some(q) = tree_coordinate(model, topology, joint, coordinate) {
-            motion.coordinates[k * topology.coordinates.len() + q]
-        } else if k > 0 {
-            let before = values[first - outputs.len() + m];
-            let h = motion.times[k] - motion.times[k - 1];
-            before[0] + 0.5 * h * (before[1] + values[first + m][1])
-        } else {
-            0.0
+    for (m, turns_of) in turns.iter().enumerate() {
+        let near = match turns_of {
+            None => continue,
+            Some(Turns::Driver(d)) => model.drivers[d.0].law.at(motion.times[k]).value(),
+            Some(Turns::Coordinate(q)) => motion.coordinates[k * topology.coordinates.len() + q],
+            Some(Turns::Rates) if k > 0 => {
+                let before = values[first - turns.len() + m];
+                let h = motion.times[k] - motion.times[k - 1];
+                before[0] + 0.5 * h * (before[1] + values[first + m][1])
+            }
+            Some(Turns::Rates) => 0.0,
         };
         let value = &mut values[first + m][0];
         *value += TURN * ((near - *value) / TURN).round();
     }
 }
 
-/// The tree coordinate that a joint's coordinate is, if the joint is in the tree.
-fn tree_coordinate(model: &Model, topology: &Topology, joint: JointId, coordinate: usize) -> Option<usize> {
-    let link = topology.links.iter().find(|l| l.joint == Some(joint))?;
-    let freedom = model.joints[joint.0].kind.coordinates[coordinate].freedom?;
-    let step = if link.parent_end == 0 { freedom } else { link.steps.len() - 1 - freedom };
-    Some(link.steps[step].first)
+/// The vector that a field gives an id; null where it gives none.
+fn in_order<I: Ord + Copy>(list: &[(I, Vec3)], id: I) -> Vec3 {
+    list.binary_search_by_key(&id, |(k, _)| *k).map_or(Vec3::ZERO, |k| list[k].1)
 }
 
 /// Everything that a measure can ask for at one time and for one design variable.
@@ -192,7 +224,7 @@ impl Moment<'_> {
     }
 
     fn point(&self, p: PointId) -> Vec3<Jet> {
-        let speed = self.field.points.iter().find(|(k, _)| *k == p).map_or(Vec3::ZERO, |(_, v)| *v);
+        let speed = in_order(&self.field.points, p);
         self.body(self.model.points[p.0].body).point(self.geometry.points[p.0], speed)
     }
 
@@ -211,7 +243,7 @@ impl Moment<'_> {
     }
 
     fn spin_axis(&self, k: usize, body: BodyId) -> Vec3<Jet> {
-        let rate = self.field.spin_axes.iter().find(|(m, _)| m.0 == k).map_or(Vec3::ZERO, |(_, v)| *v);
+        let rate = in_order(&self.field.spin_axes, MeasureId(k));
         self.body(body).direction(self.geometry.spin_axes[k], rate)
     }
 
@@ -239,12 +271,7 @@ impl Moment<'_> {
 
     /// The body of a marker, and the marker's body-fixed design twist.
     fn marker(&self, joint: JointId, end: usize) -> (BodyId, crate::space::Twist) {
-        let twist = self
-            .field
-            .markers
-            .iter()
-            .find(|m| m.joint == joint && m.end == end)
-            .map_or(crate::space::Twist::ZERO, |m| m.twist);
+        let twist = self.field.twist_of(joint, end).unwrap_or(crate::space::Twist::ZERO);
         (self.model.joints[joint.0].bodies[end], twist)
     }
 }

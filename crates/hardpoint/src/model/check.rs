@@ -1,6 +1,6 @@
 //! From a draft to a model: every reference resolved, every fault found.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::{BTreeMap, BTreeSet, HashMap};
 
 use super::fault::did_you_mean;
 use super::*;
@@ -14,8 +14,10 @@ const SQUARE_TOLERANCE: f64 = 1e-6;
 const SAME_POINT: f64 = 1e-9;
 /// A fault lists at most this many valid names.
 const LISTED_NAMES: usize = 24;
-/// The first so many faults guess which name was meant.
+/// The first so many faults guess which name was meant ...
 const GUESSES: usize = 50;
+/// ... as long as that takes no more than so many comparisons of names in all.
+const COMPARISONS: usize = 250_000;
 
 impl Model {
     /// Checks a draft and resolves its names.
@@ -76,6 +78,12 @@ struct Check<'a> {
     joint_ids: Vec<Option<JointId>>,
     /// The hardpoints that curves pass through.
     curve_points: Vec<HardpointId>,
+    /// By kind of entry: which number a name has. Only looked up, never walked.
+    numbers: HashMap<&'static str, HashMap<&'a str, usize>>,
+    /// Comparisons of names that guesses may still take.
+    comparisons: usize,
+    /// The box around the hardpoints listed so far.
+    extent: Extent,
 }
 
 impl<'a> Check<'a> {
@@ -97,7 +105,17 @@ impl<'a> Check<'a> {
             idle: Vec::new(),
             times: draft.times.clone(),
         };
-        Self { draft, model, faults: Vec::new(), joint_ids: Vec::new(), curve_points: Vec::new() }
+        let ground = ["ground"].into_iter();
+        let numbers = HashMap::from([
+            ("body", numbered(ground.chain(draft.bodies.iter().map(|b| b.name.as_str())))),
+            ("hardpoint", numbered(draft.hardpoints.iter().map(|h| h.name.as_str()))),
+            ("joint", numbered(draft.joints.iter().map(|j| j.name.as_str()))),
+            ("point", numbered(draft.points.iter().map(|p| p.name.as_str()))),
+        ]);
+        let extent = Extent::of(draft.hardpoints.iter().map(|h| h.position));
+        let (faults, joint_ids) = (Vec::new(), Vec::new());
+        let curve_points = Vec::new();
+        Self { draft, model, faults, joint_ids, curve_points, numbers, comparisons: COMPARISONS, extent }
     }
 
     fn fault(&mut self, code: &'static str, at: Locus, message: impl Into<String>) -> &mut Fault {
@@ -162,14 +180,21 @@ impl<'a> Check<'a> {
         at: Locus,
         candidates: impl Iterator<Item = &'n str> + Clone,
     ) -> Option<usize> {
-        if let Some(k) = candidates.clone().position(|c| c == name) {
-            return Some(k);
+        let numbers = self.numbers.get(what);
+        let found = match numbers {
+            Some(numbers) => numbers.get(name).copied(),
+            None => candidates.clone().position(|c| c == name),
+        };
+        if found.is_some() {
+            return found;
         }
+        let count = numbers.map_or_else(|| candidates.clone().count(), HashMap::len);
         // A guess compares with every name; past the faults that anybody reads it would only cost time.
-        let guess = self.faults.len() < GUESSES;
+        let guess = self.faults.len() < GUESSES && count <= self.comparisons;
         let close = if guess { did_you_mean(name, candidates.clone()) } else { None };
-        let valid: Vec<String> = candidates.clone().take(LISTED_NAMES).map(|c| format!("`{c}`")).collect();
-        let more = candidates.count() - valid.len();
+        self.comparisons -= if guess { count } else { 0 };
+        let valid: Vec<String> = candidates.take(LISTED_NAMES).map(|c| format!("`{c}`")).collect();
+        let more = count.saturating_sub(valid.len());
         let fault = self.fault("HP0204", at, format!("there is no {what} named `{name}`"));
         if !valid.is_empty() {
             let more = if more > 0 { format!(" and {more} more") } else { String::new() };
@@ -207,6 +232,7 @@ impl<'a> Check<'a> {
             Place::Hardpoint(name) => self.hardpoint(name, at),
             Place::At(p) if p.is_finite() => {
                 self.model.hardpoints.push(Hardpoint { name: owner.into(), position: *p, unnamed: true });
+                self.extent.include(*p);
                 Some(HardpointId(self.model.hardpoints.len() - 1))
             }
             Place::At(_) => {
@@ -238,7 +264,7 @@ impl<'a> Check<'a> {
                 let (a_id, b_id) = (a_id?, b_id?);
                 let d = self.position(b_id) - self.position(a_id);
                 match d.unit() {
-                    Some(u) if d.norm() > SAME_POINT * self.model.size() => {
+                    Some(u) if d.norm() > SAME_POINT * self.extent.size() => {
                         Some((Direction::Through(a_id, b_id), u))
                     }
                     _ => {
@@ -567,7 +593,7 @@ impl<'a> Check<'a> {
             j.at.iter().enumerate().map(|(k, p)| self.place(p, name, here.item("at", k))).collect();
         let (first, last) = (places[0]?, places[places.len() - 1]?);
         let is_rod = kind.coordinates.iter().any(|c| c.row == Row::Distance);
-        if is_rod && (self.position(last) - self.position(first)).norm() <= SAME_POINT * self.model.size() {
+        if is_rod && (self.position(last) - self.position(first)).norm() <= SAME_POINT * self.extent.size() {
             self.fault("HP0211", here.key("at"), format!("the two ends of `{name}` are at the same place"))
                 .help("a rod needs two points that lie apart");
         }
@@ -1083,6 +1109,15 @@ const UNPLACED: HardpointId = HardpointId(usize::MAX);
 
 fn degrees_between(a: Vec3, b: Vec3) -> f64 {
     a.dot(b).clamp(-1.0, 1.0).acos().to_degrees()
+}
+
+/// Which number each name has; of equal names, the first.
+fn numbered<'a>(names: impl Iterator<Item = &'a str>) -> HashMap<&'a str, usize> {
+    let mut numbers = HashMap::new();
+    for (k, name) in names.enumerate() {
+        numbers.entry(name).or_insert(k);
+    }
+    numbers
 }
 
 /// The frame with z along `z` and x along `x`, two unit vectors square to each other.

@@ -49,6 +49,8 @@ impl Kept {
 
 /// The first-order change of a [`Geometry`] per unit of one design variable: the paper's design
 /// velocity, with V and R(theta) U of a marker combined into a body-fixed twist (`docs/theory.md` (8)).
+///
+/// Every list is in the order of its ids.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Field {
     /// The markers that move or turn.
@@ -74,6 +76,20 @@ pub struct MarkerField {
     pub twist: Twist,
 }
 
+impl Field {
+    /// The twist of a joint's marker, if it moves.
+    pub fn twist_of(&self, joint: JointId, end: usize) -> Option<Twist> {
+        let found = self.markers.binary_search_by_key(&(joint, end), |m| (m.joint, m.end));
+        found.ok().map(|k| self.markers[k].twist)
+    }
+
+    /// Rates of what a joint keeps.
+    pub fn kept_rate(&self, joint: JointId) -> Kept {
+        let found = self.kept.binary_search_by_key(&joint, |k| k.0);
+        found.map_or(Kept::default(), |k| self.kept[k].1)
+    }
+}
+
 impl Model {
     /// The geometry of the design with variable k at `design[k]` (missing entries are 0).
     ///
@@ -81,20 +97,24 @@ impl Model {
     pub fn geometry(&self, design: &[f64]) -> Geometry {
         let value = |k: usize| design.get(k).copied().unwrap_or(0.0);
         let places = self.places(&value);
+        let all = || self.variables.iter().enumerate();
+        let changes = self.marker_changes(all().map(|(k, v)| (value(k), v)));
         // Lengths are measured between the hardpoints as moved by all variables that do not keep them.
         let follows = |k: usize| if self.variables[k].fixed_length { 0.0 } else { value(k) };
         let for_lengths = self.places(&follows);
+        let changes_of_length = self.marker_changes(all().map(|(k, v)| (follows(k), v)));
         let markers = (0..self.joints.len())
             .map(|j| {
                 std::array::from_fn(|e| {
                     let frame = self.bodies[self.joints[j].bodies[e].0].frame;
-                    frame.inverse().compose(self.marker_in_world(j, e, &places, &value))
+                    frame.inverse().compose(self.marker_in_world(j, e, &places, &changes[j]))
                 })
             })
             .collect();
         let kept = (0..self.joints.len())
             .map(|j| {
-                let [m_i, m_j] = [0, 1].map(|e| self.marker_in_world(j, e, &for_lengths, &follows));
+                let [m_i, m_j] =
+                    [0, 1].map(|e| self.marker_in_world(j, e, &for_lengths, &changes_of_length[j]));
                 let (d, z_i, z_j) = (m_j.r - m_i.r, m_i.rot.cols[2], m_j.rot.cols[2]);
                 let given = self.joints[j].length.map(|length| length + self.length_change(j, &value));
                 let contact = self.joints[j].curve.as_ref().map_or(0.0, |curve| {
@@ -166,31 +186,41 @@ impl Model {
         places
     }
 
+    /// Per joint: what these variables do to its markers themselves, with the variable's value, in order.
+    fn marker_changes<'v>(
+        &self,
+        variables: impl Iterator<Item = (f64, &'v DesignVariable)>,
+    ) -> Vec<Vec<(f64, &'v Change)>> {
+        let mut changes = vec![Vec::new(); self.joints.len()];
+        for (b, v) in variables.filter(|(b, _)| *b != 0.0) {
+            for change in &v.changes {
+                if let Some(joint) = change.joint() {
+                    changes[joint.0].push((b, change));
+                }
+            }
+        }
+        changes
+    }
+
     /// Marker e of joint j in the design configuration of a changed design.
-    fn marker_in_world(&self, j: usize, e: usize, places: &[Vec3], value: &dyn Fn(usize) -> f64) -> Pose {
+    fn marker_in_world(&self, j: usize, e: usize, places: &[Vec3], changes: &[(f64, &Change)]) -> Pose {
         let joint = &self.joints[j];
         let mut rot = self.followed_frame(joint, e, places);
         let mut r = places[joint.at[e].0];
-        for (k, v) in self.variables.iter().enumerate() {
-            let b = value(k);
-            if b == 0.0 {
-                continue;
-            }
-            for change in &v.changes {
-                match change {
-                    Change::Marker { joint, end, position, rotation } if joint.0 == j && end.covers(e) => {
-                        r += *position * b;
-                        rot = Mat3::from_rotation_vector(*rotation * b) * rot;
-                    }
-                    Change::Field { joint: id, end, v, u } if id.0 == j && *end == e => {
-                        let body = self.bodies[joint.bodies[e].0].frame.rot;
-                        r += body * *v * b;
-                        let (theta, c) = self.euler_of(joint, e);
-                        let turned = rotation_from_euler_313([0, 1, 2].map(|n| theta[n] + b * u[n]));
-                        rot = body * turned * c.transpose() * body.transpose() * rot;
-                    }
-                    _ => {}
+        for &(b, change) in changes {
+            match change {
+                Change::Marker { end, position, rotation, .. } if end.covers(e) => {
+                    r += *position * b;
+                    rot = Mat3::from_rotation_vector(*rotation * b) * rot;
                 }
+                Change::Field { end, v, u, .. } if *end == e => {
+                    let body = self.bodies[joint.bodies[e].0].frame.rot;
+                    r += body * *v * b;
+                    let (theta, c) = self.euler_of(joint, e);
+                    let turned = rotation_from_euler_313([0, 1, 2].map(|n| theta[n] + b * u[n]));
+                    rot = body * turned * c.transpose() * body.transpose() * rot;
+                }
+                _ => {}
             }
         }
         Pose { rot, r }
@@ -232,9 +262,10 @@ impl Model {
                 speeds[hardpoint.0] += *velocity;
             }
         }
+        let changes = self.marker_changes(std::iter::once((1.0, v)));
         let mut field = Field::default();
         for (j, joint) in self.joints.iter().enumerate() {
-            let rates = [0, 1].map(|e| self.marker_rates(v, j, e, &speeds));
+            let rates = [0, 1].map(|e| self.marker_rates(&changes[j], j, e, &speeds));
             for (end, (p, w)) in rates.into_iter().enumerate() {
                 if p != Vec3::ZERO || w != Vec3::ZERO {
                     let frame = self.bodies[joint.bodies[end].0].frame;
@@ -304,7 +335,7 @@ impl Model {
     }
 
     /// Velocity of a marker's origin and rotation rate of its axes per unit of a variable, global.
-    fn marker_rates(&self, v: &DesignVariable, j: usize, e: usize, speeds: &[Vec3]) -> (Vec3, Vec3) {
+    fn marker_rates(&self, changes: &[(f64, &Change)], j: usize, e: usize, speeds: &[Vec3]) -> (Vec3, Vec3) {
         let joint = &self.joints[j];
         let mut p = speeds[joint.at[e].0];
         let mut w = Vec3::ZERO;
@@ -317,13 +348,13 @@ impl Model {
             let [_, y, z] = joint.frames[e].cols;
             w += z * y.dot(self.direction_rate(axis2, speeds));
         }
-        for change in &v.changes {
+        for (_, change) in changes {
             match change {
-                Change::Marker { joint, end, position, rotation } if joint.0 == j && end.covers(e) => {
+                Change::Marker { end, position, rotation, .. } if end.covers(e) => {
                     p += *position;
                     w += *rotation;
                 }
-                Change::Field { joint: id, end, v, u } if id.0 == j && *end == e => {
+                Change::Field { end, v, u, .. } if *end == e => {
                     let body = self.bodies[joint.bodies[e].0].frame.rot;
                     p += body * *v;
                     w += body * euler_rates(self.euler_of(joint, e).0, *u);
@@ -359,6 +390,16 @@ impl Joint {
             (Need::OnBodyJ, 0) => [self.axis, None],
             (Need::OnBodyJ, _) => [self.axis2, None],
             _ => [self.axis, self.axis2],
+        }
+    }
+}
+
+impl Change {
+    /// The joint whose markers it changes; none for a hardpoint.
+    fn joint(&self) -> Option<JointId> {
+        match self {
+            Self::Move { .. } | Self::Length { .. } | Self::Law { .. } => None,
+            Self::Marker { joint, .. } | Self::Field { joint, .. } => Some(*joint),
         }
     }
 }

@@ -23,6 +23,7 @@ pub struct Idle {
 impl Model {
     /// Finds idle spins and holds them.
     pub(super) fn hold_idle_spins(&mut self) {
+        let size = self.size();
         let mut joints_of = vec![Vec::new(); self.bodies.len()];
         for (k, j) in self.joints.iter().enumerate() {
             for b in j.bodies {
@@ -45,7 +46,7 @@ impl Model {
             joints.retain(|j| !self.joints[j.0].bodies.iter().all(|b| bodies.contains(b)));
             let is_ball = |j: &JointId| std::ptr::eq(self.joints[j.0].kind, &crate::joint::SPHERICAL);
             let Some(ball) = joints.iter().copied().find(is_ball) else { continue };
-            let Some(axis) = self.spin(&bodies, &joints, ball) else { continue };
+            let Some(axis) = self.spin(&bodies, &joints, ball, size) else { continue };
             let z = axis.any_square();
             let frame = Mat3 { cols: [axis.cross(z), z.cross(axis.cross(z)), z] };
             let held = &mut self.joints[ball.0];
@@ -55,8 +56,7 @@ impl Model {
     }
 
     /// The axis through the ball about which these bodies can spin while all others stay, if that is all they can do.
-    fn spin(&self, bodies: &[BodyId], joints: &[JointId], ball: JointId) -> Option<Vec3> {
-        let size = self.size();
+    fn spin(&self, bodies: &[BodyId], joints: &[JointId], ball: JointId, size: f64) -> Option<Vec3> {
         let centre = self.position(self.joints[ball.0].at[0]);
         let mut rows = Vec::new();
         for &j in joints {
@@ -76,7 +76,11 @@ impl Model {
             }
         }
         let pivots = FullPivot::of(rows, 6, RANK_TOLERANCE);
-        let [free] = &pivots.free[..] else { return None };
+        let [motion] = &pivots.free[..] else { return None };
+        let mut free = [0.0; 6];
+        for &(c, x) in motion {
+            free[c] = x;
+        }
         let slide = Vec3::new(free[3], free[4], free[5]);
         let axis = Vec3::new(free[0], free[1], free[2]).unit()?;
         // A spin that the position happens to allow is no idle one: every other joint must be on the axis, for good.

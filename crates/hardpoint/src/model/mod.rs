@@ -367,14 +367,7 @@ impl Model {
     ///
     /// Lengths are compared with it wherever a tolerance must not depend on the units of the model.
     pub fn size(&self) -> f64 {
-        let mut low = Vec3::new(f64::INFINITY, f64::INFINITY, f64::INFINITY);
-        let mut high = -low;
-        for p in self.hardpoints.iter().map(|h| h.position) {
-            low = Vec3::new(low.x.min(p.x), low.y.min(p.y), low.z.min(p.z));
-            high = Vec3::new(high.x.max(p.x), high.y.max(p.y), high.z.max(p.z));
-        }
-        let size = (high - low).norm();
-        if size > 0.0 && size.is_finite() { size } else { 1.0 }
+        Extent::of(self.hardpoints.iter().map(|h| h.position)).size()
     }
 
     /// The variable of that name.
@@ -395,5 +388,33 @@ impl Model {
     /// The point of that name.
     pub fn point(&self, name: &str) -> Option<PointId> {
         self.points.iter().position(|p| !p.unnamed && p.name == name).map(PointId)
+    }
+}
+
+/// The box around some points.
+#[derive(Clone, Copy, Debug)]
+struct Extent {
+    low: Vec3,
+    high: Vec3,
+}
+
+impl Extent {
+    fn of(points: impl Iterator<Item = Vec3>) -> Self {
+        let low = Vec3::new(f64::INFINITY, f64::INFINITY, f64::INFINITY);
+        let mut extent = Self { low, high: -low };
+        points.for_each(|p| extent.include(p));
+        extent
+    }
+
+    fn include(&mut self, p: Vec3) {
+        let (low, high) = (self.low, self.high);
+        self.low = Vec3::new(low.x.min(p.x), low.y.min(p.y), low.z.min(p.z));
+        self.high = Vec3::new(high.x.max(p.x), high.y.max(p.y), high.z.max(p.z));
+    }
+
+    /// Its diagonal; 1 where that is no length to compare with.
+    fn size(&self) -> f64 {
+        let size = (self.high - self.low).norm();
+        if size > 0.0 && size.is_finite() { size } else { 1.0 }
     }
 }

@@ -165,16 +165,18 @@ impl<T: Real> Stepper<'_, T> {
 }
 
 impl Stepper<'_, f64> {
-    /// How near the joints can come: least squares over the residuals of all rows, from where the path ended.
+    /// How near the joints can come: least squares over the residuals of all rows of the block that
+    /// could not be closed, from where the path ended.
     ///
     /// Levenberg's and Marquardt's method on the scaled rows; it need not be fast.
-    pub fn least_gaps(&mut self) -> Vec<Gap> {
+    pub fn least_gaps(&mut self, block: usize) -> Vec<Gap> {
         self.state.gap_left = [0.0; 2];
         self.restore();
-        let unknowns: Vec<usize> = self.topology.blocks.iter().flat_map(|b| b.unknowns.clone()).collect();
+        let (unknowns, rows) =
+            (self.topology.blocks[block].unknowns.clone(), self.topology.rows_of_block(block));
         let n = unknowns.len();
         let mut damping = 1e-3;
-        let (mut residuals, mut jacobian) = self.all_rows(&unknowns);
+        let (mut residuals, mut jacobian) = self.scaled_rows(&rows, &unknowns);
         let squares = |r: &[f64]| r.iter().map(|x| x * x).sum::<f64>();
         for _ in 0..MAX_SEARCH {
             let mut normal = Elimination::new(n, 0.0);
@@ -194,7 +196,7 @@ impl Stepper<'_, f64> {
                 self.state.q[c] += step[k] * unit;
             }
             self.state.turn_balls(&self.topology, 0..self.topology.links.len());
-            let (now, jacobian_now) = self.all_rows(&unknowns);
+            let (now, jacobian_now) = self.scaled_rows(&rows, &unknowns);
             let (old, new) = (squares(&residuals), squares(&now));
             if new < old {
                 (residuals, jacobian) = (now, jacobian_now);
@@ -210,16 +212,16 @@ impl Stepper<'_, f64> {
                 }
             }
         }
-        self.all_rows(&unknowns);
+        self.scaled_rows(&rows, &unknowns);
         self.gaps(|s, r| s.state.residual_of(&s.topology, &s.parts, &s.drivers, r), WORTH_TELLING)
     }
 
-    /// Scaled residuals of all constraint rows, and their derivatives by these coordinates, in lane 0.
-    fn all_rows(&mut self, unknowns: &[usize]) -> (Vec<f64>, Vec<Vec<f64>>) {
+    /// Scaled residuals of constraint rows, and their derivatives by these coordinates, in lane 0.
+    fn scaled_rows(&mut self, rows: &[usize], unknowns: &[usize]) -> (Vec<f64>, Vec<Vec<f64>>) {
         self.state.stand(&self.topology, &self.parts);
         let mut residuals = Vec::new();
         let mut jacobian = Vec::new();
-        for r in (0..self.topology.rows.len()).filter(|&r| !self.topology.rows[r].is_term) {
+        for &r in rows {
             let s = &self.state;
             let scale = 1.0 / s.scale_of_row(&self.topology, r);
             residuals.push(scale * s.residual_of(&self.topology, &self.parts, &self.drivers, r));

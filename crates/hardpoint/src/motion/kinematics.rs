@@ -6,7 +6,7 @@
 use crate::constraint::{EndRates, Ends, Row};
 use crate::joint::Freedom;
 use crate::model::{Contact, Model};
-use crate::space::{Elimination, Pose, Quat, Real, Twist, Wrench};
+use crate::space::{Factors, LARGEST_DENSE, Pose, Quat, Real, Twist, Wrench};
 use crate::topology::{Block, Source, Topology};
 
 use super::parts::Parts;
@@ -44,7 +44,7 @@ pub(crate) struct State<T> {
     pub ldd: Vec<Wrench<T>>,
     /// Per closure: its markers in the world.
     pub ends: Vec<Ends<T>>,
-    pub factors: Vec<Elimination<T>>,
+    pub factors: Vec<Factors<T>>,
     /// Right-hand side of a block.
     pub rhs: Vec<T>,
     /// Per link and per row: what a level adds besides the unknowns.
@@ -112,7 +112,11 @@ impl<T: Real> State<T> {
             ld: vec![no_wrench; rows],
             ldd: vec![no_wrench; rows],
             ends: vec![Ends { i: frame, j: frame }; topology.closures.len()],
-            factors: topology.blocks.iter().map(|b| Elimination::new(b.unknowns.len(), witness)).collect(),
+            factors: topology
+                .blocks
+                .iter()
+                .map(|b| factors_of(topology, b, LARGEST_DENSE, witness))
+                .collect(),
             rhs: vec![o; widest],
             bias: vec![none; topology.links.len()],
             row_rhs: vec![o; rows],
@@ -282,26 +286,23 @@ impl<T: Real> State<T> {
         sum
     }
 
-    /// Adds row r to row k of the block's Jacobian.
-    #[inline(always)]
-    fn enter(&mut self, topology: &Topology, b: usize, k: usize, r: usize, factor: T) {
-        let closure = &topology.closures[topology.rows[r].closure];
-        let wrench = self.l[r];
-        let out = self.factors[b].row_mut(k);
-        for &(column, coordinate, side) in &closure.entries {
-            out[column] += wrench.on(self.x[coordinate]) * (factor * factor.like(side));
-        }
-    }
-
-    /// Adds the further terms of a coupler, row r, to row k of the block's Jacobian.
+    /// Fills row k of the block's Jacobian with a coupler, row r, the sum of its terms.
     #[inline(never)]
-    fn enter_terms(&mut self, topology: &Topology, b: usize, k: usize, r: usize) {
-        for &(term, factor) in &topology.rows[r].terms {
-            let place = &topology.rows[term];
-            let row = topology.closures[place.closure].rows[place.index];
-            self.l[term] = self.wrench_of(row, place.closure);
-            self.enter(topology, b, k, term, self.witness.like(factor));
+    fn enter_coupler(&mut self, topology: &Topology, b: usize, k: usize, r: usize) {
+        let place = &topology.rows[r];
+        for &(term, _) in &place.terms {
+            let at = &topology.rows[term];
+            self.l[term] = self.wrench_of(topology.closures[at.closure].rows[at.index], at.closure);
         }
+        let (l, x, zero) = (&self.l, &self.x, self.witness.zero());
+        let entries = place.columns.iter().map(|(column, parts)| {
+            let mut sum = zero;
+            for &(term, coordinate, factor) in parts {
+                sum += l[term].on(x[coordinate]) * zero.like(factor);
+            }
+            (*column, sum)
+        });
+        self.factors[b].set_row(k, entries, zero);
     }
 
     #[inline(never)]
@@ -322,12 +323,19 @@ impl<T: Real> State<T> {
         let zero = self.witness.zero();
         for (k, &r) in block.selected.iter().enumerate() {
             self.rhs[k] = -self.residual(topology, parts, drivers, r);
-            self.factors[b].row_mut(k).fill(zero);
             let place = &topology.rows[r];
-            self.l[r] = topology.closures[place.closure].rows[place.index].wrench(&self.ends[place.closure]);
-            self.enter(topology, b, k, r, zero.like(1.0));
-            if !topology.rows[r].terms.is_empty() {
-                self.enter_terms(topology, b, k, r);
+            let closure = &topology.closures[place.closure];
+            let wrench = closure.rows[place.index].wrench(&self.ends[place.closure]);
+            self.l[r] = wrench;
+            if place.terms.is_empty() {
+                let x = &self.x;
+                let entries = closure.entries.iter().map(
+                    #[inline(always)]
+                    |&(column, coordinate, side)| (column, wrench.on(x[coordinate]) * zero.like(side)),
+                );
+                self.factors[b].set_row(k, entries, zero);
+            } else {
+                self.enter_coupler(topology, b, k, r);
             }
         }
         let found = self.factors[b].factor();
@@ -657,6 +665,24 @@ pub(crate) fn along<T: Real>(topology: &Topology, l: &[Wrench<T>], motion: &[Twi
     sum
 }
 
+/// Room for the factors of a block with the rows that it is solved with now.
+pub(crate) fn factors_of<T: Real>(
+    topology: &Topology,
+    block: &Block,
+    largest_dense: usize,
+    witness: T,
+) -> Factors<T> {
+    let columns = |k: usize| {
+        let place = &topology.rows[block.selected[k]];
+        if place.terms.is_empty() {
+            topology.closures[place.closure].entries.iter().map(|e| e.0).collect()
+        } else {
+            place.columns.iter().map(|(column, _)| *column).collect()
+        }
+    };
+    Factors::new(block.selected.len(), columns, largest_dense, witness)
+}
+
 /// A driver row's derivative of that order; 0 for the other rows.
 #[inline(always)]
 fn demand<T: Real>(topology: &Topology, drivers: &[[T; 3]], r: usize, order: usize, witness: T) -> T {
@@ -680,7 +706,7 @@ fn demand<T: Real>(topology: &Topology, drivers: &[[T; 3]], r: usize, order: usi
 #[expect(clippy::too_many_arguments, reason = "the arrays are borrowed from one state, some of them mutably")]
 pub(crate) fn level<T: Real>(
     topology: &Topology,
-    factors: &mut [Elimination<T>],
+    factors: &mut [Factors<T>],
     x: &[Twist<T>],
     l: &[Wrench<T>],
     bias: &[Twist<T>],

@@ -3,11 +3,11 @@
 use crate::constraint::Row;
 use crate::joint::Freedom;
 use crate::model::{Contact, DriverId, Model};
-use crate::space::{FullPivot, Quat, Real};
+use crate::space::{FullPivot, LARGEST_DENSE, Quat, Real};
 use crate::topology::{Source, Topology};
 
 use super::assembly::Assembly;
-use super::kinematics::{PositionFailure, Residuals, State};
+use super::kinematics::{PositionFailure, Residuals, State, factors_of};
 use super::parts::Parts;
 use super::{Effort, Stop, StopKind};
 
@@ -401,21 +401,24 @@ impl<'m, T: Real> Stepper<'m, T> {
             if rows.len() == block.unknowns.len() {
                 continue;
             }
-            let dense = rows
+            let matrix = rows
                 .iter()
                 .map(|&r| {
                     let mut row = vec![0.0; block.unknowns.len()];
                     s.scaled_row(&self.topology, r, 0, &mut row);
-                    row
+                    row.into_iter().enumerate().filter(|(_, x)| *x != 0.0).collect()
                 })
                 .collect();
-            let pivots = FullPivot::of(dense, block.unknowns.len(), f64::MIN_POSITIVE);
+            let pivots = FullPivot::of_sparse(matrix, block.unknowns.len(), f64::MIN_POSITIVE);
             let mut selected: Vec<usize> = pivots.rows.iter().map(|&r| rows[r]).collect();
             selected.sort_unstable();
             if selected.len() < block.unknowns.len() || selected == block.selected {
                 continue;
             }
             self.topology.select(b, selected);
+            // Other rows have entries in other places.
+            let block = &self.topology.blocks[b];
+            self.state.factors[b] = factors_of(&self.topology, block, LARGEST_DENSE, self.state.witness);
             // The same position, seen through other rows: new factors, and a new sign to stay with.
             self.state
                 .solve_position(&self.topology, &self.parts, &self.drivers, f64::INFINITY)
@@ -475,6 +478,7 @@ impl<'m, T: Real> Stepper<'m, T> {
                     Path::Laws => d.law.at(self.time).value(),
                 })
                 .collect(),
+            block,
             pivot_ratio: block.map_or(1.0, |b| self.saved.pivots[b].0),
             joints: block.map_or_else(Vec::new, |b| self.topology.joints_of_block(b)),
             remains: Vec::new(),
@@ -487,5 +491,97 @@ impl<'m, T: Real> Stepper<'m, T> {
         let ball = self.topology.links.iter().flat_map(|l| &l.steps).filter(|s| s.freedom == Freedom::Ball);
         debug_assert!(ball.map(|s| self.state.q[s.first].lane(0)).all(|q| q == 0.0));
         self.state.q.iter().map(|q| q.lane(0))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use fearless_simd::{Level, dispatch};
+
+    use super::*;
+    use crate::law::Law;
+    use crate::model::*;
+    use crate::space::{Vec3, lanes};
+    use crate::topology::Formulation;
+
+    /// Nodes on two slides each, tied by rods to the two nodes before; a leg pushes at the last.
+    fn truss(n: usize) -> Model {
+        let place = |k: usize| Place::At(Vec3::new(0.5 * k as f64, 0.8 * (k % 2) as f64, 0.0));
+        let node = |k: usize| if k == 0 { "ground".to_owned() } else { format!("node{k}") };
+        let joint =
+            |name: String, kind: &str, bodies: [String; 2], at: Vec<Place>, axis: Option<usize>| JointDraft {
+                name,
+                kind: kind.into(),
+                bodies,
+                at,
+                axis: axis.map(|k| Line::Along(Vec3::AXES[k])),
+                ..JointDraft::default()
+            };
+        let mut draft = Draft { times: vec![0.0, 0.1, 0.2], ..Draft::default() };
+        for k in 1..n {
+            let slider = format!("slider{k}");
+            for name in [slider.clone(), node(k)] {
+                draft.bodies.push(BodyDraft { name, frame: FrameDraft::Default });
+            }
+            let bodies = ["ground".into(), slider.clone()];
+            draft.joints.push(joint(format!("x{k}"), "translational", bodies, vec![place(k)], Some(0)));
+            let bodies = [slider, node(k)];
+            draft.joints.push(joint(format!("y{k}"), "translational", bodies, vec![place(k)], Some(1)));
+            for other in k.saturating_sub(2)..k {
+                let (ends, at) = ([node(other), node(k)], vec![place(other), place(k)]);
+                draft.joints.push(joint(format!("rod{other}_{k}"), "distance", ends, at, None));
+            }
+        }
+        let at = vec![Place::At(Vec3::new(0.5 * n as f64, -1.0, 0.3)), place(n - 1)];
+        draft.joints.push(joint("push".into(), "leg", ["ground".into(), node(n - 1)], at, None));
+        draft.drivers.push(DriverDraft {
+            name: "motor".into(),
+            drives: DrivenDraft::Coordinate { joint: "push".into(), coordinate: None },
+            law: Law::parse("0.1*sin(2*pi*t)").unwrap(),
+        });
+        Model::from_draft(&draft).unwrap()
+    }
+
+    /// The states of all bodies at the last output time, with blocks up to this size factored densely.
+    fn last<T: Real>(
+        model: &Model,
+        topology: &Topology,
+        largest_dense: usize,
+        zero: T,
+    ) -> (State<T>, Vec<bool>) {
+        let designs = [model.geometry(&[])];
+        let mut stepper = Stepper::new(model, topology, Parts::new(model, topology, &designs, zero), zero);
+        let blocks = topology.blocks.iter();
+        stepper.state.factors = blocks.map(|b| factors_of(topology, b, largest_dense, zero)).collect();
+        stepper.start(model.times[0]).unwrap();
+        model.times[1..].iter().for_each(|t| stepper.advance(*t).unwrap());
+        let signs = stepper.state.pivots.iter().map(|p| p.1).collect();
+        (stepper.state, signs)
+    }
+
+    #[test]
+    fn sparse_and_dense_factors_give_the_same_motion() {
+        for n in [5, 30] {
+            let model = truss(n);
+            let topology = Topology::of(&model, Formulation::Relative).unwrap();
+            let size = model.size();
+            let (dense, dense_signs) = last(&model, &topology, usize::MAX, 0.0);
+            let (sparse, sparse_signs) = last(&model, &topology, 0, 0.0);
+            assert_eq!(dense_signs, sparse_signs);
+            let apart = |a: Vec3, b: Vec3| (a - b).norm();
+            for b in 0..model.bodies.len() {
+                assert!(apart(dense.pose[b].r, sparse.pose[b].r) < 1e-12 * size, "body {b} of {n}");
+                assert!(apart(dense.v[b].v, sparse.v[b].v) < 1e-11 * size, "body {b} of {n}");
+            }
+            dispatch!(Level::new(), simd => {
+                let (side_by_side, signs) = last(&model, &topology, 0, lanes(simd));
+                assert_eq!(signs, sparse_signs);
+                for b in 0..model.bodies.len() {
+                    let r = side_by_side.pose[b].r;
+                    let r = Vec3::new(r.x.lane(3), r.y.lane(3), r.z.lane(3));
+                    assert!(apart(dense.pose[b].r, r) < 1e-12 * size, "body {b} of {n} in lanes");
+                }
+            });
+        }
     }
 }

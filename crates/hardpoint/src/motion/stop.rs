@@ -14,6 +14,8 @@ pub struct Stop {
     pub failed_time: f64,
     /// Values of all drivers at the last solved position, m or rad.
     pub drivers: Vec<f64>,
+    /// The block of the plan that holds that loop.
+    pub block: Option<usize>,
     /// Smallest over largest pivot of the loop in question there: near 0 at a limit position.
     pub pivot_ratio: f64,
     /// The joints of that loop.

@@ -1,7 +1,7 @@
 //! Kinematic admissibility of a design variable: can the joints stay closed, and how.
 
 use crate::constraint::Row;
-use crate::model::{Field, JointId, Kept, Model, Term};
+use crate::model::{Field, JointId, Model, Term};
 use crate::space::Twist;
 
 /// Whether and how a mechanism follows a design variable.
@@ -46,11 +46,10 @@ const OPEN: f64 = 1e-7;
 pub fn admissibility_at_design(model: &Model, field: &Field) -> Vec<JointDefect> {
     let scale = field.markers.iter().map(|m| m.twist.w.norm().max(m.twist.v.norm())).fold(0.0, f64::max);
     let twists = |k: usize| {
-        let mut z = [Twist::ZERO; 2];
-        for m in field.markers.iter().filter(|m| m.joint.0 == k) {
-            z[m.end] = model.bodies[model.joints[k].bodies[m.end].0].frame.carry(m.twist);
-        }
-        z
+        [0, 1].map(|end| {
+            let twist = field.twist_of(JointId(k), end).unwrap_or(Twist::ZERO);
+            model.bodies[model.joints[k].bodies[end].0].frame.carry(twist)
+        })
     };
     let mut touched: Vec<usize> = field.markers.iter().map(|m| m.joint.0).collect();
     touched.extend(field.kept.iter().map(|(j, _)| j.0));
@@ -59,7 +58,7 @@ pub fn admissibility_at_design(model: &Model, field: &Field) -> Vec<JointDefect>
     let mut joints = Vec::new();
     for k in touched {
         let z = twists(k);
-        let kept = field.kept.iter().find(|(j, _)| j.0 == k).map_or(Kept::default(), |(_, kept)| *kept);
+        let kept = field.kept_rate(JointId(k));
         let ends = model.ends(JointId(k));
         // A driven coordinate is a constraint too: it must stay at zero in the design configuration.
         let driven = model.drivers.iter().filter(|d| d.joint.0 == k).map(|d| model.driven(d).row);

@@ -49,15 +49,11 @@ impl<T: Real> Moving<T> {
 impl<T: Real> FieldParts<T> {
     /// Lane k takes `fields[k]`; there must be no more fields than lanes.
     pub fn new(topology: &Topology, fields: &[Field], witness: T) -> Self {
+        let twist_in = |k: usize, joint, end| fields.get(k).and_then(|f| f.twist_of(joint, end));
         let twist_of = |joint: JointId, end: usize| {
-            Twist::gather(witness, |k| {
-                let markers = fields.get(k).map_or(&[][..], |f| &f.markers);
-                markers.iter().find(|m| m.joint == joint && m.end == end).map_or(Twist::ZERO, |m| m.twist)
-            })
+            Twist::gather(witness, |k| twist_in(k, joint, end).unwrap_or(Twist::ZERO))
         };
-        let moves = |joint: JointId, end: usize| {
-            fields.iter().any(|f| f.markers.iter().any(|m| m.joint == joint && m.end == end))
-        };
+        let moves = |joint: JointId, end: usize| (0..fields.len()).any(|k| twist_in(k, joint, end).is_some());
         let (mut links, mut closures, mut kept) = (Vec::new(), Vec::new(), Vec::new());
         for (at, link) in topology.links.iter().enumerate() {
             let Some(joint) = link.joint else { continue };
@@ -74,10 +70,8 @@ impl<T: Real> FieldParts<T> {
                 closures.push(Moving { at, end, body, e: twist_of(closure.joint, end) });
             }
             for (k, row) in closure.rows.iter().enumerate() {
-                let rate = witness.like_lanes(|lane| {
-                    let kept = fields.get(lane).map_or(&[][..], |f| &f.kept);
-                    kept.iter().filter(|(j, _)| *j == closure.joint).map(|(_, rate)| rate.by(*row)).sum()
-                });
+                let rate = |f: &Field| f.kept_rate(closure.joint).by(*row);
+                let rate = witness.like_lanes(|lane| fields.get(lane).map_or(0.0, rate));
                 if rate.abs().largest() > 0.0 {
                     kept.push((closure.first_row + k, rate));
                 }
@@ -306,7 +300,7 @@ impl<T: Real> Direct<T> {
                 let closure = topology.rows[k].closure;
                 let [i, j] = topology.closures[closure].bodies;
                 let [z_i, z_j] = self.z_end[0][closure];
-                let rate = field.kept.iter().find(|(row, _)| *row == k).map_or(zero, |(_, rate)| *rate);
+                let rate = field.kept.binary_search_by_key(&k, |l| l.0).map_or(zero, |n| field.kept[n].1);
                 let driven = topology.closures[closure].driver.map_or(zero, |d| field.law_rate(d, 0));
                 let rate = rate + driven;
                 let (l, w, factor) = (state.l[k], &self.w[0], zero.like(factor));

@@ -1,4 +1,4 @@
-//! Small dense systems: the elimination of the hot path, and the rank-revealing one of the set-up.
+//! Small dense systems: the elimination of the hot path.
 
 use super::Real;
 
@@ -124,74 +124,6 @@ impl<T: Real> Elimination<T> {
     }
 }
 
-/// Complete-pivoting elimination of an m x n matrix: an independent set of its rows, and the motions it
-/// leaves free.
-#[derive(Clone, Debug)]
-pub(crate) struct FullPivot {
-    /// Independent rows, best pivot first; their number is the rank.
-    pub rows: Vec<usize>,
-    /// A basis of the columns' null space, one vector of length n each.
-    pub free: Vec<Vec<f64>>,
-}
-
-impl FullPivot {
-    /// Rows of the matrix in `a`; a pivot below `tolerance`, or below `tolerance` times the largest, counts
-    /// as zero.
-    pub fn of(mut a: Vec<Vec<f64>>, n: usize, tolerance: f64) -> Self {
-        let m = a.len();
-        let mut rows: Vec<usize> = (0..m).collect();
-        let mut columns: Vec<usize> = Vec::new();
-        let mut used = vec![false; n];
-        let mut largest = 0.0;
-        for k in 0..m.min(n) {
-            let mut best = (k, 0, 0.0);
-            for r in k..m {
-                for c in (0..n).filter(|&c| !used[c]) {
-                    // Near-ties go to the earlier row and column, so that round-off decides nothing.
-                    if a[r][c].abs() > best.2 * (1.0 + 1e-9) {
-                        best = (r, c, a[r][c].abs());
-                    }
-                }
-            }
-            let (r, c, size) = best;
-            largest = f64::max(largest, size);
-            if !(size > tolerance * largest) || size < tolerance {
-                break;
-            }
-            a.swap(r, k);
-            rows.swap(r, k);
-            used[c] = true;
-            columns.push(c);
-            let inverse = 1.0 / a[k][c];
-            for x in &mut a[k] {
-                *x *= inverse;
-            }
-            for r in (0..m).filter(|&r| r != k) {
-                let f = a[r][c];
-                if f != 0.0 {
-                    for j in 0..n {
-                        let x = a[k][j];
-                        a[r][j] -= f * x;
-                    }
-                }
-            }
-        }
-        let free = (0..n)
-            .filter(|&c| !used[c])
-            .map(|c| {
-                let mut v = vec![0.0; n];
-                v[c] = 1.0;
-                for (k, &p) in columns.iter().enumerate() {
-                    v[p] = -a[k][c];
-                }
-                v
-            })
-            .collect();
-        rows.truncate(columns.len());
-        Self { rows, free }
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -212,17 +144,5 @@ mod tests {
         }
         let det = -2.0 * (1.0 * 0.2 - 3.0 * 4.0) - (-1.0 - 0.5 * 4.0);
         assert_eq!(found.positive, det > 0.0);
-    }
-
-    #[test]
-    fn full_pivot_finds_rank_and_free_motions() {
-        let a = vec![vec![1.0, 2.0, 3.0], vec![2.0, 4.0, 6.0], vec![0.0, 1.0, 1.0], vec![1.0, 3.0, 4.0]];
-        let p = FullPivot::of(a.clone(), 3, 1e-10);
-        assert_eq!(p.rows.len(), 2);
-        assert_eq!(p.free.len(), 1);
-        for row in &a {
-            let s: f64 = row.iter().zip(&p.free[0]).map(|(x, y)| x * y).sum();
-            assert!(s.abs() < 1e-12);
-        }
     }
 }

@@ -5,23 +5,28 @@
 //! product is the rate at which a constraint is violated (`docs/theory.md`, section 1).
 
 mod euler;
+mod factors;
 mod jet;
 mod mat3;
 mod matrix;
 mod pose;
 mod quat;
+mod rank;
 mod real;
+mod sparse;
 mod twist;
 mod vec3;
 
 pub use euler::{euler_313_from_rotation, euler_rates, rotation_from_euler_313};
+pub(crate) use factors::{Factors, LARGEST_DENSE};
 pub use jet::Jet;
 pub use mat3::Mat3;
-pub(crate) use matrix::{Elimination, FullPivot};
+pub(crate) use matrix::Elimination;
 pub use pose::Pose;
 pub use quat::Quat;
 pub use real::Real;
 pub use twist::{Twist, Wrench};
 pub use vec3::Vec3;
 
+pub(crate) use rank::FullPivot;
 pub(crate) use real::{LANES, lanes};

@@ -1,8 +1,11 @@
 //! Blocks: which unknowns are solved together, in what order, with which independent rows.
 
-use petgraph::algo::{maximum_matching, tarjan_scc};
-use petgraph::graph::{DiGraph, NodeIndex, UnGraph};
+use std::collections::BTreeMap;
 
+use petgraph::algo::kosaraju_scc;
+use petgraph::graph::{DiGraph, NodeIndex};
+
+use super::matching::match_columns;
 use super::*;
 use crate::space::FullPivot;
 
@@ -24,8 +27,16 @@ pub(super) fn design_jacobian(model: &Model, topology: &Topology) -> Vec<SparseR
         if place.is_term {
             return Vec::new();
         }
-        let terms = topology.parts_of_row(r);
-        terms.flat_map(|(k, factor)| parts[k].iter().map(move |&(c, x)| (c, x * factor))).collect()
+        if place.terms.is_empty() {
+            return parts[r].clone();
+        }
+        let mut sum = BTreeMap::new();
+        for (k, factor) in topology.parts_of_row(r) {
+            for &(c, x) in &parts[k] {
+                *sum.entry(c).or_insert(0.0) += x * factor;
+            }
+        }
+        sum.into_iter().collect()
     };
     topology.rows.iter().enumerate().map(sum).collect()
 }
@@ -90,13 +101,12 @@ fn independent_groups(
     unknown: &[bool],
 ) -> Option<Vec<Vec<usize>>> {
     // Rows that are independent within their own closure, with the closure's unknowns as pattern.
-    let mut graph: UnGraph<(), ()> = UnGraph::default();
-    let columns: Vec<usize> = (0..unknown.len()).filter(|&c| unknown[c]).collect();
-    let mut node_of = vec![NodeIndex::end(); unknown.len()];
-    for &c in &columns {
-        node_of[c] = graph.add_node(());
+    let coordinates: Vec<usize> = (0..unknown.len()).filter(|&c| unknown[c]).collect();
+    let mut column_of = vec![usize::MAX; unknown.len()];
+    for (column, &c) in coordinates.iter().enumerate() {
+        column_of[c] = column;
     }
-    let mut patterns: Vec<(NodeIndex, &SparseRow)> = Vec::new();
+    let mut patterns: Vec<Vec<usize>> = Vec::new();
     for closure in topology.closures.iter().filter(|c| !topology.rows[c.first_row].is_term) {
         let range = closure.first_row..closure.first_row + closure.rows.len();
         let dense: Vec<Vec<f64>> = jacobian[range.clone()]
@@ -106,47 +116,36 @@ fn independent_groups(
         let n = dense.first().map_or(0, Vec::len);
         for r in FullPivot::of(dense, n, RANK_TOLERANCE).rows {
             let row = &jacobian[range.start + r];
-            let node = graph.add_node(());
-            for (c, _) in row.iter().filter(|(c, _)| unknown[*c]) {
-                graph.add_edge(node, node_of[*c], ());
-            }
-            patterns.push((node, row));
+            patterns.push(row.iter().filter(|(c, _)| unknown[*c]).map(|(c, _)| column_of[*c]).collect());
         }
     }
-    let matching = maximum_matching(&graph);
     // An unknown depends on every other unknown of the row that it is matched with.
-    let mut depends: DiGraph<usize, ()> = DiGraph::default();
-    let mut at = vec![NodeIndex::end(); unknown.len()];
-    for &c in &columns {
-        at[c] = depends.add_node(c);
+    let mut depends: DiGraph<(), ()> = DiGraph::default();
+    for _ in &coordinates {
+        depends.add_node(());
     }
-    let mut matched = 0;
-    for (node, row) in patterns {
-        let Some(mate) = matching.mate(node) else { continue };
-        let c = columns[mate.index()];
-        matched += 1;
-        for (other, _) in row.iter().filter(|(o, _)| unknown[*o] && *o != c) {
-            depends.add_edge(at[c], at[*other], ());
+    for (column, row) in match_columns(&patterns, coordinates.len()).into_iter().enumerate() {
+        for &other in patterns[row?].iter().filter(|&&other| other != column) {
+            depends.add_edge(NodeIndex::new(column), NodeIndex::new(other), ());
         }
     }
-    (matched == columns.len()).then(|| {
-        let mut groups: Vec<Vec<usize>> =
-            tarjan_scc(&depends).into_iter().map(|g| g.into_iter().map(|n| depends[n]).collect()).collect();
-        for g in &mut groups {
-            g.sort_unstable();
-        }
-        groups
-    })
+    // Kosaraju's algorithm does not recurse: a chain of loops may be any number deep.
+    let groups = kosaraju_scc(&depends).into_iter();
+    let mut groups: Vec<Vec<usize>> =
+        groups.map(|g| g.into_iter().map(|n| coordinates[n.index()]).collect()).collect();
+    for g in &mut groups {
+        g.sort_unstable();
+    }
+    Some(groups)
 }
 
-/// Makes blocks of the groups and selects their rows. The error is a basis of motions left free, each a
-/// value per coordinate.
+/// Makes blocks of the groups and selects their rows. The error is a basis of motions left free, each the
+/// coordinates that move in it, with their speeds.
 fn assign(
     topology: &mut Topology,
     jacobian: &[SparseRow],
     groups: &[Vec<usize>],
-) -> Result<(), Vec<Vec<f64>>> {
-    let n = topology.coordinates.len();
+) -> Result<(), Vec<SparseRow>> {
     for (block, group) in groups.iter().enumerate() {
         for (column, &c) in group.iter().enumerate() {
             topology.coordinates[c].source = Source::Unknown { block, column };
@@ -196,43 +195,48 @@ fn assign(
         closure.block = block_of_row[closure.first_row];
         closure.entries = entries;
     }
+    for k in 0..topology.coupled_rows.len() {
+        let r = topology.coupled_rows[k];
+        let mut columns: BTreeMap<usize, Vec<(usize, usize, f64)>> = BTreeMap::new();
+        for (term, factor) in topology.parts_of_row(r) {
+            for &(column, c, side) in &topology.closures[topology.rows[term].closure].entries {
+                columns.entry(column).or_default().push((term, c, side * factor));
+            }
+        }
+        topology.rows[r].columns = columns.into_iter().collect();
+    }
     let mut free = Vec::new();
     topology.blocks = blocks;
     for b in 0..groups.len() {
         let rows = topology.rows_of_block(b);
         let width = topology.blocks[b].unknowns.len();
-        let dense = rows
-            .iter()
-            .map(|&r| {
-                let mut row = vec![0.0; width];
-                for &(c, x) in &jacobian[r] {
-                    if let Source::Unknown { block, column } = topology.coordinates[c].source
-                        && block == b
-                    {
-                        row[column] += x;
-                    }
-                }
-                row
-            })
-            .collect();
-        let pivots = FullPivot::of(dense, width, RANK_TOLERANCE);
+        let in_block = rows.iter().map(|&r| columns_in_block(topology, &jacobian[r], b).collect()).collect();
+        let pivots = FullPivot::of_sparse(in_block, width, RANK_TOLERANCE);
         let mut selected: Vec<usize> = pivots.rows.iter().map(|&r| rows[r]).collect();
         selected.sort_unstable();
         topology.select(b, selected);
         for v in pivots.free {
-            let mut motion = vec![0.0; n];
-            for (column, &c) in topology.blocks[b].unknowns.iter().enumerate() {
-                motion[c] = v[column];
-            }
-            free.push(motion);
+            free.push(v.into_iter().map(|(column, x)| (topology.blocks[b].unknowns[column], x)).collect());
         }
     }
     if free.is_empty() { Ok(()) } else { Err(free) }
 }
 
+/// The entries of a row of the Jacobian in one block, by column of the block.
+pub(super) fn columns_in_block(
+    topology: &Topology,
+    row: &SparseRow,
+    block: usize,
+) -> impl Iterator<Item = (usize, f64)> {
+    row.iter().filter_map(move |&(c, x)| match topology.coordinates[c].source {
+        Source::Unknown { block: b, column } if b == block => Some((column, x)),
+        _ => None,
+    })
+}
+
 /// Sorts links by the stage at which their child's pose is known, and renumbers what refers to them.
 fn order_links(topology: &mut Topology, blocks: usize) {
-    let mut stage_of_body = std::collections::BTreeMap::new();
+    let mut stage_of_body = BTreeMap::new();
     for k in 0..topology.links.len() {
         let link = &topology.links[k];
         let own = link

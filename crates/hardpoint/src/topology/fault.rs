@@ -130,11 +130,13 @@ impl TopologyFault {
     }
 }
 
-/// The fault of motions left free, each given as a speed per coordinate.
-pub(super) fn under_driven(model: &Model, topology: &Topology, free: &[Vec<f64>]) -> TopologyFault {
-    let moving: Vec<usize> = (0..topology.coordinates.len())
-        .filter(|&c| free.iter().any(|v| v[c].abs() > 1e-6))
-        .map(|c| topology.coordinates[c].link)
+/// The fault of motions left free, each given as coordinates with their speeds.
+pub(super) fn under_driven(model: &Model, topology: &Topology, free: &[Vec<(usize, f64)>]) -> TopologyFault {
+    let moving: Vec<usize> = free
+        .iter()
+        .flatten()
+        .filter(|(_, x)| x.abs() > 1e-6)
+        .map(|&(c, _)| topology.coordinates[c].link)
         .collect();
     let mut joints: Vec<JointId> = moving.iter().filter_map(|&k| topology.links[k].joint).collect();
     let mut bodies: Vec<BodyId> = moving.iter().map(|&k| topology.links[k].child).collect();
@@ -145,7 +147,7 @@ pub(super) fn under_driven(model: &Model, topology: &Topology, free: &[Vec<f64>]
     if topology.formulation == Formulation::Absolute {
         // No joint carries a coordinate there: name those of the moving bodies.
         joints = (0..model.joints.len())
-            .filter(|&j| model.joints[j].bodies.iter().any(|b| bodies.contains(b)))
+            .filter(|&j| model.joints[j].bodies.iter().any(|b| bodies.binary_search(b).is_ok()))
             .map(JointId)
             .collect();
     }
@@ -173,8 +175,11 @@ pub(super) fn contradicted(
         drivers.extend((0..fails.len()).filter(|&d| fails[d] != 0.0).map(DriverId));
         drivers.extend(closure.driver);
         joints.push(closure.joint);
-        bodies.extend(closure.links.iter().map(|(k, _)| topology.links[*k].child));
+        let around = |c: &Closure| c.links.iter().map(|(k, _)| topology.links[*k].child).collect::<Vec<_>>();
+        bodies.extend(around(closure));
         if let Some(block) = closure.block {
+            bodies
+                .extend(topology.blocks[block].closures.iter().flat_map(|&c| around(&topology.closures[c])));
             bodies.extend(topology.links[topology.blocks[block].links.clone()].iter().map(|l| l.child));
         }
         joint_names.push(topology.row_name(model, *r));

@@ -1,8 +1,10 @@
 //! Degrees of freedom, and whether the drivers agree with the constraints, at the design configuration.
 
-use super::blocks::{RANK_TOLERANCE, design_jacobian};
+use std::collections::BTreeMap;
+
+use super::blocks::{RANK_TOLERANCE, SparseRow, columns_in_block, design_jacobian};
 use super::*;
-use crate::space::{Elimination, FullPivot};
+use crate::space::{Factors, FullPivot, LARGEST_DENSE};
 
 /// Counts the degrees of freedom; every unknown is already known to be determined.
 ///
@@ -12,59 +14,44 @@ use crate::space::{Elimination, FullPivot};
 pub(super) fn examine(model: &Model, topology: &mut Topology) -> Result<(), TopologyFault> {
     let jacobian = design_jacobian(model, topology);
     let drivers = model.drivers.len();
-    // speeds[c][d]: speed of coordinate c per unit speed of driver d, lengths in units of the size.
-    let mut speeds = vec![vec![0.0; drivers]; topology.coordinates.len()];
+    // Per coordinate: its speed per unit speed of the drivers that move it, lengths in units of the size.
+    let mut speeds: Vec<Vec<(usize, f64)>> = vec![Vec::new(); topology.coordinates.len()];
     for (c, coordinate) in topology.coordinates.iter().enumerate() {
         if let Source::Driven(d) = coordinate.source {
-            speeds[c][d.0] = 1.0;
+            speeds[c].push((d.0, 1.0));
         }
     }
-    // Unit speed of a driven length is one size per second, so the scaled demand is 1 for every driver.
-    let demand = |row: &RowPlace, d: usize| {
-        let driven = topology.closures[row.closure].driver == Some(DriverId(d));
-        f64::from(u8::from(driven))
-    };
     for (b, block) in topology.blocks.iter().enumerate() {
-        let mut factors = Elimination::new(block.unknowns.len(), 0.0);
-        for (k, &r) in block.selected.iter().enumerate() {
-            factors.row_mut(k).fill(0.0);
-            for &(c, x) in &jacobian[r] {
-                if let Source::Unknown { block, column } = topology.coordinates[c].source
-                    && block == b
-                {
-                    factors.row_mut(k)[column] += x;
-                }
-            }
+        let row = |k: usize| columns_in_block(topology, &jacobian[block.selected[k]], b);
+        let columns = |k: usize| row(k).map(|(column, _)| column).collect();
+        let mut factors = Factors::new(block.unknowns.len(), columns, LARGEST_DENSE, 0.0);
+        for k in 0..block.selected.len() {
+            factors.set_row(k, row(k), 0.0);
         }
         factors.factor();
-        for d in 0..drivers {
-            let mut rhs: Vec<f64> = block
-                .selected
-                .iter()
-                .map(|&r| {
-                    let known: f64 = jacobian[r].iter().map(|&(c, x)| x * speeds[c][d]).sum();
-                    demand(&topology.rows[r], d) - known
-                })
-                .collect();
+        // Per driver that acts on the block: what its rows still lack.
+        let mut lacking: BTreeMap<usize, Vec<f64>> = BTreeMap::new();
+        for (k, &r) in block.selected.iter().enumerate() {
+            for (d, [sum, _, demand]) in row_rates(topology, &jacobian, &speeds, r) {
+                lacking.entry(d).or_insert_with(|| vec![0.0; block.selected.len()])[k] = demand - sum;
+            }
+        }
+        for (d, mut rhs) in lacking {
             factors.solve(&mut rhs);
-            for (column, &c) in block.unknowns.iter().enumerate() {
-                speeds[c][d] = rhs[column];
+            for (column, &c) in block.unknowns.iter().enumerate().filter(|(column, _)| rhs[*column] != 0.0) {
+                speeds[c].push((d, rhs[column]));
             }
         }
     }
     // A contradiction is a left-out row that fails under some driver's motion; by how much, per driver.
     let mut contradictions: Vec<(usize, Vec<f64>)> = Vec::new();
-    for (r, row) in topology.rows.iter().enumerate().filter(|(_, r)| !r.selected && !r.is_term) {
-        let fails: Vec<f64> = (0..drivers)
-            .map(|d| {
-                let sum: f64 = jacobian[r].iter().map(|&(c, x)| x * speeds[c][d]).sum();
-                let scale =
-                    1.0 + jacobian[r].iter().map(|&(c, x)| (x * speeds[c][d]).abs()).fold(0.0, f64::max);
-                let failure = (sum - demand(row, d)) / scale;
-                if failure.abs() > RANK_TOLERANCE.sqrt() { failure } else { 0.0 }
-            })
-            .collect();
-        if fails.iter().any(|f| *f != 0.0) {
+    for (r, _) in topology.rows.iter().enumerate().filter(|(_, r)| !r.selected && !r.is_term) {
+        let rates = row_rates(topology, &jacobian, &speeds, r).into_iter();
+        let failures = rates.map(|(d, [sum, largest, demand])| (d, (sum - demand) / (1.0 + largest)));
+        let failures: Vec<(usize, f64)> = failures.filter(|(_, f)| f.abs() > RANK_TOLERANCE.sqrt()).collect();
+        if !failures.is_empty() {
+            let mut fails = vec![0.0; drivers];
+            failures.into_iter().for_each(|(d, f)| fails[d] = f);
             contradictions.push((r, fails));
         }
     }
@@ -76,4 +63,26 @@ pub(super) fn examine(model: &Model, topology: &mut Topology) -> Result<(), Topo
     } else {
         Err(fault::contradicted(model, topology, &contradictions))
     }
+}
+
+/// Per driver that moves what a row constrains: the rate of the row, the largest of its terms, and the rate that
+/// the driver demands of it. Unit speed of a driven length is one size per second, so that is 1 for every driver.
+fn row_rates(
+    topology: &Topology,
+    jacobian: &[SparseRow],
+    speeds: &[Vec<(usize, f64)>],
+    r: usize,
+) -> BTreeMap<usize, [f64; 3]> {
+    let mut rates: BTreeMap<usize, [f64; 3]> = BTreeMap::new();
+    for &(c, x) in &jacobian[r] {
+        for &(d, speed) in &speeds[c] {
+            let [sum, largest, _] = rates.entry(d).or_default();
+            *sum += x * speed;
+            *largest = largest.max((x * speed).abs());
+        }
+    }
+    if let Some(d) = topology.closures[topology.rows[r].closure].driver {
+        rates.entry(d.0).or_default()[2] = 1.0;
+    }
+    rates
 }

@@ -7,6 +7,7 @@
 
 mod blocks;
 mod fault;
+mod matching;
 mod mobility;
 mod redundancy;
 mod tree;
@@ -168,6 +169,8 @@ pub struct RowPlace {
     pub selected: bool,
     /// The further terms of a coupler, which this row is the first of: their rows, and their factors.
     pub terms: Vec<(usize, f64)>,
+    /// Of a coupler: per column of its block, the rows of the terms that stand there, the coordinate, and the factor.
+    pub columns: Vec<(usize, Vec<(usize, usize, f64)>)>,
     /// Whether it is a further term of a coupler, and no constraint by itself.
     pub is_term: bool,
 }
@@ -240,10 +243,10 @@ impl Topology {
         }
     }
 
-    /// Solves a block with these independent rows from now on.
+    /// Solves a block with these independent rows, in ascending order, from now on.
     pub(crate) fn select(&mut self, block: usize, selected: Vec<usize>) {
         for r in self.rows_of_block(block) {
-            self.rows[r].selected = selected.contains(&r);
+            self.rows[r].selected = selected.binary_search(&r).is_ok();
         }
         self.blocks[block].selected = selected;
     }

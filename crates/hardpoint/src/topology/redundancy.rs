@@ -1,5 +1,7 @@
 //! Which constraints say the same: for every redundant one, those that imply it.
 
+use std::collections::BTreeMap;
+
 use super::blocks::{SparseRow, design_jacobian};
 use super::*;
 use crate::space::Elimination;
@@ -37,15 +39,15 @@ impl Topology {
         jacobian: &[SparseRow],
         factors: &mut [Option<Elimination<f64>>],
     ) -> Vec<usize> {
-        let mut left = vec![0.0; self.coordinates.len()];
-        for &(c, x) in &jacobian[row] {
-            left[c] += x;
-        }
+        let mut left: BTreeMap<usize, f64> = jacobian[row].iter().copied().collect();
         let mut implied_by = Vec::new();
-        for (b, block) in self.blocks.iter().enumerate().rev() {
-            if block.unknowns.iter().all(|&c| left[c].abs() <= PART) {
-                continue;
-            }
+        loop {
+            let block_of = |(c, x): (&usize, &f64)| match self.coordinates[*c].source {
+                Source::Unknown { block, .. } if x.abs() > PART => Some(block),
+                _ => None,
+            };
+            let Some(b) = left.iter().filter_map(block_of).max() else { break };
+            let block = &self.blocks[b];
             let n = block.unknowns.len();
             if n > MOST_UNKNOWNS {
                 return Vec::new();
@@ -68,13 +70,18 @@ impl Topology {
                 transposed.factor();
                 transposed
             });
-            let mut parts: Vec<f64> = block.unknowns.iter().map(|&c| left[c]).collect();
+            let mut parts: Vec<f64> =
+                block.unknowns.iter().map(|c| left.get(c).copied().unwrap_or(0.0)).collect();
             transposed.solve(&mut parts);
             for (k, &r) in block.selected.iter().enumerate().filter(|(k, _)| parts[*k].abs() > PART) {
                 implied_by.push(r);
                 for &(c, x) in &jacobian[r] {
-                    left[c] -= parts[k] * x;
+                    *left.entry(c).or_insert(0.0) -= parts[k] * x;
                 }
+            }
+            // What is left there is round-off.
+            for c in &block.unknowns {
+                left.remove(c);
             }
         }
         implied_by.sort_unstable();

@@ -8,6 +8,9 @@ use super::*;
 /// Cost of a joint in the tree: a body without any tree joint has six unknowns, so six is never chosen.
 const ASKED_CUT: usize = 6;
 
+/// Per joint: its drivers, and the freedom of the joint that each prescribes.
+type DriversOf = Vec<Vec<(DriverId, Option<usize>)>>;
+
 /// Chooses the tree and lists links, coordinates and closures; blocks come later.
 pub(super) fn grow(model: &Model, formulation: Formulation) -> Topology {
     let mut roles: Vec<Role> = model
@@ -36,7 +39,12 @@ pub(super) fn grow(model: &Model, formulation: Formulation) -> Topology {
     // Prim's algorithm from ground: the joint with the fewest unknowns first, and among equals the one
     // nearest to ground, then the first in the file. Shallow trees keep loops small and independent.
     let mut depth: Vec<Option<usize>> = vec![None; model.bodies.len()];
-    let mut reachable = Reachable::new(model, formulation);
+    let mut drivers_of: DriversOf = vec![Vec::new(); model.joints.len()];
+    for (k, d) in model.drivers.iter().enumerate() {
+        drivers_of[d.joint.0].push((DriverId(k), model.driven(d).freedom));
+    }
+    let mut reachable = Reachable::new(model, &drivers_of, formulation);
+    let mut first_orphan = 0;
     reachable.place(&mut depth, crate::model::GROUND, 0);
     loop {
         match reachable.next(&depth) {
@@ -44,23 +52,28 @@ pub(super) fn grow(model: &Model, formulation: Formulation) -> Topology {
                 let bodies = model.joints[joint].bodies;
                 let (parent, child) = (bodies[parent_end], bodies[1 - parent_end]);
                 roles[joint] = Role::Tree { child, unknowns };
-                add_joint_link(model, &mut topology, JointId(joint), parent, child, parent_end);
+                let drivers = &drivers_of[joint];
+                add_joint_link(model, drivers, &mut topology, JointId(joint), parent, child, parent_end);
                 reachable.place(&mut depth, child, parent_depth + 1);
             }
             None => {
-                let Some(orphan) = depth.iter().position(Option::is_none).map(BodyId) else { break };
+                let orphan = depth[first_orphan..].iter().position(Option::is_none);
+                let Some(orphan) = orphan.map(|k| BodyId(first_orphan + k)) else { break };
+                first_orphan = orphan.0 + 1;
                 add_free_link(&mut topology, orphan);
                 reachable.place(&mut depth, orphan, 1);
             }
         }
     }
-    let mut link_of = vec![None; model.bodies.len()];
+    // Ground has no link, and depth 0.
+    let mut way = vec![Way::default(); model.bodies.len()];
     for (k, link) in topology.links.iter().enumerate() {
-        link_of[link.child.0] = Some(k);
+        let depth = depth[link.child.0].expect("every body is placed by now");
+        way[link.child.0] = Way { link: k, depth };
     }
-    let mut add = |joint: usize, driver: Option<usize>, coupler: Option<usize>, rows: Vec<Row>| {
-        let owner = Owner { joint: JointId(joint), driver: driver.map(DriverId), coupler };
-        add_closure(&mut topology, &link_of, owner, model.joints[joint].bodies, rows);
+    let mut add = |joint: usize, driver: Option<DriverId>, coupler: Option<usize>, rows: Vec<Row>| {
+        let owner = Owner { joint: JointId(joint), driver, coupler };
+        add_closure(&mut topology, &way, owner, model.joints[joint].bodies, rows);
     };
     for (k, joint) in model.joints.iter().enumerate() {
         let cut = matches!(roles[k], Role::Cut(_));
@@ -68,10 +81,8 @@ pub(super) fn grow(model: &Model, formulation: Formulation) -> Topology {
         if !rows.is_empty() {
             add(k, None, None, rows.to_vec());
         }
-        for (d, driver) in model.drivers.iter().enumerate().filter(|(_, d)| d.joint.0 == k) {
-            if cut {
-                add(k, Some(d), None, vec![model.driven(driver).row]);
-            }
+        for &(d, _) in drivers_of[k].iter().filter(|_| cut) {
+            add(k, Some(d), None, vec![model.driven(&model.drivers[d.0]).row]);
         }
     }
     for (c, coupler) in model.couplers.iter().enumerate() {
@@ -114,12 +125,12 @@ struct Reachable<'m> {
 }
 
 impl<'m> Reachable<'m> {
-    fn new(model: &'m Model, formulation: Formulation) -> Self {
+    fn new(model: &'m Model, drivers_of: &DriversOf, formulation: Formulation) -> Self {
         let mut joints_of = vec![Vec::new(); model.bodies.len()];
         if formulation == Formulation::Relative {
             for (k, j) in model.joints.iter().enumerate() {
                 let Some(freedoms) = j.kind.freedom_count() else { continue };
-                let driven = driven_coordinates(model, JointId(k)).count();
+                let driven = drivers_of[k].iter().filter(|d| d.1.is_some()).count();
                 let unknowns = if j.cut { ASKED_CUT } else { freedoms - driven };
                 if unknowns < ASKED_CUT {
                     for (end, body) in j.bodies.iter().enumerate() {
@@ -150,16 +161,9 @@ impl<'m> Reachable<'m> {
     }
 }
 
-/// Drivers of a joint, and the freedom that each prescribes.
-fn driven_coordinates(model: &Model, joint: JointId) -> impl Iterator<Item = (DriverId, usize)> + '_ {
-    model.drivers.iter().enumerate().filter(move |(_, d)| d.joint == joint).filter_map(|(k, d)| {
-        let freedom = model.driven(d).freedom?;
-        Some((DriverId(k), freedom))
-    })
-}
-
 fn add_joint_link(
     model: &Model,
+    drivers: &[(DriverId, Option<usize>)],
     topology: &mut Topology,
     joint: JointId,
     parent: BodyId,
@@ -174,7 +178,7 @@ fn add_joint_link(
     let steps: Vec<(Freedom, Option<DriverId>)> = order
         .into_iter()
         .map(|k| {
-            let driver = driven_coordinates(model, joint).find(|(_, f)| *f == k).map(|(d, _)| d);
+            let driver = drivers.iter().find(|(_, f)| *f == Some(k)).map(|(d, _)| *d);
             (freedoms[k], driver)
         })
         .collect();
@@ -218,9 +222,16 @@ struct Owner {
     coupler: Option<usize>,
 }
 
+/// From a body towards ground: the link that places it, and how many links there are to ground.
+#[derive(Clone, Copy, Default)]
+struct Way {
+    link: usize,
+    depth: usize,
+}
+
 fn add_closure(
     topology: &mut Topology,
-    link_of: &[Option<usize>],
+    way: &[Way],
     Owner { joint, driver, coupler }: Owner,
     bodies: [BodyId; 2],
     rows: Vec<Row>,
@@ -228,9 +239,16 @@ fn add_closure(
     let first_row = topology.rows.len();
     let closure = topology.closures.len();
     for index in 0..rows.len() {
-        topology.rows.push(RowPlace { closure, index, selected: false, terms: Vec::new(), is_term: false });
+        topology.rows.push(RowPlace {
+            closure,
+            index,
+            selected: false,
+            terms: Vec::new(),
+            columns: Vec::new(),
+            is_term: false,
+        });
     }
-    let links = loop_links(topology, link_of, bodies);
+    let links = loop_links(topology, way, bodies);
     let follows = rows.contains(&Row::Contact);
     let contact = follows.then(|| topology.closures.iter().filter(|c| c.contact.is_some()).count());
     topology.closures.push(Closure {
@@ -248,23 +266,21 @@ fn add_closure(
 }
 
 /// Links from j (+1) and from i (-1) down to where their ways to ground meet.
-fn loop_links(topology: &Topology, link_of: &[Option<usize>], [i, j]: [BodyId; 2]) -> Vec<(usize, f64)> {
-    let to_ground = |body: BodyId| {
-        let mut way = Vec::new();
-        let mut at = body;
-        while let Some(k) = link_of[at.0] {
-            way.push(k);
-            at = topology.links[k].parent;
+///
+/// Neither way is followed further than that: in a chain of loops, the last one is far from ground.
+fn loop_links(topology: &Topology, way: &[Way], [mut i, mut j]: [BodyId; 2]) -> Vec<(usize, f64)> {
+    let (mut from_i, mut from_j) = (Vec::new(), Vec::new());
+    while i != j {
+        let (Way { link: a, depth: depth_i }, Way { link: b, depth: depth_j }) = (way[i.0], way[j.0]);
+        if depth_i >= depth_j {
+            from_i.push((a, -1.0));
+            i = topology.links[a].parent;
         }
-        way
-    };
-    let (mut a, mut b) = (to_ground(i), to_ground(j));
-    while let (Some(x), Some(y)) = (a.last(), b.last()) {
-        if x != y {
-            break;
+        if depth_j >= depth_i {
+            from_j.push((b, 1.0));
+            j = topology.links[b].parent;
         }
-        a.pop();
-        b.pop();
     }
-    b.into_iter().map(|k| (k, 1.0)).chain(a.into_iter().map(|k| (k, -1.0))).collect()
+    from_j.extend(from_i);
+    from_j
 }

@@ -75,3 +75,194 @@ fn absolute_coordinates_of_a_chain_give_the_same() {
         assert!(apart(a.r, b.r) < 1e-12 && apart(a.a, b.a) < 1e-10);
     }
 }
+
+/// A strip of n nodes, each tied by rods to the two before, that turns about node 0 (on ground) as one rigid
+/// body while a leg of length 1 pushes at its last node: none of the unknowns can be found before the others.
+fn truss(n: usize) -> (Draft, impl Fn(usize) -> [f64; 2]) {
+    let at = |k: usize| [0.5 * k as f64, 0.8 * (k % 2) as f64];
+    let place = move |k: usize| [at(k)[0], at(k)[1], 0.0];
+    let node = |k: usize| if k == 0 { "ground".to_owned() } else { format!("node{k}") };
+    let (mut bodies, mut joints) = (Vec::new(), Vec::new());
+    for k in 1..n {
+        let (slider, this) = (format!("slider{k}"), node(k));
+        bodies.extend([body(&slider), body(&this)]);
+        let (x, y) = (Some([1.0, 0.0, 0.0]), Some([0.0, 1.0, 0.0]));
+        joints.push(joint(&format!("x{k}"), "translational", ["ground", &slider], &[place(k)], x));
+        joints.push(joint(&format!("y{k}"), "translational", [&slider, &this], &[place(k)], y));
+        for other in k.saturating_sub(2)..k {
+            let ends = [place(other), place(k)];
+            joints.push(joint(&format!("rod{other}_{k}"), "distance", [&node(other), &this], &ends, None));
+        }
+    }
+    let tip = place(n - 1);
+    let foot = [tip[0], tip[1] - 1.0, 0.0];
+    joints.push(joint("push", "leg", ["ground", &node(n - 1)], &[foot, tip], None));
+    let draft = Draft {
+        name: "truss".into(),
+        bodies,
+        joints,
+        drivers: vec![driver("motor", "push", "0.1*sin(2*pi*t)")],
+        design: [("tip", n - 1, 1.0), ("middle", n / 2, -1.0)].map(|(name, k, y)| moves(name, k, y)).into(),
+        times: times(0.3, 3),
+        ..Draft::default()
+    };
+    (with_hardpoints(draft, n, &place), at)
+}
+
+/// The variable that moves node k up by y.
+fn moves(name: &str, k: usize, y: f64) -> VariableDraft {
+    let velocity = Vec3::new(0.0, y, 0.0);
+    let changes = vec![ChangeDraft::Move { hardpoint: format!("p{k}"), velocity }];
+    VariableDraft { name: name.into(), changes, fixed_length: false }
+}
+
+/// The same with the places of nodes as hardpoints `p0`, `p1`, ..., so that variables may move them.
+fn with_hardpoints(mut draft: Draft, n: usize, place: &dyn Fn(usize) -> [f64; 3]) -> Draft {
+    draft.hardpoints =
+        (0..n).map(|k| HardpointDraft { name: format!("p{k}"), position: place(k).into() }).collect();
+    for at in draft.joints.iter_mut().flat_map(|j| &mut j.at) {
+        let Place::At(p) = *at else { continue };
+        if let Some(k) = (0..n).find(|&k| Vec3::from(place(k)) == p) {
+            *at = Place::Hardpoint(format!("p{k}"));
+        }
+    }
+    draft
+}
+
+/// The angle by which the truss has turned while its leg is longer by f: the tip is on a circle about node 0, and
+/// 1 + f away from the foot of the leg.
+fn turned(tip: [f64; 2], f: f64) -> f64 {
+    let (radius, foot) = (tip[0].hypot(tip[1]), [tip[0], tip[1] - 1.0]);
+    let base = foot[0].hypot(foot[1]);
+    let between = ((radius * radius + base * base - (1.0 + f).powi(2)) / (2.0 * radius * base)).acos();
+    foot[1].atan2(foot[0]) + between - tip[1].atan2(tip[0])
+}
+
+#[test]
+fn a_coupled_truss_of_any_size_turns_as_one_body() {
+    // 18 unknowns are factored densely, 198 sparsely.
+    for n in [10, 100] {
+        let (draft, at) = truss(n);
+        let model = Model::from_draft(&draft).unwrap();
+        let analysis = Analysis::new(&model).unwrap();
+        let blocks = &analysis.topology().blocks;
+        assert_eq!(blocks.iter().map(|b| b.unknowns.len()).collect::<Vec<_>>(), [2 * (n - 1)]);
+        let solution = analysis.run();
+        assert!(solution.stop.is_none(), "{:?}", solution.stop);
+        for (step, &t) in solution.motion.times.iter().enumerate() {
+            let (s, c) = turned(at(n - 1), 0.1 * (2.0 * std::f64::consts::PI * t).sin()).sin_cos();
+            for k in 1..n {
+                let state = solution.motion.at(step)[2 * k];
+                let moved = state.r - model.bodies[2 * k].frame.r;
+                let [x, y] = at(k);
+                let want = Vec3::new(c * x - s * y - x, s * x + c * y - y, 0.0);
+                assert!(apart(moved, want) < 1e-10, "{n} nodes, node {k} at {t}: {moved:?}, {want:?}");
+            }
+        }
+        for difference in
+            hardpoint::study::central_differences(&analysis, &[(VariableId(0), 1e-4), (VariableId(1), 1e-4)])
+        {
+            let difference = difference.unwrap();
+            let errors = hardpoint::study::compare_with_difference(&analysis, &solution, &difference);
+            let worst = errors.iter().max_by(|a, b| a.error.total_cmp(&b.error)).unwrap();
+            assert!(worst.error < 1e-5, "{n} nodes, variable {}: {worst:?}", difference.variable.0);
+        }
+    }
+}
+
+#[test]
+fn ten_thousand_loops_are_planned_in_proportion_and_move_like_one() {
+    let plan = |n: usize| {
+        let mut draft = chain(n);
+        draft.times = times(0.1, 2);
+        let model = Model::from_draft(&draft).unwrap();
+        let analysis = Analysis::new(&model).unwrap();
+        let t = analysis.topology();
+        let entries: usize = t.closures.iter().map(|c| c.entries.len() + c.links.len()).sum();
+        let largest = t.blocks.iter().map(|b| b.unknowns.len()).max().unwrap();
+        let counts = [t.blocks.len(), t.unknowns(), t.rows.len(), t.redundant().count(), entries];
+        let motion = analysis.bodies_only().run_motion();
+        assert!(motion.stop.is_none());
+        // What is one bar's motion is every bar's; the couplers stay level.
+        let states = motion.motion.at(2);
+        (counts, largest, [states[1], states[n], states[1 + n]].map(|s| (s.omega, s.alpha)))
+    };
+    let (one, two, many) = (plan(1), plan(2), plan(10_000));
+    assert_eq!(many.1, one.1, "the largest block");
+    for k in 0..5 {
+        let per_loop = two.0[k] - one.0[k];
+        assert_eq!(many.0[k], one.0[k] + 9_999 * per_loop, "count {k}");
+    }
+    for bar in many.2 {
+        assert!(
+            apart(bar.0, one.2[0].0) < 1e-9 && apart(bar.1, one.2[0].1) < 1e-7,
+            "{bar:?}, {:?}",
+            one.2[0]
+        );
+    }
+}
+
+/// n x m scissors of unit cells, pinned to each other at their corners; the first one opens.
+fn scissors(n: usize, m: usize) -> Draft {
+    let z = Some([0.0, 0.0, 1.0]);
+    let (mut bodies, mut joints) = (Vec::new(), Vec::new());
+    let mut at_corner: std::collections::BTreeMap<(usize, usize), Vec<String>> = Default::default();
+    for (i, j) in (0..n).flat_map(|i| (0..m).map(move |j| (i, j))) {
+        let (up, down) = (format!("up{i}_{j}"), format!("down{i}_{j}"));
+        for (corner, bar) in [((i, j), &up), ((i + 1, j + 1), &up), ((i, j + 1), &down), ((i + 1, j), &down)]
+        {
+            at_corner.entry(corner).or_default().push(bar.clone());
+        }
+        let centre = [i as f64 + 0.5, j as f64 + 0.5, 0.0];
+        joints.push(joint(&format!("cross{i}_{j}"), "revolute", [&up, &down], &[centre], z));
+        bodies.extend([body(&up), body(&down)]);
+    }
+    joints.push(joint("base", "fixed", ["ground", "up0_0"], &[[0.0; 3]], None));
+    for ((i, j), bars) in at_corner {
+        for (k, bar) in bars.iter().enumerate().skip(1) {
+            let at = [i as f64, j as f64, 0.0];
+            joints.push(joint(&format!("pin{i}_{j}_{k}"), "revolute", [&bars[0], bar], &[at], z));
+        }
+    }
+    Draft {
+        name: "scissors".into(),
+        bodies,
+        joints,
+        drivers: vec![driver("motor", "cross0_0", "0.3*sin(2*pi*t)")],
+        times: times(0.3, 3),
+        ..Draft::default()
+    }
+}
+
+#[test]
+fn a_grid_of_scissors_opens_as_lazy_tongs_do() {
+    let n = 12;
+    let model = Model::from_draft(&scissors(n, n)).unwrap();
+    let solution = Analysis::new(&model).unwrap().run();
+    assert!(solution.stop.is_none(), "{:?}", solution.stop);
+    for (step, &t) in solution.motion.times.iter().enumerate() {
+        // The rising bars are parallel to the first, which is fixed; the falling ones are all turned by f. The
+        // crossing of unit (i, j) is (i + j + 1) halves of the one and (i - j) halves of the other from the corner.
+        let f = 0.3 * (2.0 * std::f64::consts::PI * t).sin();
+        let (s, c) = f.sin_cos();
+        for i in 0..n {
+            for j in 0..n {
+                let (rise, fall) = (0.5 * (i + j + 1) as f64, 0.5 * (i as f64 - j as f64));
+                let centre = Vec3::new(rise + fall * (c + s), rise + fall * (s - c), 0.0);
+                let body = 1 + 2 * (i * n + j);
+                let (up, down) = (solution.motion.at(step)[body], solution.motion.at(step)[body + 1]);
+                assert!(apart(up.rotation.cols[0], Vec3::new(1.0, 0.0, 0.0)) < 1e-10, "up {i} {j} at {t}");
+                assert!(apart(down.rotation.cols[0], Vec3::new(c, s, 0.0)) < 1e-10, "down {i} {j} at {t}");
+                for state in [up, down].iter().zip(body..) {
+                    let offset =
+                        Vec3::new(i as f64 + 0.5, j as f64 + 0.5, 0.0) - model.bodies[state.1].frame.r;
+                    let crossing = state.0.r + state.0.rotation * offset;
+                    assert!(
+                        apart(crossing, centre) < 1e-10,
+                        "crossing {i} {j} at {t}: {crossing:?}, {centre:?}"
+                    );
+                }
+            }
+        }
+    }
+}

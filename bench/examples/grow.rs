@@ -1,0 +1,40 @@
+//! What a generated mechanism costs, stage by stage: `grow chain|truss|scissors SIZE STEPS`.
+
+use std::time::Instant;
+
+use hardpoint::Analysis;
+use hardpoint::model::Model;
+
+fn main() {
+    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    let [kind, size, steps] = arguments.as_slice() else {
+        panic!("usage: grow chain|truss|scissors SIZE STEPS");
+    };
+    let (size, steps) = (size.parse().expect("a size"), steps.parse().expect("a number of steps"));
+    let draft = match kind.as_str() {
+        "chain" => hardpoint_bench::chain(size, steps),
+        "truss" => hardpoint_bench::truss(size, steps),
+        _ => hardpoint_bench::scissors(size, size, steps),
+    };
+    let before = Instant::now();
+    let model = Model::from_draft(&draft).expect("a valid model");
+    let checked = before.elapsed();
+    let before = Instant::now();
+    let analysis = Analysis::new(&model).unwrap_or_else(|e| panic!("{e}")).bodies_only();
+    let planned = before.elapsed();
+    let topology = analysis.topology();
+    let largest = topology.blocks.iter().map(|b| b.unknowns.len()).max().unwrap_or(0);
+    println!(
+        "{} blocks, {} unknowns, largest {largest}, {} rows, {} of them redundant",
+        topology.blocks.len(),
+        topology.unknowns(),
+        topology.rows.len(),
+        topology.redundant().count()
+    );
+    let before = Instant::now();
+    let solution = analysis.run_motion();
+    let ran = before.elapsed();
+    let per_step = 1e6 * ran.as_secs_f64() / solution.motion.len().max(1) as f64;
+    println!("checked {checked:.1?}, planned {planned:.1?}, ran {ran:.1?}: {per_step:.1} us per step");
+    println!("{:?} {:?}", solution.motion.effort, solution.stop);
+}

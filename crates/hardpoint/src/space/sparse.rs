@@ -1,0 +1,315 @@
+//! Sparse factors of a large block, one numeric factorisation per lane, by faer.
+
+use faer::dyn_stack::{MemBuffer, MemStack, StackReq};
+use faer::perm::PermRef;
+use faer::sparse::linalg::SupernodalThreshold;
+use faer::sparse::linalg::lu::simplicial::{
+    SimplicialLu, factorize_simplicial_numeric_lu, factorize_simplicial_numeric_lu_scratch,
+    solve_transpose_in_place_scratch,
+};
+use faer::sparse::linalg::lu::{LuSymbolicParams, factorize_symbolic_lu};
+use faer::sparse::{SparseColMatRef, SymbolicSparseColMat};
+use faer::{Conj, MatMut, Par};
+
+use super::Real;
+use super::matrix::Factored;
+
+/// LU factors of a sparse square matrix whose pattern does not change.
+///
+/// Rows are what the caller fills, and columns what faer wants, so the transpose is factored and solved with.
+/// The order that keeps fill small is worked out once; every factorisation pivots anew for stability. After the
+/// first, factoring and solving allocate nothing unless other pivots bring more fill.
+#[derive(Clone, Debug)]
+pub(crate) struct SparseLu<T> {
+    /// Of the transpose: its columns are the rows of the matrix.
+    pattern: SymbolicSparseColMat<usize>,
+    /// Row after row, in the order of the pattern.
+    values: Vec<T>,
+    /// Row after row, in the order in which they are filled: where an entry stands in `values`.
+    place: Vec<usize>,
+    /// Order of elimination, and its inverse.
+    order: [Vec<usize>; 2],
+    /// Whether that order is an odd permutation.
+    odd: bool,
+    lanes: Vec<Lane>,
+    /// Whether all lanes have the factors of the first.
+    shared: bool,
+    /// The values of one lane, and right-hand sides of all lanes.
+    entries: Vec<f64>,
+    rhs: Vec<f64>,
+    /// Scratch of [`is_odd`].
+    seen: Vec<bool>,
+    memory: Memory,
+}
+
+#[derive(Clone, Debug, Default)]
+struct Lane {
+    lu: SimplicialLu<usize, f64>,
+    pivots: [Vec<usize>; 2],
+}
+
+/// What faer works in.
+struct Memory {
+    need: StackReq,
+    buffer: MemBuffer,
+}
+
+impl Clone for Memory {
+    fn clone(&self) -> Self {
+        Self { need: self.need, buffer: MemBuffer::new(self.need) }
+    }
+}
+
+impl std::fmt::Debug for Memory {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "{:?}", self.need)
+    }
+}
+
+impl<T: Real> SparseLu<T> {
+    /// Factors of the n x n matrix that may have entries in these columns of its rows.
+    pub fn new(rows: &[Vec<usize>], witness: T) -> Self {
+        let n = rows.len();
+        // faer 0.24 orders unsorted patterns wrongly (it panics), so entries get their sorted places here.
+        let (mut starts, mut columns, mut place) = (vec![0], Vec::new(), Vec::new());
+        for row in rows {
+            let mut slots: Vec<usize> = (0..row.len()).collect();
+            slots.sort_unstable_by_key(|&slot| row[slot]);
+            place.resize(columns.len() + row.len(), 0);
+            for slot in slots {
+                place[starts[starts.len() - 1] + slot] = columns.len();
+                columns.push(row[slot]);
+            }
+            starts.push(columns.len());
+        }
+        let pattern = SymbolicSparseColMat::new_checked(n, n, starts, None, columns);
+        let params = LuSymbolicParams {
+            supernodal_flop_ratio_threshold: SupernodalThreshold::FORCE_SIMPLICIAL,
+            ..LuSymbolicParams::default()
+        };
+        let symbolic = factorize_symbolic_lu(pattern.as_ref(), params).expect("memory for the pattern");
+        let (forward, inverse) = symbolic.col_perm().arrays();
+        let order = [forward.to_vec(), inverse.to_vec()];
+        let entries = pattern.row_idx().len();
+        let need = factorize_simplicial_numeric_lu_scratch::<usize, f64>(n, n)
+            .or(solve_transpose_in_place_scratch::<usize, f64>(n, T::LANES, Par::Seq));
+        let lane = Lane { lu: SimplicialLu::new(), pivots: [vec![0; n], vec![0; n]] };
+        Self {
+            odd: is_odd(&order[0], &mut vec![false; n]),
+            seen: vec![false; n],
+            values: vec![witness.zero(); entries],
+            lanes: vec![lane; T::LANES],
+            shared: false,
+            entries: vec![0.0; entries],
+            rhs: vec![0.0; n * T::LANES],
+            memory: Memory { need, buffer: MemBuffer::new(need) },
+            pattern,
+            place,
+            order,
+        }
+    }
+
+    fn n(&self) -> usize {
+        self.order[0].len()
+    }
+
+    /// Fills row r with its entries, in the order of the columns given to [`SparseLu::new`].
+    #[inline(always)]
+    pub fn set_row(&mut self, r: usize, entries: impl Iterator<Item = T>) {
+        let starts = self.pattern.col_ptr();
+        for (&at, x) in self.place[starts[r]..starts[r + 1]].iter().zip(entries) {
+            self.values[at] = x;
+        }
+    }
+
+    /// Factors what the rows were filled with, each lane on its own.
+    #[inline(never)]
+    pub fn factor(&mut self) -> Factored {
+        self.shared = false;
+        let mut all = Factored { pivot_ratio: 1.0, positive: true };
+        for k in 0..T::LANES {
+            for (entry, x) in self.entries.iter_mut().zip(&self.values) {
+                *entry = x.lane(k);
+            }
+            let found = self.factor_lane(k);
+            if k == 0 {
+                all.positive = found.positive;
+            }
+            // Written so that a NaN ratio stays.
+            if !(found.pivot_ratio >= all.pivot_ratio) {
+                all.pivot_ratio = found.pivot_ratio;
+            }
+            if found.positive != all.positive {
+                all.pivot_ratio = 0.0;
+            }
+        }
+        all
+    }
+
+    /// Takes over a scalar matrix and factors it once for all lanes.
+    pub fn spread(&mut self, from: &SparseLu<f64>, witness: T) {
+        if self.pattern.row_idx() != from.pattern.row_idx()
+            || self.pattern.col_ptr() != from.pattern.col_ptr()
+        {
+            let rows: Vec<Vec<usize>> =
+                (0..from.n()).map(|r| from.pattern.row_idx_of_col_raw(r).to_vec()).collect();
+            *self = Self::new(&rows, witness);
+        }
+        self.entries.copy_from_slice(&from.values);
+        self.factor_lane(0);
+        self.shared = true;
+    }
+
+    /// Factors what stands in `entries`, for lane k.
+    fn factor_lane(&mut self, k: usize) -> Factored {
+        let n = self.n();
+        let Lane { lu, pivots: [forward, inverse] } = &mut self.lanes[k];
+        let factored = factorize_simplicial_numeric_lu(
+            forward,
+            inverse,
+            lu,
+            SparseColMatRef::new(self.pattern.as_ref(), &self.entries),
+            PermRef::new_checked(&self.order[0], &self.order[1], n),
+            MemStack::new(&mut self.memory.buffer),
+        );
+        if factored.is_err() {
+            return Factored { pivot_ratio: 0.0, positive: true };
+        }
+        // The determinant is that of U, up to the signs of the two permutations.
+        let (mut least, mut most) = (f64::INFINITY, 0.0_f64);
+        let mut positive = self.odd == is_odd(forward, &mut self.seen);
+        let upper = lu.u_factor_unsorted();
+        for column in 0..n {
+            let Some(pivot) = upper.val_of_col(column).last() else { continue };
+            let size = pivot.abs();
+            // Written so that a NaN pivot makes the ratio zero, never a good number.
+            if !(size > 0.0) {
+                return Factored { pivot_ratio: 0.0, positive };
+            }
+            least = least.min(size);
+            most = most.max(size);
+            positive ^= *pivot < 0.0;
+        }
+        Factored { pivot_ratio: if n == 0 { 1.0 } else { least / most }, positive }
+    }
+
+    /// Replaces the right-hand side by the solution.
+    #[inline(never)]
+    pub fn solve(&mut self, b: &mut [T]) {
+        let n = self.n();
+        for (r, x) in b[..n].iter().enumerate() {
+            for k in 0..T::LANES {
+                self.rhs[k * n + r] = x.lane(k);
+            }
+        }
+        let order = PermRef::new_checked(&self.order[0], &self.order[1], n);
+        let group = if self.shared { T::LANES } else { 1 };
+        for (k, rhs) in self.rhs.chunks_exact_mut(group * n).enumerate() {
+            let Lane { lu, pivots: [forward, inverse] } = &self.lanes[k];
+            lu.solve_transpose_in_place_with_conj(
+                PermRef::new_checked(forward, inverse, n),
+                order,
+                Conj::No,
+                MatMut::from_column_major_slice_mut(rhs, n, group),
+                Par::Seq,
+                MemStack::new(&mut self.memory.buffer),
+            );
+        }
+        for (r, x) in b[..n].iter_mut().enumerate() {
+            *x = x.like_lanes(|k| self.rhs[k * n + r]);
+        }
+    }
+}
+
+/// Whether a permutation is odd: each cycle of even length turns that over.
+fn is_odd(permutation: &[usize], seen: &mut [bool]) -> bool {
+    seen.fill(false);
+    let mut odd = false;
+    for start in 0..permutation.len() {
+        let mut at = start;
+        while !seen[at] {
+            seen[at] = true;
+            at = permutation[at];
+            // Going back to the start is no exchange.
+            odd ^= at != start;
+        }
+    }
+    odd
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::space::{Elimination, lanes};
+    use fearless_simd::{Level, dispatch};
+
+    /// Column and value of the entries of row r: a band, two far entries, and a weak diagonal.
+    fn row(r: usize, n: usize, seed: f64) -> Vec<(usize, f64)> {
+        let x = |c: usize| (1.0 + seed + (r * 7 + c * 13) as f64).sin();
+        let mut columns = vec![(r + 1) % n, r, (r + 5) % n, (r * r + 3) % n];
+        columns.sort_unstable();
+        columns.dedup();
+        columns.rotate_left(1); // rows need not be sorted
+        columns.into_iter().map(|c| (c, if c == r { 1e-3 * x(c) } else { 2.0 * x(c) })).collect()
+    }
+
+    #[test]
+    fn sparse_and_dense_factors_agree_in_solution_and_sign_of_the_determinant() {
+        for n in [1, 2, 3, 10, 41, 42, 43, 44, 120] {
+            let columns: Vec<Vec<usize>> =
+                (0..n).map(|r| row(r, n, 0.0).into_iter().map(|(c, _)| c).collect()).collect();
+            dispatch!(Level::new(), simd => {
+                let zero = lanes(simd);
+                let mut sparse = SparseLu::new(&columns, zero);
+                let mut scalar = SparseLu::new(&columns, 0.0);
+                for r in 0..n {
+                    let at = |k: usize| row(r, n, k as f64);
+                    let width = at(0).len();
+                    sparse.set_row(r, (0..width).map(|slot| zero.like_lanes(|k| at(k)[slot].1)));
+                    scalar.set_row(r, at(0).into_iter().map(|e| e.1));
+                }
+                sparse.factor();
+                let found = scalar.factor();
+                let mut b: Vec<_> = (0..n).map(|r| zero.like((r as f64).cos())).collect();
+                sparse.solve(&mut b);
+                for k in 0..8 {
+                    let mut dense = Elimination::new(n, 0.0);
+                    for r in 0..n {
+                        for (c, x) in row(r, n, k as f64) {
+                            dense.row_mut(r)[c] = x;
+                        }
+                    }
+                    let dense_found = dense.factor();
+                    let mut want: Vec<f64> = (0..n).map(|r| (r as f64).cos()).collect();
+                    dense.solve(&mut want);
+                    let scale = want.iter().fold(0.0, |m: f64, x| m.max(x.abs()));
+                    for r in 0..n {
+                        assert!((b[r].lane(k) - want[r]).abs() < 1e-9 * scale, "n {n}, lane {k}, row {r}");
+                    }
+                    if k == 0 {
+                        assert_eq!(found.positive, dense_found.positive, "n {n}");
+                        let mut shared = SparseLu::new(&columns, zero);
+                        shared.spread(&scalar, zero);
+                        let mut b: Vec<_> = (0..n).map(|r| zero.like((r as f64).cos())).collect();
+                        shared.solve(&mut b);
+                        let same = |r: usize| (0..8).all(|k| (b[r].lane(k) - want[r]).abs() < 1e-9 * scale);
+                        assert!((0..n).all(same), "n {n}, spread");
+                    }
+                }
+            });
+        }
+    }
+
+    #[test]
+    fn singular_and_not_finite_matrices_are_found_out() {
+        let columns = vec![vec![0, 1], vec![0, 1]];
+        let mut lu = SparseLu::new(&columns, 0.0);
+        for (values, good) in
+            [([1.0, 2.0, 2.0, 4.0], false), ([1.0, 2.0, 2.0, 5.0], true), ([f64::NAN; 4], false)]
+        {
+            lu.set_row(0, values[..2].iter().copied());
+            lu.set_row(1, values[2..].iter().copied());
+            assert_eq!(lu.factor().pivot_ratio > 1e-12, good, "{values:?}");
+        }
+    }
+}
