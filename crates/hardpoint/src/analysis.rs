@@ -141,7 +141,10 @@ impl<'m> Analysis<'m> {
         let mut stop = None;
         for (k, &t) in times.iter().enumerate() {
             let step = if k == 0 { stepper.start(t) } else { stepper.advance(t) };
-            if let Err(s) = step {
+            if let Err(mut s) = step {
+                if s.kind == StopKind::DoesNotAssemble {
+                    s.remains = stepper.least_gaps();
+                }
                 stop = Some(s);
                 break;
             }

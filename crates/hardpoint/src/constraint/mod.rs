@@ -34,6 +34,9 @@ pub enum Row {
     Cosine,
     /// `z_i . d` keeps its design value (paper Eq. 4.4 with a constant).
     Offset,
+    /// `y_i . d` keeps its design value, where marker i walks along a curve of its body so that it stays next to P_j: x_i
+    /// along the curve, y_i across.
+    Contact,
     /// Marker j does not turn about the line that halves the angle between z_i and z_j.
     ConstantVelocity,
 }
@@ -73,11 +76,11 @@ pub struct EndRates<T> {
 impl Row {
     /// Whether it holds what it measures at its value in the design configuration, rather than at zero.
     pub fn keeps_design_value(self) -> bool {
-        matches!(self, Self::Distance | Self::Cosine | Self::Offset)
+        matches!(self, Self::Distance | Self::Cosine | Self::Offset | Self::Contact)
     }
 
     /// What it measures: the residual against a target of zero; angles unwrapped to within half a turn of `near`.
-    #[inline(always)]
+    #[inline(never)]
     pub fn value<T: Real>(self, ends: &Ends<T>, near: T) -> T {
         match self {
             Self::Angle | Self::Heading => angle::value(ends, near),
@@ -98,6 +101,7 @@ impl Row {
             Self::Cosine => dot1::residual(2, 2, ends, target),
             Self::Dot2(a) => dot2::residual(a, ends, target),
             Self::Offset => dot2::residual(2, ends, target),
+            Self::Contact => dot2::residual(1, ends, target),
             Self::Distance => distance::residual(ends, target),
             Self::Angle => angle::residual(ends, target),
             Self::AngleOnJ => angle::residual_on_j(ends, target),
@@ -115,6 +119,7 @@ impl Row {
             Self::Cosine => dot1::wrench(2, 2, ends),
             Self::Dot2(a) => dot2::wrench(a, ends),
             Self::Offset => dot2::wrench(2, ends),
+            Self::Contact => dot2::wrench(1, ends),
             Self::Distance => distance::wrench(ends),
             Self::Angle => angle::wrench(ends),
             Self::AngleOnJ => angle::wrench_on_j(ends),
@@ -132,6 +137,7 @@ impl Row {
             Self::Cosine => dot1::wrench_rates(2, 2, ends, rates),
             Self::Dot2(a) => dot2::wrench_rates(a, ends, rates),
             Self::Offset => dot2::wrench_rates(2, ends, rates),
+            Self::Contact => dot2::wrench_rates(1, ends, rates),
             Self::Distance => distance::wrench_rates(ends, rates),
             Self::Angle => angle::wrench_rates(ends, rates),
             Self::AngleOnJ => angle::wrench_rates_on_j(ends, rates),
@@ -142,7 +148,7 @@ impl Row {
 
     /// Whether its residual is a length (else it is an angle or a cosine).
     pub fn is_length(self) -> bool {
-        matches!(self, Self::Point(_) | Self::Dot2(_) | Self::Distance | Self::Offset)
+        matches!(self, Self::Point(_) | Self::Dot2(_) | Self::Distance | Self::Offset | Self::Contact)
     }
 
     /// What it asks for, in words.
@@ -158,6 +164,7 @@ impl Row {
             Self::Heading => "angle seen along z_i".into(),
             Self::Cosine => "Dot-1: angle between z_i and z_j".into(),
             Self::Offset => "Dot-2: displacement along z_i".into(),
+            Self::Contact => "distance from the curve".into(),
             Self::ConstantVelocity => "constant velocity: no turn about the halving line".into(),
         }
     }
@@ -202,7 +209,7 @@ mod tests {
     use super::*;
 
     /// Every kind of row; a new constraint joins the battery here.
-    const BATTERY: [Row; 17] = [
+    const BATTERY: [Row; 18] = [
         Row::Point(0),
         Row::Point(1),
         Row::Point(2),
@@ -219,6 +226,7 @@ mod tests {
         Row::Heading,
         Row::Cosine,
         Row::Offset,
+        Row::Contact,
         Row::ConstantVelocity,
     ];
 

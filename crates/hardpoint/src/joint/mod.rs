@@ -18,6 +18,7 @@ mod leg;
 mod orientation;
 mod parallel;
 mod planar;
+mod point_on_curve;
 mod revolute;
 mod revolute_spherical;
 mod screw;
@@ -42,6 +43,7 @@ pub use leg::LEG;
 pub use orientation::ORIENTATION;
 pub use parallel::PARALLEL;
 pub use planar::PLANAR;
+pub use point_on_curve::POINT_ON_CURVE;
 pub use revolute::REVOLUTE;
 pub use revolute_spherical::REVOLUTE_SPHERICAL;
 pub use screw::SCREW;
@@ -70,6 +72,7 @@ pub const ALL: &[&JointType] = &[
     &ANGLE,
     &DISTANCE,
     &REVOLUTE_SPHERICAL,
+    &POINT_ON_CURVE,
     &LEG,
     &TRAVEL,
     &HEADING,

@@ -173,7 +173,7 @@ impl<'a> Descent<'a> {
             )
         } else if self.parameters[..k].contains(&name) {
             (format!("two parameters are called `{name}`"), "rename one of them")
-        } else if !(self::name, eof).parse_next(&mut LocatingSlice::new(name)).is_ok() {
+        } else if (self::name, eof).parse_next(&mut LocatingSlice::new(name)).is_err() {
             let help = "use letters, digits and `_`, and begin with a letter or `_`";
             (format!("`{}` can not be the name of a parameter", name.escape_debug()), help)
         } else {

@@ -2,7 +2,6 @@
 
 use std::fmt;
 
-use super::error::check_finite;
 use super::expression::{self, ExpressionError};
 use super::jet::TimeJet;
 use super::jumps::{Break, find_switches};
@@ -27,8 +26,9 @@ impl Formula {
     pub(super) fn parse(text: &str, parameters: &[(&str, f64)]) -> Result<Self, ExpressionError> {
         let (names, values): (Vec<&str>, Vec<f64>) = parameters.iter().copied().unzip();
         let symbolic = expression::parse(text, &names)?;
-        if let Err(error) = check_finite(parameters.iter().map(|&(name, value)| (name, value))) {
-            return Err(ExpressionError { span: 0..text.len(), message: error.message, help: None });
+        if let Some((name, value)) = parameters.iter().find(|(_, value)| !value.is_finite()) {
+            let message = format!("the parameter `{name}` must be a finite number, not {value}");
+            return Err(ExpressionError { span: 0..text.len(), message, help: None });
         }
         let program = symbolic.with_values(&values);
         let names = names.into_iter().map(str::to_owned).collect();

@@ -154,3 +154,100 @@ fn merged(mut breaks: Vec<Break>, same_time: f64) -> Vec<Break> {
     }
     merged
 }
+
+#[cfg(test)]
+mod tests {
+    use crate::law::*;
+
+    fn step(start: f64, end: f64, degree: u32) -> Law {
+        Law::smooth_step(SmoothStep { from: 0.5, to: 3.0, start, end, degree }).unwrap()
+    }
+
+    #[test]
+    fn jumps_are_found_where_they_are() {
+        let expression = |text: &str| Law::parse(text).unwrap();
+        let interrupted = vec![
+            Piece::lasting(0.3, expression("5*t")),
+            Piece::lasting(0.4, expression("abs(t - 0.1)")),
+            Piece::open_ended(Law::constant(9.0)).not_continued(),
+        ];
+        type Case = (Law, &'static [(f64, usize, f64)]);
+        let cases: [Case; 12] = [
+            (expression("if(t < 0.503, 1, 3)"), &[(0.503, 0, 2.0)]),
+            (expression("if(t <= 1, t, 2 - t)"), &[(1.0, 1, -2.0)]),
+            (expression("abs(t - 0.1)*(t - 0.1)"), &[(0.1, 2, 4.0)]),
+            (expression("min(t, 1, 3 - t)"), &[(1.0, 1, -1.0), (2.0, 1, -1.0)]),
+            (expression("step(t, 0.5, 0, 0.5001, 1)"), &[(0.5, 2, 6e8), (0.5001, 2, 6e8)]),
+            (expression("atan2(sin(t), cos(t))"), &[(std::f64::consts::PI, 0, -std::f64::consts::TAU)]),
+            (expression("max(0, t) + max(0, t - 4)"), &[(0.0, 1, 1.0), (4.0, 1, 1.0)]),
+            (step(0.5, 1.5, 3), &[(0.5, 2, 15.0), (1.5, 2, 15.0)]),
+            (step(0.5, 1.5, 3).scaled(-2.0), &[(0.5, 2, -30.0), (1.5, 2, -30.0)]),
+            (Law::sequence(interrupted).unwrap(), &[(0.3, 1, -6.0), (0.4, 1, 2.0), (0.7, 0, 7.3)]),
+            (
+                Law::sequence(vec![
+                    Piece::lasting(
+                        0.1,
+                        Law::smooth_step(SmoothStep { from: 0.0, to: 1.0, start: 0.0, end: 0.1, degree: 3 })
+                            .unwrap(),
+                    ),
+                    Piece::open_ended(Law::constant(0.0)),
+                ])
+                .unwrap(),
+                &[(0.1, 2, 600.0)],
+            ),
+            (
+                Law::sequence(vec![
+                    Piece::lasting(1.0, expression("t^2")),
+                    Piece::open_ended(expression("2*t")),
+                ])
+                .unwrap(),
+                &[(1.0, 2, -2.0)],
+            ),
+        ];
+        for (law, expected) in cases {
+            let found = law.jumps(0.0, 4.0);
+            assert_eq!(found.len(), expected.len(), "{law}: {found:?}");
+            for (jump, &(time, order, size)) in found.iter().zip(expected) {
+                assert!((jump.time - time).abs() <= 1e-12, "{law}: {jump:?}");
+                assert_eq!(jump.order, order, "{law}: {jump:?}");
+                assert!((jump.size - size).abs() <= 1e-6 * size.abs(), "{law}: {jump:?} is not {size}");
+            }
+        }
+    }
+
+    #[test]
+    fn smooth_laws_have_no_jumps() {
+        let smooth = [
+            "abs(t - 1)^3",
+            "max(sin(3*t)^2 + cos(3*t)^2, 1)",
+            "if(t < 1, t^3, 1 + 3*(t - 1) + 3*(t - 1)^2 + (t - 1)^3)",
+            "abs(2 + t)",
+            "if(t > 9, 1, 2)",
+            "atan2(t - 1, 1 + t)",
+            "sqrt(t - 1)",
+        ];
+        let mut laws: Vec<Law> = smooth.iter().map(|text| Law::parse(text).unwrap()).collect();
+        laws.extend([step(0.5, 1.5, 5), step(0.5, 1.5, 7), step(7.0, 8.0, 3)]);
+        let points = |degree, ends| {
+            let (times, values) = (vec![0.0, 0.4, 1.0, 3.0], vec![1.0, 3.0, -2.0, 1.0]);
+            Law::table(&Table { times, values, degree, ends }).unwrap()
+        };
+        laws.extend([
+            points(SplineDegree::Cubic, Ends::Periodic),
+            points(SplineDegree::Quintic, Ends::Natural),
+        ]);
+        let cosine = Law::parse("cos(t)").unwrap();
+        laws.push(
+            Law::sequence(vec![
+                Piece::lasting(0.3, cosine.clone()),
+                Piece::open_ended(Law::parse("cos(t + 0.3)").unwrap()),
+            ])
+            .unwrap(),
+        );
+        for law in laws {
+            assert_eq!(law.jumps(0.0, 4.0), [], "{law}");
+        }
+        assert_eq!(Law::parse("abs(t)").unwrap().jumps(1.0, -1.0), [], "no time between");
+        assert_eq!(Law::parse("abs(t)").unwrap().jumps(0.0, f64::INFINITY), [], "no such time");
+    }
+}

@@ -235,3 +235,52 @@ impl fmt::Display for Sequence {
         Ok(())
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use crate::law::*;
+
+    #[test]
+    fn a_later_piece_follows_what_the_earlier_ones_become() {
+        let speed = |speed| Law::constant_speed(ConstantSpeed { speed, offset: 4.0 }).unwrap();
+        let law =
+            Law::sequence(vec![Piece::lasting(2.0, speed(3.0)), Piece::open_ended(speed(5.0))]).unwrap();
+        let names: Vec<String> = law.parameters().into_iter().map(|parameter| parameter.name).collect();
+        assert_eq!(
+            names,
+            ["piece[0].duration", "piece[0].speed", "piece[0].offset", "piece[1].speed", "piece[1].offset"]
+        );
+        assert_eq!(law.at(3.0).value(), 15.0); // 4 + 2 s at 3 + 1 s at 5
+        // By the duration 3 - 5, by the speeds the durations; the first offset counts and the second does not.
+        assert_eq!([0, 1, 2, 3, 4].map(|k| law.derivative(k, 3.0).value()), [-2.0, 2.0, 1.0, 1.0, 0.0]);
+        assert!(law.with_parameter(0, -1.0).at(3.0).value().is_nan());
+    }
+
+    #[test]
+    fn sequences_are_refused_with_the_reason() {
+        let speed = || Law::parse("t").unwrap();
+        let late = Law::parse("sqrt(t - 1)").unwrap();
+        let sequences = [
+            (vec![], "a sequence has no pieces", "give at least one"),
+            (
+                vec![Piece::open_ended(speed()), Piece::open_ended(speed())],
+                "piece 0 of a sequence has no duration, but is not the last",
+                "only the last piece may be without end",
+            ),
+            (
+                vec![Piece::lasting(0.0, speed())],
+                "piece 0 of a sequence lasts 0 s",
+                "a duration is a finite number greater than zero",
+            ),
+            (
+                vec![Piece::lasting(1.0, speed()), Piece::lasting(2.0, late)],
+                "the law of piece 1 of a sequence has no finite value at the piece's start",
+                "the law's own time starts at 0 when the piece does, and ends with its duration",
+            ),
+        ];
+        for (pieces, message, help) in sequences {
+            let error = Law::sequence(pieces).unwrap_err();
+            assert_eq!((error.message.as_str(), error.help.as_deref()), (message, Some(help)));
+        }
+    }
+}

@@ -270,3 +270,171 @@ impl PartialEq for Spline {
             == (&other.times, &other.data, other.degree, other.ends)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use crate::law::*;
+
+    fn table(times: &[f64], values: &[f64], degree: SplineDegree, ends: Ends) -> Law {
+        Law::table(&Table { times: times.to_vec(), values: values.to_vec(), degree, ends }).unwrap()
+    }
+
+    #[test]
+    fn splines_reproduce_polynomials_of_their_degree() {
+        let times = [0.0, 0.3, 1.1, 1.6, 2.5, 2.6];
+        let cubic = Law::polynomial(&[1.0, -2.0, 0.5, 0.7]).unwrap();
+        let quintic = Law::polynomial(&[1.0, -2.0, 0.5, 0.7, -0.9, 0.2]).unwrap();
+        let parabola = Law::polynomial(&[1.0, -2.0, 0.5]).unwrap();
+        let line = Law::polynomial(&[1.0, -2.0]).unwrap();
+        let rates = |law: &Law, t, is_quintic| {
+            let at = law.at(t);
+            EndRates { speed: at.d(), acceleration: if is_quintic { at.dd() } else { 0.0 } }
+        };
+        let clamped = |law: &Law, is_quintic| Ends::Clamped {
+            start: rates(law, times[0], is_quintic),
+            end: rates(law, times[5], is_quintic),
+        };
+        let cases = [
+            (&cubic, SplineDegree::Cubic, clamped(&cubic, false)),
+            (&quintic, SplineDegree::Quintic, clamped(&quintic, true)),
+            (&line, SplineDegree::Cubic, Ends::Natural),
+            (&parabola, SplineDegree::Quintic, Ends::Natural),
+        ];
+        for (law, degree, ends) in cases {
+            let spline = table(&times, &times.map(|t| law.at(t).value()), degree, ends);
+            for k in 0..=26 {
+                let t = 0.1 * f64::from(k);
+                let (ours, exact) = (spline.at(t).derivatives(), law.at(t).derivatives());
+                for order in 0..4 {
+                    assert!(
+                        (ours[order] - exact[order]).abs() < 1e-9,
+                        "{law} at {t}: {ours:?} is not {exact:?}"
+                    );
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn a_periodic_spline_of_a_sine_is_smooth_over_its_seam_and_repeats() {
+        let times: Vec<f64> = (0..=16).map(|k| f64::from(k) / 16.0 + 0.2).collect();
+        let mut values: Vec<f64> = times.iter().map(|t| (std::f64::consts::TAU * t).sin()).collect();
+        values[16] = values[0];
+        for (degree, continuous, accuracy) in
+            [(SplineDegree::Cubic, 2, 2e-4), (SplineDegree::Quintic, 3, 2e-6)]
+        {
+            let law = table(&times, &values, degree, Ends::Periodic);
+            let (before, after) = (law.at(1.2 - 1e-10).derivatives(), law.at(1.2 + 1e-10).derivatives());
+            for order in 0..=continuous {
+                assert!((after[order] - before[order]).abs() < 1e-4, "{law}, {order}: {before:?}, {after:?}");
+            }
+            for t in [-3.33, 0.21, 0.7, 1.19, 7.77] {
+                assert!(
+                    (law.at(t).value() - (std::f64::consts::TAU * t).sin()).abs() < accuracy,
+                    "{law} at {t}"
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn splines_of_many_points_stay_accurate() {
+        let times: Vec<f64> = (0..=2000).map(|k| f64::from(k) * 1e-3 + 2e-4 * f64::from(k % 3)).collect();
+        let values: Vec<f64> = times.iter().map(|t| t.sin()).collect();
+        let end = times[2000];
+        let rate = |t: f64| EndRates { speed: t.cos(), acceleration: -t.sin() };
+        let law =
+            table(&times, &values, SplineDegree::Quintic, Ends::Clamped { start: rate(0.0), end: rate(end) });
+        let at = law.at(1.23456);
+        assert!((at.value() - 1.23456_f64.sin()).abs() < 1e-13);
+        assert!((at.d() - 1.23456_f64.cos()).abs() < 1e-10);
+        assert!((at.dd() + 1.23456_f64.sin()).abs() < 1e-6);
+    }
+
+    #[test]
+    fn tables_are_refused_with_the_reason() {
+        use SplineDegree::{Cubic, Quintic};
+        let at_end = EndRates { speed: 0.0, acceleration: 1.0 };
+        let rising = Ends::Clamped { start: EndRates::default(), end: at_end };
+        type Case<'a> = (&'a [f64], &'a [f64], SplineDegree, Ends, &'a str, &'a str);
+        let cases: [Case<'_>; 9] = [
+            (
+                &[0.0, 1.0],
+                &[0.0],
+                Cubic,
+                Ends::default(),
+                "a table has 2 times but 1 values",
+                "give one value for every time",
+            ),
+            (
+                &[0.0],
+                &[0.0],
+                Cubic,
+                Ends::default(),
+                "a table needs at least 2 points, not 1",
+                "add points, or write the law as a polynomial",
+            ),
+            (
+                &[0.0, 1.0],
+                &[0.0, 0.0],
+                Quintic,
+                Ends::Natural,
+                "a quintic table with natural ends needs at least 3 points, not 2",
+                "add points, or write the law as a polynomial",
+            ),
+            (
+                &[0.0, 1.0],
+                &[0.0, 0.0],
+                Cubic,
+                Ends::Periodic,
+                "a periodic table needs at least 3 points, not 2",
+                "the last point counts: it repeats the first one period later",
+            ),
+            (
+                &[0.0, 1.0],
+                &[0.0, f64::NAN],
+                Cubic,
+                Ends::default(),
+                "the value of a table's point 1 is NaN, not a finite number",
+                "points are counted from 0",
+            ),
+            (
+                &[0.0, 2.0, 1.0],
+                &[0.0; 3],
+                Cubic,
+                Ends::default(),
+                "the times of a table must increase, but 1 s follows 2 s (points 1 and 2)",
+                "sort the points by time",
+            ),
+            (
+                &[0.0, 2.0, 2.0],
+                &[0.0; 3],
+                Cubic,
+                Ends::default(),
+                "the times of a table must increase, but 2 s follows 2 s (points 1 and 2)",
+                "remove one of the two points",
+            ),
+            (
+                &[0.0, 1.0, 2.0],
+                &[0.0, 1.0, 2.0],
+                Cubic,
+                Ends::Periodic,
+                "a periodic table must end with the value it begins with, but 2 is not 0",
+                "add a last point, one period after the first, with the first one's value",
+            ),
+            (
+                &[0.0, 1.0],
+                &[0.0; 2],
+                Cubic,
+                rising,
+                "the acceleration at the ends of a cubic table can not be chosen",
+                "make the table quintic, or leave the acceleration out",
+            ),
+        ];
+        for (times, values, degree, ends, message, help) in cases {
+            let error =
+                Law::table(&Table { times: times.into(), values: values.into(), degree, ends }).unwrap_err();
+            assert_eq!((error.message.as_str(), error.help.as_deref()), (message, Some(help)));
+        }
+    }
+}

@@ -6,6 +6,7 @@ use super::fault::did_you_mean;
 use super::*;
 use crate::constraint::Row;
 use crate::joint::{self, CoordinateType, Need};
+use crate::law::ParameterKind;
 
 /// How far `axis2` may be from square to `axis`, as a cosine: typed unit vectors are good to this.
 const SQUARE_TOLERANCE: f64 = 1e-6;
@@ -69,6 +70,8 @@ struct Check<'a> {
     faults: Vec<Fault>,
     /// Which drafted joint became which joint; `None` for those that are faulty.
     joint_ids: Vec<Option<JointId>>,
+    /// The hardpoints that curves pass through.
+    curve_points: Vec<HardpointId>,
 }
 
 impl<'a> Check<'a> {
@@ -89,7 +92,7 @@ impl<'a> Check<'a> {
             measures: Vec::new(),
             times: draft.times.clone(),
         };
-        Self { draft, model, faults: Vec::new(), joint_ids: Vec::new() }
+        Self { draft, model, faults: Vec::new(), joint_ids: Vec::new(), curve_points: Vec::new() }
     }
 
     fn fault(&mut self, code: &'static str, at: Locus, message: impl Into<String>) -> &mut Fault {
@@ -398,13 +401,94 @@ impl<'a> Check<'a> {
         let (axis, axis2) = (axis.map(|a| a.0), axis2.map(|a| a.0));
         let bodies = [body_i?, body_j?];
         let (name, cut) = (name.clone(), j.cut);
-        Some(Joint { name, kind, bodies, at: at?, axis, axis2, frames, length, cut, unnamed: false })
+        let at = at?;
+        let curve = self.curve(j, kind, at, frames[0], here);
+        Some(Joint { name, kind, bodies, at, axis, axis2, frames, length, curve, cut, unnamed: false })
+    }
+
+    /// HP0226: a curve that is missing, out of place, or no curve in the plane square to the joint's axis.
+    fn curve(
+        &mut self,
+        j: &JointDraft,
+        kind: &'static JointType,
+        at: [HardpointId; 2],
+        frame: Mat3,
+        here: Here,
+    ) -> Option<Curve> {
+        let name = &j.name;
+        let follows = std::ptr::eq(kind, &joint::POINT_ON_CURVE);
+        let draft = match (&j.curve, follows) {
+            (None, false) => return None,
+            (Some(_), false) => {
+                self.fault("HP0226", here.key("curve"), format!("a {} joint has no `curve`", kind.name))
+                    .help(format!("remove `curve` from `{name}`, or make it a `point_on_curve`"));
+                return None;
+            }
+            (None, true) => {
+                self.fault("HP0226", here.key("type"), format!("joint `{name}` needs a `curve`"))
+                    .help("give the points of the cam or slot, like `curve = { points = [[0, 0, 0], ...], closed = true }`");
+                return None;
+            }
+            (Some(curve), true) => curve,
+        };
+        let ids: Vec<_> =
+            draft.points.iter().map(|p| self.place(p, name, here.key("curve"))).collect::<Option<_>>()?;
+        let m_i = Pose { rot: frame, r: self.position(at[0]) };
+        let local: Vec<Vec3> = ids.iter().map(|h| m_i.inverse().point(self.position(*h))).collect();
+        let size = self.model.size();
+        let least = if draft.closed { 4 } else { 3 };
+        if local.len() < least {
+            let message = format!("the curve of `{name}` has {} points", local.len());
+            self.fault("HP0226", here.key("curve"), message).help(format!("give at least {least}"));
+            return None;
+        }
+        let off_plane =
+            local.iter().enumerate().find(|(_, p)| (p.z - local[0].z).abs() > SQUARE_TOLERANCE * size);
+        if let Some((k, p)) = off_plane {
+            let message = format!("the curve of `{name}` does not lie in a plane square to its axis");
+            self.fault("HP0226", here.key("curve"), message)
+                .note(format!(
+                    "point {} is {:e} m from the plane of the first",
+                    k + 1,
+                    (p.z - local[0].z).abs()
+                ))
+                .help("let all points have the same coordinate along `axis`");
+            return None;
+        }
+        let next = |k: usize| local[(k + 1) % local.len()];
+        let last = if draft.closed { local.len() } else { local.len() - 1 };
+        if let Some(k) = (0..last).find(|&k| (next(k) - local[k]).norm() <= SAME_POINT * size) {
+            let message = format!(
+                "points {} and {} of the curve of `{name}` are at the same place",
+                k + 1,
+                (k + 1) % local.len() + 1
+            );
+            self.fault("HP0226", here.key("curve"), message)
+                .help("leave one of them out; a closed curve does not repeat its first point");
+            return None;
+        }
+        let points: Vec<[f64; 2]> = local.iter().map(|p| [p.x, p.y]).collect();
+        let follower = m_i.inverse().point(self.position(at[1]));
+        self.curve_points.extend(ids);
+        match Curve::through(&points, draft.closed, [follower.x, follower.y]) {
+            Ok(curve) if curve.at(curve.start())[0][0].is_finite() => Some(curve),
+            Ok(_) => {
+                let message = format!("the point of `{name}` is drawn beyond the ends of its curve");
+                self.fault("HP0226", here.key("at"), message)
+                    .help("place it beside the curve, or make the curve longer");
+                None
+            }
+            Err(error) => {
+                self.fault("HP0226", here.key("curve"), format!("no curve for `{name}`: {error}"));
+                None
+            }
+        }
     }
 
     /// HP0223: a length where there is no rod, or that is none.
     fn rod_length(&mut self, j: &JointDraft, kind: &'static JointType, here: Here) -> Option<f64> {
         let length = j.length?;
-        if !kind.coordinates.iter().any(|c| c.row == Row::Distance) {
+        if !kind.coordinates.iter().any(|c| c.row == Row::Distance) && !kind.rows.contains(&Row::Contact) {
             self.fault("HP0223", here.key("length"), format!("a {} joint has no `length`", kind.name))
                 .help(format!("remove `length` from `{}`", j.name));
         } else if !(length > 0.0 && length.is_finite()) {
@@ -477,9 +561,8 @@ impl<'a> Check<'a> {
         let places: Vec<_> =
             j.at.iter().enumerate().map(|(k, p)| self.place(p, name, here.item("at", k))).collect();
         let (first, last) = (places[0]?, places[places.len() - 1]?);
-        if kind.places == 2
-            && (self.position(last) - self.position(first)).norm() <= SAME_POINT * self.model.size()
-        {
+        let is_rod = kind.coordinates.iter().any(|c| c.row == Row::Distance);
+        if is_rod && (self.position(last) - self.position(first)).norm() <= SAME_POINT * self.model.size() {
             self.fault("HP0211", here.key("at"), format!("the two ends of `{name}` are at the same place"))
                 .help("a rod needs two points that lie apart");
         }
@@ -649,6 +732,7 @@ impl<'a> Check<'a> {
             axis2: None,
             frames: [axis.map_or(Mat3::IDENTITY, |a| a.1); 2],
             length: None,
+            curve: None,
             cut: false,
             unnamed: true,
         });
@@ -876,7 +960,17 @@ impl<'a> Check<'a> {
             |a: Vec3, b: Vec3| !(a.is_finite() && b.is_finite()) || (a.norm() < 1e-12 && b.norm() < 1e-12);
         match change {
             ChangeDraft::Move { hardpoint, velocity } => {
-                let hardpoint = self.hardpoint(hardpoint, at)?;
+                let name = hardpoint;
+                let hardpoint = self.hardpoint(hardpoint, at.clone())?;
+                if self.curve_points.contains(&hardpoint) {
+                    let message = format!("design variable `{owner}` moves `{name}`, a point of a curve");
+                    self.fault("HP0226", at, message)
+                        .note("the shape of a curve is no design variable; its place and direction are")
+                        .help(
+                            "write the curve's points as coordinates, and move the hardpoint that carries it",
+                        );
+                    return None;
+                }
                 if is_null(*velocity, Vec3::ZERO) {
                     null(self);
                 }
@@ -919,7 +1013,26 @@ impl<'a> Check<'a> {
                 }
                 Some((Change::Length { joint, rate: *rate }, Quantity::Length))
             }
-            ChangeDraft::Law { .. } => None,
+            ChangeDraft::Law { driver, parameter, rate } => {
+                let draft = self.draft;
+                let names = draft.drivers.iter().map(|d| d.name.as_str());
+                let k = self.find("driver", driver, at.clone(), names)?;
+                let parameters = draft.drivers[k].law.parameters();
+                let names = parameters.iter().map(|p| p.name.as_str());
+                let p =
+                    self.find(&format!("parameter of the law of `{driver}`"), parameter, at.clone(), names)?;
+                if !(rate.is_finite() && *rate != 0.0) {
+                    null(self);
+                }
+                // A faulty driver has been reported.
+                let driver = self.model.drivers.iter().position(|d| d.name == *driver).map(DriverId)?;
+                let quantity = match parameters[p].kind {
+                    ParameterKind::Value => self.model.driven(&self.model.drivers[driver.0]).quantity,
+                    ParameterKind::Angle => Quantity::Angle,
+                    _ => Quantity::Number,
+                };
+                Some((Change::Law { driver, parameter: p, rate: *rate }, quantity))
+            }
             ChangeDraft::Field { joint, body, v, u } => {
                 let joint = self.joint(joint, at.clone());
                 let body = self.body(body, at.clone());

@@ -3,6 +3,7 @@
 use super::*;
 use crate::constraint::Row;
 use crate::joint::Need;
+use crate::law::Law;
 use crate::space::{Twist, euler_313_from_rotation, euler_rates, rotation_from_euler_313};
 
 /// The body-fixed data of one design: everything that the analysis needs and that a design may change.
@@ -16,6 +17,8 @@ pub struct Geometry {
     pub points: Vec<Vec3>,
     /// Per measure with a spin axis, that unit vector in its body's frame; null for the others.
     pub spin_axes: Vec<Vec3>,
+    /// Per driver, its law.
+    pub laws: Vec<Law>,
 }
 
 /// What a joint can keep of its design configuration, or the rate at which a design variable changes it.
@@ -27,6 +30,8 @@ pub struct Kept {
     pub offset: f64,
     /// Cosine of the angle between z_i and z_j.
     pub cosine: f64,
+    /// Distance of marker j from the curve of marker i, positive on its left, m.
+    pub contact: f64,
 }
 
 impl Kept {
@@ -36,6 +41,7 @@ impl Kept {
             Row::Distance => self.distance,
             Row::Offset => self.offset,
             Row::Cosine => self.cosine,
+            Row::Contact => self.contact,
             _ => 0.0,
         }
     }
@@ -53,6 +59,8 @@ pub struct Field {
     pub points: Vec<(PointId, Vec3)>,
     /// The spin axes that turn, and their rate in the body's frame.
     pub spin_axes: Vec<(MeasureId, Vec3)>,
+    /// The drivers whose laws change: the parameter, and its rate.
+    pub laws: Vec<(DriverId, usize, f64)>,
 }
 
 /// The design velocity of one marker.
@@ -88,11 +96,17 @@ impl Model {
             .map(|j| {
                 let [m_i, m_j] = [0, 1].map(|e| self.marker_in_world(j, e, &for_lengths, &follows));
                 let (d, z_i, z_j) = (m_j.r - m_i.r, m_i.rot.cols[2], m_j.rot.cols[2]);
-                let distance = match self.joints[j].length {
-                    Some(length) => length + self.length_change(j, &value),
-                    None => d.norm(),
-                };
-                Kept { distance, offset: z_i.dot(d), cosine: z_i.dot(z_j) }
+                let given = self.joints[j].length.map(|length| length + self.length_change(j, &value));
+                let contact = self.joints[j].curve.as_ref().map_or(0.0, |curve| {
+                    let (drawn, _) = curve.distance(m_i.rot.transpose_mul(d));
+                    given.map_or(drawn, |length| length.copysign(drawn))
+                });
+                Kept {
+                    distance: given.unwrap_or(d.norm()),
+                    offset: z_i.dot(d),
+                    cosine: z_i.dot(z_j),
+                    contact,
+                }
             })
             .collect();
         let points =
@@ -107,7 +121,24 @@ impl Model {
                 _ => Vec3::ZERO,
             })
             .collect();
-        Geometry { markers, kept, points, spin_axes }
+        let laws = self.drivers.iter().enumerate().map(|(k, d)| self.changed_law(k, d, &value)).collect();
+        Geometry { markers, kept, points, spin_axes, laws }
+    }
+
+    /// The law of a driver in a changed design.
+    fn changed_law(&self, k: usize, driver: &Driver, value: &dyn Fn(usize) -> f64) -> Law {
+        let mut law = driver.law.clone();
+        for (n, variable) in self.variables.iter().enumerate().filter(|(n, _)| value(*n) != 0.0) {
+            for change in &variable.changes {
+                if let Change::Law { driver, parameter, rate } = change
+                    && driver.0 == k
+                {
+                    let now = law.parameters()[*parameter].value;
+                    law = law.with_parameter(*parameter, now + rate * value(n));
+                }
+            }
+        }
+        law
     }
 
     /// By how much a design has changed the given length of a rod.
@@ -221,6 +252,11 @@ impl Model {
                 field.kept.push((JointId(j), kept));
             }
         }
+        for change in &v.changes {
+            if let Change::Law { driver, parameter, rate } = change {
+                field.laws.push((*driver, *parameter, *rate));
+            }
+        }
         for (k, p) in self.points.iter().enumerate() {
             if speeds[p.at.0] != Vec3::ZERO {
                 let rot = self.bodies[p.body.0].frame.rot;
@@ -249,12 +285,19 @@ impl Model {
             if let (None, Some(u)) = (self.joints[j].length, d.unit()) {
                 kept.distance = u.dot(p_j - p_i);
             }
+            if let (None, Some(curve)) = (self.joints[j].length, &self.joints[j].curve) {
+                let (_, normal) = curve.distance(m_i.rot.transpose_mul(d));
+                kept.contact = (m_i.rot * normal).dot(p_j - p_i - w_i.cross(d));
+            }
         }
         for change in &v.changes {
             if let Change::Length { joint, rate } = change
                 && joint.0 == j
             {
                 kept.distance += rate;
+                if let Some(curve) = &self.joints[j].curve {
+                    kept.contact += rate.copysign(rate * curve.distance(m_i.rot.transpose_mul(d)).0);
+                }
             }
         }
         kept

@@ -95,7 +95,7 @@ pub struct JointDraft {
     pub axis: Option<Line>,
     /// Direction of the markers' x axis.
     pub axis2: Option<Line>,
-    /// Length of a rod, m; else it is measured between its places.
+    /// Length of a rod, or a follower's distance from its curve, m; else it is measured between its places.
     pub length: Option<f64>,
     /// Advance of a screw, m per turn.
     pub lead: Option<f64>,

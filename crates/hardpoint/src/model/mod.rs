@@ -5,10 +5,13 @@
 //! an analysis; a changed design is a [`Geometry`] made from it.
 
 mod check;
+mod curve;
 mod design;
 mod draft;
 mod fault;
 
+pub(crate) use curve::Contact;
+pub use curve::{Curve, CurvePoint};
 pub use design::{Field, Geometry, Kept, MarkerField};
 pub use draft::{
     BodyDraft, ChangeDraft, CouplerDraft, CouplerKindDraft, CurveDraft, Draft, DrivenDraft, DriverDraft,
@@ -17,6 +20,7 @@ pub use draft::{
 };
 pub use fault::{Fault, Locus, Section, did_you_mean};
 
+use crate::constraint::Ends;
 use crate::joint::{CoordinateType, JointType, Quantity};
 use crate::law::Law;
 use crate::space::{Mat3, Pose, Vec3};
@@ -121,8 +125,10 @@ pub struct Joint {
     /// Orientation of marker i and marker j in the world, in the design configuration; the same unless the joint type
     /// has its second axis on body j.
     pub frames: [Mat3; 2],
-    /// Length of a rod that is given by itself rather than by its hardpoints, m.
+    /// Length of a rod, or a follower's distance from its curve, that is given by itself rather than by the hardpoints, m.
     pub length: Option<f64>,
+    /// The curve that a point follows, in the frame of marker i.
+    pub curve: Option<Curve>,
     /// Whether the user asks for it to be cut.
     pub cut: bool,
     /// Whether it only carries a driver on something that is no joint's coordinate; it has the driver's name.
@@ -226,6 +232,15 @@ pub enum Change {
         /// m per unit.
         rate: f64,
     },
+    /// A parameter of a driver's law grows at this rate.
+    Law {
+        /// Which driver.
+        driver: DriverId,
+        /// Which of its law's parameters.
+        parameter: usize,
+        /// In the parameter's unit, per unit.
+        rate: f64,
+    },
     /// The paper's design velocity of one marker: V of its place and U of its 3-1-3 Euler angles, both
     /// in its own body's frame (Eqs. 3.2, 3.3).
     Field {
@@ -317,6 +332,15 @@ impl Model {
     pub(crate) fn marker(&self, joint: JointId, e: usize) -> Pose {
         let j = &self.joints[joint.0];
         Pose { rot: j.frames[e], r: self.position(j.at[e]) }
+    }
+
+    /// The markers of a joint in the world, in the design configuration; on a curve next to the point that follows it.
+    pub(crate) fn ends(&self, joint: JointId) -> Ends<f64> {
+        let [mut i, j] = [0, 1].map(|e| self.marker(joint, e));
+        if let Some(curve) = &self.joints[joint.0].curve {
+            i = i.compose(Contact::at(curve, 0.0, curve.start()).frame());
+        }
+        Ends { i, j }
     }
 
     /// Joints that a person wrote.

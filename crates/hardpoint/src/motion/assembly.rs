@@ -96,8 +96,7 @@ impl<T: Real> Stepper<'_, T> {
             if matches!(stop.kind, StopKind::Locked { .. }) {
                 return Err(stop);
             }
-            let remains = self.least_gaps();
-            return Err(Stop { kind: StopKind::DoesNotAssemble, remains, ..stop });
+            return Err(Stop { kind: StopKind::DoesNotAssemble, ..stop });
         }
         let told = WORTH_TELLING;
         let gaps = self.gaps(|s, r| s.state.gap[r].lane(0), told);
@@ -114,15 +113,12 @@ impl<T: Real> Stepper<'_, T> {
         let zero = self.state.witness.zero();
         self.drivers.fill([zero; 3]);
         self.state.gap_left = [0.0; 2];
-        self.state.place(&self.topology, &self.parts, 0..self.topology.links.len());
-        for c in 0..self.topology.closures.len() {
-            self.state.place_ends(&self.topology, &self.parts, c);
-        }
+        self.state.stand(&self.topology, &self.parts);
         for r in 0..self.topology.rows.len() {
             self.state.gap[r] = if self.topology.rows[r].is_term {
                 zero
             } else {
-                self.state.residual(&self.topology, &self.parts, &self.drivers, r)
+                self.state.residual_of(&self.topology, &self.parts, &self.drivers, r)
             };
         }
     }
@@ -166,11 +162,13 @@ impl<T: Real> Stepper<'_, T> {
         });
         moved.filter(|m| m.distance > least * self.state.size || m.angle > least).collect()
     }
+}
 
+impl Stepper<'_, f64> {
     /// How near the joints can come: least squares over the residuals of all rows, from where the path ended.
     ///
     /// Levenberg's and Marquardt's method on the scaled rows; it need not be fast.
-    fn least_gaps(&mut self) -> Vec<Gap> {
+    pub fn least_gaps(&mut self) -> Vec<Gap> {
         self.state.gap_left = [0.0; 2];
         self.restore();
         let unknowns: Vec<usize> = self.topology.blocks.iter().flat_map(|b| b.unknowns.clone()).collect();
@@ -193,7 +191,7 @@ impl<T: Real> Stepper<'_, T> {
             let before = (self.state.q.clone(), self.state.balls.clone());
             for (k, &c) in unknowns.iter().enumerate() {
                 let unit = if self.topology.coordinates[c].is_length { self.state.size } else { 1.0 };
-                self.state.q[c] += self.state.witness.like(step[k] * unit);
+                self.state.q[c] += step[k] * unit;
             }
             self.state.turn_balls(&self.topology, 0..self.topology.links.len());
             let (now, jacobian_now) = self.all_rows(&unknowns);
@@ -213,21 +211,18 @@ impl<T: Real> Stepper<'_, T> {
             }
         }
         self.all_rows(&unknowns);
-        self.gaps(|s, r| s.state.residual(&s.topology, &s.parts, &s.drivers, r).lane(0), WORTH_TELLING)
+        self.gaps(|s, r| s.state.residual_of(&s.topology, &s.parts, &s.drivers, r), WORTH_TELLING)
     }
 
     /// Scaled residuals of all constraint rows, and their derivatives by these coordinates, in lane 0.
     fn all_rows(&mut self, unknowns: &[usize]) -> (Vec<f64>, Vec<Vec<f64>>) {
-        self.state.place(&self.topology, &self.parts, 0..self.topology.links.len());
-        for c in 0..self.topology.closures.len() {
-            self.state.place_ends(&self.topology, &self.parts, c);
-        }
+        self.state.stand(&self.topology, &self.parts);
         let mut residuals = Vec::new();
         let mut jacobian = Vec::new();
         for r in (0..self.topology.rows.len()).filter(|&r| !self.topology.rows[r].is_term) {
             let s = &self.state;
             let scale = 1.0 / s.scale_of_row(&self.topology, r);
-            residuals.push(scale * s.residual(&self.topology, &self.parts, &self.drivers, r).lane(0));
+            residuals.push(scale * s.residual_of(&self.topology, &self.parts, &self.drivers, r));
             let mut by_coordinate = std::collections::BTreeMap::new();
             for (k, factor) in self.topology.parts_of_row(r) {
                 let place = &self.topology.rows[k];
@@ -238,7 +233,7 @@ impl<T: Real> Stepper<'_, T> {
                         for c in step.first..step.first + step.freedom.coordinates() {
                             let unit = if self.topology.coordinates[c].is_length { s.size } else { 1.0 };
                             *by_coordinate.entry(c).or_insert(0.0) +=
-                                scale * unit * side * factor * wrench.on(s.x[c]).lane(0);
+                                scale * unit * side * factor * wrench.on(s.x[c]);
                         }
                     }
                 }

@@ -5,7 +5,7 @@
 
 use crate::constraint::{EndRates, Ends};
 use crate::joint::Freedom;
-use crate::model::Model;
+use crate::model::{Contact, Model};
 use crate::space::{Elimination, Pose, Quat, Real, Twist, Wrench};
 use crate::topology::{Block, Source, Topology};
 
@@ -56,6 +56,8 @@ pub(crate) struct State<T> {
     /// its rate: an assembly takes it from 1 to 0.
     pub gap: Vec<T>,
     pub gap_left: [f64; 2],
+    /// Per curve: where the point that follows it touches.
+    pub contacts: Vec<Contact<T>>,
     /// Per block: smallest over largest pivot, and the sign of the determinant.
     pub pivots: Vec<(f64, bool)>,
     /// Size of the mechanism, m.
@@ -117,6 +119,7 @@ impl<T: Real> State<T> {
             near: vec![o; rows],
             gap: vec![o; rows],
             gap_left: [0.0; 2],
+            contacts: Vec::new(),
             pivots: vec![(1.0, true); topology.blocks.len()],
             size: model.size(),
             iterations: 0,
@@ -186,6 +189,46 @@ impl<T: Real> State<T> {
         let [i, j] = topology.closures[closure].bodies;
         let [m_i, m_j] = parts.ends[closure];
         self.ends[closure] = Ends { i: self.pose[i.0].compose(m_i), j: self.pose[j.0].compose(m_j) };
+        if let Some(k) = topology.closures[closure].contact {
+            self.touch(parts, closure, k);
+        }
+    }
+
+    /// Lets marker i of a closure walk along its curve to where it is next to marker j.
+    #[inline(never)]
+    fn touch(&mut self, parts: &Parts<T>, closure: usize, k: usize) {
+        let Ends { i, j } = self.ends[closure];
+        let p = i.inverse().point(j.r);
+        self.contacts[k] = Contact::nearest(&parts.curves[k], p, self.contacts[k].u);
+        self.ends[closure].i = i.compose(self.contacts[k].frame());
+    }
+
+    /// Rates of a marker i that walks along its curve: those of its body and its own turning.
+    #[inline(never)]
+    fn walk(&self, closure: usize, k: usize, rates: &EndRates<T>) -> EndRates<T> {
+        self.witness.within(
+            #[inline(always)]
+            || self.walking(closure, k, rates),
+        )
+    }
+
+    #[inline(always)]
+    fn walking(&self, closure: usize, k: usize, rates: &EndRates<T>) -> EndRates<T> {
+        let Ends { i: foot, j } = &self.ends[closure];
+        let (v, a, contact) = (rates.v_i, rates.a_i, &self.contacts[k]);
+        // The marker that carries the curve, and the follower's motion seen from it.
+        let i = foot.compose(contact.frame().inverse());
+        let relative = rates.v_j.at(j.r) - v.at(j.r);
+        let acceleration = |v: Twist<T>, a: Twist<T>| a.at(j.r) + v.w.cross(v.at(j.r));
+        let coriolis = v.w.cross(relative) * relative.x.like(2.0);
+        let second = acceleration(rates.v_j, rates.a_j) - acceleration(v, a) - coriolis;
+        let p = [i.inverse().point(j.r), i.rot.transpose_mul(relative), i.rot.transpose_mul(second)];
+        let [turn, turn_rate] = contact.turning(p);
+        let z = i.rot.cols[2];
+        let mut walking = *rates;
+        walking.v_i.w += z * turn;
+        walking.a_i.w += z * turn_rate + v.w.cross(z) * turn;
+        walking
     }
 
     /// By how much constraint row r fails.
@@ -199,15 +242,44 @@ impl<T: Real> State<T> {
             let driven = closure.driver.map_or(self.witness.zero(), |d| drivers[d.0][0]);
             row.residual(ends, parts.kept[r] + driven) - gap
         } else {
-            let mut sum = -gap;
-            for (k, factor) in topology.parts_of_row(r) {
-                let place = &topology.rows[k];
-                let row = topology.closures[place.closure].rows[place.index];
-                let value = row.value(&self.ends[place.closure], self.near[k]) - parts.kept[k];
-                sum += value * self.witness.like(factor);
-            }
-            sum
+            self.coupled(topology, parts, r) - gap
         }
+    }
+
+    /// Places everything where the coordinates say, the drivers' own values included.
+    #[inline(never)]
+    pub fn stand(&mut self, topology: &Topology, parts: &Parts<T>) {
+        self.witness.within(
+            #[inline(always)]
+            || {
+                self.place(topology, parts, 0..topology.links.len());
+                for c in 0..topology.closures.len() {
+                    self.place_ends(topology, parts, c);
+                }
+            },
+        );
+    }
+
+    /// [`State::residual`] for callers that are not in a hurry.
+    #[inline(never)]
+    pub fn residual_of(&self, topology: &Topology, parts: &Parts<T>, drivers: &[[T; 3]], r: usize) -> T {
+        self.witness.within(
+            #[inline(always)]
+            || self.residual(topology, parts, drivers, r),
+        )
+    }
+
+    /// The sum of a coupler's terms. Kept out of the way of the other rows, which are many.
+    #[inline(never)]
+    fn coupled(&self, topology: &Topology, parts: &Parts<T>, r: usize) -> T {
+        let mut sum = self.witness.zero();
+        for (k, factor) in topology.parts_of_row(r) {
+            let place = &topology.rows[k];
+            let row = topology.closures[place.closure].rows[place.index];
+            let value = row.value(&self.ends[place.closure], self.near[k]) - parts.kept[k];
+            sum += value * self.witness.like(factor);
+        }
+        sum
     }
 
     /// Adds a row's wrench, times its factor, to its row of the block's Jacobian.
@@ -223,6 +295,19 @@ impl<T: Real> State<T> {
         }
     }
 
+    /// Adds the further terms of a coupler to its row of the block's Jacobian.
+    #[inline(never)]
+    fn enter_terms(&mut self, topology: &Topology, b: usize, k: usize, r: usize) {
+        self.witness.within(
+            #[inline(always)]
+            || {
+                for &(term, factor) in &topology.rows[r].terms {
+                    self.enter(topology, b, k, term, factor);
+                }
+            },
+        );
+    }
+
     /// Residuals, wrenches and factors of block b where it stands.
     #[inline(always)]
     pub(super) fn linearise(&mut self, topology: &Topology, parts: &Parts<T>, drivers: &[[T; 3]], b: usize) {
@@ -235,8 +320,8 @@ impl<T: Real> State<T> {
             self.rhs[k] = -self.residual(topology, parts, drivers, r);
             self.factors[b].row_mut(k).fill(zero);
             self.enter(topology, b, k, r, 1.0);
-            for &(term, factor) in &topology.rows[r].terms {
-                self.enter(topology, b, k, term, factor);
+            if !topology.rows[r].terms.is_empty() {
+                self.enter_terms(topology, b, k, r);
             }
         }
         let found = self.factors[b].factor();
@@ -525,7 +610,11 @@ impl<T: Real> State<T> {
     fn rates_of_wrenches(&mut self, topology: &Topology, order: usize) {
         for (c, closure) in topology.closures.iter().enumerate() {
             let [i, j] = closure.bodies;
-            let rates = EndRates { v_i: self.v[i.0], v_j: self.v[j.0], a_i: self.a[i.0], a_j: self.a[j.0] };
+            let mut rates =
+                EndRates { v_i: self.v[i.0], v_j: self.v[j.0], a_i: self.a[i.0], a_j: self.a[j.0] };
+            if let Some(k) = closure.contact {
+                rates = self.walk(c, k, &rates);
+            }
             for (k, row) in closure.rows.iter().enumerate() {
                 let [first, second] = row.wrench_rates(&self.ends[c], &rates);
                 if order == 1 {

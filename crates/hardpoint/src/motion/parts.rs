@@ -1,7 +1,8 @@
 //! A design laid out in the order in which the plan walks it.
 
-use crate::model::{Geometry, Model};
-use crate::space::{Pose, Real};
+use crate::law::Law;
+use crate::model::{Curve, Geometry, Model};
+use crate::space::{LANES, Pose, Real};
 use crate::topology::Topology;
 
 /// Marker poses per link and per closure, one design per lane.
@@ -15,6 +16,10 @@ pub(crate) struct Parts<T> {
     pub ends: Vec<[Pose<T>; 2]>,
     /// Per row: what it keeps of the design configuration, like the length of a rod; 0 where it keeps nothing.
     pub kept: Vec<T>,
+    /// Curves, in the order of [`crate::topology::Closure::contact`].
+    pub curves: Vec<Curve>,
+    /// Per driver, the law of every lane; one where all lanes have the same.
+    laws: Vec<Vec<Law>>,
 }
 
 impl<T: Real> Parts<T> {
@@ -59,6 +64,30 @@ impl<T: Real> Parts<T> {
                     witness.like_lanes(|k| lane(k).kept[closure.joint.0].by(row))
                 })
                 .collect(),
+            curves: topology
+                .closures
+                .iter()
+                .filter(|c| c.contact.is_some())
+                .filter_map(|c| model.joints[c.joint.0].curve.clone())
+                .collect(),
+            laws: (0..model.drivers.len())
+                .map(|d| {
+                    let same = designs.iter().all(|g| g.laws[d] == designs[0].laws[d]);
+                    let lanes = if same { 1 } else { T::LANES };
+                    (0..lanes).map(|k| lane(k).laws[d].clone()).collect()
+                })
+                .collect(),
         }
+    }
+
+    /// Value, speed and acceleration that driver d prescribes at time t.
+    pub fn law(&self, d: usize, t: f64, witness: T) -> [T; 3] {
+        if let [law] = &self.laws[d][..] {
+            let [f, fd, fdd, _] = law.at(t).derivatives();
+            return [f, fd, fdd].map(|x| witness.like(x));
+        }
+        let all: [[f64; 4]; LANES] =
+            std::array::from_fn(|k| self.laws[d][k.min(self.laws[d].len() - 1)].at(t).derivatives());
+        std::array::from_fn(|order| witness.like_lanes(|k| all[k][order]))
     }
 }

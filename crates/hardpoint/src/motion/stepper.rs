@@ -2,7 +2,7 @@
 
 use crate::constraint::Row;
 use crate::joint::Freedom;
-use crate::model::{DriverId, Model};
+use crate::model::{Contact, DriverId, Model};
 use crate::space::{FullPivot, Quat, Real};
 use crate::topology::{Source, Topology};
 
@@ -72,6 +72,8 @@ struct Saved<T> {
     drivers: Vec<[T; 3]>,
     /// Per row that is a term of a coupler: its coordinate, with speed and acceleration.
     coupled: Vec<[T; 3]>,
+    /// Per curve: where it is touched.
+    contacts: Vec<Contact<T>>,
 }
 
 /// What the drivers follow.
@@ -97,7 +99,9 @@ pub(super) enum Refusal {
 
 impl<'m, T: Real> Stepper<'m, T> {
     pub fn new(model: &'m Model, topology: &Topology, parts: Parts<T>, witness: T) -> Self {
-        let state = State::new(model, topology, witness);
+        let mut state = State::new(model, topology, witness);
+        state.contacts =
+            parts.curves.iter().map(|c| Contact::at(c, witness, witness.like(c.start()))).collect();
         let saved = Saved {
             q: state.q.clone(),
             qd: state.qd.clone(),
@@ -107,6 +111,7 @@ impl<'m, T: Real> Stepper<'m, T> {
             pivots: state.pivots.clone(),
             drivers: vec![[witness.zero(); 3]; model.drivers.len()],
             coupled: vec![[witness.zero(); 3]; topology.rows.len()],
+            contacts: state.contacts.clone(),
         };
         let branch = vec![(true, 0.0); topology.blocks.len()];
         let drivers = saved.drivers.clone();
@@ -199,19 +204,20 @@ impl<'m, T: Real> Stepper<'m, T> {
     /// Sets the drivers for the path at t.
     fn drive(&mut self, path: Path, t: f64) -> Result<(), Refusal> {
         self.state.gap_left = if path == Path::Assembly { [1.0 - t, -1.0] } else { [0.0; 2] };
-        for (k, d) in self.model.drivers.iter().enumerate() {
-            let [f, fd, fdd, _] = match path {
-                Path::Assembly => [0.0; 4],
-                Path::Laws => d.law.at(t).derivatives(),
+        let witness = self.state.witness;
+        for k in 0..self.drivers.len() {
+            let law = match path {
+                Path::Assembly => [witness.zero(); 3],
+                Path::Laws => self.parts.law(k, t, witness),
                 Path::Ramp { start } => {
-                    let f = d.law.at(start).value();
-                    [t * f, f, 0.0, 0.0]
+                    let [f, ..] = self.parts.law(k, start, witness);
+                    [f * witness.like(t), f, witness.zero()]
                 }
             };
-            if !(f.is_finite() && fd.is_finite() && fdd.is_finite()) {
+            if !law.iter().all(|x| x.abs().largest().is_finite()) {
                 return Err(Refusal::Law { driver: k });
             }
-            self.drivers[k] = [f, fd, fdd].map(|x| self.state.witness.like(x));
+            self.drivers[k] = law;
         }
         Ok(())
     }
@@ -269,6 +275,7 @@ impl<'m, T: Real> Stepper<'m, T> {
                     }
                 }
                 s.balls.copy_from_slice(&saved.balls);
+                s.contacts.copy_from_slice(&saved.contacts);
                 s.turn_balls(&self.topology, 0..self.topology.links.len());
                 for &r in &self.topology.coupled_rows {
                     for (k, _) in self.topology.parts_of_row(r) {
@@ -360,6 +367,7 @@ impl<'m, T: Real> Stepper<'m, T> {
         saved.balls.copy_from_slice(&s.balls);
         saved.pivots.copy_from_slice(&s.pivots);
         saved.drivers.copy_from_slice(&self.drivers);
+        saved.contacts.copy_from_slice(&s.contacts);
         for &r in &self.topology.coupled_rows {
             for (k, _) in self.topology.parts_of_row(r) {
                 saved.coupled[k] = s.coordinate_of_row(&self.topology, k);

@@ -1,6 +1,6 @@
 //! Kinematic admissibility of a design variable: can the joints stay closed, and how.
 
-use crate::constraint::{Ends, Row};
+use crate::constraint::Row;
 use crate::model::{Field, JointId, Kept, Model};
 use crate::space::Twist;
 
@@ -52,7 +52,7 @@ pub fn admissibility_at_design(model: &Model, field: &Field) -> Vec<JointDefect>
             z[m.end] = model.bodies[joint.bodies[m.end].0].frame.carry(m.twist);
         }
         let kept = field.kept.iter().find(|(j, _)| j.0 == k).map_or(Kept::default(), |(_, kept)| *kept);
-        let [i, j] = [0, 1].map(|e| model.marker(JointId(k), e));
+        let ends = model.ends(JointId(k));
         // A driven coordinate is a constraint too: it must stay at zero in the design configuration.
         let driven = model.drivers.iter().filter(|d| d.joint.0 == k).map(|d| model.driven(d).row);
         let worst = joint
@@ -61,7 +61,7 @@ pub fn admissibility_at_design(model: &Model, field: &Field) -> Vec<JointDefect>
             .iter()
             .copied()
             .chain(driven)
-            .map(|row| (row, (row.wrench(&Ends { i, j }).on(z[1] - z[0]) - kept.by(row)).abs()))
+            .map(|row| (row, (row.wrench(&ends).on(z[1] - z[0]) - kept.by(row)).abs()))
             .max_by(|a, b| a.1.total_cmp(&b.1));
         if let Some((row, value)) = worst
             && value > OPEN * scale

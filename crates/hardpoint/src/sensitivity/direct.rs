@@ -1,10 +1,10 @@
 //! The three levels of one design variable at one step.
 
-use crate::model::{Field, JointId, Model};
+use crate::model::{DriverId, Field, JointId, Model};
 use crate::motion::kinematics::{State, level, sum_couplers};
 use crate::motion::stepper::LOCKED;
 use crate::space::{LANES, Real, Twist};
-use crate::topology::Topology;
+use crate::topology::{Source, Topology};
 
 /// Design velocities laid out for the plan, one variable per lane: body-fixed marker twists by link and
 /// by closure. Lanes without a variable stay at rest.
@@ -14,6 +14,10 @@ pub(crate) struct FieldParts<T> {
     closures: Vec<Moving<T>>,
     /// Rows whose kept values change, and their rates.
     kept: Vec<(usize, T)>,
+    /// Drivers whose laws change: per lane, the parameters and their rates.
+    laws: Vec<(DriverId, Vec<Vec<(usize, f64)>>)>,
+    /// What that adds to the driver's value, speed and acceleration at the time that was set last.
+    law_rates: Vec<(DriverId, [T; 3])>,
     /// Largest speed in each field: what round-off of a defect is compared with.
     scale: T,
 }
@@ -83,7 +87,42 @@ impl<T: Real> FieldParts<T> {
             let markers = fields.get(k).map_or(&[][..], |f| &f.markers);
             markers.iter().map(|m| m.twist.w.norm().max(m.twist.v.norm())).fold(0.0, f64::max)
         });
-        Self { links, closures, kept, scale }
+        let mut drivers: Vec<DriverId> = fields.iter().flat_map(|f| &f.laws).map(|(d, ..)| *d).collect();
+        drivers.sort_unstable();
+        drivers.dedup();
+        let of_lane = |d: DriverId, f: &Field| -> Vec<(usize, f64)> {
+            f.laws.iter().filter(|(k, ..)| *k == d).map(|(_, parameter, rate)| (*parameter, *rate)).collect()
+        };
+        let laws: Vec<_> =
+            drivers.iter().map(|&d| (d, fields.iter().map(|f| of_lane(d, f)).collect::<Vec<_>>())).collect();
+        let law_rates = drivers.iter().map(|&d| (d, [witness.zero(); 3])).collect();
+        Self { links, closures, kept, laws, law_rates, scale }
+    }
+
+    /// Sets what changing laws do at time t.
+    pub fn set_time(&mut self, model: &Model, t: f64) {
+        for ((d, lanes), (_, rates)) in self.laws.iter().zip(&mut self.law_rates) {
+            let law = &model.drivers[d.0].law;
+            let mut of_lanes = [[0.0; 3]; LANES];
+            for (out, parameters) in of_lanes.iter_mut().zip(lanes) {
+                for (parameter, rate) in parameters {
+                    let derivatives = law.derivative(*parameter, t).derivatives();
+                    for order in 0..3 {
+                        out[order] += rate * derivatives[order];
+                    }
+                }
+            }
+            for order in 0..3 {
+                rates[order] = self.scale.like_lanes(|k| of_lanes[k][order]);
+            }
+        }
+    }
+
+    /// What a change of its law adds to a driver's value, speed or acceleration.
+    #[inline(always)]
+    fn law_rate(&self, driver: DriverId, order: usize) -> T {
+        let of_driver = self.law_rates.iter().find(|(d, _)| *d == driver);
+        of_driver.map_or(self.scale.zero(), |(_, rates)| rates[order])
     }
 }
 
@@ -99,6 +138,8 @@ pub(crate) struct Direct<T> {
     z_end: [Vec<[Twist<T>; 2]>; 3],
     bias: Vec<Twist<T>>,
     row_rhs: Vec<T>,
+    /// Whether some variable has changed a law, so that the driven coordinates' speeds are no longer all zero.
+    laws_change: bool,
 }
 
 /// By how much a left-out row fails per unit of a variable, against what could be round-off.
@@ -124,6 +165,7 @@ impl<T: Real> Direct<T> {
             z_end: std::array::from_fn(|_| vec![[none; 2]; topology.closures.len()]),
             bias: vec![none; topology.links.len()],
             row_rhs: vec![witness.zero(); topology.rows.len()],
+            laws_change: false,
         }
     }
 
@@ -214,6 +256,10 @@ impl<T: Real> Direct<T> {
             }
         }
         sum_couplers(topology, &mut self.row_rhs);
+        self.laws_change |= !field.law_rates.is_empty();
+        if self.laws_change {
+            self.follow_laws(topology, field, order);
+        }
         level(
             topology,
             &mut state.factors,
@@ -225,6 +271,20 @@ impl<T: Real> Direct<T> {
             &mut self.w[order],
             &mut state.rhs,
         );
+    }
+
+    /// Driven coordinates, in the tree and across cuts, follow the change of their laws.
+    fn follow_laws(&mut self, topology: &Topology, field: &FieldParts<T>, order: usize) {
+        for (c, coordinate) in topology.coordinates.iter().enumerate() {
+            if let Source::Driven(d) = coordinate.source {
+                self.s[order][c] = field.law_rate(d, order);
+            }
+        }
+        for closure in &topology.closures {
+            if let Some(d) = closure.driver {
+                self.row_rhs[closure.first_row] += field.law_rate(d, order);
+            }
+        }
     }
 
     /// Per lane, the left-out row that fails most under its change, if any does by more than round-off.
@@ -247,6 +307,8 @@ impl<T: Real> Direct<T> {
                 let [i, j] = topology.closures[closure].bodies;
                 let [z_i, z_j] = self.z_end[0][closure];
                 let rate = field.kept.iter().find(|(row, _)| *row == k).map_or(zero, |(_, rate)| *rate);
+                let driven = topology.closures[closure].driver.map_or(zero, |d| field.law_rate(d, 0));
+                let rate = rate + driven;
                 let (l, w, factor) = (state.l[k], &self.w[0], zero.like(factor));
                 let terms = state.witness.within(
                     #[inline(always)]

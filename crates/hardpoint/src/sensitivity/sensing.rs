@@ -102,6 +102,7 @@ impl<T: Real> Sense for Sensing<'_, T> {
         for g in 0..self.groups.len() {
             let first = g * T::LANES;
             let variables = first..usize::min(first + T::LANES, self.fields.len());
+            self.groups[g].set_time(self.model, t);
             self.direct.solve(topology, &mut self.state, &self.groups[g]);
             for body in 1..bodies {
                 body_derivatives(&self.direct.w, &self.state, body, &mut self.derivatives);

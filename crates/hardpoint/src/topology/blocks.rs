@@ -4,7 +4,6 @@ use petgraph::algo::{maximum_matching, tarjan_scc};
 use petgraph::graph::{DiGraph, NodeIndex, UnGraph};
 
 use super::*;
-use crate::constraint::Ends;
 use crate::space::FullPivot;
 
 /// A pivot below this part of the largest is zero when constraints are counted.
@@ -39,8 +38,7 @@ fn jacobian_of_parts(model: &Model, topology: &Topology) -> Vec<SparseRow> {
     let size = model.size();
     let mut rows = Vec::with_capacity(topology.rows.len());
     for closure in &topology.closures {
-        let [i, j] = [0, 1].map(|e| model.marker(closure.joint, e));
-        let ends = Ends { i, j };
+        let ends = model.ends(closure.joint);
         let first =
             closure.coupler.map_or(&closure.rows[0], |c| &model.coupled(&model.couplers[c].terms[0]).row);
         for row in &closure.rows {

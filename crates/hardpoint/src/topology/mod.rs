@@ -145,6 +145,8 @@ pub struct Closure {
     pub rows: Vec<Row>,
     /// Number of the first row in [`Topology::rows`].
     pub first_row: usize,
+    /// If a point follows a curve: which of all curves, counted over the closures.
+    pub contact: Option<usize>,
     /// The block that solves it; `None` if no unknown moves it.
     pub block: Option<usize>,
     /// Its columns in that block: column, coordinate, and +1 or -1 for the side of j or i.

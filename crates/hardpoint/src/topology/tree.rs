@@ -231,6 +231,8 @@ fn add_closure(
         topology.rows.push(RowPlace { closure, index, selected: false, terms: Vec::new(), is_term: false });
     }
     let links = loop_links(topology, link_of, bodies);
+    let follows = rows.contains(&Row::Contact);
+    let contact = follows.then(|| topology.closures.iter().filter(|c| c.contact.is_some()).count());
     topology.closures.push(Closure {
         joint,
         driver,
@@ -238,6 +240,7 @@ fn add_closure(
         bodies,
         rows,
         first_row,
+        contact,
         block: None,
         entries: Vec::new(),
         links,

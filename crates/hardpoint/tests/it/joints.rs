@@ -4,6 +4,7 @@ use std::ops::ControlFlow;
 
 use hardpoint::joint::ALL;
 use hardpoint::model::*;
+use hardpoint::space::Vec3;
 use hardpoint::study::{VerifyOptions, verify};
 use hardpoint::topology::{Formulation, Role};
 use hardpoint::{Analysis, Solution};
@@ -198,6 +199,132 @@ fn shaft_train() -> Draft {
     }
 }
 
+/// A cam that turns under a roller on a slide, whose arm carries a pin in a slot of a second body.
+fn cam_and_slot() -> Draft {
+    let circle = |n: usize, radius: f64, centre: [f64; 2]| -> Vec<Place> {
+        let angle = |k: usize| 2.0 * std::f64::consts::PI * k as f64 / n as f64;
+        (0..n)
+            .map(|k| {
+                let (s, c) = angle(k).sin_cos();
+                Place::At(Vec3::new(centre[0] + radius * c, centre[1] + radius * s, 0.0))
+            })
+            .collect()
+    };
+    let z = Some([0.0, 0.0, 1.0]);
+    let mut cam = joint("cam", "point_on_curve", ["disc", "lifter"], &[[0.0; 3], [0.0, 0.05, 0.01]], z);
+    cam.curve = Some(CurveDraft { points: circle(48, 0.03, [0.01, 0.0]), closed: true });
+    // The pitch curve of the roller's centre passes through its place as drawn: sqrt(0.04^2 - 0.01^2) above the axis.
+    cam.at[1] = Place::At([0.0, 0.0015_f64.sqrt(), 0.01].into());
+    let slot: Vec<Place> = (0..7)
+        .map(|k| {
+            let x = 0.02 + 0.02 * k as f64;
+            Place::At(Vec3::new(x, 0.15 + 0.2 * (x - 0.08) * (x - 0.08), 0.0))
+        })
+        .collect();
+    let mut pin = joint("pin", "slot", ["lever", "lifter"], &[[0.0, 0.15, 0.0], [0.08, 0.15, 0.0]], z);
+    pin.curve = Some(CurveDraft { points: slot, closed: false });
+    Draft {
+        name: "cam and slot".into(),
+        bodies: ["disc", "lifter", "lever"].map(body).into(),
+        joints: vec![
+            joint("shaft", "revolute", ["ground", "disc"], &[[0.0; 3]], z),
+            joint("slide", "translational", ["ground", "lifter"], &[[0.0, 0.1, 0.0]], Some([0.0, 1.0, 0.0])),
+            cam,
+            joint("fulcrum", "revolute", ["ground", "lever"], &[[0.0, 0.15, 0.0]], z),
+            pin,
+        ],
+        drivers: vec![DriverDraft {
+            name: "motor".into(),
+            drives: DrivenDraft::Coordinate { joint: "shaft".into(), coordinate: None },
+            law: hardpoint::law::Law::parse_with(
+                "speed*t + swing*sin(3*t)",
+                &[("speed", 9.0), ("swing", 0.1)],
+            )
+            .unwrap(),
+        }],
+        design: vec![
+            marker("shaft_x", "shaft", [1.0, 0.2, 0.0], [0.0; 3]),
+            marker("cam_y", "cam", [0.3, 1.0, 0.0], [0.0, 0.0, 0.5]),
+            marker("slide_rz", "slide", [0.0; 3], [0.0, 0.0, 1.0]),
+            marker("pin_x", "pin", [1.0, 0.0, 0.0], [0.0, 0.0, 0.3]),
+            VariableDraft {
+                fixed_length: true,
+                ..marker("fulcrum_and_pin", "fulcrum", [0.5, 1.0, 0.0], [0.0; 3])
+            },
+            VariableDraft {
+                name: "swing".into(),
+                changes: vec![ChangeDraft::Law {
+                    driver: "motor".into(),
+                    parameter: "swing".into(),
+                    rate: 1.0,
+                }],
+                fixed_length: false,
+            },
+            VariableDraft {
+                name: "speed".into(),
+                changes: vec![ChangeDraft::Law {
+                    driver: "motor".into(),
+                    parameter: "speed".into(),
+                    rate: 1.0,
+                }],
+                fixed_length: false,
+            },
+        ],
+        measures: ["slide", "fulcrum"]
+            .map(|name| MeasureDraft {
+                name: name.into(),
+                kind: MeasureKindDraft::Coordinate { joint: name.into(), coordinate: None },
+            })
+            .into(),
+        times: times(0.9, 18),
+        ..Draft::default()
+    }
+}
+
+#[test]
+fn a_cam_and_a_slot_move_as_they_must_and_match_resolved_designs() {
+    let model = Model::from_draft(&cam_and_slot()).unwrap();
+    for formulation in [Formulation::Relative, Formulation::Absolute] {
+        let analysis = Analysis::with(&model, formulation).unwrap();
+        let solution = analysis.run();
+        assert!(solution.stop.is_none(), "{:?}", solution.stop);
+        let report = verify(&analysis, &solution, &VerifyOptions::default(), |_| ControlFlow::Continue(()));
+        for check in report.checks.iter().filter(|c| c.best().is_some()) {
+            let best = check.best().unwrap();
+            assert!(best.error < 5e-8, "{}: {best:?}", model.variables[check.variable.0].name);
+        }
+        assert!(report.checks.iter().filter(|c| c.best().is_some()).count() >= 6);
+        // An eccentric disc of radius 30 mm, 10 mm off its axis, under a roller of 10 mm.
+        let [slide, lever] = ["slide", "fulcrum"].map(|m| solution.measured.index(m).unwrap());
+        for k in 0..solution.motion.len() {
+            let t = solution.motion.times[k];
+            let (s, c) = (9.0 * t + 0.1 * (3.0 * t).sin()).sin_cos();
+            let lift = 0.01 * s + (0.0016 - 1e-4 * c * c).sqrt() - 0.0015_f64.sqrt();
+            assert!((solution.measured.value(k, slide)[0] - lift).abs() < 1e-8, "t = {t}");
+            // The pin rises with the lifter; the lever turns until its slot, y = 0.2 (x - 0.08)^2 on it, passes through it.
+            let (sin, cos) = solution.measured.value(k, lever)[0].sin_cos();
+            let (x, y) = (0.08 * cos + lift * sin, -0.08 * sin + lift * cos);
+            assert!((y - 0.2 * (x - 0.08).powi(2)).abs() < 1e-7, "t = {t}");
+        }
+    }
+}
+
+#[test]
+fn a_pin_that_reaches_the_end_of_its_slot_stops_there_and_keeps_what_was_solved() {
+    let mut draft = cam_and_slot();
+    // The cam lifts the pin by some 20 mm; a lever that is driven by 60 deg would pull it out.
+    draft.joints.retain(|j| j.name != "cam" && j.name != "shaft");
+    draft.bodies.remove(0);
+    draft.drivers = vec![driver("lever", "fulcrum", "t")];
+    draft.design.clear();
+    draft.times = times(1.2, 24);
+    let model = Model::from_draft(&draft).unwrap();
+    let solution = Analysis::new(&model).unwrap().run();
+    let stop = solution.stop.unwrap();
+    assert!(solution.motion.len() > 10 && solution.motion.len() < 25, "{}", solution.motion.len());
+    assert_eq!(stop.kind, hardpoint::motion::StopKind::Limit);
+}
+
 #[test]
 fn a_train_of_rare_joints_matches_resolved_designs_in_both_formulations() {
     let model = Model::from_draft(&shaft_train()).unwrap();
@@ -242,7 +369,11 @@ fn marker(name: &str, joint: &str, position: [f64; 3], rotation: [f64; 3]) -> Va
 }
 
 fn mechanisms() -> Vec<Draft> {
-    REFERENCES.iter().map(|n| reference_draft(n)).chain([slider_on_a_shaft(), shaft_train()]).collect()
+    REFERENCES
+        .iter()
+        .map(|n| reference_draft(n))
+        .chain([slider_on_a_shaft(), shaft_train(), cam_and_slot()])
+        .collect()
 }
 
 #[test]

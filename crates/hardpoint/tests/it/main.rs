@@ -1,6 +1,7 @@
 //! The library as its users see it: whole mechanisms, from draft to sensitivities.
 
 mod allocation;
+mod assembly;
 mod design_variables;
 mod diagnosis;
 mod house;

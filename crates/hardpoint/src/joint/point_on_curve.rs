@@ -1,0 +1,19 @@
+//! Point on curve: a pin in a slot, or a roller on a cam.
+
+use super::{JointType, Need};
+use crate::constraint::Row;
+
+/// Seen along z_i, body j's point keeps its distance from a curve of body i: zero for a pin in a slot, a roller's radius for a
+/// cam. One constraint. The first place carries the curve, the second is the point.
+pub static POINT_ON_CURVE: JointType = JointType {
+    name: "point_on_curve",
+    aliases: &["cam", "slot"],
+    summary: "a point of body j keeps its distance from a `curve` of body i, in the plane square to `axis`",
+    places: 2,
+    axis: Need::Required,
+    axis2: Need::Unused,
+    freedoms: None,
+    tree_rows: &[],
+    rows: &[Row::Contact],
+    coordinates: &[],
+};

@@ -1,0 +1,193 @@
+//! The curve that a point follows: a smooth line in the x-y plane of a marker.
+
+use crate::law::{Ends, Law, LawError, SplineDegree, Table};
+use crate::space::{LANES, Mat3, Pose, Real, Vec3};
+
+/// Newton for the nearest point from a near start takes a few steps; more than this and it is lost.
+const MAX_STEPS: usize = 50;
+/// A step below this part of the curve's length leaves an error of round-off.
+const CONVERGED: f64 = 1e-15;
+/// How many places between two points of the curve are tried for the start of the search.
+const TRIED: usize = 8;
+
+/// A planar curve through points, in the frame of the marker that carries it: the quintic spline over the length of the
+/// chords between the points, so that the acceleration of what follows it changes without kinks.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Curve {
+    x: Law,
+    y: Law,
+    /// Length of the chords, m: the parameter u runs from 0 to it.
+    length: f64,
+    points: usize,
+    /// The parameter next to the point that follows, in the design configuration.
+    start: f64,
+}
+
+/// Where a curve is touched, in the frame of the marker that carries it, one design per lane.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Contact<T = f64> {
+    /// The parameter.
+    pub u: T,
+    /// The curve's point there, and its derivatives by u.
+    c: [Vec3<T>; 4],
+}
+
+impl<T: Real> Contact<T> {
+    /// The curve's place u.
+    pub fn at(curve: &Curve, witness: T, u: T) -> Self {
+        let mut c = [[[0.0; 2]; LANES]; 4];
+        for lane in 0..T::LANES {
+            for (k, point) in curve.at(u.lane(lane)).into_iter().enumerate() {
+                c[k][lane] = point;
+            }
+        }
+        let vector = |k: usize| {
+            let [x, y] = [0, 1].map(|axis| witness.like_lanes(|lane| c[k][lane][axis]));
+            Vec3::new(x, y, witness.zero())
+        };
+        Self { u, c: [vector(0), vector(1), vector(2), vector(3)] }
+    }
+
+    /// The place next to p.
+    pub fn nearest(curve: &Curve, p: Vec3<T>, near: T) -> Self {
+        let u = near.like_lanes(|lane| curve.nearest([p.x.lane(lane), p.y.lane(lane)], near.lane(lane)));
+        Self::at(curve, near, u)
+    }
+
+    /// The frame that walks along: x along the curve, y to its left.
+    #[inline(always)]
+    pub fn frame(&self) -> Pose<T> {
+        let d = self.c[1];
+        let x = d * (d.x.like(1.0) / d.norm());
+        let z = Vec3::new(d.x.zero(), d.x.zero(), d.x.like(1.0));
+        Pose { rot: Mat3 { cols: [x, z.cross(x), z] }, r: self.c[0] }
+    }
+
+    /// Rate at which that frame turns about z, and the rate of that, for the first two time derivatives of p, the point that
+    /// follows, in the marker's frame: the foot of the perpendicular stays one, `(p - C) . C' = 0`.
+    #[inline(always)]
+    pub fn turning(&self, p: [Vec3<T>; 3]) -> [T; 2] {
+        let [c, d, dd, ddd] = self.c;
+        let two = d.x.like(2.0);
+        let e = p[0] - c;
+        // (p. - C' u.) . C' + (p - C) . C'' u. = 0, and its derivative.
+        let g = d.dot(d) - e.dot(dd);
+        let u1 = p[1].dot(d) / g;
+        let g1 = two * d.dot(dd) * u1 - (p[1] - d * u1).dot(dd) - e.dot(ddd) * u1;
+        let u2 = (p[2].dot(d) + p[1].dot(dd) * u1 - g1 * u1) / g;
+        // The tangent turns by k = C' x C'' / C'^2 per u.
+        let square = d.dot(d);
+        let cross = |a: Vec3<T>, b: Vec3<T>| a.x * b.y - a.y * b.x;
+        let k = cross(d, dd) / square;
+        let k1 = cross(d, ddd) / square - two * k * d.dot(dd) / square;
+        [k * u1, k1 * u1 * u1 + k * u2]
+    }
+}
+
+/// A place on a curve: its point, and the first three derivatives by u, each x and y in the marker's frame.
+pub type CurvePoint = [[f64; 2]; 4];
+
+impl Curve {
+    /// The curve through points in a marker's x-y plane, for a follower that is drawn at `follower`.
+    pub(super) fn through(points: &[[f64; 2]], closed: bool, follower: [f64; 2]) -> Result<Self, LawError> {
+        let mut points = points.to_vec();
+        if closed {
+            points.push(points[0]);
+        }
+        let mut times = vec![0.0];
+        for pair in points.windows(2) {
+            let chord = (pair[1][0] - pair[0][0]).hypot(pair[1][1] - pair[0][1]);
+            times.push(times[times.len() - 1] + chord);
+        }
+        let ends = if closed { Ends::Periodic } else { Ends::Natural };
+        let law = |axis: usize| {
+            let values = points.iter().map(|p| p[axis]).collect();
+            Law::table(&Table { times: times.clone(), values, degree: SplineDegree::Quintic, ends })
+        };
+        let length = times[times.len() - 1];
+        let mut curve = Self { x: law(0)?, y: law(1)?, length, points: points.len(), start: 0.0 };
+        curve.start = curve.search(follower);
+        Ok(curve)
+    }
+
+    /// The curve at u; not finite beyond the ends of an open one.
+    pub fn at(&self, u: f64) -> CurvePoint {
+        let (x, y) = (self.x.at(u).derivatives(), self.y.at(u).derivatives());
+        std::array::from_fn(|k| [x[k], y[k]])
+    }
+
+    /// The parameter next to the follower in the design configuration.
+    pub fn start(&self) -> f64 {
+        self.start
+    }
+
+    /// The parameter of the point of the curve that is next to p, from a near one.
+    ///
+    /// The foot of the perpendicular, `(p - C) . C' = 0`; NaN where an open curve has none.
+    pub fn nearest(&self, p: [f64; 2], near: f64) -> f64 {
+        let mut u = near;
+        for _ in 0..MAX_STEPS {
+            let [c, d, dd, _] = self.at(u);
+            let e = [p[0] - c[0], p[1] - c[1]];
+            let slope = dot(d, d) - dot(e, dd);
+            let step = dot(e, d) / slope;
+            u += step;
+            if !(step.abs() > CONVERGED * self.length) {
+                break;
+            }
+        }
+        u
+    }
+
+    /// The parameter next to p, from anywhere.
+    fn search(&self, p: [f64; 2]) -> f64 {
+        let n = TRIED * self.points;
+        let distance = |k: &usize| {
+            let [c, ..] = self.at(self.length * *k as f64 / n as f64);
+            (p[0] - c[0]).hypot(p[1] - c[1])
+        };
+        let k = (0..=n).min_by(|a, b| distance(a).total_cmp(&distance(b))).unwrap_or(0);
+        self.nearest(p, self.length * k as f64 / n as f64)
+    }
+
+    /// Distance of p from the curve, positive on its left, and the unit normal to that side at the nearest point.
+    pub(super) fn distance(&self, p: Vec3) -> (f64, Vec3) {
+        let u = self.nearest([p.x, p.y], self.start);
+        let [c, d, ..] = self.at(u);
+        let n = Vec3::new(-d[1], d[0], 0.0) * (1.0 / d[0].hypot(d[1]));
+        (n.dot(p - Vec3::new(c[0], c[1], 0.0)), n)
+    }
+}
+
+fn dot(a: [f64; 2], b: [f64; 2]) -> f64 {
+    a[0] * b[0] + a[1] * b[1]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_curve_through_points_of_a_circle_is_that_circle() {
+        let points: Vec<[f64; 2]> = (0..24)
+            .map(|k| (k as f64 / 24.0 * std::f64::consts::TAU).sin_cos())
+            .map(|(s, c)| [2.0 * c, 2.0 * s])
+            .collect();
+        let curve = Curve::through(&points, true, [3.0, 0.1]).unwrap();
+        for angle in [0.03_f64, 1.0, 3.1, 5.9] {
+            let p = Vec3::new(3.0 * angle.cos(), 3.0 * angle.sin(), 7.0);
+            let start = curve.search([p.x, p.y]);
+            let at = Curve { start, ..curve.clone() };
+            let (distance, normal) = at.distance(p);
+            assert!((distance + 1.0).abs() < 1e-6, "{distance}");
+            assert!((normal.dot(p) + 3.0).abs() < 1e-5);
+        }
+    }
+
+    #[test]
+    fn beyond_the_end_of_an_open_curve_there_is_no_nearest_point() {
+        let curve = Curve::through(&[[0.0, 0.0], [1.0, 0.2], [2.0, 0.0]], false, [1.0, 0.0]).unwrap();
+        assert!(curve.nearest([1.5, 0.3], curve.start()).is_finite());
+        assert!(!curve.at(curve.nearest([3.0, 0.0], curve.start()))[0][0].is_finite());
+    }
+}
