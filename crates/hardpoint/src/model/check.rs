@@ -431,8 +431,9 @@ impl<'a> Check<'a> {
             }
             (Some(curve), true) => curve,
         };
-        let ids: Vec<_> =
-            draft.points.iter().map(|p| self.place(p, name, here.key("curve"))).collect::<Option<_>>()?;
+        let places = draft.points.iter().enumerate();
+        let ids: Vec<_> = places.map(|(k, p)| self.place(p, name, here.item("curve", k))).collect();
+        let ids: Vec<_> = ids.into_iter().collect::<Option<_>>()?;
         let m_i = Pose { rot: frame, r: self.position(at[0]) };
         let local: Vec<Vec3> = ids.iter().map(|h| m_i.inverse().point(self.position(*h))).collect();
         let size = self.model.size();
@@ -1019,8 +1020,12 @@ impl<'a> Check<'a> {
                 let k = self.find("driver", driver, at.clone(), names)?;
                 let parameters = draft.drivers[k].law.parameters();
                 let names = parameters.iter().map(|p| p.name.as_str());
-                let p =
-                    self.find(&format!("parameter of the law of `{driver}`"), parameter, at.clone(), names)?;
+                let p = self.find(
+                    &format!("parameter of the law of `{driver}`"),
+                    parameter,
+                    here.key("parameter"),
+                    names,
+                )?;
                 if !(rate.is_finite() && *rate != 0.0) {
                     null(self);
                 }
