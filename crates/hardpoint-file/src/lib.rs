@@ -191,7 +191,7 @@ fn bytes_of(path: &Path) -> Result<Vec<u8>, (String, Option<String>, Option<Stri
     let shown = path.display();
     let io = |e: std::io::Error| match e.kind() {
         std::io::ErrorKind::NotFound => {
-            let (note, help) = neighbours(path);
+            let (note, help) = neighbours(path, "toml");
             (format!("there is no file `{shown}`"), note, help)
         }
         std::io::ErrorKind::PermissionDenied => {
@@ -201,7 +201,7 @@ fn bytes_of(path: &Path) -> Result<Vec<u8>, (String, Option<String>, Option<Stri
     };
     let meta = std::fs::metadata(path).map_err(io)?;
     if meta.is_dir() {
-        let (note, _) = neighbours(&path.join("x"));
+        let (note, _) = neighbours(&path.join("x"), "toml");
         return Err((format!("`{shown}` is a folder"), note, Some("name a model file".into())));
     }
     let too_large = |size: String| {
@@ -222,29 +222,30 @@ fn bytes_of(path: &Path) -> Result<Vec<u8>, (String, Option<String>, Option<Stri
     Ok(bytes)
 }
 
-/// The model files beside a missing one, and the one that was probably meant.
-fn neighbours(path: &Path) -> (Option<String>, Option<String>) {
+/// The files of that kind beside a missing one, and the one that was probably meant.
+fn neighbours(path: &Path, extension: &str) -> (Option<String>, Option<String>) {
     let folder = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    let ending = format!(".{extension}");
     let Ok(entries) = std::fs::read_dir(folder) else {
         return (Some(format!("there is no folder `{}`", folder.display())), None);
     };
     let mut names: Vec<String> = entries
         .flatten()
         .filter_map(|e| e.file_name().into_string().ok())
-        .filter(|n| n.ends_with(".toml"))
+        .filter(|n| n.ends_with(&ending))
         .collect();
     names.sort();
     if names.is_empty() {
-        return (Some(format!("the folder `{}` has no .toml files", folder.display())), None);
+        return (Some(format!("the folder `{}` has no {ending} files", folder.display())), None);
     }
     let wanted = path.file_stem().and_then(|n| n.to_str()).unwrap_or_default();
-    let stems = names.iter().filter_map(|n| n.strip_suffix(".toml"));
+    let stems = names.iter().filter_map(|n| n.strip_suffix(&ending));
     let help = closest(wanted, stems)
-        .map(|stem| format!("did you mean `{}`?", folder.join(format!("{stem}.toml")).display()));
+        .map(|stem| format!("did you mean `{}`?", folder.join(format!("{stem}{ending}")).display()));
     let more = names.len().saturating_sub(12);
     let list = names.iter().take(12).map(|n| format!("`{}`", shown(n))).collect::<Vec<_>>().join(", ");
     let more = if more > 0 { format!(" and {more} more") } else { String::new() };
-    (Some(format!("the .toml files in `{}`: {list}{more}", folder.display())), help)
+    (Some(format!("the {ending} files in `{}`: {list}{more}", folder.display())), help)
 }
 
 /// Reads and checks the text of a model file; `file_name` is for the diagnostics only. A text has no folder, so

@@ -262,13 +262,43 @@ enum DirectionSchema {
 #[schemars(tag = "type", rename_all = "snake_case", deny_unknown_fields)]
 enum CouplerSchema {
     /// Two gears: `teeth[0] angle[0] + teeth[1] angle[1] = 0`, or minus for an internal gear.
-    Gear(GearsSchema),
+    Gear {
+        /// Names of the two joints that carry the gears.
+        joints: [Name; 2],
+        /// Numbers of teeth, or any two numbers in their ratio.
+        teeth: [f64; 2],
+        /// Whether one of them is an internal gear, so that both turn the same way.
+        #[schemars(default)]
+        internal: bool,
+    },
     /// Two bevel gears, with the same relation as `gear`.
-    Bevel(GearsSchema),
+    Bevel {
+        /// Names of the two joints that carry the gears.
+        joints: [Name; 2],
+        /// Numbers of teeth, or any two numbers in their ratio.
+        teeth: [f64; 2],
+        /// Whether one of them is an internal gear, so that both turn the same way.
+        #[schemars(default)]
+        internal: bool,
+    },
     /// A rack and its pinion: `displacement = radius x angle`.
-    Rack(RackSchema),
+    Rack {
+        /// Name of the joint on which the rack slides.
+        rack: Name,
+        /// Name of the joint on which the pinion turns.
+        pinion: Name,
+        /// Pitch radius, in the length unit; negative where the rack passes the pinion's other side.
+        radius: f64,
+    },
     /// Another name of `rack`.
-    RackAndPinion(RackSchema),
+    RackAndPinion {
+        /// Name of the joint on which the rack slides.
+        rack: Name,
+        /// Name of the joint on which the pinion turns.
+        pinion: Name,
+        /// Pitch radius, in the length unit; negative where the rack passes the pinion's other side.
+        radius: f64,
+    },
     /// A belt or chain: `radii[0] angle[0] = radii[1] angle[1]`, or minus for a crossed one.
     Belt {
         /// Names of the two joints that carry the pulleys.
@@ -284,27 +314,6 @@ enum CouplerSchema {
         /// Two terms or more.
         terms: Vec<TermSchema>,
     },
-}
-
-#[derive(JsonSchema)]
-struct GearsSchema {
-    /// Names of the two joints that carry the gears.
-    joints: [Name; 2],
-    /// Numbers of teeth, or any two numbers in their ratio.
-    teeth: [f64; 2],
-    /// Whether one of them is an internal gear, so that both turn the same way.
-    #[schemars(default)]
-    internal: bool,
-}
-
-#[derive(JsonSchema)]
-struct RackSchema {
-    /// Name of the joint on which the rack slides.
-    rack: Name,
-    /// Name of the joint on which the pinion turns.
-    pinion: Name,
-    /// Pitch radius, in the length unit; negative where the rack passes the pinion's other side.
-    radius: f64,
 }
 
 /// A joint coordinate times a number.

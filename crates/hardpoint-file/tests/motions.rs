@@ -5,135 +5,8 @@ use hardpoint::joint::Quantity;
 use hardpoint::model::{Change, Model};
 use hardpoint_file::{parse, read};
 
-const VALID: &str = r#"name = "press"
-units = { length = "mm", angle = "deg" }
-
-[hardpoints]
-A = [0, 0, 0]
-B = [200, 0, 0]
-C = [400, 0, 0]
-D = [400, 100, 0]
-
-[bodies]
-wheel = {}
-pinion = {}
-slider = {}
-nut = {}
-arm = {}
-float = {}
-
-[joints.J1]
-type = "revolute"
-bodies = ["ground", "wheel"]
-at = "A"
-axis = "z"
-
-[joints.J2]
-type = "revolute"
-bodies = ["ground", "pinion"]
-at = "B"
-axis = "z"
-
-[joints.slide]
-type = "translational"
-bodies = ["ground", "slider"]
-at = "C"
-axis = "x"
-
-[joints.spindle]
-type = "screw"
-bodies = ["ground", "nut"]
-at = "C"
-axis = "z"
-lead = 5
-
-[joints.ball]
-type = "spherical"
-bodies = ["slider", "arm"]
-at = ["C", [400, 1, 0]]
-
-[joints.rod]
-type = "rod"
-bodies = ["arm", "ground"]
-at = ["D", [400, 100, 50]]
-length = 50.5
-
-[joints.upright]
-type = "orientation"
-bodies = ["ground", "float"]
-
-[joints.cam]
-type = "cam"
-bodies = ["wheel", "slider"]
-at = ["A", [60, 0, 0]]
-axis = "z"
-curve = { points = [[50, 0, 0], [0, 50, 0], [-50, 0, 0], [0, -50, 0]], closed = true }
-
-[couplers.gears]
-type = "gear"
-joints = ["J1", "J2"]
-teeth = [20, 40]
-
-[couplers.rack]
-type = "rack"
-rack = "slide"
-pinion = "J2"
-radius = 12.5
-
-[couplers.belt]
-type = "belt"
-joints = ["J1", "J2"]
-radii = [10, 20]
-
-[couplers.lever]
-type = "linear"
-terms = [{ joint = "spindle", coordinate = "angle", coefficient = 2 }, { joint = "slide", coefficient = -3 }]
-
-[drivers.turn]
-joint = "J1"
-law = { type = "harmonic", amplitude = 25, frequency = 1.5, phase = 90, offset = 10 }
-
-[drivers.lift]
-point = "P"
-along = "z"
-law = { type = "smooth_step", to = 40, start = 0.5, end = 1.5 }
-
-[drivers.stroke]
-from = { body = "ground", at = "A" }
-to = "P"
-law = { type = "table", points = [[0, 0], [1, 5], [3, 2]] }
-
-[drivers.lean]
-body = "arm"
-about = "x"
-law = { type = "sequence", pieces = [{ duration = 1, law = "5*t^2" }, { law = { type = "constant_speed", speed = 10 } }] }
-
-[drivers.wave]
-body = "float"
-about = "y"
-relative_to = "wheel"
-law = { type = "expression", law = "a*sin(w*t)", parameters = { a = 25, w = 6.28 } }
-
-[drivers.creep]
-point = { body = "float", at = [0, 0, 10] }
-along = [1, 0, 0]
-law = { type = "polynomial", coefficients = [0, 1, 2] }
-
-[design.rod_length]
-length = "rod"
-
-[design.swing]
-driver = "turn"
-parameter = "amplitude"
-
-[points.P]
-body = "arm"
-at = "D"
-
-[time]
-end = 1.0
-steps = 10
-"#;
+/// Every kind of coupler, driver, law and rare joint once.
+const VALID: &str = include_str!("models/press.toml");
 
 fn snapshot(name: &str, shown: &str) {
     insta::with_settings!({ prepend_module_to_snapshot => false, omit_expression => true, description => name }, {
@@ -310,6 +183,7 @@ fn data_files() {
     let rows = "time, travel\n0, 0\n1, 5\n";
     broken("file_of_a_text", &[("points = [[0, 0], [1, 5], [3, 2]]", "file = \"travel.csv\"")]);
     refused("file_missing", &law("").replace("travel.csv", "data/travel.csv"), rows);
+    refused("file_misspelt", &law("").replace("travel", "travle"), rows);
     refused("file_above", &law("").replace("travel.csv", "../travel.csv"), rows);
     refused("file_above_in_disguise", &law("").replace("travel.csv", "data/../../travel.csv"), rows);
     refused("file_absolute", &law("").replace("travel.csv", "/etc/hosts"), rows);

@@ -2,8 +2,8 @@
 
 use std::path::{Component, Path};
 
-use crate::LARGEST_FILE;
 use crate::diagnostic::{closest, shown};
+use crate::{LARGEST_FILE, neighbours};
 
 /// More rows than this are surely a slip.
 const MOST_ROWS: usize = 1_000_000;
@@ -64,10 +64,15 @@ fn text_of(folder: Option<&Path>, name: &str) -> Result<String, DataError> {
     };
     let folder = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
     let failed = |e: std::io::Error| match e.kind() {
-        std::io::ErrorKind::NotFound => DataError::unreadable(
-            format!("there is no file `{name}` beside the model file"),
-            "the path counts from the folder of the model file",
-        ),
+        std::io::ErrorKind::NotFound => {
+            let message = format!("there is no file `{name}` beside the model file");
+            let mut error =
+                DataError::unreadable(message, "the path counts from the folder of the model file");
+            let (note, close) = neighbours(&folder.join(path), "csv");
+            error.notes.extend(note);
+            error.help = close.or(error.help);
+            error
+        }
         _ => DataError::unreadable(format!("the file `{name}` cannot be read"), "check its permissions")
             .note(e.to_string()),
     };
@@ -138,8 +143,8 @@ fn parse(text: &str, name: &str, columns: &[Column; 2]) -> Result<Vec<[f64; 2]>,
         }
         let line = record.position().map_or(0, csv::Position::line);
         let is_first = header.is_none() && taken.is_none();
-        if is_first && !record.iter().any(|field| field.parse::<f64>().is_ok()) {
-            header = Some(record.iter().map(str::to_owned).collect());
+        if is_first && !record.iter().any(|field| unquoted(field).parse::<f64>().is_ok()) {
+            header = Some(record.iter().map(|name| unquoted(name).to_owned()).collect());
             continue;
         }
         let places = match taken {
@@ -150,7 +155,7 @@ fn parse(text: &str, name: &str, columns: &[Column; 2]) -> Result<Vec<[f64; 2]>,
         for (k, place) in places.into_iter().enumerate() {
             let title = header.as_ref().and_then(|h| h.get(place)).map(|h| format!(" (`{}`)", shown(h)));
             let here = format!("`{name}`, line {line}, column {}{}", place + 1, title.unwrap_or_default());
-            point[k] = number(record.get(place), &here)?;
+            point[k] = number(record.get(place).map(unquoted), &here)?;
         }
         if let Some(before) = points.last().filter(|before| point[0] <= before[0]) {
             let message = format!(
@@ -224,6 +229,11 @@ fn found(
         };
     }
     Ok(places)
+}
+
+/// A field without quotes that a blank before them has made a part of it.
+fn unquoted(field: &str) -> &str {
+    field.strip_prefix('"').and_then(|f| f.strip_suffix('"')).map_or(field, str::trim)
 }
 
 fn number(field: Option<&str>, here: &str) -> Result<f64, DataError> {

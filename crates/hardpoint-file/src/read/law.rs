@@ -158,7 +158,11 @@ impl Reader<'_> {
         let f = self.need(fields, "coefficients")?;
         let subject = fields.subject(f.key);
         let list = self.list(f.value, &subject, "a list of numbers: of 1, t, t^2, ...")?;
-        let numbers: Vec<_> = list.iter().map(|v| self.number(v, &subject)).collect();
+        let numbers = list.iter().enumerate().map(|(k, v)| {
+            let name = format!("coefficient {k} of {}", fields.what);
+            self.number(v, &Subject { name, example: subject.example.clone() })
+        });
+        let numbers: Vec<_> = numbers.collect();
         let numbers: Vec<f64> = numbers.into_iter().collect::<Option<_>>()?;
         self.made(fields, f.value.span(), Law::polynomial(&numbers))
     }
