@@ -24,17 +24,35 @@ pub(super) struct DataError {
     pub message: String,
     pub notes: Vec<String>,
     pub help: Option<String>,
+    /// Whether it is the choice of columns that does not fit.
+    pub of_columns: bool,
 }
 
 impl DataError {
     /// HP0111: the file cannot be read.
     fn unreadable(message: impl Into<String>, help: &str) -> Self {
-        Self { code: "HP0111", message: message.into(), notes: Vec::new(), help: Some(help.into()) }
+        Self {
+            code: "HP0111",
+            message: message.into(),
+            notes: Vec::new(),
+            help: Some(help.into()),
+            of_columns: false,
+        }
     }
 
     /// HP0112: what the file holds is no table of times and values.
     fn content(message: impl Into<String>, help: &str) -> Self {
-        Self { code: "HP0112", message: message.into(), notes: Vec::new(), help: Some(help.into()) }
+        Self {
+            code: "HP0112",
+            message: message.into(),
+            notes: Vec::new(),
+            help: Some(help.into()),
+            of_columns: false,
+        }
+    }
+
+    fn of_columns(self) -> Self {
+        Self { of_columns: true, ..self }
     }
 
     fn note(mut self, note: impl Into<String>) -> Self {
@@ -70,7 +88,9 @@ fn text_of(folder: Option<&Path>, name: &str) -> Result<String, DataError> {
                 DataError::unreadable(message, "the path counts from the folder of the model file");
             let (note, close) = neighbours(&folder.join(path), "csv");
             error.notes.extend(note);
-            error.help = close.or(error.help);
+            // The model names it without the folder that the reader was given.
+            let prefix = folder.join("").display().to_string();
+            error.help = close.map(|c| c.replacen(&prefix, "", 1)).or(error.help);
             error
         }
         _ => DataError::unreadable(format!("the file `{name}` cannot be read"), "check its permissions")
@@ -149,7 +169,9 @@ fn parse(text: &str, name: &str, columns: &[Column; 2]) -> Result<Vec<[f64; 2]>,
         }
         let places = match taken {
             Some(places) => places,
-            None => *taken.insert(found(columns, header.as_deref(), record.len(), name)?),
+            None => *taken.insert(
+                found(columns, header.as_deref(), record.len(), name).map_err(DataError::of_columns)?,
+            ),
         };
         let mut point = [0.0; 2];
         for (k, place) in places.into_iter().enumerate() {
@@ -173,7 +195,7 @@ fn parse(text: &str, name: &str, columns: &[Column; 2]) -> Result<Vec<[f64; 2]>,
     }
     if points.is_empty() {
         if let Some(header) = &header {
-            found(columns, Some(header), header.len(), name)?;
+            found(columns, Some(header), header.len(), name).map_err(DataError::of_columns)?;
         }
         let message = format!("`{name}` has no rows of numbers");
         return Err(DataError::content(

@@ -373,7 +373,8 @@ impl Reader<'_> {
         match data::points(self.folder, &name, &columns) {
             Ok(points) => Some(points),
             Err(e) => {
-                let d = self.report(e.code, f.value.span(), e.message);
+                let at = fields.get("columns").filter(|_| e.of_columns).unwrap_or(f);
+                let d = self.report(e.code, at.value.span(), e.message);
                 d.notes = e.notes;
                 d.help = e.help;
                 None

@@ -803,9 +803,15 @@ impl<'a> Check<'a> {
                 }
             };
             let Some(terms) = terms else { continue };
+            let (joints, ratios) = match &c.kind {
+                CouplerKindDraft::Linear(_) => ("terms", "terms"),
+                CouplerKindDraft::Gears { .. } => ("joints", "teeth"),
+                CouplerKindDraft::Rack { .. } => ("rack", "radius"),
+                CouplerKindDraft::Belt { .. } => ("joints", "radii"),
+            };
             if !terms.iter().all(|t| t.coefficient.is_finite() && t.coefficient != 0.0) {
                 let message = format!("coupler `{}` has a ratio that is zero or not finite", c.name);
-                self.fault("HP0224", here.key("name"), message)
+                self.fault("HP0224", here.key(ratios), message)
                     .help("give every joint a number of teeth, a radius or a coefficient other than zero");
             }
             let twice = (1..terms.len()).any(|k| {
@@ -813,7 +819,7 @@ impl<'a> Check<'a> {
             });
             if terms.len() < 2 || twice {
                 let message = format!("coupler `{}` must couple at least two different coordinates", c.name);
-                self.fault("HP0224", here.key("name"), message)
+                self.fault("HP0224", here.key(joints), message)
                     .help("name two joints, or two coordinates of one joint");
             }
             self.model.couplers.push(Coupler { name: c.name.clone(), terms });
