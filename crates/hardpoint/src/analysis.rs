@@ -6,6 +6,7 @@ use fearless_simd::{Level, dispatch};
 
 use crate::measure::{self, Measured};
 use crate::model::{BodyId, Field, Geometry, Model, VariableId};
+use crate::motion::margin::Margins;
 use crate::motion::parts::Parts;
 use crate::motion::stepper::Stepper;
 use crate::motion::{BodyState, Effort, Motion, Stop, StopKind};
@@ -138,6 +139,7 @@ impl<'m> Analysis<'m> {
         let mut motion = self.empty_motion();
         let parts = Parts::new(model, &self.topology, std::slice::from_ref(geometry), 0.0);
         let mut stepper = Stepper::new(model, &self.topology, parts, 0.0);
+        let mut margins = Margins::new(&self.topology);
         let mut stop = None;
         for (k, &t) in times.iter().enumerate() {
             let step = if k == 0 { stepper.start(t) } else { stepper.advance(t) };
@@ -153,6 +155,9 @@ impl<'m> Analysis<'m> {
                 BodyState::each_lane(&stepper.state, b, 1, |_, s| motion.states.push(s));
             }
             motion.coordinates.extend(stepper.coordinates());
+            if self.measures {
+                motion.margins.push(margins.at(&stepper.topology, &stepper.state));
+            }
             sensing.step(&stepper.topology, &mut stepper.state, t);
             if progress(Progress { done: k + 1, total: times.len() }).is_break() && k + 1 < times.len() {
                 stop = Some(Stop {
@@ -183,6 +188,7 @@ impl<'m> Analysis<'m> {
             states: Vec::with_capacity(steps * bodies),
             bodies,
             coordinates: Vec::with_capacity(steps * self.topology.coordinates.len()),
+            margins: Vec::new(),
             assembly: None,
             effort: Effort::default(),
         }

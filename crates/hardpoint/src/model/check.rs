@@ -43,7 +43,11 @@ impl Model {
         c.measures();
         c.variables();
         c.times();
-        if c.faults.is_empty() { Ok(c.model) } else { Err(c.faults) }
+        if !c.faults.is_empty() {
+            return Err(c.faults);
+        }
+        c.model.hold_idle_spins();
+        Ok(c.model)
     }
 }
 
@@ -90,6 +94,7 @@ impl<'a> Check<'a> {
             variables: Vec::new(),
             points: Vec::new(),
             measures: Vec::new(),
+            idle: Vec::new(),
             times: draft.times.clone(),
         };
         Self { draft, model, faults: Vec::new(), joint_ids: Vec::new(), curve_points: Vec::new() }

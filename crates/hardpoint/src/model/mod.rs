@@ -9,6 +9,7 @@ mod curve;
 mod design;
 mod draft;
 mod fault;
+mod idle;
 
 pub(crate) use curve::Contact;
 pub use curve::{Curve, CurvePoint};
@@ -19,6 +20,7 @@ pub use draft::{
     PointRef, TermDraft, VariableDraft,
 };
 pub use fault::{Fault, Locus, Section, did_you_mean};
+pub use idle::Idle;
 
 use crate::constraint::Ends;
 use crate::joint::{CoordinateType, JointType, Quantity};
@@ -74,6 +76,8 @@ pub struct Model {
     pub points: Vec<BodyPoint>,
     /// Measures, in the order of the file.
     pub measures: Vec<Measure>,
+    /// Idle spins, which are held at rest.
+    pub idle: Vec<Idle>,
     /// Output times, s, increasing.
     pub times: Vec<f64>,
 }

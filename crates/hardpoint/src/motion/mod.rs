@@ -6,11 +6,13 @@
 
 mod assembly;
 pub(crate) mod kinematics;
+pub(crate) mod margin;
 pub(crate) mod parts;
 pub(crate) mod stepper;
 mod stop;
 
 pub use assembly::{Assembly, Closing, Gap, Moved};
+pub use margin::Margin;
 pub use stop::{Stop, StopKind};
 
 use crate::model::{BodyId, Model};
@@ -93,6 +95,8 @@ pub struct Motion {
     pub bodies: usize,
     /// `coordinates[k * n + c]`: tree coordinates, m or rad, angles unwrapped; 0 for those of a ball.
     pub coordinates: Vec<f64>,
+    /// Per output time, how far from a singular position; empty where only the bodies were asked for.
+    pub margins: Vec<Margin>,
     /// How it was closed before it moved, if it was open as drawn.
     pub assembly: Option<Assembly>,
     /// What it took.
@@ -117,6 +121,20 @@ pub struct Effort {
 }
 
 impl Motion {
+    /// The least margin of the motion, and the output time that has it.
+    pub fn least_margin(&self) -> Option<(usize, Margin)> {
+        self.margins.iter().copied().enumerate().min_by(|a, b| a.1.value.total_cmp(&b.1.value))
+    }
+
+    /// Where the motion would become singular beyond its end if the margin went on falling as it does over the last step, s
+    /// after the last output time; `None` where it does not fall.
+    pub fn singular_after(&self) -> Option<f64> {
+        let n = self.margins.len();
+        let (before, last) = (self.margins.get(n.checked_sub(2)?)?.value, self.margins[n - 1].value);
+        let step = self.times[n - 1] - self.times[n - 2];
+        (last < before).then(|| step * last / (before - last))
+    }
+
     /// States of all bodies at output time k.
     pub fn at(&self, k: usize) -> &[BodyState] {
         &self.states[k * self.bodies..(k + 1) * self.bodies]

@@ -33,8 +33,11 @@ const MAX_HALVINGS: u32 = 40;
 /// more than this) is a contradiction: the mechanism locks. Typed coordinates have about six digits, and an
 /// axis through two of them is tilted by some times that.
 pub(crate) const LOCKED: f64 = 1e-5;
-/// When the pivot ratio has fallen to this part of its first value, other rows may serve better.
-const RESELECT: f64 = 1e-3;
+/// When the pivot ratio has fallen to this part of its first value, other rows may serve better: redundant ones agree to the
+/// digits of the drawing only, and a weak selection magnifies what they lack.
+const RESELECT: f64 = 0.1;
+/// Where others did not serve better, they are tried again when the ratio has fallen by this factor once more.
+const LOOK_AGAIN: f64 = 0.3;
 
 /// A mechanism on its way through time, one design per lane.
 pub(crate) struct Stepper<'m, T> {
@@ -49,6 +52,8 @@ pub(crate) struct Stepper<'m, T> {
     time: f64,
     /// Per block: sign of the determinant on this branch, and the first pivot ratio.
     branch: Vec<(bool, f64)>,
+    /// Per block: the pivot ratio below which other rows are tried.
+    try_others: Vec<f64>,
     /// Fastest driver on the present path (rad, or sizes, per unit of its parameter).
     fastest_driver: f64,
     /// A law whose speed changes much within a step shorter than this has a jump there.
@@ -124,6 +129,7 @@ impl<'m, T: Real> Stepper<'m, T> {
             drivers,
             saved,
             time: 0.0,
+            try_others: vec![0.0; branch.len()],
             branch,
             fastest_driver: 0.0,
             shortest_smooth: 0.0,
@@ -237,6 +243,7 @@ impl<'m, T: Real> Stepper<'m, T> {
         for (b, &(ratio, positive)) in self.state.pivots.iter().enumerate() {
             if first {
                 self.branch[b] = (positive, ratio);
+                self.try_others[b] = RESELECT * ratio;
             } else if positive != self.branch[b].0 {
                 return Err(Refusal::Branch { block: b });
             }
@@ -384,9 +391,11 @@ impl<'m, T: Real> Stepper<'m, T> {
     /// Chooses other independent rows for blocks whose present ones have become nearly dependent.
     fn reselect(&mut self) -> Result<(), Refusal> {
         for b in 0..self.topology.blocks.len() {
-            if self.state.pivots[b].0 >= RESELECT * self.branch[b].1 {
+            let ratio = self.state.pivots[b].0;
+            if ratio >= self.try_others[b] {
                 continue;
             }
+            self.try_others[b] = LOOK_AGAIN * ratio;
             let (block, s) = (&self.topology.blocks[b], &self.state);
             let rows = self.topology.rows_of_block(b);
             if rows.len() == block.unknowns.len() {
@@ -413,6 +422,7 @@ impl<'m, T: Real> Stepper<'m, T> {
                 .map_err(Refusal::Position)?;
             let (ratio, positive) = self.state.pivots[b];
             self.branch[b] = (positive, ratio);
+            self.try_others[b] = RESELECT * ratio;
             self.state.solve_rates(&self.topology, &self.parts, &self.drivers);
         }
         Ok(())

@@ -1,7 +1,7 @@
 //! Kinematic admissibility of a design variable: can the joints stay closed, and how.
 
 use crate::constraint::Row;
-use crate::model::{Field, JointId, Kept, Model};
+use crate::model::{Field, JointId, Kept, Model, Term};
 use crate::space::Twist;
 
 /// Whether and how a mechanism follows a design variable.
@@ -45,28 +45,43 @@ const OPEN: f64 = 1e-7;
 /// section 4). Empty means admissible there.
 pub fn admissibility_at_design(model: &Model, field: &Field) -> Vec<JointDefect> {
     let scale = field.markers.iter().map(|m| m.twist.w.norm().max(m.twist.v.norm())).fold(0.0, f64::max);
-    let mut joints = Vec::new();
-    for (k, joint) in model.joints.iter().enumerate() {
+    let twists = |k: usize| {
         let mut z = [Twist::ZERO; 2];
         for m in field.markers.iter().filter(|m| m.joint.0 == k) {
-            z[m.end] = model.bodies[joint.bodies[m.end].0].frame.carry(m.twist);
+            z[m.end] = model.bodies[model.joints[k].bodies[m.end].0].frame.carry(m.twist);
         }
+        z
+    };
+    let mut touched: Vec<usize> = field.markers.iter().map(|m| m.joint.0).collect();
+    touched.extend(field.kept.iter().map(|(j, _)| j.0));
+    touched.sort_unstable();
+    touched.dedup();
+    let mut joints = Vec::new();
+    for k in touched {
+        let z = twists(k);
         let kept = field.kept.iter().find(|(j, _)| j.0 == k).map_or(Kept::default(), |(_, kept)| *kept);
         let ends = model.ends(JointId(k));
         // A driven coordinate is a constraint too: it must stay at zero in the design configuration.
         let driven = model.drivers.iter().filter(|d| d.joint.0 == k).map(|d| model.driven(d).row);
-        let worst = joint
-            .kind
-            .rows
-            .iter()
-            .copied()
-            .chain(driven)
+        let rows = model.joints[k].kind.rows.iter().copied().chain(driven);
+        let worst = rows
             .map(|row| (row, (row.wrench(&ends).on(z[1] - z[0]) - kept.by(row)).abs()))
             .max_by(|a, b| a.1.total_cmp(&b.1));
         if let Some((row, value)) = worst
             && value > OPEN * scale
         {
             joints.push(JointDefect { joint: JointId(k), row, value });
+        }
+    }
+    for coupler in &model.couplers {
+        let change = |t: &Term| {
+            let z = twists(t.joint.0);
+            t.coefficient * model.coupled(t).row.wrench(&model.ends(t.joint)).on(z[1] - z[0])
+        };
+        let first = coupler.terms[0];
+        let value = (coupler.terms.iter().map(change).sum::<f64>() / first.coefficient).abs();
+        if value > OPEN * scale && joints.iter().all(|j| j.joint != first.joint) {
+            joints.push(JointDefect { joint: first.joint, row: model.coupled(&first).row, value });
         }
     }
     joints

@@ -8,9 +8,11 @@
 mod blocks;
 mod fault;
 mod mobility;
+mod redundancy;
 mod tree;
 
 pub use fault::TopologyFault;
+pub use redundancy::Redundancy;
 
 use crate::constraint::Row;
 use crate::joint::Freedom;

@@ -1,0 +1,92 @@
+//! Idle freedoms: a rod that can spin between its balls without moving anything else.
+
+use super::*;
+use crate::space::{FullPivot, Twist};
+
+/// A constraint that is weaker than this part of the strongest does not hold.
+const RANK_TOLERANCE: f64 = 1e-8;
+/// A point this far from an axis, in sizes, is on it; typed coordinates agree to about this.
+const ON_AXIS: f64 = 1e-6;
+
+/// A body, or two that slide on each other, that can spin about a line without moving anything else. The spin is held at
+/// rest: one of its balls is treated as a universal joint.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Idle {
+    /// The bodies that spin together.
+    pub bodies: Vec<BodyId>,
+    /// The spherical joint that holds the spin.
+    pub joint: JointId,
+    /// The line's direction in the design configuration.
+    pub axis: Vec3,
+}
+
+impl Model {
+    /// Finds idle spins and holds them.
+    pub(super) fn hold_idle_spins(&mut self) {
+        let mut joints_of = vec![Vec::new(); self.bodies.len()];
+        for (k, j) in self.joints.iter().enumerate() {
+            for b in j.bodies {
+                joints_of[b.0].push(JointId(k));
+            }
+        }
+        let alone = (1..self.bodies.len()).map(|b| vec![BodyId(b)]);
+        let slides = self.joints.iter().filter(|j| {
+            let held = std::ptr::eq(j.kind, &crate::joint::TRANSLATIONAL)
+                || std::ptr::eq(j.kind, &crate::joint::FIXED);
+            held && !j.bodies.contains(&GROUND)
+        });
+        let groups: Vec<Vec<BodyId>> = alone.chain(slides.map(|j| j.bodies.to_vec())).collect();
+        for bodies in groups {
+            // Where nothing is a ball there is nothing to hold, and most bodies of a linkage are dealt with here.
+            let mut joints: Vec<JointId> =
+                bodies.iter().flat_map(|b| joints_of[b.0].iter().copied()).collect();
+            joints.sort_unstable();
+            joints.dedup();
+            joints.retain(|j| !self.joints[j.0].bodies.iter().all(|b| bodies.contains(b)));
+            let is_ball = |j: &JointId| std::ptr::eq(self.joints[j.0].kind, &crate::joint::SPHERICAL);
+            let Some(ball) = joints.iter().copied().find(is_ball) else { continue };
+            let Some(axis) = self.spin(&bodies, &joints, ball) else { continue };
+            let z = axis.any_square();
+            let frame = Mat3 { cols: [axis.cross(z), z.cross(axis.cross(z)), z] };
+            let held = &mut self.joints[ball.0];
+            (held.kind, held.frames) = (&crate::joint::UNIVERSAL, [frame; 2]);
+            self.idle.push(Idle { bodies, joint: ball, axis });
+        }
+    }
+
+    /// The axis through the ball about which these bodies can spin while all others stay, if that is all they can do.
+    fn spin(&self, bodies: &[BodyId], joints: &[JointId], ball: JointId) -> Option<Vec3> {
+        let size = self.size();
+        let centre = self.position(self.joints[ball.0].at[0]);
+        let mut rows = Vec::new();
+        for &j in joints {
+            let joint = &self.joints[j.0];
+            let ends = self.ends(j);
+            let side = if bodies.contains(&joint.bodies[1]) { 1.0 } else { -1.0 };
+            let driven = self.drivers.iter().filter(|d| d.joint == j).map(|d| self.driven(d).row);
+            let coupled = self.couplers.iter().flat_map(|c| &c.terms).filter(|t| t.joint == j);
+            let coupled = coupled.map(|t| self.coupled(t).row);
+            for row in joint.kind.rows.iter().copied().chain(driven).chain(coupled) {
+                let wrench = row.wrench(&ends);
+                let scale = if row.is_length() { side / size } else { side };
+                // Turns about the ball, then slides in sizes.
+                let turns = Vec3::AXES.map(|e| scale * wrench.on(Twist::turn(e, centre)));
+                let slides = Vec3::AXES.map(|e| scale * size * wrench.on(Twist::slide(e)));
+                rows.push(turns.into_iter().chain(slides).collect());
+            }
+        }
+        let pivots = FullPivot::of(rows, 6, RANK_TOLERANCE);
+        let [free] = &pivots.free[..] else { return None };
+        let slide = Vec3::new(free[3], free[4], free[5]);
+        let axis = Vec3::new(free[0], free[1], free[2]).unit()?;
+        // A spin that the position happens to allow is no idle one: every other joint must be on the axis, for good.
+        let on_axis = |p: Vec3| (p - centre).cross(axis).norm() <= ON_AXIS * size;
+        let for_good = joints.iter().all(|&j| {
+            let joint = &self.joints[j.0];
+            let e = usize::from(bodies.contains(&joint.bodies[1]));
+            let along = joint.axis.is_none() || joint.frames[e].cols[2].cross(axis).norm() <= ON_AXIS;
+            on_axis(self.position(joint.at[e])) && along
+        });
+        (slide.norm() <= ON_AXIS && for_good).then_some(axis)
+    }
+}
