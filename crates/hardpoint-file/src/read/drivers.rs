@@ -68,8 +68,7 @@ impl Reader<'_> {
     fn form(&mut self, fields: &Fields<'_>) -> Option<&'static str> {
         let has = |key: &&str| fields.get(key).is_some();
         let led = FORMS.iter().find(|(lead, _)| has(lead));
-        let Some((form, own)) = led.or_else(|| FORMS.iter().find(|(_, keys)| keys.iter().any(|k| has(k))))
-        else {
+        let Some((form, own)) = led.or_else(|| FORMS.iter().find(|(_, keys)| keys.iter().any(&has))) else {
             let message = format!("{} does not say what it prescribes", fields.what);
             self.report("HP0104", fields.at.clone(), message).help =
                 Some(format!("{FORMS_HELP}; for example `joint = \"J1\"`"));

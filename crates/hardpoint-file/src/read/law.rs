@@ -398,7 +398,7 @@ impl Reader<'_> {
             DeValue::String(_) => self.name(&list[k], &subject, expected).map(data::Column::Named),
             _ => {
                 let number = self.number(&list[k], &subject)?;
-                if !(number >= 1.0 && number <= 1e6 && number.fract() == 0.0) {
+                if !((1.0..=1e6).contains(&number) && number.fract() == 0.0) {
                     self.senseless(list[k].span(), format!("{} cannot be {number}", subject.name)).help =
                         Some("columns are counted from 1".into());
                     return None;
