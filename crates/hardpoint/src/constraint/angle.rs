@@ -27,7 +27,7 @@ fn sine_of_difference<T: Real>([s, c]: [T; 2], target: T) -> T {
 }
 
 /// The angle with this sine and cosine (up to a common factor) that is nearest to `near`.
-#[inline(always)]
+#[inline(never)]
 fn unwrapped<T: Real>([s, c]: [T; 2], near: T) -> T {
     const TURN: f64 = 2.0 * std::f64::consts::PI;
     near.like_lanes(|lane| {
@@ -37,13 +37,13 @@ fn unwrapped<T: Real>([s, c]: [T; 2], near: T) -> T {
 }
 
 /// The angle about z_i nearest to `near`.
-#[inline(never)]
+#[inline(always)]
 pub(super) fn value<T: Real>(ends: &Ends<T>, near: T) -> T {
     unwrapped(about_z_i(ends), near)
 }
 
 /// The angle about x_j nearest to `near`.
-#[inline(never)]
+#[inline(always)]
 pub(super) fn value_on_j<T: Real>(ends: &Ends<T>, near: T) -> T {
     unwrapped(about_x_j(ends), near)
 }
@@ -65,48 +65,40 @@ pub(super) fn wrench_rates<T: Real>(ends: &Ends<T>, rates: &EndRates<T>) -> [Wre
     [Wrench::moment(z1), Wrench::moment(z2)]
 }
 
-#[inline(never)]
+#[inline(always)]
 pub(super) fn residual_on_j<T: Real>(ends: &Ends<T>, target: T) -> T {
     sine_of_difference(about_x_j(ends), target)
 }
 
 /// The moment x_j.
-#[inline(never)]
+#[inline(always)]
 pub(super) fn wrench_on_j<T: Real>(ends: &Ends<T>) -> Wrench<T> {
     Wrench::moment(axis(&ends.j.rot, 0))
 }
 
-#[inline(never)]
+#[inline(always)]
 pub(super) fn wrench_rates_on_j<T: Real>(ends: &Ends<T>, rates: &EndRates<T>) -> [Wrench<T>; 2] {
     let [_, x1, x2] = direction_rates(axis(&ends.j.rot, 0), rates.v_j, rates.a_j);
     [Wrench::moment(x1), Wrench::moment(x2)]
 }
 
 /// `sin(angle - f)`, the products divided by the length of x_j seen along z_i.
-#[inline(never)]
+#[inline(always)]
 pub(super) fn heading_residual<T: Real>(ends: &Ends<T>, target: T) -> T {
     let [s, c] = about_z_i(ends);
     sine_of_difference([s, c], target) / (s * s + c * c).sqrt()
 }
 
 /// The moment `x_j x (c y_i - s x_i) / (s^2 + c^2)`, the gradient of atan2(s, c).
-#[inline(never)]
+#[inline(always)]
 pub(super) fn heading_wrench<T: Real>(ends: &Ends<T>) -> Wrench<T> {
     let [s, c] = about_z_i(ends);
     let g = axis(&ends.i.rot, 1) * c - axis(&ends.i.rot, 0) * s;
     Wrench::moment(axis(&ends.j.rot, 0).cross(g) * (s.like(1.0) / (s * s + c * c)))
 }
 
-#[inline(never)]
-pub(super) fn heading_wrench_rates<T: Real>(ends: &Ends<T>, rates: &EndRates<T>) -> [Wrench<T>; 2] {
-    ends.j.r.x.within(
-        #[inline(always)]
-        || heading_wrench_rates_inline(ends, rates),
-    )
-}
-
 #[inline(always)]
-fn heading_wrench_rates_inline<T: Real>(ends: &Ends<T>, rates: &EndRates<T>) -> [Wrench<T>; 2] {
+pub(super) fn heading_wrench_rates<T: Real>(ends: &Ends<T>, rates: &EndRates<T>) -> [Wrench<T>; 2] {
     let [x_i, y_i] = [0, 1].map(|k| direction_rates(axis(&ends.i.rot, k), rates.v_i, rates.a_i));
     let x_j = direction_rates(axis(&ends.j.rot, 0), rates.v_j, rates.a_j);
     let two = x_j[0].x.like(2.0);

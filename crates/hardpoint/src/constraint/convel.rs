@@ -7,26 +7,18 @@ use super::{EndRates, Ends, dot1};
 use crate::space::{Real, Wrench};
 
 /// `y_i . x_j - x_i . y_j`.
-#[inline(never)]
+#[inline(always)]
 pub(super) fn residual<T: Real>(ends: &Ends<T>, target: T) -> T {
     dot1::residual(1, 0, ends, target) - dot1::residual(0, 1, ends, target.zero())
 }
 
-#[inline(never)]
+#[inline(always)]
 pub(super) fn wrench<T: Real>(ends: &Ends<T>) -> Wrench<T> {
     dot1::wrench(1, 0, ends) - dot1::wrench(0, 1, ends)
 }
 
-#[inline(never)]
-pub(super) fn wrench_rates<T: Real>(ends: &Ends<T>, rates: &EndRates<T>) -> [Wrench<T>; 2] {
-    ends.j.r.x.within(
-        #[inline(always)]
-        || wrench_rates_inline(ends, rates),
-    )
-}
-
 #[inline(always)]
-fn wrench_rates_inline<T: Real>(ends: &Ends<T>, rates: &EndRates<T>) -> [Wrench<T>; 2] {
+pub(super) fn wrench_rates<T: Real>(ends: &Ends<T>, rates: &EndRates<T>) -> [Wrench<T>; 2] {
     let [p1, p2] = dot1::wrench_rates(1, 0, ends, rates);
     let [m1, m2] = dot1::wrench_rates(0, 1, ends, rates);
     [p1 - m1, p2 - m2]

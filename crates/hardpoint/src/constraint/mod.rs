@@ -91,59 +91,96 @@ impl Row {
 }
 
 impl Row {
+    /// The row with the same geometry among those that most mechanisms are made of.
+    ///
+    /// Their formulas are inlined into the hot path; the others are called, so that it stays small.
+    #[inline(always)]
+    fn common(self) -> Self {
+        match self {
+            Self::Cosine => Self::Dot1(2, 2),
+            Self::Offset => Self::Dot2(2),
+            Self::Contact => Self::Dot2(1),
+            _ => self,
+        }
+    }
+
     /// By how much the constraint fails; `target` is what it measures at the design configuration (a rod's length),
     /// or the driver's value.
     #[inline(always)]
     pub fn residual<T: Real>(self, ends: &Ends<T>, target: T) -> T {
-        match self {
+        match self.common() {
             Self::Point(k) => spherical::residual(k, ends),
             Self::Dot1(a, b) => dot1::residual(a, b, ends, target),
-            Self::Cosine => dot1::residual(2, 2, ends, target),
             Self::Dot2(a) => dot2::residual(a, ends, target),
-            Self::Offset => dot2::residual(2, ends, target),
-            Self::Contact => dot2::residual(1, ends, target),
             Self::Distance => distance::residual(ends, target),
             Self::Angle => angle::residual(ends, target),
-            Self::AngleOnJ => angle::residual_on_j(ends, target),
-            Self::Heading => angle::heading_residual(ends, target),
-            Self::ConstantVelocity => convel::residual(ends, target),
+            _ => self.rare_residual(ends, target),
         }
+    }
+
+    #[inline(never)]
+    fn rare_residual<T: Real>(self, ends: &Ends<T>, target: T) -> T {
+        target.within(
+            #[inline(always)]
+            || match self {
+                Self::AngleOnJ => angle::residual_on_j(ends, target),
+                Self::Heading => angle::heading_residual(ends, target),
+                Self::ConstantVelocity => convel::residual(ends, target),
+                _ => unreachable!("a common row"),
+            },
+        )
     }
 
     /// The wrench l.
     #[inline(always)]
     pub fn wrench<T: Real>(self, ends: &Ends<T>) -> Wrench<T> {
-        match self {
+        match self.common() {
             Self::Point(k) => spherical::wrench(k, ends),
             Self::Dot1(a, b) => dot1::wrench(a, b, ends),
-            Self::Cosine => dot1::wrench(2, 2, ends),
             Self::Dot2(a) => dot2::wrench(a, ends),
-            Self::Offset => dot2::wrench(2, ends),
-            Self::Contact => dot2::wrench(1, ends),
             Self::Distance => distance::wrench(ends),
             Self::Angle => angle::wrench(ends),
-            Self::AngleOnJ => angle::wrench_on_j(ends),
-            Self::Heading => angle::heading_wrench(ends),
-            Self::ConstantVelocity => convel::wrench(ends),
+            _ => self.rare_wrench(ends),
         }
+    }
+
+    #[inline(never)]
+    fn rare_wrench<T: Real>(self, ends: &Ends<T>) -> Wrench<T> {
+        ends.j.r.x.within(
+            #[inline(always)]
+            || match self {
+                Self::AngleOnJ => angle::wrench_on_j(ends),
+                Self::Heading => angle::heading_wrench(ends),
+                Self::ConstantVelocity => convel::wrench(ends),
+                _ => unreachable!("a common row"),
+            },
+        )
     }
 
     /// The first and second time derivatives of the wrench.
     #[inline(always)]
     pub fn wrench_rates<T: Real>(self, ends: &Ends<T>, rates: &EndRates<T>) -> [Wrench<T>; 2] {
-        match self {
+        match self.common() {
             Self::Point(k) => spherical::wrench_rates(k, ends, rates),
             Self::Dot1(a, b) => dot1::wrench_rates(a, b, ends, rates),
-            Self::Cosine => dot1::wrench_rates(2, 2, ends, rates),
             Self::Dot2(a) => dot2::wrench_rates(a, ends, rates),
-            Self::Offset => dot2::wrench_rates(2, ends, rates),
-            Self::Contact => dot2::wrench_rates(1, ends, rates),
             Self::Distance => distance::wrench_rates(ends, rates),
             Self::Angle => angle::wrench_rates(ends, rates),
-            Self::AngleOnJ => angle::wrench_rates_on_j(ends, rates),
-            Self::Heading => angle::heading_wrench_rates(ends, rates),
-            Self::ConstantVelocity => convel::wrench_rates(ends, rates),
+            _ => self.rare_wrench_rates(ends, rates),
         }
+    }
+
+    #[inline(never)]
+    fn rare_wrench_rates<T: Real>(self, ends: &Ends<T>, rates: &EndRates<T>) -> [Wrench<T>; 2] {
+        ends.j.r.x.within(
+            #[inline(always)]
+            || match self {
+                Self::AngleOnJ => angle::wrench_rates_on_j(ends, rates),
+                Self::Heading => angle::heading_wrench_rates(ends, rates),
+                Self::ConstantVelocity => convel::wrench_rates(ends, rates),
+                _ => unreachable!("a common row"),
+            },
+        )
     }
 
     /// Whether its residual is a length (else it is an angle or a cosine).

@@ -3,7 +3,7 @@
 //! This is the hot path. It is generic over its scalar, allocates nothing, and walks the lists of
 //! [`Topology`]; the sensitivities use the same [`level`] with the same factors.
 
-use crate::constraint::{EndRates, Ends};
+use crate::constraint::{EndRates, Ends, Row};
 use crate::joint::Freedom;
 use crate::model::{Contact, Model};
 use crate::space::{Elimination, Pose, Quat, Real, Twist, Wrench};
@@ -282,30 +282,34 @@ impl<T: Real> State<T> {
         sum
     }
 
-    /// Adds a row's wrench, times its factor, to its row of the block's Jacobian.
+    /// Adds row r to row k of the block's Jacobian.
     #[inline(always)]
-    fn enter(&mut self, topology: &Topology, b: usize, k: usize, r: usize, factor: f64) {
-        let place = &topology.rows[r];
-        let closure = &topology.closures[place.closure];
-        let wrench = closure.rows[place.index].wrench(&self.ends[place.closure]);
-        self.l[r] = wrench;
+    fn enter(&mut self, topology: &Topology, b: usize, k: usize, r: usize, factor: T) {
+        let closure = &topology.closures[topology.rows[r].closure];
+        let wrench = self.l[r];
         let out = self.factors[b].row_mut(k);
         for &(column, coordinate, side) in &closure.entries {
-            out[column] += wrench.on(self.x[coordinate]) * self.witness.like(side * factor);
+            out[column] += wrench.on(self.x[coordinate]) * (factor * factor.like(side));
         }
     }
 
-    /// Adds the further terms of a coupler to its row of the block's Jacobian.
+    /// Adds the further terms of a coupler, row r, to row k of the block's Jacobian.
     #[inline(never)]
     fn enter_terms(&mut self, topology: &Topology, b: usize, k: usize, r: usize) {
+        for &(term, factor) in &topology.rows[r].terms {
+            let place = &topology.rows[term];
+            let row = topology.closures[place.closure].rows[place.index];
+            self.l[term] = self.wrench_of(row, place.closure);
+            self.enter(topology, b, k, term, self.witness.like(factor));
+        }
+    }
+
+    #[inline(never)]
+    fn wrench_of(&self, row: Row, closure: usize) -> Wrench<T> {
         self.witness.within(
             #[inline(always)]
-            || {
-                for &(term, factor) in &topology.rows[r].terms {
-                    self.enter(topology, b, k, term, factor);
-                }
-            },
-        );
+            || row.wrench(&self.ends[closure]),
+        )
     }
 
     /// Residuals, wrenches and factors of block b where it stands.
@@ -319,7 +323,9 @@ impl<T: Real> State<T> {
         for (k, &r) in block.selected.iter().enumerate() {
             self.rhs[k] = -self.residual(topology, parts, drivers, r);
             self.factors[b].row_mut(k).fill(zero);
-            self.enter(topology, b, k, r, 1.0);
+            let place = &topology.rows[r];
+            self.l[r] = topology.closures[place.closure].rows[place.index].wrench(&self.ends[place.closure]);
+            self.enter(topology, b, k, r, zero.like(1.0));
             if !topology.rows[r].terms.is_empty() {
                 self.enter_terms(topology, b, k, r);
             }
@@ -521,7 +527,7 @@ impl<T: Real> State<T> {
                         continue;
                     }
                     let row = topology.closures[place.closure].rows[place.index];
-                    let residual = self.residual(topology, parts, drivers, r).abs().largest();
+                    let residual = self.residual_of(topology, parts, drivers, r).abs().largest();
                     let scaled = if row.is_length() { residual / self.size } else { residual };
                     // Written so that a NaN is the largest of all.
                     if !(residual <= worst.largest) {
