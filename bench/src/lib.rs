@@ -1,7 +1,9 @@
 //! Models to measure with: those of `models/`, read as a user's file is read, and generated ones of any size.
 
 use hardpoint::law::Law;
-use hardpoint::model::{DrivenDraft, BodyDraft, Draft, DriverDraft, FrameDraft, JointDraft, Line, Model, Place};
+use hardpoint::model::{
+    BodyDraft, Draft, DrivenDraft, DriverDraft, FrameDraft, JointDraft, Line, Model, Place,
+};
 use hardpoint::space::Vec3;
 
 /// The model `models/NAME.toml`.

@@ -86,6 +86,10 @@ impl Diagnostics {
     pub(crate) fn new(source: Source, mut list: Vec<Diagnostic>) -> Self {
         // What concerns the file as a whole comes first.
         list.sort_by_key(|d| d.span.as_ref().map(|s| (s.start, s.end)));
+        for d in &mut list {
+            let texts = d.notes.iter_mut().chain(&mut d.help).chain(&mut d.label);
+            texts.for_each(|text| *text = printable(std::mem::take(text)));
+        }
         list.dedup_by(|a, b| (a.code, &a.span, &a.message) == (b.code, &b.span, &b.message));
         Self { source, list }
     }

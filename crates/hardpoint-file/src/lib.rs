@@ -26,6 +26,7 @@
 //!   not TOML is not looked at further.
 //! * No text makes this crate panic, and none keeps it busy for long: names, tables and lists have limits
 //!   far above any mechanism.
+//! * A driver's table may lie in a CSV file in the model's folder; that is all that is read besides the model file.
 //!
 //! What is not here: includes, parameters and expressions outside of drivers' laws.
 
@@ -169,7 +170,7 @@ pub fn read(path: &Path) -> Result<ModelFile, ReadError> {
         ReadError::Unreadable(Diagnostics::new(source, vec![d]))
     })?;
     match String::from_utf8(bytes) {
-        Ok(text) => parse(&text, &name).map_err(ReadError::Invalid),
+        Ok(text) => parse_in(path.parent(), &text, &name).map_err(ReadError::Invalid),
         Err(error) => {
             let valid = error.utf8_error().valid_up_to();
             let bytes = error.into_bytes();
@@ -190,7 +191,7 @@ fn bytes_of(path: &Path) -> Result<Vec<u8>, (String, Option<String>, Option<Stri
     let shown = path.display();
     let io = |e: std::io::Error| match e.kind() {
         std::io::ErrorKind::NotFound => {
-            let (note, help) = neighbours(path);
+            let (note, help) = neighbours(path, "toml");
             (format!("there is no file `{shown}`"), note, help)
         }
         std::io::ErrorKind::PermissionDenied => {
@@ -200,7 +201,7 @@ fn bytes_of(path: &Path) -> Result<Vec<u8>, (String, Option<String>, Option<Stri
     };
     let meta = std::fs::metadata(path).map_err(io)?;
     if meta.is_dir() {
-        let (note, _) = neighbours(&path.join("x"));
+        let (note, _) = neighbours(&path.join("x"), "toml");
         return Err((format!("`{shown}` is a folder"), note, Some("name a model file".into())));
     }
     let too_large = |size: String| {
@@ -221,32 +222,34 @@ fn bytes_of(path: &Path) -> Result<Vec<u8>, (String, Option<String>, Option<Stri
     Ok(bytes)
 }
 
-/// The model files beside a missing one, and the one that was probably meant.
-fn neighbours(path: &Path) -> (Option<String>, Option<String>) {
+/// The files of that kind beside a missing one, and the one that was probably meant.
+fn neighbours(path: &Path, extension: &str) -> (Option<String>, Option<String>) {
     let folder = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    let ending = format!(".{extension}");
     let Ok(entries) = std::fs::read_dir(folder) else {
         return (Some(format!("there is no folder `{}`", folder.display())), None);
     };
     let mut names: Vec<String> = entries
         .flatten()
         .filter_map(|e| e.file_name().into_string().ok())
-        .filter(|n| n.ends_with(".toml"))
+        .filter(|n| n.ends_with(&ending))
         .collect();
     names.sort();
     if names.is_empty() {
-        return (Some(format!("the folder `{}` has no .toml files", folder.display())), None);
+        return (Some(format!("the folder `{}` has no {ending} files", folder.display())), None);
     }
     let wanted = path.file_stem().and_then(|n| n.to_str()).unwrap_or_default();
-    let stems = names.iter().filter_map(|n| n.strip_suffix(".toml"));
+    let stems = names.iter().filter_map(|n| n.strip_suffix(&ending));
     let help = closest(wanted, stems)
-        .map(|stem| format!("did you mean `{}`?", folder.join(format!("{stem}.toml")).display()));
+        .map(|stem| format!("did you mean `{}`?", folder.join(format!("{stem}{ending}")).display()));
     let more = names.len().saturating_sub(12);
     let list = names.iter().take(12).map(|n| format!("`{}`", shown(n))).collect::<Vec<_>>().join(", ");
     let more = if more > 0 { format!(" and {more} more") } else { String::new() };
-    (Some(format!("the .toml files in `{}`: {list}{more}", folder.display())), help)
+    (Some(format!("the {ending} files in `{}`: {list}{more}", folder.display())), help)
 }
 
-/// Reads and checks the text of a model file; `file_name` is for the diagnostics only.
+/// Reads and checks the text of a model file; `file_name` is for the diagnostics only. A text has no folder, so
+/// the laws in it may not name data files; [`read`] reads those too.
 ///
 /// # Errors
 /// Everything that is wrong with it, in the order of the text.
@@ -257,6 +260,11 @@ fn neighbours(path: &Path) -> (Option<String>, Option<String>) {
 /// assert_eq!((first.code, first.line), ("HP0104", None));
 /// ```
 pub fn parse(text: &str, file_name: &str) -> Result<ModelFile, Diagnostics> {
+    parse_in(None, text, file_name)
+}
+
+/// As [`parse`], of a model whose file lies in `folder`, so that it may name files there.
+fn parse_in(folder: Option<&Path>, text: &str, file_name: &str) -> Result<ModelFile, Diagnostics> {
     let source = Source::new(file_name, text);
     if text.trim().is_empty() {
         let d = source
@@ -270,7 +278,7 @@ pub fn parse(text: &str, file_name: &str) -> Result<ModelFile, Diagnostics> {
         drop(document);
         return Err(Diagnostics::new(source, list));
     }
-    let mut reader = Reader { source: &source, units: Units::default(), found: Vec::new() };
+    let mut reader = Reader { source: &source, folder, units: Units::default(), found: Vec::new() };
     let raw = reader.model(document.get_ref());
     let (units, mut found) = (reader.units, reader.found);
     let model = match Model::from_draft(&raw.draft) {
@@ -340,11 +348,12 @@ fn syntax_errors(source: &Source, errors: &[toml::de::Error]) -> Vec<Diagnostic>
 }
 
 /// The tables that names are looked up in, and how the core says that a name is not there.
-const LOOKED_UP: [(&str, &str); 4] = [
+const LOOKED_UP: [(&str, &str); 5] = [
     ("hardpoints", "no hardpoint named"),
     ("bodies", "no body named"),
     ("joints", "no joint named"),
     ("points", "no point named"),
+    ("drivers", "no driver named"),
 ];
 
 /// Whether a fault only follows from something that could not be read and is reported already.
@@ -359,11 +368,15 @@ fn follows(fault: &Fault, places: &Places) -> bool {
         return true;
     }
     let Some(entry) = places.entry(at.section, at.index) else { return false };
-    let geometry = matches!(fault.code, "HP0205" | "HP0206" | "HP0209" | "HP0211");
+    let of_a_law = at.section == Section::Design && fault.message.contains("parameter");
+    let geometry = matches!(fault.code, "HP0205" | "HP0206" | "HP0209" | "HP0211" | "HP0226");
     entry.unread.contains(&at.key)
-        || !entry.unread.is_empty() && matches!(fault.code, "HP0208" | "HP0210" | "HP0217" | "HP0219")
+        || !entry.unread.is_empty()
+            && matches!(fault.code, "HP0208" | "HP0210" | "HP0217" | "HP0219" | "HP0223" | "HP0226")
         || geometry && places.any_unread(Section::Hardpoints, &[])
         || fault.code == "HP0212" && places.any_unread(Section::Joints, &["bodies"])
+        || fault.code == "HP0225" && places.any_unread(Section::Joints, &["length"])
+        || of_a_law && places.any_unread(Section::Drivers, &["law", "joint"])
 }
 
 fn shown_fault(source: &Source, places: &Places, fault: Fault) -> Diagnostic {

@@ -63,11 +63,12 @@ impl EntryPlace {
     }
 }
 
-const SECTIONS: [Section; 9] = [
+const SECTIONS: [Section; 10] = [
     Section::Model,
     Section::Hardpoints,
     Section::Bodies,
     Section::Joints,
+    Section::Couplers,
     Section::Drivers,
     Section::Design,
     Section::Points,

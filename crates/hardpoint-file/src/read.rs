@@ -1,22 +1,25 @@
 //! The tables of a model file, one function each, into a draft.
 
+mod couplers;
+mod data;
 mod design;
+mod drivers;
+mod law;
 mod results;
 
 use std::collections::HashMap;
 use std::ops::Range;
 
 use hardpoint::joint::{self, Quantity};
-use hardpoint::law::Law;
 use hardpoint::model::{
-    BodyDraft, Draft, DrivenDraft, DriverDraft, FrameDraft, HardpointDraft, JointDraft, Line, Place, Section,
+    BodyDraft, CurveDraft, Draft, FrameDraft, HardpointDraft, JointDraft, Line, Place, Section,
 };
 use hardpoint::space::{Pose, Quat, Vec3, rotation_from_euler_313};
 use toml::de::{DeTable, DeValue};
 
 use crate::diagnostic::{closest, shown};
 use crate::places::{EntryPlace, Places};
-use crate::tree::{Field, Fields, Key, MOST_ENTRIES, Reader, Subject, Value, above_tables};
+use crate::tree::{Field, Fields, Key, MOST_ENTRIES, Reader, Subject, Value, above_tables, quoted};
 use crate::units::{AngleUnit, LengthUnit};
 
 const MODEL: &[Key] = &[
@@ -26,6 +29,7 @@ const MODEL: &[Key] = &[
     ("hardpoints", "{ A = [0, 0, 0] }"),
     ("bodies", "{ crank = {} }"),
     ("joints", "{}"),
+    ("couplers", "{}"),
     ("drivers", "{}"),
     ("design", "{}"),
     ("points", "{}"),
@@ -63,9 +67,12 @@ const JOINT: &[Key] = &[
     ("at", "\"A\""),
     ("axis", "\"z\""),
     ("axis2", "\"x\""),
+    ("length", "250"),
+    ("lead", "5"),
+    ("curve", "{ points = [\"A\", \"B\", \"C\"] }"),
     ("cut", "true"),
 ];
-const DRIVER: &[Key] = &[("joint", "\"J1\""), ("coordinate", "\"angle\""), ("law", "\"30*sin(2*pi*t)\"")];
+const CURVE: &[Key] = &[("points", "[\"A\", \"B\", \"C\"]"), ("closed", "true")];
 
 /// What a file says, as far as it could be read.
 #[derive(Default)]
@@ -76,6 +83,8 @@ pub(crate) struct Raw {
     /// Which number a hardpoint and a joint have; of equal names, the first. Only looked up, never walked.
     hardpoint_numbers: HashMap<String, usize>,
     joint_numbers: HashMap<String, usize>,
+    /// Of each driver of the draft, what one unit of its law is in SI, and the parameters that are rates in that unit.
+    pub driver_rates: Vec<(f64, Vec<String>)>,
 }
 
 impl Reader<'_> {
@@ -97,6 +106,7 @@ impl Reader<'_> {
         self.hardpoints(&fields, &mut raw);
         self.bodies(&fields, &mut raw);
         self.joints(&fields, &mut raw);
+        self.couplers(&fields, &mut raw);
         self.drivers(&fields, &mut raw);
         self.design(&fields, &mut raw);
         self.points(&fields, &mut raw);
@@ -196,6 +206,58 @@ impl Reader<'_> {
                 self.fields(what, at.clone(), EMPTY.get_or_init(DeTable::new), keys)
             }
         }
+    }
+
+    /// The type of a named entry whose keys depend on it. Without a known type, nothing more is said of the entry.
+    fn entry_type(
+        &mut self,
+        one: &str,
+        entry: &(String, Range<usize>, &Value<'_>),
+        types: &[&'static str],
+        keys: &'static [Key],
+    ) -> Option<&'static str> {
+        let (name, at, value) = entry;
+        match value.get_ref().as_table() {
+            Some(table) => self.type_of(
+                table,
+                &format!("{one} `{}`", shown(name)),
+                at.clone(),
+                &format!("a {one}"),
+                types,
+            ),
+            None => {
+                self.entry(one, entry, keys);
+                None
+            }
+        }
+    }
+
+    /// The `type` of a table: one of some words.
+    fn type_of(
+        &mut self,
+        table: &DeTable<'_>,
+        what: &str,
+        at: Range<usize>,
+        one: &str,
+        types: &[&'static str],
+    ) -> Option<&'static str> {
+        let Some(kind) = table.get("type") else {
+            self.report("HP0104", at, format!("{what} has no `type`")).help =
+                Some(format!("add it; possible: {}", quoted(types)));
+            return None;
+        };
+        let subject = Subject {
+            name: format!("`type` of {what}"),
+            example: format!("for example `type = \"{}\"`", types[0]),
+        };
+        let word = kind.get_ref().as_str();
+        let known = types.iter().copied().find(|t| word == Some(*t));
+        match (word, known) {
+            (Some(word), None) => self.unknown_word(kind.span(), &subject, word, types),
+            (None, _) => self.wrong(kind, &subject, &format!("the name of {one} type")),
+            _ => {}
+        }
+        known
     }
 
     fn hardpoints(&mut self, model: &Fields<'_>, raw: &mut Raw) {
@@ -341,6 +403,21 @@ impl Reader<'_> {
                 }
                 line
             });
+            let [length, lead] = ["length", "lead"].map(|key| {
+                let f = fields.get(key)?;
+                let number = self.number(f.value, &fields.subject(key));
+                if number.is_none() {
+                    place.unread(f.key);
+                }
+                number.map(|x| self.units.length.metres(x))
+            });
+            let curve = fields.get("curve").and_then(|f| {
+                let curve = self.curve(&fields, f, &mut place);
+                if curve.is_none() {
+                    place.unread("curve");
+                }
+                curve
+            });
             let cut = fields.get("cut").and_then(|f| self.boolean(f.value, &fields.subject("cut")));
             raw.places.push(Section::Joints, place);
             raw.joint_numbers.entry(entry.0.clone()).or_insert(raw.draft.joints.len());
@@ -351,8 +428,10 @@ impl Reader<'_> {
                 at,
                 axis,
                 axis2,
+                length,
+                lead,
+                curve,
                 cut: cut.unwrap_or(false),
-                ..JointDraft::default()
             });
         }
     }
@@ -378,6 +457,24 @@ impl Reader<'_> {
                 Some(vec![one])
             }
         }
+    }
+
+    /// A curve; its points become the items of the key.
+    fn curve(&mut self, fields: &Fields<'_>, f: Field<'_>, place: &mut EntryPlace) -> Option<CurveDraft> {
+        let table = self.table(f.value, &fields.subject("curve"), "a table with the points of the curve")?;
+        let curve = self.fields(format!("the curve of {}", fields.what), f.value.span(), table, CURVE);
+        let closed = match curve.get("closed") {
+            Some(f) => self.boolean(f.value, &curve.subject("closed")),
+            None => Some(false),
+        };
+        let points = self.need(&curve, "points").and_then(|f| {
+            let subject = curve.subject("points");
+            let list = self.list(f.value, &subject, "a list of hardpoints' names or coordinates")?;
+            place.items("curve", list.iter().map(|v| v.span()).collect());
+            let points: Vec<_> = list.iter().map(|v| self.place(v, &subject)).collect();
+            points.into_iter().collect::<Option<Vec<_>>>()
+        });
+        Some(CurveDraft { points: points?, closed: closed? })
     }
 
     /// A direction; the names in `through` become the items of the key.
@@ -416,73 +513,16 @@ impl Reader<'_> {
         }
         name
     }
-
-    fn drivers(&mut self, model: &Fields<'_>, raw: &mut Raw) {
-        for entry in self.entries(model, "drivers", "driver") {
-            let fields = self.entry("driver", &entry, DRIVER);
-            let mut place = EntryPlace::of(&fields);
-            let joint = self.named(&fields, "joint", "the name of a joint", &mut place).unwrap_or_default();
-            let coordinate =
-                self.optional_name(&fields, "coordinate", "the name of a coordinate", &mut place);
-            let law = self.need(&fields, "law").and_then(|f| self.law(&fields, f));
-            if law.is_none() {
-                place.unread("law");
-            }
-            let quantity = driven_quantity(raw, &joint, coordinate.as_deref());
-            let law = law.unwrap_or_else(|| Law::constant(0.0)).scaled(self.units.to_si(quantity, 1.0));
-            raw.places.push(Section::Drivers, place);
-            let drives = DrivenDraft::Coordinate { joint, coordinate };
-            raw.draft.drivers.push(DriverDraft { name: entry.0, drives, law });
-        }
-    }
-
-    fn law(&mut self, fields: &Fields<'_>, f: Field<'_>) -> Option<Law> {
-        let subject = fields.subject("law");
-        let text = match f.value.get_ref() {
-            DeValue::String(text) => text,
-            DeValue::Integer(_) | DeValue::Float(_) => {
-                return self.number(f.value, &subject).map(Law::constant);
-            }
-            _ => {
-                self.wrong(f.value, &subject, "an expression in `t`, in quotes");
-                return None;
-            }
-        };
-        match Law::parse(text) {
-            Ok(law) => Some(law),
-            Err(error) => {
-                let at = self.inside(f.value, text, error.span);
-                let message = format!("the law of {} cannot be read: {}", fields.what, error.message);
-                self.report("HP0108", at, message).help = error.help;
-                None
-            }
-        }
-    }
-
-    /// Where a part of a text stands in the file; the whole text where escapes make that unclear.
-    fn inside(&self, value: &Value<'_>, text: &str, part: Range<usize>) -> Range<usize> {
-        let whole = value.span();
-        let written = self.source.text.get(whole.clone()).unwrap_or_default();
-        for quote in ["\"\"\"", "'''", "\"", "'"] {
-            let bare = written.strip_prefix(quote).and_then(|w| w.strip_suffix(quote));
-            if bare == Some(text) {
-                let start = whole.start + quote.len();
-                return start + part.start..start + part.end;
-            }
-        }
-        whole
-    }
 }
 
 static EMPTY: std::sync::OnceLock<DeTable<'static>> = std::sync::OnceLock::new();
 
-/// What the law's value is, as far as joint and coordinate are known; the core reports the rest.
-fn driven_quantity(raw: &Raw, joint: &str, coordinate: Option<&str>) -> Quantity {
-    let joint = raw.joint_numbers.get(joint).map(|k| &raw.draft.joints[*k]);
-    let kind = joint.and_then(|j| joint::named(&j.kind));
-    let coordinate = kind.and_then(|kind| match coordinate {
+/// What a joint's coordinate measures, as far as joint and coordinate are known; the core reports the rest.
+fn coordinate_quantity(raw: &Raw, joint: &str, coordinate: Option<&str>) -> Option<Quantity> {
+    let kind = joint::named(&raw.draft.joints[*raw.joint_numbers.get(joint)?].kind)?;
+    let coordinate = match coordinate {
         Some(name) => kind.coordinate(name).map(|c| c.1),
         None => kind.coordinates.first(),
-    });
-    coordinate.map_or(Quantity::Number, |c| c.quantity)
+    };
+    Some(coordinate?.quantity)
 }

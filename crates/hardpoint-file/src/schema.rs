@@ -4,9 +4,11 @@
 //! `read.rs` gives better messages than a schema can and does not use them; tests hold both together.
 #![expect(dead_code, reason = "the types are only ever described, never made")]
 
+use std::borrow::Cow;
 use std::collections::BTreeMap;
 
-use schemars::JsonSchema;
+use hardpoint::joint;
+use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 
 /// The JSON Schema of model files, as `models/hardpoint.schema.json` has it.
 ///
@@ -38,7 +40,10 @@ struct ModelSchema {
     /// Joints between two bodies.
     #[schemars(default)]
     joints: BTreeMap<Name, JointSchema>,
-    /// Prescribed motions of joint coordinates.
+    /// Gears, racks, belts and other linear relations between joint coordinates.
+    #[schemars(default)]
+    couplers: BTreeMap<Name, CouplerSchema>,
+    /// Prescribed motions: of joint coordinates, points, distances and orientations.
     #[schemars(default)]
     drivers: BTreeMap<Name, DriverSchema>,
     /// Design variables: what may change in the design, and how everything else follows.
@@ -141,37 +146,65 @@ struct JointSchema {
     kind: JointTypeSchema,
     /// Names of bodies i and j. Coordinates are those of j relative to i.
     bodies: [Name; 2],
-    /// Where it is: a hardpoint's name or coordinates; for `distance` and `leg` a list of two, one on each
-    /// body. May be left out where the axis goes through hardpoints: then it is the first of them.
+    /// Where it is: a hardpoint's name or coordinates; or a list of two, one on each body: for rods and legs, and for other
+    /// joints that are drawn apart and have to be assembled. May be left out where the axis goes through hardpoints (then
+    /// it is the first of them), and where only directions matter.
     at: Option<PlacesSchema>,
     /// The axis, in the design configuration.
     axis: Option<LineSchema>,
-    /// The second axis of a universal joint, square to the first.
+    /// The second axis: square to the first, or the axis on body j, as the joint type has it.
     axis2: Option<LineSchema>,
+    /// Length of a rod, in the length unit. Default: the distance between its places. Where it differs from that, the
+    /// mechanism is assembled to it.
+    length: Option<f64>,
+    /// Advance of a screw per turn, in the length unit; negative for a left-hand thread.
+    lead: Option<f64>,
+    /// The curve on body i that a point of body j follows, for the joint type `point_on_curve`.
+    curve: Option<CurveSchema>,
     /// Whether loops should be cut at this joint. Results do not depend on it.
     #[schemars(default)]
     cut: bool,
 }
 
+/// A smooth curve through points in the design configuration, in the plane square to the joint's axis.
 #[derive(JsonSchema)]
-#[schemars(rename_all = "lowercase")]
-enum JointTypeSchema {
-    /// No relative motion.
-    Fixed,
-    /// Turns about `axis`. Coordinate: `angle`.
-    Revolute,
-    /// Slides along `axis`. Coordinate: `displacement`.
-    Translational,
-    /// Turns about and slides along `axis`. Coordinates: `angle`, `displacement`.
-    Cylindrical,
-    /// A ball joint.
-    Spherical,
-    /// A cross: its pin `axis` turns in body i, its pin `axis2` in body j.
-    Universal,
-    /// A rod of constant length between two points.
-    Distance,
-    /// A length between two points that a driver prescribes or a measure reads. Coordinate: `length`.
-    Leg,
+#[schemars(deny_unknown_fields)]
+struct CurveSchema {
+    /// Its points in order: hardpoints' names or coordinates.
+    points: Vec<PlaceSchema>,
+    /// Whether it returns to its first point, as the curve of a cam does; that point is not repeated.
+    #[schemars(default)]
+    closed: bool,
+}
+
+/// The joint types, with their aliases.
+struct JointTypeSchema;
+
+impl JsonSchema for JointTypeSchema {
+    fn schema_name() -> Cow<'static, str> {
+        "JointTypeSchema".into()
+    }
+
+    fn json_schema(_: &mut SchemaGenerator) -> Schema {
+        let mut names = Vec::new();
+        for t in joint::ALL {
+            let coordinates: Vec<_> = t.coordinates.iter().map(|c| format!("`{}`", c.name)).collect();
+            let coordinates = match coordinates.as_slice() {
+                [] => String::new(),
+                [one] => format!(" Coordinate: {one}."),
+                several => format!(" Coordinates: {}.", several.join(", ")),
+            };
+            let mut summary = t.summary.to_owned();
+            summary[..1].make_ascii_uppercase();
+            let description = format!("{summary}.{coordinates}");
+            names.push(json_schema!({ "type": "string", "const": t.name, "description": description }));
+            for alias in t.aliases {
+                let description = format!("Another name of `{}`. {description}", t.name);
+                names.push(json_schema!({ "type": "string", "const": alias, "description": description }));
+            }
+        }
+        json_schema!({ "oneOf": names })
+    }
 }
 
 #[derive(JsonSchema)]
@@ -223,34 +256,306 @@ enum DirectionSchema {
     Vector([f64; 3]),
 }
 
-/// A driver: one joint coordinate as a function of the time.
+/// A coupler: it holds a linear relation between joint coordinates, each counted about or along its own joint's axis, of
+/// body j relative to body i.
+#[derive(JsonSchema)]
+#[schemars(tag = "type", rename_all = "snake_case", deny_unknown_fields)]
+enum CouplerSchema {
+    /// Two gears: `teeth[0] angle[0] + teeth[1] angle[1] = 0`, or minus for an internal gear.
+    Gear {
+        /// Names of the two joints that carry the gears.
+        joints: [Name; 2],
+        /// Numbers of teeth, or any two numbers in their ratio.
+        teeth: [f64; 2],
+        /// Whether one of them is an internal gear, so that both turn the same way.
+        #[schemars(default)]
+        internal: bool,
+    },
+    /// Two bevel gears, with the same relation as `gear`.
+    Bevel {
+        /// Names of the two joints that carry the gears.
+        joints: [Name; 2],
+        /// Numbers of teeth, or any two numbers in their ratio.
+        teeth: [f64; 2],
+        /// Whether one of them is an internal gear, so that both turn the same way.
+        #[schemars(default)]
+        internal: bool,
+    },
+    /// A rack and its pinion: `displacement = radius x angle`.
+    Rack {
+        /// Name of the joint on which the rack slides.
+        rack: Name,
+        /// Name of the joint on which the pinion turns.
+        pinion: Name,
+        /// Pitch radius, in the length unit; negative where the rack passes the pinion's other side.
+        radius: f64,
+    },
+    /// Another name of `rack`.
+    RackAndPinion {
+        /// Name of the joint on which the rack slides.
+        rack: Name,
+        /// Name of the joint on which the pinion turns.
+        pinion: Name,
+        /// Pitch radius, in the length unit; negative where the rack passes the pinion's other side.
+        radius: f64,
+    },
+    /// A belt or chain: `radii[0] angle[0] = radii[1] angle[1]`, or minus for a crossed one.
+    Belt {
+        /// Names of the two joints that carry the pulleys.
+        joints: [Name; 2],
+        /// Radii of the pulleys, in the length unit.
+        radii: [f64; 2],
+        /// Whether the belt crosses between them.
+        #[schemars(default)]
+        crossed: bool,
+    },
+    /// Any linear relation: the sum of `coefficient x coordinate` is zero.
+    Linear {
+        /// Two terms or more.
+        terms: Vec<TermSchema>,
+    },
+}
+
+/// A joint coordinate times a number.
 #[derive(JsonSchema)]
 #[schemars(deny_unknown_fields)]
-struct DriverSchema {
+struct TermSchema {
     /// The joint's name.
     joint: Name,
     /// Which of its coordinates; may be left out where it has only one.
     coordinate: Option<CoordinateSchema>,
-    /// An expression in `t` (seconds), such as `30*sin(2*pi*t)`, or a number; in the file's unit of the coordinate.
+    /// The factor, per unit of the coordinate in this file.
+    coefficient: f64,
+}
+
+/// A driver: what it prescribes, and its law over the time.
+#[derive(JsonSchema)]
+#[schemars(untagged)]
+enum DriverSchema {
+    Coordinate(DrivenCoordinateSchema),
+    Position(DrivenPositionSchema),
+    Distance(DrivenDistanceSchema),
+    Orientation(DrivenOrientationSchema),
+}
+
+/// A joint's coordinate.
+#[derive(JsonSchema)]
+#[schemars(deny_unknown_fields)]
+struct DrivenCoordinateSchema {
+    /// The joint's name.
+    joint: Name,
+    /// Which of its coordinates; may be left out where it has only one.
+    coordinate: Option<CoordinateSchema>,
+    /// The coordinate over time, in the file's unit of it, counted from the design configuration.
     law: LawSchema,
 }
 
+/// The way of a point along a global direction, like wheel travel.
 #[derive(JsonSchema)]
-#[schemars(rename_all = "lowercase")]
-enum CoordinateSchema {
-    Angle,
-    Displacement,
-    Length,
+#[schemars(deny_unknown_fields)]
+struct DrivenPositionSchema {
+    /// The point.
+    point: PointRefSchema,
+    /// The direction.
+    along: LineSchema,
+    /// The way over time, in the length unit, counted from the design configuration.
+    law: LawSchema,
 }
 
+/// The change of the distance between two points, like the stroke of an actuator.
+#[derive(JsonSchema)]
+#[schemars(deny_unknown_fields)]
+struct DrivenDistanceSchema {
+    /// From this point.
+    from: PointRefSchema,
+    /// To this one.
+    to: PointRefSchema,
+    /// The change of their distance over time, in the length unit, counted from the design configuration.
+    law: LawSchema,
+}
+
+/// The angle by which a body has turned, seen along a direction.
+#[derive(JsonSchema)]
+#[schemars(deny_unknown_fields)]
+struct DrivenOrientationSchema {
+    /// The body's name.
+    body: Name,
+    /// The direction, fixed in the body `relative_to`.
+    about: LineSchema,
+    /// The body that carries the direction. Default: `ground`.
+    relative_to: Option<Name>,
+    /// The angle over time, in the angle unit, counted from the design configuration.
+    law: LawSchema,
+}
+
+/// The names of all joint coordinates.
+struct CoordinateSchema;
+
+impl JsonSchema for CoordinateSchema {
+    fn schema_name() -> Cow<'static, str> {
+        "CoordinateSchema".into()
+    }
+
+    fn json_schema(_: &mut SchemaGenerator) -> Schema {
+        let mut names: Vec<&str> = Vec::new();
+        for c in joint::ALL.iter().flat_map(|t| t.coordinates) {
+            if !names.contains(&c.name) {
+                names.push(c.name);
+            }
+        }
+        json_schema!({ "type": "string", "enum": names })
+    }
+}
+
+/// A law of motion: an expression in `t` (seconds) such as `30*sin(2*pi*t)`, a number, or a table with a `type`; in the
+/// file's unit of what is driven.
 #[derive(JsonSchema)]
 #[schemars(untagged)]
 enum LawSchema {
     Expression(String),
     Constant(f64),
+    Kind(LawTableSchema),
 }
 
-/// A design variable, given by exactly one of `move`, `tilt`, `fields`, `markers`.
+#[derive(JsonSchema)]
+#[schemars(tag = "type", rename_all = "snake_case", deny_unknown_fields)]
+enum LawTableSchema {
+    /// `offset + amplitude sin(2 pi frequency t + phase)`.
+    Harmonic {
+        /// In the driver's unit.
+        amplitude: f64,
+        /// In Hz.
+        frequency: f64,
+        /// In the angle unit.
+        #[schemars(default)]
+        phase: f64,
+        /// The mean, in the driver's unit.
+        #[schemars(default)]
+        offset: f64,
+    },
+    /// `offset + speed t`.
+    ConstantSpeed {
+        /// In the driver's unit per s.
+        speed: f64,
+        /// At t = 0, in the driver's unit.
+        #[schemars(default)]
+        offset: f64,
+    },
+    /// `c0 + c1 t + c2 t^2 + ...`.
+    Polynomial {
+        /// c0, c1, c2, ..., in the driver's unit per s to the power of the number.
+        #[schemars(length(min = 1))]
+        coefficients: Vec<f64>,
+    },
+    /// From one value smoothly to another, and at rest before and after.
+    SmoothStep {
+        /// The value before, in the driver's unit. Default: 0.
+        #[schemars(default)]
+        from: f64,
+        /// The value after, in the driver's unit.
+        to: f64,
+        /// When it begins, in s.
+        start: f64,
+        /// When it ends, in s.
+        end: f64,
+        /// 3 (the acceleration jumps at both ends), 5 (the jerk does) or 7 (neither). Default: 5.
+        degree: Option<DegreeSchema>,
+    },
+    /// A spline through points, given here or in a CSV file.
+    Table {
+        /// Pairs of time in s and value in the driver's unit, in the order of time. Either these or `file`.
+        points: Option<Vec<[f64; 2]>>,
+        /// A CSV file in the model's folder or below it: times in s and values in the driver's unit.
+        file: Option<String>,
+        /// The file's columns of time and value, by name or by number from 1. Default: the first two.
+        columns: Option<[ColumnSchema; 2]>,
+        /// The degree of the spline. Default: `cubic`.
+        spline: Option<SplineSchema>,
+        /// What is known at the first and last point. Default: `clamped`.
+        ends: Option<EndsSchema>,
+        /// Speed at the first point, where the ends are clamped, in the driver's unit per s.
+        #[schemars(default)]
+        start_speed: f64,
+        /// Speed at the last point, where the ends are clamped, in the driver's unit per s.
+        #[schemars(default)]
+        end_speed: f64,
+        /// Acceleration at the first point, of a quintic with clamped ends, in the driver's unit per s^2.
+        #[schemars(default)]
+        start_acceleration: f64,
+        /// Acceleration at the last point, of a quintic with clamped ends, in the driver's unit per s^2.
+        #[schemars(default)]
+        end_acceleration: f64,
+    },
+    /// Laws one after the other, from t = 0 on.
+    Sequence {
+        /// The pieces, in order.
+        #[schemars(length(min = 1, max = 500))]
+        pieces: Vec<PieceSchema>,
+    },
+    /// An expression with named parameters.
+    Expression {
+        /// The expression, in `t` and the parameters.
+        law: String,
+        /// Names and values of the parameters.
+        #[schemars(default)]
+        parameters: BTreeMap<Name, f64>,
+    },
+}
+
+/// A piece of a sequence.
+#[derive(JsonSchema)]
+#[schemars(deny_unknown_fields)]
+struct PieceSchema {
+    /// How long it lasts, in s. The last piece may leave it out, and then has no end.
+    duration: Option<f64>,
+    /// Its law; `t` counts from the start of the piece.
+    law: LawSchema,
+    /// Whether its values count from where the piece before ended. Default: true.
+    continued: Option<bool>,
+}
+
+/// 3, 5 or 7.
+struct DegreeSchema;
+
+impl JsonSchema for DegreeSchema {
+    fn schema_name() -> Cow<'static, str> {
+        "DegreeSchema".into()
+    }
+
+    fn json_schema(_: &mut SchemaGenerator) -> Schema {
+        json_schema!({ "type": "integer", "enum": [3, 5, 7] })
+    }
+}
+
+/// A column's name, or its number from 1.
+#[derive(JsonSchema)]
+#[schemars(untagged)]
+enum ColumnSchema {
+    Named(Name),
+    Number(std::num::NonZeroU32),
+}
+
+#[derive(JsonSchema)]
+#[schemars(rename_all = "lowercase")]
+enum SplineSchema {
+    /// The acceleration is continuous.
+    Cubic,
+    /// The jerk is continuous too.
+    Quintic,
+}
+
+#[derive(JsonSchema)]
+#[schemars(rename_all = "lowercase")]
+enum EndsSchema {
+    /// With the speeds (and, of a quintic, accelerations) that are given; zero where they are not: from rest to rest.
+    Clamped,
+    /// The curve ends as a thin beam does.
+    Natural,
+    /// The last point is the first again, and the curve repeats for ever.
+    Periodic,
+}
+
+/// A design variable, given by exactly one of `move`, `tilt`, `fields`, `markers`, `length`, `driver`.
 #[derive(JsonSchema)]
 #[schemars(untagged)]
 enum VariableSchema {
@@ -258,6 +563,8 @@ enum VariableSchema {
     Tilt(TiltSchema),
     Fields(FieldsSchema),
     Markers(MarkersSchema),
+    Length(RodLengthSchema),
+    Law(LawParameterSchema),
 }
 
 /// Hardpoints move; all joints, axes and points on them follow. A length.
@@ -359,6 +666,30 @@ struct MarkerSchema {
     moves: Option<[f64; 3]>,
     /// Rotation vector per unit of the variable. Default: zero.
     turn: Option<[f64; 3]>,
+}
+
+/// The `length` that a rod is given grows. A length.
+#[derive(JsonSchema)]
+#[schemars(deny_unknown_fields)]
+struct RodLengthSchema {
+    /// The rod's name.
+    length: Name,
+    /// Whether rods and legs keep their lengths while it moves their ends.
+    #[schemars(default)]
+    fixed_length: bool,
+}
+
+/// A parameter of a driver's law grows; the variable has the parameter's unit.
+#[derive(JsonSchema)]
+#[schemars(deny_unknown_fields)]
+struct LawParameterSchema {
+    /// The driver's name.
+    driver: Name,
+    /// The parameter's name, such as `amplitude`, `c1`, `f[3]` or `piece[0].speed`.
+    parameter: String,
+    /// Whether rods and legs keep their lengths while it moves their ends.
+    #[schemars(default)]
+    fixed_length: bool,
 }
 
 #[derive(JsonSchema)]

@@ -3,6 +3,7 @@
 //! Nothing here stops at the first problem: a value that cannot be read is reported and left out.
 
 use std::ops::Range;
+use std::path::Path;
 
 use hardpoint::model::{Line, Place};
 use hardpoint::space::Vec3;
@@ -73,6 +74,8 @@ pub(crate) struct Subject {
 /// The text being read and what was found wrong with it.
 pub(crate) struct Reader<'s> {
     pub source: &'s Source,
+    /// Where the model file lies, for files that it names; none for a mere text.
+    pub folder: Option<&'s Path>,
     pub units: Units,
     pub found: Vec<Diagnostic>,
 }
@@ -214,6 +217,12 @@ impl Reader<'_> {
             return None;
         }
         Some(list.iter().collect())
+    }
+
+    /// A required number, as it is written.
+    pub fn needed_number(&mut self, fields: &Fields<'_>, key: &str) -> Option<f64> {
+        let f = self.need(fields, key)?;
+        self.number(f.value, &fields.subject(key))
     }
 
     pub fn boolean(&mut self, value: &Value<'_>, subject: &Subject) -> Option<bool> {

@@ -161,7 +161,7 @@ fn mechanism() {
     broken("zero_axis", &[("axis = \"z\"", "axis = [0, 0, 0]")]);
     broken("axis_through_one_point", &[("axis = \"z\"", "axis = { through = [\"A\", \"A\"] }")]);
     broken("axes_not_square", &[("axis2 = \"x\"", "axis2 = [1, 0, 0.5]")]);
-    broken("two_places_for_one", &[("at = \"B\"", "at = [\"B\", \"C\"]")]);
+    broken("three_places_for_one", &[("at = \"B\"", "at = [\"B\", \"C\", \"D\"]")]);
     broken("one_place_for_two", &[("type = \"spherical\"", "type = \"distance\"")]);
     broken("joint_of_one_body", &[("[\"crank\", \"coupler\"]", "[\"crank\", \"crank\"]")]);
     broken("loose_body", &[("rocker = {}", "rocker = {}\nspare = {}")]);

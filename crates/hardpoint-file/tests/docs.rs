@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
-use hardpoint_file::{parse, schema};
+use hardpoint_file::{parse, read, schema};
 
 fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
@@ -23,13 +23,19 @@ fn examples_of_the_format_are_one_valid_model() {
     let text = document("file-format.md");
     let pieces = examples(&text);
     // The last two are alternatives.
+    let folder = tempfile::tempdir().unwrap();
+    let data = text.split("```csv\n").nth(1).and_then(|rest| rest.split("```").next()).unwrap();
+    std::fs::write(folder.path().join("travel.csv"), data).unwrap();
+    let path = folder.path().join("model.toml");
     let (alternatives, common) = (&pieces[pieces.len() - 2..], &pieces[..pieces.len() - 2]);
     assert!(alternatives.iter().all(|p| p.starts_with("[time]")), "{alternatives:?}");
     let validator = jsonschema::validator_for(&serde_json::from_str(&schema()).unwrap()).unwrap();
     for time in alternatives {
         let model = format!("{}\n{time}", common.join("\n"));
-        let file = parse(&model, "file-format.md").unwrap_or_else(|e| panic!("{e}"));
-        assert!(file.model.joints.len() >= 8 && file.model.measures.len() >= 6);
+        std::fs::write(&path, &model).unwrap();
+        let file = read(&path).unwrap_or_else(|e| panic!("{e}"));
+        assert!(file.model.joints.len() >= 15 && file.model.measures.len() >= 6);
+        assert!(file.model.couplers.len() >= 5 && file.model.drivers.len() >= 10);
         let value: serde_json::Value = toml::from_str(&model).unwrap();
         let errors: Vec<String> =
             validator.iter_errors(&value).map(|e| format!("{} at {}", e, e.instance_path())).collect();
@@ -75,6 +81,13 @@ fn every_joint_type_and_coordinate_is_documented() {
         let row = row.unwrap_or_else(|| panic!("no row for {}", t.name));
         for c in t.coordinates {
             assert!(row.contains(&format!("`{}`", c.name)), "{row}");
+        }
+        for alias in t.aliases {
+            assert!(row.contains(&format!("`{alias}`")), "{alias}: {row}");
+        }
+        if let Some(free) = t.freedom_count() {
+            let free = free - t.tree_rows.len() - usize::from(t.name == "screw");
+            assert!(row.contains(&format!("| {free} |")), "{free}: {row}");
         }
         assert!(row.contains(&format!("| {} |", t.places)), "{row}");
     }

@@ -64,7 +64,9 @@ fn published_schema_is_the_schema() {
 fn schema_lists_every_joint_type_and_unit() {
     let schema = schema();
     for t in hardpoint::joint::ALL {
-        assert!(schema.contains(&format!("\"const\": \"{}\"", t.name)), "{}", t.name);
+        for name in std::iter::once(&t.name).chain(t.aliases) {
+            assert!(schema.contains(&format!("\"const\": \"{name}\"")), "{name}");
+        }
     }
     for unit in hardpoint_file::LengthUnit::ALL {
         assert!(schema.contains(&format!("\"{}\"", unit.symbol())), "{}", unit.symbol());

@@ -5,16 +5,17 @@ use std::time::{Duration, Instant};
 use hardpoint_file::parse;
 use proptest::prelude::*;
 
-const MODELS: [&str; 5] = [
+const MODELS: [&str; 6] = [
     include_str!("../../../models/macpherson.toml"),
     include_str!("../../../models/slider_crank.toml"),
     include_str!("../../../models/rssr.toml"),
     include_str!("../../../models/hooke.toml"),
     include_str!("../../../models/double_wishbone.toml"),
+    include_str!("models/press.toml"),
 ];
 
 /// Pieces that make a broken file interesting.
-const PIECES: [&str; 32] = [
+const PIECES: [&str; 44] = [
     "[",
     "]",
     "{",
@@ -47,6 +48,18 @@ const PIECES: [&str; 32] = [
     "at = []",
     "ground",
     "[joints.J1.axis]",
+    "[couplers.c]",
+    "[drivers.d.law]",
+    "type = \"gear\"",
+    "type = \"linear\"",
+    "terms = [{ joint = \"J1\" }]",
+    "teeth = [1, -1e300]",
+    "type = \"table\"",
+    "points = [[0, 0], [1e-300, 1e300]]",
+    "file = \"../x\"",
+    "pieces = [{ law = 1 }]",
+    "parameters = { t = 1 }",
+    "curve = { points = [] }",
 ];
 
 /// Far more than any of these texts needs, even on a slow and busy machine.
@@ -172,6 +185,34 @@ fn every_value_in_every_place_is_read_or_refused() {
     }
 }
 
+/// Pieces of data files, good and bad.
+const FIELDS: [&str; 16] = [
+    "0", "1.5", "-2e3", "nan", "1e999", "", "time", "\"", "\"a\"", ",", ";", "\t", "\n", "\r\n", "#",
+    "\u{feff}",
+];
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 200, failure_persistence: None, ..ProptestConfig::default() })]
+
+    #[test]
+    fn any_data_file_is_read_or_refused(
+        pieces in prop::collection::vec(0..FIELDS.len(), 0..40),
+        columns in prop::sample::select(vec!["[1, 2]", "[2, 1]", "[\"time\", 2]", "[1, 999999]", "[1, 1]"]),
+    ) {
+        let folder = tempfile::tempdir().unwrap();
+        let data: String = pieces.into_iter().map(|k| FIELDS[k]).collect();
+        std::fs::write(folder.path().join("travel.csv"), data).unwrap();
+        let file = format!("file = \"travel.csv\", columns = {columns}");
+        let model = MODELS[5].replace("points = [[0, 0], [1, 5], [3, 2]]", &file);
+        let path = folder.path().join("press.toml");
+        std::fs::write(&path, model).unwrap();
+        if let Err(error) = hardpoint_file::read(&path) {
+            assert!(!error.diagnostics().list().is_empty());
+            assert!(!error.to_string().chars().any(|c| c.is_control() && c != '\n'), "{error}");
+        }
+    }
+}
+
 #[test]
 fn deep_nesting_is_refused() {
     for open in ["[", "{a=", "a.", "[[", "{ through = "] {
@@ -201,6 +242,33 @@ fn large_files_take_no_longer_than_they_must() {
         survives(&many("nonsense", "1", n));
         survives(&many("design", "{ move = \"A\", along = \"xyz\" }", n));
     }
+    let law = |of: &str| survives(&format!("{header}[drivers]\nd = {{ joint = \"J\", law = {{ {of} }} }}\n"));
+    let many_of = |one: &str, n: usize| vec![one; n].join(", ");
+    for n in [500, 4000, 200_000] {
+        survives(&many("couplers", "{ type = \"gear\", joints = [\"a\", \"b\"], teeth = [1, 2] }", n));
+        survives(&many(
+            "drivers",
+            "{ point = \"p\", along = \"z\", law = { type = \"polynomial\", coefficients = [1] } }",
+            n,
+        ));
+        survives(&many("design", "{ driver = \"d\", parameter = \"amplitude\" }", n));
+        law(&format!("type = \"polynomial\", coefficients = [{}]", many_of("1", n)));
+        law(&format!("type = \"sequence\", pieces = [{}]", many_of("{ duration = 1, law = \"t\" }", n)));
+        let points: Vec<String> = (0..n).map(|k| format!("[{k}, 0]")).collect();
+        law(&format!(
+            "type = \"table\", spline = \"quintic\", ends = \"periodic\", points = [{}]",
+            points.join(", ")
+        ));
+        let parameters: Vec<String> = (0..n).map(|k| format!("p{k} = 1")).collect();
+        law(&format!("type = \"expression\", law = \"p1*t\", parameters = {{ {} }}", parameters.join(", ")));
+    }
+    let mut nested = "\"t\"".to_owned();
+    for _ in 0..20 {
+        nested = format!(
+            "{{ type = \"sequence\", pieces = [{{ duration = 1, law = 1 }}, {{ duration = 1, law = {nested} }}] }}"
+        );
+    }
+    survives(&format!("{header}[drivers]\nd = {{ joint = \"J\", law = {nested} }}\n"));
     let (mut names, mut points) = (String::new(), String::new());
     for k in 0..2000 {
         names.push_str(&format!("{}{k:05} = [{k}, 0, 0]\n", "a".repeat(90)));

@@ -16,6 +16,9 @@ const DESIGN: &[Key] = &[
     ("about", "\"x\""),
     ("fields", "[{ joint = \"J1\", body = \"crank\", V = [1, 0, 0] }]"),
     ("markers", "[{ joint = \"J1\", on = \"j\", move = [0, 0, 1] }]"),
+    ("length", "\"rod\""),
+    ("driver", "\"turn\""),
+    ("parameter", "\"amplitude\""),
     ("fixed_length", "true"),
 ];
 const FIELD: &[Key] = &[("joint", "\"J1\""), ("body", "\"crank\""), ("V", "[1, 0, 0]"), ("U", "[0, 0, 0]")];
@@ -26,7 +29,7 @@ impl Reader<'_> {
         for entry in self.entries(model, "design", "design variable") {
             let fields = self.entry("design variable", &entry, DESIGN);
             let mut place = EntryPlace::of(&fields);
-            let kinds: Vec<_> = ["move", "tilt", "fields", "markers"]
+            let kinds: Vec<_> = ["move", "tilt", "fields", "markers", "length", "driver"]
                 .into_iter()
                 .filter(|k| fields.get(k).is_some())
                 .collect();
@@ -38,8 +41,8 @@ impl Reader<'_> {
                 None => {
                     let message = format!("{} does not say what it changes", fields.what);
                     self.report("HP0104", fields.at.clone(), message).help = Some(
-                        "give one of `move` (with `along`), `tilt` (with `about`), `fields`, `markers`; \
-                         for example `move = \"A\"` and `along = \"z\"`"
+                        "give one of `move` (with `along`), `tilt` (with `about`), `fields`, `markers`, `length`, \
+                         `driver` (with `parameter`); for example `move = \"A\"` and `along = \"z\"`"
                             .into(),
                     );
                     place.unread("name");
@@ -55,11 +58,18 @@ impl Reader<'_> {
             if first != "tilt" {
                 self.out_of_place(&fields, "about", "`about` goes with `tilt`");
             }
+            if first != "driver" {
+                self.out_of_place(&fields, "parameter", "`parameter` goes with `driver`");
+            }
             let variables = match first {
                 "move" => self.moves(&fields, &entry.0, &mut place),
                 "tilt" => self.tilt(&fields, &mut place).map(|c| vec![(entry.0.clone(), vec![c])]),
                 "fields" => self.velocity_fields(&fields, &mut place).map(|c| vec![(entry.0.clone(), c)]),
                 "markers" => self.markers(&fields, &mut place).map(|c| vec![(entry.0.clone(), c)]),
+                "length" => self.rod_length(&fields, &mut place).map(|c| vec![(entry.0.clone(), vec![c])]),
+                "driver" => {
+                    self.law_parameter(&fields, raw, &mut place).map(|c| vec![(entry.0.clone(), vec![c])])
+                }
                 _ => None,
             };
             let variables = variables.unwrap_or_else(|| {
@@ -131,6 +141,34 @@ impl Reader<'_> {
         let joint = self.name(f.value, &fields.subject("tilt"), "the name of a joint");
         let about = self.need(fields, "about").and_then(|f| self.line_of(fields, f, place));
         Some(ChangeDraft::Tilt { joint: joint?, about: about? })
+    }
+
+    fn rod_length(&mut self, fields: &Fields<'_>, place: &mut EntryPlace) -> Option<ChangeDraft> {
+        let f = fields.get("length")?;
+        place.items("changes", vec![f.value.span()]);
+        let joint = self.name(f.value, &fields.subject("length"), "the name of a joint")?;
+        Some(ChangeDraft::Length { joint, rate: 1.0 })
+    }
+
+    /// A parameter of a driver's law. The variable is in the file's unit of the parameter: a length or an angle is
+    /// converted where the variable is, and a rate of one, which is a plain number to the core, here.
+    fn law_parameter(
+        &mut self,
+        fields: &Fields<'_>,
+        raw: &Raw,
+        place: &mut EntryPlace,
+    ) -> Option<ChangeDraft> {
+        let f = fields.get("driver")?;
+        place.items("changes", vec![f.value.span()]);
+        let driver = self.name(f.value, &fields.subject("driver"), "the name of a driver");
+        let parameter = self.required(fields, "parameter", "the name of a parameter");
+        let (driver, parameter) = (driver?, parameter?);
+        let k = raw.draft.drivers.iter().position(|d| d.name == driver);
+        let rate = match k.map(|k| &raw.driver_rates[k]) {
+            Some((per_unit, rates)) if rates.contains(&parameter) => *per_unit,
+            _ => 1.0,
+        };
+        Some(ChangeDraft::Law { driver, parameter, rate })
     }
 
     fn velocity_fields(&mut self, fields: &Fields<'_>, place: &mut EntryPlace) -> Option<Vec<ChangeDraft>> {

@@ -1,14 +1,11 @@
 //! What is wanted: points to follow, measures, output times.
 
-use std::ops::Range;
-
 use hardpoint::model::{MeasureDraft, MeasureKindDraft, Place, PointDraft, PointRef, Section};
 use hardpoint::space::Vec3;
 
 use super::Raw;
-use crate::diagnostic::shown;
 use crate::places::EntryPlace;
-use crate::tree::{Field, Fields, Key, Reader, Subject, Value, quoted};
+use crate::tree::{Field, Fields, Key, Reader};
 
 /// More output times than this are surely a slip.
 const MOST_TIMES: usize = 1_000_000;
@@ -40,48 +37,18 @@ impl Reader<'_> {
 
     pub(super) fn measures(&mut self, model: &Fields<'_>, raw: &mut Raw) {
         for entry in self.entries(model, "measures", "measure") {
-            let kind =
-                entry.2.get_ref().as_table().and_then(|t| t.get("type")).and_then(|v| v.get_ref().as_str());
+            let Some(kind) = self.entry_type("measure", &entry, &MEASURE_TYPES, MEASURE) else { continue };
             let keys = match kind {
-                Some("coordinate") => COORDINATE,
-                Some("distance") => DISTANCE,
-                Some("position") => POSITION,
-                Some("toe" | "camber") => WHEEL,
-                _ => {
-                    self.unknown_measure(&entry);
-                    continue;
-                }
+                "coordinate" => COORDINATE,
+                "distance" => DISTANCE,
+                "position" => POSITION,
+                _ => WHEEL,
             };
             let fields = self.entry("measure", &entry, keys);
             let mut place = EntryPlace::of(&fields);
-            if let Some(kind) = self.measure(kind.unwrap_or_default(), &fields, &mut place) {
+            if let Some(kind) = self.measure(kind, &fields, &mut place) {
                 raw.places.push(Section::Measures, place);
                 raw.draft.measures.push(MeasureDraft { name: entry.0, kind });
-            }
-        }
-    }
-
-    /// A measure without a known type: which keys it may have is not known either.
-    fn unknown_measure(&mut self, entry: &(String, Range<usize>, &Value<'_>)) {
-        let (name, at, value) = entry;
-        let Some(table) = value.get_ref().as_table() else {
-            self.entry("measure", entry, MEASURE);
-            return;
-        };
-        let what = format!("measure `{}`", shown(name));
-        let subject = Subject {
-            name: format!("`type` of {what}"),
-            example: "for example `type = \"coordinate\"`".into(),
-        };
-        match table.get("type") {
-            Some(kind) => match kind.get_ref().as_str() {
-                Some(word) => self.unknown_word(kind.span(), &subject, word, &MEASURE_TYPES),
-                None => self.wrong(kind, &subject, "the name of a measure type"),
-            },
-            None => {
-                let message = format!("{what} has no `type`");
-                self.report("HP0104", at.clone(), message).help =
-                    Some(format!("add it; possible: {}", quoted(&MEASURE_TYPES)));
             }
         }
     }
@@ -121,7 +88,7 @@ impl Reader<'_> {
         }
     }
 
-    fn point_ref(&mut self, fields: &Fields<'_>, f: Field<'_>) -> Option<PointRef> {
+    pub(super) fn point_ref(&mut self, fields: &Fields<'_>, f: Field<'_>) -> Option<PointRef> {
         let subject = fields.subject(f.key);
         let Some(table) = f.value.get_ref().as_table() else {
             return self

@@ -462,8 +462,9 @@ impl<'a> Check<'a> {
             }
             (Some(curve), true) => curve,
         };
-        let ids: Vec<_> =
-            draft.points.iter().map(|p| self.place(p, name, here.key("curve"))).collect::<Option<_>>()?;
+        let places = draft.points.iter().enumerate();
+        let ids: Vec<_> = places.map(|(k, p)| self.place(p, name, here.item("curve", k))).collect();
+        let ids: Vec<_> = ids.into_iter().collect::<Option<_>>()?;
         let m_i = Pose { rot: frame, r: self.position(at[0]) };
         let local: Vec<Vec3> = ids.iter().map(|h| m_i.inverse().point(self.position(*h))).collect();
         let size = self.model.size();
@@ -833,9 +834,15 @@ impl<'a> Check<'a> {
                 }
             };
             let Some(terms) = terms else { continue };
+            let (joints, ratios) = match &c.kind {
+                CouplerKindDraft::Linear(_) => ("terms", "terms"),
+                CouplerKindDraft::Gears { .. } => ("joints", "teeth"),
+                CouplerKindDraft::Rack { .. } => ("rack", "radius"),
+                CouplerKindDraft::Belt { .. } => ("joints", "radii"),
+            };
             if !terms.iter().all(|t| t.coefficient.is_finite() && t.coefficient != 0.0) {
                 let message = format!("coupler `{}` has a ratio that is zero or not finite", c.name);
-                self.fault("HP0224", here.key("name"), message)
+                self.fault("HP0224", here.key(ratios), message)
                     .help("give every joint a number of teeth, a radius or a coefficient other than zero");
             }
             let twice = (1..terms.len()).any(|k| {
@@ -843,7 +850,7 @@ impl<'a> Check<'a> {
             });
             if terms.len() < 2 || twice {
                 let message = format!("coupler `{}` must couple at least two different coordinates", c.name);
-                self.fault("HP0224", here.key("name"), message)
+                self.fault("HP0224", here.key(joints), message)
                     .help("name two joints, or two coordinates of one joint");
             }
             self.model.couplers.push(Coupler { name: c.name.clone(), terms });
@@ -1050,8 +1057,12 @@ impl<'a> Check<'a> {
                 let k = self.find("driver", driver, at.clone(), names)?;
                 let parameters = draft.drivers[k].law.parameters();
                 let names = parameters.iter().map(|p| p.name.as_str());
-                let p =
-                    self.find(&format!("parameter of the law of `{driver}`"), parameter, at.clone(), names)?;
+                let p = self.find(
+                    &format!("parameter of the law of `{driver}`"),
+                    parameter,
+                    here.key("parameter"),
+                    names,
+                )?;
                 if !(rate.is_finite() && *rate != 0.0) {
                     null(self);
                 }

@@ -1,0 +1,272 @@
+//! Data files beside the model file: two columns of a CSV file, a time and a value.
+
+use std::path::{Component, Path};
+
+use crate::diagnostic::{closest, shown};
+use crate::{LARGEST_FILE, neighbours};
+
+/// More rows than this are surely a slip.
+const MOST_ROWS: usize = 1_000_000;
+/// A message lists at most this many columns.
+const LISTED_COLUMNS: usize = 24;
+
+/// A column of a file.
+pub(super) enum Column {
+    /// The name in the file's first line.
+    Named(String),
+    /// Counted from 1.
+    Number(usize),
+}
+
+/// What is wrong with a data file.
+pub(super) struct DataError {
+    pub code: &'static str,
+    pub message: String,
+    pub notes: Vec<String>,
+    pub help: Option<String>,
+    /// Whether it is the choice of columns that does not fit.
+    pub of_columns: bool,
+}
+
+impl DataError {
+    /// HP0111: the file cannot be read.
+    fn unreadable(message: impl Into<String>, help: &str) -> Self {
+        Self {
+            code: "HP0111",
+            message: message.into(),
+            notes: Vec::new(),
+            help: Some(help.into()),
+            of_columns: false,
+        }
+    }
+
+    /// HP0112: what the file holds is no table of times and values.
+    fn content(message: impl Into<String>, help: &str) -> Self {
+        Self {
+            code: "HP0112",
+            message: message.into(),
+            notes: Vec::new(),
+            help: Some(help.into()),
+            of_columns: false,
+        }
+    }
+
+    fn of_columns(self) -> Self {
+        Self { of_columns: true, ..self }
+    }
+
+    fn note(mut self, note: impl Into<String>) -> Self {
+        self.notes.push(note.into());
+        self
+    }
+}
+
+/// The points of a file that lies in the model's folder or below it.
+pub(super) fn points(
+    folder: Option<&Path>,
+    name: &str,
+    columns: &[Column; 2],
+) -> Result<Vec<[f64; 2]>, DataError> {
+    let text = text_of(folder, name)?;
+    parse(text.strip_prefix('\u{feff}').unwrap_or(&text), &shown(name), columns)
+}
+
+fn text_of(folder: Option<&Path>, name: &str) -> Result<String, DataError> {
+    let path = inside(name)?;
+    let name = shown(name);
+    let Some(folder) = folder else {
+        return Err(DataError::unreadable(
+            format!("the file `{name}` cannot be read: this model is a text without a folder"),
+            "write the table as `points = [[0, 0], [1, 5]]`, or read the model from a file",
+        ));
+    };
+    let folder = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
+    let failed = |e: std::io::Error| match e.kind() {
+        std::io::ErrorKind::NotFound => {
+            let message = format!("there is no file `{name}` beside the model file");
+            let mut error =
+                DataError::unreadable(message, "the path counts from the folder of the model file");
+            let (note, close) = neighbours(&folder.join(path), "csv");
+            error.notes.extend(note);
+            // The model names it without the folder that the reader was given.
+            let prefix = folder.join("").display().to_string();
+            error.help = close.map(|c| c.replacen(&prefix, "", 1)).or(error.help);
+            error
+        }
+        _ => DataError::unreadable(format!("the file `{name}` cannot be read"), "check its permissions")
+            .note(e.to_string()),
+    };
+    let full = folder.join(path).canonicalize().map_err(failed)?;
+    if !full.starts_with(folder.canonicalize().map_err(failed)?) {
+        return Err(leaves(&name).note("it is a link to a place outside"));
+    }
+    let meta = std::fs::metadata(&full).map_err(failed)?;
+    if !meta.is_file() {
+        let message = format!("`{name}` is not a file");
+        return Err(DataError::unreadable(message, "name a CSV file in the model's folder"));
+    }
+    if meta.len() > LARGEST_FILE {
+        let message = format!("the file `{name}` is too large for a table");
+        return Err(DataError::unreadable(message, "keep every tenth row, or as few as show the curve")
+            .note(format!("at most {} MiB are read", LARGEST_FILE >> 20)));
+    }
+    let bytes = std::fs::read(&full).map_err(failed)?;
+    String::from_utf8(bytes).map_err(|_| {
+        DataError::unreadable(format!("the file `{name}` is not a text in UTF-8"), "save it as UTF-8 text")
+    })
+}
+
+/// The path, if it says a place in the model's folder, alike on all systems.
+fn inside(name: &str) -> Result<&Path, DataError> {
+    let path = Path::new(name);
+    if name.trim().is_empty() {
+        return Err(DataError::unreadable("the name of the table's file is empty", "name a CSV file"));
+    }
+    let is_absolute = path.has_root() || name.starts_with('\\') || name.as_bytes().get(1) == Some(&b':');
+    if is_absolute || path.components().any(|c| c == Component::ParentDir) || name.contains("..\\") {
+        return Err(leaves(&shown(name)));
+    }
+    if name.contains('\\') {
+        let message = format!("the path `{}` has a `\\`", shown(name));
+        return Err(DataError::unreadable(message, "separate folders with `/`; that works on every system"));
+    }
+    Ok(path)
+}
+
+fn leaves(name: &str) -> DataError {
+    DataError::unreadable(
+        format!("the file `{name}` is not in the model's folder"),
+        "put it beside the model file, or in a folder there, and name it from there, like `data/travel.csv`",
+    )
+}
+
+fn parse(text: &str, name: &str, columns: &[Column; 2]) -> Result<Vec<[f64; 2]>, DataError> {
+    let mut reader = csv::ReaderBuilder::new()
+        .has_headers(false)
+        .flexible(true)
+        .comment(Some(b'#'))
+        .trim(csv::Trim::All)
+        .delimiter(delimiter(text))
+        .from_reader(text.as_bytes());
+    let mut record = csv::StringRecord::new();
+    let mut header: Option<Vec<String>> = None;
+    let mut taken = None;
+    let mut points: Vec<[f64; 2]> = Vec::new();
+    loop {
+        match reader.read_record(&mut record) {
+            Ok(true) => {}
+            Ok(false) => break,
+            Err(e) => {
+                let message = format!("`{name}` is not a CSV file");
+                return Err(DataError::content(message, "check its quotes").note(e.to_string()));
+            }
+        }
+        let line = record.position().map_or(0, csv::Position::line);
+        let is_first = header.is_none() && taken.is_none();
+        if is_first && !record.iter().any(|field| unquoted(field).parse::<f64>().is_ok()) {
+            header = Some(record.iter().map(|name| unquoted(name).to_owned()).collect());
+            continue;
+        }
+        let places = match taken {
+            Some(places) => places,
+            None => *taken.insert(
+                found(columns, header.as_deref(), record.len(), name).map_err(DataError::of_columns)?,
+            ),
+        };
+        let mut point = [0.0; 2];
+        for (k, place) in places.into_iter().enumerate() {
+            let title = header.as_ref().and_then(|h| h.get(place)).map(|h| format!(" (`{}`)", shown(h)));
+            let here = format!("`{name}`, line {line}, column {}{}", place + 1, title.unwrap_or_default());
+            point[k] = number(record.get(place).map(unquoted), &here)?;
+        }
+        if let Some(before) = points.last().filter(|before| point[0] <= before[0]) {
+            let message = format!(
+                "`{name}`, line {line}: the times of a table must increase, but {} s follows {} s",
+                point[0], before[0]
+            );
+            let help = "sort the rows by time, and keep one for each time";
+            return Err(DataError::content(message, help));
+        }
+        points.push(point);
+        if points.len() > MOST_ROWS {
+            let message = format!("`{name}` has more than {MOST_ROWS} rows");
+            return Err(DataError::content(message, "keep as few rows as show the curve"));
+        }
+    }
+    if points.is_empty() {
+        if let Some(header) = &header {
+            found(columns, Some(header), header.len(), name).map_err(DataError::of_columns)?;
+        }
+        let message = format!("`{name}` has no rows of numbers");
+        return Err(DataError::content(
+            message,
+            "write a time in s and a value on each line, like `0.5, 12.5`",
+        ));
+    }
+    Ok(points)
+}
+
+/// What stands between the columns: a tab or a semicolon, if the first line has one, or a comma.
+fn delimiter(text: &str) -> u8 {
+    let mut lines = text.lines().filter(|l| !l.trim().is_empty() && !l.starts_with('#'));
+    let first = lines.next().unwrap_or_default();
+    *b"\t;".iter().find(|c| first.as_bytes().contains(c)).unwrap_or(&b',')
+}
+
+/// Where the columns are, from 0.
+fn found(
+    columns: &[Column; 2],
+    header: Option<&[String]>,
+    width: usize,
+    name: &str,
+) -> Result<[usize; 2], DataError> {
+    let mut places = [0; 2];
+    for (place, column) in places.iter_mut().zip(columns) {
+        *place = match (column, header) {
+            (Column::Number(n), _) if *n <= width => n - 1,
+            (Column::Number(n), _) => {
+                let columns = if width == 1 { "1 column".into() } else { format!("{width} columns") };
+                let message = format!("`{name}` has no column {n}");
+                let help = "separate columns with commas, semicolons or tabs, and choose two with `columns = [1, 2]`";
+                return Err(DataError::content(message, help).note(format!("its first line has {columns}")));
+            }
+            (Column::Named(wanted), Some(header)) => match header.iter().position(|h| h == wanted) {
+                Some(k) => k,
+                None => {
+                    let message = format!("`{name}` has no column `{}`", shown(wanted));
+                    let names = header.iter().take(LISTED_COLUMNS);
+                    let list: Vec<_> = names.map(|h| format!("`{}`", shown(h))).collect();
+                    let close = closest(wanted, header.iter().map(String::as_str));
+                    let mut e =
+                        DataError::content(message, "").note(format!("its columns: {}", list.join(", ")));
+                    e.help = close.map(|c| format!("did you mean `{c}`?"));
+                    return Err(e);
+                }
+            },
+            (Column::Named(wanted), None) => {
+                let message = format!("`{name}` has no column `{}`", shown(wanted));
+                return Err(DataError::content(message, "choose columns by number, like `columns = [1, 2]`")
+                    .note("its first line holds numbers, not the names of columns"));
+            }
+        };
+    }
+    Ok(places)
+}
+
+/// A field without quotes that a blank before them has made a part of it.
+fn unquoted(field: &str) -> &str {
+    field.strip_prefix('"').and_then(|f| f.strip_suffix('"')).map_or(field, str::trim)
+}
+
+fn number(field: Option<&str>, here: &str) -> Result<f64, DataError> {
+    let help = "write numbers with a decimal point and without units";
+    match field {
+        None => Err(DataError::content(format!("{here} is missing"), "every row needs both columns")),
+        Some("") => Err(DataError::content(format!("{here} is empty"), "every row needs both columns")),
+        Some(field) => match field.parse::<f64>() {
+            Ok(x) if x.is_finite() => Ok(x),
+            Ok(_) => Err(DataError::content(format!("{here}: `{field}` is not a finite number"), help)),
+            Err(_) => Err(DataError::content(format!("{here}: `{}` is not a number", shown(field)), help)),
+        },
+    }
+}

@@ -1,0 +1,411 @@
+//! Laws of motion: an expression, a number, or a table that says which kind of law it is.
+
+use std::ops::Range;
+
+use hardpoint::law::{
+    ConstantSpeed, EndRates, Ends, Harmonic, Law, LawError, Piece, SmoothStep, SplineDegree, Table,
+};
+use toml::de::{DeTable, DeValue};
+
+use crate::read::data;
+use crate::tree::{Field, Fields, Key, MOST_ENTRIES, Reader, Subject, Value};
+
+/// More pieces than this are a table; a sequence takes time that grows with their square.
+const MOST_PIECES: usize = 500;
+
+const TYPES: [&str; 7] =
+    ["harmonic", "constant_speed", "polynomial", "smooth_step", "table", "sequence", "expression"];
+const HARMONIC: &[Key] =
+    &[("type", "\"harmonic\""), ("amplitude", "25"), ("frequency", "1.5"), ("phase", "90"), ("offset", "10")];
+const CONSTANT_SPEED: &[Key] = &[("type", "\"constant_speed\""), ("speed", "10"), ("offset", "5")];
+const POLYNOMIAL: &[Key] = &[("type", "\"polynomial\""), ("coefficients", "[0, 1, 2]")];
+const SMOOTH_STEP: &[Key] = &[
+    ("type", "\"smooth_step\""),
+    ("from", "0"),
+    ("to", "40"),
+    ("start", "0.5"),
+    ("end", "1.5"),
+    ("degree", "5"),
+];
+const TABLE: &[Key] = &[
+    ("type", "\"table\""),
+    ("points", "[[0, 0], [1, 5], [2, 0]]"),
+    ("file", "\"travel.csv\""),
+    ("columns", "[1, 2]"),
+    ("spline", "\"cubic\""),
+    ("ends", "\"clamped\""),
+    ("start_speed", "0"),
+    ("end_speed", "0"),
+    ("start_acceleration", "0"),
+    ("end_acceleration", "0"),
+];
+const SEQUENCE: &[Key] =
+    &[("type", "\"sequence\""), ("pieces", "[{ duration = 1, law = \"10*t\" }, { law = 0 }]")];
+const PIECE: &[Key] = &[("duration", "1"), ("law", "\"10*t\""), ("continued", "true")];
+const EXPRESSION: &[Key] =
+    &[("type", "\"expression\""), ("law", "\"a*sin(w*t)\""), ("parameters", "{ a = 25, w = 6.28 }")];
+const EXPECTED: &str = "an expression in `t` in quotes, a number, or a table with a `type`";
+
+impl Reader<'_> {
+    /// The law of a driver, in the file's units.
+    pub(super) fn law(&mut self, fields: &Fields<'_>, f: Field<'_>) -> Option<Law> {
+        self.law_in(&fields.what, &fields.subject(f.key), f.value)
+    }
+
+    /// A law; `of` is what it belongs to.
+    fn law_in(&mut self, of: &str, subject: &Subject, value: &Value<'_>) -> Option<Law> {
+        match value.get_ref() {
+            DeValue::String(_) => self.expression(of, value, &[]),
+            DeValue::Integer(_) | DeValue::Float(_) => self.number(value, subject).map(Law::constant),
+            DeValue::Table(table) => self.law_table(of, subject, value, table),
+            _ => {
+                self.wrong(value, subject, EXPECTED);
+                None
+            }
+        }
+    }
+
+    fn expression(&mut self, of: &str, value: &Value<'_>, parameters: &[(&str, f64)]) -> Option<Law> {
+        let text = value.get_ref().as_str()?;
+        match Law::parse_with(text, parameters) {
+            Ok(law) => Some(law),
+            Err(error) => {
+                let at = self.inside(value, text, error.span);
+                let message = format!("the law of {of} cannot be read: {}", error.message);
+                self.report("HP0108", at, message).help = error.help;
+                None
+            }
+        }
+    }
+
+    /// Where a part of a text stands in the file; the whole text where escapes make that unclear.
+    fn inside(&self, value: &Value<'_>, text: &str, part: Range<usize>) -> Range<usize> {
+        let whole = value.span();
+        let written = self.source.text.get(whole.clone()).unwrap_or_default();
+        for quote in ["\"\"\"", "'''", "\"", "'"] {
+            let bare = written.strip_prefix(quote).and_then(|w| w.strip_suffix(quote));
+            if bare == Some(text) {
+                let start = whole.start + quote.len();
+                return start + part.start..start + part.end;
+            }
+        }
+        whole
+    }
+
+    fn law_table<'a>(
+        &mut self,
+        of: &str,
+        subject: &Subject,
+        value: &'a Value<'a>,
+        table: &'a DeTable<'a>,
+    ) -> Option<Law> {
+        let at = value.span();
+        let (kind, keys) = match self.type_of(table, &subject.name, at.clone(), "a law", &TYPES)? {
+            "harmonic" => ("harmonic", HARMONIC),
+            "constant_speed" => ("constant_speed", CONSTANT_SPEED),
+            "polynomial" => ("polynomial", POLYNOMIAL),
+            "smooth_step" => ("smooth_step", SMOOTH_STEP),
+            "table" => ("table", TABLE),
+            "sequence" => ("sequence", SEQUENCE),
+            _ => ("expression", EXPRESSION),
+        };
+        let fields = self.fields(format!("the law of {of}"), at, table, keys);
+        match kind {
+            "harmonic" => self.harmonic(&fields),
+            "constant_speed" => {
+                let speed = self.needed_number(&fields, "speed");
+                let offset = self.number_or(&fields, "offset", 0.0);
+                let law = Law::constant_speed(ConstantSpeed { speed: speed?, offset: offset? });
+                self.made(&fields, fields.at.clone(), law)
+            }
+            "polynomial" => self.polynomial(&fields),
+            "smooth_step" => self.smooth_step(&fields),
+            "table" => self.table_law(&fields),
+            "sequence" => self.sequence(of, &fields),
+            _ => self.expression_with_parameters(of, &fields),
+        }
+    }
+
+    /// HP0110: numbers that together make no law.
+    fn made(&mut self, fields: &Fields<'_>, at: Range<usize>, law: Result<Law, LawError>) -> Option<Law> {
+        match law {
+            Ok(law) => Some(law),
+            Err(error) => {
+                let message = format!("{} makes no sense: {}", fields.what, error.message);
+                self.report("HP0110", at, message).help = error.help;
+                None
+            }
+        }
+    }
+
+    fn number_or(&mut self, fields: &Fields<'_>, key: &str, default: f64) -> Option<f64> {
+        match fields.get(key) {
+            Some(f) => self.number(f.value, &fields.subject(key)),
+            None => Some(default),
+        }
+    }
+
+    fn harmonic(&mut self, fields: &Fields<'_>) -> Option<Law> {
+        let amplitude = self.needed_number(fields, "amplitude");
+        let frequency = self.needed_number(fields, "frequency");
+        let phase = self.number_or(fields, "phase", 0.0).map(|p| self.units.angle.radians(p));
+        let offset = self.number_or(fields, "offset", 0.0);
+        let law = Harmonic { amplitude: amplitude?, frequency: frequency?, phase: phase?, offset: offset? };
+        self.made(fields, fields.at.clone(), Law::harmonic(law))
+    }
+
+    fn polynomial(&mut self, fields: &Fields<'_>) -> Option<Law> {
+        let f = self.need(fields, "coefficients")?;
+        let subject = fields.subject(f.key);
+        let list = self.list(f.value, &subject, "a list of numbers: of 1, t, t^2, ...")?;
+        let numbers = list.iter().enumerate().map(|(k, v)| {
+            let name = format!("coefficient {k} of {}", fields.what);
+            self.number(v, &Subject { name, example: subject.example.clone() })
+        });
+        let numbers: Vec<_> = numbers.collect();
+        let numbers: Vec<f64> = numbers.into_iter().collect::<Option<_>>()?;
+        self.made(fields, f.value.span(), Law::polynomial(&numbers))
+    }
+
+    fn smooth_step(&mut self, fields: &Fields<'_>) -> Option<Law> {
+        let from = self.number_or(fields, "from", 0.0);
+        let [to, start, end] = ["to", "start", "end"].map(|key| self.needed_number(fields, key));
+        let degree = self.number_or(fields, "degree", f64::from(SmoothStep::USUAL_DEGREE))?;
+        let (from, to, start, end) = (from?, to?, start?, end?);
+        let known = [3.0, 5.0, 7.0].contains(&degree);
+        // A degree that is no whole number is none of the three either.
+        let degree = if known { degree as u32 } else { 0 };
+        let at =
+            fields.get(if known { "end" } else { "degree" }).map_or(fields.at.clone(), |f| f.value.span());
+        if !known {
+            let written = self.source.text.get(at.clone()).unwrap_or_default().to_owned();
+            let message = format!("{} makes no sense: a smooth step has no degree {written}", fields.what);
+            self.report("HP0110", at, message).help = Some(
+                "give 3, 5 or 7: with 3 the acceleration jumps at both ends, with 5 the jerk, with 7 neither"
+                    .into(),
+            );
+            return None;
+        }
+        self.made(fields, at, Law::smooth_step(SmoothStep { from, to, start, end, degree }))
+    }
+
+    fn sequence(&mut self, of: &str, fields: &Fields<'_>) -> Option<Law> {
+        let f = self.need(fields, "pieces")?;
+        let subject = fields.subject(f.key);
+        let list = self.list(f.value, &subject, "a list of tables")?;
+        if list.len() > MOST_PIECES {
+            self.senseless(f.value.span(), format!("{} has {} entries", subject.name, list.len()))
+                .notes
+                .push(format!("a sequence has at most {MOST_PIECES} pieces"));
+            return None;
+        }
+        let count = list.len();
+        let mut pieces = Vec::new();
+        for (k, v) in list.into_iter().enumerate() {
+            let what = format!("piece {k} of the law of {of}");
+            let Some(table) = self.table(v, &subject, "a list of tables") else { continue };
+            let piece = self.fields(what.clone(), v.span(), table, PIECE);
+            let is_last = k + 1 == count;
+            let duration = match (is_last, piece.get("duration")) {
+                (true, None) => Some(None),
+                _ => self.needed_number(&piece, "duration").map(Some),
+            };
+            if let (Some(Some(seconds)), Some(f)) = (duration, piece.get("duration"))
+                && seconds <= 0.0
+            {
+                let message = format!("{what} lasts {seconds} s");
+                self.report("HP0110", f.value.span(), message).help =
+                    Some("give a duration greater than zero, in s".into());
+                continue;
+            }
+            let law =
+                self.need(&piece, "law").and_then(|f| self.law_in(&what, &piece.subject("law"), f.value));
+            let continued = match piece.get("continued") {
+                Some(f) => self.boolean(f.value, &piece.subject("continued")),
+                None => Some(true),
+            };
+            if let (Some(duration), Some(law), Some(continued)) = (duration, law, continued) {
+                pieces.push(Piece { duration, law, continued });
+            }
+        }
+        if pieces.len() < count {
+            return None;
+        }
+        self.made(fields, f.value.span(), Law::sequence(pieces))
+    }
+
+    fn expression_with_parameters(&mut self, of: &str, fields: &Fields<'_>) -> Option<Law> {
+        let text = self.need(fields, "law");
+        if let Some(f) = text
+            && f.value.get_ref().as_str().is_none()
+        {
+            self.wrong(f.value, &fields.subject("law"), "an expression in `t`, in quotes");
+            return None;
+        }
+        let mut parameters: Vec<(String, f64)> = Vec::new();
+        if let Some(f) = fields.get("parameters") {
+            let subject = fields.subject("parameters");
+            let table = self.table(f.value, &subject, "a table of names and numbers")?;
+            if table.len() > MOST_ENTRIES {
+                self.too_many(f.value.span(), &subject.name, table.len());
+                return None;
+            }
+            for (name, value) in table {
+                let subject = Subject {
+                    name: format!(
+                        "parameter `{}` of {}",
+                        crate::diagnostic::shown(name.get_ref()),
+                        fields.what
+                    ),
+                    example: "for example `parameters = { a = 25 }`".into(),
+                };
+                let name = self.short(name.get_ref(), name.span(), "the name of a parameter");
+                let number = self.number(value, &subject);
+                parameters.push((name?, number?));
+            }
+        }
+        let text = text?;
+        let parameters: Vec<(&str, f64)> = parameters.iter().map(|(n, x)| (n.as_str(), *x)).collect();
+        self.expression(of, text.value, &parameters)
+    }
+
+    fn table_law(&mut self, fields: &Fields<'_>) -> Option<Law> {
+        let degree = self
+            .word_of(fields, "spline", &["cubic", "quintic"])
+            .map(|k| [SplineDegree::Cubic, SplineDegree::Quintic][k]);
+        let ends = self.ends(fields, degree);
+        let points = match (fields.get("points"), fields.get("file")) {
+            (Some(f), file) => {
+                if file.is_some() {
+                    self.out_of_place(
+                        fields,
+                        "file",
+                        "the points of this table are given by `points` already",
+                    );
+                }
+                self.out_of_place(fields, "columns", "`columns` goes with `file`");
+                self.points_of_table(fields, f).map(|p| (p, f))
+            }
+            (None, Some(f)) => self.points_of_file(fields, f).map(|p| (p, f)),
+            (None, None) => {
+                let message = format!("{} has no `points`", fields.what);
+                self.report("HP0104", fields.at.clone(), message).help = Some(
+                    "give `points = [[0, 0], [1, 5], [2, 0]]`, or `file = \"travel.csv\"` beside the model file"
+                        .into(),
+                );
+                None
+            }
+        };
+        let (degree, ends, (points, f)) = (degree?, ends?, points?);
+        let (times, values) = points.into_iter().map(|[t, x]| (t, x)).unzip();
+        self.made(fields, f.value.span(), Law::table(&Table { times, values, degree, ends }))
+    }
+
+    /// Which of some words a key is; the first where it is left out.
+    fn word_of(&mut self, fields: &Fields<'_>, key: &str, words: &[&str]) -> Option<usize> {
+        let Some(f) = fields.get(key) else { return Some(0) };
+        let subject = fields.subject(key);
+        let word = self.name(f.value, &subject, "a word in quotes")?;
+        let k = words.iter().position(|w| *w == word);
+        if k.is_none() {
+            self.unknown_word(f.value.span(), &subject, &word, words);
+        }
+        k
+    }
+
+    fn ends(&mut self, fields: &Fields<'_>, degree: Option<SplineDegree>) -> Option<Ends> {
+        let kind = self.word_of(fields, "ends", &["clamped", "natural", "periodic"])?;
+        let keys = ["start_speed", "start_acceleration", "end_speed", "end_acceleration"];
+        if kind > 0 {
+            for key in keys {
+                self.out_of_place(fields, key, "speeds and accelerations go with `ends = \"clamped\"`");
+            }
+            return Some(if kind == 1 { Ends::Natural } else { Ends::Periodic });
+        }
+        if degree == Some(SplineDegree::Cubic) {
+            for key in [keys[1], keys[3]] {
+                let why = "the acceleration at the ends of a cubic spline follows from its points; \
+                           with `spline = \"quintic\"` it can be given";
+                self.out_of_place(fields, key, why);
+            }
+        }
+        let [a, b, c, d] = keys.map(|key| self.number_or(fields, key, 0.0));
+        let (start, end) =
+            (EndRates { speed: a?, acceleration: b? }, EndRates { speed: c?, acceleration: d? });
+        match degree {
+            // Said above.
+            Some(SplineDegree::Cubic) if start.acceleration != 0.0 || end.acceleration != 0.0 => None,
+            _ => Some(Ends::Clamped { start, end }),
+        }
+    }
+
+    fn points_of_table(&mut self, fields: &Fields<'_>, f: Field<'_>) -> Option<Vec<[f64; 2]>> {
+        let subject = fields.subject(f.key);
+        let list = self.list(f.value, &subject, "a list of pairs of time and value")?;
+        let points: Vec<_> = list
+            .iter()
+            .enumerate()
+            .map(|(k, v)| {
+                let subject = Subject {
+                    name: format!("point {k} of {}", fields.what),
+                    example: subject.example.clone(),
+                };
+                self.numbers::<2>(v, &subject, "a pair of time and value, `[t, x]`")
+            })
+            .collect();
+        let points: Vec<[f64; 2]> = points.into_iter().collect::<Option<_>>()?;
+        if let Some(k) = (1..points.len()).find(|&k| points[k][0] <= points[k - 1][0]) {
+            let (before, after) = (points[k - 1][0], points[k][0]);
+            let message = format!("the times of a table must increase, but {after} s follows {before} s");
+            self.report("HP0110", list[k].span(), message).help = Some(
+                if before == after { "remove one of the two points" } else { "sort the points by time" }
+                    .into(),
+            );
+            return None;
+        }
+        Some(points)
+    }
+
+    fn points_of_file(&mut self, fields: &Fields<'_>, f: Field<'_>) -> Option<Vec<[f64; 2]>> {
+        let columns = self.columns(fields);
+        let name = self.text(fields, f)?;
+        let columns = columns?;
+        match data::points(self.folder, &name, &columns) {
+            Ok(points) => Some(points),
+            Err(e) => {
+                let at = fields.get("columns").filter(|_| e.of_columns).unwrap_or(f);
+                let d = self.report(e.code, at.value.span(), e.message);
+                d.notes = e.notes;
+                d.help = e.help;
+                None
+            }
+        }
+    }
+
+    /// The two columns of a file, by name or number; the first two where none are named.
+    fn columns(&mut self, fields: &Fields<'_>) -> Option<[data::Column; 2]> {
+        let Some(f) = fields.get("columns") else { return Some([1, 2].map(data::Column::Number)) };
+        let subject = fields.subject("columns");
+        let expected = "two columns, of the time and of the value, each a name or a number from 1";
+        let list = match f.value.get_ref().as_array() {
+            Some(list) if list.len() == 2 => list,
+            _ => {
+                self.wrong(f.value, &subject, expected);
+                return None;
+            }
+        };
+        let [time, value] = [0, 1].map(|k| match list[k].get_ref() {
+            DeValue::String(_) => self.name(&list[k], &subject, expected).map(data::Column::Named),
+            _ => {
+                let number = self.number(&list[k], &subject)?;
+                if !((1.0..=1e6).contains(&number) && number.fract() == 0.0) {
+                    self.senseless(list[k].span(), format!("{} cannot be {number}", subject.name)).help =
+                        Some("columns are counted from 1".into());
+                    return None;
+                }
+                Some(data::Column::Number(number as usize))
+            }
+        });
+        Some([time?, value?])
+    }
+}
