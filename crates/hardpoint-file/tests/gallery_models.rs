@@ -41,12 +41,15 @@ const fn entry(
 const GALLERY: &[Entry] = &[
     entry("bennett", 1, 3, &["corner_A_x"], bennett_input_and_output_half_angles_have_a_constant_product),
     entry("bricard", 1, 1, &["skew"], bricard_hinges_alternate_and_close_by_their_equation),
+    entry("cam", 1, 0, &[], cam_lifts_by_its_cycloids),
     entry("delta", 3, 0, &[], delta_tool_is_where_three_spheres_meet),
     entry("double_wishbone", 2, 0, &[], double_wishbone_rods_and_spring_have_their_lengths),
+    entry("drive_shaft", 2, 0, &[], drive_shaft_turns_the_wheel_evenly),
     entry("dwell", 1, 6, &[], dwell_arm_rests_for_half_a_turn),
     entry("excavator", 3, 0, &[], excavator_cylinders_obey_the_law_of_cosines),
     entry("five_link", 1, 0, &[], five_link_rods_keep_their_lengths_to_second_order),
     entry("four_bar", 1, 0, &[], four_bar_obeys_freudenstein),
+    entry("gear_train", 1, 0, &[], gear_train_keeps_its_ratios),
     entry("hooke", 1, 3, &["in_bearing_y"], hooke_tangents_are_in_proportion),
     entry("jansen", 1, 9, &[], jansen_foot_follows_from_the_holy_numbers),
     entry("klann", 1, 6, &[], klann_foot_follows_from_the_published_lengths),
@@ -294,6 +297,49 @@ fn freudenstein([a, b, c, d]: [f64; 4], phi: f64, psi: f64) -> f64 {
 // Facts, in the order of the table.
 
 /// With the angles u and w at two neighbouring corners and the twists alpha and beta of the sides that meet there,
+/// The pitch curve is given every 5 deg, so there the lift is the cycloid itself.
+fn cam_lifts_by_its_cycloids(m: &Solved) {
+    let cycloid = |u: f64| 0.02 * (u - (TAU * u).sin() / TAU);
+    for (k, t) in m.steps().filter(|(k, _)| k % 2 == 0) {
+        let angle = (360.0 * t) % 360.0;
+        let lift = match angle {
+            a if a < 120.0 => cycloid(a / 120.0),
+            a if a < 180.0 => 0.02,
+            a if a < 300.0 => 0.02 - cycloid((a - 180.0) / 120.0),
+            _ => 0.0,
+        };
+        m.close("lift", m.value(k, "lift"), lift, EXACT);
+        // The pin is 60 mm beside the fulcrum: the slot points at it.
+        m.close("lever", m.value(k, "lever_angle").tan(), m.value(k, "lift") / 0.06, EXACT);
+    }
+}
+
+/// Homokinetic joints: the wheel has the engine's angle, speed and acceleration at any travel; and Pythagoras.
+fn drive_shaft_turns_the_wheel_evenly(m: &Solved) {
+    let (inner, outer) = (m.hardpoint("inner_joint"), m.hardpoint("outer_joint"));
+    for (k, t) in m.steps() {
+        let [angle, speed, acceleration] = m.measure(k, "wheel_angle");
+        m.close("angle", angle, 2.0 * TAU * t, EXACT * 100.0);
+        m.close("speed", speed, 2.0 * TAU, EXACT * 100.0);
+        m.close("acceleration", acceleration, 0.0, EXACT_RATES * 100.0);
+        let travel = Vec3::new(0.0, 0.0, 0.08 * (0.5 * TAU * t).sin());
+        let plunge = (outer + travel - inner).norm() - (outer - inner).norm();
+        m.close("plunge", m.value(k, "plunge"), plunge, EXACT);
+    }
+}
+
+/// Ten turns of the motor by 2/3, by -1/4 and -1/3 on to the rack and by 3 to the screw of 4 mm, counted through all turns.
+fn gear_train_keeps_its_ratios(m: &Solved) {
+    for (k, t) in m.steps() {
+        let u = t / 4.0;
+        let motor = 10.0 * TAU * u.powi(3) * (10.0 - 15.0 * u + 6.0 * u * u);
+        let cross = motor / 12.0;
+        m.close("spindle", m.value(k, "spindle_angle"), motor * 2.0 / 3.0, EXACT * 100.0);
+        m.close("feed", m.value(k, "feed"), 0.012 * cross, EXACT);
+        m.close("stop", m.value(k, "stop_travel"), -0.004 * 3.0 * cross / TAU, EXACT);
+    }
+}
+
 /// tan(u/2) tan(w/2) = cos((beta - alpha)/2) / cos((beta + alpha)/2) (Bennett 1903, axes outwards at every corner).
 fn bennett_input_and_output_half_angles_have_a_constant_product(m: &Solved) {
     let [a, b, c, d] = ["A", "B", "C", "D"].map(|h| m.hardpoint(h));

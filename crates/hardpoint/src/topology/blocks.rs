@@ -107,6 +107,9 @@ fn independent_groups(
         column_of[c] = column;
     }
     let mut patterns: Vec<Vec<usize>> = Vec::new();
+    // ... and the links that place the bodies on which their loops stand.
+    let placed_by = last_unknown_links(topology, unknown);
+    let mut bases: Vec<Vec<usize>> = Vec::new();
     for closure in topology.closures.iter().filter(|c| !topology.rows[c.first_row].is_term) {
         let range = closure.first_row..closure.first_row + closure.rows.len();
         let dense: Vec<Vec<f64>> = jacobian[range.clone()]
@@ -117,9 +120,12 @@ fn independent_groups(
         for r in FullPivot::of(dense, n, RANK_TOLERANCE).rows {
             let row = &jacobian[range.start + r];
             patterns.push(row.iter().filter(|(c, _)| unknown[*c]).map(|(c, _)| column_of[*c]).collect());
+            let closures = topology.parts_of_row(range.start + r).map(|(k, _)| topology.rows[k].closure);
+            bases.push(closures.filter_map(|c| placed_by[topology.base(c).0]).collect());
         }
     }
-    // An unknown depends on every other unknown of the row that it is matched with.
+    // An unknown depends on every other unknown of the row that it is matched with. A loop could be solved before the body
+    // on which it stands has its place, but places are what is computed, so it waits for those unknowns too.
     let mut depends: DiGraph<(), ()> = DiGraph::default();
     for _ in &coordinates {
         depends.add_node(());
@@ -127,6 +133,11 @@ fn independent_groups(
     for (column, row) in match_columns(&patterns, coordinates.len()).into_iter().enumerate() {
         for &other in patterns[row?].iter().filter(|&&other| other != column) {
             depends.add_edge(NodeIndex::new(column), NodeIndex::new(other), ());
+        }
+        for &link in &bases[row?] {
+            for c in topology.links[link].coordinates().filter(|&c| unknown[c] && column_of[c] != column) {
+                depends.add_edge(NodeIndex::new(column), NodeIndex::new(column_of[c]), ());
+            }
         }
     }
     // Kosaraju's algorithm does not recurse: a chain of loops may be any number deep.
@@ -137,6 +148,17 @@ fn independent_groups(
         g.sort_unstable();
     }
     Some(groups)
+}
+
+/// Per body: the nearest link on its way to ground that has unknowns.
+fn last_unknown_links(topology: &Topology, unknown: &[bool]) -> Vec<Option<usize>> {
+    let bodies = topology.links.iter().map(|l| l.child.0).max().unwrap_or(0) + 1;
+    let mut placed_by = vec![None; bodies];
+    for (k, link) in topology.links.iter().enumerate() {
+        let own = link.coordinates().any(|c| unknown[c]);
+        placed_by[link.child.0] = if own { Some(k) } else { placed_by[link.parent.0] };
+    }
+    placed_by
 }
 
 /// Makes blocks of the groups and selects their rows. The error is a basis of motions left free, each the
@@ -240,9 +262,7 @@ fn order_links(topology: &mut Topology, blocks: usize) {
     for k in 0..topology.links.len() {
         let link = &topology.links[k];
         let own = link
-            .steps
-            .iter()
-            .flat_map(|s| s.first..s.first + s.freedom.coordinates())
+            .coordinates()
             .filter_map(|c| match topology.coordinates[c].source {
                 Source::Unknown { block, .. } => Some(block + 1),
                 Source::Driven(_) => None,

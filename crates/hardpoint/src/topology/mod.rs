@@ -226,6 +226,16 @@ impl Topology {
         rows.filter(|&r| !self.rows[r].is_term).collect()
     }
 
+    /// The body on which a closure's loop stands: where the ways from its two bodies to ground meet.
+    fn base(&self, closure: usize) -> BodyId {
+        let closure = &self.closures[closure];
+        match closure.links.last() {
+            // Links on the way from i come last, the one nearest to ground at the very end.
+            Some(&(k, side)) if side < 0.0 => self.links[k].parent,
+            _ => closure.bodies[0],
+        }
+    }
+
     /// The rows whose sum, each times its factor, is constraint row r: itself, and a coupler's further terms.
     pub fn parts_of_row(&self, r: usize) -> impl Iterator<Item = (usize, f64)> + '_ {
         std::iter::once((r, 1.0)).chain(self.rows[r].terms.iter().copied())
@@ -264,6 +274,11 @@ impl Topology {
 }
 
 impl Link {
+    /// Its coordinates in [`Topology::coordinates`].
+    pub fn coordinates(&self) -> impl Iterator<Item = usize> + '_ {
+        self.steps.iter().flat_map(|s| s.first..s.first + s.freedom.coordinates())
+    }
+
     /// The frame in which its freedoms start, at the design configuration, in the world.
     fn frame_at_design(&self, model: &Model) -> Pose {
         match self.joint {
