@@ -6,7 +6,7 @@ use hardpoint::topology::Topology;
 use serde::Serialize;
 
 use crate::diagnose::named;
-use crate::figures::{names, number, rounded, some_of};
+use crate::figures::{number, rounded, some_in_words};
 
 /// Above this, no more than three digits of the velocities are lost and there is nothing to say.
 const COMFORTABLE: f64 = 1e-3;
@@ -38,9 +38,10 @@ pub struct MarginFact {
 }
 
 impl MarginFact {
-    /// The margins of a motion; `None` where nothing was solved, or drivers alone place all bodies.
+    /// The margins of a motion; `None` where nothing was solved, or nothing but single unknowns, one after the other:
+    /// a single equation's condition number is 1 however it stands.
     pub fn new(model: &Model, topology: &Topology, motion: &Motion) -> Option<Self> {
-        if topology.blocks.is_empty() {
+        if topology.blocks.iter().all(|b| b.unknowns.len() <= 1) {
             return None;
         }
         let (k, least) = motion.least_margin()?;
@@ -63,7 +64,7 @@ impl MarginFact {
 
     /// `0.12 at least, at t = 0.35 s (pin, guide)`.
     pub fn line(&self) -> String {
-        let joints = some_of(&self.joints, ", ");
+        let joints = few(&self.joints);
         format!("{} at least, at t = {} s ({joints})", rounded(self.least, 2), number(self.time))
     }
 
@@ -78,7 +79,7 @@ impl MarginFact {
             "The least margin is {} at t = {} s, in the loop of {}",
             rounded(self.least, 2),
             number(self.time),
-            names(self.joints.iter().take(8).map(String::as_str)),
+            some_in_words(&self.joints.iter().map(|j| format!("`{j}`")).collect::<Vec<_>>()),
         );
         let lost = match self.digits_lost.round() {
             _ if self.least <= 0.0 => "velocities mean nothing there".into(),
@@ -99,5 +100,14 @@ impl MarginFact {
         let after = self.singular_after.filter(|after| *after <= SOON * self.span)?;
         let after = rounded(after, 2);
         Some(format!("Falling on like this, it would be 0, a singular position, {after} s after the end"))
+    }
+}
+
+/// The names on one line; of many the first, and how many more there are.
+fn few(joints: &[String]) -> String {
+    const SHOWN: usize = 4;
+    match joints.len().saturating_sub(SHOWN) {
+        0 => joints.join(", "),
+        more => format!("{} and {more} more", joints[..SHOWN].join(", ")),
     }
 }

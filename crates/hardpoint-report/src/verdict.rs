@@ -228,3 +228,26 @@ fn step_text(step: f64, unit: &str) -> String {
     let step = rounded(step, 2);
     if unit == "1" { step } else { format!("{step} {unit}") }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn sweep(error: impl Fn(f64) -> f64) -> Vec<StepError> {
+        let steps = (4..=12).map(|k| 10.0_f64.powf(-0.5 * f64::from(k)));
+        let worst = String::from("rod position");
+        steps.map(|step| StepError { step, error: error(step), worst: worst.clone(), time: 0.0 }).collect()
+    }
+
+    #[test]
+    fn a_difference_that_falls_with_the_step_is_told_from_all_others() {
+        assert!(falls_in_proportion(&sweep(|h| 3.0 * h)));
+        // At large steps other terms rule.
+        assert!(falls_in_proportion(&sweep(|h| 3.0 * h + 4e3 * h * h)));
+        assert!(!falls_in_proportion(&sweep(|h| h * h)), "a wrong design has no such excuse");
+        assert!(!falls_in_proportion(&sweep(|_| 0.1)), "nor has a wrong sensitivity");
+        assert!(!falls_in_proportion(&sweep(|h| 3.0 * h + 0.01)));
+        assert!(!falls_in_proportion(&sweep(|h| 3.0 * h)[..2]), "half a decade is too little to say");
+        assert!(!falls_in_proportion(&[]));
+    }
+}
