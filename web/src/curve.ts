@@ -38,7 +38,7 @@ export function decades(low: number | null, high: number | null): [number, numbe
   if (low === null || high === null || !(low > 0)) return [0.1, 1]
   const bottom = Math.floor(Math.log10(low) + 1e-9)
   const top = Math.ceil(Math.log10(high) - 1e-9)
-  return [10 ** bottom, 10 ** Math.max(top, bottom + 1)]
+  return [10 ** Math.min(bottom, top - 1), 10 ** top]
 }
 
 /** The value at a fractional step. */

@@ -62,7 +62,7 @@ export class Plot {
     this.#uplot?.destroy()
     this.#uplot = undefined
     this.#title.textContent = titled(content.title, content.message ? '' : content.unit)
-    this.#caption.textContent = content.caption ?? ''
+    this.#caption.replaceChildren(...prose(content.caption ?? ''))
     this.#area.replaceChildren()
     this.#area.setAttribute('role', 'img')
     this.#area.setAttribute('aria-label', content.message ?? `${titled(content.title, content.unit)} over time`)

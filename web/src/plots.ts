@@ -89,7 +89,7 @@ function peersContent(state: State): Content & { total: number } {
   const selected = report.variables[choice.variable]
   const ranks = ranking(report, quantity, choice.order)
   // A variable that cannot be followed has no curves, but those of its unit are still worth seeing.
-  const unit = selected && ranks.has(selected.unit) ? selected.unit : [...ranks.keys()][0]
+  const unit = selected && ranks.has(selected.unit) ? selected.unit : ([...ranks.keys()][0] ?? selected?.unit ?? '1')
   const peers = ranks.get(unit) ?? []
   const symbol = derivativeUnit(quantity, choice.order, { unit })
   const shown = peers.filter(({ variable }, rank) => choice.all || rank < FEW || variable === selected)

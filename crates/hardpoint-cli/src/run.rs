@@ -169,7 +169,7 @@ fn summary_text(summary: &Summary) -> String {
     rows.push(("time taken", format!("{} ({})", seconds(timings.total), parts.join(", "))));
     let mut out = format!("{}\n{}{}", text::bold(&model.name), text::pairs(&rows), text::notes(summary));
     let assembly = summary.assembly.iter().flat_map(|a| a.tables());
-    for table in assembly.chain(largest(summary)) {
+    for table in assembly.chain(largest(summary).filter(|_| steps.solved > 0)) {
         out += &format!("\n{}", text::table(&table));
     }
     out

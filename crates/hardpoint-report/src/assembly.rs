@@ -87,11 +87,7 @@ impl AssemblyFact {
     pub fn tables(&self) -> [Table; 2] {
         let gap = |g: &GapFact| vec![format!("{} {}", g.kind, g.name), g.size_text()];
         let moved = |m: &MovedFact| {
-            vec![
-                m.body.clone(),
-                with_unit(m.distance, m.distance_unit),
-                with_unit(m.angle, m.angle_unit),
-            ]
+            vec![m.body.clone(), with_unit(m.distance, m.distance_unit), with_unit(m.angle, m.angle_unit)]
         };
         [
             table(

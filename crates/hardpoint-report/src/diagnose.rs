@@ -71,7 +71,8 @@ pub fn stop(file: &ModelFile, stop: &Stop, solved: usize, outputs: Option<&str>)
             Some(t) => format!("the last solved time is t = {} s{values}", rounded(t, 7)),
             None if values.is_empty() => "not even the first output time was solved".into(),
             None => format!(
-                "not even the first output time was solved: the way there from the design configuration ends{values}"
+                "not even the first output time was solved: the way there from the design configuration ends{}",
+                values.trim_start_matches(',')
             ),
         });
     }
@@ -103,8 +104,7 @@ pub fn stop(file: &ModelFile, stop: &Stop, solved: usize, outputs: Option<&str>)
 
 /// What stays open where a mechanism does not assemble.
 fn gap_notes(file: &ModelFile, stop: &Stop, closed: f64) -> Vec<String> {
-    let gaps: Vec<GapFact> =
-        stop.remains.iter().map(|g| GapFact::new(&file.model, file.units, g)).collect();
+    let gaps: Vec<GapFact> = stop.remains.iter().map(|g| GapFact::new(&file.model, file.units, g)).collect();
     let at_best = |g: &GapFact| format!("{} `{}` stays open by {} at best", g.kind, g.name, g.size_text());
     let mut notes: Vec<String> = gaps.iter().take(MOST_GAPS).map(at_best).collect();
     if gaps.len() > MOST_GAPS {

@@ -176,7 +176,8 @@ fn headline(summary: &Summary) -> Vec<Fact> {
     facts.push(fact("steps", format!("{}, {span}", steps.solved)));
     facts.push(fact("worst residual", format!("{} m or rad", error(summary.effort.worst_residual_si))));
     if let Some(margin) = &summary.margin {
-        facts.push(fact("least margin", format!("{} at {} s", rounded(margin.least, 2), number(margin.time))));
+        facts
+            .push(fact("least margin", format!("{} at {} s", rounded(margin.least, 2), number(margin.time))));
     }
     if !model.variables.is_empty() {
         facts.push(fact("design variables", model.variables_line()));

@@ -133,11 +133,7 @@ fn couplers_are_written_out_in_the_users_units_and_counted() {
     let (_, summary) = solved(&file);
     let facts = &summary.model;
     let tables = text(&facts.tables(), &["Couplers", "Blocks"]);
-    insta::assert_snapshot!(format!(
-        "{}\n{}\n{tables}",
-        facts.joints_text(),
-        facts.constraints_line()
-    ));
+    insta::assert_snapshot!(format!("{}\n{}\n{tables}", facts.joints_text(), facts.constraints_line()));
     // 20 mm of radius make 20 * pi / 180 mm per degree.
     let rack = &facts.couplers[1];
     assert_eq!((rack.terms[0].unit, rack.terms[1].unit), ("mm", "deg"));
@@ -289,7 +285,10 @@ fn a_motion_that_ends_next_to_a_singular_position_is_warned_of() {
     let margin = summary.margin.as_ref().unwrap();
     assert!(margin.is_thin() && margin.ahead().is_some(), "{margin:?}");
     let told = told(&diagnose::all(&file, &summary, &solution, None));
-    assert!(told.starts_with("[HP0407] the mechanism comes close to a singular position at t = 1 s"), "{told}");
+    assert!(
+        told.starts_with("[HP0407] the mechanism comes close to a singular position at t = 1 s"),
+        "{told}"
+    );
     assert!(told.contains("the loop consists of `B1`, `C1` and `D1`"), "{told}");
 }
 
@@ -298,11 +297,8 @@ fn with_a_rod_of(length: f64) -> Draft {
     let mut rod = joint("rod", "distance", ["crank", "rocker"], &[[0.0, 0.1, 0.0], [0.3, 0.25, 0.0]], None);
     rod.length = Some(length);
     let harmonic = Harmonic { amplitude: 0.5, frequency: 0.2, phase: 0.0, offset: 0.0 };
-    let law_of = |parameter: &str| ChangeDraft::Law {
-        driver: "motor".into(),
-        parameter: parameter.into(),
-        rate: 1.0,
-    };
+    let law_of =
+        |parameter: &str| ChangeDraft::Law { driver: "motor".into(), parameter: parameter.into(), rate: 1.0 };
     Draft {
         name: "four-bar with a rod".into(),
         bodies: ["crank", "rocker"].map(body).into(),
@@ -355,18 +351,19 @@ fn variables_of_lengths_and_laws_say_what_they_change_and_in_what_unit() {
     let file_ = file(&draft);
     let (_, summary) = solved(&file_);
     let shown = |s: &Summary| -> String {
-        let row = |v: &hardpoint_report::facts::VariableFact| format!("{} [{}] {}\n", v.name, v.unit, v.change);
+        let row =
+            |v: &hardpoint_report::facts::VariableFact| format!("{} [{}] {}\n", v.name, v.unit, v.change);
         s.model.variables.iter().map(row).collect()
     };
     let mut out = shown(&summary);
     // One of the variable is 1 deg/s where the change says so, and 1 rad/s where it says that.
     draft.drivers[0].law = Law::constant_speed(ConstantSpeed { speed: 0.2, offset: 0.0 }).unwrap();
     let speed = |name: &str, rate: f64| {
-        let change =
-            ChangeDraft::Law { driver: "motor".into(), parameter: "speed".into(), rate };
+        let change = ChangeDraft::Law { driver: "motor".into(), parameter: "speed".into(), rate };
         variable(name, change)
     };
-    draft.design = vec![speed("in_degrees", 1.0_f64.to_radians()), speed("in_si", 1.0), speed("in_neither", 0.3)];
+    draft.design =
+        vec![speed("in_degrees", 1.0_f64.to_radians()), speed("in_si", 1.0), speed("in_neither", 0.3)];
     let (_, summary) = solved(&file(&draft));
     out += &shown(&summary);
     let ranked = &summary.sensitivities[0].largest;
@@ -381,7 +378,11 @@ fn jumps_of_laws_are_notes_that_name_time_size_and_consequence() {
         bodies: vec![body("arm")],
         joints: vec![joint("hinge", "revolute", ["ground", "arm"], &[[0.0; 3]], Y)],
         drivers: vec![driver("lift", "hinge", law)],
-        points: vec![PointDraft { name: "tip".into(), body: "arm".into(), at: Place::At([0.1, 0.0, 0.0].into()) }],
+        points: vec![PointDraft {
+            name: "tip".into(),
+            body: "arm".into(),
+            at: Place::At([0.1, 0.0, 0.0].into()),
+        }],
         times: (0..=10).map(|k| 0.1 * f64::from(k)).collect(),
         ..Draft::default()
     };

@@ -416,9 +416,8 @@ fn drivers(model: &Model, units: Units) -> Vec<DriverFact> {
 fn driven_text(model: &Model, joint: &Joint) -> String {
     let body = |e: usize| model.bodies[joint.bodies[e].0].name.as_str();
     let place = |e: usize| {
-        let on = |p: &&hardpoint::model::BodyPoint| {
-            !p.unnamed && p.body == joint.bodies[e] && p.at == joint.at[e]
-        };
+        let on =
+            |p: &&hardpoint::model::BodyPoint| !p.unnamed && p.body == joint.bodies[e] && p.at == joint.at[e];
         let hardpoint = &model.hardpoints[joint.at[e].0];
         match model.points.iter().find(on) {
             Some(point) => format!("point `{}` on `{}`", point.name, body(e)),
@@ -433,7 +432,8 @@ fn driven_text(model: &Model, joint: &Joint) -> String {
             format!("the line from `{a}` to `{b}`")
         }
     });
-    let relative = if joint.bodies[0] == GROUND { String::new() } else { format!(" relative to `{}`", body(0)) };
+    let relative =
+        if joint.bodies[0] == GROUND { String::new() } else { format!(" relative to `{}`", body(0)) };
     if std::ptr::eq(joint.kind, &joint::TRAVEL) {
         format!("{} along {axis}{relative}", place(1))
     } else if std::ptr::eq(joint.kind, &joint::HEADING) {

@@ -84,7 +84,8 @@ impl Facts {
         const SHOWN: usize = 6;
         let groups = self.redundancy.iter().take(SHOWN).map(super::RedundancyFact::note);
         let left: usize = self.redundancy.iter().skip(SHOWN).map(|r| r.count).sum();
-        let more = (left > 0).then(|| format!("{} among other joints", count(left, "more redundant constraint")));
+        let more =
+            (left > 0).then(|| format!("{} among other joints", count(left, "more redundant constraint")));
         groups.chain(more).chain(self.notes.iter().cloned()).collect()
     }
 
@@ -112,14 +113,7 @@ impl Facts {
         let rows = self.joints.iter().map(|j| {
             let bodies = format!("{} – {}", j.bodies[0], j.bodies[1]);
             let kind = if j.holds_spin { format!("{}, holds a spin", j.kind) } else { j.kind.into() };
-            vec![
-                j.name.clone(),
-                kind,
-                bodies,
-                j.role.into(),
-                j.why.clone(),
-                j.constraints.to_string(),
-            ]
+            vec![j.name.clone(), kind, bodies, j.role.into(), j.why.clone(), j.constraints.to_string()]
         });
         table(
             "Joints",
