@@ -2,9 +2,9 @@
 
 use std::collections::BTreeMap;
 
-use hardpoint::constraint::Row;
-use hardpoint::model::{JointId, Model};
-use hardpoint::topology::{Formulation, Redundancy, Topology};
+use hardpoint::joint;
+use hardpoint::model::{JointId, MeasureKind, Model};
+use hardpoint::topology::{Formulation, Redundancy, Role, Topology};
 use serde::Serialize;
 
 use super::joint_name;
@@ -21,7 +21,7 @@ pub struct RedundancyFact {
     pub couplers: Vec<String>,
     /// The drivers that prescribe what the others already do.
     pub drivers: Vec<String>,
-    /// A joint with exactly the freedoms that are missing: its name, its type, and a type to take instead.
+    /// A joint that would remove them all as another type, together with the joints named so before it.
     pub instead: Option<Instead>,
 }
 
@@ -53,7 +53,8 @@ pub(super) fn redundancy(model: &Model, topology: &Topology) -> Vec<RedundancyFa
     if left_out == 0 {
         return Vec::new();
     }
-    let all_cut = (model.bodies.len() - 1 <= MOST_BODIES)
+    let small = model.bodies.len() - 1 <= MOST_BODIES;
+    let all_cut = small
         .then(|| Topology::of(model, Formulation::Absolute).ok())
         .flatten()
         .filter(|t| t.redundant().count() == left_out);
@@ -62,6 +63,7 @@ pub(super) fn redundancy(model: &Model, topology: &Topology) -> Vec<RedundancyFa
     for redundancy in plan.redundancies(model) {
         *groups.entry(parts(model, plan, &redundancy)).or_default() += 1;
     }
+    let mut freed = Freed { model: model.clone(), redundant: left_out, mobility: topology.mobility };
     let fact = |(parts, count): (Vec<Part>, usize)| {
         let of = |pick: fn(&Part) -> Option<usize>, name: &dyn Fn(usize) -> String| {
             parts.iter().filter_map(pick).map(name).collect::<Vec<_>>()
@@ -69,12 +71,13 @@ pub(super) fn redundancy(model: &Model, topology: &Topology) -> Vec<RedundancyFa
         let joint = |p: &Part| if let Part::Joint(k) = p { Some(*k) } else { None };
         let coupler = |p: &Part| if let Part::Coupler(k) = p { Some(*k) } else { None };
         let driver = |p: &Part| if let Part::Driver(k) = p { Some(*k) } else { None };
+        let joints: Vec<usize> = parts.iter().filter_map(joint).collect();
         RedundancyFact {
             count,
             joints: of(joint, &|k| model.joints[k].name.clone()),
             couplers: of(coupler, &|k| model.couplers[k].name.clone()),
             drivers: of(driver, &|k| model.drivers[k].name.clone()),
-            instead: instead(model, topology, &parts, count),
+            instead: if small { freed.instead(topology, &joints, count) } else { None },
         }
     };
     groups.into_iter().map(fact).collect()
@@ -101,29 +104,55 @@ fn parts(model: &Model, plan: &Topology, redundancy: &Redundancy) -> Vec<Part> {
     parts
 }
 
-/// The joint whose left-out rows are all the redundancy, if there is a type without them.
-fn instead(model: &Model, topology: &Topology, parts: &[Part], redundant: usize) -> Option<Instead> {
-    parts.iter().find_map(|part| {
-        let Part::Joint(j) = *part else { return None };
-        let rows: Vec<Row> = topology
-            .redundant()
-            .filter(|(c, _)| c.joint == JointId(j) && c.driver.is_none() && c.coupler.is_none())
-            .map(|(_, row)| row)
-            .collect();
-        if rows.len() != redundant {
-            return None;
-        }
-        let lengths = rows.iter().filter(|r| r.is_length()).count();
-        let kind = model.joints[j].kind.name;
-        let instead = match (kind, lengths, rows.len() - lengths) {
-            ("revolute", 0, 2) | ("universal" | "constant_velocity", 0, 1) | ("fixed", 0, 3) => "spherical",
-            ("revolute", 1, 0) | ("translational", 0, 1) => "cylindrical",
-            ("revolute", 1, 2) | ("translational", 0, 3) | ("cylindrical", 0, 2) => "inline",
-            ("planar", 0, 2) => "inplane",
-            _ => return None,
-        };
-        Some(Instead { joint: joint_name(model, JointId(j)), kind, instead })
-    })
+/// The model as far as its redundant constraints are removed by joints with more freedom.
+struct Freed {
+    model: Model,
+    redundant: usize,
+    mobility: usize,
+}
+
+impl Freed {
+    /// A joint that removes so many redundant constraints as another type, and leaves the mechanism driven as it is: tried,
+    /// together with those found before. Joints that close a loop come first.
+    fn instead(&mut self, topology: &Topology, joints: &[usize], redundant: usize) -> Option<Instead> {
+        let is_cut = |j: &usize| matches!(topology.roles[*j], Role::Cut(_));
+        let (cut, tree): (Vec<usize>, Vec<usize>) = joints.iter().partition(|j| is_cut(j));
+        cut.into_iter().chain(tree).find_map(|j| {
+            if self.is_named_by_others(JointId(j)) {
+                return None;
+            }
+            let kind = self.model.joints[j].kind;
+            let instead = match (kind.name, redundant) {
+                ("revolute" | "translational", 1) => &joint::CYLINDRICAL,
+                ("revolute", 2) | ("universal" | "constant_velocity", 1) | ("fixed", 3) => &joint::SPHERICAL,
+                ("revolute" | "translational", 3) | ("cylindrical", 2) => &joint::INLINE,
+                ("planar", 2) => &joint::INPLANE,
+                _ => return None,
+            };
+            self.model.joints[j].kind = instead;
+            let plan = Topology::of(&self.model, topology.formulation);
+            let left = self.redundant - redundant;
+            if plan.is_ok_and(|p| p.redundant().count() == left && p.mobility == self.mobility) {
+                self.redundant = left;
+                return Some(Instead {
+                    joint: joint_name(&self.model, JointId(j)),
+                    kind: kind.name,
+                    instead: instead.name,
+                });
+            }
+            self.model.joints[j].kind = kind;
+            None
+        })
+    }
+
+    /// Whether a driver, coupler or measure needs a coordinate of the joint, which another type may not have.
+    fn is_named_by_others(&self, joint: JointId) -> bool {
+        let model = &self.model;
+        let measured = |k: &MeasureKind| matches!(k, MeasureKind::Coordinate { joint: j, .. } if *j == joint);
+        model.drivers.iter().any(|d| d.joint == joint)
+            || model.couplers.iter().flat_map(|c| &c.terms).any(|t| t.joint == joint)
+            || model.measures.iter().any(|m| measured(&m.kind))
+    }
 }
 
 impl RedundancyFact {
