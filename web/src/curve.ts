@@ -28,6 +28,19 @@ export function withGaps(curve: Curve): (number | null)[] {
   return Array.from(curve, (value) => (Number.isNaN(value) ? null : value))
 }
 
+/** For a logarithmic axis: null where there is no positive value. */
+export function positive(curve: Curve): (number | null)[] {
+  return Array.from(curve, (value) => (value > 0 ? value : null))
+}
+
+/** The powers of ten around values from `low` to `high`, at least one decade. */
+export function decades(low: number | null, high: number | null): [number, number] {
+  if (low === null || high === null || !(low > 0)) return [0.1, 1]
+  const bottom = Math.floor(Math.log10(low) + 1e-9)
+  const top = Math.ceil(Math.log10(high) - 1e-9)
+  return [10 ** Math.min(bottom, top - 1), 10 ** top]
+}
+
 /** The value at a fractional step. */
 export function valueAt(curve: Curve, step: number): number {
   const k = Math.min(Math.floor(step), curve.length - 1)

@@ -4,9 +4,9 @@ import type { Payload, Table } from './payload'
 /** Tables up to this long are open from the start. */
 const SHORT = 12
 
-type Head = Pick<Payload, 'title' | 'description' | 'file' | 'generator' | 'status' | 'summary'>
+type Head = Pick<Payload, 'title' | 'description' | 'file' | 'generator' | 'status' | 'summary' | 'notes'>
 
-export function header({ title, description, file, generator, status, summary }: Head): HTMLElement {
+export function header({ title, description, file, generator, status, summary, notes }: Head): HTMLElement {
   return el(
     'header',
     {},
@@ -25,6 +25,8 @@ export function header({ title, description, file, generator, status, summary }:
       { class: 'summary', 'data-testid': 'summary' },
       ...summary.map(({ label, value }) => el('div', {}, el('dt', {}, label), el('dd', {}, value))),
     ),
+    notes.length > 0 &&
+      el('ul', { class: 'notes', 'data-testid': 'notes' }, ...notes.map((note) => el('li', {}, ...prose(note)))),
   )
 }
 

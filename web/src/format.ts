@@ -27,7 +27,8 @@ export function pretty(unit: string): string {
 export function per(unit: string, by: string): string {
   if (by === '1') return pretty(unit)
   const [top, ...below] = pretty(unit || '1').split('/')
-  const bottom = [...below.map((part) => part.replace(/^\((.*)\)$/, '$1')), pretty(by)]
+  const divisor = by.includes('/') ? `(${pretty(by)})` : pretty(by)
+  const bottom = [...below.map((part) => part.replace(/^\((.*)\)$/, '$1')), divisor]
   return `${top || '1'}/${bottom.length > 1 ? `(${bottom.join('·')})` : bottom[0]}`
 }
 

@@ -47,6 +47,10 @@ status: Status,
  */
 summary: Array<Fact>,
 /**
+ * Sentences about the model that are no errors.
+ */
+notes: Array<string>,
+/**
  * Output times, `n` steps, ascending.
  */
 times: Curve,
@@ -62,6 +66,10 @@ joints: Array<JointMark>,
  * What can be plotted over time.
  */
 quantities: Array<Quantity>,
+/**
+ * How far from singular the mechanism is over time, if anything is solved for.
+ */
+margin: Margin | null,
 /**
  * Design variables with their sensitivities.
  */
@@ -208,6 +216,19 @@ rate: Curve,
  * Its second time derivative.
  */
 accel: Curve, };
+
+/**
+ * How far the mechanism is from singular: 1 is best, 0 is a singular position.
+ */
+export type Margin = {
+/**
+ * The margin, `n` steps.
+ */
+value: Curve,
+/**
+ * What its least value means.
+ */
+note: string, };
 
 /**
  * A design variable: what it moves, whether the mechanism can follow, and what follows from it.

@@ -2,12 +2,14 @@ import uPlot from 'uplot'
 import 'uplot/dist/uPlot.min.css'
 import { css, el, keepFocus, prose } from './dom'
 import { number, pretty, titled } from './format'
-import { valueAt, type Curve, withGaps } from './curve'
+import { decades, positive, valueAt, type Curve, withGaps } from './curve'
 import type { State } from './state'
 
 const HEIGHT = 190
 /** Wide enough for `−1.234e-5`, and the same for all plots, so that their time axes line up. */
 const AXIS = 66
+/** With more powers of ten than this along an axis, every other one has a number. */
+const MOST_POWERS = 6
 /** A curve that varies less than this share of its size is drawn as the constant that it is. */
 const RESOLUTION = 1e-5
 
@@ -27,6 +29,8 @@ export interface Content {
   /** Unit of the vertical axis, empty for a pure number. */
   unit: string
   lines: Line[]
+  /** From a power of ten to another; what is not positive is left out. */
+  logarithmic?: boolean
   caption?: string
   /** Shown in place of the plot. */
   message?: string
@@ -58,7 +62,7 @@ export class Plot {
     this.#uplot?.destroy()
     this.#uplot = undefined
     this.#title.textContent = titled(content.title, content.message ? '' : content.unit)
-    this.#caption.textContent = content.caption ?? ''
+    this.#caption.replaceChildren(...prose(content.caption ?? ''))
     this.#area.replaceChildren()
     this.#area.setAttribute('role', 'img')
     this.#area.setAttribute('aria-label', content.message ?? `${titled(content.title, content.unit)} over time`)
@@ -69,7 +73,7 @@ export class Plot {
       return
     }
     keepFocus(this.#legend, () => this.#legend.replaceChildren(...content.lines.map((line) => this.#entry(line))))
-    this.#uplot = new uPlot(this.#options(content), data(this.state, content.lines), this.#area)
+    this.#uplot = new uPlot(this.#options(content), data(this.state, content), this.#area)
     this.#uplot.over.append(this.#marker)
     this.#scrub(this.#uplot)
     this.#showTime()
@@ -86,10 +90,17 @@ export class Plot {
       height: HEIGHT,
       legend: { show: false },
       cursor: { drag: { x: false, y: false, setScale: false }, sync: { key: 'time' }, points: { size: 6 } },
-      scales: { x: { time: false }, y: { range: (_, low, high) => padded(low, high) } },
+      scales: { x: { time: false }, y: content.logarithmic ? DECADES : { range: (_, low, high) => padded(low, high) } },
       axes: [
         { ...axis, values, size: 30, label: titled('time', units.time), labelSize: 18, labelGap: 0, gap: 3 },
-        { ...axis, values, size: AXIS, label: pretty(content.unit) || '1', labelSize: 18, gap: 4 },
+        {
+          ...axis,
+          values: content.logarithmic ? powers : values,
+          size: AXIS,
+          label: pretty(content.unit) || '1',
+          labelSize: 18,
+          gap: 4,
+        },
       ],
       series: [{}, ...content.lines.map(series)],
     }
@@ -138,8 +149,22 @@ function series(line: Line): uPlot.Series {
   }
 }
 
-function data(state: State, lines: Line[]): uPlot.AlignedData {
-  return [Array.from(state.report.times), ...lines.map((line) => line.marks ?? withGaps(line.curve))]
+function data(state: State, { lines, logarithmic }: Content): uPlot.AlignedData {
+  const values = ({ marks, curve }: Line) => marks ?? (logarithmic ? positive(curve) : withGaps(curve))
+  return [Array.from(state.report.times), ...lines.map(values)]
+}
+
+/** Whole powers of ten around the values. */
+const DECADES: uPlot.Scale = { distr: 3, log: 10, range: (_, low, high) => decades(low, high) }
+
+function powers(_: uPlot, splits: number[]): string[] {
+  const many = splits.filter(isPower).length > MOST_POWERS
+  return splits.map((value) => (isPower(value) && !(many && Math.round(Math.log10(value)) % 2) ? number(value) : ''))
+}
+
+function isPower(value: number): boolean {
+  const power = Math.log10(value)
+  return Math.abs(power - Math.round(power)) < 1e-9
 }
 
 function padded(low: number | null, high: number | null): [number, number] {

@@ -2,7 +2,7 @@ import { thinned } from './curve'
 import { el, hue, HUES, css, onSchemeChange } from './dom'
 import { figure, number, pretty } from './format'
 import { Plot, type Content, type Line } from './plot'
-import { derivativeName, derivativeUnit, groups, ORDERS, orderedName, ranking, type Order } from './report'
+import { derivativeName, derivativeUnit, groups, ORDERS, orderedName, ranking, type Margin, type Order } from './report'
 import type { State } from './state'
 
 /** How many sensitivities are drawn before the reader asks for all: one per colour. */
@@ -17,10 +17,12 @@ export function plots(state: State): HTMLElement {
   const value = new Plot(state, 'plot-value')
   const peers = new Plot(state, 'plot-peers', toggle)
   const check = new Plot(state, 'plot-check')
+  const margin = state.report.margin && new Plot(state, 'plot-margin')
   // The legend keeps its height when the unit, and with it the number of lines, changes.
   peers.element.classList.toggle('many', state.report.variables.length > FEW / 2)
   const show = () => {
     value.show(valueContent(state))
+    if (margin) margin.show(marginContent(state.report.margin!))
     if (!hasVariables) return
     const content = peersContent(state)
     toggle.hidden = content.total <= FEW
@@ -30,7 +32,7 @@ export function plots(state: State): HTMLElement {
   state.onChoice(show)
   onSchemeChange(show)
   const derivatives = hasVariables ? [peers.element, check.element] : []
-  const column = el('div', { class: 'plots' }, chooser(state), value.element, ...derivatives)
+  const column = el('div', { class: 'plots' }, chooser(state), value.element, ...derivatives, margin?.element)
   // uPlot measures its place, so it has to be in the page first.
   queueMicrotask(show)
   return column
@@ -87,7 +89,7 @@ function peersContent(state: State): Content & { total: number } {
   const selected = report.variables[choice.variable]
   const ranks = ranking(report, quantity, choice.order)
   // A variable that cannot be followed has no curves, but those of its unit are still worth seeing.
-  const unit = selected && ranks.has(selected.unit) ? selected.unit : [...ranks.keys()][0]
+  const unit = selected && ranks.has(selected.unit) ? selected.unit : ([...ranks.keys()][0] ?? selected?.unit ?? '1')
   const peers = ranks.get(unit) ?? []
   const symbol = derivativeUnit(quantity, choice.order, { unit })
   const shown = peers.filter(({ variable }, rank) => choice.all || rank < FEW || variable === selected)
@@ -105,6 +107,11 @@ function peersContent(state: State): Content & { total: number } {
   const left = peers.length - shown.length
   const caption = left > 0 ? `The ${shown.length} largest of ${peers.length}.` : undefined
   return { ...content, lines, caption, total: peers.length }
+}
+
+function marginContent({ curve, note }: Margin): Content {
+  const line = { label: 'margin', color: css('--ink'), curve }
+  return { title: 'distance from a singular position', unit: '', lines: [line], caption: note, logarithmic: true }
 }
 
 function checkContent({ report, choice }: State): Content {

@@ -35,11 +35,17 @@ export interface Variable extends Omit<wire.Variable, 'sensitivities'> {
   sensitivities: Map<number, Sensitivity>
 }
 
+export interface Margin {
+  curve: Curve
+  note: string
+}
+
 /** The payload with its curves decoded. */
-export interface Report extends Omit<wire.Payload, 'times' | 'bodies' | 'quantities' | 'variables'> {
+export interface Report extends Omit<wire.Payload, 'times' | 'bodies' | 'quantities' | 'margin' | 'variables'> {
   times: Curve
   bodies: Body[]
   quantities: Quantity[]
+  margin?: Margin
   variables: Variable[]
 }
 
@@ -55,6 +61,7 @@ export function read(payload: wire.Payload): Report {
       units: [quantity.unit, quantity.rate_unit, quantity.accel_unit],
       curves: curves(quantity),
     })),
+    margin: payload.margin ? { curve: decode(payload.margin.value), note: payload.margin.note } : undefined,
     variables: payload.variables.map((variable, index) => ({
       ...variable,
       index,

@@ -1,5 +1,5 @@
 import { expect, test } from 'vitest'
-import { decode, peak, stepAt, thinned, valueAt, withGaps } from '../src/curve'
+import { decades, positive, decode, peak, stepAt, thinned, valueAt, withGaps } from '../src/curve'
 
 const curve = (...values: number[]) => Float32Array.from(values)
 
@@ -38,4 +38,14 @@ test('time and step are inverse to each other on uneven steps', () => {
   for (const step of [0, 0.5, 1, 1.75, 3]) expect(stepAt(times, valueAt(times, step))).toBe(step)
   expect(stepAt(times, -1)).toBe(0)
   expect(stepAt(times, 9)).toBe(3)
+})
+
+test('a logarithmic axis runs from a power of ten to another', () => {
+  expect(decades(0.02, 0.4)).toEqual([0.01, 1])
+  expect(decades(1, 1)).toEqual([0.1, 1])
+  expect(decades(null, null)).toEqual([0.1, 1])
+})
+
+test('what is not positive is left out of a logarithmic curve', () => {
+  expect(positive(Float32Array.of(1, 0, NaN, 0.5))).toEqual([1, null, null, 0.5])
 })

@@ -25,6 +25,7 @@ test('units of derivatives divide by the unit of the variable', () => {
   expect(per('deg/(s*kg)', 'mm')).toBe('deg/(s·kg·mm)')
   expect(per('1', 'mm')).toBe('1/mm')
   expect(per('mm/s', '1')).toBe('mm/s')
+  expect(per('deg', 'mm/s')).toBe('deg/(mm/s)')
 })
 
 test('powers in units are set as such', () => {

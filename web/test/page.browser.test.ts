@@ -62,14 +62,16 @@ describe('the report', () => {
   })
   afterAll(() => browser?.close())
 
-  test('draws the mechanism and three plots', async () => {
+  test('draws the mechanism and four plots', async () => {
     expect((await look(page, VIEW)).colours).toBeGreaterThan(50)
-    for (const name of ['value', 'peers', 'check']) expect((await look(page, plot(name))).colours).toBeGreaterThan(10)
+    for (const name of ['value', 'peers', 'check', 'margin']) expect((await look(page, plot(name))).colours).toBeGreaterThan(10)
   })
 
   test('scrubbing moves the time, the mechanism and the readings', async () => {
     const before = { time: await text(page, 'time'), view: await look(page, VIEW), value: await text(page, 'plot-value') }
+    const margin = await text(page, 'plot-margin')
     await scrub(page, 7)
+    expect(await text(page, 'plot-margin')).not.toBe(margin)
     expect(await text(page, 'time')).not.toBe(before.time)
     expect((await look(page, VIEW)).picture).not.toBe(before.view.picture)
     expect(await text(page, 'plot-value')).not.toBe(before.value)

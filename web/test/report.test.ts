@@ -26,10 +26,12 @@ const payload: Payload = {
   units: { length: 'mm', angle: 'deg', time: 's' },
   status: { complete: true, message: '' },
   summary: [],
+  notes: [],
   times: encode(0, 1),
   bodies: [],
   joints: [],
   quantities: [quantity('hub.x', 'point'), quantity('toe', 'measure')],
+  margin: { value: encode(0.5, 0.25), note: '' },
   variables: [variable('small', 'mm', 1), variable('tilt', 'deg', 5), variable('large', 'mm', -4), variable('stuck', 'mm')],
   checks: [],
 }
@@ -56,4 +58,9 @@ test('measures are offered before other quantities', () => {
 test('derivatives are named and measured by what they divide', () => {
   expect(derivativeName(hub, 1, report.variables[0])).toBe('d hub.x velocity / d small')
   expect(derivativeUnit(hub, 1, report.variables[0])).toBe('deg/(s·mm)')
+})
+
+test('the margin is decoded, and may be missing', () => {
+  expect([...report.margin!.curve]).toEqual([0.5, 0.25])
+  expect(read({ ...payload, margin: null }).margin).toBeUndefined()
 })

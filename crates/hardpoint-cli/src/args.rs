@@ -18,7 +18,8 @@ Exit codes:
     2  the command line cannot be understood
     3  the model file cannot be read, or has errors
     4  the mechanism cannot be driven as it is written
-    5  the motion ends early (limit position, dead point, lock); run writes the part that was solved
+    5  the mechanism does not assemble, or its motion ends early (limit position, dead point, lock);
+       run writes the part that was solved
     6  a result could not be written
   130  interrupted; run writes the part that was solved
 
@@ -40,7 +41,7 @@ pub struct Arguments {
 pub enum Command {
     /// Solve the motion and its sensitivities; write CSV files, a summary and a report
     Run(Run),
-    /// Examine a model: mobility, loops, redundancy, and whether its design variables can be followed
+    /// Examine a model: mobility, loops, redundancy, margins, and whether its design variables can be followed
     Check(Check),
     /// Compare the sensitivities with re-solved designs
     Verify(Verify),

@@ -2,8 +2,10 @@
 
 use std::time::Instant;
 
+use hardpoint::Analysis;
+use hardpoint_file::ModelFile;
 use hardpoint_report::diagnose;
-use hardpoint_report::facts::Facts;
+use hardpoint_report::facts::{Facts, outline};
 use hardpoint_report::summary::{RunStatus, Summary};
 
 use crate::args::Check;
@@ -19,19 +21,21 @@ pub fn check(options: &Check) -> Outcome {
 
 fn check_in(session: &Session, options: &Check) -> Result<Outcome, Outcome> {
     let file = session.read(&options.common.model)?;
-    let analysis = session.plan(&file, options.common.formulation())?;
+    let analysis = Analysis::with(&file.model, options.common.formulation()).map_err(|fault| {
+        if !session.is_json() {
+            text::print(&outline_text(&file));
+        }
+        session.cannot_be_driven(&file, &fault)
+    })?;
     let read = session.seconds();
     let started = Instant::now();
     let solution = session.solve(&analysis);
     let facts = Facts::new(&file, analysis.topology(), Some(&solution));
-    let mut summary = Summary::new(&file, facts, &solution);
+    let mut summary = Summary::new(&file, analysis.topology(), facts, &solution);
     summary.timings.read = read;
     summary.timings.solve = started.elapsed().as_secs_f64();
     summary.timings.total = session.seconds();
-    summary.diagnostics = diagnose::variables(&file, &summary.model);
-    if let Some(stop) = &solution.stop {
-        summary.diagnostics.push(diagnose::stop(&file, stop, solution.motion.len(), None));
-    }
+    summary.diagnostics = diagnose::all(&file, &summary, &solution, None);
     if options.common.json {
         session.print_json(&summary);
     } else {
@@ -45,19 +49,33 @@ fn check_in(session: &Session, options: &Check) -> Result<Outcome, Outcome> {
     })
 }
 
+/// What is known of a mechanism that cannot be driven.
+fn outline_text(file: &ModelFile) -> String {
+    let mut out = heading(&file.model.name, file.description.as_deref());
+    for table in outline(file) {
+        out += &format!("\n{}", text::table(&table));
+    }
+    out
+}
+
+fn heading(name: &str, description: Option<&str>) -> String {
+    format!("{}\n{}", text::bold(name), description.map_or(String::new(), |d| format!("{d}\n")))
+}
+
 fn facts_text(summary: &Summary) -> String {
     let (facts, steps) = (&summary.model, &summary.steps);
-    let rows = [
+    let mut rows = vec![
         ("degrees of freedom", facts.freedom_line()),
         ("constraints", facts.constraints_line()),
         ("loops", facts.loops_line()),
         ("motion", format!("{} of {} steps solved", steps.solved, steps.asked)),
-        ("design variables", facts.variables_line()),
     ];
-    let mut out = format!("{}\n", text::bold(&facts.name));
-    out += &facts.description.as_ref().map_or(String::new(), |d| format!("{d}\n"));
+    rows.extend(summary.margin.as_ref().map(|m| ("margin", m.line_from_start())));
+    rows.push(("design variables", facts.variables_line()));
+    let mut out = heading(&facts.name, facts.description.as_deref());
     out += &text::pairs(&rows);
-    for table in facts.tables() {
+    out += &text::notes(summary);
+    for table in summary.assembly.iter().flat_map(|a| a.tables()).chain(facts.tables()) {
         out += &format!("\n{}", text::table(&table));
     }
     out

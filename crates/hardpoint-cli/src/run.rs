@@ -9,7 +9,7 @@ use hardpoint::study::{Difference, central_differences, natural_step};
 use hardpoint::{Analysis, Solution};
 use hardpoint_file::ModelFile;
 use hardpoint_report::facts::Facts;
-use hardpoint_report::figures::{count, error, number, seconds, some_of, with_unit};
+use hardpoint_report::figures::{error, number, seconds, some_of, with_unit};
 use hardpoint_report::page::Table;
 use hardpoint_report::payload::payload;
 use hardpoint_report::summary::{RunStatus, Summary};
@@ -42,13 +42,10 @@ fn run_in(session: &Session, options: &Run) -> Result<Outcome, Outcome> {
     let solution = session.solve(&analysis);
     let solve = started.elapsed().as_secs_f64();
     let facts = Facts::new(&file, analysis.topology(), Some(&solution));
-    let mut summary = Summary::new(&file, facts, &solution);
+    let mut summary = Summary::new(&file, analysis.topology(), facts, &solution);
     (summary.timings.read, summary.timings.solve) = (read, solve);
-    summary.diagnostics = diagnose::variables(&file, &summary.model);
-    if let Some(stop) = &solution.stop {
-        let outputs = format!("the files in `{}`", path.display());
-        summary.diagnostics.push(diagnose::stop(&file, stop, solution.motion.len(), Some(&outputs)));
-    }
+    let outputs = format!("the files in `{}`", path.display());
+    summary.diagnostics = diagnose::all(&file, &summary, &solution, Some(&outputs));
 
     let started = Instant::now();
     let differences =
@@ -150,8 +147,9 @@ fn summary_text(summary: &Summary) -> String {
         if model.counts.bodies == 1 { "1 body".into() } else { format!("{} bodies", model.counts.bodies) };
     let cut: Vec<&str> = model.joints.iter().filter(|j| j.role == "cut").map(|j| j.name.as_str()).collect();
     let cut = if cut.is_empty() { String::new() } else { format!(", cut: {}", some_of(&cut, ", ")) };
+    let joints = model.joints_text();
     let mut rows = vec![
-        ("bodies and joints", format!("{bodies}, {}{cut}", count(model.counts.joints, "joint"))),
+        ("bodies and joints", format!("{bodies}, {joints}{cut}")),
         ("degrees of freedom", model.freedom_line()),
         ("loops", model.loops_line()),
     ];
@@ -163,13 +161,15 @@ fn summary_text(summary: &Summary) -> String {
         .map_or("none".into(), |t| format!("t = {} to {} s", number(steps.start), number(t)));
     rows.push(("steps", format!("{} of {}, {last}", steps.solved, steps.asked)));
     rows.push(("worst residual", format!("{} m or rad", error(summary.effort.worst_residual_si))));
+    rows.extend(summary.margin.as_ref().map(|m| ("margin", m.line())));
     rows.push(("design variables", model.variables_line()));
     let parts = [("solving", timings.solve), ("comparing", timings.compare), ("writing", timings.write)];
     let parts: Vec<String> =
         parts.iter().filter(|(_, s)| *s > 1e-5).map(|(what, s)| format!("{what} {}", seconds(*s))).collect();
     rows.push(("time taken", format!("{} ({})", seconds(timings.total), parts.join(", "))));
-    let mut out = format!("{}\n{}", text::bold(&model.name), text::pairs(&rows));
-    if let Some(table) = largest(summary) {
+    let mut out = format!("{}\n{}{}", text::bold(&model.name), text::pairs(&rows), text::notes(summary));
+    let assembly = summary.assembly.iter().flat_map(|a| a.tables());
+    for table in assembly.chain(largest(summary).filter(|_| steps.solved > 0)) {
         out += &format!("\n{}", text::table(&table));
     }
     out

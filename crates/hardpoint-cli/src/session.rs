@@ -7,7 +7,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
-use hardpoint::topology::Formulation;
+use hardpoint::topology::{Formulation, TopologyFault};
 use hardpoint::{Analysis, Solution};
 use hardpoint_file::{Diagnostic, ModelFile, ReadError};
 use hardpoint_report::{GENERATOR, diagnose};
@@ -68,10 +68,18 @@ impl Session {
 
     /// Plans the solution, or tells why the mechanism cannot be driven.
     pub fn plan<'m>(&self, file: &'m ModelFile, formulation: Formulation) -> Result<Analysis<'m>, Outcome> {
-        Analysis::with(&file.model, formulation).map_err(|fault| {
-            self.fail(file, &[diagnose::topology_fault(file, &fault)]);
-            Outcome::CannotBeDriven
-        })
+        Analysis::with(&file.model, formulation).map_err(|fault| self.cannot_be_driven(file, &fault))
+    }
+
+    /// Tells why the mechanism cannot be driven.
+    pub fn cannot_be_driven(&self, file: &ModelFile, fault: &TopologyFault) -> Outcome {
+        self.fail(file, &[diagnose::topology_fault(file, fault)]);
+        Outcome::CannotBeDriven
+    }
+
+    /// Whether the result is one JSON document.
+    pub fn is_json(&self) -> bool {
+        self.json
     }
 
     /// Solves motion and sensitivities, showing progress.

@@ -3,7 +3,9 @@
 use std::io::{IsTerminal, Write};
 
 use comfy_table::{Cell, ContentArrangement, LineStyle, TableStyle};
+use hardpoint_report::margin::MarginFact;
 use hardpoint_report::page::Table;
+use hardpoint_report::summary::Summary;
 
 const BOLD: &str = "\x1b[1m";
 const RED: &str = "\x1b[1;91m";
@@ -40,6 +42,14 @@ pub fn error(code: &str, message: &str, note: &str, help: &str) -> String {
 pub fn pairs(rows: &[(&str, String)]) -> String {
     let width = rows.iter().map(|(label, _)| label.chars().count()).max().unwrap_or(0);
     rows.iter().map(|(label, value)| format!("  {label:width$}  {value}\n")).collect()
+}
+
+/// What is worth knowing and no error, a line each, after an empty one.
+pub fn notes(summary: &Summary) -> String {
+    let ahead = summary.margin.as_ref().and_then(MarginFact::ahead);
+    let lines = summary.model.all_notes().into_iter().chain(ahead);
+    let lines: String = lines.map(|note| format!("{BOLD}note{PLAIN}: {note}\n")).collect();
+    if lines.is_empty() { lines } else { format!("\n{lines}") }
 }
 
 /// A table under its title, as wide as the terminal, or as it needs to be where there is none.

@@ -80,6 +80,9 @@ fn verdict_text(verdict: &Verdict, sweep: bool) -> String {
         out += &format!("{}  {}\n\n", text::table(&table), table.note);
     }
     out += &text::table(&verdict.table());
+    for (variable, note) in verdict.checks.iter().filter_map(|c| c.note.map(|n| (&c.variable, n))) {
+        out += &format!("\nnote: `{variable}`: {note}\n");
+    }
     if let Some(worst) = &verdict.worst {
         let (variable, quantity) = (&worst.variable, &worst.quantity);
         out += &format!("\nworst of all: {} in {quantity} by {variable}\n", error(worst.error));

@@ -14,7 +14,8 @@ use hardpoint::sensitivity::BodySensitivity;
 use hardpoint::space::Vec3;
 use hardpoint_file::Units;
 
-use crate::figures::{order_unit, symbol};
+use crate::facts::variable_unit;
+use crate::figures::order_unit;
 
 const ORDERS: [&str; 3] = ["", " rate", " acceleration"];
 
@@ -88,7 +89,7 @@ pub fn write_sensitivity(
                 let d = solution.measured.d(k, VariableId(b), m);
                 row.extend(d.map(|x| units.derivative_from_si(output.quantity, variable.quantity, x)));
             }
-            writer.serialize((t, &variable.name, symbol(units, variable.quantity), &row))?;
+            writer.serialize((t, &variable.name, variable_unit(model, units, variable), &row))?;
         }
     }
     writer.flush()?;

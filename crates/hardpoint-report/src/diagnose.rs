@@ -1,14 +1,37 @@
 //! Why a mechanism cannot be driven, a run ended early, or a variable has no sensitivity: as diagnostics of
 //! the model file, in the user's names and units.
 
+use hardpoint::Solution;
 use hardpoint::joint::Quantity;
-use hardpoint::model::{JointId, Section};
-use hardpoint::motion::{Stop, StopKind};
+use hardpoint::model::{JointId, Model, Section};
+use hardpoint::motion::{Closing, Stop, StopKind};
 use hardpoint::topology::TopologyFault;
 use hardpoint_file::{Diagnostic, ModelFile, Severity};
 
+use crate::assembly::GapFact;
 use crate::facts::{Answer, Facts};
-use crate::figures::{names, number, rounded, symbol, with_unit};
+use crate::figures::{names, number, quoted, rounded, some_in_words, some_of, symbol, with_unit};
+use crate::margin::MarginFact;
+use crate::summary::Summary;
+
+/// So many gaps that stay open are told one by one.
+const MOST_GAPS: usize = 5;
+
+/// Everything to tell of a run, warnings first; `outputs` names what was written of a motion that stopped.
+pub fn all(
+    file: &ModelFile,
+    summary: &Summary,
+    solution: &Solution,
+    outputs: Option<&str>,
+) -> Vec<Diagnostic> {
+    let mut list = variables(file, &summary.model);
+    // Before a limit the margin falls to zero, and the stop says so.
+    if solution.stop.as_ref().is_none_or(|s| s.kind == StopKind::Interrupted) {
+        list.extend(summary.margin.as_ref().and_then(|m| margin(file, m)));
+    }
+    list.extend(solution.stop.as_ref().map(|s| stop(file, s, solution.motion.len(), outputs)));
+    list
+}
 
 /// The mechanism cannot be driven as it is written.
 pub fn topology_fault(file: &ModelFile, fault: &TopologyFault) -> Diagnostic {
@@ -31,21 +54,35 @@ pub fn stop(file: &ModelFile, stop: &Stop, solved: usize, outputs: Option<&str>)
         StopKind::Locked { joint, .. } => Some((Section::Joints, joint.0)),
         StopKind::LawNotFinite { driver } => Some((Section::Drivers, driver.0)),
         StopKind::Interrupted => None,
+        StopKind::DoesNotAssemble => stop.remains.first().map(|gap| match gap.of {
+            Closing::Joint(j) => (Section::Joints, j.0),
+            Closing::Driver(d) => (Section::Drivers, d.0),
+            Closing::Coupler(c) => (Section::Couplers, c),
+        }),
         _ => stop.joints.first().map(|j| (Section::Joints, j.0)),
     };
     let severity = if stop.kind == StopKind::Interrupted { Severity::Warning } else { Severity::Error };
     let mut d = file.diagnostic(severity, stop.code(), stop.headline(model), place);
-    d = d.note(match stop.last_time {
-        Some(t) => format!("the last solved time is t = {} s{}", rounded(t, 7), driver_values(file, stop)),
-        None => "not even the first output time was solved".into(),
-    });
+    if let Some(closed) = stop.closed {
+        d = gap_notes(file, stop, closed).into_iter().fold(d, Diagnostic::note);
+    } else {
+        let values = driver_values(file, stop);
+        d = d.note(match stop.last_time {
+            Some(t) => format!("the last solved time is t = {} s{values}", rounded(t, 7)),
+            None if values.is_empty() => "not even the first output time was solved".into(),
+            None => format!(
+                "not even the first output time was solved: the way there from the design configuration ends{}",
+                values.trim_start_matches(',')
+            ),
+        });
+    }
     if let StopKind::Locked { joint, residual, is_length } = stop.kind {
         let of = if is_length { Quantity::Length } else { Quantity::Angle };
         let open = with_unit(units.from_si(of, residual), symbol(units, of));
         d = d.note(format!("`{}` stays open by {open}", joint_name(&joint)));
     }
     if !stop.joints.is_empty() {
-        d = d.note(format!("the loop consists of {}", names(stop.joints.iter().map(joint_name))));
+        d = d.note(format!("the loop consists of {}", parts(model, &stop.joints)));
     }
     if matches!(stop.kind, StopKind::Limit | StopKind::BranchChange) {
         d = d.note(format!(
@@ -65,8 +102,41 @@ pub fn stop(file: &ModelFile, stop: &Stop, solved: usize, outputs: Option<&str>)
     }
 }
 
+/// What stays open where a mechanism does not assemble.
+fn gap_notes(file: &ModelFile, stop: &Stop, closed: f64) -> Vec<String> {
+    let gaps: Vec<GapFact> = stop.remains.iter().map(|g| GapFact::new(&file.model, file.units, g)).collect();
+    let at_best = |g: &GapFact| format!("{} `{}` stays open by {} at best", g.kind, g.name, g.size_text());
+    let mut notes: Vec<String> = gaps.iter().take(MOST_GAPS).map(at_best).collect();
+    if gaps.len() > MOST_GAPS {
+        notes.push(format!("{} more stay open by less", gaps.len() - MOST_GAPS));
+    }
+    notes.push(match closed {
+        0.0 => "as drawn the mechanism is open, and none of it can be closed, with every driver at zero".into(),
+        part => format!(
+            "as drawn the mechanism is open; {} % of the gaps could be closed together, with every driver at zero",
+            rounded(100.0 * part, 2)
+        ),
+    });
+    notes
+}
+
+/// The names of joints that a person wrote.
+pub(crate) fn named(model: &Model, joints: &[JointId]) -> Vec<String> {
+    let joints = joints.iter().map(|j| &model.joints[j.0]);
+    joints.filter(|j| !j.unnamed).map(|j| j.name.clone()).collect()
+}
+
+/// The joints of a loop, and the drivers that act in it on something else than a joint.
+fn parts(model: &Model, joints: &[JointId]) -> String {
+    let unnamed = joints.iter().map(|j| &model.joints[j.0]).filter(|j| j.unnamed);
+    let drivers: Vec<String> = unnamed.map(|j| j.name.clone()).collect();
+    let joints = named(model, joints);
+    let parts = joints.iter().map(|j| format!("`{j}`")).chain(quoted("driver", &drivers));
+    some_in_words(&parts.collect::<Vec<_>>())
+}
+
 /// `, with \`rack\` at 12.3 mm and ...`.
-fn driver_values(file: &ModelFile, stop: &Stop) -> String {
+pub(crate) fn driver_values(file: &ModelFile, stop: &Stop) -> String {
     let (model, units) = (&file.model, file.units);
     let values: Vec<String> = model
         .drivers
@@ -78,7 +148,25 @@ fn driver_values(file: &ModelFile, stop: &Stop) -> String {
             format!("`{}` at {value}", driver.name)
         })
         .collect();
-    if values.is_empty() { String::new() } else { format!(", with {}", values.join(", ")) }
+    if values.is_empty() { String::new() } else { format!(", with {}", some_of(&values, ", ")) }
+}
+
+/// A warning where the motion comes so close to a singular position that its velocities are not to be relied on.
+pub fn margin(file: &ModelFile, margin: &MarginFact) -> Option<Diagnostic> {
+    if !margin.is_thin() {
+        return None;
+    }
+    let t = number(margin.time);
+    let message = format!("the mechanism comes close to a singular position at t = {t} s");
+    let first = margin.joints.first().and_then(|name| file.model.joints.iter().position(|j| j.name == *name));
+    let d = file.diagnostic(Severity::Warning, "HP0407", message, first.map(|j| (Section::Joints, j)));
+    let d = d.note(format!(
+        "the margin there is {}: about {} of 16 digits of velocities and sensitivities are lost",
+        rounded(margin.least, 2),
+        rounded(margin.digits_lost.min(16.0).round(), 2)
+    ));
+    let d = d.note(format!("the loop consists of {}", names(margin.joints.iter().map(String::as_str))));
+    Some(d.help("drive another joint of this loop, or move its hardpoints so that it stays away from there"))
 }
 
 /// One warning for each design variable that the mechanism cannot follow.

@@ -74,23 +74,41 @@ pub fn order_unit(units: Units, quantity: Quantity, order: usize) -> String {
 /// assert_eq!(per("deg", "mm"), "deg/mm");
 /// assert_eq!(per("deg/s", "mm"), "deg/(s*mm)");
 /// assert_eq!(per("deg", "1"), "deg");
+/// assert_eq!(per("deg", "mm/s"), "deg/(mm/s)");
 /// ```
 pub fn per(of: &str, by: &str) -> String {
-    match (of.split_once('/'), by) {
-        (_, "1") => of.into(),
-        (Some((top, below)), by) => format!("{top}/({below}*{by})"),
-        (None, by) => format!("{of}/{by}"),
+    match (of.split_once('/'), by.contains('/')) {
+        _ if by == "1" => of.into(),
+        (Some((top, below)), false) => format!("{top}/({below}*{by})"),
+        (Some((top, below)), true) => format!("{top}/({below}*({by}))"),
+        (None, false) => format!("{of}/{by}"),
+        (None, true) => format!("{of}/({by})"),
     }
 }
 
 /// Names with separators: `` `a`, `b` and `c` ``.
 pub fn names<'a>(names: impl IntoIterator<Item = &'a str>) -> String {
     let quoted: Vec<String> = names.into_iter().map(|n| format!("`{n}`")).collect();
-    match quoted.split_last() {
+    in_words(&quoted)
+}
+
+/// Items with separators: `a, b and c`.
+fn in_words(items: &[String]) -> String {
+    match items.split_last() {
         Some((last, rest)) if !rest.is_empty() => format!("{} and {last}", rest.join(", ")),
         Some((last, _)) => last.clone(),
         None => String::new(),
     }
+}
+
+/// Items as in a sentence; of a long list the first few, and how many more there are.
+pub fn some_in_words(items: &[String]) -> String {
+    if items.len() > SHOWN { some_of(items, ", ") } else { in_words(items) }
+}
+
+/// ``coupler `a` ``, ``coupler `b` ``.
+pub fn quoted<'a>(what: &'a str, names: &'a [String]) -> impl Iterator<Item = String> + 'a {
+    names.iter().map(move |n| format!("{what} `{n}`"))
 }
 
 /// `1 step`, `2 steps`.
@@ -98,9 +116,11 @@ pub fn count(n: usize, one: &str) -> String {
     if n == 1 { format!("1 {one}") } else { format!("{n} {one}s") }
 }
 
+/// So many items of a long list are shown.
+const SHOWN: usize = 8;
+
 /// The items with commas between; of a long list the first few, and how many more there are.
 pub fn some_of(items: &[impl AsRef<str>], separator: &str) -> String {
-    const SHOWN: usize = 8;
     let shown: Vec<&str> = items.iter().take(SHOWN).map(AsRef::as_ref).collect();
     match items.len().saturating_sub(SHOWN) {
         0 => shown.join(separator),

@@ -6,16 +6,20 @@
 //! |---|---|
 //! | [`facts`] | what is known of the mechanism; shown alike by `check`, the summary and the page |
 //! | [`summary`] | `summary.json`: the facts, how the run went, the largest sensitivities |
+//! | [`margin`] | how far the motion stays from singular positions |
+//! | [`assembly`] | what was open in the drawing, and how it closed |
 //! | [`verdict`] | `verify.json`: sensitivities against re-solved designs |
 //! | [`csv`] | `motion.csv` and `sensitivity.csv` |
 //! | [`payload`], [`page`] | `report.html` |
 //! | [`diagnose`] | why a run is impossible or ended early, as diagnostics of the model file |
 //! | [`figures`] | numbers and units as text |
 
+pub mod assembly;
 pub mod csv;
 pub mod diagnose;
 pub mod facts;
 pub mod figures;
+pub mod margin;
 pub mod page;
 pub mod payload;
 pub mod summary;

@@ -62,6 +62,8 @@ pub struct Payload {
     pub status: Status,
     /// A handful of figures for the top of the page.
     pub summary: Vec<Fact>,
+    /// Sentences about the model that are no errors.
+    pub notes: Vec<String>,
     /// Output times, `n` steps, ascending.
     pub times: Curve,
     /// Bodies; the first is ground, whose pose is constant.
@@ -70,6 +72,8 @@ pub struct Payload {
     pub joints: Vec<JointMark>,
     /// What can be plotted over time.
     pub quantities: Vec<Quantity>,
+    /// How far from singular the mechanism is over time, if anything is solved for.
+    pub margin: Option<Margin>,
     /// Design variables with their sensitivities.
     pub variables: Vec<Variable>,
     /// Facts about the model: bodies, joints, constraints, redundancy, admissibility.
@@ -164,6 +168,16 @@ pub struct Quantity {
     pub rate: Curve,
     /// Its second time derivative.
     pub accel: Curve,
+}
+
+/// How far the mechanism is from singular: 1 is best, 0 is a singular position.
+#[derive(Clone, Debug, Serialize)]
+#[cfg_attr(test, derive(TS))]
+pub struct Margin {
+    /// The margin, `n` steps.
+    pub value: Curve,
+    /// What its least value means.
+    pub note: String,
 }
 
 /// A design variable: what it moves, whether the mechanism can follow, and what follows from it.
@@ -309,10 +323,12 @@ mod tests {
             units: Units { length: "mm".into(), angle: "deg".into(), time: "s".into() },
             status: Status { complete: true, message: "solved".into() },
             summary: vec![],
+            notes: vec![],
             times: Curve::default(),
             bodies: vec![],
             joints: vec![],
             quantities: vec![],
+            margin: None,
             variables: vec![],
             checks: vec![],
         }
@@ -357,7 +373,7 @@ mod tests {
             )* };
         }
         declare!(
-            Curve Payload Units Status Fact BodyTrack JointMark Quantity Variable Admissibility Arrow
+            Curve Payload Units Status Fact BodyTrack JointMark Quantity Margin Variable Admissibility Arrow
             Sensitivity FiniteDifference Table
         );
         let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../web/src/payload.ts");

@@ -17,10 +17,10 @@ use hardpoint::topology::Role;
 use hardpoint::{Analysis, Solution};
 use hardpoint_file::{ModelFile, Units};
 
-use crate::facts::{Answer, Facts};
-use crate::figures::{count, error, number, order_unit, seconds, symbol};
+use crate::facts::{Answer, Facts, written_kind};
+use crate::figures::{error, number, order_unit, rounded, seconds, symbol};
 use crate::page::{
-    Admissibility, Arrow, BodyTrack, Curve, Fact, FiniteDifference, JointMark, Payload, Quantity,
+    Admissibility, Arrow, BodyTrack, Curve, Fact, FiniteDifference, JointMark, Margin, Payload, Quantity,
     Sensitivity, Status, Units as PageUnits, Variable,
 };
 use crate::summary::{RoundOff, RunStatus, Summary};
@@ -64,12 +64,17 @@ pub fn payload(
         },
         status: status(summary, detail),
         summary: headline(summary),
+        notes: summary.model.all_notes(),
         times: compose.curve(|k| solution.motion.times[k]),
         bodies: compose.bodies(),
         joints: compose.joints(),
         quantities: compose.quantities(),
+        margin: summary.margin.as_ref().map(|m| Margin {
+            value: compose.curve(|k| m.series.get(k).copied().unwrap_or(f64::NAN)),
+            note: m.sentence(),
+        }),
         variables: compose.variables(&summary.model, differences),
-        checks: summary.model.tables(),
+        checks: summary.assembly.iter().flat_map(|a| a.tables()).chain(summary.model.tables()).collect(),
     }
 }
 
@@ -162,7 +167,7 @@ fn headline(summary: &Summary) -> Vec<Fact> {
     };
     let mut facts = vec![
         fact("degrees of freedom", model.freedom_line()),
-        fact("bodies and joints", format!("{bodies}, {} ({cut} cut)", count(model.counts.joints, "joint"))),
+        fact("bodies and joints", format!("{bodies}, {} ({cut} cut)", model.joints_text())),
         fact("loops", model.loops_line()),
     ];
     if model.counts.redundant_constraints > 0 {
@@ -170,6 +175,10 @@ fn headline(summary: &Summary) -> Vec<Fact> {
     }
     facts.push(fact("steps", format!("{}, {span}", steps.solved)));
     facts.push(fact("worst residual", format!("{} m or rad", error(summary.effort.worst_residual_si))));
+    if let Some(margin) = &summary.margin {
+        facts
+            .push(fact("least margin", format!("{} at {} s", rounded(margin.least, 2), number(margin.time))));
+    }
     if !model.variables.is_empty() {
         facts.push(fact("design variables", model.variables_line()));
     }
@@ -218,7 +227,9 @@ impl Compose<'_> {
             }
         };
         for (j, joint) in self.model.joints.iter().enumerate() {
-            for end in 0..2 {
+            // A driven point is none of the body that its direction belongs to.
+            let ends = if joint.unnamed && joint.kind.places != 2 { 1..2 } else { 0..2 };
+            for end in ends {
                 add(joint.bodies[end], geometry.markers[j][end].r, self.label(joint.at[end], &joint.name));
                 for at in self.hinge_points(joint) {
                     add(
@@ -270,11 +281,13 @@ impl Compose<'_> {
     fn joints(&self) -> Vec<JointMark> {
         let geometry = self.model.geometry(&[]);
         let roles = &self.analysis.topology().roles;
+        // A driven distance is drawn like a leg; a driven point or orientation has nothing to draw.
+        let shown = |joint: &Joint| !joint.unnamed || joint.kind.places == 2;
         let mark = |(j, joint): (usize, &Joint)| {
             let [i, k] = &geometry.markers[j];
             JointMark {
                 name: joint.name.clone(),
-                kind: joint.kind.name.into(),
+                kind: written_kind(self.model, JointId(j)).into(),
                 body_i: joint.bodies[0].0,
                 body_j: joint.bodies[1].0,
                 at_i: self.length(i.r),
@@ -283,7 +296,7 @@ impl Compose<'_> {
                 cut: matches!(roles[j], Role::Cut(_)),
             }
         };
-        self.model.joints.iter().enumerate().map(mark).collect()
+        self.model.joints.iter().enumerate().filter(|(_, j)| shown(j)).map(mark).collect()
     }
 
     /// All outputs, then x, y and z of every body's origin.
@@ -320,7 +333,7 @@ impl Compose<'_> {
             Variable {
                 name: fact.name.clone(),
                 description: fact.change.replace('`', ""),
-                unit: fact.unit.into(),
+                unit: fact.unit.clone(),
                 admissibility: match fact.answer {
                     Answer::Admissible | Answer::Unknown => Admissibility::Admissible,
                     Answer::Reassembled => Admissibility::Reassembled,

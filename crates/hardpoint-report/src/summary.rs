@@ -6,11 +6,15 @@ use hardpoint::measure::OutputSource;
 use hardpoint::model::{Model, VariableId};
 use hardpoint::motion::StopKind;
 use hardpoint::study::natural_step;
+use hardpoint::topology::Topology;
 use hardpoint_file::{Diagnostic, ModelFile, Units};
 use serde::Serialize;
 
-use crate::facts::Facts;
+use crate::assembly::{AssemblyFact, GapFact};
+use crate::diagnose::{driver_values, named};
+use crate::facts::{Facts, variable_unit};
 use crate::figures::{order_unit, per, symbol};
+use crate::margin::MarginFact;
 
 /// Everything that `summary.json` holds. Figures are in the model's units, times in s.
 #[derive(Clone, Debug, Serialize)]
@@ -25,6 +29,10 @@ pub struct Summary {
     pub steps: Steps,
     /// What the solution took.
     pub effort: EffortFact,
+    /// How far it stayed from singular positions, if anything was solved for.
+    pub margin: Option<MarginFact>,
+    /// How the mechanism was closed first, if it was open as drawn.
+    pub assembly: Option<AssemblyFact>,
     /// Why it ended early, if it did.
     pub stop: Option<StopFact>,
     /// The largest sensitivities of every measure.
@@ -84,7 +92,7 @@ pub struct EffortFact {
 pub struct StopFact {
     /// Stable code.
     pub code: &'static str,
-    /// In a sentence.
+    /// In a sentence, with the drivers' values where it stopped.
     pub message: String,
     /// The last time that was solved, s.
     pub last_time: Option<f64>,
@@ -96,6 +104,10 @@ pub struct StopFact {
     pub pivot_ratio: f64,
     /// The joints of that loop.
     pub joints: Vec<String>,
+    /// Where the mechanism does not assemble: what stays open at best, largest first.
+    pub remains: Vec<GapFact>,
+    /// Where it was being assembled: the part of its gaps that could be closed together, 0 to 1.
+    pub closed: Option<f64>,
 }
 
 /// A driver's value.
@@ -126,7 +138,7 @@ pub struct Ranked {
     /// The variable.
     pub variable: String,
     /// The variable's unit; only sensitivities by the same unit can be compared.
-    pub per: &'static str,
+    pub per: String,
     /// The sensitivity of largest magnitude, with its sign.
     pub value: f64,
     /// Its unit.
@@ -152,7 +164,7 @@ pub struct Timings {
 
 impl Summary {
     /// The summary of a run, without files.
-    pub fn new(file: &ModelFile, facts: Facts, solution: &Solution) -> Self {
+    pub fn new(file: &ModelFile, topology: &Topology, facts: Facts, solution: &Solution) -> Self {
         let (model, effort) = (&file.model, solution.motion.effort);
         Self {
             generator: crate::GENERATOR,
@@ -176,6 +188,8 @@ impl Summary {
                 least_pivot_ratio: effort.least_pivot_ratio,
                 least_pivot_time: effort.least_pivot_time,
             },
+            margin: MarginFact::new(model, topology, &solution.motion),
+            assembly: solution.motion.assembly.as_ref().map(|a| AssemblyFact::new(model, file.units, a)),
             stop: stop_fact(file, solution),
             sensitivities: rankings(model, file.units, solution),
             timings: Timings::default(),
@@ -198,12 +212,17 @@ fn stop_fact(file: &ModelFile, solution: &Solution) -> Option<StopFact> {
     });
     Some(StopFact {
         code: stop.code(),
-        message: stop.headline(model),
+        message: match stop.kind {
+            StopKind::DoesNotAssemble => stop.headline(model),
+            _ => format!("{}{}", stop.headline(model), driver_values(file, stop)),
+        },
         last_time: stop.last_time,
         failed_time: stop.failed_time,
         drivers: drivers.collect(),
         pivot_ratio: stop.pivot_ratio,
-        joints: stop.joints.iter().map(|j| model.joints[j.0].name.clone()).collect(),
+        joints: named(model, &stop.joints),
+        remains: stop.remains.iter().map(|g| GapFact::new(model, units, g)).collect(),
+        closed: stop.closed,
     })
 }
 
@@ -221,6 +240,7 @@ fn rankings(model: &Model, units: Units, solution: &Solution) -> Vec<Ranking> {
                 if solution.motion.is_empty() || solution.sensitivities.at(0, b).is_none() {
                     continue;
                 }
+                let unit = variable_unit(model, units, variable);
                 let d = |k: usize| measured.d(k, VariableId(b), m)[order];
                 let most = (0..measured.len()).map(|k| d(k).abs()).fold(0.0, f64::max);
                 if most <= round_off.of(b, output.quantity, order) {
@@ -230,14 +250,17 @@ fn rankings(model: &Model, units: Units, solution: &Solution) -> Vec<Ranking> {
                 let k = (0..measured.len()).find(|&k| d(k).abs() >= most * (1.0 - 1e-9)).unwrap_or(0);
                 largest.push(Ranked {
                     variable: variable.name.clone(),
-                    per: symbol(units, variable.quantity),
                     value: units.derivative_from_si(output.quantity, variable.quantity, d(k)),
-                    unit: per(&order_unit(units, output.quantity, order), symbol(units, variable.quantity)),
+                    unit: per(&order_unit(units, output.quantity, order), &unit),
+                    per: unit,
                     time: solution.motion.times[k],
                 });
             }
             let kinds = [Quantity::Length, Quantity::Angle, Quantity::Number].map(|q| symbol(units, q));
-            let kind = |r: &Ranked| kinds.iter().position(|unit| *unit == r.per);
+            // Units of parameters of laws come last.
+            let kind = |r: &Ranked| {
+                (kinds.iter().position(|unit| *unit == r.per).unwrap_or(kinds.len()), r.per.clone())
+            };
             largest.sort_by(|a, b| kind(a).cmp(&kind(b)).then(b.value.abs().total_cmp(&a.value.abs())));
             rankings.push(Ranking { measure: output.name.clone(), order: name, largest });
         }

@@ -5,7 +5,8 @@ use hardpoint::study::{CheckOutcome, PASS, StepError, Verification, natural_step
 use hardpoint_file::{ModelFile, Units};
 use serde::Serialize;
 
-use crate::figures::{error, number, rounded, symbol};
+use crate::facts::variable_unit;
+use crate::figures::{error, number, rounded};
 use crate::page::Table;
 
 /// Everything that `verify.json` holds. Steps are in the variable's unit, times in s.
@@ -50,9 +51,11 @@ pub struct CheckFact {
     /// The variable.
     pub variable: String,
     /// Its unit; `1` for a plain number.
-    pub unit: &'static str,
+    pub unit: String,
     /// What came of it.
     pub outcome: Outcome,
+    /// What to know about it, in a sentence.
+    pub note: Option<&'static str>,
     /// The step that agrees best.
     pub best: Option<StepFact>,
     /// All steps that could be solved, from coarse to fine.
@@ -92,6 +95,7 @@ impl Verdict {
     /// The verdict of a finished verification.
     pub fn new(file: &ModelFile, analysis: &Analysis<'_>, verification: &Verification, seconds: f64) -> Self {
         let (model, units) = (analysis.model(), file.units);
+        let redundant = analysis.topology().redundant().next().is_some();
         let check = |c: &hardpoint::study::Check| {
             let variable = &model.variables[c.variable.0];
             let natural = natural_step(model, c.variable);
@@ -104,13 +108,15 @@ impl Verdict {
             };
             CheckFact {
                 variable: variable.name.clone(),
-                unit: symbol(units, variable.quantity),
+                unit: variable_unit(model, units, variable),
                 outcome: match c.outcome {
                     CheckOutcome::Passed => Outcome::Passed,
                     CheckOutcome::Failed => Outcome::Failed,
                     CheckOutcome::CannotFollow => Outcome::CannotFollow,
                     CheckOutcome::NotSolved => Outcome::NotSolved,
                 },
+                note: (c.outcome == CheckOutcome::Failed && redundant && falls_in_proportion(&c.sweep))
+                    .then_some(FIRST_ORDER),
                 best: c.best().map(step),
                 sweep: c.sweep.iter().map(step).collect(),
             }
@@ -152,7 +158,7 @@ impl Verdict {
             match &c.best {
                 Some(b) => row.extend([
                     error(b.error),
-                    step_text(b.step, c.unit),
+                    step_text(b.step, &c.unit),
                     b.quantity.clone(),
                     format!("{} s", number(b.time)),
                 ]),
@@ -194,6 +200,26 @@ impl Verdict {
     }
 }
 
+/// What a deviation that falls with the step itself, not its square, says of a mechanism with redundant constraints.
+const FIRST_ORDER: &str = "the mechanism cannot follow a finite step exactly, because its redundant constraints part at \
+    second order; the difference falls in proportion to the step, as it must";
+
+/// Whether over a decade of steps or more, down to the best one, error and step keep their ratio.
+fn falls_in_proportion(sweep: &[StepError]) -> bool {
+    const DECADE: f64 = 10.0;
+    let mut first = 0;
+    for k in 1..sweep.len() {
+        let [a, b] = [&sweep[k - 1], &sweep[k]];
+        let ratio = (a.error / b.error) / (a.step / b.step);
+        if !(0.7..1.4).contains(&ratio) {
+            first = k;
+        } else if sweep[first].step >= 0.99 * DECADE * b.step && sweep.iter().all(|s| s.error >= b.error) {
+            return true;
+        }
+    }
+    false
+}
+
 fn same(a: f64, b: f64) -> bool {
     (a - b).abs() <= 1e-6 * a.abs()
 }
@@ -201,4 +227,27 @@ fn same(a: f64, b: f64) -> bool {
 fn step_text(step: f64, unit: &str) -> String {
     let step = rounded(step, 2);
     if unit == "1" { step } else { format!("{step} {unit}") }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn sweep(error: impl Fn(f64) -> f64) -> Vec<StepError> {
+        let steps = (4..=12).map(|k| 10.0_f64.powf(-0.5 * f64::from(k)));
+        let worst = String::from("rod position");
+        steps.map(|step| StepError { step, error: error(step), worst: worst.clone(), time: 0.0 }).collect()
+    }
+
+    #[test]
+    fn a_difference_that_falls_with_the_step_is_told_from_all_others() {
+        assert!(falls_in_proportion(&sweep(|h| 3.0 * h)));
+        // At large steps other terms rule.
+        assert!(falls_in_proportion(&sweep(|h| 3.0 * h + 4e3 * h * h)));
+        assert!(!falls_in_proportion(&sweep(|h| h * h)), "a wrong design has no such excuse");
+        assert!(!falls_in_proportion(&sweep(|_| 0.1)), "nor has a wrong sensitivity");
+        assert!(!falls_in_proportion(&sweep(|h| 3.0 * h + 0.01)));
+        assert!(!falls_in_proportion(&sweep(|h| 3.0 * h)[..2]), "half a decade is too little to say");
+        assert!(!falls_in_proportion(&[]));
+    }
 }

@@ -111,7 +111,7 @@ fn solved(file: &ModelFile) -> (Analysis<'_>, Solution, Summary) {
     let analysis = Analysis::new(&file.model).unwrap();
     let solution = analysis.run();
     let facts = Facts::new(file, analysis.topology(), Some(&solution));
-    let summary = Summary::new(file, facts, &solution);
+    let summary = Summary::new(file, analysis.topology(), facts, &solution);
     (analysis, solution, summary)
 }
 

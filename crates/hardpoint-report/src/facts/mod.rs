@@ -2,19 +2,29 @@
 //!
 //! Built once and shown three times: as text by `hardpoint check`, as JSON, and as tables of the page.
 
+mod change;
+mod notes;
+mod redundancy;
 mod text;
 
 use hardpoint::Solution;
 use hardpoint::constraint::Row;
-use hardpoint::joint::Quantity;
-use hardpoint::model::{BodyId, Change, Direction, JointId, MeasureKind, Model, VariableId};
+use hardpoint::joint::{self, Quantity};
+use hardpoint::model::{
+    BodyId, Coupler, Direction, Driver, GROUND, Joint, JointId, MeasureKind, Model, PointId, VariableId,
+};
 use hardpoint::sensitivity::{self, JointDefect, admissibility_at_design};
-use hardpoint::space::Vec3;
-use hardpoint::topology::{CutReason, Formulation, Role, Topology};
+use hardpoint::topology::{Closure, CutReason, Formulation, Role, Topology};
 use hardpoint_file::{ModelFile, Units};
 use serde::Serialize;
 
-use crate::figures::{count, names, per, symbol};
+use crate::figures::{count, per, rounded, symbol};
+
+pub use change::variable_unit;
+use change::{change_text, direction_text};
+pub use redundancy::{Instead, RedundancyFact};
+pub use text::outline;
+pub(crate) use text::table;
 
 /// The facts, with all names as the user wrote them and all figures in the user's units.
 #[derive(Clone, Debug, Serialize)]
@@ -35,16 +45,22 @@ pub struct Facts {
     pub bodies: Vec<BodyFact>,
     /// Joints and why each is in the tree or cut.
     pub joints: Vec<JointFact>,
+    /// Couplers between joint coordinates; those of screws come last.
+    pub couplers: Vec<CouplerFact>,
     /// Drivers.
     pub drivers: Vec<DriverFact>,
     /// What is solved together, in the order of solution.
     pub blocks: Vec<BlockFact>,
     /// Constraints that the others imply.
     pub redundant: Vec<RedundantFact>,
+    /// The same by the joints, couplers and drivers that they are among.
+    pub redundancy: Vec<RedundancyFact>,
     /// Design variables and whether the mechanism can follow them.
     pub variables: Vec<VariableFact>,
     /// Measures.
     pub measures: Vec<MeasureFact>,
+    /// Sentences about what is worth knowing and no error.
+    pub notes: Vec<String>,
 }
 
 /// How many there are.
@@ -54,13 +70,15 @@ pub struct Counts {
     pub bodies: usize,
     /// Joints.
     pub joints: usize,
+    /// Couplers, each of which is one constraint.
+    pub couplers: usize,
     /// Drivers.
     pub drivers: usize,
     /// Degrees of freedom without drivers, at the design configuration.
     pub mobility: usize,
-    /// Constraint equations of all joints.
+    /// Constraint equations of all joints, without couplers.
     pub joint_constraints: usize,
-    /// Constraint rows of the cut joints and of drivers across them, redundant ones included.
+    /// Constraint rows of the cut joints, of couplers and of drivers across cut joints, redundant ones included.
     pub cut_constraints: usize,
     /// Rows among those that the others imply.
     pub redundant_constraints: usize,
@@ -90,9 +108,11 @@ pub struct BodyFact {
 pub struct JointFact {
     /// Its name.
     pub name: String,
-    /// Its type.
+    /// Its type, as written.
     #[serde(rename = "type")]
     pub kind: &'static str,
+    /// Whether it is treated as a universal joint, to hold an idle spin.
+    pub holds_spin: bool,
     /// Bodies i and j.
     pub bodies: [String; 2],
     /// `tree` or `cut`.
@@ -103,15 +123,41 @@ pub struct JointFact {
     pub constraints: usize,
 }
 
+/// A coupler.
+#[derive(Clone, Debug, Serialize)]
+pub struct CouplerFact {
+    /// Its name.
+    pub name: String,
+    /// What must hold, its coordinates counted from the design configuration, in these units.
+    pub relation: String,
+    /// The coordinates with their factors.
+    pub terms: Vec<TermFact>,
+}
+
+/// A coordinate times a number.
+#[derive(Clone, Debug, Serialize)]
+pub struct TermFact {
+    /// The joint.
+    pub joint: String,
+    /// Its coordinate.
+    pub coordinate: &'static str,
+    /// The factor, where the coordinate is in `unit`.
+    pub coefficient: f64,
+    /// The coordinate's unit.
+    pub unit: &'static str,
+}
+
 /// A driver.
 #[derive(Clone, Debug, Serialize)]
 pub struct DriverFact {
     /// Its name.
     pub name: String,
-    /// The joint that it drives.
-    pub joint: String,
+    /// What it prescribes.
+    pub drives: String,
+    /// The joint that it drives, if it drives a joint.
+    pub joint: Option<String>,
     /// The joint's coordinate.
-    pub coordinate: &'static str,
+    pub coordinate: Option<&'static str>,
     /// The law as written, in `unit`, t in s.
     pub law: String,
     /// The law's unit.
@@ -127,7 +173,7 @@ pub struct BlockFact {
     pub unknowns: usize,
     /// The joints whose coordinates they are.
     pub joints: Vec<String>,
-    /// The cut joints, and drivers across them, that it closes.
+    /// The cut joints, couplers, and drivers across cut joints, that it closes.
     pub closes: Vec<String>,
     /// The bodies that stand when it is solved.
     pub places: Vec<String>,
@@ -142,6 +188,8 @@ pub struct RedundantFact {
     pub joint: String,
     /// The driver, if it prescribes a coordinate.
     pub driver: Option<String>,
+    /// The coupler, if it is one.
+    pub coupler: Option<String>,
     /// What it asks for.
     pub constraint: String,
 }
@@ -166,7 +214,7 @@ pub struct VariableFact {
     /// Its name.
     pub name: String,
     /// Its unit; `1` for a plain number.
-    pub unit: &'static str,
+    pub unit: String,
     /// What changes with it.
     pub change: String,
     /// Joints that open at the design configuration while all bodies stay; none: admissible there.
@@ -219,11 +267,14 @@ impl Facts {
             counts: counts(model, topology),
             bodies: bodies(model, topology),
             joints: joints(model, topology),
+            couplers: couplers(model, units),
             drivers: drivers(model, units),
             blocks: blocks(model, topology),
             redundant: redundant(model, topology),
+            redundancy: redundancy::redundancy(model, topology),
             variables: variables(model, units, solution),
             measures: measures(model, units),
+            notes: [notes::idle_spins(model), notes::jumps(model, units)].concat(),
         }
     }
 
@@ -235,16 +286,18 @@ impl Facts {
 
 fn counts(model: &Model, topology: &Topology) -> Counts {
     let bodies = model.bodies.len() - 1;
+    let joints = model.named_joints().count();
     Counts {
         bodies,
-        joints: model.joints.len(),
+        joints,
+        couplers: model.couplers.len(),
         drivers: model.drivers.len(),
         mobility: topology.mobility,
-        joint_constraints: model.joints.iter().map(|j| j.kind.rows.len()).sum(),
-        cut_constraints: topology.rows.len(),
+        joint_constraints: model.named_joints().map(|(_, j)| j.kind.rows.len()).sum(),
+        cut_constraints: topology.rows.iter().filter(|r| !r.is_term).count(),
         redundant_constraints: topology.redundant().count(),
         // Every joint beyond those of a spanning tree closes one.
-        loops: model.joints.len().saturating_sub(bodies),
+        loops: joints.saturating_sub(bodies),
         coordinates: topology.coordinates.len(),
         unknowns: topology.unknowns(),
     }
@@ -257,20 +310,20 @@ fn bodies(model: &Model, topology: &Topology) -> Vec<BodyFact> {
             name: model.bodies[b].name.clone(),
             placed_by: link.and_then(|l| l.joint).map(|j| joint_name(model, j)),
             carried_by: link.map_or(String::new(), |l| model.bodies[l.parent.0].name.clone()),
-            joints: model
-                .joints
-                .iter()
-                .filter(|j| j.bodies.contains(&BodyId(b)))
-                .map(|j| j.name.clone())
-                .collect(),
+            joints: joints_on(model, BodyId(b)),
         }
     };
     (1..model.bodies.len()).map(fact).collect()
 }
 
+/// The names of the joints on a body.
+fn joints_on(model: &Model, body: BodyId) -> Vec<String> {
+    model.named_joints().filter(|(_, j)| j.bodies.contains(&body)).map(|(_, j)| j.name.clone()).collect()
+}
+
 fn joints(model: &Model, topology: &Topology) -> Vec<JointFact> {
-    let facts = model.joints.iter().zip(&topology.roles).map(|(joint, role)| {
-        let (role, why) = match role {
+    let fact = |(id, joint): (JointId, &Joint)| {
+        let (role, why) = match &topology.roles[id.0] {
             Role::Tree { child, unknowns } => {
                 let child = &model.bodies[child.0].name;
                 let leaves = match unknowns {
@@ -279,37 +332,115 @@ fn joints(model: &Model, topology: &Topology) -> Vec<JointFact> {
                 };
                 ("tree", format!("places {child}, leaves {leaves}"))
             }
-            Role::Cut(reason) => (
-                "cut",
-                match reason {
-                    CutReason::AlwaysCut => "a rod or leg carries no body".into(),
-                    CutReason::ClosesLoop => "other joints place its bodies with fewer unknowns".into(),
-                    CutReason::Asked => "the model asks for it".into(),
-                    CutReason::Absolute => "absolute coordinates cut every joint".into(),
-                },
-            ),
+            Role::Cut(reason) => ("cut", why_cut(joint, *reason).into()),
         };
         JointFact {
             name: joint.name.clone(),
-            kind: joint.kind.name,
+            kind: written_kind(model, id),
+            holds_spin: model.idle.iter().any(|i| i.joint == id),
             bodies: joint.bodies.map(|b| model.bodies[b.0].name.clone()),
             role,
             why,
             constraints: joint.kind.rows.len(),
         }
-    });
-    facts.collect()
+    };
+    model.named_joints().map(fact).collect()
+}
+
+/// The type of a joint as it was written: a ball that holds an idle spin is still a ball.
+pub(crate) fn written_kind(model: &Model, joint: JointId) -> &'static str {
+    let held = model.idle.iter().any(|i| i.joint == joint);
+    if held { joint::SPHERICAL.name } else { model.joints[joint.0].kind.name }
+}
+
+fn why_cut(joint: &Joint, reason: CutReason) -> &'static str {
+    match reason {
+        CutReason::AlwaysCut if joint.kind.places == 2 => "a rod or leg carries no body",
+        CutReason::AlwaysCut => "a joint of this type carries no body",
+        CutReason::ClosesLoop => "other joints place its bodies with fewer unknowns",
+        CutReason::Asked => "the model asks for it",
+        CutReason::Absolute => "absolute coordinates cut every joint",
+    }
+}
+
+fn couplers(model: &Model, units: Units) -> Vec<CouplerFact> {
+    let fact = |coupler: &Coupler| {
+        // The equation may be multiplied by any number: so that the first coordinate keeps its factor.
+        let inside = |t: &hardpoint::model::Term| units.to_si(model.coupled(t).quantity, 1.0);
+        let first = inside(&coupler.terms[0]);
+        let term = |t: &hardpoint::model::Term| TermFact {
+            joint: joint_name(model, t.joint),
+            coordinate: model.coupled(t).name,
+            coefficient: t.coefficient * (inside(t) / first),
+            unit: symbol(units, model.coupled(t).quantity),
+        };
+        let terms: Vec<TermFact> = coupler.terms.iter().map(term).collect();
+        CouplerFact { name: coupler.name.clone(), relation: relation(&terms), terms }
+    };
+    model.couplers.iter().map(fact).collect()
+}
+
+/// `20 R1.angle + 40 R2.angle = 0`.
+fn relation(terms: &[TermFact]) -> String {
+    let mut text = String::new();
+    for (k, t) in terms.iter().enumerate() {
+        let sign = match (k, t.coefficient < 0.0) {
+            (0, false) => "",
+            (0, true) => "-",
+            (_, false) => " + ",
+            (_, true) => " - ",
+        };
+        let factor = rounded(t.coefficient.abs(), 6);
+        let factor = if factor == "1" { String::new() } else { format!("{factor} ") };
+        text += &format!("{sign}{factor}{}.{}", t.joint, t.coordinate);
+    }
+    text + " = 0"
 }
 
 fn drivers(model: &Model, units: Units) -> Vec<DriverFact> {
-    let fact = |d: &hardpoint::model::Driver| DriverFact {
-        name: d.name.clone(),
-        joint: joint_name(model, d.joint),
-        coordinate: model.driven(d).name,
-        law: d.law.to_string(),
-        unit: symbol(units, model.driven(d).quantity),
+    let fact = |d: &Driver| {
+        let joint = &model.joints[d.joint.0];
+        let of_joint = (!joint.unnamed).then(|| (joint.name.clone(), model.driven(d).name));
+        let drives = match &of_joint {
+            Some((joint, coordinate)) => format!("{joint} {coordinate}"),
+            None => driven_text(model, joint),
+        };
+        let (joint, coordinate) = of_joint.unzip();
+        let unit = symbol(units, model.driven(d).quantity);
+        DriverFact { name: d.name.clone(), drives, joint, coordinate, law: d.law.to_string(), unit }
     };
     model.drivers.iter().map(fact).collect()
+}
+
+/// What an unnamed joint stands for.
+fn driven_text(model: &Model, joint: &Joint) -> String {
+    let body = |e: usize| model.bodies[joint.bodies[e].0].name.as_str();
+    let place = |e: usize| {
+        let on =
+            |p: &&hardpoint::model::BodyPoint| !p.unnamed && p.body == joint.bodies[e] && p.at == joint.at[e];
+        let hardpoint = &model.hardpoints[joint.at[e].0];
+        match model.points.iter().find(on) {
+            Some(point) => format!("point `{}` on `{}`", point.name, body(e)),
+            None if !hardpoint.unnamed => format!("`{}` on `{}`", hardpoint.name, body(e)),
+            None => format!("point on `{}`", body(e)),
+        }
+    };
+    let axis = joint.axis.map_or(String::new(), |axis| match axis {
+        Direction::Along(u) => direction_text(u),
+        Direction::Through(a, b) => {
+            let [a, b] = [a, b].map(|h| model.hardpoints[h.0].name.as_str());
+            format!("the line from `{a}` to `{b}`")
+        }
+    });
+    let relative =
+        if joint.bodies[0] == GROUND { String::new() } else { format!(" relative to `{}`", body(0)) };
+    if std::ptr::eq(joint.kind, &joint::TRAVEL) {
+        format!("{} along {axis}{relative}", place(1))
+    } else if std::ptr::eq(joint.kind, &joint::HEADING) {
+        format!("orientation of `{}` about {axis}{relative}", body(1))
+    } else {
+        format!("distance from {} to {}", place(0), place(1))
+    }
 }
 
 fn blocks(model: &Model, topology: &Topology) -> Vec<BlockFact> {
@@ -322,11 +453,13 @@ fn blocks(model: &Model, topology: &Topology) -> Vec<BlockFact> {
             })
             .collect();
         joints.dedup();
-        let closes = block.closures.iter().map(|&c| {
-            let closure = &topology.closures[c];
-            closure
-                .driver
-                .map_or_else(|| joint_name(model, closure.joint), |d| model.drivers[d.0].name.clone())
+        let is_further_term = |c: &Closure| topology.rows[c.first_row].is_term;
+        let closures = block.closures.iter().map(|&c| &topology.closures[c]);
+        let closes = closures.filter(|c| !c.rows.is_empty() && !is_further_term(c));
+        let closes = closes.map(|c| match (c.driver, c.coupler) {
+            (Some(d), _) => model.drivers[d.0].name.clone(),
+            (None, Some(k)) => model.couplers[k].name.clone(),
+            (None, None) => joint_name(model, c.joint),
         });
         let rows = |c: &usize| {
             let closure = &topology.closures[*c];
@@ -341,16 +474,17 @@ fn blocks(model: &Model, topology: &Topology) -> Vec<BlockFact> {
                 .iter()
                 .map(|l| model.bodies[l.child.0].name.clone())
                 .collect(),
-            redundant: block.closures.iter().flat_map(rows).filter(|r| !r.selected).count(),
+            redundant: block.closures.iter().flat_map(rows).filter(|r| !r.selected && !r.is_term).count(),
         }
     };
     topology.blocks.iter().enumerate().map(fact).collect()
 }
 
 fn redundant(model: &Model, topology: &Topology) -> Vec<RedundantFact> {
-    let fact = |(closure, row): (&hardpoint::topology::Closure, Row)| RedundantFact {
+    let fact = |(closure, row): (&Closure, Row)| RedundantFact {
         joint: joint_name(model, closure.joint),
         driver: closure.driver.map(|d| model.drivers[d.0].name.clone()),
+        coupler: closure.coupler.map(|c| model.couplers[c].name.clone()),
         constraint: row.describe(),
     };
     topology.redundant().map(fact).collect()
@@ -359,7 +493,9 @@ fn redundant(model: &Model, topology: &Topology) -> Vec<RedundantFact> {
 fn variables(model: &Model, units: Units, solution: Option<&Solution>) -> Vec<VariableFact> {
     let fact = |(k, variable): (usize, &hardpoint::model::DesignVariable)| {
         let by = variable.quantity;
-        let defects = |joints: &[JointDefect]| joints.iter().map(|d| defect(model, units, by, d)).collect();
+        let unit = variable_unit(model, units, variable);
+        let defects =
+            |joints: &[JointDefect]| joints.iter().map(|d| defect(model, units, (by, &unit), d)).collect();
         let opens = admissibility_at_design(model, &model.field(VariableId(k)));
         let over_motion = solution.and_then(|s| s.sensitivities.admissibility.get(k));
         let (answer, resists, time) = match over_motion {
@@ -372,90 +508,30 @@ fn variables(model: &Model, units: Units, solution: Option<&Solution>) -> Vec<Va
         };
         VariableFact {
             name: variable.name.clone(),
-            unit: symbol(units, by),
             change: change_text(model, &variable.changes, variable.fixed_length),
             opens_at_design: defects(&opens),
             answer,
             resists,
             time,
+            unit,
         }
     };
     model.variables.iter().enumerate().map(fact).collect()
 }
 
-fn defect(model: &Model, units: Units, by: Quantity, defect: &JointDefect) -> DefectFact {
+fn defect(model: &Model, units: Units, (by, unit): (Quantity, &str), defect: &JointDefect) -> DefectFact {
     // The defect of a direction is a cosine that is 0 when closed: to first order an angle.
     let of = if defect.row.is_length() { Quantity::Length } else { Quantity::Angle };
     DefectFact {
         joint: joint_name(model, defect.joint),
         constraint: defect.row.describe(),
         defect: units.derivative_from_si(of, by, defect.value),
-        unit: per(symbol(units, of), symbol(units, by)),
-    }
-}
-
-/// What a variable changes, in a few words.
-fn change_text(model: &Model, changes: &[Change], fixed_length: bool) -> String {
-    let mut parts: Vec<String> = Vec::new();
-    let mut moves: Vec<(Vec3, Vec<&str>)> = Vec::new();
-    for change in changes {
-        match change {
-            Change::Move { hardpoint, velocity } => {
-                let name = model.hardpoints[hardpoint.0].name.as_str();
-                match moves.iter_mut().find(|(v, _)| v == velocity) {
-                    Some((_, names)) => names.push(name),
-                    None => moves.push((*velocity, vec![name])),
-                }
-            }
-            Change::Marker { joint, end, position, rotation } => {
-                let whose = match end {
-                    hardpoint::model::End::I => "marker i of ",
-                    hardpoint::model::End::J => "marker j of ",
-                    hardpoint::model::End::Both => "",
-                };
-                let name = joint_name(model, *joint);
-                if *position != Vec3::ZERO {
-                    parts.push(format!("moves {whose}`{name}` along {}", direction_text(*position)));
-                }
-                if *rotation != Vec3::ZERO {
-                    parts.push(format!("turns {whose}`{name}` about {}", direction_text(*rotation)));
-                }
-            }
-            Change::Length { joint, .. } => parts.push(format!("lengthens `{}`", joint_name(model, *joint))),
-            Change::Field { joint, end, .. } => {
-                let marker = ["i", "j"][*end];
-                parts.push(format!("field of marker {marker} of `{}`", joint_name(model, *joint)));
-            }
-        }
-    }
-    let moved =
-        moves.into_iter().map(|(v, list)| format!("moves {} along {}", names(list), direction_text(v)));
-    let mut text = moved.chain(parts).collect::<Vec<_>>().join("; ");
-    if fixed_length {
-        text += "; rods keep their lengths";
-    }
-    text
-}
-
-fn direction_text(v: Vec3) -> String {
-    let Some(u) = v.unit() else { return "nothing".into() };
-    const AXES: [(&str, [f64; 3]); 6] = [
-        ("x", [1.0, 0.0, 0.0]),
-        ("y", [0.0, 1.0, 0.0]),
-        ("z", [0.0, 0.0, 1.0]),
-        ("-x", [-1.0, 0.0, 0.0]),
-        ("-y", [0.0, -1.0, 0.0]),
-        ("-z", [0.0, 0.0, -1.0]),
-    ];
-    let near = |a: &[f64; 3]| u.to_array().iter().zip(a).all(|(p, q)| (p - q).abs() < 1e-12);
-    match AXES.iter().find(|(_, a)| near(a)) {
-        Some((name, _)) => (*name).into(),
-        None => format!("({})", u.to_array().map(|x| crate::figures::rounded(x, 3)).join(", ")),
+        unit: per(symbol(units, of), unit),
     }
 }
 
 fn measures(model: &Model, units: Units) -> Vec<MeasureFact> {
-    let point = |p: hardpoint::model::PointId| {
+    let point = |p: PointId| {
         let p = &model.points[p.0];
         let place = &model.hardpoints[p.at.0];
         if !p.unnamed {

@@ -1,6 +1,12 @@
 //! The facts in words: lines for headings, sentences, and tables for the terminal and the page.
 
-use super::{Answer, DefectFact, Facts, VariableFact};
+use hardpoint::model::{BodyId, JointId};
+use hardpoint_file::ModelFile;
+
+use super::{
+    Answer, CouplerFact, DefectFact, DriverFact, Facts, VariableFact, couplers, drivers, joints_on,
+    written_kind,
+};
 use crate::figures::{count, number, some_of, with_unit};
 use crate::page::Table;
 
@@ -48,20 +54,46 @@ impl Facts {
         format!("{}, {solved}", self.counts.loops)
     }
 
-    /// `20 in joints; 5 written out at cuts, 3 of them redundant`.
+    /// `4 joints, 1 coupler`.
+    pub fn joints_text(&self) -> String {
+        let joints = count(self.counts.joints, "joint");
+        match self.counts.couplers {
+            0 => joints,
+            n => format!("{joints}, {}", count(n, "coupler")),
+        }
+    }
+
+    /// `20 in joints, 1 in a coupler; 5 written out at cuts, 3 of them redundant`.
     pub fn constraints_line(&self) -> String {
         let c = &self.counts;
         let redundant = match c.redundant_constraints {
             0 => String::new(),
             n => format!(", {n} of them redundant"),
         };
-        format!("{} in joints; {} written out at cuts{redundant}", c.joint_constraints, c.cut_constraints)
+        let couplers = match c.couplers {
+            0 => String::new(),
+            1 => ", 1 in a coupler".into(),
+            n => format!(", {n} in couplers"),
+        };
+        let (joints, cut) = (c.joint_constraints, c.cut_constraints);
+        format!("{joints} in joints{couplers}; {cut} written out at cuts{redundant}")
+    }
+
+    /// Everything worth knowing that is no error, each a sentence without a full stop.
+    pub fn all_notes(&self) -> Vec<String> {
+        const SHOWN: usize = 6;
+        let groups = self.redundancy.iter().take(SHOWN).map(super::RedundancyFact::note);
+        let left: usize = self.redundancy.iter().skip(SHOWN).map(|r| r.count).sum();
+        let more =
+            (left > 0).then(|| format!("{} among other joints", count(left, "more redundant constraint")));
+        groups.chain(more).chain(self.notes.iter().cloned()).collect()
     }
 
     /// Everything as tables, for the terminal and the page.
     pub fn tables(&self) -> Vec<Table> {
         let mut tables = vec![self.body_table(), self.joint_table()];
-        tables.extend(self.driver_table());
+        tables.extend(coupler_table(&self.couplers));
+        tables.extend(driver_table(&self.drivers));
         tables.push(self.block_table());
         tables.extend(self.redundant_table());
         tables.extend(self.variable_table());
@@ -80,14 +112,8 @@ impl Facts {
     fn joint_table(&self) -> Table {
         let rows = self.joints.iter().map(|j| {
             let bodies = format!("{} – {}", j.bodies[0], j.bodies[1]);
-            vec![
-                j.name.clone(),
-                j.kind.into(),
-                bodies,
-                j.role.into(),
-                j.why.clone(),
-                j.constraints.to_string(),
-            ]
+            let kind = if j.holds_spin { format!("{}, holds a spin", j.kind) } else { j.kind.into() };
+            vec![j.name.clone(), kind, bodies, j.role.into(), j.why.clone(), j.constraints.to_string()]
         });
         table(
             "Joints",
@@ -95,17 +121,6 @@ impl Facts {
             ["joint", "type", "bodies", "role", "why", "constraints"],
             rows,
         )
-    }
-
-    fn driver_table(&self) -> Option<Table> {
-        let rows: Vec<Vec<String>> = self
-            .drivers
-            .iter()
-            .map(|d| {
-                vec![d.name.clone(), format!("{} {}", d.joint, d.coordinate), d.law.clone(), d.unit.into()]
-            })
-            .collect();
-        (!rows.is_empty()).then(|| table("Drivers", "", ["driver", "drives", "law", "unit"], rows))
     }
 
     fn block_table(&self) -> Table {
@@ -132,9 +147,11 @@ impl Facts {
             .redundant
             .iter()
             .map(|r| {
-                let whose = match &r.driver {
-                    Some(driver) => format!("{} (driver {driver})", r.joint),
-                    None => r.joint.clone(),
+                let whose = match (&r.driver, &r.coupler) {
+                    (Some(driver), _) if *driver == r.joint => format!("driver {driver}"),
+                    (Some(driver), _) => format!("{} (driver {driver})", r.joint),
+                    (None, Some(coupler)) => format!("coupler {coupler}"),
+                    (None, None) => r.joint.clone(),
                 };
                 vec![whose, r.constraint.clone()]
             })
@@ -155,7 +172,7 @@ impl Facts {
             .iter()
             .map(|v| {
                 let at_design = if v.opens_at_design.is_empty() { "closed" } else { "opens" };
-                let unit = if v.unit == "1" { String::new() } else { v.unit.into() };
+                let unit = if v.unit == "1" { String::new() } else { v.unit.clone() };
                 vec![
                     v.name.clone(),
                     unit,
@@ -183,6 +200,46 @@ impl Facts {
             self.measures.iter().map(|m| vec![m.name.clone(), m.unit.into(), m.what.clone()]).collect();
         (!rows.is_empty()).then(|| table("Measures", "", ["measure", "unit", "what"], rows))
     }
+}
+
+/// What can be said of a mechanism that cannot be planned: its bodies, joints, couplers and drivers.
+pub fn outline(file: &ModelFile) -> Vec<Table> {
+    let (model, units) = (&file.model, file.units);
+    let body = |b: usize| vec![model.bodies[b].name.clone(), joints_on(model, BodyId(b)).join(", ")];
+    let joint = |(id, j): (JointId, &hardpoint::model::Joint)| {
+        let [i, k] = j.bodies.map(|b| model.bodies[b.0].name.as_str());
+        let kind = written_kind(model, id).to_owned();
+        vec![j.name.clone(), kind, format!("{i} – {k}"), j.kind.rows.len().to_string()]
+    };
+    let bodies = table("Bodies", "", ["body", "joints on it"], (1..model.bodies.len()).map(body));
+    let header = ["joint", "type", "bodies", "constraints"];
+    let mut tables = vec![bodies, table("Joints", "", header, model.named_joints().map(joint))];
+    tables.extend(coupler_table(&couplers(model, units)));
+    tables.extend(driver_table(&drivers(model, units)));
+    tables
+}
+
+fn coupler_table(couplers: &[CouplerFact]) -> Option<Table> {
+    let row = |c: &CouplerFact| {
+        let mut units: Vec<&str> = c.terms.iter().map(|t| t.unit).collect();
+        units.sort_unstable();
+        units.dedup();
+        vec![c.name.clone(), c.relation.clone(), units.join(", ")]
+    };
+    (!couplers.is_empty()).then(|| {
+        table(
+            "Couplers",
+            "Each is one constraint. Coordinates count from the design configuration, angles through whole turns.",
+            ["coupler", "relation", "unit"],
+            couplers.iter().map(row),
+        )
+    })
+}
+
+fn driver_table(drivers: &[DriverFact]) -> Option<Table> {
+    let row = |d: &DriverFact| vec![d.name.clone(), d.drives.clone(), d.law.clone(), d.unit.into()];
+    let header = ["driver", "drives", "law", "unit"];
+    (!drivers.is_empty()).then(|| table("Drivers", "", header, drivers.iter().map(row)))
 }
 
 impl VariableFact {
@@ -235,7 +292,7 @@ impl DefectFact {
     }
 }
 
-fn table<const N: usize>(
+pub(crate) fn table<const N: usize>(
     title: &str,
     note: &str,
     header: [&str; N],

@@ -1,0 +1,107 @@
+//! What was open in the drawing, and how the mechanism closed it.
+
+use hardpoint::joint::Quantity;
+use hardpoint::model::Model;
+use hardpoint::motion::{Assembly, Closing, Gap};
+use hardpoint_file::Units;
+use serde::Serialize;
+
+use crate::facts::table;
+use crate::figures::{symbol, with_unit};
+use crate::page::Table;
+
+/// How the mechanism was closed before it moved.
+#[derive(Clone, Debug, Serialize)]
+pub struct AssemblyFact {
+    /// What was open, largest gaps first.
+    pub gaps: Vec<GapFact>,
+    /// The bodies that moved.
+    pub moved: Vec<MovedFact>,
+}
+
+/// Something that is open.
+#[derive(Clone, Debug, Serialize)]
+pub struct GapFact {
+    /// `joint`, `driver` or `coupler`.
+    pub kind: &'static str,
+    /// Its name.
+    pub name: String,
+    /// By how much it is open.
+    pub size: f64,
+    /// The unit of that.
+    pub unit: &'static str,
+}
+
+/// How far a body moved from where it was drawn.
+#[derive(Clone, Debug, Serialize)]
+pub struct MovedFact {
+    /// The body.
+    pub body: String,
+    /// How far its origin moved.
+    pub distance: f64,
+    /// The unit of that.
+    pub distance_unit: &'static str,
+    /// How far it turned.
+    pub angle: f64,
+    /// The unit of that.
+    pub angle_unit: &'static str,
+}
+
+impl GapFact {
+    /// A gap in the user's units.
+    pub fn new(model: &Model, units: Units, gap: &Gap) -> Self {
+        let (kind, name) = match gap.of {
+            Closing::Joint(j) => ("joint", &model.joints[j.0].name),
+            Closing::Driver(d) => ("driver", &model.drivers[d.0].name),
+            Closing::Coupler(c) => ("coupler", &model.couplers[c].name),
+        };
+        // The gap of a direction is a cosine that is 0 when closed: to first order an angle.
+        let of = if gap.is_length { Quantity::Length } else { Quantity::Angle };
+        Self { kind, name: name.clone(), size: units.from_si(of, gap.size), unit: symbol(units, of) }
+    }
+
+    /// `133.8 mm`.
+    pub fn size_text(&self) -> String {
+        with_unit(self.size, self.unit)
+    }
+}
+
+impl AssemblyFact {
+    /// An assembly in the user's units.
+    pub fn new(model: &Model, units: Units, assembly: &Assembly) -> Self {
+        let (length, angle) = (Quantity::Length, Quantity::Angle);
+        let moved = assembly.moved.iter().map(|m| MovedFact {
+            body: model.bodies[m.body.0].name.clone(),
+            distance: units.from_si(length, m.distance),
+            distance_unit: symbol(units, length),
+            angle: units.from_si(angle, m.angle),
+            angle_unit: symbol(units, angle),
+        });
+        Self {
+            gaps: assembly.gaps.iter().map(|g| GapFact::new(model, units, g)).collect(),
+            moved: moved.collect(),
+        }
+    }
+
+    /// What was open, and what moved.
+    pub fn tables(&self) -> [Table; 2] {
+        let gap = |g: &GapFact| vec![format!("{} {}", g.kind, g.name), g.size_text()];
+        let moved = |m: &MovedFact| {
+            vec![m.body.clone(), with_unit(m.distance, m.distance_unit), with_unit(m.angle, m.angle_unit)]
+        };
+        [
+            table(
+                "Assembled",
+                "These were open in the drawing and are closed before the motion starts, with every driver at zero.",
+                ["what", "open as drawn by"],
+                self.gaps.iter().map(gap),
+            ),
+            table(
+                "Moved by the assembly",
+                "From where the bodies were drawn.",
+                ["body", "origin moved by", "turned by"],
+                self.moved.iter().map(moved),
+            ),
+        ]
+    }
+}

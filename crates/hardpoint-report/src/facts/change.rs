@@ -1,0 +1,142 @@
+//! What a design variable changes, in words, and its unit.
+
+use hardpoint::joint::Quantity;
+use hardpoint::law::ParameterKind;
+use hardpoint::model::{Change, DesignVariable, End, Model};
+use hardpoint::space::Vec3;
+use hardpoint_file::Units;
+
+use super::joint_name;
+use crate::figures::{names, number, order_unit, rounded, symbol};
+
+/// What a variable changes, in a few words.
+pub(super) fn change_text(model: &Model, changes: &[Change], fixed_length: bool) -> String {
+    let mut parts: Vec<String> = Vec::new();
+    let mut moves: Vec<(Vec3, Vec<&str>)> = Vec::new();
+    for change in changes {
+        match change {
+            Change::Move { hardpoint, velocity } => {
+                let name = model.hardpoints[hardpoint.0].name.as_str();
+                match moves.iter_mut().find(|(v, _)| v == velocity) {
+                    Some((_, names)) => names.push(name),
+                    None => moves.push((*velocity, vec![name])),
+                }
+            }
+            Change::Marker { joint, end, position, rotation } => {
+                let whose = match end {
+                    End::I => "marker i of ",
+                    End::J => "marker j of ",
+                    End::Both => "",
+                };
+                let name = joint_name(model, *joint);
+                if *position != Vec3::ZERO {
+                    parts.push(format!("moves {whose}`{name}` along {}", direction_text(*position)));
+                }
+                if *rotation != Vec3::ZERO {
+                    parts.push(format!("turns {whose}`{name}` about {}", direction_text(*rotation)));
+                }
+            }
+            Change::Length { joint, rate } => {
+                let name = joint_name(model, *joint);
+                parts.push(match (&model.joints[joint.0].curve, *rate > 0.0) {
+                    (Some(_), true) => format!("moves `{name}` away from its curve{}", times(*rate)),
+                    (Some(_), false) => format!("moves `{name}` towards its curve{}", times(*rate)),
+                    (None, true) => format!("lengthens `{name}`{}", times(*rate)),
+                    (None, false) => format!("shortens `{name}`{}", times(*rate)),
+                });
+            }
+            Change::Law { driver, parameter, rate } => {
+                let driver = &model.drivers[driver.0];
+                let verb = if *rate > 0.0 { "raises" } else { "lowers" };
+                let name = &driver.law.parameters()[*parameter].name;
+                parts.push(format!("{verb} `{name}` in the law of `{}`", driver.name));
+            }
+            Change::Field { joint, end, .. } => {
+                let marker = ["i", "j"][*end];
+                parts.push(format!("field of marker {marker} of `{}`", joint_name(model, *joint)));
+            }
+        }
+    }
+    let moved =
+        moves.into_iter().map(|(v, list)| format!("moves {} along {}", names(list), direction_text(v)));
+    let mut text = moved.chain(parts).collect::<Vec<_>>().join("; ");
+    if fixed_length {
+        text += "; rods keep their lengths";
+    }
+    text
+}
+
+/// ` (2 per unit)` and the like, where a rate is not 1.
+fn times(rate: f64) -> String {
+    if rate.abs() == 1.0 { String::new() } else { format!(" ({} per unit)", number(rate.abs())) }
+}
+
+/// The unit of a design variable; `1` for a plain number.
+///
+/// A parameter of a law that is neither a length nor an angle is a number to the core, and one of the variable is as much
+/// of the parameter as the rate of its change says: that decides whether the user's unit or the SI unit is meant.
+pub fn variable_unit(model: &Model, units: Units, variable: &DesignVariable) -> String {
+    if variable.quantity != Quantity::Number {
+        return symbol(units, variable.quantity).into();
+    }
+    let mut found = variable.changes.iter().map(|change| match change {
+        Change::Law { driver, parameter, rate } => {
+            let driver = &model.drivers[driver.0];
+            let quantity = model.driven(driver).quantity;
+            let kind = driver.law.parameters()[*parameter].kind;
+            parameter_unit(units, quantity, kind, rate.abs())
+        }
+        _ => None,
+    });
+    let first = found.next().flatten();
+    match first {
+        Some(unit) if found.all(|other| other.as_ref() == Some(&unit)) => unit,
+        _ => "1".into(),
+    }
+}
+
+/// The unit of which a parameter changes by one, `rate` being that change inside.
+fn parameter_unit(units: Units, driven: Quantity, kind: ParameterKind, rate: f64) -> Option<String> {
+    let is = |size: f64| (rate - size).abs() <= 1e-12 * size;
+    match kind {
+        ParameterKind::Time if is(1.0) => Some("s".into()),
+        ParameterKind::Frequency if is(1.0) => Some("Hz".into()),
+        ParameterKind::ValueRate(power) => {
+            let per = match power {
+                1 | 2 => return in_either(units, driven, is, |u| order_unit(u, driven, power as usize)),
+                n => format!("/s^{n}"),
+            };
+            in_either(units, driven, is, |u| format!("{}{per}", symbol(u, driven)))
+        }
+        _ => None,
+    }
+}
+
+/// The text for the user's units if that is what the rate means, or else for SI units.
+fn in_either(
+    units: Units,
+    driven: Quantity,
+    is: impl Fn(f64) -> bool,
+    text: impl Fn(Units) -> String,
+) -> Option<String> {
+    let meant = [units, Units::default()].into_iter().find(|u| is(u.to_si(driven, 1.0)));
+    meant.map(text)
+}
+
+/// `x`, `-z`, `(0.6, 0.8, 0)`.
+pub(super) fn direction_text(v: Vec3) -> String {
+    let Some(u) = v.unit() else { return "nothing".into() };
+    const AXES: [(&str, [f64; 3]); 6] = [
+        ("x", [1.0, 0.0, 0.0]),
+        ("y", [0.0, 1.0, 0.0]),
+        ("z", [0.0, 0.0, 1.0]),
+        ("-x", [-1.0, 0.0, 0.0]),
+        ("-y", [0.0, -1.0, 0.0]),
+        ("-z", [0.0, 0.0, -1.0]),
+    ];
+    let near = |a: &[f64; 3]| u.to_array().iter().zip(a).all(|(p, q)| (p - q).abs() < 1e-12);
+    match AXES.iter().find(|(_, a)| near(a)) {
+        Some((name, _)) => (*name).into(),
+        None => format!("({})", u.to_array().map(|x| rounded(x, 3)).join(", ")),
+    }
+}

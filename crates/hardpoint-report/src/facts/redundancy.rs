@@ -1,0 +1,172 @@
+//! Which joints, couplers and drivers say the same.
+
+use std::collections::BTreeMap;
+
+use hardpoint::joint;
+use hardpoint::model::{JointId, MeasureKind, Model};
+use hardpoint::topology::{Formulation, Redundancy, Role, Topology};
+use serde::Serialize;
+
+use super::joint_name;
+use crate::figures::{count, quoted, some_in_words};
+
+/// Redundant constraints among the same joints, couplers and drivers.
+#[derive(Clone, Debug, Serialize)]
+pub struct RedundancyFact {
+    /// How many constraints are redundant among them.
+    pub count: usize,
+    /// The joints.
+    pub joints: Vec<String>,
+    /// The couplers.
+    pub couplers: Vec<String>,
+    /// The drivers that prescribe what the others already do.
+    pub drivers: Vec<String>,
+    /// A joint that would remove them all as another type, together with the joints named so before it.
+    pub instead: Option<Instead>,
+}
+
+/// A joint that could be of a type with more freedom.
+#[derive(Clone, Debug, Serialize)]
+pub struct Instead {
+    /// The joint.
+    pub joint: String,
+    /// The type that it has.
+    #[serde(rename = "type")]
+    pub kind: &'static str,
+    /// The type that it could have.
+    pub instead: &'static str,
+}
+
+/// Whatever may be part of a redundancy, joints first.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+enum Part {
+    Joint(usize),
+    Coupler(usize),
+    Driver(usize),
+}
+
+/// All redundant constraints, those among the same parts together, in the order of the file.
+pub(super) fn redundancy(model: &Model, topology: &Topology) -> Vec<RedundancyFact> {
+    /// Where every joint is cut the sets are exact, but the search is cubic in six unknowns per body.
+    const MOST_BODIES: usize = 50;
+    let left_out = topology.redundant().count();
+    if left_out == 0 {
+        return Vec::new();
+    }
+    let small = model.bodies.len() - 1 <= MOST_BODIES;
+    let all_cut = small
+        .then(|| Topology::of(model, Formulation::Absolute).ok())
+        .flatten()
+        .filter(|t| t.redundant().count() == left_out);
+    let plan = all_cut.as_ref().unwrap_or(topology);
+    let mut groups: BTreeMap<Vec<Part>, usize> = BTreeMap::new();
+    for redundancy in plan.redundancies(model) {
+        *groups.entry(parts(model, plan, &redundancy)).or_default() += 1;
+    }
+    let mut freed = Freed { model: model.clone(), redundant: left_out, mobility: topology.mobility };
+    let fact = |(parts, count): (Vec<Part>, usize)| {
+        let of = |pick: fn(&Part) -> Option<usize>, name: &dyn Fn(usize) -> String| {
+            parts.iter().filter_map(pick).map(name).collect::<Vec<_>>()
+        };
+        let joint = |p: &Part| if let Part::Joint(k) = p { Some(*k) } else { None };
+        let coupler = |p: &Part| if let Part::Coupler(k) = p { Some(*k) } else { None };
+        let driver = |p: &Part| if let Part::Driver(k) = p { Some(*k) } else { None };
+        let joints: Vec<usize> = parts.iter().filter_map(joint).collect();
+        RedundancyFact {
+            count,
+            joints: of(joint, &|k| model.joints[k].name.clone()),
+            couplers: of(coupler, &|k| model.couplers[k].name.clone()),
+            drivers: of(driver, &|k| model.drivers[k].name.clone()),
+            instead: if small { freed.instead(topology, &joints, count) } else { None },
+        }
+    };
+    groups.into_iter().map(fact).collect()
+}
+
+/// What the rows of a redundancy belong to. A row over a tree speaks for all joints around its loop.
+fn parts(model: &Model, plan: &Topology, redundancy: &Redundancy) -> Vec<Part> {
+    let mut parts = Vec::new();
+    for &row in std::iter::once(&redundancy.row).chain(&redundancy.implied_by) {
+        for (r, _) in plan.parts_of_row(row) {
+            let closure = &plan.closures[plan.rows[r].closure];
+            parts.push(match (closure.driver, closure.coupler) {
+                (Some(d), _) => Part::Driver(d.0),
+                (None, Some(c)) => Part::Coupler(c),
+                (None, None) => Part::Joint(closure.joint.0),
+            });
+            let around = closure.links.iter().filter_map(|(link, _)| plan.links[*link].joint);
+            parts.extend(around.map(|j| Part::Joint(j.0)));
+        }
+    }
+    parts.retain(|p| !matches!(p, Part::Joint(j) if model.joints[*j].unnamed));
+    parts.sort_unstable();
+    parts.dedup();
+    parts
+}
+
+/// The model as far as its redundant constraints are removed by joints with more freedom.
+struct Freed {
+    model: Model,
+    redundant: usize,
+    mobility: usize,
+}
+
+impl Freed {
+    /// A joint that removes so many redundant constraints as another type, and leaves the mechanism driven as it is: tried,
+    /// together with those found before. Joints that close a loop come first.
+    fn instead(&mut self, topology: &Topology, joints: &[usize], redundant: usize) -> Option<Instead> {
+        let is_cut = |j: &usize| matches!(topology.roles[*j], Role::Cut(_));
+        let (cut, tree): (Vec<usize>, Vec<usize>) = joints.iter().partition(|j| is_cut(j));
+        cut.into_iter().chain(tree).find_map(|j| {
+            if self.is_named_by_others(JointId(j)) {
+                return None;
+            }
+            let kind = self.model.joints[j].kind;
+            let instead = match (kind.name, redundant) {
+                ("revolute" | "translational", 1) => &joint::CYLINDRICAL,
+                ("revolute", 2) | ("universal" | "constant_velocity", 1) | ("fixed", 3) => &joint::SPHERICAL,
+                ("revolute" | "translational", 3) | ("cylindrical", 2) => &joint::INLINE,
+                ("planar", 2) => &joint::INPLANE,
+                _ => return None,
+            };
+            self.model.joints[j].kind = instead;
+            let plan = Topology::of(&self.model, topology.formulation);
+            let left = self.redundant - redundant;
+            if plan.is_ok_and(|p| p.redundant().count() == left && p.mobility == self.mobility) {
+                self.redundant = left;
+                return Some(Instead {
+                    joint: joint_name(&self.model, JointId(j)),
+                    kind: kind.name,
+                    instead: instead.name,
+                });
+            }
+            self.model.joints[j].kind = kind;
+            None
+        })
+    }
+
+    /// Whether a driver, coupler or measure needs a coordinate of the joint, which another type may not have.
+    fn is_named_by_others(&self, joint: JointId) -> bool {
+        let model = &self.model;
+        let measured = |k: &MeasureKind| matches!(k, MeasureKind::Coordinate { joint: j, .. } if *j == joint);
+        model.drivers.iter().any(|d| d.joint == joint)
+            || model.couplers.iter().flat_map(|c| &c.terms).any(|t| t.joint == joint)
+            || model.measures.iter().any(|m| measured(&m.kind))
+    }
+}
+
+impl RedundancyFact {
+    /// `3 redundant constraints among \`A\`, \`B\` and \`C\`: ...`.
+    pub fn note(&self) -> String {
+        let parts = (self.joints.iter().map(|j| format!("`{j}`")))
+            .chain(quoted("coupler", &self.couplers))
+            .chain(quoted("driver", &self.drivers));
+        let parts: Vec<String> = parts.collect();
+        let them = if self.count == 1 { "it from any one" } else { "them from any" };
+        let example = self.instead.as_ref().map_or(String::new(), |i| {
+            format!(", for example by `{}` in place of `{}` for `{}`", i.instead, i.kind, i.joint)
+        });
+        let n = count(self.count, "redundant constraint");
+        format!("{n} among {}: remove {them} of these{example}", some_in_words(&parts))
+    }
+}

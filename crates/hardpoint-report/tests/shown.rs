@@ -1,0 +1,401 @@
+//! What is shown of mechanisms, under snapshots: couplers, drivers on points, idle spins, redundancy, margins, assemblies,
+//! jumps, and design variables of every kind.
+
+use std::fmt::Write;
+
+use hardpoint::law::{ConstantSpeed, Harmonic, Law};
+use hardpoint::model::*;
+use hardpoint::space::Vec3;
+use hardpoint::{Analysis, Solution};
+use hardpoint_file::{Diagnostic, ModelFile};
+use hardpoint_report::diagnose;
+use hardpoint_report::facts::{Facts, outline};
+use hardpoint_report::page::Table;
+use hardpoint_report::payload::payload;
+use hardpoint_report::summary::Summary;
+
+/// In mm and degrees; the model is replaced.
+const FRAME: &str = r#"
+name = "frame"
+units = { length = "mm", angle = "deg" }
+hardpoints = { pivot = [0, 0, 0] }
+bodies = { arm = {} }
+joints.hinge = { type = "revolute", bodies = ["ground", "arm"], at = "pivot", axis = "y" }
+time = { end = 1.0, steps = 10 }
+"#;
+
+fn file(draft: &Draft) -> ModelFile {
+    let mut file = hardpoint_file::parse(FRAME, "drawn.toml").unwrap();
+    file.model = Model::from_draft(draft).unwrap();
+    file
+}
+
+/// The page's payload is made too: it must not fail for any mechanism.
+fn solved(file: &ModelFile) -> (Solution, Summary) {
+    let analysis = Analysis::new(&file.model).unwrap();
+    let solution = analysis.run();
+    let facts = Facts::new(file, analysis.topology(), Some(&solution));
+    let summary = Summary::new(file, analysis.topology(), facts, &solution);
+    let page = payload(file, &analysis, &solution, &[], &summary);
+    assert_eq!(page.margin.is_some(), summary.margin.is_some());
+    (solution, summary)
+}
+
+fn body(name: &str) -> BodyDraft {
+    BodyDraft { name: name.into(), frame: FrameDraft::Default }
+}
+
+fn joint(name: &str, kind: &str, [i, j]: [&str; 2], at: &[[f64; 3]], axis: Option<[f64; 3]>) -> JointDraft {
+    JointDraft {
+        name: name.into(),
+        kind: kind.into(),
+        bodies: [i.into(), j.into()],
+        at: at.iter().map(|p| Place::At((*p).into())).collect(),
+        axis: axis.map(|a| Line::Along(a.into())),
+        ..JointDraft::default()
+    }
+}
+
+fn driver(name: &str, joint: &str, law: Law) -> DriverDraft {
+    DriverDraft {
+        name: name.into(),
+        drives: DrivenDraft::Coordinate { joint: joint.into(), coordinate: None },
+        law,
+    }
+}
+
+fn law(text: &str) -> Law {
+    Law::parse(text).unwrap()
+}
+
+fn variable(name: &str, change: ChangeDraft) -> VariableDraft {
+    VariableDraft { name: name.into(), changes: vec![change], fixed_length: false }
+}
+
+fn text(tables: &[Table], titles: &[&str]) -> String {
+    let mut out = String::new();
+    for table in tables.iter().filter(|t| titles.contains(&t.title.as_str())) {
+        writeln!(out, "{}\n  {}", table.title, table.header.join(" | ")).unwrap();
+        for row in &table.rows {
+            writeln!(out, "  {}", row.join(" | ")).unwrap();
+        }
+    }
+    out
+}
+
+fn told(list: &[Diagnostic]) -> String {
+    let mut out = String::new();
+    for d in list {
+        writeln!(out, "[{}] {}", d.code, d.message).unwrap();
+        d.notes.iter().for_each(|n| writeln!(out, "  note: {n}").unwrap());
+        d.help.iter().for_each(|h| writeln!(out, "  help: {h}").unwrap());
+    }
+    out
+}
+
+const Y: Option<[f64; 3]> = Some([0.0, 1.0, 0.0]);
+const Z: Option<[f64; 3]> = Some([0.0, 0.0, 1.0]);
+
+/// A pinion that drives a wheel and a rack.
+fn gears() -> Draft {
+    let pair = ["pinion_axle", "wheel_axle"].map(String::from);
+    Draft {
+        name: "gears".into(),
+        bodies: ["pinion", "wheel", "rack"].map(body).into(),
+        joints: vec![
+            joint("pinion_axle", "revolute", ["ground", "pinion"], &[[0.0; 3]], Z),
+            joint("wheel_axle", "revolute", ["ground", "wheel"], &[[0.06, 0.0, 0.0]], Z),
+            joint("way", "translational", ["ground", "rack"], &[[0.0, -0.02, 0.0]], Some([1.0, 0.0, 0.0])),
+        ],
+        couplers: vec![
+            CouplerDraft {
+                name: "mesh".into(),
+                kind: CouplerKindDraft::Gears { joints: pair, teeth: [20.0, 40.0], internal: false },
+            },
+            CouplerDraft {
+                name: "teeth".into(),
+                kind: CouplerKindDraft::Rack {
+                    rack: "way".into(),
+                    pinion: "pinion_axle".into(),
+                    radius: 0.02,
+                },
+            },
+        ],
+        drivers: vec![driver("motor", "pinion_axle", law("t"))],
+        times: vec![0.0, 1.0],
+        ..Draft::default()
+    }
+}
+
+#[test]
+fn couplers_are_written_out_in_the_users_units_and_counted() {
+    let file = file(&gears());
+    let (_, summary) = solved(&file);
+    let facts = &summary.model;
+    let tables = text(&facts.tables(), &["Couplers", "Blocks"]);
+    insta::assert_snapshot!(format!("{}\n{}\n{tables}", facts.joints_text(), facts.constraints_line()));
+    // 20 mm of radius make 20 * pi / 180 mm per degree.
+    let rack = &facts.couplers[1];
+    assert_eq!((rack.terms[0].unit, rack.terms[1].unit), ("mm", "deg"));
+    let ratio = rack.terms[1].coefficient / rack.terms[0].coefficient;
+    assert!((ratio.abs() - 20.0_f64.to_radians()).abs() < 1e-12, "{ratio}");
+}
+
+/// Three arms that turn about y, each driven in a way of its own.
+fn arms() -> Draft {
+    let at = |x: f64, y: f64| Place::At(Vec3::new(x, y, 0.0));
+    let arm = |k: usize| {
+        let name = format!("arm_{k}");
+        joint(&format!("hinge_{k}"), "revolute", ["ground", &name], &[[0.0, 0.1 * k as f64, 0.0]], Y)
+    };
+    let drives = |name: &str, drives| DriverDraft { name: name.into(), drives, law: law("0.01*t") };
+    Draft {
+        name: "arms".into(),
+        hardpoints: vec![HardpointDraft { name: "tip".into(), position: Vec3::new(0.1, 0.2, 0.0) }],
+        bodies: ["arm_1", "arm_2", "arm_3"].map(body).into(),
+        joints: (1..=3).map(arm).collect(),
+        drivers: vec![
+            drives(
+                "lift",
+                DrivenDraft::Position {
+                    point: PointRef::On { body: "arm_1".into(), at: at(0.1, 0.1) },
+                    along: Line::Along(Vec3::new(0.0, 0.0, 1.0)),
+                },
+            ),
+            drives(
+                "jack",
+                DrivenDraft::Distance {
+                    from: PointRef::On { body: "ground".into(), at: Place::At(Vec3::new(0.1, 0.2, -0.1)) },
+                    to: PointRef::On { body: "arm_2".into(), at: Place::Hardpoint("tip".into()) },
+                },
+            ),
+            drives(
+                "roll",
+                DrivenDraft::Orientation {
+                    body: "arm_3".into(),
+                    relative_to: None,
+                    about: Line::Along(Vec3::new(0.0, 1.0, 0.0)),
+                },
+            ),
+        ],
+        times: vec![0.0, 1.0],
+        ..Draft::default()
+    }
+}
+
+#[test]
+fn drivers_on_no_joint_say_what_they_drive_and_add_no_joint() {
+    let file = file(&arms());
+    let (_, summary) = solved(&file);
+    let facts = &summary.model;
+    assert_eq!((facts.counts.joints, facts.joints.len(), facts.counts.loops), (3, 3, 0));
+    assert!(facts.bodies.iter().all(|b| b.joints.len() == 1));
+    insta::assert_snapshot!(text(&facts.tables(), &["Joints", "Drivers", "Blocks"]));
+    assert!(facts.drivers.iter().all(|d| d.joint.is_none()));
+}
+
+#[test]
+fn a_mechanism_that_cannot_be_driven_still_has_an_outline() {
+    let mut draft = gears();
+    draft.drivers.clear();
+    let file = file(&draft);
+    assert!(Analysis::new(&file.model).is_err());
+    insta::assert_snapshot!(text(&outline(&file), &["Bodies", "Joints", "Couplers", "Drivers"]));
+}
+
+/// A spatial four-bar whose rod hangs between two balls.
+fn with_an_idle_rod() -> Draft {
+    Draft {
+        name: "idle rod".into(),
+        bodies: ["crank", "rod", "rocker"].map(body).into(),
+        joints: vec![
+            joint("A", "revolute", ["ground", "crank"], &[[0.0; 3]], Z),
+            joint("B", "spherical", ["crank", "rod"], &[[0.0, 0.1, 0.0]], None),
+            joint("C", "spherical", ["rod", "rocker"], &[[0.3, 0.25, 0.05]], None),
+            joint("D", "revolute", ["ground", "rocker"], &[[0.3, 0.0, 0.0]], Some([0.0, 0.2, 1.0])),
+        ],
+        drivers: vec![driver("motor", "A", law("0.5*sin(t)"))],
+        times: (0..=10).map(|k| 0.1 * f64::from(k)).collect(),
+        ..Draft::default()
+    }
+}
+
+#[test]
+fn an_idle_spin_is_a_note() {
+    let file = file(&with_an_idle_rod());
+    let (_, summary) = solved(&file);
+    let notes = summary.model.all_notes().join("\n");
+    insta::assert_snapshot!(format!("{notes}\n{}", text(&summary.model.tables(), &["Joints"])));
+}
+
+/// Four hinges about z; three constraints are redundant. Two such loops share no joint.
+fn four_bars() -> Draft {
+    let loop_of = |tag: &str, y: f64| {
+        let n = |name: &str| format!("{name}{tag}");
+        let (crank, coupler, rocker) = (n("crank"), n("coupler"), n("rocker"));
+        vec![
+            joint(&n("A"), "revolute", ["ground", &crank], &[[0.0, y, 0.0]], Z),
+            joint(&n("B"), "revolute", [&crank, &coupler], &[[0.0, y + 0.1, 0.0]], Z),
+            joint(&n("C"), "revolute", [&coupler, &rocker], &[[0.3, y + 0.25, 0.0]], Z),
+            joint(&n("D"), "revolute", ["ground", &rocker], &[[0.3, y, 0.0]], Z),
+        ]
+    };
+    Draft {
+        name: "two four-bars".into(),
+        bodies: ["crank1", "coupler1", "rocker1", "crank2", "coupler2", "rocker2"].map(body).into(),
+        joints: [loop_of("1", 0.0), loop_of("2", 1.0)].concat(),
+        drivers: vec![driver("one", "A1", law("0.5*sin(t)")), driver("two", "A2", law("0.5*sin(t)"))],
+        times: (0..=10).map(|k| 0.1 * f64::from(k)).collect(),
+        ..Draft::default()
+    }
+}
+
+#[test]
+fn redundant_constraints_are_named_by_loop() {
+    let file = file(&four_bars());
+    let (_, summary) = solved(&file);
+    insta::assert_snapshot!(summary.model.all_notes().join("\n"));
+    assert_eq!(summary.model.redundancy.iter().map(|r| r.count).collect::<Vec<_>>(), [3, 3]);
+}
+
+#[test]
+fn the_margin_is_told_in_digits_with_its_loop() {
+    let file = file(&with_an_idle_rod());
+    let (solution, summary) = solved(&file);
+    let margin = summary.margin.as_ref().unwrap();
+    assert_eq!(margin.series.len(), solution.motion.len());
+    insta::assert_snapshot!(format!("{}\n{}", margin.line_from_start(), margin.sentence()));
+}
+
+#[test]
+fn a_motion_that_ends_next_to_a_singular_position_is_warned_of() {
+    let mut draft = four_bars();
+    draft.joints.truncate(4);
+    draft.bodies.truncate(3);
+    draft.drivers.truncate(1);
+    draft.joints[2].at = vec![Place::At(Vec3::new(0.2, 0.1, 0.0))];
+    // Coupler and rocker are in line where the crank's pin is as far from D as both are long.
+    let (crank, coupler, rocker, base) = (0.1_f64, 0.2_f64, 0.02_f64.sqrt(), 0.3_f64);
+    let cosine = (crank.powi(2) + base.powi(2) - (coupler + rocker).powi(2)) / (2.0 * crank * base);
+    let angle = cosine.acos() - std::f64::consts::FRAC_PI_2;
+    draft.drivers[0].law = law(&format!("{:.17} * t", angle * (1.0 - 1e-13)));
+    let file = file(&draft);
+    let (solution, summary) = solved(&file);
+    assert!(solution.stop.is_none(), "{:?}", solution.stop);
+    let margin = summary.margin.as_ref().unwrap();
+    assert!(margin.is_thin() && margin.ahead().is_some(), "{margin:?}");
+    let told = told(&diagnose::all(&file, &summary, &solution, None));
+    assert!(
+        told.starts_with("[HP0407] the mechanism comes close to a singular position at t = 1 s"),
+        "{told}"
+    );
+    assert!(told.contains("the loop consists of `B1`, `C1` and `D1`"), "{told}");
+}
+
+/// A four-bar whose coupler is a rod of a given length; as drawn it would be 335.4 mm.
+fn with_a_rod_of(length: f64) -> Draft {
+    let mut rod = joint("rod", "distance", ["crank", "rocker"], &[[0.0, 0.1, 0.0], [0.3, 0.25, 0.0]], None);
+    rod.length = Some(length);
+    let harmonic = Harmonic { amplitude: 0.5, frequency: 0.2, phase: 0.0, offset: 0.0 };
+    let law_of =
+        |parameter: &str| ChangeDraft::Law { driver: "motor".into(), parameter: parameter.into(), rate: 1.0 };
+    Draft {
+        name: "four-bar with a rod".into(),
+        bodies: ["crank", "rocker"].map(body).into(),
+        joints: vec![
+            joint("A", "revolute", ["ground", "crank"], &[[0.0; 3]], Z),
+            joint("D", "revolute", ["ground", "rocker"], &[[0.3, 0.0, 0.0]], Z),
+            rod,
+        ],
+        drivers: vec![driver("motor", "A", Law::harmonic(harmonic).unwrap())],
+        design: vec![
+            variable("longer", ChangeDraft::Length { joint: "rod".into(), rate: 1.0 }),
+            variable("shorter", ChangeDraft::Length { joint: "rod".into(), rate: -2.0 }),
+            variable("swing", law_of("amplitude")),
+            variable("frequency", law_of("frequency")),
+        ],
+        measures: vec![MeasureDraft {
+            name: "rocker".into(),
+            kind: MeasureKindDraft::Coordinate { joint: "D".into(), coordinate: None },
+        }],
+        times: (0..=20).map(|k| 0.1 * f64::from(k)).collect(),
+        ..Draft::default()
+    }
+}
+
+#[test]
+fn an_assembly_is_shown_with_gaps_and_moves() {
+    let file = file(&with_a_rod_of(0.4));
+    let (_, summary) = solved(&file);
+    let assembly = summary.assembly.as_ref().unwrap();
+    insta::assert_snapshot!(text(&assembly.tables(), &["Assembled", "Moved by the assembly"]));
+    // Nothing is said of what fits as drawn.
+    let (_, fits) = solved(&self::file(&with_a_rod_of(0.1125_f64.sqrt())));
+    assert!(fits.assembly.is_none());
+}
+
+#[test]
+fn what_does_not_assemble_says_what_stays_open() {
+    let file = file(&with_a_rod_of(0.7));
+    let (solution, summary) = solved(&file);
+    insta::assert_snapshot!(told(&diagnose::all(&file, &summary, &solution, None)));
+    let stop = summary.stop.as_ref().unwrap();
+    assert_eq!((stop.remains[0].kind, stop.remains[0].unit), ("joint", "mm"));
+    // The rod reaches from B past D by the rocker's 250 mm.
+    assert!((stop.remains[0].size - (700.0 - 100.0 * 10.0_f64.sqrt() - 250.0)).abs() < 1e-3);
+}
+
+#[test]
+fn variables_of_lengths_and_laws_say_what_they_change_and_in_what_unit() {
+    let mut draft = with_a_rod_of(0.1125_f64.sqrt());
+    let file_ = file(&draft);
+    let (_, summary) = solved(&file_);
+    let shown = |s: &Summary| -> String {
+        let row =
+            |v: &hardpoint_report::facts::VariableFact| format!("{} [{}] {}\n", v.name, v.unit, v.change);
+        s.model.variables.iter().map(row).collect()
+    };
+    let mut out = shown(&summary);
+    // One of the variable is 1 deg/s where the change says so, and 1 rad/s where it says that.
+    draft.drivers[0].law = Law::constant_speed(ConstantSpeed { speed: 0.2, offset: 0.0 }).unwrap();
+    let speed = |name: &str, rate: f64| {
+        let change = ChangeDraft::Law { driver: "motor".into(), parameter: "speed".into(), rate };
+        variable(name, change)
+    };
+    draft.design =
+        vec![speed("in_degrees", 1.0_f64.to_radians()), speed("in_si", 1.0), speed("in_neither", 0.3)];
+    let (_, summary) = solved(&file(&draft));
+    out += &shown(&summary);
+    let ranked = &summary.sensitivities[0].largest;
+    out += &ranked.iter().map(|r| format!("{} in {}\n", r.variable, r.unit)).collect::<String>();
+    insta::assert_snapshot!(out);
+}
+
+#[test]
+fn jumps_of_laws_are_notes_that_name_time_size_and_consequence() {
+    let arm = |law: Law| Draft {
+        name: "arm".into(),
+        bodies: vec![body("arm")],
+        joints: vec![joint("hinge", "revolute", ["ground", "arm"], &[[0.0; 3]], Y)],
+        drivers: vec![driver("lift", "hinge", law)],
+        points: vec![PointDraft {
+            name: "tip".into(),
+            body: "arm".into(),
+            at: Place::At([0.1, 0.0, 0.0].into()),
+        }],
+        times: (0..=10).map(|k| 0.1 * f64::from(k)).collect(),
+        ..Draft::default()
+    };
+    let laws = [
+        "if(t < 0.35, 0.1, 0.1 + (t - 0.35)^2)",
+        "abs(t - 0.25)",
+        "if(t < 0.45, 0, 0.5)",
+        "abs(sin(20*t))",
+        "sin(t)",
+    ];
+    let notes = laws.map(|text| {
+        let (_, summary) = solved(&file(&arm(law(text))));
+        format!("{text}\n  {}\n", summary.model.all_notes().join("\n  "))
+    });
+    insta::assert_snapshot!(notes.concat());
+}
