@@ -147,7 +147,7 @@ impl<'m> Analysis<'m> {
                 if let (StopKind::DoesNotAssemble, Some(block)) = (s.kind, s.block) {
                     s.remains = stepper.least_gaps(block);
                 }
-                stop = Some(s);
+                stop = Some(*s);
                 break;
             }
             motion.times.push(t);

@@ -78,8 +78,9 @@ const FUNCTIONS: [(&str, &str, Function); 21] = [
 /// The program that `text` writes, with `parameters` for further names.
 pub(super) fn parse(text: &str, parameters: &[&str]) -> Result<Program, ExpressionError> {
     let mut descent = Descent::new(text, parameters);
-    for (k, name) in parameters.iter().enumerate() {
-        descent.check_parameter(k, name)?;
+    let mut known = std::collections::BTreeSet::new();
+    for name in parameters {
+        descent.check_parameter(name, known.insert(name))?;
     }
     if descent.token == Token::End {
         let help = "write an expression in the time t, such as `0.1*sin(2*pi*t)`";
@@ -163,15 +164,15 @@ impl<'a> Descent<'a> {
         descent
     }
 
-    /// Whether the name of the parameter `k` can be told from all others.
-    fn check_parameter(&self, k: usize, name: &str) -> Result<(), ExpressionError> {
+    /// Whether the name of a parameter, new among the parameters or not, can be told from all others.
+    fn check_parameter(&self, name: &str, is_new: bool) -> Result<(), ExpressionError> {
         let is_known = ["t", "pi"].contains(&name) || FUNCTIONS.iter().any(|(known, ..)| *known == name);
         let (message, help) = if is_known {
             (
                 format!("a parameter can not be called `{name}`: the expression knows that name already"),
                 "rename it",
             )
-        } else if self.parameters[..k].contains(&name) {
+        } else if !is_new {
             (format!("two parameters are called `{name}`"), "rename one of them")
         } else if (self::name, eof).parse_next(&mut LocatingSlice::new(name)).is_err() {
             let help = "use letters, digits and `_`, and begin with a letter or `_`";

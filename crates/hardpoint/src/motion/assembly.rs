@@ -82,7 +82,7 @@ impl<T: Real> State<T> {
 
 impl<T: Real> Stepper<'_, T> {
     /// Closes the mechanism as drawn, all drivers at zero, and stands on its branch.
-    pub(super) fn assemble(&mut self) -> Result<(), Stop> {
+    pub(super) fn assemble(&mut self) -> Result<(), Box<Stop>> {
         self.measure_gaps();
         if !(self.state.largest_gap(&self.topology) > CLOSED) {
             self.state.gap.fill(self.state.witness.zero());
@@ -96,7 +96,7 @@ impl<T: Real> Stepper<'_, T> {
             if matches!(stop.kind, StopKind::Locked { .. }) {
                 return Err(stop);
             }
-            return Err(Stop { kind: StopKind::DoesNotAssemble, ..stop });
+            return Err(Box::new(Stop { kind: StopKind::DoesNotAssemble, ..*stop }));
         }
         let told = WORTH_TELLING;
         let gaps = self.gaps(|s, r| s.state.gap[r].lane(0), told);

@@ -295,12 +295,12 @@ impl<T: Real> State<T> {
             self.l[term] = self.wrench_of(topology.closures[at.closure].rows[at.index], at.closure);
         }
         let (l, x, zero) = (&self.l, &self.x, self.witness.zero());
-        let entries = place.columns.iter().map(|(column, parts)| {
+        let entries = place.columns.iter().map(|c| {
             let mut sum = zero;
-            for &(term, coordinate, factor) in parts {
+            for &(term, coordinate, factor) in &c.parts {
                 sum += l[term].on(x[coordinate]) * zero.like(factor);
             }
-            (*column, sum)
+            (c.column, sum)
         });
         self.factors[b].set_row(k, entries, zero);
     }
@@ -677,7 +677,7 @@ pub(crate) fn factors_of<T: Real>(
         if place.terms.is_empty() {
             topology.closures[place.closure].entries.iter().map(|e| e.0).collect()
         } else {
-            place.columns.iter().map(|(column, _)| *column).collect()
+            place.columns.iter().map(|c| c.column).collect()
         }
     };
     Factors::new(block.selected.len(), columns, largest_dense, witness)

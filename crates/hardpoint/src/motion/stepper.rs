@@ -142,7 +142,7 @@ impl<'m, T: Real> Stepper<'m, T> {
     /// Solves the design configuration, then moves on to the first output time.
     ///
     /// A changed design starts from the nominal design configuration and closes there first.
-    pub fn start(&mut self, t: f64) -> Result<(), Stop> {
+    pub fn start(&mut self, t: f64) -> Result<(), Box<Stop>> {
         self.time = 0.0;
         self.assemble()?;
         let ramp = Path::Ramp { start: t };
@@ -160,7 +160,7 @@ impl<'m, T: Real> Stepper<'m, T> {
     }
 
     /// Moves on to the output time t.
-    pub fn advance(&mut self, t: f64) -> Result<(), Stop> {
+    pub fn advance(&mut self, t: f64) -> Result<(), Box<Stop>> {
         self.walk(Path::Laws, t)?;
         self.count();
         Ok(())
@@ -177,7 +177,7 @@ impl<'m, T: Real> Stepper<'m, T> {
         }
     }
 
-    pub(super) fn walk(&mut self, path: Path, target: f64) -> Result<(), Stop> {
+    pub(super) fn walk(&mut self, path: Path, target: f64) -> Result<(), Box<Stop>> {
         let whole = target - self.time;
         let mut h = whole;
         self.shortest_smooth = SMOOTH_PART * whole;
@@ -444,7 +444,7 @@ impl<'m, T: Real> Stepper<'m, T> {
         }
     }
 
-    pub(super) fn stop(&self, path: Path, t: f64, refusal: Refusal, moved: bool) -> Stop {
+    pub(super) fn stop(&self, path: Path, t: f64, refusal: Refusal, moved: bool) -> Box<Stop> {
         let (kind, block) = match refusal {
             Refusal::Position(
                 PositionFailure::Singular { block } | PositionFailure::NoConvergence { block },
@@ -464,7 +464,7 @@ impl<'m, T: Real> Stepper<'m, T> {
             Path::Ramp { start } => Some(start),
             Path::Laws => None,
         };
-        Stop {
+        Box::new(Stop {
             kind,
             last_time: (moved && ramp_start.is_none()).then_some(self.time),
             failed_time: ramp_start.unwrap_or(t),
@@ -483,7 +483,7 @@ impl<'m, T: Real> Stepper<'m, T> {
             joints: block.map_or_else(Vec::new, |b| self.topology.joints_of_block(b)),
             remains: Vec::new(),
             closed: (path == Path::Assembly).then_some(self.time),
-        }
+        })
     }
 
     /// Values of the tree coordinates, lane 0; 0 for those of balls.

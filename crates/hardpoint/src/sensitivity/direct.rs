@@ -14,13 +14,16 @@ pub(crate) struct FieldParts<T> {
     closures: Vec<Moving<T>>,
     /// Rows whose kept values change, and their rates.
     kept: Vec<(usize, T)>,
-    /// Drivers whose laws change: per lane, the parameters and their rates.
-    laws: Vec<(DriverId, Vec<Vec<(usize, f64)>>)>,
+    /// Drivers whose laws change, and what changes in every lane.
+    laws: Vec<(DriverId, Vec<LawChange>)>,
     /// What that adds to the driver's value, speed and acceleration at the time that was set last.
     law_rates: Vec<(DriverId, [T; 3])>,
     /// Largest speed in each field: what round-off of a defect is compared with.
     scale: T,
 }
+
+/// The parameters of a law that change, and their rates.
+type LawChange = Vec<(usize, f64)>;
 
 /// A marker that some design velocity moves.
 #[derive(Clone, Copy, Debug)]
@@ -84,7 +87,7 @@ impl<T: Real> FieldParts<T> {
         let mut drivers: Vec<DriverId> = fields.iter().flat_map(|f| &f.laws).map(|(d, ..)| *d).collect();
         drivers.sort_unstable();
         drivers.dedup();
-        let of_lane = |d: DriverId, f: &Field| -> Vec<(usize, f64)> {
+        let of_lane = |d: DriverId, f: &Field| -> LawChange {
             f.laws.iter().filter(|(k, ..)| *k == d).map(|(_, parameter, rate)| (*parameter, *rate)).collect()
         };
         let laws: Vec<_> =

@@ -225,7 +225,8 @@ fn assign(
                 columns.entry(column).or_default().push((term, c, side * factor));
             }
         }
-        topology.rows[r].columns = columns.into_iter().collect();
+        let columns = columns.into_iter().map(|(column, parts)| CoupledColumn { column, parts });
+        topology.rows[r].columns = columns.collect();
     }
     let mut free = Vec::new();
     topology.blocks = blocks;

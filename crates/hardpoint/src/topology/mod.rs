@@ -169,10 +169,19 @@ pub struct RowPlace {
     pub selected: bool,
     /// The further terms of a coupler, which this row is the first of: their rows, and their factors.
     pub terms: Vec<(usize, f64)>,
-    /// Of a coupler: per column of its block, the rows of the terms that stand there, the coordinate, and the factor.
-    pub columns: Vec<(usize, Vec<(usize, usize, f64)>)>,
+    /// Of a coupler: the columns of its block where its terms stand.
+    pub columns: Vec<CoupledColumn>,
     /// Whether it is a further term of a coupler, and no constraint by itself.
     pub is_term: bool,
+}
+
+/// Where the terms of a coupler meet in a column of its block.
+#[derive(Clone, Debug)]
+pub struct CoupledColumn {
+    /// The column.
+    pub column: usize,
+    /// The terms' rows, the coordinate of the column, and the factor with the side of its loop.
+    pub parts: Vec<(usize, usize, f64)>,
 }
 
 /// Unknowns and rows that are solved together.
