@@ -76,8 +76,8 @@
 //!
 //! # What is not supported
 //!
-//! Forces, masses and friction: motion here follows from drivers alone. Flexible bodies. Contacts. Joint types
-//! beyond [`joint::ALL`]. Assembly from places that do not close: hardpoints describe a closed mechanism.
+//! Forces, masses and friction: motion here follows from drivers alone. Flexible bodies. Contacts that open and close. Joint
+//! types beyond [`joint::ALL`]. The shape of a curve as a design variable.
 
 mod analysis;
 pub mod constraint;
