@@ -129,6 +129,16 @@ fn independent_groups(
             depends.add_edge(at[c], at[*other], ());
         }
     }
+    // A loop among bodies that ride on others is solved where those stand: after them, or together with them where they
+    // depend on the loop in turn.
+    let carriers = carriers(topology, unknown);
+    for link in &topology.links {
+        for c in link.coordinates().filter(|&c| unknown[c]) {
+            for &carrier in &carriers[link.parent.0] {
+                depends.add_edge(at[c], at[carrier], ());
+            }
+        }
+    }
     (matched == columns.len()).then(|| {
         let mut groups: Vec<Vec<usize>> =
             tarjan_scc(&depends).into_iter().map(|g| g.into_iter().map(|n| depends[n]).collect()).collect();
@@ -137,6 +147,17 @@ fn independent_groups(
         }
         groups
     })
+}
+
+/// Per body, the unknowns that place it next: those of its own link or, where that has none, of its parent.
+fn carriers(topology: &Topology, unknown: &[bool]) -> Vec<Vec<usize>> {
+    let bodies = 1 + topology.links.iter().map(|l| l.child.0).max().unwrap_or(0);
+    let mut carriers = vec![Vec::new(); bodies];
+    for link in &topology.links {
+        let own: Vec<usize> = link.coordinates().filter(|&c| unknown[c]).collect();
+        carriers[link.child.0] = if own.is_empty() { carriers[link.parent.0].clone() } else { own };
+    }
+    carriers
 }
 
 /// Makes blocks of the groups and selects their rows. The error is a basis of motions left free, each a

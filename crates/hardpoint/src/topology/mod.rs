@@ -261,6 +261,11 @@ impl Topology {
 }
 
 impl Link {
+    /// Its coordinates, one after the other.
+    pub(crate) fn coordinates(&self) -> impl Iterator<Item = usize> + '_ {
+        self.steps.iter().flat_map(|s| s.first..s.first + s.freedom.coordinates())
+    }
+
     /// The frame in which its freedoms start, at the design configuration, in the world.
     fn frame_at_design(&self, model: &Model) -> Pose {
         match self.joint {
