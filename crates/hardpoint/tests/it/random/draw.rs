@@ -462,7 +462,7 @@ impl<'r> Drawing<'r> {
             }
         }
         if kind.name == "screw" {
-            j.lead = Some(self.rng.signed(0.05, 0.5) * self.size);
+            j.lead = Some(self.rng.signed(0.3, 1.0) * self.size);
         }
         j
     }
@@ -838,7 +838,7 @@ impl<'r> Drawing<'r> {
                 2 => ChangeDraft::Tilt { joint, about: Line::Along(w) },
                 3 | 4 => ChangeDraft::Marker { joint, end, position, rotation },
                 5 if j.length.is_some() => ChangeDraft::Length { joint, rate: self.rng.signed(0.5, 2.0) },
-                6 => {
+                6 if !self.draft.drivers.is_empty() => {
                     let driver = self.rng.pick(&self.draft.drivers);
                     let parameters = driver.law.parameters();
                     let parameter = self.rng.pick(&parameters).name;

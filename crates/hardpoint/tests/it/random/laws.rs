@@ -321,12 +321,8 @@ impl Case<'_> {
             let per_time = x.values.len() / a.1.motion.len();
             let n = per_time * times;
             let most = x.values[..n].iter().map(|x| x.abs()).fold(x.floor, f64::max);
-            // Turns made before the first output time are counted in the tree, and not across a cut.
-            let whole = if x.counts_turns && a.1.motion.times[0] != 0.0 {
-                std::f64::consts::TAU
-            } else {
-                f64::INFINITY
-            };
+            // Across a cut turns are counted from the first output time and by the rates since, in the tree from the design.
+            let whole = if x.counts_turns { std::f64::consts::TAU } else { f64::INFINITY };
             let apart = x.values[..n].iter().zip(&y.values[..n]).map(|(x, y)| {
                 let d = x - y;
                 if whole.is_finite() { (d - whole * (d / whole).round()).abs() } else { d.abs() }
@@ -778,5 +774,5 @@ pub fn describe(d: &Draft) -> String {
         list(&mut couplers.into_iter()),
         list(&mut drivers.into_iter()),
         list(&mut changes.into_iter())
-    )
+    ) + &format!("\n  measures: {:?}", d.measures)
 }
