@@ -473,7 +473,7 @@ impl<'r> Drawing<'r> {
         let y = z.cross(x);
         let radius = self.size * self.rng.between(0.15, 0.3);
         let waves: Vec<[f64; 2]> = (1..=3)
-            .map(|n| [self.rng.between(0.0, 0.08 / f64::from(n * n)), self.rng.between(0.0, 6.28)])
+            .map(|n| [self.rng.between(0.0, 0.08 / f64::from(n * n)), self.rng.between(0.0, 6.25)])
             .collect();
         let at = |angle: f64, r: f64| x * (r * angle.cos()) + y * (r * angle.sin());
         let r = |angle: f64| {
@@ -484,7 +484,7 @@ impl<'r> Drawing<'r> {
         let points = (0..n).map(|k| std::f64::consts::TAU * k as f64 / n as f64);
         let points = points.map(|angle| Place::At(p + at(angle, r(angle)))).collect();
         j.curve = Some(CurveDraft { points, closed: true });
-        let angle = self.rng.between(0.0, 6.28);
+        let angle = self.rng.between(0.0, 6.25);
         let above = z * (self.size * self.rng.between(-0.1, 0.1));
         at(angle, r(angle) + self.size * self.rng.between(0.01, 0.1)) + above
     }
@@ -741,7 +741,7 @@ impl<'r> Drawing<'r> {
             let p = d.spot() + off;
             d.place(p)
         };
-        let angle = self.rng.between(0.0, 6.28);
+        let angle = self.rng.between(0.0, 6.25);
         let x = plane.rot.cols[0] * angle.cos() + plane.rot.cols[1] * angle.sin();
         let places = kind.places;
         let at = (0..places).map(|_| at(self)).collect();
