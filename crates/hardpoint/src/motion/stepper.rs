@@ -29,6 +29,8 @@ const RUNAWAY: f64 = 1e3;
 const NEARLY_SINGULAR: f64 = 1e-3;
 /// A step is halved at most this often: 2^-40 of an output step decides nothing that a user could see.
 const MAX_HALVINGS: u32 = 40;
+/// A walk to the next output time gives up after this many steps: a path that bends so sharply all the way leads nowhere.
+const MOST_STEPS: usize = 20_000;
 /// A left-out constraint that fails by more than this part of the mechanism's size (or, for a cosine, by
 /// more than this) is a contradiction: the mechanism locks. Typed coordinates have about six digits, and an
 /// axis through two of them is tilted by some times that.
@@ -182,7 +184,9 @@ impl<'m, T: Real> Stepper<'m, T> {
         let mut h = whole;
         self.shortest_smooth = SMOOTH_PART * whole;
         let shortest = whole * 0.5_f64.powi(MAX_HALVINGS as i32);
+        let mut attempts = 0;
         loop {
+            attempts += 1;
             let rest = target - self.time;
             let last = h >= rest;
             let step = if last { rest } else { h };
@@ -199,7 +203,7 @@ impl<'m, T: Real> Stepper<'m, T> {
                 Err(refusal) => {
                     h = 0.5 * step;
                     let final_refusal = matches!(refusal, Refusal::Law { .. });
-                    if h < shortest || final_refusal || self.time + h == self.time {
+                    if h < shortest || final_refusal || attempts > MOST_STEPS || self.time + h == self.time {
                         return Err(self.stop(path, t, refusal, true));
                     }
                 }

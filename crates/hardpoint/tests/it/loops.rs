@@ -263,6 +263,40 @@ fn a_grid_of_scissors_opens_as_lazy_tongs_do() {
                     );
                 }
             }
+}
+
+#[test]
+fn a_loop_that_rides_on_a_body_which_depends_on_it_is_solved_where_it_stands() {
+    // A telescope turns about the origin; a ram sets its length, and a rod from ground to its tip then sets its angle.
+    let z = Some([0.0, 0.0, 1.0]);
+    let mut draft = Draft {
+        name: "telescope".into(),
+        bodies: ["base", "arm"].map(body).into(),
+        joints: vec![
+            joint("pivot", "revolute", ["ground", "base"], &[[0.0; 3]], z),
+            joint("slide", "translational", ["base", "arm"], &[[0.1, 0.0, 0.0]], Some([1.0, 0.0, 0.0])),
+            joint("ram", "leg", ["base", "arm"], &[[0.0, 0.1, 0.0], [0.4, 0.1, 0.0]], None),
+            joint("rod", "distance", ["ground", "arm"], &[[0.5, -0.3, 0.0], [0.5, 0.0, 0.0]], None),
+        ],
+        drivers: vec![driver("ram", "ram", "0.1*sin(t)")],
+        times: times(1.0, 5),
+        ..Draft::default()
+    };
+    draft.points.push(PointDraft {
+        name: "tip".into(),
+        body: "arm".into(),
+        at: Place::At([0.5, 0.0, 0.0].into()),
+    });
+    let model = Model::from_draft(&draft).unwrap();
+    for formulation in [Formulation::Relative, Formulation::Absolute] {
+        let solution = Analysis::with(&model, formulation).unwrap().run();
+        assert!(solution.stop.is_none(), "{formulation:?}: {:?}", solution.stop);
+        let [x, y] = ["tip.x", "tip.y"].map(|m| solution.measured.index(m).unwrap());
+        for (k, t) in solution.motion.times.iter().enumerate() {
+            let [[x, vx, _], [y, vy, _]] = [x, y].map(|m| solution.measured.value(k, m));
+            let length = 0.5 + 0.1 * t.sin();
+            assert!((x.hypot(y) - length).abs() < 1e-12 && ((x - 0.5).hypot(y + 0.3) - 0.3).abs() < 1e-12);
+            assert!(((x * vx + y * vy) / length - 0.1 * t.cos()).abs() < 1e-12);
         }
     }
 }

@@ -8,6 +8,7 @@ mod house;
 mod identities;
 mod joints;
 mod loops;
+mod random;
 mod reference;
 mod reference_case;
 mod verify;
