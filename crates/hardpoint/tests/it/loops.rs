@@ -263,6 +263,8 @@ fn a_grid_of_scissors_opens_as_lazy_tongs_do() {
                     );
                 }
             }
+        }
+    }
 }
 
 #[test]

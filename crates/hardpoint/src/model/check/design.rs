@@ -1,0 +1,145 @@
+//! Checks of design variables.
+
+use super::*;
+
+impl Check<'_> {
+    pub(super) fn variables(&mut self) {
+        let draft = self.draft;
+        for (index, v) in draft.design.iter().enumerate() {
+            let here = Here { section: Section::Design, index };
+            if v.changes.is_empty() {
+                let message = format!("design variable `{}` changes nothing", v.name);
+                self.fault("HP0217", here.key("name"), message)
+                    .help("say which hardpoint it moves, which joint it tilts, or give a velocity field");
+            }
+            let mut quantity: Option<Quantity> = None;
+            let mut changes = Vec::new();
+            for (k, change) in v.changes.iter().enumerate() {
+                let Some((change, q)) = self.one_change(change, &v.name, here, k) else { continue };
+                quantity = Some(if quantity.is_none_or(|before| before == q) { q } else { Quantity::Number });
+                changes.push(change);
+            }
+            self.model.variables.push(DesignVariable {
+                name: v.name.clone(),
+                quantity: quantity.unwrap_or(Quantity::Number),
+                changes,
+                fixed_length: v.fixed_length,
+            });
+        }
+    }
+
+    fn one_change(
+        &mut self,
+        change: &ChangeDraft,
+        owner: &str,
+        here: Here,
+        k: usize,
+    ) -> Option<(Change, Quantity)> {
+        let at = here.item("changes", k);
+        let null = |check: &mut Self| {
+            let message = format!("a velocity of design variable `{owner}` is null or not finite");
+            check.fault("HP0217", here.item("changes", k), message);
+        };
+        let is_null =
+            |a: Vec3, b: Vec3| !(a.is_finite() && b.is_finite()) || (a.norm() < 1e-12 && b.norm() < 1e-12);
+        match change {
+            ChangeDraft::Move { hardpoint, velocity } => {
+                let name = hardpoint;
+                let hardpoint = self.hardpoint(hardpoint, at.clone())?;
+                if self.curve_points.contains(&hardpoint) {
+                    let message = format!("design variable `{owner}` moves `{name}`, a point of a curve");
+                    self.fault("HP0226", at, message)
+                        .note("the shape of a curve is no design variable; its place and direction are")
+                        .help(
+                            "write the curve's points as coordinates, and move the hardpoint that carries it",
+                        );
+                    return None;
+                }
+                if is_null(*velocity, Vec3::ZERO) {
+                    null(self);
+                }
+                Some((Change::Move { hardpoint, velocity: *velocity }, Quantity::Length))
+            }
+            ChangeDraft::Tilt { joint, about } => {
+                let joint = self.joint(joint, at)?;
+                let (_, rotation) = self.line(about, owner, here, "about")?;
+                let change = Change::Marker { joint, end: End::Both, position: Vec3::ZERO, rotation };
+                Some((change, Quantity::Angle))
+            }
+            ChangeDraft::Marker { joint, end, position, rotation } => {
+                let joint = self.joint(joint, at)?;
+                if is_null(*position, *rotation) {
+                    null(self);
+                }
+                let quantity = match (position.norm() > 0.0, rotation.norm() > 0.0) {
+                    (_, false) => Quantity::Length,
+                    (false, true) => Quantity::Angle,
+                    (true, true) => Quantity::Number,
+                };
+                let change = Change::Marker { joint, end: *end, position: *position, rotation: *rotation };
+                Some((change, quantity))
+            }
+            ChangeDraft::Length { joint, rate } => {
+                let joint = self.joint(joint, at.clone())?;
+                if !(rate.is_finite() && *rate != 0.0) {
+                    null(self);
+                }
+                let j = &self.model.joints[joint.0];
+                if j.length.is_none() {
+                    let (name, kind) = (j.name.clone(), j.kind.name);
+                    let message = format!("joint `{name}` has no `length` of its own that could change");
+                    let fault = self.fault("HP0225", at, message);
+                    fault.note(format!(
+                        "it is a {kind} joint; the length of a rod is measured between its hardpoints"
+                    ));
+                    fault.help(format!("give rod `{name}` a `length`, or move one of its hardpoints"));
+                    return None;
+                }
+                Some((Change::Length { joint, rate: *rate }, Quantity::Length))
+            }
+            ChangeDraft::Law { driver, parameter, rate } => {
+                let draft = self.draft;
+                let names = draft.drivers.iter().map(|d| d.name.as_str());
+                let k = self.find("driver", driver, at.clone(), names)?;
+                let parameters = draft.drivers[k].law.parameters();
+                let names = parameters.iter().map(|p| p.name.as_str());
+                let p = self.find(
+                    &format!("parameter of the law of `{driver}`"),
+                    parameter,
+                    here.key("parameter"),
+                    names,
+                )?;
+                if !(rate.is_finite() && *rate != 0.0) {
+                    null(self);
+                }
+                // A faulty driver has been reported.
+                let driver = self.model.drivers.iter().position(|d| d.name == *driver).map(DriverId)?;
+                let quantity = match parameters[p].kind {
+                    ParameterKind::Value => self.model.driven(&self.model.drivers[driver.0]).quantity,
+                    ParameterKind::Angle => Quantity::Angle,
+                    _ => Quantity::Number,
+                };
+                Some((Change::Law { driver, parameter: p, rate: *rate }, quantity))
+            }
+            ChangeDraft::Field { joint, body, v, u } => {
+                let joint = self.joint(joint, at.clone());
+                let body = self.body(body, at.clone());
+                let (joint, body) = (joint?, body?);
+                if is_null(*v, *u) {
+                    null(self);
+                }
+                let bodies = self.model.joints[joint.0].bodies;
+                let Some(end) = bodies.iter().position(|b| *b == body) else {
+                    let names = bodies.map(|b| format!("`{}`", self.model.bodies[b.0].name)).join(" and ");
+                    let message = format!(
+                        "joint `{}` has no marker on body `{}`",
+                        self.model.joints[joint.0].name, self.model.bodies[body.0].name
+                    );
+                    self.fault("HP0218", at, message).note(format!("it connects {names}"));
+                    return None;
+                };
+                Some((Change::Field { joint, end, v: *v, u: *u }, Quantity::Number))
+            }
+        }
+    }
+}

@@ -1,0 +1,294 @@
+//! Checks of joints: their bodies, places, axes, lengths, leads and curves.
+
+use super::*;
+use crate::joint::JointType;
+
+impl Check<'_> {
+    pub(super) fn joints(&mut self) {
+        let draft = self.draft;
+        for (index, j) in draft.joints.iter().enumerate() {
+            let before = self.faults.len();
+            let joint = self.one_joint(j, Here { section: Section::Joints, index });
+            let id = match joint {
+                Some(joint) if self.faults.len() == before => {
+                    self.model.joints.push(joint);
+                    Some(JointId(self.model.joints.len() - 1))
+                }
+                _ => None,
+            };
+            self.joint_ids.push(id);
+        }
+    }
+
+    fn one_joint(&mut self, j: &JointDraft, here: Here) -> Option<Joint> {
+        let name = &j.name;
+        let kind = joint::named(&j.kind).or_else(|| {
+            let names =
+                joint::ALL.iter().flat_map(|t| std::iter::once(t.name).chain(t.aliases.iter().copied()));
+            self.find("joint type", &j.kind, here.key("type"), names);
+            None
+        });
+        let body_i = self.body(&j.bodies[0], here.item("bodies", 0));
+        let body_j = self.body(&j.bodies[1], here.item("bodies", 1));
+        if body_i.is_some() && body_i == body_j {
+            let message = format!("joint `{name}` connects body `{}` with itself", j.bodies[0]);
+            self.fault("HP0207", here.key("bodies"), message)
+                .help("name two different bodies, or `ground` for one");
+        }
+        let kind = kind?;
+        let [axis, axis2] =
+            [(&j.axis, kind.axis, "axis"), (&j.axis2, kind.axis2, "axis2")].map(|(line, need, key)| {
+                match (line, need) {
+                    (Some(line), Need::Required | Need::Optional | Need::OnBodyJ) => {
+                        self.line(line, name, here, key)
+                    }
+                    (None, Need::Optional) => None,
+                    (None, Need::Required | Need::OnBodyJ) => {
+                        let message = format!("joint `{name}` needs `{key}`");
+                        self.fault("HP0208", here.key("type"), message)
+                        .note(format!("{}: {}", kind.name, kind.summary))
+                        .help(format!(
+                            "add a direction, like `{key} = [0, 0, 1]`, or let it pass through two hardpoints"
+                        ));
+                        None
+                    }
+                    (Some(_), Need::Unused) => {
+                        let message = format!("a {} joint has no `{key}`", kind.name);
+                        self.fault("HP0208", here.key(key), message)
+                            .help(format!("remove `{key}` from `{name}`"));
+                        None
+                    }
+                    (None, Need::Unused) => None,
+                }
+            });
+        let at = self.joint_places(j, kind, axis.map(|a| a.0), here);
+        let frames = match (axis, axis2) {
+            (Some((_, z)), Some((_, z_j))) if kind.axis2 == Need::OnBodyJ => {
+                let cosine = z.dot(z_j);
+                if std::ptr::eq(kind, &joint::ANGLE) && cosine.abs() > 1.0 - SQUARE_TOLERANCE {
+                    let message =
+                        format!("the axes of joint `{name}` are parallel, where their angle holds nothing");
+                    self.fault("HP0209", here.key("axis2"), message).help("use a `parallel` joint");
+                }
+                if std::ptr::eq(kind, &joint::CONSTANT_VELOCITY) && cosine < SQUARE_TOLERANCE {
+                    let message = format!("the shafts of joint `{name}` point at each other or are square");
+                    self.fault("HP0209", here.key("axis2"), message)
+                        .note(format!(
+                            "the angle between `axis` and `axis2` is {:.4} deg",
+                            degrees_between(z, z_j)
+                        ))
+                        .help("let both point the same way along the train, less than 90 deg apart");
+                }
+                let i = frame_along(z, z.any_square());
+                [i, Mat3::between(z, z_j) * i]
+            }
+            (Some((_, z)), Some((_, x))) => {
+                if z.dot(x).abs() > SQUARE_TOLERANCE {
+                    let angle = degrees_between(z, x);
+                    let message = format!("the axes of joint `{name}` are not square to each other");
+                    self.fault("HP0209", here.key("axis2"), message)
+                        .note(format!("the angle between `axis` and `axis2` is {angle:.4} deg"))
+                        .help("turn one of them until they are square");
+                }
+                [frame_along(z, (x - z * z.dot(x)).unit()?); 2]
+            }
+            (Some((_, z)), None) => [frame_along(z, z.any_square()); 2],
+            _ => [Mat3::IDENTITY; 2],
+        };
+        let length = self.rod_length(j, kind, here);
+        self.lead(j, kind, here);
+        let (axis, axis2) = (axis.map(|a| a.0), axis2.map(|a| a.0));
+        let bodies = [body_i?, body_j?];
+        let (name, cut) = (name.clone(), j.cut);
+        let at = at?;
+        let curve = self.curve(j, kind, at, frames[0], here);
+        Some(Joint { name, kind, bodies, at, axis, axis2, frames, length, curve, cut, unnamed: false })
+    }
+
+    /// HP0226: a curve that is missing, out of place, or no curve in the plane square to the joint's axis.
+    fn curve(
+        &mut self,
+        j: &JointDraft,
+        kind: &'static JointType,
+        at: [HardpointId; 2],
+        frame: Mat3,
+        here: Here,
+    ) -> Option<Curve> {
+        let name = &j.name;
+        let follows = std::ptr::eq(kind, &joint::POINT_ON_CURVE);
+        let draft = match (&j.curve, follows) {
+            (None, false) => return None,
+            (Some(_), false) => {
+                self.fault("HP0226", here.key("curve"), format!("a {} joint has no `curve`", kind.name))
+                    .help(format!("remove `curve` from `{name}`, or make it a `point_on_curve`"));
+                return None;
+            }
+            (None, true) => {
+                self.fault("HP0226", here.key("type"), format!("joint `{name}` needs a `curve`"))
+                    .help("give the points of the cam or slot, like `curve = { points = [[0, 0, 0], ...], closed = true }`");
+                return None;
+            }
+            (Some(curve), true) => curve,
+        };
+        let places = draft.points.iter().enumerate();
+        let ids: Vec<_> = places.map(|(k, p)| self.place(p, name, here.item("curve", k))).collect();
+        let ids: Vec<_> = ids.into_iter().collect::<Option<_>>()?;
+        let m_i = Pose { rot: frame, r: self.position(at[0]) };
+        let local: Vec<Vec3> = ids.iter().map(|h| m_i.inverse().point(self.position(*h))).collect();
+        let size = self.model.size();
+        let least = if draft.closed { 4 } else { 3 };
+        if local.len() < least {
+            let message = format!("the curve of `{name}` has {} points", local.len());
+            self.fault("HP0226", here.key("curve"), message).help(format!("give at least {least}"));
+            return None;
+        }
+        let off_plane =
+            local.iter().enumerate().find(|(_, p)| (p.z - local[0].z).abs() > SQUARE_TOLERANCE * size);
+        if let Some((k, p)) = off_plane {
+            let message = format!("the curve of `{name}` does not lie in a plane square to its axis");
+            self.fault("HP0226", here.key("curve"), message)
+                .note(format!(
+                    "point {} is {:e} m from the plane of the first",
+                    k + 1,
+                    (p.z - local[0].z).abs()
+                ))
+                .help("let all points have the same coordinate along `axis`");
+            return None;
+        }
+        let next = |k: usize| local[(k + 1) % local.len()];
+        let last = if draft.closed { local.len() } else { local.len() - 1 };
+        if let Some(k) = (0..last).find(|&k| (next(k) - local[k]).norm() <= SAME_POINT * size) {
+            let message = format!(
+                "points {} and {} of the curve of `{name}` are at the same place",
+                k + 1,
+                (k + 1) % local.len() + 1
+            );
+            self.fault("HP0226", here.key("curve"), message)
+                .help("leave one of them out; a closed curve does not repeat its first point");
+            return None;
+        }
+        let points: Vec<[f64; 2]> = local.iter().map(|p| [p.x, p.y]).collect();
+        let follower = m_i.inverse().point(self.position(at[1]));
+        self.curve_points.extend(ids);
+        match Curve::through(&points, draft.closed, [follower.x, follower.y]) {
+            Ok(curve) if curve.at(curve.start())[0][0].is_finite() => Some(curve),
+            Ok(_) => {
+                let message = format!("the point of `{name}` is drawn beyond the ends of its curve");
+                self.fault("HP0226", here.key("at"), message)
+                    .help("place it beside the curve, or make the curve longer");
+                None
+            }
+            Err(error) => {
+                self.fault("HP0226", here.key("curve"), format!("no curve for `{name}`: {error}"));
+                None
+            }
+        }
+    }
+
+    /// HP0223: a length where there is no rod, or that is none.
+    fn rod_length(&mut self, j: &JointDraft, kind: &'static JointType, here: Here) -> Option<f64> {
+        let length = j.length?;
+        if !kind.coordinates.iter().any(|c| c.row == Row::Distance) && !kind.rows.contains(&Row::Contact) {
+            self.fault("HP0223", here.key("length"), format!("a {} joint has no `length`", kind.name))
+                .help(format!("remove `length` from `{}`", j.name));
+        } else if !(length > 0.0 && length.is_finite()) {
+            self.fault("HP0223", here.key("length"), format!("the length of `{}` must be positive", j.name))
+                .help("give the distance between its two ends, or leave it out to have it measured");
+        }
+        Some(length)
+    }
+
+    /// HP0223: a screw without a lead, or a lead without a screw.
+    fn lead(&mut self, j: &JointDraft, kind: &'static JointType, here: Here) {
+        let is_screw = std::ptr::eq(kind, &joint::SCREW);
+        match j.lead {
+            Some(_) if !is_screw => {
+                self.fault("HP0223", here.key("lead"), format!("a {} joint has no `lead`", kind.name))
+                    .help(format!("remove `lead` from `{}`, or make it a `screw`", j.name));
+            }
+            Some(lead) if !(lead != 0.0 && lead.is_finite()) => {
+                let message = format!("the lead of screw `{}` must be a number other than zero", j.name);
+                self.fault("HP0223", here.key("lead"), message)
+                    .help("give the advance of one turn; negative for a left-hand thread");
+            }
+            None if is_screw => {
+                self.fault("HP0223", here.key("type"), format!("screw `{}` needs `lead`", j.name))
+                    .help("give the advance of one turn, like `lead = 5`; negative for a left-hand thread");
+            }
+            _ => {}
+        }
+    }
+
+    /// The hardpoints of the two markers: one shared, or one on each body.
+    fn joint_places(
+        &mut self,
+        j: &JointDraft,
+        kind: &'static JointType,
+        axis: Option<Direction>,
+        here: Here,
+    ) -> Option<[HardpointId; 2]> {
+        let name = &j.name;
+        if let (true, Some(Direction::Through(a, _))) = (j.at.is_empty() && kind.places == 1, axis) {
+            return Some([a, a]);
+        }
+        let fits = match kind.places {
+            0 => j.at.len() <= 1,
+            1 => (1..=2).contains(&j.at.len()),
+            _ => j.at.len() == 2,
+        };
+        if fits && j.at.is_empty() {
+            return Some([UNPLACED; 2]);
+        }
+        if !fits {
+            let message = match kind.places {
+                0 => format!("joint `{name}` takes at most one hardpoint in `at`, not {}", j.at.len()),
+                1 => format!("joint `{name}` needs one hardpoint in `at`, not {}", j.at.len()),
+                _ => format!(
+                    "joint `{name}` needs two hardpoints in `at`, one on each body, not {}",
+                    j.at.len()
+                ),
+            };
+            let at = if j.at.is_empty() { here.key("type") } else { here.key("at") };
+            let fault = self.fault("HP0210", at, message);
+            fault.note(format!("{}: {}", kind.name, kind.summary));
+            fault.help(match (kind.places, j.at.len()) {
+                (0, _) => "only its directions matter; leave `at` out".to_string(),
+                (1, _) => "name the hardpoint where the bodies meet".into(),
+                _ => format!("first the point on `{}`, then the point on `{}`", j.bodies[0], j.bodies[1]),
+            });
+            return None;
+        }
+        let places: Vec<_> =
+            j.at.iter().enumerate().map(|(k, p)| self.place(p, name, here.item("at", k))).collect();
+        let (first, last) = (places[0]?, places[places.len() - 1]?);
+        let is_rod = kind.coordinates.iter().any(|c| c.row == Row::Distance);
+        if is_rod && (self.position(last) - self.position(first)).norm() <= SAME_POINT * self.extent.size() {
+            self.fault("HP0211", here.key("at"), format!("the two ends of `{name}` are at the same place"))
+                .help("a rod needs two points that lie apart");
+        }
+        Some([first, last])
+    }
+
+    /// Joints that need no place get one all the same, amid the places of their bodies' other joints, for their markers.
+    pub(super) fn places_of_directions(&mut self) {
+        for k in 0..self.model.joints.len() {
+            if self.model.joints[k].at[0] != UNPLACED {
+                continue;
+            }
+            let bodies = self.model.joints[k].bodies;
+            let (mut sum, mut count) = (Vec3::ZERO, 0.0);
+            for j in self.model.joints.iter().filter(|j| j.at[0] != UNPLACED) {
+                for (body, at) in j.bodies.iter().zip(j.at) {
+                    if *body != GROUND && bodies.contains(body) {
+                        sum += self.model.hardpoints[at.0].position;
+                        count += 1.0;
+                    }
+                }
+            }
+            let position = if count > 0.0 { sum * (1.0 / count) } else { Vec3::ZERO };
+            let name = self.model.joints[k].name.clone();
+            self.model.hardpoints.push(Hardpoint { name, position, unnamed: true });
+            self.model.joints[k].at = [HardpointId(self.model.hardpoints.len() - 1); 2];
+        }
+    }
+}

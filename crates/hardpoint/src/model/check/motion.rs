@@ -1,0 +1,247 @@
+//! Checks of what moves and is moved together: drivers and couplers, and the coordinates that they name.
+
+use super::*;
+use crate::joint::JointType;
+
+impl Check<'_> {
+    /// A coordinate of a joint, by name or as its only one.
+    pub(super) fn coordinate(&mut self, joint: JointId, name: Option<&str>, here: Here) -> Option<usize> {
+        self.coordinate_at(joint, name, [here.key("joint"), here.key("coordinate")])
+    }
+
+    /// As [`Check::coordinate`], where the joint and the coordinate are named at these places.
+    pub(super) fn coordinate_at(
+        &mut self,
+        joint: JointId,
+        name: Option<&str>,
+        at: [Locus; 2],
+    ) -> Option<usize> {
+        let [at_joint, at_coordinate] = at;
+        let kind = self.model.joints[joint.0].kind;
+        let list =
+            |c: &[CoordinateType]| c.iter().map(|c| format!("`{}`", c.name)).collect::<Vec<_>>().join(", ");
+        let joint_name = self.model.joints[joint.0].name.clone();
+        let (message, at) = match (name, kind.coordinates) {
+            (_, []) => (format!("a {} joint has no coordinate to name", kind.name), at_joint),
+            (None, [_]) => return Some(0),
+            (None, _) => (format!("joint `{joint_name}` has more than one coordinate"), at_joint),
+            (Some(name), coordinates) => match coordinates.iter().position(|c| c.name == name) {
+                Some(k) => return Some(k),
+                None => (format!("a {} joint has no coordinate `{name}`", kind.name), at_coordinate),
+            },
+        };
+        let fault = self.fault("HP0213", at, message);
+        fault.note(format!("type of `{joint_name}`: {} ({})", kind.name, kind.summary));
+        fault.help(if kind.coordinates.is_empty() {
+            "name a joint that has one: a revolute, translational or cylindrical joint, a rod or a leg".into()
+        } else {
+            format!("its coordinates: {}", list(kind.coordinates))
+        });
+        None
+    }
+
+    pub(super) fn drivers(&mut self) {
+        let draft = self.draft;
+        for (index, d) in draft.drivers.iter().enumerate() {
+            let here = Here { section: Section::Drivers, index };
+            let finite = |t: f64| d.law.at(t).derivatives()[..3].iter().all(|x| x.is_finite());
+            if let Some(&t) = draft.times.iter().find(|&&t| !finite(t)) {
+                let [f, fd, fdd, _] = d.law.at(t).derivatives();
+                let message = format!("the law of driver `{}` has no finite value at t = {t} s", d.name);
+                self.fault("HP0214", here.key("law"), message)
+                    .note(format!("value {f}, first derivative {fd}, second derivative {fdd} there"))
+                    .help("change the law, or the times, so that all three are finite");
+            }
+            let Some((joint, coordinate)) = self.driven(d, here) else { continue };
+            self.model.drivers.push(Driver { name: d.name.clone(), joint, coordinate, law: d.law.clone() });
+        }
+    }
+
+    /// The joint coordinate that a driver prescribes; for what is no joint's, an unnamed joint that has it.
+    fn driven(&mut self, d: &DriverDraft, here: Here) -> Option<(JointId, usize)> {
+        match &d.drives {
+            DrivenDraft::Coordinate { joint: name, coordinate } => {
+                let joint = self.joint(name, here.key("joint"))?;
+                let coordinate = self.coordinate(joint, coordinate.as_deref(), here)?;
+                self.drivable(d, name, joint, coordinate, here).then_some((joint, coordinate))
+            }
+            DrivenDraft::Position { point, along } => {
+                let point = self.point(point, &d.name, here.key("point"));
+                let along = self.line(along, &d.name, here, "along");
+                let (point, (axis, z)) = (point?, along?);
+                let BodyPoint { body, at, .. } = self.model.points[point.0];
+                let axes = Some((axis, frame_along(z, z.any_square())));
+                Some((self.driven_joint(d, &joint::TRAVEL, [GROUND, body], [at, at], axes, here)?, 0))
+            }
+            DrivenDraft::Distance { from, to } => {
+                let (a, b) =
+                    (self.point(from, &d.name, here.key("from")), self.point(to, &d.name, here.key("to")));
+                let [i, j] = [a?, b?].map(|p| self.model.points[p.0].clone());
+                if (self.position(i.at) - self.position(j.at)).norm() <= SAME_POINT * self.model.size() {
+                    let message = format!("the two points of driver `{}` are at the same place", d.name);
+                    self.fault("HP0211", here.key("to"), message)
+                        .help("an actuator needs two points that lie apart");
+                }
+                Some((self.driven_joint(d, &joint::LEG, [i.body, j.body], [i.at, j.at], None, here)?, 0))
+            }
+            DrivenDraft::Orientation { body, relative_to, about } => {
+                let body = self.body(body, here.key("body"));
+                let base = match relative_to {
+                    Some(name) => self.body(name, here.key("relative_to")),
+                    None => Some(GROUND),
+                };
+                let (axis, z) = self.line(about, &d.name, here, "about")?;
+                let (body, base) = (body?, base?);
+                let axes = Some((axis, frame_along(z, z.any_square())));
+                let at = self.model.joints.iter().find(|j| j.bodies.contains(&body)).map(|j| j.at[0])?;
+                Some((self.driven_joint(d, &joint::HEADING, [base, body], [at, at], axes, here)?, 0))
+            }
+        }
+    }
+
+    /// An unnamed joint that has the coordinate that a driver prescribes.
+    fn driven_joint(
+        &mut self,
+        d: &DriverDraft,
+        kind: &'static JointType,
+        bodies: [BodyId; 2],
+        at: [HardpointId; 2],
+        axis: Option<(Direction, Mat3)>,
+        here: Here,
+    ) -> Option<JointId> {
+        if bodies[0] == bodies[1] {
+            let name = &self.model.bodies[bodies[0].0].name;
+            let message = format!("driver `{}` prescribes how `{name}` moves relative to itself", d.name);
+            self.fault("HP0213", here.key("name"), message).help("name two different bodies");
+            return None;
+        }
+        self.model.joints.push(Joint {
+            name: d.name.clone(),
+            kind,
+            bodies,
+            at,
+            axis: axis.map(|a| a.0),
+            axis2: None,
+            frames: [axis.map_or(Mat3::IDENTITY, |a| a.1); 2],
+            length: None,
+            curve: None,
+            cut: false,
+            unnamed: true,
+        });
+        Some(JointId(self.model.joints.len() - 1))
+    }
+
+    /// Whether a joint's coordinate may be prescribed: by one driver, and not where a constraint keeps it.
+    fn drivable(
+        &mut self,
+        d: &DriverDraft,
+        name: &str,
+        joint: JointId,
+        coordinate: usize,
+        here: Here,
+    ) -> bool {
+        let kind = self.model.joints[joint.0].kind;
+        if let Some(other) =
+            self.model.drivers.iter().find(|o| o.joint == joint && o.coordinate == coordinate)
+        {
+            let message = format!("drivers `{}` and `{}` prescribe the same coordinate", other.name, d.name);
+            let c = kind.coordinates[coordinate].name;
+            self.fault("HP0215", here.key("joint"), message)
+                .note(format!("the {c} of joint `{name}`"))
+                .help("remove one of them");
+            return false;
+        }
+        if kind.rows.contains(&kind.coordinates[coordinate].row) {
+            let message = format!("driver `{}` prescribes the length of a rod, which is constant", d.name);
+            self.fault("HP0213", here.key("joint"), message)
+                .help(format!("make `{name}` a `leg`: a rod whose length a driver prescribes"));
+            return false;
+        }
+        true
+    }
+
+    /// Couplers, then those that screws are.
+    pub(super) fn couplers(&mut self) {
+        let draft = self.draft;
+        for (index, c) in draft.couplers.iter().enumerate() {
+            let here = Here { section: Section::Couplers, index };
+            let terms = match &c.kind {
+                CouplerKindDraft::Linear(terms) => {
+                    let terms: Vec<_> = terms
+                        .iter()
+                        .enumerate()
+                        .map(|(k, t)| {
+                            let at = here.item("terms", k);
+                            let joint = self.joint(&t.joint, at.clone())?;
+                            let coordinate =
+                                self.coordinate_at(joint, t.coordinate.as_deref(), [at.clone(), at])?;
+                            Some(Term { joint, coordinate, coefficient: t.coefficient })
+                        })
+                        .collect();
+                    terms.into_iter().collect::<Option<Vec<Term>>>()
+                }
+                CouplerKindDraft::Gears { joints, teeth, internal } => {
+                    let sign = if *internal { -1.0 } else { 1.0 };
+                    self.pair(joints, ["angle"; 2], [teeth[0], sign * teeth[1]], here)
+                }
+                CouplerKindDraft::Belt { joints, radii, crossed } => {
+                    let sign = if *crossed { 1.0 } else { -1.0 };
+                    self.pair(joints, ["angle"; 2], [radii[0], sign * radii[1]], here)
+                }
+                CouplerKindDraft::Rack { rack, pinion, radius } => {
+                    let joints = [rack.clone(), pinion.clone()];
+                    self.pair(&joints, ["displacement", "angle"], [1.0, -radius], here)
+                }
+            };
+            let Some(terms) = terms else { continue };
+            let (joints, ratios) = match &c.kind {
+                CouplerKindDraft::Linear(_) => ("terms", "terms"),
+                CouplerKindDraft::Gears { .. } => ("joints", "teeth"),
+                CouplerKindDraft::Rack { .. } => ("rack", "radius"),
+                CouplerKindDraft::Belt { .. } => ("joints", "radii"),
+            };
+            if !terms.iter().all(|t| t.coefficient.is_finite() && t.coefficient != 0.0) {
+                let message = format!("coupler `{}` has a ratio that is zero or not finite", c.name);
+                self.fault("HP0224", here.key(ratios), message)
+                    .help("give every joint a number of teeth, a radius or a coefficient other than zero");
+            }
+            let twice = (1..terms.len()).any(|k| {
+                terms[..k].iter().any(|t| t.joint == terms[k].joint && t.coordinate == terms[k].coordinate)
+            });
+            if terms.len() < 2 || twice {
+                let message = format!("coupler `{}` must couple at least two different coordinates", c.name);
+                self.fault("HP0224", here.key(joints), message)
+                    .help("name two joints, or two coordinates of one joint");
+            }
+            self.model.couplers.push(Coupler { name: c.name.clone(), terms });
+        }
+        for k in 0..draft.joints.len() {
+            if let (Some(joint), Some(lead)) = (self.joint_ids[k], draft.joints[k].lead) {
+                let coordinate = |name: &str| joint::SCREW.coordinate(name).expect("a screw has it").0;
+                let per_radian = lead / (2.0 * std::f64::consts::PI);
+                let terms = vec![
+                    Term { joint, coordinate: coordinate("displacement"), coefficient: 1.0 },
+                    Term { joint, coordinate: coordinate("angle"), coefficient: -per_radian },
+                ];
+                self.model.couplers.push(Coupler { name: draft.joints[k].name.clone(), terms });
+            }
+        }
+    }
+
+    /// The terms of two joints.
+    fn pair(
+        &mut self,
+        joints: &[String; 2],
+        coordinates: [&str; 2],
+        coefficients: [f64; 2],
+        here: Here,
+    ) -> Option<Vec<Term>> {
+        let terms = [0, 1].map(|k| {
+            let at = here.item("joints", k);
+            let joint = self.joint(&joints[k], at.clone())?;
+            let coordinate = self.coordinate_at(joint, Some(coordinates[k]), [at.clone(), at])?;
+            Some(Term { joint, coordinate, coefficient: coefficients[k] })
+        });
+        terms.into_iter().collect()
+    }
+}
