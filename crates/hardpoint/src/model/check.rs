@@ -414,9 +414,17 @@ impl<'a> Check<'a> {
                 let (a, b) =
                     (self.point(from, &m.name, here.key("from")), self.point(to, &m.name, here.key("to")));
                 let (from, to) = (a?, b?);
-                if from == to {
+                let [a, b] = [from, to].map(|p| self.model.points[p.0].clone());
+                let apart = (self.position(a.at) - self.position(b.at)).norm();
+                if from == to || (a.body == b.body && apart <= SAME_POINT * self.extent.size()) {
                     let message = format!("measure `{}` is the distance of a point from itself", m.name);
                     self.fault("HP0216", here.key("to"), message);
+                } else if apart <= SAME_POINT * self.extent.size() {
+                    let message =
+                        format!("the two points of measure `{}` are drawn at the same place", m.name);
+                    self.fault("HP0216", here.key("to"), message)
+                        .note("a distance of zero has no rate")
+                        .help("measure the `position` of one of them along each direction, or points that lie apart");
                 }
                 MeasureKind::Distance { from, to }
             }

@@ -1,7 +1,8 @@
 //! How far from a singular position: the conditioning of the Jacobian over time.
 
+use crate::constraint::{Ends, Row};
 use crate::joint::Freedom;
-use crate::space::{Elimination, Twist, Wrench};
+use crate::space::{Elimination, Twist, Vec3, Wrench};
 use crate::topology::Topology;
 
 use super::kinematics::State;
@@ -94,11 +95,17 @@ fn most_resistance(topology: &Topology, state: &State<f64>, r: usize) -> f64 {
     let scale = if first.is_length() { 1.0 / state.size } else { 1.0 };
     let mut most = f64::MIN_POSITIVE;
     for (k, factor) in topology.parts_of_row(r) {
-        for &(link, _) in &topology.closures[topology.rows[k].closure].links {
+        let at = &topology.rows[k];
+        let closure = &topology.closures[at.closure];
+        let Ends { i, j } = &state.ends[at.closure];
+        for &(link, side) in &closure.links {
+            // A rod pulls at either body where it is tied to it; any other force acts at P_j.
+            let at_i = side < 0.0 && closure.rows[at.index] == Row::Distance;
+            let point = if at_i { i.r } else { j.r };
             for step in &topology.links[link].steps {
                 let resistance = match step.freedom {
                     Freedom::Slide(_) => state.size * state.l[k].f.norm(),
-                    Freedom::Turn(_) | Freedom::Ball => moment_about(&state.l[k], &state.x[step.first]),
+                    Freedom::Turn(_) | Freedom::Ball => most_moment(&state.l[k], point, &state.x[step.first]),
                 };
                 most = f64::max(most, scale * factor.abs() * resistance);
             }
@@ -107,18 +114,10 @@ fn most_resistance(topology: &Topology, state: &State<f64>, r: usize) -> f64 {
     most
 }
 
-/// The most that a wrench could turn about an axis that stays where it is but may point along the moment: force times lever
-/// arm, and the moment along the force.
-fn moment_about(l: &Wrench, turn: &Twist) -> f64 {
-    let force = l.f.norm();
-    if force <= f64::MIN_POSITIVE {
-        return l.m.norm();
-    }
-    let along = l.f * (1.0 / force);
-    // The points of the two lines next to the origin; the arm is seen along the axis, where its place does not matter.
-    let on_force = along.cross(l.m) * (1.0 / force);
-    let on_axis = turn.w.cross(turn.v);
-    let between = on_force - on_axis;
+/// The most that a force at a point, with its moment, could turn about an axis, whatever way it pointed.
+fn most_moment(l: &Wrench, point: Vec3, turn: &Twist) -> f64 {
+    // The axis passes through w x v, its point next to the origin; the arm is seen along it.
+    let between = point - turn.w.cross(turn.v);
     let arm = between - turn.w * turn.w.dot(between);
-    (force * arm.norm()).hypot(l.m.dot(along))
+    (l.f.norm() * arm.norm()).hypot((l.m - point.cross(l.f)).norm())
 }

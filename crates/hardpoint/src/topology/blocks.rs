@@ -85,8 +85,9 @@ pub(super) fn split(model: &Model, topology: &mut Topology) -> Result<(), Topolo
         _ => {
             let all: Vec<usize> = (0..unknown.len()).filter(|&c| unknown[c]).collect();
             let groups = if all.is_empty() { Vec::new() } else { vec![all] };
-            assign(topology, &jacobian, &groups)
-                .map_err(|free| fault::under_driven(model, topology, &free))?;
+            assign(topology, &jacobian, &groups).map_err(|free| {
+                fault::free_motions(model, topology, &free, freedoms_nearby(model, topology))
+            })?;
             groups
         }
     };
@@ -148,6 +149,32 @@ fn independent_groups(
         g.sort_unstable();
     }
     Some(groups)
+}
+
+/// How many motions stay free where the mechanism stands a little differently, so that nothing lines up by chance: every place is
+/// shifted by up to 3 % of the size, every axis keeps its direction.
+///
+/// Fewer than in the drawing mean that the drawing is a singular position, not that a driver is missing. Planar mechanisms keep their
+/// redundancy under such a shift.
+fn freedoms_nearby(model: &Model, topology: &Topology) -> usize {
+    const SHIFT: f64 = 0.03;
+    let mut shifted = model.clone();
+    let size = model.size();
+    // The golden ratio's multiples are spread evenly and never repeat.
+    let mut parts = (1..).map(|k| 2.0 * (f64::from(k) * 0.618_033_988_749_895).fract() - 1.0);
+    for hardpoint in &mut shifted.hardpoints {
+        let mut next = || SHIFT * size * parts.next().expect("there is always another");
+        hardpoint.position += crate::space::Vec3::new(next(), next(), next());
+    }
+    let mut column_of = vec![None; topology.coordinates.len()];
+    let unknown = |c: &usize| matches!(topology.coordinates[*c].source, Source::Unknown { .. });
+    let columns: Vec<usize> = (0..topology.coordinates.len()).filter(unknown).collect();
+    for (column, &c) in columns.iter().enumerate() {
+        column_of[c] = Some(column);
+    }
+    let rows = design_jacobian(&shifted, topology).into_iter();
+    let rows = rows.map(|row| row.into_iter().filter_map(|(c, x)| Some((column_of[c]?, x))).collect());
+    FullPivot::of_sparse(rows.collect(), columns.len(), RANK_TOLERANCE).free.len()
 }
 
 /// Per body: the nearest link on its way to ground that has unknowns.

@@ -17,6 +17,18 @@ pub enum TopologyFault {
         /// Names of the bodies that move in them.
         bodies: Vec<String>,
     },
+    /// The configuration as drawn is singular: motions are free there that are not free nearby (HP0304).
+    #[error("the mechanism is drawn in a singular position ({})", some_of(.bodies))]
+    Singular {
+        /// How many motions are free in that position only.
+        freedom: usize,
+        /// The joints that move in them.
+        joints: Vec<JointId>,
+        /// Their names.
+        joint_names: Vec<String>,
+        /// Names of the bodies that move in them.
+        bodies: Vec<String>,
+    },
     /// Drivers prescribe more than can move (HP0302).
     #[error(
         "the mechanism is over-driven: {} prescribe {}",
@@ -74,6 +86,7 @@ impl TopologyFault {
             Self::UnderDriven { .. } => "HP0301",
             Self::OverDriven { .. } => "HP0302",
             Self::Immovable { .. } => "HP0303",
+            Self::Singular { .. } => "HP0304",
         }
     }
 
@@ -83,6 +96,18 @@ impl TopologyFault {
             Self::UnderDriven { joint_names, .. } => {
                 vec![format!("the joints that still move: {}", some_of(joint_names))]
             }
+            Self::Singular { freedom, joint_names, .. } => vec![
+                format!(
+                    "to first order {} there that {} not a little further on: a dead point or a change point",
+                    if *freedom == 1 {
+                        "a motion is free".into()
+                    } else {
+                        format!("{freedom} motions are free")
+                    },
+                    if *freedom == 1 { "is" } else { "are" }
+                ),
+                format!("the joints of that motion: {}", some_of(joint_names)),
+            ],
             Self::OverDriven { driver_names, joint_names, .. } => vec![
                 format!("drivers that contradict each other: {}", some_of(driver_names)),
                 format!("where they meet: {}", some_of(joint_names)),
@@ -105,6 +130,9 @@ impl TopologyFault {
             Self::UnderDriven { freedom, .. } => {
                 format!("add {freedom} drivers on these joints, or joints or rods that hold the motions")
             }
+            Self::Singular { .. } => "draw the mechanism a little further along its motion, off the position where its bars line up; if it \
+                                      moves by its special proportions only, a driver may be missing on one of these joints"
+                .into(),
             Self::OverDriven { driver_names, mobility, .. } => {
                 let excess = match driver_names.len().saturating_sub(*mobility) {
                     0 | 1 => "one".into(),
@@ -124,14 +152,21 @@ impl TopologyFault {
     pub fn joints(&self) -> &[JointId] {
         match self {
             Self::UnderDriven { joints, .. }
+            | Self::Singular { joints, .. }
             | Self::OverDriven { joints, .. }
             | Self::Immovable { joints, .. } => joints,
         }
     }
 }
 
-/// The fault of motions left free, each given as coordinates with their speeds.
-pub(super) fn under_driven(model: &Model, topology: &Topology, free: &[Vec<(usize, f64)>]) -> TopologyFault {
+/// The fault of motions left free, each given as the coordinates that move in it; `nearby` of them are free in other
+/// positions too.
+pub(super) fn free_motions(
+    model: &Model,
+    topology: &Topology,
+    free: &[Vec<(usize, f64)>],
+    nearby: usize,
+) -> TopologyFault {
     let moving: Vec<usize> = free
         .iter()
         .flatten()
@@ -151,12 +186,12 @@ pub(super) fn under_driven(model: &Model, topology: &Topology, free: &[Vec<(usiz
             .map(JointId)
             .collect();
     }
-    TopologyFault::UnderDriven {
-        freedom: free.len(),
-        joint_names: joints.iter().map(|j| format!("`{}`", model.joints[j.0].name)).collect(),
-        joints,
-        bodies: bodies.iter().map(|b| format!("`{}`", model.bodies[b.0].name)).collect(),
+    let joint_names = joints.iter().map(|j| format!("`{}`", model.joints[j.0].name)).collect();
+    let bodies = bodies.iter().map(|b| format!("`{}`", model.bodies[b.0].name)).collect();
+    if nearby < free.len() {
+        return TopologyFault::Singular { freedom: free.len() - nearby, joints, joint_names, bodies };
     }
+    TopologyFault::UnderDriven { freedom: free.len(), joints, joint_names, bodies }
 }
 
 /// The fault of rows that fail under the drivers' motion, each with its failure per driver.

@@ -1,6 +1,7 @@
 //! Under-driven, over-driven, locked, at a limit: each is told apart, and names what it is about.
 
 use hardpoint::motion::StopKind;
+use hardpoint::space::Vec3;
 use hardpoint::topology::{Formulation, TopologyFault};
 use hardpoint::{Analysis, model::*};
 
@@ -191,4 +192,97 @@ fn a_start_out_of_reach_says_so() {
     assert!(solution.motion.is_empty() && stop.last_time.is_none());
     assert_eq!(stop.headline(&model), "the mechanism does not reach its start position at t = 0.000000 s");
     assert!(stop.drivers[0] > 0.01 && stop.drivers[0] < 3.0, "{stop:?}");
+}
+
+/// A crank and a rocker in skew planes, tied by a rod that is a body between two balls.
+fn rod_between_balls() -> Draft {
+    Draft {
+        name: "rod between balls".into(),
+        bodies: ["crank", "rod", "rocker"].map(body).into(),
+        joints: vec![
+            joint("A", "revolute", ["ground", "crank"], &[[0.0; 3]], Some([0.0, 0.0, 1.0])),
+            joint("B", "spherical", ["crank", "rod"], &[[0.0, 0.1, 0.0]], None),
+            joint("C", "spherical", ["rod", "rocker"], &[[0.3, 0.2, 0.15]], None),
+            joint("D", "revolute", ["ground", "rocker"], &[[0.3, 0.0, 0.0]], Some([1.0, 0.0, -0.5])),
+        ],
+        drivers: vec![driver("motor", "A", "0.5*sin(t)")],
+        times: times(3.0, 30),
+        ..Draft::default()
+    }
+}
+
+#[test]
+fn a_rod_that_spins_idly_between_its_balls_is_held_and_no_error() {
+    let model = Model::from_draft(&rod_between_balls()).unwrap();
+    let [idle] = &model.idle[..] else { panic!("{:?}", model.idle) };
+    assert_eq!(idle.bodies, [model.body("rod").unwrap()]);
+    assert_eq!(model.joints[idle.joint.0].name, "B");
+    let along = Vec3::new(0.3, 0.1, 0.15).unit().unwrap();
+    assert!(idle.axis.cross(along).norm() < 1e-12);
+    for formulation in [Formulation::Relative, Formulation::Absolute] {
+        let analysis = Analysis::with(&model, formulation).unwrap();
+        assert_eq!((analysis.topology().mobility, analysis.topology().redundant().count()), (1, 0));
+        let solution = analysis.run();
+        assert!(solution.stop.is_none(), "{:?}", solution.stop);
+        // The rod does all that it must: its ends are the balls. It spins no faster than its neighbours turn.
+        let rod = idle.bodies[0];
+        for k in 0..solution.motion.len() {
+            let state = solution.body(k, rod);
+            assert!(state.omega.norm() < 1.0, "{:?}", state.omega);
+        }
+    }
+    // The same mechanism with the rod as a constraint moves alike.
+    let mut massless = rod_between_balls();
+    massless.bodies.remove(1);
+    massless.joints.drain(1..3);
+    let ends = [[0.0, 0.1, 0.0], [0.3, 0.2, 0.15]];
+    massless.joints.push(joint("rod", "distance", ["crank", "rocker"], &ends, None));
+    let massless = Model::from_draft(&massless).unwrap();
+    assert!(massless.idle.is_empty());
+    let (a, b) = (Analysis::new(&model).unwrap().run(), Analysis::new(&massless).unwrap().run());
+    for k in 0..a.motion.len() {
+        let [x, y] = [(&a, &model), (&b, &massless)].map(|(s, m)| *s.body(k, m.body("rocker").unwrap()));
+        assert!(apart(x.omega, y.omega) < 1e-11 && apart(x.alpha, y.alpha) < 1e-10);
+    }
+}
+
+#[test]
+fn redundant_constraints_are_named_with_those_that_say_the_same() {
+    let draft = four_bar([[0.0, 0.0], [0.0, 0.1], [0.3, 0.25], [0.3, 0.0]], "t", &times(1.0, 2));
+    let model = Model::from_draft(&draft).unwrap();
+    let analysis = Analysis::new(&model).unwrap();
+    let redundancies = analysis.topology().redundancies(&model);
+    assert_eq!(redundancies.len(), 3);
+    for r in redundancies {
+        // In a plane every hinge says that the others' axes are parallel and that nothing leaves the plane.
+        assert!(analysis.topology().name_of_row(&model, r.row).starts_with('`'));
+        for row in r.implied_by {
+            assert!(analysis.topology().rows[row].selected);
+        }
+    }
+}
+
+#[test]
+fn the_margin_of_a_slider_crank_driven_at_its_slide_is_the_sine_of_its_transmission_angle() {
+    // A leg of constant direction pushes a bar about its pivot: one unknown, and the angle between bar and leg decides.
+    let z = Some([0.0, 0.0, 1.0]);
+    let draft = Draft {
+        name: "flap".into(),
+        bodies: vec![body("bar")],
+        joints: vec![
+            joint("pivot", "revolute", ["ground", "bar"], &[[0.0; 3]], z),
+            joint("leg", "leg", ["ground", "bar"], &[[1.0, -1.0, 0.0], [1.0, 0.0, 0.0]], None),
+        ],
+        drivers: vec![driver("push", "leg", "0.1*t")],
+        times: times(1.0, 10),
+        ..Draft::default()
+    };
+    let model = Model::from_draft(&draft).unwrap();
+    let solution = Analysis::new(&model).unwrap().run();
+    for (k, margin) in solution.motion.margins.iter().enumerate() {
+        let bar = solution.body(k, BodyId(1)).rotation.cols[0];
+        let leg = (bar - Vec3::new(1.0, -1.0, 0.0)).unit().unwrap();
+        assert!((margin.value - bar.cross(leg).norm()).abs() < 1e-12, "{margin:?}");
+    }
+    assert!(solution.motion.singular_after().is_some());
 }
