@@ -21,6 +21,9 @@ const TRUST: f64 = 0.5;
 const SPEED_TRUST: f64 = 0.25;
 /// Differences below this part of the drivers' fastest speed do not count: a start from rest.
 const SPEED_FLOOR: f64 = 1e-3;
+/// The coordinates of a coupler must come within this of their prediction, rad: which turn an angle is in would
+/// otherwise be a guess.
+const TURN_TRUST: f64 = 1.0;
 /// Within this part of an output step the speed of a smooth law hardly changes.
 const SMOOTH_PART: f64 = 1e-3;
 /// Coordinates this much faster than the fastest driver are on their way to a limit position.
@@ -253,6 +256,9 @@ impl<'m, T: Real> Stepper<'m, T> {
             }
         }
         self.state.solve_rates(&self.topology, &self.parts, &self.drivers);
+        if let Some(block) = self.uncertain_turn() {
+            return Err(Refusal::Branch { block });
+        }
         // Where a driver's own speed jumps (`abs`, `if`), those of the mechanism may: but only there.
         let jump = h < self.shortest_smooth && !self.drivers_are_smooth(h);
         if h != 0.0 && !jump && !self.speeds_are_smooth(h) {
@@ -305,6 +311,21 @@ impl<'m, T: Real> Stepper<'m, T> {
             let length = self.model.driven(d).quantity == crate::joint::Quantity::Length;
             most.max(f[1].abs().largest() / if length { self.state.size } else { 1.0 })
         })
+    }
+
+    /// The block of a coupler that counts an angle whose turn the prediction does not tell for sure.
+    fn uncertain_turn(&self) -> Option<usize> {
+        let s = &self.state;
+        let uncertain = |k: usize| {
+            let [value, ..] = s.coordinate_of_row(&self.topology, k);
+            let closure = &self.topology.closures[self.topology.rows[k].closure];
+            let row = closure.rows[self.topology.rows[k].index];
+            // Written so that NaN is uncertain.
+            !row.is_length() && !((value - s.near[k]).abs().largest() <= TURN_TRUST)
+        };
+        let rows = self.topology.coupled_rows.iter();
+        let found = rows.copied().find(|&r| self.topology.parts_of_row(r).any(|(k, _)| uncertain(k)));
+        found.and_then(|r| self.topology.closures[self.topology.rows[r].closure].block)
     }
 
     /// Whether no driver's speed jumps within the step.
