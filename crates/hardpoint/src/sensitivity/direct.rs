@@ -80,10 +80,17 @@ impl<T: Real> FieldParts<T> {
                 }
             }
         }
-        let scale = witness.like_lanes(|k| {
-            let markers = fields.get(k).map_or(&[][..], |f| &f.markers);
-            markers.iter().map(|m| m.twist.w.norm().max(m.twist.v.norm())).fold(0.0, f64::max)
-        });
+        // Per unit of a variable: how fast markers move and turn, kept values change, laws change.
+        let speed = |f: &Field| {
+            let markers = f.markers.iter().map(|m| m.twist.w.norm().max(m.twist.v.norm()));
+            let kept = f
+                .kept
+                .iter()
+                .map(|(_, k)| k.distance.abs().max(k.offset.abs()).max(k.cosine.abs()).max(k.contact.abs()));
+            let laws = f.laws.iter().map(|(_, _, rate)| rate.abs());
+            markers.chain(kept).chain(laws).fold(0.0, f64::max)
+        };
+        let scale = witness.like_lanes(|k| fields.get(k).map_or(0.0, speed));
         let mut drivers: Vec<DriverId> = fields.iter().flat_map(|f| &f.laws).map(|(d, ..)| *d).collect();
         drivers.sort_unstable();
         drivers.dedup();

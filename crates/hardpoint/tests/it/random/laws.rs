@@ -312,7 +312,9 @@ impl Case<'_> {
         let size = a.0.size();
         let (x, y) = (flat(a.0, a.1, size, None, to.is_some()), flat(b.0, b.1, size, to, to.is_some()));
         if x.len() != y.len() {
-            return self.fail(format!("{law}: not the same numbers"));
+            let said =
+                |s: &Solution| format!("{} times, {:?}", s.motion.len(), s.sensitivities.admissibility);
+            return self.fail(format!("{law}: not the same numbers: {}; {}", said(a.1), said(b.1)));
         }
         let times = a.1.motion.len().min(b.1.motion.len());
         let mut worst = (0.0_f64, String::new(), 0.0, 0.0);
