@@ -165,6 +165,8 @@ pub fn compare_with_difference(
 ) -> Vec<StepError> {
     /// A sensitivity that moves a quantity by less than this part of it per natural step counts as zero.
     const NEGLIGIBLE: f64 = 1e-3;
+    /// An order that changes the one before it by less than this part during the run is round-off.
+    const STEADY: f64 = 1e-12;
     let model = analysis.model();
     let natural = natural_step(model, d.variable);
     let mut errors = Vec::new();
@@ -182,14 +184,22 @@ pub fn compare_with_difference(
         errors.push(StepError { step: d.step, error, worst: name, time: times[k] });
     };
 
-    // The motion's own magnitude at orders 0, 1, 2: lengths in sizes, angles in rad.
-    let magnitude = solution.motion.states.iter().fold([1.0_f64, 0.0, 0.0], |m, s| {
+    // The motion's own magnitude at orders 0, 1, 2: lengths in sizes, angles in rad. Where a motion
+    // stands still, or runs at a steady speed, the next order is round-off: it is judged as if it made up
+    // the order before it once in the run.
+    let span = if steps > 1 { times[steps - 1] - times[0] } else { 1.0 };
+    let mut magnitude = solution.motion.states.iter().fold([1.0_f64, 0.0, 0.0], |m, s| {
         [
             m[0],
             m[1].max(s.omega.norm()).max(s.v.norm() / size),
             m[2].max(s.alpha.norm()).max(s.a.norm() / size),
         ]
     });
+    for order in 1..3 {
+        if magnitude[order] * span < STEADY * magnitude[order - 1] {
+            magnitude[order] = magnitude[order - 1] / span;
+        }
+    }
     let floor = |order: usize, quantity: Quantity| {
         let unit = if quantity == Quantity::Length { size } else { 1.0 };
         NEGLIGIBLE * magnitude[order] * unit / natural
