@@ -183,6 +183,11 @@ impl Row {
         )
     }
 
+    /// Whether it asks for the markers' axes, rather than for their points only.
+    pub(crate) fn has_axes(self) -> bool {
+        !matches!(self, Self::Point(_) | Self::Distance)
+    }
+
     /// Whether its residual is a length (else it is an angle or a cosine).
     pub fn is_length(self) -> bool {
         matches!(self, Self::Point(_) | Self::Dot2(_) | Self::Distance | Self::Offset | Self::Contact)

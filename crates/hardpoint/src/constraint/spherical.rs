@@ -1,6 +1,6 @@
 //! Spherical constraint, one world component: `e_k . (P_j - P_i) = 0` (paper Eq. 4.7).
 
-use super::{EndRates, Ends, force_rates, point_rates};
+use super::{EndRates, Ends, point_rates};
 use crate::space::{Real, Vec3, Wrench};
 
 #[inline(always)]
@@ -11,12 +11,22 @@ pub(super) fn residual<T: Real>(k: usize, ends: &Ends<T>) -> T {
 /// The force e_k through the common point.
 #[inline(always)]
 pub(super) fn wrench<T: Real>(k: usize, ends: &Ends<T>) -> Wrench<T> {
-    Wrench::force(Vec3::AXES[k].spread(ends.j.r.x), ends.j.r)
+    Wrench { m: across(ends.j.r, k), f: Vec3::AXES[k].spread(ends.j.r.x) }
 }
 
 #[inline(always)]
 pub(super) fn wrench_rates<T: Real>(k: usize, ends: &Ends<T>, rates: &EndRates<T>) -> [Wrench<T>; 2] {
-    let zero = Vec3::zero(ends.j.r.x);
-    let force = [Vec3::AXES[k].spread(ends.j.r.x), zero, zero];
-    force_rates(force, point_rates(ends.j.r, rates.v_j, rates.a_j))
+    let [_, velocity, acceleration] = point_rates(ends.j.r, rates.v_j, rates.a_j);
+    [Wrench::moment(across(velocity, k)), Wrench::moment(across(acceleration, k))]
+}
+
+/// `p x e_k`.
+#[inline(always)]
+fn across<T: Real>(p: Vec3<T>, k: usize) -> Vec3<T> {
+    let zero = p.x.zero();
+    match k {
+        0 => Vec3::new(zero, p.z, -p.y),
+        1 => Vec3::new(-p.z, zero, p.x),
+        _ => Vec3::new(p.y, -p.x, zero),
+    }
 }

@@ -5,9 +5,9 @@
 
 use crate::constraint::{EndRates, Ends, Row};
 use crate::joint::Freedom;
-use crate::model::{Contact, Model};
+use crate::model::{Contact, GROUND, Model};
 use crate::space::{Factors, LARGEST_DENSE, Pose, Quat, Real, Twist, Wrench};
-use crate::topology::{Block, Source, Topology};
+use crate::topology::{Block, RowPlace, Source, Step, Topology};
 
 use super::parts::Parts;
 
@@ -30,6 +30,8 @@ pub(crate) struct State<T> {
     pub qdd: Vec<T>,
     /// Per coordinate that begins a ball: its rotation.
     pub balls: Vec<Quat<T>>,
+    /// Per body: the marker that places it, in the world.
+    pub frame: Vec<Pose<T>>,
     /// Per body: pose, twist, and time derivative of the twist.
     pub pose: Vec<Pose<T>>,
     pub v: Vec<Twist<T>>,
@@ -50,6 +52,8 @@ pub(crate) struct State<T> {
     /// Per link and per row: what a level adds besides the unknowns.
     pub bias: Vec<Twist<T>>,
     pub row_rhs: Vec<T>,
+    /// Per row: by how much it failed where the Jacobian was formed last.
+    pub residual: Vec<T>,
     /// Per row of a coupler's term: about what its coordinate is, to count angles through whole turns.
     pub near: Vec<T>,
     /// Per row: by how much it failed in the design configuration as drawn, and how much of that is still allowed, with
@@ -72,9 +76,6 @@ pub(crate) struct Residuals {
     pub largest: f64,
     /// Largest residual, sizes or rad.
     pub scaled: f64,
-    /// The row where that is, and its residual in its own unit.
-    pub row: usize,
-    pub of_row: f64,
 }
 
 /// Why a position was not found.
@@ -102,6 +103,7 @@ impl<T: Real> State<T> {
             qd: vec![o; n],
             qdd: vec![o; n],
             balls: vec![Quat::IDENTITY.spread(witness); n],
+            frame: vec![frame; bodies],
             pose: vec![frame; bodies],
             v: vec![none; bodies],
             a: vec![none; bodies],
@@ -120,6 +122,7 @@ impl<T: Real> State<T> {
             rhs: vec![o; widest],
             bias: vec![none; topology.links.len()],
             row_rhs: vec![o; rows],
+            residual: vec![o; rows],
             near: vec![o; rows],
             gap: vec![o; rows],
             gap_left: [0.0; 2],
@@ -168,7 +171,9 @@ impl<T: Real> State<T> {
     pub(super) fn place(&mut self, topology: &Topology, parts: &Parts<T>, links: std::ops::Range<usize>) {
         for k in links {
             let link = &topology.links[k];
-            let mut frame = self.pose[link.parent.0].compose(parts.parent_marker[k]);
+            let marker = parts.parent_marker[k];
+            let on_ground = link.parent == GROUND;
+            let mut frame = if on_ground { marker } else { self.frame[link.parent.0].compose(marker) };
             for step in &link.steps {
                 for c in 0..step.freedom.coordinates() {
                     self.x[step.first + c] = step.twist(c, &frame.rot, frame.r);
@@ -183,7 +188,15 @@ impl<T: Real> State<T> {
                     Freedom::Ball => frame.rot = frame.rot * self.balls[step.first].rotation(),
                 }
             }
-            self.pose[link.child.0] = frame.compose(parts.child_from_marker[k]);
+            self.frame[link.child.0] = frame;
+        }
+    }
+
+    /// Poses of the bodies, from the markers that place them.
+    #[inline(always)]
+    fn place_bodies(&mut self, topology: &Topology, parts: &Parts<T>) {
+        for (link, from_marker) in topology.links.iter().zip(&parts.child_from_marker) {
+            self.pose[link.child.0] = self.frame[link.child.0].compose(*from_marker);
         }
     }
 
@@ -191,11 +204,20 @@ impl<T: Real> State<T> {
     #[inline(always)]
     pub(super) fn place_ends(&mut self, topology: &Topology, parts: &Parts<T>, closure: usize) {
         let [i, j] = topology.closures[closure].bodies;
-        let [m_i, m_j] = parts.ends[closure];
-        self.ends[closure] = Ends { i: self.pose[i.0].compose(m_i), j: self.pose[j.0].compose(m_j) };
+        let [m_i, m_j] = &parts.ends[closure];
+        self.ends[closure] = Ends { i: self.frame[i.0].compose(*m_i), j: self.frame[j.0].compose(*m_j) };
         if let Some(k) = topology.closures[closure].contact {
             self.touch(parts, closure, k);
         }
+    }
+
+    /// The points of a closure's markers alone.
+    #[inline(always)]
+    fn place_end_points(&mut self, topology: &Topology, parts: &Parts<T>, closure: usize) {
+        let [i, j] = topology.closures[closure].bodies;
+        let [m_i, m_j] = &parts.ends[closure];
+        let ends = &mut self.ends[closure];
+        (ends.i.r, ends.j.r) = (self.frame[i.0].point(m_i.r), self.frame[j.0].point(m_j.r));
     }
 
     /// Lets marker i of a closure walk along its curve to where it is next to marker j.
@@ -260,6 +282,7 @@ impl<T: Real> State<T> {
                 for c in 0..topology.closures.len() {
                     self.place_ends(topology, parts, c);
                 }
+                self.place_bodies(topology, parts);
             },
         );
     }
@@ -318,11 +341,16 @@ impl<T: Real> State<T> {
     pub(super) fn linearise(&mut self, topology: &Topology, parts: &Parts<T>, drivers: &[[T; 3]], b: usize) {
         let block: &Block = &topology.blocks[b];
         for &c in &block.closures {
-            self.place_ends(topology, parts, c);
+            if topology.closures[c].solved_by_points {
+                self.place_end_points(topology, parts, c);
+            } else {
+                self.place_ends(topology, parts, c);
+            }
         }
         let zero = self.witness.zero();
         for (k, &r) in block.selected.iter().enumerate() {
-            self.rhs[k] = -self.residual(topology, parts, drivers, r);
+            let residual = self.residual(topology, parts, drivers, r);
+            (self.residual[r], self.rhs[k]) = (residual, -residual);
             let place = &topology.rows[r];
             let closure = &topology.closures[place.closure];
             let wrench = closure.rows[place.index].wrench(&self.ends[place.closure]);
@@ -409,16 +437,13 @@ impl<T: Real> State<T> {
     /// Largest component of the correction in `rhs`, lengths in sizes.
     #[inline(always)]
     fn correction(&self, topology: &Topology, b: usize) -> f64 {
-        let mut most = 0.0_f64;
-        for (k, &c) in topology.blocks[b].unknowns.iter().enumerate() {
-            let d = self.rhs[k].abs().largest();
-            let d = if topology.coordinates[c].is_length { d / self.size } else { d };
-            // `max` would drop a NaN.
-            if !(d <= most) {
-                most = d;
-            }
+        let per_size = self.witness.like(1.0 / self.size);
+        let mut most = self.witness.zero();
+        for (&c, &d) in topology.blocks[b].unknowns.iter().zip(&self.rhs) {
+            let d = if topology.coordinates[c].is_length { d * per_size } else { d };
+            most = most.larger(d.abs());
         }
-        most
+        most.largest()
     }
 
     /// Adds the correction in `rhs` to the unknowns of block b.
@@ -451,54 +476,40 @@ impl<T: Real> State<T> {
         witness.within(
             #[inline(always)]
             || {
-                self.finish_rows(topology, parts);
+                self.finish_ends(topology, parts);
+                self.place_bodies(topology, parts);
                 self.set_driven(topology, drivers, 1);
-                self.bias.fill(Twist::zero(witness));
-                for r in 0..topology.rows.len() {
-                    self.row_rhs[r] = demand(topology, drivers, r, 1, witness)
-                        + self.gap[r] * witness.like(self.gap_left[1]);
+                for (r, place) in topology.rows.iter().enumerate().filter(|(_, p)| p.drives()) {
+                    self.row_rhs[r] =
+                        demand(topology, drivers, place, 1, witness) + self.gap[r] * witness.like(self.gap_left[1]);
                 }
                 let s = self;
-                level(
-                    topology,
-                    &mut s.factors,
-                    &s.x,
-                    &s.l,
-                    &s.bias,
-                    &s.row_rhs,
-                    &mut s.qd,
-                    &mut s.v,
-                    &mut s.rhs,
-                );
+                level(topology, &mut s.factors, &s.x, &s.l, None, &s.row_rhs, &mut s.qd, &mut s.v, &mut s.rhs);
                 s.rates_of_twists(topology, 1);
                 s.rates_of_wrenches(topology, 1);
                 s.set_driven(topology, drivers, 2);
                 for (k, link) in topology.links.iter().enumerate() {
-                    s.bias[k] = s.sum_over_link(link, &s.xd, &s.qd);
+                    // The first freedom on ground keeps its twist.
+                    if link.parent != GROUND || link.steps.len() > 1 {
+                        s.bias[k] = s.sum_over_link(link, &s.xd, &s.qd);
+                    }
                 }
-                for r in 0..topology.rows.len() {
-                    let [i, j] = topology.closures[topology.rows[r].closure].bodies;
-                    s.row_rhs[r] = demand(topology, drivers, r, 2, witness) - s.ld[r].on(s.v[j.0] - s.v[i.0]);
+                for (r, place) in topology.rows.iter().enumerate().filter(|(_, p)| p.drives()) {
+                    let [i, j] = topology.closures[place.closure].bodies;
+                    let demand = demand(topology, drivers, place, 2, witness);
+                    s.row_rhs[r] = demand - s.ld[r].on(s.v[j.0] - s.v[i.0]);
                 }
                 sum_couplers(topology, &mut s.row_rhs);
-                level(
-                    topology,
-                    &mut s.factors,
-                    &s.x,
-                    &s.l,
-                    &s.bias,
-                    &s.row_rhs,
-                    &mut s.qdd,
-                    &mut s.a,
-                    &mut s.rhs,
-                );
+                let bias = Some(&s.bias[..]);
+                level(topology, &mut s.factors, &s.x, &s.l, bias, &s.row_rhs, &mut s.qdd, &mut s.a, &mut s.rhs);
             },
         );
     }
 
-    /// Second derivatives of twists and wrenches, which only sensitivities need.
+    /// What only sensitivities need: second derivatives of twists and wrenches, and all of the rows left out.
     pub fn finish_rates(&mut self, topology: &Topology) {
         let witness = self.witness;
+        self.finish_wrenches(topology);
         witness.within(
             #[inline(always)]
             || {
@@ -508,16 +519,23 @@ impl<T: Real> State<T> {
         );
     }
 
-    /// Markers and wrenches of the rows that Newton did not need: those left out.
+    /// Wrenches of the rows that the motion is not solved with.
+    pub fn finish_wrenches(&mut self, topology: &Topology) {
+        for (r, place) in topology.rows.iter().enumerate().filter(|(_, p)| !p.drives()) {
+            self.l[r] = self.wrench_of(topology.closures[place.closure].rows[place.index], place.closure);
+        }
+    }
+
+    /// Markers of the closures as far as Newton did not need them.
     #[inline(always)]
-    fn finish_rows(&mut self, topology: &Topology, parts: &Parts<T>) {
-        for c in 0..topology.closures.len() {
-            let closure = &topology.closures[c];
-            if closure.block.is_none() {
+    fn finish_ends(&mut self, topology: &Topology, parts: &Parts<T>) {
+        for (c, closure) in topology.closures.iter().enumerate() {
+            if closure.block.is_none() || (closure.solved_by_points && closure.has_axes) {
                 self.place_ends(topology, parts, c);
             }
             for (k, row) in closure.rows.iter().enumerate() {
-                if !topology.rows[closure.first_row + k].selected {
+                let place = &topology.rows[closure.first_row + k];
+                if place.drives() && !place.selected {
                     self.l[closure.first_row + k] = row.wrench(&self.ends[c]);
                 }
             }
@@ -529,25 +547,39 @@ impl<T: Real> State<T> {
         self.witness.within(
             #[inline(always)]
             || {
-                let mut worst = Residuals::default();
+                let (per_size, zero) = (self.witness.like(1.0 / self.size), self.witness.zero());
+                let (mut largest, mut scaled) = (zero, zero);
                 for (r, place) in topology.rows.iter().enumerate() {
                     if place.is_term {
                         continue;
                     }
+                    let residual = if place.selected {
+                        self.residual[r].abs()
+                    } else {
+                        self.residual_of(topology, parts, drivers, r).abs()
+                    };
                     let row = topology.closures[place.closure].rows[place.index];
-                    let residual = self.residual_of(topology, parts, drivers, r).abs().largest();
-                    let scaled = if row.is_length() { residual / self.size } else { residual };
-                    // Written so that a NaN is the largest of all.
-                    if !(residual <= worst.largest) {
-                        worst.largest = residual;
-                    }
-                    if !(scaled <= worst.scaled) {
-                        (worst.scaled, worst.of_row, worst.row) = (scaled, residual, r);
-                    }
+                    largest = largest.larger(residual);
+                    scaled = scaled.larger(if row.is_length() { residual * per_size } else { residual });
                 }
-                worst
+                Residuals { largest: largest.largest(), scaled: scaled.largest() }
             },
         )
+    }
+
+    /// The row that fails most, and its residual.
+    pub fn worst_row(&self, topology: &Topology, parts: &Parts<T>, drivers: &[[T; 3]]) -> (usize, f64) {
+        let mut worst = (0, 0.0, 0.0);
+        for (r, place) in topology.rows.iter().enumerate().filter(|(_, p)| !p.is_term) {
+            let row = topology.closures[place.closure].rows[place.index];
+            let residual = self.residual_of(topology, parts, drivers, r).abs().largest();
+            let scaled = if row.is_length() { residual / self.size } else { residual };
+            // Written so that a NaN is the largest of all.
+            if !(scaled <= worst.1) {
+                worst = (r, scaled, residual);
+            }
+        }
+        (worst.0, worst.2)
     }
 
     /// The coordinate that a coupler's term counts, with its speed and acceleration.
@@ -600,9 +632,12 @@ impl<T: Real> State<T> {
     #[inline(always)]
     fn rates_of_twists(&mut self, topology: &Topology, order: usize) {
         for link in &topology.links {
+            if link.parent == GROUND && link.steps.len() == 1 {
+                continue; // it keeps its twist
+            }
             let mut v = self.v[link.parent.0];
             let mut a = self.a[link.parent.0];
-            for step in &link.steps {
+            for (n, step) in link.steps.iter().enumerate() {
                 let range = step.first..step.first + step.freedom.coordinates();
                 for c in range.clone() {
                     if order == 1 {
@@ -611,15 +646,20 @@ impl<T: Real> State<T> {
                         self.xdd[c] = a.ad(self.x[c]) + v.ad(self.xd[c]);
                     }
                 }
+                if n + 1 == link.steps.len() {
+                    break;
+                }
                 for c in range {
                     v += self.x[c] * self.qd[c];
-                    a += self.x[c] * self.qdd[c] + self.xd[c] * self.qd[c];
+                    if order > 1 {
+                        a += self.x[c] * self.qdd[c] + self.xd[c] * self.qd[c];
+                    }
                 }
             }
         }
     }
 
-    /// First or second time derivative of the wrenches.
+    /// First time derivative of the wrenches that the motion needs; or all of what sensitivities need besides.
     #[inline(always)]
     fn rates_of_wrenches(&mut self, topology: &Topology, order: usize) {
         for (c, closure) in topology.closures.iter().enumerate() {
@@ -630,11 +670,14 @@ impl<T: Real> State<T> {
                 rates = self.walk(c, k, &rates);
             }
             for (k, row) in closure.rows.iter().enumerate() {
-                let [first, second] = row.wrench_rates(&self.ends[c], &rates);
+                let r = closure.first_row + k;
+                let drives = topology.rows[r].drives();
                 if order == 1 {
-                    self.ld[closure.first_row + k] = first;
+                    if drives {
+                        [self.ld[r], _] = row.wrench_rates(&self.ends[c], &rates);
+                    }
                 } else {
-                    self.ldd[closure.first_row + k] = second;
+                    [self.ld[r], self.ldd[r]] = row.wrench_rates(&self.ends[c], &rates);
                 }
             }
         }
@@ -685,8 +728,14 @@ pub(crate) fn factors_of<T: Real>(
 
 /// A driver row's derivative of that order; 0 for the other rows.
 #[inline(always)]
-fn demand<T: Real>(topology: &Topology, drivers: &[[T; 3]], r: usize, order: usize, witness: T) -> T {
-    match topology.closures[topology.rows[r].closure].driver {
+fn demand<T: Real>(
+    topology: &Topology,
+    drivers: &[[T; 3]],
+    place: &RowPlace,
+    order: usize,
+    witness: T,
+) -> T {
+    match topology.closures[place.closure].driver {
         Some(d) => drivers[d.0][order],
         None => witness.zero(),
     }
@@ -709,18 +758,16 @@ pub(crate) fn level<T: Real>(
     factors: &mut [Factors<T>],
     x: &[Twist<T>],
     l: &[Wrench<T>],
-    bias: &[Twist<T>],
+    bias: Option<&[Twist<T>]>,
     row_rhs: &[T],
     u: &mut [T],
     out: &mut [Twist<T>],
     rhs: &mut [T],
 ) {
-    carry(topology, topology.driven_links(), x, bias, u, out);
+    carry(topology, topology.driven_links(), x, bias, u, out, |_| true);
     for (b, block) in topology.blocks.iter().enumerate() {
-        for &c in &block.unknowns {
-            u[c] = row_rhs[block.selected[0]].zero();
-        }
-        carry(topology, block.links.clone(), x, bias, u, out);
+        // First as if the unknowns were zero: what the rows miss then is theirs to make up.
+        carry(topology, block.links.clone(), x, bias, u, out, |step| step.is_driven);
         for (k, &r) in block.selected.iter().enumerate() {
             rhs[k] = row_rhs[r] - along(topology, l, out, r);
         }
@@ -728,24 +775,28 @@ pub(crate) fn level<T: Real>(
         for (k, &c) in block.unknowns.iter().enumerate() {
             u[c] = rhs[k];
         }
-        carry(topology, block.links.clone(), x, bias, u, out);
+        carry(topology, block.links.clone(), x, bias, u, out, |_| true);
     }
 }
 
-/// `out_child = out_parent + bias_link + sum x_a u_a` for these links.
+/// `out_child = out_parent + bias_link + sum x_a u_a` for these links, over the freedoms that count.
 #[inline(always)]
 fn carry<T: Real>(
     topology: &Topology,
     links: std::ops::Range<usize>,
     x: &[Twist<T>],
-    bias: &[Twist<T>],
+    bias: Option<&[Twist<T>]>,
     u: &[T],
     out: &mut [Twist<T>],
+    counts: impl Fn(&Step) -> bool,
 ) {
     for k in links {
         let link = &topology.links[k];
-        let mut w = out[link.parent.0] + bias[k];
-        for step in &link.steps {
+        let mut w = out[link.parent.0];
+        if let Some(bias) = bias {
+            w += bias[k];
+        }
+        for step in link.steps.iter().filter(|s| counts(s)) {
             for c in step.first..step.first + step.freedom.coordinates() {
                 w += x[c] * u[c];
             }

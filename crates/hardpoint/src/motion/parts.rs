@@ -1,18 +1,20 @@
 //! A design laid out in the order in which the plan walks it.
 
 use crate::law::Law;
-use crate::model::{Curve, Geometry, Model};
+use crate::model::{BodyId, Curve, GROUND, Geometry, Model};
 use crate::space::{LANES, Pose, Real};
 use crate::topology::Topology;
 
 /// Marker poses per link and per closure, one design per lane.
+///
+/// A body is known by the marker of the link that places it: all others are given as seen from that one.
 #[derive(Clone, Debug)]
 pub(crate) struct Parts<T> {
-    /// Per link: the marker on the parent, in the parent.
+    /// Per link: the marker on the parent.
     pub parent_marker: Vec<Pose<T>>,
-    /// Per link: the child, seen from its marker.
+    /// Per link: the child's own frame.
     pub child_from_marker: Vec<Pose<T>>,
-    /// Per closure: marker i in body i, marker j in body j.
+    /// Per closure: marker i on body i, marker j on body j.
     pub ends: Vec<[Pose<T>; 2]>,
     /// Per row: what it keeps of the design configuration, like the length of a rod; 0 where it keeps nothing.
     pub kept: Vec<T>,
@@ -27,34 +29,37 @@ impl<T: Real> Parts<T> {
     pub fn new(model: &Model, topology: &Topology, designs: &[Geometry], witness: T) -> Self {
         let lane = |k: usize| &designs[k.min(designs.len() - 1)];
         let marker = |joint: usize, end: usize| Pose::gather(witness, |k| lane(k).markers[joint][end]);
+        // Per body, its frame as seen from the marker that places it.
+        let mut seen = vec![Pose::IDENTITY.spread(witness); model.bodies.len()];
+        for link in &topology.links {
+            if let Some(j) = link.joint {
+                // The freedoms end in a frame that is parallel to their first one in the design configuration;
+                // where the joint's own markers are not, the child's is turned back.
+                let frames = &model.joints[j.0].frames;
+                let (parent, child) = (frames[link.parent_end], frames[1 - link.parent_end]);
+                let mut m = marker(j.0, 1 - link.parent_end);
+                if parent != child {
+                    m.rot = m.rot * (child.transpose() * parent).spread(witness);
+                }
+                seen[link.child.0] = m.inverse();
+            }
+        }
+        let on = |body: BodyId, m: Pose<T>| if body == GROUND { m } else { seen[body.0].compose(m) };
         Self {
             parent_marker: topology
                 .links
                 .iter()
                 .map(|l| match l.joint {
-                    Some(j) => marker(j.0, l.parent_end),
+                    Some(j) => on(l.parent, marker(j.0, l.parent_end)),
                     None => model.bodies[l.child.0].frame.spread(witness),
                 })
                 .collect(),
-            child_from_marker: topology
-                .links
+            child_from_marker: topology.links.iter().map(|l| seen[l.child.0]).collect(),
+            ends: topology
+                .closures
                 .iter()
-                .map(|l| match l.joint {
-                    Some(j) => {
-                        // The freedoms end in a frame that is parallel to their first one in the design configuration;
-                        // where the joint's own markers are not, the child's is turned back.
-                        let frames = &model.joints[j.0].frames;
-                        let (parent, child) = (frames[l.parent_end], frames[1 - l.parent_end]);
-                        let mut m = marker(j.0, 1 - l.parent_end);
-                        if parent != child {
-                            m.rot = m.rot * (child.transpose() * parent).spread(witness);
-                        }
-                        m.inverse()
-                    }
-                    None => Pose::IDENTITY.spread(witness),
-                })
+                .map(|c| [0, 1].map(|end| on(c.bodies[end], marker(c.joint.0, end))))
                 .collect(),
-            ends: topology.closures.iter().map(|c| [marker(c.joint.0, 0), marker(c.joint.0, 1)]).collect(),
             kept: topology
                 .rows
                 .iter()

@@ -268,7 +268,8 @@ impl<'m, T: Real> Stepper<'m, T> {
         // On the way to being closed, redundant constraints need not agree yet.
         let half_open = path == Path::Assembly && t < 1.0;
         if !half_open && !(self.residuals.scaled <= LOCKED) {
-            return Err(Refusal::Locked { row: self.residuals.row, residual: self.residuals.of_row });
+            let (row, residual) = self.state.worst_row(&self.topology, &self.parts, &self.drivers);
+            return Err(Refusal::Locked { row, residual });
         }
         self.reselect()
     }
@@ -282,13 +283,13 @@ impl<'m, T: Real> Stepper<'m, T> {
                 let (s, saved) = (&mut self.state, &self.saved);
                 let like = s.witness;
                 let (h1, h2, h3) = (like.like(h), like.like(0.5 * h * h), like.like(h * h * h / 6.0));
-                let mut most = 0.0_f64;
+                let (mut most, per_size) = (like.zero(), like.like(1.0 / s.size));
                 for (c, coordinate) in self.topology.coordinates.iter().enumerate() {
                     let step = saved.qd[c] * h1 + saved.qdd[c] * h2 + saved.jerk[c] * h3;
                     s.q[c] = saved.q[c] + step;
                     if let Source::Unknown { .. } = coordinate.source {
-                        let size = if coordinate.is_length { s.size } else { 1.0 };
-                        most = most.max(step.abs().largest() / size);
+                        let step = if coordinate.is_length { step * per_size } else { step };
+                        most = most.larger(step.abs());
                     }
                 }
                 s.balls.copy_from_slice(&saved.balls);
@@ -300,7 +301,7 @@ impl<'m, T: Real> Stepper<'m, T> {
                         s.near[k] = x + v * h1 + a * h2;
                     }
                 }
-                most
+                most.largest()
             },
         )
     }
@@ -346,25 +347,21 @@ impl<'m, T: Real> Stepper<'m, T> {
             #[inline(always)]
             || {
                 let (s, saved) = (&self.state, &self.saved);
-                let (mut fastest, mut difference) = (0.0_f64, 0.0_f64);
+                let (zero, per_size) = (s.witness.zero(), s.witness.like(1.0 / s.size));
+                let (mut fastest, mut difference) = (zero, zero);
                 for (c, coordinate) in self.topology.coordinates.iter().enumerate() {
                     if let Source::Unknown { .. } = coordinate.source {
-                        let size = if coordinate.is_length { s.size } else { 1.0 };
                         let predicted = saved.qd[c] + saved.qdd[c] * s.witness.like(h);
-                        fastest =
-                            fastest.max(s.qd[c].abs().largest().max(saved.qd[c].abs().largest()) / size);
-                        let d = (s.qd[c] - predicted).abs().largest() / size;
-                        // Written so that NaN counts as infinitely far.
-                        difference = if d <= difference {
-                            difference
-                        } else if d.is_nan() {
-                            f64::INFINITY
-                        } else {
-                            d
-                        };
+                        let speed = s.qd[c].abs().larger(saved.qd[c].abs());
+                        let apart = (s.qd[c] - predicted).abs();
+                        let unit = if coordinate.is_length { per_size } else { zero.like(1.0) };
+                        fastest = fastest.larger(speed * unit);
+                        difference = difference.larger(apart * unit);
                     }
                 }
-                difference <= (SPEED_TRUST * fastest).max(SPEED_FLOOR * self.fastest_driver)
+                // Written so that NaN is refused.
+                difference.largest()
+                    <= f64::max(SPEED_TRUST * fastest.largest(), SPEED_FLOOR * self.fastest_driver)
             },
         )
     }
@@ -421,11 +418,12 @@ impl<'m, T: Real> Stepper<'m, T> {
                 continue;
             }
             self.try_others[b] = LOOK_AGAIN * ratio;
-            let (block, s) = (&self.topology.blocks[b], &self.state);
             let rows = self.topology.rows_of_block(b);
-            if rows.len() == block.unknowns.len() {
+            if rows.len() == self.topology.blocks[b].unknowns.len() {
                 continue;
             }
+            self.state.finish_wrenches(&self.topology);
+            let (block, s) = (&self.topology.blocks[b], &self.state);
             let matrix = rows
                 .iter()
                 .map(|&r| {

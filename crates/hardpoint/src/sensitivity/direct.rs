@@ -269,7 +269,7 @@ impl<T: Real> Direct<T> {
             &mut state.factors,
             &state.x,
             &state.l,
-            &self.bias,
+            Some(&self.bias),
             &self.row_rhs,
             &mut self.s[order],
             &mut self.w[order],

@@ -2,22 +2,32 @@
 
 use super::Real;
 
+/// A factor of the elimination above this says that another order of the rows would keep more digits.
+const MOST_GROWTH: f64 = 4.0;
+
 /// LU factors of one block's Jacobian, kept for every right-hand side of a step.
 ///
-/// Rows are pivoted by the smallest lane of their candidates, so that one order serves all lanes.
+/// The order of the pivots is chosen once and watched: from one step to the next it hardly ever changes. It goes by the
+/// smallest lane of the candidates, so that one order serves all lanes.
 #[derive(Clone, Debug)]
 pub(crate) struct Elimination<T> {
     n: usize,
-    /// Row-major n x n: the matrix on entry, its factors after [`Elimination::factor`].
+    /// Row-major n x n: the matrix.
+    rows: Vec<T>,
+    /// Its factors, rows in the order of the pivots, diagonal inverted.
     a: Vec<T>,
     order: Vec<usize>,
+    /// Whether that order is an even permutation.
+    even: bool,
+    /// The factors may be as large as this before another order is looked for.
+    most_growth: f64,
     scratch: Vec<T>,
 }
 
 /// What a factorisation found.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Factored {
-    /// Smallest pivot over the largest, over all lanes; 0 where singular, NaN where not finite.
+    /// Smallest pivot over the largest, over all lanes; 0 where singular or not finite.
     pub pivot_ratio: f64,
     /// Whether the determinant is positive (lane 0 speaks; lanes that disagree make the ratio 0).
     pub positive: bool,
@@ -25,27 +35,96 @@ pub(crate) struct Factored {
 
 impl<T: Real> Elimination<T> {
     pub fn new(n: usize, witness: T) -> Self {
-        let o = witness.zero();
-        Self { n, a: vec![o; n * n], order: (0..n).collect(), scratch: vec![o; n] }
+        let matrix = vec![witness.zero(); n * n];
+        Self {
+            n,
+            rows: matrix.clone(),
+            a: matrix,
+            order: (0..n).collect(),
+            even: true,
+            most_growth: MOST_GROWTH,
+            scratch: vec![witness.zero(); n],
+        }
     }
 
     /// Row `r`, to be filled before [`Elimination::factor`].
     #[inline(always)]
     pub fn row_mut(&mut self, r: usize) -> &mut [T] {
-        &mut self.a[r * self.n..(r + 1) * self.n]
+        &mut self.rows[r * self.n..(r + 1) * self.n]
     }
 
     #[inline(always)]
     pub fn factor(&mut self) -> Factored {
+        if self.n == 0 {
+            return Factored { pivot_ratio: 1.0, positive: true };
+        }
+        // Written so that NaN is looked at again, too.
+        let (found, growth) = self.eliminate();
+        if growth <= self.most_growth {
+            return found;
+        }
+        self.choose_order();
+        let (found, growth) = self.eliminate();
+        // Lanes that want different orders would look for a better one in vain at every step.
+        self.most_growth = f64::max(MOST_GROWTH, 2.0 * growth);
+        found
+    }
+
+    /// Eliminates in the present order; returns the largest factor, too.
+    #[inline(always)]
+    fn eliminate(&mut self) -> (Factored, f64) {
         let n = self.n;
-        let a = &mut self.a[..n * n];
-        let order = &mut self.order[..n];
+        let (rows, a) = (&self.rows[..n * n], &mut self.a[..n * n]);
+        for (to, &from) in a.chunks_exact_mut(n).zip(&self.order) {
+            to.copy_from_slice(&rows[from * n..(from + 1) * n]);
+        }
+        let first = a[0];
+        let (zero, one) = (first.zero(), first.like(1.0));
+        // The largest of the pivots and of their inverses, the product of their signs, the largest factor.
+        let (mut most, mut least, mut sign, mut growth) = (zero, zero, one, zero);
+        for k in 0..n {
+            let pivot = a[k * n + k];
+            let inverse = one / pivot;
+            a[k * n + k] = inverse;
+            most = most.larger(pivot.abs());
+            least = least.larger(inverse.abs());
+            sign = sign * (pivot * inverse.abs());
+            for r in k + 1..n {
+                let m = a[r * n + k] * inverse;
+                a[r * n + k] = m;
+                growth = growth.larger(m.abs());
+                for c in k + 1..n {
+                    let x = a[k * n + c];
+                    a[r * n + c] -= m * x;
+                }
+            }
+        }
+        let (low, high) = (sign.smallest(), sign.largest());
+        // Lanes of different signs are on different branches. NaN, as of a pivot of zero, is no sign either.
+        let regular = low > 0.0 || high < 0.0;
+        let pivot_ratio = if regular { 1.0 / (most.largest() * least.largest()) } else { 0.0 };
+        (Factored { pivot_ratio, positive: (low > 0.0) == self.even }, growth.largest())
+    }
+
+    /// Chooses the order of the pivots by their sizes.
+    #[inline(never)]
+    fn choose_order(&mut self) {
+        let witness = self.a[0];
+        witness.within(
+            #[inline(always)]
+            || self.choosing_order(),
+        );
+    }
+
+    #[inline(always)]
+    fn choosing_order(&mut self) {
+        let n = self.n;
+        let (a, order) = (&mut self.a[..n * n], &mut self.order[..n]);
+        a.copy_from_slice(&self.rows);
+        self.even = true;
         for (r, o) in order.iter_mut().enumerate() {
             *o = r;
         }
-        let (mut least, mut most) = (f64::INFINITY, 0.0_f64);
-        let mut positive = true;
-        let mut split = false;
         for k in 0..n {
             let (mut best, mut size) = (k, a[k * n + k].abs().smallest());
             for r in k + 1..n {
@@ -59,37 +138,17 @@ impl<T: Real> Elimination<T> {
                 for c in 0..n {
                     a.swap(best * n + c, k * n + c);
                 }
-                positive = !positive;
+                self.even = !self.even;
             }
-            let pivot = a[k * n + k];
-            // Written so that a NaN pivot makes the ratio NaN or zero, never a good number.
-            if !(size > 0.0) {
-                return Factored { pivot_ratio: 0.0, positive };
-            }
-            least = least.min(size);
-            most = most.max(pivot.abs().largest());
-            let (low, high) = (pivot.smallest(), pivot.largest());
-            split |= low < 0.0 && high > 0.0;
-            positive ^= low < 0.0;
-            let inverse = pivot.like(1.0) / pivot;
-            a[k * n + k] = inverse;
+            let inverse = a[k * n + k].like(1.0) / a[k * n + k];
             for r in k + 1..n {
                 let m = a[r * n + k] * inverse;
-                a[r * n + k] = m;
                 for c in k + 1..n {
                     let x = a[k * n + c];
                     a[r * n + c] -= m * x;
                 }
             }
         }
-        let pivot_ratio = if n == 0 {
-            1.0
-        } else if split {
-            0.0
-        } else {
-            least / most
-        };
-        Factored { pivot_ratio, positive }
     }
 
     /// Takes over the factors of a scalar system, the same in every lane.
@@ -98,6 +157,7 @@ impl<T: Real> Elimination<T> {
             *to = witness.like(*x);
         }
         self.order.copy_from_slice(&from.order);
+        (self.even, self.most_growth) = (from.even, from.most_growth);
     }
 
     /// Replaces the right-hand side by the solution.

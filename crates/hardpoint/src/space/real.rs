@@ -3,7 +3,7 @@
 use std::fmt::Debug;
 use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
 
-use fearless_simd::{Simd, SimdBase, SimdFloat, f64x8};
+use fearless_simd::{Select, Simd, SimdBase, SimdFloat, SimdMask, f64x8};
 
 /// One `f64`, or several of them side by side in SIMD lanes.
 ///
@@ -52,18 +52,11 @@ pub trait Real:
     /// begin with it, so that they need not be inlined into their callers to get wide instructions.
     fn within<R>(self, f: impl FnOnce() -> R) -> R;
 
+    /// The larger of two, lane by lane; NaN where either is NaN.
+    fn larger(self, o: Self) -> Self;
+
     /// The largest lane; NaN if any lane is NaN.
-    #[inline(always)]
-    fn largest(self) -> f64 {
-        let mut most = self.lane(0);
-        for k in 1..Self::LANES {
-            let x = self.lane(k);
-            if x.is_nan() || x > most {
-                most = x;
-            }
-        }
-        most
-    }
+    fn largest(self) -> f64;
 
     /// The smallest lane; NaN if any lane is NaN.
     #[inline(always)]
@@ -137,6 +130,14 @@ impl Real for f64 {
         f64::abs(self)
     }
     #[inline(always)]
+    fn larger(self, o: Self) -> Self {
+        if o <= self || self.is_nan() { self } else { o }
+    }
+    #[inline(always)]
+    fn largest(self) -> f64 {
+        self
+    }
+    #[inline(always)]
     fn round(self) -> Self {
         // Adding and taking away 1.5 * 2^52 rounds to the nearest integer without the library call
         // that `round_ties_even` is on a baseline CPU; exact for |x| < 2^51.
@@ -185,6 +186,14 @@ impl<S: Simd> Real for f64x8<S> {
         SimdBase::abs(self)
     }
     #[inline(always)]
+    fn larger(self, o: Self) -> Self {
+        (o.simd_le(self) | !self.simd_eq(self)).select(self, o)
+    }
+    #[inline(always)]
+    fn largest(self) -> f64 {
+        if self.simd_eq(self).all_true() { self.reduce_max() } else { f64::NAN }
+    }
+    #[inline(always)]
     fn round(self) -> Self {
         self.round_ties_even()
     }
@@ -226,7 +235,10 @@ mod tests {
             }
             assert_eq!(x.largest(), x.lane(7));
             assert_eq!(x.smallest(), -3.0);
-            assert!(w.like_lanes(|k| if k == 5 { f64::NAN } else { 1.0 }).largest().is_nan());
+            let broken = w.like_lanes(|k| if k == 5 { f64::NAN } else { 1.0 });
+            assert!(broken.largest().is_nan() && broken.smallest().is_nan());
+            assert!(broken.larger(w).lane(5).is_nan() && w.larger(broken).lane(5).is_nan());
+            assert_eq!((broken.larger(x).lane(0), x.larger(broken).lane(7)), (1.0, x.lane(7)));
         });
     }
 }

@@ -200,6 +200,9 @@ fn assign(
             topology.coordinates[c].source = Source::Unknown { block, column };
         }
     }
+    for step in topology.links.iter_mut().flat_map(|l| &mut l.steps) {
+        step.is_driven = matches!(topology.coordinates[step.first].source, Source::Driven(_));
+    }
     for row in &mut topology.rows {
         row.selected = false; // also the rows that no block has
     }

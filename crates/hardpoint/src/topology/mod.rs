@@ -106,6 +106,8 @@ pub struct Step {
     pub sign: f64,
     /// Its first coordinate in [`Topology::coordinates`].
     pub first: usize,
+    /// Whether a driver prescribes it.
+    pub is_driven: bool,
 }
 
 /// A coordinate of the tree.
@@ -150,6 +152,10 @@ pub struct Closure {
     pub first_row: usize,
     /// If a point follows a curve: which of all curves, counted over the closures.
     pub contact: Option<usize>,
+    /// Whether any of its rows asks for the markers' axes, rather than for their points only.
+    pub has_axes: bool,
+    /// Whether the rows that it is solved with ask for points only.
+    pub solved_by_points: bool,
     /// The block that solves it; `None` if no unknown moves it.
     pub block: Option<usize>,
     /// Its columns in that block: column, coordinate, and +1 or -1 for the side of j or i.
@@ -267,6 +273,11 @@ impl Topology {
         for r in self.rows_of_block(block) {
             self.rows[r].selected = selected.binary_search(&r).is_ok();
         }
+        for &c in &self.blocks[block].closures {
+            let closure = &mut self.closures[c];
+            let rows = closure.rows.iter().zip(&self.rows[closure.first_row..]);
+            closure.solved_by_points = rows.filter(|(_, p)| p.drives()).all(|(row, _)| !row.has_axes());
+        }
         self.blocks[block].selected = selected;
     }
 
@@ -279,6 +290,13 @@ impl Topology {
         joints.sort_unstable();
         joints.dedup();
         joints
+    }
+}
+
+impl RowPlace {
+    /// Whether the motion needs its wrench: it is solved with, or a term of a coupler.
+    pub fn drives(&self) -> bool {
+        self.selected || self.is_term || !self.terms.is_empty()
     }
 }
 

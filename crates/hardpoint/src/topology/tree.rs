@@ -202,7 +202,7 @@ fn add_link(
     let link = topology.links.len();
     let mut steps = Vec::new();
     for &(freedom, driver) in freedoms {
-        steps.push(Step { freedom, sign, first: topology.coordinates.len() });
+        steps.push(Step { freedom, sign, first: topology.coordinates.len(), is_driven: false });
         for _ in 0..freedom.coordinates() {
             topology.coordinates.push(Coordinate {
                 link,
@@ -256,9 +256,11 @@ fn add_closure(
         driver,
         coupler,
         bodies,
+        has_axes: rows.iter().any(|r| r.has_axes()),
         rows,
         first_row,
         contact,
+        solved_by_points: false,
         block: None,
         entries: Vec::new(),
         links,
