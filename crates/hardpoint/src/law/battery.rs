@@ -237,11 +237,108 @@ fn parameters_of_an_expression_act_as_the_numbers_they_stand_for() {
     assert!(error.help.unwrap().starts_with("did you mean `amplitude`? known are t, pi, amplitude, sin,"));
 }
 
+/// Expressions with every operation of the language, and among them every side that there is.
+const EXPRESSIONS: [&str; 24] = [
+    "0.06*sin(pi*t)",
+    "360*t",
+    "7",
+    "-cos(3*t - 1)/(2 + t^2)",
+    "sqrt(t) + t^-2",
+    "t^5 - (t + 1)^-3 + t^16",
+    "t^0.5 + t^1.5 + 2^t",
+    "tan(t) + asin(t/3) + acos(t/3) + atan(t)",
+    "sinh(t/9) + cosh(t/9) + tanh(t)",
+    "exp(-t) + ln(t) + log10(t)",
+    "atan2(sin(t), cos(t))",
+    "hypot(t, 3)",
+    "pow(2 + sin(t), t/9)",
+    "abs(t - 1) + abs(sin(t))",
+    "abs(t^3)",
+    "min(t, 1, 3 - t)",
+    "max(t^2, 2*t)",
+    "step(t, 0.5, -1, 1.5, 2)",
+    "step(sin(t), -0.5, t, 0.5, 2*t)",
+    "if(t < 1, t, 2 - t)",
+    "if(sin(t) >= 0.5, sqrt(t), 1/t)",
+    "if(t > 0, sqrt(t), 0)",
+    "sin(1e9*t)",
+    "t + (2*t + (3*t + (4*t + (5*t + (6*t + (7*t + (8*t + (9*t + (10*t + (11*t + (12*t + (13*t + sin(t)))))))))))))",
+];
+
+/// Eight times each: on different sides and in different segments, at knots and just beside them, the same in all lanes,
+/// backwards, of both signs, and far away.
+const EIGHT_TIMES: [[f64; 8]; 9] = [
+    [0.0, 0.1, 0.2, 0.3, 0.41, 0.5, 0.6, 0.7],
+    [0.0, 0.4, 0.45, 1.1, 1.2, 1.7, 1.9, 2.2],
+    [2.2, 2.6, 0.1, 1.0, 0.5, 1.5, 1.3, 0.4],
+    [0.7; 8],
+    [3.0, 2.5, 2.0, 1.5, 1.0, 0.5, 0.0, -0.5],
+    [-3.0, -2.6, -2.2, -1.1, -0.4, -1e-3, -0.0, 0.0],
+    [-1e-13, 1e-13, 2.2 + 1e-13, 2.2 + 1e-9, 1.1 - 1e-15, 1.1 + 1e-15, 0.4 - 1e-12, 1e-300],
+    [1e6, 1e6 + 0.1, -1e6, 123_456.789, 3e3, -77.0, 2.9e5, 1e6 + 1.7],
+    [f64::NAN, 0.7, f64::INFINITY, 1.9, -f64::INFINITY, 1e6, 1e300, 0.1],
+];
+
+#[test]
+fn eight_times_at_once_are_each_as_if_alone() {
+    let mut laws = every_kind();
+    laws.extend(EXPRESSIONS.map(|text| Law::parse(text).unwrap()));
+    laws.push(Law::parse_with("a*sin(2*pi*f*t) + b", &[("a", 2.0), ("f", 1.5), ("b", 0.3)]).unwrap());
+    laws.push(Law::constant_speed(ConstantSpeed { speed: -3.0, offset: 1.0 }).unwrap());
+    laws.push(Law::constant(-2.5).scaled(3.0));
+    for k in 0..laws.len() {
+        // With a parameter that has been changed, too, be it to something impossible.
+        let count = laws[k].parameters().len();
+        laws.extend((0..count).map(|parameter| laws[k].with_parameter(parameter, 0.9)).collect::<Vec<_>>());
+    }
+    for law in &laws {
+        for times in &EIGHT_TIMES {
+            let at = law.at_times(times);
+            let alone = times.map(|t| law.at(t).derivatives());
+            for order in 0..3 {
+                // A sine near its zero is off by the last place of its amplitude, not of itself.
+                let finite = alone.iter().map(|f| f[order].abs()).filter(|f| f.is_finite());
+                let size = finite.fold(0.0, f64::max);
+                for lane in 0..8 {
+                    let (ours, alone) = (at[order][lane], alone[lane][order]);
+                    // Where the truth is beyond all numbers, either may say so as infinite or as not a number.
+                    let is_same = ours == alone || !ours.is_finite() && !alone.is_finite();
+                    assert!(
+                        is_same || (ours - alone).abs() <= 4.0 * f64::EPSILON * size,
+                        "{law}, derivative {order} at {}: {ours} is not {alone}, by {:e}",
+                        times[lane],
+                        (ours - alone) / (size * f64::EPSILON)
+                    );
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn what_has_no_sine_is_the_same_to_the_last_bit_at_eight_times() {
+    for law in every_kind() {
+        let is_exact = matches!(law.kind, Kind::Polynomial(_) | Kind::SmoothStep(_) | Kind::Spline(_));
+        for times in EIGHT_TIMES.iter().filter(|_| is_exact) {
+            let at = law.at_times(times);
+            for lane in (0..8).filter(|&lane| times[lane].abs() <= 1e6) {
+                let alone = law.at(times[lane]).derivatives();
+                assert_eq!(
+                    [0, 1, 2].map(|n| at[n][lane].to_bits()),
+                    [0, 1, 2].map(|n| alone[n].to_bits()),
+                    "{law}"
+                );
+            }
+        }
+    }
+}
+
 #[test]
 fn no_evaluation_allocates() {
     for law in every_kind() {
         let counted = allocation_counter::measure(|| {
             std::hint::black_box(law.at(0.7));
+            std::hint::black_box(law.at_times(&EIGHT_TIMES[1]));
         });
         assert_eq!(counted.count_total, 0, "{law}");
     }

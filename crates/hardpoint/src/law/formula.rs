@@ -6,9 +6,11 @@ use super::expression::{self, ExpressionError};
 use super::jet::TimeJet;
 use super::jumps::{Break, find_switches};
 use super::kind::Shape;
+use super::lanes::Lanes;
 use super::parameter::{Parameter, ParameterKind, Seed, parameter, seeded};
 use super::program::{Program, fixed};
 use super::scalar::Scalar;
+use crate::space::Real;
 
 /// An expression, its parameters, and what evaluates it.
 #[derive(Clone)]
@@ -48,6 +50,11 @@ impl Shape for Formula {
             None => self.program.evaluate(time, fixed),
             Some(_) => self.symbolic.evaluate(time, |index| seeded(self.values[index], index, seed)),
         }
+    }
+
+    #[inline(always)]
+    fn at_lanes<R: Real>(&self, times: Lanes<R>) -> TimeJet<Lanes<R>> {
+        self.program.at_lanes(times)
     }
 
     fn parameters(&self) -> Vec<Parameter> {

@@ -6,8 +6,10 @@ use std::fmt;
 use super::error::{LawError, check_finite};
 use super::jet::TimeJet;
 use super::kind::{Shape, write_sum};
+use super::lanes::Lanes;
 use super::parameter::{Parameter, ParameterKind, Seed, parameter, seeded};
-use super::scalar::Scalar;
+use super::scalar::{Arithmetic, Scalar};
+use crate::space::Real;
 
 /// A harmonic law: offset + amplitude sin(2π frequency t + phase).
 ///
@@ -42,7 +44,17 @@ impl Shape for Harmonic {
         let frequency: S = seeded(self.frequency, 1, seed);
         let phase: S = seeded(self.phase, 2, seed);
         let offset: S = seeded(self.offset, 3, seed);
-        time.times(frequency * TAU).plus(phase).sin().times(amplitude).plus(offset)
+        curve(time, amplitude, frequency, phase, offset)
+    }
+
+    #[inline(always)]
+    fn at_lanes<R: Real>(&self, times: Lanes<R>) -> TimeJet<Lanes<R>> {
+        let [amplitude, frequency, phase, offset] = [self.amplitude, self.frequency, self.phase, self.offset]
+            .map(
+                #[inline(always)]
+                |number| times.like(number),
+            );
+        curve(TimeJet::time(times), amplitude, frequency, phase, offset)
     }
 
     fn parameters(&self) -> Vec<Parameter> {
@@ -74,6 +86,12 @@ impl Shape for Harmonic {
             _ => &mut self.offset,
         } = value;
     }
+}
+
+/// offset + amplitude sin(2π frequency t + phase)
+#[inline(always)]
+fn curve<S: Arithmetic>(time: TimeJet<S>, amplitude: S, frequency: S, phase: S, offset: S) -> TimeJet<S> {
+    time.times(frequency * TAU).plus(phase).sin().times(amplitude).plus(offset)
 }
 
 /// The expression that is this law.

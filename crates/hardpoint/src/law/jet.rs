@@ -4,7 +4,7 @@ use std::cmp::Ordering;
 use std::f64::consts::LN_10;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
-use super::scalar::Scalar;
+use super::scalar::{Arithmetic, Scalar};
 
 /// A quantity's value and its first three time derivatives at one instant.
 ///
@@ -25,62 +25,127 @@ pub struct TimeJet<S = f64> {
     derivatives: [S; 4],
 }
 
-impl<S: Scalar> TimeJet<S> {
+impl<S: Arithmetic> TimeJet<S> {
     /// The quantity that is `value` at all times.
-    pub const fn constant(value: S) -> Self {
-        Self::from_derivatives([value, S::ZERO, S::ZERO, S::ZERO])
+    #[inline(always)]
+    pub fn constant(value: S) -> Self {
+        let zero = value.like(0.0);
+        Self::from_derivatives([value, zero, zero, zero])
     }
 
     /// The time itself, at time `t` in seconds.
-    pub const fn time(t: S) -> Self {
-        Self::from_derivatives([t, S::ONE, S::ZERO, S::ZERO])
+    #[inline(always)]
+    pub fn time(t: S) -> Self {
+        Self::from_derivatives([t, t.like(1.0), t.like(0.0), t.like(0.0)])
     }
 
     /// The quantity with the given value, first, second and third derivative.
+    #[inline(always)]
     pub const fn from_derivatives(derivatives: [S; 4]) -> Self {
         Self { derivatives }
     }
 
     /// The value and the first, second and third derivative.
+    #[inline(always)]
     pub const fn derivatives(self) -> [S; 4] {
         self.derivatives
     }
 
     /// The value f.
+    #[inline(always)]
     pub const fn value(self) -> S {
         self.derivatives[0]
     }
 
     /// The first time derivative df/dt.
+    #[inline(always)]
     pub const fn d(self) -> S {
         self.derivatives[1]
     }
 
     /// The second time derivative d²f/dt².
+    #[inline(always)]
     pub const fn dd(self) -> S {
         self.derivatives[2]
     }
 
     /// The third time derivative d³f/dt³.
+    #[inline(always)]
     pub const fn ddd(self) -> S {
         self.derivatives[3]
     }
 
-    /// Whether the value and all three derivatives are finite.
-    pub fn is_finite(self) -> bool {
-        self.derivatives.iter().all(|derivative| derivative.value().is_finite())
-    }
-
     /// The sine of an angle in radians.
+    #[inline(always)]
     pub fn sin(self) -> Self {
         let (sin, cos) = self.value().sin_cos();
         self.compose([sin, cos, -sin, -cos])
     }
 
     /// The cosine of an angle in radians.
+    #[inline(always)]
     pub fn cos(self) -> Self {
         let (sin, cos) = self.value().sin_cos();
         self.compose([cos, -sin, -cos, sin])
+    }
+
+    /// The square root.
+    #[inline(always)]
+    pub fn sqrt(self) -> Self {
+        let sqrt = self.value().sqrt();
+        let inverse = self.value().like(1.0) / self.value();
+        let g_d = sqrt.like(0.5) / sqrt;
+        self.compose([sqrt, g_d, g_d * inverse * -0.5, g_d * inverse * inverse * 0.75])
+    }
+
+    /// The power with a constant whole exponent.
+    #[inline(always)]
+    pub fn powi(self, exponent: i32) -> Self {
+        // As in `compose_power`, a vanishing coefficient wins over an infinite power.
+        let (x, p) = (self.value(), f64::from(exponent));
+        let mut g = [x.powi(exponent), x.like(0.0), x.like(0.0), x.like(0.0)];
+        let mut coefficient = p;
+        for k in 1..4 {
+            if coefficient != 0.0 {
+                g[k as usize] = x.powi(exponent.saturating_sub(k)) * coefficient;
+            }
+            coefficient *= p - f64::from(k);
+        }
+        self.compose(g)
+    }
+
+    /// This quantity times one that is the same at all times.
+    #[inline(always)]
+    pub(super) fn times(self, factor: S) -> Self {
+        let [f, d, dd, ddd] = self.derivatives;
+        Self::from_derivatives([f * factor, d * factor, dd * factor, ddd * factor])
+    }
+
+    /// This quantity plus one that is the same at all times.
+    #[inline(always)]
+    pub(super) fn plus(mut self, offset: S) -> Self {
+        self.derivatives[0] = self.derivatives[0] + offset;
+        self
+    }
+
+    /// g(self), from g and its first three derivatives at the value.
+    #[inline(always)]
+    fn compose(self, [g, g_d, g_dd, g_ddd]: [S; 4]) -> Self {
+        // (g∘u)' = g' u',  (g∘u)'' = g'' u'² + g' u'',  (g∘u)''' = g''' u'³ + 3 g'' u' u'' + g' u'''
+        let [_, d, dd, ddd] = self.derivatives;
+        Self::from_derivatives([
+            g,
+            g_d * d,
+            g_dd * d * d + g_d * dd,
+            g_ddd * d * d * d + g_dd * d * dd * 3.0 + g_d * ddd,
+        ])
+    }
+}
+
+impl<S: Scalar> TimeJet<S> {
+    /// Whether the value and all three derivatives are finite.
+    pub fn is_finite(self) -> bool {
+        self.derivatives.iter().all(|derivative| derivative.value().is_finite())
     }
 
     /// The tangent of an angle in radians.
@@ -165,22 +230,6 @@ impl<S: Scalar> TimeJet<S> {
         log10
     }
 
-    /// The square root.
-    pub fn sqrt(self) -> Self {
-        let sqrt = self.value().sqrt();
-        let inverse = S::ONE / self.value();
-        let g_d = S::fixed(0.5) / sqrt;
-        self.compose([sqrt, g_d, g_d * inverse * -0.5, g_d * inverse * inverse * 0.75])
-    }
-
-    /// The power with a constant whole exponent.
-    pub fn powi(self, exponent: i32) -> Self {
-        let x = self.value();
-        self.compose_power(S::fixed(f64::from(exponent)), |lowered_by| {
-            x.powi(exponent.saturating_sub(lowered_by))
-        })
-    }
-
     /// The power with a constant exponent.
     pub fn powf(self, exponent: S) -> Self {
         let x = self.value();
@@ -253,29 +302,6 @@ impl<S: Scalar> TimeJet<S> {
         Self::from_derivatives([S::fixed(f64::NAN); 4])
     }
 
-    /// This quantity times one that is the same at all times.
-    pub(super) fn times(self, factor: S) -> Self {
-        Self::from_derivatives(self.derivatives.map(|derivative| derivative * factor))
-    }
-
-    /// This quantity plus one that is the same at all times.
-    pub(super) fn plus(mut self, offset: S) -> Self {
-        self.derivatives[0] = self.derivatives[0] + offset;
-        self
-    }
-
-    /// g(self), from g and its first three derivatives at the value.
-    fn compose(self, [g, g_d, g_dd, g_ddd]: [S; 4]) -> Self {
-        // (g∘u)' = g' u',  (g∘u)'' = g'' u'² + g' u'',  (g∘u)''' = g''' u'³ + 3 g'' u' u'' + g' u'''
-        let [_, d, dd, ddd] = self.derivatives;
-        Self::from_derivatives([
-            g,
-            g_d * d,
-            g_dd * d * d + g_d * dd,
-            g_ddd * d * d * d + g_dd * d * dd * 3.0 + g_d * ddd,
-        ])
-    }
-
     /// The power with `exponent`, from the function that gives x^(exponent - k).
     fn compose_power(self, exponent: S, lowered: impl Fn(i32) -> S) -> Self {
         // g⁽ᵏ⁾ = p (p - 1) ... (p - k + 1) x^(p - k). A vanishing coefficient wins over an infinite power: the
@@ -306,27 +332,30 @@ fn asin_derivatives<S: Scalar>(x: S) -> [S; 3] {
     [s, x * s * s2, (x * x * 2.0 + 1.0) * s * s2 * s2]
 }
 
-impl<S: Scalar> Add for TimeJet<S> {
+impl<S: Arithmetic> Add for TimeJet<S> {
     type Output = Self;
 
+    #[inline(always)]
     fn add(self, other: Self) -> Self {
         let (a, b) = (self.derivatives, other.derivatives);
         Self::from_derivatives([a[0] + b[0], a[1] + b[1], a[2] + b[2], a[3] + b[3]])
     }
 }
 
-impl<S: Scalar> Sub for TimeJet<S> {
+impl<S: Arithmetic> Sub for TimeJet<S> {
     type Output = Self;
 
+    #[inline(always)]
     fn sub(self, other: Self) -> Self {
         let (a, b) = (self.derivatives, other.derivatives);
         Self::from_derivatives([a[0] - b[0], a[1] - b[1], a[2] - b[2], a[3] - b[3]])
     }
 }
 
-impl<S: Scalar> Mul for TimeJet<S> {
+impl<S: Arithmetic> Mul for TimeJet<S> {
     type Output = Self;
 
+    #[inline(always)]
     fn mul(self, other: Self) -> Self {
         // (a b)⁽ⁿ⁾ = Σ C(n, k) a⁽ⁿ⁻ᵏ⁾ b⁽ᵏ⁾
         let (a, b) = (self.derivatives, other.derivatives);
@@ -339,9 +368,10 @@ impl<S: Scalar> Mul for TimeJet<S> {
     }
 }
 
-impl<S: Scalar> Div for TimeJet<S> {
+impl<S: Arithmetic> Div for TimeJet<S> {
     type Output = Self;
 
+    #[inline(always)]
     fn div(self, other: Self) -> Self {
         // From a = q b, differentiated: q⁽ⁿ⁾ b = a⁽ⁿ⁾ - Σ_{k≥1} C(n, k) q⁽ⁿ⁻ᵏ⁾ b⁽ᵏ⁾
         let (a, b) = (self.derivatives, other.derivatives);
@@ -353,19 +383,23 @@ impl<S: Scalar> Div for TimeJet<S> {
     }
 }
 
-impl<S: Scalar> Mul<f64> for TimeJet<S> {
+impl<S: Arithmetic> Mul<f64> for TimeJet<S> {
     type Output = Self;
 
+    #[inline(always)]
     fn mul(self, factor: f64) -> Self {
-        Self::from_derivatives(self.derivatives.map(|derivative| derivative * factor))
+        let [f, d, dd, ddd] = self.derivatives;
+        Self::from_derivatives([f * factor, d * factor, dd * factor, ddd * factor])
     }
 }
 
-impl<S: Scalar> Neg for TimeJet<S> {
+impl<S: Arithmetic> Neg for TimeJet<S> {
     type Output = Self;
 
+    #[inline(always)]
     fn neg(self) -> Self {
-        Self::from_derivatives(self.derivatives.map(|derivative| -derivative))
+        let [f, d, dd, ddd] = self.derivatives;
+        Self::from_derivatives([-f, -d, -dd, -ddd])
     }
 }
 

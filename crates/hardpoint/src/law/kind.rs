@@ -6,6 +6,7 @@ use super::formula::Formula;
 use super::harmonic::Harmonic;
 use super::jet::TimeJet;
 use super::jumps::Break;
+use super::lanes::Lanes;
 use super::parameter::{Parameter, ParameterKind, Seed};
 use super::polynomial::Polynomial;
 use super::scalar::Scalar;
@@ -13,6 +14,7 @@ use super::sequence::Sequence;
 use super::smooth_step::SmoothStep;
 use super::speed::ConstantSpeed;
 use super::table::Spline;
+use crate::space::Real;
 
 /// A kind of law.
 ///
@@ -21,6 +23,10 @@ use super::table::Spline;
 pub(super) trait Shape: fmt::Display {
     /// f at a time, and its derivatives; with the derivative by one parameter if there is a seed.
     fn at<S: Scalar>(&self, time: TimeJet<S>, seed: Option<Seed>) -> TimeJet<S>;
+
+    /// f at several times side by side, which run forwards. Every lane is what [`at`](Self::at) is at its time, but for the
+    /// last place of a sine.
+    fn at_lanes<R: Real>(&self, times: Lanes<R>) -> TimeJet<Lanes<R>>;
 
     /// All parameters, as written.
     fn parameters(&self) -> Vec<Parameter>;
@@ -68,6 +74,11 @@ macro_rules! for_kind {
 impl Shape for Kind {
     fn at<S: Scalar>(&self, time: TimeJet<S>, seed: Option<Seed>) -> TimeJet<S> {
         for_kind!(self, shape => shape.at(time, seed))
+    }
+
+    #[inline(always)]
+    fn at_lanes<R: Real>(&self, times: Lanes<R>) -> TimeJet<Lanes<R>> {
+        for_kind!(self, shape => shape.at_lanes(times))
     }
 
     fn parameters(&self) -> Vec<Parameter> {

@@ -11,8 +11,9 @@
 //! | a spline through points | [`Law::table`] |
 //! | laws one after the other | [`Law::sequence`] |
 //!
-//! Whatever its kind, a law is evaluated by [`Law::at`], has [parameters](Law::parameters) by which it is
-//! [differentiated](Law::derivative), and says [where it is not smooth](Law::jumps).
+//! Whatever its kind, a law is evaluated by [`Law::at`], or at eight times at once by [`Law::at_times`], has
+//! [parameters](Law::parameters) by which it is [differentiated](Law::derivative), and says
+//! [where it is not smooth](Law::jumps).
 //!
 //! # The language of expressions
 //!
@@ -43,6 +44,7 @@ mod harmonic;
 mod jet;
 mod jumps;
 mod kind;
+mod lanes;
 mod parameter;
 mod polynomial;
 mod program;
@@ -55,6 +57,8 @@ mod table;
 
 use std::fmt;
 
+use fearless_simd::{Level, dispatch};
+
 pub use error::LawError;
 pub use expression::ExpressionError;
 use formula::Formula;
@@ -62,6 +66,7 @@ pub use harmonic::Harmonic;
 pub use jet::TimeJet;
 pub use jumps::Jump;
 use kind::{Kind, Shape};
+use lanes::Lanes;
 use parameter::Seed;
 pub use parameter::{Parameter, ParameterKind};
 use polynomial::Polynomial;
@@ -72,6 +77,8 @@ pub use smooth_step::SmoothStep;
 pub use speed::ConstantSpeed;
 use table::Spline;
 pub use table::{EndRates, Ends, SplineDegree, Table};
+
+use crate::space::{LANES, Real, lanes};
 
 /// The law of motion of a driver, f(t), in the driver's own unit with t in seconds.
 ///
@@ -295,6 +302,39 @@ impl Law {
         self.evaluate(TimeJet::time(t), None)
     }
 
+    /// The values and the first two time derivatives at eight times at once: the values at all times, then the first
+    /// derivatives, then the second.
+    ///
+    /// Every lane is what [`at`](Self::at) is at its time, but for the last places of what depends on a sine or cosine, and
+    /// takes its own side where the law is not smooth. It is several times faster: only `abs`, `min`, `max`, `step`, `if`,
+    /// powers that are not whole, and functions other than `sin`, `cos` and `sqrt` are evaluated one time after the other.
+    ///
+    /// ```
+    /// use hardpoint::law::Law;
+    ///
+    /// let law = Law::parse("t^3")?;
+    /// let [f, fd, fdd] = law.at_times(&[0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0]);
+    /// assert_eq!((f[2], fd[2], fdd[2]), (8.0, 12.0, 12.0)); // t³, 3 t², 6 t
+    /// assert_eq!(f[7], 343.0);
+    /// # Ok::<(), hardpoint::law::ExpressionError>(())
+    /// ```
+    pub fn at_times(&self, times: &[f64; LANES]) -> [[f64; LANES]; 3] {
+        dispatch!(Level::new(), simd => {
+            let [f, d, dd] = self.at_lanes(lanes(simd).like_lanes(|lane| times[lane]));
+            let mut at = [[0.0; LANES]; 3];
+            f.store(&mut at[0]);
+            d.store(&mut at[1]);
+            dd.store(&mut at[2]);
+            at
+        })
+    }
+
+    /// The value and the first two time derivatives at the time of every lane, as [`at_times`](Self::at_times).
+    pub(crate) fn at_lanes<R: Real>(&self, times: R) -> [R; 3] {
+        let [f, d, dd, _] = self.evaluate_lanes(Lanes(times)).derivatives();
+        [f.0, d.0, dd.0]
+    }
+
     /// The numbers in the law that may be varied: those of its kind in the order that the kind documents; of an expression
     /// those that [`parse_with`](Self::parse_with) was given; of a sequence those of its pieces, named as in
     /// `piece[0].amplitude`, with `piece[0].duration` first.
@@ -390,6 +430,14 @@ impl Law {
                 false => seed,
             });
         self.kind.at(time, as_written) * self.factor
+    }
+
+    /// The law at several times side by side, which run forwards.
+    fn evaluate_lanes<R: Real>(&self, times: Lanes<R>) -> TimeJet<Lanes<R>> {
+        times.0.within(
+            #[inline(always)]
+            || self.kind.at_lanes(times) * self.factor,
+        )
     }
 
     fn check_index(&self, parameter: usize) {

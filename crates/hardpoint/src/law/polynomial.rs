@@ -5,8 +5,10 @@ use std::fmt;
 use super::error::{LawError, check_finite};
 use super::jet::TimeJet;
 use super::kind::{Shape, write_sum};
+use super::lanes::Lanes;
 use super::parameter::{Parameter, ParameterKind, Seed, parameter, seeded};
-use super::scalar::Scalar;
+use super::scalar::{Arithmetic, Scalar};
+use crate::space::Real;
 
 /// c0 + c1 t + c2 t² + ..., with the coefficients for parameters.
 #[derive(Clone, Debug, PartialEq)]
@@ -33,6 +35,11 @@ impl Shape for Polynomial {
         sum_of_powers(coefficients.map(|(k, &value)| seeded(value, k, seed)), time)
     }
 
+    #[inline(always)]
+    fn at_lanes<R: Real>(&self, times: Lanes<R>) -> TimeJet<Lanes<R>> {
+        sum_of_powers_of_time(&self.coefficients, times, |coefficient| times.like(*coefficient))
+    }
+
     fn parameters(&self) -> Vec<Parameter> {
         let coefficients = self.coefficients.iter().enumerate();
         coefficients.map(|(k, &value)| parameter(format!("c{k}"), value, self.parameter_kind(k))).collect()
@@ -55,11 +62,35 @@ impl Shape for Polynomial {
 }
 
 /// c0 + c1 x + c2 x² + ..., by Horner's rule.
-pub(super) fn sum_of_powers<S: Scalar>(
+#[inline(always)]
+pub(super) fn sum_of_powers<S: Arithmetic>(
     coefficients: impl DoubleEndedIterator<Item = S>,
     x: TimeJet<S>,
 ) -> TimeJet<S> {
-    coefficients.rev().fold(TimeJet::constant(S::ZERO), |sum, coefficient| (sum * x).plus(coefficient))
+    let mut sum = TimeJet::constant(x.value().like(0.0));
+    for coefficient in coefficients.rev() {
+        sum = (sum * x).plus(coefficient);
+    }
+    sum
+}
+
+/// c0 + c1 t + c2 t² + ... and its derivatives, by Horner's rule: what [`sum_of_powers`] is of the time itself, without the
+/// products with the ones and zeros that are the time's derivatives. The coefficients are what `number` makes of `from`.
+#[inline(always)]
+pub(super) fn sum_of_powers_of_time<S: Arithmetic, C>(
+    from: &[C],
+    t: S,
+    number: impl Fn(&C) -> S,
+) -> TimeJet<S> {
+    // f <- f t + c, differentiated: d <- d t + f, dd <- dd t + 2 d, ddd <- ddd t + 3 dd
+    let [mut f, mut d, mut dd, mut ddd] = [t.like(0.0); 4];
+    for coefficient in from.iter().rev() {
+        ddd = ddd * t + dd * 3.0;
+        dd = dd * t + d * 2.0;
+        d = d * t + f;
+        f = f * t + number(coefficient);
+    }
+    TimeJet::from_derivatives([f, d, dd, ddd])
 }
 
 /// The expression that is this law.

@@ -7,13 +7,18 @@ use std::cmp::Ordering;
 
 use super::function::{Binary, Comparison, Unary};
 use super::jet::TimeJet;
-use super::scalar::Scalar;
+use super::lanes::{Lanes, lane_by_lane};
+use super::scalar::{Arithmetic, Scalar};
+use crate::space::Real;
 
 /// The most operands that may wait for their operation.
 pub(super) const MAX_WAITING: usize = 256;
 
 /// What suffices for nearly every law; clearing the full stack would cost more than evaluating most of them.
 const USUALLY_WAITING: usize = 12;
+
+/// As much for many times at once, where clearing the stack costs more.
+const FEW_WAITING: usize = 4;
 
 /// One operation: takes its operands from the stack, the last on top, and leaves one result.
 #[derive(Clone, Copy)]
@@ -34,6 +39,9 @@ pub(super) enum Operation {
     Settle,
 }
 
+/// The most operands that an operation has.
+const MOST_OPERANDS: usize = 5;
+
 impl Operation {
     fn operands(self) -> usize {
         match self {
@@ -42,6 +50,53 @@ impl Operation {
             Self::Two(_) => 2,
             Self::Select(_) => 4,
             Self::Step => 5,
+        }
+    }
+
+    /// The result for these operands; of an operation that has any.
+    fn apply<S: Scalar>(self, operands: &[TimeJet<S>]) -> TimeJet<S> {
+        match (self, operands) {
+            (Self::One(function), &[x]) => function.apply(x),
+            (Self::Two(function), &[x, y]) => function.apply(x, y),
+            (Self::Powi(exponent), &[x]) => x.powi(exponent),
+            (Self::Powf(exponent), &[x]) => x.powf(S::fixed(exponent)),
+            (Self::Step, &[x, x0, h0, x1, h1]) => x.step(x0, h0, x1, h1),
+            (Self::Select(comparison), &[a, b, x, y]) => {
+                match comparison.holds(a.value().value(), b.value().value()) {
+                    Some(true) => x,
+                    Some(false) => y,
+                    None => TimeJet::undefined(),
+                }
+            }
+            (Self::Settle, &[x]) => TimeJet::constant(x.value()),
+            _ => unreachable!("an operation has as many operands as it says"),
+        }
+    }
+
+    /// The result for operands that are several numbers side by side: what is arithmetic side by side, all else lane by
+    /// lane, so that every lane takes its own side.
+    #[inline(always)]
+    fn apply_to_lanes<R: Real>(self, operands: &[TimeJet<Lanes<R>>]) -> TimeJet<Lanes<R>> {
+        match (self, operands) {
+            (Self::One(Unary::Neg), &[x]) => -x,
+            (Self::One(Unary::Sin), &[x]) => x.sin(),
+            (Self::One(Unary::Cos), &[x]) => x.cos(),
+            (Self::One(Unary::Sqrt), &[x]) => x.sqrt(),
+            (Self::Two(Binary::Add), &[x, y]) => x + y,
+            (Self::Two(Binary::Sub), &[x, y]) => x - y,
+            (Self::Two(Binary::Mul), &[x, y]) => x * y,
+            (Self::Two(Binary::Div), &[x, y]) => x / y,
+            (Self::Powi(exponent), &[x]) => x.powi(exponent),
+            (Self::Settle, &[x]) => TimeJet::constant(x.value()),
+            _ => {
+                let mut single = [TimeJet::constant(0.0); MOST_OPERANDS];
+                lane_by_lane(operands[0].value(), |lane| {
+                    for (single, operand) in single.iter_mut().zip(operands) {
+                        *single = operand.lane(lane);
+                    }
+                    self.apply(&single[..operands.len()])
+                })
+            }
         }
     }
 
@@ -178,6 +233,28 @@ impl Program {
         }
     }
 
+    /// The program's result at several times, which run forwards; without parameters.
+    #[inline(always)]
+    pub(super) fn at_lanes<R: Real>(&self, times: Lanes<R>) -> TimeJet<Lanes<R>> {
+        if self.most_waiting <= FEW_WAITING {
+            evaluate_lanes::<R, FEW_WAITING>(&self.operations, times)
+        } else if self.most_waiting <= USUALLY_WAITING {
+            evaluate_lanes::<R, USUALLY_WAITING>(&self.operations, times)
+        } else {
+            self.at_lanes_with_full_stack(times)
+        }
+    }
+
+    /// Apart, so that no other program pays for room on the stack that only this one needs.
+    #[cold]
+    #[inline(never)]
+    fn at_lanes_with_full_stack<R: Real>(&self, times: Lanes<R>) -> TimeJet<Lanes<R>> {
+        times.0.within(
+            #[inline(always)]
+            || evaluate_lanes::<R, MAX_WAITING>(&self.operations, times),
+        )
+    }
+
     /// Whether any operation has sides that it could switch between.
     pub(super) fn has_sides(&self) -> bool {
         self.operations.iter().any(|operation| {
@@ -220,21 +297,26 @@ fn evaluate<S: Scalar, const N: usize>(
             Operation::Constant(value) => TimeJet::constant(S::fixed(value)),
             Operation::Parameter(index) => TimeJet::constant(parameter(index)),
             Operation::Time => time,
-            Operation::One(function) => function.apply(stack[len]),
-            Operation::Two(function) => function.apply(stack[len], stack[len + 1]),
-            Operation::Powi(exponent) => stack[len].powi(exponent),
-            Operation::Powf(exponent) => stack[len].powf(S::fixed(exponent)),
-            Operation::Step => {
-                stack[len].step(stack[len + 1], stack[len + 2], stack[len + 3], stack[len + 4])
-            }
-            Operation::Select(comparison) => {
-                match comparison.holds(stack[len].value().value(), stack[len + 1].value().value()) {
-                    Some(true) => stack[len + 2],
-                    Some(false) => stack[len + 3],
-                    None => TimeJet::undefined(),
-                }
-            }
-            Operation::Settle => TimeJet::constant(stack[len].value()),
+            _ => operation.apply(&stack[len..len + operands]),
+        };
+        len += 1;
+    }
+    stack[0]
+}
+
+/// Runs the operations at several times side by side.
+#[inline(always)]
+fn evaluate_lanes<R: Real, const N: usize>(operations: &[Operation], times: Lanes<R>) -> TimeJet<Lanes<R>> {
+    let mut stack = [TimeJet::constant(times.like(0.0)); N];
+    let mut len = 0;
+    for &operation in operations {
+        let operands = operation.operands();
+        len -= operands;
+        stack[len] = match operation {
+            Operation::Constant(value) => TimeJet::constant(times.like(value)),
+            Operation::Parameter(_) => TimeJet::constant(times.like(f64::NAN)),
+            Operation::Time => TimeJet::time(times),
+            _ => operation.apply_to_lanes(&stack[len..len + operands]),
         };
         len += 1;
     }

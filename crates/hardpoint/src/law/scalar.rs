@@ -1,13 +1,16 @@
-//! The numbers that laws are evaluated in: plain ones, or ones that carry the derivative by one parameter.
+//! The numbers that laws are evaluated in: plain ones, or ones that carry the derivative by one parameter. What several
+//! numbers side by side offer too is a trait of its own.
 
 use std::fmt::Debug;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
-/// A number in which a law can be evaluated: `f64`, or [`Dual`] for the derivative by a parameter.
-pub trait Scalar:
+/// A number with the operations of the commonest laws: a [`Scalar`], or several numbers
+/// [side by side](super::lanes::Lanes).
+///
+/// Nothing here asks how large a number is, so nothing takes one lane's side for all of them.
+pub trait Arithmetic:
     Copy
     + Debug
-    + PartialEq
     + Add<Output = Self>
     + Add<f64, Output = Self>
     + Sub<Output = Self>
@@ -16,6 +19,18 @@ pub trait Scalar:
     + Div<Output = Self>
     + Neg<Output = Self>
 {
+    /// The number `x`, which depends on no parameter.
+    fn like(self, x: f64) -> Self;
+    /// The sine and the cosine.
+    fn sin_cos(self) -> (Self, Self);
+    /// The square root.
+    fn sqrt(self) -> Self;
+    /// The power with a whole exponent.
+    fn powi(self, exponent: i32) -> Self;
+}
+
+/// A number in which any law can be evaluated: `f64`, or [`Dual`] for the derivative by a parameter.
+pub trait Scalar: Arithmetic + PartialEq {
     /// The number zero.
     const ZERO: Self;
     /// The number one.
@@ -32,8 +47,6 @@ pub trait Scalar:
     /// The number without its derivative.
     fn value(self) -> f64;
 
-    /// The sine and the cosine.
-    fn sin_cos(self) -> (Self, Self);
     /// The tangent.
     fn tan(self) -> Self;
     /// The arc sine.
@@ -56,14 +69,32 @@ pub trait Scalar:
     fn ln(self) -> Self;
     /// The logarithm to base 10.
     fn log10(self) -> Self;
-    /// The square root.
-    fn sqrt(self) -> Self;
     /// The length of the vector (`self`, `other`).
     fn hypot(self, other: Self) -> Self;
-    /// The power with a whole exponent.
-    fn powi(self, exponent: i32) -> Self;
     /// The power with any exponent.
     fn powf(self, exponent: Self) -> Self;
+}
+
+impl Arithmetic for f64 {
+    #[inline]
+    fn like(self, x: f64) -> Self {
+        x
+    }
+
+    #[inline]
+    fn sin_cos(self) -> (Self, Self) {
+        self.sin_cos()
+    }
+
+    #[inline]
+    fn sqrt(self) -> Self {
+        self.sqrt()
+    }
+
+    #[inline]
+    fn powi(self, exponent: i32) -> Self {
+        self.powi(exponent)
+    }
 }
 
 impl Scalar for f64 {
@@ -76,10 +107,6 @@ impl Scalar for f64 {
 
     fn value(self) -> f64 {
         self
-    }
-
-    fn sin_cos(self) -> (Self, Self) {
-        self.sin_cos()
     }
 
     fn tan(self) -> Self {
@@ -126,16 +153,8 @@ impl Scalar for f64 {
         self.log10()
     }
 
-    fn sqrt(self) -> Self {
-        self.sqrt()
-    }
-
     fn hypot(self, other: Self) -> Self {
         self.hypot(other)
-    }
-
-    fn powi(self, exponent: i32) -> Self {
-        self.powi(exponent)
     }
 
     fn powf(self, exponent: Self) -> Self {
@@ -160,6 +179,29 @@ impl Dual {
     }
 }
 
+impl Arithmetic for Dual {
+    fn like(self, x: f64) -> Self {
+        Self::fixed(x)
+    }
+
+    fn sin_cos(self) -> (Self, Self) {
+        let (sin, cos) = self.value.sin_cos();
+        (self.chain(sin, cos), self.chain(cos, -sin))
+    }
+
+    fn sqrt(self) -> Self {
+        self.chain(self.value.sqrt(), 0.5 / self.value.sqrt())
+    }
+
+    fn powi(self, exponent: i32) -> Self {
+        let slope = match exponent {
+            0 => 0.0,
+            n => f64::from(n) * self.value.powi(n.saturating_sub(1)),
+        };
+        self.chain(self.value.powi(exponent), slope)
+    }
+}
+
 impl Scalar for Dual {
     const ZERO: Self = Self { value: 0.0, partial: 0.0 };
     const ONE: Self = Self { value: 1.0, partial: 0.0 };
@@ -170,11 +212,6 @@ impl Scalar for Dual {
 
     fn value(self) -> f64 {
         self.value
-    }
-
-    fn sin_cos(self) -> (Self, Self) {
-        let (sin, cos) = self.value.sin_cos();
-        (self.chain(sin, cos), self.chain(cos, -sin))
     }
 
     fn tan(self) -> Self {
@@ -226,22 +263,10 @@ impl Scalar for Dual {
         self.chain(self.value.log10(), 1.0 / (self.value * std::f64::consts::LN_10))
     }
 
-    fn sqrt(self) -> Self {
-        self.chain(self.value.sqrt(), 0.5 / self.value.sqrt())
-    }
-
     fn hypot(self, other: Self) -> Self {
         let length = self.value.hypot(other.value);
         let (by_x, by_y) = (self.chain(length, self.value / length), other.chain(0.0, other.value / length));
         Self { partial: by_x.partial + by_y.partial, ..by_x }
-    }
-
-    fn powi(self, exponent: i32) -> Self {
-        let slope = match exponent {
-            0 => 0.0,
-            n => f64::from(n) * self.value.powi(n.saturating_sub(1)),
-        };
-        self.chain(self.value.powi(exponent), slope)
     }
 
     fn powf(self, exponent: Self) -> Self {
@@ -337,7 +362,7 @@ mod tests {
             ("exp", Scalar::exp, |x| x.exp()),
             ("ln", Scalar::ln, |x| x.ln()),
             ("log10", Scalar::log10, |x| x.log10()),
-            ("sqrt", Scalar::sqrt, |x| x.sqrt()),
+            ("sqrt", Arithmetic::sqrt, |x| x.sqrt()),
             ("powi", |x| x.powi(-3), |x| x.powi(-3)),
             ("powf", |x| x.powf(x * 2.0), |x| (x * 2.0 * x.ln()).exp()),
             ("atan2", |x| x.atan2(x * x + 0.5), |x| x.atan2(x * x + 0.5)),

@@ -7,9 +7,11 @@ use super::error::LawError;
 use super::jet::TimeJet;
 use super::jumps::Break;
 use super::kind::Shape;
+use super::lanes::Lanes;
 use super::parameter::{Parameter, ParameterKind, Seed, parameter, seeded};
-use super::scalar::Scalar;
+use super::scalar::{Arithmetic, Scalar};
 use super::table::ROUNDING_OF_TIME;
+use crate::space::Real;
 
 /// A piece of a [sequence](Law::sequence).
 #[derive(Clone, Debug, PartialEq)]
@@ -119,6 +121,20 @@ impl Sequence {
         (start, offset)
     }
 
+    /// The piece that is active at time `t`, if one is.
+    fn piece_at(&self, t: f64, is_backwards: bool) -> Option<usize> {
+        let end = self.starts[self.pieces.len()];
+        let slack = ROUNDING_OF_TIME * t.abs().max(1.0);
+        // Durations that were changed to something impossible leave no order of pieces.
+        let is_ordered = self.starts.windows(2).all(|pair| pair[0] < pair[1]);
+        if !(t >= -slack && t <= end + slack && is_ordered) {
+            return None;
+        }
+        let begun = &self.starts[..self.pieces.len()];
+        let begun = begun.partition_point(|&start| if is_backwards { start < t } else { start <= t });
+        Some(begun.saturating_sub(1))
+    }
+
     fn duration<S: Scalar>(&self, k: usize, seed: Option<Seed>) -> S {
         match self.pieces[k].duration {
             Some(duration) => seeded(duration, self.first_parameters[k], seed),
@@ -145,22 +161,32 @@ impl Sequence {
 
 impl Shape for Sequence {
     fn at<S: Scalar>(&self, time: TimeJet<S>, seed: Option<Seed>) -> TimeJet<S> {
-        let (t, is_backwards) = (time.value().value(), time.d().value() < 0.0);
-        let end = self.starts[self.pieces.len()];
-        let slack = ROUNDING_OF_TIME * t.abs().max(1.0);
-        // Durations that were changed to something impossible leave no order of pieces.
-        let is_ordered = self.starts.windows(2).all(|pair| pair[0] < pair[1]);
-        if !(t >= -slack && t <= end + slack && is_ordered) {
+        let Some(k) = self.piece_at(time.value().value(), time.d().value() < 0.0) else {
             return TimeJet::undefined();
-        }
-        let begun = &self.starts[..self.pieces.len()];
-        let begun = begun.partition_point(|&start| if is_backwards { start < t } else { start <= t });
-        let k = begun.saturating_sub(1);
+        };
         let (start, offset) = match seed {
             None => (S::fixed(self.starts[k]), S::fixed(self.offsets[k])),
             Some(_) => self.place(k, seed),
         };
         self.pieces[k].law.evaluate(time.plus(-start), self.seed_in(k, seed)).plus(offset)
+    }
+
+    #[inline(always)]
+    fn at_lanes<R: Real>(&self, times: Lanes<R>) -> TimeJet<Lanes<R>> {
+        let at = times.to_array().map(|t| self.piece_at(t, false));
+        let piece = |k: usize| {
+            let f = self.pieces[k].law.evaluate_lanes(times + -self.starts[k]);
+            f.plus(times.like(self.offsets[k]))
+        };
+        let at = &at[..R::LANES];
+        match at[0] {
+            Some(k) if at.iter().all(|other| *other == Some(k)) => piece(k),
+            // Every piece is evaluated for all lanes, and counts in its own.
+            _ => (0..R::LANES).fold(TimeJet::undefined_lanes(times), |f, lane| match at[lane] {
+                Some(k) if !at[..lane].contains(&Some(k)) => f.or_where(|lane| at[lane] == Some(k), piece(k)),
+                _ => f,
+            }),
+        }
     }
 
     fn parameters(&self) -> Vec<Parameter> {

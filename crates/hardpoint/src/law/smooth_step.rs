@@ -7,9 +7,11 @@ use super::error::{LawError, check_finite};
 use super::jet::TimeJet;
 use super::jumps::Break;
 use super::kind::Shape;
+use super::lanes::Lanes;
 use super::parameter::{Parameter, ParameterKind, Seed, parameter, seeded};
 use super::polynomial::sum_of_powers;
-use super::scalar::Scalar;
+use super::scalar::{Arithmetic, Scalar};
+use crate::space::Real;
 
 /// A law that holds `from` up to `start`, `to` from `end` on, and is a polynomial between them:
 /// from + (to - from) s(u) with u = (t - start) / (end - start).
@@ -55,6 +57,19 @@ impl SmoothStep {
         }
         Ok(())
     }
+
+    /// The polynomial, for the numbers that are given.
+    #[inline(always)]
+    fn between<S: Arithmetic>(&self, time: TimeJet<S>, from: S, to: S, start: S, end: S) -> TimeJet<S> {
+        let u = time.plus(-start).times(end.like(1.0) / (end - start));
+        let (lowest, coefficients): (i32, &[f64]) = match self.degree {
+            3 => (2, &[3.0, -2.0]),
+            5 => (3, &[10.0, -15.0, 6.0]),
+            _ => (4, &[35.0, -84.0, 70.0, -20.0]),
+        };
+        let s = u.powi(lowest) * sum_of_powers(coefficients.iter().map(|&c| end.like(c)), u);
+        s.times(to - from).plus(from)
+    }
 }
 
 impl Shape for SmoothStep {
@@ -72,15 +87,31 @@ impl Shape for SmoothStep {
         } else if !is_before(end) {
             TimeJet::constant(to)
         } else {
-            let u = time.plus(-start).times(S::ONE / (end - start));
-            let (lowest, coefficients): (i32, &[f64]) = match self.degree {
-                3 => (2, &[3.0, -2.0]),
-                5 => (3, &[10.0, -15.0, 6.0]),
-                _ => (4, &[35.0, -84.0, 70.0, -20.0]),
-            };
-            let s = u.powi(lowest) * sum_of_powers(coefficients.iter().map(|&c| S::fixed(c)), u);
-            s.times(to - from).plus(from)
+            self.between(time, from, to, start, end)
         }
+    }
+
+    #[inline(always)]
+    fn at_lanes<R: Real>(&self, times: Lanes<R>) -> TimeJet<Lanes<R>> {
+        if !(self.start < self.end) {
+            return TimeJet::undefined_lanes(times);
+        }
+        let [from, to, start, end] = [self.from, self.to, self.start, self.end];
+        // What is not a number is neither before nor after, so that the polynomial hands it on.
+        let is_between = |t: &f64| !(*t < start || *t >= end);
+        let t = times.to_array();
+        let [before, after] = [from, to].map(|value| TimeJet::constant(times.like(value)));
+        if !t[..R::LANES].iter().any(is_between) {
+            return before.or_where(|lane| t[lane] >= end, after);
+        }
+        let between = self.between(
+            TimeJet::time(times),
+            times.like(from),
+            times.like(to),
+            times.like(start),
+            times.like(end),
+        );
+        between.or_where(|lane| t[lane] < start, before).or_where(|lane| t[lane] >= end, after)
     }
 
     fn parameters(&self) -> Vec<Parameter> {

@@ -5,8 +5,10 @@ use std::fmt;
 use super::error::{LawError, check_finite};
 use super::jet::TimeJet;
 use super::kind::{Shape, write_sum};
+use super::lanes::Lanes;
 use super::parameter::{Parameter, ParameterKind, Seed, parameter, seeded};
-use super::scalar::Scalar;
+use super::scalar::{Arithmetic, Scalar};
+use crate::space::Real;
 
 /// A law of constant speed: offset + speed t.
 ///
@@ -28,6 +30,11 @@ impl ConstantSpeed {
 impl Shape for ConstantSpeed {
     fn at<S: Scalar>(&self, time: TimeJet<S>, seed: Option<Seed>) -> TimeJet<S> {
         time.times(seeded(self.speed, 0, seed)).plus(seeded(self.offset, 1, seed))
+    }
+
+    #[inline(always)]
+    fn at_lanes<R: Real>(&self, times: Lanes<R>) -> TimeJet<Lanes<R>> {
+        (TimeJet::time(times) * self.speed).plus(times.like(self.offset))
     }
 
     fn parameters(&self) -> Vec<Parameter> {

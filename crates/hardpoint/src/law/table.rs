@@ -6,10 +6,12 @@ use std::sync::Arc;
 use super::error::LawError;
 use super::jet::TimeJet;
 use super::kind::Shape;
+use super::lanes::Lanes;
 use super::parameter::{Parameter, ParameterKind, Seed, parameter};
-use super::polynomial::sum_of_powers;
+use super::polynomial::{sum_of_powers, sum_of_powers_of_time};
 use super::scalar::Scalar;
 use super::spline::{Basis, EndKind, Segment};
+use crate::space::{LANES, Real};
 
 /// A table of points, and the spline to lay through them.
 ///
@@ -121,6 +123,24 @@ impl Spline {
         self.times.len() - usize::from(self.is_periodic)
     }
 
+    /// How many coefficients a segment has that may differ from zero.
+    fn order(&self) -> usize {
+        if self.degree == SplineDegree::Cubic { 4 } else { 6 }
+    }
+
+    /// Whether the time `t`, in the first period, is one of the table's.
+    fn reaches(&self, t: f64) -> bool {
+        let (first, last) = (self.times[0], self.times[self.times.len() - 1]);
+        let slack = ROUNDING_OF_TIME * first.abs().max(last.abs());
+        t >= first - slack && t <= last + slack
+    }
+
+    /// The segment of a time that the table reaches.
+    fn segment_at(&self, t: f64, is_backwards: bool) -> usize {
+        let knots = self.times.partition_point(|&knot| if is_backwards { knot < t } else { knot <= t });
+        knots.saturating_sub(1).min(self.segments.len() - 1)
+    }
+
     /// The whole periods before time `t`, in s.
     fn periods_before(&self, t: f64, is_backwards: bool) -> f64 {
         if !self.is_periodic {
@@ -131,6 +151,9 @@ impl Spline {
         period * if is_backwards { periods.ceil() - 1.0 } else { periods.floor() }
     }
 }
+
+/// The segment of a time that no segment reaches.
+const UNDEFINED: Segment = [f64::NAN; 6];
 
 impl Table {
     fn check(&self) -> Result<(), LawError> {
@@ -202,16 +225,13 @@ impl Shape for Spline {
         let is_backwards = time.d().value() < 0.0;
         let time = time.plus(S::fixed(-self.periods_before(time.value().value(), is_backwards)));
         let t = time.value().value();
-        let (first, last) = (self.times[0], self.times[self.times.len() - 1]);
-        let slack = ROUNDING_OF_TIME * first.abs().max(last.abs());
-        if !(t >= first - slack && t <= last + slack) {
+        if !self.reaches(t) {
             return TimeJet::undefined();
         }
-        let knots = self.times.partition_point(|&knot| if is_backwards { knot < t } else { knot <= t });
-        let k = knots.saturating_sub(1).min(self.segments.len() - 1);
-        let order = if self.degree == SplineDegree::Cubic { 4 } else { 6 };
+        let k = self.segment_at(t, is_backwards);
         let since = time.plus(S::fixed(-self.times[k]));
-        let curve = |segment: &Segment| sum_of_powers(segment[..order].iter().map(|&c| S::fixed(c)), since);
+        let curve =
+            |segment: &Segment| sum_of_powers(segment[..self.order()].iter().map(|&c| S::fixed(c)), since);
         let f = curve(&self.segments[k]);
         match seed {
             None => f,
@@ -219,6 +239,29 @@ impl Shape for Spline {
                 f + curve(&self.basis.cardinal(parameter)[k]).times(S::varied(0.0, size))
             }
         }
+    }
+
+    #[inline(always)]
+    fn at_lanes<R: Real>(&self, times: Lanes<R>) -> TimeJet<Lanes<R>> {
+        // Every lane's segment and the time since it began; the coefficients are then gathered.
+        let mut segments = [&UNDEFINED; LANES];
+        let mut k = 0;
+        let since = times.map_lanes(|lane, t| {
+            let t = t - self.periods_before(t, false);
+            if !self.reaches(t) {
+                return f64::NAN;
+            }
+            // Nearly always the segment of the lane before.
+            if !(self.times[k] <= t && t < self.times[k + 1]) {
+                k = self.segment_at(t, false);
+            }
+            segments[lane] = &self.segments[k];
+            t - self.times[k]
+        });
+        const POWERS: [usize; 6] = [0, 1, 2, 3, 4, 5];
+        sum_of_powers_of_time(&POWERS[..self.order()], since, |&power| {
+            since.map_lanes(|lane, _| segments[lane][power])
+        })
     }
 
     fn parameters(&self) -> Vec<Parameter> {
