@@ -12,12 +12,23 @@ fn main() {
     let analysis = Analysis::new(&model).expect("a model that can be driven").bodies_only();
     let designs = vec![vec![1e-5]; 8];
     let mut steps = 0;
+    let mut solution = hardpoint::Solution::default();
     let before = std::time::Instant::now();
     for _ in 0..times.parse().expect("a number of times") {
         steps += match what.as_str() {
-            "motion" => analysis.run_motion().motion.len(),
-            "sensitivities" => analysis.run().motion.len(),
-            _ => analysis.run_designs(&designs).iter().map(|s| s.motion.len()).sum(),
+            "motion" => {
+                analysis.run_motion_into(&mut solution);
+                solution.motion.len()
+            }
+            "sensitivities" => {
+                analysis.run_into(&mut solution);
+                solution.motion.len()
+            }
+            _ => {
+                let mut solved = 0;
+                analysis.for_each_design(&designs, |_, solution| solved += solution.motion.len());
+                solved
+            }
         };
     }
     let seconds = before.elapsed().as_secs_f64();

@@ -480,11 +480,21 @@ impl<T: Real> State<T> {
                 self.place_bodies(topology, parts);
                 self.set_driven(topology, drivers, 1);
                 for (r, place) in topology.rows.iter().enumerate().filter(|(_, p)| p.drives()) {
-                    self.row_rhs[r] =
-                        demand(topology, drivers, place, 1, witness) + self.gap[r] * witness.like(self.gap_left[1]);
+                    self.row_rhs[r] = demand(topology, drivers, place, 1, witness)
+                        + self.gap[r] * witness.like(self.gap_left[1]);
                 }
                 let s = self;
-                level(topology, &mut s.factors, &s.x, &s.l, None, &s.row_rhs, &mut s.qd, &mut s.v, &mut s.rhs);
+                level(
+                    topology,
+                    &mut s.factors,
+                    &s.x,
+                    &s.l,
+                    None,
+                    &s.row_rhs,
+                    &mut s.qd,
+                    &mut s.v,
+                    &mut s.rhs,
+                );
                 s.rates_of_twists(topology, 1);
                 s.rates_of_wrenches(topology, 1);
                 s.set_driven(topology, drivers, 2);
@@ -501,7 +511,17 @@ impl<T: Real> State<T> {
                 }
                 sum_couplers(topology, &mut s.row_rhs);
                 let bias = Some(&s.bias[..]);
-                level(topology, &mut s.factors, &s.x, &s.l, bias, &s.row_rhs, &mut s.qdd, &mut s.a, &mut s.rhs);
+                level(
+                    topology,
+                    &mut s.factors,
+                    &s.x,
+                    &s.l,
+                    bias,
+                    &s.row_rhs,
+                    &mut s.qdd,
+                    &mut s.a,
+                    &mut s.rhs,
+                );
             },
         );
     }
@@ -592,16 +612,18 @@ impl<T: Real> State<T> {
         [value, self.l[r].on(v), self.l[r].on(a) + self.ld[r].on(v)]
     }
 
-    /// Constraint row r of the Jacobian in one lane, by column of its block, lengths in sizes.
-    pub fn scaled_row(&self, topology: &Topology, r: usize, lane: usize, out: &mut [f64]) {
+    /// Constraint row r of the Jacobian, by column of its block, lengths in sizes.
+    #[inline(always)]
+    pub fn scaled_row(&self, topology: &Topology, r: usize, out: &mut [T]) {
         let place = &topology.rows[r];
         let first = topology.closures[place.closure].rows[place.index];
         let scale = if first.is_length() { 1.0 / self.size } else { 1.0 };
-        out.fill(0.0);
+        let zero = self.witness.zero();
+        out.fill(zero);
         for (k, factor) in topology.parts_of_row(r) {
             for &(column, c, side) in &topology.closures[topology.rows[k].closure].entries {
                 let unit = if topology.coordinates[c].is_length { self.size } else { 1.0 };
-                out[column] += scale * unit * side * factor * self.l[k].on(self.x[c]).lane(lane);
+                out[column] += self.l[k].on(self.x[c]) * zero.like(scale * unit * side * factor);
             }
         }
     }
@@ -728,13 +750,7 @@ pub(crate) fn factors_of<T: Real>(
 
 /// A driver row's derivative of that order; 0 for the other rows.
 #[inline(always)]
-fn demand<T: Real>(
-    topology: &Topology,
-    drivers: &[[T; 3]],
-    place: &RowPlace,
-    order: usize,
-    witness: T,
-) -> T {
+fn demand<T: Real>(topology: &Topology, drivers: &[[T; 3]], place: &RowPlace, order: usize, witness: T) -> T {
     match topology.closures[place.closure].driver {
         Some(d) => drivers[d.0][order],
         None => witness.zero(),

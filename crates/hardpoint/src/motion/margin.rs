@@ -2,7 +2,7 @@
 
 use crate::constraint::{Ends, Row};
 use crate::joint::Freedom;
-use crate::space::{Elimination, Twist, Vec3, Wrench};
+use crate::space::{Elimination, LANES, Real, Twist, Vec3, Wrench};
 use crate::topology::Topology;
 
 use super::kinematics::State;
@@ -26,74 +26,86 @@ pub struct Margin {
 }
 
 /// Works out margins; keeps its room from step to step.
-pub(crate) struct Margins {
-    blocks: Vec<Elimination<f64>>,
-    row: Vec<f64>,
-    row_sums: Vec<f64>,
+pub(crate) struct Margins<T> {
+    blocks: Vec<Elimination<T>>,
+    row: Vec<T>,
+    row_sums: Vec<T>,
 }
 
-impl Margins {
-    pub fn new(topology: &Topology) -> Self {
+impl<T: Real> Margins<T> {
+    pub fn new(topology: &Topology, witness: T) -> Self {
         let widths = topology.blocks.iter().map(|b| b.unknowns.len());
         let dense = |n: usize| if n <= MOST_UNKNOWNS { n } else { 0 };
         let widest = widths.clone().max().unwrap_or(0);
         Self {
-            blocks: widths.map(|n| Elimination::new(dense(n), 0.0)).collect(),
-            row: vec![0.0; widest],
-            row_sums: vec![0.0; widest],
+            blocks: widths.map(|n| Elimination::new(dense(n), witness)).collect(),
+            row: vec![witness.zero(); widest],
+            row_sums: vec![witness.zero(); widest],
         }
     }
 
-    /// The margin where `state` stands.
-    pub fn at(&mut self, topology: &Topology, state: &State<f64>) -> Margin {
-        let mut least = Margin { value: 1.0, block: 0 };
+    /// The margins where `state` stands, one per lane.
+    pub fn at(&mut self, topology: &Topology, state: &State<T>) -> [Margin; LANES] {
+        let mut least = [Margin { value: 1.0, block: 0 }; LANES];
         for (b, block) in topology.blocks.iter().enumerate() {
             let n = block.unknowns.len();
-            let value =
-                if n <= MOST_UNKNOWNS { self.of_block(topology, state, b) } else { state.pivots[b].0 };
-            // Written so that NaN is the least of all.
-            if !(value >= least.value) {
-                least = Margin { value: if value.is_nan() { 0.0 } else { value }, block: b };
+            let value = if n <= MOST_UNKNOWNS {
+                state.witness.within(
+                    #[inline(always)]
+                    || self.of_block(topology, state, b),
+                )
+            } else {
+                state.witness.like(state.pivots[b].0)
+            };
+            for (lane, least) in least[..T::LANES].iter_mut().enumerate() {
+                let value = value.lane(lane);
+                // Written so that NaN is the least of all.
+                if !(value >= least.value) {
+                    *least = Margin { value: if value.is_nan() { 0.0 } else { value }, block: b };
+                }
             }
         }
         least
     }
 
     /// 1 / |J^-1|, the inverse column by column.
-    fn of_block(&mut self, topology: &Topology, state: &State<f64>, b: usize) -> f64 {
+    #[inline(always)]
+    fn of_block(&mut self, topology: &Topology, state: &State<T>, b: usize) -> T {
         let block = &topology.blocks[b];
         let n = block.unknowns.len();
+        let (zero, one) = (state.witness.zero(), state.witness.like(1.0));
         let factors = &mut self.blocks[b];
         let (row, sums) = (&mut self.row[..n], &mut self.row_sums[..n]);
         for (k, &r) in block.selected.iter().enumerate() {
-            state.scaled_row(topology, r, 0, row);
-            let most = most_resistance(topology, state, r);
+            state.scaled_row(topology, r, row);
+            let per_most = one / most_resistance(topology, state, r);
             for (to, x) in factors.row_mut(k).iter_mut().zip(row.iter()) {
-                *to = x / most;
+                *to = *x * per_most;
             }
         }
         if !(factors.factor().pivot_ratio > 0.0) {
-            return 0.0;
+            return zero;
         }
-        sums.fill(0.0);
+        sums.fill(zero);
         for k in 0..n {
-            row.fill(0.0);
-            row[k] = 1.0;
+            row.fill(zero);
+            row[k] = one;
             factors.solve(row);
             for (sum, x) in sums.iter_mut().zip(row.iter()) {
                 *sum += x.abs();
             }
         }
-        1.0 / sums.iter().copied().fold(0.0, f64::max)
+        one / sums.iter().fold(zero, |most, x| most.larger(*x))
     }
 }
 
 /// The most that constraint row r could resist in any coordinate of its loop, scaled like its row of the Jacobian.
-fn most_resistance(topology: &Topology, state: &State<f64>, r: usize) -> f64 {
+#[inline(always)]
+fn most_resistance<T: Real>(topology: &Topology, state: &State<T>, r: usize) -> T {
     let place = &topology.rows[r];
     let first = topology.closures[place.closure].rows[place.index];
     let scale = if first.is_length() { 1.0 / state.size } else { 1.0 };
-    let mut most = f64::MIN_POSITIVE;
+    let mut most = state.witness.like(f64::MIN_POSITIVE);
     for (k, factor) in topology.parts_of_row(r) {
         let at = &topology.rows[k];
         let closure = &topology.closures[at.closure];
@@ -104,10 +116,10 @@ fn most_resistance(topology: &Topology, state: &State<f64>, r: usize) -> f64 {
             let point = if at_i { i.r } else { j.r };
             for step in &topology.links[link].steps {
                 let resistance = match step.freedom {
-                    Freedom::Slide(_) => state.size * state.l[k].f.norm(),
+                    Freedom::Slide(_) => state.l[k].f.norm() * most.like(state.size),
                     Freedom::Turn(_) | Freedom::Ball => most_moment(&state.l[k], point, &state.x[step.first]),
                 };
-                most = f64::max(most, scale * factor.abs() * resistance);
+                most = most.larger(resistance * most.like(scale * factor.abs()));
             }
         }
     }
@@ -115,9 +127,11 @@ fn most_resistance(topology: &Topology, state: &State<f64>, r: usize) -> f64 {
 }
 
 /// The most that a force at a point, with its moment, could turn about an axis, whatever way it pointed.
-fn most_moment(l: &Wrench, point: Vec3, turn: &Twist) -> f64 {
+#[inline(always)]
+fn most_moment<T: Real>(l: &Wrench<T>, point: Vec3<T>, turn: &Twist<T>) -> T {
     // The axis passes through w x v, its point next to the origin; the arm is seen along it.
     let between = point - turn.w.cross(turn.v);
     let arm = between - turn.w * turn.w.dot(between);
-    (l.f.norm() * arm.norm()).hypot((l.m - point.cross(l.f)).norm())
+    let (moment, couple) = (l.f.norm() * arm.norm(), l.m - point.cross(l.f));
+    (moment * moment + couple.dot(couple)).sqrt()
 }

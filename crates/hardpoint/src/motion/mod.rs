@@ -4,7 +4,9 @@
 //! ([`kinematics`]). The steps are joined by a second-order predictor that watches for limits and
 //! branches ([`stepper`]).
 
+pub(crate) mod abreast;
 mod assembly;
+mod forecast;
 pub(crate) mod kinematics;
 pub(crate) mod margin;
 pub(crate) mod parts;
@@ -23,6 +25,7 @@ use kinematics::State;
 /// How a body stands and moves, in global components; position, velocity and acceleration are those of
 /// its frame's origin.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[repr(C)] // filled in the order of the fields
 pub struct BodyState {
     /// Position, m.
     pub r: Vec3,
@@ -51,36 +54,42 @@ impl BodyState {
         Quat::from_rotation(self.rotation).to_array()
     }
 
-    /// Gives the state of body `b` in every lane to `out`, lane 0 first.
-    pub(crate) fn each_lane<T: Real>(
-        state: &State<T>,
-        b: usize,
-        lanes: usize,
-        mut out: impl FnMut(usize, Self),
-    ) {
-        // Per component, all lanes: stored wide, read narrow.
-        let mut table = [[0.0; LANES]; 24];
-        state.witness.within(
-            #[inline(always)]
-            || {
-                let (pose, v, a) = (state.pose[b], state.v[b], state.a[b]);
-                let [f, g, h] = pose.rot.cols;
-                let velocity = v.at(pose.r);
-                let acceleration = a.at(pose.r) + v.w.cross(velocity);
-                for (k, x) in [pose.r, f, g, h, velocity, v.w, acceleration, a.w].iter().enumerate() {
-                    x.x.store(&mut table[3 * k]);
-                    x.y.store(&mut table[3 * k + 1]);
-                    x.z.store(&mut table[3 * k + 2]);
-                }
-            },
-        );
-        for lane in 0..lanes {
-            let vector =
-                |k: usize| Vec3::new(table[3 * k][lane], table[3 * k + 1][lane], table[3 * k + 2][lane]);
-            let rotation = Mat3 { cols: [vector(1), vector(2), vector(3)] };
-            let [r, v, omega, a, alpha] = [vector(0), vector(4), vector(5), vector(6), vector(7)];
-            out(lane, Self { r, rotation, v, omega, a, alpha });
+    /// Gives the states of all bodies but ground in every lane to `out(lane, body, state)`.
+    #[inline(always)]
+    pub(crate) fn each<T: Real>(state: &State<T>, mut out: impl FnMut(usize, usize, Self)) {
+        let mut table = [[0.0; 24]; LANES];
+        for (b, pose) in state.pose.iter().enumerate().skip(1) {
+            let (v, a) = (state.v[b], state.a[b]);
+            let (r, [f, g, h]) = (pose.r, pose.rot.cols);
+            let u = v.at(r);
+            let n = a.at(r) + v.w.cross(u);
+            let (o, e) = (v.w, a.w);
+            let components = [
+                [r.x, r.y, r.z, f.x, f.y, f.z, g.x, g.y],
+                [g.z, h.x, h.y, h.z, u.x, u.y, u.z, o.x],
+                [o.y, o.z, n.x, n.y, n.z, e.x, e.y, e.z],
+            ];
+            turn_over(&components, &mut table);
+            for (lane, x) in table[..T::LANES].iter().enumerate() {
+                out(lane, b, Self::from_components(x));
+            }
         }
+    }
+
+    /// From r, the columns of A, v, omega, a and alpha, one after the other.
+    #[inline(always)]
+    fn from_components(x: &[f64; 24]) -> Self {
+        let vector = |k: usize| Vec3::new(x[3 * k], x[3 * k + 1], x[3 * k + 2]);
+        let rotation = Mat3 { cols: [vector(1), vector(2), vector(3)] };
+        Self { r: vector(0), rotation, v: vector(4), omega: vector(5), a: vector(6), alpha: vector(7) }
+    }
+}
+
+/// From components side by side by lane to lanes side by side by component.
+#[inline(always)]
+pub(crate) fn turn_over<T: Real>(components: &[[T; 8]; 3], table: &mut [[f64; 24]; LANES]) {
+    for (k, eight) in components.iter().enumerate() {
+        T::each_lane(eight, |lane, x| table[lane][8 * k..8 * k + 8].copy_from_slice(x));
     }
 }
 

@@ -85,6 +85,12 @@ impl<T: Real> Parts<T> {
         }
     }
 
+    /// The same at one time per lane, where all lanes have the same law.
+    #[inline(always)]
+    pub fn law_at_times(&self, d: usize, times: T) -> [T; 3] {
+        self.laws[d][0].at_lanes(times)
+    }
+
     /// Value, speed and acceleration that driver d prescribes at time t.
     pub fn law(&self, d: usize, t: f64, witness: T) -> [T; 3] {
         if let [law] = &self.laws[d][..] {

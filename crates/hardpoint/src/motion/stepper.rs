@@ -7,6 +7,7 @@ use crate::space::{FullPivot, LARGEST_DENSE, Quat, Real};
 use crate::topology::{Source, Topology};
 
 use super::assembly::Assembly;
+use super::forecast::Forecast;
 use super::kinematics::{PositionFailure, Residuals, State, factors_of};
 use super::parts::Parts;
 use super::{Effort, Stop, StopKind};
@@ -24,6 +25,8 @@ const SPEED_FLOOR: f64 = 1e-3;
 /// The coordinates of a coupler must come within this of their prediction, rad: which turn an angle is in would
 /// otherwise be a guess.
 const TURN_TRUST: f64 = 1.0;
+/// Positions that one further step is foreseen by: more would not save it an iteration.
+const STEADY_NODES: usize = 2;
 /// Within this part of an output step the speed of a smooth law hardly changes.
 const SMOOTH_PART: f64 = 1e-3;
 /// Coordinates this much faster than the fastest driver are on their way to a limit position.
@@ -53,37 +56,39 @@ pub(crate) struct Stepper<'m, T> {
     pub state: State<T>,
     pub drivers: Vec<[T; 3]>,
     /// The last accepted position.
-    saved: Saved<T>,
-    time: f64,
+    pub(super) saved: Saved<T>,
+    pub(super) forecast: Forecast<T>,
+    pub(super) time: f64,
     /// Per block: sign of the determinant on this branch, and the first pivot ratio.
-    branch: Vec<(bool, f64)>,
+    pub(super) branch: Vec<(bool, f64)>,
     /// Per block: the pivot ratio below which other rows are tried.
-    try_others: Vec<f64>,
+    pub(super) try_others: Vec<f64>,
     /// Fastest driver on the present path (rad, or sizes, per unit of its parameter).
-    fastest_driver: f64,
+    pub(super) fastest_driver: f64,
     /// A law whose speed changes much within a step shorter than this has a jump there.
     shortest_smooth: f64,
     /// By how much the constraints fail at the position tried last.
-    residuals: Residuals,
+    pub(super) residuals: Residuals,
     pub effort: Effort,
+    /// How often other rows were chosen.
+    pub(super) selections: usize,
     /// How the mechanism was closed, if it was open as drawn.
     pub assembly: Option<Assembly>,
 }
 
+/// A position that was accepted.
 #[derive(Clone)]
-struct Saved<T> {
-    q: Vec<T>,
-    qd: Vec<T>,
-    qdd: Vec<T>,
-    /// Jerk, from the accelerations of the last two accepted positions; 0 at the start of a path.
-    jerk: Vec<T>,
-    balls: Vec<Quat<T>>,
-    pivots: Vec<(f64, bool)>,
-    drivers: Vec<[T; 3]>,
+pub(super) struct Saved<T> {
+    pub q: Vec<T>,
+    pub qd: Vec<T>,
+    pub qdd: Vec<T>,
+    pub balls: Vec<Quat<T>>,
+    pub pivots: Vec<(f64, bool)>,
+    pub drivers: Vec<[T; 3]>,
     /// Per row that is a term of a coupler: its coordinate, with speed and acceleration.
-    coupled: Vec<[T; 3]>,
+    pub coupled: Vec<[T; 3]>,
     /// Per curve: where it is touched.
-    contacts: Vec<Contact<T>>,
+    pub contacts: Vec<Contact<T>>,
 }
 
 /// What the drivers follow.
@@ -116,7 +121,6 @@ impl<'m, T: Real> Stepper<'m, T> {
             q: state.q.clone(),
             qd: state.qd.clone(),
             qdd: state.qdd.clone(),
-            jerk: state.qdd.clone(),
             balls: state.balls.clone(),
             pivots: state.pivots.clone(),
             drivers: vec![[witness.zero(); 3]; model.drivers.len()],
@@ -132,6 +136,7 @@ impl<'m, T: Real> Stepper<'m, T> {
             parts,
             state,
             drivers,
+            forecast: Forecast::new(topology, witness),
             saved,
             time: 0.0,
             try_others: vec![0.0; branch.len()],
@@ -140,6 +145,7 @@ impl<'m, T: Real> Stepper<'m, T> {
             shortest_smooth: 0.0,
             residuals: Residuals::default(),
             effort,
+            selections: 0,
             assembly: None,
         }
     }
@@ -261,7 +267,7 @@ impl<'m, T: Real> Stepper<'m, T> {
         }
         // Where a driver's own speed jumps (`abs`, `if`), those of the mechanism may: but only there.
         let jump = h < self.shortest_smooth && !self.drivers_are_smooth(h);
-        if h != 0.0 && !jump && !self.speeds_are_smooth(h) {
+        if h != 0.0 && !jump && !self.speeds_are_smooth(self.state.witness.like(h)) {
             return Err(Refusal::Branch { block: self.least_regular_block() });
         }
         self.residuals = self.state.residuals(&self.topology, &self.parts, &self.drivers);
@@ -274,40 +280,56 @@ impl<'m, T: Real> Stepper<'m, T> {
         self.reselect()
     }
 
-    /// `q + h qd + h^2/2 qdd + h^3/6 jerk` from the saved position; returns the largest move (rad, or sizes).
+    /// Foresees the position a step h beyond the saved one; returns how far the largest move goes (rad, or sizes), to
+    /// second order.
     fn predict(&mut self, h: f64) -> f64 {
         let witness = self.state.witness;
         witness.within(
             #[inline(always)]
             || {
+                let t = witness.like(self.time + h);
                 let (s, saved) = (&mut self.state, &self.saved);
-                let like = s.witness;
-                let (h1, h2, h3) = (like.like(h), like.like(0.5 * h * h), like.like(h * h * h / 6.0));
-                let (mut most, per_size) = (like.zero(), like.like(1.0 / s.size));
-                for (c, coordinate) in self.topology.coordinates.iter().enumerate() {
-                    let step = saved.qd[c] * h1 + saved.qdd[c] * h2 + saved.jerk[c] * h3;
-                    s.q[c] = saved.q[c] + step;
-                    if let Source::Unknown { .. } = coordinate.source {
-                        let step = if coordinate.is_length { step * per_size } else { step };
-                        most = most.larger(step.abs());
-                    }
-                }
+                s.q.copy_from_slice(&saved.q);
                 s.balls.copy_from_slice(&saved.balls);
                 s.contacts.copy_from_slice(&saved.contacts);
-                s.turn_balls(&self.topology, 0..self.topology.links.len());
-                for &r in &self.topology.coupled_rows {
-                    for (k, _) in self.topology.parts_of_row(r) {
-                        let [x, v, a] = saved.coupled[k];
-                        s.near[k] = x + v * h1 + a * h2;
-                    }
+                if h != 0.0 && self.forecast.known() > 0 {
+                    self.forecast.set(s, t, h, STEADY_NODES, |x| x);
                 }
-                most.largest()
+                self.expect_turns(witness.like(h));
+                self.expected_move(witness.like(h)).largest()
             },
         )
     }
 
+    /// The largest move (rad, or sizes) over a step h, by speed and acceleration.
+    #[inline(always)]
+    fn expected_move(&self, h: T) -> T {
+        let (saved, per_size, half) = (&self.saved, h.like(1.0 / self.state.size), h.like(0.5) * h);
+        let mut most = h.zero();
+        for (c, coordinate) in self.topology.coordinates.iter().enumerate() {
+            if let Source::Unknown { .. } = coordinate.source {
+                let step = (saved.qd[c] + saved.qdd[c] * half) * h;
+                most = most.larger(if coordinate.is_length { step * per_size } else { step }.abs());
+            }
+        }
+        most
+    }
+
+    /// About what the coordinates of couplers are, a step h beyond the saved position.
+    #[inline(always)]
+    pub(super) fn expect_turns(&mut self, h: T) {
+        let half = h.like(0.5) * h;
+        for &r in &self.topology.coupled_rows {
+            for (k, _) in self.topology.parts_of_row(r) {
+                let [x, v, a] = self.saved.coupled[k];
+                self.state.near[k] = x + (v + a * half) * h;
+            }
+        }
+    }
+
     /// Speed of the fastest driver (rad, or sizes, per unit of the path's parameter), now or before.
-    fn driver_speed(&self) -> f64 {
+    #[inline(always)]
+    pub(super) fn driver_speed(&self) -> f64 {
         self.model.drivers.iter().zip(&self.drivers).fold(self.fastest_driver, |most, (d, f)| {
             let length = self.model.driven(d).quantity == crate::joint::Quantity::Length;
             most.max(f[1].abs().largest() / if length { self.state.size } else { 1.0 })
@@ -315,7 +337,8 @@ impl<'m, T: Real> Stepper<'m, T> {
     }
 
     /// The block of a coupler that counts an angle whose turn the prediction does not tell for sure.
-    fn uncertain_turn(&self) -> Option<usize> {
+    #[inline(always)]
+    pub(super) fn uncertain_turn(&self) -> Option<usize> {
         let s = &self.state;
         let uncertain = |k: usize| {
             let [value, ..] = s.coordinate_of_row(&self.topology, k);
@@ -342,7 +365,7 @@ impl<'m, T: Real> Stepper<'m, T> {
     }
 
     /// Whether the speeds are those of the same branch as before the step.
-    fn speeds_are_smooth(&self, h: f64) -> bool {
+    pub(super) fn speeds_are_smooth(&self, h: T) -> bool {
         self.state.witness.within(
             #[inline(always)]
             || {
@@ -351,7 +374,7 @@ impl<'m, T: Real> Stepper<'m, T> {
                 let (mut fastest, mut difference) = (zero, zero);
                 for (c, coordinate) in self.topology.coordinates.iter().enumerate() {
                     if let Source::Unknown { .. } = coordinate.source {
-                        let predicted = saved.qd[c] + saved.qdd[c] * s.witness.like(h);
+                        let predicted = saved.qd[c] + saved.qdd[c] * h;
                         let speed = s.qd[c].abs().larger(saved.qd[c].abs());
                         let apart = (s.qd[c] - predicted).abs();
                         let unit = if coordinate.is_length { per_size } else { zero.like(1.0) };
@@ -386,10 +409,10 @@ impl<'m, T: Real> Stepper<'m, T> {
     /// Accepts the position at t, a step h after the one before (0 at the start of a path).
     pub(super) fn save(&mut self, t: f64, h: f64) {
         let (s, saved) = (&self.state, &mut self.saved);
-        let per_step = s.witness.like(if h > 0.0 { 1.0 / h } else { 0.0 });
-        for (jerk, (after, before)) in saved.jerk.iter_mut().zip(s.qdd.iter().zip(&saved.qdd)) {
-            *jerk = (*after - *before) * per_step;
+        if h == 0.0 {
+            self.forecast.forget();
         }
+        self.forecast.learn(t, s, |x| x);
         saved.q.copy_from_slice(&s.q);
         saved.qd.copy_from_slice(&s.qd);
         saved.qdd.copy_from_slice(&s.qdd);
@@ -427,9 +450,10 @@ impl<'m, T: Real> Stepper<'m, T> {
             let matrix = rows
                 .iter()
                 .map(|&r| {
-                    let mut row = vec![0.0; block.unknowns.len()];
-                    s.scaled_row(&self.topology, r, 0, &mut row);
-                    row.into_iter().enumerate().filter(|(_, x)| *x != 0.0).collect()
+                    let mut row = vec![s.witness.zero(); block.unknowns.len()];
+                    s.scaled_row(&self.topology, r, &mut row);
+                    let entries = row.into_iter().map(|x| x.lane(0)).enumerate();
+                    entries.filter(|(_, x)| *x != 0.0).collect()
                 })
                 .collect();
             let pivots = FullPivot::of_sparse(matrix, block.unknowns.len(), f64::MIN_POSITIVE);
@@ -439,9 +463,8 @@ impl<'m, T: Real> Stepper<'m, T> {
                 continue;
             }
             self.topology.select(b, selected);
-            // Other rows have entries in other places.
-            let block = &self.topology.blocks[b];
-            self.state.factors[b] = factors_of(&self.topology, block, LARGEST_DENSE, self.state.witness);
+            self.selections += 1;
+            self.renew_factors(b);
             // The same position, seen through other rows: new factors, and a new sign to stay with.
             self.state
                 .solve_position(&self.topology, &self.parts, &self.drivers, f64::INFINITY)
@@ -452,6 +475,12 @@ impl<'m, T: Real> Stepper<'m, T> {
             self.state.solve_rates(&self.topology, &self.parts, &self.drivers);
         }
         Ok(())
+    }
+
+    /// Room for the factors of a block that is solved with other rows from now on: they have entries in other places.
+    pub(super) fn renew_factors(&mut self, b: usize) {
+        let block = &self.topology.blocks[b];
+        self.state.factors[b] = factors_of(&self.topology, block, LARGEST_DENSE, self.state.witness);
     }
 
     /// What kind of position a walk in ever smaller steps has come to.

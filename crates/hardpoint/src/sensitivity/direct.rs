@@ -51,7 +51,7 @@ impl<T: Real> Moving<T> {
 
 impl<T: Real> FieldParts<T> {
     /// Lane k takes `fields[k]`; there must be no more fields than lanes.
-    pub fn new(topology: &Topology, fields: &[Field], witness: T) -> Self {
+    pub fn new(topology: &Topology, fields: &[&Field], witness: T) -> Self {
         let twist_in = |k: usize, joint, end| fields.get(k).and_then(|f| f.twist_of(joint, end));
         let twist_of = |joint: JointId, end: usize| {
             Twist::gather(witness, |k| twist_in(k, joint, end).unwrap_or(Twist::ZERO))
@@ -74,7 +74,7 @@ impl<T: Real> FieldParts<T> {
             }
             for (k, row) in closure.rows.iter().enumerate() {
                 let rate = |f: &Field| f.kept_rate(closure.joint).by(*row);
-                let rate = witness.like_lanes(|lane| fields.get(lane).map_or(0.0, rate));
+                let rate = witness.like_lanes(|lane| fields.get(lane).map_or(0.0, |f| rate(f)));
                 if rate.abs().largest() > 0.0 {
                     kept.push((closure.first_row + k, rate));
                 }
@@ -90,7 +90,7 @@ impl<T: Real> FieldParts<T> {
             let laws = f.laws.iter().map(|(_, _, rate)| rate.abs());
             markers.chain(kept).chain(laws).fold(0.0, f64::max)
         };
-        let scale = witness.like_lanes(|k| fields.get(k).map_or(0.0, speed));
+        let scale = witness.like_lanes(|k| fields.get(k).map_or(0.0, |f| speed(f)));
         let mut drivers: Vec<DriverId> = fields.iter().flat_map(|f| &f.laws).map(|(d, ..)| *d).collect();
         drivers.sort_unstable();
         drivers.dedup();
@@ -98,19 +98,19 @@ impl<T: Real> FieldParts<T> {
             f.laws.iter().filter(|(k, ..)| *k == d).map(|(_, parameter, rate)| (*parameter, *rate)).collect()
         };
         let laws: Vec<_> =
-            drivers.iter().map(|&d| (d, fields.iter().map(|f| of_lane(d, f)).collect::<Vec<_>>())).collect();
+            drivers.iter().map(|&d| (d, fields.iter().map(|f| of_lane(d, f)).collect())).collect();
         let law_rates = drivers.iter().map(|&d| (d, [witness.zero(); 3])).collect();
         Self { links, closures, kept, laws, law_rates, scale }
     }
 
-    /// Sets what changing laws do at time t.
-    pub fn set_time(&mut self, model: &Model, t: f64) {
+    /// Sets what changing laws do, at one time per lane.
+    pub fn set_times(&mut self, model: &Model, times: &[f64; LANES]) {
         for ((d, lanes), (_, rates)) in self.laws.iter().zip(&mut self.law_rates) {
             let law = &model.drivers[d.0].law;
             let mut of_lanes = [[0.0; 3]; LANES];
-            for (out, parameters) in of_lanes.iter_mut().zip(lanes) {
+            for (k, (out, parameters)) in of_lanes.iter_mut().zip(lanes).enumerate() {
                 for (parameter, rate) in parameters {
-                    let derivatives = law.derivative(*parameter, t).derivatives();
+                    let derivatives = law.derivative(*parameter, times[k]).derivatives();
                     for order in 0..3 {
                         out[order] += rate * derivatives[order];
                     }

@@ -9,7 +9,7 @@ mod direct;
 mod sensing;
 
 pub use admissible::{Admissibility, JointDefect, admissibility_at_design};
-pub(crate) use sensing::sensing;
+pub(crate) use sensing::Sensing;
 
 use crate::space::Vec3;
 
@@ -23,6 +23,7 @@ use crate::space::Vec3;
 ///
 /// All are plain derivatives; in particular domega = d(dpi)/dt + dpi x omega.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[repr(C)] // filled in the order of the fields
 pub struct BodySensitivity {
     /// Of position.
     pub dr: Vec3,

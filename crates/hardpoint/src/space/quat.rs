@@ -61,8 +61,39 @@ impl<T: Real> Quat<T> {
         let h = d * self.w.like(0.5);
         let w = self.w - h.dot(self.v);
         let v = self.v + h * self.w + h.cross(self.v);
-        let k = self.w.like(1.0) / (w * w + v.dot(v)).sqrt();
-        Self { w: w * k, v: v * k }
+        Self { w, v }.normalised()
+    }
+
+    /// The rotation of lane `k`.
+    #[inline(always)]
+    pub fn lane(self, k: usize) -> Quat<f64> {
+        Quat { w: self.w.lane(k), v: self.v.lane(k) }
+    }
+
+    /// The same rotation, of unit length.
+    #[inline(always)]
+    pub fn normalised(self) -> Self {
+        let k = self.w.like(1.0) / (self.w * self.w + self.v.dot(self.v)).sqrt();
+        Self { w: self.w * k, v: self.v * k }
+    }
+
+    /// Rate of change where the frame turns with `w` about the *fixed* axes: `(0, w) q / 2`.
+    #[inline(always)]
+    pub(crate) fn rate(self, w: Vec3<T>) -> Self {
+        let h = w * self.w.like(0.5);
+        Self { w: -h.dot(self.v), v: h * self.w + h.cross(self.v) }
+    }
+
+    /// Component by component; no rotation any more.
+    #[inline(always)]
+    pub(crate) fn plus(self, o: Self) -> Self {
+        Self { w: self.w + o.w, v: self.v + o.v }
+    }
+
+    /// Component 0 (scalar) to 3.
+    #[inline(always)]
+    pub(crate) fn component(self, k: usize) -> T {
+        if k == 0 { self.w } else { self.v[k - 1] }
     }
 
     /// The rotation matrix.

@@ -39,6 +39,9 @@ pub trait Real:
     /// Writes all lanes to the start of `out`.
     fn store(self, out: &mut [f64]);
 
+    /// Gives every lane its eight components: what stands side by side by lane comes to stand side by side by component.
+    fn each_lane(components: &[Self; 8], out: impl FnMut(usize, &[f64; 8]));
+
     /// Square root, lane by lane.
     fn sqrt(self) -> Self;
 
@@ -122,6 +125,10 @@ impl Real for f64 {
         out[0] = self;
     }
     #[inline(always)]
+    fn each_lane(components: &[Self; 8], mut out: impl FnMut(usize, &[f64; 8])) {
+        out(0, components);
+    }
+    #[inline(always)]
     fn sqrt(self) -> Self {
         f64::sqrt(self)
     }
@@ -176,6 +183,21 @@ impl<S: Simd> Real for f64x8<S> {
     #[inline(always)]
     fn store(self, out: &mut [f64]) {
         out[..LANES].copy_from_slice(self.as_slice());
+    }
+    #[inline(always)]
+    fn each_lane(components: &[Self; 8], mut out: impl FnMut(usize, &[f64; 8])) {
+        // Three perfect shuffles of the 64 numbers transpose them.
+        let mut m = *components;
+        for _ in 0..3 {
+            let o = m;
+            for k in 0..4 {
+                m[2 * k] = o[k].zip_low(o[k + 4]);
+                m[2 * k + 1] = o[k].zip_high(o[k + 4]);
+            }
+        }
+        for (lane, row) in m.iter().enumerate() {
+            out(lane, row.as_array());
+        }
     }
     #[inline(always)]
     fn sqrt(self) -> Self {
@@ -234,6 +256,10 @@ mod tests {
                 assert_eq!(Real::sqrt(Real::abs(x)).lane(k), x.lane(k).abs().sqrt());
             }
             assert_eq!(x.largest(), x.lane(7));
+            let components = std::array::from_fn(|c| w.like_lanes(|k| (10 * c + k) as f64));
+            Real::each_lane(&components, |lane, row| {
+                assert_eq!(*row, std::array::from_fn(|c| (10 * c + lane) as f64));
+            });
             assert_eq!(x.smallest(), -3.0);
             let broken = w.like_lanes(|k| if k == 5 { f64::NAN } else { 1.0 });
             assert!(broken.largest().is_nan() && broken.smallest().is_nan());
