@@ -486,6 +486,8 @@ impl<T: Real> State<T> {
                 let s = self;
                 level(
                     topology,
+                    topology.driven_links(),
+                    0..topology.blocks.len(),
                     &mut s.factors,
                     &s.x,
                     &s.l,
@@ -499,8 +501,7 @@ impl<T: Real> State<T> {
                 s.rates_of_wrenches(topology, 1);
                 s.set_driven(topology, drivers, 2);
                 for (k, link) in topology.links.iter().enumerate() {
-                    // The first freedom on ground keeps its twist.
-                    if link.parent != GROUND || link.steps.len() > 1 {
+                    if !link.keeps_its_twist() {
                         s.bias[k] = s.sum_over_link(link, &s.xd, &s.qd);
                     }
                 }
@@ -509,10 +510,12 @@ impl<T: Real> State<T> {
                     let demand = demand(topology, drivers, place, 2, witness);
                     s.row_rhs[r] = demand - s.ld[r].on(s.v[j.0] - s.v[i.0]);
                 }
-                sum_couplers(topology, &mut s.row_rhs);
+                sum_couplers(topology, &topology.coupled_rows, &mut s.row_rhs);
                 let bias = Some(&s.bias[..]);
                 level(
                     topology,
+                    topology.driven_links(),
+                    0..topology.blocks.len(),
                     &mut s.factors,
                     &s.x,
                     &s.l,
@@ -654,8 +657,8 @@ impl<T: Real> State<T> {
     #[inline(always)]
     fn rates_of_twists(&mut self, topology: &Topology, order: usize) {
         for link in &topology.links {
-            if link.parent == GROUND && link.steps.len() == 1 {
-                continue; // it keeps its twist
+            if link.keeps_its_twist() {
+                continue;
             }
             let mut v = self.v[link.parent.0];
             let mut a = self.a[link.parent.0];
@@ -708,8 +711,8 @@ impl<T: Real> State<T> {
 
 /// Adds to every coupler's row what its further terms have.
 #[inline(always)]
-pub(crate) fn sum_couplers<T: Real>(topology: &Topology, of_rows: &mut [T]) {
-    for &r in &topology.coupled_rows {
+pub(crate) fn sum_couplers<T: Real>(topology: &Topology, coupled_rows: &[usize], of_rows: &mut [T]) {
+    for &r in coupled_rows {
         for &(term, factor) in &topology.rows[r].terms {
             let x = of_rows[term];
             of_rows[r] += x * x.like(factor);
@@ -757,7 +760,7 @@ fn demand<T: Real>(topology: &Topology, drivers: &[[T; 3]], place: &RowPlace, or
     }
 }
 
-/// Solves one linear level: the motion `out` of all bodies with
+/// Solves one linear level over these links and blocks: the motion `out` of their bodies with
 ///
 /// ```text
 /// out_child = out_parent + bias_link + sum x_a u_a      for every link,
@@ -771,6 +774,8 @@ fn demand<T: Real>(topology: &Topology, drivers: &[[T; 3]], place: &RowPlace, or
 #[expect(clippy::too_many_arguments, reason = "the arrays are borrowed from one state, some of them mutably")]
 pub(crate) fn level<T: Real>(
     topology: &Topology,
+    driven_links: impl Iterator<Item = usize>,
+    blocks: impl Iterator<Item = usize>,
     factors: &mut [Factors<T>],
     x: &[Twist<T>],
     l: &[Wrench<T>],
@@ -780,8 +785,9 @@ pub(crate) fn level<T: Real>(
     out: &mut [Twist<T>],
     rhs: &mut [T],
 ) {
-    carry(topology, topology.driven_links(), x, bias, u, out, |_| true);
-    for (b, block) in topology.blocks.iter().enumerate() {
+    carry(topology, driven_links, x, bias, u, out, |_| true);
+    for b in blocks {
+        let block = &topology.blocks[b];
         // First as if the unknowns were zero: what the rows miss then is theirs to make up.
         carry(topology, block.links.clone(), x, bias, u, out, |step| step.is_driven);
         for (k, &r) in block.selected.iter().enumerate() {
@@ -799,7 +805,7 @@ pub(crate) fn level<T: Real>(
 #[inline(always)]
 fn carry<T: Real>(
     topology: &Topology,
-    links: std::ops::Range<usize>,
+    links: impl Iterator<Item = usize>,
     x: &[Twist<T>],
     bias: Option<&[Twist<T>]>,
     u: &[T],

@@ -4,7 +4,7 @@ use crate::model::{DriverId, Field, JointId, Model};
 use crate::motion::kinematics::{State, level, sum_couplers};
 use crate::motion::stepper::LOCKED;
 use crate::space::{LANES, Real, Twist};
-use crate::topology::{Source, Topology};
+use crate::topology::{Source, Step, Topology};
 
 /// Design velocities laid out for the plan, one variable per lane: body-fixed marker twists by link and
 /// by closure. Lanes without a variable stay at rest.
@@ -20,6 +20,68 @@ pub(crate) struct FieldParts<T> {
     law_rates: Vec<(DriverId, [T; 3])>,
     /// Largest speed in each field: what round-off of a defect is compared with.
     scale: T,
+    /// How far the change is felt.
+    pub reach: Reach,
+}
+
+/// How far a change of the design is felt: all else stays as it is, and is not even looked at.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(crate) struct Reach {
+    /// Links placed by drivers alone, whose children move.
+    driven_links: Vec<usize>,
+    /// Blocks with anything to make up for.
+    blocks: Vec<usize>,
+    /// Closures of these blocks, and those between driven bodies.
+    closures: Vec<usize>,
+    /// Couplers' rows in these blocks.
+    coupled: Vec<usize>,
+    /// Bodies that move.
+    pub bodies: Vec<usize>,
+}
+
+impl Reach {
+    /// Of changes at these links and closures, and of these drivers.
+    fn new(topology: &Topology, links: &[usize], closures: &[usize], drivers: &[DriverId]) -> Self {
+        let bodies = 1 + topology.links.iter().map(|l| l.child.0).max().unwrap_or(0);
+        let (mut moves, mut reach) = (vec![false; bodies], Self::default());
+        let starts = |k: usize| {
+            let mut coordinates = topology.links[k].coordinates().map(|c| topology.coordinates[c].source);
+            links.binary_search(&k).is_ok()
+                || coordinates.any(|s| matches!(s, Source::Driven(d) if drivers.contains(&d)))
+        };
+        for k in topology.driven_links() {
+            let link = &topology.links[k];
+            if moves[link.parent.0] || starts(k) {
+                moves[link.child.0] = true;
+                reach.driven_links.push(k);
+            }
+        }
+        let changed = |c: usize, moves: &[bool]| {
+            let closure = &topology.closures[c];
+            closures.binary_search(&c).is_ok()
+                || closure.bodies.iter().any(|b| moves[b.0])
+                || closure.driver.is_some_and(|d| drivers.contains(&d))
+        };
+        for (b, block) in topology.blocks.iter().enumerate() {
+            let felt = block.closures.iter().any(|&c| changed(c, &moves))
+                || block.links.clone().any(|k| moves[topology.links[k].parent.0] || starts(k));
+            if felt {
+                reach.blocks.push(b);
+                reach.closures.extend(&block.closures);
+                block.links.clone().for_each(|k| moves[topology.links[k].child.0] = true);
+            }
+        }
+        for (c, closure) in topology.closures.iter().enumerate() {
+            if closure.block.is_none() && changed(c, &moves) {
+                reach.closures.push(c);
+            }
+        }
+        let felt = |c: usize| reach.closures.contains(&c);
+        let coupled = topology.coupled_rows.iter().copied();
+        reach.coupled = coupled.filter(|&r| felt(topology.rows[r].closure)).collect();
+        reach.bodies = (1..bodies).filter(|&b| moves[b]).collect();
+        reach
+    }
 }
 
 /// The parameters of a law that change, and their rates.
@@ -100,7 +162,12 @@ impl<T: Real> FieldParts<T> {
         let laws: Vec<_> =
             drivers.iter().map(|&d| (d, fields.iter().map(|f| of_lane(d, f)).collect())).collect();
         let law_rates = drivers.iter().map(|&d| (d, [witness.zero(); 3])).collect();
-        Self { links, closures, kept, laws, law_rates, scale }
+        let of = |moving: &[Moving<T>]| moving.iter().map(|m| m.at).collect::<Vec<_>>();
+        let mut changed = of(&closures);
+        changed.extend(kept.iter().map(|&(row, _)| topology.rows[row].closure));
+        changed.sort_unstable();
+        let reach = Reach::new(topology, &of(&links), &changed, &drivers);
+        Self { links, closures, kept, laws, law_rates, scale, reach }
     }
 
     /// Sets what changing laws do, at one time per lane.
@@ -136,14 +203,16 @@ pub(crate) struct Direct<T> {
     s: [Vec<T>; 3],
     /// Per order: design twists of the bodies, W.
     pub w: [Vec<Twist<T>>; 3],
-    /// Per order: `z_parent - z_child` of the links.
-    z_link: [Vec<Twist<T>>; 3],
-    /// Per order: z of both markers of the closures.
-    z_end: [Vec<[Twist<T>; 2]>; 3],
-    bias: Vec<Twist<T>>,
+    /// Per order: `W_Mj - W_Mi` of the closures' markers.
+    apart: [Vec<Twist<T>>; 3],
+    /// Per marker that the field moves at a closure, per order: how.
+    z: Vec<[Twist<T>; 3]>,
+    bias: [Vec<Twist<T>>; 3],
     row_rhs: Vec<T>,
     /// Whether some variable has changed a law, so that the driven coordinates' speeds are no longer all zero.
     laws_change: bool,
+    /// How far the variable before was felt.
+    before: Reach,
 }
 
 /// By how much a left-out row fails per unit of a variable, against what could be round-off.
@@ -165,21 +234,29 @@ impl<T: Real> Direct<T> {
         Self {
             s: std::array::from_fn(|_| vec![witness.zero(); topology.coordinates.len()]),
             w: three(model.bodies.len()),
-            z_link: three(topology.links.len()),
-            z_end: std::array::from_fn(|_| vec![[none; 2]; topology.closures.len()]),
-            bias: vec![none; topology.links.len()],
+            apart: three(topology.closures.len()),
+            z: Vec::new(),
+            bias: three(topology.links.len()),
             row_rhs: vec![witness.zero(); topology.rows.len()],
             laws_change: false,
+            before: Reach::default(),
         }
     }
 
     /// W, W. and W.. of all bodies for one variable, where `state` stands with all of its rates.
     pub fn solve(&mut self, topology: &Topology, state: &mut State<T>, field: &FieldParts<T>) {
         let witness = state.witness;
+        if self.before != field.reach {
+            for w in &mut self.w {
+                self.before.bodies.iter().for_each(|&b| w[b] = Twist::zero(witness));
+            }
+            self.before.clone_from(&field.reach);
+        }
+        self.laws_change |= !field.law_rates.is_empty();
         witness.within(
             #[inline(always)]
             || {
-                self.set_field(state, field);
+                self.set_field(topology, state, field);
                 for order in 0..3 {
                     self.solve_order(topology, state, field, order);
                 }
@@ -189,32 +266,24 @@ impl<T: Real> Direct<T> {
 
     /// The design twists of every marker of the field.
     #[inline(always)]
-    fn set_field(&mut self, state: &State<T>, field: &FieldParts<T>) {
+    fn set_field(&mut self, topology: &Topology, state: &State<T>, field: &FieldParts<T>) {
         let none = Twist::zero(state.witness);
-        for order in 0..3 {
-            self.z_link[order].fill(none);
-            self.z_end[order].fill([none; 2]);
+        let in_blocks = field.reach.blocks.iter().flat_map(|&b| topology.blocks[b].links.clone());
+        for k in field.reach.driven_links.iter().copied().chain(in_blocks) {
+            for order in 0..3 {
+                self.bias[order][k] = none;
+            }
         }
         for m in &field.links {
             let z = m.carried(state);
             for order in 0..3 {
-                self.z_link[order][m.at] += if m.end == 0 { z[order] } else { -z[order] };
+                self.bias[order][m.at] += if m.end == 0 { z[order] } else { -z[order] };
             }
         }
+        self.z.clear();
         for m in &field.closures {
-            let z = m.carried(state);
-            for order in 0..3 {
-                self.z_end[order][m.at][m.end] = z[order];
-            }
+            self.z.push(m.carried(state));
         }
-    }
-
-    /// `W_Mj - W_Mi` of a closure's markers at a finished order.
-    #[inline(always)]
-    fn marker_difference(&self, topology: &Topology, closure: usize, order: usize) -> Twist<T> {
-        let [i, j] = topology.closures[closure].bodies;
-        let [z_i, z_j] = self.z_end[order][closure];
-        self.w[order][j.0] + z_j - self.w[order][i.0] - z_i
     }
 
     /// `docs/theory.md` (11), (12) or (13).
@@ -226,32 +295,48 @@ impl<T: Real> Direct<T> {
         field: &FieldParts<T>,
         order: usize,
     ) {
-        let two = state.witness.like(2.0);
-        for (k, link) in topology.links.iter().enumerate() {
-            let mut bias = self.z_link[order][k];
-            match order {
-                0 => {}
-                1 => bias += state.sum_over_link(link, &state.xd, &self.s[0]),
-                _ => {
-                    bias += state.sum_over_link(link, &state.xd, &self.s[1]) * two;
-                    bias += state.sum_over_link(link, &state.xdd, &self.s[0]);
+        let (two, reach) = (state.witness.like(2.0), &field.reach);
+        if order > 0 {
+            let laws_change = self.laws_change;
+            let counts = |step: &&Step| !step.is_driven || laws_change;
+            let in_blocks = reach.blocks.iter().flat_map(|&b| topology.blocks[b].links.clone());
+            for k in reach.driven_links.iter().copied().chain(in_blocks) {
+                let link = &topology.links[k];
+                if link.keeps_its_twist() {
+                    continue;
+                }
+                let mut bias = self.bias[order][k];
+                for step in link.steps.iter().filter(counts) {
+                    for c in step.first..step.first + step.freedom.coordinates() {
+                        if order == 1 {
+                            bias += state.xd[c] * self.s[0][c];
+                        } else {
+                            bias += state.xd[c] * (self.s[1][c] * two) + state.xdd[c] * self.s[0][c];
+                        }
+                    }
+                }
+                self.bias[order][k] = bias;
+            }
+        }
+        for &c in &reach.closures {
+            let closure = &topology.closures[c];
+            for r in closure.first_row..closure.first_row + closure.rows.len() {
+                if topology.rows[r].drives() {
+                    self.row_rhs[r] = match order {
+                        0 => two.zero(),
+                        1 => -state.ld[r].on(self.apart[0][c]),
+                        _ => -(state.ldd[r].on(self.apart[0][c]) + state.ld[r].on(self.apart[1][c]) * two),
+                    };
                 }
             }
-            self.bias[k] = bias;
         }
-        for (c, closure) in topology.closures.iter().enumerate() {
-            let [z_i, z_j] = self.z_end[order][c];
-            let dz = z_j - z_i;
-            let before = if order > 0 { self.marker_difference(topology, c, order - 1) } else { dz };
-            let first = if order > 1 { self.marker_difference(topology, c, 0) } else { dz };
+        for (m, z) in field.closures.iter().zip(&self.z) {
+            let closure = &topology.closures[m.at];
+            let dz = if m.end == 1 { -z[order] } else { z[order] };
             for r in closure.first_row..closure.first_row + closure.rows.len() {
-                let mut rhs = -state.l[r].on(dz);
-                match order {
-                    0 => {}
-                    1 => rhs -= state.ld[r].on(before),
-                    _ => rhs -= state.ldd[r].on(first) + two * state.ld[r].on(before),
+                if topology.rows[r].drives() {
+                    self.row_rhs[r] += state.l[r].on(dz);
                 }
-                self.row_rhs[r] = rhs;
             }
         }
         if order == 0 {
@@ -259,22 +344,31 @@ impl<T: Real> Direct<T> {
                 self.row_rhs[row] += rate;
             }
         }
-        sum_couplers(topology, &mut self.row_rhs);
-        self.laws_change |= !field.law_rates.is_empty();
+        sum_couplers(topology, &reach.coupled, &mut self.row_rhs);
         if self.laws_change {
             self.follow_laws(topology, field, order);
         }
         level(
             topology,
+            reach.driven_links.iter().copied(),
+            reach.blocks.iter().copied(),
             &mut state.factors,
             &state.x,
             &state.l,
-            Some(&self.bias),
+            Some(&self.bias[order]),
             &self.row_rhs,
             &mut self.s[order],
             &mut self.w[order],
             &mut state.rhs,
         );
+        let w = &self.w[order];
+        for &c in &reach.closures {
+            let [i, j] = topology.closures[c].bodies;
+            self.apart[order][c] = w[j.0] - w[i.0];
+        }
+        for (m, z) in field.closures.iter().zip(&self.z) {
+            self.apart[order][m.at] += if m.end == 1 { z[order] } else { -z[order] };
+        }
     }
 
     /// Driven coordinates, in the tree and across cuts, follow the change of their laws.
@@ -299,40 +393,63 @@ impl<T: Real> Direct<T> {
         topology: &Topology,
         state: &State<T>,
         field: &FieldParts<T>,
-        worst: &mut [Option<Defect>],
+        worst: &mut [Option<Defect>; LANES],
     ) {
-        worst.fill(None);
-        let zero = state.witness.zero();
-        for (r, _) in topology.rows.iter().enumerate().filter(|(_, p)| !p.selected && !p.is_term) {
-            // Per lane: the sum of all terms, and the largest of them.
-            let mut sums = [(0.0, 0.0_f64); LANES];
-            for (k, factor) in topology.parts_of_row(r) {
-                let closure = topology.rows[k].closure;
-                let [i, j] = topology.closures[closure].bodies;
-                let [z_i, z_j] = self.z_end[0][closure];
-                let rate = field.kept.binary_search_by_key(&k, |l| l.0).map_or(zero, |n| field.kept[n].1);
-                let driven = topology.closures[closure].driver.map_or(zero, |d| field.law_rate(d, 0));
-                let rate = rate + driven;
-                let (l, w, factor) = (state.l[k], &self.w[0], zero.like(factor));
-                let terms = state.witness.within(
-                    #[inline(always)]
-                    || [l.on(w[j.0]), l.on(z_j), -l.on(w[i.0]), -l.on(z_i), -rate].map(|x| x * factor),
-                );
-                for (lane, (sum, most)) in sums[..T::LANES].iter_mut().enumerate() {
-                    for term in &terms {
-                        *sum += term.lane(lane);
-                        *most = most.max(term.lane(lane).abs());
+        state.witness.within(
+            #[inline(always)]
+            || {
+                for &c in &field.reach.closures {
+                    let closure = &topology.closures[c];
+                    for r in closure.first_row..closure.first_row + closure.rows.len() {
+                        if !topology.rows[r].selected && !topology.rows[r].is_term {
+                            self.defect(topology, state, field, r, worst);
+                        }
                     }
                 }
+            },
+        );
+    }
+
+    /// Enters row r where it fails most.
+    #[inline(always)]
+    fn defect(
+        &self,
+        topology: &Topology,
+        state: &State<T>,
+        field: &FieldParts<T>,
+        r: usize,
+        worst: &mut [Option<Defect>; LANES],
+    ) {
+        let zero = state.witness.zero();
+        // The sum of all terms, and the largest of them.
+        let (mut sum, mut most) = (zero, zero);
+        for (k, factor) in topology.parts_of_row(r) {
+            let closure = topology.rows[k].closure;
+            let [i, j] = topology.closures[closure].bodies;
+            let (l, w, factor) = (state.l[k], &self.w[0], zero.like(factor));
+            let mut add = |term: T| {
+                sum += term * factor;
+                most = most.larger((term * factor).abs());
+            };
+            add(l.on(w[j.0]));
+            add(-l.on(w[i.0]));
+            for (m, z) in field.closures.iter().zip(&self.z).filter(|(m, _)| m.at == closure) {
+                add(if m.end == 1 { l.on(z[0]) } else { -l.on(z[0]) });
             }
-            for (lane, worst) in worst.iter_mut().enumerate() {
-                let (defect, size): (f64, f64) = sums[lane];
-                // What typed coordinates may be off by in the motion, they may be off by in the design's terms.
-                let is_defect =
-                    !(defect.abs() <= LOCKED * size) && defect.abs() > DEFECT_FLOOR * field.scale.lane(lane);
-                if is_defect && worst.is_none_or(|w| defect.abs() > w.value) {
-                    *worst = Some(Defect { row: r, value: defect.abs() });
-                }
+            let rate = field.kept.binary_search_by_key(&k, |l| l.0).map_or(zero, |n| field.kept[n].1);
+            let driven = topology.closures[closure].driver.map_or(zero, |d| field.law_rate(d, 0));
+            add(-(rate + driven));
+        }
+        // What typed coordinates may be off by in the motion, they may be off by in the design's terms.
+        let (sum, limit) = (sum.abs(), most * zero.like(LOCKED));
+        let limit = limit.larger(field.scale * zero.like(DEFECT_FLOOR));
+        if (sum - limit).largest() <= 0.0 {
+            return;
+        }
+        for (lane, worst) in worst[..T::LANES].iter_mut().enumerate() {
+            let value = sum.lane(lane);
+            if !(value <= limit.lane(lane)) && worst.is_none_or(|w| value > w.value) {
+                *worst = Some(Defect { row: r, value });
             }
         }
     }

@@ -63,6 +63,8 @@ pub struct Sensitivities {
     pub bodies: usize,
     /// Per variable: whether and how the mechanism follows the change.
     pub admissibility: Vec<Admissibility>,
+    /// Per variable and body: whether it was written to.
+    moved: Vec<bool>,
 }
 
 impl Sensitivities {

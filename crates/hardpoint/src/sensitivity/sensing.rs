@@ -38,18 +38,28 @@ impl<'f, T: Real> Sensing<'f, T> {
         witness: T,
     ) -> Self {
         let bodies = model.bodies.len();
+        let all: Vec<&Field> = fields.iter().collect();
+        let each: Vec<_> = fields.iter().map(|f| FieldParts::new(topology, &[f; LANES], witness)).collect();
+        let together: Vec<_> = all.chunks(T::LANES).map(|f| FieldParts::new(topology, f, witness)).collect();
+        // What no variable of a group moves is never written: it must be zero.
+        let mut moved = vec![false; fields.len() * bodies];
+        for (g, group) in together.iter().enumerate() {
+            for v in (g * T::LANES..fields.len()).take(T::LANES) {
+                group.reach.bodies.iter().for_each(|b| moved[v * bodies + b] = true);
+            }
+        }
         let mut states = room.states;
-        if (room.variables, room.bodies) != (fields.len(), bodies) {
+        if room.moved != moved {
             states.clear();
         }
         states.resize(steps * fields.len() * bodies, BodySensitivity::ZERO);
-        let out = Sensitivities { states, variables: fields.len(), bodies, admissibility: Vec::new() };
-        let all: Vec<&Field> = fields.iter().collect();
+        let admissibility = Vec::new();
+        let out = Sensitivities { states, variables: fields.len(), bodies, admissibility, moved };
         Self {
             model,
             fields,
-            each: fields.iter().map(|f| FieldParts::new(topology, &[f; LANES], witness)).collect(),
-            together: all.chunks(T::LANES).map(|f| FieldParts::new(topology, f, witness)).collect(),
+            each,
+            together,
             state: State::new(model, topology, witness),
             direct: Direct::new(model, topology, witness),
             out,
@@ -70,7 +80,7 @@ impl<'f, T: Real> Sensing<'f, T> {
             group.set_times(self.model, &[t; LANES]);
             self.direct.solve(topology, &mut self.state, group);
             let to = &mut self.out.states[(k * variables + first) * bodies..(k + 1) * variables * bodies];
-            each_derivative(&self.direct.w, &self.state, |lane, body, d| {
+            each_derivative(&self.direct.w, &self.state, &group.reach.bodies, |lane, body, d| {
                 if let Some(to) = to.get_mut(lane * bodies + body) {
                     *to = d;
                 }
@@ -104,7 +114,7 @@ impl<'f, T: Real> Sensing<'f, T> {
             field.set_times(self.model, &of_lanes);
             self.direct.solve(topology, state, field);
             let to = &mut self.out.states[k * variables * bodies..(k + count) * variables * bodies];
-            each_derivative(&self.direct.w, state, |lane, body, d| {
+            each_derivative(&self.direct.w, state, &field.reach.bodies, |lane, body, d| {
                 if let Some(to) = to.get_mut((lane * variables + v) * bodies + body) {
                     *to = d;
                 }
@@ -163,17 +173,19 @@ fn note(resisting: &mut (Vec<JointDefect>, f64), topology: &Topology, defect: De
 }
 
 /// Derivatives of r, pi, v, omega, a and alpha from the design twists W of the bodies and their time derivatives:
-/// `V' = W. + ad(W) V`, `A' = W.. + ad(W.) V + ad(W) A` (`docs/theory.md` (14)). Gives them to `out(lane, body, ...)`.
+/// `V' = W. + ad(W) V`, `A' = W.. + ad(W.) V + ad(W) A` (`docs/theory.md` (14)). Gives those of the bodies that move to
+/// `out(lane, body, ...)`.
 fn each_derivative<T: Real>(
     w: &[Vec<Twist<T>>; 3],
     state: &State<T>,
+    bodies: &[usize],
     mut out: impl FnMut(usize, usize, BodySensitivity),
 ) {
     let mut table = [[0.0; 24]; LANES];
     state.witness.within(
         #[inline(always)]
         || {
-            for body in 1..state.pose.len() {
+            for &body in bodies {
                 let (w0, w1, w2) = (w[0][body], w[1][body], w[2][body]);
                 let (r, v, a) = (state.pose[body].r, state.v[body], state.a[body]);
                 let dv = w1 + w0.ad(v);

@@ -17,7 +17,7 @@ pub use redundancy::Redundancy;
 
 use crate::constraint::Row;
 use crate::joint::Freedom;
-use crate::model::{BodyId, DriverId, JointId, Model};
+use crate::model::{BodyId, DriverId, GROUND, JointId, Model};
 use crate::space::{Mat3, Pose, Twist};
 
 /// Which coordinates describe the mechanism.
@@ -304,6 +304,12 @@ impl Link {
     /// Its coordinates in [`Topology::coordinates`].
     pub fn coordinates(&self) -> impl Iterator<Item = usize> + '_ {
         self.steps.iter().flat_map(|s| s.first..s.first + s.freedom.coordinates())
+    }
+
+    /// Whether its unit twists never change: a single freedom that starts on ground.
+    #[inline(always)]
+    pub fn keeps_its_twist(&self) -> bool {
+        self.parent == GROUND && self.steps.len() == 1
     }
 
     /// The frame in which its freedoms start, at the design configuration, in the world.

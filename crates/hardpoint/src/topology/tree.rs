@@ -45,7 +45,7 @@ pub(super) fn grow(model: &Model, formulation: Formulation) -> Topology {
     }
     let mut reachable = Reachable::new(model, &drivers_of, formulation);
     let mut first_orphan = 0;
-    reachable.place(&mut depth, crate::model::GROUND, 0);
+    reachable.place(&mut depth, GROUND, 0);
     loop {
         match reachable.next(&depth) {
             Some(Candidate { unknowns, depth: parent_depth, joint, parent_end }) => {
@@ -187,7 +187,7 @@ fn add_joint_link(
 
 fn add_free_link(topology: &mut Topology, child: BodyId) {
     let steps = [Freedom::Slide(0), Freedom::Slide(1), Freedom::Slide(2), Freedom::Ball].map(|f| (f, None));
-    add_link(topology, None, crate::model::GROUND, child, 0, 1.0, &steps);
+    add_link(topology, None, GROUND, child, 0, 1.0, &steps);
 }
 
 fn add_link(
