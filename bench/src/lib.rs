@@ -90,6 +90,29 @@ pub fn chain(n: usize, steps: usize) -> Draft {
     draft
 }
 
+/// The chain of [`chain`] as a model file of eleven steps.
+pub fn chain_text(n: usize) -> String {
+    let mut text = format!(
+        "name = 'chain of {n}'\nunits = {{ length = 'm', angle = 'rad' }}\ntime = {{ end = 0.1, steps = 10 }}\n\
+         [drivers]\nmotor = {{ joint = 'pivot0', law = '0.5*sin(2*pi*t)' }}\n"
+    );
+    let draft = chain(n, 0);
+    text += "[bodies]\n";
+    for body in &draft.bodies {
+        text += &format!("{} = {{}}\n", body.name);
+    }
+    text += "[joints]\n";
+    for joint in &draft.joints {
+        let Place::At(at) = &joint.at[0] else { unreachable!("the joints of a chain are at coordinates") };
+        let [i, j] = &joint.bodies;
+        let (name, kind, [x, y, z]) = (&joint.name, &joint.kind, at.to_array());
+        text += &format!(
+            "{name} = {{ type = '{kind}', bodies = ['{i}', '{j}'], at = [{x:?}, {y:?}, {z:?}], axis = 'z' }}\n"
+        );
+    }
+    text
+}
+
 /// A truss of n nodes, each tied by rods to the two before, that turns about its first node while a leg
 /// pushes at its last: one block of 2 (n - 1) unknowns, none of which can be found before the others.
 pub fn truss(n: usize, steps: usize) -> Draft {

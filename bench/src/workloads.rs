@@ -150,6 +150,20 @@ pub fn measure(workload: Workload, reference: Option<&Path>, once: bool) -> io::
     Ok(Figures { us_per_step, errors })
 }
 
+/// Milliseconds of CPU time that it takes to read and check the file of a chain of so many loops, and to plan its solution.
+///
+/// # Panics
+/// Where the file is refused.
+pub fn plan_chain(loops: usize) -> [f64; 2] {
+    let text = crate::chain_text(loops);
+    let (reading, file) =
+        timed(false, || hardpoint_file::parse(&text, "chain.toml").unwrap_or_else(|e| panic!("{e}")));
+    let (planning, _) = timed(false, || {
+        Analysis::new(&file.model).expect("a chain that can be driven").topology().unknowns()
+    });
+    [reading, planning].map(|time| 1e3 * time.as_secs_f64())
+}
+
 fn per_step(time: Duration, steps: usize) -> f64 {
     1e6 * time.as_secs_f64() / steps as f64
 }

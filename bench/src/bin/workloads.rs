@@ -2,12 +2,13 @@
 //!
 //!     workloads [W1 W2s W3-100 ...] [--reference DIR]    errors against the floor's files in DIR
 //!     workloads --floor DIR                              the floor itself: leaves its files in DIR, prints its lines
+//!     workloads --plan LOOPS                             reads and plans the file of a chain
 
 use std::path::PathBuf;
 use std::process::ExitCode;
 
 use hardpoint_bench::floor;
-use hardpoint_bench::workloads::{Workload, measure};
+use hardpoint_bench::workloads::{Workload, measure, plan_chain};
 
 fn main() -> ExitCode {
     match run() {
@@ -29,6 +30,15 @@ fn run() -> Result<(), String> {
             "--floor" => {
                 let lines = floor::run(&folder(arguments.next())?, 41).map_err(|e| e.to_string())?;
                 print!("{lines}");
+                return Ok(());
+            }
+            "--plan" => {
+                let loops =
+                    arguments.next().and_then(|n| n.parse().ok()).ok_or("--plan needs a number of loops")?;
+                let [read, plan] = plan_chain(loops);
+                println!(
+                    r#"{{"peer": "hardpoint", "workload": "plan-{loops}", "read_ms": {read:.4}, "plan_ms": {plan:.4}}}"#
+                );
                 return Ok(());
             }
             name => workloads.push(name.parse()?),
