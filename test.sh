@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Passes all the tests, from a fresh clone on a fresh machine with a Rust toolchain: format, lints, Rust tests, the
-# page's own tests, and the reports of both of the paper's examples in a real browser.
+# Passes all the tests, from a fresh clone on a fresh machine with a Rust toolchain: format, lints, Rust tests,
+# instruction counts, the page's own tests, and the reports of both of the paper's examples in a real browser.
 set -euo pipefail
 cd "$(dirname "$0")"
 
@@ -15,6 +15,8 @@ need() { # command, Debian package
 need node nodejs
 need npm npm
 need chromium chromium
+need valgrind valgrind
+need python3 python3
 
 echo "== format and lints"
 cargo fmt --all --check
@@ -22,6 +24,9 @@ cargo clippy --workspace --all-targets --quiet -- -D warnings
 
 echo "== Rust tests"
 cargo test --workspace
+
+echo "== instruction counts"
+bench/instructions
 
 echo "== the page"
 for model in slider_crank macpherson; do

@@ -39,6 +39,13 @@ fn chain_check_and_plan(bencher: Bencher, n: usize) {
     check_and_plan(bencher, &hardpoint_bench::chain(n, STEPS));
 }
 
+/// Reading and checking their files.
+#[divan::bench(args = [1, 10, 100, 1000, 10_000], max_time = 3)]
+fn chain_read(bencher: Bencher, n: usize) {
+    let text = hardpoint_bench::chain_text(n);
+    bencher.bench(|| hardpoint_file::parse(&text, "chain.toml").unwrap());
+}
+
 /// n x n scissors, which fall into many small blocks.
 #[divan::bench(args = [2, 5, 10, 20], max_time = 3)]
 fn scissors_motion(bencher: Bencher, n: usize) {

@@ -4,7 +4,11 @@ use hardpoint::law::Law;
 use hardpoint::model::{
     BodyDraft, Draft, DrivenDraft, DriverDraft, FrameDraft, JointDraft, Line, Model, Place,
 };
-use hardpoint::space::Vec3;
+use hardpoint::space::{Mat3, Pose, Vec3};
+
+pub mod designs;
+pub mod floor;
+pub mod workloads;
 
 /// The model `models/NAME.toml`.
 ///
@@ -15,8 +19,30 @@ pub fn model(name: &str) -> Model {
     hardpoint_file::read(path.as_ref()).unwrap_or_else(|e| panic!("{e}")).model
 }
 
+/// The model `bench/models/NAME.toml`, of the comparison with other systems.
+///
+/// # Panics
+/// If it does not read.
+pub fn workload_model(name: &str) -> Model {
+    hardpoint_file::parse(&workload_text(name), name).unwrap_or_else(|e| panic!("{e}")).model
+}
+
+/// The text of `bench/models/NAME.toml`.
+///
+/// # Panics
+/// If it cannot be read.
+pub fn workload_text(name: &str) -> String {
+    let path = format!("{}/models/{name}.toml", env!("CARGO_MANIFEST_DIR"));
+    std::fs::read_to_string(&path).unwrap_or_else(|e| panic!("{path}: {e}"))
+}
+
 fn body(name: String) -> BodyDraft {
     BodyDraft { name, frame: FrameDraft::Default }
+}
+
+fn body_at(name: String, x: f64, y: f64) -> BodyDraft {
+    let pose = Pose { r: Vec3::new(x, y, 0.0), rot: Mat3::IDENTITY };
+    BodyDraft { name, frame: FrameDraft::Pose(pose) }
 }
 
 fn joint(name: String, kind: &str, bodies: [&str; 2], at: &[[f64; 2]], axis: Option<[f64; 3]>) -> JointDraft {
@@ -40,15 +66,16 @@ fn driven(name: String, joint: &str, law: &str, steps: usize) -> Draft {
 
 const Z: Option<[f64; 3]> = Some([0.0, 0.0, 1.0]);
 
-/// N parallelograms side by side, each driven by the one before: N loops of two unknowns.
+/// N parallelograms side by side, each driven by the one before: N loops of two unknowns. Every body has its frame
+/// in its middle.
 pub fn chain(n: usize, steps: usize) -> Draft {
     let mut draft = driven(format!("chain of {n}"), "pivot0", "0.5*sin(2*pi*t)", steps);
     for k in 0..=n {
         let (x, bar, coupler) = (k as f64, format!("bar{k}"), format!("coupler{k}"));
-        draft.bodies.push(body(bar.clone()));
+        draft.bodies.push(body_at(bar.clone(), x, 0.5));
         draft.joints.push(joint(format!("pivot{k}"), "revolute", ["ground", &bar], &[[x, 0.0]], Z));
         if k < n {
-            draft.bodies.push(body(coupler.clone()));
+            draft.bodies.push(body_at(coupler.clone(), x + 0.5, 1.0));
             let next = format!("bar{}", k + 1);
             draft.joints.push(joint(format!("left{k}"), "revolute", [&bar, &coupler], &[[x, 1.0]], Z));
             draft.joints.push(joint(
@@ -61,6 +88,29 @@ pub fn chain(n: usize, steps: usize) -> Draft {
         }
     }
     draft
+}
+
+/// The chain of [`chain`] as a model file of eleven steps.
+pub fn chain_text(n: usize) -> String {
+    let mut text = format!(
+        "name = 'chain of {n}'\nunits = {{ length = 'm', angle = 'rad' }}\ntime = {{ end = 0.1, steps = 10 }}\n\
+         [drivers]\nmotor = {{ joint = 'pivot0', law = '0.5*sin(2*pi*t)' }}\n"
+    );
+    let draft = chain(n, 0);
+    text += "[bodies]\n";
+    for body in &draft.bodies {
+        text += &format!("{} = {{}}\n", body.name);
+    }
+    text += "[joints]\n";
+    for joint in &draft.joints {
+        let Place::At(at) = &joint.at[0] else { unreachable!("the joints of a chain are at coordinates") };
+        let [i, j] = &joint.bodies;
+        let (name, kind, [x, y, z]) = (&joint.name, &joint.kind, at.to_array());
+        text += &format!(
+            "{name} = {{ type = '{kind}', bodies = ['{i}', '{j}'], at = [{x:?}, {y:?}, {z:?}], axis = 'z' }}\n"
+        );
+    }
+    text
 }
 
 /// A truss of n nodes, each tied by rods to the two before, that turns about its first node while a leg
