@@ -16,8 +16,6 @@ use hardpoint::{Analysis, Solution};
 
 use crate::designs::{DESIGNS, designs};
 
-/// How many designs are held in memory at once: their results are looked at and dropped before the next ones.
-const DESIGNS_AT_ONCE: usize = 40;
 /// Output times of W4.
 const DESIGN_STEPS: usize = 101;
 /// Designs of W4s that the floor keeps for comparison: the first ones.
@@ -133,7 +131,8 @@ pub fn measure(workload: Workload, reference: Option<&Path>, once: bool) -> io::
         Workload::Chain(loops) => {
             let model = Model::from_draft(&crate::chain(loops, 200)).expect("a valid chain");
             let analysis = Analysis::new(&model).expect("a chain that can be driven").bodies_only();
-            let (time, solution) = timed(once, || finished(analysis.run_motion()));
+            let mut solution = Solution::default();
+            let time = timed(once, || finished(&mut solution, |s| analysis.run_motion_into(s)));
             (per_step(time, model.times.len()), Some(chain_errors(&model, &solution.motion)))
         }
         Workload::Designs { sensitivities: false } => {
@@ -156,11 +155,11 @@ pub fn measure(workload: Workload, reference: Option<&Path>, once: bool) -> io::
 /// Where the file is refused.
 pub fn plan_chain(loops: usize) -> [f64; 2] {
     let text = crate::chain_text(loops);
-    let (reading, file) =
-        timed(false, || hardpoint_file::parse(&text, "chain.toml").unwrap_or_else(|e| panic!("{e}")));
-    let (planning, _) = timed(false, || {
-        Analysis::new(&file.model).expect("a chain that can be driven").topology().unknowns()
-    });
+    let read = || hardpoint_file::parse(&text, "chain.toml").unwrap_or_else(|e| panic!("{e}"));
+    let reading = timed(false, || drop(black_box(read())));
+    let file = read();
+    let plan = || Analysis::new(&file.model).expect("a chain that can be driven").topology().unknowns();
+    let planning = timed(false, || _ = black_box(plan()));
     [reading, planning].map(|time| 1e3 * time.as_secs_f64())
 }
 
@@ -174,9 +173,9 @@ fn cpu_time() -> Duration {
     Duration::new(t.tv_sec as u64, t.tv_nsec as u32)
 }
 
-/// The median time of `f`, results dropped again included, and the last result.
-fn timed<R>(once: bool, mut f: impl FnMut() -> R) -> (Duration, R) {
-    let mut result = f(); // not counted: cold caches
+/// The median time of `f`, which writes its results where it wrote them before.
+fn timed(once: bool, mut f: impl FnMut()) -> Duration {
+    f(); // not counted: cold caches
     let mut times = Vec::new();
     let started = cpu_time();
     while times.is_empty() || !once && times.len() < 41 {
@@ -184,16 +183,16 @@ fn timed<R>(once: bool, mut f: impl FnMut() -> R) -> (Duration, R) {
             break;
         }
         let before = cpu_time();
-        result = black_box(f());
+        f();
         times.push(cpu_time() - before);
     }
     times.sort();
-    (times[times.len() / 2], result)
+    times[times.len() / 2]
 }
 
-fn finished(solution: Solution) -> Solution {
+fn finished(solution: &mut Solution, run: impl Fn(&mut Solution)) {
+    run(black_box(solution));
     assert!(solution.stop.is_none(), "the mechanism stops: {:?}", solution.stop);
-    solution
 }
 
 /// One design of a model of `models/`.
@@ -207,13 +206,14 @@ fn single(
     let model = crate::workload_model(name);
     let analysis = Analysis::new(&model).expect("a model that can be driven").bodies_only();
     let states = model.times.len() * (model.bodies.len() - 1) * STATE;
+    let mut solution = Solution::default();
     let (time, errors) = if sensitivities {
         let reference = file(&format!("{reference}S"), states * model.variables.len())?;
-        let (time, solution) = timed(once, || finished(analysis.run()));
+        let time = timed(once, || finished(&mut solution, |s| analysis.run_into(s)));
         (time, reference.map(|r| sensitivity_errors(&solution.motion, &solution.sensitivities, &r)))
     } else {
         let reference = file(reference, states)?;
-        let (time, solution) = timed(once, || finished(analysis.run_motion()));
+        let time = timed(once, || finished(&mut solution, |s| analysis.run_motion_into(s)));
         (time, reference.map(|r| motion_errors(&solution.motion, &r)))
     };
     Ok((per_step(time, model.times.len()), errors))
@@ -242,13 +242,12 @@ fn moved_designs(reference: Option<&[f64]>, once: bool) -> (Duration, Option<[f6
     let analysis = Analysis::new(&model).expect("a model that can be driven").bodies_only();
     let designs = designs();
     let run = |look: &mut dyn FnMut(usize, &Solution)| {
-        for (k, some) in designs.chunks(DESIGNS_AT_ONCE).enumerate() {
-            for (i, solution) in analysis.run_designs(some).into_iter().enumerate() {
-                look(k * DESIGNS_AT_ONCE + i, &finished(solution));
-            }
-        }
+        analysis.for_each_design(&designs, |k, solution| {
+            assert!(solution.stop.is_none(), "design {k} stops: {:?}", solution.stop);
+            look(k, solution);
+        });
     };
-    let (time, ()) = timed(once, || run(&mut |_, solution| _ = black_box(&solution.motion)));
+    let time = timed(once, || run(&mut |_, solution| _ = black_box(&solution.motion)));
     let errors = reference.map(|reference| {
         let mut worst = [0.0; 3];
         let each = reference.len() / DESIGNS;
@@ -263,19 +262,19 @@ fn moved_designs(reference: Option<&[f64]>, once: bool) -> (Duration, Option<[f6
 /// Each design is a model of its own, made before the clock starts, planned and run on the clock.
 fn moved_designs_with_sensitivities(reference: Option<&[f64]>, once: bool) -> (Duration, Option<[f64; 3]>) {
     let models: Vec<Model> = designs().iter().map(|d| strut(d)).collect();
-    let run = |model: &Model| {
-        finished(Analysis::new(model).expect("a model that can be driven").bodies_only().run())
+    let mut solution = Solution::default();
+    let mut run = |model: &Model, look: &mut dyn FnMut(&Solution)| {
+        let analysis = Analysis::new(model).expect("a model that can be driven").bodies_only();
+        finished(&mut solution, |s| analysis.run_into(s));
+        look(&solution);
     };
-    let (time, ()) = timed(once, || {
-        for model in &models {
-            black_box(run(model));
-        }
-    });
+    let time = timed(once, || models.iter().for_each(|model| run(model, &mut |s| _ = black_box(s))));
     let errors = reference.map(|reference| {
         let mut worst = [0.0; 3];
         for (model, reference) in models.iter().zip(reference.chunks(reference.len() / DESIGNS_COMPARED)) {
-            let solution = run(model);
-            keep_larger(&mut worst, sensitivity_errors(&solution.motion, &solution.sensitivities, reference));
+            run(model, &mut |s| {
+                keep_larger(&mut worst, sensitivity_errors(&s.motion, &s.sensitivities, reference));
+            });
         }
         worst
     });

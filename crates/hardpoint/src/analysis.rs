@@ -10,8 +10,9 @@ use crate::motion::abreast::Abreast;
 use crate::motion::margin::Margins;
 use crate::motion::parts::Parts;
 use crate::motion::stepper::Stepper;
-use crate::motion::{BodyState, Motion, Stop, StopKind};
-use crate::sensitivity::{Sensing, Sensitivities};
+use crate::motion::{BodyState, Effort, Motion, Stop, StopKind};
+use crate::sensitivity::{Admissibility, Sensing, Sensitivities};
+use crate::sink::{Sink, Store};
 use crate::space::{LANES, Real, lanes};
 use crate::topology::{Formulation, Topology, TopologyFault};
 
@@ -51,6 +52,19 @@ pub struct Analysis<'m> {
     model: &'m Model,
     topology: Topology,
     measures: bool,
+}
+
+/// What a streamed run says at its end.
+#[derive(Clone, Debug)]
+pub struct Streamed {
+    /// Output times solved.
+    pub steps: usize,
+    /// Per variable: whether and how the mechanism follows the change.
+    pub admissibility: Vec<Admissibility>,
+    /// What it took.
+    pub effort: Effort,
+    /// Why the run ended before the last output time, if it did.
+    pub stop: Option<Stop>,
 }
 
 /// What a run found. Everything that was solved is here, also where something stopped it.
@@ -146,6 +160,20 @@ impl<'m> Analysis<'m> {
         (0..self.model.variables.len()).map(|v| self.model.field(VariableId(v))).collect()
     }
 
+    /// As [`Analysis::run`], but nothing is stored: the sink takes every result as it is found.
+    ///
+    /// What 10,000 loops and 1,000 variables give need not fit into memory; measures are not evaluated.
+    pub fn stream(&self, sink: &mut impl Sink) -> Streamed {
+        let (geometry, fields) = (self.model.geometry(&[]), self.all_fields());
+        let wanted: Vec<bool> = (0..self.model.bodies.len()).map(|b| sink.wants(BodyId(b))).collect();
+        dispatch!(Level::new(), simd => {
+            let mut walk = Walk::new(self, &geometry, &fields, wanted, lanes(simd));
+            let stop = walk.all(self, sink, |_| ControlFlow::Continue(()), |_, _, _| ());
+            let effort = walk.one.effort;
+            Streamed { steps: walk.done, admissibility: walk.sensing.admissibility(walk.done), effort, stop }
+        })
+    }
+
     fn solve(
         &self,
         geometry: &Geometry,
@@ -154,88 +182,50 @@ impl<'m> Analysis<'m> {
         solution: &mut Solution,
     ) {
         dispatch!(Level::new(), simd => self.solve_in(geometry, fields, progress, solution, lanes(simd)));
+        solution.measured = self.measure(geometry, fields, &solution.motion, &solution.sensitivities);
     }
 
-    /// Walks through the output times, where possible as many at once as there are lanes.
     fn solve_in<T: Real>(
         &self,
         geometry: &Geometry,
         fields: &[Field],
-        mut progress: impl FnMut(Progress) -> ControlFlow<()>,
+        progress: impl FnMut(Progress) -> ControlFlow<()>,
         solution: &mut Solution,
         witness: T,
     ) {
-        let (model, times) = (self.model, &self.model.times);
-        let (bodies, total) = (model.bodies.len(), times.len());
+        let mut walk = Walk::new(self, geometry, fields, vec![true; self.model.bodies.len()], witness);
         let room = std::mem::take(&mut solution.sensitivities);
-        let mut sensing = Sensing::new(model, &self.topology, fields, total, room, witness);
-        let motion = &mut solution.motion;
-        self.make_room(motion);
-        let designs = std::slice::from_ref(geometry);
-        let mut one =
-            Stepper::new(model, &self.topology, Parts::new(model, &self.topology, designs, 0.0), 0.0);
-        let parts = Parts::new(model, &self.topology, designs, witness);
-        let mut abreast = Abreast::new(model, &self.topology, parts, witness);
+        let mut sensitivities = walk.sensing.room(self.model.times.len(), room);
+        self.make_room(&mut solution.motion);
+        let variables = fields.len();
+        let mut store =
+            Store { motion: &mut solution.motion, sensitivities: &mut sensitivities.states, variables };
         let mut margins = (Margins::new(&self.topology, 0.0), Margins::new(&self.topology, witness));
-        let mut stop = None;
-        let mut k = 0;
-        while k < total && stop.is_none() {
-            let at_once = if k == 0 { 0 } else { abreast.advance(&mut one, &times[k..]) };
-            if at_once == 0 {
-                let step = if k == 0 { one.start(times[k]) } else { one.advance(times[k]) };
-                if let Err(mut s) = step {
-                    if let (StopKind::DoesNotAssemble, Some(block)) = (s.kind, s.block) {
-                        s.remains = one.least_gaps(block);
-                    }
-                    stop = Some(*s);
-                    break;
-                }
-            }
-            let (mut count, solved) = (0, usize::max(at_once, 1));
-            while count < solved && stop.is_none() {
-                count += 1;
-                let done = k + count;
-                if progress(Progress { done, total }).is_break() && done < total {
-                    stop = Some(self.interrupted(times[done - 1]));
-                }
-            }
-            let states = &mut motion.states[k * bodies..(k + count) * bodies];
-            let to = |lane: usize, body: usize, s: BodyState| {
-                if let Some(to) = states.get_mut(lane * bodies + body) {
-                    *to = s;
-                }
-            };
-            if at_once == 0 {
-                BodyState::each(&one.state, to);
-                motion.coordinates.extend(one.coordinates());
+        solution.stop = walk.all(self, &mut store, progress, |store, solved, count| match solved {
+            Solved::One(one) => {
+                store.motion.coordinates.extend(one.coordinates());
                 if self.measures {
-                    motion.margins.push(margins.0.at(&one.topology, &one.state)[0]);
+                    store.motion.margins.push(margins.0.at(&one.topology, &one.state)[0]);
                 }
-                sensing.step(&one.topology, &mut one.state, k, times[k]);
-            } else {
-                let all = &mut abreast.stepper;
-                witness.within(
-                    #[inline(always)]
-                    || BodyState::each(&all.state, to),
-                );
+            }
+            Solved::Abreast(all) => {
                 for lane in 0..count {
-                    motion.coordinates.extend(all.state.q.iter().map(|q| q.lane(lane)));
+                    store.motion.coordinates.extend(all.state.q.iter().map(|q| q.lane(lane)));
                 }
                 if self.measures {
                     let margins = margins.1.at(&all.topology, &all.state);
-                    motion.margins.extend_from_slice(&margins[..count]);
+                    store.motion.margins.extend_from_slice(&margins[..count]);
                 }
-                sensing.steps(&all.topology, &mut all.state, k, &times[k..k + solved], count);
             }
-            k += count;
-        }
-        motion.times.extend_from_slice(&times[..k]);
-        motion.states.truncate(k * bodies);
-        motion.effort = one.effort;
-        motion.assembly = one.assembly;
-        solution.sensitivities = sensing.finish(k);
-        solution.measured = self.measure(geometry, fields, &solution.motion, &solution.sensitivities);
-        solution.stop = stop;
+        });
+        let (steps, motion) = (walk.done, &mut solution.motion);
+        motion.times.extend_from_slice(&self.model.times[..steps]);
+        motion.states.truncate(steps * motion.bodies);
+        motion.effort = walk.one.effort;
+        motion.assembly = walk.one.assembly.take();
+        sensitivities.states.truncate(steps * variables * motion.bodies);
+        sensitivities.admissibility = walk.sensing.admissibility(steps);
+        solution.sensitivities = sensitivities;
     }
 
     /// The stop of a run that was told to end after time t.
@@ -335,6 +325,7 @@ impl<'m> Analysis<'m> {
         let parts = Parts::new(model, &self.topology, geometries, witness);
         let mut stepper = Stepper::new(model, &self.topology, parts, witness);
         let bodies = model.bodies.len();
+        let wanted = vec![true; bodies];
         for solution in solutions.iter_mut() {
             self.make_room(&mut solution.motion);
         }
@@ -345,9 +336,9 @@ impl<'m> Analysis<'m> {
             witness.within(
                 #[inline(always)]
                 || {
-                    BodyState::each(&stepper.state, |lane, body, s| {
+                    BodyState::each(&stepper.state, &wanted, |lane, body, s| {
                         if let Some(solution) = solutions.get_mut(lane) {
-                            solution.motion.states[k * bodies + body] = s;
+                            solution.motion.states[k * bodies + body.0] = s;
                         }
                     });
                 },
@@ -361,6 +352,100 @@ impl<'m> Analysis<'m> {
             solution.motion.effort = stepper.effort;
         }
         true
+    }
+}
+
+/// The way through all output times, where possible as many at once as there are lanes.
+struct Walk<'a, T> {
+    one: Stepper<'a, f64>,
+    abreast: Abreast<'a, T>,
+    sensing: Sensing<'a, T>,
+    /// Per body: whether its results are wanted.
+    wanted: Vec<bool>,
+    /// Output times solved.
+    done: usize,
+}
+
+/// What has just been solved.
+enum Solved<'w, 'a, T> {
+    One(&'w Stepper<'a, f64>),
+    Abreast(&'w Stepper<'a, T>),
+}
+
+impl<'a, T: Real> Walk<'a, T> {
+    fn new(
+        analysis: &'a Analysis<'_>,
+        geometry: &Geometry,
+        fields: &'a [Field],
+        wanted: Vec<bool>,
+        witness: T,
+    ) -> Self {
+        let (model, topology) = (analysis.model, &analysis.topology);
+        let designs = std::slice::from_ref(geometry);
+        let parts = Parts::new(model, topology, designs, witness);
+        Self {
+            one: Stepper::new(model, topology, Parts::new(model, topology, designs, 0.0), 0.0),
+            abreast: Abreast::new(model, topology, parts, witness),
+            sensing: Sensing::new(model, topology, fields, wanted.clone(), witness),
+            wanted,
+            done: 0,
+        }
+    }
+
+    /// To the last output time, or to what stops it. `then` sees what was solved, and how many of it count.
+    fn all<S: Sink>(
+        &mut self,
+        analysis: &Analysis<'_>,
+        sink: &mut S,
+        mut progress: impl FnMut(Progress) -> ControlFlow<()>,
+        mut then: impl FnMut(&mut S, Solved<'_, 'a, T>, usize),
+    ) -> Option<Stop> {
+        let (times, witness) = (&analysis.model.times, self.abreast.stepper.state.witness);
+        let total = times.len();
+        let mut stop = None;
+        while self.done < total && stop.is_none() {
+            let k = self.done;
+            let at_once = if k == 0 { 0 } else { self.abreast.advance(&mut self.one, &times[k..]) };
+            if at_once == 0 {
+                let step = if k == 0 { self.one.start(times[k]) } else { self.one.advance(times[k]) };
+                if let Err(mut s) = step {
+                    if let (StopKind::DoesNotAssemble, Some(block)) = (s.kind, s.block) {
+                        s.remains = self.one.least_gaps(block);
+                    }
+                    return Some(*s);
+                }
+            }
+            let (mut count, solved) = (0, usize::max(at_once, 1));
+            while count < solved && stop.is_none() {
+                count += 1;
+                let done = k + count;
+                if progress(Progress { done, total }).is_break() && done < total {
+                    stop = Some(analysis.interrupted(times[done - 1]));
+                }
+            }
+            if at_once == 0 {
+                let one = &mut self.one;
+                BodyState::each(&one.state, &self.wanted, |_, body, s| sink.state(k, body, &s));
+                self.sensing.step(&one.topology, &mut one.state, k, times[k], sink);
+                then(sink, Solved::One(one), 1);
+            } else {
+                let all = &mut self.abreast.stepper;
+                witness.within(
+                    #[inline(always)]
+                    || {
+                        BodyState::each(&all.state, &self.wanted, |lane, body, s| {
+                            if lane < count {
+                                sink.state(k + lane, body, &s);
+                            }
+                        });
+                    },
+                );
+                self.sensing.steps(&all.topology, &mut all.state, k, &times[k..k + solved], count, sink);
+                then(sink, Solved::Abreast(all), count);
+            }
+            self.done += count;
+        }
+        stop
     }
 }
 

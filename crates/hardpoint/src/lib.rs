@@ -87,8 +87,10 @@ pub mod measure;
 pub mod model;
 pub mod motion;
 pub mod sensitivity;
+mod sink;
 pub mod space;
 pub mod study;
 pub mod topology;
 
-pub use analysis::{Analysis, Progress, Solution};
+pub use analysis::{Analysis, Progress, Solution, Streamed};
+pub use sink::Sink;

@@ -54,11 +54,14 @@ impl BodyState {
         Quat::from_rotation(self.rotation).to_array()
     }
 
-    /// Gives the states of all bodies but ground in every lane to `out(lane, body, state)`.
+    /// Gives the states of the wanted bodies but ground in every lane to `out(lane, body, state)`.
     #[inline(always)]
-    pub(crate) fn each<T: Real>(state: &State<T>, mut out: impl FnMut(usize, usize, Self)) {
+    pub(crate) fn each<T: Real>(state: &State<T>, wanted: &[bool], mut out: impl FnMut(usize, BodyId, Self)) {
         let mut table = [[0.0; 24]; LANES];
         for (b, pose) in state.pose.iter().enumerate().skip(1) {
+            if !wanted[b] {
+                continue;
+            }
             let (v, a) = (state.v[b], state.a[b]);
             let (r, [f, g, h]) = (pose.r, pose.rot.cols);
             let u = v.at(r);
@@ -71,7 +74,7 @@ impl BodyState {
             ];
             turn_over(&components, &mut table);
             for (lane, x) in table[..T::LANES].iter().enumerate() {
-                out(lane, b, Self::from_components(x));
+                out(lane, BodyId(b), Self::from_components(x));
             }
         }
     }

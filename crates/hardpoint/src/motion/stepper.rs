@@ -243,6 +243,15 @@ impl<'m, T: Real> Stepper<'m, T> {
 
     /// Tries the position at t, a step h beyond the saved one. `first` sets the branch to stay on.
     pub(super) fn attempt(&mut self, path: Path, t: f64, h: f64, first: bool) -> Result<(), Refusal> {
+        let witness = self.state.witness;
+        witness.within(
+            #[inline(always)]
+            || self.attempting(path, t, h, first),
+        )
+    }
+
+    #[inline(always)]
+    fn attempting(&mut self, path: Path, t: f64, h: f64, first: bool) -> Result<(), Refusal> {
         self.drive(path, t)?;
         self.fastest_driver = match path {
             Path::Assembly => self.state.largest_gap(&self.topology),
@@ -408,6 +417,15 @@ impl<'m, T: Real> Stepper<'m, T> {
 
     /// Accepts the position at t, a step h after the one before (0 at the start of a path).
     pub(super) fn save(&mut self, t: f64, h: f64) {
+        let witness = self.state.witness;
+        witness.within(
+            #[inline(always)]
+            || self.saving(t, h),
+        );
+    }
+
+    #[inline(always)]
+    fn saving(&mut self, t: f64, h: f64) {
         let (s, saved) = (&self.state, &mut self.saved);
         if h == 0.0 {
             self.forecast.forget();

@@ -25,7 +25,7 @@ pub(crate) struct FieldParts<T> {
 }
 
 /// How far a change of the design is felt: all else stays as it is, and is not even looked at.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default)]
 pub(crate) struct Reach {
     /// Links placed by drivers alone, whose children move.
     driven_links: Vec<usize>,
@@ -211,8 +211,8 @@ pub(crate) struct Direct<T> {
     row_rhs: Vec<T>,
     /// Whether some variable has changed a law, so that the driven coordinates' speeds are no longer all zero.
     laws_change: bool,
-    /// How far the variable before was felt.
-    before: Reach,
+    /// The bodies that the variable before moved.
+    moved: Vec<usize>,
 }
 
 /// By how much a left-out row fails per unit of a variable, against what could be round-off.
@@ -235,22 +235,23 @@ impl<T: Real> Direct<T> {
             s: std::array::from_fn(|_| vec![witness.zero(); topology.coordinates.len()]),
             w: three(model.bodies.len()),
             apart: three(topology.closures.len()),
-            z: Vec::new(),
+            z: Vec::with_capacity(2 * topology.closures.len()),
             bias: three(topology.links.len()),
             row_rhs: vec![witness.zero(); topology.rows.len()],
             laws_change: false,
-            before: Reach::default(),
+            moved: Vec::with_capacity(model.bodies.len()),
         }
     }
 
     /// W, W. and W.. of all bodies for one variable, where `state` stands with all of its rates.
     pub fn solve(&mut self, topology: &Topology, state: &mut State<T>, field: &FieldParts<T>) {
         let witness = state.witness;
-        if self.before != field.reach {
+        if self.moved != field.reach.bodies {
             for w in &mut self.w {
-                self.before.bodies.iter().for_each(|&b| w[b] = Twist::zero(witness));
+                self.moved.iter().for_each(|&b| w[b] = Twist::zero(witness));
             }
-            self.before.clone_from(&field.reach);
+            self.moved.clear();
+            self.moved.extend_from_slice(&field.reach.bodies);
         }
         self.laws_change |= !field.law_rates.is_empty();
         witness.within(

@@ -1,8 +1,9 @@
 //! Sensitivities of all design variables, step after step.
 
-use crate::model::{Field, Model};
+use crate::model::{BodyId, Field, Model, VariableId};
 use crate::motion::kinematics::State;
 use crate::motion::turn_over;
+use crate::sink::Sink;
 use crate::space::{LANES, Real, Twist, Vec3};
 use crate::topology::Topology;
 
@@ -22,67 +23,74 @@ pub(crate) struct Sensing<'f, T> {
     /// One time's state in all lanes.
     state: State<T>,
     direct: Direct<T>,
-    out: Sensitivities,
+    /// Per body: whether its sensitivities are wanted.
+    wanted: Vec<bool>,
     /// Per variable: the joints that resist, and the time of the largest defect.
     resisting: Vec<(Vec<JointDefect>, f64)>,
 }
 
 impl<'f, T: Real> Sensing<'f, T> {
-    /// Prepares the sensitivities by the variables with these fields, over so many steps; `room` is used again.
+    /// Prepares the sensitivities of the wanted bodies by the variables with these fields.
     pub fn new(
         model: &'f Model,
         topology: &Topology,
         fields: &'f [Field],
-        steps: usize,
-        room: Sensitivities,
+        wanted: Vec<bool>,
         witness: T,
     ) -> Self {
-        let bodies = model.bodies.len();
         let all: Vec<&Field> = fields.iter().collect();
-        let each: Vec<_> = fields.iter().map(|f| FieldParts::new(topology, &[f; LANES], witness)).collect();
-        let together: Vec<_> = all.chunks(T::LANES).map(|f| FieldParts::new(topology, f, witness)).collect();
-        // What no variable of a group moves is never written: it must be zero.
-        let mut moved = vec![false; fields.len() * bodies];
-        for (g, group) in together.iter().enumerate() {
-            for v in (g * T::LANES..fields.len()).take(T::LANES) {
-                group.reach.bodies.iter().for_each(|b| moved[v * bodies + b] = true);
-            }
-        }
-        let mut states = room.states;
-        if room.moved != moved {
-            states.clear();
-        }
-        states.resize(steps * fields.len() * bodies, BodySensitivity::ZERO);
-        let admissibility = Vec::new();
-        let out = Sensitivities { states, variables: fields.len(), bodies, admissibility, moved };
+        let parts = |fields: &[&Field]| FieldParts::new(topology, fields, witness);
         Self {
             model,
             fields,
-            each,
-            together,
+            each: fields.iter().map(|f| parts(&[f; LANES])).collect(),
+            together: all.chunks(T::LANES).map(parts).collect(),
             state: State::new(model, topology, witness),
             direct: Direct::new(model, topology, witness),
-            out,
+            wanted,
             resisting: vec![(Vec::new(), 0.0); fields.len()],
         }
     }
 
+    /// Room for all sensitivities over so many steps, that of `before` used again.
+    pub fn room(&self, steps: usize, before: Sensitivities) -> Sensitivities {
+        let (variables, bodies) = (self.fields.len(), self.model.bodies.len());
+        // What no variable of a group moves is never written: it must be zero.
+        let mut moved = vec![false; variables * bodies];
+        for (v, group) in (0..variables).map(|v| (v, &self.together[v / T::LANES])) {
+            group.reach.bodies.iter().for_each(|b| moved[v * bodies + b] = true);
+        }
+        let mut states = before.states;
+        if before.moved != moved {
+            states.clear();
+        }
+        states.resize(steps * variables * bodies, BodySensitivity::ZERO);
+        Sensitivities { states, variables, bodies, admissibility: Vec::new(), moved }
+    }
+
     /// Output time k, at t, where `state` stands with velocity and acceleration.
-    pub fn step(&mut self, topology: &Topology, state: &mut State<f64>, k: usize, t: f64) {
+    pub fn step(
+        &mut self,
+        topology: &Topology,
+        state: &mut State<f64>,
+        k: usize,
+        t: f64,
+        sink: &mut impl Sink,
+    ) {
         if self.fields.is_empty() {
             return;
         }
         state.finish_rates(topology);
         self.state.spread(state);
-        let (variables, bodies) = (self.fields.len(), self.out.bodies);
+        let variables = self.fields.len();
         for (g, group) in self.together.iter_mut().enumerate() {
             let first = g * T::LANES;
             group.set_times(self.model, &[t; LANES]);
             self.direct.solve(topology, &mut self.state, group);
-            let to = &mut self.out.states[(k * variables + first) * bodies..(k + 1) * variables * bodies];
-            each_derivative(&self.direct.w, &self.state, &group.reach.bodies, |lane, body, d| {
-                if let Some(to) = to.get_mut(lane * bodies + body) {
-                    *to = d;
+            let bodies = group.reach.bodies.iter().copied().filter(|&b| self.wanted[b]);
+            each_derivative(&self.direct.w, &self.state, bodies, |lane, body, d| {
+                if first + lane < variables {
+                    sink.sensitivity(k, VariableId(first + lane), BodyId(body), &d);
                 }
             });
             let mut defects = [None; LANES];
@@ -103,20 +111,20 @@ impl<'f, T: Real> Sensing<'f, T> {
         k: usize,
         times: &[f64],
         count: usize,
+        sink: &mut impl Sink,
     ) {
         if self.fields.is_empty() {
             return;
         }
         state.finish_rates(topology);
-        let (variables, bodies) = (self.fields.len(), self.out.bodies);
         let of_lanes: [f64; LANES] = std::array::from_fn(|lane| times[lane.min(times.len() - 1)]);
         for (v, field) in self.each.iter_mut().enumerate() {
             field.set_times(self.model, &of_lanes);
             self.direct.solve(topology, state, field);
-            let to = &mut self.out.states[k * variables * bodies..(k + count) * variables * bodies];
-            each_derivative(&self.direct.w, state, &field.reach.bodies, |lane, body, d| {
-                if let Some(to) = to.get_mut((lane * variables + v) * bodies + body) {
-                    *to = d;
+            let bodies = field.reach.bodies.iter().copied().filter(|&b| self.wanted[b]);
+            each_derivative(&self.direct.w, state, bodies, |lane, body, d| {
+                if lane < count {
+                    sink.sensitivity(k + lane, VariableId(v), BodyId(body), &d);
                 }
             });
             let mut defects = [None; LANES];
@@ -129,20 +137,17 @@ impl<'f, T: Real> Sensing<'f, T> {
         }
     }
 
-    /// All of so many steps, with what they say of every variable's admissibility.
-    pub fn finish(mut self, steps: usize) -> Sensitivities {
-        self.out.states.truncate(steps * self.fields.len() * self.out.bodies);
-        let nothing_solved = steps == 0;
+    /// What so many steps say of every variable's admissibility.
+    pub fn admissibility(self, steps: usize) -> Vec<Admissibility> {
         let model = self.model;
-        self.out.admissibility = self
-            .fields
+        self.fields
             .iter()
             .zip(self.resisting)
             .map(|(field, (joints, time))| {
                 let open = admissibility_at_design(model, field);
                 if !joints.is_empty() {
                     Admissibility::CannotFollow { joints, time }
-                } else if nothing_solved {
+                } else if steps == 0 {
                     Admissibility::Unknown
                 } else if open.is_empty() {
                     Admissibility::Admissible
@@ -150,8 +155,7 @@ impl<'f, T: Real> Sensing<'f, T> {
                     Admissibility::Reassembled { joints: open }
                 }
             })
-            .collect();
-        self.out
+            .collect()
     }
 }
 
@@ -178,14 +182,14 @@ fn note(resisting: &mut (Vec<JointDefect>, f64), topology: &Topology, defect: De
 fn each_derivative<T: Real>(
     w: &[Vec<Twist<T>>; 3],
     state: &State<T>,
-    bodies: &[usize],
+    bodies: impl Iterator<Item = usize>,
     mut out: impl FnMut(usize, usize, BodySensitivity),
 ) {
     let mut table = [[0.0; 24]; LANES];
     state.witness.within(
         #[inline(always)]
         || {
-            for &body in bodies {
+            for body in bodies {
                 let (w0, w1, w2) = (w[0][body], w[1][body], w[2][body]);
                 let (r, v, a) = (state.pose[body].r, state.v[body], state.a[body]);
                 let dv = w1 + w0.ad(v);
