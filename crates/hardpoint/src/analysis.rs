@@ -170,7 +170,8 @@ impl<'m> Analysis<'m> {
             let mut walk = Walk::new(self, &geometry, &fields, wanted, lanes(simd));
             let stop = walk.all(self, sink, |_| ControlFlow::Continue(()), |_, _, _| ());
             let effort = walk.one.effort;
-            Streamed { steps: walk.done, admissibility: walk.sensing.admissibility(walk.done), effort, stop }
+            let admissibility = walk.sensing.map_or_else(Vec::new, |s| s.admissibility(walk.done));
+            Streamed { steps: walk.done, admissibility, effort, stop }
         })
     }
 
@@ -195,7 +196,10 @@ impl<'m> Analysis<'m> {
     ) {
         let mut walk = Walk::new(self, geometry, fields, vec![true; self.model.bodies.len()], witness);
         let room = std::mem::take(&mut solution.sensitivities);
-        let mut sensitivities = walk.sensing.room(self.model.times.len(), room);
+        let mut sensitivities = match &walk.sensing {
+            Some(sensing) => sensing.room(self.model.times.len(), room),
+            None => Sensitivities::default(),
+        };
         self.make_room(&mut solution.motion);
         let variables = fields.len();
         let mut store =
@@ -224,7 +228,7 @@ impl<'m> Analysis<'m> {
         motion.effort = walk.one.effort;
         motion.assembly = walk.one.assembly.take();
         sensitivities.states.truncate(steps * variables * motion.bodies);
-        sensitivities.admissibility = walk.sensing.admissibility(steps);
+        sensitivities.admissibility = walk.sensing.map_or_else(Vec::new, |s| s.admissibility(steps));
         solution.sensitivities = sensitivities;
     }
 
@@ -359,7 +363,8 @@ impl<'m> Analysis<'m> {
 struct Walk<'a, T> {
     one: Stepper<'a, f64>,
     abreast: Abreast<'a, T>,
-    sensing: Sensing<'a, T>,
+    /// `None` where no sensitivities are asked for.
+    sensing: Option<Sensing<'a, T>>,
     /// Per body: whether its results are wanted.
     wanted: Vec<bool>,
     /// Output times solved.
@@ -386,7 +391,8 @@ impl<'a, T: Real> Walk<'a, T> {
         Self {
             one: Stepper::new(model, topology, Parts::new(model, topology, designs, 0.0), 0.0),
             abreast: Abreast::new(model, topology, parts, witness),
-            sensing: Sensing::new(model, topology, fields, wanted.clone(), witness),
+            sensing: (!fields.is_empty())
+                .then(|| Sensing::new(model, topology, fields, wanted.clone(), witness)),
             wanted,
             done: 0,
         }
@@ -426,7 +432,9 @@ impl<'a, T: Real> Walk<'a, T> {
             if at_once == 0 {
                 let one = &mut self.one;
                 BodyState::each(&one.state, &self.wanted, |_, body, s| sink.state(k, body, &s));
-                self.sensing.step(&one.topology, &mut one.state, k, times[k], sink);
+                if let Some(sensing) = &mut self.sensing {
+                    sensing.step(&one.topology, &mut one.state, k, times[k], sink);
+                }
                 then(sink, Solved::One(one), 1);
             } else {
                 let all = &mut self.abreast.stepper;
@@ -440,7 +448,9 @@ impl<'a, T: Real> Walk<'a, T> {
                         });
                     },
                 );
-                self.sensing.steps(&all.topology, &mut all.state, k, &times[k..k + solved], count, sink);
+                if let Some(sensing) = &mut self.sensing {
+                    sensing.steps(&all.topology, &mut all.state, k, &times[k..k + solved], count, sink);
+                }
                 then(sink, Solved::Abreast(all), count);
             }
             self.done += count;

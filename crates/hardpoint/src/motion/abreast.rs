@@ -83,7 +83,7 @@ impl<'m, T: Real> Abreast<'m, T> {
         let h = t - witness.like(one.time);
         all.foresee(one, t, h, times[last] - one.time);
         let before = all.state.iterations;
-        if all.state.solve_position(&all.topology, &all.parts, &all.drivers, FORESEEN).is_err() {
+        if all.state.solve(&all.topology, &all.parts, &all.drivers, FORESEEN).is_err() {
             return false;
         }
         let same_branch = all
@@ -95,7 +95,6 @@ impl<'m, T: Real> Abreast<'m, T> {
         if !same_branch {
             return false;
         }
-        all.state.solve_rates(&all.topology, &all.parts, &all.drivers);
         if all.uncertain_turn().is_some() || !all.speeds_are_smooth(h) {
             return false;
         }

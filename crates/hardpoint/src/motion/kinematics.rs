@@ -7,7 +7,7 @@ use crate::constraint::{EndRates, Ends, Row};
 use crate::joint::Freedom;
 use crate::model::{Contact, GROUND, Model};
 use crate::space::{Factors, LARGEST_DENSE, Pose, Quat, Real, Twist, Wrench};
-use crate::topology::{Block, RowPlace, Source, Step, Topology};
+use crate::topology::{Block, Source, Step, Topology};
 
 use super::parts::Parts;
 
@@ -109,10 +109,10 @@ impl<T: Real> State<T> {
             a: vec![none; bodies],
             x: vec![none; n],
             xd: vec![none; n],
-            xdd: vec![none; n],
+            xdd: Vec::new(),
             l: vec![no_wrench; rows],
             ld: vec![no_wrench; rows],
-            ldd: vec![no_wrench; rows],
+            ldd: Vec::new(),
             ends: vec![Ends { i: frame, j: frame }; topology.closures.len()],
             factors: topology
                 .blocks
@@ -141,6 +141,8 @@ impl<T: Real> State<T> {
             }
         }
         let witness = self.witness;
+        self.xdd.resize(self.x.len(), Twist::zero(witness));
+        self.ldd.resize(self.l.len(), Wrench::moment(Twist::zero(witness).w));
         witness.within(
             #[inline(always)]
             || {
@@ -194,9 +196,10 @@ impl<T: Real> State<T> {
 
     /// Poses of the bodies, from the markers that place them.
     #[inline(always)]
-    fn place_bodies(&mut self, topology: &Topology, parts: &Parts<T>) {
-        for (link, from_marker) in topology.links.iter().zip(&parts.child_from_marker) {
-            self.pose[link.child.0] = self.frame[link.child.0].compose(*from_marker);
+    fn place_bodies(&mut self, topology: &Topology, parts: &Parts<T>, links: std::ops::Range<usize>) {
+        for k in links {
+            let child = topology.links[k].child.0;
+            self.pose[child] = self.frame[child].compose(parts.child_from_marker[k]);
         }
     }
 
@@ -282,7 +285,7 @@ impl<T: Real> State<T> {
                 for c in 0..topology.closures.len() {
                     self.place_ends(topology, parts, c);
                 }
-                self.place_bodies(topology, parts);
+                self.place_bodies(topology, parts, 0..topology.links.len());
             },
         );
     }
@@ -370,10 +373,11 @@ impl<T: Real> State<T> {
         self.pivots[b] = (found.pivot_ratio, found.positive);
     }
 
-    /// Solves all blocks for the drivers' values, from the prediction in `q` and `balls`.
+    /// Position, velocity and acceleration of all bodies for the drivers' values and their derivatives, from the prediction in
+    /// `q` and `balls`; block by block, so that what a block has laid out is still at hand when its rates follow.
     ///
     /// `trust` bounds the first correction (rad, or sizes): a longer one may land on another branch.
-    pub fn solve_position(
+    pub fn solve(
         &mut self,
         topology: &Topology,
         parts: &Parts<T>,
@@ -386,12 +390,23 @@ impl<T: Real> State<T> {
             || {
                 for (c, coordinate) in topology.coordinates.iter().enumerate() {
                     if let Source::Driven(d) = coordinate.source {
-                        self.q[c] = drivers[d.0][0];
+                        [self.q[c], self.qd[c], self.qdd[c]] = drivers[d.0];
                     }
                 }
                 self.place(topology, parts, topology.driven_links());
+                self.place_bodies(topology, parts, topology.driven_links());
+                self.rates_of_driven(topology);
                 for b in 0..topology.blocks.len() {
                     self.newton(topology, parts, drivers, b, trust)?;
+                    self.place_bodies(topology, parts, topology.blocks[b].links.clone());
+                    self.rates_of_block(topology, parts, drivers, b);
+                }
+                for (c, closure) in topology.closures.iter().enumerate() {
+                    if closure.block.is_none() {
+                        self.place_ends(topology, parts, c);
+                        self.finish_closure(topology, c);
+                        self.rates_of_wrenches(topology, c, 1);
+                    }
                 }
                 Ok(())
             },
@@ -469,75 +484,76 @@ impl<T: Real> State<T> {
         }
     }
 
-    /// Velocity and acceleration of all bodies for the drivers' first and second derivatives, with the
-    /// factors that the position left (`docs/theory.md` (9), (10)).
-    pub fn solve_rates(&mut self, topology: &Topology, parts: &Parts<T>, drivers: &[[T; 3]]) {
-        let witness = self.witness;
-        witness.within(
-            #[inline(always)]
-            || {
-                self.finish_ends(topology, parts);
-                self.place_bodies(topology, parts);
-                self.set_driven(topology, drivers, 1);
-                for (r, place) in topology.rows.iter().enumerate().filter(|(_, p)| p.drives()) {
-                    self.row_rhs[r] = demand(topology, drivers, place, 1, witness)
-                        + self.gap[r] * witness.like(self.gap_left[1]);
+    /// Velocity and acceleration of the bodies that drivers alone place.
+    #[inline(always)]
+    fn rates_of_driven(&mut self, topology: &Topology) {
+        let links = topology.driven_links();
+        carry(topology, links.clone(), &self.x, None, &self.qd, &mut self.v, |_| true);
+        self.rates_of_twists(topology, links.clone(), 1);
+        self.biases(topology, links.clone());
+        carry(topology, links, &self.x, Some(&self.bias), &self.qdd, &mut self.a, |_| true);
+    }
+
+    /// Velocity and acceleration of the bodies of block b, with the factors that its position left (`docs/theory.md`
+    /// (9), (10)).
+    #[inline(always)]
+    fn rates_of_block(&mut self, topology: &Topology, parts: &Parts<T>, drivers: &[[T; 3]], b: usize) {
+        let (block, witness, s) = (&topology.blocks[b], self.witness, self);
+        for &c in &block.closures {
+            let closure = &topology.closures[c];
+            if closure.solved_by_points && closure.has_axes {
+                s.place_ends(topology, parts, c);
+            }
+            s.finish_closure(topology, c);
+            let demand = closure.driver.map_or(witness.zero(), |d| drivers[d.0][1]);
+            for r in closure.first_row..closure.first_row + closure.rows.len() {
+                s.row_rhs[r] = demand + s.gap[r] * witness.like(s.gap_left[1]);
+            }
+        }
+        level(topology, b, &mut s.factors, &s.x, &s.l, None, &s.row_rhs, &mut s.qd, &mut s.v, &mut s.rhs);
+        s.rates_of_twists(topology, block.links.clone(), 1);
+        s.biases(topology, block.links.clone());
+        for &c in &block.closures {
+            s.rates_of_wrenches(topology, c, 1);
+            let closure = &topology.closures[c];
+            let demand = closure.driver.map_or(witness.zero(), |d| drivers[d.0][2]);
+            let [i, j] = closure.bodies;
+            let apart = s.v[j.0] - s.v[i.0];
+            for r in closure.first_row..closure.first_row + closure.rows.len() {
+                if topology.rows[r].drives() {
+                    s.row_rhs[r] = demand - s.ld[r].on(apart);
                 }
-                let s = self;
-                level(
-                    topology,
-                    topology.driven_links(),
-                    0..topology.blocks.len(),
-                    &mut s.factors,
-                    &s.x,
-                    &s.l,
-                    None,
-                    &s.row_rhs,
-                    &mut s.qd,
-                    &mut s.v,
-                    &mut s.rhs,
-                );
-                s.rates_of_twists(topology, 1);
-                s.rates_of_wrenches(topology, 1);
-                s.set_driven(topology, drivers, 2);
-                for (k, link) in topology.links.iter().enumerate() {
-                    if !link.keeps_its_twist() {
-                        s.bias[k] = s.sum_over_link(link, &s.xd, &s.qd);
-                    }
-                }
-                for (r, place) in topology.rows.iter().enumerate().filter(|(_, p)| p.drives()) {
-                    let [i, j] = topology.closures[place.closure].bodies;
-                    let demand = demand(topology, drivers, place, 2, witness);
-                    s.row_rhs[r] = demand - s.ld[r].on(s.v[j.0] - s.v[i.0]);
-                }
-                sum_couplers(topology, &topology.coupled_rows, &mut s.row_rhs);
-                let bias = Some(&s.bias[..]);
-                level(
-                    topology,
-                    topology.driven_links(),
-                    0..topology.blocks.len(),
-                    &mut s.factors,
-                    &s.x,
-                    &s.l,
-                    bias,
-                    &s.row_rhs,
-                    &mut s.qdd,
-                    &mut s.a,
-                    &mut s.rhs,
-                );
-            },
-        );
+            }
+        }
+        sum_couplers(topology, b, &mut s.row_rhs);
+        let bias = Some(&s.bias[..]);
+        level(topology, b, &mut s.factors, &s.x, &s.l, bias, &s.row_rhs, &mut s.qdd, &mut s.a, &mut s.rhs);
+    }
+
+    /// What the acceleration of these links has besides those of their coordinates.
+    #[inline(always)]
+    fn biases(&mut self, topology: &Topology, links: std::ops::Range<usize>) {
+        for k in links {
+            let link = &topology.links[k];
+            if !link.keeps_its_twist() {
+                self.bias[k] = self.sum_over_link(link, &self.xd, &self.qd);
+            }
+        }
     }
 
     /// What only sensitivities need: second derivatives of twists and wrenches, and all of the rows left out.
     pub fn finish_rates(&mut self, topology: &Topology) {
         let witness = self.witness;
         self.finish_wrenches(topology);
+        self.xdd.resize(self.x.len(), Twist::zero(witness));
+        self.ldd.resize(self.l.len(), Wrench::moment(Twist::zero(witness).w));
         witness.within(
             #[inline(always)]
             || {
-                self.rates_of_twists(topology, 2);
-                self.rates_of_wrenches(topology, 2);
+                self.rates_of_twists(topology, 0..topology.links.len(), 2);
+                for c in 0..topology.closures.len() {
+                    self.rates_of_wrenches(topology, c, 2);
+                }
             },
         );
     }
@@ -549,18 +565,14 @@ impl<T: Real> State<T> {
         }
     }
 
-    /// Markers of the closures as far as Newton did not need them.
+    /// Wrenches of the rows of a closure that are terms of couplers.
     #[inline(always)]
-    fn finish_ends(&mut self, topology: &Topology, parts: &Parts<T>) {
-        for (c, closure) in topology.closures.iter().enumerate() {
-            if closure.block.is_none() || (closure.solved_by_points && closure.has_axes) {
-                self.place_ends(topology, parts, c);
-            }
-            for (k, row) in closure.rows.iter().enumerate() {
-                let place = &topology.rows[closure.first_row + k];
-                if place.drives() && !place.selected {
-                    self.l[closure.first_row + k] = row.wrench(&self.ends[c]);
-                }
+    fn finish_closure(&mut self, topology: &Topology, c: usize) {
+        let closure = &topology.closures[c];
+        for (k, row) in closure.rows.iter().enumerate() {
+            let place = &topology.rows[closure.first_row + k];
+            if place.drives() && !place.selected {
+                self.l[closure.first_row + k] = row.wrench(&self.ends[c]);
             }
         }
     }
@@ -631,16 +643,6 @@ impl<T: Real> State<T> {
         }
     }
 
-    #[inline(always)]
-    fn set_driven(&mut self, topology: &Topology, drivers: &[[T; 3]], order: usize) {
-        let out = if order == 1 { &mut self.qd } else { &mut self.qdd };
-        for (c, coordinate) in topology.coordinates.iter().enumerate() {
-            if let Source::Driven(d) = coordinate.source {
-                out[c] = drivers[d.0][order];
-            }
-        }
-    }
-
     /// Sum of twists times speeds over a link's coordinates.
     #[inline(always)]
     pub fn sum_over_link(&self, link: &crate::topology::Link, twists: &[Twist<T>], speeds: &[T]) -> Twist<T> {
@@ -655,8 +657,8 @@ impl<T: Real> State<T> {
 
     /// First or second time derivative of the unit twists, each carried by the frame before its freedom.
     #[inline(always)]
-    fn rates_of_twists(&mut self, topology: &Topology, order: usize) {
-        for link in &topology.links {
+    fn rates_of_twists(&mut self, topology: &Topology, links: std::ops::Range<usize>, order: usize) {
+        for link in &topology.links[links] {
             if link.keeps_its_twist() {
                 continue;
             }
@@ -686,8 +688,9 @@ impl<T: Real> State<T> {
 
     /// First time derivative of the wrenches that the motion needs; or all of what sensitivities need besides.
     #[inline(always)]
-    fn rates_of_wrenches(&mut self, topology: &Topology, order: usize) {
-        for (c, closure) in topology.closures.iter().enumerate() {
+    fn rates_of_wrenches(&mut self, topology: &Topology, c: usize, order: usize) {
+        let closure = &topology.closures[c];
+        {
             let [i, j] = closure.bodies;
             let mut rates =
                 EndRates { v_i: self.v[i.0], v_j: self.v[j.0], a_i: self.a[i.0], a_j: self.a[j.0] };
@@ -709,10 +712,10 @@ impl<T: Real> State<T> {
     }
 }
 
-/// Adds to every coupler's row what its further terms have.
+/// Adds to the row of every coupler of block b what its further terms have.
 #[inline(always)]
-pub(crate) fn sum_couplers<T: Real>(topology: &Topology, coupled_rows: &[usize], of_rows: &mut [T]) {
-    for &r in coupled_rows {
+pub(crate) fn sum_couplers<T: Real>(topology: &Topology, b: usize, of_rows: &mut [T]) {
+    for &r in &topology.blocks[b].coupled {
         for &(term, factor) in &topology.rows[r].terms {
             let x = of_rows[term];
             of_rows[r] += x * x.like(factor);
@@ -751,16 +754,7 @@ pub(crate) fn factors_of<T: Real>(
     Factors::new(block.selected.len(), columns, largest_dense, witness)
 }
 
-/// A driver row's derivative of that order; 0 for the other rows.
-#[inline(always)]
-fn demand<T: Real>(topology: &Topology, drivers: &[[T; 3]], place: &RowPlace, order: usize, witness: T) -> T {
-    match topology.closures[place.closure].driver {
-        Some(d) => drivers[d.0][order],
-        None => witness.zero(),
-    }
-}
-
-/// Solves one linear level over these links and blocks: the motion `out` of their bodies with
+/// Solves one linear level in block b: the motion `out` of its bodies with
 ///
 /// ```text
 /// out_child = out_parent + bias_link + sum x_a u_a      for every link,
@@ -774,8 +768,7 @@ fn demand<T: Real>(topology: &Topology, drivers: &[[T; 3]], place: &RowPlace, or
 #[expect(clippy::too_many_arguments, reason = "the arrays are borrowed from one state, some of them mutably")]
 pub(crate) fn level<T: Real>(
     topology: &Topology,
-    driven_links: impl Iterator<Item = usize>,
-    blocks: impl Iterator<Item = usize>,
+    b: usize,
     factors: &mut [Factors<T>],
     x: &[Twist<T>],
     l: &[Wrench<T>],
@@ -785,25 +778,22 @@ pub(crate) fn level<T: Real>(
     out: &mut [Twist<T>],
     rhs: &mut [T],
 ) {
-    carry(topology, driven_links, x, bias, u, out, |_| true);
-    for b in blocks {
-        let block = &topology.blocks[b];
-        // First as if the unknowns were zero: what the rows miss then is theirs to make up.
-        carry(topology, block.links.clone(), x, bias, u, out, |step| step.is_driven);
-        for (k, &r) in block.selected.iter().enumerate() {
-            rhs[k] = row_rhs[r] - along(topology, l, out, r);
-        }
-        factors[b].solve(rhs);
-        for (k, &c) in block.unknowns.iter().enumerate() {
-            u[c] = rhs[k];
-        }
-        carry(topology, block.links.clone(), x, bias, u, out, |_| true);
+    let block = &topology.blocks[b];
+    // First as if the unknowns were zero: what the rows miss then is theirs to make up.
+    carry(topology, block.links.clone(), x, bias, u, out, |step| step.is_driven);
+    for (k, &r) in block.selected.iter().enumerate() {
+        rhs[k] = row_rhs[r] - along(topology, l, out, r);
     }
+    factors[b].solve(rhs);
+    for (k, &c) in block.unknowns.iter().enumerate() {
+        u[c] = rhs[k];
+    }
+    carry(topology, block.links.clone(), x, bias, u, out, |_| true);
 }
 
 /// `out_child = out_parent + bias_link + sum x_a u_a` for these links, over the freedoms that count.
 #[inline(always)]
-fn carry<T: Real>(
+pub(crate) fn carry<T: Real>(
     topology: &Topology,
     links: impl Iterator<Item = usize>,
     x: &[Twist<T>],

@@ -259,9 +259,7 @@ impl<'m, T: Real> Stepper<'m, T> {
         };
         let moved = self.predict(h);
         let trust = if first { f64::INFINITY } else { (TRUST * moved).max(TRUST_FLOOR) };
-        self.state
-            .solve_position(&self.topology, &self.parts, &self.drivers, trust)
-            .map_err(Refusal::Position)?;
+        self.state.solve(&self.topology, &self.parts, &self.drivers, trust).map_err(Refusal::Position)?;
         for (b, &(ratio, positive)) in self.state.pivots.iter().enumerate() {
             if first {
                 self.branch[b] = (positive, ratio);
@@ -270,7 +268,6 @@ impl<'m, T: Real> Stepper<'m, T> {
                 return Err(Refusal::Branch { block: b });
             }
         }
-        self.state.solve_rates(&self.topology, &self.parts, &self.drivers);
         if let Some(block) = self.uncertain_turn() {
             return Err(Refusal::Branch { block });
         }
@@ -485,12 +482,11 @@ impl<'m, T: Real> Stepper<'m, T> {
             self.renew_factors(b);
             // The same position, seen through other rows: new factors, and a new sign to stay with.
             self.state
-                .solve_position(&self.topology, &self.parts, &self.drivers, f64::INFINITY)
+                .solve(&self.topology, &self.parts, &self.drivers, f64::INFINITY)
                 .map_err(Refusal::Position)?;
             let (ratio, positive) = self.state.pivots[b];
             self.branch[b] = (positive, ratio);
             self.try_others[b] = RESELECT * ratio;
-            self.state.solve_rates(&self.topology, &self.parts, &self.drivers);
         }
         Ok(())
     }

@@ -1,7 +1,7 @@
 //! The three levels of one design variable at one step.
 
 use crate::model::{DriverId, Field, JointId, Model};
-use crate::motion::kinematics::{State, level, sum_couplers};
+use crate::motion::kinematics::{State, carry, level, sum_couplers};
 use crate::motion::stepper::LOCKED;
 use crate::space::{LANES, Real, Twist};
 use crate::topology::{Source, Step, Topology};
@@ -33,8 +33,6 @@ pub(crate) struct Reach {
     blocks: Vec<usize>,
     /// Closures of these blocks, and those between driven bodies.
     closures: Vec<usize>,
-    /// Couplers' rows in these blocks.
-    coupled: Vec<usize>,
     /// Bodies that move.
     pub bodies: Vec<usize>,
 }
@@ -76,9 +74,6 @@ impl Reach {
                 reach.closures.push(c);
             }
         }
-        let felt = |c: usize| reach.closures.contains(&c);
-        let coupled = topology.coupled_rows.iter().copied();
-        reach.coupled = coupled.filter(|&r| felt(topology.rows[r].closure)).collect();
         reach.bodies = (1..bodies).filter(|&b| moves[b]).collect();
         reach
     }
@@ -345,23 +340,16 @@ impl<T: Real> Direct<T> {
                 self.row_rhs[row] += rate;
             }
         }
-        sum_couplers(topology, &reach.coupled, &mut self.row_rhs);
+        reach.blocks.iter().for_each(|&b| sum_couplers(topology, b, &mut self.row_rhs));
         if self.laws_change {
             self.follow_laws(topology, field, order);
         }
-        level(
-            topology,
-            reach.driven_links.iter().copied(),
-            reach.blocks.iter().copied(),
-            &mut state.factors,
-            &state.x,
-            &state.l,
-            Some(&self.bias[order]),
-            &self.row_rhs,
-            &mut self.s[order],
-            &mut self.w[order],
-            &mut state.rhs,
-        );
+        let (x, bias, driven) = (&state.x, Some(&self.bias[order][..]), reach.driven_links.iter().copied());
+        let (s, w) = (&mut self.s[order], &mut self.w[order]);
+        carry(topology, driven, x, bias, s, w, |_| true);
+        for &b in &reach.blocks {
+            level(topology, b, &mut state.factors, x, &state.l, bias, &self.row_rhs, s, w, &mut state.rhs);
+        }
         let w = &self.w[order];
         for &c in &reach.closures {
             let [i, j] = topology.closures[c].bodies;

@@ -77,9 +77,6 @@ impl<'f, T: Real> Sensing<'f, T> {
         t: f64,
         sink: &mut impl Sink,
     ) {
-        if self.fields.is_empty() {
-            return;
-        }
         state.finish_rates(topology);
         self.state.spread(state);
         let variables = self.fields.len();
@@ -113,9 +110,6 @@ impl<'f, T: Real> Sensing<'f, T> {
         count: usize,
         sink: &mut impl Sink,
     ) {
-        if self.fields.is_empty() {
-            return;
-        }
         state.finish_rates(topology);
         let of_lanes: [f64; LANES] = std::array::from_fn(|lane| times[lane.min(times.len() - 1)]);
         for (v, field) in self.each.iter_mut().enumerate() {

@@ -208,7 +208,13 @@ fn assign(
     }
     let mut blocks: Vec<Block> = groups
         .iter()
-        .map(|g| Block { unknowns: g.clone(), closures: Vec::new(), selected: Vec::new(), links: 0..0 })
+        .map(|g| Block {
+            unknowns: g.clone(),
+            closures: Vec::new(),
+            coupled: Vec::new(),
+            selected: Vec::new(),
+            links: 0..0,
+        })
         .collect();
     let place = |c: usize| match topology.coordinates[c].source {
         Source::Unknown { block, column } => Some((block, column)),
@@ -257,6 +263,9 @@ fn assign(
         }
         let columns = columns.into_iter().map(|(column, parts)| CoupledColumn { column, parts });
         topology.rows[r].columns = columns.collect();
+        if let Some(b) = block_of_row[r] {
+            blocks[b].coupled.push(r);
+        }
     }
     let mut free = Vec::new();
     topology.blocks = blocks;

@@ -197,6 +197,8 @@ pub struct Block {
     pub unknowns: Vec<usize>,
     /// The closures whose rows belong to it.
     pub closures: Vec<usize>,
+    /// Those of its rows that are couplers.
+    pub coupled: Vec<usize>,
     /// The independent rows that it is solved with, as many as unknowns.
     pub selected: Vec<usize>,
     /// Range of [`Topology::links`] that it places.
