@@ -173,7 +173,7 @@ impl<T: Real> State<T> {
     pub(super) fn place(&mut self, topology: &Topology, parts: &Parts<T>, links: std::ops::Range<usize>) {
         for k in links {
             let link = &topology.links[k];
-            let marker = parts.parent_marker[k];
+            let marker = parts.parent_marker.get(k, self.witness);
             let on_ground = link.parent == GROUND;
             let mut frame = if on_ground { marker } else { self.frame[link.parent.0].compose(marker) };
             for step in &link.steps {
@@ -199,7 +199,7 @@ impl<T: Real> State<T> {
     fn place_bodies(&mut self, topology: &Topology, parts: &Parts<T>, links: std::ops::Range<usize>) {
         for k in links {
             let child = topology.links[k].child.0;
-            self.pose[child] = self.frame[child].compose(parts.child_from_marker[k]);
+            self.pose[child] = self.frame[child].compose(parts.child_from_marker.get(k, self.witness));
         }
     }
 
@@ -207,8 +207,8 @@ impl<T: Real> State<T> {
     #[inline(always)]
     pub(super) fn place_ends(&mut self, topology: &Topology, parts: &Parts<T>, closure: usize) {
         let [i, j] = topology.closures[closure].bodies;
-        let [m_i, m_j] = &parts.ends[closure];
-        self.ends[closure] = Ends { i: self.frame[i.0].compose(*m_i), j: self.frame[j.0].compose(*m_j) };
+        let (m_i, m_j) = (parts.ends[0].get(closure, self.witness), parts.ends[1].get(closure, self.witness));
+        self.ends[closure] = Ends { i: self.frame[i.0].compose(m_i), j: self.frame[j.0].compose(m_j) };
         if let Some(k) = topology.closures[closure].contact {
             self.touch(parts, closure, k);
         }
@@ -218,7 +218,7 @@ impl<T: Real> State<T> {
     #[inline(always)]
     fn place_end_points(&mut self, topology: &Topology, parts: &Parts<T>, closure: usize) {
         let [i, j] = topology.closures[closure].bodies;
-        let [m_i, m_j] = &parts.ends[closure];
+        let (m_i, m_j) = (parts.ends[0].get(closure, self.witness), parts.ends[1].get(closure, self.witness));
         let ends = &mut self.ends[closure];
         (ends.i.r, ends.j.r) = (self.frame[i.0].point(m_i.r), self.frame[j.0].point(m_j.r));
     }

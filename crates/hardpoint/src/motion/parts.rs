@@ -11,11 +11,11 @@ use crate::topology::Topology;
 #[derive(Clone, Debug)]
 pub(crate) struct Parts<T> {
     /// Per link: the marker on the parent.
-    pub parent_marker: Vec<Pose<T>>,
+    pub parent_marker: Poses<T>,
     /// Per link: the child's own frame.
-    pub child_from_marker: Vec<Pose<T>>,
-    /// Per closure: marker i on body i, marker j on body j.
-    pub ends: Vec<[Pose<T>; 2]>,
+    pub child_from_marker: Poses<T>,
+    /// Per closure: marker i on body i, and marker j on body j.
+    pub ends: [Poses<T>; 2],
     /// Per row: what it keeps of the design configuration, like the length of a rod; 0 where it keeps nothing.
     pub kept: Vec<T>,
     /// Curves, in the order of [`crate::topology::Closure::contact`].
@@ -24,11 +24,33 @@ pub(crate) struct Parts<T> {
     laws: Vec<Vec<Law>>,
 }
 
-impl<T: Real> Parts<T> {
-    /// Lane k takes `designs[k]`, or the last design where there are fewer.
-    pub fn new(model: &Model, topology: &Topology, designs: &[Geometry], witness: T) -> Self {
-        let lane = |k: usize| &designs[k.min(designs.len() - 1)];
-        let marker = |joint: usize, end: usize| Pose::gather(witness, |k| lane(k).markers[joint][end]);
+/// Poses of one design, or of one per lane.
+#[derive(Clone, Debug)]
+pub(crate) enum Poses<T> {
+    /// The same in all lanes: an eighth of the memory to read.
+    Same(Vec<Pose>),
+    Each(Vec<Pose<T>>),
+}
+
+impl<T: Real> Poses<T> {
+    #[inline(always)]
+    pub fn get(&self, k: usize, witness: T) -> Pose<T> {
+        match self {
+            Self::Same(poses) => poses[k].spread(witness),
+            Self::Each(poses) => poses[k],
+        }
+    }
+}
+
+/// All poses of a design, or of the designs in all lanes.
+struct Layout<U> {
+    parent_marker: Vec<Pose<U>>,
+    child_from_marker: Vec<Pose<U>>,
+    ends: [Vec<Pose<U>>; 2],
+}
+
+impl<U: Real> Layout<U> {
+    fn new(model: &Model, topology: &Topology, marker: impl Fn(usize, usize) -> Pose<U>, witness: U) -> Self {
         // Per body, its frame as seen from the marker that places it.
         let mut seen = vec![Pose::IDENTITY.spread(witness); model.bodies.len()];
         for link in &topology.links {
@@ -44,7 +66,10 @@ impl<T: Real> Parts<T> {
                 seen[link.child.0] = m.inverse();
             }
         }
-        let on = |body: BodyId, m: Pose<T>| if body == GROUND { m } else { seen[body.0].compose(m) };
+        let on = |body: BodyId, m: Pose<U>| if body == GROUND { m } else { seen[body.0].compose(m) };
+        let ends = |end: usize| {
+            topology.closures.iter().map(|c| on(c.bodies[end], marker(c.joint.0, end))).collect()
+        };
         Self {
             parent_marker: topology
                 .links
@@ -55,11 +80,27 @@ impl<T: Real> Parts<T> {
                 })
                 .collect(),
             child_from_marker: topology.links.iter().map(|l| seen[l.child.0]).collect(),
-            ends: topology
-                .closures
-                .iter()
-                .map(|c| [0, 1].map(|end| on(c.bodies[end], marker(c.joint.0, end))))
-                .collect(),
+            ends: [ends(0), ends(1)],
+        }
+    }
+}
+
+impl<T: Real> Parts<T> {
+    /// Lane k takes `designs[k]`, or the last design where there are fewer.
+    pub fn new(model: &Model, topology: &Topology, designs: &[Geometry], witness: T) -> Self {
+        let lane = |k: usize| &designs[k.min(designs.len() - 1)];
+        let (parent_marker, child_from_marker, ends) = if let [design] = designs {
+            let l = Layout::new(model, topology, |joint, end| design.markers[joint][end], 0.0);
+            (Poses::Same(l.parent_marker), Poses::Same(l.child_from_marker), l.ends.map(Poses::Same))
+        } else {
+            let gather = |joint: usize, end: usize| Pose::gather(witness, |k| lane(k).markers[joint][end]);
+            let l = Layout::new(model, topology, gather, witness);
+            (Poses::Each(l.parent_marker), Poses::Each(l.child_from_marker), l.ends.map(Poses::Each))
+        };
+        Self {
+            parent_marker,
+            child_from_marker,
+            ends,
             kept: topology
                 .rows
                 .iter()
