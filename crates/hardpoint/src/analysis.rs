@@ -1,6 +1,8 @@
 //! The whole walk for one model: plan, motion, sensitivities, measures.
 
+use std::num::NonZero;
 use std::ops::ControlFlow;
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 use fearless_simd::{Level, dispatch};
 
@@ -299,6 +301,35 @@ impl<'m> Analysis<'m> {
                 visit(group * LANES + k, solution);
             }
         }
+    }
+
+    /// As [`Analysis::for_each_design`], on so many threads, the designs in no certain order.
+    ///
+    /// The same designs share their lanes however many threads there are, so that every solution is the same to the last bit.
+    ///
+    /// # Panics
+    /// If `visit` does.
+    pub fn for_each_design_on(
+        &self,
+        threads: NonZero<usize>,
+        designs: &[Vec<f64>],
+        visit: impl Fn(usize, &Solution) + Sync,
+    ) {
+        let next = AtomicUsize::new(0);
+        std::thread::scope(|scope| {
+            for _ in 0..threads.get() {
+                scope.spawn(|| {
+                    let mut solutions: [Solution; LANES] = std::array::from_fn(|_| Solution::default());
+                    let groups = || Some(next.fetch_add(1, Ordering::Relaxed));
+                    for group in std::iter::from_fn(groups).take_while(|g| g * LANES < designs.len()) {
+                        let first = group * LANES;
+                        let some = &designs[first..usize::min(first + LANES, designs.len())];
+                        self.solve_designs(some, &mut solutions[..some.len()]);
+                        solutions[..some.len()].iter().enumerate().for_each(|(k, s)| visit(first + k, s));
+                    }
+                });
+            }
+        });
     }
 
     /// Up to as many designs as there are lanes, side by side.

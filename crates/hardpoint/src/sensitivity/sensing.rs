@@ -16,7 +16,7 @@ use super::{Admissibility, BodySensitivity, JointDefect, Sensitivities, admissib
 pub(crate) struct Sensing<'f, T> {
     model: &'f Model,
     fields: &'f [Field],
-    /// Each field in all lanes.
+    /// Each field in all lanes; empty until times fill them.
     each: Vec<FieldParts<T>>,
     /// The fields, as many at a time as there are lanes.
     together: Vec<FieldParts<T>>,
@@ -43,7 +43,7 @@ impl<'f, T: Real> Sensing<'f, T> {
         Self {
             model,
             fields,
-            each: fields.iter().map(|f| parts(&[f; LANES])).collect(),
+            each: Vec::new(),
             together: all.chunks(T::LANES).map(parts).collect(),
             state: State::new(model, topology, witness),
             direct: Direct::new(model, topology, witness),
@@ -111,6 +111,10 @@ impl<'f, T: Real> Sensing<'f, T> {
         sink: &mut impl Sink,
     ) {
         state.finish_rates(topology);
+        if self.each.is_empty() {
+            let witness = state.witness;
+            self.each = self.fields.iter().map(|f| FieldParts::new(topology, &[f; LANES], witness)).collect();
+        }
         let of_lanes: [f64; LANES] = std::array::from_fn(|lane| times[lane.min(times.len() - 1)]);
         for (v, field) in self.each.iter_mut().enumerate() {
             field.set_times(self.model, &of_lanes);

@@ -54,6 +54,94 @@ fn absolute_and_relative_coordinates_agree_on_every_mechanism() {
     }
 }
 
+/// Bit by bit: positions, velocities and accelerations.
+fn bits(s: &Solution) -> Vec<u64> {
+    let vectors = s.motion.states.iter().flat_map(|s| [s.r, s.rotation.cols[0], s.v, s.omega, s.a, s.alpha]);
+    vectors.flat_map(|v| v.to_array().map(f64::to_bits)).collect()
+}
+
+#[test]
+fn threads_used_memory_and_streams_change_no_bit() {
+    let model = Model::from_draft(&reference_draft("macpherson")).unwrap();
+    let analysis = Analysis::new(&model).unwrap().bodies_only();
+    let designs: Vec<Vec<f64>> = (0..21).map(|k| vec![1e-4 * f64::from(k), -2e-5 * f64::from(k)]).collect();
+    let one_by_one: Vec<_> = analysis.run_designs(&designs).iter().map(bits).collect();
+    for threads in [1, 3] {
+        let seen = std::sync::Mutex::new(vec![Vec::new(); designs.len()]);
+        let threads = std::num::NonZero::new(threads).unwrap();
+        analysis.for_each_design_on(threads, &designs, |k, s| seen.lock().unwrap()[k] = bits(s));
+        assert_eq!(seen.into_inner().unwrap(), one_by_one);
+    }
+    let mut visited = 0;
+    analysis.for_each_design(&designs, |k, s| {
+        assert_eq!(bits(s), one_by_one[k]);
+        visited += 1;
+    });
+    assert_eq!(visited, designs.len());
+
+    // Memory of another mechanism's solution.
+    let other = Model::from_draft(&reference_draft("slider_crank")).unwrap();
+    let mut used = Analysis::new(&other).unwrap().run();
+    let fresh = analysis.run();
+    for _ in 0..2 {
+        analysis.run_into(&mut used);
+        assert_eq!(bits(&used), bits(&fresh));
+        assert_eq!(used.sensitivities.states, fresh.sensitivities.states);
+        assert_eq!(used.motion.states[0], hardpoint::motion::BodyState::at_design(&model, GROUND));
+    }
+
+    struct Compare<'s>(&'s Solution, usize);
+    impl hardpoint::Sink for Compare<'_> {
+        fn wants(&self, body: BodyId) -> bool {
+            body.0 != 2
+        }
+        fn state(&mut self, k: usize, body: BodyId, state: &hardpoint::motion::BodyState) {
+            assert_eq!(self.0.body(k, body), state);
+            assert!(body.0 != 2);
+            self.1 += 1;
+        }
+        fn sensitivity(
+            &mut self,
+            k: usize,
+            variable: VariableId,
+            body: BodyId,
+            d: &hardpoint::sensitivity::BodySensitivity,
+        ) {
+            assert_eq!(&self.0.sensitivities.at(k, variable.0).unwrap()[body.0], d);
+            assert!(body.0 != 2);
+        }
+    }
+    let mut compare = Compare(&fresh, 0);
+    let streamed = analysis.stream(&mut compare);
+    assert_eq!(compare.1, model.times.len() * (model.bodies.len() - 2));
+    assert_eq!((streamed.steps, streamed.stop), (model.times.len(), None));
+    assert_eq!(streamed.admissibility, fresh.sensitivities.admissibility);
+}
+
+#[test]
+fn steps_abreast_are_the_same_as_one_by_one() {
+    // Times far apart are walked one by one, times close together go eight abreast: common ones must agree.
+    for name in ["slider_crank", "macpherson", "rssr", "jansen", "double_wishbone", "elementary_chain"] {
+        let mut draft = reference_draft(name);
+        let end = draft.times[draft.times.len() - 1];
+        let times = |n: usize| (0..=n).map(|k| end * k as f64 / n as f64).collect::<Vec<_>>();
+        draft.times = times(10);
+        let coarse = Model::from_draft(&draft).unwrap();
+        draft.times = times(1000);
+        let fine = Model::from_draft(&draft).unwrap();
+        let [coarse, fine] = [coarse, fine].map(|m| Analysis::new(&m).unwrap().run());
+        assert!(coarse.stop.is_none() && fine.stop.is_none(), "{name}");
+        for k in 0..=10 {
+            for (a, b) in coarse.motion.at(k).iter().zip(fine.motion.at(100 * k)) {
+                let accelerations = 1.0 + a.a.norm() + a.alpha.norm();
+                assert!((a.r - b.r).norm() < 1e-12, "{name} at {k}");
+                assert!((a.v - b.v).norm() + (a.omega - b.omega).norm() < 1e-11 * accelerations, "{name}");
+                assert!((a.a - b.a).norm() + (a.alpha - b.alpha).norm() < 1e-11 * accelerations, "{name}");
+            }
+        }
+    }
+}
+
 #[test]
 fn eight_designs_in_lanes_are_the_same_as_one_by_one() {
     for name in REFERENCES {
