@@ -134,8 +134,8 @@ impl<T: Real> Stepper<'_, T> {
     /// Foresees the positions at the times t, each h beyond where the other stepper stands, `farthest` at the most.
     #[inline(always)]
     fn foresee(&mut self, one: &mut Stepper<'_, f64>, t: T, h: T, farthest: f64) {
-        let (most, witness) = (one.forecast.known(), self.state.witness);
-        one.forecast.set(&mut self.state, t, farthest, most, |x| witness.like(x));
+        let witness = self.state.witness;
+        one.forecast.set(&mut self.state, t, farthest, |x| witness.like(x));
         self.expect_turns(h);
     }
 }

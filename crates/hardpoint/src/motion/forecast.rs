@@ -14,7 +14,7 @@ use super::kinematics::State;
 const NODES: usize = 3;
 /// Conditions per position: value, first and second derivative.
 const ORDERS: usize = 3;
-/// Beyond this many times the distance of the last two positions, their round-off would be magnified.
+/// Farther ahead than this many times the distance between two positions, their round-off would be magnified.
 const FARTHEST: f64 = 8.5;
 
 /// Polynomials through the last accepted positions.
@@ -99,9 +99,10 @@ impl<T: Real> Forecast<T> {
     /// Divided differences over the newest positions; returns how many conditions they are. Far ahead, `h` beyond
     /// the newest, only that one counts.
     #[inline(always)]
-    fn divide(&mut self, h: f64, most: usize) -> usize {
-        let near = h <= FARTHEST * (self.times[0] - self.times[1]);
-        let n = ORDERS * if near { usize::min(self.count, most) } else { 1 };
+    fn divide(&mut self, h: f64) -> usize {
+        let apart = |n: usize| self.times[n - 1] - self.times[n];
+        let nodes = (1..self.count).take_while(|&n| h <= FARTHEST * apart(n)).count() + 1;
+        let n = ORDERS * nodes;
         let time = |k: usize| self.times[k / ORDERS];
         // 1 / (t_(i+k) - t_i), where those are different positions.
         let mut inverse = [[0.0; NODES * ORDERS]; NODES * ORDERS];
@@ -133,11 +134,10 @@ impl<T: Real> Forecast<T> {
         n
     }
 
-    /// Sets the unknowns of a state to what is foreseen at the times t (the last of them h beyond the newest position), by so
-    /// many positions at the most.
+    /// Sets the unknowns of a state to what is foreseen at the times t, the last of them h beyond the newest position.
     #[inline(always)]
-    pub fn set<U: Real>(&mut self, state: &mut State<U>, t: U, h: f64, most: usize, spread: impl Fn(T) -> U) {
-        let n = self.divide(h, most);
+    pub fn set<U: Real>(&mut self, state: &mut State<U>, t: U, h: f64, spread: impl Fn(T) -> U) {
+        let n = self.divide(h);
         let ahead: [U; NODES] = std::array::from_fn(|k| t - t.like(self.times[k]));
         for (channel, d) in self.channels.iter().zip(&self.differences) {
             let mut x = spread(d[n - 1]);

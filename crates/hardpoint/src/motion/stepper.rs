@@ -25,8 +25,6 @@ const SPEED_FLOOR: f64 = 1e-3;
 /// The coordinates of a coupler must come within this of their prediction, rad: which turn an angle is in would
 /// otherwise be a guess.
 const TURN_TRUST: f64 = 1.0;
-/// Positions that one further step is foreseen by: more would not save it an iteration.
-const STEADY_NODES: usize = 2;
 /// Within this part of an output step the speed of a smooth law hardly changes.
 const SMOOTH_PART: f64 = 1e-3;
 /// Coordinates this much faster than the fastest driver are on their way to a limit position.
@@ -299,7 +297,7 @@ impl<'m, T: Real> Stepper<'m, T> {
                 s.balls.copy_from_slice(&saved.balls);
                 s.contacts.copy_from_slice(&saved.contacts);
                 if h != 0.0 && self.forecast.known() > 0 {
-                    self.forecast.set(s, t, h, STEADY_NODES, |x| x);
+                    self.forecast.set(s, t, h, |x| x);
                 }
                 self.expect_turns(witness.like(h));
                 self.expected_move(witness.like(h)).largest()
