@@ -129,15 +129,20 @@ impl<'m> Analysis<'m> {
     }
 
     /// As [`Analysis::run`]; `progress` is called after every output time and may end the run.
-    pub fn run_with(&self, progress: impl FnMut(Progress) -> ControlFlow<()>) -> Solution {
+    pub fn run_with(&self, mut progress: impl FnMut(Progress) -> ControlFlow<()>) -> Solution {
         let mut solution = Solution::default();
-        self.solve(&self.model.geometry(&[]), &self.all_fields(), progress, &mut solution);
+        self.solve(&self.model.geometry(&[]), &self.all_fields(), &mut progress, &mut solution);
         solution
     }
 
     /// As [`Analysis::run`], into the memory of a former solution.
     pub fn run_into(&self, solution: &mut Solution) {
-        self.solve(&self.model.geometry(&[]), &self.all_fields(), |_| ControlFlow::Continue(()), solution);
+        self.solve(
+            &self.model.geometry(&[]),
+            &self.all_fields(),
+            &mut |_| ControlFlow::Continue(()),
+            solution,
+        );
     }
 
     /// Solves the motion only, without any sensitivity.
@@ -147,13 +152,13 @@ impl<'m> Analysis<'m> {
 
     /// As [`Analysis::run_motion`], into the memory of a former solution.
     pub fn run_motion_into(&self, solution: &mut Solution) {
-        self.solve(&self.model.geometry(&[]), &[], |_| ControlFlow::Continue(()), solution);
+        self.solve(&self.model.geometry(&[]), &[], &mut |_| ControlFlow::Continue(()), solution);
     }
 
     /// Solves the motion of the changed design with variable k at `design[k]`, exactly.
     pub fn run_design(&self, design: &[f64]) -> Solution {
         let mut solution = Solution::default();
-        self.solve(&self.model.geometry(design), &[], |_| ControlFlow::Continue(()), &mut solution);
+        self.solve(&self.model.geometry(design), &[], &mut |_| ControlFlow::Continue(()), &mut solution);
         solution
     }
 
@@ -170,7 +175,7 @@ impl<'m> Analysis<'m> {
         let wanted: Vec<bool> = (0..self.model.bodies.len()).map(|b| sink.wants(BodyId(b))).collect();
         dispatch!(Level::new(), simd => {
             let mut walk = Walk::new(self, &geometry, &fields, wanted, lanes(simd));
-            let stop = walk.all(self, sink, |_| ControlFlow::Continue(()), |_, _, _| ());
+            let stop = walk.all(self, sink, &mut |_| ControlFlow::Continue(()), |_, _, _| ());
             let effort = walk.one.effort;
             let admissibility = walk.sensing.map_or_else(Vec::new, |s| s.admissibility(walk.done));
             Streamed { steps: walk.done, admissibility, effort, stop }
@@ -181,7 +186,7 @@ impl<'m> Analysis<'m> {
         &self,
         geometry: &Geometry,
         fields: &[Field],
-        progress: impl FnMut(Progress) -> ControlFlow<()>,
+        progress: &mut dyn FnMut(Progress) -> ControlFlow<()>,
         solution: &mut Solution,
     ) {
         dispatch!(Level::new(), simd => self.solve_in(geometry, fields, progress, solution, lanes(simd)));
@@ -192,7 +197,7 @@ impl<'m> Analysis<'m> {
         &self,
         geometry: &Geometry,
         fields: &[Field],
-        progress: impl FnMut(Progress) -> ControlFlow<()>,
+        progress: &mut dyn FnMut(Progress) -> ControlFlow<()>,
         solution: &mut Solution,
         witness: T,
     ) {
@@ -344,7 +349,7 @@ impl<'m> Analysis<'m> {
                 solution.measured = self.measure(geometry, &[], &solution.motion, &solution.sensitivities);
                 solution.stop = None;
             } else {
-                self.solve(geometry, &[], |_| ControlFlow::Continue(()), solution);
+                self.solve(geometry, &[], &mut |_| ControlFlow::Continue(()), solution);
             }
         }
     }
@@ -434,7 +439,7 @@ impl<'a, T: Real> Walk<'a, T> {
         &mut self,
         analysis: &Analysis<'_>,
         sink: &mut S,
-        mut progress: impl FnMut(Progress) -> ControlFlow<()>,
+        progress: &mut dyn FnMut(Progress) -> ControlFlow<()>,
         mut then: impl FnMut(&mut S, Solved<'_, 'a, T>, usize),
     ) -> Option<Stop> {
         let (times, witness) = (&analysis.model.times, self.abreast.stepper.state.witness);
