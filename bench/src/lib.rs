@@ -2,7 +2,8 @@
 
 use hardpoint::law::Law;
 use hardpoint::model::{
-    BodyDraft, Draft, DrivenDraft, DriverDraft, FrameDraft, JointDraft, Line, Model, Place,
+    BodyDraft, ChangeDraft, Draft, DrivenDraft, DriverDraft, FrameDraft, HardpointDraft, JointDraft, Line,
+    Model, Place, VariableDraft,
 };
 use hardpoint::space::{Mat3, Pose, Vec3};
 
@@ -86,6 +87,22 @@ pub fn chain(n: usize, steps: usize) -> Draft {
                 Z,
             ));
         }
+    }
+    draft
+}
+
+/// The chain of [`chain`] with so many design variables, at most one per loop and spread evenly: each moves one of the
+/// pivots on the ground along x, which all loops from there on follow.
+pub fn chain_with_variables(n: usize, variables: usize, steps: usize) -> Draft {
+    let mut draft = chain(n, steps);
+    for k in (0..variables).map(|v| v * n / variables) {
+        let (name, pivot) = (format!("P{k}"), format!("pivot{k}"));
+        let joint = draft.joints.iter_mut().find(|j| j.name == pivot).expect("a pivot of the chain");
+        joint.at = vec![Place::Hardpoint(name.clone())];
+        let velocity = Vec3::new(1.0, 0.0, 0.0);
+        draft.hardpoints.push(HardpointDraft { name: name.clone(), position: Vec3::new(k as f64, 0.0, 0.0) });
+        let changes = vec![ChangeDraft::Move { hardpoint: name.clone(), velocity }];
+        draft.design.push(VariableDraft { name, changes, fixed_length: false });
     }
     draft
 }

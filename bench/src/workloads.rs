@@ -168,13 +168,13 @@ fn per_step(time: Duration, steps: usize) -> f64 {
 }
 
 /// CPU time of this thread: other jobs on the machine do not count.
-fn cpu_time() -> Duration {
+pub fn cpu_time() -> Duration {
     let t = rustix::time::clock_gettime(rustix::time::ClockId::ThreadCPUTime);
     Duration::new(t.tv_sec as u64, t.tv_nsec as u32)
 }
 
 /// The median time of `f`, which writes its results where it wrote them before.
-fn timed(once: bool, mut f: impl FnMut()) -> Duration {
+pub fn timed(once: bool, mut f: impl FnMut()) -> Duration {
     f(); // not counted: cold caches
     let mut times = Vec::new();
     let started = cpu_time();
@@ -190,7 +190,11 @@ fn timed(once: bool, mut f: impl FnMut()) -> Duration {
     times[times.len() / 2]
 }
 
-fn finished(solution: &mut Solution, run: impl Fn(&mut Solution)) {
+/// Runs the mechanism to its end.
+///
+/// # Panics
+/// Where something stops it.
+pub fn finished(solution: &mut Solution, run: impl Fn(&mut Solution)) {
     run(black_box(solution));
     assert!(solution.stop.is_none(), "the mechanism stops: {:?}", solution.stop);
 }
