@@ -1,5 +1,6 @@
 //! The workloads of the comparison with other systems (`docs/performance.md`), run and timed by Hardpoint on one thread.
 
+use std::cell::{Cell, RefCell};
 use std::fmt;
 use std::fs;
 use std::hint::black_box;
@@ -8,11 +9,11 @@ use std::path::Path;
 use std::str::FromStr;
 use std::time::Duration;
 
-use hardpoint::model::Model;
+use hardpoint::model::{BodyId, GROUND, Model, VariableId};
 use hardpoint::motion::{BodyState, Motion};
 use hardpoint::sensitivity::{BodySensitivity, Sensitivities};
 use hardpoint::space::Vec3;
-use hardpoint::{Analysis, Solution};
+use hardpoint::{Analysis, Sink, Solution, Streamed};
 
 use crate::designs::{DESIGNS, designs};
 
@@ -263,26 +264,93 @@ fn moved_designs(reference: Option<&[f64]>, once: bool) -> (Duration, Option<[f6
     (time, errors)
 }
 
-/// Each design is a model of its own, made before the clock starts, planned and run on the clock.
+/// Eight designs at a time, each into memory of its own for one step's results, which the next step overwrites.
 fn moved_designs_with_sensitivities(reference: Option<&[f64]>, once: bool) -> (Duration, Option<[f64; 3]>) {
-    let models: Vec<Model> = designs().iter().map(|d| strut(d)).collect();
-    let mut solution = Solution::default();
-    let mut run = |model: &Model, look: &mut dyn FnMut(&Solution)| {
-        let analysis = Analysis::new(model).expect("a model that can be driven").bodies_only();
-        finished(&mut solution, |s| analysis.run_into(s));
-        look(&solution);
+    let model = strut(&[]);
+    let analysis = Analysis::new(&model).expect("a model that can be driven").bodies_only();
+    let designs = designs();
+    let end = |design: usize, streamed: Streamed| {
+        assert!(streamed.stop.is_none(), "design {design} stops: {:?}", streamed.stop);
     };
-    let time = timed(once, || models.iter().for_each(|model| run(model, &mut |s| _ = black_box(s))));
+    let mut memory = Vec::new();
+    let time = timed(once, || {
+        let free = RefCell::new(std::mem::take(&mut memory));
+        analysis.stream_designs(
+            &designs,
+            |_| free.borrow_mut().pop().unwrap_or_else(|| OneStep::of(&model)),
+            |design, step, streamed| {
+                end(design, streamed);
+                free.borrow_mut().push(black_box(step));
+            },
+        );
+        memory = free.into_inner();
+    });
     let errors = reference.map(|reference| {
-        let mut worst = [0.0; 3];
-        for (model, reference) in models.iter().zip(reference.chunks(reference.len() / DESIGNS_COMPARED)) {
-            run(model, &mut |s| {
-                keep_larger(&mut worst, sensitivity_errors(&s.motion, &s.sensitivities, reference));
-            });
-        }
-        worst
+        let each = reference.len() / DESIGNS_COMPARED;
+        let worst = Cell::new([0.0; 3]);
+        let compared = |design: usize| Compared {
+            step: OneStep::of(&model),
+            reference: &reference[design * each..][..each],
+            worst: &worst,
+        };
+        analysis.stream_designs(&designs[..DESIGNS_COMPARED], compared, |design, _, streamed| {
+            end(design, streamed)
+        });
+        worst.get()
     });
     (time, errors)
+}
+
+/// One step's results, like the floor's reused buffer.
+struct OneStep {
+    states: Vec<BodyState>,
+    sensitivities: Vec<BodySensitivity>,
+}
+
+impl OneStep {
+    fn of(model: &Model) -> Self {
+        let bodies = model.bodies.len();
+        Self {
+            states: vec![BodyState::at_design(model, GROUND); bodies],
+            sensitivities: vec![BodySensitivity::ZERO; model.variables.len() * bodies],
+        }
+    }
+}
+
+impl Sink for OneStep {
+    #[inline(always)]
+    fn state(&mut self, _: usize, body: BodyId, state: &BodyState) {
+        self.states[body.0] = *state;
+    }
+
+    #[inline(always)]
+    fn sensitivity(&mut self, _: usize, variable: VariableId, body: BodyId, derivatives: &BodySensitivity) {
+        let bodies = self.states.len();
+        self.sensitivities[variable.0 * bodies + body.0] = *derivatives;
+    }
+}
+
+/// Holds every result against the reference.
+struct Compared<'r> {
+    step: OneStep,
+    reference: &'r [f64],
+    worst: &'r Cell<[f64; 3]>,
+}
+
+impl Sink for Compared<'_> {
+    fn state(&mut self, k: usize, body: BodyId, state: &BodyState) {
+        self.step.state(k, body, state);
+    }
+
+    fn sensitivity(&mut self, k: usize, variable: VariableId, body: BodyId, derivatives: &BodySensitivity) {
+        let bodies = self.step.states.len() - 1;
+        let found = sensitivity_layout(&self.step.states[body.0], derivatives);
+        let first = (k * bodies + body.0 - 1) * STATE * COORDINATES + variable.0;
+        let expected = self.reference[first..].iter().copied().step_by(COORDINATES).take(STATE);
+        let mut worst = self.worst.get();
+        keep_larger(&mut worst, deviations(&found, expected));
+        self.worst.set(worst);
+    }
 }
 
 // ---- comparison

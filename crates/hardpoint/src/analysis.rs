@@ -6,14 +6,15 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 use fearless_simd::{Level, dispatch};
 
+use crate::law::Law;
 use crate::measure::{self, Measured};
-use crate::model::{BodyId, Field, GROUND, Geometry, Model, VariableId};
+use crate::model::{BodyId, Effects, Field, GROUND, Geometry, Model};
 use crate::motion::abreast::Abreast;
 use crate::motion::margin::Margins;
 use crate::motion::parts::Parts;
 use crate::motion::stepper::Stepper;
 use crate::motion::{BodyState, Effort, Motion, Stop, StopKind};
-use crate::sensitivity::{Admissibility, Sensing, Sensitivities};
+use crate::sensitivity::{Admissibility, Sensing, SensingDesigns, Sensitivities};
 use crate::sink::{Sink, Store};
 use crate::space::{LANES, Real, lanes};
 use crate::topology::{Formulation, Topology, TopologyFault};
@@ -53,7 +54,16 @@ use crate::topology::{Formulation, Topology, TopologyFault};
 pub struct Analysis<'m> {
     model: &'m Model,
     topology: Topology,
+    effects: Effects<'m>,
     measures: bool,
+}
+
+/// One design, ready to be analysed.
+struct Design {
+    geometry: Geometry,
+    laws: Vec<Law>,
+    /// How the variables change it, if that is asked for.
+    fields: Vec<Field>,
 }
 
 /// What a streamed run says at its end.
@@ -105,7 +115,8 @@ impl<'m> Analysis<'m> {
     /// # Errors
     /// As [`Analysis::new`].
     pub fn with(model: &'m Model, formulation: Formulation) -> Result<Self, TopologyFault> {
-        Ok(Self { model, topology: Topology::of(model, formulation)?, measures: true })
+        let topology = Topology::of(model, formulation)?;
+        Ok(Self { model, topology, effects: Effects::of(model), measures: true })
     }
 
     /// The same analysis for callers that want the bodies only: [`Solution::measured`] stays empty.
@@ -131,18 +142,22 @@ impl<'m> Analysis<'m> {
     /// As [`Analysis::run`]; `progress` is called after every output time and may end the run.
     pub fn run_with(&self, mut progress: impl FnMut(Progress) -> ControlFlow<()>) -> Solution {
         let mut solution = Solution::default();
-        self.solve(&self.model.geometry(&[]), &self.all_fields(), &mut progress, &mut solution);
+        self.solve(&self.design(&[], true), &mut progress, &mut solution);
         solution
     }
 
     /// As [`Analysis::run`], into the memory of a former solution.
     pub fn run_into(&self, solution: &mut Solution) {
-        self.solve(
-            &self.model.geometry(&[]),
-            &self.all_fields(),
-            &mut |_| ControlFlow::Continue(()),
-            solution,
-        );
+        self.solve(&self.design(&[], true), &mut |_| ControlFlow::Continue(()), solution);
+    }
+
+    /// As [`Analysis::run`], for the changed design with variable k at `design[k]`: its motion, and its sensitivities there.
+    ///
+    /// Whether joints open under a further change is answered for the nominal design.
+    pub fn run_at(&self, design: &[f64]) -> Solution {
+        let mut solution = Solution::default();
+        self.solve(&self.design(design, true), &mut |_| ControlFlow::Continue(()), &mut solution);
+        solution
     }
 
     /// Solves the motion only, without any sensitivity.
@@ -152,29 +167,38 @@ impl<'m> Analysis<'m> {
 
     /// As [`Analysis::run_motion`], into the memory of a former solution.
     pub fn run_motion_into(&self, solution: &mut Solution) {
-        self.solve(&self.model.geometry(&[]), &[], &mut |_| ControlFlow::Continue(()), solution);
+        self.solve(&self.design(&[], false), &mut |_| ControlFlow::Continue(()), solution);
     }
 
     /// Solves the motion of the changed design with variable k at `design[k]`, exactly.
     pub fn run_design(&self, design: &[f64]) -> Solution {
         let mut solution = Solution::default();
-        self.solve(&self.model.geometry(design), &[], &mut |_| ControlFlow::Continue(()), &mut solution);
+        self.solve(&self.design(design, false), &mut |_| ControlFlow::Continue(()), &mut solution);
         solution
     }
 
-    /// How all variables change the design.
-    fn all_fields(&self) -> Vec<Field> {
-        (0..self.model.variables.len()).map(|v| self.model.field(VariableId(v))).collect()
+    fn design(&self, design: &[f64], sensitivities: bool) -> Design {
+        let values = self.model.whole(design);
+        Design {
+            geometry: self.effects.geometry(&values, 0.0),
+            laws: self.model.laws(design),
+            fields: if sensitivities { self.effects.fields(&values, 0.0) } else { Vec::new() },
+        }
     }
 
     /// As [`Analysis::run`], but nothing is stored: the sink takes every result as it is found.
     ///
     /// What 10,000 loops and 1,000 variables give need not fit into memory; measures are not evaluated.
     pub fn stream(&self, sink: &mut impl Sink) -> Streamed {
-        let (geometry, fields) = (self.model.geometry(&[]), self.all_fields());
-        let wanted: Vec<bool> = (0..self.model.bodies.len()).map(|b| sink.wants(BodyId(b))).collect();
+        self.stream_at(&[], sink)
+    }
+
+    /// As [`Analysis::stream`], for a changed design.
+    pub fn stream_at(&self, design: &[f64], sink: &mut impl Sink) -> Streamed {
+        let design = self.design(design, true);
+        let wanted = self.wanted(std::slice::from_ref(sink));
         dispatch!(Level::new(), simd => {
-            let mut walk = Walk::new(self, &geometry, &fields, wanted, lanes(simd));
+            let mut walk = Walk::new(self, &design, wanted, lanes(simd));
             let stop = walk.all(self, sink, &mut |_| ControlFlow::Continue(()), |_, _, _| ());
             let effort = walk.one.effort;
             let admissibility = walk.sensing.map_or_else(Vec::new, |s| s.admissibility(walk.done));
@@ -182,33 +206,36 @@ impl<'m> Analysis<'m> {
         })
     }
 
+    /// Per body, whether any sink wants its results.
+    fn wanted<S: Sink>(&self, sinks: &[S]) -> Vec<bool> {
+        (0..self.model.bodies.len()).map(|b| sinks.iter().any(|s| s.wants(BodyId(b)))).collect()
+    }
+
     fn solve(
         &self,
-        geometry: &Geometry,
-        fields: &[Field],
+        design: &Design,
         progress: &mut dyn FnMut(Progress) -> ControlFlow<()>,
         solution: &mut Solution,
     ) {
-        dispatch!(Level::new(), simd => self.solve_in(geometry, fields, progress, solution, lanes(simd)));
-        solution.measured = self.measure(geometry, fields, &solution.motion, &solution.sensitivities);
+        dispatch!(Level::new(), simd => self.solve_in(design, progress, solution, lanes(simd)));
+        self.measure(design, solution);
     }
 
     fn solve_in<T: Real>(
         &self,
-        geometry: &Geometry,
-        fields: &[Field],
+        design: &Design,
         progress: &mut dyn FnMut(Progress) -> ControlFlow<()>,
         solution: &mut Solution,
         witness: T,
     ) {
-        let mut walk = Walk::new(self, geometry, fields, vec![true; self.model.bodies.len()], witness);
+        let mut walk = Walk::new(self, design, vec![true; self.model.bodies.len()], witness);
         let room = std::mem::take(&mut solution.sensitivities);
         let mut sensitivities = match &walk.sensing {
             Some(sensing) => sensing.room(self.model.times.len(), room),
             None => Sensitivities::default(),
         };
         self.make_room(&mut solution.motion);
-        let variables = fields.len();
+        let variables = design.fields.len();
         let mut store =
             Store { motion: &mut solution.motion, sensitivities: &mut sensitivities.states, variables };
         let mut margins = (Margins::new(&self.topology, 0.0), Margins::new(&self.topology, witness));
@@ -271,17 +298,14 @@ impl<'m> Analysis<'m> {
         motion.assembly = None;
     }
 
-    fn measure(
-        &self,
-        geometry: &Geometry,
-        fields: &[Field],
-        motion: &Motion,
-        sensitivities: &Sensitivities,
-    ) -> Measured {
-        if !self.measures {
-            return Measured::default();
+    fn measure(&self, design: &Design, solution: &mut Solution) {
+        solution.measured = Measured::default();
+        if self.measures {
+            let Design { geometry, laws, fields } = design;
+            let at = measure::At { model: self.model, geometry, laws, fields };
+            solution.measured =
+                measure::evaluate(&at, &self.topology, &solution.motion, &solution.sensitivities);
         }
-        measure::evaluate(self.model, &self.topology, geometry, fields, motion, sensitivities)
     }
 
     /// Motions of many changed designs, in the order given.
@@ -337,61 +361,132 @@ impl<'m> Analysis<'m> {
         });
     }
 
-    /// Up to as many designs as there are lanes, side by side.
-    fn solve_designs(&self, designs: &[Vec<f64>], solutions: &mut [Solution]) {
-        let geometries: Vec<Geometry> = designs.iter().map(|d| self.model.geometry(d)).collect();
-        // Output times fill the lanes of a single design.
-        let solved = designs.len() > 1
-            && dispatch!(Level::new(), simd => self.solve_designs_in(&geometries, solutions, lanes(simd)));
-        for (geometry, solution) in geometries.iter().zip(solutions) {
-            if solved {
-                solution.sensitivities = Sensitivities::default();
-                solution.measured = self.measure(geometry, &[], &solution.motion, &solution.sensitivities);
-                solution.stop = None;
+    /// As [`Analysis::stream`], for any number of designs in the order given, eight at a time: every design's results, with
+    /// its sensitivities, go to a sink of its own, which `sink` makes and `end` gets back.
+    ///
+    /// Results of up to eight designs come by turns. Where one of those that are solved side by side stops, each of them
+    /// begins anew with a new sink, so that every design gets its own outcome.
+    pub fn stream_designs<S: Sink>(
+        &self,
+        designs: &[Vec<f64>],
+        mut sink: impl FnMut(usize) -> S,
+        mut end: impl FnMut(usize, S, Streamed),
+    ) {
+        for (group, designs) in designs.chunks(LANES).enumerate() {
+            let number = |k: usize| group * LANES + k;
+            let mut sinks: Vec<S> = (0..designs.len()).map(|k| sink(number(k))).collect();
+            // Output times fill the lanes of a single design.
+            let solved = if designs.len() > 1 {
+                dispatch!(Level::new(), simd => self.solve_designs_in(designs, &mut sinks, true, |_, _| (), lanes(simd)))
             } else {
-                self.solve(geometry, &[], &mut |_| ControlFlow::Continue(()), solution);
+                None
+            };
+            if let Some((effort, admissibility)) = solved {
+                for (k, (sink, admissibility)) in sinks.into_iter().zip(admissibility).enumerate() {
+                    let steps = self.model.times.len();
+                    end(number(k), sink, Streamed { steps, admissibility, effort, stop: None });
+                }
+            } else {
+                for (k, design) in designs.iter().enumerate() {
+                    let mut sink = sink(number(k));
+                    let streamed = self.stream_at(design, &mut sink);
+                    end(number(k), sink, streamed);
+                }
             }
         }
     }
 
-    /// All lanes to the end, or false where any of them stops.
-    fn solve_designs_in<T: Real>(
-        &self,
-        geometries: &[Geometry],
-        solutions: &mut [Solution],
-        witness: T,
-    ) -> bool {
-        let model = self.model;
-        let parts = Parts::new(model, &self.topology, geometries, witness);
-        let mut stepper = Stepper::new(model, &self.topology, parts, witness);
-        let bodies = model.bodies.len();
-        let wanted = vec![true; bodies];
-        for solution in solutions.iter_mut() {
-            self.make_room(&mut solution.motion);
-        }
-        for (k, &t) in model.times.iter().enumerate() {
-            if if k == 0 { stepper.start(t) } else { stepper.advance(t) }.is_err() {
-                return false;
+    /// Motions of up to as many designs as there are lanes, side by side.
+    fn solve_designs(&self, designs: &[Vec<f64>], solutions: &mut [Solution]) {
+        let side_by_side = designs.len() > 1
+            && {
+                let mut coordinates = Vec::with_capacity(designs.len());
+                let mut stores = Vec::with_capacity(designs.len());
+                for Solution { motion, .. } in solutions.iter_mut() {
+                    self.make_room(motion);
+                    coordinates.push(std::mem::take(&mut motion.coordinates));
+                    stores.push(Store { motion, sensitivities: &mut [], variables: 0 });
+                }
+                let keep = |lane: usize, q: f64| {
+                    if let Some(coordinates) = coordinates.get_mut(lane) {
+                        coordinates.push(q);
+                    }
+                };
+                let solved = dispatch!(Level::new(), simd => self.solve_designs_in(designs, &mut stores, false, keep, lanes(simd)));
+                if let Some((effort, _)) = &solved {
+                    for (solution, coordinates) in solutions.iter_mut().zip(coordinates) {
+                        solution.motion.times.extend_from_slice(&self.model.times);
+                        solution.motion.effort = *effort;
+                        solution.motion.coordinates = coordinates;
+                        solution.sensitivities = Sensitivities::default();
+                        solution.stop = None;
+                    }
+                }
+                solved.is_some()
+            };
+        for (design, solution) in designs.iter().zip(solutions) {
+            if !side_by_side {
+                self.solve(&self.design(design, false), &mut |_| ControlFlow::Continue(()), solution);
+            } else if self.measures {
+                self.measure(&self.design(design, false), solution);
+            } else {
+                solution.measured = Measured::default();
             }
+        }
+    }
+
+    /// All lanes to the end, or nothing where any of them stops. `coordinate` gets those of every step, lane by lane.
+    fn solve_designs_in<T: Real, S: Sink>(
+        &self,
+        designs: &[Vec<f64>],
+        sinks: &mut [S],
+        sensitivities: bool,
+        mut coordinate: impl FnMut(usize, f64),
+        witness: T,
+    ) -> Option<(Effort, Vec<Vec<Admissibility>>)> {
+        let (model, last) = (self.model, designs.len() - 1);
+        let whole: Vec<Vec<f64>> = designs.iter().map(|d| model.whole(d)).collect();
+        let values: Vec<T> =
+            (0..model.variables.len()).map(|v| witness.like_lanes(|k| whole[k.min(last)][v])).collect();
+        let laws: Vec<Vec<Law>> = designs.iter().map(|d| model.laws(d)).collect();
+        let parts =
+            Parts::each(model, &self.topology, &self.effects.geometry(&values, witness), &laws, witness);
+        let mut stepper = Stepper::new(model, &self.topology, parts, witness);
+        let wanted = self.wanted(sinks);
+        let mut sensing = sensitivities.then(|| {
+            let fields = self.effects.fields(&values, witness);
+            SensingDesigns::new(model, &self.topology, &fields, wanted.clone(), witness)
+        });
+        for (k, &t) in model.times.iter().enumerate() {
+            if k == 0 { stepper.start(t) } else { stepper.advance(t) }.ok()?;
             witness.within(
                 #[inline(always)]
                 || {
                     BodyState::each(&stepper.state, &wanted, |lane, body, s| {
-                        if let Some(solution) = solutions.get_mut(lane) {
-                            solution.motion.states[k * bodies + body.0] = s;
+                        if let Some(sink) = sinks.get_mut(lane) {
+                            sink.state(k, body, &s);
                         }
                     });
                 },
             );
-            for (lane, Solution { motion, .. }) in solutions.iter_mut().enumerate() {
-                motion.times.push(t);
-                motion.coordinates.extend(stepper.state.q.iter().map(|q| q.lane(lane)));
+            for lane in 0..designs.len() {
+                stepper.state.q.iter().for_each(|q| coordinate(lane, q.lane(lane)));
+            }
+            if let Some(sensing) = &mut sensing {
+                sensing.step(
+                    &mut stepper,
+                    t,
+                    #[inline(always)]
+                    |lane, variable, body, d| {
+                        if let Some(sink) = sinks.get_mut(lane) {
+                            sink.sensitivity(k, variable, body, d);
+                        }
+                    },
+                );
             }
         }
-        for solution in solutions {
-            solution.motion.effort = stepper.effort;
-        }
-        true
+        let admissibility = sensing.map_or_else(Vec::new, |s| s.admissibility(model.times.len()).collect());
+        Some((stepper.effort, admissibility))
     }
 }
 
@@ -414,18 +509,12 @@ enum Solved<'w, 'a, T> {
 }
 
 impl<'a, T: Real> Walk<'a, T> {
-    fn new(
-        analysis: &'a Analysis<'_>,
-        geometry: &Geometry,
-        fields: &'a [Field],
-        wanted: Vec<bool>,
-        witness: T,
-    ) -> Self {
+    fn new(analysis: &'a Analysis<'_>, design: &'a Design, wanted: Vec<bool>, witness: T) -> Self {
         let (model, topology) = (analysis.model, &analysis.topology);
-        let designs = std::slice::from_ref(geometry);
-        let parts = Parts::new(model, topology, designs, witness);
+        let Design { geometry, laws, fields } = design;
+        let parts = Parts::same(model, topology, geometry, laws, witness);
         Self {
-            one: Stepper::new(model, topology, Parts::new(model, topology, designs, 0.0), 0.0),
+            one: Stepper::new(model, topology, Parts::same(model, topology, geometry, laws, 0.0), 0.0),
             abreast: Abreast::new(model, topology, parts, witness),
             sensing: (!fields.is_empty())
                 .then(|| Sensing::new(model, topology, fields, wanted.clone(), witness)),
@@ -469,7 +558,7 @@ impl<'a, T: Real> Walk<'a, T> {
                 let one = &mut self.one;
                 BodyState::each(&one.state, &self.wanted, |_, body, s| sink.state(k, body, &s));
                 if let Some(sensing) = &mut self.sensing {
-                    sensing.step(&one.topology, &mut one.state, k, times[k], sink);
+                    sensing.step(one, k, times[k], sink);
                 }
                 then(sink, Solved::One(one), 1);
             } else {
@@ -485,7 +574,7 @@ impl<'a, T: Real> Walk<'a, T> {
                     },
                 );
                 if let Some(sensing) = &mut self.sensing {
-                    sensing.steps(&all.topology, &mut all.state, k, &times[k..k + solved], count, sink);
+                    sensing.steps(all, k, &times[k..k + solved], count, sink);
                 }
                 then(sink, Solved::Abreast(all), count);
             }

@@ -10,8 +10,10 @@ pub use bodies::BodyJet;
 use std::collections::BTreeMap;
 
 use crate::joint::Quantity;
+use crate::law::Law;
 use crate::model::{
     BodyId, DriverId, Field, Geometry, JointId, Measure, MeasureId, MeasureKind, Model, PointId, VariableId,
+    in_order,
 };
 use crate::motion::Motion;
 use crate::sensitivity::{BodySensitivity, Sensitivities};
@@ -96,15 +98,24 @@ pub fn outputs(model: &Model) -> Vec<Output> {
     measures.chain(points).collect()
 }
 
-/// Evaluates all outputs over a motion, and their derivatives by the variables with these fields.
+/// The design whose motion is measured.
+pub(crate) struct At<'a> {
+    pub model: &'a Model,
+    pub geometry: &'a Geometry,
+    /// The drivers' laws.
+    pub laws: &'a [Law],
+    /// How the variables change it, as far as that is asked for.
+    pub fields: &'a [Field],
+}
+
+/// Evaluates all outputs over a motion, and their derivatives by the variables with fields.
 pub(crate) fn evaluate(
-    model: &Model,
+    design: &At<'_>,
     topology: &Topology,
-    geometry: &Geometry,
-    fields: &[Field],
     motion: &Motion,
     sensitivities: &Sensitivities,
 ) -> Measured {
+    let &At { model, geometry, laws, fields } = design;
     let outputs = outputs(model);
     let mut measured = Measured { variables: fields.len(), ..Measured::default() };
     let none = Field::default();
@@ -114,7 +125,7 @@ pub(crate) fn evaluate(
         let first = measured.values.len();
         let at = |field, d| Moment { model, geometry, field, states: motion.at(k), d };
         at(&none, &still).all(|jet| measured.values.push(jet.c[0]));
-        unwrap_angles(model, topology, motion, k, &turns, &mut measured.values, first);
+        unwrap_angles(laws, topology, motion, k, &turns, &mut measured.values, first);
         for (b, field) in fields.iter().enumerate() {
             match sensitivities.at(k, b) {
                 Some(d) => at(field, d).all(|jet| measured.d.push(jet.c[1])),
@@ -165,7 +176,7 @@ fn turns(model: &Model, topology: &Topology, outputs: &[Output]) -> Vec<Option<T
 
 /// Counts joint angles through whole turns.
 fn unwrap_angles(
-    model: &Model,
+    laws: &[Law],
     topology: &Topology,
     motion: &Motion,
     k: usize,
@@ -177,7 +188,7 @@ fn unwrap_angles(
     for (m, turns_of) in turns.iter().enumerate() {
         let near = match turns_of {
             None => continue,
-            Some(Turns::Driver(d)) => model.drivers[d.0].law.at(motion.times[k]).value(),
+            Some(Turns::Driver(d)) => laws[d.0].at(motion.times[k]).value(),
             Some(Turns::Coordinate(q)) => motion.coordinates[k * topology.coordinates.len() + q],
             Some(Turns::Rates) if k > 0 => {
                 let before = values[first - turns.len() + m];
@@ -189,11 +200,6 @@ fn unwrap_angles(
         let value = &mut values[first + m][0];
         *value += TURN * ((near - *value) / TURN).round();
     }
-}
-
-/// The vector that a field gives an id; null where it gives none.
-fn in_order<I: Ord + Copy>(list: &[(I, Vec3)], id: I) -> Vec3 {
-    list.binary_search_by_key(&id, |(k, _)| *k).map_or(Vec3::ZERO, |k| list[k].1)
 }
 
 /// Everything that a measure can ask for at one time and for one design variable.

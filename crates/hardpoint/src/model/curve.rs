@@ -150,12 +150,19 @@ impl Curve {
         self.nearest(p, self.length * k as f64 / n as f64)
     }
 
-    /// Distance of p from the curve, positive on its left, and the unit normal to that side at the nearest point.
-    pub(super) fn distance(&self, p: Vec3) -> (f64, Vec3) {
-        let u = self.nearest([p.x, p.y], self.start);
-        let [c, d, ..] = self.at(u);
-        let n = Vec3::new(-d[1], d[0], 0.0) * (1.0 / d[0].hypot(d[1]));
-        (n.dot(p - Vec3::new(c[0], c[1], 0.0)), n)
+    /// Distance of p from the curve, positive on its left.
+    ///
+    /// With its first and second derivatives where p has some: next to the nearest point, n away from it, the distance is
+    /// `n - k t^2 / (2 (1 - k n))`, t along the curve and k its curvature.
+    pub(super) fn distance<T: Real>(&self, p: Vec3<T>) -> T {
+        let start = p.x.like(self.start);
+        let contact = Contact::nearest(self, p, start);
+        let (frame, e) = (contact.frame(), p - contact.c[0]);
+        let (t, n) = (frame.rot.cols[0].dot(e), frame.rot.cols[1].dot(e));
+        let [_, d, dd, _] = contact.c;
+        let k = (d.x * dd.y - d.y * dd.x) / (d.dot(d) * d.norm());
+        let flat = k / (k.like(1.0) - k * n);
+        n - k.like(0.5) * flat * t * t
     }
 }
 
@@ -166,6 +173,7 @@ fn dot(a: [f64; 2], b: [f64; 2]) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::space::Dual;
 
     #[test]
     fn a_curve_through_points_of_a_circle_is_that_circle() {
@@ -178,9 +186,17 @@ mod tests {
             let p = Vec3::new(3.0 * angle.cos(), 3.0 * angle.sin(), 7.0);
             let start = curve.search([p.x, p.y]);
             let at = Curve { start, ..curve.clone() };
-            let (distance, normal) = at.distance(p);
-            assert!((distance + 1.0).abs() < 1e-6, "{distance}");
-            assert!((normal.dot(p) + 3.0).abs() < 1e-5);
+            // The unit circle's distance is 2 - |p| on its left, with the derivatives of that.
+            let moving = |direction: Vec3| {
+                let by = Dual { v: Dual::variable(0.0), d: Dual::constant(1.0) };
+                at.distance(p.spread(by) + direction.spread(by) * by)
+            };
+            let (out, along) = (p * (1.0 / 3.0), Vec3::new(-p.y, p.x, 0.0) * (1.0 / 3.0));
+            let (out, along) = (Vec3::new(out.x, out.y, 0.0), along);
+            let (outward, sideways) = (moving(out), moving(along));
+            assert!((outward.v.v + 1.0).abs() < 1e-6, "{outward:?}");
+            assert!((outward.d.v + 1.0).abs() < 1e-5 && outward.d.d.abs() < 1e-4, "{outward:?}");
+            assert!(sideways.d.v.abs() < 1e-5 && (sideways.d.d + 1.0 / 3.0).abs() < 1e-3, "{sideways:?}");
         }
     }
 

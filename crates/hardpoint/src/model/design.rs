@@ -1,229 +1,496 @@
-//! What a design variable does to the markers: exactly for a finite change, and to first order.
+//! What design variables do: the geometry of any design, and its derivative by each variable.
+//!
+//! The geometry is written once, over any [`Real`]; its derivatives are the same lines run on [`Dual`]s, at whatever design.
 
 use super::*;
 use crate::constraint::Row;
 use crate::joint::Need;
 use crate::law::Law;
-use crate::space::{Twist, euler_313_from_rotation, euler_rates, rotation_from_euler_313};
+use crate::space::{Dual, Real, Twist, euler_313_from_rotation, rotation_from_euler_313};
 
-/// The body-fixed data of one design: everything that the analysis needs and that a design may change.
+/// The body-fixed data of one design (or of one per lane): all that the analysis needs of it besides the drivers' laws.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Geometry {
+pub struct Geometry<T = f64> {
     /// Per joint, marker i in body i and marker j in body j.
-    pub markers: Vec<[Pose; 2]>,
+    pub markers: Vec<[Pose<T>; 2]>,
     /// Per joint, what its constraints may keep of the design configuration.
-    pub kept: Vec<Kept>,
+    pub kept: Vec<Kept<T>>,
     /// Per point of the model, its position in its body's frame, m.
-    pub points: Vec<Vec3>,
+    pub points: Vec<Vec3<T>>,
     /// Per measure with a spin axis, that unit vector in its body's frame; null for the others.
-    pub spin_axes: Vec<Vec3>,
-    /// Per driver, its law.
-    pub laws: Vec<Law>,
+    pub spin_axes: Vec<Vec3<T>>,
 }
 
 /// What a joint can keep of its design configuration, or the rate at which a design variable changes it.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Kept {
+pub struct Kept<T = f64> {
     /// Distance between its markers, m: the length of a rod.
-    pub distance: f64,
+    pub distance: T,
     /// Displacement of marker j along z_i, m.
-    pub offset: f64,
+    pub offset: T,
     /// Cosine of the angle between z_i and z_j.
-    pub cosine: f64,
+    pub cosine: T,
     /// Distance of marker j from the curve of marker i, positive on its left, m.
-    pub contact: f64,
+    pub contact: T,
 }
 
-impl Kept {
+impl<T: Real> Kept<T> {
     /// What this constraint keeps; 0 for those that keep nothing.
-    pub fn by(&self, row: Row) -> f64 {
+    pub fn by(&self, row: Row) -> T {
         match row {
             Row::Distance => self.distance,
             Row::Offset => self.offset,
             Row::Cosine => self.cosine,
             Row::Contact => self.contact,
-            _ => 0.0,
+            _ => self.distance.zero(),
         }
+    }
+
+    fn map<U>(self, f: impl Fn(T) -> U) -> Kept<U> {
+        Kept {
+            distance: f(self.distance),
+            offset: f(self.offset),
+            cosine: f(self.cosine),
+            contact: f(self.contact),
+        }
+    }
+
+    fn gather(witness: T, lane: impl Fn(usize) -> Kept) -> Self {
+        Self {
+            distance: witness.like_lanes(|k| lane(k).distance),
+            offset: witness.like_lanes(|k| lane(k).offset),
+            cosine: witness.like_lanes(|k| lane(k).cosine),
+            contact: witness.like_lanes(|k| lane(k).contact),
+        }
+    }
+
+    /// The largest of them.
+    pub(crate) fn size(&self) -> T {
+        let [a, b] =
+            [self.distance.abs().larger(self.offset.abs()), self.cosine.abs().larger(self.contact.abs())];
+        a.larger(b)
     }
 }
 
-/// The first-order change of a [`Geometry`] per unit of one design variable: the paper's design
+/// The first-order change of a design per unit of one variable: the paper's design
 /// velocity, with V and R(theta) U of a marker combined into a body-fixed twist (`docs/theory.md` (8)).
 ///
 /// Every list is in the order of its ids.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Field {
+#[derive(Clone, Debug, PartialEq)]
+pub struct Field<T = f64> {
     /// The markers that move or turn.
-    pub markers: Vec<MarkerField>,
+    pub markers: Vec<MarkerField<T>>,
     /// The joints whose kept values change, and their rates.
-    pub kept: Vec<(JointId, Kept)>,
+    pub kept: Vec<(JointId, Kept<T>)>,
     /// The points that move, and their velocity in the body's frame.
-    pub points: Vec<(PointId, Vec3)>,
+    pub points: Vec<(PointId, Vec3<T>)>,
     /// The spin axes that turn, and their rate in the body's frame.
-    pub spin_axes: Vec<(MeasureId, Vec3)>,
+    pub spin_axes: Vec<(MeasureId, Vec3<T>)>,
     /// The drivers whose laws change: the parameter, and its rate.
-    pub laws: Vec<(DriverId, usize, f64)>,
+    pub laws: Vec<(DriverId, usize, T)>,
 }
 
 /// The design velocity of one marker.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct MarkerField {
+pub struct MarkerField<T = f64> {
     /// Which joint.
     pub joint: JointId,
     /// 0 for the marker on body i, 1 for that on body j.
     pub end: usize,
     /// Body-fixed twist `[R U; V - (R U) x s]` in the body's frame.
-    pub twist: Twist,
+    pub twist: Twist<T>,
 }
 
-impl Field {
+/// Nothing changes.
+impl<T> Default for Field<T> {
+    fn default() -> Self {
+        Self {
+            markers: Vec::new(),
+            kept: Vec::new(),
+            points: Vec::new(),
+            spin_axes: Vec::new(),
+            laws: Vec::new(),
+        }
+    }
+}
+
+impl<T: Copy> Field<T> {
     /// The twist of a joint's marker, if it moves.
-    pub fn twist_of(&self, joint: JointId, end: usize) -> Option<Twist> {
+    pub fn twist_of(&self, joint: JointId, end: usize) -> Option<Twist<T>> {
         let found = self.markers.binary_search_by_key(&(joint, end), |m| (m.joint, m.end));
         found.ok().map(|k| self.markers[k].twist)
     }
 
-    /// Rates of what a joint keeps.
-    pub fn kept_rate(&self, joint: JointId) -> Kept {
+    /// Rates of what a joint keeps, if any of it changes.
+    pub fn kept_rate(&self, joint: JointId) -> Option<Kept<T>> {
         let found = self.kept.binary_search_by_key(&joint, |k| k.0);
-        found.map_or(Kept::default(), |k| self.kept[k].1)
+        found.ok().map(|k| self.kept[k].1)
     }
 }
+
+impl Field {
+    /// The fields of several variables, one per lane; lanes without one are at rest.
+    pub(crate) fn gather<T: Real>(fields: &[Field], witness: T) -> Field<T> {
+        let of = |k: usize| fields.get(k);
+        Field {
+            markers: union(fields, |f| f.markers.iter().map(|m| (m.joint, m.end)))
+                .map(|(joint, end)| {
+                    let twist = |k| of(k).and_then(|f| f.twist_of(joint, end)).unwrap_or(Twist::ZERO);
+                    MarkerField { joint, end, twist: Twist::gather(witness, twist) }
+                })
+                .collect(),
+            kept: union(fields, |f| f.kept.iter().map(|k| k.0))
+                .map(|joint| {
+                    let kept = |k| of(k).and_then(|f| f.kept_rate(joint)).unwrap_or_default();
+                    (joint, Kept::gather(witness, kept))
+                })
+                .collect(),
+            points: gather_vectors(fields, |f| &f.points, witness),
+            spin_axes: gather_vectors(fields, |f| &f.spin_axes, witness),
+            laws: union(fields, |f| f.laws.iter().map(|(d, p, _)| (*d, *p)))
+                .map(|(driver, parameter)| {
+                    let same = |l: &&(DriverId, usize, f64)| (l.0, l.1) == (driver, parameter);
+                    let rate = |k| of(k).map_or(0.0, |f| f.laws.iter().filter(same).map(|l| l.2).sum());
+                    (driver, parameter, witness.like_lanes(rate))
+                })
+                .collect(),
+        }
+    }
+}
+
+/// The keys of all fields, each once, in order.
+fn union<'f, K: Ord + 'f, I: Iterator<Item = K> + 'f>(
+    fields: &'f [Field],
+    keys: impl Fn(&'f Field) -> I,
+) -> impl Iterator<Item = K> {
+    fields.iter().flat_map(keys).collect::<std::collections::BTreeSet<K>>().into_iter()
+}
+
+fn gather_vectors<T: Real, I: Ord + Copy>(
+    fields: &[Field],
+    list: impl Fn(&Field) -> &Vec<(I, Vec3)>,
+    witness: T,
+) -> Vec<(I, Vec3<T>)> {
+    union(fields, |f| list(f).iter().map(|(id, _)| *id))
+        .map(|id| {
+            let lane = |k: usize| fields.get(k).map_or(Vec3::ZERO, |f| in_order(list(f), id));
+            (id, Vec3::gather(witness, lane))
+        })
+        .collect()
+}
+
+/// The vector that a list gives an id; null where it gives none.
+pub(crate) fn in_order<I: Ord + Copy>(list: &[(I, Vec3)], id: I) -> Vec3 {
+    list.binary_search_by_key(&id, |(k, _)| *k).map_or(Vec3::ZERO, |k| list[k].1)
+}
+
+/// What the variables of a model change, by what they change: found once for many designs.
+#[derive(Clone, Debug)]
+pub(crate) struct Effects<'m> {
+    model: &'m Model,
+    /// Per hardpoint: the variables that move it, and its velocity by each.
+    moves: Vec<Vec<(usize, Vec3)>>,
+    /// Per joint: the variables that change the joint itself.
+    changes: Vec<Vec<(usize, &'m Change)>>,
+    /// Per hardpoint: the joints, points and measures that follow it.
+    joints: Vec<Vec<usize>>,
+    points: Vec<Vec<usize>>,
+    measures: Vec<Vec<usize>>,
+}
+
+impl<'m> Effects<'m> {
+    pub fn of(model: &'m Model) -> Self {
+        let hardpoints = model.hardpoints.len();
+        let mut effects = Self {
+            model,
+            moves: vec![Vec::new(); hardpoints],
+            changes: vec![Vec::new(); model.joints.len()],
+            joints: vec![Vec::new(); hardpoints],
+            points: vec![Vec::new(); hardpoints],
+            measures: vec![Vec::new(); hardpoints],
+        };
+        for (k, variable) in model.variables.iter().enumerate() {
+            for change in &variable.changes {
+                match change {
+                    Change::Move { hardpoint, velocity } => effects.moves[hardpoint.0].push((k, *velocity)),
+                    Change::Law { .. } => {}
+                    Change::Marker { joint, .. }
+                    | Change::Field { joint, .. }
+                    | Change::Length { joint, .. } => {
+                        effects.changes[joint.0].push((k, change));
+                    }
+                }
+            }
+        }
+        for (j, joint) in model.joints.iter().enumerate() {
+            joint.at.iter().for_each(|h| effects.joints[h.0].push(j));
+            for axis in [joint.axis, joint.axis2].into_iter().flatten() {
+                axis.hardpoints().for_each(|h| effects.joints[h.0].push(j));
+            }
+        }
+        for (k, point) in model.points.iter().enumerate() {
+            effects.points[point.at.0].push(k);
+        }
+        for (k, measure) in model.measures.iter().enumerate() {
+            if let Some((_, axis)) = measure.spin_axis() {
+                axis.hardpoints().for_each(|h| effects.measures[h.0].push(k));
+            }
+        }
+        effects
+    }
+
+    /// The geometry of the designs whose values these are, variable by variable.
+    pub fn geometry<T: Real>(&self, values: &[T], witness: T) -> Geometry<T> {
+        let model = self.model;
+        let design = Design::new(self, values.to_vec(), None, witness);
+        Geometry {
+            markers: (0..model.joints.len()).map(|j| [0, 1].map(|e| design.marker(j, e))).collect(),
+            kept: (0..model.joints.len()).map(|j| design.kept(j)).collect(),
+            points: (0..model.points.len()).map(|k| design.point(k)).collect(),
+            spin_axes: (0..model.measures.len()).map(|k| design.spin_axis(k)).collect(),
+        }
+    }
+
+    /// How one variable changes the designs whose values these are.
+    ///
+    /// Paper Eqs. 3.1 to 3.10 and 5.5; `docs/theory.md` (8).
+    pub fn field<T: Real>(&self, variable: VariableId, values: &[T], witness: T) -> Field<T> {
+        let duals = values.iter().enumerate();
+        let duals = duals.map(|(k, v)| if k == variable.0 { Dual::variable(*v) } else { Dual::constant(*v) });
+        let design = Design::new(self, duals.collect(), Some(variable), Dual::constant(witness));
+        let (mut joints, mut points, mut measures) = (Vec::new(), Vec::new(), Vec::new());
+        let mut field = Field::default();
+        for change in &self.model.variables[variable.0].changes {
+            match change {
+                Change::Move { hardpoint, .. } => {
+                    joints.extend(&self.joints[hardpoint.0]);
+                    points.extend(&self.points[hardpoint.0]);
+                    measures.extend(&self.measures[hardpoint.0]);
+                }
+                Change::Marker { joint, .. } | Change::Field { joint, .. } | Change::Length { joint, .. } => {
+                    joints.push(joint.0);
+                }
+                Change::Law { driver, parameter, rate } => {
+                    field.laws.push((*driver, *parameter, witness.like(*rate)));
+                }
+            }
+        }
+        for list in [&mut joints, &mut points, &mut measures] {
+            list.sort_unstable();
+            list.dedup();
+        }
+        for j in joints {
+            for end in 0..2 {
+                let (_, twist) = design.marker(j, end).split();
+                if !is_null(twist.w) || !is_null(twist.v) {
+                    field.markers.push(MarkerField { joint: JointId(j), end, twist });
+                }
+            }
+            let rates = design.kept(j).map(|x| x.d);
+            if rates.size().largest() > 0.0 {
+                field.kept.push((JointId(j), rates));
+            }
+        }
+        let rate = |v: Vec3<Dual<T>>| v.map(|x| x.d);
+        let moved = points.into_iter().map(|k| (PointId(k), rate(design.point(k))));
+        field.points = moved.filter(|(_, v)| !is_null(*v)).collect();
+        let turned = measures.into_iter().map(|k| (MeasureId(k), rate(design.spin_axis(k))));
+        field.spin_axes = turned.filter(|(_, v)| !is_null(*v)).collect();
+        field
+    }
+
+    /// How every variable changes the designs whose values these are.
+    pub fn fields<T: Real>(&self, values: &[T], witness: T) -> Vec<Field<T>> {
+        (0..values.len()).map(|k| self.field(VariableId(k), values, witness)).collect()
+    }
+}
+
+fn is_null<T: Real>(v: Vec3<T>) -> bool {
+    v.x.abs().larger(v.y.abs()).larger(v.z.abs()).largest() == 0.0
+}
+
+/// Where everything is with the variables at these values.
+struct Design<'e, T> {
+    effects: &'e Effects<'e>,
+    values: Vec<T>,
+    /// The same, 0 for variables that keep the lengths of rods: what the lengths are measured with.
+    for_lengths: Vec<T>,
+    /// Per variable, whether it makes any difference.
+    counts: Vec<bool>,
+    witness: T,
+}
+
+impl<'e, T: Real> Design<'e, T> {
+    /// Variables at 0 are left out, but for the one that is differentiated by.
+    fn new(effects: &'e Effects<'_>, values: Vec<T>, by: Option<VariableId>, witness: T) -> Self {
+        let variables = &effects.model.variables;
+        let follows =
+            |(value, v): (&T, &DesignVariable)| if v.fixed_length { witness.zero() } else { *value };
+        let for_lengths = values.iter().zip(variables).map(follows).collect();
+        let counts = values.iter().enumerate();
+        let counts = counts.map(|(k, v)| by == Some(VariableId(k)) || v.abs().largest() != 0.0).collect();
+        Self { effects, values, for_lengths, counts, witness }
+    }
+
+    /// Global position of a hardpoint.
+    fn place(&self, h: HardpointId, values: &[T]) -> Vec3<T> {
+        let mut place = self.effects.model.position(h).spread(self.witness);
+        for &(k, velocity) in self.effects.moves[h.0].iter().filter(|(k, _)| self.counts[*k]) {
+            place = velocity.spread(self.witness).times_plus(values[k], place);
+        }
+        place
+    }
+
+    /// The unit vector of a direction.
+    fn direction(&self, d: Direction, values: &[T]) -> Vec3<T> {
+        match d {
+            Direction::Along(u) => u.spread(self.witness),
+            Direction::Through(a, b) => {
+                let d = self.place(b, values) - self.place(a, values);
+                d * (self.witness.like(1.0) / d.norm())
+            }
+        }
+    }
+
+    /// A body's frame, which the design leaves where it is.
+    fn frame(&self, body: BodyId) -> Pose<T> {
+        self.effects.model.bodies[body.0].frame.spread(self.witness)
+    }
+
+    /// Marker e of joint j in its body's frame.
+    fn marker(&self, j: usize, e: usize) -> Pose<T> {
+        let body = self.effects.model.joints[j].bodies[e];
+        self.frame(body).inverse().compose(self.marker_in_world(j, e, &self.values))
+    }
+
+    /// Marker e of joint j in the design configuration.
+    fn marker_in_world(&self, j: usize, e: usize, values: &[T]) -> Pose<T> {
+        let (joint, witness) = (&self.effects.model.joints[j], self.witness);
+        let mut rot = self.followed_frame(joint, e, values);
+        let mut r = self.place(joint.at[e], values);
+        for &(k, change) in self.effects.changes[j].iter().filter(|(k, _)| self.counts[*k]) {
+            let b = values[k];
+            match change {
+                Change::Marker { end, position, rotation, .. } if end.covers(e) => {
+                    r = position.spread(witness).times_plus(b, r);
+                    if let Some(axis) = rotation.unit() {
+                        rot = Mat3::about(axis, b * witness.like(rotation.norm())) * rot;
+                    }
+                }
+                Change::Field { end, v, u, .. } if *end == e => {
+                    let body = self.frame(joint.bodies[e]).rot;
+                    r += body * v.spread(witness) * b;
+                    let (theta, c) = self.effects.model.euler_of(joint, e);
+                    let turned = [0, 1, 2].map(|n| witness.like(u[n]).times_plus(b, witness.like(theta[n])));
+                    let turned = rotation_from_euler_313(turned) * c.transpose().spread(witness);
+                    rot = body * turned * body.transpose() * rot;
+                }
+                _ => {}
+            }
+        }
+        Pose { rot, r }
+    }
+
+    /// The frame of marker e of a joint whose axes follow the hardpoints they pass through.
+    ///
+    /// z turns by the smallest rotation to its new direction; x then turns about z with `axis2`.
+    fn followed_frame(&self, joint: &Joint, e: usize, values: &[T]) -> Mat3<T> {
+        let mut rot = joint.frames[e].spread(self.witness);
+        let [axis, axis2] = joint.axes_of_marker(e);
+        if let Some(axis @ Direction::Through(..)) = axis {
+            rot = Mat3::between(rot.cols[2], self.direction(axis, values)) * rot;
+        }
+        if let Some(axis2 @ Direction::Through(..)) = axis2 {
+            let (d, z) = (self.direction(axis2, values), rot.cols[2]);
+            let across = d - z * z.dot(d);
+            let length = across.norm();
+            if length.smallest() > ALONG {
+                let x = across * (self.witness.like(1.0) / length);
+                rot = Mat3 { cols: [x, z.cross(x), z] };
+            }
+        }
+        rot
+    }
+
+    /// What joint j keeps.
+    fn kept(&self, j: usize) -> Kept<T> {
+        let (joint, zero) = (&self.effects.model.joints[j], self.witness.zero());
+        let [m_i, m_j] = [0, 1].map(|e| self.marker_in_world(j, e, &self.for_lengths));
+        let (d, z_i, z_j) = (m_j.r - m_i.r, m_i.rot.cols[2], m_j.rot.cols[2]);
+        let given = joint.length.map(|length| {
+            let mut given = self.witness.like(length);
+            for &(k, change) in self.effects.changes[j].iter().filter(|(k, _)| self.counts[*k]) {
+                if let Change::Length { rate, .. } = change {
+                    given = self.values[k].times_plus(self.witness.like(*rate), given);
+                }
+            }
+            given
+        });
+        // Markers at one place keep no distance, and it would have no derivative.
+        let distance = given.unwrap_or_else(|| if is_null(d) { zero } else { d.norm() });
+        let contact = joint.curve.as_ref().map_or(zero, |curve| {
+            let drawn = curve.distance(m_i.rot.transpose_mul(d));
+            let sign = || self.witness.like_lanes(|k| f64::signum(drawn.lane(k)));
+            given.map_or(drawn, |length| length.abs() * sign())
+        });
+        Kept { distance, offset: z_i.dot(d), cosine: z_i.dot(z_j), contact }
+    }
+
+    /// A point in its body's frame.
+    fn point(&self, k: usize) -> Vec3<T> {
+        let point = &self.effects.model.points[k];
+        self.frame(point.body).inverse().point(self.place(point.at, &self.values))
+    }
+
+    /// The spin axis of a measure in its body's frame; null where it has none.
+    fn spin_axis(&self, k: usize) -> Vec3<T> {
+        match self.effects.model.measures[k].spin_axis() {
+            Some((body, axis)) => self.frame(body).rot.transpose_mul(self.direction(axis, &self.values)),
+            None => Vec3::zero(self.witness),
+        }
+    }
+}
+
+/// A second axis nearer to the first than this, rad, says nothing about x.
+const ALONG: f64 = 1e-12;
 
 impl Model {
     /// The geometry of the design with variable k at `design[k]` (missing entries are 0).
     ///
     /// Body frames stay where they are in the design configuration; markers move on their bodies.
     pub fn geometry(&self, design: &[f64]) -> Geometry {
-        let value = |k: usize| design.get(k).copied().unwrap_or(0.0);
-        let places = self.places(&value);
-        let all = || self.variables.iter().enumerate();
-        let changes = self.marker_changes(all().map(|(k, v)| (value(k), v)));
-        // Lengths are measured between the hardpoints as moved by all variables that do not keep them.
-        let follows = |k: usize| if self.variables[k].fixed_length { 0.0 } else { value(k) };
-        let for_lengths = self.places(&follows);
-        let changes_of_length = self.marker_changes(all().map(|(k, v)| (follows(k), v)));
-        let markers = (0..self.joints.len())
-            .map(|j| {
-                std::array::from_fn(|e| {
-                    let frame = self.bodies[self.joints[j].bodies[e].0].frame;
-                    frame.inverse().compose(self.marker_in_world(j, e, &places, &changes[j]))
-                })
-            })
-            .collect();
-        let kept = (0..self.joints.len())
-            .map(|j| {
-                let [m_i, m_j] =
-                    [0, 1].map(|e| self.marker_in_world(j, e, &for_lengths, &changes_of_length[j]));
-                let (d, z_i, z_j) = (m_j.r - m_i.r, m_i.rot.cols[2], m_j.rot.cols[2]);
-                let given = self.joints[j].length.map(|length| length + self.length_change(j, &value));
-                let contact = self.joints[j].curve.as_ref().map_or(0.0, |curve| {
-                    let (drawn, _) = curve.distance(m_i.rot.transpose_mul(d));
-                    given.map_or(drawn, |length| length.copysign(drawn))
-                });
-                Kept {
-                    distance: given.unwrap_or(d.norm()),
-                    offset: z_i.dot(d),
-                    cosine: z_i.dot(z_j),
-                    contact,
-                }
-            })
-            .collect();
-        let points =
-            self.points.iter().map(|p| self.bodies[p.body.0].frame.inverse().point(places[p.at.0])).collect();
-        let spin_axes = self
-            .measures
-            .iter()
-            .map(|m| match &m.kind {
-                MeasureKind::Toe { body, spin_axis } | MeasureKind::Camber { body, spin_axis } => {
-                    self.bodies[body.0].frame.rot.transpose_mul(direction(*spin_axis, &places))
-                }
-                _ => Vec3::ZERO,
-            })
-            .collect();
-        let laws = self.drivers.iter().enumerate().map(|(k, d)| self.changed_law(k, d, &value)).collect();
-        Geometry { markers, kept, points, spin_axes, laws }
+        Effects::of(self).geometry(&self.whole(design), 0.0)
     }
 
-    /// The law of a driver in a changed design.
-    fn changed_law(&self, k: usize, driver: &Driver, value: &dyn Fn(usize) -> f64) -> Law {
-        let mut law = driver.law.clone();
-        for (n, variable) in self.variables.iter().enumerate().filter(|(n, _)| value(*n) != 0.0) {
+    /// The first-order change of the nominal design per unit of one variable.
+    pub fn field(&self, variable: VariableId) -> Field {
+        Effects::of(self).field(variable, &self.whole(&[]), 0.0)
+    }
+
+    /// The first-order changes of a design per unit of each variable.
+    pub fn fields(&self, design: &[f64]) -> Vec<Field> {
+        Effects::of(self).fields(&self.whole(design), 0.0)
+    }
+
+    /// A value for every variable: those given, then 0.
+    pub(crate) fn whole(&self, design: &[f64]) -> Vec<f64> {
+        let given = design.iter().copied().chain(std::iter::repeat(0.0));
+        given.take(self.variables.len()).collect()
+    }
+
+    /// The drivers' laws in the design with variable k at `design[k]` (missing entries are 0).
+    pub fn laws(&self, design: &[f64]) -> Vec<Law> {
+        let mut laws: Vec<Law> = self.drivers.iter().map(|d| d.law.clone()).collect();
+        for (variable, value) in self.variables.iter().zip(design).filter(|(_, value)| **value != 0.0) {
             for change in &variable.changes {
-                if let Change::Law { driver, parameter, rate } = change
-                    && driver.0 == k
-                {
+                if let Change::Law { driver, parameter, rate } = change {
+                    let law = &mut laws[driver.0];
                     let now = law.parameters()[*parameter].value;
-                    law = law.with_parameter(*parameter, now + rate * value(n));
+                    *law = law.with_parameter(*parameter, now + rate * value);
                 }
             }
         }
-        law
-    }
-
-    /// By how much a design has changed the given length of a rod.
-    fn length_change(&self, j: usize, value: &dyn Fn(usize) -> f64) -> f64 {
-        let rates =
-            self.variables.iter().enumerate().flat_map(|(k, v)| v.changes.iter().map(move |c| (k, c)));
-        rates
-            .map(|(k, change)| match change {
-                Change::Length { joint, rate } if joint.0 == j => rate * value(k),
-                _ => 0.0,
-            })
-            .sum()
-    }
-
-    /// Global positions of all hardpoints.
-    fn places(&self, value: &dyn Fn(usize) -> f64) -> Vec<Vec3> {
-        let mut places: Vec<Vec3> = self.hardpoints.iter().map(|h| h.position).collect();
-        for (k, v) in self.variables.iter().enumerate() {
-            for change in &v.changes {
-                if let Change::Move { hardpoint, velocity } = change {
-                    places[hardpoint.0] += *velocity * value(k);
-                }
-            }
-        }
-        places
-    }
-
-    /// Per joint: what these variables do to its markers themselves, with the variable's value, in order.
-    fn marker_changes<'v>(
-        &self,
-        variables: impl Iterator<Item = (f64, &'v DesignVariable)>,
-    ) -> Vec<Vec<(f64, &'v Change)>> {
-        let mut changes = vec![Vec::new(); self.joints.len()];
-        for (b, v) in variables.filter(|(b, _)| *b != 0.0) {
-            for change in &v.changes {
-                if let Some(joint) = change.joint() {
-                    changes[joint.0].push((b, change));
-                }
-            }
-        }
-        changes
-    }
-
-    /// Marker e of joint j in the design configuration of a changed design.
-    fn marker_in_world(&self, j: usize, e: usize, places: &[Vec3], changes: &[(f64, &Change)]) -> Pose {
-        let joint = &self.joints[j];
-        let mut rot = self.followed_frame(joint, e, places);
-        let mut r = places[joint.at[e].0];
-        for &(b, change) in changes {
-            match change {
-                Change::Marker { end, position, rotation, .. } if end.covers(e) => {
-                    r += *position * b;
-                    rot = Mat3::from_rotation_vector(*rotation * b) * rot;
-                }
-                Change::Field { end, v, u, .. } if *end == e => {
-                    let body = self.bodies[joint.bodies[e].0].frame.rot;
-                    r += body * *v * b;
-                    let (theta, c) = self.euler_of(joint, e);
-                    let turned = rotation_from_euler_313([0, 1, 2].map(|n| theta[n] + b * u[n]));
-                    rot = body * turned * c.transpose() * body.transpose() * rot;
-                }
-                _ => {}
-            }
-        }
-        Pose { rot, r }
+        laws
     }
 
     /// 3-1-3 Euler angles of a marker in its body's frame, and their rotation C(theta).
@@ -233,153 +500,31 @@ impl Model {
         (theta, rotation_from_euler_313(theta))
     }
 
-    /// The frame of marker e of a joint whose axes follow the hardpoints they pass through.
-    ///
-    /// z turns by the smallest rotation to its new direction; x then turns about z with `axis2`.
-    fn followed_frame(&self, joint: &Joint, e: usize, places: &[Vec3]) -> Mat3 {
-        let mut rot = joint.frames[e];
-        let [axis, axis2] = joint.axes_of_marker(e);
-        if let Some(axis @ Direction::Through(..)) = axis {
-            rot = Mat3::between(rot.cols[2], direction(axis, places)) * rot;
-        }
-        if let Some(axis2 @ Direction::Through(..)) = axis2 {
-            let (d, z) = (direction(axis2, places), rot.cols[2]);
-            if let Some(x) = (d - z * z.dot(d)).unit() {
-                rot = Mat3 { cols: [x, z.cross(x), z] };
-            }
-        }
-        rot
-    }
-
-    /// The first-order change of the geometry per unit of one variable.
-    ///
-    /// Paper Eqs. 3.1 to 3.10 and 5.5; `docs/theory.md` (8).
-    pub fn field(&self, variable: VariableId) -> Field {
-        let v = &self.variables[variable.0];
-        let mut speeds = vec![Vec3::ZERO; self.hardpoints.len()];
-        for change in &v.changes {
-            if let Change::Move { hardpoint, velocity } = change {
-                speeds[hardpoint.0] += *velocity;
-            }
-        }
-        let changes = self.marker_changes(std::iter::once((1.0, v)));
-        let mut field = Field::default();
-        for (j, joint) in self.joints.iter().enumerate() {
-            let rates = [0, 1].map(|e| self.marker_rates(&changes[j], j, e, &speeds));
-            for (end, (p, w)) in rates.into_iter().enumerate() {
-                if p != Vec3::ZERO || w != Vec3::ZERO {
-                    let frame = self.bodies[joint.bodies[end].0].frame;
-                    let s = frame.inverse().point(self.position(joint.at[end]));
-                    let (p, w) = (frame.rot.transpose_mul(p), frame.rot.transpose_mul(w));
-                    field.markers.push(MarkerField {
-                        joint: JointId(j),
-                        end,
-                        twist: Twist { w, v: p - w.cross(s) },
-                    });
-                }
-            }
-            let kept = self.kept_rate(v, j, rates);
-            if kept != Kept::default() {
-                field.kept.push((JointId(j), kept));
-            }
-        }
-        for change in &v.changes {
-            if let Change::Law { driver, parameter, rate } = change {
-                field.laws.push((*driver, *parameter, *rate));
-            }
-        }
-        for (k, p) in self.points.iter().enumerate() {
-            if speeds[p.at.0] != Vec3::ZERO {
-                let rot = self.bodies[p.body.0].frame.rot;
-                field.points.push((PointId(k), rot.transpose_mul(speeds[p.at.0])));
-            }
-        }
-        for (k, m) in self.measures.iter().enumerate() {
-            if let MeasureKind::Toe { body, spin_axis } | MeasureKind::Camber { body, spin_axis } = &m.kind {
-                let rate = self.direction_rate(*spin_axis, &speeds);
-                if rate != Vec3::ZERO {
-                    field.spin_axes.push((MeasureId(k), self.bodies[body.0].frame.rot.transpose_mul(rate)));
-                }
-            }
-        }
-        field
-    }
-
-    /// Rates of what a joint keeps, its markers moving and turning at these rates.
-    fn kept_rate(&self, v: &DesignVariable, j: usize, [(p_i, w_i), (p_j, w_j)]: [(Vec3, Vec3); 2]) -> Kept {
-        let (m_i, m_j) = (self.marker(JointId(j), 0), self.marker(JointId(j), 1));
-        let (d, z_i, z_j) = (m_j.r - m_i.r, m_i.rot.cols[2], m_j.rot.cols[2]);
-        let mut kept = Kept::default();
-        if !v.fixed_length {
-            kept.offset = w_i.cross(z_i).dot(d) + z_i.dot(p_j - p_i);
-            kept.cosine = w_i.cross(z_i).dot(z_j) + z_i.dot(w_j.cross(z_j));
-            if let (None, Some(u)) = (self.joints[j].length, d.unit()) {
-                kept.distance = u.dot(p_j - p_i);
-            }
-            if let (None, Some(curve)) = (self.joints[j].length, &self.joints[j].curve) {
-                let (_, normal) = curve.distance(m_i.rot.transpose_mul(d));
-                kept.contact = (m_i.rot * normal).dot(p_j - p_i - w_i.cross(d));
-            }
-        }
-        for change in &v.changes {
-            if let Change::Length { joint, rate } = change
-                && joint.0 == j
-            {
-                kept.distance += rate;
-                if let Some(curve) = &self.joints[j].curve {
-                    kept.contact += rate.copysign(rate * curve.distance(m_i.rot.transpose_mul(d)).0);
-                }
-            }
-        }
-        kept
-    }
-
-    /// Velocity of a marker's origin and rotation rate of its axes per unit of a variable, global.
-    fn marker_rates(&self, changes: &[(f64, &Change)], j: usize, e: usize, speeds: &[Vec3]) -> (Vec3, Vec3) {
-        let joint = &self.joints[j];
-        let mut p = speeds[joint.at[e].0];
-        let mut w = Vec3::ZERO;
-        let [axis, axis2] = joint.axes_of_marker(e);
-        if let Some(axis) = axis {
-            let z = joint.frames[e].cols[2];
-            w += z.cross(self.direction_rate(axis, speeds));
-        }
-        if let Some(axis2) = axis2 {
-            let [_, y, z] = joint.frames[e].cols;
-            w += z * y.dot(self.direction_rate(axis2, speeds));
-        }
-        for (_, change) in changes {
-            match change {
-                Change::Marker { end, position, rotation, .. } if end.covers(e) => {
-                    p += *position;
-                    w += *rotation;
-                }
-                Change::Field { end, v, u, .. } if *end == e => {
-                    let body = self.bodies[joint.bodies[e].0].frame.rot;
-                    p += body * *v;
-                    w += body * euler_rates(self.euler_of(joint, e).0, *u);
-                }
-                _ => {}
-            }
-        }
-        (p, w)
-    }
-
-    /// Rate of a unit direction while its hardpoints move.
-    fn direction_rate(&self, d: Direction, speeds: &[Vec3]) -> Vec3 {
-        match d {
-            Direction::Along(_) => Vec3::ZERO,
-            Direction::Through(a, b) => {
-                let d = self.position(b) - self.position(a);
-                let u = d * (1.0 / d.norm());
-                let rate = (speeds[b.0] - speeds[a.0]) * (1.0 / d.norm());
-                rate - u * u.dot(rate)
-            }
-        }
-    }
-
     pub(crate) fn position(&self, h: HardpointId) -> Vec3 {
         self.hardpoints[h.0].position
+    }
+}
+
+impl Direction {
+    /// The hardpoints that it follows.
+    fn hardpoints(self) -> impl Iterator<Item = HardpointId> {
+        let through = match self {
+            Self::Along(_) => None,
+            Self::Through(a, b) => Some([a, b]),
+        };
+        through.into_iter().flatten()
+    }
+}
+
+impl Measure {
+    /// The spin axis that it goes by, and the body that carries it.
+    fn spin_axis(&self) -> Option<(BodyId, Direction)> {
+        match self.kind {
+            MeasureKind::Toe { body, spin_axis } | MeasureKind::Camber { body, spin_axis } => {
+                Some((body, spin_axis))
+            }
+            _ => None,
+        }
     }
 }
 
@@ -390,27 +535,6 @@ impl Joint {
             (Need::OnBodyJ, 0) => [self.axis, None],
             (Need::OnBodyJ, _) => [self.axis2, None],
             _ => [self.axis, self.axis2],
-        }
-    }
-}
-
-impl Change {
-    /// The joint whose markers it changes; none for a hardpoint.
-    fn joint(&self) -> Option<JointId> {
-        match self {
-            Self::Move { .. } | Self::Length { .. } | Self::Law { .. } => None,
-            Self::Marker { joint, .. } | Self::Field { joint, .. } => Some(*joint),
-        }
-    }
-}
-
-/// The unit vector of a direction, its hardpoints being at `places`.
-fn direction(d: Direction, places: &[Vec3]) -> Vec3 {
-    match d {
-        Direction::Along(u) => u,
-        Direction::Through(a, b) => {
-            let d = places[b.0] - places[a.0];
-            d * (1.0 / d.norm())
         }
     }
 }

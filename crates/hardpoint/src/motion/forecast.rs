@@ -142,7 +142,7 @@ impl<T: Real> Forecast<T> {
         for (channel, d) in self.channels.iter().zip(&self.differences) {
             let mut x = spread(d[n - 1]);
             for i in (0..n - 1).rev() {
-                x = x * ahead[i / ORDERS] + spread(d[i]);
+                x = x.times_plus(ahead[i / ORDERS], spread(d[i]));
             }
             match *channel {
                 Channel::Coordinate(c) => state.q[c] = x,

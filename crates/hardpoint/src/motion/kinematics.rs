@@ -186,7 +186,7 @@ impl<T: Real> State<T> {
                         let (sin, cos) = q.sin_cos();
                         frame.rot = frame.rot.turned(axis, sin, cos);
                     }
-                    Freedom::Slide(axis) => frame.r += frame.rot.cols[axis] * q,
+                    Freedom::Slide(axis) => frame.r = frame.rot.cols[axis].times_plus(q, frame.r),
                     Freedom::Ball => frame.rot = frame.rot * self.balls[step.first].rotation(),
                 }
             }
@@ -649,7 +649,7 @@ impl<T: Real> State<T> {
         let mut sum = Twist::zero(self.witness);
         for step in &link.steps {
             for c in step.first..step.first + step.freedom.coordinates() {
-                sum += twists[c] * speeds[c];
+                sum = twists[c].times_plus(speeds[c], sum);
             }
         }
         sum
@@ -677,9 +677,9 @@ impl<T: Real> State<T> {
                     break;
                 }
                 for c in range {
-                    v += self.x[c] * self.qd[c];
+                    v = self.x[c].times_plus(self.qd[c], v);
                     if order > 1 {
-                        a += self.x[c] * self.qdd[c] + self.xd[c] * self.qd[c];
+                        a = self.x[c].times_plus(self.qdd[c], self.xd[c].times_plus(self.qd[c], a));
                     }
                 }
             }
@@ -810,7 +810,7 @@ pub(crate) fn carry<T: Real>(
         }
         for step in link.steps.iter().filter(|s| counts(s)) {
             for c in step.first..step.first + step.freedom.coordinates() {
-                w += x[c] * u[c];
+                w = x[c].times_plus(u[c], w);
             }
         }
         out[link.child.0] = w;

@@ -1,5 +1,6 @@
 //! A design laid out in the order in which the plan walks it.
 
+use crate::constraint::Row;
 use crate::law::Law;
 use crate::model::{BodyId, Curve, GROUND, Geometry, Model};
 use crate::space::{LANES, Pose, Real};
@@ -86,44 +87,46 @@ impl<U: Real> Layout<U> {
 }
 
 impl<T: Real> Parts<T> {
-    /// Lane k takes `designs[k]`, or the last design where there are fewer.
-    pub fn new(model: &Model, topology: &Topology, designs: &[Geometry], witness: T) -> Self {
-        let lane = |k: usize| &designs[k.min(designs.len() - 1)];
-        let (parent_marker, child_from_marker, ends) = if let [design] = designs {
-            let l = Layout::new(model, topology, |joint, end| design.markers[joint][end], 0.0);
-            (Poses::Same(l.parent_marker), Poses::Same(l.child_from_marker), l.ends.map(Poses::Same))
-        } else {
-            let gather = |joint: usize, end: usize| Pose::gather(witness, |k| lane(k).markers[joint][end]);
-            let l = Layout::new(model, topology, gather, witness);
-            (Poses::Each(l.parent_marker), Poses::Each(l.child_from_marker), l.ends.map(Poses::Each))
+    /// One design, the same in all lanes.
+    pub fn same(model: &Model, topology: &Topology, design: &Geometry, laws: &[Law], witness: T) -> Self {
+        let l = Layout::new(model, topology, |joint, end| design.markers[joint][end], 0.0);
+        Self {
+            parent_marker: Poses::Same(l.parent_marker),
+            child_from_marker: Poses::Same(l.child_from_marker),
+            ends: l.ends.map(Poses::Same),
+            kept: kept(topology, |joint, row| witness.like(design.kept[joint].by(row))),
+            curves: curves(model, topology),
+            laws: laws.iter().map(|law| vec![law.clone()]).collect(),
+        }
+    }
+
+    /// One design per lane, each with the laws of its drivers.
+    pub fn each(
+        model: &Model,
+        topology: &Topology,
+        designs: &Geometry<T>,
+        laws: &[Vec<Law>],
+        witness: T,
+    ) -> Self {
+        let l = Layout::new(model, topology, |joint, end| designs.markers[joint][end], witness);
+        let of_driver = |d: usize| {
+            let same = laws.iter().all(|of_lane| of_lane[d] == laws[0][d]);
+            let lanes = if same { &laws[..1] } else { laws };
+            lanes.iter().map(|of_lane| of_lane[d].clone()).collect()
         };
         Self {
-            parent_marker,
-            child_from_marker,
-            ends,
-            kept: topology
-                .rows
-                .iter()
-                .map(|place| {
-                    let closure = &topology.closures[place.closure];
-                    let row = closure.rows[place.index];
-                    witness.like_lanes(|k| lane(k).kept[closure.joint.0].by(row))
-                })
-                .collect(),
-            curves: topology
-                .closures
-                .iter()
-                .filter(|c| c.contact.is_some())
-                .filter_map(|c| model.joints[c.joint.0].curve.clone())
-                .collect(),
-            laws: (0..model.drivers.len())
-                .map(|d| {
-                    let same = designs.iter().all(|g| g.laws[d] == designs[0].laws[d]);
-                    let lanes = if same { 1 } else { T::LANES };
-                    (0..lanes).map(|k| lane(k).laws[d].clone()).collect()
-                })
-                .collect(),
+            parent_marker: Poses::Each(l.parent_marker),
+            child_from_marker: Poses::Each(l.child_from_marker),
+            ends: l.ends.map(Poses::Each),
+            kept: kept(topology, |joint, row| designs.kept[joint].by(row)),
+            curves: curves(model, topology),
+            laws: (0..model.drivers.len()).map(of_driver).collect(),
         }
+    }
+
+    /// The law of driver d in lane k.
+    pub fn law_of(&self, d: usize, k: usize) -> &Law {
+        &self.laws[d][k.min(self.laws[d].len() - 1)]
     }
 
     /// The same at one time per lane, where all lanes have the same law.
@@ -138,8 +141,22 @@ impl<T: Real> Parts<T> {
             let [f, fd, fdd, _] = law.at(t).derivatives();
             return [f, fd, fdd].map(|x| witness.like(x));
         }
-        let all: [[f64; 4]; LANES] =
-            std::array::from_fn(|k| self.laws[d][k.min(self.laws[d].len() - 1)].at(t).derivatives());
+        let all: [[f64; 4]; LANES] = std::array::from_fn(|k| self.law_of(d, k).at(t).derivatives());
         std::array::from_fn(|order| witness.like_lanes(|k| all[k][order]))
     }
+}
+
+/// Per row, what it keeps.
+fn kept<T: Real>(topology: &Topology, of: impl Fn(usize, Row) -> T) -> Vec<T> {
+    let of_row = |place: &crate::topology::RowPlace| {
+        let closure = &topology.closures[place.closure];
+        of(closure.joint.0, closure.rows[place.index])
+    };
+    topology.rows.iter().map(of_row).collect()
+}
+
+/// The curves that the plan's closures follow.
+fn curves(model: &Model, topology: &Topology) -> Vec<Curve> {
+    let contacts = topology.closures.iter().filter(|c| c.contact.is_some());
+    contacts.filter_map(|c| model.joints[c.joint.0].curve.clone()).collect()
 }

@@ -613,8 +613,9 @@ mod tests {
         largest_dense: usize,
         zero: T,
     ) -> (State<T>, Vec<bool>) {
-        let designs = [model.geometry(&[])];
-        let mut stepper = Stepper::new(model, topology, Parts::new(model, topology, &designs, zero), zero);
+        let (design, laws) = (model.geometry(&[]), model.laws(&[]));
+        let mut stepper =
+            Stepper::new(model, topology, Parts::same(model, topology, &design, &laws, zero), zero);
         let blocks = topology.blocks.iter();
         stepper.state.factors = blocks.map(|b| factors_of(topology, b, largest_dense, zero)).collect();
         stepper.start(model.times[0]).unwrap();

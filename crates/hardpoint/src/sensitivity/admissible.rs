@@ -58,7 +58,7 @@ pub fn admissibility_at_design(model: &Model, field: &Field) -> Vec<JointDefect>
     let mut joints = Vec::new();
     for k in touched {
         let z = twists(k);
-        let kept = field.kept_rate(JointId(k));
+        let kept = field.kept_rate(JointId(k)).unwrap_or_default();
         let ends = model.ends(JointId(k));
         // A driven coordinate is a constraint too: it must stay at zero in the design configuration.
         let driven = model.drivers.iter().filter(|d| d.joint.0 == k).map(|d| model.driven(d).row);

@@ -1,21 +1,22 @@
 //! The three levels of one design variable at one step.
 
-use crate::model::{DriverId, Field, JointId, Model};
+use crate::law::Law;
+use crate::model::{DriverId, Field, Model};
 use crate::motion::kinematics::{State, carry, level, sum_couplers};
 use crate::motion::stepper::LOCKED;
 use crate::space::{LANES, Real, Twist};
 use crate::topology::{Source, Step, Topology};
 
-/// Design velocities laid out for the plan, one variable per lane: body-fixed marker twists by link and
-/// by closure. Lanes without a variable stay at rest.
+/// Design velocities laid out for the plan, those of one variable or of one per lane: body-fixed marker twists by link and
+/// by closure.
 #[derive(Clone, Debug)]
 pub(crate) struct FieldParts<T> {
     links: Vec<Moving<T>>,
     closures: Vec<Moving<T>>,
     /// Rows whose kept values change, and their rates.
     kept: Vec<(usize, T)>,
-    /// Drivers whose laws change, and what changes in every lane.
-    laws: Vec<(DriverId, Vec<LawChange>)>,
+    /// Parameters of drivers' laws that change, and their rates.
+    laws: Vec<(DriverId, usize, T)>,
     /// What that adds to the driver's value, speed and acceleration at the time that was set last.
     law_rates: Vec<(DriverId, [T; 3])>,
     /// Largest speed in each field: what round-off of a defect is compared with.
@@ -79,9 +80,6 @@ impl Reach {
     }
 }
 
-/// The parameters of a law that change, and their rates.
-type LawChange = Vec<(usize, f64)>;
-
 /// A marker that some design velocity moves.
 #[derive(Clone, Copy, Debug)]
 struct Moving<T> {
@@ -107,74 +105,58 @@ impl<T: Real> Moving<T> {
 }
 
 impl<T: Real> FieldParts<T> {
-    /// Lane k takes `fields[k]`; there must be no more fields than lanes.
-    pub fn new(topology: &Topology, fields: &[&Field], witness: T) -> Self {
-        let twist_in = |k: usize, joint, end| fields.get(k).and_then(|f| f.twist_of(joint, end));
-        let twist_of = |joint: JointId, end: usize| {
-            Twist::gather(witness, |k| twist_in(k, joint, end).unwrap_or(Twist::ZERO))
-        };
-        let moves = |joint: JointId, end: usize| (0..fields.len()).any(|k| twist_in(k, joint, end).is_some());
+    pub fn new(topology: &Topology, field: &Field<T>, witness: T) -> Self {
         let (mut links, mut closures, mut kept) = (Vec::new(), Vec::new(), Vec::new());
         for (at, link) in topology.links.iter().enumerate() {
             let Some(joint) = link.joint else { continue };
             for (end, body) in [(0, link.parent.0), (1, link.child.0)] {
                 let marker = if end == 0 { link.parent_end } else { 1 - link.parent_end };
-                if moves(joint, marker) {
-                    links.push(Moving { at, end, body, e: twist_of(joint, marker) });
+                if let Some(e) = field.twist_of(joint, marker) {
+                    links.push(Moving { at, end, body, e });
                 }
             }
         }
         for (at, closure) in topology.closures.iter().enumerate() {
-            for end in (0..2).filter(|&end| moves(closure.joint, end)) {
-                let body = closure.bodies[end].0;
-                closures.push(Moving { at, end, body, e: twist_of(closure.joint, end) });
+            for (end, body) in closure.bodies.into_iter().enumerate() {
+                if let Some(e) = field.twist_of(closure.joint, end) {
+                    closures.push(Moving { at, end, body: body.0, e });
+                }
             }
+            let Some(rates) = field.kept_rate(closure.joint) else { continue };
             for (k, row) in closure.rows.iter().enumerate() {
-                let rate = |f: &Field| f.kept_rate(closure.joint).by(*row);
-                let rate = witness.like_lanes(|lane| fields.get(lane).map_or(0.0, |f| rate(f)));
+                let rate = rates.by(*row);
                 if rate.abs().largest() > 0.0 {
                     kept.push((closure.first_row + k, rate));
                 }
             }
         }
         // Per unit of a variable: how fast markers move and turn, kept values change, laws change.
-        let speed = |f: &Field| {
-            let markers = f.markers.iter().map(|m| m.twist.w.norm().max(m.twist.v.norm()));
-            let kept = f
-                .kept
-                .iter()
-                .map(|(_, k)| k.distance.abs().max(k.offset.abs()).max(k.cosine.abs()).max(k.contact.abs()));
-            let laws = f.laws.iter().map(|(_, _, rate)| rate.abs());
-            markers.chain(kept).chain(laws).fold(0.0, f64::max)
-        };
-        let scale = witness.like_lanes(|k| fields.get(k).map_or(0.0, |f| speed(f)));
-        let mut drivers: Vec<DriverId> = fields.iter().flat_map(|f| &f.laws).map(|(d, ..)| *d).collect();
+        let markers = field.markers.iter().map(|m| m.twist.w.norm().larger(m.twist.v.norm()));
+        let kept_rates = field.kept.iter().map(|(_, k)| k.size());
+        let laws = field.laws.iter().map(|(.., rate)| rate.abs());
+        let scale = markers.chain(kept_rates).chain(laws).fold(witness.zero(), T::larger);
+        let mut drivers: Vec<DriverId> = field.laws.iter().map(|(d, ..)| *d).collect();
         drivers.sort_unstable();
         drivers.dedup();
-        let of_lane = |d: DriverId, f: &Field| -> LawChange {
-            f.laws.iter().filter(|(k, ..)| *k == d).map(|(_, parameter, rate)| (*parameter, *rate)).collect()
-        };
-        let laws: Vec<_> =
-            drivers.iter().map(|&d| (d, fields.iter().map(|f| of_lane(d, f)).collect())).collect();
         let law_rates = drivers.iter().map(|&d| (d, [witness.zero(); 3])).collect();
         let of = |moving: &[Moving<T>]| moving.iter().map(|m| m.at).collect::<Vec<_>>();
         let mut changed = of(&closures);
         changed.extend(kept.iter().map(|&(row, _)| topology.rows[row].closure));
         changed.sort_unstable();
         let reach = Reach::new(topology, &of(&links), &changed, &drivers);
-        Self { links, closures, kept, laws, law_rates, scale, reach }
+        Self { links, closures, kept, laws: field.laws.clone(), law_rates, scale, reach }
     }
 
-    /// Sets what changing laws do, at one time per lane.
-    pub fn set_times(&mut self, model: &Model, times: &[f64; LANES]) {
-        for ((d, lanes), (_, rates)) in self.laws.iter().zip(&mut self.law_rates) {
-            let law = &model.drivers[d.0].law;
+    /// Sets what changing laws do, at one time per lane; `law` gives a driver's law in a lane.
+    pub fn set_times<'l>(&mut self, law: impl Fn(DriverId, usize) -> &'l Law, times: &[f64; LANES]) {
+        for (driver, rates) in &mut self.law_rates {
             let mut of_lanes = [[0.0; 3]; LANES];
-            for (k, (out, parameters)) in of_lanes.iter_mut().zip(lanes).enumerate() {
-                for (parameter, rate) in parameters {
-                    let derivatives = law.derivative(*parameter, times[k]).derivatives();
-                    for order in 0..3 {
-                        out[order] += rate * derivatives[order];
+            for (_, parameter, rate) in self.laws.iter().filter(|(d, ..)| d == driver) {
+                for (k, out) in of_lanes[..T::LANES].iter_mut().enumerate() {
+                    let rate = rate.lane(k);
+                    if rate != 0.0 {
+                        let derivatives = law(*driver, k).derivative(*parameter, times[k]).derivatives();
+                        out.iter_mut().zip(derivatives).for_each(|(out, d)| *out += rate * d);
                     }
                 }
             }
@@ -305,9 +287,10 @@ impl<T: Real> Direct<T> {
                 for step in link.steps.iter().filter(counts) {
                     for c in step.first..step.first + step.freedom.coordinates() {
                         if order == 1 {
-                            bias += state.xd[c] * self.s[0][c];
+                            bias = state.xd[c].times_plus(self.s[0][c], bias);
                         } else {
-                            bias += state.xd[c] * (self.s[1][c] * two) + state.xdd[c] * self.s[0][c];
+                            bias = state.xd[c].times_plus(self.s[1][c] * two, bias);
+                            bias = state.xdd[c].times_plus(self.s[0][c], bias);
                         }
                     }
                 }

@@ -9,7 +9,7 @@ mod direct;
 mod sensing;
 
 pub use admissible::{Admissibility, JointDefect, admissibility_at_design};
-pub(crate) use sensing::Sensing;
+pub(crate) use sensing::{Sensing, SensingDesigns};
 
 use crate::space::Vec3;
 

@@ -1,7 +1,8 @@
 //! Sensitivities of all design variables, step after step.
 
-use crate::model::{BodyId, Field, Model, VariableId};
+use crate::model::{BodyId, DriverId, Field, Model, VariableId};
 use crate::motion::kinematics::State;
+use crate::motion::stepper::Stepper;
 use crate::motion::turn_over;
 use crate::sink::Sink;
 use crate::space::{LANES, Real, Twist, Vec3};
@@ -16,18 +17,20 @@ use super::{Admissibility, BodySensitivity, JointDefect, Sensitivities, admissib
 pub(crate) struct Sensing<'f, T> {
     model: &'f Model,
     fields: &'f [Field],
-    /// Each field in all lanes; empty until times fill them.
+    /// Each variable in all lanes; empty until times fill them.
     each: Vec<FieldParts<T>>,
-    /// The fields, as many at a time as there are lanes.
+    /// The variables, as many at a time as there are lanes.
     together: Vec<FieldParts<T>>,
     /// One time's state in all lanes.
     state: State<T>,
     direct: Direct<T>,
     /// Per body: whether its sensitivities are wanted.
     wanted: Vec<bool>,
-    /// Per variable: the joints that resist, and the time of the largest defect.
-    resisting: Vec<(Vec<JointDefect>, f64)>,
+    resisting: Vec<Resisting>,
 }
+
+/// The joints that resist a variable, and the time of the largest defect.
+type Resisting = (Vec<JointDefect>, f64);
 
 impl<'f, T: Real> Sensing<'f, T> {
     /// Prepares the sensitivities of the wanted bodies by the variables with these fields.
@@ -38,13 +41,12 @@ impl<'f, T: Real> Sensing<'f, T> {
         wanted: Vec<bool>,
         witness: T,
     ) -> Self {
-        let all: Vec<&Field> = fields.iter().collect();
-        let parts = |fields: &[&Field]| FieldParts::new(topology, fields, witness);
+        let parts = |fields: &[Field]| FieldParts::new(topology, &Field::gather(fields, witness), witness);
         Self {
             model,
             fields,
             each: Vec::new(),
-            together: all.chunks(T::LANES).map(parts).collect(),
+            together: fields.chunks(T::LANES).map(parts).collect(),
             state: State::new(model, topology, witness),
             direct: Direct::new(model, topology, witness),
             wanted,
@@ -68,21 +70,16 @@ impl<'f, T: Real> Sensing<'f, T> {
         Sensitivities { states, variables, bodies, admissibility: Vec::new(), moved }
     }
 
-    /// Output time k, at t, where `state` stands with velocity and acceleration.
-    pub fn step(
-        &mut self,
-        topology: &Topology,
-        state: &mut State<f64>,
-        k: usize,
-        t: f64,
-        sink: &mut impl Sink,
-    ) {
+    /// Output time k, at t, where a stepper stands with velocity and acceleration.
+    pub fn step(&mut self, one: &mut Stepper<'_, f64>, k: usize, t: f64, sink: &mut impl Sink) {
+        let (topology, state, law) =
+            (&one.topology, &mut one.state, |d: DriverId, _| one.parts.law_of(d.0, 0));
         state.finish_rates(topology);
         self.state.spread(state);
         let variables = self.fields.len();
         for (g, group) in self.together.iter_mut().enumerate() {
             let first = g * T::LANES;
-            group.set_times(self.model, &[t; LANES]);
+            group.set_times(law, &[t; LANES]);
             self.direct.solve(topology, &mut self.state, group);
             let bodies = group.reach.bodies.iter().copied().filter(|&b| self.wanted[b]);
             each_derivative(&self.direct.w, &self.state, bodies, |lane, body, d| {
@@ -103,62 +100,149 @@ impl<'f, T: Real> Sensing<'f, T> {
     /// Output times k and on, one in every lane, as many as `count`.
     pub fn steps(
         &mut self,
-        topology: &Topology,
-        state: &mut State<T>,
+        all: &mut Stepper<'_, T>,
         k: usize,
         times: &[f64],
         count: usize,
         sink: &mut impl Sink,
     ) {
-        state.finish_rates(topology);
         if self.each.is_empty() {
-            let witness = state.witness;
-            self.each = self.fields.iter().map(|f| FieldParts::new(topology, &[f; LANES], witness)).collect();
+            let witness = all.state.witness;
+            let parts = |f: &Field| {
+                let field = Field::gather(&vec![f.clone(); T::LANES], witness);
+                FieldParts::new(&all.topology, &field, witness)
+            };
+            self.each = self.fields.iter().map(parts).collect();
         }
         let of_lanes: [f64; LANES] = std::array::from_fn(|lane| times[lane.min(times.len() - 1)]);
-        for (v, field) in self.each.iter_mut().enumerate() {
-            field.set_times(self.model, &of_lanes);
-            self.direct.solve(topology, state, field);
-            let bodies = field.reach.bodies.iter().copied().filter(|&b| self.wanted[b]);
-            each_derivative(&self.direct.w, state, bodies, |lane, body, d| {
+        let resisting = &mut self.resisting;
+        solve_each(
+            (&mut self.each, &mut self.direct),
+            (all, &of_lanes),
+            &self.wanted,
+            #[inline(always)]
+            |lane, v, body, d| {
                 if lane < count {
-                    sink.sensitivity(k + lane, VariableId(v), BodyId(body), &d);
+                    sink.sensitivity(k + lane, v, body, d);
                 }
-            });
-            let mut defects = [None; LANES];
-            self.direct.worst_defects(topology, state, field, &mut defects);
-            for (defect, t) in defects.into_iter().zip(of_lanes).take(count) {
-                if let Some(defect) = defect {
-                    note(&mut self.resisting[v], topology, defect, t);
+            },
+            |lane, v, topology, defect| {
+                if lane < count {
+                    note(&mut resisting[v.0], topology, defect, of_lanes[lane]);
                 }
-            }
-        }
+            },
+        );
     }
 
     /// What so many steps say of every variable's admissibility.
     pub fn admissibility(self, steps: usize) -> Vec<Admissibility> {
-        let model = self.model;
-        self.fields
-            .iter()
-            .zip(self.resisting)
-            .map(|(field, (joints, time))| {
-                let open = admissibility_at_design(model, field);
-                if !joints.is_empty() {
-                    Admissibility::CannotFollow { joints, time }
-                } else if steps == 0 {
-                    Admissibility::Unknown
-                } else if open.is_empty() {
-                    Admissibility::Admissible
-                } else {
-                    Admissibility::Reassembled { joints: open }
-                }
-            })
-            .collect()
+        admissibility(self.model, self.resisting, steps)
     }
 }
 
+/// Collects the sensitivities of several designs side by side, one in every lane.
+pub(crate) struct SensingDesigns<'m, T> {
+    model: &'m Model,
+    each: Vec<FieldParts<T>>,
+    direct: Direct<T>,
+    wanted: Vec<bool>,
+    /// Per lane and variable.
+    resisting: Vec<Vec<Resisting>>,
+}
+
+impl<'m, T: Real> SensingDesigns<'m, T> {
+    /// Prepares the sensitivities of the wanted bodies by the variables with these fields.
+    pub fn new(
+        model: &'m Model,
+        topology: &Topology,
+        fields: &[Field<T>],
+        wanted: Vec<bool>,
+        witness: T,
+    ) -> Self {
+        Self {
+            model,
+            each: fields.iter().map(|f| FieldParts::new(topology, f, witness)).collect(),
+            direct: Direct::new(model, topology, witness),
+            wanted,
+            resisting: vec![vec![(Vec::new(), 0.0); fields.len()]; T::LANES],
+        }
+    }
+
+    /// The output time t of all designs; `out(lane, ...)` gets what is found.
+    pub fn step(
+        &mut self,
+        all: &mut Stepper<'_, T>,
+        t: f64,
+        out: impl FnMut(usize, VariableId, BodyId, &BodySensitivity),
+    ) {
+        let resisting = &mut self.resisting;
+        solve_each(
+            (&mut self.each, &mut self.direct),
+            (all, &[t; LANES]),
+            &self.wanted,
+            out,
+            |lane, v, topology, defect| note(&mut resisting[lane][v.0], topology, defect, t),
+        );
+    }
+
+    /// What so many steps say of every variable's admissibility, lane by lane.
+    pub fn admissibility(self, steps: usize) -> impl Iterator<Item = Vec<Admissibility>> {
+        let model = self.model;
+        self.resisting.into_iter().map(move |of_lane| admissibility(model, of_lane, steps))
+    }
+}
+
+/// All variables one after the other, each in all lanes, at one time per lane.
+#[inline(always)]
+fn solve_each<T: Real>(
+    (each, direct): (&mut [FieldParts<T>], &mut Direct<T>),
+    (all, times): (&mut Stepper<'_, T>, &[f64; LANES]),
+    wanted: &[bool],
+    mut out: impl FnMut(usize, VariableId, BodyId, &BodySensitivity),
+    mut resists: impl FnMut(usize, VariableId, &Topology, Defect),
+) {
+    let (topology, state, parts) = (&all.topology, &mut all.state, &all.parts);
+    state.finish_rates(topology);
+    for (v, field) in each.iter_mut().enumerate() {
+        field.set_times(|d: DriverId, lane| parts.law_of(d.0, lane), times);
+        direct.solve(topology, state, field);
+        let bodies = field.reach.bodies.iter().copied().filter(|&b| wanted[b]);
+        each_derivative(
+            &direct.w,
+            state,
+            bodies,
+            #[inline(always)]
+            |lane, body, d| out(lane, VariableId(v), BodyId(body), &d),
+        );
+        let mut defects = [None; LANES];
+        direct.worst_defects(topology, state, field, &mut defects);
+        for (lane, defect) in defects.into_iter().enumerate() {
+            if let Some(defect) = defect {
+                resists(lane, VariableId(v), topology, defect);
+            }
+        }
+    }
+}
+
+/// What so many steps say of every variable. Whether joints open is a matter of the nominal design.
+fn admissibility(model: &Model, resisting: Vec<Resisting>, steps: usize) -> Vec<Admissibility> {
+    let answer = |(field, (joints, time)): (Field, Resisting)| {
+        let open = admissibility_at_design(model, &field);
+        if !joints.is_empty() {
+            Admissibility::CannotFollow { joints, time }
+        } else if steps == 0 {
+            Admissibility::Unknown
+        } else if open.is_empty() {
+            Admissibility::Admissible
+        } else {
+            Admissibility::Reassembled { joints: open }
+        }
+    };
+    model.fields(&[]).into_iter().zip(resisting).map(answer).collect()
+}
+
 /// Keeps in mind which joint resists a variable most, and when.
-fn note(resisting: &mut (Vec<JointDefect>, f64), topology: &Topology, defect: Defect, t: f64) {
+fn note(resisting: &mut Resisting, topology: &Topology, defect: Defect, t: f64) {
     let place = &topology.rows[defect.row];
     let closure = &topology.closures[place.closure];
     let row = closure.rows[place.index];
@@ -194,8 +278,8 @@ fn each_derivative<T: Real>(
                 let da = w2 + w1.ad(v) + w0.ad(a);
                 let p = w0.at(r);
                 let velocity = v.at(r);
-                let u = dv.at(r) + v.w.cross(p);
-                let n = da.at(r) + a.w.cross(p) + dv.w.cross(velocity) + v.w.cross(u);
+                let u = v.w.cross_plus(p, dv.at(r));
+                let n = a.w.cross_plus(p, dv.w.cross_plus(velocity, v.w.cross_plus(u, da.at(r))));
                 let (q, o, e) = (w0.w, dv.w, da.w);
                 let components = [
                     [p.x, p.y, p.z, q.x, q.y, q.z, u.x, u.y],

@@ -1,17 +1,17 @@
 //! 3-1-3 Euler angles, for input and output only: stored orientations have no singularity.
 
-use super::{Mat3, Vec3};
+use super::{Mat3, Real, Vec3};
 
 /// The rotation with 3-1-3 Euler angles `theta` in rad: `C = Rz(t1) Rx(t2) Rz(t3)`.
 ///
 /// Paper Eq. 2.2; its first element is misprinted there, `c1 c3 - s1 c2 s3` is right.
-pub fn rotation_from_euler_313(theta: [f64; 3]) -> Mat3 {
-    let [(s1, c1), (s2, c2), (s3, c3)] = theta.map(f64::sin_cos);
+pub fn rotation_from_euler_313<T: Real>(theta: [T; 3]) -> Mat3<T> {
+    let [(s1, c1), (s2, c2), (s3, c3)] = theta.map(T::sin_cos);
     Mat3 {
         cols: [
             Vec3::new(c1 * c3 - s1 * c2 * s3, s1 * c3 + c1 * c2 * s3, s2 * s3),
-            Vec3::new(-c1 * s3 - s1 * c2 * c3, -s1 * s3 + c1 * c2 * c3, s2 * c3),
-            Vec3::new(s1 * s2, -c1 * s2, c2),
+            Vec3::new(-(c1 * s3) - s1 * c2 * c3, c1 * c2 * c3 - s1 * s3, s2 * c3),
+            Vec3::new(s1 * s2, -(c1 * s2), c2),
         ],
     }
 }

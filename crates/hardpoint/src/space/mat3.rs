@@ -27,10 +27,7 @@ impl Mat3<f64> {
         if angle == 0.0 {
             return Self::IDENTITY;
         }
-        let axis = v * (1.0 / angle);
-        let (s, c) = angle.sin_cos();
-        let turn = |e: Vec3| e * c + axis.cross(e) * s + axis * (axis.dot(e) * (1.0 - c));
-        Self { cols: Vec3::AXES.map(turn) }
+        Self::about(v * (1.0 / angle), angle)
     }
 
     /// Angle of the rotation from this orientation to another, 0 to pi.
@@ -41,17 +38,32 @@ impl Mat3<f64> {
         let sine = 0.5 * Vec3::new(g.z - h.y, h.x - f.z, f.y - g.x).norm();
         sine.atan2(0.5 * (f.x + g.y + h.z - 1.0))
     }
-
-    /// The smallest rotation that carries unit vector `a` into unit vector `b` (not opposite to it).
-    pub fn between(a: Vec3, b: Vec3) -> Self {
-        let v = a.cross(b);
-        let k = 1.0 / (1.0 + a.dot(b));
-        let turn = |e: Vec3| e + v.cross(e) + v.cross(v.cross(e)) * k;
-        Self { cols: Vec3::AXES.map(turn) }
-    }
 }
 
 impl<T: Real> Mat3<T> {
+    /// The rotation by an angle in rad about a unit vector.
+    pub fn about(axis: Vec3, angle: T) -> Self {
+        let (s, c) = angle.sin_cos();
+        let one = angle.like(1.0);
+        let turn = |e: Vec3| {
+            let along = (axis * axis.dot(e)).spread(angle);
+            e.spread(angle) * c + axis.cross(e).spread(angle) * s + along * (one - c)
+        };
+        Self { cols: Vec3::AXES.map(turn) }
+    }
+
+    /// The smallest rotation that carries unit vector `a` into unit vector `b` (not opposite to it).
+    pub fn between(a: Vec3<T>, b: Vec3<T>) -> Self {
+        let v = a.cross(b);
+        let one = v.x.like(1.0);
+        let k = one / (one + a.dot(b));
+        let turn = |e: Vec3| {
+            let turned = v.cross(e.spread(one));
+            e.spread(one) + turned + v.cross(turned) * k
+        };
+        Self { cols: Vec3::AXES.map(turn) }
+    }
+
     /// Transpose, which is the inverse rotation.
     #[inline(always)]
     pub fn transpose(self) -> Self {
@@ -70,9 +82,16 @@ impl<T: Real> Mat3<T> {
     pub fn turned(self, k: usize, sin: T, cos: T) -> Self {
         let (a, b) = ((k + 1) % 3, (k + 2) % 3);
         let mut cols = self.cols;
-        cols[a] = self.cols[a] * cos + self.cols[b] * sin;
-        cols[b] = self.cols[b] * cos - self.cols[a] * sin;
+        cols[a] = self.cols[b].times_plus(sin, self.cols[a] * cos);
+        cols[b] = self.cols[a].times_plus(-sin, self.cols[b] * cos);
         Self { cols }
+    }
+
+    /// This times a vector, plus another.
+    #[inline(always)]
+    pub fn times_plus(self, v: Vec3<T>, addend: Vec3<T>) -> Vec3<T> {
+        let [f, g, h] = self.cols;
+        h.times_plus(v.z, g.times_plus(v.y, f.times_plus(v.x, addend)))
     }
 
     /// The rotation of lane `k`.
@@ -87,7 +106,8 @@ impl<T: Real> Mul<Vec3<T>> for Mat3<T> {
     type Output = Vec3<T>;
     #[inline(always)]
     fn mul(self, v: Vec3<T>) -> Vec3<T> {
-        self.cols[0] * v.x + self.cols[1] * v.y + self.cols[2] * v.z
+        let [f, g, h] = self.cols;
+        h.times_plus(v.z, g.times_plus(v.y, f * v.x))
     }
 }
 

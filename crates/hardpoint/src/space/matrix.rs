@@ -94,8 +94,7 @@ impl<T: Real> Elimination<T> {
                 a[r * n + k] = m;
                 growth = growth.larger(m.abs());
                 for c in k + 1..n {
-                    let x = a[k * n + c];
-                    a[r * n + c] -= m * x;
+                    a[r * n + c] = (-m).times_plus(a[k * n + c], a[r * n + c]);
                 }
             }
         }
@@ -169,14 +168,14 @@ impl<T: Real> Elimination<T> {
         for k in 0..n {
             let mut s = b[self.order[k]];
             for c in 0..k {
-                s -= a[k * n + c] * x[c];
+                s = (-a[k * n + c]).times_plus(x[c], s);
             }
             x[k] = s;
         }
         for k in (0..n).rev() {
             let mut s = x[k];
             for c in k + 1..n {
-                s -= a[k * n + c] * x[c];
+                s = (-a[k * n + c]).times_plus(x[c], s);
             }
             x[k] = s * a[k * n + k];
         }

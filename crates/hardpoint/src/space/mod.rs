@@ -4,6 +4,7 @@
 //! times) at a time in SIMD lanes. A [`Twist`] is what moves, a [`Wrench`] is what resists; their
 //! product is the rate at which a constraint is violated (`docs/theory.md`, section 1).
 
+mod dual;
 mod euler;
 mod factors;
 mod jet;
@@ -17,6 +18,7 @@ mod sparse;
 mod twist;
 mod vec3;
 
+pub use dual::Dual;
 pub use euler::{euler_313_from_rotation, euler_rates, rotation_from_euler_313};
 pub(crate) use factors::{Factors, LARGEST_DENSE};
 pub use jet::Jet;

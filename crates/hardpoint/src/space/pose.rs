@@ -26,7 +26,7 @@ impl<T: Real> Pose<T> {
     /// The pose of `inner`, given in this frame, in the outer frame.
     #[inline(always)]
     pub fn compose(self, inner: Self) -> Self {
-        Self { rot: self.rot * inner.rot, r: self.r + self.rot * inner.r }
+        Self { rot: self.rot * inner.rot, r: self.point(inner.r) }
     }
 
     /// The outer frame seen from the inner one.
@@ -39,14 +39,14 @@ impl<T: Real> Pose<T> {
     /// A point of the inner frame, in the outer frame.
     #[inline(always)]
     pub fn point(self, s: Vec3<T>) -> Vec3<T> {
-        self.r + self.rot * s
+        self.rot.times_plus(s, self.r)
     }
 
     /// A twist of the inner frame carried into the outer one: `Ad(X) e` (`docs/theory.md` (2)).
     #[inline(always)]
     pub fn carry(self, e: Twist<T>) -> Twist<T> {
         let w = self.rot * e.w;
-        Twist { w, v: self.rot * e.v + self.r.cross(w) }
+        Twist { w, v: self.r.cross_plus(w, self.rot * e.v) }
     }
 
     /// The poses of all lanes, side by side.

@@ -8,8 +8,8 @@ use fearless_simd::{Select, Simd, SimdBase, SimdFloat, SimdMask, f64x8};
 /// One `f64`, or several of them side by side in SIMD lanes.
 ///
 /// A lane value carries the proof that the CPU has the instructions, so constants are made from a
-/// value at hand: `x.like(2.0)`. Nothing here fuses a multiplication with an addition: a lane and a
-/// scalar run of the same design give the same bits wherever their pivots agree.
+/// value at hand: `x.like(2.0)`. Lanes fuse multiplications with additions where the CPU can, scalars do not:
+/// they agree to round-off.
 pub trait Real:
     Copy
     + Debug
@@ -41,6 +41,12 @@ pub trait Real:
 
     /// Gives every lane its eight components: what stands side by side by lane comes to stand side by side by component.
     fn each_lane(components: &[Self; 8], out: impl FnMut(usize, &[f64; 8]));
+
+    /// `self * factor + addend`; lanes round once where the CPU can.
+    #[inline(always)]
+    fn times_plus(self, factor: Self, addend: Self) -> Self {
+        self * factor + addend
+    }
 
     /// Square root, lane by lane.
     fn sqrt(self) -> Self;
@@ -198,6 +204,10 @@ impl<S: Simd> Real for f64x8<S> {
         for (lane, row) in m.iter().enumerate() {
             out(lane, row.as_array());
         }
+    }
+    #[inline(always)]
+    fn times_plus(self, factor: Self, addend: Self) -> Self {
+        self.mul_add(factor, addend)
     }
     #[inline(always)]
     fn sqrt(self) -> Self {

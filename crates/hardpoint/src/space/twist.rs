@@ -54,13 +54,19 @@ impl<T: Real> Twist<T> {
     /// Rate of a twist fixed in a body that moves with `self`: `ad(self) o` (`docs/theory.md` (3)).
     #[inline(always)]
     pub fn ad(self, o: Self) -> Self {
-        Self { w: self.w.cross(o.w), v: self.w.cross(o.v) + self.v.cross(o.w) }
+        Self { w: self.w.cross(o.w), v: self.w.cross_plus(o.v, self.v.cross(o.w)) }
     }
 
     /// Velocity of the body point at `p`.
     #[inline(always)]
     pub fn at(self, p: Vec3<T>) -> Vec3<T> {
-        self.v + self.w.cross(p)
+        self.w.cross_plus(p, self.v)
+    }
+
+    /// `self * k + addend`.
+    #[inline(always)]
+    pub fn times_plus(self, k: T, addend: Self) -> Self {
+        Self { w: self.w.times_plus(k, addend.w), v: self.v.times_plus(k, addend.v) }
     }
 
     /// The twists of all lanes, side by side.
@@ -100,7 +106,9 @@ impl<T: Real> Wrench<T> {
     /// Power on a motion: `m . w + f . v`.
     #[inline(always)]
     pub fn on(self, t: Twist<T>) -> T {
-        self.m.dot(t.w) + self.f.dot(t.v)
+        let (m, f, w, v) = (self.m, self.f, t.w, t.v);
+        let moment = m.dot(w);
+        f.z.times_plus(v.z, f.y.times_plus(v.y, f.x.times_plus(v.x, moment)))
     }
 }
 

@@ -84,13 +84,37 @@ impl<T: Real> Vec3<T> {
     /// Scalar product.
     #[inline(always)]
     pub fn dot(self, o: Self) -> T {
-        self.x * o.x + self.y * o.y + self.z * o.z
+        self.z.times_plus(o.z, self.y.times_plus(o.y, self.x * o.x))
     }
 
     /// Vector product.
     #[inline(always)]
     pub fn cross(self, o: Self) -> Self {
-        Self::new(self.y * o.z - self.z * o.y, self.z * o.x - self.x * o.z, self.x * o.y - self.y * o.x)
+        Self::new(
+            self.y.times_plus(o.z, -(self.z * o.y)),
+            self.z.times_plus(o.x, -(self.x * o.z)),
+            self.x.times_plus(o.y, -(self.y * o.x)),
+        )
+    }
+
+    /// `self x o + addend`.
+    #[inline(always)]
+    pub fn cross_plus(self, o: Self, addend: Self) -> Self {
+        Self::new(
+            self.y.times_plus(o.z, (-self.z).times_plus(o.y, addend.x)),
+            self.z.times_plus(o.x, (-self.x).times_plus(o.z, addend.y)),
+            self.x.times_plus(o.y, (-self.y).times_plus(o.x, addend.z)),
+        )
+    }
+
+    /// `self * k + addend`.
+    #[inline(always)]
+    pub fn times_plus(self, k: T, addend: Self) -> Self {
+        Self::new(
+            self.x.times_plus(k, addend.x),
+            self.y.times_plus(k, addend.y),
+            self.z.times_plus(k, addend.z),
+        )
     }
 
     /// Length.

@@ -168,6 +168,95 @@ fn eight_designs_in_lanes_are_the_same_as_one_by_one() {
     }
 }
 
+/// Keeps what a sink gets, in the layout of a solution.
+struct Keep {
+    states: Vec<hardpoint::motion::BodyState>,
+    sensitivities: Vec<hardpoint::sensitivity::BodySensitivity>,
+    bodies: usize,
+    variables: usize,
+}
+
+impl hardpoint::Sink for Keep {
+    fn state(&mut self, k: usize, body: BodyId, state: &hardpoint::motion::BodyState) {
+        self.states[k * self.bodies + body.0] = *state;
+    }
+    fn sensitivity(
+        &mut self,
+        k: usize,
+        variable: VariableId,
+        body: BodyId,
+        d: &hardpoint::sensitivity::BodySensitivity,
+    ) {
+        self.sensitivities[(k * self.variables + variable.0) * self.bodies + body.0] = *d;
+    }
+}
+
+#[test]
+fn sensitivities_of_changed_designs_are_the_same_in_lanes_and_match_resolved_neighbours() {
+    for name in REFERENCES {
+        let model = reference(name);
+        let analysis = Analysis::new(&model).unwrap();
+        let nominal = analysis.run();
+        let followed: Vec<usize> =
+            (0..model.variables.len()).filter(|&v| nominal.sensitivities.at(0, v).is_some()).collect();
+        let design = |b: f64, v: usize, h: f64| {
+            let mut design = vec![0.0; model.variables.len()];
+            followed.iter().enumerate().for_each(|(k, v)| design[*v] = b * (1.0 - 0.3 * (k % 5) as f64));
+            design[v] += h;
+            design
+        };
+        // Ten designs: a full group of lanes and a part of one.
+        let designs: Vec<Vec<f64>> = (0..10).map(|k| design(3e-4 * (k as f64 - 4.0), 0, 0.0)).collect();
+        let (bodies, variables) = (model.bodies.len(), model.variables.len());
+        let keep = |_| Keep {
+            states: nominal.motion.states.clone(),
+            sensitivities: vec![
+                hardpoint::sensitivity::BodySensitivity::ZERO;
+                nominal.sensitivities.states.len()
+            ],
+            bodies,
+            variables,
+        };
+        let mut ended = 0;
+        analysis.stream_designs(&designs, keep, |n, kept, streamed| {
+            assert_eq!((n, streamed.steps), (ended, model.times.len()), "{name}: {:?}", streamed.stop);
+            ended += 1;
+            let mut single = analysis.run_at(&designs[n]);
+            for (one, lane) in single.sensitivities.admissibility.iter().zip(&streamed.admissibility) {
+                assert_eq!(std::mem::discriminant(one), std::mem::discriminant(lane), "{name}");
+            }
+            let mut lane = single.clone();
+            (lane.motion.states, lane.sensitivities.states) = (kept.states, kept.sensitivities);
+            let d = difference(&single, &lane);
+            assert!(d < 1e-10, "{name}, design {n}: {d:e}");
+            if n == 9 {
+                // Measures, too, against designs a little before and behind.
+                single.sensitivities.states.clear();
+                for &v in &followed {
+                    let h = 1e-5;
+                    let around: Vec<Vec<f64>> = [h, -h].map(|h| design(1.5e-3, v, h)).to_vec();
+                    let around = analysis.run_designs(&around);
+                    for m in 0..single.measured.outputs.len() {
+                        let (mut scale, mut worst) = (1e-2, 0.0_f64);
+                        for k in 0..model.times.len() {
+                            let [p, m0] = [0, 1].map(|i| around[i].measured.value(k, m)[0]);
+                            let exact = single.measured.d(k, VariableId(v), m)[0];
+                            scale = f64::max(scale, exact.abs());
+                            worst = worst.max(((p - m0) / (2.0 * h) - exact).abs());
+                        }
+                        assert!(
+                            worst < 1e-6 * scale,
+                            "{name}: {} by {v}: {worst:e}",
+                            single.measured.outputs[m].name
+                        );
+                    }
+                }
+            }
+        });
+        assert_eq!(ended, designs.len());
+    }
+}
+
 #[test]
 fn a_moved_and_turned_mechanism_has_the_same_measures_and_turned_motion() {
     let placed =

@@ -416,7 +416,8 @@ impl Case<'_> {
         for v in variables.into_iter().take(2).map(VariableId) {
             let natural = natural_step(model, v);
             // Near a singular position the motion changes within steps of the margin.
-            let part = [3e-3, 3e-4, 3e-5, 3e-6].map(|part| (v, part * natural * margin.sqrt()));
+            let part =
+                [3e-3, 1e-3, 3e-4, 1e-4, 3e-5, 1e-5, 3e-6].map(|part| (v, part * natural * margin.sqrt()));
             let mut best: Vec<(f64, String)> = Vec::new();
             for d in central_differences(analysis, &part).into_iter().flatten() {
                 let errors = compare_with_difference(analysis, s, &d);
