@@ -60,6 +60,7 @@ pub struct Analysis<'m> {
 
 /// One design, ready to be analysed.
 struct Design {
+    values: Vec<f64>,
     geometry: Geometry,
     laws: Vec<Law>,
     /// How the variables change it, if that is asked for.
@@ -183,6 +184,7 @@ impl<'m> Analysis<'m> {
             geometry: self.effects.geometry(&values, 0.0),
             laws: self.model.laws(design),
             fields: if sensitivities { self.effects.fields(&values, 0.0) } else { Vec::new() },
+            values,
         }
     }
 
@@ -301,8 +303,8 @@ impl<'m> Analysis<'m> {
     fn measure(&self, design: &Design, solution: &mut Solution) {
         solution.measured = Measured::default();
         if self.measures {
-            let Design { geometry, laws, fields } = design;
-            let at = measure::At { model: self.model, geometry, laws, fields };
+            let Design { values, laws, .. } = design;
+            let at = measure::At { model: self.model, effects: &self.effects, values, laws };
             solution.measured =
                 measure::evaluate(&at, &self.topology, &solution.motion, &solution.sensitivities);
         }
@@ -511,7 +513,7 @@ enum Solved<'w, 'a, T> {
 impl<'a, T: Real> Walk<'a, T> {
     fn new(analysis: &'a Analysis<'_>, design: &'a Design, wanted: Vec<bool>, witness: T) -> Self {
         let (model, topology) = (analysis.model, &analysis.topology);
-        let Design { geometry, laws, fields } = design;
+        let Design { geometry, laws, fields, .. } = design;
         let parts = Parts::same(model, topology, geometry, laws, witness);
         Self {
             one: Stepper::new(model, topology, Parts::same(model, topology, geometry, laws, 0.0), 0.0),

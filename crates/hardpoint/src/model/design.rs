@@ -17,8 +17,17 @@ pub struct Geometry<T = f64> {
     pub kept: Vec<Kept<T>>,
     /// Per point of the model, its position in its body's frame, m.
     pub points: Vec<Vec3<T>>,
-    /// Per measure with a spin axis, that unit vector in its body's frame; null for the others.
-    pub spin_axes: Vec<Vec3<T>>,
+}
+
+/// What measures go by, fixed in the bodies.
+#[derive(Clone, Debug)]
+pub(crate) struct Fixed<T> {
+    /// Per point of the model, its position in its body's frame, m.
+    pub points: Vec<Vec3<T>>,
+    /// Per measure with a spin axis, that unit vector in its body's frame.
+    pub spin_axes: Vec<Option<Vec3<T>>>,
+    /// Per measure of a joint's coordinate, marker i in body i and marker j in body j.
+    pub markers: Vec<Option<[Pose<T>; 2]>>,
 }
 
 /// What a joint can keep of its design configuration, or the rate at which a design variable changes it.
@@ -64,6 +73,10 @@ impl<T: Real> Kept<T> {
         }
     }
 
+    fn vanishes(self) -> bool {
+        [self.distance, self.offset, self.cosine, self.contact].into_iter().all(T::vanishes)
+    }
+
     /// The largest of them.
     pub(crate) fn size(&self) -> T {
         let [a, b] =
@@ -84,8 +97,6 @@ pub struct Field<T = f64> {
     pub kept: Vec<(JointId, Kept<T>)>,
     /// The points that move, and their velocity in the body's frame.
     pub points: Vec<(PointId, Vec3<T>)>,
-    /// The spin axes that turn, and their rate in the body's frame.
-    pub spin_axes: Vec<(MeasureId, Vec3<T>)>,
     /// The drivers whose laws change: the parameter, and its rate.
     pub laws: Vec<(DriverId, usize, T)>,
 }
@@ -108,7 +119,6 @@ impl<T> Default for Field<T> {
             markers: Vec::new(),
             kept: Vec::new(),
             points: Vec::new(),
-            spin_axes: Vec::new(),
             laws: Vec::new(),
         }
     }
@@ -145,8 +155,12 @@ impl Field {
                     (joint, Kept::gather(witness, kept))
                 })
                 .collect(),
-            points: gather_vectors(fields, |f| &f.points, witness),
-            spin_axes: gather_vectors(fields, |f| &f.spin_axes, witness),
+            points: union(fields, |f| f.points.iter().map(|(id, _)| *id))
+                .map(|id| {
+                    let of_field = |f: &Field| f.points.iter().find(|(k, _)| *k == id).map(|(_, v)| *v);
+                    (id, Vec3::gather(witness, |k| of(k).and_then(of_field).unwrap_or(Vec3::ZERO)))
+                })
+                .collect(),
             laws: union(fields, |f| f.laws.iter().map(|(d, p, _)| (*d, *p)))
                 .map(|(driver, parameter)| {
                     let same = |l: &&(DriverId, usize, f64)| (l.0, l.1) == (driver, parameter);
@@ -166,24 +180,6 @@ fn union<'f, K: Ord + 'f, I: Iterator<Item = K> + 'f>(
     fields.iter().flat_map(keys).collect::<std::collections::BTreeSet<K>>().into_iter()
 }
 
-fn gather_vectors<T: Real, I: Ord + Copy>(
-    fields: &[Field],
-    list: impl Fn(&Field) -> &Vec<(I, Vec3)>,
-    witness: T,
-) -> Vec<(I, Vec3<T>)> {
-    union(fields, |f| list(f).iter().map(|(id, _)| *id))
-        .map(|id| {
-            let lane = |k: usize| fields.get(k).map_or(Vec3::ZERO, |f| in_order(list(f), id));
-            (id, Vec3::gather(witness, lane))
-        })
-        .collect()
-}
-
-/// The vector that a list gives an id; null where it gives none.
-pub(crate) fn in_order<I: Ord + Copy>(list: &[(I, Vec3)], id: I) -> Vec3 {
-    list.binary_search_by_key(&id, |(k, _)| *k).map_or(Vec3::ZERO, |k| list[k].1)
-}
-
 /// What the variables of a model change, by what they change: found once for many designs.
 #[derive(Clone, Debug)]
 pub(crate) struct Effects<'m> {
@@ -192,10 +188,9 @@ pub(crate) struct Effects<'m> {
     moves: Vec<Vec<(usize, Vec3)>>,
     /// Per joint: the variables that change the joint itself.
     changes: Vec<Vec<(usize, &'m Change)>>,
-    /// Per hardpoint: the joints, points and measures that follow it.
+    /// Per hardpoint: the joints and points that follow it.
     joints: Vec<Vec<usize>>,
     points: Vec<Vec<usize>>,
-    measures: Vec<Vec<usize>>,
 }
 
 impl<'m> Effects<'m> {
@@ -207,7 +202,6 @@ impl<'m> Effects<'m> {
             changes: vec![Vec::new(); model.joints.len()],
             joints: vec![Vec::new(); hardpoints],
             points: vec![Vec::new(); hardpoints],
-            measures: vec![Vec::new(); hardpoints],
         };
         for (k, variable) in model.variables.iter().enumerate() {
             for change in &variable.changes {
@@ -231,51 +225,71 @@ impl<'m> Effects<'m> {
         for (k, point) in model.points.iter().enumerate() {
             effects.points[point.at.0].push(k);
         }
-        for (k, measure) in model.measures.iter().enumerate() {
-            if let Some((_, axis)) = measure.spin_axis() {
-                axis.hardpoints().for_each(|h| effects.measures[h.0].push(k));
-            }
-        }
         effects
     }
 
     /// The geometry of the designs whose values these are, variable by variable.
     pub fn geometry<T: Real>(&self, values: &[T], witness: T) -> Geometry<T> {
         let model = self.model;
-        let design = Design::new(self, values.to_vec(), None, witness);
+        let design = Design::new(self, values.to_vec(), witness);
         Geometry {
             markers: (0..model.joints.len()).map(|j| [0, 1].map(|e| design.marker(j, e))).collect(),
             kept: (0..model.joints.len()).map(|j| design.kept(j)).collect(),
             points: (0..model.points.len()).map(|k| design.point(k)).collect(),
-            spin_axes: (0..model.measures.len()).map(|k| design.spin_axis(k)).collect(),
+        }
+    }
+
+    /// What the measures of these designs go by.
+    pub fn fixed<T: Real>(&self, values: &[T], witness: T) -> Fixed<T> {
+        let (model, design) = (self.model, Design::new(self, values.to_vec(), witness));
+        let markers = |m: &Measure| match m.kind {
+            MeasureKind::Coordinate { joint, .. } => Some([0, 1].map(|e| design.marker(joint.0, e))),
+            _ => None,
+        };
+        Fixed {
+            points: (0..model.points.len()).map(|k| design.point(k)).collect(),
+            spin_axes: model.measures.iter().map(|m| design.spin_axis(m)).collect(),
+            markers: model.measures.iter().map(markers).collect(),
         }
     }
 
     /// How one variable changes the designs whose values these are.
+    pub fn field<T: Real>(&self, variable: VariableId, values: &[T], witness: T) -> Field<T> {
+        self.field_along(&[(variable, 1.0)], values, witness)
+    }
+
+    /// How the designs whose values these are change along a direction, some variables at once.
     ///
     /// Paper Eqs. 3.1 to 3.10 and 5.5; `docs/theory.md` (8).
-    pub fn field<T: Real>(&self, variable: VariableId, values: &[T], witness: T) -> Field<T> {
-        let duals = values.iter().enumerate();
-        let duals = duals.map(|(k, v)| if k == variable.0 { Dual::variable(*v) } else { Dual::constant(*v) });
-        let design = Design::new(self, duals.collect(), Some(variable), Dual::constant(witness));
-        let (mut joints, mut points, mut measures) = (Vec::new(), Vec::new(), Vec::new());
+    pub fn field_along<T: Real>(
+        &self,
+        along: &[(VariableId, f64)],
+        values: &[T],
+        witness: T,
+    ) -> Field<T> {
+        let mut duals: Vec<Dual<T>> = values.iter().map(|v| Dual::constant(*v)).collect();
+        for &(variable, rate) in along {
+            duals[variable.0].d = witness.like(rate);
+        }
+        let design = Design::new(self, duals, Dual::constant(witness));
+        let (mut joints, mut points) = (Vec::new(), Vec::new());
         let mut field = Field::default();
-        for change in &self.model.variables[variable.0].changes {
+        let changes = along.iter().flat_map(|(v, by)| self.model.variables[v.0].changes.iter().map(move |c| (by, c)));
+        for (by, change) in changes {
             match change {
                 Change::Move { hardpoint, .. } => {
                     joints.extend(&self.joints[hardpoint.0]);
                     points.extend(&self.points[hardpoint.0]);
-                    measures.extend(&self.measures[hardpoint.0]);
                 }
                 Change::Marker { joint, .. } | Change::Field { joint, .. } | Change::Length { joint, .. } => {
                     joints.push(joint.0);
                 }
                 Change::Law { driver, parameter, rate } => {
-                    field.laws.push((*driver, *parameter, witness.like(*rate)));
+                    field.laws.push((*driver, *parameter, witness.like(by * rate)));
                 }
             }
         }
-        for list in [&mut joints, &mut points, &mut measures] {
+        for list in [&mut joints, &mut points] {
             list.sort_unstable();
             list.dedup();
         }
@@ -287,15 +301,12 @@ impl<'m> Effects<'m> {
                 }
             }
             let rates = design.kept(j).map(|x| x.d);
-            if rates.size().largest() > 0.0 {
+            if !rates.vanishes() {
                 field.kept.push((JointId(j), rates));
             }
         }
-        let rate = |v: Vec3<Dual<T>>| v.map(|x| x.d);
-        let moved = points.into_iter().map(|k| (PointId(k), rate(design.point(k))));
+        let moved = points.into_iter().map(|k| (PointId(k), design.point(k).map(|x| x.d)));
         field.points = moved.filter(|(_, v)| !is_null(*v)).collect();
-        let turned = measures.into_iter().map(|k| (MeasureId(k), rate(design.spin_axis(k))));
-        field.spin_axes = turned.filter(|(_, v)| !is_null(*v)).collect();
         field
     }
 
@@ -306,7 +317,7 @@ impl<'m> Effects<'m> {
 }
 
 fn is_null<T: Real>(v: Vec3<T>) -> bool {
-    v.x.abs().larger(v.y.abs()).larger(v.z.abs()).largest() == 0.0
+    v.x.vanishes() && v.y.vanishes() && v.z.vanishes()
 }
 
 /// Where everything is with the variables at these values.
@@ -321,14 +332,13 @@ struct Design<'e, T> {
 }
 
 impl<'e, T: Real> Design<'e, T> {
-    /// Variables at 0 are left out, but for the one that is differentiated by.
-    fn new(effects: &'e Effects<'_>, values: Vec<T>, by: Option<VariableId>, witness: T) -> Self {
+    /// Variables at 0 are left out, unless it is differentiated by them.
+    fn new(effects: &'e Effects<'_>, values: Vec<T>, witness: T) -> Self {
         let variables = &effects.model.variables;
         let follows =
             |(value, v): (&T, &DesignVariable)| if v.fixed_length { witness.zero() } else { *value };
         let for_lengths = values.iter().zip(variables).map(follows).collect();
-        let counts = values.iter().enumerate();
-        let counts = counts.map(|(k, v)| by == Some(VariableId(k)) || v.abs().largest() != 0.0).collect();
+        let counts = values.iter().map(|v| !v.vanishes()).collect();
         Self { effects, values, for_lengths, counts, witness }
     }
 
@@ -427,7 +437,8 @@ impl<'e, T: Real> Design<'e, T> {
             given
         });
         // Markers at one place keep no distance, and it would have no derivative.
-        let distance = given.unwrap_or_else(|| if is_null(d) { zero } else { d.norm() });
+        let apart = d.dot(d).largest() > 0.0;
+        let distance = given.unwrap_or_else(|| if apart { d.norm() } else { zero });
         let contact = joint.curve.as_ref().map_or(zero, |curve| {
             let drawn = curve.distance(m_i.rot.transpose_mul(d));
             let sign = || self.witness.like_lanes(|k| f64::signum(drawn.lane(k)));
@@ -442,12 +453,10 @@ impl<'e, T: Real> Design<'e, T> {
         self.frame(point.body).inverse().point(self.place(point.at, &self.values))
     }
 
-    /// The spin axis of a measure in its body's frame; null where it has none.
-    fn spin_axis(&self, k: usize) -> Vec3<T> {
-        match self.effects.model.measures[k].spin_axis() {
-            Some((body, axis)) => self.frame(body).rot.transpose_mul(self.direction(axis, &self.values)),
-            None => Vec3::zero(self.witness),
-        }
+    /// The spin axis of a measure in its body's frame, where it has one.
+    fn spin_axis(&self, measure: &Measure) -> Option<Vec3<T>> {
+        let (body, axis) = measure.spin_axis()?;
+        Some(self.frame(body).rot.transpose_mul(self.direction(axis, &self.values)))
     }
 }
 

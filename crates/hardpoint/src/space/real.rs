@@ -79,6 +79,24 @@ pub trait Real:
         self.like(0.0)
     }
 
+    /// Whether it is zero in every lane, derivatives that it may carry included.
+    #[inline(always)]
+    fn vanishes(self) -> bool {
+        self.abs().largest() == 0.0
+    }
+
+    /// Inverse sine, lane by lane, rad.
+    #[inline(always)]
+    fn asin(self) -> Self {
+        self.like_lanes(|k| self.lane(k).asin())
+    }
+
+    /// Angle of the point (x, self) from the x axis, lane by lane, rad in (-pi, pi].
+    #[inline(always)]
+    fn atan2(self, x: Self) -> Self {
+        self.like_lanes(|k| self.lane(k).atan2(x.lane(k)))
+    }
+
     /// Sine and cosine, lane by lane, to about one unit in the last place for |x| up to 1e5 turns.
     ///
     /// Reduced by multiples of pi/2 in three parts (Cody and Waite), then the polynomials of
