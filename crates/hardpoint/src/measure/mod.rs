@@ -12,7 +12,9 @@ use bodies::{with_rates, with_sensitivity};
 use crate::constraint::Row;
 use crate::joint::Quantity;
 use crate::law::Law;
-use crate::model::{BodyId, DriverId, Effects, Fixed, JointId, Measure, MeasureKind, Model, PointId, VariableId};
+use crate::model::{
+    BodyId, DriverId, Effects, Fixed, JointId, Measure, MeasureKind, Model, PointId, VariableId,
+};
 use crate::motion::Motion;
 use crate::sensitivity::Sensitivities;
 use crate::space::{Dual, Jet, Pose, Rates, Real, Vec3};
@@ -221,16 +223,16 @@ fn unwrap_angles(
 }
 
 /// Everything that a measure can ask for at one time, as numbers that carry whatever derivatives are wanted.
-struct Moment<'a, T> {
-    model: &'a Model,
-    fixed: &'a Fixed<T>,
+pub(crate) struct Moment<'a, T> {
+    pub model: &'a Model,
+    pub fixed: &'a Fixed<T>,
     /// Per body: where it is. Only those that measures name count.
-    poses: &'a [Pose<T>],
+    pub poses: &'a [Pose<T>],
 }
 
 impl<T: Real> Moment<'_, T> {
     /// All outputs, in the order of [`outputs`].
-    fn all(&self, mut out: impl FnMut(T)) {
+    pub fn all(&self, mut out: impl FnMut(T)) {
         for (k, measure) in self.model.measures.iter().enumerate() {
             out(self.measure(k, measure));
         }
@@ -283,7 +285,7 @@ impl<T: Real> Moment<'_, T> {
 }
 
 /// The bodies that measures and named points are fixed in.
-fn bodies_asked_for(model: &Model) -> Vec<usize> {
+pub(crate) fn bodies_asked_for(model: &Model) -> Vec<usize> {
     let mut bodies: Vec<usize> = model.points.iter().map(|p| p.body.0).collect();
     for measure in &model.measures {
         match measure.kind {

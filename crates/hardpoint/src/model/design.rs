@@ -115,12 +115,7 @@ pub struct MarkerField<T = f64> {
 /// Nothing changes.
 impl<T> Default for Field<T> {
     fn default() -> Self {
-        Self {
-            markers: Vec::new(),
-            kept: Vec::new(),
-            points: Vec::new(),
-            laws: Vec::new(),
-        }
+        Self { markers: Vec::new(), kept: Vec::new(), points: Vec::new(), laws: Vec::new() }
     }
 }
 
@@ -183,7 +178,7 @@ fn union<'f, K: Ord + 'f, I: Iterator<Item = K> + 'f>(
 /// What the variables of a model change, by what they change: found once for many designs.
 #[derive(Clone, Debug)]
 pub(crate) struct Effects<'m> {
-    model: &'m Model,
+    pub model: &'m Model,
     /// Per hardpoint: the variables that move it, and its velocity by each.
     moves: Vec<Vec<(usize, Vec3)>>,
     /// Per joint: the variables that change the joint itself.
@@ -261,12 +256,7 @@ impl<'m> Effects<'m> {
     /// How the designs whose values these are change along a direction, some variables at once.
     ///
     /// Paper Eqs. 3.1 to 3.10 and 5.5; `docs/theory.md` (8).
-    pub fn field_along<T: Real>(
-        &self,
-        along: &[(VariableId, f64)],
-        values: &[T],
-        witness: T,
-    ) -> Field<T> {
+    pub fn field_along<T: Real>(&self, along: &[(VariableId, f64)], values: &[T], witness: T) -> Field<T> {
         let mut duals: Vec<Dual<T>> = values.iter().map(|v| Dual::constant(*v)).collect();
         for &(variable, rate) in along {
             duals[variable.0].d = witness.like(rate);
@@ -274,7 +264,8 @@ impl<'m> Effects<'m> {
         let design = Design::new(self, duals, Dual::constant(witness));
         let (mut joints, mut points) = (Vec::new(), Vec::new());
         let mut field = Field::default();
-        let changes = along.iter().flat_map(|(v, by)| self.model.variables[v.0].changes.iter().map(move |c| (by, c)));
+        let changes =
+            along.iter().flat_map(|(v, by)| self.model.variables[v.0].changes.iter().map(move |c| (by, c)));
         for (by, change) in changes {
             match change {
                 Change::Move { hardpoint, .. } => {
