@@ -100,7 +100,7 @@ fn second_derivatives_match_differences_of_first_ones_on_every_mechanism() {
 }
 
 #[test]
-fn parameters_of_laws_and_curves_have_second_derivatives_too() {
+fn parameters_of_laws_have_second_derivatives_too() {
     let mut draft = four_bar([[0.0, 0.0], [0.0, 0.1], [0.3, 0.25], [0.3, 0.0]], "t", &times(3.0, 30));
     draft.drivers[0].law = Law::parse_with("a*sin(w*t)", &[("a", 0.7), ("w", 3.0)]).unwrap();
     for parameter in ["a", "w"] {
@@ -116,5 +116,19 @@ fn parameters_of_laws_and_curves_have_second_derivatives_too() {
     for formulation in [Formulation::Relative, Formulation::Absolute] {
         let worst = deviation(&model, formulation, &[0.01, 0.02], &directions, 1e-5);
         assert!(worst < AGREE, "{formulation:?}: {worst:e}");
+    }
+}
+
+#[test]
+fn a_cam_and_a_slot_have_second_derivatives_too() {
+    let model = Model::from_draft(&crate::joints::cam_and_slot()).unwrap();
+    let nominal = Analysis::new(&model).unwrap().run();
+    let n = model.variables.len();
+    let followed = (0..n).filter(|&v| nominal.sensitivities.at(0, v).is_some());
+    let directions: Vec<Vec<f64>> = followed.take(4).map(|v| unit(n, v)).collect();
+    assert!(directions.len() > 1);
+    for formulation in [Formulation::Relative, Formulation::Absolute] {
+        let best = [1e-5, 1e-6].map(|h| deviation(&model, formulation, &[], &directions, h));
+        assert!(best[0].min(best[1]) < 1e-5, "{formulation:?}: {best:?}");
     }
 }
