@@ -11,6 +11,7 @@ Examples:
   hardpoint check models/macpherson.toml
   hardpoint run models/macpherson.toml -o results/macpherson
   hardpoint verify models/macpherson.toml --sweep
+  hardpoint whatif models/macpherson.toml --set tie_rod_outer.z=+2mm --measure toe
 
 Exit codes:
     0  done; for verify: every variable passed
@@ -45,6 +46,8 @@ pub enum Command {
     Check(Check),
     /// Compare the sensitivities with re-solved designs
     Verify(Verify),
+    /// Change the design: today's curves, predicted ones and exact ones; and which variable moves which measure most
+    Whatif(Whatif),
     /// Print the JSON Schema of model files, for editors
     #[command(after_help = "Example:\n  hardpoint schema > hardpoint.schema.json")]
     Schema,
@@ -145,6 +148,44 @@ pub struct Verify {
     #[arg(long, value_name = "PARTS", value_delimiter = ',', value_parser = step)]
     pub steps: Option<Vec<f64>>,
     /// Write verify.json into this folder
+    #[arg(short, long, value_name = "DIR")]
+    pub output: Option<PathBuf>,
+}
+
+const AFTER_WHATIF: &str = "\
+Without --set: ranks all variables of the model, and all coordinates of its
+hardpoints, by how much they move each measure. With --set: the design is
+changed, and today's curves stand beside
+  1st order     foreseen from today's exact sensitivities
+  2nd order     and from their exact derivative along the change
+  exact         the changed design, solved again
+so that the predictions' errors can be read.
+
+NAME is a design variable of the file, a hardpoint's coordinate (tie_rod_outer.z)
+or a joint's tilt about a global axis (lca_pivot.tilt_y). The value is a change,
+in mm, cm, m, in, deg or rad, or in the unit of the file where none is given.
+
+Examples:
+  hardpoint whatif models/macpherson.toml --measure toe
+  hardpoint whatif models/macpherson.toml --set tie_rod_outer.z=+2mm --set lca_pivot.tilt_y=0.5deg
+  hardpoint whatif models/macpherson.toml --set tie_rod_inner.z=-3mm --measure toe --over wheel_travel -o results/higher_rack";
+
+/// `hardpoint whatif`.
+#[derive(Args, Debug)]
+#[command(after_help = AFTER_WHATIF)]
+pub struct Whatif {
+    #[command(flatten)]
+    pub common: Common,
+    /// A change of the design; may be given several times
+    #[arg(long, value_name = "NAME=CHANGE")]
+    pub set: Vec<String>,
+    /// Show this measure only; may be given several times
+    #[arg(long, value_name = "NAME")]
+    pub measure: Vec<String>,
+    /// Draw the curves over this measure instead of time
+    #[arg(long, value_name = "NAME")]
+    pub over: Option<String>,
+    /// Write whatif.html, whatif.csv and whatif.json into this folder
     #[arg(short, long, value_name = "DIR")]
     pub output: Option<PathBuf>,
 }

@@ -8,6 +8,7 @@ mod run;
 mod session;
 mod text;
 mod verify;
+mod whatif;
 
 use std::process::ExitCode;
 
@@ -21,6 +22,7 @@ fn main() -> ExitCode {
         Command::Run(options) => run::run(&options),
         Command::Check(options) => check::check(&options),
         Command::Verify(options) => verify::verify(&options),
+        Command::Whatif(options) => whatif::whatif(&options),
         Command::Schema => {
             text::print(&hardpoint_file::schema());
             Outcome::Done

@@ -10,6 +10,8 @@ pub enum Outcome {
     Done = 0,
     /// A sensitivity does not agree with re-solved designs.
     Disagrees = 1,
+    /// The command line cannot be understood.
+    Misunderstood = 2,
     /// The model file has errors or cannot be read.
     BadModel = 3,
     /// The mechanism cannot be driven as it is written.

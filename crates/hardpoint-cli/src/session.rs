@@ -115,6 +115,21 @@ impl Session {
         }
     }
 
+    /// Tells that the command line asks for something that the model does not have.
+    pub fn misunderstood(&self, why: &str) -> Outcome {
+        const CODE: &str = "HP0602";
+        if self.json {
+            let d = json!({
+                "severity": "error", "code": CODE, "message": why, "file": null,
+                "line": null, "column": null, "label": null, "notes": [], "help": null,
+            });
+            self.print_json(&json!({ "generator": GENERATOR, "status": "error", "diagnostics": [d] }));
+        } else {
+            text::complain(&text::error(CODE, why, "nothing was solved", "see `hardpoint help`"));
+        }
+        Outcome::Misunderstood
+    }
+
     /// Tells that a result could not be written.
     pub fn not_written(&self, failure: &NotWritten) -> Outcome {
         const CODE: &str = "HP0601";

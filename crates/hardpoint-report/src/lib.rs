@@ -9,6 +9,7 @@
 //! | [`margin`] | how far the motion stays from singular positions |
 //! | [`assembly`] | what was open in the drawing, and how it closed |
 //! | [`verdict`] | `verify.json`: sensitivities against re-solved designs |
+//! | [`whatif`] | `whatif.json`, `.csv` and `.html`: a changed design, foreseen and exact |
 //! | [`csv`] | `motion.csv` and `sensitivity.csv` |
 //! | [`payload`], [`page`] | `report.html` |
 //! | [`diagnose`] | why a run is impossible or ended early, as diagnostics of the model file |
@@ -24,6 +25,7 @@ pub mod page;
 pub mod payload;
 pub mod summary;
 pub mod verdict;
+pub mod whatif;
 
 /// Program and version, for everything that is written.
 pub const GENERATOR: &str = concat!("hardpoint ", env!("CARGO_PKG_VERSION"));

@@ -8,7 +8,7 @@ use fearless_simd::{Level, dispatch};
 
 use crate::law::Law;
 use crate::measure::{self, Measured};
-use crate::model::{BodyId, Effects, Field, GROUND, Geometry, Model};
+use crate::model::{BodyId, Effects, Field, GROUND, Geometry, Model, VariableId};
 use crate::motion::abreast::Abreast;
 use crate::motion::margin::Margins;
 use crate::motion::parts::Parts;
@@ -451,16 +451,16 @@ impl<'m> Analysis<'m> {
         witness: T,
     ) -> Option<(Effort, Vec<Vec<Admissibility>>)> {
         let (model, last) = (self.model, designs.len() - 1);
-        let whole: Vec<Vec<f64>> = designs.iter().map(|d| model.whole(d)).collect();
-        let values: Vec<T> =
-            (0..model.variables.len()).map(|v| witness.like_lanes(|k| whole[k.min(last)][v])).collect();
+        let values: Vec<Vec<f64>> = designs.iter().map(|d| model.whole(d)).collect();
+        let geometries: Vec<Geometry> = values.iter().map(|d| self.effects.geometry(d, 0.0)).collect();
         let laws: Vec<Vec<Law>> = designs.iter().map(|d| model.laws(d)).collect();
-        let parts =
-            Parts::each(model, &self.topology, &self.effects.geometry(&values, witness), &laws, witness);
+        let parts = Parts::each(model, &self.topology, &geometries, &laws, witness);
         let mut stepper = Stepper::new(model, &self.topology, parts, witness);
         let wanted = self.wanted(sinks);
         let mut sensing = sensitivities.then(|| {
-            let fields = self.effects.fields(&values, witness);
+            let of_lane = |v: usize, k: usize| self.effects.field(VariableId(v), &values[k.min(last)], 0.0);
+            let fields: Vec<Vec<Field>> =
+                (0..model.variables.len()).map(|v| (0..LANES).map(|k| of_lane(v, k)).collect()).collect();
             SensingDesigns::new(model, &self.topology, &fields, wanted.clone(), witness)
         });
         for (k, &t) in model.times.iter().enumerate() {

@@ -100,15 +100,17 @@ impl<T: Real> Parts<T> {
         }
     }
 
-    /// One design per lane, each with the laws of its drivers.
+    /// One design per lane, each with the laws of its drivers; the last one fills the lanes that are left.
     pub fn each(
         model: &Model,
         topology: &Topology,
-        designs: &Geometry<T>,
+        designs: &[Geometry],
         laws: &[Vec<Law>],
         witness: T,
     ) -> Self {
-        let l = Layout::new(model, topology, |joint, end| designs.markers[joint][end], witness);
+        let lane = |k: usize| &designs[k.min(designs.len() - 1)];
+        let gather = |joint: usize, end: usize| Pose::gather(witness, |k| lane(k).markers[joint][end]);
+        let l = Layout::new(model, topology, gather, witness);
         let of_driver = |d: usize| {
             let same = laws.iter().all(|of_lane| of_lane[d] == laws[0][d]);
             let lanes = if same { &laws[..1] } else { laws };
@@ -118,7 +120,7 @@ impl<T: Real> Parts<T> {
             parent_marker: Poses::Each(l.parent_marker),
             child_from_marker: Poses::Each(l.child_from_marker),
             ends: l.ends.map(Poses::Each),
-            kept: kept(topology, |joint, row| designs.kept[joint].by(row)),
+            kept: kept(topology, |joint, row| witness.like_lanes(|k| lane(k).kept[joint].by(row))),
             curves: curves(model, topology),
             laws: (0..model.drivers.len()).map(of_driver).collect(),
         }

@@ -152,10 +152,10 @@ impl<T: Real> FieldParts<T> {
         self.law_rates.iter().map(|(d, _)| *d)
     }
 
-    /// How fast the value of a driver with this law changes at time t, in one lane.
-    pub fn law_speed(&self, driver: DriverId, law: &Law, lane: usize, t: f64) -> f64 {
+    /// How fast the value of a driver with this law changes at time t.
+    pub fn law_speed(&self, driver: DriverId, law: &Law, t: f64) -> f64 {
         let of_driver = self.laws.iter().filter(|(d, ..)| *d == driver);
-        of_driver.map(|(_, parameter, rate)| rate.lane(lane) * law.derivative(*parameter, t).value()).sum()
+        of_driver.map(|(_, parameter, rate)| rate.lane(0) * law.derivative(*parameter, t).value()).sum()
     }
 
     /// Sets what changing laws do, at one time per lane; `law` gives a driver's law in a lane.

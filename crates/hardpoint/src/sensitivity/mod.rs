@@ -10,8 +10,8 @@ mod second;
 mod sensing;
 
 pub use admissible::{Admissibility, JointDefect, admissibility_at_design};
-pub(crate) use second::Seconds;
 pub use second::{BodyCurvature, Direction};
+pub(crate) use second::{Seconds, along};
 pub(crate) use sensing::{Sensing, SensingDesigns};
 
 use crate::space::Vec3;

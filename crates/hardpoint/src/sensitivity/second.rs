@@ -5,13 +5,13 @@
 
 use crate::constraint::EndRates;
 use crate::law::Law;
-use crate::model::{DriverId, Effects, Model};
+use crate::model::{DriverId, Effects, Field, Model};
 use crate::motion::kinematics::{State, carry, level, sum_couplers};
 use crate::motion::stepper::Stepper;
 use crate::space::{Dual, LANES, Mat3, Pose, Real, Twist, Vec3};
 use crate::topology::{Source, Topology};
 
-use super::direct::{Direct, FieldParts};
+use super::direct::{Direct, FieldParts, Moving};
 
 /// A way to change a design: how fast each variable goes.
 pub type Direction = [f64];
@@ -80,7 +80,10 @@ impl<T: Real> First<T> {
 #[derive(Clone, Debug)]
 struct Pair<T> {
     of: [usize; 2],
-    field: FieldParts<Dual<T>>,
+    field: FieldParts<Dual>,
+    /// Per marker that the field moves at a link, then at a closure: its body-fixed twist, and the derivative of that.
+    links: Vec<[Twist<T>; 2]>,
+    closures: Vec<[Twist<T>; 2]>,
     /// By driver whose law changes along the first direction: its laws a little along the second, and back.
     laws: Vec<(DriverId, [Law; 2])>,
     /// What that makes of the driver's value, at the times set last.
@@ -114,16 +117,23 @@ impl<T: Real> Seconds<T> {
         witness: T,
     ) -> Self {
         let model = effects.model;
-        let lifted: Vec<T> = values.iter().map(|v| witness.like(*v)).collect();
         let firsts = directions.iter().map(|d| {
-            let field = effects.field_along(&along(d), &lifted, witness);
+            let field = effects.field_along(&along(d), values, 0.0);
+            let field = Field::gather(&vec![field; T::LANES], witness);
             First::new(model, topology, FieldParts::new(topology, &field, witness), witness)
         });
         let pair = |&[u, w]: &[usize; 2]| {
-            let moving = lifted.iter().zip(&directions[w]);
-            let moving: Vec<_> = moving.map(|(v, d)| Dual { v: *v, d: witness.like(*d) }).collect();
-            let field = effects.field_along(&along(&directions[u]), &moving, Dual::constant(witness));
-            let field = FieldParts::new(topology, &field, Dual::constant(witness));
+            let moving = values.iter().zip(&directions[w]);
+            let moving: Vec<Dual> = moving.map(|(v, d)| Dual { v: *v, d: *d }).collect();
+            let zero = Dual::constant(0.0);
+            let field = effects.field_along(&along(&directions[u]), &moving, zero);
+            let field = FieldParts::new(topology, &field, zero);
+            let twists = |of: &[Moving<Dual>]| {
+                let part = |e: Twist<Dual>, part: fn(Dual) -> f64| {
+                    Twist { w: e.w.map(part), v: e.v.map(part) }.spread(witness)
+                };
+                of.iter().map(|m| [part(m.e, |x| x.v), part(m.e, |x| x.d)]).collect()
+            };
             let laws = [LAW_STEP, -LAW_STEP].map(|h| {
                 let moved: Vec<f64> = values.iter().zip(&directions[w]).map(|(v, d)| v + h * d).collect();
                 model.laws(&moved)
@@ -132,6 +142,8 @@ impl<T: Real> Seconds<T> {
             let drivers: Vec<DriverId> = field.drivers().collect();
             Pair {
                 of: [u, w],
+                links: twists(&field.links),
+                closures: twists(&field.closures),
                 laws: drivers.iter().map(of_driver).collect(),
                 law_rates: drivers.iter().map(|d| (*d, witness.zero())).collect(),
                 field,
@@ -172,31 +184,26 @@ impl<T: Real> Seconds<T> {
         self.pairs.len()
     }
 
-    /// A body's pose, and its derivatives along the directions of pair p: `v.d` along the second, `d.v` along the first,
-    /// `d.d` along both.
-    pub fn pose(&self, state: &State<T>, p: usize, body: usize) -> Pose<Dual<Dual<T>>> {
+    /// A body's pose in one lane, and its derivatives along the directions of pair p: `v.d` along the second, `d.v` along
+    /// the first, `d.d` along both.
+    pub fn pose(&self, state: &State<T>, p: usize, body: usize, lane: usize) -> Pose<Dual<Dual>> {
         let pair = &self.pairs[p];
-        let [u, w] = pair.of.map(|k| self.firsts[k].w[body]);
-        let (Pose { rot, r }, uw) = (state.pose[body], pair.w[body]);
+        let [u, w] = pair.of.map(|k| self.firsts[k].w[body].lane(lane));
+        let (Pose { rot, r }, uw) = (state.pose[body].lane(lane), pair.w[body].lane(lane));
         let (r_u, r_w) = (u.at(r), w.at(r));
-        let column = |e: Vec3<T>| {
+        let column = |e: Vec3| {
             let (e_u, e_w) = (u.w.cross(e), w.w.cross(e));
             number([e, e_u, e_w, uw.w.cross(e) + u.w.cross(e_w)])
         };
-        let [f, g, h] = rot.cols;
-        Pose {
-            rot: Mat3 { cols: [column(f), column(g), column(h)] },
-            r: number([r, r_u, r_w, uw.at(r) + u.w.cross(r_w)]),
-        }
+        Pose { rot: Mat3 { cols: rot.cols.map(column) }, r: number([r, r_u, r_w, uw.at(r) + u.w.cross(r_w)]) }
     }
 
-    /// Second derivatives of a body's position by pair p, lane by lane.
+    /// Second derivatives of a body's position by pair p, in one lane.
     pub fn curvature(&self, state: &State<T>, p: usize, body: usize, lane: usize) -> BodyCurvature {
-        let part = |v: Vec3<Dual<Dual<T>>>| v.map(|x| x.d.d.lane(lane));
-        BodyCurvature {
-            d2r: part(self.pose(state, p, body).r),
-            ddpi: self.pairs[p].w[body].w.map(|x| x.lane(lane)),
-        }
+        let pair = &self.pairs[p];
+        let [u, w] = pair.of.map(|k| self.firsts[k].w[body].lane(lane));
+        let (r, uw) = (state.pose[body].r.lane(lane), pair.w[body].lane(lane));
+        BodyCurvature { d2r: uw.at(r) + u.w.cross(w.at(r)), ddpi: uw.w }
     }
 }
 
@@ -207,7 +214,7 @@ pub(crate) fn along(direction: &Direction) -> Vec<(crate::model::VariableId, f64
 }
 
 /// A vector with its derivatives along u, along w, and along both.
-fn number<T: Real>([v, u, w, uw]: [Vec3<T>; 4]) -> Vec3<Dual<Dual<T>>> {
+fn number([v, u, w, uw]: [Vec3; 4]) -> Vec3<Dual<Dual>> {
     let component = |v, u, w, uw| Dual { v: Dual { v, d: w }, d: Dual { v: u, d: uw } };
     Vec3::new(component(v.x, u.x, w.x, uw.x), component(v.y, u.y, w.y, uw.y), component(v.z, u.z, w.z, uw.z))
 }
@@ -218,7 +225,7 @@ impl<T: Real> Pair<T> {
         let Self { field, laws, law_rates, .. } = self;
         for ((driver, [ahead, behind]), (_, out)) in laws.iter().zip(law_rates) {
             *out = out.like_lanes(|lane| {
-                let rate = |law: &Law| field.law_speed(*driver, law, lane, times[lane]);
+                let rate = |law: &Law| field.law_speed(*driver, law, times[lane]);
                 (rate(ahead) - rate(behind)) / (2.0 * LAW_STEP)
             });
         }
@@ -241,10 +248,9 @@ fn solve_pair<T: Real>(
 ) {
     let (none, zero) = (Twist::zero(state.witness), state.witness.zero());
     // A marker's design twist along u, carried along w by its body, and changed by the design itself.
-    let carried = |state: &State<T>, body: usize, e: Twist<Dual<T>>| {
-        let part = |of: fn(Dual<T>) -> T| Twist { w: e.w.map(of), v: e.v.map(of) };
+    let carried = |state: &State<T>, body: usize, [e, de]: [Twist<T>; 2]| {
         let pose = state.pose[body];
-        w.w[body].ad(pose.carry(part(|x| x.v))) + pose.carry(part(|x| x.d))
+        w.w[body].ad(pose.carry(e)) + pose.carry(de)
     };
     let reach = &pair.field.reach;
     let in_blocks = reach.blocks.iter().flat_map(|&b| topology.blocks[b].links.clone());
@@ -266,8 +272,8 @@ fn solve_pair<T: Real>(
         }
         bias[k] = sum;
     }
-    for m in &pair.field.links {
-        let z = carried(state, m.body, m.e);
+    for (m, e) in pair.field.links.iter().zip(&pair.links) {
+        let z = carried(state, m.body, *e);
         bias[m.at] += if m.end == 0 { z } else { -z };
     }
     for &c in &reach.closures {
@@ -286,8 +292,8 @@ fn solve_pair<T: Real>(
             }
         }
     }
-    for m in &pair.field.closures {
-        let z = carried(state, m.body, m.e);
+    for (m, e) in pair.field.closures.iter().zip(&pair.closures) {
+        let z = carried(state, m.body, *e);
         let closure = &topology.closures[m.at];
         for r in closure.first_row..closure.first_row + closure.rows.len() {
             if topology.rows[r].drives() {
@@ -296,7 +302,7 @@ fn solve_pair<T: Real>(
         }
     }
     for &(row, rate) in &pair.field.kept {
-        row_rhs[row] += rate.d;
+        row_rhs[row] += zero.like(rate.d);
     }
     reach.blocks.iter().for_each(|&b| sum_couplers(topology, b, row_rhs));
     let (x, out, bias) = (&state.x, &mut pair.w, Some(&bias[..]));

@@ -151,17 +151,19 @@ pub(crate) struct SensingDesigns<'m, T> {
 }
 
 impl<'m, T: Real> SensingDesigns<'m, T> {
-    /// Prepares the sensitivities of the wanted bodies by the variables with these fields.
+    /// Prepares the sensitivities of the wanted bodies; `fields` are those of all variables, variable by variable, each in
+    /// every lane's design.
     pub fn new(
         model: &'m Model,
         topology: &Topology,
-        fields: &[Field<T>],
+        fields: &[Vec<Field>],
         wanted: Vec<bool>,
         witness: T,
     ) -> Self {
+        let parts = |f: &Vec<Field>| FieldParts::new(topology, &Field::gather(f, witness), witness);
         Self {
             model,
-            each: fields.iter().map(|f| FieldParts::new(topology, f, witness)).collect(),
+            each: fields.iter().map(parts).collect(),
             direct: Direct::new(model, topology, witness),
             wanted,
             resisting: vec![vec![(Vec::new(), 0.0); fields.len()]; T::LANES],

@@ -3,9 +3,11 @@
 mod difference;
 mod second;
 mod verify;
+mod whatif;
 
 pub use difference::{Difference, central_differences, natural_step};
 pub use second::SecondDerivatives;
 pub use verify::{
     Check, CheckOutcome, PASS, StepError, Verification, VerifyOptions, compare_with_difference, verify,
 };
+pub use whatif::{Foresight, WhatIf, variable_named, variable_names, what_if};

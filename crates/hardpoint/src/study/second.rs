@@ -6,7 +6,7 @@ use fearless_simd::{Level, dispatch};
 
 use crate::analysis::{Analysis, Design, Solved, Walk};
 use crate::measure::{Moment, Output, bodies_asked_for, outputs};
-use crate::model::{BodyId, VariableId};
+use crate::model::{BodyId, Fixed, VariableId};
 use crate::motion::Stop;
 use crate::motion::stepper::Stepper;
 use crate::sensitivity::{BodyCurvature, Seconds};
@@ -108,10 +108,9 @@ struct Bends<'a, T> {
     analysis: &'a Analysis<'a>,
     seconds: Seconds<T>,
     /// Per pair, what measures go by.
-    fixed: Vec<crate::model::Fixed<Dual<Dual<T>>>>,
+    fixed: Vec<Fixed<Dual<Dual>>>,
     asked_for: Vec<usize>,
-    poses: Vec<Pose<Dual<Dual<T>>>>,
-    values: Vec<Dual<Dual<T>>>,
+    poses: Vec<Pose<Dual<Dual>>>,
 }
 
 impl<'a, T: Real> Bends<'a, T> {
@@ -123,11 +122,11 @@ impl<'a, T: Real> Bends<'a, T> {
         witness: T,
     ) -> Self {
         let (model, effects) = (analysis.model(), analysis.effects());
-        let zero = Dual::constant(Dual::constant(witness));
+        let zero = Dual::constant(Dual::constant(0.0));
         let fixed = |&[u, w]: &[usize; 2]| {
             let value = |k: usize| Dual {
-                v: Dual { v: witness.like(design.values[k]), d: witness.like(directions[w][k]) },
-                d: Dual::constant(witness.like(directions[u][k])),
+                v: Dual { v: design.values[k], d: directions[w][k] },
+                d: Dual::constant(directions[u][k]),
             };
             let values: Vec<_> = (0..model.variables.len()).map(value).collect();
             effects.fixed(&values, zero)
@@ -138,7 +137,6 @@ impl<'a, T: Real> Bends<'a, T> {
             fixed: pairs.iter().map(fixed).collect(),
             asked_for: bodies_asked_for(model),
             poses: vec![Pose::IDENTITY.spread(zero); model.bodies.len()],
-            values: Vec::new(),
         }
     }
 
@@ -147,17 +145,14 @@ impl<'a, T: Real> Bends<'a, T> {
         let of_lanes: [f64; LANES] = std::array::from_fn(|lane| times[lane.min(times.len() - 1)]);
         self.seconds.solve(stepper, &of_lanes);
         let (model, state) = (self.analysis.model(), &stepper.state);
-        self.values.clear();
-        for p in 0..self.seconds.len() {
-            for &b in self.asked_for.iter().filter(|b| **b != 0) {
-                self.poses[b] = self.seconds.pose(state, p, b);
-            }
-            Moment { model, fixed: &self.fixed[p], poses: &self.poses }.all(|x| self.values.push(x));
-        }
         for (lane, &t) in times.iter().enumerate() {
             result.times.push(t);
-            result.values.extend(self.values.iter().map(|x| x.d.d.lane(lane)));
             for p in 0..self.seconds.len() {
+                for &b in self.asked_for.iter().filter(|b| **b != 0) {
+                    self.poses[b] = self.seconds.pose(state, p, b, lane);
+                }
+                let moment = Moment { model, fixed: &self.fixed[p], poses: &self.poses };
+                moment.all(|x| result.values.push(x.d.d));
                 let body = |b: usize| self.seconds.curvature(state, p, b, lane);
                 result.curvatures.extend((0..result.bodies).map(body));
             }

@@ -1,0 +1,176 @@
+//! `hardpoint whatif`.
+
+use std::io::Write;
+
+use hardpoint::joint::Quantity;
+use hardpoint::model::{Model, did_you_mean};
+use hardpoint::study::{variable_named, variable_names, what_if};
+use hardpoint_file::{AngleUnit, LengthUnit, ModelFile, Units};
+use hardpoint_report::diagnose;
+use hardpoint_report::figures::number;
+use hardpoint_report::margin::MarginFact;
+use hardpoint_report::whatif::WhatIfFacts;
+
+use crate::args::Whatif;
+use crate::folder::Folder;
+use crate::outcome::Outcome;
+use crate::session::{Session, json_text};
+use crate::text;
+
+/// Coordinates of more hardpoints than this are not ranked unasked.
+const MOST_RANKED: usize = 200;
+/// Variables that the ranking of a measure shows, of each unit.
+const SHOWN: usize = 8;
+
+/// Changes the design and prints what that does, or ranks the variables.
+pub fn whatif(options: &Whatif) -> Outcome {
+    let session = Session::begin(options.common.json);
+    whatif_in(&session, options).unwrap_or_else(|outcome| outcome)
+}
+
+fn whatif_in(session: &Session, options: &Whatif) -> Result<Outcome, Outcome> {
+    let mut file = session.read(&options.common.model)?;
+    let mut settings = Vec::new();
+    for text in &options.set {
+        settings.push(setting(&mut file, text).map_err(|why| session.misunderstood(&why))?);
+    }
+    let hardpoints: Vec<String> =
+        file.model.hardpoints.iter().filter(|h| !h.unnamed).map(|h| h.name.clone()).collect();
+    if hardpoints.len() <= MOST_RANKED {
+        for name in hardpoints.iter().flat_map(|h| ["x", "y", "z"].map(|axis| format!("{h}.{axis}"))) {
+            variable_named(&mut file.model, &name);
+        }
+    }
+    for name in options.measure.iter().chain(&options.over) {
+        measure(&file.model, name).map_err(|why| session.misunderstood(&why))?;
+    }
+    let folder = options.output.as_ref().map(|path| Folder::open(path));
+    let folder = folder.transpose().map_err(|e| session.not_written(&e))?;
+    let analysis = session.plan(&file, options.common.formulation())?;
+
+    let today = session.solve(&analysis);
+    let early = |stop: &hardpoint::motion::Stop, steps: usize| {
+        session.tell(&file, &[diagnose::stop(&file, stop, steps, None)]);
+        if session.interrupted() { Outcome::Interrupted } else { Outcome::Stopped }
+    };
+    if let Some(stop) = today.stop.as_ref().filter(|_| today.motion.is_empty() || session.interrupted()) {
+        session.fail(&file, &[diagnose::stop(&file, stop, today.motion.len(), None)]);
+        return Err(if session.interrupted() { Outcome::Interrupted } else { Outcome::Stopped });
+    }
+    let mut outcome = today.stop.as_ref().map_or(Outcome::Done, |stop| early(stop, today.motion.len()));
+    let facts = if settings.is_empty() {
+        WhatIfFacts::of_today(&file, analysis.topology(), &today)
+    } else {
+        let mut change = vec![0.0; file.model.variables.len()];
+        settings.iter().for_each(|(v, by)| change[*v] += by);
+        let studied = what_if(&analysis, today, &change);
+        if let Some(stop) = &studied.exact.stop {
+            outcome = early(stop, studied.exact.motion.len());
+        }
+        WhatIfFacts::new(&file, analysis.topology(), &studied)
+    };
+
+    let names = &options.measure;
+    let wanted = |name: &str| match names.is_empty() {
+        true => file.model.measures.is_empty() || file.model.measure(name).is_some(),
+        false => names.iter().any(|n| n == name),
+    };
+    let mut written = None;
+    if let Some(mut folder) = folder {
+        let html = facts.html(options.over.as_deref(), &wanted);
+        let html = html.map_err(|why| session.misunderstood(&why))?;
+        let json = json_text(&facts);
+        let result = folder
+            .write("whatif.html", |out| out.write_all(html.as_bytes()))
+            .and_then(|()| folder.write("whatif.json", |out| out.write_all(json.as_bytes())))
+            .and_then(|()| folder.write("whatif.csv", |out| facts.write_csv(out).map_err(Into::into)));
+        written = Some(folder.path_of("whatif.html"));
+        result.and_then(|()| folder.commit()).map_err(|e| session.not_written(&e))?;
+    }
+    if options.common.json {
+        session.print_json(&facts);
+    } else {
+        text::print(&facts_text(&facts, &wanted));
+        text::print(&written.map_or(String::new(), |path| format!("\nwritten: {}\n", path.display())));
+    }
+    Ok(outcome)
+}
+
+fn facts_text(facts: &WhatIfFacts, wanted: &dyn Fn(&str) -> bool) -> String {
+    let mut out = format!("{}\n", text::bold(&facts.name));
+    if !facts.change.is_empty() {
+        let margin = |m: &Option<MarginFact>| m.as_ref().map_or("-".into(), |m| number(m.least));
+        let [today, changed] = [0, 1].map(|k| margin(&facts.margins[k]));
+        let rows = [
+            ("change", facts.change_line()),
+            ("it is", facts.follows.clone()),
+            ("least margin", format!("{today} today, {changed} changed")),
+        ];
+        let table = facts.table(wanted);
+        out += &format!("{}\n{}  {}\n", text::pairs(&rows), text::table(&table), table.note);
+    }
+    for measure in facts.ranked().into_iter().filter(|m| wanted(m)) {
+        out += &format!("\n{}", text::table(&facts.ranking(measure, SHOWN)));
+    }
+    out
+}
+
+/// The variable of a `--set`, and its change in SI.
+fn setting(file: &mut ModelFile, text: &str) -> Result<(usize, f64), String> {
+    let (name, value) = text
+        .split_once('=')
+        .ok_or_else(|| format!("`--set {text}`: write NAME=CHANGE, like `tie_rod_outer.z=+2mm`"))?;
+    let name = name.trim();
+    let Some(variable) = variable_named(&mut file.model, name) else {
+        let names = variable_names(&file.model);
+        let hint = did_you_mean(name, names.iter().map(String::as_str));
+        let hint = hint.map_or(String::new(), |known| format!("; did you mean `{known}`?"));
+        return Err(format!(
+            "`{name}` is no design variable, hardpoint coordinate (NAME.x) or joint tilt (NAME.tilt_x) of the model{hint}"
+        ));
+    };
+    let quantity = file.model.variables[variable.0].quantity;
+    let by = in_si(value.trim(), quantity, file.units).map_err(|why| format!("`--set {text}`: {why}"))?;
+    Ok((variable.0, by))
+}
+
+/// A change as typed, in SI.
+fn in_si(text: &str, quantity: Quantity, units: Units) -> Result<f64, String> {
+    let number = text.trim_end_matches(|c: char| c.is_ascii_alphabetic());
+    // The exponent of `1e3` is no unit.
+    let (number, unit) = match text.parse::<f64>() {
+        Ok(_) => (text, ""),
+        Err(_) => (number, &text[number.len()..]),
+    };
+    let value: f64 = number.trim().parse().map_err(|_| format!("`{text}` is no number with a unit"))?;
+    if !value.is_finite() {
+        return Err(format!("`{text}` is not finite"));
+    }
+    let length = LengthUnit::ALL.into_iter().find(|u| u.symbol() == unit);
+    let angle = AngleUnit::ALL.into_iter().find(|u| u.symbol() == unit);
+    match (quantity, length, angle) {
+        (_, None, None) if unit.is_empty() => Ok(units.to_si(quantity, value)),
+        (Quantity::Length, Some(unit), _) => Ok(unit.metres(value)),
+        (Quantity::Angle, _, Some(unit)) => Ok(unit.radians(value)),
+        (_, None, None) => Err(format!("there is no unit `{unit}`; write mm, cm, m, in, deg or rad")),
+        (Quantity::Length, ..) => Err(format!("it is a length, and {unit} is none")),
+        (Quantity::Angle, ..) => Err(format!("it is an angle, and {unit} is none")),
+        (Quantity::Number, ..) => {
+            Err(format!("it is a plain number and takes no unit, but `{unit}` was given"))
+        }
+    }
+}
+
+/// Checks the name of a measure or of a point's component.
+fn measure(model: &Model, name: &str) -> Result<(), String> {
+    let names: Vec<String> = hardpoint::measure::outputs(model).into_iter().map(|o| o.name).collect();
+    if names.iter().any(|n| n == name) {
+        return Ok(());
+    }
+    let hint = did_you_mean(name, names.iter().map(String::as_str));
+    let hint = hint.map_or_else(
+        || format!("; there are: {}", hardpoint_report::figures::some_of(&names, ", ")),
+        |known| format!("; did you mean `{known}`?"),
+    );
+    Err(format!("`{name}` is no measure of the model{hint}"))
+}

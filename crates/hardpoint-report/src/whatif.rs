@@ -1,0 +1,332 @@
+//! `whatif.json`, `whatif.csv` and `whatif.html`: a changed design as it is foreseen and as it is, and which variable moves
+//! which measure most.
+
+mod draw;
+
+use std::io::Write;
+
+use csv::WriterBuilder;
+use hardpoint::Solution;
+use hardpoint::measure::OutputSource;
+use hardpoint::model::{Model, VariableId};
+use hardpoint::study::WhatIf;
+use hardpoint::topology::Topology;
+use hardpoint_file::{ModelFile, Units};
+use serde::Serialize;
+
+use crate::GENERATOR;
+use crate::facts::variable_unit;
+use crate::figures::{names, number, per, rounded, symbol, with_unit};
+use crate::margin::MarginFact;
+use crate::page::Table;
+
+/// Everything that `whatif.json` holds. Figures are in the model's units, times in s.
+#[derive(Clone, Debug, Serialize)]
+pub struct WhatIfFacts {
+    /// Program and version.
+    pub generator: &'static str,
+    /// The mechanism's name.
+    pub name: String,
+    /// The model file, as it was given.
+    pub file: String,
+    /// What is changed, and by how much.
+    pub change: Vec<ChangeFact>,
+    /// Whether and how the mechanism follows, in a sentence.
+    pub follows: String,
+    /// How far the mechanism stays from singular positions, today and changed.
+    pub margins: [Option<MarginFact>; 2],
+    /// Per measure, how it changes and how well that was foreseen.
+    pub measures: Vec<MeasureFact>,
+    /// Which variable moves which measure most.
+    pub influence: Vec<InfluenceFact>,
+    /// Output times, s.
+    pub times: Vec<f64>,
+}
+
+/// A variable that is changed.
+#[derive(Clone, Debug, Serialize)]
+pub struct ChangeFact {
+    /// Its name.
+    pub variable: String,
+    /// By how much.
+    pub by: f64,
+    /// Its unit; `1` for a plain number.
+    pub unit: String,
+}
+
+/// A measure's curves.
+#[derive(Clone, Debug, Serialize)]
+pub struct MeasureFact {
+    /// Its name.
+    pub measure: String,
+    /// Its unit.
+    pub unit: String,
+    /// Largest exact change over the motion, with its sign.
+    pub change: Option<f64>,
+    /// Time of that, s.
+    pub time: Option<f64>,
+    /// Largest error of the first-order prediction, and of the second-order one.
+    pub errors: Option<[f64; 2]>,
+    /// How many times this change could be made before the second-order part is 5 % of the first-order one; `null` where
+    /// nothing bends, or nothing changes to first order.
+    pub linear_up_to: Option<f64>,
+    /// Over the output times: today's value.
+    pub today: Vec<f64>,
+    /// As foreseen to first order, and to second order; empty where nothing is foreseen.
+    pub first: Vec<f64>,
+    /// As foreseen to second order.
+    pub second: Vec<f64>,
+    /// Re-solved.
+    pub exact: Vec<f64>,
+}
+
+/// How much a variable moves a measure.
+#[derive(Clone, Debug, Serialize)]
+pub struct InfluenceFact {
+    /// The measure.
+    pub measure: String,
+    /// The variable.
+    pub variable: String,
+    /// Largest derivative over the motion, with its sign.
+    pub largest: f64,
+    /// Time of that, s.
+    pub time: f64,
+    /// Its unit.
+    pub unit: String,
+    /// The variable's unit.
+    pub per: String,
+}
+
+impl WhatIfFacts {
+    /// The facts of a changed design.
+    pub fn new(file: &ModelFile, topology: &Topology, what_if: &WhatIf) -> Self {
+        let (model, units) = (&file.model, file.units);
+        let changed = model.variables.iter().zip(&what_if.change).filter(|(_, by)| **by != 0.0);
+        let change = changed.map(|(variable, by)| ChangeFact {
+            variable: variable.name.clone(),
+            by: units.from_si(variable.quantity, *by),
+            unit: variable_unit(model, units, variable),
+        });
+        let margin = |s: &Solution| MarginFact::new(model, topology, &s.motion);
+        let measured = &what_if.today.measured;
+        let mut facts = Self {
+            generator: GENERATOR,
+            name: model.name.clone(),
+            file: file.file_name().into(),
+            change: change.collect(),
+            follows: follows(model, what_if),
+            margins: [margin(&what_if.today), margin(&what_if.exact)],
+            measures: Vec::new(),
+            influence: influence(model, units, &what_if.today),
+            times: what_if.today.motion.times[..what_if.len()].to_vec(),
+        };
+        for (m, output) in measured.outputs.iter().enumerate() {
+            let shown = |x: f64| units.from_si(output.quantity, x);
+            let foresight = what_if.foresight(m);
+            let steps = || 0..what_if.len();
+            let foreseen = |order: usize| match foresight {
+                Some(_) => steps().map(|k| shown(what_if.foreseen(k, m)[order])).collect(),
+                None => Vec::new(),
+            };
+            let change = (0..what_if.len())
+                .map(|k| (what_if.exact(k, m) - measured.value(k, m)[0], k))
+                .max_by(|a, b| a.0.abs().total_cmp(&b.0.abs()));
+            facts.measures.push(MeasureFact {
+                measure: output.name.clone(),
+                unit: symbol(units, output.quantity).into(),
+                change: change.map(|(x, _)| shown(x)),
+                time: change.map(|(_, k)| what_if.today.motion.times[k]),
+                errors: foresight.map(|f| f.errors.map(shown)),
+                linear_up_to: foresight.and_then(|f| f.linear_up_to).filter(|x| x.is_finite()),
+                today: steps().map(|k| shown(measured.value(k, m)[0])).collect(),
+                first: foreseen(0),
+                second: foreseen(1),
+                exact: steps().map(|k| shown(what_if.exact(k, m))).collect(),
+            });
+        }
+        facts
+    }
+
+    /// Only the ranking, of a model whose design is not changed.
+    pub fn of_today(file: &ModelFile, topology: &Topology, today: &Solution) -> Self {
+        Self {
+            generator: GENERATOR,
+            name: file.model.name.clone(),
+            file: file.file_name().into(),
+            change: Vec::new(),
+            follows: String::new(),
+            margins: [MarginFact::new(&file.model, topology, &today.motion), None],
+            measures: Vec::new(),
+            influence: influence(&file.model, file.units, today),
+            times: today.motion.times.clone(),
+        }
+    }
+
+    /// What is changed, in a line.
+    pub fn change_line(&self) -> String {
+        let one = |c: &ChangeFact| format!("{} by {}", c.variable, with_unit(c.by, &c.unit));
+        self.change.iter().map(one).collect::<Vec<_>>().join(", ")
+    }
+
+    /// How the measures change, and how well that was foreseen; of those asked for, or of all.
+    pub fn table(&self, wanted: &dyn Fn(&str) -> bool) -> Table {
+        let range = |x: &[f64]| {
+            let low = x.iter().copied().fold(f64::INFINITY, f64::min);
+            let high = x.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+            if x.is_empty() { "-".into() } else { format!("{} to {}", number(low), number(high)) }
+        };
+        let some = |x: Option<f64>, unit: &str| x.map_or("-".into(), |x| format!("{} {unit}", rounded(x, 3)));
+        let row = |m: &MeasureFact| {
+            vec![
+                m.measure.clone(),
+                m.unit.clone(),
+                range(&m.today),
+                range(&m.exact),
+                some(m.change, ""),
+                m.time.map_or("-".into(), |t| format!("{} s", number(t))),
+                some(m.errors.map(|e| e[0]), ""),
+                some(m.errors.map(|e| e[1]), ""),
+                m.linear_up_to.map_or("-".into(), |x| format!("{} x", rounded(x, 2))),
+            ]
+        };
+        Table {
+            title: format!("What if {}", self.change_line()),
+            note: "Predictions come from today's derivatives, without solving again; the exact curves are re-solved. \
+                   \"Linear up to\": so many times this change, the second-order part is 5 % of the first-order one."
+                .into(),
+            header: [
+                "measure",
+                "unit",
+                "today",
+                "changed",
+                "largest change",
+                "at t",
+                "error of 1st order",
+                "error of 2nd order",
+                "linear up to",
+            ]
+            .map(String::from)
+            .to_vec(),
+            rows: self.measures.iter().filter(|m| wanted(&m.measure)).map(row).collect(),
+        }
+    }
+
+    /// The variables that move a measure most, the strongest first; so many of each unit.
+    pub fn ranking(&self, measure: &str, shown: usize) -> Table {
+        let mut rows = Vec::new();
+        let mut per_unit: Vec<(&str, usize)> = Vec::new();
+        for i in self.influence.iter().filter(|i| i.measure == measure) {
+            let known = per_unit.iter_mut().find(|(unit, _)| *unit == i.per);
+            let rank = match known {
+                Some((_, rank)) => {
+                    *rank += 1;
+                    *rank
+                }
+                None => {
+                    per_unit.push((&i.per, 1));
+                    1
+                }
+            };
+            if rank <= shown {
+                let at = format!("{} s", number(i.time));
+                rows.push(vec![rank.to_string(), i.variable.clone(), with_unit(i.largest, &i.unit), at]);
+            }
+        }
+        Table {
+            title: format!("What moves {measure} most"),
+            note: String::new(),
+            header: ["rank", "by variable", "largest", "at t"].map(String::from).to_vec(),
+            rows,
+        }
+    }
+
+    /// The names of the measures that the ranking knows, each once.
+    pub fn ranked(&self) -> Vec<&str> {
+        let mut names: Vec<&str> = Vec::new();
+        for i in &self.influence {
+            if names.last() != Some(&i.measure.as_str()) {
+                names.push(&i.measure);
+            }
+        }
+        names
+    }
+
+    /// The curves of the measures, one row per output time.
+    ///
+    /// # Errors
+    /// Where `out` cannot be written.
+    pub fn write_csv(&self, out: impl Write) -> csv::Result<()> {
+        let mut header = vec!["t [s]".to_owned()];
+        for m in &self.measures {
+            let curves = if m.first.is_empty() { &["today", "exact"][..] } else { &CURVES };
+            header.extend(curves.iter().map(|c| format!("{} {c} [{}]", m.measure, m.unit)));
+        }
+        let mut writer = WriterBuilder::new().has_headers(false).from_writer(out);
+        writer.write_record(&header)?;
+        for (k, t) in self.times.iter().enumerate() {
+            let mut row = vec![*t];
+            for m in &self.measures {
+                row.push(m.today[k]);
+                row.extend(m.first.get(k));
+                row.extend(m.second.get(k));
+                row.push(m.exact[k]);
+            }
+            writer.serialize(row)?;
+        }
+        writer.flush()?;
+        Ok(())
+    }
+
+    /// The page: tables, curves over time or over another measure, and the heat map.
+    ///
+    /// # Errors
+    /// If a curve cannot be drawn.
+    pub fn html(&self, over: Option<&str>, wanted: &dyn Fn(&str) -> bool) -> Result<String, String> {
+        draw::html(self, over, wanted)
+    }
+}
+
+const CURVES: [&str; 4] = ["today", "first order", "second order", "exact"];
+
+/// Whether and how the mechanism follows a change.
+fn follows(model: &Model, what_if: &WhatIf) -> String {
+    if !what_if.cannot_follow.is_empty() {
+        let which = what_if.cannot_follow.iter().map(|v| model.variables[v.0].name.as_str());
+        return format!("the mechanism cannot follow {}: nothing is foreseen", names(which));
+    }
+    if what_if.opens.is_empty() {
+        return "admissible: every joint stays closed, nothing is re-assembled".into();
+    }
+    let joints = what_if.opens.iter().map(|d| model.joints[d.joint.0].name.as_str());
+    format!("re-assembled: {} opens in the design configuration and is closed again by moving", names(joints))
+}
+
+/// Every measure (or every point, where there are no measures) by every variable, the strongest first within each.
+fn influence(model: &Model, units: Units, today: &Solution) -> Vec<InfluenceFact> {
+    let measured = &today.measured;
+    let mut facts = Vec::new();
+    let counts =
+        |source: &OutputSource| model.measures.is_empty() || matches!(source, OutputSource::Measure(_));
+    let measures = measured.outputs.iter().enumerate().filter(|(_, o)| counts(&o.source));
+    for (m, output) in measures {
+        let first = facts.len();
+        for (v, variable) in model.variables.iter().enumerate() {
+            if measured.is_empty() || today.sensitivities.at(0, v).is_none() {
+                continue;
+            }
+            let at = |k: &usize| measured.d(*k, VariableId(v), m)[0];
+            let k = (0..measured.len()).max_by(|a, b| at(a).abs().total_cmp(&at(b).abs())).unwrap_or(0);
+            let by = variable_unit(model, units, variable);
+            facts.push(InfluenceFact {
+                measure: output.name.clone(),
+                variable: variable.name.clone(),
+                largest: units.derivative_from_si(output.quantity, variable.quantity, at(&k)),
+                time: today.motion.times[k],
+                unit: per(symbol(units, output.quantity), &by),
+                per: by,
+            });
+        }
+        facts[first..].sort_by(|a, b| b.largest.abs().total_cmp(&a.largest.abs()));
+    }
+    facts
+}

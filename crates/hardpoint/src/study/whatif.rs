@@ -1,0 +1,159 @@
+//! What if the design were changed so: foreseen from the derivatives of today's design, and solved exactly.
+
+use crate::analysis::{Analysis, Solution};
+use crate::joint::Quantity;
+use crate::model::{Change, DesignVariable, End, HardpointId, JointId, Model, VariableId};
+use crate::sensitivity::{Admissibility, JointDefect, admissibility_at_design};
+use crate::space::Vec3;
+
+use super::second::SecondDerivatives;
+
+/// The second-order part may be this part of the first-order one where a linear prediction is still trusted.
+const LINEAR: f64 = 0.05;
+
+/// A changed design: today's curves, those foreseen, and those solved exactly.
+#[derive(Clone, Debug)]
+pub struct WhatIf {
+    /// By how much every variable changes, m, rad, or plain.
+    pub change: Vec<f64>,
+    /// Today's design, with its sensitivities.
+    pub today: Solution,
+    /// The changed design, re-solved.
+    pub exact: Solution,
+    /// How the curves bend along the change.
+    bend: SecondDerivatives,
+    /// The joints that the change opens in the design configuration, so that the mechanism re-assembles; none where it is
+    /// admissible as a whole.
+    pub opens: Vec<JointDefect>,
+    /// Changed variables that the mechanism cannot follow: then nothing is foreseen.
+    pub cannot_follow: Vec<VariableId>,
+}
+
+/// How well one output was foreseen.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Foresight {
+    /// Largest exact change over the motion, and the index of its time.
+    pub change: (f64, usize),
+    /// Largest error of the first-order prediction, and of the second-order one.
+    pub errors: [f64; 2],
+    /// How many times the change could be made before its second-order part is 5 % of the first-order one; infinite where
+    /// nothing bends, `None` where the first-order part is nothing.
+    pub linear_up_to: Option<f64>,
+}
+
+/// Foresees and solves a changed design; `today` is the nominal design's solution.
+pub fn what_if(analysis: &Analysis<'_>, today: Solution, change: &[f64]) -> WhatIf {
+    let model = analysis.model();
+    let change = model.whole(change);
+    let changed = |v: &VariableId| change[v.0] != 0.0;
+    let variables = (0..change.len()).map(VariableId).filter(changed);
+    let resists = |v: &VariableId| {
+        let known = today.sensitivities.admissibility.get(v.0);
+        matches!(known, Some(Admissibility::CannotFollow { .. }))
+    };
+    let field = analysis.effects().field_along(&crate::sensitivity::along(&change), &model.whole(&[]), 0.0);
+    WhatIf {
+        exact: analysis.run_design(&change),
+        bend: analysis.second(&[], std::slice::from_ref(&change), &[[0, 0]]),
+        opens: admissibility_at_design(model, &field),
+        cannot_follow: variables.filter(resists).collect(),
+        change,
+        today,
+    }
+}
+
+impl WhatIf {
+    /// Output times that both designs were solved for.
+    pub fn len(&self) -> usize {
+        self.today.measured.len().min(self.exact.measured.len())
+    }
+
+    /// Whether there is none.
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    /// The first-order change of output m at time k: of its value, rate or acceleration (order 0, 1, 2).
+    pub fn first(&self, k: usize, m: usize, order: usize) -> f64 {
+        let changed = self.change.iter().enumerate().filter(|(_, d)| **d != 0.0);
+        changed.map(|(v, d)| d * self.today.measured.d(k, VariableId(v), m)[order]).sum()
+    }
+
+    /// The second-order part of the change of its value.
+    pub fn second(&self, k: usize, m: usize) -> f64 {
+        0.5 * self.bend.value(k, 0, m)
+    }
+
+    /// The value of output m at time k as foreseen to first and to second order.
+    pub fn foreseen(&self, k: usize, m: usize) -> [f64; 2] {
+        let linear = self.today.measured.value(k, m)[0] + self.first(k, m, 0);
+        [linear, linear + self.second(k, m)]
+    }
+
+    /// The exact value; an angle that is counted through turns is counted through the same ones as today's.
+    pub fn exact(&self, k: usize, m: usize) -> f64 {
+        const TURN: f64 = 2.0 * std::f64::consts::PI;
+        let (x, now) = (self.exact.measured.value(k, m)[0], self.today.measured.value(k, m)[0]);
+        match self.today.measured.outputs[m].quantity {
+            Quantity::Angle => x - TURN * ((x - now) / TURN).round(),
+            _ => x,
+        }
+    }
+
+    /// How well output m was foreseen over the motion; `None` where nothing was foreseen or solved.
+    pub fn foresight(&self, m: usize) -> Option<Foresight> {
+        if self.is_empty() || !self.cannot_follow.is_empty() {
+            return None;
+        }
+        let mut found = Foresight { change: (0.0, 0), errors: [0.0; 2], linear_up_to: None };
+        let (mut first, mut second) = (0.0_f64, 0.0_f64);
+        for k in 0..self.len() {
+            let exact = self.exact(k, m);
+            let change = exact - self.today.measured.value(k, m)[0];
+            if change.abs() > found.change.0.abs() {
+                found.change = (change, k);
+            }
+            for (most, foreseen) in found.errors.iter_mut().zip(self.foreseen(k, m)) {
+                *most = most.max((foreseen - exact).abs());
+            }
+            (first, second) = (first.max(self.first(k, m, 0).abs()), second.max(self.second(k, m).abs()));
+        }
+        found.linear_up_to = (first > 0.0).then(|| LINEAR * first / second);
+        Some(found)
+    }
+}
+
+/// A variable that a name stands for: one of the model's, or else `HARDPOINT.x`, `.y`, `.z`, or `JOINT.tilt_x`, `.tilt_y`,
+/// `.tilt_z` (about a global axis through the joint's place), which the model is given as a new variable.
+pub fn variable_named(model: &mut Model, name: &str) -> Option<VariableId> {
+    if let Some(known) = model.variable(name) {
+        return Some(known);
+    }
+    let (what, part) = name.rsplit_once('.')?;
+    let axis = |letter: &str| ["x", "y", "z"].iter().position(|l| *l == letter);
+    let (quantity, change) = if let Some(axis) = axis(part) {
+        let hardpoint = model.hardpoints.iter().position(|h| !h.unnamed && h.name == what)?;
+        (Quantity::Length, Change::Move { hardpoint: HardpointId(hardpoint), velocity: Vec3::AXES[axis] })
+    } else {
+        let axis = axis(part.strip_prefix("tilt_")?)?;
+        let joint = model.joints.iter().position(|j| !j.unnamed && j.name == what)?;
+        let rotation = Vec3::AXES[axis];
+        let change = Change::Marker { joint: JointId(joint), end: End::Both, position: Vec3::ZERO, rotation };
+        (Quantity::Angle, change)
+    };
+    let variable = DesignVariable { name: name.into(), quantity, changes: vec![change], fixed_length: false };
+    model.variables.push(variable);
+    Some(VariableId(model.variables.len() - 1))
+}
+
+/// All names that [`variable_named`] knows in a model.
+pub fn variable_names(model: &Model) -> Vec<String> {
+    let mut names: Vec<String> = model.variables.iter().map(|v| v.name.clone()).collect();
+    for h in model.hardpoints.iter().filter(|h| !h.unnamed) {
+        names.extend(["x", "y", "z"].map(|axis| format!("{}.{axis}", h.name)));
+    }
+    for j in model.joints.iter().filter(|j| !j.unnamed) {
+        names.extend(["x", "y", "z"].map(|axis| format!("{}.tilt_{axis}", j.name)));
+    }
+    names
+}
