@@ -6,11 +6,11 @@ use fearless_simd::{Level, dispatch};
 
 use crate::analysis::{Analysis, Design, Solved, Walk};
 use crate::measure::{Moment, Output, bodies_asked_for, outputs};
-use crate::model::{BodyId, Fixed, VariableId};
-use crate::motion::Stop;
+use crate::model::{BodyId, Fixed};
 use crate::motion::stepper::Stepper;
+use crate::motion::{Motion, Stop};
 use crate::sensitivity::{BodyCurvature, Seconds};
-use crate::sink::Sink;
+use crate::sink::Store;
 use crate::space::{Dual, LANES, Pose, Real, lanes};
 
 /// Second derivatives of all bodies' positions and of the values of all outputs, for pairs of directions.
@@ -41,17 +41,6 @@ impl SecondDerivatives {
     pub fn body(&self, k: usize, p: usize, body: BodyId) -> &BodyCurvature {
         &self.curvatures[(k * self.pairs.len() + p) * self.bodies + body.0]
     }
-}
-
-/// Takes nothing: the motion is only walked along.
-struct Nothing;
-
-impl Sink for Nothing {
-    fn wants(&self, _: BodyId) -> bool {
-        false
-    }
-    fn state(&mut self, _: usize, _: BodyId, _: &crate::motion::BodyState) {}
-    fn sensitivity(&mut self, _: usize, _: VariableId, _: BodyId, _: &crate::sensitivity::BodySensitivity) {}
 }
 
 impl Analysis<'_> {
@@ -90,8 +79,10 @@ impl Analysis<'_> {
         };
         let mut one = Bends::new(self, design, directions, pairs, 0.0);
         let mut all = Bends::new(self, design, directions, pairs, witness);
-        let mut done = 0;
-        result.stop = walk.all(self, &mut Nothing, &mut |_| ControlFlow::Continue(()), |_, solved, count| {
+        let (mut done, mut unused) = (0, Motion::default());
+        // Nothing is stored: no body's results are wanted.
+        let mut store = Store { motion: &mut unused, sensitivities: &mut [], variables: 0 };
+        result.stop = walk.all(self, &mut store, &mut |_| ControlFlow::Continue(()), |_, solved, count| {
             let times = &model.times[done..done + count];
             match solved {
                 Solved::One(stepper) => one.add(stepper, times, &mut result),
