@@ -26,7 +26,7 @@ pub use mat3::Mat3;
 pub(crate) use matrix::Elimination;
 pub use pose::Pose;
 pub use quat::Quat;
-pub use real::Real;
+pub use real::{Function, Real};
 pub use twist::{Twist, Wrench};
 pub use vec3::Vec3;
 
