@@ -119,12 +119,38 @@ pub(super) fn parse_open(text: &str) -> Result<(Program, Vec<&str>), ExpressionE
     }
 }
 
+/// The names in a text that expressions do not know, each once.
+pub(super) fn names(text: &str) -> Vec<&str> {
+    let (mut descent, mut free) = (Descent::new(text, &[]), Free::default());
+    while descent.token != Token::End {
+        if let Token::Name(name) = descent.token
+            && !is_taken(name)
+        {
+            free.number(name);
+        }
+        descent.advance();
+    }
+    free.names
+}
+
 /// The names that a text uses freely.
 #[derive(Default)]
 struct Free<'a> {
     names: Vec<&'a str>,
     /// Which number each has. Only looked up, never walked.
     numbers: HashMap<&'a str, usize>,
+}
+
+impl<'a> Free<'a> {
+    /// Which number a name has; the next one if it is new.
+    fn number(&mut self, name: &'a str) -> usize {
+        let next = self.names.len();
+        let number = *self.numbers.entry(name).or_insert(next);
+        if number == next {
+            self.names.push(name);
+        }
+        number
+    }
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -276,7 +302,8 @@ impl<'a> Descent<'a> {
                 Err(error(self.span.clone(), "the number is too large", Some("the largest is 1.79e308")))
             }
             Token::Name("t") if self.free.is_some() => {
-                let help = "only the law of a driver knows the time; rename what is meant, if it is a parameter";
+                let help =
+                    "only the law of a driver knows the time; rename what is meant, if it is a parameter";
                 Err(error(self.span.clone(), "`t` is the time, which has no meaning here", Some(help)))
             }
             Token::Name("t") => self.leaf(Operation::Time),
@@ -290,11 +317,7 @@ impl<'a> Descent<'a> {
                 Some(&(name, signature, function)) => self.call(name, signature, function),
                 None => match &mut self.free {
                     Some(free) => {
-                        let next = free.names.len();
-                        let number = *free.numbers.entry(name).or_insert(next);
-                        if number == next {
-                            free.names.push(name);
-                        }
+                        let number = free.number(name);
                         self.leaf(Operation::Parameter(number))
                     }
                     None => Err(self.unknown_name(name)),

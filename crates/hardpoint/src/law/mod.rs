@@ -149,6 +149,15 @@ impl Law {
         Formula::parse(text, parameters).map(Kind::Formula).map(Self::of)
     }
 
+    /// The names in the text of a law that stand for parameters: each once, in order.
+    ///
+    /// ```
+    /// assert_eq!(hardpoint::law::Law::names("a*sin(w*t + a)"), ["a", "w"]);
+    /// ```
+    pub fn names(text: &str) -> Vec<&str> {
+        expression::names(text)
+    }
+
     /// The law that holds `value` at all times, in the driver's own unit.
     pub fn constant(value: f64) -> Self {
         Self::of(Kind::Formula(Formula::constant(value)))

@@ -403,9 +403,14 @@ impl<'m> Effects<'m> {
     }
 
     /// The parameters of laws that change, and their rates.
-    fn law_rates<T: Real>(&self, touched: &Touched, design: &Design<'_, Dual<T>>) -> Vec<(DriverId, usize, T)> {
+    fn law_rates<T: Real>(
+        &self,
+        touched: &Touched,
+        design: &Design<'_, Dual<T>>,
+    ) -> Vec<(DriverId, usize, T)> {
         let witness = design.witness.v;
-        let mut rates: Vec<_> = touched.laws.iter().map(|(d, p, rate)| (*d, *p, witness.like(*rate))).collect();
+        let mut rates: Vec<_> =
+            touched.laws.iter().map(|(d, p, rate)| (*d, *p, witness.like(*rate))).collect();
         for &k in &touched.law_formulas {
             if let Target::Law(driver, parameter) = self.model.formulas[k].of {
                 let rate = design.values.formulas[k].d;
@@ -487,13 +492,18 @@ impl<'e, T: Real> Design<'e, T> {
         for formula in &model.formulas {
             let result = formula.at(self.witness, |source| {
                 let (given, rates) = match source {
-                    Source::Parameter(p) => (formulas.of_parameter[p.0], self.rates(&formulas.rates[p.0], |r| *r)),
-                    Source::Coordinate(h, axis) => {
-                        (formulas.of_hardpoint[h.0][axis], self.rates(&self.effects.moves[h.0], move |v| v[axis]))
+                    Source::Parameter(p) => {
+                        (formulas.of_parameter[p.0], self.rates(&formulas.rates[p.0], |r| *r))
                     }
+                    Source::Coordinate(h, axis) => (
+                        formulas.of_hardpoint[h.0][axis],
+                        self.rates(&self.effects.moves[h.0], move |v| v[axis]),
+                    ),
                 };
                 let given = given.map_or_else(|| self.witness.like(model.nominal(source)), |k| results[k]);
-                rates.into_iter().fold(given, |sum, (k, rate)| self.witness.like(rate).times_plus(variables[k], sum))
+                rates
+                    .into_iter()
+                    .fold(given, |sum, (k, rate)| self.witness.like(rate).times_plus(variables[k], sum))
             });
             results.push(result);
         }
@@ -651,11 +661,15 @@ impl Model {
         Effects::of(self).fields(&self.whole(design), 0.0)
     }
 
-    /// Whether a change of this variable changes anything that the model's motion or its results depend on.
-    pub fn has_effect(&self, variable: VariableId) -> bool {
-        let touched = Effects::of(self).touched(variable);
-        let felt = [&touched.joints, &touched.points, &touched.measures, &touched.law_formulas];
-        felt.iter().any(|list| !list.is_empty()) || !touched.laws.is_empty()
+    /// The variables whose change changes nothing that the motion or its results depend on.
+    pub fn without_effect(&self) -> Vec<VariableId> {
+        let effects = Effects::of(self);
+        let is_idle = |v: &VariableId| {
+            let touched = effects.touched(*v);
+            let felt = [&touched.joints, &touched.points, &touched.measures, &touched.law_formulas];
+            felt.iter().all(|list| list.is_empty()) && touched.laws.is_empty()
+        };
+        (0..self.variables.len()).map(VariableId).filter(is_idle).collect()
     }
 
     /// A value for every variable: those given, then 0.

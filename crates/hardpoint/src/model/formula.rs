@@ -1,6 +1,6 @@
 //! Named numbers, and formulas over them: what of the model follows the design other than in proportion.
 
-use std::collections::HashMap;
+use std::collections::BTreeMap;
 
 use super::*;
 use crate::law::Expression;
@@ -94,7 +94,7 @@ pub struct Nominal {
     /// Of each hardpoint of the draft, m; null where a formula of it is faulty.
     pub positions: Vec<Vec3>,
     /// By name: its value in SI if it has one, its quantity, and a design variable or hardpoint that it follows.
-    pub(super) parameters: HashMap<String, (Option<f64>, Quantity, Option<String>)>,
+    pub(super) parameters: BTreeMap<String, (Option<f64>, Quantity, Option<String>)>,
 }
 
 /// Why an expression is no constant.

@@ -249,8 +249,7 @@ fn cam_and_slot() -> Draft {
             marker("pin_x", "pin", [1.0, 0.0, 0.0], [0.0, 0.0, 0.3]),
             VariableDraft {
                 fixed_length: true,
-                ..marker("fulcrum_and_pin", "fulcrum", [0.5, 1.0, 0.0], [0.0; 3]),
-                ..VariableDraft::default()
+                ..marker("fulcrum_and_pin", "fulcrum", [0.5, 1.0, 0.0], [0.0; 3])
             },
             VariableDraft {
                 name: "swing".into(),

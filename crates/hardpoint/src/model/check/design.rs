@@ -36,7 +36,8 @@ impl Check<'_> {
         if let Some([low, high]) = v.bounds {
             if !(low < high && low.is_finite() && high.is_finite()) {
                 let message = format!("the bounds of design variable `{}` do not rise", v.name);
-                self.fault("HP0229", here.key("bounds"), message).help("give the lower bound first, then the upper");
+                self.fault("HP0229", here.key("bounds"), message)
+                    .help("give the lower bound first, then the upper");
             } else if !(low <= 0.0 && high >= 0.0) {
                 let message = format!("the model as drawn is not within the bounds of `{}`", v.name);
                 self.fault("HP0229", here.key("bounds"), message).help(

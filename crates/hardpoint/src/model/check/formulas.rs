@@ -98,7 +98,9 @@ impl<'a> Check<'a> {
         let found = self.find("parameter", name, at.clone(), names).map(ParameterId);
         if found.is_none() && self.number_of("hardpoint", name).is_some() {
             let fault = self.faults.last_mut().expect("just reported");
-            fault.help(format!("for a coordinate of hardpoint `{name}` write `{name}.x`, `{name}.y` or `{name}.z`"));
+            fault.help(format!(
+                "for a coordinate of hardpoint `{name}` write `{name}.x`, `{name}.y` or `{name}.z`"
+            ));
         }
         let parameter = found?;
         let of_length = self.model.parameters[parameter.0].quantity == Quantity::Length;
@@ -180,7 +182,9 @@ impl<'a> Check<'a> {
             let numbers = w.formula.inputs.iter().zip(w.formula.expression.names());
             let numbers: Vec<String> = numbers
                 .take(LISTED_NAMES)
-                .map(|((source, per_unit), name)| format!("`{name}` = {}", self.model.nominal(*source) * per_unit))
+                .map(|((source, per_unit), name)| {
+                    format!("`{name}` = {}", self.model.nominal(*source) * per_unit)
+                })
                 .collect();
             let of = w.formula.of;
             let fault = self.fault("HP0228", w.at, message);
@@ -255,7 +259,8 @@ impl<'a> Check<'a> {
         let given = self.law_formulas.get(name).cloned().unwrap_or_default();
         for (parameter, expression) in given {
             let Some(p) = law.parameters().iter().position(|p| p.name == parameter) else {
-                let message = format!("a formula gives `{parameter}`, which the law of `{name}` does not have");
+                let message =
+                    format!("a formula gives `{parameter}`, which the law of `{name}` does not have");
                 self.fault("HP0204", at.clone(), message);
                 continue;
             };
@@ -307,7 +312,9 @@ impl<'a> Check<'a> {
                 let message = format!("the expression for `{name}` moves a point of a curve");
                 self.fault("HP0226", at, message)
                     .note("the shape of a curve is no design variable; its place and direction are")
-                    .help("write `design = false` for the parameters in it, or the curve's points as numbers");
+                    .help(
+                        "write `design = false` for the parameters in it, or the curve's points as numbers",
+                    );
             }
             varying.extend(formula.gives());
             self.model.formulas.push(formula);
@@ -372,15 +379,27 @@ impl Nominal {
         self.parameters.get(name).map(|p| (p.0, p.1))
     }
 
+    /// The value of an expression over parameters, as its text means it.
+    ///
+    /// # Errors
+    /// Why it has none; that it follows the design is no reason.
+    pub fn value(&self, expression: &Expression) -> Result<f64, NotConstant> {
+        self.evaluated(expression, true)
+    }
+
     /// The value of an expression over parameters that no change of the design moves, as its text means it.
     ///
     /// # Errors
     /// Why it is no such constant.
     pub fn constant(&self, expression: &Expression) -> Result<f64, NotConstant> {
+        self.evaluated(expression, false)
+    }
+
+    fn evaluated(&self, expression: &Expression, may_follow: bool) -> Result<f64, NotConstant> {
         let numbers = expression.names().iter().map(|name| {
             let unknown = || NotConstant::Unknown(name.clone());
             let (value, quantity, follows) = self.parameters.get(name).ok_or_else(unknown)?;
-            if let Some(follows) = follows {
+            if let (Some(follows), false) = (follows, may_follow) {
                 return Err(NotConstant::Follows(name.clone(), follows.clone()));
             }
             let per_unit = if *quantity == Quantity::Length { expression.per_metre() } else { 1.0 };
