@@ -51,7 +51,9 @@ fn crank_rocker(own_length: bool) -> Draft {
     }
     draft.parameters.push(ParameterDraft { name: "reach".into(), value: 0.0, quantity: Quantity::Length });
     draft.formulas.push(formula(FormulaOf::Parameter("reach".into()), "rocker*sqrt(stretch)"));
-    draft.formulas.extend(coordinates("C", ["D.x + reach*cos(psi)", "D.y + reach*sin(psi)", "exp(stretch)/100"]));
+    draft
+        .formulas
+        .extend(coordinates("C", ["D.x + reach*cos(psi)", "D.y + reach*sin(psi)", "exp(stretch)/100"]));
     draft.formulas.extend(coordinates("B", ["crank*cos(phi)", "crank*sin(phi)", "0"]));
     draft.formulas.push(formula(FormulaOf::Coordinate("D".into(), 0), "A.x + hypot(ground, 0.1)"));
     draft.formulas.push(formula(FormulaOf::Law("motor".into(), "swing".into()), "swing^3 + 0.375"));
@@ -80,8 +82,13 @@ fn crank_rocker(own_length: bool) -> Draft {
         drives: DrivenDraft::Coordinate { joint: "bearing".into(), coordinate: None },
         law,
     });
-    let place = ["C.x/2", "0.02*tanh(stretch)", "max(0.01, C.z)"].map(|text| Expression::parse(text).unwrap());
-    draft.points.push(PointDraft { name: "P".into(), body: "rocker".into(), at: Place::Formula(Box::new(place)) });
+    let place =
+        ["C.x/2", "0.02*tanh(stretch)", "max(0.01, C.z)"].map(|text| Expression::parse(text).unwrap());
+    draft.points.push(PointDraft {
+        name: "P".into(),
+        body: "rocker".into(),
+        at: Place::Formula(Box::new(place)),
+    });
     draft.measures.push(MeasureDraft {
         name: "angle".into(),
         kind: MeasureKindDraft::Coordinate { joint: "pivot".into(), coordinate: None },
@@ -152,7 +159,10 @@ fn fields_of_formulas_are_the_derivatives_of_the_geometry_at_every_design() {
                 assert_ne!(*field, Field::default(), "{name}: no field");
                 let (coarse, fine, best) = (error(2e-2), error(1e-2), error(1e-6));
                 assert!(best < 1e-8, "{name} at {base:?}: {best:e}");
-                assert!(coarse < 1e-11 || (3.5..4.5).contains(&(coarse / fine)), "{name}: {coarse:e} {fine:e}");
+                assert!(
+                    coarse < 1e-11 || (3.5..4.5).contains(&(coarse / fine)),
+                    "{name}: {coarse:e} {fine:e}"
+                );
             }
         }
     }
@@ -169,7 +179,8 @@ fn sensitivities_by_nonlinear_parameters_match_designs_that_are_solved_anew() {
             for (v, a) in model.variables.iter().zip(&solution.sensitivities.admissibility) {
                 assert!(!matches!(a, Admissibility::CannotFollow { .. }), "{}", v.name);
             }
-            let checks = verify(&analysis, &solution, &VerifyOptions::default(), |_| ControlFlow::Continue(()));
+            let checks =
+                verify(&analysis, &solution, &VerifyOptions::default(), |_| ControlFlow::Continue(()));
             assert!(checks.passed(), "{:?}", checks.checks);
         }
     }
