@@ -80,6 +80,8 @@ impl JsonSchema for NumberSchema {
     fn json_schema(_: &mut SchemaGenerator) -> Schema {
         json_schema!({
             "type": ["number", "string"],
+            // No mere number in quotes, nor one with its unit.
+            "pattern": r"^(?!\s*[-+]?[0-9.,]+([eE][-+]?[0-9]+)?\s*([A-DF-Za-df-z].*)?$)",
             "description": "A number, or an expression over parameters, in quotes."
         })
     }

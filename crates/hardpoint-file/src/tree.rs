@@ -277,20 +277,20 @@ impl Reader<'_> {
     /// An expression in quotes, whose lengths are in the file's unit.
     pub fn expression(&mut self, value: &Value<'_>, subject: &Subject) -> Option<Expression> {
         let text = value.get_ref().as_str()?;
+        if is_number_with_unit(text) {
+            let units = self.units;
+            self.wrong(value, subject, "a number");
+            if let Some(d) = self.found.last_mut() {
+                d.help = Some(format!(
+                    "write the number without quotes and unit; lengths of this file are in {}, angles in {}",
+                    units.length.symbol(),
+                    units.angle.symbol()
+                ));
+            }
+            return None;
+        }
         match Expression::parse(text) {
             Ok(expression) => Some(expression.with_unit(self.units.length.per_metre())),
-            Err(_) if is_number_with_unit(text) => {
-                let units = self.units;
-                self.wrong(value, subject, "a number");
-                if let Some(d) = self.found.last_mut() {
-                    d.help = Some(format!(
-                        "write the number without quotes and unit; lengths of this file are in {}, angles in {}",
-                        units.length.symbol(),
-                        units.angle.symbol()
-                    ));
-                }
-                None
-            }
             Err(error) => {
                 let at = self.inside(value, text, error.span);
                 let message = format!("{} cannot be read: {}", subject.name, error.message);
@@ -495,11 +495,18 @@ impl Reader<'_> {
     }
 }
 
-/// Whether a text is a number and then letters, as in `100 mm`.
+/// Whether a text is a mere number, or one with a unit, as in `100 mm`: a slip, and of an angle not in radians.
 fn is_number_with_unit(text: &str) -> bool {
     let text = text.trim();
-    let rest = text.trim_start_matches(|c: char| c.is_ascii_digit() || "+-.,".contains(c));
-    rest.len() < text.len() && rest.trim().chars().all(|c| c.is_alphabetic() || c == '\u{b0}')
+    if text.parse::<f64>().is_ok() {
+        return true;
+    }
+    let number = text.trim_start_matches(['+', '-']);
+    let rest = number.trim_start_matches(|c: char| c.is_ascii_digit() || ".,".contains(c));
+    // What begins with an `e` may be the exponent of a longer expression.
+    let rest = rest.trim();
+    rest.len() < number.len()
+        && rest.chars().next().is_none_or(|c| (c.is_alphabetic() && !"eE".contains(c)) || c == '\u{b0}')
 }
 
 /// `"x"` to `"-z"`.

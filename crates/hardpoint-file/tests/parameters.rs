@@ -154,14 +154,14 @@ fn sensitivities_by_parameters_match_designs_that_are_solved_anew() {
 
 #[test]
 fn long_chains_and_many_expressions_are_read_in_time() {
-    let mut text = MODEL.replace("[bodies]", "");
+    let text = MODEL.replace("[bodies]", "");
     let (head, tail) = text.split_at(text.find("left = { frame").unwrap());
     let mut chain = String::from("P0 = [\"reach\", 0, 1]\n");
     for k in 1..20_000 {
         chain += &format!("P{k} = [\"P{}.x + 1\", {k}, 2]\n", k - 1);
     }
-    text = format!("{head}{chain}[bodies]\n{tail}");
-    let file = parse(&text, "arms.toml").unwrap_or_else(|e| panic!("{e}"));
+    let file =
+        parse(&format!("{head}{chain}[bodies]\n{tail}"), "arms.toml").unwrap_or_else(|e| panic!("{e}"));
     let last = file.model.hardpoints.iter().find(|h| h.name == "P19999").unwrap();
     assert!((last.position.x - (0.2 + 19.999)).abs() < 1e-9);
     let deep = format!("B = [\"{}1{}\", 0, 0]\n[bodies]\n", "(".repeat(5000), ")".repeat(5000));

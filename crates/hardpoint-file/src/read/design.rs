@@ -6,7 +6,6 @@ use hardpoint::joint::Quantity;
 use hardpoint::law::ParameterKind;
 use hardpoint::model::{ChangeDraft, End, Section, VariableDraft};
 use hardpoint::space::Vec3;
-use toml::de::DeValue;
 
 use super::Raw;
 use crate::places::EntryPlace;
@@ -107,7 +106,8 @@ impl Reader<'_> {
         name: &str,
         place: &mut EntryPlace,
     ) -> Option<Vec<(String, Vec<ChangeDraft>)>> {
-        let (hardpoints, mut items) = self.hardpoint_names(fields, "move")?;
+        let mut items = Vec::new();
+        let hardpoints = self.hardpoint_names(fields, "move", &mut items);
         let mirrored = self.mirrored(fields, &mut items);
         place.items("changes", items);
         let along = self.need(fields, "along").and_then(|f| match f.value.get_ref().as_str() {
@@ -143,31 +143,26 @@ impl Reader<'_> {
         Some(along.into_iter().map(|(name, v)| (name, changes(v))).collect())
     }
 
-    /// The names of one hardpoint or several, and where each stands.
-    #[expect(clippy::type_complexity, reason = "two lists, of which the names may be faulty")]
+    /// The names of one hardpoint or several; where each stands goes to `places`.
     fn hardpoint_names(
         &mut self,
         fields: &Fields<'_>,
         key: &str,
-    ) -> Option<(Option<Vec<String>>, Vec<Range<usize>>)> {
-        let f = fields.get(key)?;
+        places: &mut Vec<Range<usize>>,
+    ) -> Option<Vec<String>> {
+        let f = self.need(fields, key)?;
         let (subject, expected) = (fields.subject(key), "a hardpoint's name or a list of names");
-        Some(match f.value.get_ref() {
-            DeValue::String(_) => {
-                (self.name(f.value, &subject, expected).map(|n| vec![n]), vec![f.value.span()])
-            }
-            _ => match self.list(f.value, &subject, expected) {
-                Some(list) => {
-                    let names: Vec<_> = list.iter().map(|v| self.name(v, &subject, expected)).collect();
-                    (names.into_iter().collect(), list.iter().map(|v| v.span()).collect())
-                }
-                None => (None, Vec::new()),
-            },
-        })
+        if f.value.get_ref().is_str() {
+            places.push(f.value.span());
+            return self.name(f.value, &subject, expected).map(|n| vec![n]);
+        }
+        let list = self.list(f.value, &subject, expected)?;
+        places.extend(list.iter().map(|v| v.span()));
+        let names: Vec<_> = list.iter().map(|v| self.name(v, &subject, expected)).collect();
+        names.into_iter().collect()
     }
 
     /// The normal of the mirror and the hardpoints behind it, if there is one; their places follow the others.
-    #[expect(clippy::type_complexity, reason = "faulty, not there, or a normal with names")]
     fn mirrored(
         &mut self,
         fields: &Fields<'_>,
@@ -186,9 +181,7 @@ impl Reader<'_> {
             }
             axis.map(|k| Vec3::AXES[k])
         });
-        self.need(fields, "mirrored");
-        let (names, places) = self.hardpoint_names(fields, "mirrored")?;
-        items.extend(places);
+        let names = self.hardpoint_names(fields, "mirrored", items);
         Some(Some((normal?, names?)))
     }
 
