@@ -329,7 +329,7 @@ impl<'m> Effects<'m> {
     /// The geometry of the designs whose values these are, variable by variable.
     pub fn geometry<T: Real>(&self, values: &[T], witness: T) -> Geometry<T> {
         let model = self.model;
-        let design = Design::new(self, values.to_vec(), None, witness);
+        let design = Design::new(self, values.to_vec(), witness);
         Geometry {
             markers: (0..model.joints.len()).map(|j| [0, 1].map(|e| design.marker(j, e))).collect(),
             kept: (0..model.joints.len()).map(|j| design.kept(j)).collect(),
@@ -344,7 +344,7 @@ impl<'m> Effects<'m> {
     pub fn field<T: Real>(&self, variable: VariableId, values: &[T], witness: T) -> Field<T> {
         let duals = values.iter().enumerate();
         let duals = duals.map(|(k, v)| if k == variable.0 { Dual::variable(*v) } else { Dual::constant(*v) });
-        let design = Design::new(self, duals.collect(), Some(variable), Dual::constant(witness));
+        let design = Design::new(self, duals.collect(), Dual::constant(witness));
         let touched = self.touched(variable);
         let mut field = Field { laws: self.law_rates(&touched, &design), ..Field::default() };
         for j in touched.joints {
@@ -462,11 +462,10 @@ struct Values<T> {
 }
 
 impl<'e, T: Real> Design<'e, T> {
-    /// Variables at 0 are left out, but for the one that is differentiated by.
-    fn new(effects: &'e Effects<'_>, values: Vec<T>, by: Option<VariableId>, witness: T) -> Self {
+    /// Variables at 0 are left out, but for those that are differentiated by.
+    fn new(effects: &'e Effects<'_>, values: Vec<T>, witness: T) -> Self {
         let variables = &effects.model.variables;
-        let counts = values.iter().enumerate();
-        let counts = counts.map(|(k, v)| by == Some(VariableId(k)) || v.abs().largest() != 0.0).collect();
+        let counts = values.iter().map(|v| !v.is_zero()).collect();
         let follows =
             |(value, v): (&T, &DesignVariable)| if v.fixed_length { witness.zero() } else { *value };
         let for_lengths = values.iter().zip(variables).map(follows).collect();
@@ -683,7 +682,7 @@ impl Model {
         let mut laws: Vec<Law> = self.drivers.iter().map(|d| d.law.clone()).collect();
         if self.formulas.iter().any(|f| matches!(f.of, Target::Law(..))) {
             let effects = Effects::of(self);
-            let values = Design::new(&effects, self.whole(design), None, 0.0).values.formulas;
+            let values = Design::new(&effects, self.whole(design), 0.0).values.formulas;
             // Without values, no formula follows what is not at 0.
             for (formula, value) in self.formulas.iter().zip(values) {
                 if let Target::Law(driver, parameter) = formula.of {
@@ -745,6 +744,78 @@ impl Joint {
             (Need::OnBodyJ, 0) => [self.axis, None],
             (Need::OnBodyJ, _) => [self.axis2, None],
             _ => [self.axis, self.axis2],
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::law::Expression;
+
+    #[test]
+    fn formulas_have_exact_second_derivatives_on_duals_of_duals() {
+        let arm = |name: &str| BodyDraft { name: name.into(), frame: FrameDraft::Default };
+        let joint = |name: &str, kind: &str, bodies: [&str; 2], at: &[&str]| JointDraft {
+            name: name.into(),
+            kind: kind.into(),
+            bodies: bodies.map(str::to_owned),
+            at: at.iter().map(|h| Place::Hardpoint((*h).into())).collect(),
+            axis: (kind == "revolute").then_some(Line::Along(Vec3::AXES[2])),
+            ..JointDraft::default()
+        };
+        let texts = [("x", "length*cos(angle)"), ("y", "length*sin(angle)")];
+        let expression = |text: &str| Expression::parse(text).unwrap();
+        let model = Model::from_draft(&Draft {
+            parameters: [("length", 0.3, Quantity::Length), ("angle", 0.8, Quantity::Angle)]
+                .map(|(name, value, quantity)| ParameterDraft { name: name.into(), value, quantity })
+                .into(),
+            formulas: texts
+                .iter()
+                .enumerate()
+                .map(|(axis, (_, text))| FormulaDraft {
+                    of: FormulaOf::Coordinate("B".into(), axis),
+                    expression: expression(text),
+                })
+                .collect(),
+            hardpoints: [("A", 0.0), ("B", 0.0), ("C", 0.5)]
+                .map(|(name, x)| HardpointDraft { name: name.into(), position: Vec3::new(x, 0.0, 0.0) })
+                .into(),
+            bodies: vec![arm("i"), arm("j")],
+            joints: vec![
+                joint("a", "revolute", ["ground", "i"], &["A"]),
+                joint("c", "revolute", ["ground", "j"], &["C"]),
+                joint("rod", "rod", ["i", "j"], &["B", "C"]),
+            ],
+            design: vec![VariableDraft {
+                name: "angle".into(),
+                changes: vec![ChangeDraft::Parameter { parameter: "angle".into(), rate: 1.0 }],
+                ..VariableDraft::default()
+            }],
+            times: vec![0.0],
+            ..Draft::default()
+        })
+        .unwrap();
+        let effects = Effects::of(&model);
+        for b in [0.0, 0.4] {
+            let value = Dual { v: Dual::variable(b), d: Dual::constant(1.0) };
+            let rod = effects.geometry(&[value], Dual::constant(Dual::constant(0.0)));
+            let place = rod.markers[2][0].r;
+            let (s, c) = (0.8_f64 + b).sin_cos();
+            for (found, expected) in [
+                (place.x.d.v, -0.3 * s),
+                (place.y.d.v, 0.3 * c),
+                (place.x.d.d, -0.3 * c),
+                (place.y.d.d, -0.3 * s),
+            ] {
+                assert!((found - expected).abs() < 1e-15, "{found} {expected}");
+            }
+            // l² = 0.34 - 0.3 cos, l l' = 0.15 sin, l l'' + l'² = 0.15 cos
+            let l = rod.kept[2].distance;
+            let length = (0.34 - 0.3 * c).sqrt();
+            let slope = 0.15 * s / length;
+            assert!((l.v.v - length).abs() < 1e-15 && (l.d.v - slope).abs() < 1e-14);
+            assert!((l.d.d - (0.15 * c - slope * slope) / length).abs() < 1e-14);
         }
     }
 }

@@ -142,6 +142,9 @@ impl<T: Real> Real for Dual<T> {
         let v = self.v.larger(o.v);
         Self { v, d: self.d.select(o.d, |k| v.lane(k) == self.v.lane(k)) }
     }
+    fn is_zero(self) -> bool {
+        self.v.is_zero() && self.d.is_zero()
+    }
     fn select(self, other: Self, first: impl Fn(usize) -> bool + Copy) -> Self {
         Self { v: self.v.select(other.v, first), d: self.d.select(other.d, first) }
     }

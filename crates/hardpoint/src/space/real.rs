@@ -85,6 +85,12 @@ pub trait Real:
         -(-self).largest()
     }
 
+    /// Whether it is zero in every lane, and so is every derivative that it carries.
+    #[inline(always)]
+    fn is_zero(self) -> bool {
+        self.abs().largest() == 0.0
+    }
+
     /// Zero in every lane.
     #[inline(always)]
     fn zero(self) -> Self {
