@@ -59,7 +59,8 @@ pub struct Analysis<'m> {
 }
 
 /// One design, ready to be analysed.
-struct Design {
+pub(crate) struct Design {
+    pub values: Vec<f64>,
     geometry: Geometry,
     laws: Vec<Law>,
     /// How the variables change it, if that is asked for.
@@ -129,6 +130,10 @@ impl<'m> Analysis<'m> {
         &self.topology
     }
 
+    pub(crate) fn effects(&self) -> &Effects<'m> {
+        &self.effects
+    }
+
     /// The model.
     pub fn model(&self) -> &'m Model {
         self.model
@@ -177,12 +182,13 @@ impl<'m> Analysis<'m> {
         solution
     }
 
-    fn design(&self, design: &[f64], sensitivities: bool) -> Design {
+    pub(crate) fn design(&self, design: &[f64], sensitivities: bool) -> Design {
         let values = self.model.whole(design);
         Design {
             geometry: self.effects.geometry(&values, 0.0),
             laws: self.model.laws(design),
             fields: if sensitivities { self.effects.fields(&values, 0.0) } else { Vec::new() },
+            values,
         }
     }
 
@@ -301,8 +307,8 @@ impl<'m> Analysis<'m> {
     fn measure(&self, design: &Design, solution: &mut Solution) {
         solution.measured = Measured::default();
         if self.measures {
-            let Design { geometry, laws, fields } = design;
-            let at = measure::At { model: self.model, geometry, laws, fields };
+            let Design { values, laws, .. } = design;
+            let at = measure::At { model: self.model, effects: &self.effects, values, laws };
             solution.measured =
                 measure::evaluate(&at, &self.topology, &solution.motion, &solution.sensitivities);
         }
@@ -491,7 +497,7 @@ impl<'m> Analysis<'m> {
 }
 
 /// The way through all output times, where possible as many at once as there are lanes.
-struct Walk<'a, T> {
+pub(crate) struct Walk<'a, T> {
     one: Stepper<'a, f64>,
     abreast: Abreast<'a, T>,
     /// `None` where no sensitivities are asked for.
@@ -503,15 +509,15 @@ struct Walk<'a, T> {
 }
 
 /// What has just been solved.
-enum Solved<'w, 'a, T> {
-    One(&'w Stepper<'a, f64>),
-    Abreast(&'w Stepper<'a, T>),
+pub(crate) enum Solved<'w, 'a, T> {
+    One(&'w mut Stepper<'a, f64>),
+    Abreast(&'w mut Stepper<'a, T>),
 }
 
 impl<'a, T: Real> Walk<'a, T> {
-    fn new(analysis: &'a Analysis<'_>, design: &'a Design, wanted: Vec<bool>, witness: T) -> Self {
+    pub fn new(analysis: &'a Analysis<'_>, design: &'a Design, wanted: Vec<bool>, witness: T) -> Self {
         let (model, topology) = (analysis.model, &analysis.topology);
-        let Design { geometry, laws, fields } = design;
+        let Design { geometry, laws, fields, .. } = design;
         let parts = Parts::same(model, topology, geometry, laws, witness);
         Self {
             one: Stepper::new(model, topology, Parts::same(model, topology, geometry, laws, 0.0), 0.0),
@@ -524,7 +530,7 @@ impl<'a, T: Real> Walk<'a, T> {
     }
 
     /// To the last output time, or to what stops it. `then` sees what was solved, and how many of it count.
-    fn all<S: Sink>(
+    pub fn all<S: Sink>(
         &mut self,
         analysis: &Analysis<'_>,
         sink: &mut S,

@@ -1,39 +1,38 @@
-//! Points and directions fixed in a body, as jets.
+//! Where bodies are, as numbers with derivatives.
 
 use crate::motion::BodyState;
 use crate::sensitivity::BodySensitivity;
-use crate::space::{Jet, Vec3};
+use crate::space::{Dual, Jet, Mat3, Pose, Rates, Vec3};
 
-/// A body's state and its derivatives by one design variable.
-#[derive(Clone, Copy, Debug)]
-pub struct BodyJet<'a> {
-    /// How it stands and moves.
-    pub state: &'a BodyState,
-    /// How that changes with the design.
-    pub d: &'a BodySensitivity,
+/// A body's pose with its rates.
+pub(super) fn with_rates(s: &BodyState) -> Pose<Rates> {
+    let column = |e: Vec3| {
+        let e1 = s.omega.cross(e);
+        let e2 = s.alpha.cross(e) + s.omega.cross(e1);
+        zip([e, e1, e2])
+    };
+    Pose { rot: Mat3 { cols: s.rotation.cols.map(column) }, r: zip([s.r, s.v, s.a]) }
 }
 
-impl BodyJet<'_> {
-    /// The direction `e` of the body's frame, in global components; the design turns it in the body at
-    /// rate `de`.
-    #[inline]
-    pub fn direction(&self, e: Vec3, de: Vec3) -> Vec3<Jet> {
-        let (s, d) = (self.state, self.d);
-        let e0 = s.rotation * e;
+/// The same, with the derivatives of all of it by one design variable.
+pub(super) fn with_sensitivity(s: &BodyState, d: &BodySensitivity) -> Pose<Jet> {
+    let Pose { rot, r } = with_rates(s);
+    let column = |k: usize| {
+        let e0 = s.rotation.cols[k];
         let e1 = s.omega.cross(e0);
-        let e2 = s.alpha.cross(e0) + s.omega.cross(e1);
-        let b0 = d.dpi.cross(e0) + s.rotation * de;
+        let b0 = d.dpi.cross(e0);
         let b1 = d.domega.cross(e0) + s.omega.cross(b0);
         let b2 = d.dalpha.cross(e0) + s.alpha.cross(b0) + d.domega.cross(e1) + s.omega.cross(b1);
-        Vec3::from_derivatives([[e0, e1, e2], [b0, b1, b2]])
-    }
+        pair(rot.cols[k], zip([b0, b1, b2]))
+    };
+    Pose { rot: Mat3 { cols: [column(0), column(1), column(2)] }, r: pair(r, zip([d.dr, d.dv, d.da])) }
+}
 
-    /// The point `s` of the body's frame, in global components; the design moves it in the body at
-    /// velocity `ds`.
-    #[inline]
-    pub fn point(&self, s: Vec3, ds: Vec3) -> Vec3<Jet> {
-        let (state, d) = (self.state, self.d);
-        let origin = Vec3::from_derivatives([[state.r, state.v, state.a], [d.dr, d.dv, d.da]]);
-        origin + self.direction(s, ds)
-    }
+fn zip([x, xd, xdd]: [Vec3; 3]) -> Vec3<Rates> {
+    Vec3::new(Rates([x.x, xd.x, xdd.x]), Rates([x.y, xd.y, xdd.y]), Rates([x.z, xd.z, xdd.z]))
+}
+
+/// A vector and its derivative.
+pub(super) fn pair<T: Copy>(v: Vec3<T>, d: Vec3<T>) -> Vec3<Dual<T>> {
+    Vec3::new(Dual { v: v.x, d: d.x }, Dual { v: v.y, d: d.y }, Dual { v: v.z, d: d.z })
 }

@@ -1,23 +1,23 @@
 //! Measures and followed points: numbers that a person asks for, with rates and sensitivities.
 //!
-//! A measure is written once, as a function of [`Jet`]s; its rate, acceleration and the design
-//! derivatives of all three follow by the product and chain rules.
+//! A measure is written once, over any [`Real`]; its rate, acceleration and the design derivatives of all three follow by
+//! the product and chain rules where it runs on [`Jet`]s.
 
 mod bodies;
 
-pub use bodies::BodyJet;
-
 use std::collections::BTreeMap;
 
+use bodies::{with_rates, with_sensitivity};
+
+use crate::constraint::Row;
 use crate::joint::Quantity;
 use crate::law::Law;
 use crate::model::{
-    BodyId, DriverId, Field, Geometry, JointId, Measure, MeasureId, MeasureKind, Model, PointId, VariableId,
-    in_order,
+    BodyId, DriverId, Effects, Fixed, JointId, Measure, MeasureKind, Model, PointId, VariableId,
 };
 use crate::motion::Motion;
-use crate::sensitivity::{BodySensitivity, Sensitivities};
-use crate::space::{Jet, Vec3};
+use crate::sensitivity::Sensitivities;
+use crate::space::{Dual, Jet, Pose, Rates, Real, Vec3};
 use crate::topology::Topology;
 
 /// A column of [`Measured`].
@@ -101,36 +101,56 @@ pub fn outputs(model: &Model) -> Vec<Output> {
 /// The design whose motion is measured.
 pub(crate) struct At<'a> {
     pub model: &'a Model,
-    pub geometry: &'a Geometry,
+    pub effects: &'a Effects<'a>,
+    /// The variables' values.
+    pub values: &'a [f64],
     /// The drivers' laws.
     pub laws: &'a [Law],
-    /// How the variables change it, as far as that is asked for.
-    pub fields: &'a [Field],
 }
 
-/// Evaluates all outputs over a motion, and their derivatives by the variables with fields.
+/// Evaluates all outputs over a motion, and their derivatives by the variables that it has sensitivities for.
 pub(crate) fn evaluate(
     design: &At<'_>,
     topology: &Topology,
     motion: &Motion,
     sensitivities: &Sensitivities,
 ) -> Measured {
-    let &At { model, geometry, laws, fields } = design;
+    let &At { model, effects, values, laws } = design;
     let outputs = outputs(model);
-    let mut measured = Measured { variables: fields.len(), ..Measured::default() };
-    let none = Field::default();
-    let still = vec![BodySensitivity::ZERO; motion.bodies];
+    let mut measured = Measured { variables: sensitivities.variables, ..Measured::default() };
     let turns = turns(model, topology, &outputs);
+    let bodies = bodies_asked_for(model);
+
+    let zero = Rates([0.0; 3]);
+    let lifted: Vec<Rates> = values.iter().map(|v| zero.like(*v)).collect();
+    let fixed = effects.fixed(&lifted, zero);
+    let mut poses = vec![Pose::IDENTITY.spread(zero); model.bodies.len()];
     for k in 0..motion.len() {
         let first = measured.values.len();
-        let at = |field, d| Moment { model, geometry, field, states: motion.at(k), d };
-        at(&none, &still).all(|jet| measured.values.push(jet.c[0]));
+        let states = motion.at(k);
+        bodies.iter().for_each(|&b| poses[b] = with_rates(&states[b]));
+        Moment { model, fixed: &fixed, poses: &poses }.all(|x| measured.values.push(x.0));
         unwrap_angles(laws, topology, motion, k, &turns, &mut measured.values, first);
-        for (b, field) in fields.iter().enumerate() {
-            match sensitivities.at(k, b) {
-                Some(d) => at(field, d).all(|jet| measured.d.push(jet.c[1])),
-                None => measured.d.extend(outputs.iter().map(|_| [f64::NAN; 3])),
-            }
+    }
+
+    // Variable by variable, so that what is fixed in the bodies is worked out once for each.
+    let (steps, variables, columns) = (motion.len(), sensitivities.variables, outputs.len());
+    measured.d = vec![[f64::NAN; 3]; steps * variables * columns];
+    let mut poses = vec![Pose::IDENTITY.spread(Dual::constant(zero)); model.bodies.len()];
+    let mut lifted: Vec<Jet> = lifted.into_iter().map(Dual::constant).collect();
+    for b in 0..variables {
+        lifted[b] = Dual::variable(lifted[b].v);
+        let fixed = effects.fixed(&lifted, Dual::constant(zero));
+        lifted[b] = Dual::constant(lifted[b].v);
+        for k in 0..steps {
+            let Some(d) = sensitivities.at(k, b) else { break };
+            let states = motion.at(k);
+            bodies.iter().for_each(|&b| poses[b] = with_sensitivity(&states[b], &d[b]));
+            let mut at = (k * variables + b) * columns;
+            Moment { model, fixed: &fixed, poses: &poses }.all(|x| {
+                measured.d[at] = x.d.0;
+                at += 1;
+            });
         }
     }
     measured.outputs = outputs;
@@ -202,22 +222,17 @@ fn unwrap_angles(
     }
 }
 
-/// Everything that a measure can ask for at one time and for one design variable.
-struct Moment<'a> {
-    model: &'a Model,
-    geometry: &'a Geometry,
-    field: &'a Field,
-    states: &'a [crate::motion::BodyState],
-    d: &'a [BodySensitivity],
+/// Everything that a measure can ask for at one time, as numbers that carry whatever derivatives are wanted.
+pub(crate) struct Moment<'a, T> {
+    pub model: &'a Model,
+    pub fixed: &'a Fixed<T>,
+    /// Per body: where it is. Only those that measures name count.
+    pub poses: &'a [Pose<T>],
 }
 
-impl Moment<'_> {
-    fn body(&self, body: BodyId) -> BodyJet<'_> {
-        BodyJet { state: &self.states[body.0], d: &self.d[body.0] }
-    }
-
+impl<T: Real> Moment<'_, T> {
     /// All outputs, in the order of [`outputs`].
-    fn all(&self, mut out: impl FnMut(Jet)) {
+    pub fn all(&self, mut out: impl FnMut(T)) {
         for (k, measure) in self.model.measures.iter().enumerate() {
             out(self.measure(k, measure));
         }
@@ -229,17 +244,19 @@ impl Moment<'_> {
         }
     }
 
-    fn point(&self, p: PointId) -> Vec3<Jet> {
-        let speed = in_order(&self.field.points, p);
-        self.body(self.model.points[p.0].body).point(self.geometry.points[p.0], speed)
+    fn point(&self, p: PointId) -> Vec3<T> {
+        self.poses[self.model.points[p.0].body.0].point(self.fixed.points[p.0])
     }
 
     /// Formulas and signs: `docs/measures.md`.
-    fn measure(&self, k: usize, measure: &Measure) -> Jet {
+    fn measure(&self, k: usize, measure: &Measure) -> T {
         match measure.kind {
-            MeasureKind::Coordinate { joint, coordinate } => self.coordinate(joint, coordinate),
-            MeasureKind::Distance { from, to } => (self.point(to) - self.point(from)).norm_jet(),
-            MeasureKind::Coordinates { point, along } => along.map(Jet::constant).dot_jet(self.point(point)),
+            MeasureKind::Coordinate { joint, coordinate } => self.coordinate(k, joint, coordinate),
+            MeasureKind::Distance { from, to } => (self.point(to) - self.point(from)).norm(),
+            MeasureKind::Coordinates { point, along } => {
+                let p = self.point(point);
+                along.spread(p.x).dot(p)
+            }
             MeasureKind::Toe { body, .. } => {
                 let e = self.spin_axis(k, body);
                 e.x.atan2(e.y)
@@ -248,36 +265,38 @@ impl Moment<'_> {
         }
     }
 
-    fn spin_axis(&self, k: usize, body: BodyId) -> Vec3<Jet> {
-        let rate = in_order(&self.field.spin_axes, MeasureId(k));
-        self.body(body).direction(self.geometry.spin_axes[k], rate)
+    fn spin_axis(&self, k: usize, body: BodyId) -> Vec3<T> {
+        self.poses[body.0].rot * self.fixed.spin_axes[k].expect("a measure with a spin axis")
     }
 
     /// A joint's coordinate between its two markers, whether the joint is cut or not.
-    fn coordinate(&self, joint: JointId, coordinate: usize) -> Jet {
+    fn coordinate(&self, k: usize, joint: JointId, coordinate: usize) -> T {
         let j = &self.model.joints[joint.0];
-        let axis = |end: usize, k: usize| {
-            let (body, twist) = self.marker(joint, end);
-            let e = self.geometry.markers[joint.0][end].rot.cols[k];
-            self.body(body).direction(e, twist.w.cross(e))
-        };
-        let origin = |end: usize| {
-            let (body, twist) = self.marker(joint, end);
-            let s = self.geometry.markers[joint.0][end].r;
-            self.body(body).point(s, twist.at(s))
-        };
-        use crate::constraint::Row;
+        let markers = self.fixed.markers[k].expect("a measure of a joint's coordinate");
+        let axis = |end: usize, k: usize| self.poses[j.bodies[end].0].rot * markers[end].rot.cols[k];
+        let origin = |end: usize| self.poses[j.bodies[end].0].point(markers[end].r);
         match j.kind.coordinates[coordinate].row {
-            Row::Angle | Row::Heading => axis(0, 1).dot_jet(axis(1, 0)).atan2(axis(0, 0).dot_jet(axis(1, 0))),
-            Row::AngleOnJ => axis(0, 2).dot_jet(axis(1, 1)).atan2(axis(0, 2).dot_jet(axis(1, 2))),
-            Row::Dot2(k) => axis(0, k).dot_jet(origin(1) - origin(0)),
-            _ => (origin(1) - origin(0)).norm_jet(),
+            Row::Angle | Row::Heading => axis(0, 1).dot(axis(1, 0)).atan2(axis(0, 0).dot(axis(1, 0))),
+            Row::AngleOnJ => axis(0, 2).dot(axis(1, 1)).atan2(axis(0, 2).dot(axis(1, 2))),
+            Row::Dot2(k) => axis(0, k).dot(origin(1) - origin(0)),
+            _ => (origin(1) - origin(0)).norm(),
         }
     }
+}
 
-    /// The body of a marker, and the marker's body-fixed design twist.
-    fn marker(&self, joint: JointId, end: usize) -> (BodyId, crate::space::Twist) {
-        let twist = self.field.twist_of(joint, end).unwrap_or(crate::space::Twist::ZERO);
-        (self.model.joints[joint.0].bodies[end], twist)
+/// The bodies that measures and named points are fixed in.
+pub(crate) fn bodies_asked_for(model: &Model) -> Vec<usize> {
+    let mut bodies: Vec<usize> = model.points.iter().map(|p| p.body.0).collect();
+    for measure in &model.measures {
+        match measure.kind {
+            MeasureKind::Coordinate { joint, .. } => {
+                bodies.extend(model.joints[joint.0].bodies.map(|b| b.0));
+            }
+            MeasureKind::Toe { body, .. } | MeasureKind::Camber { body, .. } => bodies.push(body.0),
+            MeasureKind::Distance { .. } | MeasureKind::Coordinates { .. } => {}
+        }
     }
+    bodies.sort_unstable();
+    bodies.dedup();
+    bodies
 }

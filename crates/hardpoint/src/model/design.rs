@@ -17,8 +17,17 @@ pub struct Geometry<T = f64> {
     pub kept: Vec<Kept<T>>,
     /// Per point of the model, its position in its body's frame, m.
     pub points: Vec<Vec3<T>>,
-    /// Per measure with a spin axis, that unit vector in its body's frame; null for the others.
-    pub spin_axes: Vec<Vec3<T>>,
+}
+
+/// What measures go by, fixed in the bodies.
+#[derive(Clone, Debug)]
+pub(crate) struct Fixed<T> {
+    /// Per point of the model, its position in its body's frame, m.
+    pub points: Vec<Vec3<T>>,
+    /// Per measure with a spin axis, that unit vector in its body's frame.
+    pub spin_axes: Vec<Option<Vec3<T>>>,
+    /// Per measure of a joint's coordinate, marker i in body i and marker j in body j.
+    pub markers: Vec<Option<[Pose<T>; 2]>>,
 }
 
 /// What a joint can keep of its design configuration, or the rate at which a design variable changes it.
@@ -64,6 +73,10 @@ impl<T: Real> Kept<T> {
         }
     }
 
+    fn vanishes(self) -> bool {
+        [self.distance, self.offset, self.cosine, self.contact].into_iter().all(T::vanishes)
+    }
+
     /// The largest of them.
     pub(crate) fn size(&self) -> T {
         let [a, b] =
@@ -84,8 +97,6 @@ pub struct Field<T = f64> {
     pub kept: Vec<(JointId, Kept<T>)>,
     /// The points that move, and their velocity in the body's frame.
     pub points: Vec<(PointId, Vec3<T>)>,
-    /// The spin axes that turn, and their rate in the body's frame.
-    pub spin_axes: Vec<(MeasureId, Vec3<T>)>,
     /// The drivers whose laws change: the parameter, and its rate.
     pub laws: Vec<(DriverId, usize, T)>,
 }
@@ -104,13 +115,7 @@ pub struct MarkerField<T = f64> {
 /// Nothing changes.
 impl<T> Default for Field<T> {
     fn default() -> Self {
-        Self {
-            markers: Vec::new(),
-            kept: Vec::new(),
-            points: Vec::new(),
-            spin_axes: Vec::new(),
-            laws: Vec::new(),
-        }
+        Self { markers: Vec::new(), kept: Vec::new(), points: Vec::new(), laws: Vec::new() }
     }
 }
 
@@ -145,8 +150,12 @@ impl Field {
                     (joint, Kept::gather(witness, kept))
                 })
                 .collect(),
-            points: gather_vectors(fields, |f| &f.points, witness),
-            spin_axes: gather_vectors(fields, |f| &f.spin_axes, witness),
+            points: union(fields, |f| f.points.iter().map(|(id, _)| *id))
+                .map(|id| {
+                    let of_field = |f: &Field| f.points.iter().find(|(k, _)| *k == id).map(|(_, v)| *v);
+                    (id, Vec3::gather(witness, |k| of(k).and_then(of_field).unwrap_or(Vec3::ZERO)))
+                })
+                .collect(),
             laws: union(fields, |f| f.laws.iter().map(|(d, p, _)| (*d, *p)))
                 .map(|(driver, parameter)| {
                     let same = |l: &&(DriverId, usize, f64)| (l.0, l.1) == (driver, parameter);
@@ -166,36 +175,17 @@ fn union<'f, K: Ord + 'f, I: Iterator<Item = K> + 'f>(
     fields.iter().flat_map(keys).collect::<std::collections::BTreeSet<K>>().into_iter()
 }
 
-fn gather_vectors<T: Real, I: Ord + Copy>(
-    fields: &[Field],
-    list: impl Fn(&Field) -> &Vec<(I, Vec3)>,
-    witness: T,
-) -> Vec<(I, Vec3<T>)> {
-    union(fields, |f| list(f).iter().map(|(id, _)| *id))
-        .map(|id| {
-            let lane = |k: usize| fields.get(k).map_or(Vec3::ZERO, |f| in_order(list(f), id));
-            (id, Vec3::gather(witness, lane))
-        })
-        .collect()
-}
-
-/// The vector that a list gives an id; null where it gives none.
-pub(crate) fn in_order<I: Ord + Copy>(list: &[(I, Vec3)], id: I) -> Vec3 {
-    list.binary_search_by_key(&id, |(k, _)| *k).map_or(Vec3::ZERO, |k| list[k].1)
-}
-
 /// What the variables of a model change, by what they change: found once for many designs.
 #[derive(Clone, Debug)]
 pub(crate) struct Effects<'m> {
-    model: &'m Model,
+    pub model: &'m Model,
     /// Per hardpoint: the variables that move it, and its velocity by each.
     moves: Vec<Vec<(usize, Vec3)>>,
     /// Per joint: the variables that change the joint itself.
     changes: Vec<Vec<(usize, &'m Change)>>,
-    /// Per hardpoint: the joints, points and measures that follow it.
+    /// Per hardpoint: the joints and points that follow it.
     joints: Vec<Vec<usize>>,
     points: Vec<Vec<usize>>,
-    measures: Vec<Vec<usize>>,
     /// What formulas do; none in a model without.
     formulas: Option<Formulas>,
 }
@@ -294,7 +284,6 @@ impl<'m> Effects<'m> {
             changes: vec![Vec::new(); model.joints.len()],
             joints: vec![Vec::new(); hardpoints],
             points: vec![Vec::new(); hardpoints],
-            measures: vec![Vec::new(); hardpoints],
         };
         for (k, variable) in model.variables.iter().enumerate() {
             for change in &variable.changes {
@@ -318,11 +307,6 @@ impl<'m> Effects<'m> {
         for (k, point) in model.points.iter().enumerate() {
             effects.points[point.at.0].push(k);
         }
-        for (k, measure) in model.measures.iter().enumerate() {
-            if let Some((_, axis)) = measure.spin_axis() {
-                axis.hardpoints().for_each(|h| effects.measures[h.0].push(k));
-            }
-        }
         effects
     }
 
@@ -334,18 +318,38 @@ impl<'m> Effects<'m> {
             markers: (0..model.joints.len()).map(|j| [0, 1].map(|e| design.marker(j, e))).collect(),
             kept: (0..model.joints.len()).map(|j| design.kept(j)).collect(),
             points: (0..model.points.len()).map(|k| design.point(k)).collect(),
-            spin_axes: (0..model.measures.len()).map(|k| design.spin_axis(k)).collect(),
+        }
+    }
+
+    /// What the measures of these designs go by.
+    pub fn fixed<T: Real>(&self, values: &[T], witness: T) -> Fixed<T> {
+        let (model, design) = (self.model, Design::new(self, values.to_vec(), witness));
+        let markers = |m: &Measure| match m.kind {
+            MeasureKind::Coordinate { joint, .. } => Some([0, 1].map(|e| design.marker(joint.0, e))),
+            _ => None,
+        };
+        Fixed {
+            points: (0..model.points.len()).map(|k| design.point(k)).collect(),
+            spin_axes: model.measures.iter().map(|m| design.spin_axis(m)).collect(),
+            markers: model.measures.iter().map(markers).collect(),
         }
     }
 
     /// How one variable changes the designs whose values these are.
+    pub fn field<T: Real>(&self, variable: VariableId, values: &[T], witness: T) -> Field<T> {
+        self.field_along(&[(variable, 1.0)], values, witness)
+    }
+
+    /// How the designs whose values these are change along a direction, some variables at once.
     ///
     /// Paper Eqs. 3.1 to 3.10 and 5.5; `docs/theory.md` (8).
-    pub fn field<T: Real>(&self, variable: VariableId, values: &[T], witness: T) -> Field<T> {
-        let duals = values.iter().enumerate();
-        let duals = duals.map(|(k, v)| if k == variable.0 { Dual::variable(*v) } else { Dual::constant(*v) });
-        let design = Design::new(self, duals.collect(), Dual::constant(witness));
-        let touched = self.touched(variable);
+    pub fn field_along<T: Real>(&self, along: &[(VariableId, f64)], values: &[T], witness: T) -> Field<T> {
+        let mut duals: Vec<Dual<T>> = values.iter().map(|v| Dual::constant(*v)).collect();
+        for &(variable, rate) in along {
+            duals[variable.0].d = witness.like(rate);
+        }
+        let design = Design::new(self, duals, Dual::constant(witness));
+        let touched = self.touched(along);
         let mut field = Field { laws: self.law_rates(&touched, &design), ..Field::default() };
         for j in touched.joints {
             for end in 0..2 {
@@ -355,47 +359,48 @@ impl<'m> Effects<'m> {
                 }
             }
             let rates = design.kept(j).map(|x| x.d);
-            if rates.size().largest() > 0.0 {
+            if !rates.vanishes() {
                 field.kept.push((JointId(j), rates));
             }
         }
-        let rate = |v: Vec3<Dual<T>>| v.map(|x| x.d);
-        let moved = touched.points.into_iter().map(|k| (PointId(k), rate(design.point(k))));
+        let moved = touched.points.into_iter().map(|k| (PointId(k), design.point(k).map(|x| x.d)));
         field.points = moved.filter(|(_, v)| !is_null(*v)).collect();
-        let turned = touched.measures.into_iter().map(|k| (MeasureId(k), rate(design.spin_axis(k))));
-        field.spin_axes = turned.filter(|(_, v)| !is_null(*v)).collect();
         field
     }
 
-    /// What may change with a variable.
-    fn touched(&self, variable: VariableId) -> Touched {
+    /// What may change along a direction, some variables at once.
+    fn touched(&self, along: &[(VariableId, f64)]) -> Touched {
         let mut touched = Touched::default();
-        let mut hardpoints = Vec::new();
-        for change in &self.model.variables[variable.0].changes {
-            match change {
-                Change::Parameter { .. } => {}
-                Change::Move { hardpoint, .. } => hardpoints.push(hardpoint.0),
-                Change::Marker { joint, .. } | Change::Field { joint, .. } | Change::Length { joint, .. } => {
-                    touched.joints.push(joint.0);
+        for (variable, by) in along {
+            for change in &self.model.variables[variable.0].changes {
+                match change {
+                    Change::Parameter { .. } => {}
+                    Change::Move { hardpoint, .. } => touched.hardpoints.push(hardpoint.0),
+                    Change::Marker { joint, .. }
+                    | Change::Field { joint, .. }
+                    | Change::Length { joint, .. } => {
+                        touched.joints.push(joint.0);
+                    }
+                    Change::Law { driver, parameter, rate } => {
+                        touched.laws.push((*driver, *parameter, by * rate));
+                    }
                 }
-                Change::Law { driver, parameter, rate } => touched.laws.push((*driver, *parameter, *rate)),
+            }
+            let following = self.formulas.as_ref().map(|f| f.following(self.model, *variable));
+            for k in following.unwrap_or_default() {
+                match self.model.formulas[k].of {
+                    Target::Parameter(_) => {}
+                    Target::Coordinate(h, _) => touched.hardpoints.push(h.0),
+                    Target::Length(j) => touched.joints.push(j.0),
+                    Target::Law(..) => touched.law_formulas.push(k),
+                }
             }
         }
-        let following = self.formulas.as_ref().map(|f| f.following(self.model, variable));
-        for k in following.unwrap_or_default() {
-            match self.model.formulas[k].of {
-                Target::Parameter(_) => {}
-                Target::Coordinate(h, _) => hardpoints.push(h.0),
-                Target::Length(j) => touched.joints.push(j.0),
-                Target::Law(..) => touched.law_formulas.push(k),
-            }
-        }
-        for h in hardpoints {
+        for &h in &touched.hardpoints {
             touched.joints.extend(&self.joints[h]);
             touched.points.extend(&self.points[h]);
-            touched.measures.extend(&self.measures[h]);
         }
-        for list in [&mut touched.joints, &mut touched.points, &mut touched.measures] {
+        for list in [&mut touched.joints, &mut touched.points, &mut touched.law_formulas] {
             list.sort_unstable();
             list.dedup();
         }
@@ -430,15 +435,15 @@ impl<'m> Effects<'m> {
 }
 
 fn is_null<T: Real>(v: Vec3<T>) -> bool {
-    v.x.abs().larger(v.y.abs()).larger(v.z.abs()).largest() == 0.0
+    v.x.vanishes() && v.y.vanishes() && v.z.vanishes()
 }
 
-/// What may change with a variable: joints, points, measures, parameters of laws at a rate, and such formulas.
+/// What may change along a direction: hardpoints, joints, points, parameters of laws at a rate, and formulas of such.
 #[derive(Default)]
 struct Touched {
+    hardpoints: Vec<usize>,
     joints: Vec<usize>,
     points: Vec<usize>,
-    measures: Vec<usize>,
     laws: Vec<(DriverId, usize, f64)>,
     law_formulas: Vec<usize>,
 }
@@ -462,10 +467,10 @@ struct Values<T> {
 }
 
 impl<'e, T: Real> Design<'e, T> {
-    /// Variables at 0 are left out, but for those that are differentiated by.
+    /// Variables at 0 are left out, unless it is differentiated by them.
     fn new(effects: &'e Effects<'_>, values: Vec<T>, witness: T) -> Self {
         let variables = &effects.model.variables;
-        let counts = values.iter().map(|v| !v.is_zero()).collect();
+        let counts = values.iter().map(|v| !v.vanishes()).collect();
         let follows =
             |(value, v): (&T, &DesignVariable)| if v.fixed_length { witness.zero() } else { *value };
         let for_lengths = values.iter().zip(variables).map(follows).collect();
@@ -615,7 +620,8 @@ impl<'e, T: Real> Design<'e, T> {
             given
         });
         // Markers at one place keep no distance, and it would have no derivative.
-        let distance = given.unwrap_or_else(|| if is_null(d) { zero } else { d.norm() });
+        let apart = d.dot(d).largest() > 0.0;
+        let distance = given.unwrap_or_else(|| if apart { d.norm() } else { zero });
         let contact = joint.curve.as_ref().map_or(zero, |curve| {
             let drawn = curve.distance(m_i.rot.transpose_mul(d));
             let sign = || self.witness.like_lanes(|k| f64::signum(drawn.lane(k)));
@@ -630,12 +636,10 @@ impl<'e, T: Real> Design<'e, T> {
         self.frame(point.body).inverse().point(self.place(point.at, &self.values))
     }
 
-    /// The spin axis of a measure in its body's frame; null where it has none.
-    fn spin_axis(&self, k: usize) -> Vec3<T> {
-        match self.effects.model.measures[k].spin_axis() {
-            Some((body, axis)) => self.frame(body).rot.transpose_mul(self.direction(axis, &self.values)),
-            None => Vec3::zero(self.witness),
-        }
+    /// The spin axis of a measure in its body's frame, where it has one.
+    fn spin_axis(&self, measure: &Measure) -> Option<Vec3<T>> {
+        let (body, axis) = measure.spin_axis()?;
+        Some(self.frame(body).rot.transpose_mul(self.direction(axis, &self.values)))
     }
 }
 
@@ -663,10 +667,14 @@ impl Model {
     /// The variables whose change changes nothing that the motion or its results depend on.
     pub fn without_effect(&self) -> Vec<VariableId> {
         let effects = Effects::of(self);
+        let spin_axes = self.measures.iter().filter_map(Measure::spin_axis);
+        let seen: Vec<usize> = spin_axes.flat_map(|(_, axis)| axis.hardpoints()).map(|h| h.0).collect();
         let is_idle = |v: &VariableId| {
-            let touched = effects.touched(*v);
-            let felt = [&touched.joints, &touched.points, &touched.measures, &touched.law_formulas];
-            felt.iter().all(|list| list.is_empty()) && touched.laws.is_empty()
+            let touched = effects.touched(&[(*v, 1.0)]);
+            let felt = [&touched.joints, &touched.points, &touched.law_formulas];
+            felt.iter().all(|list| list.is_empty())
+                && touched.laws.is_empty()
+                && !touched.hardpoints.iter().any(|h| seen.contains(h))
         };
         (0..self.variables.len()).map(VariableId).filter(is_idle).collect()
     }

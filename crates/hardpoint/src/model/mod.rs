@@ -14,7 +14,7 @@ mod idle;
 
 pub(crate) use curve::Contact;
 pub use curve::{Curve, CurvePoint};
-pub(crate) use design::{Effects, in_order};
+pub(crate) use design::{Effects, Fixed};
 pub use design::{Field, Geometry, Kept, MarkerField};
 pub use draft::{
     BodyDraft, ChangeDraft, CouplerDraft, CouplerKindDraft, CurveDraft, Draft, DrivenDraft, DriverDraft,

@@ -234,7 +234,7 @@ impl<T: Real> State<T> {
 
     /// Rates of a marker i that walks along its curve: those of its body and its own turning.
     #[inline(never)]
-    fn walk(&self, closure: usize, k: usize, rates: &EndRates<T>) -> EndRates<T> {
+    pub fn walk(&self, closure: usize, k: usize, rates: &EndRates<T>) -> EndRates<T> {
         self.witness.within(
             #[inline(always)]
             || self.walking(closure, k, rates),

@@ -11,10 +11,10 @@ use crate::topology::{Source, Step, Topology};
 /// by closure.
 #[derive(Clone, Debug)]
 pub(crate) struct FieldParts<T> {
-    links: Vec<Moving<T>>,
-    closures: Vec<Moving<T>>,
+    pub(super) links: Vec<Moving<T>>,
+    pub(super) closures: Vec<Moving<T>>,
     /// Rows whose kept values change, and their rates.
-    kept: Vec<(usize, T)>,
+    pub(super) kept: Vec<(usize, T)>,
     /// Parameters of drivers' laws that change, and their rates.
     laws: Vec<(DriverId, usize, T)>,
     /// What that adds to the driver's value, speed and acceleration at the time that was set last.
@@ -29,11 +29,11 @@ pub(crate) struct FieldParts<T> {
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Reach {
     /// Links placed by drivers alone, whose children move.
-    driven_links: Vec<usize>,
+    pub driven_links: Vec<usize>,
     /// Blocks with anything to make up for.
-    blocks: Vec<usize>,
+    pub blocks: Vec<usize>,
     /// Closures of these blocks, and those between driven bodies.
-    closures: Vec<usize>,
+    pub closures: Vec<usize>,
     /// Bodies that move.
     pub bodies: Vec<usize>,
 }
@@ -82,15 +82,15 @@ impl Reach {
 
 /// A marker that some design velocity moves.
 #[derive(Clone, Copy, Debug)]
-struct Moving<T> {
+pub(super) struct Moving<T> {
     /// Which link or closure.
-    at: usize,
+    pub at: usize,
     /// Which marker: 0 is the parent's of a link or i of a closure, 1 the child's or j.
-    end: usize,
+    pub end: usize,
     /// The body that carries it.
-    body: usize,
+    pub body: usize,
     /// Body-fixed twist.
-    e: Twist<T>,
+    pub e: Twist<T>,
 }
 
 impl<T: Real> Moving<T> {
@@ -147,6 +147,17 @@ impl<T: Real> FieldParts<T> {
         Self { links, closures, kept, laws: field.laws.clone(), law_rates, scale, reach }
     }
 
+    /// The drivers whose laws change.
+    pub fn drivers(&self) -> impl Iterator<Item = DriverId> {
+        self.law_rates.iter().map(|(d, _)| *d)
+    }
+
+    /// How fast the value of a driver with this law changes at time t, in one lane.
+    pub fn law_speed(&self, driver: DriverId, law: &Law, lane: usize, t: f64) -> f64 {
+        let of_driver = self.laws.iter().filter(|(d, ..)| *d == driver);
+        of_driver.map(|(_, parameter, rate)| rate.lane(lane) * law.derivative(*parameter, t).value()).sum()
+    }
+
     /// Sets what changing laws do, at one time per lane; `law` gives a driver's law in a lane.
     pub fn set_times<'l>(&mut self, law: impl Fn(DriverId, usize) -> &'l Law, times: &[f64; LANES]) {
         for (driver, rates) in &mut self.law_rates {
@@ -177,7 +188,7 @@ impl<T: Real> FieldParts<T> {
 /// Scratch of the sensitivity levels; nothing is allocated per step.
 pub(crate) struct Direct<T> {
     /// Per order (0, 1, 2): speeds of the coordinates, S.
-    s: [Vec<T>; 3],
+    pub(super) s: [Vec<T>; 3],
     /// Per order: design twists of the bodies, W.
     pub w: [Vec<Twist<T>>; 3],
     /// Per order: `W_Mj - W_Mi` of the closures' markers.
@@ -222,6 +233,22 @@ impl<T: Real> Direct<T> {
 
     /// W, W. and W.. of all bodies for one variable, where `state` stands with all of its rates.
     pub fn solve(&mut self, topology: &Topology, state: &mut State<T>, field: &FieldParts<T>) {
+        self.solve_orders(topology, state, field, 3);
+    }
+
+    /// W alone, where `state` need not know its rates.
+    pub fn solve_position(&mut self, topology: &Topology, state: &mut State<T>, field: &FieldParts<T>) {
+        self.solve_orders(topology, state, field, 1);
+    }
+
+    #[inline(always)]
+    fn solve_orders(
+        &mut self,
+        topology: &Topology,
+        state: &mut State<T>,
+        field: &FieldParts<T>,
+        orders: usize,
+    ) {
         let witness = state.witness;
         if self.moved != field.reach.bodies {
             for w in &mut self.w {
@@ -235,7 +262,7 @@ impl<T: Real> Direct<T> {
             #[inline(always)]
             || {
                 self.set_field(topology, state, field);
-                for order in 0..3 {
+                for order in 0..orders {
                     self.solve_order(topology, state, field, order);
                 }
             },

@@ -6,9 +6,12 @@
 
 mod admissible;
 mod direct;
+mod second;
 mod sensing;
 
 pub use admissible::{Admissibility, JointDefect, admissibility_at_design};
+pub(crate) use second::Seconds;
+pub use second::{BodyCurvature, Direction};
 pub(crate) use sensing::{Sensing, SensingDesigns};
 
 use crate::space::Vec3;

@@ -66,9 +66,6 @@ pub trait Real:
     /// This value to a fixed power, lane by lane.
     fn powf(self, exponent: f64) -> Self;
 
-    /// The angle of the point (`x`, `self`), rad, lane by lane.
-    fn atan2(self, x: Self) -> Self;
-
     /// Runs `f` compiled for the CPU that this value was made for. Large functions of the hot path
     /// begin with it, so that they need not be inlined into their callers to get wide instructions.
     fn within<R>(self, f: impl FnOnce() -> R) -> R;
@@ -85,16 +82,28 @@ pub trait Real:
         -(-self).largest()
     }
 
-    /// Whether it is zero in every lane, and so is every derivative that it carries.
-    #[inline(always)]
-    fn is_zero(self) -> bool {
-        self.abs().largest() == 0.0
-    }
-
     /// Zero in every lane.
     #[inline(always)]
     fn zero(self) -> Self {
         self.like(0.0)
+    }
+
+    /// Whether it is zero in every lane, derivatives that it may carry included.
+    #[inline(always)]
+    fn vanishes(self) -> bool {
+        self.abs().largest() == 0.0
+    }
+
+    /// Inverse sine, lane by lane, rad.
+    #[inline(always)]
+    fn asin(self) -> Self {
+        self.like_lanes(|k| self.lane(k).asin())
+    }
+
+    /// Angle of the point (x, self) from the x axis, lane by lane, rad in (-pi, pi].
+    #[inline(always)]
+    fn atan2(self, x: Self) -> Self {
+        self.like_lanes(|k| self.lane(k).atan2(x.lane(k)))
     }
 
     /// Sine and cosine, lane by lane, to about one unit in the last place for |x| up to 1e5 turns.
@@ -135,8 +144,6 @@ pub trait Real:
 pub enum Function {
     /// Tangent.
     Tan,
-    /// Arc sine.
-    Asin,
     /// Arc cosine.
     Acos,
     /// Arc tangent.
@@ -157,7 +164,6 @@ impl Function {
     fn of(self, x: f64) -> f64 {
         match self {
             Self::Tan => x.tan(),
-            Self::Asin => x.asin(),
             Self::Acos => x.acos(),
             Self::Atan => x.atan(),
             Self::Sinh => x.sinh(),
@@ -173,7 +179,6 @@ impl Function {
         let one = x.like(1.0);
         match self {
             Self::Tan => one + y * y,
-            Self::Asin => one / (one - x * x).sqrt(),
             Self::Acos => -(one / (one - x * x).sqrt()),
             Self::Atan => one / (one + x * x),
             Self::Sinh => x.map(Self::Cosh),
@@ -227,9 +232,6 @@ impl Real for f64 {
     }
     fn powf(self, exponent: f64) -> Self {
         f64::powf(self, exponent)
-    }
-    fn atan2(self, x: Self) -> Self {
-        f64::atan2(self, x)
     }
     #[inline(always)]
     fn largest(self) -> f64 {
@@ -314,9 +316,6 @@ impl<S: Simd> Real for f64x8<S> {
     }
     fn powf(self, exponent: f64) -> Self {
         self.like_lanes(|k| self.lane(k).powf(exponent))
-    }
-    fn atan2(self, x: Self) -> Self {
-        self.like_lanes(|k| self.lane(k).atan2(x.lane(k)))
     }
     #[inline(always)]
     fn largest(self) -> f64 {

@@ -1,9 +1,11 @@
 //! Studies: questions that take many solutions.
 
 mod difference;
+mod second;
 mod verify;
 
 pub use difference::{Difference, central_differences, natural_step};
+pub use second::SecondDerivatives;
 pub use verify::{
     Check, CheckOutcome, PASS, StepError, Verification, VerifyOptions, compare_with_difference, verify,
 };

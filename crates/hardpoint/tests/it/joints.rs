@@ -200,7 +200,7 @@ fn shaft_train() -> Draft {
 }
 
 /// A cam that turns under a roller on a slide, whose arm carries a pin in a slot of a second body.
-fn cam_and_slot() -> Draft {
+pub fn cam_and_slot() -> Draft {
     let circle = |n: usize, radius: f64, centre: [f64; 2]| -> Vec<Place> {
         let angle = |k: usize| 2.0 * std::f64::consts::PI * k as f64 / n as f64;
         (0..n)

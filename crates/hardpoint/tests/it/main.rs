@@ -12,5 +12,6 @@ mod loops;
 mod random;
 mod reference;
 mod reference_case;
+mod second;
 mod verify;
 mod workbench;

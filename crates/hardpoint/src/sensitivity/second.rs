@@ -1,0 +1,307 @@
+//! Second design derivatives of positions: one more solution with the factors at hand for every pair of directions.
+//!
+//! The first-order condition of every row, `l . D_u = L_u`, holds in the design that a second direction w leads to as well;
+//! differentiated along w it is a level like all others (`docs/theory.md` (15)).
+
+use crate::constraint::EndRates;
+use crate::law::Law;
+use crate::model::{DriverId, Effects, Model};
+use crate::motion::kinematics::{State, carry, level, sum_couplers};
+use crate::motion::stepper::Stepper;
+use crate::space::{Dual, LANES, Mat3, Pose, Real, Twist, Vec3};
+use crate::topology::{Source, Topology};
+
+use super::direct::{Direct, FieldParts};
+
+/// A way to change a design: how fast each variable goes.
+pub type Direction = [f64];
+
+/// Second derivatives of one body's position by two directions, global components, at fixed t.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BodyCurvature {
+    /// Of the position of its frame's origin.
+    pub d2r: Vec3,
+    /// Derivative along the second direction of dpi, the rotation vector rate along the first: not symmetric, since
+    /// rotations do not commute.
+    pub ddpi: Vec3,
+}
+
+/// What one direction does at one position, to first order.
+#[derive(Clone, Debug)]
+struct First<T> {
+    field: FieldParts<T>,
+    /// Design twists of the bodies.
+    w: Vec<Twist<T>>,
+    /// Speeds of the coordinates.
+    s: Vec<T>,
+    /// Per link, the design twists of its markers, the parent's first; per closure, those of markers i and j.
+    links: Vec<[Twist<T>; 2]>,
+    closures: Vec<[Twist<T>; 2]>,
+}
+
+impl<T: Real> First<T> {
+    fn new(model: &Model, topology: &Topology, field: FieldParts<T>, witness: T) -> Self {
+        let none = Twist::zero(witness);
+        Self {
+            field,
+            w: vec![none; model.bodies.len()],
+            s: vec![witness.zero(); topology.coordinates.len()],
+            links: vec![[none; 2]; topology.links.len()],
+            closures: vec![[none; 2]; topology.closures.len()],
+        }
+    }
+
+    /// Takes over what was just solved. What the direction does not reach stays zero.
+    fn keep(&mut self, direct: &Direct<T>, topology: &Topology, state: &State<T>) {
+        let reach = &self.field.reach;
+        reach.bodies.iter().for_each(|&b| self.w[b] = direct.w[0][b]);
+        let links = reach.blocks.iter().flat_map(|&b| topology.blocks[b].links.clone());
+        for c in links.chain(reach.driven_links.iter().copied()).flat_map(|k| topology.links[k].coordinates())
+        {
+            self.s[c] = direct.s[0][c];
+        }
+        for m in &self.field.links {
+            self.links[m.at][m.end] = state.pose[m.body].carry(m.e);
+        }
+        for m in &self.field.closures {
+            self.closures[m.at][m.end] = state.pose[m.body].carry(m.e);
+        }
+    }
+
+    /// The design twists of the markers of a closure.
+    #[inline(always)]
+    fn ends(&self, topology: &Topology, c: usize) -> [Twist<T>; 2] {
+        let ([i, j], [z_i, z_j]) = (topology.closures[c].bodies, self.closures[c]);
+        [self.w[i.0] + z_i, self.w[j.0] + z_j]
+    }
+}
+
+/// Two directions, and how the design changes along the first while it goes along the second.
+#[derive(Clone, Debug)]
+struct Pair<T> {
+    of: [usize; 2],
+    field: FieldParts<Dual<T>>,
+    /// By driver whose law changes along the first direction: its laws a little along the second, and back.
+    laws: Vec<(DriverId, [Law; 2])>,
+    /// What that makes of the driver's value, at the times set last.
+    law_rates: Vec<(DriverId, T)>,
+    /// Derivatives along the second direction of the design twists along the first.
+    w: Vec<Twist<T>>,
+}
+
+/// Laws know their derivatives by a parameter exactly; second derivatives are differences of these over this part of a
+/// parameter's unit, whose error is its square.
+const LAW_STEP: f64 = 1e-4;
+
+/// Second derivatives by pairs of directions.
+pub(crate) struct Seconds<T> {
+    firsts: Vec<First<T>>,
+    pairs: Vec<Pair<T>>,
+    direct: Direct<T>,
+    s: Vec<T>,
+    bias: Vec<Twist<T>>,
+    row_rhs: Vec<T>,
+}
+
+impl<T: Real> Seconds<T> {
+    /// For these pairs of directions at the design with these values.
+    pub fn new(
+        effects: &Effects<'_>,
+        topology: &Topology,
+        values: &[f64],
+        directions: &[Vec<f64>],
+        pairs: &[[usize; 2]],
+        witness: T,
+    ) -> Self {
+        let model = effects.model;
+        let lifted: Vec<T> = values.iter().map(|v| witness.like(*v)).collect();
+        let firsts = directions.iter().map(|d| {
+            let field = effects.field_along(&along(d), &lifted, witness);
+            First::new(model, topology, FieldParts::new(topology, &field, witness), witness)
+        });
+        let pair = |&[u, w]: &[usize; 2]| {
+            let moving = lifted.iter().zip(&directions[w]);
+            let moving: Vec<_> = moving.map(|(v, d)| Dual { v: *v, d: witness.like(*d) }).collect();
+            let field = effects.field_along(&along(&directions[u]), &moving, Dual::constant(witness));
+            let field = FieldParts::new(topology, &field, Dual::constant(witness));
+            let laws = [LAW_STEP, -LAW_STEP].map(|h| {
+                let moved: Vec<f64> = values.iter().zip(&directions[w]).map(|(v, d)| v + h * d).collect();
+                model.laws(&moved)
+            });
+            let of_driver = |d: &DriverId| (*d, [laws[0][d.0].clone(), laws[1][d.0].clone()]);
+            let drivers: Vec<DriverId> = field.drivers().collect();
+            Pair {
+                of: [u, w],
+                laws: drivers.iter().map(of_driver).collect(),
+                law_rates: drivers.iter().map(|d| (*d, witness.zero())).collect(),
+                field,
+                w: vec![Twist::zero(witness); model.bodies.len()],
+            }
+        };
+        Self {
+            firsts: firsts.collect(),
+            pairs: pairs.iter().map(pair).collect(),
+            direct: Direct::new(model, topology, witness),
+            s: vec![witness.zero(); topology.coordinates.len()],
+            bias: vec![Twist::zero(witness); topology.links.len()],
+            row_rhs: vec![witness.zero(); topology.rows.len()],
+        }
+    }
+
+    /// Solves all pairs where a stepper stands, at one time per lane.
+    pub fn solve(&mut self, stepper: &mut Stepper<'_, T>, times: &[f64; LANES]) {
+        let (topology, state, parts) = (&stepper.topology, &mut stepper.state, &stepper.parts);
+        for first in &mut self.firsts {
+            first.field.set_times(|d, lane| parts.law_of(d.0, lane), times);
+            self.direct.solve_position(topology, state, &first.field);
+            first.keep(&self.direct, topology, state);
+        }
+        for pair in &mut self.pairs {
+            pair.set_times(times);
+            let [u, w] = pair.of.map(|k| &self.firsts[k]);
+            let scratch = (&mut self.s, &mut self.bias, &mut self.row_rhs);
+            state.witness.within(
+                #[inline(always)]
+                || solve_pair(topology, state, pair, u, w, scratch),
+            );
+        }
+    }
+
+    /// How many pairs there are.
+    pub fn len(&self) -> usize {
+        self.pairs.len()
+    }
+
+    /// A body's pose, and its derivatives along the directions of pair p: `v.d` along the second, `d.v` along the first,
+    /// `d.d` along both.
+    pub fn pose(&self, state: &State<T>, p: usize, body: usize) -> Pose<Dual<Dual<T>>> {
+        let pair = &self.pairs[p];
+        let [u, w] = pair.of.map(|k| self.firsts[k].w[body]);
+        let (Pose { rot, r }, uw) = (state.pose[body], pair.w[body]);
+        let (r_u, r_w) = (u.at(r), w.at(r));
+        let column = |e: Vec3<T>| {
+            let (e_u, e_w) = (u.w.cross(e), w.w.cross(e));
+            number([e, e_u, e_w, uw.w.cross(e) + u.w.cross(e_w)])
+        };
+        let [f, g, h] = rot.cols;
+        Pose {
+            rot: Mat3 { cols: [column(f), column(g), column(h)] },
+            r: number([r, r_u, r_w, uw.at(r) + u.w.cross(r_w)]),
+        }
+    }
+
+    /// Second derivatives of a body's position by pair p, lane by lane.
+    pub fn curvature(&self, state: &State<T>, p: usize, body: usize, lane: usize) -> BodyCurvature {
+        let part = |v: Vec3<Dual<Dual<T>>>| v.map(|x| x.d.d.lane(lane));
+        BodyCurvature {
+            d2r: part(self.pose(state, p, body).r),
+            ddpi: self.pairs[p].w[body].w.map(|x| x.lane(lane)),
+        }
+    }
+}
+
+/// The variables that a direction changes, and how fast.
+pub(crate) fn along(direction: &Direction) -> Vec<(crate::model::VariableId, f64)> {
+    let all = direction.iter().enumerate().map(|(k, d)| (crate::model::VariableId(k), *d));
+    all.filter(|(_, d)| *d != 0.0).collect()
+}
+
+/// A vector with its derivatives along u, along w, and along both.
+fn number<T: Real>([v, u, w, uw]: [Vec3<T>; 4]) -> Vec3<Dual<Dual<T>>> {
+    let component = |v, u, w, uw| Dual { v: Dual { v, d: w }, d: Dual { v: u, d: uw } };
+    Vec3::new(component(v.x, u.x, w.x, uw.x), component(v.y, u.y, w.y, uw.y), component(v.z, u.z, w.z, uw.z))
+}
+
+impl<T: Real> Pair<T> {
+    /// Differences of the laws' exact derivatives.
+    fn set_times(&mut self, times: &[f64; LANES]) {
+        let Self { field, laws, law_rates, .. } = self;
+        for ((driver, [ahead, behind]), (_, out)) in laws.iter().zip(law_rates) {
+            *out = out.like_lanes(|lane| {
+                let rate = |law: &Law| field.law_speed(*driver, law, lane, times[lane]);
+                (rate(ahead) - rate(behind)) / (2.0 * LAW_STEP)
+            });
+        }
+    }
+
+    fn law_rate(&self, driver: DriverId, zero: T) -> T {
+        self.law_rates.iter().find(|(d, _)| *d == driver).map_or(zero, |(_, rate)| *rate)
+    }
+}
+
+/// `docs/theory.md` (15).
+#[inline(always)]
+fn solve_pair<T: Real>(
+    topology: &Topology,
+    state: &mut State<T>,
+    pair: &mut Pair<T>,
+    u: &First<T>,
+    w: &First<T>,
+    (s, bias, row_rhs): (&mut Vec<T>, &mut Vec<Twist<T>>, &mut Vec<T>),
+) {
+    let (none, zero) = (Twist::zero(state.witness), state.witness.zero());
+    // A marker's design twist along u, carried along w by its body, and changed by the design itself.
+    let carried = |state: &State<T>, body: usize, e: Twist<Dual<T>>| {
+        let part = |of: fn(Dual<T>) -> T| Twist { w: e.w.map(of), v: e.v.map(of) };
+        let pose = state.pose[body];
+        w.w[body].ad(pose.carry(part(|x| x.v))) + pose.carry(part(|x| x.d))
+    };
+    let reach = &pair.field.reach;
+    let in_blocks = reach.blocks.iter().flat_map(|&b| topology.blocks[b].links.clone());
+    for k in reach.driven_links.iter().copied().chain(in_blocks) {
+        let link = &topology.links[k];
+        let mut sum = none;
+        let mut carrier = w.w[link.parent.0] + w.links[k][0];
+        for step in &link.steps {
+            let coordinates = step.first..step.first + step.freedom.coordinates();
+            for c in coordinates.clone() {
+                sum = carrier.ad(state.x[c]).times_plus(u.s[c], sum);
+            }
+            for c in coordinates {
+                carrier = state.x[c].times_plus(w.s[c], carrier);
+                if let Source::Driven(d) = topology.coordinates[c].source {
+                    s[c] = pair.law_rate(d, zero);
+                }
+            }
+        }
+        bias[k] = sum;
+    }
+    for m in &pair.field.links {
+        let z = carried(state, m.body, m.e);
+        bias[m.at] += if m.end == 0 { z } else { -z };
+    }
+    for &c in &reach.closures {
+        let closure = &topology.closures[c];
+        let ([u_i, u_j], [w_i, w_j]) = (u.ends(topology, c), w.ends(topology, c));
+        let mut rates = EndRates { v_i: w_i, v_j: w_j, a_i: none, a_j: none };
+        if let Some(k) = closure.contact {
+            rates = state.walk(c, k, &rates);
+        }
+        let driven = closure.driver.map_or(zero, |d| pair.law_rate(d, zero));
+        for (n, row) in closure.rows.iter().enumerate() {
+            let r = closure.first_row + n;
+            if topology.rows[r].drives() {
+                let [l_w, _] = row.wrench_rates(&state.ends[c], &rates);
+                row_rhs[r] = driven - l_w.on(u_j - u_i);
+            }
+        }
+    }
+    for m in &pair.field.closures {
+        let z = carried(state, m.body, m.e);
+        let closure = &topology.closures[m.at];
+        for r in closure.first_row..closure.first_row + closure.rows.len() {
+            if topology.rows[r].drives() {
+                row_rhs[r] += state.l[r].on(if m.end == 1 { -z } else { z });
+            }
+        }
+    }
+    for &(row, rate) in &pair.field.kept {
+        row_rhs[row] += rate.d;
+    }
+    reach.blocks.iter().for_each(|&b| sum_couplers(topology, b, row_rhs));
+    let (x, out, bias) = (&state.x, &mut pair.w, Some(&bias[..]));
+    carry(topology, reach.driven_links.iter().copied(), x, bias, s, out, |_| true);
+    for &b in &reach.blocks {
+        level(topology, b, &mut state.factors, x, &state.l, bias, row_rhs, s, out, &mut state.rhs);
+    }
+}

@@ -1,0 +1,166 @@
+//! Second design derivatives over a motion: Hessians, their products with vectors, and how a curve bends along a change.
+
+use std::ops::ControlFlow;
+
+use fearless_simd::{Level, dispatch};
+
+use crate::analysis::{Analysis, Design, Solved, Walk};
+use crate::measure::{Moment, Output, bodies_asked_for, outputs};
+use crate::model::{BodyId, VariableId};
+use crate::motion::Stop;
+use crate::motion::stepper::Stepper;
+use crate::sensitivity::{BodyCurvature, Seconds};
+use crate::sink::Sink;
+use crate::space::{Dual, LANES, Pose, Real, lanes};
+
+/// Second derivatives of all bodies' positions and of the values of all outputs, for pairs of directions.
+#[derive(Clone, Debug, Default)]
+pub struct SecondDerivatives {
+    /// Output times that were solved, s.
+    pub times: Vec<f64>,
+    /// The pairs, as asked for.
+    pub pairs: Vec<[usize; 2]>,
+    /// The columns: measures, then components of points.
+    pub outputs: Vec<Output>,
+    /// How many bodies there are, ground included.
+    pub bodies: usize,
+    /// `values[(k * pairs + p) * outputs + m]`, and likewise by body.
+    values: Vec<f64>,
+    curvatures: Vec<BodyCurvature>,
+    /// Why the run ended before the last output time, if it did.
+    pub stop: Option<Stop>,
+}
+
+impl SecondDerivatives {
+    /// Of the value of output m at time k, along the directions of pair p; in the output's unit per unit of both.
+    pub fn value(&self, k: usize, p: usize, m: usize) -> f64 {
+        self.values[(k * self.pairs.len() + p) * self.outputs.len() + m]
+    }
+
+    /// Of a body's position.
+    pub fn body(&self, k: usize, p: usize, body: BodyId) -> &BodyCurvature {
+        &self.curvatures[(k * self.pairs.len() + p) * self.bodies + body.0]
+    }
+}
+
+/// Takes nothing: the motion is only walked along.
+struct Nothing;
+
+impl Sink for Nothing {
+    fn wants(&self, _: BodyId) -> bool {
+        false
+    }
+    fn state(&mut self, _: usize, _: BodyId, _: &crate::motion::BodyState) {}
+    fn sensitivity(&mut self, _: usize, _: VariableId, _: BodyId, _: &crate::sensitivity::BodySensitivity) {}
+}
+
+impl Analysis<'_> {
+    /// Second derivatives at the design with variable k at `design[k]`, for pairs of directions, each given by its index.
+    ///
+    /// A direction says how fast every variable goes (missing entries are 0). With the unit vectors and all pairs of them this
+    /// is the Hessian; with one direction v more and the pairs of it with every unit vector the Hessian times v; with
+    /// one direction and the pair of it with itself, how much the curves bend along a change. Each pair costs one solution
+    /// with the factors that the motion leaves.
+    ///
+    /// Directions that the mechanism cannot follow give numbers that mean nothing: ask
+    /// [`Sensitivities::admissibility`](crate::sensitivity::Sensitivities::admissibility) first.
+    ///
+    /// # Panics
+    /// If a pair names a direction that there is not.
+    pub fn second(&self, design: &[f64], directions: &[Vec<f64>], pairs: &[[usize; 2]]) -> SecondDerivatives {
+        let design = self.design(design, false);
+        let directions: Vec<Vec<f64>> = directions.iter().map(|d| self.model().whole(d)).collect();
+        dispatch!(Level::new(), simd => self.second_in(&design, &directions, pairs, lanes(simd)))
+    }
+
+    fn second_in<T: Real>(
+        &self,
+        design: &Design,
+        directions: &[Vec<f64>],
+        pairs: &[[usize; 2]],
+        witness: T,
+    ) -> SecondDerivatives {
+        let model = self.model();
+        let mut walk = Walk::new(self, design, vec![false; model.bodies.len()], witness);
+        let mut result = SecondDerivatives {
+            pairs: pairs.to_vec(),
+            outputs: outputs(model),
+            bodies: model.bodies.len(),
+            ..SecondDerivatives::default()
+        };
+        let mut one = Bends::new(self, design, directions, pairs, 0.0);
+        let mut all = Bends::new(self, design, directions, pairs, witness);
+        let mut done = 0;
+        result.stop = walk.all(self, &mut Nothing, &mut |_| ControlFlow::Continue(()), |_, solved, count| {
+            let times = &model.times[done..done + count];
+            match solved {
+                Solved::One(stepper) => one.add(stepper, times, &mut result),
+                Solved::Abreast(stepper) => all.add(stepper, times, &mut result),
+            }
+            done += count;
+        });
+        result
+    }
+}
+
+/// What second derivatives need besides a stepper.
+struct Bends<'a, T> {
+    analysis: &'a Analysis<'a>,
+    seconds: Seconds<T>,
+    /// Per pair, what measures go by.
+    fixed: Vec<crate::model::Fixed<Dual<Dual<T>>>>,
+    asked_for: Vec<usize>,
+    poses: Vec<Pose<Dual<Dual<T>>>>,
+    values: Vec<Dual<Dual<T>>>,
+}
+
+impl<'a, T: Real> Bends<'a, T> {
+    fn new(
+        analysis: &'a Analysis<'_>,
+        design: &Design,
+        directions: &[Vec<f64>],
+        pairs: &[[usize; 2]],
+        witness: T,
+    ) -> Self {
+        let (model, effects) = (analysis.model(), analysis.effects());
+        let zero = Dual::constant(Dual::constant(witness));
+        let fixed = |&[u, w]: &[usize; 2]| {
+            let value = |k: usize| Dual {
+                v: Dual { v: witness.like(design.values[k]), d: witness.like(directions[w][k]) },
+                d: Dual::constant(witness.like(directions[u][k])),
+            };
+            let values: Vec<_> = (0..model.variables.len()).map(value).collect();
+            effects.fixed(&values, zero)
+        };
+        Self {
+            analysis,
+            seconds: Seconds::new(effects, analysis.topology(), &design.values, directions, pairs, witness),
+            fixed: pairs.iter().map(fixed).collect(),
+            asked_for: bodies_asked_for(model),
+            poses: vec![Pose::IDENTITY.spread(zero); model.bodies.len()],
+            values: Vec::new(),
+        }
+    }
+
+    /// Appends what is found at these times, one per lane.
+    fn add(&mut self, stepper: &mut Stepper<'_, T>, times: &[f64], result: &mut SecondDerivatives) {
+        let of_lanes: [f64; LANES] = std::array::from_fn(|lane| times[lane.min(times.len() - 1)]);
+        self.seconds.solve(stepper, &of_lanes);
+        let (model, state) = (self.analysis.model(), &stepper.state);
+        self.values.clear();
+        for p in 0..self.seconds.len() {
+            for &b in self.asked_for.iter().filter(|b| **b != 0) {
+                self.poses[b] = self.seconds.pose(state, p, b);
+            }
+            Moment { model, fixed: &self.fixed[p], poses: &self.poses }.all(|x| self.values.push(x));
+        }
+        for (lane, &t) in times.iter().enumerate() {
+            result.times.push(t);
+            result.values.extend(self.values.iter().map(|x| x.d.d.lane(lane)));
+            for p in 0..self.seconds.len() {
+                let body = |b: usize| self.seconds.curvature(state, p, b, lane);
+                result.curvatures.extend((0..result.bodies).map(body));
+            }
+        }
+    }
+}
