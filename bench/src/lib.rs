@@ -102,7 +102,7 @@ pub fn chain_with_variables(n: usize, variables: usize, steps: usize) -> Draft {
         let velocity = Vec3::new(1.0, 0.0, 0.0);
         draft.hardpoints.push(HardpointDraft { name: name.clone(), position: Vec3::new(k as f64, 0.0, 0.0) });
         let changes = vec![ChangeDraft::Move { hardpoint: name.clone(), velocity }];
-        draft.design.push(VariableDraft { name, changes, fixed_length: false });
+        draft.design.push(VariableDraft { name, changes, ..VariableDraft::default() });
     }
     draft
 }

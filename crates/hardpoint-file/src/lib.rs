@@ -28,7 +28,7 @@
 //!   far above any mechanism.
 //! * A driver's table may lie in a CSV file in the model's folder; that is all that is read besides the model file.
 //!
-//! What is not here: includes, parameters and expressions outside of drivers' laws.
+//! What is not here: includes, and coordinates of hardpoints in expressions that no change of the design moves.
 
 mod diagnostic;
 mod places;
@@ -278,7 +278,7 @@ fn parse_in(folder: Option<&Path>, text: &str, file_name: &str) -> Result<ModelF
         drop(document);
         return Err(Diagnostics::new(source, list));
     }
-    let mut reader = Reader { source: &source, folder, units: Units::default(), found: Vec::new() };
+    let mut reader = Reader::new(&source, folder);
     let raw = reader.model(document.get_ref());
     let (units, mut found) = (reader.units, reader.found);
     let model = match Model::from_draft(&raw.draft) {
@@ -348,7 +348,8 @@ fn syntax_errors(source: &Source, errors: &[toml::de::Error]) -> Vec<Diagnostic>
 }
 
 /// The tables that names are looked up in, and how the core says that a name is not there.
-const LOOKED_UP: [(&str, &str); 5] = [
+const LOOKED_UP: [(&str, &str); 6] = [
+    ("parameters", "no parameter named"),
     ("hardpoints", "no hardpoint named"),
     ("bodies", "no body named"),
     ("joints", "no joint named"),
@@ -385,8 +386,10 @@ fn shown_fault(source: &Source, places: &Places, fault: Fault) -> Diagnostic {
     let mut d = source.diagnostic(Severity::Error, code, message, span);
     d = notes.into_iter().fold(d, Diagnostic::note);
     if code == "HP0201" && at.section == Section::Design {
-        d = d
-            .help("`along = \"xyz\"` makes three variables NAME_x, NAME_y and NAME_z; rename one of the two");
+        d = d.help(
+            "`along = \"xyz\"` makes three variables NAME_x, NAME_y and NAME_z, and a parameter is one of its own name; \
+             rename one of the two",
+        );
     }
     help.into_iter().fold(d, Diagnostic::help)
 }

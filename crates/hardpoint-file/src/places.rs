@@ -63,8 +63,9 @@ impl EntryPlace {
     }
 }
 
-const SECTIONS: [Section; 10] = [
+const SECTIONS: [Section; 11] = [
     Section::Model,
+    Section::Parameters,
     Section::Hardpoints,
     Section::Bodies,
     Section::Joints,

@@ -5,6 +5,7 @@ mod data;
 mod design;
 mod drivers;
 mod law;
+mod parameters;
 mod results;
 
 use std::collections::HashMap;
@@ -12,7 +13,8 @@ use std::ops::Range;
 
 use hardpoint::joint::{self, Quantity};
 use hardpoint::model::{
-    BodyDraft, CurveDraft, Draft, FrameDraft, HardpointDraft, JointDraft, Line, Place, Section,
+    BodyDraft, CurveDraft, Draft, FormulaDraft, FormulaOf, FrameDraft, HardpointDraft, JointDraft, Line,
+    Nominal, Place, Section,
 };
 use hardpoint::space::{Pose, Quat, Vec3, rotation_from_euler_313};
 use toml::de::{DeTable, DeValue};
@@ -26,6 +28,7 @@ const MODEL: &[Key] = &[
     ("name", "\"four-bar\""),
     ("description", "\"...\""),
     ("units", "{ length = \"mm\", angle = \"deg\" }"),
+    ("parameters", "{ hub = { value = 60, unit = \"length\" } }"),
     ("hardpoints", "{ A = [0, 0, 0] }"),
     ("bodies", "{ crank = {} }"),
     ("joints", "{}"),
@@ -83,8 +86,9 @@ pub(crate) struct Raw {
     /// Which number a hardpoint and a joint have; of equal names, the first. Only looked up, never walked.
     hardpoint_numbers: HashMap<String, usize>,
     joint_numbers: HashMap<String, usize>,
-    /// Of each driver of the draft, what one unit of its law is in SI, and the parameters that are rates in that unit.
-    pub driver_rates: Vec<(f64, Vec<String>)>,
+    /// Of each driver of the draft, what one unit of its law is in SI, the parameters that are rates in that unit, and
+    /// what it measures.
+    pub driver_rates: Vec<(f64, Vec<String>, Quantity)>,
 }
 
 impl Reader<'_> {
@@ -103,7 +107,9 @@ impl Reader<'_> {
         raw.draft.name = name.and_then(|f| self.text(&fields, f)).unwrap_or_default();
         raw.description = fields.get("description").and_then(|f| self.text(&fields, f));
         self.units(&fields);
+        self.parameters(&fields, &mut raw);
         self.hardpoints(&fields, &mut raw);
+        self.settle(&mut raw);
         self.bodies(&fields, &mut raw);
         self.joints(&fields, &mut raw);
         self.couplers(&fields, &mut raw);
@@ -271,15 +277,36 @@ impl Reader<'_> {
             };
             let mut place = EntryPlace::at(at);
             place.key("position", value);
-            let position = self.coordinates(value, &subject, "three coordinates").unwrap_or_else(|| {
-                place.unread("position");
-                // No two of these, and none of the others, should be at the same place.
-                let k = index as f64;
-                Vec3::new(0.317 + k, 0.1 + 1.7 * k, 0.7 - 0.9 * k * k)
-            });
+            let position = match self.written_place(value, &subject, "three coordinates") {
+                Some(Place::At(position)) => position,
+                Some(Place::Formula(coordinates)) => {
+                    for (axis, expression) in coordinates.into_iter().enumerate() {
+                        let of = FormulaOf::Coordinate(name.clone(), axis);
+                        raw.draft.formulas.push(FormulaDraft { of, expression });
+                    }
+                    Vec3::ZERO
+                }
+                _ => {
+                    place.unread("position");
+                    // No two of these, and none of the others, should be at the same place.
+                    let k = index as f64;
+                    Vec3::new(0.317 + k, 0.1 + 1.7 * k, 0.7 - 0.9 * k * k)
+                }
+            };
             raw.places.push(Section::Hardpoints, place);
             raw.hardpoint_numbers.entry(name.clone()).or_insert(index);
             raw.draft.hardpoints.push(HardpointDraft { name, position });
+        }
+    }
+
+    /// What parameters and hardpoints are in the nominal design, for all that the reader wants to know at once.
+    fn settle(&mut self, raw: &mut Raw) {
+        if raw.draft.parameters.is_empty() && raw.draft.formulas.is_empty() {
+            return;
+        }
+        self.nominal = Nominal::of(&raw.draft);
+        for (hardpoint, position) in raw.draft.hardpoints.iter_mut().zip(&self.nominal.positions) {
+            hardpoint.position = *position;
         }
     }
 
@@ -319,13 +346,15 @@ impl Reader<'_> {
             }
             let points = ["origin", "x", "xy"].map(|key| self.need(&fields, key));
             place.items("frame", points.iter().flatten().map(|f| f.value.span()).collect());
-            let [origin, x, xy] = points.map(|f| f.and_then(|f| self.place(f.value, &fields.subject(f.key))));
+            let [origin, x, xy] =
+                points.map(|f| f.and_then(|f| self.fixed_place(f.value, &fields.subject(f.key))));
             return Some(FrameDraft::Points(origin?, x?, xy?));
         }
         let position = self.need(&fields, "position");
-        let r = position.and_then(|f| match self.place(f.value, &fields.subject("position"))? {
+        let r = position.and_then(|f| match self.fixed_place(f.value, &fields.subject("position"))? {
             Place::At(r) => Some(r),
             Place::Hardpoint(name) => self.hardpoint_position(&name, f, raw),
+            Place::Formula(_) => None,
         });
         let rot = match (fields.get("euler"), fields.get("quaternion")) {
             (Some(f), other) => {
@@ -334,7 +363,9 @@ impl Reader<'_> {
                 }
                 let theta =
                     self.numbers::<3>(f.value, &fields.subject("euler"), "three Euler angles (3-1-3)");
-                theta.map(|t| rotation_from_euler_313(t.map(|a| self.units.angle.radians(a))))
+                let list = f.value.get_ref().as_array();
+                let angle = |k: usize, x: f64| list.and_then(|l| l.get(k)).map_or(x, |v| self.angle_of(v, x));
+                theta.map(|[a, b, c]| rotation_from_euler_313([angle(0, a), angle(1, b), angle(2, c)]))
             }
             (None, Some(f)) => {
                 let subject = fields.subject("quaternion");
@@ -390,7 +421,7 @@ impl Reader<'_> {
             }
             let at = match fields.get("at") {
                 None => Vec::new(),
-                Some(f) => self.joint_places(&fields, f, &mut place).unwrap_or_else(|| {
+                Some(f) => self.joint_places(&fields, f, &mut place, raw).unwrap_or_else(|| {
                     place.unread("at");
                     Vec::new()
                 }),
@@ -403,9 +434,12 @@ impl Reader<'_> {
                 }
                 line
             });
-            let [length, lead] = ["length", "lead"].map(|key| {
-                let f = fields.get(key)?;
-                let number = self.number(f.value, &fields.subject(key));
+            let length = fields.get("length").and_then(|f| self.rod_length_of(&fields, f, &entry.0, raw));
+            if length.is_none() && fields.get("length").is_some() {
+                place.unread("length");
+            }
+            let lead = fields.get("lead").and_then(|f| {
+                let number = self.number(f.value, &fields.subject(f.key));
                 if number.is_none() {
                     place.unread(f.key);
                 }
@@ -436,17 +470,40 @@ impl Reader<'_> {
         }
     }
 
-    /// One place, or a list of places: three numbers are the coordinates of one.
+    /// The length of a rod: a number, or an expression that the core evaluates.
+    fn rod_length_of(
+        &mut self,
+        fields: &Fields<'_>,
+        f: Field<'_>,
+        joint: &str,
+        raw: &mut Raw,
+    ) -> Option<f64> {
+        let subject = fields.subject(f.key);
+        if !f.value.get_ref().is_str() {
+            return self.number(f.value, &subject).map(|x| self.units.length.metres(x));
+        }
+        let expression = self.expression(f.value, &subject)?;
+        raw.draft.formulas.push(FormulaDraft { of: FormulaOf::Length(joint.to_owned()), expression });
+        Some(0.0)
+    }
+
+    /// One place, or a list of places: three numbers, or three texts that are not all names of hardpoints, are the
+    /// coordinates of one.
     fn joint_places(
         &mut self,
         fields: &Fields<'_>,
         f: Field<'_>,
         place: &mut EntryPlace,
+        raw: &Raw,
     ) -> Option<Vec<Place>> {
         let subject = fields.subject("at");
         let is_number = |v: &Value<'_>| matches!(v.get_ref(), DeValue::Integer(_) | DeValue::Float(_));
+        let is_hardpoint =
+            |v: &Value<'_>| v.get_ref().as_str().is_none_or(|name| raw.hardpoint_numbers.contains_key(name));
         match f.value.get_ref().as_array() {
-            Some(list) if !list.iter().any(is_number) => {
+            Some(list)
+                if !list.iter().any(is_number) && (list.len() != 3 || list.iter().all(is_hardpoint)) =>
+            {
                 let list = self.list(f.value, &subject, "")?;
                 let places: Vec<_> = list.iter().map(|v| self.place(v, &subject)).collect();
                 places.into_iter().collect()

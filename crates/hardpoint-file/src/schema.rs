@@ -9,6 +9,7 @@ use std::collections::BTreeMap;
 
 use hardpoint::joint;
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
+use serde::Serialize;
 
 /// The JSON Schema of model files, as `models/hardpoint.schema.json` has it.
 ///
@@ -32,9 +33,14 @@ struct ModelSchema {
     description: Option<String>,
     /// The units of all numbers in this file. Time is always in seconds.
     units: UnitsSchema,
-    /// Named points of the design configuration: `name = [x, y, z]`, global, in the length unit.
+    /// Named numbers, which expressions in quotes may use wherever a number stands. Each is a design variable, unless it
+    /// says otherwise or is itself given by an expression.
     #[schemars(default)]
-    hardpoints: BTreeMap<Name, [f64; 3]>,
+    parameters: BTreeMap<Name, ParameterSchema>,
+    /// Named points of the design configuration: `name = [x, y, z]`, global, in the length unit. Expressions may use
+    /// coordinates of others, like `"-left.y"`.
+    #[schemars(default)]
+    hardpoints: BTreeMap<Name, [NumberSchema; 3]>,
     /// Rigid bodies. `ground` is always there and is not declared.
     bodies: BTreeMap<Name, BodySchema>,
     /// Joints between two bodies.
@@ -61,6 +67,60 @@ struct ModelSchema {
 
 /// A name of at most 100 characters.
 type Name = String;
+
+/// A number, or an expression over parameters, in quotes.
+#[derive(Default, Serialize)]
+struct NumberSchema(f64);
+
+impl JsonSchema for NumberSchema {
+    fn schema_name() -> Cow<'static, str> {
+        "NumberSchema".into()
+    }
+
+    fn json_schema(_: &mut SchemaGenerator) -> Schema {
+        json_schema!({
+            "type": ["number", "string"],
+            // No mere number in quotes, nor one with its unit.
+            "pattern": r"^(?!\s*[-+]?[0-9.,]+([eE][-+]?[0-9]+)?\s*([A-DF-Za-df-z].*)?$)",
+            "description": "A number, or an expression over parameters, in quotes."
+        })
+    }
+}
+
+/// A plain number, or a table with its value and more.
+#[derive(JsonSchema)]
+#[schemars(untagged)]
+enum ParameterSchema {
+    Plain(NumberSchema),
+    Table(ParameterTableSchema),
+}
+
+/// A named number.
+#[derive(JsonSchema)]
+#[schemars(deny_unknown_fields)]
+struct ParameterTableSchema {
+    /// Its value; an expression makes it follow others.
+    value: NumberSchema,
+    /// What it measures, and so its unit. Default: a plain number.
+    unit: Option<ParameterUnitSchema>,
+    /// The lowest and the highest value that it may have in other designs.
+    bounds: Option<[NumberSchema; 2]>,
+    /// How large a change of it is usual.
+    typical: Option<NumberSchema>,
+    /// Whether it is a design variable. Default: true.
+    design: Option<bool>,
+}
+
+#[derive(JsonSchema)]
+#[schemars(rename_all = "lowercase")]
+enum ParameterUnitSchema {
+    /// In the file's unit of length.
+    Length,
+    /// In the file's unit of angle; in expressions in rad.
+    Angle,
+    /// A plain number.
+    Number,
+}
 
 /// The units of all numbers in the file.
 #[derive(JsonSchema)]
@@ -112,9 +172,9 @@ struct PoseSchema {
     /// Origin: coordinates or a hardpoint's name.
     position: PlaceSchema,
     /// 3-1-3 Euler angles, in the angle unit.
-    euler: Option<[f64; 3]>,
+    euler: Option<[NumberSchema; 3]>,
     /// Quaternion `[w, x, y, z]`, of any length, instead of `euler`.
-    quaternion: Option<[f64; 4]>,
+    quaternion: Option<[NumberSchema; 4]>,
 }
 
 /// By three points.
@@ -134,7 +194,7 @@ struct FramePointsSchema {
 #[schemars(untagged)]
 enum PlaceSchema {
     Hardpoint(Name),
-    At([f64; 3]),
+    At([NumberSchema; 3]),
 }
 
 /// A joint between bodies i and j.
@@ -156,9 +216,9 @@ struct JointSchema {
     axis2: Option<LineSchema>,
     /// Length of a rod, in the length unit. Default: the distance between its places. Where it differs from that, the
     /// mechanism is assembled to it.
-    length: Option<f64>,
+    length: Option<NumberSchema>,
     /// Advance of a screw per turn, in the length unit; negative for a left-hand thread.
-    lead: Option<f64>,
+    lead: Option<NumberSchema>,
     /// The curve on body i that a point of body j follows, for the joint type `point_on_curve`.
     curve: Option<CurveSchema>,
     /// Whether loops should be cut at this joint. Results do not depend on it.
@@ -219,7 +279,7 @@ enum PlacesSchema {
 #[schemars(untagged)]
 enum LineSchema {
     Axis(AxisSchema),
-    Vector([f64; 3]),
+    Vector([NumberSchema; 3]),
     Through(ThroughSchema),
 }
 
@@ -253,7 +313,7 @@ enum AxisSchema {
 #[schemars(untagged)]
 enum DirectionSchema {
     Axis(AxisSchema),
-    Vector([f64; 3]),
+    Vector([NumberSchema; 3]),
 }
 
 /// A coupler: it holds a linear relation between joint coordinates, each counted about or along its own joint's axis, of
@@ -266,7 +326,7 @@ enum CouplerSchema {
         /// Names of the two joints that carry the gears.
         joints: [Name; 2],
         /// Numbers of teeth, or any two numbers in their ratio.
-        teeth: [f64; 2],
+        teeth: [NumberSchema; 2],
         /// Whether one of them is an internal gear, so that both turn the same way.
         #[schemars(default)]
         internal: bool,
@@ -276,7 +336,7 @@ enum CouplerSchema {
         /// Names of the two joints that carry the gears.
         joints: [Name; 2],
         /// Numbers of teeth, or any two numbers in their ratio.
-        teeth: [f64; 2],
+        teeth: [NumberSchema; 2],
         /// Whether one of them is an internal gear, so that both turn the same way.
         #[schemars(default)]
         internal: bool,
@@ -288,7 +348,7 @@ enum CouplerSchema {
         /// Name of the joint on which the pinion turns.
         pinion: Name,
         /// Pitch radius, in the length unit; negative where the rack passes the pinion's other side.
-        radius: f64,
+        radius: NumberSchema,
     },
     /// Another name of `rack`.
     RackAndPinion {
@@ -297,14 +357,14 @@ enum CouplerSchema {
         /// Name of the joint on which the pinion turns.
         pinion: Name,
         /// Pitch radius, in the length unit; negative where the rack passes the pinion's other side.
-        radius: f64,
+        radius: NumberSchema,
     },
     /// A belt or chain: `radii[0] angle[0] = radii[1] angle[1]`, or minus for a crossed one.
     Belt {
         /// Names of the two joints that carry the pulleys.
         joints: [Name; 2],
         /// Radii of the pulleys, in the length unit.
-        radii: [f64; 2],
+        radii: [NumberSchema; 2],
         /// Whether the belt crosses between them.
         #[schemars(default)]
         crossed: bool,
@@ -325,7 +385,7 @@ struct TermSchema {
     /// Which of its coordinates; may be left out where it has only one.
     coordinate: Option<CoordinateSchema>,
     /// The factor, per unit of the coordinate in this file.
-    coefficient: f64,
+    coefficient: NumberSchema,
 }
 
 /// A driver: what it prescribes, and its law over the time.
@@ -423,48 +483,48 @@ enum LawTableSchema {
     /// `offset + amplitude sin(2 pi frequency t + phase)`.
     Harmonic {
         /// In the driver's unit.
-        amplitude: f64,
+        amplitude: NumberSchema,
         /// In Hz.
-        frequency: f64,
+        frequency: NumberSchema,
         /// In the angle unit.
         #[schemars(default)]
-        phase: f64,
+        phase: NumberSchema,
         /// The mean, in the driver's unit.
         #[schemars(default)]
-        offset: f64,
+        offset: NumberSchema,
     },
     /// `offset + speed t`.
     ConstantSpeed {
         /// In the driver's unit per s.
-        speed: f64,
+        speed: NumberSchema,
         /// At t = 0, in the driver's unit.
         #[schemars(default)]
-        offset: f64,
+        offset: NumberSchema,
     },
     /// `c0 + c1 t + c2 t^2 + ...`.
     Polynomial {
         /// c0, c1, c2, ..., in the driver's unit per s to the power of the number.
         #[schemars(length(min = 1))]
-        coefficients: Vec<f64>,
+        coefficients: Vec<NumberSchema>,
     },
     /// From one value smoothly to another, and at rest before and after.
     SmoothStep {
         /// The value before, in the driver's unit. Default: 0.
         #[schemars(default)]
-        from: f64,
+        from: NumberSchema,
         /// The value after, in the driver's unit.
-        to: f64,
+        to: NumberSchema,
         /// When it begins, in s.
-        start: f64,
+        start: NumberSchema,
         /// When it ends, in s.
-        end: f64,
+        end: NumberSchema,
         /// 3 (the acceleration jumps at both ends), 5 (the jerk does) or 7 (neither). Default: 5.
         degree: Option<DegreeSchema>,
     },
     /// A spline through points, given here or in a CSV file.
     Table {
         /// Pairs of time in s and value in the driver's unit, in the order of time. Either these or `file`.
-        points: Option<Vec<[f64; 2]>>,
+        points: Option<Vec<[NumberSchema; 2]>>,
         /// A CSV file in the model's folder or below it: times in s and values in the driver's unit.
         file: Option<String>,
         /// The file's columns of time and value, by name or by number from 1. Default: the first two.
@@ -475,16 +535,16 @@ enum LawTableSchema {
         ends: Option<EndsSchema>,
         /// Speed at the first point, where the ends are clamped, in the driver's unit per s.
         #[schemars(default)]
-        start_speed: f64,
+        start_speed: NumberSchema,
         /// Speed at the last point, where the ends are clamped, in the driver's unit per s.
         #[schemars(default)]
-        end_speed: f64,
+        end_speed: NumberSchema,
         /// Acceleration at the first point, of a quintic with clamped ends, in the driver's unit per s^2.
         #[schemars(default)]
-        start_acceleration: f64,
+        start_acceleration: NumberSchema,
         /// Acceleration at the last point, of a quintic with clamped ends, in the driver's unit per s^2.
         #[schemars(default)]
-        end_acceleration: f64,
+        end_acceleration: NumberSchema,
     },
     /// Laws one after the other, from t = 0 on.
     Sequence {
@@ -498,7 +558,7 @@ enum LawTableSchema {
         law: String,
         /// Names and values of the parameters.
         #[schemars(default)]
-        parameters: BTreeMap<Name, f64>,
+        parameters: BTreeMap<Name, NumberSchema>,
     },
 }
 
@@ -507,7 +567,7 @@ enum LawTableSchema {
 #[schemars(deny_unknown_fields)]
 struct PieceSchema {
     /// How long it lasts, in s. The last piece may leave it out, and then has no end.
-    duration: Option<f64>,
+    duration: Option<NumberSchema>,
     /// Its law; `t` counts from the start of the piece.
     law: LawSchema,
     /// Whether its values count from where the piece before ended. Default: true.
@@ -576,9 +636,17 @@ struct MoveSchema {
     moves: NamesSchema,
     /// The direction; `"xyz"` makes three variables, NAME_x, NAME_y and NAME_z.
     along: AlongSchema,
+    /// The global axis square to a mirror through the origin, behind which `mirrored` hardpoints move.
+    mirror: Option<MirrorSchema>,
+    /// A hardpoint's name, or a list of names, that move as the mirror image of `move`.
+    mirrored: Option<NamesSchema>,
     /// Whether rods and legs keep their lengths while it moves their ends.
     #[schemars(default)]
     fixed_length: bool,
+    /// The lowest and the highest value that it may have; it is 0 in the file.
+    bounds: Option<[NumberSchema; 2]>,
+    /// How large a change of it is usual.
+    typical: Option<NumberSchema>,
 }
 
 #[derive(JsonSchema)]
@@ -593,7 +661,15 @@ enum NamesSchema {
 enum AlongSchema {
     Axis(AxisSchema),
     All(AllAxesSchema),
-    Vector([f64; 3]),
+    Vector([NumberSchema; 3]),
+}
+
+#[derive(JsonSchema)]
+#[schemars(rename_all = "lowercase")]
+enum MirrorSchema {
+    X,
+    Y,
+    Z,
 }
 
 #[derive(JsonSchema)]
@@ -613,6 +689,10 @@ struct TiltSchema {
     /// Whether rods and legs keep their lengths while it moves their ends.
     #[schemars(default)]
     fixed_length: bool,
+    /// The lowest and the highest value that it may have; it is 0 in the file.
+    bounds: Option<[NumberSchema; 2]>,
+    /// How large a change of it is usual.
+    typical: Option<NumberSchema>,
 }
 
 /// Design velocities V and U of single markers, under one parameter. A plain number.
@@ -624,6 +704,10 @@ struct FieldsSchema {
     /// Whether rods and legs keep their lengths while it moves their ends.
     #[schemars(default)]
     fixed_length: bool,
+    /// The lowest and the highest value that it may have; it is 0 in the file.
+    bounds: Option<[NumberSchema; 2]>,
+    /// How large a change of it is usual.
+    typical: Option<NumberSchema>,
 }
 
 /// The design velocity of one joint's marker on one body, in that body's frame.
@@ -636,10 +720,10 @@ struct FieldSchema {
     body: Name,
     /// Location velocity, length unit per unit of the parameter. Default: zero.
     #[schemars(rename = "V")]
-    v: Option<[f64; 3]>,
+    v: Option<[NumberSchema; 3]>,
     /// Rates of the marker's 3-1-3 Euler angles, angle unit per unit of the parameter. Default: zero.
     #[schemars(rename = "U")]
-    u: Option<[f64; 3]>,
+    u: Option<[NumberSchema; 3]>,
 }
 
 /// Markers of joints move and turn by themselves; hardpoints stay.
@@ -651,6 +735,10 @@ struct MarkersSchema {
     /// Whether rods and legs keep their lengths while it moves their ends.
     #[schemars(default)]
     fixed_length: bool,
+    /// The lowest and the highest value that it may have; it is 0 in the file.
+    bounds: Option<[NumberSchema; 2]>,
+    /// How large a change of it is usual.
+    typical: Option<NumberSchema>,
 }
 
 /// A global velocity of a joint's markers.
@@ -663,9 +751,9 @@ struct MarkerSchema {
     on: Option<OnSchema>,
     /// Displacement per unit of the variable. Default: zero.
     #[schemars(rename = "move")]
-    moves: Option<[f64; 3]>,
+    moves: Option<[NumberSchema; 3]>,
     /// Rotation vector per unit of the variable. Default: zero.
-    turn: Option<[f64; 3]>,
+    turn: Option<[NumberSchema; 3]>,
 }
 
 /// The `length` that a rod is given grows. A length.
@@ -677,6 +765,10 @@ struct RodLengthSchema {
     /// Whether rods and legs keep their lengths while it moves their ends.
     #[schemars(default)]
     fixed_length: bool,
+    /// The lowest and the highest value that it may have; it is 0 in the file.
+    bounds: Option<[NumberSchema; 2]>,
+    /// How large a change of it is usual.
+    typical: Option<NumberSchema>,
 }
 
 /// A parameter of a driver's law grows; the variable has the parameter's unit.
@@ -690,6 +782,10 @@ struct LawParameterSchema {
     /// Whether rods and legs keep their lengths while it moves their ends.
     #[schemars(default)]
     fixed_length: bool,
+    /// The lowest and the highest value that it may have; it is 0 in the file.
+    bounds: Option<[NumberSchema; 2]>,
+    /// How large a change of it is usual.
+    typical: Option<NumberSchema>,
 }
 
 #[derive(JsonSchema)]
@@ -774,9 +870,9 @@ enum TimeSchema {
 struct StepsSchema {
     /// The first output time. Default: 0.
     #[schemars(default)]
-    start: f64,
+    start: NumberSchema,
     /// The last output time.
-    end: f64,
+    end: NumberSchema,
     /// How many intervals: there is one output time more.
     #[schemars(range(min = 1, max = 1_000_000))]
     steps: u32,
@@ -788,5 +884,5 @@ struct StepsSchema {
 struct TimesSchema {
     /// The output times, increasing.
     #[schemars(length(min = 1))]
-    at: Vec<f64>,
+    at: Vec<NumberSchema>,
 }

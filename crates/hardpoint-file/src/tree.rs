@@ -5,7 +5,8 @@
 use std::ops::Range;
 use std::path::Path;
 
-use hardpoint::model::{Line, Place};
+use hardpoint::law::Expression;
+use hardpoint::model::{Line, Nominal, NotConstant, Place};
 use hardpoint::space::Vec3;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
@@ -71,13 +72,31 @@ pub(crate) struct Subject {
     pub example: String,
 }
 
+impl Subject {
+    /// An element of its list.
+    pub fn item(&self, k: usize) -> Self {
+        Self { name: format!("value {} of {}", k + 1, self.name), example: self.example.clone() }
+    }
+}
+
 /// The text being read and what was found wrong with it.
 pub(crate) struct Reader<'s> {
     pub source: &'s Source,
     /// Where the model file lies, for files that it names; none for a mere text.
     pub folder: Option<&'s Path>,
     pub units: Units,
+    /// What the file's parameters are, as soon as they are read.
+    pub nominal: Nominal,
+    /// The parameters of the law that is being read which expressions give, and those expressions.
+    pub law_formulas: Vec<(String, Expression)>,
     pub found: Vec<Diagnostic>,
+}
+
+impl<'s> Reader<'s> {
+    pub fn new(source: &'s Source, folder: Option<&'s Path>) -> Self {
+        let (units, nominal) = (Units::default(), Nominal::default());
+        Self { source, folder, units, nominal, law_formulas: Vec::new(), found: Vec::new() }
+    }
 }
 
 impl Reader<'_> {
@@ -255,25 +274,99 @@ impl Reader<'_> {
         Some(s.to_owned())
     }
 
-    /// A finite number as it is written.
+    /// An expression in quotes, whose lengths are in the file's unit.
+    pub fn expression(&mut self, value: &Value<'_>, subject: &Subject) -> Option<Expression> {
+        let text = value.get_ref().as_str()?;
+        if is_number_with_unit(text) {
+            let units = self.units;
+            self.wrong(value, subject, "a number");
+            if let Some(d) = self.found.last_mut() {
+                d.help = Some(format!(
+                    "write the number without quotes and unit; lengths of this file are in {}, angles in {}",
+                    units.length.symbol(),
+                    units.angle.symbol()
+                ));
+            }
+            return None;
+        }
+        match Expression::parse(text) {
+            Ok(expression) => Some(expression.with_unit(self.units.length.per_metre())),
+            Err(error) => {
+                let at = self.inside(value, text, error.span);
+                let message = format!("{} cannot be read: {}", subject.name, error.message);
+                self.report("HP0113", at, message).help = error.help;
+                None
+            }
+        }
+    }
+
+    /// The value of an expression where no change of the design is felt.
+    fn constant(&mut self, value: &Value<'_>, subject: &Subject) -> Option<f64> {
+        let expression = self.expression(value, subject)?;
+        if !expression.names().is_empty() && self.nominal.names().next().is_none() {
+            self.wrong(value, subject, "a number");
+            return None;
+        }
+        match self.nominal.constant(&expression) {
+            Ok(x) => Some(x),
+            Err(why) => {
+                self.no_constant(value, subject, why);
+                None
+            }
+        }
+    }
+
+    /// HP0204, HP0230: an expression that has no value here.
+    pub fn no_constant(&mut self, value: &Value<'_>, subject: &Subject, why: NotConstant) {
+        let at = value.span();
+        match why {
+            NotConstant::Unknown(name) if name.contains('.') => {
+                let message = format!("{} cannot use `{name}`, a coordinate of a hardpoint", subject.name);
+                self.report("HP0230", at, message).help =
+                    Some("coordinates can be used in places of hardpoints and joints, in lengths of rods, and in parameters".into());
+            }
+            NotConstant::Unknown(name) => {
+                let close = closest(&name, self.nominal.names()).map(|c| format!("did you mean `{c}`?"));
+                self.report("HP0204", at, format!("there is no parameter named `{name}`")).help = close;
+            }
+            NotConstant::Follows(name, what) => {
+                let message = format!("{} cannot follow parameter `{name}`", subject.name);
+                let d = self.report("HP0230", at, message);
+                d.notes.push(format!(
+                    "{what} changes `{name}`, and what stands here is the same in every design"
+                ));
+                d.help =
+                    Some("write `design = false` for the parameter that changes, or a number here".into());
+            }
+            NotConstant::NotFinite => {
+                self.senseless(at, format!("{} is not a finite number", subject.name));
+            }
+            // What is wrong with it is reported where it stands.
+            NotConstant::Faulty => {}
+        }
+    }
+
+    /// Where a part of a text stands in the file; the whole text where escapes make that unclear.
+    pub fn inside(&self, value: &Value<'_>, text: &str, part: Range<usize>) -> Range<usize> {
+        let whole = value.span();
+        let written = self.source.text.get(whole.clone()).unwrap_or_default();
+        for quote in ["\"\"\"", "'''", "\"", "'"] {
+            let bare = written.strip_prefix(quote).and_then(|w| w.strip_suffix(quote));
+            if bare == Some(text) {
+                let start = whole.start + quote.len();
+                return start + part.start..start + part.end;
+            }
+        }
+        whole
+    }
+
+    /// A finite number as it is written, or an expression over parameters that no change of the design moves.
     pub fn number(&mut self, value: &Value<'_>, subject: &Subject) -> Option<f64> {
         let x = match value.get_ref() {
             DeValue::Integer(i) if i.radix() == 10 => i.as_str().parse().ok(),
             DeValue::Integer(i) => i64::from_str_radix(i.as_str(), i.radix()).ok().map(|i| i as f64),
             DeValue::Float(f) => f.as_str().parse::<f64>().ok(),
-            DeValue::String(s) => {
-                let with_unit = s.trim_start().starts_with(|c: char| c.is_ascii_digit() || "+-.".contains(c));
-                let units = self.units;
-                self.wrong(value, subject, "a number");
-                if with_unit && let Some(d) = self.found.last_mut() {
-                    d.help = Some(format!(
-                        "write the number without quotes and unit; lengths of this file are in {}, angles in {}",
-                        units.length.symbol(),
-                        units.angle.symbol()
-                    ));
-                }
-                return None;
-            }
+            DeValue::String(_) => return self.constant(value, subject),
             _ => {
                 self.wrong(value, subject, "a number");
                 return None;
@@ -313,11 +406,7 @@ impl Reader<'_> {
         let mut numbers = [0.0; N];
         let mut complete = true;
         for (k, v) in list.iter().enumerate() {
-            let subject = Subject {
-                name: format!("value {} of {}", k + 1, subject.name),
-                example: subject.example.clone(),
-            };
-            match self.number(v, &subject) {
+            match self.number(v, &subject.item(k)) {
                 Some(x) => numbers[k] = x,
                 None => complete = false,
             }
@@ -336,8 +425,34 @@ impl Reader<'_> {
         let expected = "a hardpoint's name or three coordinates";
         match value.get_ref() {
             DeValue::String(name) => self.short(name, value.span(), &subject.name).map(Place::Hardpoint),
-            _ => self.coordinates(value, subject, expected).map(Place::At),
+            _ => self.written_place(value, subject, expected),
         }
+    }
+
+    /// As [`place`](Self::place), where no change of the design is felt.
+    pub fn fixed_place(&mut self, value: &Value<'_>, subject: &Subject) -> Option<Place> {
+        match value.get_ref() {
+            DeValue::String(_) => self.place(value, subject),
+            _ => self.coordinates(value, subject, "a hardpoint's name or three coordinates").map(Place::At),
+        }
+    }
+
+    /// Global coordinates, each a number or an expression.
+    pub fn written_place(&mut self, value: &Value<'_>, subject: &Subject, expected: &str) -> Option<Place> {
+        let list = value.get_ref().as_array().filter(|list| list.len() == 3);
+        let Some(list) = list.filter(|list| list.iter().any(|v| v.get_ref().is_str())) else {
+            return self.coordinates(value, subject, expected).map(Place::At);
+        };
+        let per_metre = self.units.length.per_metre();
+        let coordinates = [0, 1, 2].map(|k| {
+            let (v, subject) = (&list[k], subject.item(k));
+            match v.get_ref().is_str() {
+                true => self.expression(v, &subject),
+                false => self.number(v, &subject).map(|x| Expression::constant(x).with_unit(per_metre)),
+            }
+        });
+        let [x, y, z] = coordinates;
+        Some(Place::Formula(Box::new([x?, y?, z?])))
     }
 
     /// A direction by name or vector, of any length.
@@ -378,6 +493,20 @@ impl Reader<'_> {
         let spans = names.iter().map(Spanned::span).collect();
         Some((Line::Through(a?, b?), spans))
     }
+}
+
+/// Whether a text is a mere number, or one with a unit, as in `100 mm`: a slip, and of an angle not in radians.
+fn is_number_with_unit(text: &str) -> bool {
+    let text = text.trim();
+    if text.parse::<f64>().is_ok() {
+        return true;
+    }
+    let number = text.trim_start_matches(['+', '-']);
+    let rest = number.trim_start_matches(|c: char| c.is_ascii_digit() || ".,".contains(c));
+    // What begins with an `e` may be the exponent of a longer expression.
+    let rest = rest.trim();
+    rest.len() < number.len()
+        && rest.chars().next().is_none_or(|c| (c.is_alphabetic() && !"eE".contains(c)) || c == '\u{b0}')
 }
 
 /// `"x"` to `"-z"`.

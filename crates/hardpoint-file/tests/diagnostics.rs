@@ -317,3 +317,88 @@ fn many_problems_are_cut_short() {
     assert!(shown.contains("... and 5950 more like these"));
     assert!(shown.len() < 100_000, "{}", shown.len());
 }
+
+/// The valid model with parameters, and with some of its text replaced.
+fn broken_parameters(name: &str, replacements: &[(&str, &str)]) {
+    let parameters = "[parameters]\nL = { value = 100, unit = \"length\" }\nphi = { value = 30, unit = \"angle\" }\n\
+                      k = 2\nfixed = { value = 3, design = false }\n\n[hardpoints]";
+    let all: Vec<_> =
+        [("[hardpoints]", parameters)].into_iter().chain(replacements.iter().copied()).collect();
+    broken(name, &all);
+}
+
+#[test]
+fn parameters() {
+    let cases: [(&str, &str, &str); 12] = [
+        ("parameter_named_like_a_function", "k = 2", "sin = 2"),
+        ("parameter_with_a_hyphen", "k = 2", "k-1 = 2"),
+        ("parameter_with_unknown_unit", "value = 100, unit = \"length\"", "value = 100, unit = \"mm\""),
+        ("parameter_without_value", "value = 100, unit", "unit"),
+        ("parameter_of_a_list", "k = 2", "k = [1, 2]"),
+        ("parameters_in_a_circle", "k = 2", "k = \"m - 1\"\nm = \"n*2\"\nn = \"k/3\""),
+        ("parameter_of_itself", "k = 2", "k = \"k + 1\""),
+        ("parameter_out_of_bounds", "k = 2", "k = { value = 2, bounds = [3, 4] }"),
+        ("parameter_with_falling_bounds", "k = 2", "k = { value = 2, bounds = [4, 1] }"),
+        ("parameter_of_negative_size", "k = 2", "k = { value = 2, typical = -1 }"),
+        ("derived_parameter_with_bounds", "k = 2", "k = { value = \"2*L\", bounds = [1, 2] }"),
+        (
+            "parameter_and_variable_of_one_name",
+            "[design.B]",
+            "[design.k]\nmove = \"A\"\nalong = \"x\"\n\n[design.B]",
+        ),
+    ];
+    for (name, old, new) in cases {
+        broken_parameters(name, &[(old, new)]);
+    }
+}
+
+#[test]
+fn expressions() {
+    let at_b = [
+        ("expression_with_unknown_parameter", "\"2*M\""),
+        ("expression_not_closed", "\"2*(L + 1\""),
+        ("expression_of_the_time", "\"L*t\""),
+        ("expression_of_unknown_hardpoint", "\"E.x\""),
+        ("expression_of_unknown_coordinate", "\"C.u\""),
+        ("expression_of_a_hardpoint_without_coordinate", "\"C + 1\""),
+        ("expression_not_finite", "\"L/(k - 2)\""),
+        ("expression_without_derivative", "\"100 + sqrt(k - 2)\""),
+        ("expression_of_itself", "\"B.x + L\""),
+    ];
+    for (name, text) in at_b {
+        broken_parameters(name, &[("B = [100, 50, 0]", &format!("B = [{text}, 50, 0]"))]);
+    }
+    broken_parameters(
+        "hardpoints_in_a_circle",
+        &[
+            ("B = [100, 50, 0]", "B = [\"C.x - 200\", 50, 0]"),
+            ("C = [300, 200, 0]", "C = [\"B.x + 200\", 200, 0]"),
+        ],
+    );
+    broken_parameters("point_with_unknown_parameter", &[("at = [200, 150, 20]", "at = [\"2*M\", 150, 20]")]);
+    let fixed: [(&str, &str, &str); 7] = [
+        ("axis_that_cannot_follow", "axis = \"z\"\naxis2", "axis = [0, 0, \"k\"]\naxis2"),
+        ("axis_of_a_coordinate", "axis = \"z\"\naxis2", "axis = [0, 0, \"B.x\"]\naxis2"),
+        ("frame_that_cannot_follow", "crank = {}", "crank = { frame = { position = [\"L\", 0, 0] } }"),
+        ("law_that_cannot_follow", "\"360*t\"", "{ type = \"harmonic\", amplitude = \"k\", frequency = 1 }"),
+        ("law_with_an_angle", "\"360*t\"", "\"phi*t\""),
+        ("law_with_a_misspelt_parameter", "\"360*t\"", "\"360*t*fixxed\""),
+        ("derived_parameter_that_cannot_follow", "end = 1.0", "end = \"late\""),
+    ];
+    for (name, old, new) in fixed {
+        broken_parameters(name, &[("k = 2", "k = 2\nlate = \"k + fixed\""), (old, new)]);
+    }
+    broken("expression_without_parameters", &[("B = [100, 50, 0]", "B = [\"L\", 50, 0]")]);
+}
+
+#[test]
+fn mirrors() {
+    broken("mirror_without_mirrored", &[("along = \"xyz\"", "along = \"xyz\"\nmirror = \"y\"")]);
+    broken("mirrored_without_mirror", &[("along = \"xyz\"", "along = \"xyz\"\nmirrored = \"C\"")]);
+    broken("mirror_of_no_axis", &[("along = \"xyz\"", "along = \"xyz\"\nmirror = \"-y\"\nmirrored = \"C\"")]);
+    broken(
+        "mirrored_unknown_hardpoint",
+        &[("along = \"xyz\"", "along = \"x\"\nmirror = \"y\"\nmirrored = \"Z\"")],
+    );
+    broken("bounds_of_a_variable", &[("along = \"xyz\"", "along = \"x\"\nbounds = [1, 5]")]);
+}

@@ -49,6 +49,7 @@ const GALLERY: &[Entry] = &[
     entry("excavator", 3, 0, &[], excavator_cylinders_obey_the_law_of_cosines),
     entry("five_link", 1, 0, &[], five_link_rods_keep_their_lengths_to_second_order),
     entry("four_bar", 1, 0, &[], four_bar_obeys_freudenstein),
+    entry("four_bar_by_lengths", 1, 0, &[], four_bar_by_lengths_obeys_the_law_of_cosines),
     entry("gear_train", 1, 0, &[], gear_train_keeps_its_ratios),
     entry("hooke", 1, 3, &["in_bearing_y"], hooke_tangents_are_in_proportion),
     entry("jansen", 1, 9, &[], jansen_foot_follows_from_the_holy_numbers),
@@ -492,6 +493,40 @@ fn four_bar_obeys_freudenstein(m: &Solved) {
         m.close("crank", m.value(k, "crank_angle"), TAU * t, EXACT);
         let psi = rocker + m.value(k, "rocker_angle");
         m.close("closure", freudenstein([a, b, c, d], phi, psi), 0.0, EXACT);
+    }
+}
+
+/// The angle at C in the triangle B C D, and its derivative by each length: of the angle at the start too, from which the
+/// joint's angle counts.
+fn four_bar_by_lengths_obeys_the_law_of_cosines(m: &Solved) {
+    let (g, a, b, c) = (0.4, 0.1, 0.35, 0.25);
+    let at = |t: f64| {
+        let phi = 40f64.to_radians() + TAU * t;
+        let square = g * g + a * a - 2.0 * g * a * phi.cos();
+        let cosine = (b * b + c * c - square) / (2.0 * b * c);
+        let by_cosine = -1.0 / (1.0 - cosine * cosine).sqrt();
+        let slopes = [
+            -(g - a * phi.cos()) / (b * c),
+            -(a - g * phi.cos()) / (b * c),
+            1.0 / c - cosine / b,
+            1.0 / b - cosine / c,
+        ];
+        // By the speed, in deg per s.
+        let by_speed = -(g * a * phi.sin()) / (b * c) * t.to_radians();
+        (cosine.acos(), slopes.map(|s| s * by_cosine), by_speed * by_cosine)
+    };
+    let (start, start_by, _) = at(0.0);
+    let measured = Analysis::new(&m.file.model).unwrap().run().measured;
+    let measure = measured.index("knee_angle").unwrap();
+    for (k, t) in m.steps() {
+        let (mu, by, by_speed) = at(t);
+        m.close("angle", m.value(k, "knee_angle"), mu - start, EXACT);
+        for (n, name) in ["ground", "crank", "coupler", "rocker"].into_iter().enumerate() {
+            let variable = m.file.model.variable(name).unwrap();
+            m.close(name, measured.d(k, variable, measure)[0], by[n] - start_by[n], EXACT_RATES);
+        }
+        let speed = m.file.model.variable("speed").unwrap();
+        m.close("speed", measured.d(k, speed, measure)[0], by_speed, EXACT_RATES);
     }
 }
 

@@ -169,7 +169,7 @@ pub fn margin(file: &ModelFile, margin: &MarginFact) -> Option<Diagnostic> {
     Some(d.help("drive another joint of this loop, or move its hardpoints so that it stays away from there"))
 }
 
-/// One warning for each design variable that the mechanism cannot follow.
+/// One warning for each design variable that the mechanism cannot follow, or that changes nothing.
 pub fn variables(file: &ModelFile, facts: &Facts) -> Vec<Diagnostic> {
     let warn = |(k, v): (usize, &crate::facts::VariableFact)| {
         let message = format!("the mechanism cannot follow design variable `{}`", v.name);
@@ -186,5 +186,12 @@ pub fn variables(file: &ModelFile, facts: &Facts) -> Vec<Diagnostic> {
         }
         d.help("give a joint of this loop more freedom, or change the design so that the loop stays closed")
     };
-    facts.variables.iter().enumerate().filter(|(_, v)| v.answer == Answer::CannotFollow).map(warn).collect()
+    let resisted = facts.variables.iter().enumerate().filter(|(_, v)| v.answer == Answer::CannotFollow);
+    let idle = file.model.without_effect().into_iter().map(|v| {
+        let message = format!("design variable `{}` changes nothing", file.model.variables[v.0].name);
+        let d = file.diagnostic(Severity::Warning, "HP0502", message, Some((Section::Design, v.0)));
+        let d = d.note("no joint, point, measure or law follows it: its sensitivities are zero");
+        d.help("use it, remove it, or write `design = false` if it is a parameter")
+    });
+    resisted.map(warn).chain(idle).collect()
 }

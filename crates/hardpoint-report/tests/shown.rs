@@ -69,7 +69,7 @@ fn law(text: &str) -> Law {
 }
 
 fn variable(name: &str, change: ChangeDraft) -> VariableDraft {
-    VariableDraft { name: name.into(), changes: vec![change], fixed_length: false }
+    VariableDraft { name: name.into(), changes: vec![change], ..VariableDraft::default() }
 }
 
 fn text(tables: &[Table], titles: &[&str]) -> String {

@@ -41,7 +41,7 @@
 //!     design: vec![VariableDraft {
 //!         name: "O up".into(),
 //!         changes: vec![ChangeDraft::Move { hardpoint: "O".into(), velocity: Vec3::new(0.0, 1.0, 0.0) }],
-//!         fixed_length: false,
+//!         ..VariableDraft::default()
 //!     }],
 //!     measures: vec![MeasureDraft {
 //!         name: "stroke".into(),

@@ -1,9 +1,11 @@
 //! Design variables.
 
+use std::ops::Range;
+
 use hardpoint::joint::Quantity;
+use hardpoint::law::ParameterKind;
 use hardpoint::model::{ChangeDraft, End, Section, VariableDraft};
 use hardpoint::space::Vec3;
-use toml::de::DeValue;
 
 use super::Raw;
 use crate::places::EntryPlace;
@@ -12,6 +14,8 @@ use crate::tree::{Fields, Key, Reader, axis_named};
 const DESIGN: &[Key] = &[
     ("move", "\"A\""),
     ("along", "\"z\""),
+    ("mirror", "\"y\""),
+    ("mirrored", "\"A_right\""),
     ("tilt", "\"J1\""),
     ("about", "\"x\""),
     ("fields", "[{ joint = \"J1\", body = \"crank\", V = [1, 0, 0] }]"),
@@ -20,6 +24,8 @@ const DESIGN: &[Key] = &[
     ("driver", "\"turn\""),
     ("parameter", "\"amplitude\""),
     ("fixed_length", "true"),
+    ("bounds", "[-5, 5]"),
+    ("typical", "2"),
 ];
 const FIELD: &[Key] = &[("joint", "\"J1\""), ("body", "\"crank\""), ("V", "[1, 0, 0]"), ("U", "[0, 0, 0]")];
 const MARKER: &[Key] = &[("joint", "\"J1\""), ("on", "\"j\""), ("move", "[0, 0, 1]"), ("turn", "[0, 0, 0]")];
@@ -53,7 +59,9 @@ impl Reader<'_> {
                 self.out_of_place(&fields, key, format!("this variable is given by `{first}` already"));
             }
             if first != "move" {
-                self.out_of_place(&fields, "along", "`along` goes with `move`");
+                for key in ["along", "mirror", "mirrored"] {
+                    self.out_of_place(&fields, key, format!("`{key}` goes with `move`"));
+                }
             }
             if first != "tilt" {
                 self.out_of_place(&fields, "about", "`about` goes with `tilt`");
@@ -76,12 +84,16 @@ impl Reader<'_> {
                 place.unread("name");
                 vec![(entry.0.clone(), Vec::new())]
             });
+            let quantity = quantity_of(raw, &variables[0].1);
+            let (bounds, typical) = self.range(&fields, quantity, &mut place);
             for (name, changes) in variables {
                 raw.places.push(Section::Design, place.clone());
                 raw.draft.design.push(VariableDraft {
                     name,
                     changes,
                     fixed_length: fixed_length.unwrap_or(false),
+                    bounds,
+                    typical,
                 });
             }
         }
@@ -94,20 +106,10 @@ impl Reader<'_> {
         name: &str,
         place: &mut EntryPlace,
     ) -> Option<Vec<(String, Vec<ChangeDraft>)>> {
-        let f = fields.get("move")?;
-        let subject = fields.subject("move");
-        let expected = "a hardpoint's name or a list of names";
-        let hardpoints: Option<Vec<String>> = match f.value.get_ref() {
-            DeValue::String(_) => {
-                place.items("changes", vec![f.value.span()]);
-                self.name(f.value, &subject, expected).map(|n| vec![n])
-            }
-            _ => self.list(f.value, &subject, expected).and_then(|list| {
-                place.items("changes", list.iter().map(|v| v.span()).collect());
-                let names: Vec<_> = list.iter().map(|v| self.name(v, &subject, expected)).collect();
-                names.into_iter().collect()
-            }),
-        };
+        let mut items = Vec::new();
+        let hardpoints = self.hardpoint_names(fields, "move", &mut items);
+        let mirrored = self.mirrored(fields, &mut items);
+        place.items("changes", items);
         let along = self.need(fields, "along").and_then(|f| match f.value.get_ref().as_str() {
             Some("xyz") => {
                 Some(["x", "y", "z"].map(|a| (format!("{name}_{a}"), axis_named(a))).into_iter().collect())
@@ -127,12 +129,60 @@ impl Reader<'_> {
                 Some(vec![(name.to_owned(), Some(unit?))])
             }
         });
-        let (hardpoints, along): (_, Vec<(String, Option<Vec3>)>) = (hardpoints?, along?);
+        let (hardpoints, mirrored, along): (_, _, Vec<(String, Option<Vec3>)>) =
+            (hardpoints?, mirrored?, along?);
         let changes = |v: Option<Vec3>| {
             let velocity = v.unwrap_or(Vec3::ZERO);
-            hardpoints.iter().map(|h| ChangeDraft::Move { hardpoint: h.clone(), velocity }).collect()
+            let one = |h: &String| ChangeDraft::Move { hardpoint: h.clone(), velocity };
+            let other = mirrored.iter().flat_map(|(normal, names)| {
+                let velocity = velocity - *normal * (2.0 * velocity.dot(*normal));
+                names.iter().map(move |h| ChangeDraft::Move { hardpoint: h.clone(), velocity })
+            });
+            hardpoints.iter().map(one).chain(other).collect()
         };
         Some(along.into_iter().map(|(name, v)| (name, changes(v))).collect())
+    }
+
+    /// The names of one hardpoint or several; where each stands goes to `places`.
+    fn hardpoint_names(
+        &mut self,
+        fields: &Fields<'_>,
+        key: &str,
+        places: &mut Vec<Range<usize>>,
+    ) -> Option<Vec<String>> {
+        let f = self.need(fields, key)?;
+        let (subject, expected) = (fields.subject(key), "a hardpoint's name or a list of names");
+        if f.value.get_ref().is_str() {
+            places.push(f.value.span());
+            return self.name(f.value, &subject, expected).map(|n| vec![n]);
+        }
+        let list = self.list(f.value, &subject, expected)?;
+        places.extend(list.iter().map(|v| v.span()));
+        let names: Vec<_> = list.iter().map(|v| self.name(v, &subject, expected)).collect();
+        names.into_iter().collect()
+    }
+
+    /// The normal of the mirror and the hardpoints behind it, if there is one; their places follow the others.
+    fn mirrored(
+        &mut self,
+        fields: &Fields<'_>,
+        items: &mut Vec<Range<usize>>,
+    ) -> Option<Option<(Vec3, Vec<String>)>> {
+        if fields.get("mirror").is_none() && fields.get("mirrored").is_none() {
+            return Some(None);
+        }
+        let normal = self.need(fields, "mirror").and_then(|f| {
+            let subject = fields.subject("mirror");
+            let word =
+                self.name(f.value, &subject, "the axis square to the mirror: `\"x\"`, `\"y\"` or `\"z\"`")?;
+            let axis = ["x", "y", "z"].iter().position(|a| *a == word);
+            if axis.is_none() {
+                self.unknown_word(f.value.span(), &subject, &word, &["x", "y", "z"]);
+            }
+            axis.map(|k| Vec3::AXES[k])
+        });
+        let names = self.hardpoint_names(fields, "mirrored", items);
+        Some(Some((normal?, names?)))
     }
 
     fn tilt(&mut self, fields: &Fields<'_>, place: &mut EntryPlace) -> Option<ChangeDraft> {
@@ -165,7 +215,7 @@ impl Reader<'_> {
         let (driver, parameter) = (driver?, parameter?);
         let k = raw.draft.drivers.iter().position(|d| d.name == driver);
         let rate = match k.map(|k| &raw.driver_rates[k]) {
-            Some((per_unit, rates)) if rates.contains(&parameter) => *per_unit,
+            Some((per_unit, rates, _)) if rates.contains(&parameter) => *per_unit,
             _ => 1.0,
         };
         Some(ChangeDraft::Law { driver, parameter, rate })
@@ -271,4 +321,34 @@ impl Reader<'_> {
             Some(f) => self.numbers::<3>(f.value, &fields.subject(key), "three numbers"),
         }
     }
+}
+
+/// What a variable measures, as far as that is known; the core says the rest.
+fn quantity_of(raw: &Raw, changes: &[ChangeDraft]) -> Quantity {
+    let of = |change: &ChangeDraft| match change {
+        ChangeDraft::Move { .. } | ChangeDraft::Length { .. } => Quantity::Length,
+        ChangeDraft::Tilt { .. } => Quantity::Angle,
+        ChangeDraft::Marker { position, rotation, .. } => {
+            match (*position != Vec3::ZERO, *rotation != Vec3::ZERO) {
+                (_, false) => Quantity::Length,
+                (false, true) => Quantity::Angle,
+                (true, true) => Quantity::Number,
+            }
+        }
+        ChangeDraft::Law { driver, parameter, .. } => {
+            let k = raw.draft.drivers.iter().position(|d| d.name == *driver);
+            let kind = k.and_then(|k| {
+                raw.draft.drivers[k].law.parameters().into_iter().find(|p| p.name == *parameter)
+            });
+            match (kind.map(|p| p.kind), k) {
+                (Some(ParameterKind::Value), Some(k)) => raw.driver_rates[k].2,
+                (Some(ParameterKind::Angle), _) => Quantity::Angle,
+                _ => Quantity::Number,
+            }
+        }
+        ChangeDraft::Field { .. } | ChangeDraft::Parameter { .. } => Quantity::Number,
+    };
+    let mut quantities = changes.iter().map(of);
+    let first = quantities.next().unwrap_or(Quantity::Number);
+    if quantities.all(|q| q == first) { first } else { Quantity::Number }
 }

@@ -2,7 +2,7 @@
 
 use hardpoint::joint::Quantity;
 use hardpoint::law::{Law, ParameterKind};
-use hardpoint::model::{DrivenDraft, DriverDraft, Section};
+use hardpoint::model::{DrivenDraft, DriverDraft, FormulaDraft, FormulaOf, Section};
 
 use super::{Raw, coordinate_quantity};
 use crate::places::EntryPlace;
@@ -54,12 +54,18 @@ impl Reader<'_> {
                 DrivenDraft::Orientation { .. } => Some(Quantity::Angle),
             };
             // The core says what is wrong with a joint or coordinate that is not known.
-            let per_unit = self.units.to_si(quantity.unwrap_or(Quantity::Number), 1.0);
+            let quantity = quantity.unwrap_or(Quantity::Number);
+            let per_unit = self.units.to_si(quantity, 1.0);
             let law = law.unwrap_or_else(|| Law::constant(0.0)).scaled(per_unit);
             let parameters = law.parameters().into_iter();
             let rates = parameters.filter(|p| matches!(p.kind, ParameterKind::ValueRate(_))).map(|p| p.name);
             raw.places.push(Section::Drivers, place);
-            raw.driver_rates.push((per_unit, rates.collect()));
+            raw.driver_rates.push((per_unit, rates.collect(), quantity));
+            for (parameter, expression) in self.law_formulas.drain(..) {
+                raw.draft
+                    .formulas
+                    .push(FormulaDraft { of: FormulaOf::Law(entry.0.clone(), parameter), expression });
+            }
             raw.draft.drivers.push(DriverDraft { name: entry.0, drives, law });
         }
     }

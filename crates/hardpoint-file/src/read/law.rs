@@ -2,11 +2,14 @@
 
 use std::ops::Range;
 
+use hardpoint::joint::Quantity;
 use hardpoint::law::{
-    ConstantSpeed, EndRates, Ends, Harmonic, Law, LawError, Piece, SmoothStep, SplineDegree, Table,
+    ConstantSpeed, EndRates, Ends, Expression, Harmonic, Law, LawError, Piece, SmoothStep, SplineDegree,
+    Table,
 };
 use toml::de::{DeTable, DeValue};
 
+use crate::diagnostic::closest;
 use crate::read::data;
 use crate::tree::{Field, Fields, Key, MOST_ENTRIES, Reader, Subject, Value};
 
@@ -55,7 +58,7 @@ impl Reader<'_> {
     /// A law; `of` is what it belongs to.
     fn law_in(&mut self, of: &str, subject: &Subject, value: &Value<'_>) -> Option<Law> {
         match value.get_ref() {
-            DeValue::String(_) => self.expression(of, value, &[]),
+            DeValue::String(_) => self.law_text(of, value, &[]),
             DeValue::Integer(_) | DeValue::Float(_) => self.number(value, subject).map(Law::constant),
             DeValue::Table(table) => self.law_table(of, subject, value, table),
             _ => {
@@ -65,31 +68,50 @@ impl Reader<'_> {
         }
     }
 
-    fn expression(&mut self, of: &str, value: &Value<'_>, parameters: &[(&str, f64)]) -> Option<Law> {
+    fn law_text(&mut self, of: &str, value: &Value<'_>, parameters: &[(&str, f64)]) -> Option<Law> {
         let text = value.get_ref().as_str()?;
-        match Law::parse_with(text, parameters) {
+        let mut parameters = parameters.to_vec();
+        for name in Law::names(text) {
+            if !parameters.iter().any(|p| p.0 == name)
+                && let Some(value) = self.named_in_law(of, value, name)?
+            {
+                parameters.push((name, value));
+            }
+        }
+        match Law::parse_with(text, &parameters) {
             Ok(law) => Some(law),
             Err(error) => {
+                let unknown =
+                    text.get(error.span.clone()).filter(|_| error.message.starts_with("unknown name"));
+                let close = unknown.and_then(|name| closest(name, self.nominal.names()));
+                let close = close.map(|c| format!("did you mean the parameter `{c}`?"));
                 let at = self.inside(value, text, error.span);
                 let message = format!("the law of {of} cannot be read: {}", error.message);
-                self.report("HP0108", at, message).help = error.help;
+                self.report("HP0108", at, message).help = close.or(error.help);
                 None
             }
         }
     }
 
-    /// Where a part of a text stands in the file; the whole text where escapes make that unclear.
-    fn inside(&self, value: &Value<'_>, text: &str, part: Range<usize>) -> Range<usize> {
-        let whole = value.span();
-        let written = self.source.text.get(whole.clone()).unwrap_or_default();
-        for quote in ["\"\"\"", "'''", "\"", "'"] {
-            let bare = written.strip_prefix(quote).and_then(|w| w.strip_suffix(quote));
-            if bare == Some(text) {
-                let start = whole.start + quote.len();
-                return start + part.start..start + part.end;
-            }
+    /// The value of a parameter of the file that the text of a law names; `Some(None)` if there is none of that name.
+    fn named_in_law(&mut self, of: &str, value: &Value<'_>, name: &str) -> Option<Option<f64>> {
+        let Some((number, quantity)) = self.nominal.parameter(name) else { return Some(None) };
+        if quantity == Quantity::Angle {
+            let message = format!("the law of {of} cannot be read: parameter `{name}` is an angle");
+            let d = self.report("HP0108", value.span(), message);
+            d.notes.push(
+                "in a law, values of the driver are in the file's unit and arguments of functions in rad"
+                    .into(),
+            );
+            d.help =
+                Some(format!("declare `{name}` as a plain number, in the unit in which the law takes it"));
+            return None;
         }
-        whole
+        let expression = Expression::parse(name).ok()?.with_unit(self.units.length.per_metre());
+        // Of a faulty parameter nothing more is said.
+        let number = number.map_or(1.0, |x| self.units.from_si(quantity, x));
+        self.law_formulas.push((name.to_owned(), expression));
+        Some(Some(number))
     }
 
     fn law_table<'a>(
@@ -148,7 +170,8 @@ impl Reader<'_> {
     fn harmonic(&mut self, fields: &Fields<'_>) -> Option<Law> {
         let amplitude = self.needed_number(fields, "amplitude");
         let frequency = self.needed_number(fields, "frequency");
-        let phase = self.number_or(fields, "phase", 0.0).map(|p| self.units.angle.radians(p));
+        let phase = self.number_or(fields, "phase", 0.0);
+        let phase = phase.map(|p| fields.get("phase").map_or(0.0, |f| self.angle_of(f.value, p)));
         let offset = self.number_or(fields, "offset", 0.0);
         let law = Harmonic { amplitude: amplitude?, frequency: frequency?, phase: phase?, offset: offset? };
         self.made(fields, fields.at.clone(), Law::harmonic(law))
@@ -218,8 +241,12 @@ impl Reader<'_> {
                     Some("give a duration greater than zero, in s".into());
                 continue;
             }
+            let before = self.law_formulas.len();
             let law =
                 self.need(&piece, "law").and_then(|f| self.law_in(&what, &piece.subject("law"), f.value));
+            for (name, _) in &mut self.law_formulas[before..] {
+                *name = format!("piece[{k}].{name}");
+            }
             let continued = match piece.get("continued") {
                 Some(f) => self.boolean(f.value, &piece.subject("continued")),
                 None => Some(true),
@@ -260,13 +287,36 @@ impl Reader<'_> {
                     example: "for example `parameters = { a = 25 }`".into(),
                 };
                 let name = self.short(name.get_ref(), name.span(), "the name of a parameter");
-                let number = self.number(value, &subject);
+                let number = match value.get_ref().is_str() {
+                    true => self.law_parameter_formula(name.as_deref(), value, &subject),
+                    false => self.number(value, &subject),
+                };
                 parameters.push((name?, number?));
             }
         }
         let text = text?;
         let parameters: Vec<(&str, f64)> = parameters.iter().map(|(n, x)| (n.as_str(), *x)).collect();
-        self.expression(of, text.value, &parameters)
+        self.law_text(of, text.value, &parameters)
+    }
+
+    /// The value of an expression for a parameter of a law, which follows the design.
+    fn law_parameter_formula(
+        &mut self,
+        name: Option<&str>,
+        value: &Value<'_>,
+        subject: &Subject,
+    ) -> Option<f64> {
+        let expression = self.expression(value, subject)?;
+        match self.nominal.value(&expression) {
+            Ok(number) => {
+                self.law_formulas.push((name?.to_owned(), expression));
+                Some(number)
+            }
+            Err(why) => {
+                self.no_constant(value, subject, why);
+                None
+            }
+        }
     }
 
     fn table_law(&mut self, fields: &Fields<'_>) -> Option<Law> {

@@ -45,6 +45,10 @@ pub(super) fn change_text(model: &Model, changes: &[Change], fixed_length: bool)
                     (None, false) => format!("shortens `{name}`{}", times(*rate)),
                 });
             }
+            Change::Parameter { parameter, rate } => {
+                let verb = if *rate > 0.0 { "raises" } else { "lowers" };
+                parts.push(format!("{verb} parameter `{}`", model.parameters[parameter.0].name));
+            }
             Change::Law { driver, parameter, rate } => {
                 let driver = &model.drivers[driver.0];
                 let verb = if *rate > 0.0 { "raises" } else { "lowers" };

@@ -10,7 +10,11 @@
 //! power   = primary ("^" signed)?
 //! primary = number | "t" | "pi" | parameter | function "(" arguments ")" | "(" sum ")"
 //! ```
+//!
+//! A parameter is one of those that are given; or, in a text that is not a law, any other name, also one of two parts:
+//! `ball.x`.
 
+use std::collections::HashMap;
 use std::ops::Range;
 
 use winnow::ascii::{digit0, digit1};
@@ -100,6 +104,55 @@ pub(super) fn parse(text: &str, parameters: &[&str]) -> Result<Program, Expressi
     }
 }
 
+/// The program that `text` writes, which does not know the time, and the other names in it in the order of their first use.
+pub(super) fn parse_open(text: &str) -> Result<(Program, Vec<&str>), ExpressionError> {
+    let mut descent = Descent::new(text, &[]);
+    descent.free = Some(Free::default());
+    if descent.token == Token::End {
+        let help = "write an expression, such as `2*width + 5`";
+        return Err(error(0..text.len(), "the expression is empty", Some(help)));
+    }
+    descent.sum()?;
+    match descent.token {
+        Token::End => Ok((descent.program, descent.free.unwrap_or_default().names)),
+        _ => Err(descent.unexpected()),
+    }
+}
+
+/// The names in a text that expressions do not know, each once.
+pub(super) fn names(text: &str) -> Vec<&str> {
+    let (mut descent, mut free) = (Descent::new(text, &[]), Free::default());
+    while descent.token != Token::End {
+        if let Token::Name(name) = descent.token
+            && !is_taken(name)
+        {
+            free.number(name);
+        }
+        descent.advance();
+    }
+    free.names
+}
+
+/// The names that a text uses freely.
+#[derive(Default)]
+struct Free<'a> {
+    names: Vec<&'a str>,
+    /// Which number each has. Only looked up, never walked.
+    numbers: HashMap<&'a str, usize>,
+}
+
+impl<'a> Free<'a> {
+    /// Which number a name has; the next one if it is new.
+    fn number(&mut self, name: &'a str) -> usize {
+        let next = self.names.len();
+        let number = *self.numbers.entry(name).or_insert(next);
+        if number == next {
+            self.names.push(name);
+        }
+        number
+    }
+}
+
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Token<'a> {
     Number(f64),
@@ -113,7 +166,7 @@ type Input<'a> = LocatingSlice<&'a str>;
 fn token<'a>(input: &mut Input<'a>) -> Result<Token<'a>, EmptyError> {
     alt((
         number.map(Token::Number),
-        name.map(Token::Name),
+        dotted.map(Token::Name),
         alt(("**", "<=", ">=", "==", "!=", "&&", "||")).map(Token::Symbol),
         any.take().map(Token::Symbol),
         eof.value(Token::End),
@@ -127,6 +180,11 @@ fn number(input: &mut Input<'_>) -> Result<f64, EmptyError> {
     (mantissa, opt(exponent)).take().parse_to().parse_next(input)
 }
 
+/// A name, or two joined by a point.
+fn dotted<'a>(input: &mut Input<'a>) -> Result<&'a str, EmptyError> {
+    (name, opt(('.', name))).take().parse_next(input)
+}
+
 fn name<'a>(input: &mut Input<'a>) -> Result<&'a str, EmptyError> {
     let first = one_of(|c: char| c.is_alphabetic() || c == '_');
     let rest = take_while(0.., |c: char| c.is_alphabetic() || c.is_ascii_digit() || c == '_');
@@ -138,6 +196,8 @@ struct Descent<'a> {
     text: &'a str,
     parameters: &'a [&'a str],
     is_used: Vec<bool>,
+    /// In a text that is not a law: the names that it uses.
+    free: Option<Free<'a>>,
     rest: Input<'a>,
     token: Token<'a>,
     span: Range<usize>,
@@ -153,6 +213,7 @@ impl<'a> Descent<'a> {
             text,
             parameters,
             is_used: vec![false; parameters.len()],
+            free: None,
             rest: LocatingSlice::new(text),
             token: Token::End,
             span: 0..0,
@@ -166,7 +227,7 @@ impl<'a> Descent<'a> {
 
     /// Whether the name of a parameter, new among the parameters or not, can be told from all others.
     fn check_parameter(&self, name: &str, is_new: bool) -> Result<(), ExpressionError> {
-        let is_known = ["t", "pi"].contains(&name) || FUNCTIONS.iter().any(|(known, ..)| *known == name);
+        let is_known = is_taken(name);
         let (message, help) = if is_known {
             (
                 format!("a parameter can not be called `{name}`: the expression knows that name already"),
@@ -240,6 +301,11 @@ impl<'a> Descent<'a> {
             Token::Number(_) => {
                 Err(error(self.span.clone(), "the number is too large", Some("the largest is 1.79e308")))
             }
+            Token::Name("t") if self.free.is_some() => {
+                let help =
+                    "only the law of a driver knows the time; rename what is meant, if it is a parameter";
+                Err(error(self.span.clone(), "`t` is the time, which has no meaning here", Some(help)))
+            }
             Token::Name("t") => self.leaf(Operation::Time),
             Token::Name("pi") => self.leaf(Operation::Constant(std::f64::consts::PI)),
             Token::Name(name) if self.parameters.contains(&name) => {
@@ -249,7 +315,13 @@ impl<'a> Descent<'a> {
             }
             Token::Name(name) => match FUNCTIONS.iter().find(|(known, ..)| *known == name) {
                 Some(&(name, signature, function)) => self.call(name, signature, function),
-                None => Err(self.unknown_name(name)),
+                None => match &mut self.free {
+                    Some(free) => {
+                        let number = free.number(name);
+                        self.leaf(Operation::Parameter(number))
+                    }
+                    None => Err(self.unknown_name(name)),
+                },
             },
             Token::Symbol("(") => {
                 let open = self.span.clone();
@@ -505,6 +577,16 @@ impl<'a> Descent<'a> {
     fn shown(&self, span: &Range<usize>) -> String {
         self.text[span.clone()].escape_debug().to_string()
     }
+}
+
+/// Whether expressions give the name a meaning of their own.
+fn is_taken(name: &str) -> bool {
+    ["t", "pi"].contains(&name) || FUNCTIONS.iter().any(|(known, ..)| *known == name)
+}
+
+/// Whether expressions can use what has this name.
+pub(super) fn is_free_name(name: &str) -> bool {
+    !is_taken(name) && (self::name, eof).parse_next(&mut LocatingSlice::new(name)).is_ok()
 }
 
 fn error(span: Range<usize>, message: impl Into<String>, help: Option<&str>) -> ExpressionError {

@@ -4,6 +4,7 @@ use std::cmp::Ordering;
 
 use super::jet::TimeJet;
 use super::scalar::Scalar;
+use crate::space::{Function, Real};
 
 /// A function of one quantity.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -45,6 +46,27 @@ impl Unary {
             Self::Abs => x.abs(),
         }
     }
+
+    /// The same over any scalar that is no function of the time.
+    pub(super) fn over<R: Real>(self, x: R) -> R {
+        match self {
+            Self::Neg => -x,
+            Self::Sin => x.sin_cos().0,
+            Self::Cos => x.sin_cos().1,
+            Self::Tan => x.map(Function::Tan),
+            Self::Asin => x.asin(),
+            Self::Acos => x.map(Function::Acos),
+            Self::Atan => x.map(Function::Atan),
+            Self::Sinh => x.map(Function::Sinh),
+            Self::Cosh => x.map(Function::Cosh),
+            Self::Tanh => x.map(Function::Tanh),
+            Self::Exp => x.map(Function::Exp),
+            Self::Ln => x.map(Function::Ln),
+            Self::Log10 => x.map(Function::Ln) / x.like(std::f64::consts::LN_10),
+            Self::Sqrt => x.sqrt(),
+            Self::Abs => x.abs(),
+        }
+    }
 }
 
 /// A function of two quantities.
@@ -73,6 +95,22 @@ impl Binary {
             Self::Hypot => x.hypot(y),
             Self::Min => x.min(y),
             Self::Max => x.max(y),
+        }
+    }
+
+    /// The same over any scalar that is no function of the time.
+    pub(super) fn over<R: Real>(self, x: R, y: R) -> R {
+        match self {
+            Self::Add => x + y,
+            Self::Sub => x - y,
+            Self::Mul => x * y,
+            Self::Div => x / y,
+            Self::Atan2 => x.atan2(y),
+            // Of a positive base: with any other, an exponent that varies leaves the real numbers.
+            Self::Pow => (y * x.map(Function::Ln)).map(Function::Exp),
+            Self::Hypot => (x * x + y * y).sqrt(),
+            Self::Min => x.select(y, |k| x.lane(k) <= y.lane(k) || x.lane(k).is_nan()),
+            Self::Max => x.select(y, |k| x.lane(k) >= y.lane(k) || x.lane(k).is_nan()),
         }
     }
 }

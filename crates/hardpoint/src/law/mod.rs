@@ -11,6 +11,8 @@
 //! | a spline through points | [`Law::table`] |
 //! | laws one after the other | [`Law::sequence`] |
 //!
+//! The same language writes other numbers of a model, which know no time: [`Expression`].
+//!
 //! Whatever its kind, a law is evaluated by [`Law::at`], or at eight times at once by [`Law::at_times`], has
 //! [parameters](Law::parameters) by which it is [differentiated](Law::derivative), and says
 //! [where it is not smooth](Law::jumps).
@@ -45,6 +47,7 @@ mod jet;
 mod jumps;
 mod kind;
 mod lanes;
+mod number;
 mod parameter;
 mod polynomial;
 mod program;
@@ -67,6 +70,7 @@ pub use jet::TimeJet;
 pub use jumps::Jump;
 use kind::{Kind, Shape};
 use lanes::Lanes;
+pub use number::Expression;
 use parameter::Seed;
 pub use parameter::{Parameter, ParameterKind};
 use polynomial::Polynomial;
@@ -143,6 +147,15 @@ impl Law {
     /// is not used. The place is then all of the text.
     pub fn parse_with(text: &str, parameters: &[(&str, f64)]) -> Result<Self, ExpressionError> {
         Formula::parse(text, parameters).map(Kind::Formula).map(Self::of)
+    }
+
+    /// The names in the text of a law that stand for parameters: each once, in order.
+    ///
+    /// ```
+    /// assert_eq!(hardpoint::law::Law::names("a*sin(w*t + a)"), ["a", "w"]);
+    /// ```
+    pub fn names(text: &str) -> Vec<&str> {
+        expression::names(text)
     }
 
     /// The law that holds `value` at all times, in the driver's own unit.

@@ -21,7 +21,7 @@ const USUALLY_WAITING: usize = 12;
 const FEW_WAITING: usize = 4;
 
 /// One operation: takes its operands from the stack, the last on top, and leaves one result.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Debug)]
 pub(super) enum Operation {
     Constant(f64),
     /// A named parameter, by its place in the list.
@@ -100,6 +100,31 @@ impl Operation {
         }
     }
 
+    /// The result for operands over any scalar.
+    fn over<R: Real>(self, operands: &[R]) -> R {
+        match (self, operands) {
+            (Self::One(function), &[x]) => function.over(x),
+            (Self::Two(function), &[x, y]) => function.over(x, y),
+            (Self::Powi(exponent), &[x]) => powi(x, exponent),
+            (Self::Powf(exponent), &[x]) => x.powf(exponent),
+            (Self::Step, &[x, x0, h0, x1, h1]) => {
+                // h0 + (h1 - h0) (3 u² - 2 u³)
+                let u = (x - x0) / (x1 - x0);
+                let between = h0 + (h1 - h0) * (u * u * (x.like(3.0) - u * x.like(2.0)));
+                let up = h1.select(between, |k| x.lane(k) >= x1.lane(k));
+                let up = h0.select(up, |k| x.lane(k) < x0.lane(k));
+                up.select(x.like(f64::NAN), |k| x0.lane(k) < x1.lane(k))
+            }
+            (Self::Select(comparison), &[a, b, x, y]) => {
+                let holds = |k: usize| comparison.holds(a.lane(k), b.lane(k));
+                let chosen = x.select(y, |k| holds(k) == Some(true));
+                chosen.select(x.like(f64::NAN), |k| holds(k).is_some())
+            }
+            (Self::Settle, &[x]) => x,
+            _ => unreachable!("an operation has as many operands as it says"),
+        }
+    }
+
     /// Which of its sides an operation with sides takes for these operands. Sides that join smoothly may be told apart.
     fn side(self, operands: &[TimeJet]) -> Option<u8> {
         let sign = |order: Option<Ordering>| order.map_or(9, |order| order as u8);
@@ -125,8 +150,23 @@ impl Operation {
     }
 }
 
+/// By repeated squaring, in the order in which `f64::powi` multiplies.
+fn powi<R: Real>(x: R, exponent: i32) -> R {
+    let (mut power, mut square, mut left) = (x.like(1.0), x, exponent.unsigned_abs());
+    while left > 0 {
+        if left & 1 == 1 {
+            power = power * square;
+        }
+        left >>= 1;
+        if left > 0 {
+            square = square * square;
+        }
+    }
+    if exponent < 0 { x.like(1.0) / power } else { power }
+}
+
 /// The operations of an expression.
-#[derive(Clone, Default)]
+#[derive(Clone, Debug, Default)]
 pub(super) struct Program {
     operations: Vec<Operation>,
     /// For every operand that waits, whether it depends on the time.
@@ -212,10 +252,15 @@ impl Program {
 
     /// The program with numbers for its parameters: the one that the text with these numbers in it would have given.
     pub(super) fn with_values(&self, values: &[f64]) -> Self {
+        self.with_leaves(|parameter| Operation::Constant(values[parameter]))
+    }
+
+    /// The program with a number, or another parameter, for each of its parameters.
+    pub(super) fn with_leaves(&self, leaf: impl Fn(usize) -> Operation) -> Self {
         let mut program = Self::default();
         for &operation in &self.operations {
             match operation {
-                Operation::Parameter(parameter) => program.emit(Operation::Constant(values[parameter])),
+                Operation::Parameter(parameter) => program.emit(leaf(parameter)),
                 Operation::Two(Binary::Pow) => program.emit_power(),
                 Operation::Settle => {}
                 _ => program.emit(operation),
@@ -253,6 +298,23 @@ impl Program {
             #[inline(always)]
             || evaluate_lanes::<R, MAX_WAITING>(&self.operations, times),
         )
+    }
+
+    /// The program's result over any scalar, for the given parameters; of a program that does not know the time.
+    pub(super) fn over<R: Real>(&self, witness: R, parameter: impl Fn(usize) -> R) -> R {
+        let mut stack: Vec<R> = Vec::with_capacity(self.most_waiting);
+        for &operation in &self.operations {
+            let left = stack.len() - operation.operands();
+            let result = match operation {
+                Operation::Constant(value) => witness.like(value),
+                Operation::Parameter(index) => parameter(index),
+                Operation::Time => witness.like(f64::NAN),
+                _ => operation.over(&stack[left..]),
+            };
+            stack.truncate(left);
+            stack.push(result);
+        }
+        stack.pop().unwrap_or(witness)
     }
 
     /// Whether any operation has sides that it could switch between.

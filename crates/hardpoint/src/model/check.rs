@@ -1,6 +1,7 @@
 //! From a draft to a model: every reference resolved, every fault found.
 
 mod design;
+mod formulas;
 mod joints;
 mod motion;
 
@@ -10,12 +11,14 @@ use super::fault::did_you_mean;
 use super::*;
 use crate::constraint::Row;
 use crate::joint::{self, CoordinateType, Need};
-use crate::law::ParameterKind;
+use crate::law::{Expression, ParameterKind};
 
 /// How far `axis2` may be from square to `axis`, as a cosine: typed unit vectors are good to this.
 const SQUARE_TOLERANCE: f64 = 1e-6;
 /// Points closer than this part of the mechanism's size are the same point.
 const SAME_POINT: f64 = 1e-9;
+/// What faults say about places of hardpoints.
+const GEOMETRY: [&str; 6] = ["HP0205", "HP0206", "HP0209", "HP0211", "HP0216", "HP0226"];
 /// A fault lists at most this many valid names.
 const LISTED_NAMES: usize = 24;
 /// The first so many faults guess which name was meant ...
@@ -39,6 +42,7 @@ impl Model {
     pub fn from_draft(draft: &Draft) -> Result<Self, Vec<Fault>> {
         let mut c = Check::new(draft);
         c.names();
+        c.formulas();
         c.bodies();
         c.joints();
         c.default_frames();
@@ -48,7 +52,12 @@ impl Model {
         c.drivers();
         c.measures();
         c.variables();
+        c.formulas_that_vary();
         c.times();
+        if !c.spoilt.is_empty() {
+            // Where hardpoints are not known, nothing can be said of their places.
+            c.faults.retain(|f| !GEOMETRY.contains(&f.code));
+        }
         if !c.faults.is_empty() {
             return Err(c.faults);
         }
@@ -82,6 +91,13 @@ struct Check<'a> {
     joint_ids: Vec<Option<JointId>>,
     /// The hardpoints that curves pass through.
     curve_points: Vec<HardpointId>,
+    /// The formulas that are read so far, each after those whose results it uses.
+    written: Vec<formulas::Written>,
+    /// What faulty formulas should give.
+    spoilt: BTreeSet<Source>,
+    /// The expressions for the length of joints, and for the parameters of drivers' laws, by name.
+    length_formulas: HashMap<&'a str, &'a Expression>,
+    law_formulas: HashMap<&'a str, Vec<(&'a str, &'a Expression)>>,
     /// By kind of entry: which number a name has. Only looked up, never walked.
     numbers: HashMap<&'static str, HashMap<&'a str, usize>>,
     /// Comparisons of names that guesses may still take.
@@ -94,6 +110,8 @@ impl<'a> Check<'a> {
     fn new(draft: &'a Draft) -> Self {
         let model = Model {
             name: draft.name.clone(),
+            parameters: Vec::new(),
+            formulas: Vec::new(),
             hardpoints: draft
                 .hardpoints
                 .iter()
@@ -112,14 +130,38 @@ impl<'a> Check<'a> {
         let ground = ["ground"].into_iter();
         let numbers = HashMap::from([
             ("body", numbered(ground.chain(draft.bodies.iter().map(|b| b.name.as_str())))),
+            ("parameter", numbered(draft.parameters.iter().map(|p| p.name.as_str()))),
             ("hardpoint", numbered(draft.hardpoints.iter().map(|h| h.name.as_str()))),
             ("joint", numbered(draft.joints.iter().map(|j| j.name.as_str()))),
             ("point", numbered(draft.points.iter().map(|p| p.name.as_str()))),
         ]);
         let extent = Extent::of(draft.hardpoints.iter().map(|h| h.position));
         let (faults, joint_ids) = (Vec::new(), Vec::new());
-        let curve_points = Vec::new();
-        Self { draft, model, faults, joint_ids, curve_points, numbers, comparisons: COMPARISONS, extent }
+        let (mut length_formulas, mut law_formulas) = (HashMap::new(), HashMap::new());
+        for f in &draft.formulas {
+            match &f.of {
+                FormulaOf::Length(joint) => drop(length_formulas.insert(joint.as_str(), &f.expression)),
+                FormulaOf::Law(driver, parameter) => {
+                    let list: &mut Vec<_> = law_formulas.entry(driver.as_str()).or_default();
+                    list.push((parameter.as_str(), &f.expression));
+                }
+                FormulaOf::Parameter(_) | FormulaOf::Coordinate(..) => {}
+            }
+        }
+        Self {
+            draft,
+            model,
+            faults,
+            joint_ids,
+            curve_points: Vec::new(),
+            written: Vec::new(),
+            spoilt: BTreeSet::new(),
+            length_formulas,
+            law_formulas,
+            numbers,
+            comparisons: COMPARISONS,
+            extent,
+        }
     }
 
     fn fault(&mut self, code: &'static str, at: Locus, message: impl Into<String>) -> &mut Fault {
@@ -130,7 +172,8 @@ impl<'a> Check<'a> {
     /// HP0201: empty and duplicate names; HP0202: coordinates that are not finite.
     fn names(&mut self) {
         let d = self.draft;
-        let lists: [(Section, &str, Vec<&str>); 8] = [
+        let lists: [(Section, &str, Vec<&str>); 9] = [
+            (Section::Parameters, "parameter", d.parameters.iter().map(|x| x.name.as_str()).collect()),
             (Section::Hardpoints, "hardpoint", d.hardpoints.iter().map(|x| x.name.as_str()).collect()),
             (Section::Bodies, "body", d.bodies.iter().map(|x| x.name.as_str()).collect()),
             (Section::Joints, "joint", d.joints.iter().map(|x| x.name.as_str()).collect()),
@@ -239,6 +282,7 @@ impl<'a> Check<'a> {
                 self.extent.include(*p);
                 Some(HardpointId(self.model.hardpoints.len() - 1))
             }
+            Place::Formula(coordinates) => self.formula_place(coordinates, owner, at),
             Place::At(_) => {
                 self.fault("HP0202", at, format!("a coordinate of `{owner}` is not a finite number"));
                 None
@@ -306,6 +350,12 @@ impl<'a> Check<'a> {
                 }
                 FrameDraft::Points(origin, x, xy) => {
                     let mut at = |k: usize, p: &Place| match p {
+                        Place::Formula(_) => {
+                            let message = format!("the frame of body `{}` is given by an expression", b.name);
+                            self.fault("HP0230", here.item("frame", k), message)
+                                .help("give numbers: a change of the design leaves frames where they are");
+                            None
+                        }
                         Place::At(v) if v.is_finite() => Some(*v),
                         Place::At(_) => {
                             let message =

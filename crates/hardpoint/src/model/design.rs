@@ -186,6 +186,92 @@ pub(crate) struct Effects<'m> {
     /// Per hardpoint: the joints and points that follow it.
     joints: Vec<Vec<usize>>,
     points: Vec<Vec<usize>>,
+    /// What formulas do; none in a model without.
+    formulas: Option<Formulas>,
+}
+
+/// How formulas follow the variables and each other.
+#[derive(Clone, Debug)]
+struct Formulas {
+    /// Per parameter: the variables that change it, and its rate by each.
+    rates: Vec<Vec<(usize, f64)>>,
+    /// Which formula gives a parameter, the coordinates of a hardpoint, the length of a joint.
+    of_parameter: Vec<Option<usize>>,
+    of_hardpoint: Vec<[Option<usize>; 3]>,
+    of_length: Vec<Option<usize>>,
+    /// The formulas that use a parameter, or a coordinate of a hardpoint.
+    using_parameter: Vec<Vec<usize>>,
+    using_hardpoint: Vec<Vec<usize>>,
+    /// Per variable, whether any formula follows it.
+    is_used: Vec<bool>,
+}
+
+impl Formulas {
+    fn of(model: &Model) -> Option<Self> {
+        if model.formulas.is_empty() {
+            return None;
+        }
+        let (parameters, hardpoints) = (model.parameters.len(), model.hardpoints.len());
+        let mut f = Self {
+            rates: vec![Vec::new(); parameters],
+            of_parameter: vec![None; parameters],
+            of_hardpoint: vec![[None; 3]; hardpoints],
+            of_length: vec![None; model.joints.len()],
+            using_parameter: vec![Vec::new(); parameters],
+            using_hardpoint: vec![Vec::new(); hardpoints],
+            is_used: Vec::new(),
+        };
+        for (k, formula) in model.formulas.iter().enumerate() {
+            match formula.of {
+                Target::Parameter(p) => f.of_parameter[p.0] = Some(k),
+                Target::Coordinate(h, axis) => f.of_hardpoint[h.0][axis] = Some(k),
+                Target::Length(j) => f.of_length[j.0] = Some(k),
+                Target::Law(..) => {}
+            }
+            for source in formula.sources() {
+                match source {
+                    Source::Parameter(p) => f.using_parameter[p.0].push(k),
+                    Source::Coordinate(h, _) => f.using_hardpoint[h.0].push(k),
+                }
+            }
+        }
+        for (k, variable) in model.variables.iter().enumerate() {
+            for change in &variable.changes {
+                if let Change::Parameter { parameter, rate } = change {
+                    f.rates[parameter.0].push((k, *rate));
+                }
+            }
+            let is_used = variable.changes.iter().any(|change| !f.using(change).is_empty());
+            f.is_used.push(is_used);
+        }
+        Some(f)
+    }
+
+    /// The formulas that use what a change moves.
+    fn using(&self, change: &Change) -> &[usize] {
+        match change {
+            Change::Parameter { parameter, .. } => &self.using_parameter[parameter.0],
+            Change::Move { hardpoint, .. } => &self.using_hardpoint[hardpoint.0],
+            _ => &[],
+        }
+    }
+
+    /// The formulas that follow a variable, directly or through others, in order.
+    fn following(&self, model: &Model, variable: VariableId) -> Vec<usize> {
+        let mut seen = vec![false; model.formulas.len()];
+        let changes = &model.variables[variable.0].changes;
+        let mut waiting: Vec<usize> = changes.iter().flat_map(|c| self.using(c)).copied().collect();
+        while let Some(k) = waiting.pop() {
+            if !std::mem::replace(&mut seen[k], true) {
+                match model.formulas[k].of {
+                    Target::Parameter(p) => waiting.extend(&self.using_parameter[p.0]),
+                    Target::Coordinate(h, _) => waiting.extend(&self.using_hardpoint[h.0]),
+                    Target::Length(_) | Target::Law(..) => {}
+                }
+            }
+        }
+        (0..seen.len()).filter(|k| seen[*k]).collect()
+    }
 }
 
 impl<'m> Effects<'m> {
@@ -193,6 +279,7 @@ impl<'m> Effects<'m> {
         let hardpoints = model.hardpoints.len();
         let mut effects = Self {
             model,
+            formulas: Formulas::of(model),
             moves: vec![Vec::new(); hardpoints],
             changes: vec![Vec::new(); model.joints.len()],
             joints: vec![Vec::new(); hardpoints],
@@ -202,7 +289,7 @@ impl<'m> Effects<'m> {
             for change in &variable.changes {
                 match change {
                     Change::Move { hardpoint, velocity } => effects.moves[hardpoint.0].push((k, *velocity)),
-                    Change::Law { .. } => {}
+                    Change::Parameter { .. } | Change::Law { .. } => {}
                     Change::Marker { joint, .. }
                     | Change::Field { joint, .. }
                     | Change::Length { joint, .. } => {
@@ -262,29 +349,9 @@ impl<'m> Effects<'m> {
             duals[variable.0].d = witness.like(rate);
         }
         let design = Design::new(self, duals, Dual::constant(witness));
-        let (mut joints, mut points) = (Vec::new(), Vec::new());
-        let mut field = Field::default();
-        let changes =
-            along.iter().flat_map(|(v, by)| self.model.variables[v.0].changes.iter().map(move |c| (by, c)));
-        for (by, change) in changes {
-            match change {
-                Change::Move { hardpoint, .. } => {
-                    joints.extend(&self.joints[hardpoint.0]);
-                    points.extend(&self.points[hardpoint.0]);
-                }
-                Change::Marker { joint, .. } | Change::Field { joint, .. } | Change::Length { joint, .. } => {
-                    joints.push(joint.0);
-                }
-                Change::Law { driver, parameter, rate } => {
-                    field.laws.push((*driver, *parameter, witness.like(by * rate)));
-                }
-            }
-        }
-        for list in [&mut joints, &mut points] {
-            list.sort_unstable();
-            list.dedup();
-        }
-        for j in joints {
+        let touched = self.touched(along);
+        let mut field = Field { laws: self.law_rates(&touched, &design), ..Field::default() };
+        for j in touched.joints {
             for end in 0..2 {
                 let (_, twist) = design.marker(j, end).split();
                 if !is_null(twist.w) || !is_null(twist.v) {
@@ -296,9 +363,69 @@ impl<'m> Effects<'m> {
                 field.kept.push((JointId(j), rates));
             }
         }
-        let moved = points.into_iter().map(|k| (PointId(k), design.point(k).map(|x| x.d)));
+        let moved = touched.points.into_iter().map(|k| (PointId(k), design.point(k).map(|x| x.d)));
         field.points = moved.filter(|(_, v)| !is_null(*v)).collect();
         field
+    }
+
+    /// What may change along a direction, some variables at once.
+    fn touched(&self, along: &[(VariableId, f64)]) -> Touched {
+        let mut touched = Touched::default();
+        for (variable, by) in along {
+            for change in &self.model.variables[variable.0].changes {
+                match change {
+                    Change::Parameter { .. } => {}
+                    Change::Move { hardpoint, .. } => touched.hardpoints.push(hardpoint.0),
+                    Change::Marker { joint, .. }
+                    | Change::Field { joint, .. }
+                    | Change::Length { joint, .. } => {
+                        touched.joints.push(joint.0);
+                    }
+                    Change::Law { driver, parameter, rate } => {
+                        touched.laws.push((*driver, *parameter, by * rate));
+                    }
+                }
+            }
+            let following = self.formulas.as_ref().map(|f| f.following(self.model, *variable));
+            for k in following.unwrap_or_default() {
+                match self.model.formulas[k].of {
+                    Target::Parameter(_) => {}
+                    Target::Coordinate(h, _) => touched.hardpoints.push(h.0),
+                    Target::Length(j) => touched.joints.push(j.0),
+                    Target::Law(..) => touched.law_formulas.push(k),
+                }
+            }
+        }
+        for &h in &touched.hardpoints {
+            touched.joints.extend(&self.joints[h]);
+            touched.points.extend(&self.points[h]);
+        }
+        for list in [&mut touched.joints, &mut touched.points, &mut touched.law_formulas] {
+            list.sort_unstable();
+            list.dedup();
+        }
+        touched
+    }
+
+    /// The parameters of laws that change, and their rates.
+    fn law_rates<T: Real>(
+        &self,
+        touched: &Touched,
+        design: &Design<'_, Dual<T>>,
+    ) -> Vec<(DriverId, usize, T)> {
+        let witness = design.witness.v;
+        let mut rates: Vec<_> =
+            touched.laws.iter().map(|(d, p, rate)| (*d, *p, witness.like(*rate))).collect();
+        for &k in &touched.law_formulas {
+            if let Target::Law(driver, parameter) = self.model.formulas[k].of {
+                let rate = design.values.formulas[k].d;
+                match rates.iter_mut().find(|r| (r.0, r.1) == (driver, parameter)) {
+                    Some(known) => known.2 += rate,
+                    None => rates.push((driver, parameter, rate)),
+                }
+            }
+        }
+        rates
     }
 
     /// How every variable changes the designs whose values these are.
@@ -311,39 +438,102 @@ fn is_null<T: Real>(v: Vec3<T>) -> bool {
     v.x.vanishes() && v.y.vanishes() && v.z.vanishes()
 }
 
+/// What may change along a direction: hardpoints, joints, points, parameters of laws at a rate, and formulas of such.
+#[derive(Default)]
+struct Touched {
+    hardpoints: Vec<usize>,
+    joints: Vec<usize>,
+    points: Vec<usize>,
+    laws: Vec<(DriverId, usize, f64)>,
+    law_formulas: Vec<usize>,
+}
+
 /// Where everything is with the variables at these values.
 struct Design<'e, T> {
     effects: &'e Effects<'e>,
-    values: Vec<T>,
+    values: Values<T>,
     /// The same, 0 for variables that keep the lengths of rods: what the lengths are measured with.
-    for_lengths: Vec<T>,
+    for_lengths: Values<T>,
     /// Per variable, whether it makes any difference.
     counts: Vec<bool>,
     witness: T,
+}
+
+/// Values of the variables, and what formulas make of them; none where no formula follows a variable that counts.
+#[derive(Clone)]
+struct Values<T> {
+    variables: Vec<T>,
+    formulas: Vec<T>,
 }
 
 impl<'e, T: Real> Design<'e, T> {
     /// Variables at 0 are left out, unless it is differentiated by them.
     fn new(effects: &'e Effects<'_>, values: Vec<T>, witness: T) -> Self {
         let variables = &effects.model.variables;
+        let counts = values.iter().map(|v| !v.vanishes()).collect();
         let follows =
             |(value, v): (&T, &DesignVariable)| if v.fixed_length { witness.zero() } else { *value };
         let for_lengths = values.iter().zip(variables).map(follows).collect();
-        let counts = values.iter().map(|v| !v.vanishes()).collect();
-        Self { effects, values, for_lengths, counts, witness }
+        let plain = |variables| Values { variables, formulas: Vec::new() };
+        let (values, for_lengths) = (plain(values), plain(for_lengths));
+        let mut design = Self { effects, values, for_lengths, counts, witness };
+        if let Some(f) = &effects.formulas
+            && f.is_used.iter().zip(&design.counts).any(|(is_used, counts)| *is_used && *counts)
+        {
+            design.values.formulas = design.solved(f, &design.values.variables);
+            design.for_lengths.formulas = match variables.iter().any(|v| v.fixed_length) {
+                true => design.solved(f, &design.for_lengths.variables),
+                false => design.values.formulas.clone(),
+            };
+        }
+        design
+    }
+
+    /// What all formulas give, one after the other.
+    fn solved(&self, formulas: &Formulas, variables: &[T]) -> Vec<T> {
+        let model = self.effects.model;
+        let mut results: Vec<T> = Vec::with_capacity(model.formulas.len());
+        for formula in &model.formulas {
+            let result = formula.at(self.witness, |source| {
+                let (given, rates) = match source {
+                    Source::Parameter(p) => {
+                        (formulas.of_parameter[p.0], self.rates(&formulas.rates[p.0], |r| *r))
+                    }
+                    Source::Coordinate(h, axis) => (
+                        formulas.of_hardpoint[h.0][axis],
+                        self.rates(&self.effects.moves[h.0], move |v| v[axis]),
+                    ),
+                };
+                let given = given.map_or_else(|| self.witness.like(model.nominal(source)), |k| results[k]);
+                rates
+                    .into_iter()
+                    .fold(given, |sum, (k, rate)| self.witness.like(rate).times_plus(variables[k], sum))
+            });
+            results.push(result);
+        }
+        results
+    }
+
+    /// The variables of a list that make a difference, with their rates.
+    fn rates<R>(&self, list: &[(usize, R)], rate: impl Fn(&R) -> f64) -> Vec<(usize, f64)> {
+        list.iter().filter(|(k, _)| self.counts[*k]).map(|(k, r)| (*k, rate(r))).collect()
     }
 
     /// Global position of a hardpoint.
-    fn place(&self, h: HardpointId, values: &[T]) -> Vec3<T> {
+    fn place(&self, h: HardpointId, values: &Values<T>) -> Vec3<T> {
         let mut place = self.effects.model.position(h).spread(self.witness);
+        if let (Some(f), false) = (&self.effects.formulas, values.formulas.is_empty()) {
+            let given = |axis: usize| f.of_hardpoint[h.0][axis].map_or(place[axis], |k| values.formulas[k]);
+            place = Vec3::new(given(0), given(1), given(2));
+        }
         for &(k, velocity) in self.effects.moves[h.0].iter().filter(|(k, _)| self.counts[*k]) {
-            place = velocity.spread(self.witness).times_plus(values[k], place);
+            place = velocity.spread(self.witness).times_plus(values.variables[k], place);
         }
         place
     }
 
     /// The unit vector of a direction.
-    fn direction(&self, d: Direction, values: &[T]) -> Vec3<T> {
+    fn direction(&self, d: Direction, values: &Values<T>) -> Vec3<T> {
         match d {
             Direction::Along(u) => u.spread(self.witness),
             Direction::Through(a, b) => {
@@ -365,12 +555,12 @@ impl<'e, T: Real> Design<'e, T> {
     }
 
     /// Marker e of joint j in the design configuration.
-    fn marker_in_world(&self, j: usize, e: usize, values: &[T]) -> Pose<T> {
+    fn marker_in_world(&self, j: usize, e: usize, values: &Values<T>) -> Pose<T> {
         let (joint, witness) = (&self.effects.model.joints[j], self.witness);
         let mut rot = self.followed_frame(joint, e, values);
         let mut r = self.place(joint.at[e], values);
         for &(k, change) in self.effects.changes[j].iter().filter(|(k, _)| self.counts[*k]) {
-            let b = values[k];
+            let b = values.variables[k];
             match change {
                 Change::Marker { end, position, rotation, .. } if end.covers(e) => {
                     r = position.spread(witness).times_plus(b, r);
@@ -395,7 +585,7 @@ impl<'e, T: Real> Design<'e, T> {
     /// The frame of marker e of a joint whose axes follow the hardpoints they pass through.
     ///
     /// z turns by the smallest rotation to its new direction; x then turns about z with `axis2`.
-    fn followed_frame(&self, joint: &Joint, e: usize, values: &[T]) -> Mat3<T> {
+    fn followed_frame(&self, joint: &Joint, e: usize, values: &Values<T>) -> Mat3<T> {
         let mut rot = joint.frames[e].spread(self.witness);
         let [axis, axis2] = joint.axes_of_marker(e);
         if let Some(axis @ Direction::Through(..)) = axis {
@@ -419,10 +609,12 @@ impl<'e, T: Real> Design<'e, T> {
         let [m_i, m_j] = [0, 1].map(|e| self.marker_in_world(j, e, &self.for_lengths));
         let (d, z_i, z_j) = (m_j.r - m_i.r, m_i.rot.cols[2], m_j.rot.cols[2]);
         let given = joint.length.map(|length| {
-            let mut given = self.witness.like(length);
+            let formula = self.effects.formulas.as_ref().and_then(|f| f.of_length[j]);
+            let given = formula.and_then(|k| self.values.formulas.get(k)).copied();
+            let mut given = given.unwrap_or_else(|| self.witness.like(length));
             for &(k, change) in self.effects.changes[j].iter().filter(|(k, _)| self.counts[*k]) {
                 if let Change::Length { rate, .. } = change {
-                    given = self.values[k].times_plus(self.witness.like(*rate), given);
+                    given = self.values.variables[k].times_plus(self.witness.like(*rate), given);
                 }
             }
             given
@@ -472,6 +664,21 @@ impl Model {
         Effects::of(self).fields(&self.whole(design), 0.0)
     }
 
+    /// The variables whose change changes nothing that the motion or its results depend on.
+    pub fn without_effect(&self) -> Vec<VariableId> {
+        let effects = Effects::of(self);
+        let spin_axes = self.measures.iter().filter_map(Measure::spin_axis);
+        let seen: Vec<usize> = spin_axes.flat_map(|(_, axis)| axis.hardpoints()).map(|h| h.0).collect();
+        let is_idle = |v: &VariableId| {
+            let touched = effects.touched(&[(*v, 1.0)]);
+            let felt = [&touched.joints, &touched.points, &touched.law_formulas];
+            felt.iter().all(|list| list.is_empty())
+                && touched.laws.is_empty()
+                && !touched.hardpoints.iter().any(|h| seen.contains(h))
+        };
+        (0..self.variables.len()).map(VariableId).filter(is_idle).collect()
+    }
+
     /// A value for every variable: those given, then 0.
     pub(crate) fn whole(&self, design: &[f64]) -> Vec<f64> {
         let given = design.iter().copied().chain(std::iter::repeat(0.0));
@@ -481,6 +688,16 @@ impl Model {
     /// The drivers' laws in the design with variable k at `design[k]` (missing entries are 0).
     pub fn laws(&self, design: &[f64]) -> Vec<Law> {
         let mut laws: Vec<Law> = self.drivers.iter().map(|d| d.law.clone()).collect();
+        if self.formulas.iter().any(|f| matches!(f.of, Target::Law(..))) {
+            let effects = Effects::of(self);
+            let values = Design::new(&effects, self.whole(design), 0.0).values.formulas;
+            // Without values, no formula follows what is not at 0.
+            for (formula, value) in self.formulas.iter().zip(values) {
+                if let Target::Law(driver, parameter) = formula.of {
+                    laws[driver.0] = laws[driver.0].with_parameter(parameter, value);
+                }
+            }
+        }
         for (variable, value) in self.variables.iter().zip(design).filter(|(_, value)| **value != 0.0) {
             for change in &variable.changes {
                 if let Change::Law { driver, parameter, rate } = change {
@@ -535,6 +752,78 @@ impl Joint {
             (Need::OnBodyJ, 0) => [self.axis, None],
             (Need::OnBodyJ, _) => [self.axis2, None],
             _ => [self.axis, self.axis2],
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::law::Expression;
+
+    #[test]
+    fn formulas_have_exact_second_derivatives_on_duals_of_duals() {
+        let arm = |name: &str| BodyDraft { name: name.into(), frame: FrameDraft::Default };
+        let joint = |name: &str, kind: &str, bodies: [&str; 2], at: &[&str]| JointDraft {
+            name: name.into(),
+            kind: kind.into(),
+            bodies: bodies.map(str::to_owned),
+            at: at.iter().map(|h| Place::Hardpoint((*h).into())).collect(),
+            axis: (kind == "revolute").then_some(Line::Along(Vec3::AXES[2])),
+            ..JointDraft::default()
+        };
+        let texts = [("x", "length*cos(angle)"), ("y", "length*sin(angle)")];
+        let expression = |text: &str| Expression::parse(text).unwrap();
+        let model = Model::from_draft(&Draft {
+            parameters: [("length", 0.3, Quantity::Length), ("angle", 0.8, Quantity::Angle)]
+                .map(|(name, value, quantity)| ParameterDraft { name: name.into(), value, quantity })
+                .into(),
+            formulas: texts
+                .iter()
+                .enumerate()
+                .map(|(axis, (_, text))| FormulaDraft {
+                    of: FormulaOf::Coordinate("B".into(), axis),
+                    expression: expression(text),
+                })
+                .collect(),
+            hardpoints: [("A", 0.0), ("B", 0.0), ("C", 0.5)]
+                .map(|(name, x)| HardpointDraft { name: name.into(), position: Vec3::new(x, 0.0, 0.0) })
+                .into(),
+            bodies: vec![arm("i"), arm("j")],
+            joints: vec![
+                joint("a", "revolute", ["ground", "i"], &["A"]),
+                joint("c", "revolute", ["ground", "j"], &["C"]),
+                joint("rod", "rod", ["i", "j"], &["B", "C"]),
+            ],
+            design: vec![VariableDraft {
+                name: "angle".into(),
+                changes: vec![ChangeDraft::Parameter { parameter: "angle".into(), rate: 1.0 }],
+                ..VariableDraft::default()
+            }],
+            times: vec![0.0],
+            ..Draft::default()
+        })
+        .unwrap();
+        let effects = Effects::of(&model);
+        for b in [0.0, 0.4] {
+            let value = Dual { v: Dual::variable(b), d: Dual::constant(1.0) };
+            let rod = effects.geometry(&[value], Dual::constant(Dual::constant(0.0)));
+            let place = rod.markers[2][0].r;
+            let (s, c) = (0.8_f64 + b).sin_cos();
+            for (found, expected) in [
+                (place.x.d.v, -0.3 * s),
+                (place.y.d.v, 0.3 * c),
+                (place.x.d.d, -0.3 * c),
+                (place.y.d.d, -0.3 * s),
+            ] {
+                assert!((found - expected).abs() < 1e-15, "{found} {expected}");
+            }
+            // l² = 0.34 - 0.3 cos, l l' = 0.15 sin, l l'' + l'² = 0.15 cos
+            let l = rod.kept[2].distance;
+            let length = (0.34 - 0.3 * c).sqrt();
+            let slope = 0.15 * s / length;
+            assert!((l.v.v - length).abs() < 1e-15 && (l.d.v - slope).abs() < 1e-14);
+            assert!((l.d.d - (0.15 * c - slope * slope) / length).abs() < 1e-14);
         }
     }
 }

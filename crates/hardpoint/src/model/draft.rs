@@ -1,6 +1,7 @@
 //! What somebody wrote, before it is checked: names for references, SI units and radians.
 
-use crate::law::Law;
+use crate::joint::Quantity;
+use crate::law::{Expression, Law};
 use crate::space::{Pose, Vec3};
 
 use super::End;
@@ -10,6 +11,10 @@ use super::End;
 pub struct Draft {
     /// The mechanism's name.
     pub name: String,
+    /// Named numbers for formulas.
+    pub parameters: Vec<ParameterDraft>,
+    /// Numbers that are written as expressions over parameters and coordinates of hardpoints.
+    pub formulas: Vec<FormulaDraft>,
     /// Named points of the design configuration.
     pub hardpoints: Vec<HardpointDraft>,
     /// Bodies other than `ground`, which is always there.
@@ -30,6 +35,39 @@ pub struct Draft {
     pub times: Vec<f64>,
 }
 
+/// A named number.
+#[derive(Clone, Debug)]
+pub struct ParameterDraft {
+    /// Its name.
+    pub name: String,
+    /// Its value, m, rad or a plain number; of no account where a formula gives it.
+    pub value: f64,
+    /// What it measures.
+    pub quantity: Quantity,
+}
+
+/// A number of the model that an expression gives.
+#[derive(Clone, Debug)]
+pub struct FormulaDraft {
+    /// Which number.
+    pub of: FormulaOf,
+    /// What gives it.
+    pub expression: Expression,
+}
+
+/// A number that a formula may give, in place of what the draft says itself.
+#[derive(Clone, Debug, PartialEq)]
+pub enum FormulaOf {
+    /// The value of a parameter.
+    Parameter(String),
+    /// A coordinate of a named hardpoint: 0 for x, 1 for y, 2 for z.
+    Coordinate(String, usize),
+    /// The length of a rod.
+    Length(String),
+    /// A parameter of a driver's law, by the names of both: a plain number, as the law's text means it.
+    Law(String, String),
+}
+
 /// A named point.
 #[derive(Clone, Debug)]
 pub struct HardpointDraft {
@@ -46,6 +84,8 @@ pub enum Place {
     Hardpoint(String),
     /// Global coordinates in the design configuration, m.
     At(Vec3),
+    /// Global coordinates that expressions give.
+    Formula(Box<[Expression; 3]>),
 }
 
 /// Where an axis points.
@@ -215,7 +255,7 @@ pub enum DrivenDraft {
 }
 
 /// A design variable.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct VariableDraft {
     /// Its name.
     pub name: String,
@@ -223,6 +263,10 @@ pub struct VariableDraft {
     pub changes: Vec<ChangeDraft>,
     /// Whether rods keep their lengths.
     pub fixed_length: bool,
+    /// Between which values it may lie, m, rad or a plain number; it is 0 in the model as drawn.
+    pub bounds: Option<[f64; 2]>,
+    /// How large a change of it is usual, for comparing variables.
+    pub typical: Option<f64>,
 }
 
 /// A part of a design variable; see [`super::Change`].
@@ -258,6 +302,13 @@ pub enum ChangeDraft {
         /// The joint's name.
         joint: String,
         /// m per unit of the variable.
+        rate: f64,
+    },
+    /// A parameter of the model grows, and all that formulas make of it follows.
+    Parameter {
+        /// The parameter's name.
+        parameter: String,
+        /// In the parameter's unit, per unit of the variable.
         rate: f64,
     },
     /// A parameter of a driver's law grows, like its amplitude.

@@ -35,6 +35,8 @@ impl Fault {
 pub enum Section {
     /// The draft as a whole.
     Model,
+    /// [`super::Draft::parameters`].
+    Parameters,
     /// [`super::Draft::hardpoints`].
     Hardpoints,
     /// [`super::Draft::bodies`].
@@ -72,6 +74,7 @@ impl fmt::Display for Section {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
             Self::Model => "model",
+            Self::Parameters => "parameters",
             Self::Hardpoints => "hardpoints",
             Self::Bodies => "bodies",
             Self::Joints => "joints",

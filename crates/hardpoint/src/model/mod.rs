@@ -9,6 +9,7 @@ mod curve;
 mod design;
 mod draft;
 mod fault;
+mod formula;
 mod idle;
 
 pub(crate) use curve::Contact;
@@ -17,10 +18,11 @@ pub(crate) use design::{Effects, Fixed};
 pub use design::{Field, Geometry, Kept, MarkerField};
 pub use draft::{
     BodyDraft, ChangeDraft, CouplerDraft, CouplerKindDraft, CurveDraft, Draft, DrivenDraft, DriverDraft,
-    FrameDraft, HardpointDraft, JointDraft, Line, MeasureDraft, MeasureKindDraft, Place, PointDraft,
-    PointRef, TermDraft, VariableDraft,
+    FormulaDraft, FormulaOf, FrameDraft, HardpointDraft, JointDraft, Line, MeasureDraft, MeasureKindDraft,
+    ParameterDraft, Place, PointDraft, PointRef, TermDraft, VariableDraft,
 };
 pub use fault::{Fault, Locus, Section, did_you_mean};
+pub use formula::{Formula, NamedNumber, Nominal, NotConstant, Source, Target};
 pub use idle::Idle;
 
 use crate::constraint::Ends;
@@ -39,6 +41,8 @@ macro_rules! ids {
 ids! {
     /// A hardpoint's place in [`Model::hardpoints`].
     HardpointId
+    /// A parameter's place in [`Model::parameters`].
+    ParameterId
     /// A body's place in [`Model::bodies`]; 0 is ground.
     BodyId
     /// A joint's place in [`Model::joints`].
@@ -61,6 +65,10 @@ pub const GROUND: BodyId = BodyId(0);
 pub struct Model {
     /// Its name.
     pub name: String,
+    /// Named numbers for formulas, in the order of the file.
+    pub parameters: Vec<NamedNumber>,
+    /// What follows the design variables by formulas, each after those whose results it uses.
+    pub formulas: Vec<Formula>,
     /// Named points of the design configuration, then the unnamed ones that joints and points gave.
     pub hardpoints: Vec<Hardpoint>,
     /// Ground, then the bodies.
@@ -185,6 +193,10 @@ pub struct DesignVariable {
     pub changes: Vec<Change>,
     /// Whether rods keep their lengths while it moves their ends.
     pub fixed_length: bool,
+    /// Between which values b may lie, in the unit of b; 0 lies between them.
+    pub bounds: Option<[f64; 2]>,
+    /// How large a change of b is usual, in its unit; positive.
+    pub typical: Option<f64>,
 }
 
 /// Which marker of a joint.
@@ -235,6 +247,13 @@ pub enum Change {
         /// Which joint.
         joint: JointId,
         /// m per unit.
+        rate: f64,
+    },
+    /// A parameter of the model grows at this rate, and all that formulas make of it follows.
+    Parameter {
+        /// Which parameter.
+        parameter: ParameterId,
+        /// In the parameter's unit, per unit.
         rate: f64,
     },
     /// A parameter of a driver's law grows at this rate.

@@ -2,6 +2,7 @@
 
 use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
 
+use super::real::Function;
 use super::{Pose, Real, Twist};
 
 /// A number and its derivative. What is written once over [`Real`] is differentiated by running it on these; a dual of
@@ -139,8 +140,18 @@ impl<T: Real> Real for Dual<T> {
     #[inline(always)]
     fn larger(self, o: Self) -> Self {
         let v = self.v.larger(o.v);
-        let d = v.like_lanes(|k| if v.lane(k) == self.v.lane(k) { self.d.lane(k) } else { o.d.lane(k) });
-        Self { v, d }
+        Self { v, d: self.d.select(o.d, |k| v.lane(k) == self.v.lane(k)) }
+    }
+    fn select(self, other: Self, first: impl Fn(usize) -> bool + Copy) -> Self {
+        Self { v: self.v.select(other.v, first), d: self.d.select(other.d, first) }
+    }
+    fn map(self, function: Function) -> Self {
+        let v = self.v.map(function);
+        Self { v, d: self.d * function.slope(self.v, v) }
+    }
+    fn powf(self, exponent: f64) -> Self {
+        let slope = self.v.powf(exponent - 1.0) * self.v.like(exponent);
+        Self { v: self.v.powf(exponent), d: self.d * slope }
     }
     #[inline(always)]
     fn largest(self) -> f64 {
@@ -186,6 +197,37 @@ mod tests {
         assert!((y.d.v - (at(x + h) - at(x - h)) / (2.0 * h)).abs() < 1e-7);
         assert!((y.d.d - (at(x + h) - 2.0 * at(x) + at(x - h)) / (h * h)).abs() < 1e-6);
         assert_eq!(y.d.v, y.v.d);
+    }
+
+    #[test]
+    fn every_function_has_its_first_two_derivatives() {
+        type Case = (&'static str, fn(Dual<Dual>) -> Dual<Dual>, fn(f64) -> f64);
+        let cases: [Case; 13] = [
+            ("tan", |x| x.map(Function::Tan), f64::tan),
+            ("asin", Real::asin, f64::asin),
+            ("acos", |x| x.map(Function::Acos), f64::acos),
+            ("atan", |x| x.map(Function::Atan), f64::atan),
+            ("sinh", |x| x.map(Function::Sinh), f64::sinh),
+            ("cosh", |x| x.map(Function::Cosh), f64::cosh),
+            ("tanh", |x| x.map(Function::Tanh), f64::tanh),
+            ("exp", |x| x.map(Function::Exp), f64::exp),
+            ("ln", |x| x.map(Function::Ln), f64::ln),
+            ("powf", |x| x.powf(2.7), |x| x.powf(2.7)),
+            ("atan2", |x| x.atan2(x * x + x.like(0.5)), |x| x.atan2(x * x + 0.5)),
+            ("larger", |x| (x * x * x).larger(x * x), |x| (x * x * x).max(x * x)),
+            ("select", |x| (x * x).select(x.like(f64::NAN), |_| true), |x| x * x),
+        ];
+        for (name, f, at) in cases {
+            for x in [0.2, 0.7] {
+                let y = f(Dual { v: Dual::variable(x), d: Dual::constant(1.0) });
+                let h = 1e-4;
+                assert!((y.v.v - at(x)).abs() < 1e-15, "{name}");
+                assert!((y.d.v - (at(x + h) - at(x - h)) / (2.0 * h)).abs() < 1e-5, "{name}");
+                let second = (at(x + h) - 2.0 * at(x) + at(x - h)) / (h * h);
+                assert!((y.d.d - second).abs() < 1e-4 * second.abs().max(1.0), "{name}: {} {second}", y.d.d);
+                assert!(y.d.v != 0.0 && y.d.v == y.v.d, "{name}");
+            }
+        }
     }
 
     #[test]

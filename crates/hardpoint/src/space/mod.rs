@@ -26,7 +26,7 @@ pub(crate) use matrix::Elimination;
 pub use pose::Pose;
 pub use quat::Quat;
 pub use rates::{Jet, Rates};
-pub use real::Real;
+pub use real::{Function, Real};
 pub use twist::{Twist, Wrench};
 pub use vec3::Vec3;
 

@@ -2,7 +2,7 @@
 
 use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
 
-use super::{Dual, Real};
+use super::{Dual, Function, Real};
 
 /// A number and its first two time derivatives.
 ///
@@ -134,6 +134,21 @@ impl<T: Real> Real for Rates<T> {
     fn round(self) -> Self {
         let o = self.0[0].zero();
         Self([self.0[0].round(), o, o])
+    }
+    fn select(self, other: Self, first: impl Fn(usize) -> bool + Copy) -> Self {
+        Self([0, 1, 2].map(|k| self.0[k].select(other.0[k], first)))
+    }
+    fn map(self, function: Function) -> Self {
+        // The slope, differentiated in its turn.
+        let x = Dual::variable(self.0[0]);
+        let y = x.map(function);
+        let slope = function.slope(x, y);
+        self.chain([y.v, slope.v, slope.d])
+    }
+    fn powf(self, exponent: f64) -> Self {
+        let power = |by: f64| self.0[0].powf(exponent - by);
+        let [first, second] = [exponent, exponent * (exponent - 1.0)].map(|c| self.0[0].like(c));
+        self.chain([power(0.0), power(1.0) * first, power(2.0) * second])
     }
     #[inline(always)]
     fn within<R>(self, f: impl FnOnce() -> R) -> R {

@@ -57,6 +57,15 @@ pub trait Real:
     /// Nearest integer, lane by lane.
     fn round(self) -> Self;
 
+    /// This value in the lanes that `first` says, `other` in the rest; what is not taken may be NaN.
+    fn select(self, other: Self, first: impl Fn(usize) -> bool + Copy) -> Self;
+
+    /// The function of this value, lane by lane, by the standard library.
+    fn map(self, function: Function) -> Self;
+
+    /// This value to a fixed power, lane by lane.
+    fn powf(self, exponent: f64) -> Self;
+
     /// Runs `f` compiled for the CPU that this value was made for. Large functions of the hot path
     /// begin with it, so that they need not be inlined into their callers to get wide instructions.
     fn within<R>(self, f: impl FnOnce() -> R) -> R;
@@ -130,6 +139,57 @@ pub trait Real:
     }
 }
 
+/// A function that is evaluated by the standard library, outside of the hot path, and knows its own slope.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Function {
+    /// Tangent.
+    Tan,
+    /// Arc cosine.
+    Acos,
+    /// Arc tangent.
+    Atan,
+    /// Hyperbolic sine.
+    Sinh,
+    /// Hyperbolic cosine.
+    Cosh,
+    /// Hyperbolic tangent.
+    Tanh,
+    /// Exponential function.
+    Exp,
+    /// Natural logarithm.
+    Ln,
+}
+
+impl Function {
+    fn of(self, x: f64) -> f64 {
+        match self {
+            Self::Tan => x.tan(),
+            Self::Acos => x.acos(),
+            Self::Atan => x.atan(),
+            Self::Sinh => x.sinh(),
+            Self::Cosh => x.cosh(),
+            Self::Tanh => x.tanh(),
+            Self::Exp => x.exp(),
+            Self::Ln => x.ln(),
+        }
+    }
+
+    /// The derivative at `x`, where the value is `y`.
+    pub(super) fn slope<T: Real>(self, x: T, y: T) -> T {
+        let one = x.like(1.0);
+        match self {
+            Self::Tan => one + y * y,
+            Self::Acos => -(one / (one - x * x).sqrt()),
+            Self::Atan => one / (one + x * x),
+            Self::Sinh => x.map(Self::Cosh),
+            Self::Cosh => x.map(Self::Sinh),
+            Self::Tanh => one - y * y,
+            Self::Exp => y,
+            Self::Ln => one / x,
+        }
+    }
+}
+
 impl Real for f64 {
     const LANES: usize = 1;
     #[inline(always)]
@@ -163,6 +223,15 @@ impl Real for f64 {
     #[inline(always)]
     fn larger(self, o: Self) -> Self {
         if o <= self || self.is_nan() { self } else { o }
+    }
+    fn select(self, other: Self, first: impl Fn(usize) -> bool + Copy) -> Self {
+        if first(0) { self } else { other }
+    }
+    fn map(self, function: Function) -> Self {
+        function.of(self)
+    }
+    fn powf(self, exponent: f64) -> Self {
+        f64::powf(self, exponent)
     }
     #[inline(always)]
     fn largest(self) -> f64 {
@@ -238,6 +307,15 @@ impl<S: Simd> Real for f64x8<S> {
     #[inline(always)]
     fn larger(self, o: Self) -> Self {
         (o.simd_le(self) | !self.simd_eq(self)).select(self, o)
+    }
+    fn select(self, other: Self, first: impl Fn(usize) -> bool + Copy) -> Self {
+        self.like_lanes(|k| if first(k) { self.lane(k) } else { other.lane(k) })
+    }
+    fn map(self, function: Function) -> Self {
+        self.like_lanes(|k| function.of(self.lane(k)))
+    }
+    fn powf(self, exponent: f64) -> Self {
+        self.like_lanes(|k| self.lane(k).powf(exponent))
     }
     #[inline(always)]
     fn largest(self) -> f64 {

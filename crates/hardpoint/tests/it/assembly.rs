@@ -26,7 +26,7 @@ fn with_a_rod_of(length: f64) -> Draft {
         design: vec![VariableDraft {
             name: "longer".into(),
             changes: vec![ChangeDraft::Length { joint: "rod".into(), rate: 1.0 }],
-            fixed_length: false,
+            ..VariableDraft::default()
         }],
         points: vec![PointDraft {
             name: "C".into(),

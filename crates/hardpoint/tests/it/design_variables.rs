@@ -40,7 +40,7 @@ fn moves(name: &str, hardpoint: &str, velocity: Vec3) -> VariableDraft {
     VariableDraft {
         name: name.into(),
         changes: vec![ChangeDraft::Move { hardpoint: hardpoint.into(), velocity }],
-        fixed_length: false,
+        ..VariableDraft::default()
     }
 }
 
@@ -117,6 +117,7 @@ fn the_field_is_the_derivative_of_the_geometry_for_every_kind_of_change() {
                 name: name.into(),
                 changes: vec![change.clone()],
                 fixed_length,
+                ..VariableDraft::default()
             }]);
             let error = |base: f64, h: f64| {
                 let field = &model.fields(&[base])[0];
@@ -209,7 +210,7 @@ fn a_redundant_mechanism_follows_every_change_of_its_law() {
         draft.design.push(VariableDraft {
             name: parameter.into(),
             changes: vec![change],
-            fixed_length: false,
+            ..VariableDraft::default()
         });
     }
     let model = Model::from_draft(&draft).unwrap();

@@ -153,7 +153,7 @@ fn shaft_train() -> Draft {
             VariableDraft {
                 name: "stay_longer".into(),
                 changes: vec![ChangeDraft::Length { joint: "stay".into(), rate: 1.0 }],
-                fixed_length: false,
+                ..VariableDraft::default()
             },
         ],
         points: ["nut", "plate", "vane", "arm"]
@@ -258,7 +258,7 @@ pub fn cam_and_slot() -> Draft {
                     parameter: "swing".into(),
                     rate: 1.0,
                 }],
-                fixed_length: false,
+                ..VariableDraft::default()
             },
             VariableDraft {
                 name: "speed".into(),
@@ -267,7 +267,7 @@ pub fn cam_and_slot() -> Draft {
                     parameter: "speed".into(),
                     rate: 1.0,
                 }],
-                fixed_length: false,
+                ..VariableDraft::default()
             },
         ],
         measures: ["slide", "fulcrum"]
@@ -365,7 +365,7 @@ fn marker(name: &str, joint: &str, position: [f64; 3], rotation: [f64; 3]) -> Va
         position: position.into(),
         rotation: rotation.into(),
     };
-    VariableDraft { name: name.into(), changes: vec![change], fixed_length: false }
+    VariableDraft { name: name.into(), changes: vec![change], ..VariableDraft::default() }
 }
 
 fn mechanisms() -> Vec<Draft> {

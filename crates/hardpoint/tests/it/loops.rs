@@ -113,7 +113,7 @@ fn truss(n: usize) -> (Draft, impl Fn(usize) -> [f64; 2]) {
 fn moves(name: &str, k: usize, y: f64) -> VariableDraft {
     let velocity = Vec3::new(0.0, y, 0.0);
     let changes = vec![ChangeDraft::Move { hardpoint: format!("p{k}"), velocity }];
-    VariableDraft { name: name.into(), changes, fixed_length: false }
+    VariableDraft { name: name.into(), changes, ..VariableDraft::default() }
 }
 
 /// The same with the places of nodes as hardpoints `p0`, `p1`, ..., so that variables may move them.

@@ -4,6 +4,7 @@ mod allocation;
 mod assembly;
 mod design_variables;
 mod diagnosis;
+mod formulas;
 mod house;
 mod identities;
 mod joints;

@@ -367,6 +367,7 @@ fn variable(v: &Value) -> Result<VariableDraft, String> {
         name: text(v, "name")?,
         changes,
         fixed_length: v["fixed_length"].as_bool().unwrap_or(false),
+        ..VariableDraft::default()
     })
 }
 

@@ -108,7 +108,7 @@ fn parameters_of_laws_have_second_derivatives_too() {
         draft.design.push(VariableDraft {
             name: parameter.into(),
             changes: vec![change],
-            fixed_length: false,
+            ..VariableDraft::default()
         });
     }
     let model = Model::from_draft(&draft).unwrap();

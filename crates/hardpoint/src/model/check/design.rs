@@ -19,12 +19,36 @@ impl Check<'_> {
                 quantity = Some(if quantity.is_none_or(|before| before == q) { q } else { Quantity::Number });
                 changes.push(change);
             }
+            self.range(v, here);
             self.model.variables.push(DesignVariable {
                 name: v.name.clone(),
                 quantity: quantity.unwrap_or(Quantity::Number),
                 changes,
                 fixed_length: v.fixed_length,
+                bounds: v.bounds,
+                typical: v.typical,
             });
+        }
+    }
+
+    /// HP0229: bounds between which the model as drawn does not lie, or a typical size that is none.
+    fn range(&mut self, v: &VariableDraft, here: Here) {
+        if let Some([low, high]) = v.bounds {
+            if !(low < high && low.is_finite() && high.is_finite()) {
+                let message = format!("the bounds of design variable `{}` do not rise", v.name);
+                self.fault("HP0229", here.key("bounds"), message)
+                    .help("give the lower bound first, then the upper");
+            } else if !(low <= 0.0 && high >= 0.0) {
+                let message = format!("the model as drawn is not within the bounds of `{}`", v.name);
+                self.fault("HP0229", here.key("bounds"), message).help(
+                    "bounds of a parameter enclose its value, those of another design variable enclose 0",
+                );
+            }
+        }
+        if v.typical.is_some_and(|size| !(size > 0.0 && size.is_finite())) {
+            let message = format!("the typical size of design variable `{}` is not positive", v.name);
+            self.fault("HP0229", here.key("typical"), message)
+                .help("give how large a change of it is usual, or leave it out");
         }
     }
 
@@ -96,6 +120,15 @@ impl Check<'_> {
                     return None;
                 }
                 Some((Change::Length { joint, rate: *rate }, Quantity::Length))
+            }
+            ChangeDraft::Parameter { parameter, rate } => {
+                let names = self.draft.parameters.iter().map(|p| p.name.as_str());
+                let parameter = self.find("parameter", parameter, at, names).map(ParameterId)?;
+                if !(rate.is_finite() && *rate != 0.0) {
+                    null(self);
+                }
+                let quantity = self.model.parameters[parameter.0].quantity;
+                Some((Change::Parameter { parameter, rate: *rate }, quantity))
             }
             ChangeDraft::Law { driver, parameter, rate } => {
                 let draft = self.draft;

@@ -187,7 +187,10 @@ impl Check<'_> {
 
     /// HP0223: a length where there is no rod, or that is none.
     fn rod_length(&mut self, j: &JointDraft, kind: &'static JointType, here: Here) -> Option<f64> {
-        let length = j.length?;
+        let length = match self.formula_length(&j.name, here.key("length")) {
+            Some(given) => given?,
+            None => j.length?,
+        };
         if !kind.coordinates.iter().any(|c| c.row == Row::Distance) && !kind.rows.contains(&Row::Contact) {
             self.fault("HP0223", here.key("length"), format!("a {} joint has no `length`", kind.name))
                 .help(format!("remove `length` from `{}`", j.name));

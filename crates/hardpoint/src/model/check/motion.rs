@@ -44,16 +44,17 @@ impl Check<'_> {
         let draft = self.draft;
         for (index, d) in draft.drivers.iter().enumerate() {
             let here = Here { section: Section::Drivers, index };
-            let finite = |t: f64| d.law.at(t).derivatives()[..3].iter().all(|x| x.is_finite());
+            let Some(law) = self.formula_law(&d.name, &d.law, &here.key("law")) else { continue };
+            let finite = |t: f64| law.at(t).derivatives()[..3].iter().all(|x| x.is_finite());
             if let Some(&t) = draft.times.iter().find(|&&t| !finite(t)) {
-                let [f, fd, fdd, _] = d.law.at(t).derivatives();
+                let [f, fd, fdd, _] = law.at(t).derivatives();
                 let message = format!("the law of driver `{}` has no finite value at t = {t} s", d.name);
                 self.fault("HP0214", here.key("law"), message)
                     .note(format!("value {f}, first derivative {fd}, second derivative {fdd} there"))
                     .help("change the law, or the times, so that all three are finite");
             }
             let Some((joint, coordinate)) = self.driven(d, here) else { continue };
-            self.model.drivers.push(Driver { name: d.name.clone(), joint, coordinate, law: d.law.clone() });
+            self.model.drivers.push(Driver { name: d.name.clone(), joint, coordinate, law });
         }
     }
 

@@ -859,7 +859,7 @@ impl<'r> Drawing<'r> {
         }
         let name = format!("v{}", self.draft.design.len());
         let fixed_length = self.rng.chance(0.25);
-        self.draft.design.push(VariableDraft { name, changes, fixed_length });
+        self.draft.design.push(VariableDraft { name, changes, fixed_length, ..VariableDraft::default() });
     }
 }
 

@@ -378,6 +378,7 @@ impl Case<'_> {
                 ChangeDraft::Length { .. } => "length".into(),
                 ChangeDraft::Law { .. } => "law".into(),
                 ChangeDraft::Field { .. } => "field".into(),
+                ChangeDraft::Parameter { .. } => "parameter".into(),
             });
         }
     }
@@ -700,7 +701,10 @@ fn moved(draft: &Draft, to: Pose) -> Draft {
                 (*position, *rotation) = (to.rot * *position, to.rot * *rotation);
             }
             // In a body's own frame, which is drawn along.
-            ChangeDraft::Field { .. } | ChangeDraft::Length { .. } | ChangeDraft::Law { .. } => {}
+            ChangeDraft::Field { .. }
+            | ChangeDraft::Length { .. }
+            | ChangeDraft::Parameter { .. }
+            | ChangeDraft::Law { .. } => {}
         }
     }
     d.points.iter_mut().for_each(|p| place(&mut p.at));

@@ -1,0 +1,411 @@
+//! Checks of parameters and formulas: what their names mean, in which order they are evaluated, and what may follow them.
+
+use super::*;
+use crate::law::{Expression, Law};
+use crate::space::Dual;
+
+/// A formula, and where it stands.
+pub(super) struct Written {
+    formula: Formula,
+    at: Locus,
+    /// What it gives, as messages say it.
+    name: String,
+}
+
+impl<'a> Check<'a> {
+    /// Parameters, and the formulas that give them and the coordinates of named hardpoints.
+    pub(super) fn formulas(&mut self) {
+        let draft = self.draft;
+        for (index, p) in draft.parameters.iter().enumerate() {
+            let at = Here { section: Section::Parameters, index };
+            if !p.name.trim().is_empty() && !Expression::can_name(&p.name) {
+                let message = format!("a parameter cannot be called `{}`", p.name);
+                self.fault("HP0201", at.key("name"), message).help(
+                    "use letters, digits and `_`, and no name that expressions know already, such as `t` or `sin`",
+                );
+            }
+            if !p.value.is_finite() {
+                let message = format!("the value of parameter `{}` is not a finite number", p.name);
+                self.fault("HP0202", at.key("value"), message);
+            }
+            let (name, value, quantity) = (p.name.clone(), p.value, p.quantity);
+            self.model.parameters.push(NamedNumber { name, value, quantity });
+        }
+        let mut written: Vec<Written> = Vec::new();
+        for f in &draft.formulas {
+            let (found, at, name) = match &f.of {
+                FormulaOf::Parameter(parameter) => {
+                    let k = self.number_of("parameter", parameter);
+                    let at = Here { section: Section::Parameters, index: k.unwrap_or(0) }.key("value");
+                    (k.map(|k| Target::Parameter(ParameterId(k))), at, parameter.clone())
+                }
+                FormulaOf::Coordinate(hardpoint, axis) => {
+                    let k = self.number_of("hardpoint", hardpoint);
+                    let here = Here { section: Section::Hardpoints, index: k.unwrap_or(0) };
+                    let name = format!("{hardpoint}.{}", AXES[*axis % 3]);
+                    let target = k.map(|k| Target::Coordinate(HardpointId(k), *axis % 3));
+                    (target, here.item("position", *axis % 3), name)
+                }
+                // Their joints and drivers ask for them.
+                FormulaOf::Length(_) | FormulaOf::Law(..) => continue,
+            };
+            let Some(of) = found else {
+                let message = format!("a formula gives `{name}`, which is not in the model");
+                self.fault("HP0204", at, message);
+                continue;
+            };
+            match self.formula(of, &f.expression, &at) {
+                Some(formula) => written.push(Written { formula, at, name }),
+                None => self.spoil(of),
+            }
+        }
+        self.order(written);
+        self.extent = Extent::of(self.model.hardpoints.iter().map(|h| h.position));
+    }
+
+    fn number_of(&self, what: &str, name: &str) -> Option<usize> {
+        self.numbers.get(what).and_then(|numbers| numbers.get(name)).copied()
+    }
+
+    /// The formula of an expression, with its names resolved.
+    fn formula(&mut self, of: Target, expression: &Expression, at: &Locus) -> Option<Formula> {
+        let per_metre = expression.per_metre();
+        let inputs: Vec<_> = expression.names().iter().map(|name| self.source(name, per_metre, at)).collect();
+        let quantity = match of {
+            Target::Parameter(p) => self.model.parameters[p.0].quantity,
+            Target::Coordinate(..) | Target::Length(_) => Quantity::Length,
+            Target::Law(..) => Quantity::Number,
+        };
+        let inputs = inputs.into_iter().collect::<Option<_>>()?;
+        let per_unit = if quantity == Quantity::Length { per_metre } else { 1.0 };
+        Some(Formula { of, expression: expression.clone(), inputs, per_unit })
+    }
+
+    /// What a name in an expression means, and how many of the text's units make one SI unit of it.
+    fn source(&mut self, name: &str, per_metre: f64, at: &Locus) -> Option<(Source, f64)> {
+        let draft = self.draft;
+        if let Some((hardpoint, axis)) = name.split_once('.') {
+            let h = self.hardpoint(hardpoint, at.clone())?;
+            let Some(axis) = AXES.iter().position(|a| *a == axis) else {
+                let message = format!("hardpoint `{hardpoint}` has no coordinate `{axis}`");
+                let help = format!("write `{hardpoint}.x`, `{hardpoint}.y` or `{hardpoint}.z`");
+                self.fault("HP0204", at.clone(), message).help(help);
+                return None;
+            };
+            return Some((Source::Coordinate(h, axis), per_metre));
+        }
+        let names = draft.parameters.iter().map(|p| p.name.as_str());
+        let found = self.find("parameter", name, at.clone(), names).map(ParameterId);
+        if found.is_none() && self.number_of("hardpoint", name).is_some() {
+            let fault = self.faults.last_mut().expect("just reported");
+            fault.help(format!(
+                "for a coordinate of hardpoint `{name}` write `{name}.x`, `{name}.y` or `{name}.z`"
+            ));
+        }
+        let parameter = found?;
+        let of_length = self.model.parameters[parameter.0].quantity == Quantity::Length;
+        Some((Source::Parameter(parameter), if of_length { per_metre } else { 1.0 }))
+    }
+
+    /// Takes formulas in an order in which each comes after those whose results it uses; HP0227 for those that have none.
+    fn order(&mut self, written: Vec<Written>) {
+        let giver: HashMap<Source, usize> =
+            written.iter().enumerate().filter_map(|(k, w)| Some((w.formula.gives()?, k))).collect();
+        let uses = |k: usize| written[k].formula.sources().filter_map(|s| giver.get(&s).copied());
+        let mut users = vec![Vec::new(); written.len()];
+        let mut waits: Vec<usize> = vec![0; written.len()];
+        for k in 0..written.len() {
+            for other in uses(k) {
+                users[other].push(k);
+                waits[k] += 1;
+            }
+        }
+        let mut order: Vec<usize> = (0..written.len()).filter(|k| waits[*k] == 0).collect();
+        let mut next = 0;
+        while let Some(&k) = order.get(next) {
+            next += 1;
+            for &user in &users[k] {
+                waits[user] -= 1;
+                if waits[user] == 0 {
+                    order.push(user);
+                }
+            }
+        }
+        // From each of the rest a walk along what waits itself runs into a circle, or into one that is known.
+        let mut walk_of: Vec<Option<usize>> = vec![None; written.len()];
+        let mut circles = Vec::new();
+        for start in (0..written.len()).filter(|k| waits[*k] > 0) {
+            let (mut k, mut walk) = (start, Vec::new());
+            while walk_of[k].is_none() {
+                walk_of[k] = Some(start);
+                walk.push(k);
+                k = uses(k).find(|other| waits[*other] > 0).unwrap_or(k);
+            }
+            if walk_of[k] == Some(start) {
+                let first = walk.iter().position(|w| *w == k).unwrap_or(0);
+                circles.push(walk.split_off(first));
+            }
+        }
+        for circle in circles {
+            let shown = |k: &usize| format!("`{}`", written[*k].name);
+            let first = &written[circle[0]];
+            let message = match circle.as_slice() {
+                [one] => format!("{} is given by itself", shown(one)),
+                _ => format!("the formula of {} goes round in a circle", shown(&circle[0])),
+            };
+            let way = circle.iter().take(LISTED_NAMES).chain([&circle[0]]).map(shown).collect::<Vec<_>>();
+            let fault = self.fault("HP0227", first.at.clone(), message);
+            if circle.len() > 1 {
+                fault.note(way.join(" uses "));
+            }
+            fault.help("give one of them by a number, or by something else");
+        }
+        for k in (0..written.len()).filter(|k| waits[*k] > 0) {
+            self.spoil(written[k].formula.of);
+        }
+        let mut by_number: Vec<Option<Written>> = written.into_iter().map(Some).collect();
+        for k in order {
+            let w = by_number[k].take().expect("each comes once");
+            self.take(w);
+        }
+    }
+
+    /// Sets what a formula gives in the nominal design. HP0228 where that is no number.
+    fn take(&mut self, w: Written) -> Option<f64> {
+        if w.formula.sources().any(|s| self.spoilt.contains(&s)) {
+            self.spoil(w.formula.of);
+            return None;
+        }
+        let value = w.formula.at(0.0, |s| self.model.nominal(s));
+        if !value.is_finite() {
+            let message = format!("the expression for `{}` has no finite value", w.name);
+            let numbers = w.formula.inputs.iter().zip(w.formula.expression.names());
+            let numbers: Vec<String> = numbers
+                .take(LISTED_NAMES)
+                .map(|((source, per_unit), name)| {
+                    format!("`{name}` = {}", self.model.nominal(*source) * per_unit)
+                })
+                .collect();
+            let of = w.formula.of;
+            let fault = self.fault("HP0228", w.at, message);
+            if !numbers.is_empty() {
+                fault.note(format!("with {}", numbers.join(", ")));
+            }
+            fault.help("it divides by zero or takes a root of a negative number there; change the expression or its parameters");
+            self.spoil(of);
+            return None;
+        }
+        match w.formula.of {
+            Target::Parameter(p) => self.model.parameters[p.0].value = value,
+            Target::Coordinate(h, axis) => self.set(h, axis, value),
+            Target::Length(_) | Target::Law(..) => {}
+        }
+        self.written.push(w);
+        Some(value)
+    }
+
+    fn set(&mut self, h: HardpointId, axis: usize, value: f64) {
+        let position = &mut self.model.hardpoints[h.0].position;
+        let mut coordinates = position.to_array();
+        coordinates[axis] = value;
+        *position = coordinates.into();
+    }
+
+    /// What a faulty formula would give is not known, and nor is what follows from it.
+    fn spoil(&mut self, of: Target) {
+        match of {
+            Target::Parameter(p) => drop(self.spoilt.insert(Source::Parameter(p))),
+            Target::Coordinate(h, axis) => drop(self.spoilt.insert(Source::Coordinate(h, axis))),
+            Target::Length(_) | Target::Law(..) => {}
+        }
+    }
+
+    /// The number that an expression gives in the nominal design, which follows the design from now on.
+    fn given(&mut self, of: Target, expression: &Expression, at: Locus, name: String) -> Option<f64> {
+        let formula = self.formula(of, expression, &at)?;
+        self.take(Written { formula, at, name })
+    }
+
+    /// A new unnamed hardpoint at coordinates that expressions give.
+    pub(super) fn formula_place(
+        &mut self,
+        coordinates: &[Expression; 3],
+        owner: &str,
+        at: Locus,
+    ) -> Option<HardpointId> {
+        let h = HardpointId(self.model.hardpoints.len());
+        self.model.hardpoints.push(Hardpoint { name: owner.into(), position: Vec3::ZERO, unnamed: true });
+        let given = [0, 1, 2].map(|axis| {
+            let name = format!("{} of {owner}", AXES[axis]);
+            self.given(Target::Coordinate(h, axis), &coordinates[axis], at.clone(), name)
+        });
+        given.iter().all(Option::is_some).then(|| {
+            self.extent.include(self.position(h));
+            h
+        })
+    }
+
+    /// The length that a rod is given by an expression, if it is.
+    pub(super) fn formula_length(&mut self, name: &str, at: Locus) -> Option<Option<f64>> {
+        let expression = self.length_formulas.get(name).copied()?;
+        let joint = JointId(self.model.joints.len());
+        Some(self.given(Target::Length(joint), expression, at, format!("length of {name}")))
+    }
+
+    /// A driver's law with the parameters that expressions give.
+    pub(super) fn formula_law(&mut self, name: &str, law: &Law, at: &Locus) -> Option<Law> {
+        let mut law = law.clone();
+        let driver = DriverId(self.model.drivers.len());
+        let given = self.law_formulas.get(name).cloned().unwrap_or_default();
+        for (parameter, expression) in given {
+            let Some(p) = law.parameters().iter().position(|p| p.name == parameter) else {
+                let message =
+                    format!("a formula gives `{parameter}`, which the law of `{name}` does not have");
+                self.fault("HP0204", at.clone(), message);
+                continue;
+            };
+            let value = self.given(Target::Law(driver, p), expression, at.clone(), parameter.to_owned())?;
+            law = law.with_parameter(p, value);
+        }
+        Some(law)
+    }
+
+    /// Keeps the formulas that follow design variables: HP0228 for those that have no derivative, HP0226 for those that
+    /// would change the shape of a curve.
+    pub(super) fn formulas_that_vary(&mut self) {
+        let mut varying: BTreeSet<Source> = BTreeSet::new();
+        for change in self.model.variables.iter().flat_map(|v| &v.changes) {
+            match change {
+                Change::Parameter { parameter, .. } => drop(varying.insert(Source::Parameter(*parameter))),
+                Change::Move { hardpoint, velocity } => {
+                    let moved = (0..3).filter(|axis| velocity[*axis] != 0.0);
+                    varying.extend(moved.map(|axis| Source::Coordinate(*hardpoint, axis)));
+                }
+                _ => {}
+            }
+        }
+        for Written { mut formula, at, name } in std::mem::take(&mut self.written) {
+            let model = &self.model;
+            let fixed: Vec<Option<f64>> = formula
+                .inputs
+                .iter()
+                .map(|(s, per_unit)| (!varying.contains(s)).then(|| model.nominal(*s) * per_unit))
+                .collect();
+            if fixed.iter().all(Option::is_some) {
+                continue;
+            }
+            formula.expression = formula.expression.with_some(|k| fixed[k]);
+            formula.inputs.retain(|(s, _)| varying.contains(s));
+            // One derivative along all inputs at once is finite only if all are.
+            let along = |s: Source| Dual { v: model.nominal(s), d: 1.0 };
+            let slope = formula.at(Dual::constant(0.0), along).d;
+            if !slope.is_finite() {
+                let message = format!("the expression for `{name}` has no derivative in the nominal design");
+                let names: Vec<_> = formula.expression.names().iter().map(|n| format!("`{n}`")).collect();
+                self.fault("HP0228", at.clone(), message)
+                    .note(format!("it cannot be differentiated by {}", names.join(", ")))
+                    .help("change the expression or its numbers: a root of zero and an arc sine of 1 have no derivative");
+            }
+            if let Target::Coordinate(h, _) = formula.of
+                && self.curve_points.contains(&h)
+            {
+                let message = format!("the expression for `{name}` moves a point of a curve");
+                self.fault("HP0226", at, message)
+                    .note("the shape of a curve is no design variable; its place and direction are")
+                    .help(
+                        "write `design = false` for the parameters in it, or the curve's points as numbers",
+                    );
+            }
+            varying.extend(formula.gives());
+            self.model.formulas.push(formula);
+        }
+    }
+}
+
+/// The coordinates of a hardpoint, as expressions name them.
+const AXES: [&str; 3] = ["x", "y", "z"];
+
+impl Formula {
+    /// What others may use of it.
+    fn gives(&self) -> Option<Source> {
+        match self.of {
+            Target::Parameter(p) => Some(Source::Parameter(p)),
+            Target::Coordinate(h, axis) => Some(Source::Coordinate(h, axis)),
+            Target::Length(_) | Target::Law(..) => None,
+        }
+    }
+}
+
+impl Nominal {
+    /// What the parameters and hardpoints of a draft are with all design variables at zero. What is faulty is left out:
+    /// [`Model::from_draft`] reports it.
+    pub fn of(draft: &Draft) -> Self {
+        let mut c = Check::new(draft);
+        c.formulas();
+        let mut followed: HashMap<&str, String> = HashMap::new();
+        for v in &draft.design {
+            for change in &v.changes {
+                if let ChangeDraft::Parameter { parameter, .. } = change {
+                    followed.entry(parameter).or_insert_with(|| format!("design variable `{}`", v.name));
+                }
+            }
+        }
+        let mut follows: Vec<Option<String>> =
+            draft.parameters.iter().map(|p| followed.remove(p.name.as_str())).collect();
+        for w in &c.written {
+            if let Target::Parameter(p) = w.formula.of {
+                let of = w.formula.sources().find_map(|s| match s {
+                    Source::Parameter(q) => follows[q.0].clone(),
+                    Source::Coordinate(h, _) => Some(format!("hardpoint `{}`", c.model.hardpoints[h.0].name)),
+                });
+                follows[p.0] = follows[p.0].take().or(of);
+            }
+        }
+        let parameters = c.model.parameters.iter().zip(follows).enumerate().map(|(k, (p, follows))| {
+            let is_known = !c.spoilt.contains(&Source::Parameter(ParameterId(k)));
+            (p.name.clone(), (is_known.then_some(p.value), p.quantity, follows))
+        });
+        let parameters = parameters.collect();
+        Self { positions: c.model.hardpoints.iter().map(|h| h.position).collect(), parameters }
+    }
+
+    /// The names of all parameters.
+    pub fn names(&self) -> impl Iterator<Item = &str> + Clone {
+        self.parameters.keys().map(String::as_str)
+    }
+
+    /// The value in SI and the quantity of a parameter; no value if it is faulty.
+    pub fn parameter(&self, name: &str) -> Option<(Option<f64>, Quantity)> {
+        self.parameters.get(name).map(|p| (p.0, p.1))
+    }
+
+    /// The value of an expression over parameters, as its text means it.
+    ///
+    /// # Errors
+    /// Why it has none; that it follows the design is no reason.
+    pub fn value(&self, expression: &Expression) -> Result<f64, NotConstant> {
+        self.evaluated(expression, true)
+    }
+
+    /// The value of an expression over parameters that no change of the design moves, as its text means it.
+    ///
+    /// # Errors
+    /// Why it is no such constant.
+    pub fn constant(&self, expression: &Expression) -> Result<f64, NotConstant> {
+        self.evaluated(expression, false)
+    }
+
+    fn evaluated(&self, expression: &Expression, may_follow: bool) -> Result<f64, NotConstant> {
+        let numbers = expression.names().iter().map(|name| {
+            let unknown = || NotConstant::Unknown(name.clone());
+            let (value, quantity, follows) = self.parameters.get(name).ok_or_else(unknown)?;
+            if let (Some(follows), false) = (follows, may_follow) {
+                return Err(NotConstant::Follows(name.clone(), follows.clone()));
+            }
+            let per_unit = if *quantity == Quantity::Length { expression.per_metre() } else { 1.0 };
+            value.map(|value| value * per_unit).ok_or(NotConstant::Faulty)
+        });
+        let value = expression.at(&numbers.collect::<Result<Vec<f64>, _>>()?);
+        if value.is_finite() { Ok(value) } else { Err(NotConstant::NotFinite) }
+    }
+}
