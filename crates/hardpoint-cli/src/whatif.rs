@@ -4,7 +4,7 @@ use std::io::Write;
 
 use hardpoint::joint::Quantity;
 use hardpoint::model::{Model, did_you_mean};
-use hardpoint::study::{variable_named, variable_names, what_if};
+use hardpoint::study::{add_coordinates, variable_named, variable_names, what_if};
 use hardpoint_file::{AngleUnit, LengthUnit, ModelFile, Units};
 use hardpoint_report::diagnose;
 use hardpoint_report::figures::number;
@@ -34,12 +34,8 @@ fn whatif_in(session: &Session, options: &Whatif) -> Result<Outcome, Outcome> {
     for text in &options.set {
         settings.push(setting(&mut file, text).map_err(|why| session.misunderstood(&why))?);
     }
-    let hardpoints: Vec<String> =
-        file.model.hardpoints.iter().filter(|h| !h.unnamed).map(|h| h.name.clone()).collect();
-    if hardpoints.len() <= MOST_RANKED {
-        for name in hardpoints.iter().flat_map(|h| ["x", "y", "z"].map(|axis| format!("{h}.{axis}"))) {
-            variable_named(&mut file.model, &name);
-        }
+    if file.model.hardpoints.iter().filter(|h| !h.unnamed).count() <= MOST_RANKED {
+        add_coordinates(&mut file.model);
     }
     for name in options.measure.iter().chain(&options.over) {
         measure(&file.model, name).map_err(|why| session.misunderstood(&why))?;

@@ -213,23 +213,23 @@ impl WhatIfFacts {
 
     /// The variables that move a measure most, the strongest first; so many of each unit.
     pub fn ranking(&self, measure: &str, shown: usize) -> Table {
+        let mut units: Vec<&str> = Vec::new();
+        let of_measure = || self.influence.iter().filter(|i| i.measure == measure);
+        of_measure().for_each(|i| {
+            if !units.contains(&i.per.as_str()) {
+                units.push(&i.per);
+            }
+        });
         let mut rows = Vec::new();
-        let mut per_unit: Vec<(&str, usize)> = Vec::new();
-        for i in self.influence.iter().filter(|i| i.measure == measure) {
-            let known = per_unit.iter_mut().find(|(unit, _)| *unit == i.per);
-            let rank = match known {
-                Some((_, rank)) => {
-                    *rank += 1;
-                    *rank
-                }
-                None => {
-                    per_unit.push((&i.per, 1));
-                    1
-                }
-            };
-            if rank <= shown {
+        for unit in units {
+            for (rank, i) in of_measure().filter(|i| i.per == unit).take(shown).enumerate() {
                 let at = format!("{} s", number(i.time));
-                rows.push(vec![rank.to_string(), i.variable.clone(), with_unit(i.largest, &i.unit), at]);
+                rows.push(vec![
+                    (rank + 1).to_string(),
+                    i.variable.clone(),
+                    with_unit(i.largest, &i.unit),
+                    at,
+                ]);
             }
         }
         Table {
@@ -288,6 +288,9 @@ impl WhatIfFacts {
 
 const CURVES: [&str; 4] = ["today", "first order", "second order", "exact"];
 
+/// Against the strongest variable of a measure, less than this is nothing.
+const ROUND_OFF: f64 = 1e-11;
+
 /// Whether and how the mechanism follows a change.
 fn follows(model: &Model, what_if: &WhatIf) -> String {
     if !what_if.cannot_follow.is_empty() {
@@ -325,6 +328,10 @@ fn influence(model: &Model, units: Units, today: &Solution) -> Vec<InfluenceFact
                 unit: per(symbol(units, output.quantity), &by),
                 per: by,
             });
+        }
+        let strongest = facts[first..].iter().map(|i| i.largest.abs()).fold(0.0, f64::max);
+        for i in facts[first..].iter_mut().filter(|i| i.largest.abs() < ROUND_OFF * strongest) {
+            i.largest = 0.0;
         }
         facts[first..].sort_by(|a, b| b.largest.abs().total_cmp(&a.largest.abs()));
     }

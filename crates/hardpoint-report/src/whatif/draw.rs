@@ -49,7 +49,8 @@ pub(super) fn html(
         let abscissa = over.and_then(|name| facts.measures.iter().find(|m| m.measure == name));
         page += "<div class=\"plots\">";
         for m in facts.measures.iter().filter(|m| wanted(&m.measure) && Some(m.measure.as_str()) != over) {
-            page += &plot(&facts.times, abscissa, m).map_err(|e| e.to_string())?;
+            page += &plot(&facts.times, abscissa, m, false).map_err(|e| e.to_string())?;
+            page += &plot(&facts.times, abscissa, m, true).map_err(|e| e.to_string())?;
         }
         page += "</div>";
         page += &table(&facts.table(wanted));
@@ -66,13 +67,19 @@ pub(super) fn html(
     Ok(page)
 }
 
-/// Today's curve, both predictions and the exact one.
+/// Today's curve, both predictions and the exact one; or by how much they differ from today's.
 fn plot(
     times: &[f64],
     over: Option<&MeasureFact>,
     m: &MeasureFact,
+    change: bool,
 ) -> Result<String, Box<dyn std::error::Error>> {
-    let curves = [&m.today, &m.first, &m.second, &m.exact];
+    let less_today =
+        |curve: &[f64]| -> Vec<f64> { curve.iter().zip(&m.today).map(|(x, now)| x - now).collect() };
+    let curves = match change {
+        false => [m.today.clone(), m.first.clone(), m.second.clone(), m.exact.clone()],
+        true => [Vec::new(), less_today(&m.first), less_today(&m.second), less_today(&m.exact)],
+    };
     // Every curve stands over its own abscissa: a changed design has another wheel travel, too.
     let abscissa = |c: usize| match over {
         None => times,
@@ -93,7 +100,10 @@ fn plot(
     {
         let root = SVGBackend::with_string(&mut svg, SIZE).into_drawing_area();
         let mut chart = ChartBuilder::on(&root)
-            .caption(format!("{} [{}]", m.measure, m.unit), ("sans-serif", 16))
+            .caption(
+                format!("{}{} [{}]", if change { "change of " } else { "" }, m.measure, m.unit),
+                ("sans-serif", 16),
+            )
             .margin(10)
             .x_label_area_size(38)
             .y_label_area_size(66)

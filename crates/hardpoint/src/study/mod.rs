@@ -10,4 +10,4 @@ pub use second::SecondDerivatives;
 pub use verify::{
     Check, CheckOutcome, PASS, StepError, Verification, VerifyOptions, compare_with_difference, verify,
 };
-pub use whatif::{Foresight, WhatIf, variable_named, variable_names, what_if};
+pub use whatif::{Foresight, WhatIf, add_coordinates, variable_named, variable_names, what_if};

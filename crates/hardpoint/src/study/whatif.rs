@@ -141,9 +141,28 @@ pub fn variable_named(model: &mut Model, name: &str) -> Option<VariableId> {
         let change = Change::Marker { joint: JointId(joint), end: End::Both, position: Vec3::ZERO, rotation };
         (Quantity::Angle, change)
     };
-    let variable = DesignVariable { name: name.into(), quantity, changes: vec![change], fixed_length: false };
-    model.variables.push(variable);
+    model.variables.push(DesignVariable {
+        name: name.into(),
+        quantity,
+        changes: vec![change],
+        fixed_length: false,
+        bounds: None,
+        typical: None,
+    });
     Some(VariableId(model.variables.len() - 1))
+}
+
+/// Gives a model a variable for every coordinate of its hardpoints that no variable of its own moves alone.
+pub fn add_coordinates(model: &mut Model) {
+    for h in (0..model.hardpoints.len()).filter(|h| !model.hardpoints[*h].unnamed).collect::<Vec<_>>() {
+        for (axis, letter) in ["x", "y", "z"].into_iter().enumerate() {
+            let alone = Change::Move { hardpoint: HardpointId(h), velocity: Vec3::AXES[axis] };
+            let known = |v: &DesignVariable| !v.fixed_length && v.changes == std::slice::from_ref(&alone);
+            if !model.variables.iter().any(known) {
+                variable_named(model, &format!("{}.{letter}", model.hardpoints[h].name));
+            }
+        }
+    }
 }
 
 /// All names that [`variable_named`] knows in a model.
