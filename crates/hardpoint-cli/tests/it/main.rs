@@ -3,3 +3,4 @@
 mod bench;
 mod golden;
 mod results;
+mod whatif;

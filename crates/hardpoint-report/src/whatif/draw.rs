@@ -107,13 +107,13 @@ fn plot(
             .margin(10)
             .x_label_area_size(38)
             .y_label_area_size(66)
-            .build_cartesian_2d(xs, ys)?;
+            .build_cartesian_2d(xs.clone(), ys.clone())?;
         let along = over.map_or("t [s]".into(), |x| format!("{} [{}]", x.measure, x.unit));
         chart
             .configure_mesh()
             .x_desc(along)
-            .x_label_formatter(&|x| rounded(*x, 4))
-            .y_label_formatter(&|y| rounded(*y, 4))
+            .x_label_formatter(&|x| tick(*x, &xs))
+            .y_label_formatter(&|y| tick(*y, &ys))
             .light_line_style(WHITE)
             .draw()?;
         // The exact curve lies under the predictions, which are broken lines.
@@ -139,12 +139,19 @@ fn plot(
         }
         chart
             .configure_series_labels()
+            .position(SeriesLabelPosition::UpperRight)
             .background_style(WHITE.mix(0.8))
             .border_style(RGBColor(200, 204, 208))
             .draw()?;
         root.present()?;
     }
     Ok(svg)
+}
+
+/// A number at an axis: what is round-off of its range is nothing.
+fn tick(x: f64, range: &std::ops::Range<f64>) -> String {
+    let none = x.abs() < 1e-9 * (range.end - range.start);
+    rounded(if none { 0.0 } else { x }, 4)
 }
 
 /// Measures by variables; within a measure and a unit the strongest is the darkest.

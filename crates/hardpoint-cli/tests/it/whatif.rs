@@ -1,0 +1,88 @@
+//! `hardpoint whatif`: the tutorial, and what it refuses.
+
+use std::path::Path;
+
+use serde_json::Value;
+
+use crate::bench::Bench;
+
+/// The strut of the tutorial: ride only.
+fn ride(bench: &Bench) {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../models/macpherson.toml");
+    let text = std::fs::read_to_string(path).unwrap();
+    let held = text.replace("law = \"30*sin(2*pi*0.2*t)\"", "law = \"0\"");
+    assert_ne!(held, text);
+    bench.put("ride.toml", &held);
+}
+
+fn measure<'v>(document: &'v Value, name: &str) -> &'v Value {
+    document["measures"].as_array().unwrap().iter().find(|m| m["measure"] == name).unwrap()
+}
+
+fn curve(measure: &Value, which: &str) -> Vec<f64> {
+    measure[which].as_array().unwrap().iter().map(|x| x.as_f64().unwrap()).collect()
+}
+
+fn spread(curve: &[f64]) -> f64 {
+    let least = curve.iter().copied().fold(f64::INFINITY, f64::min);
+    curve.iter().copied().fold(f64::NEG_INFINITY, f64::max) - least
+}
+
+#[test]
+fn the_tutorial_takes_the_bump_steer_out() {
+    let bench = Bench::with(&[]);
+    ride(&bench);
+    let ranked = bench.run(&["whatif", "ride.toml", "--measure", "toe"]);
+    assert_eq!(ranked.status.code(), Some(0));
+    let text = String::from_utf8(ranked.stdout).unwrap();
+    assert!(text.contains("tie_rod_inner_z   -0.028603 deg/mm   2.5 s"), "{text}");
+
+    let set =
+        ["whatif", "ride.toml", "--set", "tie_rod_inner.z=+32mm", "-o", "out", "--over", "wheel_travel"];
+    let output = bench.run(&set);
+    assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
+    assert_eq!(bench.list("out"), ["whatif.csv", "whatif.html", "whatif.json"]);
+    let document = bench.json("out/whatif.json");
+    let toe = measure(&document, "toe");
+    let [today, first, second, exact] = ["today", "first", "second", "exact"].map(|c| curve(toe, c));
+    assert!((spread(&today) - 1.8146).abs() < 1e-3 && (spread(&exact) - 0.0688).abs() < 1e-3);
+    let error =
+        |foreseen: &[f64]| foreseen.iter().zip(&exact).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+    let (first, second) = (error(&first), error(&second));
+    assert!(first < 0.02 && second < first / 20.0, "{first} {second}");
+    assert!(document["follows"].as_str().unwrap().starts_with("admissible"));
+    let html = bench.text("out/whatif.html");
+    assert!(html.matches("<svg").count() >= 10 && !html.contains("src=") && !html.contains("href="));
+    assert_eq!(bench.text("out/whatif.csv").lines().count(), 502);
+
+    // The same, written into the file, is the exact curve.
+    let text = bench.text("ride.toml").replace("[-200, 200, -50]", "[-200, 200, -18]");
+    bench.put("mended.toml", &text);
+    let mended = bench.run(&["whatif", "mended.toml", "--set", "tie_rod_inner.z=0mm", "--json"]);
+    let mended: Value = serde_json::from_slice(&mended.stdout).unwrap();
+    let deviation = curve(measure(&mended, "toe"), "today");
+    let deviation = deviation.iter().zip(&exact).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+    assert!(deviation < 1e-9, "{deviation:e}");
+}
+
+#[test]
+fn what_cannot_be_set_or_measured_is_refused_with_what_there_is() {
+    let bench = Bench::with(&[]);
+    ride(&bench);
+    for (arguments, told) in [
+        (["--set", "tie_rod_outr.z=2"], "did you mean `tie_rod_outer.z`?"),
+        (["--set", "tie_rod_outer.z=2deg"], "it is a length, and deg is none"),
+        (["--set", "tie_rod_outer.z=2furlong"], "there is no unit `furlong`"),
+        (["--set", "tie_rod_outer.z=inf"], "is not finite"),
+        (["--set", "tie_rod_outer.z"], "write NAME=CHANGE"),
+        (["--set", "lca_pivot.tilt_y=1e400deg"], "is not finite"),
+        (["--measure", "tow"], "did you mean `toe`?"),
+        (["--over", "nonsense"], "is no measure of the model"),
+    ] {
+        let output = bench.run(&[&["whatif", "ride.toml"][..], &arguments].concat());
+        assert_eq!(output.status.code(), Some(2), "{arguments:?}");
+        assert!(output.stdout.is_empty());
+        let text = String::from_utf8(output.stderr).unwrap();
+        assert!(text.contains(told) && text.contains("HP0602"), "{text}");
+    }
+}
