@@ -3,6 +3,7 @@
 mod design;
 mod joints;
 mod motion;
+mod wheels;
 
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 
@@ -46,6 +47,7 @@ impl Model {
         c.couplers();
         c.points();
         c.drivers();
+        c.wheels();
         c.measures();
         c.variables();
         c.times();
@@ -80,6 +82,8 @@ struct Check<'a> {
     faults: Vec<Fault>,
     /// Which drafted joint became which joint; `None` for those that are faulty.
     joint_ids: Vec<Option<JointId>>,
+    /// The same for wheels.
+    wheel_ids: Vec<Option<WheelId>>,
     /// The hardpoints that curves pass through.
     curve_points: Vec<HardpointId>,
     /// By kind of entry: which number a name has. Only looked up, never walked.
@@ -105,6 +109,7 @@ impl<'a> Check<'a> {
             drivers: Vec::new(),
             variables: Vec::new(),
             points: Vec::new(),
+            wheels: Vec::new(),
             measures: Vec::new(),
             idle: Vec::new(),
             times: draft.times.clone(),
@@ -117,9 +122,17 @@ impl<'a> Check<'a> {
             ("point", numbered(draft.points.iter().map(|p| p.name.as_str()))),
         ]);
         let extent = Extent::of(draft.hardpoints.iter().map(|h| h.position));
-        let (faults, joint_ids) = (Vec::new(), Vec::new());
-        let curve_points = Vec::new();
-        Self { draft, model, faults, joint_ids, curve_points, numbers, comparisons: COMPARISONS, extent }
+        Self {
+            draft,
+            model,
+            faults: Vec::new(),
+            joint_ids: Vec::new(),
+            wheel_ids: Vec::new(),
+            curve_points: Vec::new(),
+            numbers,
+            comparisons: COMPARISONS,
+            extent,
+        }
     }
 
     fn fault(&mut self, code: &'static str, at: Locus, message: impl Into<String>) -> &mut Fault {
@@ -130,7 +143,7 @@ impl<'a> Check<'a> {
     /// HP0201: empty and duplicate names; HP0202: coordinates that are not finite.
     fn names(&mut self) {
         let d = self.draft;
-        let lists: [(Section, &str, Vec<&str>); 8] = [
+        let lists: [(Section, &str, Vec<&str>); 9] = [
             (Section::Hardpoints, "hardpoint", d.hardpoints.iter().map(|x| x.name.as_str()).collect()),
             (Section::Bodies, "body", d.bodies.iter().map(|x| x.name.as_str()).collect()),
             (Section::Joints, "joint", d.joints.iter().map(|x| x.name.as_str()).collect()),
@@ -138,6 +151,7 @@ impl<'a> Check<'a> {
             (Section::Drivers, "driver", d.drivers.iter().map(|x| x.name.as_str()).collect()),
             (Section::Design, "design variable", d.design.iter().map(|x| x.name.as_str()).collect()),
             (Section::Points, "point", d.points.iter().map(|x| x.name.as_str()).collect()),
+            (Section::Wheels, "wheel", d.wheels.iter().map(|x| x.name.as_str()).collect()),
             (Section::Measures, "measure", d.measures.iter().map(|x| x.name.as_str()).collect()),
         ];
         for (section, what, names) in lists {
@@ -442,6 +456,7 @@ impl<'a> Check<'a> {
                     _ => MeasureKind::Camber { body, spin_axis },
                 }
             }
+            MeasureKindDraft::Wheel { wheel, what } => self.wheel_measure(wheel, *what, here)?,
         })
     }
 

@@ -446,7 +446,7 @@ impl<'e, T: Real> Design<'e, T> {
 
     /// The spin axis of a measure in its body's frame, where it has one.
     fn spin_axis(&self, measure: &Measure) -> Option<Vec3<T>> {
-        let (body, axis) = measure.spin_axis()?;
+        let (body, axis) = self.effects.model.spin_axis(measure)?;
         Some(self.frame(body).rot.transpose_mul(self.direction(axis, &self.values)))
     }
 }
@@ -500,6 +500,20 @@ impl Model {
         (theta, rotation_from_euler_313(theta))
     }
 
+    /// The spin axis that a measure goes by, and the body that carries it.
+    fn spin_axis(&self, measure: &Measure) -> Option<(BodyId, Direction)> {
+        match measure.kind {
+            MeasureKind::Toe { body, spin_axis } | MeasureKind::Camber { body, spin_axis } => {
+                Some((body, spin_axis))
+            }
+            MeasureKind::Wheel { wheel, .. } => {
+                let wheel = &self.wheels[wheel.0];
+                Some((wheel.body, wheel.spin_axis))
+            }
+            _ => None,
+        }
+    }
+
     pub(crate) fn position(&self, h: HardpointId) -> Vec3 {
         self.hardpoints[h.0].position
     }
@@ -513,18 +527,6 @@ impl Direction {
             Self::Through(a, b) => Some([a, b]),
         };
         through.into_iter().flatten()
-    }
-}
-
-impl Measure {
-    /// The spin axis that it goes by, and the body that carries it.
-    fn spin_axis(&self) -> Option<(BodyId, Direction)> {
-        match self.kind {
-            MeasureKind::Toe { body, spin_axis } | MeasureKind::Camber { body, spin_axis } => {
-                Some((body, spin_axis))
-            }
-            _ => None,
-        }
     }
 }
 

@@ -49,6 +49,8 @@ pub enum Section {
     Design,
     /// [`super::Draft::points`].
     Points,
+    /// [`super::Draft::wheels`].
+    Wheels,
     /// [`super::Draft::measures`].
     Measures,
     /// [`super::Draft::times`].
@@ -79,6 +81,7 @@ impl fmt::Display for Section {
             Self::Drivers => "drivers",
             Self::Design => "design",
             Self::Points => "points",
+            Self::Wheels => "wheels",
             Self::Measures => "measures",
             Self::Time => "time",
         })
