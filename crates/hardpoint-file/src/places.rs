@@ -63,7 +63,7 @@ impl EntryPlace {
     }
 }
 
-const SECTIONS: [Section; 10] = [
+const SECTIONS: [Section; 11] = [
     Section::Model,
     Section::Hardpoints,
     Section::Bodies,
@@ -72,6 +72,7 @@ const SECTIONS: [Section; 10] = [
     Section::Drivers,
     Section::Design,
     Section::Points,
+    Section::Wheels,
     Section::Measures,
     Section::Time,
 ];

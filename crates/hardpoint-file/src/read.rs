@@ -6,6 +6,7 @@ mod design;
 mod drivers;
 mod law;
 mod results;
+mod wheels;
 
 use std::collections::HashMap;
 use std::ops::Range;
@@ -33,6 +34,7 @@ const MODEL: &[Key] = &[
     ("drivers", "{}"),
     ("design", "{}"),
     ("points", "{}"),
+    ("wheels", "{}"),
     ("measures", "{}"),
     ("time", "{ end = 1.0, steps = 100 }"),
 ];
@@ -111,6 +113,7 @@ impl Reader<'_> {
         self.design(&fields, &mut raw);
         self.points(&fields, &mut raw);
         self.measures(&fields, &mut raw);
+        self.wheels(&fields, &mut raw);
         self.time(&fields, &mut raw);
         raw
     }

@@ -386,16 +386,18 @@ impl<'a> Check<'a> {
             let body = self.body(&p.body, here.key("body"));
             let at = self.place(&p.at, &p.name, here.key("at"));
             // A faulty point keeps its place in the list, so that later names still resolve.
-            let (body, at) = (body.unwrap_or(GROUND), at.unwrap_or(HardpointId(0)));
+            let (body, at) = body.zip(at).unwrap_or((GROUND, UNPLACED));
             self.model.points.push(BodyPoint { name: p.name.clone(), body, at, unnamed: false });
         }
     }
 
+    /// A point; `None`, without a second fault, where a named point itself is faulty.
     fn point(&mut self, p: &PointRef, owner: &str, at: Locus) -> Option<PointId> {
         match p {
             PointRef::Named(name) => {
                 let draft = self.draft;
-                self.find("point", name, at, draft.points.iter().map(|p| p.name.as_str())).map(PointId)
+                let k = self.find("point", name, at, draft.points.iter().map(|p| p.name.as_str()))?;
+                (self.model.points[k].at != UNPLACED).then_some(PointId(k))
             }
             PointRef::On { body, at: place } => {
                 let body = self.body(body, at.clone());
@@ -478,7 +480,7 @@ impl<'a> Check<'a> {
     }
 }
 
-/// The place of a joint that needs none, until it gets one.
+/// The place of a joint that needs none, until it gets one, and of a faulty point.
 const UNPLACED: HardpointId = HardpointId(usize::MAX);
 
 fn degrees_between(a: Vec3, b: Vec3) -> f64 {

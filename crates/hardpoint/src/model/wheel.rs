@@ -50,11 +50,11 @@ impl Side {
 }
 
 macro_rules! wheel_measures {
-    ($($(#[$doc:meta])* $variant:ident $name:literal $quantity:ident $kingpin:literal)*) => {
+    ($(#[doc = $summary:literal] $variant:ident $name:literal $quantity:ident $kingpin:literal)*) => {
         /// What can be measured at a wheel. Formulas and signs are in `docs/measures.md`.
         #[derive(Clone, Copy, Debug, PartialEq, Eq)]
         pub enum WheelMeasure {
-            $($(#[$doc])* $variant,)*
+            $(#[doc = $summary] $variant,)*
         }
 
         impl WheelMeasure {
@@ -64,6 +64,11 @@ macro_rules! wheel_measures {
             /// As model files write it.
             pub fn name(self) -> &'static str {
                 match self { $(Self::$variant => $name),* }
+            }
+
+            /// What it is, in a sentence.
+            pub fn summary(self) -> &'static str {
+                match self { $(Self::$variant => $summary.trim_ascii()),* }
             }
 
             /// What its value is.
