@@ -80,6 +80,11 @@ fn suspensions() -> [(&'static str, String); 4] {
     ]
 }
 
+/// The kingpins of the steered axle are on the chassis.
+fn stands_still(name: &str, what: WheelMeasure) -> bool {
+    name == "rack_steering" && matches!(what, WheelMeasure::Caster | WheelMeasure::KingpinInclination)
+}
+
 fn steered(text: &str) -> String {
     let law = "law = \"0\"";
     assert!(text.contains(law));
@@ -126,8 +131,9 @@ fn every_measure_agrees_with_resolved_designs_on_every_suspension() {
                     let d = |k| solution.measured.d(k, VariableId(b), m)[order];
                     (0..solution.motion.len()).any(|k| d(k).abs() > 1e-4)
                 });
-                let constant = name == "double_wishbone_4x4" && *what == WheelMeasure::WheelTravel;
-                assert_eq!(felt, !constant, "{name}: {} in order {order}", what.name());
+                let driven = name == "double_wishbone_4x4" && *what == WheelMeasure::WheelTravel;
+                let expected = !driven && !(order > 0 && stands_still(name, *what));
+                assert_eq!(felt, expected, "{name}: {} in order {order}", what.name());
             }
         }
     }
@@ -148,6 +154,10 @@ fn rates_and_accelerations_agree_with_differences_over_time() {
             let value = |k: usize| solution.measured.value(k, m);
             for order in 1..3 {
                 let largest = (0..at.len()).map(|n| value(3 * n + 1)[order].abs()).fold(0.0, f64::max);
+                if stands_still(name, *what) {
+                    assert!(largest < 1e-9, "{name}: {}: {largest:e}", what.name());
+                    continue;
+                }
                 assert!(largest > 1e-4, "{name}: {} has no rate of order {order}", what.name());
                 for n in 0..at.len() {
                     let difference = (value(3 * n + 2)[order - 1] - value(3 * n)[order - 1]) / (2.0 * H);
