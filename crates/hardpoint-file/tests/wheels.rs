@@ -132,7 +132,9 @@ fn every_measure_agrees_with_resolved_designs_on_every_suspension() {
                     (0..solution.motion.len()).any(|k| d(k).abs() > 1e-4)
                 });
                 let driven = name == "double_wishbone_4x4" && *what == WheelMeasure::WheelTravel;
-                let expected = !driven && !(order > 0 && stands_still(name, *what));
+                // That model's design moves its kingpins in side view only.
+                let leans = order == 0 && *what == WheelMeasure::Caster;
+                let expected = !driven && (leans || !stands_still(name, *what));
                 assert_eq!(felt, expected, "{name}: {} in order {order}", what.name());
             }
         }
