@@ -35,8 +35,8 @@ impl<T: Real> WheelAt<T> {
                 let k = self.along_kingpin();
                 (-self.side * k.y).atan2(k.z)
             }
-            WheelMeasure::ScrubRadius => self.from_kingpin(self.contact()).dot(self.outboard()),
-            WheelMeasure::SpindleOffset => self.from_kingpin(self.centre).dot(self.outboard()),
+            WheelMeasure::ScrubRadius => self.off_kingpin(self.contact()).dot(self.outboard()),
+            WheelMeasure::SpindleOffset => self.off_kingpin(self.centre).dot(self.outboard()),
             WheelMeasure::CasterTrail => self.caster_trail(),
             WheelMeasure::MechanicalTrail => {
                 // The kingpin as the wheel's side view shows it: its slope is that of k.f against k.z.
@@ -44,7 +44,7 @@ impl<T: Real> WheelAt<T> {
                 let aside = k.dot(self.forward());
                 self.caster_trail() * k.z / (aside * aside + k.z * k.z).sqrt()
             }
-            WheelMeasure::HubTrail => self.from_kingpin(self.centre).dot(self.forward()),
+            WheelMeasure::HubTrail => self.off_kingpin(self.centre).dot(self.forward()),
             WheelMeasure::WheelTravel => self.centre.z - design().centre.z,
             WheelMeasure::WheelRecession => design().centre.x - self.centre.x,
             WheelMeasure::HalfTrack => self.half_track(),
@@ -89,7 +89,7 @@ impl<T: Real> WheelAt<T> {
     }
 
     fn caster_trail(&self) -> T {
-        -self.from_kingpin(self.contact()).dot(self.forward())
+        -self.off_kingpin(self.contact()).dot(self.forward())
     }
 
     /// From the lower point of the kingpin to the upper one.
@@ -99,7 +99,7 @@ impl<T: Real> WheelAt<T> {
     }
 
     /// From the kingpin to a point, at the point's height: `P - L - k (P_z - L_z) / k_z`.
-    fn from_kingpin(&self, p: Vec3<T>) -> Vec3<T> {
+    fn off_kingpin(&self, p: Vec3<T>) -> Vec3<T> {
         let [lower, upper] = self.kingpin();
         let (d, k) = (p - lower, upper - lower);
         d - k * (d.z / k.z)

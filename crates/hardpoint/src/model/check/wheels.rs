@@ -146,10 +146,10 @@ impl Check<'_> {
         let k = self.find("wheel", name, here.key("wheel"), names)?;
         if what.needs_kingpin() && draft.wheels[k].kingpin.is_none() {
             let message = format!("`{}` needs the kingpin of wheel `{name}`, which gives none", what.name());
-            self.fault("HP0228", here.key("type"), message).help(format!(
+            self.fault("HP0228", here.key("type"), message).help(
                 "add `kingpin = [LOWER, UPPER]` to the wheel, two points of the axis that it steers about, each a \
-                 point's name or `{{ body = ..., at = ... }}`"
-            ));
+                 point's name or `{ body = ..., at = ... }`",
+            );
             return None;
         }
         Some(MeasureKind::Wheel { wheel: self.wheel_ids[k]?, what })
