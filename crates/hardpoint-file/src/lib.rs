@@ -370,17 +370,17 @@ fn follows(fault: &Fault, places: &Places) -> bool {
     }
     let Some(entry) = places.entry(at.section, at.index) else { return false };
     let of_a_law = at.section == Section::Design && fault.message.contains("parameter");
-    let geometry = matches!(fault.code, "HP0205" | "HP0206" | "HP0209" | "HP0211" | "HP0226" | "HP0227");
+    let geometry = matches!(fault.code, "HP0205" | "HP0206" | "HP0209" | "HP0211" | "HP0226" | "HP0231");
     entry.unread.contains(&at.key)
         || !entry.unread.is_empty()
             && matches!(
                 fault.code,
-                "HP0208" | "HP0210" | "HP0217" | "HP0219" | "HP0223" | "HP0226" | "HP0227"
+                "HP0208" | "HP0210" | "HP0217" | "HP0219" | "HP0223" | "HP0226" | "HP0231"
             )
         || geometry && places.any_unread(Section::Hardpoints, &[])
         || fault.code == "HP0212" && places.any_unread(Section::Joints, &["bodies"])
         || fault.code == "HP0225" && places.any_unread(Section::Joints, &["length"])
-        || fault.code == "HP0228" && places.any_unread(Section::Wheels, &["kingpin"])
+        || fault.code == "HP0232" && places.any_unread(Section::Wheels, &["kingpin"])
         || of_a_law && places.any_unread(Section::Drivers, &["law", "joint"])
 }
 

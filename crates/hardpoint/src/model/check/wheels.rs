@@ -23,7 +23,7 @@ impl Check<'_> {
         let centre = self.place(&w.centre, &w.name, here.key("centre"));
         if !(w.radius > 0.0 && w.radius.is_finite()) {
             self.fault(
-                "HP0227",
+                "HP0231",
                 here.key("radius"),
                 format!("the radius of wheel `{}` is not above zero", w.name),
             )
@@ -47,7 +47,7 @@ impl Check<'_> {
         let y = self.position(centre).y;
         if !(y.abs() > SAME_POINT * self.extent.size()) {
             let message = format!("wheel `{}` is on neither side of the vehicle", w.name);
-            self.fault("HP0227", here.key("centre"), message)
+            self.fault("HP0231", here.key("centre"), message)
                 .note("the y of its centre is zero")
                 .help("say `side = \"left\"` or `side = \"right\"`");
             return None;
@@ -76,7 +76,7 @@ impl Check<'_> {
                 } else {
                     return Some(axis);
                 };
-                self.fault("HP0227", here.key("spin_axis"), message)
+                self.fault("HP0231", here.key("spin_axis"), message)
                     .note(format!(
                         "it points along [{:.4}, {:.4}, {:.4}]; a {} wheel's points to {}y",
                         e.x,
@@ -95,7 +95,7 @@ impl Check<'_> {
                     if !(angle.abs() < quarter * (1.0 - HEADLESS)) {
                         upright = false;
                         let message = format!("the {key} of wheel `{}` is a quarter turn or more", w.name);
-                        self.fault("HP0227", here.key(key), message)
+                        self.fault("HP0231", here.key(key), message)
                             .help("give the angle of the design configuration, in the file's angle unit");
                     }
                 }
@@ -130,7 +130,7 @@ impl Check<'_> {
         } else {
             return Some([lower, upper]);
         };
-        self.fault("HP0227", here.key("kingpin"), message).help(help);
+        self.fault("HP0231", here.key("kingpin"), message).help(help);
         None
     }
 
@@ -146,7 +146,7 @@ impl Check<'_> {
         let k = self.find("wheel", name, here.key("wheel"), names)?;
         if what.needs_kingpin() && draft.wheels[k].kingpin.is_none() {
             let message = format!("`{}` needs the kingpin of wheel `{name}`, which gives none", what.name());
-            self.fault("HP0228", here.key("type"), message).help(
+            self.fault("HP0232", here.key("type"), message).help(
                 "add `kingpin = [LOWER, UPPER]` to the wheel, two points of the axis that it steers about, each a \
                  point's name or `{ body = ..., at = ... }`",
             );
