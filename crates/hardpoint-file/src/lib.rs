@@ -348,12 +348,13 @@ fn syntax_errors(source: &Source, errors: &[toml::de::Error]) -> Vec<Diagnostic>
 }
 
 /// The tables that names are looked up in, and how the core says that a name is not there.
-const LOOKED_UP: [(&str, &str); 6] = [
+const LOOKED_UP: [(&str, &str); 7] = [
     ("parameters", "no parameter named"),
     ("hardpoints", "no hardpoint named"),
     ("bodies", "no body named"),
     ("joints", "no joint named"),
     ("points", "no point named"),
+    ("wheels", "no wheel named"),
     ("drivers", "no driver named"),
 ];
 
@@ -370,13 +371,17 @@ fn follows(fault: &Fault, places: &Places) -> bool {
     }
     let Some(entry) = places.entry(at.section, at.index) else { return false };
     let of_a_law = at.section == Section::Design && fault.message.contains("parameter");
-    let geometry = matches!(fault.code, "HP0205" | "HP0206" | "HP0209" | "HP0211" | "HP0226");
+    let geometry = matches!(fault.code, "HP0205" | "HP0206" | "HP0209" | "HP0211" | "HP0226" | "HP0231");
     entry.unread.contains(&at.key)
         || !entry.unread.is_empty()
-            && matches!(fault.code, "HP0208" | "HP0210" | "HP0217" | "HP0219" | "HP0223" | "HP0226")
+            && matches!(
+                fault.code,
+                "HP0208" | "HP0210" | "HP0217" | "HP0219" | "HP0223" | "HP0226" | "HP0231"
+            )
         || geometry && places.any_unread(Section::Hardpoints, &[])
         || fault.code == "HP0212" && places.any_unread(Section::Joints, &["bodies"])
         || fault.code == "HP0225" && places.any_unread(Section::Joints, &["length"])
+        || fault.code == "HP0232" && places.any_unread(Section::Wheels, &["kingpin"])
         || of_a_law && places.any_unread(Section::Drivers, &["law", "joint"])
 }
 

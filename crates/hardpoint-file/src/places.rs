@@ -63,7 +63,7 @@ impl EntryPlace {
     }
 }
 
-const SECTIONS: [Section; 11] = [
+const SECTIONS: [Section; 12] = [
     Section::Model,
     Section::Parameters,
     Section::Hardpoints,
@@ -73,6 +73,7 @@ const SECTIONS: [Section; 11] = [
     Section::Drivers,
     Section::Design,
     Section::Points,
+    Section::Wheels,
     Section::Measures,
     Section::Time,
 ];

@@ -7,6 +7,7 @@ mod drivers;
 mod law;
 mod parameters;
 mod results;
+mod wheels;
 
 use std::collections::HashMap;
 use std::ops::Range;
@@ -36,6 +37,7 @@ const MODEL: &[Key] = &[
     ("drivers", "{}"),
     ("design", "{}"),
     ("points", "{}"),
+    ("wheels", "{}"),
     ("measures", "{}"),
     ("time", "{ end = 1.0, steps = 100 }"),
 ];
@@ -117,6 +119,7 @@ impl Reader<'_> {
         self.design(&fields, &mut raw);
         self.points(&fields, &mut raw);
         self.measures(&fields, &mut raw);
+        self.wheels(&fields, &mut raw);
         self.time(&fields, &mut raw);
         raw
     }

@@ -8,6 +8,7 @@ use std::borrow::Cow;
 use std::collections::BTreeMap;
 
 use hardpoint::joint;
+use hardpoint::model::WheelMeasure;
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::Serialize;
 
@@ -58,6 +59,9 @@ struct ModelSchema {
     /// Points of bodies to follow.
     #[schemars(default)]
     points: BTreeMap<Name, PointSchema>,
+    /// Road wheels, for what is measured at them.
+    #[schemars(default)]
+    wheels: BTreeMap<Name, WheelSchema>,
     /// Numbers to compute from the motion, with their sensitivities.
     #[schemars(default)]
     measures: BTreeMap<Name, MeasureSchema>,
@@ -815,10 +819,93 @@ enum PointRefSchema {
     On(PointSchema),
 }
 
+/// A road wheel. Axes are x forward, y left, z up.
+#[derive(JsonSchema)]
+#[schemars(deny_unknown_fields)]
+struct WheelSchema {
+    /// The body that it turns on: the knuckle.
+    body: Name,
+    /// Its centre in the design configuration: a hardpoint's name (and it follows the hardpoint when the design moves
+    /// that), or coordinates.
+    centre: PlaceSchema,
+    /// Its spin axis in the design configuration, pointing outboard. Or give `toe` and `camber`.
+    spin_axis: Option<LineSchema>,
+    /// Toe in the design configuration, instead of a spin axis; positive for toe-in, in the angle unit.
+    toe: Option<f64>,
+    /// Camber in the design configuration, instead of a spin axis; positive where the wheel's top leans outboard, in the
+    /// angle unit.
+    camber: Option<f64>,
+    /// From the centre to the ground in the wheel's plane: the loaded or rolling radius, in the length unit.
+    radius: f64,
+    /// On which side of the vehicle it is. Default: left where the y of its centre is positive, else right.
+    side: Option<SideSchema>,
+    /// A lower and an upper point of the axis that it steers about; they may be on different bodies.
+    kingpin: Option<[PointRefSchema; 2]>,
+    /// What to measure, as NAME.toe and so on: `"all"` that is possible, or a list.
+    measures: Option<WheelMeasuresSchema>,
+}
+
+#[derive(JsonSchema)]
+#[schemars(rename_all = "lowercase")]
+enum SideSchema {
+    Left,
+    Right,
+}
+
+#[derive(JsonSchema)]
+#[schemars(untagged)]
+enum WheelMeasuresSchema {
+    All(AllMeasuresSchema),
+    Several(Vec<WheelMeasureSchema>),
+}
+
+#[derive(JsonSchema)]
+#[schemars(rename_all = "lowercase")]
+enum AllMeasuresSchema {
+    All,
+}
+
+/// The names of what can be measured at a wheel, with their descriptions as hover texts.
+struct WheelMeasureSchema;
+
+impl JsonSchema for WheelMeasureSchema {
+    fn schema_name() -> Cow<'static, str> {
+        "WheelMeasureSchema".into()
+    }
+
+    fn json_schema(_: &mut SchemaGenerator) -> Schema {
+        let name = |m: &WheelMeasure| {
+            let kingpin = if m.needs_kingpin() { " Needs a kingpin." } else { "" };
+            let description = format!("{}{kingpin}", m.summary());
+            json_schema!({ "type": "string", "const": m.name(), "description": description })
+        };
+        json_schema!({ "oneOf": WheelMeasure::ALL.iter().map(name).collect::<Vec<_>>() })
+    }
+}
+
 /// A measure.
 #[derive(JsonSchema)]
-#[schemars(tag = "type", rename_all = "lowercase", deny_unknown_fields)]
+#[schemars(untagged)]
 enum MeasureSchema {
+    Own(OwnMeasureSchema),
+    OfWheel(MeasureOfWheelSchema),
+}
+
+/// A measure of a wheel.
+#[derive(JsonSchema)]
+#[schemars(deny_unknown_fields)]
+struct MeasureOfWheelSchema {
+    /// What to measure.
+    #[schemars(rename = "type")]
+    kind: WheelMeasureSchema,
+    /// The wheel's name.
+    wheel: Name,
+}
+
+/// A measure of anything else.
+#[derive(JsonSchema)]
+#[schemars(tag = "type", rename_all = "lowercase", deny_unknown_fields)]
+enum OwnMeasureSchema {
     /// A joint's coordinate, counted from the design configuration; of a rod or leg the whole length.
     Coordinate {
         /// The joint's name.

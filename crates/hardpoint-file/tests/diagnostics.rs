@@ -184,6 +184,104 @@ fn mechanism() {
     );
 }
 
+/// A wheel to append to the valid model.
+const WHEEL: &str = r#"
+[wheels.front_left]
+body = "coupler"
+centre = [0, 700, 0]
+spin_axis = [0, 1, 0]
+radius = 300
+kingpin = [{ body = "coupler", at = [0, 600, -100] }, { body = "coupler", at = [0, 580, 100] }]
+measures = ["toe", "caster"]
+
+[measures.trail]
+type = "mechanical_trail"
+wheel = "front_left"
+"#;
+const KINGPIN: &str =
+    "[{ body = \"coupler\", at = [0, 600, -100] }, { body = \"coupler\", at = [0, 580, 100] }]";
+
+fn with_wheel(old: &str, new: &str) -> String {
+    assert!(WHEEL.contains(old), "{old}");
+    VALID.to_owned() + &WHEEL.replacen(old, new, 1)
+}
+
+#[test]
+fn wheels() {
+    parse(&with_wheel("", ""), "four-bar.toml").unwrap_or_else(|e| panic!("{e}"));
+    let broken = |name: &str, old: &str, new: &str| snapshot(name, &with_wheel(old, new));
+    let kingpin = format!("kingpin = {KINGPIN}\n");
+    let upright = "at = [0, 580, 100]";
+    broken("wheel_on_unknown_body", "body = \"coupler\"\ncentre", "body = \"copler\"\ncentre");
+    broken("wheel_without_kingpin", &kingpin, "");
+    broken("kingpin_at_one_place", upright, "at = [0, 600, -100]");
+    broken("kingpin_level", upright, "at = [0, 580, -100]");
+    broken("kingpin_upside_down", upright, "at = [0, 580, -300]");
+    broken("kingpin_of_three", KINGPIN, "[\"P\", \"P\", \"P\"]");
+    broken("kingpin_at_unknown_point", KINGPIN, "[\"P\", \"top\"]");
+    broken("wheel_of_no_radius", "radius = 300", "radius = 0");
+    broken("wheel_axis_vertical", "[0, 1, 0]", "\"z\"");
+    broken("wheel_axis_inboard", "[0, 1, 0]", "[0, -1, 0.02]");
+    broken("wheel_axis_null", "[0, 1, 0]", "[0, 0, 0]");
+    broken("wheel_on_neither_side", "[0, 700, 0]", "[0, 0, 0]");
+    broken("wheel_side_misspelt", "radius = 300", "radius = 300\nside = \"lefft\"");
+    broken("wheel_without_axis", "spin_axis = [0, 1, 0]\n", "");
+    broken("wheel_with_axis_and_angles", "radius = 300", "radius = 300\ntoe = 0.5");
+    broken("wheel_with_half_its_angles", "spin_axis = [0, 1, 0]", "toe = 0.5");
+    broken("wheel_lying_flat", "spin_axis = [0, 1, 0]", "toe = 0\ncamber = -90");
+    broken("wheel_measure_misspelt", "\"caster\"]", "\"castor\"]");
+    broken("wheel_measures_of_a_word", "[\"toe\", \"caster\"]", "\"toe\"");
+    broken("wheel_measured_twice", "[\"toe\", \"caster\"]", "[\"toe\", \"toe\"]");
+    broken("unknown_wheel", "wheel = \"front_left\"", "wheel = \"front_lefft\"");
+    broken("measure_without_wheel", "wheel = \"front_left\"\n", "");
+    broken(
+        "measure_of_wheel_and_body",
+        "type = \"mechanical_trail\"",
+        "type = \"toe\"\nbody = \"rocker\"\nspin_axis = \"y\"",
+    );
+    broken("kingpin_of_a_measure", "wheel = \"front_left\"", "wheel = \"front_left\"\nbody = \"rocker\"");
+}
+
+/// What only follows from something wrong about a wheel is not reported.
+#[test]
+fn consequences_at_wheels_are_not_reported() {
+    for (old, new) in [
+        ("radius = 300", "radius = \"300\""),
+        ("radius = 300", "radius = -1"),
+        ("[0, 700, 0]", "[0, \"700\", 0]"),
+        ("[0, 700, 0]", "\"hub\""),
+        ("[0, 1, 0]", "3"),
+        (KINGPIN, "3"),
+        (KINGPIN, "[\"P\", 3]"),
+        ("radius = 300", "radius = 300\nside = 1"),
+        ("body = \"coupler\"\ncentre", "body = 1\ncentre"),
+        ("[wheels.front_left]", "[wheels]\nfront_left = 3\n[points.Q]\n#"),
+    ] {
+        let error = parse(&with_wheel(old, new), "x.toml").unwrap_err();
+        if old.starts_with("[wheels") {
+            assert!(error.to_string().contains("wheel `front_left` must be a table"), "{error}");
+        } else {
+            assert_eq!(error.list().len(), 1, "{new}: {error}");
+        }
+    }
+}
+
+/// Points that are faulty themselves are not looked at by what names them.
+#[test]
+fn measures_of_faulty_points_do_not_matter() {
+    let text = r#"
+name = "nothing"
+units = { length = "mm", angle = "deg" }
+bodies = { a = {} }
+points = { P = { body = "a", at = "X" }, Q = { body = "a", at = "Y" } }
+measures = { d = { type = "distance", from = "P", to = "Q" } }
+time = { at = [0] }
+"#;
+    let error = parse(text, "x.toml").unwrap_err();
+    let codes: Vec<&str> = error.list().iter().map(|d| d.code).collect();
+    assert_eq!(codes, ["HP0212", "HP0204", "HP0204"], "{error}");
+}
+
 #[test]
 fn syntax() {
     broken("duplicate_key", &[("at = \"A\"", "at = \"A\"\nat = \"B\"")]);

@@ -44,6 +44,7 @@ const GALLERY: &[Entry] = &[
     entry("cam", 1, 0, &[], cam_lifts_by_its_cycloids),
     entry("delta", 3, 0, &[], delta_tool_is_where_three_spheres_meet),
     entry("double_wishbone", 2, 0, &[], double_wishbone_rods_and_spring_have_their_lengths),
+    entry("double_wishbone_4x4", 2, 0, &[], double_wishbone_4x4_has_the_published_static_values),
     entry("drive_shaft", 2, 0, &[], drive_shaft_turns_the_wheel_evenly),
     entry("dwell", 1, 6, &[], dwell_arm_rests_for_half_a_turn),
     entry("excavator", 3, 0, &[], excavator_cylinders_obey_the_law_of_cosines),
@@ -436,6 +437,66 @@ fn double_wishbone_rods_and_spring_have_their_lengths(m: &Solved) {
     m.rod("tie_rod", constant);
     m.rod("pushrod", constant);
     m.rod("spring", |t| sum([0.004, 0.0, 0.0], sine(0.02, TAU, t)));
+}
+
+/// The static report of Lotus Suspension Analysis v4.03 for 4x4V23.shk, to its last printed digit; then the same quantities
+/// on the way, constructed from the places of the knuckle's hardpoints.
+fn double_wishbone_4x4_has_the_published_static_values(m: &Solved) {
+    let of = |k: usize, name: &str| m.value(k, &format!("front_left.{name}"));
+    const PRINTED: f64 = 0.005;
+    for (name, degrees) in [("caster", 16.22), ("kingpin_inclination", 9.75), ("toe", 0.0), ("camber", 0.0)] {
+        m.close(name, of(0, name).to_degrees(), degrees, PRINTED);
+    }
+    for (name, mm) in [
+        ("hub_trail", 5.00),
+        ("caster_trail", 76.31),
+        ("spindle_offset", 98.13),
+        ("scrub_radius", 50.13),
+        ("mechanical_trail", 73.27),
+        ("half_track", 650.0),
+        ("contact_z", -279.40),
+    ] {
+        m.close(name, of(0, name) * 1e3, mm, PRINTED);
+    }
+    // Half the track times how far the contact point goes outboard as it rises: the published height of the roll centre
+    // above the ground is 293.64 mm, by finite steps; 293.583 is the derivative.
+    let rate = |name: &str| m.measure(0, &format!("front_left.{name}"))[1];
+    let roll_centre = of(0, "half_track") * rate("contact_y") / rate("contact_z");
+    m.close("roll centre", roll_centre * 1e3, 293.583, 5e-4);
+
+    m.rod("tie_rod", constant);
+    for (k, t) in m.steps() {
+        let [lower, upper, spindle, centre] =
+            ["lower_ball", "upper_ball", "spindle", "wheel_centre"].map(|h| m.place(k, "knuckle", h));
+        m.close("travel", of(k, "wheel_travel"), 0.08 * (TAU * t).sin(), EXACT);
+        m.close("recession", of(k, "wheel_recession"), -centre.x, EXACT);
+        let e = (centre - spindle).unit().unwrap();
+        // The wheel's plane is square to e; its lowest point is straight below the centre in that plane.
+        let down = e.cross(e.cross(Vec3::AXES[2])).unit().unwrap();
+        let contact = centre + down * 0.2794;
+        for (axis, name) in ["contact_x", "contact_y", "contact_z"].into_iter().enumerate() {
+            m.close(name, of(k, name), contact[axis], EXACT);
+        }
+        m.close("half track", of(k, "half_track_change"), contact.y - 0.65, EXACT);
+        let forward = e.cross(Vec3::AXES[2]).unit().unwrap();
+        m.close("steer", of(k, "steer_angle"), forward.y.atan2(forward.x), EXACT);
+        m.close("toe", of(k, "toe"), -forward.y.atan2(forward.x), EXACT);
+        m.close("camber", of(k, "camber").sin(), -e.z, EXACT);
+        let outboard = Vec3::AXES[2].cross(forward);
+        let axis = (upper - lower).unit().unwrap();
+        let at_height = |z: f64| lower + axis * ((z - lower.z) / axis.z);
+        let (ground, hub) = (contact - at_height(contact.z), centre - at_height(centre.z));
+        m.close("scrub radius", of(k, "scrub_radius"), ground.dot(outboard), EXACT);
+        m.close("caster trail", of(k, "caster_trail"), -ground.dot(forward), EXACT);
+        m.close("spindle offset", of(k, "spindle_offset"), hub.dot(outboard), EXACT);
+        m.close("hub trail", of(k, "hub_trail"), hub.dot(forward), EXACT);
+        m.close("caster", of(k, "caster").tan(), -axis.x / axis.z, EXACT);
+        m.close("kingpin", of(k, "kingpin_inclination").tan(), -axis.y / axis.z, EXACT);
+        // From the contact point square to the kingpin, both seen along the wheel's lateral direction.
+        let seen = |v: Vec3| [v.dot(forward), v.z];
+        let ([a, b], [p, q]) = (seen(axis), seen(contact - lower));
+        m.close("mechanical trail", of(k, "mechanical_trail"), (a * q - b * p) / a.hypot(b), EXACT);
+    }
 }
 
 /// Hoeken's proportions 1 : 2 : 2.5 : 2.5 : 5, unit 40 mm. The slot's arm is pivoted on the straight line.

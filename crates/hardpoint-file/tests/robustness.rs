@@ -5,17 +5,18 @@ use std::time::{Duration, Instant};
 use hardpoint_file::parse;
 use proptest::prelude::*;
 
-const MODELS: [&str; 6] = [
+const MODELS: [&str; 7] = [
     include_str!("../../../models/macpherson.toml"),
     include_str!("../../../models/slider_crank.toml"),
     include_str!("../../../models/rssr.toml"),
     include_str!("../../../models/hooke.toml"),
     include_str!("../../../models/double_wishbone.toml"),
+    include_str!("../../../models/double_wishbone_4x4.toml"),
     include_str!("models/press.toml"),
 ];
 
 /// Pieces that make a broken file interesting.
-const PIECES: [&str; 44] = [
+const PIECES: [&str; 46] = [
     "[",
     "]",
     "{",
@@ -60,6 +61,8 @@ const PIECES: [&str; 44] = [
     "pieces = [{ law = 1 }]",
     "parameters = { t = 1 }",
     "curve = { points = [] }",
+    "kingpin = [\"P\", \"P\"]",
+    "measures = \"all\"",
 ];
 
 /// Far more than any of these texts needs, even on a slow and busy machine.

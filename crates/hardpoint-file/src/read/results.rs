@@ -1,6 +1,6 @@
 //! What is wanted: points to follow, measures, output times.
 
-use hardpoint::model::{MeasureDraft, MeasureKindDraft, Place, PointDraft, PointRef, Section};
+use hardpoint::model::{MeasureDraft, MeasureKindDraft, Place, PointDraft, PointRef, Section, WheelMeasure};
 use hardpoint::space::Vec3;
 
 use super::Raw;
@@ -11,11 +11,12 @@ use crate::tree::{Field, Fields, Key, Reader};
 const MOST_TIMES: usize = 1_000_000;
 const POINT: &[Key] = &[("body", "\"crank\""), ("at", "\"A\"")];
 const TIME: &[Key] = &[("start", "0"), ("end", "1.0"), ("steps", "100"), ("at", "[0, 0.5, 1]")];
-const MEASURE_TYPES: [&str; 5] = ["coordinate", "distance", "position", "toe", "camber"];
 const COORDINATE: &[Key] = &[("type", "\"coordinate\""), ("joint", "\"J1\""), ("coordinate", "\"angle\"")];
 const DISTANCE: &[Key] = &[("type", "\"distance\""), ("from", "\"P\""), ("to", "\"Q\"")];
 const POSITION: &[Key] = &[("type", "\"position\""), ("point", "\"P\""), ("along", "\"z\"")];
-const WHEEL: &[Key] = &[("type", "\"toe\""), ("body", "\"knuckle\""), ("spin_axis", "[0, 1, 0]")];
+const WHEEL: &[Key] = &[("type", "\"caster\""), ("wheel", "\"front_left\"")];
+const TOE: &[Key] =
+    &[("type", "\"toe\""), ("wheel", "\"front_left\""), ("body", "\"knuckle\""), ("spin_axis", "[0, 1, 0]")];
 const MEASURE: &[Key] = &[("type", "\"coordinate\"")];
 
 impl Reader<'_> {
@@ -36,12 +37,15 @@ impl Reader<'_> {
     }
 
     pub(super) fn measures(&mut self, model: &Fields<'_>, raw: &mut Raw) {
+        let of_wheels = WheelMeasure::ALL.iter().map(|m| m.name());
+        let types: Vec<_> = ["coordinate", "distance", "position"].into_iter().chain(of_wheels).collect();
         for entry in self.entries(model, "measures", "measure") {
-            let Some(kind) = self.entry_type("measure", &entry, &MEASURE_TYPES, MEASURE) else { continue };
+            let Some(kind) = self.entry_type("measure", &entry, &types, MEASURE) else { continue };
             let keys = match kind {
                 "coordinate" => COORDINATE,
                 "distance" => DISTANCE,
                 "position" => POSITION,
+                "toe" | "camber" => TOE,
                 _ => WHEEL,
             };
             let fields = self.entry("measure", &entry, keys);
@@ -76,7 +80,8 @@ impl Reader<'_> {
                     self.need(fields, "along").and_then(|f| self.vector(f.value, &fields.subject("along")));
                 Some(MeasureKindDraft::Coordinates { point: point?, along: along? })
             }
-            _ => {
+            "toe" | "camber" if fields.get("body").is_some() || fields.get("spin_axis").is_some() => {
+                self.out_of_place(fields, "wheel", "`body` and `spin_axis` say of which wheel already");
                 let body = self.named(fields, "body", "the name of a body", place);
                 let spin_axis = self.need(fields, "spin_axis").and_then(|f| self.line_of(fields, f, place));
                 let (body, spin_axis) = (body?, spin_axis?);
@@ -84,6 +89,11 @@ impl Reader<'_> {
                     "toe" => MeasureKindDraft::Toe { body, spin_axis },
                     _ => MeasureKindDraft::Camber { body, spin_axis },
                 })
+            }
+            _ => {
+                let wheel = self.named(fields, "wheel", "the name of a wheel", place);
+                let what = WheelMeasure::named(kind).expect("the other types are those of wheels");
+                Some(MeasureKindDraft::Wheel { wheel: wheel?, what })
             }
         }
     }

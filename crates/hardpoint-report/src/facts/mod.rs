@@ -567,6 +567,9 @@ fn measures(model: &Model, units: Units) -> Vec<MeasureFact> {
             MeasureKind::Camber { body, spin_axis } => {
                 format!("camber of `{}`, {}", model.bodies[body.0].name, axis(spin_axis))
             }
+            MeasureKind::Wheel { wheel, what } => {
+                format!("{} of wheel `{}`", what.name().replace('_', " "), model.wheels[wheel.0].name)
+            }
         },
     };
     model.measures.iter().map(fact).collect()

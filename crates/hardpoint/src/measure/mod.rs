@@ -4,16 +4,18 @@
 //! the product and chain rules where it runs on [`Jet`]s.
 
 mod bodies;
+mod wheel;
 
 use std::collections::BTreeMap;
 
 use bodies::{with_rates, with_sensitivity};
+use wheel::WheelAt;
 
 use crate::constraint::Row;
 use crate::joint::Quantity;
 use crate::law::Law;
 use crate::model::{
-    BodyId, DriverId, Effects, Fixed, JointId, Measure, MeasureKind, Model, PointId, VariableId,
+    BodyId, DriverId, Effects, Fixed, JointId, Measure, MeasureKind, Model, PointId, VariableId, WheelId,
 };
 use crate::motion::Motion;
 use crate::sensitivity::Sensitivities;
@@ -262,6 +264,26 @@ impl<T: Real> Moment<'_, T> {
                 e.x.atan2(e.y)
             }
             MeasureKind::Camber { body, .. } => -self.spin_axis(k, body).z.asin(),
+            MeasureKind::Wheel { wheel, what } => {
+                let now = self.wheel(k, wheel, |b| self.poses[b.0]);
+                now.measure(what, || {
+                    self.wheel(k, wheel, |b| self.model.bodies[b.0].frame.spread(now.radius))
+                })
+            }
+        }
+    }
+
+    /// The wheel of measure k, with its bodies at these poses.
+    fn wheel(&self, k: usize, wheel: WheelId, pose: impl Fn(BodyId) -> Pose<T>) -> WheelAt<T> {
+        let wheel = &self.model.wheels[wheel.0];
+        let point = |p: PointId| pose(self.model.points[p.0].body).point(self.fixed.points[p.0]);
+        let centre = point(wheel.centre);
+        WheelAt {
+            centre,
+            spin_axis: pose(wheel.body).rot * self.fixed.spin_axes[k].expect("a wheel has a spin axis"),
+            radius: centre.x.like(wheel.radius),
+            side: centre.x.like(wheel.side.sign()),
+            kingpin: wheel.kingpin.map(|points| points.map(point)),
         }
     }
 
@@ -293,7 +315,8 @@ pub(crate) fn bodies_asked_for(model: &Model) -> Vec<usize> {
                 bodies.extend(model.joints[joint.0].bodies.map(|b| b.0));
             }
             MeasureKind::Toe { body, .. } | MeasureKind::Camber { body, .. } => bodies.push(body.0),
-            MeasureKind::Distance { .. } | MeasureKind::Coordinates { .. } => {}
+            // Their bodies are those of points.
+            MeasureKind::Distance { .. } | MeasureKind::Coordinates { .. } | MeasureKind::Wheel { .. } => {}
         }
     }
     bodies.sort_unstable();

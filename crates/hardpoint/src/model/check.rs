@@ -4,6 +4,7 @@ mod design;
 mod formulas;
 mod joints;
 mod motion;
+mod wheels;
 
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 
@@ -18,7 +19,7 @@ const SQUARE_TOLERANCE: f64 = 1e-6;
 /// Points closer than this part of the mechanism's size are the same point.
 const SAME_POINT: f64 = 1e-9;
 /// What faults say about places of hardpoints.
-const GEOMETRY: [&str; 6] = ["HP0205", "HP0206", "HP0209", "HP0211", "HP0216", "HP0226"];
+const GEOMETRY: [&str; 7] = ["HP0205", "HP0206", "HP0209", "HP0211", "HP0216", "HP0226", "HP0231"];
 /// A fault lists at most this many valid names.
 const LISTED_NAMES: usize = 24;
 /// The first so many faults guess which name was meant ...
@@ -50,6 +51,7 @@ impl Model {
         c.couplers();
         c.points();
         c.drivers();
+        c.wheels();
         c.measures();
         c.variables();
         c.formulas_that_vary();
@@ -89,6 +91,8 @@ struct Check<'a> {
     faults: Vec<Fault>,
     /// Which drafted joint became which joint; `None` for those that are faulty.
     joint_ids: Vec<Option<JointId>>,
+    /// The same for wheels.
+    wheel_ids: Vec<Option<WheelId>>,
     /// The hardpoints that curves pass through.
     curve_points: Vec<HardpointId>,
     /// The formulas that are read so far, each after those whose results it uses.
@@ -123,6 +127,7 @@ impl<'a> Check<'a> {
             drivers: Vec::new(),
             variables: Vec::new(),
             points: Vec::new(),
+            wheels: Vec::new(),
             measures: Vec::new(),
             idle: Vec::new(),
             times: draft.times.clone(),
@@ -153,6 +158,7 @@ impl<'a> Check<'a> {
             model,
             faults,
             joint_ids,
+            wheel_ids: Vec::new(),
             curve_points: Vec::new(),
             written: Vec::new(),
             spoilt: BTreeSet::new(),
@@ -172,7 +178,7 @@ impl<'a> Check<'a> {
     /// HP0201: empty and duplicate names; HP0202: coordinates that are not finite.
     fn names(&mut self) {
         let d = self.draft;
-        let lists: [(Section, &str, Vec<&str>); 9] = [
+        let lists: [(Section, &str, Vec<&str>); 10] = [
             (Section::Parameters, "parameter", d.parameters.iter().map(|x| x.name.as_str()).collect()),
             (Section::Hardpoints, "hardpoint", d.hardpoints.iter().map(|x| x.name.as_str()).collect()),
             (Section::Bodies, "body", d.bodies.iter().map(|x| x.name.as_str()).collect()),
@@ -181,6 +187,7 @@ impl<'a> Check<'a> {
             (Section::Drivers, "driver", d.drivers.iter().map(|x| x.name.as_str()).collect()),
             (Section::Design, "design variable", d.design.iter().map(|x| x.name.as_str()).collect()),
             (Section::Points, "point", d.points.iter().map(|x| x.name.as_str()).collect()),
+            (Section::Wheels, "wheel", d.wheels.iter().map(|x| x.name.as_str()).collect()),
             (Section::Measures, "measure", d.measures.iter().map(|x| x.name.as_str()).collect()),
         ];
         for (section, what, names) in lists {
@@ -422,16 +429,18 @@ impl<'a> Check<'a> {
             let body = self.body(&p.body, here.key("body"));
             let at = self.place(&p.at, &p.name, here.key("at"));
             // A faulty point keeps its place in the list, so that later names still resolve.
-            let (body, at) = (body.unwrap_or(GROUND), at.unwrap_or(HardpointId(0)));
+            let (body, at) = body.zip(at).unwrap_or((GROUND, UNPLACED));
             self.model.points.push(BodyPoint { name: p.name.clone(), body, at, unnamed: false });
         }
     }
 
+    /// A point; `None`, without a second fault, where a named point itself is faulty.
     fn point(&mut self, p: &PointRef, owner: &str, at: Locus) -> Option<PointId> {
         match p {
             PointRef::Named(name) => {
                 let draft = self.draft;
-                self.find("point", name, at, draft.points.iter().map(|p| p.name.as_str())).map(PointId)
+                let k = self.find("point", name, at, draft.points.iter().map(|p| p.name.as_str()))?;
+                (self.model.points[k].at != UNPLACED).then_some(PointId(k))
             }
             PointRef::On { body, at: place } => {
                 let body = self.body(body, at.clone());
@@ -492,6 +501,7 @@ impl<'a> Check<'a> {
                     _ => MeasureKind::Camber { body, spin_axis },
                 }
             }
+            MeasureKindDraft::Wheel { wheel, what } => self.wheel_measure(wheel, *what, here)?,
         })
     }
 
@@ -513,7 +523,7 @@ impl<'a> Check<'a> {
     }
 }
 
-/// The place of a joint that needs none, until it gets one.
+/// The place of a joint that needs none, until it gets one, and of a faulty point.
 const UNPLACED: HardpointId = HardpointId(usize::MAX);
 
 fn degrees_between(a: Vec3, b: Vec3) -> f64 {

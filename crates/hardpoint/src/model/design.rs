@@ -638,7 +638,7 @@ impl<'e, T: Real> Design<'e, T> {
 
     /// The spin axis of a measure in its body's frame, where it has one.
     fn spin_axis(&self, measure: &Measure) -> Option<Vec3<T>> {
-        let (body, axis) = measure.spin_axis()?;
+        let (body, axis) = self.effects.model.spin_axis(measure)?;
         Some(self.frame(body).rot.transpose_mul(self.direction(axis, &self.values)))
     }
 }
@@ -667,7 +667,7 @@ impl Model {
     /// The variables whose change changes nothing that the motion or its results depend on.
     pub fn without_effect(&self) -> Vec<VariableId> {
         let effects = Effects::of(self);
-        let spin_axes = self.measures.iter().filter_map(Measure::spin_axis);
+        let spin_axes = self.measures.iter().filter_map(|m| self.spin_axis(m));
         let seen: Vec<usize> = spin_axes.flat_map(|(_, axis)| axis.hardpoints()).map(|h| h.0).collect();
         let is_idle = |v: &VariableId| {
             let touched = effects.touched(&[(*v, 1.0)]);
@@ -717,6 +717,20 @@ impl Model {
         (theta, rotation_from_euler_313(theta))
     }
 
+    /// The spin axis that a measure goes by, and the body that carries it.
+    fn spin_axis(&self, measure: &Measure) -> Option<(BodyId, Direction)> {
+        match measure.kind {
+            MeasureKind::Toe { body, spin_axis } | MeasureKind::Camber { body, spin_axis } => {
+                Some((body, spin_axis))
+            }
+            MeasureKind::Wheel { wheel, .. } => {
+                let wheel = &self.wheels[wheel.0];
+                Some((wheel.body, wheel.spin_axis))
+            }
+            _ => None,
+        }
+    }
+
     pub(crate) fn position(&self, h: HardpointId) -> Vec3 {
         self.hardpoints[h.0].position
     }
@@ -730,18 +744,6 @@ impl Direction {
             Self::Through(a, b) => Some([a, b]),
         };
         through.into_iter().flatten()
-    }
-}
-
-impl Measure {
-    /// The spin axis that it goes by, and the body that carries it.
-    fn spin_axis(&self) -> Option<(BodyId, Direction)> {
-        match self.kind {
-            MeasureKind::Toe { body, spin_axis } | MeasureKind::Camber { body, spin_axis } => {
-                Some((body, spin_axis))
-            }
-            _ => None,
-        }
     }
 }
 

@@ -4,7 +4,7 @@ use crate::joint::Quantity;
 use crate::law::{Expression, Law};
 use crate::space::{Pose, Vec3};
 
-use super::End;
+use super::{End, Side, WheelMeasure};
 
 /// A mechanism as written. Fill it by hand or from a file; [`super::Model::from_draft`] checks it.
 #[derive(Clone, Debug, Default)]
@@ -29,6 +29,8 @@ pub struct Draft {
     pub design: Vec<VariableDraft>,
     /// Points to follow.
     pub points: Vec<PointDraft>,
+    /// Road wheels.
+    pub wheels: Vec<WheelDraft>,
     /// Measures.
     pub measures: Vec<MeasureDraft>,
     /// Output times, s.
@@ -358,6 +360,39 @@ pub enum PointRef {
     },
 }
 
+/// A road wheel; see [`super::Wheel`].
+#[derive(Clone, Debug)]
+pub struct WheelDraft {
+    /// Its name.
+    pub name: String,
+    /// The name of the body that it turns on.
+    pub body: String,
+    /// Its centre in the design configuration.
+    pub centre: Place,
+    /// How it stands in the design configuration.
+    pub spin: WheelSpinDraft,
+    /// From the centre to the ground in the wheel's plane, m.
+    pub radius: f64,
+    /// On which side of the vehicle it is; where it is left out, the side of its centre.
+    pub side: Option<Side>,
+    /// A lower and an upper point of the axis that it steers about.
+    pub kingpin: Option<[PointRef; 2]>,
+}
+
+/// How a wheel stands in the design configuration.
+#[derive(Clone, Debug, PartialEq)]
+pub enum WheelSpinDraft {
+    /// With this spin axis, pointing outboard.
+    Axis(Line),
+    /// At these angles, rad.
+    Angles {
+        /// Positive for toe-in.
+        toe: f64,
+        /// Positive where its top leans outboard.
+        camber: f64,
+    },
+}
+
 /// A measure.
 #[derive(Clone, Debug)]
 pub struct MeasureDraft {
@@ -404,5 +439,12 @@ pub enum MeasureKindDraft {
         body: String,
         /// Spin axis, outboard.
         spin_axis: Line,
+    },
+    /// Something about a wheel.
+    Wheel {
+        /// The wheel's name.
+        wheel: String,
+        /// What about it.
+        what: WheelMeasure,
     },
 }

@@ -51,6 +51,8 @@ pub enum Section {
     Design,
     /// [`super::Draft::points`].
     Points,
+    /// [`super::Draft::wheels`].
+    Wheels,
     /// [`super::Draft::measures`].
     Measures,
     /// [`super::Draft::times`].
@@ -82,6 +84,7 @@ impl fmt::Display for Section {
             Self::Drivers => "drivers",
             Self::Design => "design",
             Self::Points => "points",
+            Self::Wheels => "wheels",
             Self::Measures => "measures",
             Self::Time => "time",
         })

@@ -11,6 +11,7 @@ mod draft;
 mod fault;
 mod formula;
 mod idle;
+mod wheel;
 
 pub(crate) use curve::Contact;
 pub use curve::{Curve, CurvePoint};
@@ -19,11 +20,12 @@ pub use design::{Field, Geometry, Kept, MarkerField};
 pub use draft::{
     BodyDraft, ChangeDraft, CouplerDraft, CouplerKindDraft, CurveDraft, Draft, DrivenDraft, DriverDraft,
     FormulaDraft, FormulaOf, FrameDraft, HardpointDraft, JointDraft, Line, MeasureDraft, MeasureKindDraft,
-    ParameterDraft, Place, PointDraft, PointRef, TermDraft, VariableDraft,
+    ParameterDraft, Place, PointDraft, PointRef, TermDraft, VariableDraft, WheelDraft, WheelSpinDraft,
 };
 pub use fault::{Fault, Locus, Section, did_you_mean};
 pub use formula::{Formula, NamedNumber, Nominal, NotConstant, Source, Target};
 pub use idle::Idle;
+pub use wheel::{Side, Wheel, WheelMeasure};
 
 use crate::constraint::Ends;
 use crate::joint::{CoordinateType, JointType, Quantity};
@@ -53,6 +55,8 @@ ids! {
     VariableId
     /// A body point's place in [`Model::points`].
     PointId
+    /// A wheel's place in [`Model::wheels`].
+    WheelId
     /// A measure's place in [`Model::measures`].
     MeasureId
 }
@@ -81,8 +85,10 @@ pub struct Model {
     pub drivers: Vec<Driver>,
     /// Design variables, in the order of the file.
     pub variables: Vec<DesignVariable>,
-    /// Body-fixed points to follow; those that only a measure names come last, unnamed.
+    /// Body-fixed points to follow; those that only a driver, wheel or measure names come last, unnamed.
     pub points: Vec<BodyPoint>,
+    /// Road wheels, in the order of the file.
+    pub wheels: Vec<Wheel>,
     /// Measures, in the order of the file.
     pub measures: Vec<Measure>,
     /// Idle spins, which are held at rest.
@@ -282,13 +288,13 @@ pub enum Change {
 /// A point fixed in a body.
 #[derive(Clone, Debug, PartialEq)]
 pub struct BodyPoint {
-    /// Its name, or that of the measure that it serves.
+    /// Its name, or that of the driver, wheel or measure that it serves.
     pub name: String,
     /// The body that carries it.
     pub body: BodyId,
     /// Where it is in the design configuration; a named hardpoint takes it along when it moves.
     pub at: HardpointId,
-    /// Whether it was only written inside a measure.
+    /// Whether it was only written inside one of those.
     pub unnamed: bool,
 }
 
@@ -339,6 +345,13 @@ pub enum MeasureKind {
         /// Spin axis in the design configuration, pointing outboard.
         spin_axis: Direction,
     },
+    /// Something about a wheel.
+    Wheel {
+        /// Which wheel.
+        wheel: WheelId,
+        /// What about it.
+        what: WheelMeasure,
+    },
 }
 
 impl Model {
@@ -380,6 +393,7 @@ impl Model {
             }
             MeasureKind::Distance { .. } | MeasureKind::Coordinates { .. } => Quantity::Length,
             MeasureKind::Toe { .. } | MeasureKind::Camber { .. } => Quantity::Angle,
+            MeasureKind::Wheel { what, .. } => what.quantity(),
         }
     }
 

@@ -61,6 +61,7 @@ impl<T: Real> Mul for Rates<T> {
 impl<T: Real> Div for Rates<T> {
     type Output = Self;
     #[inline(always)]
+    #[expect(clippy::suspicious_arithmetic_impl, reason = "a quotient is a product with the reciprocal")]
     fn div(self, o: Self) -> Self {
         self * o.recip()
     }

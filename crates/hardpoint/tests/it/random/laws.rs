@@ -736,6 +736,8 @@ fn moved(draft: &Draft, to: Pose) -> Draft {
             MeasureKindDraft::Toe { spin_axis, .. } | MeasureKindDraft::Camber { spin_axis, .. } => {
                 line(spin_axis)
             }
+            // Its wheel would have to stay upright.
+            MeasureKindDraft::Wheel { .. } => unreachable!("random mechanisms have no wheels"),
         }
     }
     d

@@ -1,0 +1,295 @@
+//! Wheels: every measure against re-solved designs and against differences over time, on several suspensions; right wheels
+//! are left ones in a mirror; angles make a spin axis. Published values are those of `gallery_models.rs`.
+
+use std::ops::ControlFlow;
+use std::path::Path;
+
+use hardpoint::model::{VariableId, WheelMeasure};
+use hardpoint::study::{VerifyOptions, verify};
+use hardpoint::{Analysis, Solution};
+use hardpoint_file::{ModelFile, parse};
+
+/// The knuckle's top mount is on the chassis.
+const STRUT: &str = r#"
+[wheels.w]
+body = "knuckle"
+centre = [0, 750.062, 0]
+spin_axis = [0.0035, 1, 0.0175]
+radius = 310
+kingpin = [{ body = "knuckle", at = "ball_joint" }, { body = "ground", at = "strut_top" }]
+measures = "all"
+"#;
+
+/// Both kingpin points on the arms rather than the knuckle.
+const WISHBONES: &str = r#"
+[points.kingpin_lower]
+body = "lca"
+at = "lower_ball"
+
+[wheels.w]
+body = "knuckle"
+centre = [0, 600, 232.41]
+toe = -0.3
+camber = -1.1
+radius = 230
+kingpin = ["kingpin_lower", { body = "uca", at = "upper_ball" }]
+measures = "all"
+"#;
+
+const AXLE: &str = r#"
+[wheels.w]
+body = "left_knuckle"
+centre = [0, 750, 310]
+spin_axis = [0.002, 1, 0.01]
+radius = 300
+kingpin = [{ body = "left_knuckle", at = "left_kingpin_lower" }, { body = "left_knuckle", at = "left_kingpin_upper" }]
+measures = "all"
+
+[wheels.r]
+body = "right_knuckle"
+centre = [0, -750, 310]
+spin_axis = [0.002, -1, 0.01]
+radius = 300
+kingpin = [{ body = "right_knuckle", at = "right_kingpin_lower" }, { body = "right_knuckle", at = "right_kingpin_upper" }]
+measures = "all"
+"#;
+
+fn text(name: &str) -> String {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("../../models/{name}.toml"));
+    std::fs::read_to_string(path).unwrap()
+}
+
+fn parsed(text: &str) -> ModelFile {
+    parse(text, "wheels.toml").unwrap_or_else(|e| panic!("{e}"))
+}
+
+fn solved(file: &ModelFile) -> Solution {
+    let solution = Analysis::new(&file.model).unwrap().run();
+    assert!(solution.stop.is_none(), "{:?}", solution.stop);
+    solution
+}
+
+/// The models of this test: suspensions with what they carry.
+fn suspensions() -> [(&'static str, String); 4] {
+    [
+        ("macpherson", text("macpherson") + STRUT),
+        ("double_wishbone", text("double_wishbone") + WISHBONES),
+        ("rack_steering", text("rack_steering") + AXLE),
+        // Steered while it travels, with static toe and camber.
+        ("double_wishbone_4x4", steered(&text("double_wishbone_4x4"))),
+    ]
+}
+
+/// The kingpins of the steered axle are on the chassis.
+fn stands_still(name: &str, what: WheelMeasure) -> bool {
+    name == "rack_steering" && matches!(what, WheelMeasure::Caster | WheelMeasure::KingpinInclination)
+}
+
+fn steered(text: &str) -> String {
+    let law = "law = \"0\"";
+    assert!(text.contains(law));
+    text.replace(law, "law = \"25*sin(3*t + 0.4)\"")
+        .replace("spindle = [0, 551.87, 0]", "spindle = [-0.3, 551.87, -1.5]")
+        .replace("front_left", "w")
+}
+
+/// The same model in the mirror of the plane y = 0: hardpoints change the sign of y, and so does the rack's axis.
+fn mirrored(text: &str) -> String {
+    let mut inside = false;
+    let mut lines = Vec::new();
+    for line in text.replace("axis = \"y\"", "axis = \"-y\"").lines() {
+        if line.starts_with('[') {
+            inside = line == "[hardpoints]";
+        }
+        match line.split_once(", ").filter(|_| inside && line.contains(" = [")) {
+            Some((x, rest)) => lines.push(format!("{x}, -{rest}").replace("-0,", "0,")),
+            None => lines.push(line.to_owned()),
+        }
+    }
+    lines.join("\n")
+}
+
+#[test]
+fn every_measure_agrees_with_resolved_designs_on_every_suspension() {
+    for (name, text) in suspensions() {
+        let mut file = parsed(&text);
+        // A few times are enough here; the gallery's own test runs its models whole.
+        let (first, last) = (file.model.times[0], *file.model.times.last().unwrap());
+        file.model.times = (0..=16).map(|k| first + (last - first) * f64::from(k) / 16.0).collect();
+        let analysis = Analysis::new(&file.model).unwrap();
+        let solution = analysis.run();
+        assert!(solution.stop.is_none(), "{name}: {:?}", solution.stop);
+        let report = verify(&analysis, &solution, &VerifyOptions::default(), |_| ControlFlow::Continue(()));
+        assert!(report.passed(), "{name}: {:#?}", report.checks);
+        let best = report.checks.iter().filter_map(|c| c.best()).map(|s| s.error).fold(0.0, f64::max);
+        println!("{name}: {} variables, worst {best:.1e}", report.checks.len());
+        // The comparison was not of zeros: each measure depends on the design in each order of the motion.
+        for what in WheelMeasure::ALL {
+            let m = solution.measured.index(&format!("w.{}", what.name())).unwrap();
+            for order in 0..3 {
+                let felt = (0..file.model.variables.len()).any(|b| {
+                    let d = |k| solution.measured.d(k, VariableId(b), m)[order];
+                    (0..solution.motion.len()).any(|k| d(k).abs() > 1e-4)
+                });
+                let driven = name == "double_wishbone_4x4" && *what == WheelMeasure::WheelTravel;
+                // That model's design moves its kingpins in side view only.
+                let leans = order == 0 && *what == WheelMeasure::Caster;
+                let expected = !driven && (leans || !stands_still(name, *what));
+                assert_eq!(felt, expected, "{name}: {} in order {order}", what.name());
+            }
+        }
+    }
+}
+
+/// Central differences over 2 h have an error of h^2 / 6 times the third derivative.
+#[test]
+fn rates_and_accelerations_agree_with_differences_over_time() {
+    const H: f64 = 1e-4;
+    for (name, text) in suspensions() {
+        let mut file = parsed(&text);
+        let last = *file.model.times.last().unwrap();
+        let at: Vec<f64> = (1..12).map(|k| last * f64::from(k) / 12.0 + 0.0123).collect();
+        file.model.times = at.iter().flat_map(|t| [t - H, *t, t + H]).collect();
+        let solution = solved(&file);
+        for what in WheelMeasure::ALL {
+            let m = solution.measured.index(&format!("w.{}", what.name())).unwrap();
+            let value = |k: usize| solution.measured.value(k, m);
+            for order in 1..3 {
+                let largest = (0..at.len()).map(|n| value(3 * n + 1)[order].abs()).fold(0.0, f64::max);
+                if stands_still(name, *what) {
+                    assert!(largest < 1e-9, "{name}: {}: {largest:e}", what.name());
+                    continue;
+                }
+                assert!(largest > 1e-4, "{name}: {} has no rate of order {order}", what.name());
+                for n in 0..at.len() {
+                    let difference = (value(3 * n + 2)[order - 1] - value(3 * n)[order - 1]) / (2.0 * H);
+                    let apart = (difference - value(3 * n + 1)[order]).abs() / largest;
+                    assert!(apart < 1e-5, "{name}: {} order {order} at {}: {apart:e}", what.name(), at[n]);
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn a_right_wheel_measures_what_its_mirror_image_does() {
+    let left = steered(&text("double_wishbone_4x4"));
+    let [left, right] = [left.clone(), mirrored(&left)].map(|text| parsed(&text));
+    assert_eq!(left.model.wheels[0].side.name(), "left");
+    assert_eq!(right.model.wheels[0].side.name(), "right");
+    let [a, b] = [&left, &right].map(solved);
+    for what in WheelMeasure::ALL {
+        let m = a.measured.index(&format!("w.{}", what.name())).unwrap();
+        // These are signed in the vehicle's axes.
+        let sign = match what {
+            WheelMeasure::SteerAngle | WheelMeasure::ContactY => -1.0,
+            _ => 1.0,
+        };
+        for k in 0..a.motion.len() {
+            for order in 0..3 {
+                let (x, y) = (a.measured.value(k, m)[order], sign * b.measured.value(k, m)[order]);
+                assert!((x - y).abs() < 1e-11 * (1.0 + x.abs()), "{} order {order}: {x} {y}", what.name());
+            }
+            for (v, variable) in left.model.variables.iter().enumerate() {
+                let turned = if variable.name.ends_with("_y") { -sign } else { sign };
+                let [x, y] = [&a, &b].map(|s| s.measured.d(k, VariableId(v), m)[0]);
+                let apart = (x - turned * y).abs();
+                assert!(apart < 1e-10 * (1.0 + x.abs()), "{} by {}: {x} {y}", what.name(), variable.name);
+            }
+        }
+    }
+}
+
+/// From lock to lock the two wheels of an axle change their parts; both steer to the same side.
+#[test]
+fn the_wheels_of_an_axle_are_each_others_mirror_images_half_a_period_later() {
+    let file = parsed(&(text("rack_steering") + AXLE));
+    let solution = solved(&file);
+    let half = (solution.motion.len() - 1) / 2;
+    for what in WheelMeasure::ALL {
+        let sign = match what {
+            WheelMeasure::SteerAngle | WheelMeasure::ContactY => -1.0,
+            _ => 1.0,
+        };
+        let [l, r] = ["w", "r"].map(|w| solution.measured.index(&format!("{w}.{}", what.name())).unwrap());
+        for k in 0..=half {
+            let [x] = [solution.measured.value(k, l)[0]];
+            let y = sign * solution.measured.value(k + half, r)[0];
+            assert!((x - y).abs() < 1e-11, "{}: {x} {y}", what.name());
+        }
+    }
+    let steer = |w: &str, k: usize| {
+        solution.measured.value(k, solution.measured.index(&format!("{w}.steer_angle")).unwrap())[0]
+    };
+    let lock = half / 2;
+    assert!(steer("w", lock) < -0.3 && steer("r", lock) < -0.3, "the rack behind the axle went to the left");
+    assert!(steer("w", lock).abs() < steer("r", lock).abs(), "the inner wheel turns more");
+}
+
+#[test]
+fn toe_and_camber_are_those_that_the_file_states_on_either_side() {
+    for (side, y) in [("left", 700.0), ("right", -700.0)] {
+        let text = format!(
+            r#"
+            name = "wheel"
+            units = {{ length = "mm", angle = "deg" }}
+            bodies = {{ slide = {{}} }}
+            joints.rail = {{ type = "translational", bodies = ["ground", "slide"], at = [0, {y}, 0], axis = "z" }}
+            drivers.rail = {{ joint = "rail", law = "10*t" }}
+            wheels.w = {{ body = "slide", centre = [0, {y}, 0], toe = 0.7, camber = -2.5, radius = 300, measures = "all" }}
+            time = {{ at = [0, 1] }}
+            "#
+        );
+        let file = parsed(&text);
+        assert_eq!(file.model.wheels[0].side.name(), side);
+        let solution = solved(&file);
+        let value = |k, name: &str| {
+            solution.measured.value(k, solution.measured.index(&format!("w.{name}")).unwrap())[0]
+        };
+        for k in 0..2 {
+            assert!((value(k, "toe").to_degrees() - 0.7).abs() < 1e-12);
+            assert!((value(k, "camber").to_degrees() + 2.5).abs() < 1e-12);
+            assert!(value(k, "steer_angle").abs() < 1e-15);
+            // Its top leans inboard, so it stands further out.
+            let (sin, cos) = 2.5_f64.to_radians().sin_cos();
+            let out = 0.3 * sin * 0.7_f64.to_radians().cos();
+            assert!((value(k, "half_track") - (0.7 + out)).abs() < 1e-12);
+            assert!((value(k, "contact_z") - (0.01 * k as f64 - 0.3 * cos)).abs() < 1e-12);
+        }
+        assert!((value(1, "wheel_travel") - 0.01).abs() < 1e-15);
+        // What needs a kingpin is not among all that is possible.
+        assert_eq!(
+            file.model.measures.len(),
+            WheelMeasure::ALL.iter().filter(|m| !m.needs_kingpin()).count()
+        );
+    }
+}
+
+#[test]
+fn a_left_wheel_has_the_toe_and_camber_of_its_spin_axis() {
+    let file = parsed(&(text("macpherson") + STRUT));
+    let solution = solved(&file);
+    let index = |name: &str| solution.measured.index(name).unwrap();
+    for (own, of_wheel) in [("toe", "w.toe"), ("camber", "w.camber"), ("wheel_travel", "w.wheel_travel")] {
+        for k in 0..solution.motion.len() {
+            let [a, b] = [own, of_wheel].map(|n| solution.measured.value(k, index(n)));
+            for order in 0..3 {
+                assert!((a[order] - b[order]).abs() < 1e-13, "{own} at step {k}: {a:?} {b:?}");
+            }
+        }
+    }
+}
+
+/// The measures of a wheel come behind those of the model, and are placed where the list names them.
+#[test]
+fn listed_measures_have_the_wheels_name_and_their_own_place() {
+    use hardpoint::model::Section;
+    let text = text("macpherson") + &STRUT.replace("\"all\"", "[\"caster\", \"toe\"]");
+    let file = parsed(&text);
+    let names: Vec<&str> = file.model.measures.iter().rev().take(2).map(|m| m.name.as_str()).collect();
+    assert_eq!(names, ["w.toe", "w.caster"]);
+    let line = 1 + text.lines().position(|l| l.starts_with("measures = ")).unwrap();
+    let last = file.model.measures.len() - 1;
+    assert_eq!(file.place(Section::Measures, last - 1), Some((line, 13)));
+    assert_eq!(file.place(Section::Measures, last), Some((line, 23)));
+}

@@ -1,0 +1,157 @@
+//! Checks of road wheels and of what is measured at them.
+
+use super::*;
+
+/// A direction nearer to the vertical than this, as a cosine, has no heading, and one nearer to the horizontal no rise.
+const HEADLESS: f64 = 1e-6;
+
+impl Check<'_> {
+    pub(super) fn wheels(&mut self) {
+        let draft = self.draft;
+        for (index, w) in draft.wheels.iter().enumerate() {
+            let here = Here { section: Section::Wheels, index };
+            let wheel = self.one_wheel(w, here);
+            self.wheel_ids.push(wheel.as_ref().map(|_| WheelId(self.model.wheels.len())));
+            self.model.wheels.extend(wheel);
+        }
+    }
+
+    /// A wheel, as long as nothing is wrong with it.
+    fn one_wheel(&mut self, w: &WheelDraft, here: Here) -> Option<Wheel> {
+        let faults = self.faults.len();
+        let body = self.body(&w.body, here.key("body"));
+        let centre = self.place(&w.centre, &w.name, here.key("centre"));
+        if !(w.radius > 0.0 && w.radius.is_finite()) {
+            self.fault(
+                "HP0231",
+                here.key("radius"),
+                format!("the radius of wheel `{}` is not above zero", w.name),
+            )
+            .help("give the distance from the wheel's centre to the ground");
+        }
+        let side = w.side.or_else(|| centre.and_then(|c| self.side_of(w, c, here)));
+        let spin_axis = self.spin_axis(w, side, here);
+        let kingpin = match &w.kingpin {
+            Some(points) => Some(self.kingpin(w, points, here)?),
+            None => None,
+        };
+        let (body, at, side, spin_axis) = (body?, centre?, side?, spin_axis?);
+        self.model.points.push(BodyPoint { name: w.name.clone(), body, at, unnamed: true });
+        let centre = PointId(self.model.points.len() - 1);
+        let wheel = Wheel { name: w.name.clone(), body, centre, spin_axis, radius: w.radius, side, kingpin };
+        (self.faults.len() == faults).then_some(wheel)
+    }
+
+    /// The side of the vehicle that a wheel's centre is on.
+    fn side_of(&mut self, w: &WheelDraft, centre: HardpointId, here: Here) -> Option<Side> {
+        let y = self.position(centre).y;
+        if !(y.abs() > SAME_POINT * self.extent.size()) {
+            let message = format!("wheel `{}` is on neither side of the vehicle", w.name);
+            self.fault("HP0231", here.key("centre"), message)
+                .note("the y of its centre is zero")
+                .help("say `side = \"left\"` or `side = \"right\"`");
+            return None;
+        }
+        Some(if y > 0.0 { Side::Left } else { Side::Right })
+    }
+
+    /// The spin axis, which must point outboard.
+    fn spin_axis(&mut self, w: &WheelDraft, side: Option<Side>, here: Here) -> Option<Direction> {
+        match &w.spin {
+            WheelSpinDraft::Axis(line) => {
+                let (axis, e) = self.line(line, &w.name, here, "spin_axis")?;
+                let side = side?;
+                let name = &w.name;
+                let (message, help) = if e.x.hypot(e.y) <= HEADLESS {
+                    (
+                        format!("the spin axis of wheel `{name}` is vertical"),
+                        "give the axis that the wheel spins about",
+                    )
+                } else if !(side.sign() * e.y > 0.0) {
+                    let message = format!("the spin axis of wheel `{name}` does not point outboard");
+                    (
+                        message,
+                        "turn it around, or say on which `side` of the vehicle the wheel is; y points left",
+                    )
+                } else {
+                    return Some(axis);
+                };
+                self.fault("HP0231", here.key("spin_axis"), message)
+                    .note(format!(
+                        "it points along [{:.4}, {:.4}, {:.4}]; a {} wheel's points to {}y",
+                        e.x,
+                        e.y,
+                        e.z,
+                        side.name(),
+                        if side == Side::Left { "+" } else { "-" }
+                    ))
+                    .help(help);
+                None
+            }
+            WheelSpinDraft::Angles { toe, camber } => {
+                let quarter = std::f64::consts::FRAC_PI_2;
+                let mut upright = true;
+                for (key, angle) in [("toe", toe), ("camber", camber)] {
+                    if !(angle.abs() < quarter * (1.0 - HEADLESS)) {
+                        upright = false;
+                        let message = format!("the {key} of wheel `{}` is a quarter turn or more", w.name);
+                        self.fault("HP0231", here.key(key), message)
+                            .help("give the angle of the design configuration, in the file's angle unit");
+                    }
+                }
+                let ((toe, to_y), (camber, to_side)) = (toe.sin_cos(), camber.sin_cos());
+                let y = side?.sign() * to_y;
+                upright.then(|| Direction::Along(Vec3::new(to_side * toe, to_side * y, -camber)))
+            }
+        }
+    }
+
+    /// The points of the kingpin, the upper one above the lower.
+    fn kingpin(&mut self, w: &WheelDraft, points: &[PointRef; 2], here: Here) -> Option<[PointId; 2]> {
+        let [lower, upper] = [0, 1].map(|k| self.point(&points[k], &w.name, here.item("kingpin", k)));
+        let (lower, upper) = (lower?, upper?);
+        let k = self.position(self.model.points[upper.0].at) - self.position(self.model.points[lower.0].at);
+        let name = &w.name;
+        let (message, help) = if !(k.norm() > SAME_POINT * self.extent.size()) {
+            (
+                format!("the two points of the kingpin of wheel `{name}` are at the same place"),
+                "name a lower and an upper point of the axis that the wheel steers about",
+            )
+        } else if k.z.abs() <= HEADLESS * k.norm() {
+            (
+                format!("the kingpin of wheel `{name}` is level"),
+                "its upper point must lie above its lower one",
+            )
+        } else if !(k.z > 0.0) {
+            (
+                format!("the kingpin of wheel `{name}` points down"),
+                "list its lower point first, then its upper one",
+            )
+        } else {
+            return Some([lower, upper]);
+        };
+        self.fault("HP0231", here.key("kingpin"), message).help(help);
+        None
+    }
+
+    /// A measure of a wheel; `None`, without a second fault, where the wheel itself is faulty.
+    pub(super) fn wheel_measure(
+        &mut self,
+        name: &str,
+        what: WheelMeasure,
+        here: Here,
+    ) -> Option<MeasureKind> {
+        let draft = self.draft;
+        let names = draft.wheels.iter().map(|w| w.name.as_str());
+        let k = self.find("wheel", name, here.key("wheel"), names)?;
+        if what.needs_kingpin() && draft.wheels[k].kingpin.is_none() {
+            let message = format!("`{}` needs the kingpin of wheel `{name}`, which gives none", what.name());
+            self.fault("HP0232", here.key("type"), message).help(
+                "add `kingpin = [LOWER, UPPER]` to the wheel, two points of the axis that it steers about, each a \
+                 point's name or `{ body = ..., at = ... }`",
+            );
+            return None;
+        }
+        Some(MeasureKind::Wheel { wheel: self.wheel_ids[k]?, what })
+    }
+}
