@@ -35,7 +35,7 @@ fn the_tutorial_takes_the_bump_steer_out() {
     let ranked = bench.run(&["whatif", "ride.toml", "--measure", "toe"]);
     assert_eq!(ranked.status.code(), Some(0));
     let text = String::from_utf8(ranked.stdout).unwrap();
-    assert!(text.contains("tie_rod_inner_z   -0.028603 deg/mm   2.5 s"), "{text}");
+    assert!(text.contains("3      tie_rod_inner_z   -0.028603 deg/mm"), "{text}");
 
     let set =
         ["whatif", "ride.toml", "--set", "tie_rod_inner.z=+32mm", "-o", "out", "--over", "wheel_travel"];
