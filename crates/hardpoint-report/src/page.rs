@@ -275,6 +275,16 @@ pub struct Table {
     pub rows: Vec<Vec<String>>,
 }
 
+impl Table {
+    /// The same without the columns that are empty in every row.
+    pub fn without_empty_columns(self) -> Self {
+        let full = |k: usize| self.rows.is_empty() || self.rows.iter().any(|row| !row[k].is_empty());
+        let kept: Vec<usize> = (0..self.header.len()).filter(|k| full(*k)).collect();
+        let pick = |row: &Vec<String>| kept.iter().map(|k| row[*k].clone()).collect();
+        Self { header: pick(&self.header), rows: self.rows.iter().map(pick).collect(), ..self }
+    }
+}
+
 /// Assembles the report as one self-contained HTML file.
 ///
 /// # Errors

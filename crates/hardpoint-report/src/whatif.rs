@@ -95,6 +95,11 @@ pub struct InfluenceFact {
     pub unit: String,
     /// The variable's unit.
     pub per: String,
+    /// The measure's unit.
+    pub of: String,
+    /// What the variable's typical change moves the measure by, to first order, in the measure's unit; `null` where the file
+    /// gives none.
+    pub typical: Option<f64>,
 }
 
 impl WhatIfFacts {
@@ -224,20 +229,20 @@ impl WhatIfFacts {
         for unit in units {
             for (rank, i) in of_measure().filter(|i| i.per == unit).take(shown).enumerate() {
                 let at = format!("{} s", number(i.time));
-                rows.push(vec![
-                    (rank + 1).to_string(),
-                    i.variable.clone(),
-                    with_unit(i.largest, &i.unit),
-                    at,
-                ]);
+                let typical = i.typical.map_or(String::new(), |x| with_unit(x, &i.of));
+                let largest = with_unit(i.largest, &i.unit);
+                rows.push(vec![(rank + 1).to_string(), i.variable.clone(), largest, at, typical]);
             }
         }
         Table {
             title: format!("What moves {measure} most"),
             note: String::new(),
-            header: ["rank", "by variable", "largest", "at t"].map(String::from).to_vec(),
+            header: ["rank", "by variable", "largest", "at t", "by a typical change"]
+                .map(String::from)
+                .to_vec(),
             rows,
         }
+        .without_empty_columns()
     }
 
     /// The names of the measures that the ranking knows, each once.
@@ -327,11 +332,13 @@ fn influence(model: &Model, units: Units, today: &Solution) -> Vec<InfluenceFact
                 time: today.motion.times[k],
                 unit: per(symbol(units, output.quantity), &by),
                 per: by,
+                of: symbol(units, output.quantity).into(),
+                typical: variable.typical.map(|t| units.from_si(output.quantity, t * at(&k))),
             });
         }
         let strongest = facts[first..].iter().map(|i| i.largest.abs()).fold(0.0, f64::max);
         for i in facts[first..].iter_mut().filter(|i| i.largest.abs() < ROUND_OFF * strongest) {
-            i.largest = 0.0;
+            (i.largest, i.typical) = (0.0, i.typical.map(|_| 0.0));
         }
         facts[first..].sort_by(|a, b| b.largest.abs().total_cmp(&a.largest.abs()));
     }
