@@ -2,6 +2,7 @@
 
 use std::num::NonZero;
 use std::ops::ControlFlow;
+use std::sync::OnceLock;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use fearless_simd::{Level, dispatch};
@@ -14,7 +15,9 @@ use crate::motion::margin::Margins;
 use crate::motion::parts::Parts;
 use crate::motion::stepper::Stepper;
 use crate::motion::{BodyState, Effort, Motion, Stop, StopKind};
-use crate::sensitivity::{Admissibility, Sensing, SensingDesigns, Sensitivities};
+use crate::sensitivity::{
+    Admissibility, JointDefect, Sensing, SensingDesigns, Sensitivities, admissibility_at_design,
+};
 use crate::sink::{Sink, Store};
 use crate::space::{LANES, Real, lanes};
 use crate::topology::{Formulation, Topology, TopologyFault};
@@ -56,6 +59,8 @@ pub struct Analysis<'m> {
     topology: Topology,
     effects: Effects<'m>,
     measures: bool,
+    /// Per variable, the joints that it opens in the nominal design: worked out when first asked for.
+    opens: OnceLock<Vec<Vec<JointDefect>>>,
 }
 
 /// One design, ready to be analysed.
@@ -117,7 +122,7 @@ impl<'m> Analysis<'m> {
     /// As [`Analysis::new`].
     pub fn with(model: &'m Model, formulation: Formulation) -> Result<Self, TopologyFault> {
         let topology = Topology::of(model, formulation)?;
-        Ok(Self { model, topology, effects: Effects::of(model), measures: true })
+        Ok(Self { model, topology, effects: Effects::of(model), measures: true, opens: OnceLock::new() })
     }
 
     /// The same analysis for callers that want the bodies only: [`Solution::measured`] stays empty.
@@ -132,6 +137,14 @@ impl<'m> Analysis<'m> {
 
     pub(crate) fn effects(&self) -> &Effects<'m> {
         &self.effects
+    }
+
+    /// Per variable, the joints that it opens in the nominal design.
+    fn opens(&self) -> &[Vec<JointDefect>] {
+        self.opens.get_or_init(|| {
+            let nominal = self.effects.fields(&self.model.whole(&[]), 0.0);
+            nominal.iter().map(|field| admissibility_at_design(self.model, field)).collect()
+        })
     }
 
     /// The model.
@@ -186,7 +199,7 @@ impl<'m> Analysis<'m> {
         let values = self.model.whole(design);
         Design {
             geometry: self.effects.geometry(&values, 0.0),
-            laws: self.model.laws(design),
+            laws: self.effects.laws(&values),
             fields: if sensitivities { self.effects.fields(&values, 0.0) } else { Vec::new() },
             values,
         }
@@ -207,7 +220,7 @@ impl<'m> Analysis<'m> {
             let mut walk = Walk::new(self, &design, wanted, lanes(simd));
             let stop = walk.all(self, sink, &mut |_| ControlFlow::Continue(()), |_, _, _| ());
             let effort = walk.one.effort;
-            let admissibility = walk.sensing.map_or_else(Vec::new, |s| s.admissibility(walk.done));
+            let admissibility = walk.sensing.map_or_else(Vec::new, |s| s.admissibility(self.opens(), walk.done));
             Streamed { steps: walk.done, admissibility, effort, stop }
         })
     }
@@ -268,7 +281,8 @@ impl<'m> Analysis<'m> {
         motion.effort = walk.one.effort;
         motion.assembly = walk.one.assembly.take();
         sensitivities.states.truncate(steps * variables * motion.bodies);
-        sensitivities.admissibility = walk.sensing.map_or_else(Vec::new, |s| s.admissibility(steps));
+        sensitivities.admissibility =
+            walk.sensing.map_or_else(Vec::new, |s| s.admissibility(self.opens(), steps));
         solution.sensitivities = sensitivities;
     }
 
@@ -453,7 +467,7 @@ impl<'m> Analysis<'m> {
         let (model, last) = (self.model, designs.len() - 1);
         let values: Vec<Vec<f64>> = designs.iter().map(|d| model.whole(d)).collect();
         let geometries: Vec<Geometry> = values.iter().map(|d| self.effects.geometry(d, 0.0)).collect();
-        let laws: Vec<Vec<Law>> = designs.iter().map(|d| model.laws(d)).collect();
+        let laws: Vec<Vec<Law>> = values.iter().map(|v| self.effects.laws(v)).collect();
         let parts = Parts::each(model, &self.topology, &geometries, &laws, witness);
         let mut stepper = Stepper::new(model, &self.topology, parts, witness);
         let wanted = self.wanted(sinks);
@@ -491,7 +505,8 @@ impl<'m> Analysis<'m> {
                 );
             }
         }
-        let admissibility = sensing.map_or_else(Vec::new, |s| s.admissibility(model.times.len()).collect());
+        let admissibility =
+            sensing.map_or_else(Vec::new, |s| s.admissibility(self.opens(), model.times.len()).collect());
         Some((stepper.effort, admissibility))
     }
 }

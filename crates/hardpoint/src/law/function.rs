@@ -54,7 +54,7 @@ impl Unary {
             Self::Sin => x.sin_cos().0,
             Self::Cos => x.sin_cos().1,
             Self::Tan => x.map(Function::Tan),
-            Self::Asin => x.asin(),
+            Self::Asin => x.map(Function::Asin),
             Self::Acos => x.map(Function::Acos),
             Self::Atan => x.map(Function::Atan),
             Self::Sinh => x.map(Function::Sinh),

@@ -9,13 +9,14 @@ mod wheel;
 use std::collections::BTreeMap;
 
 use bodies::{with_rates, with_sensitivity};
-use wheel::WheelAt;
+use wheel::{WheelAt, camber, toe};
 
 use crate::constraint::Row;
 use crate::joint::Quantity;
 use crate::law::Law;
 use crate::model::{
-    BodyId, DriverId, Effects, Fixed, JointId, Measure, MeasureKind, Model, PointId, VariableId, WheelId,
+    BodyId, DriverId, Effects, Fixed, JointId, Measure, MeasureKind, Model, PointId, Side, VariableId,
+    WheelId,
 };
 use crate::motion::Motion;
 use crate::sensitivity::Sensitivities;
@@ -261,9 +262,9 @@ impl<T: Real> Moment<'_, T> {
             }
             MeasureKind::Toe { body, .. } => {
                 let e = self.spin_axis(k, body);
-                e.x.atan2(e.y)
+                toe(e, e.x.like(Side::Left.sign()))
             }
-            MeasureKind::Camber { body, .. } => -self.spin_axis(k, body).z.asin(),
+            MeasureKind::Camber { body, .. } => camber(self.spin_axis(k, body)),
             MeasureKind::Wheel { wheel, what } => {
                 let now = self.wheel(k, wheel, |b| self.poses[b.0]);
                 now.measure(what, || {

@@ -17,12 +17,22 @@ pub(super) struct WheelAt<T> {
     pub kingpin: Option<[Vec3<T>; 2]>,
 }
 
+/// `atan2(e_x, s e_y)` of the outboard spin axis e of a wheel on side s.
+pub(super) fn toe<T: Real>(e: Vec3<T>, side: T) -> T {
+    e.x.atan2(side * e.y)
+}
+
+/// `-asin(e_z)`.
+pub(super) fn camber<T: Real>(e: Vec3<T>) -> T {
+    -e.z.asin()
+}
+
 impl<T: Real> WheelAt<T> {
     /// The value of a measure; `design` is the wheel in the design configuration.
     pub fn measure(&self, what: WheelMeasure, design: impl Fn() -> Self) -> T {
         match what {
-            WheelMeasure::Toe => self.toe(),
-            WheelMeasure::Camber => self.camber(),
+            WheelMeasure::Toe => toe(self.spin_axis, self.side),
+            WheelMeasure::Camber => camber(self.spin_axis),
             WheelMeasure::SteerAngle => {
                 let (d, f) = (design().forward(), self.forward());
                 d.cross(f).z.atan2(d.dot(f))
@@ -53,16 +63,6 @@ impl<T: Real> WheelAt<T> {
             WheelMeasure::ContactY => self.contact().y,
             WheelMeasure::ContactZ => self.contact().z,
         }
-    }
-
-    /// `atan2(e_x, s e_y)` of the outboard spin axis e.
-    fn toe(&self) -> T {
-        self.spin_axis.x.atan2(self.side * self.spin_axis.y)
-    }
-
-    /// `-asin(e_z)`.
-    fn camber(&self) -> T {
-        -self.spin_axis.z.asin()
     }
 
     /// Outboard along the ground: the horizontal part of the spin axis, of unit length.

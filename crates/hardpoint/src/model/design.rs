@@ -134,9 +134,21 @@ impl<T: Copy> Field<T> {
 }
 
 impl Field {
-    /// The fields of several variables, one per lane; lanes without one are at rest.
+    /// The fields of several variables, one per lane; lanes without one are at rest. Points are left out.
     pub(crate) fn gather<T: Real>(fields: &[Field], witness: T) -> Field<T> {
-        let of = |k: usize| fields.get(k);
+        Self::in_lanes(fields, |k| fields.get(k), witness)
+    }
+
+    /// The same field in every lane. Points are left out.
+    pub(crate) fn spread<T: Real>(&self, witness: T) -> Field<T> {
+        Self::in_lanes(std::slice::from_ref(self), |_| Some(self), witness)
+    }
+
+    fn in_lanes<'f, T: Real>(
+        fields: &'f [Field],
+        of: impl Fn(usize) -> Option<&'f Field>,
+        witness: T,
+    ) -> Field<T> {
         Field {
             markers: union(fields, |f| f.markers.iter().map(|m| (m.joint, m.end)))
                 .map(|(joint, end)| {
@@ -150,12 +162,7 @@ impl Field {
                     (joint, Kept::gather(witness, kept))
                 })
                 .collect(),
-            points: union(fields, |f| f.points.iter().map(|(id, _)| *id))
-                .map(|id| {
-                    let of_field = |f: &Field| f.points.iter().find(|(k, _)| *k == id).map(|(_, v)| *v);
-                    (id, Vec3::gather(witness, |k| of(k).and_then(of_field).unwrap_or(Vec3::ZERO)))
-                })
-                .collect(),
+            points: Vec::new(),
             laws: union(fields, |f| f.laws.iter().map(|(d, p, _)| (*d, *p)))
                 .map(|(driver, parameter)| {
                     let same = |l: &&(DriverId, usize, f64)| (l.0, l.1) == (driver, parameter);
@@ -428,6 +435,31 @@ impl<'m> Effects<'m> {
         rates
     }
 
+    /// The drivers' laws in the design with these values.
+    pub fn laws(&self, values: &[f64]) -> Vec<Law> {
+        let model = self.model;
+        let mut laws: Vec<Law> = model.drivers.iter().map(|d| d.law.clone()).collect();
+        if model.formulas.iter().any(|f| matches!(f.of, Target::Law(..))) {
+            let results = Design::new(self, values.to_vec(), 0.0).values.formulas;
+            // Without results, no formula follows what is not at 0.
+            for (formula, result) in model.formulas.iter().zip(results) {
+                if let Target::Law(driver, parameter) = formula.of {
+                    laws[driver.0] = laws[driver.0].with_parameter(parameter, result);
+                }
+            }
+        }
+        for (variable, value) in model.variables.iter().zip(values).filter(|(_, value)| **value != 0.0) {
+            for change in &variable.changes {
+                if let Change::Law { driver, parameter, rate } = change {
+                    let law = &mut laws[driver.0];
+                    let now = law.parameters()[*parameter].value;
+                    *law = law.with_parameter(*parameter, now + rate * value);
+                }
+            }
+        }
+        laws
+    }
+
     /// How every variable changes the designs whose values these are.
     pub fn fields<T: Real>(&self, values: &[T], witness: T) -> Vec<Field<T>> {
         (0..values.len()).map(|k| self.field(VariableId(k), values, witness)).collect()
@@ -687,27 +719,7 @@ impl Model {
 
     /// The drivers' laws in the design with variable k at `design[k]` (missing entries are 0).
     pub fn laws(&self, design: &[f64]) -> Vec<Law> {
-        let mut laws: Vec<Law> = self.drivers.iter().map(|d| d.law.clone()).collect();
-        if self.formulas.iter().any(|f| matches!(f.of, Target::Law(..))) {
-            let effects = Effects::of(self);
-            let values = Design::new(&effects, self.whole(design), 0.0).values.formulas;
-            // Without values, no formula follows what is not at 0.
-            for (formula, value) in self.formulas.iter().zip(values) {
-                if let Target::Law(driver, parameter) = formula.of {
-                    laws[driver.0] = laws[driver.0].with_parameter(parameter, value);
-                }
-            }
-        }
-        for (variable, value) in self.variables.iter().zip(design).filter(|(_, value)| **value != 0.0) {
-            for change in &variable.changes {
-                if let Change::Law { driver, parameter, rate } = change {
-                    let law = &mut laws[driver.0];
-                    let now = law.parameters()[*parameter].value;
-                    *law = law.with_parameter(*parameter, now + rate * value);
-                }
-            }
-        }
-        laws
+        Effects::of(self).laws(&self.whole(design))
     }
 
     /// 3-1-3 Euler angles of a marker in its body's frame, and their rotation C(theta).

@@ -5,7 +5,7 @@
 
 use crate::constraint::EndRates;
 use crate::law::Law;
-use crate::model::{DriverId, Effects, Field, Model};
+use crate::model::{DriverId, Effects, Model};
 use crate::motion::kinematics::{State, carry, level, sum_couplers};
 use crate::motion::stepper::Stepper;
 use crate::space::{Dual, LANES, Mat3, Pose, Real, Twist, Vec3};
@@ -119,8 +119,7 @@ impl<T: Real> Seconds<T> {
         let model = effects.model;
         let firsts = directions.iter().map(|d| {
             let field = effects.field_along(&along(d), values, 0.0);
-            let field = Field::gather(&vec![field; T::LANES], witness);
-            First::new(model, topology, FieldParts::new(topology, &field, witness), witness)
+            First::new(model, topology, FieldParts::new(topology, &field.spread(witness), witness), witness)
         });
         let pair = |&[u, w]: &[usize; 2]| {
             let moving = values.iter().zip(&directions[w]);
@@ -136,7 +135,7 @@ impl<T: Real> Seconds<T> {
             };
             let laws = [LAW_STEP, -LAW_STEP].map(|h| {
                 let moved: Vec<f64> = values.iter().zip(&directions[w]).map(|(v, d)| v + h * d).collect();
-                model.laws(&moved)
+                effects.laws(&moved)
             });
             let of_driver = |d: &DriverId| (*d, [laws[0][d.0].clone(), laws[1][d.0].clone()]);
             let drivers: Vec<DriverId> = field.drivers().collect();

@@ -9,7 +9,7 @@ use crate::space::{LANES, Real, Twist, Vec3};
 use crate::topology::Topology;
 
 use super::direct::{Defect, Direct, FieldParts};
-use super::{Admissibility, BodySensitivity, JointDefect, Sensitivities, admissibility_at_design};
+use super::{Admissibility, BodySensitivity, JointDefect, Sensitivities};
 
 /// Collects the sensitivities of a run.
 ///
@@ -108,10 +108,7 @@ impl<'f, T: Real> Sensing<'f, T> {
     ) {
         if self.each.is_empty() {
             let witness = all.state.witness;
-            let parts = |f: &Field| {
-                let field = Field::gather(&vec![f.clone(); T::LANES], witness);
-                FieldParts::new(&all.topology, &field, witness)
-            };
+            let parts = |f: &Field| FieldParts::new(&all.topology, &f.spread(witness), witness);
             self.each = self.fields.iter().map(parts).collect();
         }
         let of_lanes: [f64; LANES] = std::array::from_fn(|lane| times[lane.min(times.len() - 1)]);
@@ -134,15 +131,14 @@ impl<'f, T: Real> Sensing<'f, T> {
         );
     }
 
-    /// What so many steps say of every variable's admissibility.
-    pub fn admissibility(self, steps: usize) -> Vec<Admissibility> {
-        admissibility(self.model, self.resisting, steps)
+    /// What so many steps say of every variable's admissibility, given the joints that each opens in the design.
+    pub fn admissibility(self, opens: &[Vec<JointDefect>], steps: usize) -> Vec<Admissibility> {
+        admissibility(opens, self.resisting, steps)
     }
 }
 
 /// Collects the sensitivities of several designs side by side, one in every lane.
-pub(crate) struct SensingDesigns<'m, T> {
-    model: &'m Model,
+pub(crate) struct SensingDesigns<T> {
     each: Vec<FieldParts<T>>,
     direct: Direct<T>,
     wanted: Vec<bool>,
@@ -150,11 +146,11 @@ pub(crate) struct SensingDesigns<'m, T> {
     resisting: Vec<Vec<Resisting>>,
 }
 
-impl<'m, T: Real> SensingDesigns<'m, T> {
+impl<T: Real> SensingDesigns<T> {
     /// Prepares the sensitivities of the wanted bodies; `fields` are those of all variables, variable by variable, each in
     /// every lane's design.
     pub fn new(
-        model: &'m Model,
+        model: &Model,
         topology: &Topology,
         fields: &[Vec<Field>],
         wanted: Vec<bool>,
@@ -162,7 +158,6 @@ impl<'m, T: Real> SensingDesigns<'m, T> {
     ) -> Self {
         let parts = |f: &Vec<Field>| FieldParts::new(topology, &Field::gather(f, witness), witness);
         Self {
-            model,
             each: fields.iter().map(parts).collect(),
             direct: Direct::new(model, topology, witness),
             wanted,
@@ -187,10 +182,14 @@ impl<'m, T: Real> SensingDesigns<'m, T> {
         );
     }
 
-    /// What so many steps say of every variable's admissibility, lane by lane.
-    pub fn admissibility(self, steps: usize) -> impl Iterator<Item = Vec<Admissibility>> {
-        let model = self.model;
-        self.resisting.into_iter().map(move |of_lane| admissibility(model, of_lane, steps))
+    /// What so many steps say of every variable's admissibility, lane by lane, given the joints that each opens in the
+    /// nominal design.
+    pub fn admissibility(
+        self,
+        opens: &[Vec<JointDefect>],
+        steps: usize,
+    ) -> impl Iterator<Item = Vec<Admissibility>> {
+        self.resisting.into_iter().map(move |of_lane| admissibility(opens, of_lane, steps))
     }
 }
 
@@ -226,10 +225,9 @@ fn solve_each<T: Real>(
     }
 }
 
-/// What so many steps say of every variable. Whether joints open is a matter of the nominal design.
-fn admissibility(model: &Model, resisting: Vec<Resisting>, steps: usize) -> Vec<Admissibility> {
-    let answer = |(field, (joints, time)): (Field, Resisting)| {
-        let open = admissibility_at_design(model, &field);
+/// What so many steps say of every variable.
+fn admissibility(opens: &[Vec<JointDefect>], resisting: Vec<Resisting>, steps: usize) -> Vec<Admissibility> {
+    let answer = |(open, (joints, time)): (&Vec<JointDefect>, Resisting)| {
         if !joints.is_empty() {
             Admissibility::CannotFollow { joints, time }
         } else if steps == 0 {
@@ -237,10 +235,10 @@ fn admissibility(model: &Model, resisting: Vec<Resisting>, steps: usize) -> Vec<
         } else if open.is_empty() {
             Admissibility::Admissible
         } else {
-            Admissibility::Reassembled { joints: open }
+            Admissibility::Reassembled { joints: open.clone() }
         }
     };
-    model.fields(&[]).into_iter().zip(resisting).map(answer).collect()
+    opens.iter().zip(resisting).map(answer).collect()
 }
 
 /// Keeps in mind which joint resists a variable most, and when.

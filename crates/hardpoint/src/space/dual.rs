@@ -162,11 +162,6 @@ impl<T: Real> Real for Dual<T> {
         self.v.vanishes() && self.d.vanishes()
     }
     #[inline(always)]
-    fn asin(self) -> Self {
-        let one = self.v.like(1.0);
-        Self { v: self.v.asin(), d: self.d / (one - self.v * self.v).sqrt() }
-    }
-    #[inline(always)]
     fn atan2(self, x: Self) -> Self {
         let square = self.v * self.v + x.v * x.v;
         Self { v: self.v.atan2(x.v), d: (self.d * x.v - self.v * x.d) / square }

@@ -158,11 +158,8 @@ impl<T: Real> Real for Rates<T> {
     #[inline(always)]
     fn larger(self, o: Self) -> Self {
         let most = self.0[0].larger(o.0[0]);
-        let pick = |k: usize| {
-            let (a, b) = (self.0[k], o.0[k]);
-            most.like_lanes(|l| if most.lane(l) == self.0[0].lane(l) { a.lane(l) } else { b.lane(l) })
-        };
-        Self([most, pick(1), pick(2)])
+        let [_, first, second] = self.select(o, |k| most.lane(k) == self.lane(k)).0;
+        Self([most, first, second])
     }
     #[inline(always)]
     fn largest(self) -> f64 {
@@ -172,14 +169,6 @@ impl<T: Real> Real for Rates<T> {
     fn sin_cos(self) -> (Self, Self) {
         let (s, c) = self.0[0].sin_cos();
         (self.chain([s, c, -s]), self.chain([c, -s, -c]))
-    }
-    #[inline(always)]
-    fn asin(self) -> Self {
-        let x = self.0[0];
-        let one = x.like(1.0);
-        let k = one / (one - x * x);
-        let first = k.sqrt();
-        self.chain([x.asin(), first, x * k * first])
     }
     #[inline(always)]
     fn atan2(self, x: Self) -> Self {

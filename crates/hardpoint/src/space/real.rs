@@ -97,7 +97,7 @@ pub trait Real:
     /// Inverse sine, lane by lane, rad.
     #[inline(always)]
     fn asin(self) -> Self {
-        self.like_lanes(|k| self.lane(k).asin())
+        self.map(Function::Asin)
     }
 
     /// Angle of the point (x, self) from the x axis, lane by lane, rad in (-pi, pi].
@@ -144,6 +144,8 @@ pub trait Real:
 pub enum Function {
     /// Tangent.
     Tan,
+    /// Arc sine.
+    Asin,
     /// Arc cosine.
     Acos,
     /// Arc tangent.
@@ -164,6 +166,7 @@ impl Function {
     fn of(self, x: f64) -> f64 {
         match self {
             Self::Tan => x.tan(),
+            Self::Asin => x.asin(),
             Self::Acos => x.acos(),
             Self::Atan => x.atan(),
             Self::Sinh => x.sinh(),
@@ -179,6 +182,7 @@ impl Function {
         let one = x.like(1.0);
         match self {
             Self::Tan => one + y * y,
+            Self::Asin => one / (one - x * x).sqrt(),
             Self::Acos => -(one / (one - x * x).sqrt()),
             Self::Atan => one / (one + x * x),
             Self::Sinh => x.map(Self::Cosh),

@@ -6,7 +6,7 @@ use fearless_simd::{Level, dispatch};
 
 use crate::analysis::{Analysis, Design, Solved, Walk};
 use crate::measure::{Moment, Output, bodies_asked_for, outputs};
-use crate::model::{BodyId, Fixed};
+use crate::model::{BodyId, Fixed, GROUND};
 use crate::motion::stepper::Stepper;
 use crate::motion::{Motion, Stop};
 use crate::sensitivity::{BodyCurvature, Seconds};
@@ -126,7 +126,7 @@ impl<'a, T: Real> Bends<'a, T> {
             analysis,
             seconds: Seconds::new(effects, analysis.topology(), &design.values, directions, pairs, witness),
             fixed: pairs.iter().map(fixed).collect(),
-            asked_for: bodies_asked_for(model),
+            asked_for: bodies_asked_for(model).into_iter().filter(|b| *b != GROUND.0).collect(),
             poses: vec![Pose::IDENTITY.spread(zero); model.bodies.len()],
         }
     }
@@ -139,7 +139,7 @@ impl<'a, T: Real> Bends<'a, T> {
         for (lane, &t) in times.iter().enumerate() {
             result.times.push(t);
             for p in 0..self.seconds.len() {
-                for &b in self.asked_for.iter().filter(|b| **b != 0) {
+                for &b in &self.asked_for {
                     self.poses[b] = self.seconds.pose(state, p, b, lane);
                 }
                 let moment = Moment { model, fixed: &self.fixed[p], poses: &self.poses };
