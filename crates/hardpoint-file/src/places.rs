@@ -63,7 +63,7 @@ impl EntryPlace {
     }
 }
 
-const SECTIONS: [Section; 12] = [
+const SECTIONS: [Section; 14] = [
     Section::Model,
     Section::Parameters,
     Section::Hardpoints,
@@ -73,7 +73,9 @@ const SECTIONS: [Section; 12] = [
     Section::Drivers,
     Section::Design,
     Section::Points,
+    Section::Vehicle,
     Section::Wheels,
+    Section::Axles,
     Section::Measures,
     Section::Time,
 ];

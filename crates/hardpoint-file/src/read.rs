@@ -37,7 +37,9 @@ const MODEL: &[Key] = &[
     ("drivers", "{}"),
     ("design", "{}"),
     ("points", "{}"),
+    ("vehicle", "{ wheelbase = 2600 }"),
     ("wheels", "{}"),
+    ("axles", "{}"),
     ("measures", "{}"),
     ("time", "{ end = 1.0, steps = 100 }"),
 ];
@@ -119,7 +121,9 @@ impl Reader<'_> {
         self.design(&fields, &mut raw);
         self.points(&fields, &mut raw);
         self.measures(&fields, &mut raw);
+        self.vehicle(&fields, &mut raw);
         self.wheels(&fields, &mut raw);
+        self.axles(&fields, &mut raw);
         self.time(&fields, &mut raw);
         raw
     }

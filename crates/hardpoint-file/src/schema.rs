@@ -8,7 +8,7 @@ use std::borrow::Cow;
 use std::collections::BTreeMap;
 
 use hardpoint::joint;
-use hardpoint::model::WheelMeasure;
+use hardpoint::model::{AxleMeasure, WheelMeasure, WheelNeed};
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::Serialize;
 
@@ -62,6 +62,11 @@ struct ModelSchema {
     /// Road wheels, for what is measured at them.
     #[schemars(default)]
     wheels: BTreeMap<Name, WheelSchema>,
+    /// What is known of the vehicle, for anti-dive and Ackermann.
+    vehicle: Option<VehicleSchema>,
+    /// Pairs of wheels, for what is measured at both.
+    #[schemars(default)]
+    axles: BTreeMap<Name, AxleSchema>,
     /// Numbers to compute from the motion, with their sensitivities.
     #[schemars(default)]
     measures: BTreeMap<Name, MeasureSchema>,
@@ -841,8 +846,66 @@ struct WheelSchema {
     side: Option<SideSchema>,
     /// A lower and an upper point of the axis that it steers about; they may be on different bodies.
     kingpin: Option<[PointRefSchema; 2]>,
+    /// The driver that moves it up and down, for roll centres, bump steer and the like. Default: the only driver.
+    bump: Option<Name>,
+    /// At which end of the vehicle it is, for anti-dive and the like.
+    end: Option<EndSchema>,
     /// What to measure, as NAME.toe and so on: `"all"` that is possible, or a list.
     measures: Option<WheelMeasuresSchema>,
+}
+
+#[derive(JsonSchema)]
+#[schemars(rename_all = "lowercase")]
+enum EndSchema {
+    Front,
+    Rear,
+}
+
+/// What is known of the vehicle besides its suspension.
+#[derive(JsonSchema)]
+#[schemars(deny_unknown_fields)]
+struct VehicleSchema {
+    /// Distance of the axles, in the length unit.
+    wheelbase: Option<f64>,
+    /// Height of the centre of gravity above the ground, in the length unit.
+    centre_of_gravity: Option<f64>,
+    /// Part of the braking force that the front wheels take, 0 to 1.
+    front_brake_share: Option<f64>,
+    /// Part of the driving force that the front wheels give, 0 to 1.
+    front_drive_share: Option<f64>,
+}
+
+/// Two wheels side by side.
+#[derive(JsonSchema)]
+#[schemars(deny_unknown_fields)]
+struct AxleSchema {
+    /// The name of the left wheel.
+    left: Name,
+    /// The name of the right wheel.
+    right: Name,
+    /// What to measure, as NAME.track and so on: `"all"` that is possible, or a list.
+    measures: Option<AxleMeasuresSchema>,
+}
+
+#[derive(JsonSchema)]
+#[schemars(untagged)]
+enum AxleMeasuresSchema {
+    All(AllMeasuresSchema),
+    Several(Vec<AxleMeasureSchema>),
+}
+
+/// The names of what can be measured at an axle, with their descriptions as hover texts.
+struct AxleMeasureSchema;
+
+impl JsonSchema for AxleMeasureSchema {
+    fn schema_name() -> Cow<'static, str> {
+        "AxleMeasureSchema".into()
+    }
+
+    fn json_schema(_: &mut SchemaGenerator) -> Schema {
+        let name = |m: &AxleMeasure| json_schema!({ "type": "string", "const": m.name(), "description": m.summary() });
+        json_schema!({ "oneOf": AxleMeasure::ALL.iter().map(name).collect::<Vec<_>>() })
+    }
 }
 
 #[derive(JsonSchema)]
@@ -875,8 +938,14 @@ impl JsonSchema for WheelMeasureSchema {
 
     fn json_schema(_: &mut SchemaGenerator) -> Schema {
         let name = |m: &WheelMeasure| {
-            let kingpin = if m.needs_kingpin() { " Needs a kingpin." } else { "" };
-            let description = format!("{}{kingpin}", m.summary());
+            let needs = match m.needs() {
+                WheelNeed::Nothing => "",
+                WheelNeed::Kingpin => " Needs a kingpin.",
+                WheelNeed::Bump => " Needs `bump`.",
+                WheelNeed::Braking(_) => " Needs `bump`, and the vehicle's `front_brake_share`.",
+                WheelNeed::Driving(_) => " Needs `bump`, and the vehicle's `front_drive_share`.",
+            };
+            let description = format!("{}{needs}", m.summary());
             json_schema!({ "type": "string", "const": m.name(), "description": description })
         };
         json_schema!({ "oneOf": WheelMeasure::ALL.iter().map(name).collect::<Vec<_>>() })
@@ -889,6 +958,40 @@ impl JsonSchema for WheelMeasureSchema {
 enum MeasureSchema {
     Own(OwnMeasureSchema),
     OfWheel(MeasureOfWheelSchema),
+    OfAxle(MeasureOfAxleSchema),
+}
+
+/// A measure of an axle.
+#[derive(JsonSchema)]
+#[schemars(deny_unknown_fields)]
+struct MeasureOfAxleSchema {
+    /// What to measure.
+    #[schemars(rename = "type")]
+    kind: AxleMeasureSchema,
+    /// The axle's name.
+    axle: Name,
+}
+
+/// A direction that an angle is measured from or to.
+#[derive(JsonSchema)]
+#[schemars(untagged)]
+enum RaySchema {
+    /// From one point to another.
+    Between([PointRefSchema; 2]),
+    /// Fixed in a body.
+    Fixed(FixedRaySchema),
+    /// A global direction.
+    Global(DirectionSchema),
+}
+
+/// A direction that is fixed in a body.
+#[derive(JsonSchema)]
+#[schemars(deny_unknown_fields)]
+struct FixedRaySchema {
+    /// The body's name.
+    body: Name,
+    /// Where it points in the design configuration.
+    axis: LineSchema,
 }
 
 /// A measure of a wheel.
@@ -904,7 +1007,7 @@ struct MeasureOfWheelSchema {
 
 /// A measure of anything else.
 #[derive(JsonSchema)]
-#[schemars(tag = "type", rename_all = "lowercase", deny_unknown_fields)]
+#[schemars(tag = "type", rename_all = "snake_case", deny_unknown_fields)]
 enum OwnMeasureSchema {
     /// A joint's coordinate, counted from the design configuration; of a rod or leg the whole length.
     Coordinate {
@@ -926,6 +1029,62 @@ enum OwnMeasureSchema {
         point: PointRefSchema,
         /// The direction, of any length.
         along: DirectionSchema,
+    },
+    /// Angle from one direction to another: between them, 0 to 180 deg, or as seen along `about`.
+    Angle {
+        /// From this direction.
+        from: RaySchema,
+        /// To this one.
+        to: RaySchema,
+        /// The direction, pointing at the viewer, about which the angle is counted, counter-clockwise positive.
+        about: Option<DirectionSchema>,
+    },
+    /// Angle between two lines, 0 to 90 deg.
+    TransmissionAngle {
+        /// Along this direction.
+        from: RaySchema,
+        /// And this one.
+        to: RaySchema,
+    },
+    /// Velocity of a point.
+    Velocity {
+        /// The point.
+        point: PointRefSchema,
+        /// The direction of the component, of any length. Default: the magnitude.
+        along: Option<DirectionSchema>,
+    },
+    /// Acceleration of a point.
+    Acceleration {
+        /// The point.
+        point: PointRefSchema,
+        /// The direction of the component, of any length. Default: the magnitude.
+        along: Option<DirectionSchema>,
+    },
+    /// Curvature of a point's path.
+    Curvature {
+        /// The point.
+        point: PointRefSchema,
+        /// The direction, pointing at the viewer, seen along which a turn to the left is positive. Default: all are.
+        about: Option<DirectionSchema>,
+    },
+    /// Time derivative of another measure.
+    Rate {
+        /// The name of the measure, or `POINT.x`.
+        of: Name,
+    },
+    /// How much one measure changes per change of another while one driver alone moves, like a motion ratio.
+    Slope {
+        /// Of this measure, or `POINT.x`.
+        of: Name,
+        /// Over this one.
+        over: Name,
+        /// The driver that moves. Default: the only one.
+        driver: Option<Name>,
+    },
+    /// A formula over other measures.
+    Expression {
+        /// Like `front_left.toe + front_right.toe`; lengths are in the file's unit, angles in rad.
+        expression: String,
     },
     /// Toe of a left wheel, positive for toe-in.
     Toe {

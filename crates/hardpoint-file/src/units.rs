@@ -4,6 +4,7 @@
 //! results go back to the user in the same ones. Time is always in seconds.
 
 use hardpoint::joint::Quantity;
+use hardpoint::model::Dimension;
 use serde::Serialize;
 
 /// A unit of length.
@@ -136,9 +137,15 @@ impl Units {
         }
     }
 
+    /// How many of the user's units make one SI unit.
+    pub fn per_si(self, of: impl Into<Dimension>) -> f64 {
+        let Dimension { length, angle, .. } = of.into();
+        self.length.per_metre().powi(length.into()) * self.angle.per_radian().powi(angle.into())
+    }
+
     /// A value in SI, in the user's unit.
-    pub fn from_si(self, quantity: Quantity, value: f64) -> f64 {
-        value * self.of(quantity).1
+    pub fn from_si(self, of: impl Into<Dimension>, value: f64) -> f64 {
+        value * self.per_si(of)
     }
 
     /// A derivative "`of` per `by`" in SI, in the user's units.
@@ -152,8 +159,8 @@ impl Units {
     /// let slope = units.derivative_from_si(Quantity::Angle, Quantity::Length, 1.0);
     /// assert!((slope - 0.0572958).abs() < 1e-7);
     /// ```
-    pub fn derivative_from_si(self, of: Quantity, by: Quantity, value: f64) -> f64 {
-        value * (self.of(of).1 / self.of(by).1)
+    pub fn derivative_from_si(self, of: impl Into<Dimension>, by: Quantity, value: f64) -> f64 {
+        value * (self.per_si(of) / self.per_si(by))
     }
 }
 

@@ -51,6 +51,7 @@ const GALLERY: &[Entry] = &[
     entry("five_link", 1, 0, &[], five_link_rods_keep_their_lengths_to_second_order),
     entry("four_bar", 1, 0, &[], four_bar_obeys_freudenstein),
     entry("four_bar_by_lengths", 1, 0, &[], four_bar_by_lengths_obeys_the_law_of_cosines),
+    entry("front_axle", 3, 0, &[], front_axle_is_steered_and_moves_as_its_wheels_do),
     entry("gear_train", 1, 0, &[], gear_train_keeps_its_ratios),
     entry("hooke", 1, 3, &["in_bearing_y"], hooke_tangents_are_in_proportion),
     entry("jansen", 1, 9, &[], jansen_foot_follows_from_the_holy_numbers),
@@ -458,11 +459,15 @@ fn double_wishbone_4x4_has_the_published_static_values(m: &Solved) {
     ] {
         m.close(name, of(0, name) * 1e3, mm, PRINTED);
     }
-    // Half the track times how far the contact point goes outboard as it rises: the published height of the roll centre
-    // above the ground is 293.64 mm, by finite steps; 293.583 is the derivative.
+    // The published height of the roll centre above the ground is 293.64 mm, by finite steps; 293.583 is the derivative: half
+    // the track times how far the contact point goes outboard as it rises.
     let rate = |name: &str| m.measure(0, &format!("front_left.{name}"))[1];
     let roll_centre = of(0, "half_track") * rate("contact_y") / rate("contact_z");
     m.close("roll centre", roll_centre * 1e3, 293.583, 5e-4);
+    m.close("roll centre", of(0, "roll_centre_height"), roll_centre, EXACT);
+    m.close("roll centre", of(0, "roll_centre_height") * 1e3, 293.64, 0.1);
+    // Without camber the contact point is the carrier's lowest one, and both roll centres agree.
+    m.close("roll centre", of(0, "roll_centre_height_geometric"), roll_centre, EXACT);
 
     m.rod("tie_rod", constant);
     for (k, t) in m.steps() {
@@ -543,6 +548,44 @@ fn five_link_rods_keep_their_lengths_to_second_order(m: &Solved) {
         m.rod(rod, constant);
     }
     m.rod("spring_strut", |t| sine(0.055, TAU, t));
+}
+
+/// What the wheels measure together; their slopes are tested in `wheels.rs`.
+fn front_axle_is_steered_and_moves_as_its_wheels_do(m: &Solved) {
+    let of = |k: usize, name: &str| m.value(k, name);
+    for side in ["left", "right"] {
+        m.close(side, of(0, &format!("{side}.roll_centre_height")) * 1e3, 293.583, 5e-4);
+    }
+    m.close("axle", of(0, "front.axle_roll_centre_height"), of(0, "left.roll_centre_height"), EXACT);
+    m.rod("left_tie_rod", constant);
+    m.rod("right_tie_rod", constant);
+    let mut steered = 0.0_f64;
+    for (k, _) in m.steps() {
+        let [left, right] = [-of(k, "left.toe"), of(k, "right.toe")];
+        m.close("difference", of(k, "toe_difference"), -left - right, EXACT);
+        m.close("total", of(k, "front.total_toe"), right - left, EXACT);
+        let [l, r] = ["left", "right"].map(|side| {
+            let centre = m.place(k, &format!("{side}_knuckle"), &format!("{side}_wheel_centre"));
+            let hub = m.place(k, &format!("{side}_knuckle"), &format!("{side}_spindle"));
+            let e = (centre - hub).unit().unwrap();
+            centre + e.cross(e.cross(Vec3::AXES[2])).unit().unwrap() * 0.2794
+        });
+        m.close("track", of(k, "front.track"), l.y - r.y, EXACT);
+        steered = steered.max(left.abs());
+        if left.abs().min(right.abs()) < 0.05 {
+            continue;
+        }
+        let cot = |x: f64| 1.0 / x.tan();
+        let ideal = (1.0 / (cot(left) + (l.y - r.y) / 2.7)).atan();
+        m.close("error", of(k, "front.ackermann_error"), right - ideal, EXACT);
+        m.close("part", of(k, "front.ackermann"), (left - right) / (left - ideal), 1e-9);
+        let outer = if left.abs() < right.abs() { left } else { right };
+        m.close("radius", of(k, "front.turning_radius"), 2.7 / outer.sin().abs(), 1e-9);
+        let knuckle = m.file.model.body("left_knuckle").unwrap();
+        let hop = m.carried(k, knuckle, m.hardpoint("left_wheel_centre"))[2].y;
+        m.close("acceleration", of(k, "left_hop"), hop, EXACT_RATES * 100.0);
+    }
+    assert!(steered > 0.2, "{steered}");
 }
 
 fn four_bar_obeys_freudenstein(m: &Solved) {

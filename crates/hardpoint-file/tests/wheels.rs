@@ -4,7 +4,8 @@
 use std::ops::ControlFlow;
 use std::path::Path;
 
-use hardpoint::model::{VariableId, WheelMeasure};
+use hardpoint::model::{VariableId, VehicleEnd, WheelMeasure, WheelNeed};
+use hardpoint::space::Vec3;
 use hardpoint::study::{VerifyOptions, verify};
 use hardpoint::{Analysis, Solution};
 use hardpoint_file::{ModelFile, parse};
@@ -17,6 +18,7 @@ centre = [0, 750.062, 0]
 spin_axis = [0.0035, 1, 0.0175]
 radius = 310
 kingpin = [{ body = "knuckle", at = "ball_joint" }, { body = "ground", at = "strut_top" }]
+bump = "strut_drive"
 measures = "all"
 "#;
 
@@ -33,6 +35,7 @@ toe = -0.3
 camber = -1.1
 radius = 230
 kingpin = ["kingpin_lower", { body = "uca", at = "upper_ball" }]
+bump = "spring_drive"
 measures = "all"
 "#;
 
@@ -70,8 +73,9 @@ fn solved(file: &ModelFile) -> Solution {
 }
 
 /// The models of this test: suspensions with what they carry.
-fn suspensions() -> [(&'static str, String); 4] {
+fn suspensions() -> [(&'static str, String); 5] {
     [
+        ("front_axle", with_all(&text("front_axle"))),
         ("macpherson", text("macpherson") + STRUT),
         ("double_wishbone", text("double_wishbone") + WISHBONES),
         ("rack_steering", text("rack_steering") + AXLE),
@@ -83,6 +87,27 @@ fn suspensions() -> [(&'static str, String); 4] {
 /// The kingpins of the steered axle are on the chassis.
 fn stands_still(name: &str, what: WheelMeasure) -> bool {
     name == "rack_steering" && matches!(what, WheelMeasure::Caster | WheelMeasure::KingpinInclination)
+}
+
+/// The left wheel named w, with all measures; steered so little that no instant centre passes infinity.
+fn with_all(text: &str) -> String {
+    let list = text.split("measures = [").nth(1).and_then(|rest| rest.split(']').next()).unwrap();
+    // Steered so little, parts of Ackermann's angles are near their poles; the gallery's test measures them.
+    text.replace("right = \"right\"\nmeasures = \"all\"", "right = \"right\"")
+        .replace(&format!("[{list}]"), "\"all\"")
+        .replace("15*sin", "2*sin")
+        .replace("[wheels.left]", "[wheels.w]")
+        .replace("left.", "w.")
+        .replace("left = \"left\"", "left = \"w\"")
+}
+
+/// Only wheels that a driver moves up and down have slopes, and only those of a vehicle that is known stand up to braking.
+fn is_left_out(name: &str, what: WheelMeasure) -> bool {
+    match what.needs() {
+        WheelNeed::Bump => name == "rack_steering",
+        WheelNeed::Braking(end) | WheelNeed::Driving(end) => name != "front_axle" || end == VehicleEnd::Rear,
+        WheelNeed::Nothing | WheelNeed::Kingpin => false,
+    }
 }
 
 fn steered(text: &str) -> String {
@@ -125,13 +150,17 @@ fn every_measure_agrees_with_resolved_designs_on_every_suspension() {
         println!("{name}: {} variables, worst {best:.1e}", report.checks.len());
         // The comparison was not of zeros: each measure depends on the design in each order of the motion.
         for what in WheelMeasure::ALL {
-            let m = solution.measured.index(&format!("w.{}", what.name())).unwrap();
-            for order in 0..3 {
+            let Some(m) = solution.measured.index(&format!("w.{}", what.name())) else {
+                assert!(what.needs().goes_by_driver() && is_left_out(name, *what), "{name}: {}", what.name());
+                continue;
+            };
+            for order in 0..solution.measured.outputs[m].known.orders {
                 let felt = (0..file.model.variables.len()).any(|b| {
                     let d = |k| solution.measured.d(k, VariableId(b), m)[order];
                     (0..solution.motion.len()).any(|k| d(k).abs() > 1e-4)
                 });
-                let driven = name == "double_wishbone_4x4" && *what == WheelMeasure::WheelTravel;
+                let driven = matches!(name, "double_wishbone_4x4" | "front_axle")
+                    && *what == WheelMeasure::WheelTravel;
                 // That model's design moves its kingpins in side view only.
                 let leans = order == 0 && *what == WheelMeasure::Caster;
                 let expected = !driven && (leans || !stands_still(name, *what));
@@ -151,7 +180,7 @@ fn rates_and_accelerations_agree_with_differences_over_time() {
         let at: Vec<f64> = (1..12).map(|k| last * f64::from(k) / 12.0 + 0.0123).collect();
         file.model.times = at.iter().flat_map(|t| [t - H, *t, t + H]).collect();
         let solution = solved(&file);
-        for what in WheelMeasure::ALL {
+        for what in WheelMeasure::ALL.iter().filter(|m| !m.needs().goes_by_driver()) {
             let m = solution.measured.index(&format!("w.{}", what.name())).unwrap();
             let value = |k: usize| solution.measured.value(k, m);
             for order in 1..3 {
@@ -179,14 +208,17 @@ fn a_right_wheel_measures_what_its_mirror_image_does() {
     assert_eq!(right.model.wheels[0].side.name(), "right");
     let [a, b] = [&left, &right].map(solved);
     for what in WheelMeasure::ALL {
-        let m = a.measured.index(&format!("w.{}", what.name())).unwrap();
+        let Some(m) = a.measured.index(&format!("w.{}", what.name())) else { continue };
         // These are signed in the vehicle's axes.
         let sign = match what {
-            WheelMeasure::SteerAngle | WheelMeasure::ContactY => -1.0,
+            WheelMeasure::SteerAngle
+            | WheelMeasure::ContactY
+            | WheelMeasure::FrontCentreY
+            | WheelMeasure::InstantAxisY => -1.0,
             _ => 1.0,
         };
         for k in 0..a.motion.len() {
-            for order in 0..3 {
+            for order in 0..a.measured.outputs[m].known.orders {
                 let (x, y) = (a.measured.value(k, m)[order], sign * b.measured.value(k, m)[order]);
                 assert!((x - y).abs() < 1e-11 * (1.0 + x.abs()), "{} order {order}: {x} {y}", what.name());
             }
@@ -206,7 +238,7 @@ fn the_wheels_of_an_axle_are_each_others_mirror_images_half_a_period_later() {
     let file = parsed(&(text("rack_steering") + AXLE));
     let solution = solved(&file);
     let half = (solution.motion.len() - 1) / 2;
-    for what in WheelMeasure::ALL {
+    for what in WheelMeasure::ALL.iter().filter(|m| !m.needs().goes_by_driver()) {
         let sign = match what {
             WheelMeasure::SteerAngle | WheelMeasure::ContactY => -1.0,
             _ => 1.0,
@@ -260,7 +292,7 @@ fn toe_and_camber_are_those_that_the_file_states_on_either_side() {
         // What needs a kingpin is not among all that is possible.
         assert_eq!(
             file.model.measures.len(),
-            WheelMeasure::ALL.iter().filter(|m| !m.needs_kingpin()).count()
+            WheelMeasure::ALL.iter().filter(|m| m.needs() == WheelNeed::Nothing).count()
         );
     }
 }
@@ -292,4 +324,55 @@ fn listed_measures_have_the_wheels_name_and_their_own_place() {
     let last = file.model.measures.len() - 1;
     assert_eq!(file.place(Section::Measures, last - 1), Some((line, 13)));
     assert_eq!(file.place(Section::Measures, last), Some((line, 23)));
+}
+
+/// While one driver is shifted and the others keep to their laws, everything changes along that driver alone.
+#[test]
+fn slopes_are_those_of_runs_whose_driver_is_shifted() {
+    const H: f64 = 1e-2; // mm; the error is its square
+    let text = with_all(&text("front_axle")).replace("2*sin", "10*sin");
+    let law = "law = \"60*sin(4*pi*t)\"";
+    assert!(text.contains(law));
+    let shifted = |by: f64| solved(&parsed(&text.replace(law, &format!("law = \"60*sin(4*pi*t) + {by}\""))));
+    let (now, ahead, behind) = (solved(&parsed(&text)), shifted(H), shifted(-H));
+    let index = |name: &str| now.measured.index(name).unwrap_or_else(|| panic!("{name}"));
+    let knuckle = parsed(&text).model.body("left_knuckle").unwrap();
+    for k in (0..now.motion.len()).step_by(7) {
+        let value = |name: &str| now.measured.value(k, index(name))[0];
+        let difference =
+            |name: &str| ahead.measured.value(k, index(name))[0] - behind.measured.value(k, index(name))[0];
+        let rise = difference("w.wheel_travel");
+        assert!((rise - 2e-3 * H).abs() < 1e-12);
+        let close = |name: &str, expected: f64| {
+            let (found, scale) = (value(name), 1.0 + expected.abs());
+            assert!((found - expected).abs() < 2e-6 * scale, "{name} at step {k}: {found} {expected}");
+        };
+        close("w.bump_steer", difference("w.toe") / rise);
+        close("w.bump_camber", difference("w.camber") / rise);
+        close("w.bump_recession", difference("w.wheel_recession") / rise);
+        close("w.bump_scrub", difference("w.half_track_change") / rise);
+        close("left_motion_ratio", difference("left_damper") / rise);
+        let slope = difference("w.contact_y") / difference("w.contact_z");
+        close("w.roll_centre_height", value("w.contact_y") * slope);
+        // The carrier's own motion, from where it is in both runs.
+        let [a, b] = [&ahead, &behind].map(|s| s.motion.at(k)[knuckle.0]);
+        let middle = |c: usize| (a.rotation.cols[c] + b.rotation.cols[c]) * 0.5;
+        let turned = |c: usize| middle(c).cross(a.rotation.cols[c] - b.rotation.cols[c]);
+        let w = (turned(0) + turned(1) + turned(2)) * (0.5 / rise);
+        let contact = Vec3::new(value("w.contact_x"), value("w.contact_y"), value("w.contact_z"));
+        let v = (a.r - b.r) * (1.0 / rise) + w.cross(contact - now.motion.at(k)[knuckle.0].r);
+        close("w.roll_centre_height_geometric", contact.y * v.y / v.z);
+        let at = |y: f64, z: f64| v + w.cross(Vec3::new(0.0, y - contact.y, z - contact.z));
+        let still = at(value("w.instant_centre_front_y"), value("w.instant_centre_front_z"));
+        assert!(still.y.abs().max(still.z.abs()) < 1e-5, "step {k}: {still:?}");
+        let at = |x: f64, z: f64| v + w.cross(Vec3::new(x - contact.x, 0.0, z - contact.z));
+        let still = at(value("w.instant_centre_side_x"), value("w.instant_centre_side_z"));
+        let at_infinity = w.y.abs() < 1e-2 * w.norm();
+        assert!(at_infinity || still.x.abs().max(still.z.abs()) < 1e-4, "step {k}: {still:?}");
+        let axis = ["x", "y", "z"].map(|c| value(&format!("w.instant_axis_{c}")));
+        let along = w * (w.x.signum() / w.norm());
+        assert!((Vec3::from(axis) - along).norm() < 1e-6, "step {k}");
+        close("w.anti_dive", 0.68 * 2.7 / 0.62 * v.x / v.z);
+        close("w.anti_rise", -0.5 * 2.7 / 0.62 * difference("w.wheel_recession") / rise);
+    }
 }

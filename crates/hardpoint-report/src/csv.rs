@@ -8,11 +8,13 @@ use std::io::Write;
 use csv::WriterBuilder;
 use hardpoint::Solution;
 use hardpoint::joint::Quantity::{self, Angle, Length};
+use hardpoint::measure::Output;
 use hardpoint::model::{Model, VariableId};
 use hardpoint::motion::BodyState;
 use hardpoint::sensitivity::BodySensitivity;
 use hardpoint::space::Vec3;
 use hardpoint_file::Units;
+use serde::{Serialize, Serializer};
 
 use crate::facts::variable_unit;
 use crate::figures::order_unit;
@@ -45,9 +47,11 @@ pub fn write_motion(model: &Model, units: Units, solution: &Solution, out: impl 
             push_state(&mut row, units, state);
         }
         for (m, output) in solution.measured.outputs.iter().enumerate() {
-            row.extend(solution.measured.value(k, m).map(|x| units.from_si(output.quantity, x)));
+            row.extend(
+                known(output, solution.measured.value(k, m)).map(|x| units.from_si(output.dimension, x)),
+            );
         }
-        writer.serialize(&row)?;
+        writer.serialize(numbers(&row))?;
     }
     writer.flush()?;
     Ok(())
@@ -86,14 +90,19 @@ pub fn write_sensitivity(
                 push_sensitivity(&mut row, units, variable.quantity, d);
             }
             for (m, output) in solution.measured.outputs.iter().enumerate() {
-                let d = solution.measured.d(k, VariableId(b), m);
-                row.extend(d.map(|x| units.derivative_from_si(output.quantity, variable.quantity, x)));
+                let d = known(output, solution.measured.d(k, VariableId(b), m));
+                row.extend(d.map(|x| units.derivative_from_si(output.dimension, variable.quantity, x)));
             }
-            writer.serialize((t, &variable.name, variable_unit(model, units, variable), &row))?;
+            writer.serialize((t, &variable.name, variable_unit(model, units, variable), numbers(&row)))?;
         }
     }
     writer.flush()?;
     Ok(())
+}
+
+/// The fields of a row.
+pub(crate) fn numbers(row: &[f64]) -> Vec<Number> {
+    row.iter().map(|x| Number(*x)).collect()
 }
 
 fn components(body: &str, prefix: &str, units: Units, quantity: Quantity, order: usize) -> [String; 3] {
@@ -105,10 +114,26 @@ fn output_headers(solution: &Solution, units: Units, prefix: &str) -> Vec<String
     let outputs = solution.measured.outputs.iter();
     outputs
         .flat_map(|o| {
-            [0, 1, 2]
-                .map(|k| format!("{prefix}{}{} [{}]", o.name, ORDERS[k], order_unit(units, o.quantity, k)))
+            let header = |(k, order): (usize, &str)| {
+                format!("{prefix}{}{order} [{}]", o.name, order_unit(units, o.dimension, k))
+            };
+            ORDERS.into_iter().enumerate().take(o.known.orders).map(header)
         })
         .collect()
+}
+
+/// Of value, rate and acceleration of an output, those that can be known.
+fn known(output: &Output, orders: [f64; 3]) -> impl Iterator<Item = f64> {
+    orders.into_iter().take(output.known.orders)
+}
+
+/// A number; an empty field where there is none, as for the curvature of a path at rest.
+pub(crate) struct Number(f64);
+
+impl Serialize for Number {
+    fn serialize<S: Serializer>(&self, s: S) -> Result<S::Ok, S::Error> {
+        if self.0.is_nan() { s.serialize_none() } else { s.serialize_f64(self.0) }
+    }
 }
 
 fn push_state(row: &mut Vec<f64>, units: Units, s: &BodyState) {

@@ -1,6 +1,7 @@
 //! Numbers and units as text, for tables and messages. Files for machines carry full digits instead.
 
 use hardpoint::joint::Quantity;
+use hardpoint::model::Dimension;
 use hardpoint_file::Units;
 
 /// A number with five significant digits at most, without trailing zeros.
@@ -62,9 +63,39 @@ pub fn symbol(units: Units, quantity: Quantity) -> &'static str {
     }
 }
 
-/// The unit of the quantity's time derivative of order 0, 1 or 2: `mm`, `mm/s`, `mm/s^2`.
-pub fn order_unit(units: Units, quantity: Quantity, order: usize) -> String {
-    format!("{}{}", symbol(units, quantity), ["", "/s", "/s^2"][order])
+/// The symbol of a unit: `mm`, `deg/mm`, `1/(mm*s)`; `1` for a plain number.
+///
+/// ```
+/// use hardpoint::model::Dimension;
+/// use hardpoint_file::Units;
+/// use hardpoint_report::figures::unit;
+/// let metres = Units::default();
+/// assert_eq!(unit(metres, Dimension::LENGTH.rate(2)), "m/s^2");
+/// assert_eq!(unit(metres, Dimension::ANGLE.over(Dimension::LENGTH).rate(1)), "rad/(m*s)");
+/// assert_eq!(unit(metres, Dimension::NUMBER.over(Dimension::LENGTH)), "1/m");
+/// ```
+pub fn unit(units: Units, of: impl Into<Dimension>) -> String {
+    let Dimension { length, angle, time } = of.into();
+    let powers = [(units.angle.symbol(), angle), (units.length.symbol(), length), ("s", time)];
+    let product = |sign: i8| {
+        let factors =
+            powers.iter().map(|(symbol, power)| (symbol, power * sign)).filter(|(_, power)| *power > 0);
+        let text =
+            |(symbol, power)| if power == 1 { format!("{symbol}") } else { format!("{symbol}^{power}") };
+        factors.map(text).collect::<Vec<_>>()
+    };
+    let (above, below) = (product(1), product(-1));
+    let above = if above.is_empty() { "1".into() } else { above.join("*") };
+    match below.as_slice() {
+        [] => above,
+        [one] => format!("{above}/{one}"),
+        several => format!("{above}/({})", several.join("*")),
+    }
+}
+
+/// The unit of the time derivative of order 0, 1 or 2: `mm`, `mm/s`, `mm/s^2`.
+pub fn order_unit(units: Units, of: impl Into<Dimension>, order: usize) -> String {
+    unit(units, of.into().rate(order))
 }
 
 /// The unit of a derivative: `deg/mm`, `mm/s per mm` as `mm/(s*mm)`.
@@ -79,8 +110,10 @@ pub fn order_unit(units: Units, quantity: Quantity, order: usize) -> String {
 pub fn per(of: &str, by: &str) -> String {
     match (of.split_once('/'), by.contains('/')) {
         _ if by == "1" => of.into(),
-        (Some((top, below)), false) => format!("{top}/({below}*{by})"),
-        (Some((top, below)), true) => format!("{top}/({below}*({by}))"),
+        (Some((top, below)), _) => {
+            let below = below.strip_prefix('(').and_then(|b| b.strip_suffix(')')).unwrap_or(below);
+            if by.contains('/') { format!("{top}/({below}*({by}))") } else { format!("{top}/({below}*{by})") }
+        }
         (None, false) => format!("{of}/{by}"),
         (None, true) => format!("{of}/({by})"),
     }

@@ -8,8 +8,9 @@
 use std::path::Path;
 
 use hardpoint::joint::{Freedom, Quantity as Kind};
-use hardpoint::measure::OutputSource;
-use hardpoint::model::{BodyId, Change, Direction, HardpointId, Joint, JointId, Model, VariableId};
+use hardpoint::model::{
+    BodyId, Change, Dimension, Direction, HardpointId, Joint, JointId, Model, OutputSource, VariableId,
+};
 use hardpoint::sensitivity::BodySensitivity;
 use hardpoint::space::Vec3;
 use hardpoint::study::{Difference, compare_with_difference};
@@ -205,8 +206,9 @@ impl Compose<'_> {
         self.steps.iter().map(|&k| value(k)).collect()
     }
 
-    fn curves(&self, value: impl Fn(usize, usize) -> f64) -> [Curve; 3] {
-        [0, 1, 2].map(|order| self.curve(|k| value(k, order)))
+    /// Of value, rate and acceleration so many; the others are empty.
+    fn curves(&self, orders: usize, value: impl Fn(usize, usize) -> f64) -> [Curve; 3] {
+        [0, 1, 2].map(|order| if order < orders { self.curve(|k| value(k, order)) } else { Curve::default() })
     }
 
     fn length(&self, v: Vec3) -> [f64; 3] {
@@ -303,9 +305,9 @@ impl Compose<'_> {
     fn quantities(&self) -> Vec<Quantity> {
         let measured = &self.solution.measured;
         let outputs = measured.outputs.iter().enumerate().map(|(m, output)| {
-            let value = |k, order: usize| self.units.from_si(output.quantity, measured.value(k, m)[order]);
+            let value = |k, order: usize| self.units.from_si(output.dimension, measured.value(k, m)[order]);
             let group = if matches!(output.source, OutputSource::Measure(_)) { "measure" } else { "point" };
-            self.quantity(&output.name, output.quantity, group, value)
+            self.quantity(&output.name, output.dimension, output.known.orders, group, value)
         });
         let origins =
             (1..self.model.bodies.len()).flat_map(|b| (0..3).map(move |axis| (b, axis))).map(|(b, axis)| {
@@ -314,14 +316,22 @@ impl Compose<'_> {
                     let s = &self.solution.motion.at(k)[b];
                     self.length([s.r, s.v, s.a][order])[axis]
                 };
-                self.quantity(&name, Kind::Length, "body", value)
+                self.quantity(&name, Kind::Length, 3, "body", value)
             });
         outputs.chain(origins).collect()
     }
 
-    fn quantity(&self, name: &str, kind: Kind, group: &str, value: impl Fn(usize, usize) -> f64) -> Quantity {
+    fn quantity(
+        &self,
+        name: &str,
+        kind: impl Into<Dimension>,
+        orders: usize,
+        group: &str,
+        value: impl Fn(usize, usize) -> f64,
+    ) -> Quantity {
+        let kind = kind.into();
         let [unit, rate_unit, accel_unit] = [0, 1, 2].map(|order| order_unit(self.units, kind, order));
-        let [value, rate, accel] = self.curves(value);
+        let [value, rate, accel] = self.curves(orders, value);
         Quantity { name: name.into(), unit, rate_unit, accel_unit, group: group.into(), value, rate, accel }
     }
 
@@ -403,7 +413,14 @@ impl Compose<'_> {
                 (d, agreement.of_output(m), move |k: usize, order: usize| d.outputs[k * columns + m][order])
             });
             let exact = |k: usize, order: usize| measured.d(k, VariableId(b), m)[order];
-            list.push(self.sensitivity(list.len(), output.quantity, b, exact, overlay, round_off));
+            list.push(self.sensitivity(
+                list.len(),
+                (output.dimension, output.known.orders),
+                b,
+                exact,
+                overlay,
+                round_off,
+            ));
         }
         for (body, axis) in (1..bodies).flat_map(|body| (0..3).map(move |axis| (body, axis))) {
             if !self.detail.bodies {
@@ -419,7 +436,7 @@ impl Compose<'_> {
             let exact = |k: usize, order: usize| {
                 self.solution.sensitivities.at(k, b).map_or(f64::NAN, |s| of(&s[body], order))
             };
-            list.push(self.sensitivity(list.len(), Kind::Length, b, exact, overlay, round_off));
+            list.push(self.sensitivity(list.len(), (Dimension::LENGTH, 3), b, exact, overlay, round_off));
         }
         list
     }
@@ -428,7 +445,7 @@ impl Compose<'_> {
     fn sensitivity<F: Fn(usize, usize) -> f64>(
         &self,
         quantity: usize,
-        kind: Kind,
+        (kind, orders): (Dimension, usize),
         b: usize,
         exact: impl Fn(usize, usize) -> f64,
         overlay: Option<(&Difference, [f64; 3], F)>,
@@ -439,9 +456,9 @@ impl Compose<'_> {
         let shown = |x: f64, order: usize| {
             if x.abs() <= least[order] { 0.0 } else { self.units.derivative_from_si(kind, by, x) }
         };
-        let [value, rate, accel] = self.curves(|k, order| shown(exact(k, order), order));
+        let [value, rate, accel] = self.curves(orders, |k, order| shown(exact(k, order), order));
         let fd = overlay.map(|(d, worst, difference)| {
-            let [value, rate, accel] = self.curves(|k, order| shown(difference(k, order), order));
+            let [value, rate, accel] = self.curves(orders, |k, order| shown(difference(k, order), order));
             let step = self.units.from_si(by, d.step);
             FiniteDifference { value, rate, accel, step, step_unit: symbol(self.units, by).into(), worst }
         });
@@ -454,12 +471,20 @@ impl Compose<'_> {
 struct Agreement {
     errors: Vec<f64>,
     bodies: usize,
+    /// Per output, where its errors begin and how many there are.
+    outputs: Vec<(usize, usize)>,
 }
 
 impl Agreement {
     fn new(compose: &Compose<'_>, difference: &Difference) -> Self {
         let list = compare_with_difference(compose.analysis, compose.solution, difference);
-        Self { errors: list.into_iter().map(|e| e.error).collect(), bodies: compose.model.bodies.len() - 1 }
+        let bodies = compose.model.bodies.len() - 1;
+        let mut next = 6 * bodies;
+        let outputs = compose.solution.measured.outputs.iter().map(|o| {
+            next += o.known.orders;
+            (next - o.known.orders, o.known.orders)
+        });
+        Self { outputs: outputs.collect(), errors: list.into_iter().map(|e| e.error).collect(), bodies }
     }
 
     /// Of a body's position, velocity and acceleration.
@@ -468,7 +493,8 @@ impl Agreement {
     }
 
     fn of_output(&self, m: usize) -> [f64; 3] {
-        [0, 1, 2].map(|order| self.errors[6 * self.bodies + 3 * m + order])
+        let (first, orders) = self.outputs[m];
+        [0, 1, 2].map(|order| if order < orders { self.errors[first + order] } else { 0.0 })
     }
 }
 

@@ -2,8 +2,7 @@
 
 use hardpoint::Solution;
 use hardpoint::joint::Quantity;
-use hardpoint::measure::OutputSource;
-use hardpoint::model::{Model, VariableId};
+use hardpoint::model::{Dimension, Model, OutputSource, VariableId};
 use hardpoint::motion::StopKind;
 use hardpoint::study::natural_step;
 use hardpoint::topology::Topology;
@@ -234,7 +233,9 @@ fn rankings(model: &Model, units: Units, solution: &Solution) -> Vec<Ranking> {
         if !matches!(output.source, OutputSource::Measure(_)) || model.variables.is_empty() {
             continue;
         }
-        for (order, name) in ["value", "rate", "acceleration"].into_iter().enumerate() {
+        for (order, name) in
+            ["value", "rate", "acceleration"].into_iter().enumerate().take(output.known.orders)
+        {
             let mut largest = Vec::new();
             for (b, variable) in model.variables.iter().enumerate() {
                 if solution.motion.is_empty() || solution.sensitivities.at(0, b).is_none() {
@@ -243,15 +244,15 @@ fn rankings(model: &Model, units: Units, solution: &Solution) -> Vec<Ranking> {
                 let unit = variable_unit(model, units, variable);
                 let d = |k: usize| measured.d(k, VariableId(b), m)[order];
                 let most = (0..measured.len()).map(|k| d(k).abs()).fold(0.0, f64::max);
-                if most <= round_off.of(b, output.quantity, order) {
+                if most <= round_off.of(b, output.dimension, order) {
                     continue;
                 }
                 // Of the periods of a motion the first, whatever its last digits.
                 let k = (0..measured.len()).find(|&k| d(k).abs() >= most * (1.0 - 1e-9)).unwrap_or(0);
                 largest.push(Ranked {
                     variable: variable.name.clone(),
-                    value: units.derivative_from_si(output.quantity, variable.quantity, d(k)),
-                    unit: per(&order_unit(units, output.quantity, order), &unit),
+                    value: units.derivative_from_si(output.dimension, variable.quantity, d(k)),
+                    unit: per(&order_unit(units, output.dimension, order), &unit),
                     per: unit,
                     time: solution.motion.times[k],
                 });
@@ -295,8 +296,9 @@ impl RoundOff {
     }
 
     /// For a quantity's derivative by variable b, SI.
-    pub fn of(&self, b: usize, quantity: Quantity, order: usize) -> f64 {
-        let unit = if quantity == Quantity::Length { self.size } else { 1.0 };
-        NOTHING * self.magnitude[order] * unit / self.natural[b]
+    pub fn of(&self, b: usize, of: impl Into<Dimension>, order: usize) -> f64 {
+        let of: Dimension = of.into();
+        let order = (order as i8 - of.time).clamp(0, 2) as usize;
+        NOTHING * self.magnitude[order] * self.size.powi(of.length.into()) / self.natural[b]
     }
 }

@@ -7,16 +7,16 @@ use std::io::Write;
 
 use csv::WriterBuilder;
 use hardpoint::Solution;
-use hardpoint::measure::OutputSource;
-use hardpoint::model::{Model, VariableId};
+use hardpoint::model::{Model, OutputSource, VariableId};
 use hardpoint::study::WhatIf;
 use hardpoint::topology::Topology;
 use hardpoint_file::{ModelFile, Units};
 use serde::Serialize;
 
 use crate::GENERATOR;
+use crate::csv::numbers;
 use crate::facts::variable_unit;
-use crate::figures::{names, number, per, rounded, symbol, with_unit};
+use crate::figures::{names, number, per, rounded, unit, with_unit};
 use crate::margin::MarginFact;
 use crate::page::Table;
 
@@ -65,8 +65,9 @@ pub struct MeasureFact {
     pub change: Option<f64>,
     /// Time of that, s.
     pub time: Option<f64>,
-    /// Largest error of the first-order prediction, and of the second-order one.
-    pub errors: Option<[f64; 2]>,
+    /// Largest error of the first-order prediction, and of the second-order one; `null` where that is not known, as of a
+    /// velocity.
+    pub errors: Option<[Option<f64>; 2]>,
     /// How many times this change could be made before the second-order part is 5 % of the first-order one; `null` where
     /// nothing bends, or nothing changes to first order.
     pub linear_up_to: Option<f64>,
@@ -126,22 +127,24 @@ impl WhatIfFacts {
             times: what_if.today.motion.times[..what_if.len()].to_vec(),
         };
         for (m, output) in measured.outputs.iter().enumerate() {
-            let shown = |x: f64| units.from_si(output.quantity, x);
+            let shown = |x: f64| units.from_si(output.dimension, x);
             let foresight = what_if.foresight(m);
             let steps = || 0..what_if.len();
             let foreseen = |order: usize| match foresight {
-                Some(_) => steps().map(|k| shown(what_if.foreseen(k, m)[order])).collect(),
-                None => Vec::new(),
+                Some(f) if f.errors[order].is_some() => {
+                    steps().map(|k| shown(what_if.foreseen(k, m)[order])).collect()
+                }
+                _ => Vec::new(),
             };
             let change = (0..what_if.len())
                 .map(|k| (what_if.exact(k, m) - measured.value(k, m)[0], k))
                 .max_by(|a, b| a.0.abs().total_cmp(&b.0.abs()));
             facts.measures.push(MeasureFact {
                 measure: output.name.clone(),
-                unit: symbol(units, output.quantity).into(),
+                unit: unit(units, output.dimension),
                 change: change.map(|(x, _)| shown(x)),
                 time: change.map(|(_, k)| what_if.today.motion.times[k]),
-                errors: foresight.map(|f| f.errors.map(shown)),
+                errors: foresight.map(|f| f.errors.map(|e| e.map(shown))),
                 linear_up_to: foresight.and_then(|f| f.linear_up_to).filter(|x| x.is_finite()),
                 today: steps().map(|k| shown(measured.value(k, m)[0])).collect(),
                 first: foreseen(0),
@@ -189,8 +192,8 @@ impl WhatIfFacts {
                 range(&m.exact),
                 some(m.change, ""),
                 m.time.map_or("-".into(), |t| format!("{} s", number(t))),
-                some(m.errors.map(|e| e[0]), ""),
-                some(m.errors.map(|e| e[1]), ""),
+                some(m.errors.and_then(|e| e[0]), ""),
+                some(m.errors.and_then(|e| e[1]), ""),
                 m.linear_up_to.map_or("-".into(), |x| format!("{} x", rounded(x, 2))),
             ]
         };
@@ -263,20 +266,16 @@ impl WhatIfFacts {
     pub fn write_csv(&self, out: impl Write) -> csv::Result<()> {
         let mut header = vec!["t [s]".to_owned()];
         for m in &self.measures {
-            let curves = if m.first.is_empty() { &["today", "exact"][..] } else { &CURVES };
-            header.extend(curves.iter().map(|c| format!("{} {c} [{}]", m.measure, m.unit)));
+            header.extend(m.curves().map(|(name, _)| format!("{} {name} [{}]", m.measure, m.unit)));
         }
         let mut writer = WriterBuilder::new().has_headers(false).from_writer(out);
         writer.write_record(&header)?;
         for (k, t) in self.times.iter().enumerate() {
             let mut row = vec![*t];
             for m in &self.measures {
-                row.push(m.today[k]);
-                row.extend(m.first.get(k));
-                row.extend(m.second.get(k));
-                row.push(m.exact[k]);
+                row.extend(m.curves().map(|(_, curve)| curve[k]));
             }
-            writer.serialize(row)?;
+            writer.serialize(numbers(&row))?;
         }
         writer.flush()?;
         Ok(())
@@ -288,6 +287,14 @@ impl WhatIfFacts {
     /// If a curve cannot be drawn.
     pub fn html(&self, over: Option<&str>, wanted: &dyn Fn(&str) -> bool) -> Result<String, String> {
         draw::html(self, over, wanted)
+    }
+}
+
+impl MeasureFact {
+    /// Its curves, as far as they are known.
+    fn curves(&self) -> impl Iterator<Item = (&'static str, &[f64])> {
+        let all = [&self.today, &self.first, &self.second, &self.exact].map(Vec::as_slice);
+        CURVES.into_iter().zip(all).filter(|(_, curve)| !curve.is_empty())
     }
 }
 
@@ -323,17 +330,18 @@ fn influence(model: &Model, units: Units, today: &Solution) -> Vec<InfluenceFact
                 continue;
             }
             let at = |k: &usize| measured.d(*k, VariableId(v), m)[0];
-            let k = (0..measured.len()).max_by(|a, b| at(a).abs().total_cmp(&at(b).abs())).unwrap_or(0);
+            let known = (0..measured.len()).filter(|k| at(k).is_finite());
+            let Some(k) = known.max_by(|a, b| at(a).abs().total_cmp(&at(b).abs())) else { continue };
             let by = variable_unit(model, units, variable);
             facts.push(InfluenceFact {
                 measure: output.name.clone(),
                 variable: variable.name.clone(),
-                largest: units.derivative_from_si(output.quantity, variable.quantity, at(&k)),
+                largest: units.derivative_from_si(output.dimension, variable.quantity, at(&k)),
                 time: today.motion.times[k],
-                unit: per(symbol(units, output.quantity), &by),
+                unit: per(&unit(units, output.dimension), &by),
                 per: by,
-                of: symbol(units, output.quantity).into(),
-                typical: variable.typical.map(|t| units.from_si(output.quantity, t * at(&k))),
+                of: unit(units, output.dimension),
+                typical: variable.typical.map(|t| units.from_si(output.dimension, t * at(&k))),
             });
         }
         let strongest = facts[first..].iter().map(|i| i.largest.abs()).fold(0.0, f64::max);

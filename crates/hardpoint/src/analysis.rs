@@ -8,7 +8,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use fearless_simd::{Level, dispatch};
 
 use crate::law::Law;
-use crate::measure::{self, Measured};
+use crate::measure::{self, Measured, SlopeValues, Slopes};
 use crate::model::{BodyId, Effects, Field, GROUND, Geometry, Model, VariableId};
 use crate::motion::abreast::Abreast;
 use crate::motion::margin::Margins;
@@ -236,8 +236,8 @@ impl<'m> Analysis<'m> {
         progress: &mut dyn FnMut(Progress) -> ControlFlow<()>,
         solution: &mut Solution,
     ) {
-        dispatch!(Level::new(), simd => self.solve_in(design, progress, solution, lanes(simd)));
-        self.measure(design, solution);
+        let slopes = dispatch!(Level::new(), simd => self.solve_in(design, progress, solution, lanes(simd)));
+        self.measure(design, &slopes, solution);
     }
 
     fn solve_in<T: Real>(
@@ -246,7 +246,7 @@ impl<'m> Analysis<'m> {
         progress: &mut dyn FnMut(Progress) -> ControlFlow<()>,
         solution: &mut Solution,
         witness: T,
-    ) {
+    ) -> SlopeValues {
         let mut walk = Walk::new(self, design, vec![true; self.model.bodies.len()], witness);
         let room = std::mem::take(&mut solution.sensitivities);
         let mut sensitivities = match &walk.sensing {
@@ -258,20 +258,34 @@ impl<'m> Analysis<'m> {
         let mut store =
             Store { motion: &mut solution.motion, sensitivities: &mut sensitivities.states, variables };
         let mut margins = (Margins::new(&self.topology, 0.0), Margins::new(&self.topology, witness));
-        solution.stop = walk.all(self, &mut store, progress, |store, solved, count| match solved {
-            Solved::One(one) => {
-                store.motion.coordinates.extend(one.coordinates());
-                if self.measures {
-                    store.motion.margins.push(margins.0.at(&one.topology, &one.state)[0]);
+        let sensitive = !design.fields.is_empty();
+        let mut one_slopes = self.measures.then(|| self.slopes(design, sensitive, 0.0)).flatten();
+        let mut all_slopes = self.measures.then(|| self.slopes(design, sensitive, witness)).flatten();
+        let (mut slopes, mut done) = (SlopeValues::default(), 0);
+        solution.stop = walk.all(self, &mut store, progress, |store, solved, count| {
+            let times = &self.model.times[done..done + count];
+            done += count;
+            match solved {
+                Solved::One(one) => {
+                    if let Some(found) = &mut one_slopes {
+                        found.add(one, times, &mut slopes);
+                    }
+                    store.motion.coordinates.extend(one.coordinates());
+                    if self.measures {
+                        store.motion.margins.push(margins.0.at(&one.topology, &one.state)[0]);
+                    }
                 }
-            }
-            Solved::Abreast(all) => {
-                for lane in 0..count {
-                    store.motion.coordinates.extend(all.state.q.iter().map(|q| q.lane(lane)));
-                }
-                if self.measures {
-                    let margins = margins.1.at(&all.topology, &all.state);
-                    store.motion.margins.extend_from_slice(&margins[..count]);
+                Solved::Abreast(all) => {
+                    if let Some(found) = &mut all_slopes {
+                        found.add(all, times, &mut slopes);
+                    }
+                    for lane in 0..count {
+                        store.motion.coordinates.extend(all.state.q.iter().map(|q| q.lane(lane)));
+                    }
+                    if self.measures {
+                        let margins = margins.1.at(&all.topology, &all.state);
+                        store.motion.margins.extend_from_slice(&margins[..count]);
+                    }
                 }
             }
         });
@@ -284,6 +298,12 @@ impl<'m> Analysis<'m> {
         sensitivities.admissibility =
             walk.sensing.map_or_else(Vec::new, |s| s.admissibility(self.opens(), steps));
         solution.sensitivities = sensitivities;
+        slopes
+    }
+
+    /// What evaluates the measures that go by a driver, if there are any.
+    fn slopes<T: Real>(&self, design: &Design, sensitive: bool, witness: T) -> Option<Slopes<'_, T>> {
+        Slopes::new(&self.effects, &self.topology, &design.values, sensitive, witness)
     }
 
     /// The stop of a run that was told to end after time t.
@@ -318,13 +338,13 @@ impl<'m> Analysis<'m> {
         motion.assembly = None;
     }
 
-    fn measure(&self, design: &Design, solution: &mut Solution) {
+    fn measure(&self, design: &Design, slopes: &SlopeValues, solution: &mut Solution) {
         solution.measured = Measured::default();
         if self.measures {
             let Design { values, laws, .. } = design;
             let at = measure::At { model: self.model, effects: &self.effects, values, laws };
             solution.measured =
-                measure::evaluate(&at, &self.topology, &solution.motion, &solution.sensitivities);
+                measure::evaluate(&at, &self.topology, &solution.motion, &solution.sensitivities, slopes);
         }
     }
 
@@ -418,7 +438,10 @@ impl<'m> Analysis<'m> {
 
     /// Motions of up to as many designs as there are lanes, side by side.
     fn solve_designs(&self, designs: &[Vec<f64>], solutions: &mut [Solution]) {
+        // What goes by a driver asks for more than positions, which only a single run keeps.
+        let by_driver = self.measures && (0..self.model.measures.len()).any(|k| self.model.goes_by_driver(k));
         let side_by_side = designs.len() > 1
+            && !by_driver
             && {
                 let mut coordinates = Vec::with_capacity(designs.len());
                 let mut stores = Vec::with_capacity(designs.len());
@@ -448,7 +471,7 @@ impl<'m> Analysis<'m> {
             if !side_by_side {
                 self.solve(&self.design(design, false), &mut |_| ControlFlow::Continue(()), solution);
             } else if self.measures {
-                self.measure(&self.design(design, false), solution);
+                self.measure(&self.design(design, false), &SlopeValues::default(), solution);
             } else {
                 solution.measured = Measured::default();
             }

@@ -1,11 +1,14 @@
 //! What is wanted: points to follow, measures, output times.
 
-use hardpoint::model::{MeasureDraft, MeasureKindDraft, Place, PointDraft, PointRef, Section, WheelMeasure};
+use hardpoint::model::{
+    AngleKindDraft, AxleMeasure, Line, MeasureDraft, MeasureKindDraft, Place, PointDraft, PointRef, RayDraft,
+    Section, WheelMeasure,
+};
 use hardpoint::space::Vec3;
 
 use super::Raw;
 use crate::places::EntryPlace;
-use crate::tree::{Field, Fields, Key, Reader};
+use crate::tree::{Field, Fields, Key, Reader, Value};
 
 /// More output times than this are surely a slip.
 const MOST_TIMES: usize = 1_000_000;
@@ -14,7 +17,37 @@ const TIME: &[Key] = &[("start", "0"), ("end", "1.0"), ("steps", "100"), ("at", 
 const COORDINATE: &[Key] = &[("type", "\"coordinate\""), ("joint", "\"J1\""), ("coordinate", "\"angle\"")];
 const DISTANCE: &[Key] = &[("type", "\"distance\""), ("from", "\"P\""), ("to", "\"Q\"")];
 const POSITION: &[Key] = &[("type", "\"position\""), ("point", "\"P\""), ("along", "\"z\"")];
+const ANGLE: &[Key] = &[
+    ("type", "\"angle\""),
+    ("from", "[\"P\", \"Q\"]"),
+    ("to", "{ body = \"rocker\", axis = \"x\" }"),
+    ("about", "\"z\""),
+];
+const TRANSMISSION: &[Key] =
+    &[("type", "\"transmission_angle\""), ("from", "[\"P\", \"Q\"]"), ("to", "[\"Q\", \"R\"]")];
+const RAY: &[Key] = &[("body", "\"rocker\""), ("axis", "\"x\"")];
+const VELOCITY: &[Key] = &[("type", "\"velocity\""), ("point", "\"P\""), ("along", "\"x\"")];
+const CURVATURE: &[Key] = &[("type", "\"curvature\""), ("point", "\"P\""), ("about", "\"z\"")];
+const RATE: &[Key] = &[("type", "\"rate\""), ("of", "\"toe\"")];
+const SLOPE: &[Key] =
+    &[("type", "\"slope\""), ("of", "\"spring\""), ("over", "\"P.z\""), ("driver", "\"bump\"")];
+const EXPRESSION: &[Key] = &[("type", "\"expression\""), ("expression", "\"left.toe + right.toe\"")];
+const AXLE: &[Key] = &[("type", "\"track\""), ("axle", "\"front\"")];
 const WHEEL: &[Key] = &[("type", "\"caster\""), ("wheel", "\"front_left\"")];
+/// Types of measures but for those of wheels and axles.
+const OWN: [&str; 11] = [
+    "coordinate",
+    "distance",
+    "position",
+    "angle",
+    "transmission_angle",
+    "velocity",
+    "acceleration",
+    "curvature",
+    "rate",
+    "slope",
+    "expression",
+];
 const TOE: &[Key] =
     &[("type", "\"toe\""), ("wheel", "\"front_left\""), ("body", "\"knuckle\""), ("spin_axis", "[0, 1, 0]")];
 const MEASURE: &[Key] = &[("type", "\"coordinate\"")];
@@ -38,14 +71,23 @@ impl Reader<'_> {
 
     pub(super) fn measures(&mut self, model: &Fields<'_>, raw: &mut Raw) {
         let of_wheels = WheelMeasure::ALL.iter().map(|m| m.name());
-        let types: Vec<_> = ["coordinate", "distance", "position"].into_iter().chain(of_wheels).collect();
+        let of_axles = AxleMeasure::ALL.iter().map(|m| m.name());
+        let types: Vec<_> = OWN.into_iter().chain(of_wheels).chain(of_axles).collect();
         for entry in self.entries(model, "measures", "measure") {
             let Some(kind) = self.entry_type("measure", &entry, &types, MEASURE) else { continue };
             let keys = match kind {
                 "coordinate" => COORDINATE,
                 "distance" => DISTANCE,
                 "position" => POSITION,
+                "angle" => ANGLE,
+                "transmission_angle" => TRANSMISSION,
+                "velocity" | "acceleration" => VELOCITY,
+                "curvature" => CURVATURE,
+                "rate" => RATE,
+                "slope" => SLOPE,
+                "expression" => EXPRESSION,
                 "toe" | "camber" => TOE,
+                _ if AxleMeasure::named(kind).is_some() => AXLE,
                 _ => WHEEL,
             };
             let fields = self.entry("measure", &entry, keys);
@@ -80,6 +122,61 @@ impl Reader<'_> {
                     self.need(fields, "along").and_then(|f| self.vector(f.value, &fields.subject("along")));
                 Some(MeasureKindDraft::Coordinates { point: point?, along: along? })
             }
+            "angle" | "transmission_angle" => {
+                let [from, to] =
+                    ["from", "to"].map(|key| self.need(fields, key).and_then(|f| self.ray(fields, f, place)));
+                let about = match fields.get("about") {
+                    Some(f) => Some(self.vector(f.value, &fields.subject("about"))?),
+                    None => None,
+                };
+                let kind = match (kind, about) {
+                    ("angle", Some(about)) => AngleKindDraft::About(about),
+                    ("angle", None) => AngleKindDraft::Between,
+                    _ => AngleKindDraft::Lines,
+                };
+                Some(MeasureKindDraft::Angle { between: [from?, to?], kind })
+            }
+            "velocity" | "acceleration" => {
+                let point = self.need(fields, "point").and_then(|f| self.point_ref(fields, f));
+                let along = match fields.get("along") {
+                    Some(f) => Some(self.vector(f.value, &fields.subject("along"))?),
+                    None => None,
+                };
+                let order = if kind == "velocity" { 1 } else { 2 };
+                Some(MeasureKindDraft::Velocity { point: point?, along, order })
+            }
+            "curvature" => {
+                let point = self.need(fields, "point").and_then(|f| self.point_ref(fields, f));
+                let about = match fields.get("about") {
+                    Some(f) => Some(self.vector(f.value, &fields.subject("about"))?),
+                    None => None,
+                };
+                Some(MeasureKindDraft::Curvature { point: point?, about })
+            }
+            "rate" => {
+                let of = self.named(fields, "of", "the name of a measure", place);
+                Some(MeasureKindDraft::Rate { of: of? })
+            }
+            "slope" => {
+                let [of, over] =
+                    ["of", "over"].map(|key| self.named(fields, key, "the name of a measure", place));
+                let driver = self.optional_name(fields, "driver", "the name of a driver", place);
+                Some(MeasureKindDraft::Slope { of: of?, over: over?, driver })
+            }
+            "expression" => {
+                let f = self.need(fields, "expression")?;
+                let subject = fields.subject("expression");
+                if f.value.get_ref().as_str().is_none() {
+                    self.wrong(f.value, &subject, "an expression in quotes");
+                }
+                let expression = self.expression(f.value, &subject)?;
+                Some(MeasureKindDraft::Combination { expression })
+            }
+            _ if AxleMeasure::named(kind).is_some() => {
+                let axle = self.named(fields, "axle", "the name of an axle", place);
+                let what = AxleMeasure::named(kind).expect("just found");
+                Some(MeasureKindDraft::Axle { axle: axle?, what })
+            }
             "toe" | "camber" if fields.get("body").is_some() || fields.get("spin_axis").is_some() => {
                 self.out_of_place(fields, "wheel", "`body` and `spin_axis` say of which wheel already");
                 let body = self.named(fields, "body", "the name of a body", place);
@@ -94,6 +191,29 @@ impl Reader<'_> {
                 let wheel = self.named(fields, "wheel", "the name of a wheel", place);
                 let what = WheelMeasure::named(kind).expect("the other types are those of wheels");
                 Some(MeasureKindDraft::Wheel { wheel: wheel?, what })
+            }
+        }
+    }
+
+    /// A direction to measure an angle from or to: `["P", "Q"]`, a global vector, or `{ body = ..., axis = ... }`.
+    fn ray(&mut self, fields: &Fields<'_>, f: Field<'_>, place: &mut EntryPlace) -> Option<RayDraft> {
+        let subject = fields.subject(f.key);
+        if let Some(table) = f.value.get_ref().as_table() {
+            let fields = self.fields(subject.name.clone(), f.value.span(), table, RAY);
+            let body = self.required(&fields, "body", "the name of a body");
+            let axis = self.need(&fields, "axis").and_then(|f| self.line_of(&fields, f, place));
+            return Some(RayDraft::Fixed { body: body?, axis: axis? });
+        }
+        let is_number =
+            |v: &Value<'_>| v.get_ref().as_integer().is_some() || v.get_ref().as_float().is_some();
+        match f.value.get_ref().as_array() {
+            Some(list) if list.len() == 2 && !list.iter().any(is_number) => {
+                let [a, b] = [0, 1].map(|k| self.point_ref(fields, Field { value: &list[k], ..f }));
+                Some(RayDraft::Between([a?, b?]))
+            }
+            _ => {
+                let axis = self.vector(f.value, &subject)?;
+                Some(RayDraft::Fixed { body: "ground".into(), axis: Line::Along(axis) })
             }
         }
     }

@@ -1,8 +1,8 @@
-//! Road wheels, and the measures that they list.
+//! The vehicle, its road wheels and axles, and the measures that they list.
 
 use hardpoint::model::{
-    Line, MeasureDraft, MeasureKindDraft, Place, PointRef, Section, Side, WheelDraft, WheelMeasure,
-    WheelSpinDraft,
+    AxleDraft, AxleMeasure, Line, MeasureDraft, MeasureKindDraft, Place, PointRef, Section, Side, Vehicle,
+    VehicleEnd, WheelDraft, WheelMeasure, WheelNeed, WheelSpinDraft,
 };
 use hardpoint::space::Vec3;
 
@@ -19,11 +19,69 @@ const WHEEL: &[Key] = &[
     ("radius", "310"),
     ("side", "\"left\""),
     ("kingpin", "[\"lower_ball\", { body = \"ground\", at = \"strut_top\" }]"),
+    ("bump", "\"jounce\""),
+    ("end", "\"front\""),
     ("measures", "[\"toe\", \"camber\"]"),
 ];
+const VEHICLE: &[Key] = &[
+    ("wheelbase", "2600"),
+    ("centre_of_gravity", "550"),
+    ("front_brake_share", "0.65"),
+    ("front_drive_share", "0"),
+];
+const AXLE: &[Key] =
+    &[("left", "\"front_left\""), ("right", "\"front_right\""), ("measures", "[\"track\", \"ackermann\"]")];
 const SIDES: [Side; 2] = [Side::Left, Side::Right];
+const ENDS: [VehicleEnd; 2] = [VehicleEnd::Front, VehicleEnd::Rear];
 
 impl Reader<'_> {
+    pub(super) fn vehicle(&mut self, model: &Fields<'_>, raw: &mut Raw) {
+        let Some(f) = model.get("vehicle") else { return };
+        let Some(table) =
+            self.table(f.value, &model.subject("vehicle"), "a table with `wheelbase` and others")
+        else {
+            return;
+        };
+        let fields = self.fields("`vehicle`", f.value.span(), table, VEHICLE);
+        raw.places.push(Section::Vehicle, EntryPlace::of(&fields));
+        let mut number = |key: &str| fields.get(key).and_then(|f| self.number(f.value, &fields.subject(key)));
+        let [wheelbase, height, front_brake_share, front_drive_share] =
+            ["wheelbase", "centre_of_gravity", "front_brake_share", "front_drive_share"].map(&mut number);
+        raw.draft.vehicle = Vehicle {
+            wheelbase: wheelbase.map(|x| self.units.length.metres(x)),
+            centre_of_gravity: height.map(|x| self.units.length.metres(x)),
+            front_brake_share,
+            front_drive_share,
+        };
+    }
+
+    /// Axles, and their measures behind those of the wheels.
+    pub(super) fn axles(&mut self, model: &Fields<'_>, raw: &mut Raw) {
+        for entry in self.entries(model, "axles", "axle") {
+            let fields = self.entry("axle", &entry, AXLE);
+            let mut place = EntryPlace::of(&fields);
+            let [left, right] =
+                ["left", "right"].map(|key| self.named(&fields, key, "the name of a wheel", &mut place));
+            raw.places.push(Section::Axles, place);
+            let has_wheelbase = raw.draft.vehicle.wheelbase.is_some();
+            let moves = [&left, &right].iter().all(|name| {
+                let wheel = raw.draft.wheels.iter().find(|w| Some(&w.name) == name.as_ref());
+                wheel.is_some_and(|w| w.bump.is_some())
+            });
+            let possible =
+                |m: &AxleMeasure| (has_wheelbase || !m.needs_wheelbase()) && (moves || !m.goes_by_driver());
+            let possible: Vec<_> = AxleMeasure::ALL.iter().copied().filter(possible).collect();
+            let measures = self.listed(&fields, AxleMeasure::ALL, &possible, AxleMeasure::name);
+            for (what, at) in measures {
+                raw.places.push(Section::Measures, EntryPlace::at(at));
+                let kind = MeasureKindDraft::Axle { axle: entry.0.clone(), what };
+                raw.draft.measures.push(MeasureDraft { name: format!("{}.{}", entry.0, what.name()), kind });
+            }
+            let (left, right) = (left.unwrap_or_default(), right.unwrap_or_default());
+            raw.draft.axles.push(AxleDraft { name: entry.0, left, right });
+        }
+    }
+
     /// Wheels, and their measures behind those of the model.
     pub(super) fn wheels(&mut self, model: &Fields<'_>, raw: &mut Raw) {
         for entry in self.entries(model, "wheels", "wheel") {
@@ -35,13 +93,16 @@ impl Reader<'_> {
             place.items("centre", Vec::new());
             let spin = self.spin(&fields, &mut place);
             let radius = self.needed_number(&fields, "radius").map(|r| self.units.length.metres(r));
-            let side = fields.get("side").map(|f| self.side(&fields, f));
+            let side = fields.get("side").map(|f| self.one_of(&fields, f, SIDES, Side::name));
+            let end = fields.get("end").map(|f| self.one_of(&fields, f, ENDS, VehicleEnd::name));
+            let bump = self.optional_name(&fields, "bump", "the name of a driver", &mut place);
             let kingpin = fields.get("kingpin").map(|f| self.kingpin(&fields, f));
             for (key, lost) in [
                 ("centre", centre.is_none()),
                 ("spin_axis", spin.is_none()),
                 ("radius", radius.is_none()),
                 ("side", side == Some(None)),
+                ("end", end == Some(None)),
                 ("kingpin", kingpin == Some(None)),
             ] {
                 if lost {
@@ -58,6 +119,8 @@ impl Reader<'_> {
                 radius: radius.unwrap_or(1.0),
                 side: side.flatten(),
                 kingpin: kingpin.flatten(),
+                bump,
+                end: end.flatten(),
             });
         }
     }
@@ -87,11 +150,17 @@ impl Reader<'_> {
         Some(WheelSpinDraft::Angles { toe: toe?, camber: camber? })
     }
 
-    fn side(&mut self, fields: &Fields<'_>, f: Field<'_>) -> Option<Side> {
-        let subject = fields.subject("side");
-        let names = SIDES.map(Side::name);
-        let word = self.name(f.value, &subject, "`\"left\"` or `\"right\"`")?;
-        let found = SIDES.into_iter().find(|s| s.name() == word);
+    fn one_of<T: Copy>(
+        &mut self,
+        fields: &Fields<'_>,
+        f: Field<'_>,
+        all: [T; 2],
+        name: fn(T) -> &'static str,
+    ) -> Option<T> {
+        let subject = fields.subject(f.key);
+        let names = all.map(name);
+        let word = self.name(f.value, &subject, &format!("`\"{}\"` or `\"{}\"`", names[0], names[1]))?;
+        let found = all.into_iter().find(|x| name(*x) == word);
         if found.is_none() {
             self.unknown_word(f.value.span(), &subject, &word, &names);
         }
@@ -113,32 +182,52 @@ impl Reader<'_> {
 
     /// The measures that a wheel lists: `NAME.toe` and so on.
     fn measures_of(&mut self, wheel: &str, fields: &Fields<'_>, raw: &mut Raw) {
-        let Some(f) = fields.get("measures") else { return };
-        let mut add = |what: WheelMeasure, at| {
+        let has = |key: &str| fields.get(key).is_some();
+        let end = fields.get("end").and_then(|f| f.value.get_ref().as_str());
+        let vehicle = &raw.draft.vehicle;
+        let stands = has("bump") && vehicle.wheelbase.is_some() && vehicle.centre_of_gravity.is_some();
+        let possible = |m: &WheelMeasure| match m.needs() {
+            WheelNeed::Nothing => true,
+            WheelNeed::Kingpin => has("kingpin"),
+            WheelNeed::Bump => has("bump"),
+            WheelNeed::Braking(at) => stands && end == Some(at.name()) && vehicle.front_brake_share.is_some(),
+            WheelNeed::Driving(at) => stands && end == Some(at.name()) && vehicle.front_drive_share.is_some(),
+        };
+        let possible: Vec<_> = WheelMeasure::ALL.iter().copied().filter(possible).collect();
+        for (what, at) in self.listed(fields, WheelMeasure::ALL, &possible, WheelMeasure::name) {
             raw.places.push(Section::Measures, EntryPlace::at(at));
             raw.draft.measures.push(MeasureDraft {
                 name: format!("{wheel}.{}", what.name()),
                 kind: MeasureKindDraft::Wheel { wheel: wheel.to_owned(), what },
             });
-        };
+        }
+    }
+
+    /// The measures listed under `measures`, and where: those named, or all that are possible.
+    fn listed<T: Copy>(
+        &mut self,
+        fields: &Fields<'_>,
+        all: &[T],
+        possible: &[T],
+        name: fn(T) -> &'static str,
+    ) -> Vec<(T, std::ops::Range<usize>)> {
+        let Some(f) = fields.get("measures") else { return Vec::new() };
         let subject = fields.subject("measures");
         if f.value.get_ref().as_str() == Some("all") {
-            let steers = fields.get("kingpin").is_some();
-            let possible = WheelMeasure::ALL.iter().filter(|m| steers || !m.needs_kingpin());
-            possible.for_each(|m| add(*m, f.value.span()));
-            return;
+            return possible.iter().map(|m| (*m, f.value.span())).collect();
         }
         let expected = "`\"all\"` or a list of measures' names";
-        let Some(list) = self.list(f.value, &subject, expected) else { return };
-        for value in list {
+        let mut found = Vec::new();
+        for value in self.list(f.value, &subject, expected).into_iter().flatten() {
             let Some(word) = self.name(value, &subject, "the name of a measure") else { continue };
-            match WheelMeasure::named(&word) {
-                Some(what) => add(what, value.span()),
+            match all.iter().find(|m| name(**m) == word) {
+                Some(what) => found.push((*what, value.span())),
                 None => {
-                    let names: Vec<_> = WheelMeasure::ALL.iter().map(|m| m.name()).collect();
+                    let names: Vec<_> = all.iter().map(|m| name(*m)).collect();
                     self.unknown_word(value.span(), &subject, &word, &names);
                 }
             }
         }
+        found
     }
 }

@@ -11,14 +11,15 @@ use hardpoint::Solution;
 use hardpoint::constraint::Row;
 use hardpoint::joint::{self, Quantity};
 use hardpoint::model::{
-    BodyId, Coupler, Direction, Driver, GROUND, Joint, JointId, MeasureKind, Model, PointId, VariableId,
+    AngleKind, BodyId, Coupler, Direction, Driver, GROUND, Joint, JointId, MeasureKind, Model, OutputSource,
+    PointId, Ray, VariableId,
 };
 use hardpoint::sensitivity::{self, JointDefect, admissibility_at_design};
 use hardpoint::topology::{Closure, CutReason, Formulation, Role, Topology};
 use hardpoint_file::{ModelFile, Units};
 use serde::Serialize;
 
-use crate::figures::{count, per, rounded, symbol};
+use crate::figures::{count, per, rounded, symbol, unit};
 
 pub use change::variable_unit;
 use change::{change_text, direction_text};
@@ -248,7 +249,7 @@ pub struct MeasureFact {
     /// What it measures.
     pub what: String,
     /// Its unit.
-    pub unit: &'static str,
+    pub unit: String,
 }
 
 impl Facts {
@@ -549,9 +550,23 @@ fn measures(model: &Model, units: Units) -> Vec<MeasureFact> {
             format!("spin axis from `{a}` to `{b}`")
         }
     };
-    let fact = |m: &hardpoint::model::Measure| MeasureFact {
+    let output = |source: &OutputSource| match source {
+        OutputSource::Measure(k) => format!("`{}`", model.measures[*k].name),
+        OutputSource::Point(p, axis) => format!("{}.{}", point(*p), ["x", "y", "z"][*axis]),
+    };
+    let ray = |ray: &Ray| match ray {
+        Ray::Between([a, b]) => format!("the line from {} to {}", point(*a), point(*b)),
+        Ray::Fixed { body, axis } => match axis {
+            Direction::Along(u) => format!("{} of `{}`", direction_text(*u), model.bodies[body.0].name),
+            Direction::Through(a, b) => {
+                let [a, b] = [a, b].map(|h| model.hardpoints[h.0].name.as_str());
+                format!("the line of `{}` from `{a}` to `{b}`", model.bodies[body.0].name)
+            }
+        },
+    };
+    let fact = |(k, m): (usize, &hardpoint::model::Measure)| MeasureFact {
         name: m.name.clone(),
-        unit: symbol(units, model.measured(m)),
+        unit: unit(units, model.dimension(OutputSource::Measure(k))),
         what: match &m.kind {
             MeasureKind::Coordinate { joint, coordinate } => {
                 let joint = &model.joints[joint.0];
@@ -570,9 +585,38 @@ fn measures(model: &Model, units: Units) -> Vec<MeasureFact> {
             MeasureKind::Wheel { wheel, what } => {
                 format!("{} of wheel `{}`", what.name().replace('_', " "), model.wheels[wheel.0].name)
             }
+            MeasureKind::Axle { axle, what } => {
+                format!("{} of axle `{}`", what.name().replace('_', " "), model.axles[axle.0].name)
+            }
+            MeasureKind::Angle { between: [from, to], kind } => {
+                let (from, to) = (ray(from), ray(to));
+                match kind {
+                    AngleKind::Between => format!("angle between {from} and {to}"),
+                    AngleKind::Lines => {
+                        format!("angle between the lines along {from} and {to}, at most 90 deg")
+                    }
+                    AngleKind::About(n) => format!("angle from {from} to {to} about {}", direction_text(*n)),
+                }
+            }
+            MeasureKind::Velocity { point: p, along, order } => {
+                let what = if *order == 1 { "velocity" } else { "acceleration" };
+                match along {
+                    Some(along) => format!("{what} of {} along {}", point(*p), direction_text(*along)),
+                    None => format!("magnitude of the {what} of {}", point(*p)),
+                }
+            }
+            MeasureKind::Curvature { point: p, .. } => format!("curvature of the path of {}", point(*p)),
+            MeasureKind::Rate { of } => format!("rate of {}", output(of)),
+            MeasureKind::Slope { of, over, driver } => format!(
+                "{} over {} while driver `{}` alone moves",
+                output(of),
+                output(over),
+                model.drivers[driver.0].name
+            ),
+            MeasureKind::Combination(formula) => formula.text().into(),
         },
     };
-    model.measures.iter().map(fact).collect()
+    model.measures.iter().enumerate().map(fact).collect()
 }
 
 fn joint_name(model: &Model, joint: JointId) -> String {

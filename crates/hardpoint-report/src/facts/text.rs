@@ -197,7 +197,7 @@ impl Facts {
 
     fn measure_table(&self) -> Option<Table> {
         let rows: Vec<Vec<String>> =
-            self.measures.iter().map(|m| vec![m.name.clone(), m.unit.into(), m.what.clone()]).collect();
+            self.measures.iter().map(|m| vec![m.name.clone(), m.unit.clone(), m.what.clone()]).collect();
         (!rows.is_empty()).then(|| table("Measures", "", ["measure", "unit", "what"], rows))
     }
 }

@@ -4,19 +4,20 @@
 //! the product and chain rules where it runs on [`Jet`]s.
 
 mod bodies;
+mod slope;
 mod wheel;
 
 use std::collections::BTreeMap;
 
 use bodies::{with_rates, with_sensitivity};
+pub(crate) use slope::{SlopeValues, Slopes};
 use wheel::{WheelAt, camber, toe};
 
 use crate::constraint::Row;
-use crate::joint::Quantity;
 use crate::law::Law;
 use crate::model::{
-    BodyId, DriverId, Effects, Fixed, JointId, Measure, MeasureKind, Model, PointId, Side, VariableId,
-    WheelId,
+    AngleKind, AxleMeasure, BodyId, Dimension, DriverId, Effects, Fixed, JointId, Known, MeasureKind, Model,
+    OutputSource, PointId, Ray, Side, VariableId, WheelId,
 };
 use crate::motion::Motion;
 use crate::sensitivity::Sensitivities;
@@ -29,18 +30,11 @@ pub struct Output {
     /// `toe` for a measure, `wheel_centre.z` for a point's component.
     pub name: String,
     /// What its value measures.
-    pub quantity: Quantity,
+    pub dimension: Dimension,
+    /// How much of it can be known.
+    pub known: Known,
     /// Where it comes from.
     pub source: OutputSource,
-}
-
-/// Where an output comes from.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum OutputSource {
-    /// A measure of the model.
-    Measure(usize),
-    /// Component 0, 1 or 2 of a point of the model.
-    Point(PointId, usize),
 }
 
 /// Measures and point components over a motion, with their sensitivities.
@@ -63,6 +57,9 @@ impl Measured {
     }
 
     /// Value, rate and acceleration of output m at time k.
+    ///
+    /// Those beyond [`Known::orders`] are NaN, and so is what has no number at that time: the curvature of a path where its
+    /// point rests, the instant centre of a body that does not turn.
     pub fn value(&self, k: usize, m: usize) -> [f64; 3] {
         self.values[k * self.outputs.len() + m]
     }
@@ -86,17 +83,19 @@ impl Measured {
 
 /// The columns that a model's measures and points give.
 pub fn outputs(model: &Model) -> Vec<Output> {
-    let measures = model.measures.iter().enumerate().map(|(k, m)| Output {
-        name: m.name.clone(),
-        quantity: model.measured(m),
-        source: OutputSource::Measure(k),
-    });
+    let output = |name: String, source| Output {
+        name,
+        dimension: model.dimension(source),
+        known: model.known(source),
+        source,
+    };
+    let measures = model.measures.iter().enumerate();
+    let measures = measures.map(|(k, m)| output(m.name.clone(), OutputSource::Measure(k)));
     let points = model.points.iter().enumerate().filter(|(_, p)| !p.unnamed).flat_map(|(k, p)| {
-        ["x", "y", "z"].into_iter().enumerate().map(move |(axis, letter)| Output {
-            name: format!("{}.{letter}", p.name),
-            quantity: Quantity::Length,
-            source: OutputSource::Point(PointId(k), axis),
-        })
+        let component = move |(axis, letter)| {
+            output(format!("{}.{letter}", p.name), OutputSource::Point(PointId(k), axis))
+        };
+        ["x", "y", "z"].into_iter().enumerate().map(component)
     });
     measures.chain(points).collect()
 }
@@ -117,6 +116,7 @@ pub(crate) fn evaluate(
     topology: &Topology,
     motion: &Motion,
     sensitivities: &Sensitivities,
+    slopes: &SlopeValues,
 ) -> Measured {
     let &At { model, effects, values, laws } = design;
     let outputs = outputs(model);
@@ -125,15 +125,35 @@ pub(crate) fn evaluate(
     let bodies = bodies_asked_for(model);
 
     let zero = Rates([0.0; 3]);
+    let known = |x: f64| Rates([x, f64::NAN, f64::NAN]);
     let lifted: Vec<Rates> = values.iter().map(|v| zero.like(*v)).collect();
     let fixed = effects.fixed(&lifted, zero);
     let mut poses = vec![Pose::IDENTITY.spread(zero); model.bodies.len()];
+    // Formulas are over angles that are counted through turns.
+    let counts = model.measures.iter().any(|m| matches!(m.kind, MeasureKind::Combination(_)));
+    let mut counted: Vec<f64> = Vec::new();
+    let mut given: Vec<Rates> = Vec::new();
     for k in 0..motion.len() {
         let first = measured.values.len();
         let states = motion.at(k);
         bodies.iter().for_each(|&b| poses[b] = with_rates(&states[b]));
-        Moment { model, fixed: &fixed, poses: &poses }.all(|x| measured.values.push(x.0));
+        given.clear();
+        given.extend(slopes.at(k).iter().map(|x| known(*x)));
+        let moment = Moment { slopes: &given, ..Moment::new(model, &fixed, &poses) };
+        moment.all(|x| measured.values.push(x.0.map(finite)));
+        let raw = counts.then(|| measured.values[first..].to_vec());
         unwrap_angles(laws, topology, motion, k, &turns, &mut measured.values, first);
+        if let Some(raw) = raw {
+            let now = counted.len();
+            let whole = |(m, x): (usize, &[f64; 3])| x[0] - raw[m][0];
+            counted.extend(measured.values[first..].iter().enumerate().map(whole).take(model.measures.len()));
+            for (m, measure) in model.measures.iter().enumerate() {
+                if matches!(measure.kind, MeasureKind::Combination(_)) {
+                    let moment = Moment { whole_turns: &counted[now..], ..moment };
+                    measured.values[first + m] = moment.measure(m).0.map(finite);
+                }
+            }
+        }
     }
 
     // Variable by variable, so that what is fixed in the bodies is worked out once for each.
@@ -141,6 +161,7 @@ pub(crate) fn evaluate(
     measured.d = vec![[f64::NAN; 3]; steps * variables * columns];
     let mut poses = vec![Pose::IDENTITY.spread(Dual::constant(zero)); model.bodies.len()];
     let mut lifted: Vec<Jet> = lifted.into_iter().map(Dual::constant).collect();
+    let mut given: Vec<Jet> = Vec::new();
     for b in 0..variables {
         lifted[b] = Dual::variable(lifted[b].v);
         let fixed = effects.fixed(&lifted, Dual::constant(zero));
@@ -149,15 +170,24 @@ pub(crate) fn evaluate(
             let Some(d) = sensitivities.at(k, b) else { break };
             let states = motion.at(k);
             bodies.iter().for_each(|&b| poses[b] = with_sensitivity(&states[b], &d[b]));
+            given.clear();
+            let both = slopes.at(k).iter().zip(slopes.d(k, b));
+            given.extend(both.map(|(x, d)| Dual { v: known(*x), d: known(*d) }));
+            let whole_turns = if counts { &counted[k * model.measures.len()..] } else { &[] };
             let mut at = (k * variables + b) * columns;
-            Moment { model, fixed: &fixed, poses: &poses }.all(|x| {
-                measured.d[at] = x.d.0;
+            Moment { slopes: &given, whole_turns, ..Moment::new(model, &fixed, &poses) }.all(|x| {
+                measured.d[at] = x.d.0.map(finite);
                 at += 1;
             });
         }
     }
     measured.outputs = outputs;
     measured
+}
+
+/// Where a formula has a pole, there is no number.
+fn finite(x: f64) -> f64 {
+    if x.is_finite() { x } else { f64::NAN }
 }
 
 /// What tells how many whole turns a joint's angle has made.
@@ -192,7 +222,7 @@ fn turns(model: &Model, topology: &Topology, outputs: &[Output]) -> Vec<Option<T
     let of_output = |output: &Output| {
         let OutputSource::Measure(index) = output.source else { return None };
         let MeasureKind::Coordinate { joint, coordinate } = model.measures[index].kind else { return None };
-        (output.quantity == Quantity::Angle).then(|| of_joint(joint, coordinate))
+        (output.dimension == Dimension::ANGLE).then(|| of_joint(joint, coordinate))
     };
     outputs.iter().map(of_output).collect()
 }
@@ -226,18 +256,28 @@ fn unwrap_angles(
 }
 
 /// Everything that a measure can ask for at one time, as numbers that carry whatever derivatives are wanted.
+#[derive(Clone, Copy)]
 pub(crate) struct Moment<'a, T> {
-    pub model: &'a Model,
-    pub fixed: &'a Fixed<T>,
+    model: &'a Model,
+    fixed: &'a Fixed<T>,
     /// Per body: where it is. Only those that measures name count.
-    pub poses: &'a [Pose<T>],
+    poses: &'a [Pose<T>],
+    /// Per measure: its value, where it goes by a driver; empty where these are not known.
+    slopes: &'a [T],
+    /// Per measure: the whole turns, rad, that its angle has made; empty where they are not counted.
+    whole_turns: &'a [f64],
 }
 
-impl<T: Real> Moment<'_, T> {
+impl<'a, T: Real> Moment<'a, T> {
+    /// Of bodies at these poses.
+    pub fn new(model: &'a Model, fixed: &'a Fixed<T>, poses: &'a [Pose<T>]) -> Self {
+        Self { model, fixed, poses, slopes: &[], whole_turns: &[] }
+    }
+
     /// All outputs, in the order of [`outputs`].
     pub fn all(&self, mut out: impl FnMut(T)) {
-        for (k, measure) in self.model.measures.iter().enumerate() {
-            out(self.measure(k, measure));
+        for k in 0..self.model.measures.len() {
+            out(self.measure(k));
         }
         for (k, _) in self.model.points.iter().enumerate().filter(|(_, p)| !p.unnamed) {
             let p = self.point(PointId(k));
@@ -247,49 +287,140 @@ impl<T: Real> Moment<'_, T> {
         }
     }
 
+    fn output(&self, output: OutputSource) -> T {
+        match output {
+            OutputSource::Measure(k) => self.measure(k),
+            OutputSource::Point(p, axis) => {
+                let Vec3 { x, y, z } = self.point(p);
+                [x, y, z][axis]
+            }
+        }
+    }
+
     fn point(&self, p: PointId) -> Vec3<T> {
         self.poses[self.model.points[p.0].body.0].point(self.fixed.points[p.0])
     }
 
     /// Formulas and signs: `docs/measures.md`.
-    fn measure(&self, k: usize, measure: &Measure) -> T {
-        match measure.kind {
-            MeasureKind::Coordinate { joint, coordinate } => self.coordinate(k, joint, coordinate),
-            MeasureKind::Distance { from, to } => (self.point(to) - self.point(from)).norm(),
+    fn measure(&self, k: usize) -> T {
+        let unknown = || self.poses[0].r.x.like(f64::NAN);
+        if self.model.goes_by_driver(k) {
+            return self.slopes.get(k).copied().unwrap_or_else(unknown);
+        }
+        match &self.model.measures[k].kind {
+            MeasureKind::Coordinate { joint, coordinate } => {
+                let wrapped = self.coordinate(k, *joint, *coordinate);
+                self.whole_turns.get(k).map_or(wrapped, |turns| wrapped + wrapped.like(*turns))
+            }
+            MeasureKind::Distance { from, to } => (self.point(*to) - self.point(*from)).norm(),
             MeasureKind::Coordinates { point, along } => {
-                let p = self.point(point);
+                let p = self.point(*point);
                 along.spread(p.x).dot(p)
             }
+            MeasureKind::Angle { between, kind } => self.angle(k, between, *kind),
+            MeasureKind::Velocity { point, along, order } => {
+                let velocity = self.point(*point).map(T::rate);
+                let v = if *order == 1 { velocity } else { velocity.map(T::rate) };
+                along.map_or_else(|| v.norm(), |along| along.spread(v.x).dot(v))
+            }
+            MeasureKind::Curvature { point, about } => {
+                let v = self.point(*point).map(T::rate);
+                let turn = v.cross(v.map(T::rate));
+                let speed = v.norm();
+                let turn = about.map_or_else(|| turn.norm(), |about| about.spread(speed).dot(turn));
+                turn / (speed * speed * speed)
+            }
+            MeasureKind::Rate { of } => self.output(*of).rate(),
+            MeasureKind::Combination(formula) => formula.at(unknown(), |source| self.output(source)),
             MeasureKind::Toe { body, .. } => {
-                let e = self.spin_axis(k, body);
+                let e = self.direction(k, 0, *body);
                 toe(e, e.x.like(Side::Left.sign()))
             }
-            MeasureKind::Camber { body, .. } => camber(self.spin_axis(k, body)),
+            MeasureKind::Camber { body, .. } => camber(self.direction(k, 0, *body)),
             MeasureKind::Wheel { wheel, what } => {
-                let now = self.wheel(k, wheel, |b| self.poses[b.0]);
-                now.measure(what, || {
-                    self.wheel(k, wheel, |b| self.model.bodies[b.0].frame.spread(now.radius))
-                })
+                let now = self.wheel(k, 0, *wheel);
+                now.measure(*what, || self.wheel_as_drawn(k, 0, *wheel))
+            }
+            MeasureKind::Axle { axle, what } => self.axle(k, self.model.axles[axle.0].wheels, *what),
+            MeasureKind::Slope { .. } => unknown(),
+        }
+    }
+
+    fn angle(&self, k: usize, between: &[Ray; 2], kind: AngleKind) -> T {
+        let ray = |end: usize| match between[end] {
+            Ray::Between([from, to]) => self.point(to) - self.point(from),
+            Ray::Fixed { body, .. } => self.direction(k, end, body),
+        };
+        let (a, b) = (ray(0), ray(1));
+        let (across, along) = (a.cross(b), a.dot(b));
+        match kind {
+            AngleKind::Between => across.norm().atan2(along),
+            AngleKind::Lines => across.norm().atan2(along.abs()),
+            AngleKind::About(n) => {
+                let n = n.spread(along);
+                n.dot(across).atan2(along - n.dot(a) * n.dot(b))
             }
         }
     }
 
-    /// The wheel of measure k, with its bodies at these poses.
-    fn wheel(&self, k: usize, wheel: WheelId, pose: impl Fn(BodyId) -> Pose<T>) -> WheelAt<T> {
+    /// Formulas and signs: `docs/measures.md`.
+    fn axle(&self, k: usize, wheels: [WheelId; 2], what: AxleMeasure) -> T {
+        let [left, right] = [0, 1].map(|side| self.wheel(k, side, wheels[side]));
+        let toe = |wheel: &WheelAt<T>| toe(wheel.spin_axis, wheel.side);
+        // Headings to the left: toe-in of a right wheel is one, of a left wheel the opposite.
+        let headings = || [-toe(&left), toe(&right)];
+        let wheelbase = || left.side.like(self.model.vehicle.wheelbase.unwrap_or(f64::NAN));
+        let track = left.contact().y - right.contact().y;
+        match what {
+            AxleMeasure::Track => track,
+            AxleMeasure::TotalToe => toe(&left) + toe(&right),
+            AxleMeasure::AckermannError => {
+                let [l, r] = headings();
+                r - right_by_ackermann(l, track / wheelbase())
+            }
+            AxleMeasure::Ackermann | AxleMeasure::TurningRadius if headings().iter().any(is_straight) => {
+                track.like(f64::NAN)
+            }
+            AxleMeasure::Ackermann => {
+                let [l, r] = headings();
+                (l - r) / (l - right_by_ackermann(l, track / wheelbase()))
+            }
+            AxleMeasure::TurningRadius => {
+                let least = headings().map(|x| x.sin_cos().0.abs());
+                // The outer wheel steers less.
+                wheelbase() / -(-least[0]).larger(-least[1])
+            }
+            AxleMeasure::RollCentreY | AxleMeasure::RollCentreHeight => track.like(f64::NAN),
+        }
+    }
+
+    /// The wheel whose spin axis is direction d of measure k.
+    fn wheel(&self, k: usize, d: usize, wheel: WheelId) -> WheelAt<T> {
+        self.wheel_at(k, d, wheel, |b| self.poses[b.0])
+    }
+
+    /// The same in the design configuration.
+    fn wheel_as_drawn(&self, k: usize, d: usize, wheel: WheelId) -> WheelAt<T> {
+        let witness = self.poses[0].r.x;
+        self.wheel_at(k, d, wheel, |b| self.model.bodies[b.0].frame.spread(witness))
+    }
+
+    fn wheel_at(&self, k: usize, d: usize, wheel: WheelId, pose: impl Fn(BodyId) -> Pose<T>) -> WheelAt<T> {
         let wheel = &self.model.wheels[wheel.0];
         let point = |p: PointId| pose(self.model.points[p.0].body).point(self.fixed.points[p.0]);
         let centre = point(wheel.centre);
         WheelAt {
             centre,
-            spin_axis: pose(wheel.body).rot * self.fixed.spin_axes[k].expect("a wheel has a spin axis"),
+            spin_axis: pose(wheel.body).rot * self.fixed.directions[k][d].expect("a wheel has a spin axis"),
             radius: centre.x.like(wheel.radius),
             side: centre.x.like(wheel.side.sign()),
             kingpin: wheel.kingpin.map(|points| points.map(point)),
         }
     }
 
-    fn spin_axis(&self, k: usize, body: BodyId) -> Vec3<T> {
-        self.poses[body.0].rot * self.fixed.spin_axes[k].expect("a measure with a spin axis")
+    /// Direction d of measure k, which is fixed in this body.
+    fn direction(&self, k: usize, d: usize, body: BodyId) -> Vec3<T> {
+        self.poses[body.0].rot * self.fixed.directions[k][d].expect("a measure with directions")
     }
 
     /// A joint's coordinate between its two markers, whether the joint is cut or not.
@@ -307,18 +438,29 @@ impl<T: Real> Moment<'_, T> {
     }
 }
 
+/// A wheel that heads less aside than this, rad, drives straight ahead: the turning radius would be some 30 km, and
+/// Ackermann's part a quotient of round-off.
+const STRAIGHT: f64 = 1e-4;
+
+fn is_straight<T: Real>(heading: &T) -> bool {
+    heading.lane(0).abs() < STRAIGHT
+}
+
+/// The heading of the right wheel that turns about the same point of the other axle's line as the left one with heading l:
+/// `cot r = cot l + track / wheelbase`, without the poles.
+fn right_by_ackermann<T: Real>(l: T, track_by_wheelbase: T) -> T {
+    let (sin, cos) = l.sin_cos();
+    sin.atan2(cos + sin * track_by_wheelbase)
+}
+
 /// The bodies that measures and named points are fixed in.
 pub(crate) fn bodies_asked_for(model: &Model) -> Vec<usize> {
     let mut bodies: Vec<usize> = model.points.iter().map(|p| p.body.0).collect();
     for measure in &model.measures {
-        match measure.kind {
-            MeasureKind::Coordinate { joint, .. } => {
-                bodies.extend(model.joints[joint.0].bodies.map(|b| b.0));
-            }
-            MeasureKind::Toe { body, .. } | MeasureKind::Camber { body, .. } => bodies.push(body.0),
-            // Their bodies are those of points.
-            MeasureKind::Distance { .. } | MeasureKind::Coordinates { .. } | MeasureKind::Wheel { .. } => {}
+        if let MeasureKind::Coordinate { joint, .. } = measure.kind {
+            bodies.extend(model.joints[joint.0].bodies.map(|b| b.0));
         }
+        bodies.extend(model.directions(measure).iter().flatten().map(|(body, _)| body.0));
     }
     bodies.sort_unstable();
     bodies.dedup();

@@ -1,7 +1,7 @@
 //! Formulas of a wheel and its kingpin. Their signs: `docs/measures.md`.
 
-use crate::model::WheelMeasure;
-use crate::space::{Real, Vec3};
+use crate::model::{Vehicle, VehicleEnd, WheelMeasure, WheelNeed};
+use crate::space::{Dual, Real, Twist, Vec3};
 
 /// A wheel somewhere on its way: z is up and the ground level.
 #[derive(Clone, Copy, Debug)]
@@ -62,6 +62,23 @@ impl<T: Real> WheelAt<T> {
             WheelMeasure::ContactX => self.contact().x,
             WheelMeasure::ContactY => self.contact().y,
             WheelMeasure::ContactZ => self.contact().z,
+            WheelMeasure::BumpSteer
+            | WheelMeasure::BumpCamber
+            | WheelMeasure::BumpRecession
+            | WheelMeasure::BumpScrub
+            | WheelMeasure::RollCentreHeight
+            | WheelMeasure::RollCentreHeightGeometric
+            | WheelMeasure::FrontCentreY
+            | WheelMeasure::FrontCentreZ
+            | WheelMeasure::SideCentreX
+            | WheelMeasure::SideCentreZ
+            | WheelMeasure::InstantAxisX
+            | WheelMeasure::InstantAxisY
+            | WheelMeasure::InstantAxisZ
+            | WheelMeasure::AntiDive
+            | WheelMeasure::AntiLift
+            | WheelMeasure::AntiSquat
+            | WheelMeasure::AntiRise => self.radius.like(f64::NAN),
         }
     }
 
@@ -78,7 +95,7 @@ impl<T: Real> WheelAt<T> {
     }
 
     /// `C - R u`, with u the upward direction in the wheel's plane, `(z - (z.e) e) / abs(..)`.
-    fn contact(&self) -> Vec3<T> {
+    pub fn contact(&self) -> Vec3<T> {
         let e = self.spin_axis;
         let up = Vec3::AXES[2].spread(self.radius) - e * e.z;
         self.centre - up * (self.radius / up.norm())
@@ -108,4 +125,84 @@ impl<T: Real> WheelAt<T> {
     fn kingpin(&self) -> [Vec3<T>; 2] {
         self.kingpin.expect("a measure that needs the kingpin is of a wheel that has one")
     }
+}
+
+/// A wheel while the driver that moves it up and down moves alone: derivatives are by that driver.
+pub(super) struct Carried<T> {
+    pub wheel: WheelAt<Dual<T>>,
+    /// The motion of the body that it turns on.
+    pub carrier: Twist<T>,
+}
+
+impl<T: Real> Carried<T> {
+    /// The value of a measure that goes by this driver.
+    pub fn measure(&self, what: WheelMeasure, vehicle: &Vehicle) -> T {
+        let wheel = &self.wheel;
+        let (rise, contact) = (wheel.centre.z.d, wheel.contact());
+        let (c, path) = (contact.map(|x| x.v), contact.map(|x| x.d));
+        let Twist { w, .. } = self.carrier;
+        // Of the carrier's point that is at C now.
+        let v = self.carrier.at(c);
+        let side = wheel.side.v;
+        match what {
+            WheelMeasure::BumpSteer => toe(wheel.spin_axis, wheel.side).d / rise,
+            WheelMeasure::BumpCamber => camber(wheel.spin_axis).d / rise,
+            WheelMeasure::BumpRecession => -wheel.centre.x.d / rise,
+            WheelMeasure::BumpScrub => side * path.y / rise,
+            WheelMeasure::RollCentreHeight => c.y * path.y / path.z,
+            WheelMeasure::RollCentreHeightGeometric => c.y * v.y / v.z,
+            WheelMeasure::FrontCentreY => c.y - v.z / seen(w.x, w),
+            WheelMeasure::FrontCentreZ => c.z + v.y / seen(w.x, w),
+            WheelMeasure::SideCentreX => c.x + v.z / seen(w.y, w),
+            WheelMeasure::SideCentreZ => c.z - v.x / seen(w.y, w),
+            WheelMeasure::InstantAxisX => w.x.abs() / w.norm(),
+            WheelMeasure::InstantAxisY => w.y * w.x / (w.x.abs() * w.norm()),
+            WheelMeasure::InstantAxisZ => w.z * w.x / (w.x.abs() * w.norm()),
+            WheelMeasure::AntiDive => v.x / v.z * support(what, vehicle, side),
+            WheelMeasure::AntiLift => -(v.x / v.z) * support(what, vehicle, side),
+            WheelMeasure::AntiSquat => -(wheel.centre.x.d / rise) * support(what, vehicle, side),
+            WheelMeasure::AntiRise => wheel.centre.x.d / rise * support(what, vehicle, side),
+            _ => side.like(f64::NAN),
+        }
+    }
+}
+
+/// A body that is seen to turn by less than this part of its turn has its instant centre at infinity: some hundred metres away,
+/// on one side now and on the other a moment later.
+const AT_INFINITY: f64 = 1e-2;
+
+/// A component of a turn, for division; NaN where an instant centre seen along it is at infinity.
+fn seen<T: Real>(component: T, turn: Vec3<T>) -> T {
+    if component.lane(0).abs() < AT_INFINITY * turn.norm().lane(0) {
+        component.like(f64::NAN)
+    } else {
+        component
+    }
+}
+
+/// What a wheel's rise per way rearward counts for: its end's share of the force, times wheelbase by height of the centre of
+/// gravity.
+fn support<T: Real>(what: WheelMeasure, vehicle: &Vehicle, witness: T) -> T {
+    let (front, end) = match what.needs() {
+        WheelNeed::Braking(end) => (vehicle.front_brake_share, end),
+        WheelNeed::Driving(end) => (vehicle.front_drive_share, end),
+        _ => (None, VehicleEnd::Front),
+    };
+    let share = front.map(|front| if end == VehicleEnd::Front { front } else { 1.0 - front });
+    let known = share.zip(vehicle.wheelbase).zip(vehicle.centre_of_gravity);
+    witness.like(known.map_or(f64::NAN, |((share, wheelbase), height)| share * wheelbase / height))
+}
+
+/// Global y of an axle's roll centre, and its height above the ground midway: where the lines meet that pass in front view
+/// through the contact points, square to their paths.
+pub(super) fn axle_roll_centre<T: Real>(wheels: [Carried<T>; 2]) -> (T, T) {
+    let [(p, a), (q, b)] = wheels.map(|side| {
+        let contact = side.wheel.contact();
+        let along = [-contact.z.d, contact.y.d];
+        ([contact.y.v, contact.z.v], along)
+    });
+    let cross = |a: [T; 2], b: [T; 2]| a[0] * b[1] - a[1] * b[0];
+    let way = cross([q[0] - p[0], q[1] - p[1]], b) / cross(a, b);
+    let ground = (p[1] + q[1]) * way.like(0.5);
+    (p[0] + way * a[0], p[1] + way * a[1] - ground)
 }

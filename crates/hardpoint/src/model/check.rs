@@ -3,6 +3,7 @@
 mod design;
 mod formulas;
 mod joints;
+mod measures;
 mod motion;
 mod wheels;
 
@@ -51,7 +52,9 @@ impl Model {
         c.couplers();
         c.points();
         c.drivers();
+        c.vehicle();
         c.wheels();
+        c.axles();
         c.measures();
         c.variables();
         c.formulas_that_vary();
@@ -91,8 +94,9 @@ struct Check<'a> {
     faults: Vec<Fault>,
     /// Which drafted joint became which joint; `None` for those that are faulty.
     joint_ids: Vec<Option<JointId>>,
-    /// The same for wheels.
+    /// The same for wheels, and for axles.
     wheel_ids: Vec<Option<WheelId>>,
+    axle_ids: Vec<Option<AxleId>>,
     /// The hardpoints that curves pass through.
     curve_points: Vec<HardpointId>,
     /// The formulas that are read so far, each after those whose results it uses.
@@ -127,7 +131,9 @@ impl<'a> Check<'a> {
             drivers: Vec::new(),
             variables: Vec::new(),
             points: Vec::new(),
+            vehicle: draft.vehicle.clone(),
             wheels: Vec::new(),
+            axles: Vec::new(),
             measures: Vec::new(),
             idle: Vec::new(),
             times: draft.times.clone(),
@@ -139,6 +145,7 @@ impl<'a> Check<'a> {
             ("hardpoint", numbered(draft.hardpoints.iter().map(|h| h.name.as_str()))),
             ("joint", numbered(draft.joints.iter().map(|j| j.name.as_str()))),
             ("point", numbered(draft.points.iter().map(|p| p.name.as_str()))),
+            ("measure", numbered(draft.measures.iter().map(|m| m.name.as_str()))),
         ]);
         let extent = Extent::of(draft.hardpoints.iter().map(|h| h.position));
         let (faults, joint_ids) = (Vec::new(), Vec::new());
@@ -159,6 +166,7 @@ impl<'a> Check<'a> {
             faults,
             joint_ids,
             wheel_ids: Vec::new(),
+            axle_ids: Vec::new(),
             curve_points: Vec::new(),
             written: Vec::new(),
             spoilt: BTreeSet::new(),
@@ -178,7 +186,7 @@ impl<'a> Check<'a> {
     /// HP0201: empty and duplicate names; HP0202: coordinates that are not finite.
     fn names(&mut self) {
         let d = self.draft;
-        let lists: [(Section, &str, Vec<&str>); 10] = [
+        let lists: [(Section, &str, Vec<&str>); 11] = [
             (Section::Parameters, "parameter", d.parameters.iter().map(|x| x.name.as_str()).collect()),
             (Section::Hardpoints, "hardpoint", d.hardpoints.iter().map(|x| x.name.as_str()).collect()),
             (Section::Bodies, "body", d.bodies.iter().map(|x| x.name.as_str()).collect()),
@@ -188,6 +196,7 @@ impl<'a> Check<'a> {
             (Section::Design, "design variable", d.design.iter().map(|x| x.name.as_str()).collect()),
             (Section::Points, "point", d.points.iter().map(|x| x.name.as_str()).collect()),
             (Section::Wheels, "wheel", d.wheels.iter().map(|x| x.name.as_str()).collect()),
+            (Section::Axles, "axle", d.axles.iter().map(|x| x.name.as_str()).collect()),
             (Section::Measures, "measure", d.measures.iter().map(|x| x.name.as_str()).collect()),
         ];
         for (section, what, names) in lists {
@@ -450,59 +459,6 @@ impl<'a> Check<'a> {
                 Some(PointId(self.model.points.len() - 1))
             }
         }
-    }
-
-    fn measures(&mut self) {
-        let draft = self.draft;
-        for (index, m) in draft.measures.iter().enumerate() {
-            let here = Here { section: Section::Measures, index };
-            if let Some(kind) = self.one_measure(m, here) {
-                self.model.measures.push(Measure { name: m.name.clone(), kind });
-            }
-        }
-    }
-
-    fn one_measure(&mut self, m: &MeasureDraft, here: Here) -> Option<MeasureKind> {
-        Some(match &m.kind {
-            MeasureKindDraft::Coordinate { joint, coordinate } => {
-                let joint = self.joint(joint, here.key("joint"))?;
-                let coordinate = self.coordinate(joint, coordinate.as_deref(), here)?;
-                MeasureKind::Coordinate { joint, coordinate }
-            }
-            MeasureKindDraft::Distance { from, to } => {
-                let (a, b) =
-                    (self.point(from, &m.name, here.key("from")), self.point(to, &m.name, here.key("to")));
-                let (from, to) = (a?, b?);
-                let [a, b] = [from, to].map(|p| self.model.points[p.0].clone());
-                let apart = (self.position(a.at) - self.position(b.at)).norm();
-                if from == to || (a.body == b.body && apart <= SAME_POINT * self.extent.size()) {
-                    let message = format!("measure `{}` is the distance of a point from itself", m.name);
-                    self.fault("HP0216", here.key("to"), message);
-                } else if apart <= SAME_POINT * self.extent.size() {
-                    let message =
-                        format!("the two points of measure `{}` are drawn at the same place", m.name);
-                    self.fault("HP0216", here.key("to"), message)
-                        .note("a distance of zero has no rate")
-                        .help("measure the `position` of one of them along each direction, or points that lie apart");
-                }
-                MeasureKind::Distance { from, to }
-            }
-            MeasureKindDraft::Coordinates { point, along } => {
-                let point = self.point(point, &m.name, here.key("point"));
-                let (_, along) = self.line(&Line::Along(*along), &m.name, here, "along")?;
-                MeasureKind::Coordinates { point: point?, along }
-            }
-            MeasureKindDraft::Toe { body, spin_axis } | MeasureKindDraft::Camber { body, spin_axis } => {
-                let body = self.body(body, here.key("body"));
-                let (spin_axis, _) = self.line(spin_axis, &m.name, here, "spin_axis")?;
-                let body = body?;
-                match &m.kind {
-                    MeasureKindDraft::Toe { .. } => MeasureKind::Toe { body, spin_axis },
-                    _ => MeasureKind::Camber { body, spin_axis },
-                }
-            }
-            MeasureKindDraft::Wheel { wheel, what } => self.wheel_measure(wheel, *what, here)?,
-        })
     }
 
     fn times(&mut self) {

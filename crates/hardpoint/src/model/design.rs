@@ -24,8 +24,8 @@ pub struct Geometry<T = f64> {
 pub(crate) struct Fixed<T> {
     /// Per point of the model, its position in its body's frame, m.
     pub points: Vec<Vec3<T>>,
-    /// Per measure with a spin axis, that unit vector in its body's frame.
-    pub spin_axes: Vec<Option<Vec3<T>>>,
+    /// Per measure, the directions that it goes by: unit vectors in their bodies' frames.
+    pub directions: Vec<[Option<Vec3<T>>; 2]>,
     /// Per measure of a joint's coordinate, marker i in body i and marker j in body j.
     pub markers: Vec<Option<[Pose<T>; 2]>>,
 }
@@ -99,6 +99,8 @@ pub struct Field<T = f64> {
     pub points: Vec<(PointId, Vec3<T>)>,
     /// The drivers whose laws change: the parameter, and its rate.
     pub laws: Vec<(DriverId, usize, T)>,
+    /// The drivers whose values shift at all times, and how fast, m or rad.
+    pub shifts: Vec<(DriverId, T)>,
 }
 
 /// The design velocity of one marker.
@@ -115,7 +117,8 @@ pub struct MarkerField<T = f64> {
 /// Nothing changes.
 impl<T> Default for Field<T> {
     fn default() -> Self {
-        Self { markers: Vec::new(), kept: Vec::new(), points: Vec::new(), laws: Vec::new() }
+        let (markers, kept, points) = (Vec::new(), Vec::new(), Vec::new());
+        Self { markers, kept, points, laws: Vec::new(), shifts: Vec::new() }
     }
 }
 
@@ -130,6 +133,13 @@ impl<T: Copy> Field<T> {
     pub fn kept_rate(&self, joint: JointId) -> Option<Kept<T>> {
         let found = self.kept.binary_search_by_key(&joint, |k| k.0);
         found.ok().map(|k| self.kept[k].1)
+    }
+}
+
+impl<T: Real> Field<T> {
+    /// That of a driver which moves by itself: its value shifts by one unit per unit.
+    pub(crate) fn of_driver(driver: DriverId, witness: T) -> Self {
+        Self { shifts: vec![(driver, witness.like(1.0))], ..Self::default() }
     }
 }
 
@@ -168,6 +178,13 @@ impl Field {
                     let same = |l: &&(DriverId, usize, f64)| (l.0, l.1) == (driver, parameter);
                     let rate = |k| of(k).map_or(0.0, |f| f.laws.iter().filter(same).map(|l| l.2).sum());
                     (driver, parameter, witness.like_lanes(rate))
+                })
+                .collect(),
+            shifts: union(fields, |f| f.shifts.iter().map(|(d, _)| *d))
+                .map(|driver| {
+                    let same = |s: &&(DriverId, f64)| s.0 == driver;
+                    let rate = |k| of(k).map_or(0.0, |f| f.shifts.iter().filter(same).map(|s| s.1).sum());
+                    (driver, witness.like_lanes(rate))
                 })
                 .collect(),
         }
@@ -337,7 +354,7 @@ impl<'m> Effects<'m> {
         };
         Fixed {
             points: (0..model.points.len()).map(|k| design.point(k)).collect(),
-            spin_axes: model.measures.iter().map(|m| design.spin_axis(m)).collect(),
+            directions: model.measures.iter().map(|m| design.directions(m)).collect(),
             markers: model.measures.iter().map(markers).collect(),
         }
     }
@@ -668,10 +685,12 @@ impl<'e, T: Real> Design<'e, T> {
         self.frame(point.body).inverse().point(self.place(point.at, &self.values))
     }
 
-    /// The spin axis of a measure in its body's frame, where it has one.
-    fn spin_axis(&self, measure: &Measure) -> Option<Vec3<T>> {
-        let (body, axis) = self.effects.model.spin_axis(measure)?;
-        Some(self.frame(body).rot.transpose_mul(self.direction(axis, &self.values)))
+    /// The directions that a measure goes by, in their bodies' frames.
+    fn directions(&self, measure: &Measure) -> [Option<Vec3<T>>; 2] {
+        let in_body = |(body, axis): (BodyId, Direction)| {
+            self.frame(body).rot.transpose_mul(self.direction(axis, &self.values))
+        };
+        self.effects.model.directions(measure).map(|d| d.map(in_body))
     }
 }
 
@@ -699,8 +718,8 @@ impl Model {
     /// The variables whose change changes nothing that the motion or its results depend on.
     pub fn without_effect(&self) -> Vec<VariableId> {
         let effects = Effects::of(self);
-        let spin_axes = self.measures.iter().filter_map(|m| self.spin_axis(m));
-        let seen: Vec<usize> = spin_axes.flat_map(|(_, axis)| axis.hardpoints()).map(|h| h.0).collect();
+        let directions = self.measures.iter().flat_map(|m| self.directions(m)).flatten();
+        let seen: Vec<usize> = directions.flat_map(|(_, axis)| axis.hardpoints()).map(|h| h.0).collect();
         let is_idle = |v: &VariableId| {
             let touched = effects.touched(&[(*v, 1.0)]);
             let felt = [&touched.joints, &touched.points, &touched.law_formulas];
@@ -727,20 +746,6 @@ impl Model {
         let in_body = self.bodies[joint.bodies[e].0].frame.rot.transpose() * joint.frames[e];
         let theta = euler_313_from_rotation(in_body);
         (theta, rotation_from_euler_313(theta))
-    }
-
-    /// The spin axis that a measure goes by, and the body that carries it.
-    fn spin_axis(&self, measure: &Measure) -> Option<(BodyId, Direction)> {
-        match measure.kind {
-            MeasureKind::Toe { body, spin_axis } | MeasureKind::Camber { body, spin_axis } => {
-                Some((body, spin_axis))
-            }
-            MeasureKind::Wheel { wheel, .. } => {
-                let wheel = &self.wheels[wheel.0];
-                Some((wheel.body, wheel.spin_axis))
-            }
-            _ => None,
-        }
     }
 
     pub(crate) fn position(&self, h: HardpointId) -> Vec3 {

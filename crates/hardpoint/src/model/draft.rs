@@ -4,7 +4,7 @@ use crate::joint::Quantity;
 use crate::law::{Expression, Law};
 use crate::space::{Pose, Vec3};
 
-use super::{End, Side, WheelMeasure};
+use super::{AxleMeasure, End, Side, Vehicle, VehicleEnd, WheelMeasure};
 
 /// A mechanism as written. Fill it by hand or from a file; [`super::Model::from_draft`] checks it.
 #[derive(Clone, Debug, Default)]
@@ -31,6 +31,10 @@ pub struct Draft {
     pub points: Vec<PointDraft>,
     /// Road wheels.
     pub wheels: Vec<WheelDraft>,
+    /// The vehicle that the wheels belong to, as far as it is known.
+    pub vehicle: Vehicle,
+    /// Pairs of wheels.
+    pub axles: Vec<AxleDraft>,
     /// Measures.
     pub measures: Vec<MeasureDraft>,
     /// Output times, s.
@@ -377,6 +381,21 @@ pub struct WheelDraft {
     pub side: Option<Side>,
     /// A lower and an upper point of the axis that it steers about.
     pub kingpin: Option<[PointRef; 2]>,
+    /// The name of the driver that moves it up and down; may be left out where there is only one.
+    pub bump: Option<String>,
+    /// At which end of the vehicle it is.
+    pub end: Option<VehicleEnd>,
+}
+
+/// Two wheels side by side; see [`super::Axle`].
+#[derive(Clone, Debug)]
+pub struct AxleDraft {
+    /// Its name.
+    pub name: String,
+    /// The name of the left wheel.
+    pub left: String,
+    /// The name of the right wheel.
+    pub right: String,
 }
 
 /// How a wheel stands in the design configuration.
@@ -419,6 +438,48 @@ pub enum MeasureKindDraft {
         /// To this one.
         to: PointRef,
     },
+    /// Angle between two directions.
+    Angle {
+        /// From the first to the second.
+        between: [RayDraft; 2],
+        /// Which angle.
+        kind: AngleKindDraft,
+    },
+    /// Velocity or acceleration of a point.
+    Velocity {
+        /// The point.
+        point: PointRef,
+        /// The direction of the component, of any length; the magnitude where it is left out.
+        along: Option<Vec3>,
+        /// 1 for the velocity, 2 for the acceleration.
+        order: usize,
+    },
+    /// Curvature of a point's path.
+    Curvature {
+        /// The point.
+        point: PointRef,
+        /// The direction, of any length, seen along which a turn to the left is positive.
+        about: Option<Vec3>,
+    },
+    /// Time derivative of another output.
+    Rate {
+        /// The name of a measure, or of a point's component.
+        of: String,
+    },
+    /// How much one output changes per change of another while one driver alone moves.
+    Slope {
+        /// Of this one.
+        of: String,
+        /// Over this one.
+        over: String,
+        /// The driver's name; may be left out where there is only one.
+        driver: Option<String>,
+    },
+    /// A formula over other outputs.
+    Combination {
+        /// Its names are those of measures, or of components of points.
+        expression: Expression,
+    },
     /// Position of a point along a global direction.
     Coordinates {
         /// The point.
@@ -447,4 +508,36 @@ pub enum MeasureKindDraft {
         /// What about it.
         what: WheelMeasure,
     },
+    /// Something about both wheels of an axle.
+    Axle {
+        /// The axle's name.
+        axle: String,
+        /// What about it.
+        what: AxleMeasure,
+    },
+}
+
+/// A direction that an angle is measured from or to; see [`super::Ray`].
+#[derive(Clone, Debug)]
+pub enum RayDraft {
+    /// From one point to another.
+    Between([PointRef; 2]),
+    /// Fixed in a body.
+    Fixed {
+        /// The body's name.
+        body: String,
+        /// Where it points in the design configuration.
+        axis: Line,
+    },
+}
+
+/// Which angle two directions make; see [`super::AngleKind`].
+#[derive(Clone, Copy, Debug)]
+pub enum AngleKindDraft {
+    /// Between them.
+    Between,
+    /// Between the lines along them.
+    Lines,
+    /// As seen along a direction of any length.
+    About(Vec3),
 }

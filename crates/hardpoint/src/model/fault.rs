@@ -51,8 +51,12 @@ pub enum Section {
     Design,
     /// [`super::Draft::points`].
     Points,
+    /// [`super::Draft::vehicle`].
+    Vehicle,
     /// [`super::Draft::wheels`].
     Wheels,
+    /// [`super::Draft::axles`].
+    Axles,
     /// [`super::Draft::measures`].
     Measures,
     /// [`super::Draft::times`].
@@ -84,7 +88,9 @@ impl fmt::Display for Section {
             Self::Drivers => "drivers",
             Self::Design => "design",
             Self::Points => "points",
+            Self::Vehicle => "vehicle",
             Self::Wheels => "wheels",
+            Self::Axles => "axles",
             Self::Measures => "measures",
             Self::Time => "time",
         })

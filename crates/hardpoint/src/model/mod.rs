@@ -11,6 +11,7 @@ mod draft;
 mod fault;
 mod formula;
 mod idle;
+mod measure;
 mod wheel;
 
 pub(crate) use curve::Contact;
@@ -18,14 +19,16 @@ pub use curve::{Curve, CurvePoint};
 pub(crate) use design::{Effects, Fixed};
 pub use design::{Field, Geometry, Kept, MarkerField};
 pub use draft::{
-    BodyDraft, ChangeDraft, CouplerDraft, CouplerKindDraft, CurveDraft, Draft, DrivenDraft, DriverDraft,
-    FormulaDraft, FormulaOf, FrameDraft, HardpointDraft, JointDraft, Line, MeasureDraft, MeasureKindDraft,
-    ParameterDraft, Place, PointDraft, PointRef, TermDraft, VariableDraft, WheelDraft, WheelSpinDraft,
+    AngleKindDraft, AxleDraft, BodyDraft, ChangeDraft, CouplerDraft, CouplerKindDraft, CurveDraft, Draft,
+    DrivenDraft, DriverDraft, FormulaDraft, FormulaOf, FrameDraft, HardpointDraft, JointDraft, Line,
+    MeasureDraft, MeasureKindDraft, ParameterDraft, Place, PointDraft, PointRef, RayDraft, TermDraft,
+    VariableDraft, WheelDraft, WheelSpinDraft,
 };
 pub use fault::{Fault, Locus, Section, did_you_mean};
 pub use formula::{Formula, NamedNumber, Nominal, NotConstant, Source, Target};
 pub use idle::Idle;
-pub use wheel::{Side, Wheel, WheelMeasure};
+pub use measure::{AngleKind, Combination, Dimension, Known, Measure, MeasureKind, OutputSource, Ray};
+pub use wheel::{Axle, AxleMeasure, Side, Vehicle, VehicleEnd, Wheel, WheelMeasure, WheelNeed};
 
 use crate::constraint::Ends;
 use crate::joint::{CoordinateType, JointType, Quantity};
@@ -57,6 +60,8 @@ ids! {
     PointId
     /// A wheel's place in [`Model::wheels`].
     WheelId
+    /// An axle's place in [`Model::axles`].
+    AxleId
     /// A measure's place in [`Model::measures`].
     MeasureId
 }
@@ -87,8 +92,12 @@ pub struct Model {
     pub variables: Vec<DesignVariable>,
     /// Body-fixed points to follow; those that only a driver, wheel or measure names come last, unnamed.
     pub points: Vec<BodyPoint>,
+    /// The vehicle that the wheels belong to, as far as it is known.
+    pub vehicle: Vehicle,
     /// Road wheels, in the order of the file.
     pub wheels: Vec<Wheel>,
+    /// Pairs of them, in the order of the file.
+    pub axles: Vec<Axle>,
     /// Measures, in the order of the file.
     pub measures: Vec<Measure>,
     /// Idle spins, which are held at rest.
@@ -298,62 +307,6 @@ pub struct BodyPoint {
     pub unnamed: bool,
 }
 
-/// A number that follows from the motion.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Measure {
-    /// Its name.
-    pub name: String,
-    /// What is measured.
-    pub kind: MeasureKind,
-}
-
-/// What a measure measures. Formulas and signs are in `docs/measures.md`.
-#[derive(Clone, Debug, PartialEq)]
-pub enum MeasureKind {
-    /// A joint's coordinate: angle (unwrapped), displacement, or length (the whole of it).
-    Coordinate {
-        /// Which joint.
-        joint: JointId,
-        /// Which of its type's coordinates.
-        coordinate: usize,
-    },
-    /// Distance between two body points.
-    Distance {
-        /// From this point.
-        from: PointId,
-        /// To this one.
-        to: PointId,
-    },
-    /// Global position of a point along a direction.
-    Coordinates {
-        /// Which point.
-        point: PointId,
-        /// Unit direction, global.
-        along: Vec3,
-    },
-    /// Toe of a left wheel: `atan2(e_x, e_y)` of the spin axis e.
-    Toe {
-        /// The body that the wheel turns on.
-        body: BodyId,
-        /// Spin axis in the design configuration, pointing outboard.
-        spin_axis: Direction,
-    },
-    /// Camber of a left wheel: `-asin(e_z)` of the spin axis e.
-    Camber {
-        /// The body that the wheel turns on.
-        body: BodyId,
-        /// Spin axis in the design configuration, pointing outboard.
-        spin_axis: Direction,
-    },
-    /// Something about a wheel.
-    Wheel {
-        /// Which wheel.
-        wheel: WheelId,
-        /// What about it.
-        what: WheelMeasure,
-    },
-}
-
 impl Model {
     /// The joint coordinate that a driver prescribes.
     pub fn driven(&self, driver: &Driver) -> &'static CoordinateType {
@@ -383,18 +336,6 @@ impl Model {
     /// Joints that a person wrote.
     pub fn named_joints(&self) -> impl Iterator<Item = (JointId, &Joint)> {
         self.joints.iter().enumerate().filter(|(_, j)| !j.unnamed).map(|(k, j)| (JointId(k), j))
-    }
-
-    /// What a measure's value is: a length or an angle.
-    pub fn measured(&self, measure: &Measure) -> Quantity {
-        match measure.kind {
-            MeasureKind::Coordinate { joint, coordinate } => {
-                self.joints[joint.0].kind.coordinates[coordinate].quantity
-            }
-            MeasureKind::Distance { .. } | MeasureKind::Coordinates { .. } => Quantity::Length,
-            MeasureKind::Toe { .. } | MeasureKind::Camber { .. } => Quantity::Angle,
-            MeasureKind::Wheel { what, .. } => what.quantity(),
-        }
     }
 
     /// The size of the mechanism, m: the diagonal of the box around its hardpoints (1 if that is 0).

@@ -1,7 +1,6 @@
-//! Road wheels: what carries them, where they touch the ground, and the axis that they steer about.
+//! Road wheels and axles: what carries them, where they touch the ground, and the axis that they steer about.
 
-use super::{BodyId, Direction, PointId};
-use crate::joint::Quantity;
+use super::{BodyId, Dimension, Direction, DriverId, PointId, WheelId};
 
 /// A road wheel. Vehicle axes are those of ISO 8855: x forward, y left, z up.
 #[derive(Clone, Debug, PartialEq)]
@@ -20,6 +19,73 @@ pub struct Wheel {
     pub side: Side,
     /// A lower and an upper point of the axis that it steers about; they may be on different bodies.
     pub kingpin: Option<[PointId; 2]>,
+    /// The driver that moves it up and down.
+    pub bump: Option<DriverId>,
+    /// At which end of the vehicle it is.
+    pub end: Option<VehicleEnd>,
+}
+
+/// Two wheels side by side.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Axle {
+    /// Its name.
+    pub name: String,
+    /// The left wheel and the right one.
+    pub wheels: [WheelId; 2],
+}
+
+/// What is to be known of the vehicle besides its suspension.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Vehicle {
+    /// Distance of the axles, m.
+    pub wheelbase: Option<f64>,
+    /// Height of the centre of gravity above the ground, m.
+    pub centre_of_gravity: Option<f64>,
+    /// Part of the braking force that the front wheels take, 0 to 1.
+    pub front_brake_share: Option<f64>,
+    /// Part of the driving force that the front wheels give, 0 to 1.
+    pub front_drive_share: Option<f64>,
+}
+
+/// An end of the vehicle.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum VehicleEnd {
+    /// Where x grows.
+    Front,
+    /// Where x falls.
+    Rear,
+}
+
+impl VehicleEnd {
+    /// As model files write it.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Front => "front",
+            Self::Rear => "rear",
+        }
+    }
+}
+
+/// What a measure of a wheel needs besides the wheel.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum WheelNeed {
+    /// Nothing.
+    Nothing,
+    /// The kingpin.
+    Kingpin,
+    /// The driver that moves the wheel up and down.
+    Bump,
+    /// That, and what part of the braking force its end of the vehicle takes.
+    Braking(VehicleEnd),
+    /// That, and what part of the driving force its end of the vehicle gives.
+    Driving(VehicleEnd),
+}
+
+impl WheelNeed {
+    /// Whether the measure says what happens while one driver alone moves.
+    pub fn goes_by_driver(self) -> bool {
+        !matches!(self, Self::Nothing | Self::Kingpin)
+    }
 }
 
 /// A side of the vehicle.
@@ -49,21 +115,21 @@ impl Side {
     }
 }
 
-macro_rules! wheel_measures {
-    ($(#[doc = $summary:literal] $variant:ident $name:literal $quantity:ident $kingpin:literal)*) => {
-        /// What can be measured at a wheel. Formulas and signs are in `docs/measures.md`.
+macro_rules! measures {
+    ($(#[$about:meta])* $name:ident, $need:ident: $of:ty; $(#[doc = $summary:literal] $variant:ident $text:literal $dimension:ident $what:expr;)*) => {
+        $(#[$about])*
         #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-        pub enum WheelMeasure {
+        pub enum $name {
             $(#[doc = $summary] $variant,)*
         }
 
-        impl WheelMeasure {
+        impl $name {
             /// All of them.
             pub const ALL: &[Self] = &[$(Self::$variant),*];
 
             /// As model files write it.
             pub fn name(self) -> &'static str {
-                match self { $(Self::$variant => $name),* }
+                match self { $(Self::$variant => $text),* }
             }
 
             /// What it is, in a sentence.
@@ -72,58 +138,130 @@ macro_rules! wheel_measures {
             }
 
             /// What its value is.
-            pub fn quantity(self) -> Quantity {
-                match self { $(Self::$variant => Quantity::$quantity),* }
+            pub fn dimension(self) -> Dimension {
+                match self { $(Self::$variant => $dimension),* }
             }
 
-            /// Whether it needs the wheel's kingpin.
-            pub fn needs_kingpin(self) -> bool {
-                match self { $(Self::$variant => $kingpin),* }
+            /// What it needs besides.
+            pub fn $need(self) -> $of {
+                match self { $(Self::$variant => $what),* }
+            }
+
+            /// The measure of that name.
+            pub fn named(name: &str) -> Option<Self> {
+                Self::ALL.iter().copied().find(|m| m.name() == name)
             }
         }
     };
 }
 
-wheel_measures! {
+const NUMBER: Dimension = Dimension::NUMBER;
+const LENGTH: Dimension = Dimension::LENGTH;
+const ANGLE: Dimension = Dimension::ANGLE;
+const ANGLE_PER_LENGTH: Dimension = ANGLE.over(LENGTH);
+
+measures! {
+    /// What can be measured at a wheel. Formulas and signs are in `docs/measures.md`.
+    WheelMeasure, needs: WheelNeed;
     /// Heading of the wheel's plane; positive where its front is inboard.
-    Toe "toe" Angle false
+    Toe "toe" ANGLE WheelNeed::Nothing;
     /// Lean of the wheel's plane; positive where its top is outboard.
-    Camber "camber" Angle false
+    Camber "camber" ANGLE WheelNeed::Nothing;
     /// Heading of the wheel's plane since the design configuration; positive to the left.
-    SteerAngle "steer_angle" Angle false
+    SteerAngle "steer_angle" ANGLE WheelNeed::Nothing;
     /// Lean of the kingpin in side view; positive where its top is rearward.
-    Caster "caster" Angle true
+    Caster "caster" ANGLE WheelNeed::Kingpin;
     /// Lean of the kingpin in front view; positive where its top is inboard.
-    KingpinInclination "kingpin_inclination" Angle true
+    KingpinInclination "kingpin_inclination" ANGLE WheelNeed::Kingpin;
     /// How far outboard of the kingpin the contact point is, on the ground.
-    ScrubRadius "scrub_radius" Length true
+    ScrubRadius "scrub_radius" LENGTH WheelNeed::Kingpin;
     /// How far outboard of the kingpin the wheel centre is, at its height.
-    SpindleOffset "spindle_offset" Length true
+    SpindleOffset "spindle_offset" LENGTH WheelNeed::Kingpin;
     /// How far behind the kingpin the contact point is, on the ground.
-    CasterTrail "caster_trail" Length true
+    CasterTrail "caster_trail" LENGTH WheelNeed::Kingpin;
     /// The same square to the kingpin, in the wheel's side view.
-    MechanicalTrail "mechanical_trail" Length true
+    MechanicalTrail "mechanical_trail" LENGTH WheelNeed::Kingpin;
     /// How far in front of the kingpin the wheel centre is, at its height.
-    HubTrail "hub_trail" Length true
+    HubTrail "hub_trail" LENGTH WheelNeed::Kingpin;
     /// Rise of the wheel centre since the design configuration.
-    WheelTravel "wheel_travel" Length false
+    WheelTravel "wheel_travel" LENGTH WheelNeed::Nothing;
     /// Way of the wheel centre rearward since the design configuration.
-    WheelRecession "wheel_recession" Length false
+    WheelRecession "wheel_recession" LENGTH WheelNeed::Nothing;
     /// Distance of the contact point from the vehicle's plane of symmetry, outboard.
-    HalfTrack "half_track" Length false
+    HalfTrack "half_track" LENGTH WheelNeed::Nothing;
     /// Growth of that since the design configuration.
-    HalfTrackChange "half_track_change" Length false
+    HalfTrackChange "half_track_change" LENGTH WheelNeed::Nothing;
     /// Global x of the contact point.
-    ContactX "contact_x" Length false
+    ContactX "contact_x" LENGTH WheelNeed::Nothing;
     /// Global y of the contact point.
-    ContactY "contact_y" Length false
+    ContactY "contact_y" LENGTH WheelNeed::Nothing;
     /// Global z of the contact point.
-    ContactZ "contact_z" Length false
+    ContactZ "contact_z" LENGTH WheelNeed::Nothing;
+    /// Growth of toe per wheel travel.
+    BumpSteer "bump_steer" ANGLE_PER_LENGTH WheelNeed::Bump;
+    /// Growth of camber per wheel travel.
+    BumpCamber "bump_camber" ANGLE_PER_LENGTH WheelNeed::Bump;
+    /// Growth of wheel recession per wheel travel.
+    BumpRecession "bump_recession" NUMBER WheelNeed::Bump;
+    /// Growth of half track per wheel travel.
+    BumpScrub "bump_scrub" NUMBER WheelNeed::Bump;
+    /// Height of the roll centre above the ground, from the path of the contact point.
+    RollCentreHeight "roll_centre_height" LENGTH WheelNeed::Bump;
+    /// Height of the roll centre above the ground, from the instant centre of the wheel carrier in front view.
+    RollCentreHeightGeometric "roll_centre_height_geometric" LENGTH WheelNeed::Bump;
+    /// Global y of the instant centre in front view, at the contact point's x.
+    FrontCentreY "instant_centre_front_y" LENGTH WheelNeed::Bump;
+    /// Global z of the instant centre in front view, at the contact point's x.
+    FrontCentreZ "instant_centre_front_z" LENGTH WheelNeed::Bump;
+    /// Global x of the instant centre in side view, at the contact point's y.
+    SideCentreX "instant_centre_side_x" LENGTH WheelNeed::Bump;
+    /// Global z of the instant centre in side view, at the contact point's y.
+    SideCentreZ "instant_centre_side_z" LENGTH WheelNeed::Bump;
+    /// x component of the unit vector along the instant axis of the wheel carrier, which points forward.
+    InstantAxisX "instant_axis_x" NUMBER WheelNeed::Bump;
+    /// y component of the unit vector along the instant axis of the wheel carrier, which points forward.
+    InstantAxisY "instant_axis_y" NUMBER WheelNeed::Bump;
+    /// z component of the unit vector along the instant axis of the wheel carrier, which points forward.
+    InstantAxisZ "instant_axis_z" NUMBER WheelNeed::Bump;
+    /// Part of the braking dive that the front suspension's geometry takes, 1 for all of it; brakes at the wheel.
+    AntiDive "anti_dive" NUMBER WheelNeed::Braking(VehicleEnd::Front);
+    /// Part of the braking lift that the rear suspension's geometry takes, 1 for all of it; brakes at the wheel.
+    AntiLift "anti_lift" NUMBER WheelNeed::Braking(VehicleEnd::Rear);
+    /// Part of the driving squat that the rear suspension's geometry takes, 1 for all of it; differential on the body.
+    AntiSquat "anti_squat" NUMBER WheelNeed::Driving(VehicleEnd::Rear);
+    /// Part of the driving lift that the front suspension's geometry takes, 1 for all of it; differential on the body.
+    AntiRise "anti_rise" NUMBER WheelNeed::Driving(VehicleEnd::Front);
+}
+
+measures! {
+    /// What can be measured at an axle. Formulas and signs are in `docs/measures.md`.
+    AxleMeasure, goes_by_driver: bool;
+    /// Distance of the contact points across the vehicle.
+    Track "track" LENGTH false;
+    /// Sum of both toe angles.
+    TotalToe "total_toe" ANGLE false;
+    /// Steer angle of the right wheel beyond what Ackermann's condition makes of the left one's.
+    AckermannError "ackermann_error" ANGLE false;
+    /// Difference of both steer angles as a part of Ackermann's.
+    Ackermann "ackermann" NUMBER false;
+    /// Radius of the path of the outer wheel's contact point, with the other axle straight ahead.
+    TurningRadius "turning_radius" LENGTH false;
+    /// Global y of the roll centre, from the paths of both contact points.
+    RollCentreY "axle_roll_centre_y" LENGTH true;
+    /// Height of the roll centre above the ground, from the paths of both contact points.
+    RollCentreHeight "axle_roll_centre_height" LENGTH true;
 }
 
 impl WheelMeasure {
-    /// The measure of that name.
-    pub fn named(name: &str) -> Option<Self> {
-        Self::ALL.iter().copied().find(|m| m.name() == name)
+    /// Whether it needs the wheel's kingpin.
+    pub fn needs_kingpin(self) -> bool {
+        self.needs() == WheelNeed::Kingpin
+    }
+}
+
+impl AxleMeasure {
+    /// Whether it needs the wheelbase of the vehicle.
+    pub fn needs_wheelbase(self) -> bool {
+        matches!(self, Self::AckermannError | Self::Ackermann | Self::TurningRadius)
     }
 }

@@ -17,6 +17,8 @@ pub(crate) struct FieldParts<T> {
     pub(super) kept: Vec<(usize, T)>,
     /// Parameters of drivers' laws that change, and their rates.
     laws: Vec<(DriverId, usize, T)>,
+    /// Drivers whose values shift, and how fast.
+    shifts: Vec<(DriverId, T)>,
     /// What that adds to the driver's value, speed and acceleration at the time that was set last.
     law_rates: Vec<(DriverId, [T; 3])>,
     /// Largest speed in each field: what round-off of a defect is compared with.
@@ -134,8 +136,10 @@ impl<T: Real> FieldParts<T> {
         let markers = field.markers.iter().map(|m| m.twist.w.norm().larger(m.twist.v.norm()));
         let kept_rates = field.kept.iter().map(|(_, k)| k.size());
         let laws = field.laws.iter().map(|(.., rate)| rate.abs());
-        let scale = markers.chain(kept_rates).chain(laws).fold(witness.zero(), T::larger);
+        let shifts = field.shifts.iter().map(|(_, rate)| rate.abs());
+        let scale = markers.chain(kept_rates).chain(laws).chain(shifts).fold(witness.zero(), T::larger);
         let mut drivers: Vec<DriverId> = field.laws.iter().map(|(d, ..)| *d).collect();
+        drivers.extend(field.shifts.iter().map(|(d, _)| *d));
         drivers.sort_unstable();
         drivers.dedup();
         let law_rates = drivers.iter().map(|&d| (d, [witness.zero(); 3])).collect();
@@ -144,7 +148,8 @@ impl<T: Real> FieldParts<T> {
         changed.extend(kept.iter().map(|&(row, _)| topology.rows[row].closure));
         changed.sort_unstable();
         let reach = Reach::new(topology, &of(&links), &changed, &drivers);
-        Self { links, closures, kept, laws: field.laws.clone(), law_rates, scale, reach }
+        let (laws, shifts) = (field.laws.clone(), field.shifts.clone());
+        Self { links, closures, kept, laws, shifts, law_rates, scale, reach }
     }
 
     /// The drivers whose laws change.
@@ -173,6 +178,9 @@ impl<T: Real> FieldParts<T> {
             }
             for order in 0..3 {
                 rates[order] = self.scale.like_lanes(|k| of_lanes[k][order]);
+            }
+            for (_, rate) in self.shifts.iter().filter(|(d, _)| d == driver) {
+                rates[0] += *rate;
             }
         }
     }

@@ -10,7 +10,7 @@ mod second;
 mod sensing;
 
 pub use admissible::{Admissibility, JointDefect, admissibility_at_design};
-pub use second::{BodyCurvature, Direction};
+pub use second::{BodyCurvature, Way};
 pub(crate) use second::{Seconds, along};
 pub(crate) use sensing::{Sensing, SensingDesigns};
 

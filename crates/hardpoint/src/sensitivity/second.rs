@@ -5,7 +5,7 @@
 
 use crate::constraint::EndRates;
 use crate::law::Law;
-use crate::model::{DriverId, Effects, Model};
+use crate::model::{DriverId, Effects, Field, Model};
 use crate::motion::kinematics::{State, carry, level, sum_couplers};
 use crate::motion::stepper::Stepper;
 use crate::space::{Dual, LANES, Mat3, Pose, Real, Twist, Vec3};
@@ -13,8 +13,32 @@ use crate::topology::{Source, Topology};
 
 use super::direct::{Direct, FieldParts, Moving};
 
-/// A way to change a design: how fast each variable goes.
-pub type Direction = [f64];
+/// A way to go.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Way {
+    /// The design changes: how fast each variable goes.
+    Design(Vec<f64>),
+    /// The design stays, and one driver moves by one unit per unit while the others stand.
+    Driver(DriverId),
+}
+
+impl Way {
+    /// How fast the design variables go.
+    fn speeds(&self) -> &[f64] {
+        match self {
+            Self::Design(speeds) => speeds,
+            Self::Driver(_) => &[],
+        }
+    }
+
+    /// What it changes at the designs with these values.
+    fn field<T: Real>(&self, effects: &Effects<'_>, values: &[T], witness: T) -> Field<T> {
+        match self {
+            Self::Design(speeds) => effects.field_along(&along(speeds), values, witness),
+            Self::Driver(driver) => Field::of_driver(*driver, witness),
+        }
+    }
+}
 
 /// Second derivatives of one body's position by two directions, global components, at fixed t.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -112,20 +136,20 @@ impl<T: Real> Seconds<T> {
         effects: &Effects<'_>,
         topology: &Topology,
         values: &[f64],
-        directions: &[Vec<f64>],
+        directions: &[Way],
         pairs: &[[usize; 2]],
         witness: T,
     ) -> Self {
         let model = effects.model;
         let firsts = directions.iter().map(|d| {
-            let field = effects.field_along(&along(d), values, 0.0);
+            let field = d.field(effects, values, 0.0);
             First::new(model, topology, FieldParts::new(topology, &field.spread(witness), witness), witness)
         });
         let pair = |&[u, w]: &[usize; 2]| {
-            let moving = values.iter().zip(&directions[w]);
-            let moving: Vec<Dual> = moving.map(|(v, d)| Dual { v: *v, d: *d }).collect();
+            let speeds = directions[w].speeds().iter().copied().chain(std::iter::repeat(0.0));
+            let moving: Vec<Dual> = values.iter().zip(speeds).map(|(v, d)| Dual { v: *v, d }).collect();
             let zero = Dual::constant(0.0);
-            let field = effects.field_along(&along(&directions[u]), &moving, zero);
+            let field = directions[u].field(effects, &moving, zero);
             let field = FieldParts::new(topology, &field, zero);
             let twists = |of: &[Moving<Dual>]| {
                 let part = |e: Twist<Dual>, part: fn(Dual) -> f64| {
@@ -134,7 +158,7 @@ impl<T: Real> Seconds<T> {
                 of.iter().map(|m| [part(m.e, |x| x.v), part(m.e, |x| x.d)]).collect()
             };
             let laws = [LAW_STEP, -LAW_STEP].map(|h| {
-                let moved: Vec<f64> = values.iter().zip(&directions[w]).map(|(v, d)| v + h * d).collect();
+                let moved: Vec<f64> = moving.iter().map(|x| x.v + h * x.d).collect();
                 effects.laws(&moved)
             });
             let of_driver = |d: &DriverId| (*d, [laws[0][d.0].clone(), laws[1][d.0].clone()]);
@@ -188,13 +212,19 @@ impl<T: Real> Seconds<T> {
     pub fn pose(&self, state: &State<T>, p: usize, body: usize, lane: usize) -> Pose<Dual<Dual>> {
         let pair = &self.pairs[p];
         let [u, w] = pair.of.map(|k| self.firsts[k].w[body].lane(lane));
-        let (Pose { rot, r }, uw) = (state.pose[body].lane(lane), pair.w[body].lane(lane));
-        let (r_u, r_w) = (u.at(r), w.at(r));
-        let column = |e: Vec3| {
-            let (e_u, e_w) = (u.w.cross(e), w.w.cross(e));
-            number([e, e_u, e_w, uw.w.cross(e) + u.w.cross(e_w)])
-        };
-        Pose { rot: Mat3 { cols: rot.cols.map(column) }, r: number([r, r_u, r_w, uw.at(r) + u.w.cross(r_w)]) }
+        with_twists(state.pose[body].lane(lane), u, w, pair.w[body].lane(lane))
+    }
+
+    /// The same for one direction alone: `d.v` along it, and nothing along a second.
+    pub fn pose_along(
+        &self,
+        state: &State<T>,
+        direction: usize,
+        body: usize,
+        lane: usize,
+    ) -> Pose<Dual<Dual>> {
+        let u = self.firsts[direction].w[body].lane(lane);
+        with_twists(state.pose[body].lane(lane), u, Twist::ZERO, Twist::ZERO)
     }
 
     /// Second derivatives of a body's position by pair p, in one lane.
@@ -207,9 +237,19 @@ impl<T: Real> Seconds<T> {
 }
 
 /// The variables that a direction changes, and how fast.
-pub(crate) fn along(direction: &Direction) -> Vec<(crate::model::VariableId, f64)> {
+pub(crate) fn along(direction: &[f64]) -> Vec<(crate::model::VariableId, f64)> {
     let all = direction.iter().enumerate().map(|(k, d)| (crate::model::VariableId(k), *d));
     all.filter(|(_, d)| *d != 0.0).collect()
+}
+
+/// A pose with its derivatives: by the twists along u, along w, and the derivative along w of that along u.
+fn with_twists(Pose { rot, r }: Pose, u: Twist, w: Twist, uw: Twist) -> Pose<Dual<Dual>> {
+    let (r_u, r_w) = (u.at(r), w.at(r));
+    let column = |e: Vec3| {
+        let (e_u, e_w) = (u.w.cross(e), w.w.cross(e));
+        number([e, e_u, e_w, uw.w.cross(e) + u.w.cross(e_w)])
+    };
+    Pose { rot: Mat3 { cols: rot.cols.map(column) }, r: number([r, r_u, r_w, uw.at(r) + u.w.cross(r_w)]) }
 }
 
 /// A vector with its derivatives along u, along w, and along both.

@@ -158,6 +158,10 @@ impl<T: Real> Real for Dual<T> {
         self.v.largest()
     }
     #[inline(always)]
+    fn rate(self) -> Self {
+        Self { v: self.v.rate(), d: self.d.rate() }
+    }
+    #[inline(always)]
     fn vanishes(self) -> bool {
         self.v.vanishes() && self.d.vanishes()
     }

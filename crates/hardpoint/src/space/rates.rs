@@ -162,6 +162,11 @@ impl<T: Real> Real for Rates<T> {
         Self([most, first, second])
     }
     #[inline(always)]
+    fn rate(self) -> Self {
+        let [_, first, second] = self.0;
+        Self([first, second, first.like(f64::NAN)])
+    }
+    #[inline(always)]
     fn largest(self) -> f64 {
         self.0[0].largest()
     }

@@ -94,6 +94,12 @@ pub trait Real:
         self.abs().largest() == 0.0
     }
 
+    /// Time derivative, of numbers that carry it; NaN of all others, and where they carry it no further.
+    #[inline(always)]
+    fn rate(self) -> Self {
+        self.like(f64::NAN)
+    }
+
     /// Inverse sine, lane by lane, rad.
     #[inline(always)]
     fn asin(self) -> Self {

@@ -1,8 +1,7 @@
 //! Finite differences by re-solving moved designs: the slow, inexact way, to check the exact one.
 
 use crate::analysis::{Analysis, Solution};
-use crate::joint::Quantity;
-use crate::model::{Model, VariableId};
+use crate::model::{Dimension, Model, VariableId};
 use crate::motion::{BodyState, Stop};
 use crate::sensitivity::BodySensitivity;
 use crate::space::Vec3;
@@ -80,7 +79,7 @@ fn quotient(variable: VariableId, step: f64, plus: &Solution, minus: &Solution) 
         .map(|(t, m)| {
             let (p, q) = (plus.measured.value(t, m), minus.measured.value(t, m));
             let mut d = [p[0] - q[0], p[1] - q[1], p[2] - q[2]];
-            if plus.measured.outputs[m].quantity == Quantity::Angle {
+            if plus.measured.outputs[m].dimension == Dimension::ANGLE {
                 // Both designs' angles may have been counted through different turns.
                 let turn = 2.0 * std::f64::consts::PI;
                 d[0] -= turn * (d[0] / turn).round();

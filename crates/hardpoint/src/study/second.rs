@@ -9,7 +9,7 @@ use crate::measure::{Moment, Output, bodies_asked_for, outputs};
 use crate::model::{BodyId, Fixed, GROUND};
 use crate::motion::stepper::Stepper;
 use crate::motion::{Motion, Stop};
-use crate::sensitivity::{BodyCurvature, Seconds};
+use crate::sensitivity::{BodyCurvature, Seconds, Way};
 use crate::sink::Store;
 use crate::space::{Dual, LANES, Pose, Real, lanes};
 
@@ -114,6 +114,7 @@ impl<'a, T: Real> Bends<'a, T> {
     ) -> Self {
         let (model, effects) = (analysis.model(), analysis.effects());
         let zero = Dual::constant(Dual::constant(0.0));
+        let ways: Vec<Way> = directions.iter().map(|d| Way::Design(d.clone())).collect();
         let fixed = |&[u, w]: &[usize; 2]| {
             let value = |k: usize| Dual {
                 v: Dual { v: design.values[k], d: directions[w][k] },
@@ -124,7 +125,7 @@ impl<'a, T: Real> Bends<'a, T> {
         };
         Self {
             analysis,
-            seconds: Seconds::new(effects, analysis.topology(), &design.values, directions, pairs, witness),
+            seconds: Seconds::new(effects, analysis.topology(), &design.values, &ways, pairs, witness),
             fixed: pairs.iter().map(fixed).collect(),
             asked_for: bodies_asked_for(model).into_iter().filter(|b| *b != GROUND.0).collect(),
             poses: vec![Pose::IDENTITY.spread(zero); model.bodies.len()],
@@ -142,7 +143,7 @@ impl<'a, T: Real> Bends<'a, T> {
                 for &b in &self.asked_for {
                     self.poses[b] = self.seconds.pose(state, p, b, lane);
                 }
-                let moment = Moment { model, fixed: &self.fixed[p], poses: &self.poses };
+                let moment = Moment::new(model, &self.fixed[p], &self.poses);
                 moment.all(|x| result.values.push(x.d.d));
                 let body = |b: usize| self.seconds.curvature(state, p, b, lane);
                 result.curvatures.extend((0..result.bodies).map(body));

@@ -4,8 +4,7 @@
 use std::ops::ControlFlow;
 
 use crate::analysis::{Analysis, Solution};
-use crate::joint::Quantity;
-use crate::model::VariableId;
+use crate::model::{Dimension, VariableId};
 use crate::sensitivity::Admissibility;
 use crate::space::Vec3;
 
@@ -200,26 +199,27 @@ pub fn compare_with_difference(
             magnitude[order] = magnitude[order - 1] / span;
         }
     }
-    let floor = |order: usize, quantity: Quantity| {
-        let unit = if quantity == Quantity::Length { size } else { 1.0 };
-        NEGLIGIBLE * magnitude[order] * unit / natural
+    let floor = |order: usize, of: Dimension| {
+        let order = (order as i8 - of.time).clamp(0, 2) as usize;
+        NEGLIGIBLE * magnitude[order] * size.powi(of.length.into()) / natural
     };
 
     type Of = fn(&crate::sensitivity::BodySensitivity) -> Vec3;
-    let kinds: [(&str, Of, usize, Quantity); 6] = [
-        ("position", |s| s.dr, 0, Quantity::Length),
-        ("orientation", |s| s.dpi, 0, Quantity::Angle),
-        ("velocity", |s| s.dv, 1, Quantity::Length),
-        ("angular velocity", |s| s.domega, 1, Quantity::Angle),
-        ("acceleration", |s| s.da, 2, Quantity::Length),
-        ("angular acceleration", |s| s.dalpha, 2, Quantity::Angle),
+    let (length, angle) = (Dimension::LENGTH, Dimension::ANGLE);
+    let kinds: [(&str, Of, usize, Dimension); 6] = [
+        ("position", |s| s.dr, 0, length),
+        ("orientation", |s| s.dpi, 0, angle),
+        ("velocity", |s| s.dv, 1, length),
+        ("angular velocity", |s| s.domega, 1, angle),
+        ("acceleration", |s| s.da, 2, length),
+        ("angular acceleration", |s| s.dalpha, 2, angle),
     ];
     let n = solution.motion.bodies;
-    for (kind, of, order, quantity) in kinds {
+    for (kind, of, order, dimension) in kinds {
         let analytic = |k: usize, i: usize| solution.sensitivities.at(k, d.variable.0).map(|s| of(&s[i]));
         let everywhere = (0..steps).flat_map(|k| (0..n).map(move |i| (k, i)));
         let largest = everywhere.filter_map(|(k, i)| analytic(k, i)).map(Vec3::norm).fold(0.0, f64::max);
-        let scale = largest.max(floor(order, quantity));
+        let scale = largest.max(floor(order, dimension));
         for i in 1..n {
             let name = format!("{} {kind}", model.bodies[i].name);
             let mut deviations = (0..steps)
@@ -230,11 +230,17 @@ pub fn compare_with_difference(
     let measured = &solution.measured;
     let columns = measured.outputs.len();
     for (m, output) in measured.outputs.iter().enumerate() {
-        for (order, label) in ["value", "rate", "acceleration"].into_iter().enumerate() {
+        for (order, label) in
+            ["value", "rate", "acceleration"].into_iter().enumerate().take(output.known.orders)
+        {
             let analytic = |k: usize| measured.d(k, d.variable, m)[order];
             let largest = (0..steps).map(|k| analytic(k).abs()).fold(0.0, f64::max);
-            let scale = largest.max(floor(order, output.quantity));
-            let mut deviations = (0..steps).map(|k| (analytic(k) - d.outputs[k * columns + m][order]).abs());
+            let scale = largest.max(floor(order, output.dimension));
+            // Next to a time without a number the neighbours' may be anything.
+            let defined =
+                |k: &usize| measured.value(*k, m)[..output.known.orders].iter().all(|x| x.is_finite());
+            let deviation = |k: usize| (analytic(k) - d.outputs[k * columns + m][order]).abs();
+            let mut deviations = (0..steps).map(|k| if defined(&k) { deviation(k) } else { 0.0 });
             push(format!("{} {label}", output.name), scale, &mut deviations);
         }
     }

@@ -2,7 +2,7 @@
 
 use crate::analysis::{Analysis, Solution};
 use crate::joint::Quantity;
-use crate::model::{Change, DesignVariable, End, HardpointId, JointId, Model, VariableId};
+use crate::model::{Change, DesignVariable, Dimension, End, HardpointId, JointId, Model, VariableId};
 use crate::sensitivity::{Admissibility, JointDefect, admissibility_at_design};
 use crate::space::Vec3;
 
@@ -34,10 +34,11 @@ pub struct WhatIf {
 pub struct Foresight {
     /// Largest exact change over the motion, and the index of its time.
     pub change: (f64, usize),
-    /// Largest error of the first-order prediction, and of the second-order one.
-    pub errors: [f64; 2],
+    /// Largest error of the first-order prediction, and of the second-order one, which follows for positions alone
+    /// ([`Known::by_position`](crate::model::Known)).
+    pub errors: [Option<f64>; 2],
     /// How many times the change could be made before its second-order part is 5 % of the first-order one; infinite where
-    /// nothing bends, `None` where the first-order part is nothing.
+    /// nothing bends, `None` where the first-order part is nothing or the second-order one is not known.
     pub linear_up_to: Option<f64>,
 }
 
@@ -94,8 +95,8 @@ impl WhatIf {
     pub fn exact(&self, k: usize, m: usize) -> f64 {
         const TURN: f64 = 2.0 * std::f64::consts::PI;
         let (x, now) = (self.exact.measured.value(k, m)[0], self.today.measured.value(k, m)[0]);
-        match self.today.measured.outputs[m].quantity {
-            Quantity::Angle => x - TURN * ((x - now) / TURN).round(),
+        match self.today.measured.outputs[m].dimension {
+            Dimension::ANGLE => x - TURN * ((x - now) / TURN).round(),
             _ => x,
         }
     }
@@ -105,21 +106,22 @@ impl WhatIf {
         if self.is_empty() || !self.cannot_follow.is_empty() {
             return None;
         }
-        let mut found = Foresight { change: (0.0, 0), errors: [0.0; 2], linear_up_to: None };
-        let (mut first, mut second) = (0.0_f64, 0.0_f64);
+        let bends = self.today.measured.outputs[m].known.by_position;
+        let mut errors = [Some(0.0_f64), bends.then_some(0.0)];
+        let (mut change, mut first, mut second) = ((0.0_f64, 0), 0.0_f64, 0.0_f64);
         for k in 0..self.len() {
             let exact = self.exact(k, m);
-            let change = exact - self.today.measured.value(k, m)[0];
-            if change.abs() > found.change.0.abs() {
-                found.change = (change, k);
+            let now = exact - self.today.measured.value(k, m)[0];
+            if now.abs() > change.0.abs() {
+                change = (now, k);
             }
-            for (most, foreseen) in found.errors.iter_mut().zip(self.foreseen(k, m)) {
-                *most = most.max((foreseen - exact).abs());
+            for (most, foreseen) in errors.iter_mut().zip(self.foreseen(k, m)) {
+                *most = most.map(|most| most.max((foreseen - exact).abs()));
             }
             (first, second) = (first.max(self.first(k, m, 0).abs()), second.max(self.second(k, m).abs()));
         }
-        found.linear_up_to = (first > 0.0).then(|| LINEAR * first / second);
-        Some(found)
+        let linear_up_to = (bends && first > 0.0).then(|| LINEAR * first / second);
+        Some(Foresight { change, errors, linear_up_to })
     }
 }
 

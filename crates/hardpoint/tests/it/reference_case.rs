@@ -205,9 +205,7 @@ impl Case {
                 for (order, key) in ["value", "rate", "accel"].into_iter().enumerate() {
                     let mut got = value[order];
                     let want = measure[key].as_f64().ok_or("no number")?;
-                    if key == "value"
-                        && solution.measured.outputs[m].quantity == hardpoint::joint::Quantity::Angle
-                    {
+                    if key == "value" && solution.measured.outputs[m].dimension == Dimension::ANGLE {
                         let turn = 2.0 * std::f64::consts::PI;
                         got -= turn * ((got - want) / turn).round();
                     }

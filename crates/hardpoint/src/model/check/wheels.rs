@@ -6,6 +6,88 @@ use super::*;
 const HEADLESS: f64 = 1e-6;
 
 impl Check<'_> {
+    pub(super) fn vehicle(&mut self) {
+        let v = &self.draft.vehicle;
+        let here = Here { section: Section::Vehicle, index: 0 };
+        for (key, value) in [("wheelbase", v.wheelbase), ("centre_of_gravity", v.centre_of_gravity)] {
+            if value.is_some_and(|x| !(x > 0.0 && x.is_finite())) {
+                self.fault("HP0231", here.key(key), format!("the {key} of the vehicle is not above zero"))
+                    .help("give a length above zero, in the file's length unit");
+            }
+        }
+        for (key, value) in
+            [("front_brake_share", v.front_brake_share), ("front_drive_share", v.front_drive_share)]
+        {
+            if value.is_some_and(|x| !(0.0..=1.0).contains(&x)) {
+                self.fault(
+                    "HP0231",
+                    here.key(key),
+                    format!("the {key} of the vehicle is not between 0 and 1"),
+                )
+                .help("give the part that the front wheels have, 0 to 1");
+            }
+        }
+    }
+
+    pub(super) fn axles(&mut self) {
+        let draft = self.draft;
+        for (index, a) in draft.axles.iter().enumerate() {
+            let here = Here { section: Section::Axles, index };
+            let axle = self.one_axle(a, here);
+            self.axle_ids.push(axle.as_ref().map(|_| AxleId(self.model.axles.len())));
+            self.model.axles.extend(axle);
+        }
+    }
+
+    /// An axle; `None` where it or one of its wheels is faulty.
+    fn one_axle(&mut self, a: &AxleDraft, here: Here) -> Option<Axle> {
+        let draft = self.draft;
+        let mut wheel = |key: &'static str, name: &str, side: Side| {
+            let names = draft.wheels.iter().map(|w| w.name.as_str());
+            let k = self.find("wheel", name, here.key(key), names)?;
+            let id = self.wheel_ids[k]?;
+            if self.model.wheels[id.0].side != side {
+                let message =
+                    format!("the {key} wheel of axle `{}` is on the other side of the vehicle", a.name);
+                self.fault("HP0231", here.key(key), message)
+                    .help(format!("name the wheel on the {key}; y points left"));
+                return None;
+            }
+            Some(id)
+        };
+        let (left, right) = (wheel("left", &a.left, Side::Left), wheel("right", &a.right, Side::Right));
+        Some(Axle { name: a.name.clone(), wheels: [left?, right?] })
+    }
+
+    /// A measure of an axle; `None`, without a second fault, where the axle itself is faulty.
+    pub(super) fn axle_measure(&mut self, name: &str, what: AxleMeasure, here: Here) -> Option<MeasureKind> {
+        let draft = self.draft;
+        let names = draft.axles.iter().map(|a| a.name.as_str());
+        let k = self.find("axle", name, here.key("axle"), names)?;
+        let axle = self.axle_ids[k]?;
+        if what.needs_wheelbase() && draft.vehicle.wheelbase.is_none() {
+            let message = format!("`{}` needs the wheelbase of the vehicle", what.name());
+            self.fault("HP0232", here.key("type"), message).help("add `[vehicle]` with `wheelbase = ...`");
+            return None;
+        }
+        let unmoved =
+            self.model.axles[axle.0].wheels.into_iter().find(|w| self.model.wheels[w.0].bump.is_none());
+        if let Some(wheel) = unmoved.filter(|_| what.goes_by_driver()) {
+            let wheel = self.model.wheels[wheel.0].name.clone();
+            self.needs_bump(what.name(), &wheel, here);
+            return None;
+        }
+        Some(MeasureKind::Axle { axle, what })
+    }
+
+    fn needs_bump(&mut self, what: &str, wheel: &str, here: Here) {
+        let drivers: Vec<String> = self.draft.drivers.iter().map(|d| format!("`{}`", d.name)).collect();
+        let message = format!("`{what}` needs to know which driver moves wheel `{wheel}` up and down");
+        self.fault("HP0232", here.key("type"), message)
+            .note(format!("drivers: {}", drivers.join(", ")))
+            .help("add `bump = DRIVER` to the wheel");
+    }
+
     pub(super) fn wheels(&mut self) {
         let draft = self.draft;
         for (index, w) in draft.wheels.iter().enumerate() {
@@ -35,10 +117,19 @@ impl Check<'_> {
             Some(points) => Some(self.kingpin(w, points, here)?),
             None => None,
         };
+        let bump = match &w.bump {
+            None => (self.draft.drivers.len() == 1).then_some(DriverId(0)),
+            Some(name) => {
+                let draft = self.draft;
+                let names = draft.drivers.iter().map(|d| d.name.as_str());
+                Some(self.find("driver", name, here.key("bump"), names).map(DriverId)?)
+            }
+        };
         let (body, at, side, spin_axis) = (body?, centre?, side?, spin_axis?);
         self.model.points.push(BodyPoint { name: w.name.clone(), body, at, unnamed: true });
         let centre = PointId(self.model.points.len() - 1);
-        let wheel = Wheel { name: w.name.clone(), body, centre, spin_axis, radius: w.radius, side, kingpin };
+        let (name, radius, end) = (w.name.clone(), w.radius, w.end);
+        let wheel = Wheel { name, body, centre, spin_axis, radius, side, kingpin, bump, end };
         (self.faults.len() == faults).then_some(wheel)
     }
 
@@ -152,6 +243,41 @@ impl Check<'_> {
             );
             return None;
         }
-        Some(MeasureKind::Wheel { wheel: self.wheel_ids[k]?, what })
+        let id = self.wheel_ids[k]?;
+        let (needs, wheel) = (what.needs(), &self.model.wheels[id.0]);
+        if needs.goes_by_driver() && wheel.bump.is_none() {
+            self.needs_bump(what.name(), name, here);
+            return None;
+        }
+        let (WheelNeed::Braking(end) | WheelNeed::Driving(end)) = needs else {
+            return Some(MeasureKind::Wheel { wheel: id, what });
+        };
+        if wheel.end.is_some_and(|at| at != end) {
+            let message = format!("`{}` is of {} wheels, and `{name}` is none", what.name(), end.name());
+            self.fault("HP0232", here.key("type"), message).help(match end {
+                VehicleEnd::Front => "at the rear measure `anti_lift` or `anti_squat`",
+                VehicleEnd::Rear => "at the front measure `anti_dive` or `anti_rise`",
+            });
+            return None;
+        }
+        let vehicle = &draft.vehicle;
+        let (share, key) = match needs {
+            WheelNeed::Driving(_) => (vehicle.front_drive_share, "front_drive_share"),
+            _ => (vehicle.front_brake_share, "front_brake_share"),
+        };
+        let known = [
+            ("wheelbase", vehicle.wheelbase),
+            ("centre_of_gravity", vehicle.centre_of_gravity),
+            (key, share),
+        ];
+        let missing: Vec<String> =
+            known.iter().filter(|(_, x)| x.is_none()).map(|(key, _)| format!("`{key} = ...`")).collect();
+        if !missing.is_empty() {
+            let message = format!("`{}` needs to know more of the vehicle", what.name());
+            let help = format!("add to `[vehicle]`: {}", missing.join(", "));
+            self.fault("HP0232", here.key("type"), message).help(help);
+            return None;
+        }
+        Some(MeasureKind::Wheel { wheel: id, what })
     }
 }

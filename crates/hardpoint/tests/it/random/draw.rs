@@ -801,6 +801,23 @@ impl<'r> Drawing<'r> {
         let (toe, camber) = (self.line(spin), self.line(spin));
         self.measure(MeasureKindDraft::Toe { body: self.name(body), spin_axis: toe });
         self.measure(MeasureKindDraft::Camber { body: self.name(body), spin_axis: camber });
+        let position = format!("m{}", self.draft.measures.len() - 3);
+        let moving = || PointRef::Named(format!("p{body}"));
+        let (velocity, acceleration) = (Some(spin), Some(along));
+        self.measure(MeasureKindDraft::Velocity { point: moving(), along: velocity, order: 1 });
+        self.measure(MeasureKindDraft::Velocity { point: moving(), along: acceleration, order: 2 });
+        let ray = |body: String, axis: Vec3| RayDraft::Fixed { body, axis: Line::Along(axis) };
+        let between = [ray(self.name(a), spin), ray(self.name(b), along)];
+        self.measure(MeasureKindDraft::Angle { between, kind: AngleKindDraft::Between });
+        let driven = self.draft.drivers.iter().find_map(|d| match &d.drives {
+            DrivenDraft::Coordinate { joint, coordinate } => Some((d, joint.clone(), coordinate.clone())),
+            _ => None,
+        });
+        if let Some((driver, joint, coordinate)) = driven {
+            let (over, driver) = (format!("m{}", self.draft.measures.len()), Some(driver.name.clone()));
+            self.measure(MeasureKindDraft::Coordinate { joint, coordinate });
+            self.measure(MeasureKindDraft::Slope { of: position, over, driver });
+        }
         for _ in 0..3 + self.rng.below(4) {
             self.variable();
         }

@@ -225,7 +225,7 @@ impl Case<'_> {
         let vanishes = |m: usize| {
             (0..s.motion.len()).any(|k| {
                 !(s.measured.value(k, m)[0].abs() > f64::MIN_POSITIVE)
-                    && s.measured.outputs[m].quantity == hardpoint::joint::Quantity::Length
+                    && s.measured.outputs[m].dimension == Dimension::LENGTH
             })
         };
         if !states.into_iter().all(Vec3::is_finite) {
@@ -244,7 +244,8 @@ impl Case<'_> {
                     bad.push(format!("a sensitivity by variable {v}"));
                 }
                 for (m, output) in s.measured.outputs.iter().enumerate().filter(|(m, _)| !vanishes(*m)) {
-                    if !s.measured.d(k, VariableId(v), m).iter().all(|x| x.is_finite()) {
+                    if !s.measured.d(k, VariableId(v), m)[..output.known.orders].iter().all(|x| x.is_finite())
+                    {
                         bad.push(format!("the sensitivity of {} by variable {v}", output.name));
                     }
                 }
@@ -253,7 +254,7 @@ impl Case<'_> {
                 if vanishes(m) {
                     continue;
                 }
-                if !s.measured.value(k, m).iter().all(|x| x.is_finite()) {
+                if !s.measured.value(k, m)[..output.known.orders].iter().all(|x| x.is_finite()) {
                     bad.push(output.name.clone());
                 }
             }
@@ -459,8 +460,7 @@ impl Case<'_> {
             let slope = |f: &dyn Fn(usize) -> f64| (f(1) - 8.0 * f(2) + 8.0 * f(4) - f(5)) / (12.0 * h);
             let mut errors = Vec::new();
             let scale = |f: &dyn Fn(usize) -> f64| (0..6).map(|k| f(k).abs()).fold(0.0, f64::max);
-            let unit =
-                |quantity| if quantity == hardpoint::joint::Quantity::Length { model.size() } else { 1.0 };
+            let unit = |of: Dimension| model.size().powi(of.length.into());
             let mut push =
                 |name: String, floor: f64, value: &dyn Fn(usize) -> f64, rate: &dyn Fn(usize) -> f64| {
                     let all = scale(rate).max(scale(value)).max(floor);
@@ -483,8 +483,8 @@ impl Case<'_> {
                 }
             }
             for (m, output) in s.measured.outputs.iter().enumerate() {
-                for order in 0..2 {
-                    let floor = unit(output.quantity);
+                for order in 0..output.known.orders - 1 {
+                    let floor = unit(output.dimension);
                     push(
                         format!("rate {} of {}", order + 1, output.name),
                         floor,
@@ -629,21 +629,26 @@ fn flat(model: &Model, s: &Solution, size: f64, moved: Option<Pose>, anywhere: b
     }
     for &m in &outputs {
         let output = &s.measured.outputs[m];
-        let unit = if output.quantity == hardpoint::joint::Quantity::Length { size } else { 1.0 };
+        let unit = size.powi(output.dimension.length.into());
         let global = output.name.contains('.');
         let mut depends = global;
-        if let Some(MeasureKind::Coordinates { .. } | MeasureKind::Toe { .. } | MeasureKind::Camber { .. }) =
-            model.measures.iter().find(|x| x.name == output.name).map(|x| &x.kind)
+        if let Some(
+            MeasureKind::Coordinates { .. }
+            | MeasureKind::Toe { .. }
+            | MeasureKind::Camber { .. }
+            | MeasureKind::Velocity { .. }
+            | MeasureKind::Slope { .. },
+        ) = model.measures.iter().find(|x| x.name == output.name).map(|x| &x.kind)
         {
             depends = true;
         }
         if depends && anywhere {
             continue;
         }
-        for order in 0..3 {
+        for order in 0..output.known.orders {
             let values = (0..times).map(|k| s.measured.value(k, m)[order]).collect();
-            let floor = speeds[order] * unit;
-            let counts_turns = order == 0 && output.quantity == hardpoint::joint::Quantity::Angle;
+            let floor = speeds[(order as i8 - output.dimension.time) as usize] * unit;
+            let counts_turns = order == 0 && output.dimension == Dimension::ANGLE;
             groups.push(Group {
                 name: format!("{} order {order}", output.name),
                 order: order as i32,
@@ -736,8 +741,29 @@ fn moved(draft: &Draft, to: Pose) -> Draft {
             MeasureKindDraft::Toe { spin_axis, .. } | MeasureKindDraft::Camber { spin_axis, .. } => {
                 line(spin_axis)
             }
-            // Its wheel would have to stay upright.
-            MeasureKindDraft::Wheel { .. } => unreachable!("random mechanisms have no wheels"),
+            MeasureKindDraft::Angle { between, kind } => {
+                for ray in between {
+                    match ray {
+                        RayDraft::Between(points) => points.iter_mut().for_each(&point),
+                        RayDraft::Fixed { axis, .. } => line(axis),
+                    }
+                }
+                if let AngleKindDraft::About(n) = kind {
+                    *n = to.rot * *n;
+                }
+            }
+            MeasureKindDraft::Velocity { point: p, along, .. }
+            | MeasureKindDraft::Curvature { point: p, about: along } => {
+                point(p);
+                *along = along.map(|v| to.rot * v);
+            }
+            MeasureKindDraft::Rate { .. }
+            | MeasureKindDraft::Slope { .. }
+            | MeasureKindDraft::Combination { .. } => {}
+            // Its wheels would have to stay upright.
+            MeasureKindDraft::Wheel { .. } | MeasureKindDraft::Axle { .. } => {
+                unreachable!("random mechanisms have no wheels")
+            }
         }
     }
     d

@@ -1,0 +1,178 @@
+//! What happens while one driver alone moves: motion ratios, bump steer, instant centres, roll centres.
+//!
+//! A driver that moves by itself is a direction like a change of the design (`docs/theory.md`, section 7); how the outcome
+//! changes with the design is the second derivative along both.
+
+use crate::model::{DriverId, Effects, Fixed, GROUND, MeasureKind, Model, WheelId};
+use crate::motion::stepper::Stepper;
+use crate::sensitivity::{Seconds, Way};
+use crate::space::{Dual, LANES, Pose, Real};
+use crate::topology::Topology;
+
+use super::wheel::{Carried, axle_roll_centre};
+use super::{Moment, bodies_asked_for};
+use crate::model::AxleMeasure;
+
+/// Values of the measures that go by a driver, over a motion, and their derivatives by the design variables.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct SlopeValues {
+    /// How many measures there are; 0 if none of them goes by a driver.
+    measures: usize,
+    /// Derivatives by so many.
+    variables: usize,
+    /// `values[k * measures + m]`: NaN for those that do not.
+    values: Vec<f64>,
+    /// `d[(k * variables + b) * measures + m]`.
+    d: Vec<f64>,
+}
+
+impl SlopeValues {
+    /// Per measure, its value at time k; empty where none is known.
+    pub fn at(&self, k: usize) -> &[f64] {
+        if self.measures == 0 { &[] } else { &self.values[k * self.measures..][..self.measures] }
+    }
+
+    /// Per measure, its derivative by variable b; empty where none is known.
+    pub fn d(&self, k: usize, b: usize) -> &[f64] {
+        if self.measures == 0 {
+            &[]
+        } else {
+            &self.d[(k * self.variables + b) * self.measures..][..self.measures]
+        }
+    }
+}
+
+/// Evaluates the measures that go by a driver, where a stepper stands.
+pub(crate) struct Slopes<'a, T> {
+    model: &'a Model,
+    drivers: Vec<DriverId>,
+    variables: usize,
+    seconds: Seconds<T>,
+    /// Per variable, what measures go by; the last is that of no change.
+    fixed: Vec<Fixed<Dual<Dual>>>,
+    asked_for: Vec<usize>,
+    /// Per driver.
+    poses: Vec<Vec<Pose<Dual<Dual>>>>,
+}
+
+impl<'a, T: Real> Slopes<'a, T> {
+    /// For the design with these values, with derivatives by the variables if they are wanted; `None` for a model without
+    /// such measures.
+    pub fn new(
+        effects: &Effects<'a>,
+        topology: &Topology,
+        values: &[f64],
+        sensitivities: bool,
+        witness: T,
+    ) -> Option<Self> {
+        let model = effects.model;
+        let mut drivers: Vec<DriverId> =
+            (0..model.measures.len()).flat_map(|k| driver_of(model, k)).flatten().collect();
+        drivers.sort_unstable();
+        drivers.dedup();
+        if drivers.is_empty() {
+            return None;
+        }
+        let variables = if sensitivities { model.variables.len() } else { 0 };
+        let unit = |v: usize| (0..model.variables.len()).map(|k| f64::from(u8::from(k == v))).collect();
+        let ways =
+            drivers.iter().map(|d| Way::Driver(*d)).chain((0..variables).map(|v| Way::Design(unit(v))));
+        let ways: Vec<Way> = ways.collect();
+        let pairs: Vec<[usize; 2]> = (0..variables)
+            .flat_map(|v| (0..drivers.len()).map(move |d| (d, v)))
+            .map(|(d, v)| [d, drivers.len() + v])
+            .collect();
+        let zero = Dual::constant(Dual::constant(0.0));
+        let fixed = |by: usize| {
+            let value = |k: usize| Dual::constant(Dual { v: values[k], d: f64::from(u8::from(k == by)) });
+            let values: Vec<_> = (0..values.len()).map(value).collect();
+            effects.fixed(&values, zero)
+        };
+        Some(Self {
+            model,
+            seconds: Seconds::new(effects, topology, values, &ways, &pairs, witness),
+            fixed: (0..variables).chain([usize::MAX]).map(fixed).collect(),
+            asked_for: bodies_asked_for(model).into_iter().filter(|b| *b != GROUND.0).collect(),
+            poses: vec![vec![Pose::IDENTITY.spread(zero); model.bodies.len()]; drivers.len()],
+            variables,
+            drivers,
+        })
+    }
+
+    /// Appends what is found at these times, one per lane.
+    pub fn add(&mut self, stepper: &mut Stepper<'_, T>, times: &[f64], out: &mut SlopeValues) {
+        let of_lanes: [f64; LANES] = std::array::from_fn(|lane| times[lane.min(times.len() - 1)]);
+        self.seconds.solve(stepper, &of_lanes);
+        (out.measures, out.variables) = (self.model.measures.len(), self.variables);
+        let state = &stepper.state;
+        for lane in 0..times.len() {
+            for by in 0..=self.variables {
+                for (d, poses) in self.poses.iter_mut().enumerate() {
+                    for &body in &self.asked_for {
+                        poses[body] = if by < self.variables {
+                            self.seconds.pose(state, by * self.drivers.len() + d, body, lane)
+                        } else {
+                            self.seconds.pose_along(state, d, body, lane)
+                        };
+                    }
+                }
+                let alone = Alone {
+                    drivers: &self.drivers,
+                    moments: self.poses.iter().map(|p| Moment::new(self.model, &self.fixed[by], p)).collect(),
+                };
+                for k in 0..self.model.measures.len() {
+                    let x = alone.measure(self.model, k);
+                    if by < self.variables { out.d.push(x.d) } else { out.values.push(x.v) }
+                }
+            }
+        }
+    }
+}
+
+/// The drivers that a measure goes by, if it does: those of both wheels of an axle may differ.
+fn driver_of(model: &Model, k: usize) -> Option<[DriverId; 2]> {
+    let of_wheel = |wheel: WheelId| model.wheels[wheel.0].bump;
+    if !model.goes_by_driver(k) {
+        return None;
+    }
+    match model.measures[k].kind {
+        MeasureKind::Slope { driver, .. } => Some([driver; 2]),
+        MeasureKind::Wheel { wheel, .. } => of_wheel(wheel).map(|d| [d; 2]),
+        MeasureKind::Axle { axle, .. } => {
+            let [left, right] = model.axles[axle.0].wheels.map(of_wheel);
+            left.zip(right).map(|(l, r)| [l, r])
+        }
+        _ => None,
+    }
+}
+
+/// The same position as often as there are drivers, each time with what happens while that driver alone moves.
+struct Alone<'m, T> {
+    drivers: &'m [DriverId],
+    moments: Vec<Moment<'m, Dual<T>>>,
+}
+
+impl<T: Real> Alone<'_, T> {
+    /// The value of a measure that goes by a driver; NaN of all others.
+    fn measure(&self, model: &Model, k: usize) -> T {
+        let unknown = self.moments[0].poses[GROUND.0].r.x.v.like(f64::NAN);
+        let Some(drivers) = driver_of(model, k) else { return unknown };
+        let [first, second] = drivers.map(|d| {
+            &self.moments[self.drivers.binary_search(&d).expect("the drivers of all measures are here")]
+        });
+        let wheel = |moment: &Moment<'_, Dual<T>>, d: usize, wheel: WheelId| Carried {
+            wheel: moment.wheel(k, d, wheel),
+            carrier: moment.poses[model.wheels[wheel.0].body.0].split().1,
+        };
+        match model.measures[k].kind {
+            MeasureKind::Slope { of, over, .. } => first.output(of).d / first.output(over).d,
+            MeasureKind::Wheel { wheel: w, what } => wheel(first, 0, w).measure(what, &model.vehicle),
+            MeasureKind::Axle { axle, what } => {
+                let [left, right] = model.axles[axle.0].wheels;
+                let (y, height) = axle_roll_centre([wheel(first, 0, left), wheel(second, 1, right)]);
+                if what == AxleMeasure::RollCentreY { y } else { height }
+            }
+            _ => unknown,
+        }
+    }
+}

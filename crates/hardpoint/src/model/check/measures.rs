@@ -1,0 +1,326 @@
+//! Checks of measures: what they name, and whether it can be known.
+
+use super::*;
+use crate::law::Expression;
+
+impl Check<'_> {
+    pub(super) fn measures(&mut self) {
+        let draft = self.draft;
+        for (index, m) in draft.measures.iter().enumerate() {
+            let here = Here { section: Section::Measures, index };
+            if let Some(kind) = self.one_measure(m, here) {
+                self.model.measures.push(Measure { name: m.name.clone(), kind });
+            }
+        }
+        if self.model.measures.len() == draft.measures.len() {
+            self.measures_of_measures();
+        }
+    }
+
+    fn one_measure(&mut self, m: &MeasureDraft, here: Here) -> Option<MeasureKind> {
+        Some(match &m.kind {
+            MeasureKindDraft::Coordinate { joint, coordinate } => {
+                let joint = self.joint(joint, here.key("joint"))?;
+                let coordinate = self.coordinate(joint, coordinate.as_deref(), here)?;
+                MeasureKind::Coordinate { joint, coordinate }
+            }
+            MeasureKindDraft::Distance { from, to } => {
+                let (a, b) =
+                    (self.point(from, &m.name, here.key("from")), self.point(to, &m.name, here.key("to")));
+                let (from, to) = (a?, b?);
+                let [a, b] = [from, to].map(|p| self.model.points[p.0].clone());
+                let apart = (self.position(a.at) - self.position(b.at)).norm();
+                if from == to || (a.body == b.body && apart <= SAME_POINT * self.extent.size()) {
+                    let message = format!("measure `{}` is the distance of a point from itself", m.name);
+                    self.fault("HP0216", here.key("to"), message);
+                } else if apart <= SAME_POINT * self.extent.size() {
+                    let message =
+                        format!("the two points of measure `{}` are drawn at the same place", m.name);
+                    self.fault("HP0216", here.key("to"), message)
+                        .note("a distance of zero has no rate")
+                        .help("measure the `position` of one of them along each direction, or points that lie apart");
+                }
+                MeasureKind::Distance { from, to }
+            }
+            MeasureKindDraft::Coordinates { point, along } => {
+                let point = self.point(point, &m.name, here.key("point"));
+                let (_, along) = self.line(&Line::Along(*along), &m.name, here, "along")?;
+                MeasureKind::Coordinates { point: point?, along }
+            }
+            MeasureKindDraft::Angle { between, kind } => {
+                let [from, to] = between;
+                let rays = (self.ray(from, &m.name, here, "from"), self.ray(to, &m.name, here, "to"));
+                let kind = match kind {
+                    AngleKindDraft::Between => AngleKind::Between,
+                    AngleKindDraft::Lines => AngleKind::Lines,
+                    AngleKindDraft::About(n) => {
+                        AngleKind::About(self.line(&Line::Along(*n), &m.name, here, "about")?.1)
+                    }
+                };
+                MeasureKind::Angle { between: [rays.0?, rays.1?], kind }
+            }
+            MeasureKindDraft::Velocity { point, along, order } => {
+                let point = self.point(point, &m.name, here.key("point"));
+                let along = self.unit_vector(*along, &m.name, here, "along");
+                MeasureKind::Velocity { point: point?, along: along?, order: *order }
+            }
+            MeasureKindDraft::Curvature { point, about } => {
+                let point = self.point(point, &m.name, here.key("point"));
+                let about = self.unit_vector(*about, &m.name, here, "about");
+                MeasureKind::Curvature { point: point?, about: about? }
+            }
+            MeasureKindDraft::Rate { of } => MeasureKind::Rate { of: self.output(of, here.key("of"))? },
+            MeasureKindDraft::Slope { of, over, driver } => {
+                let outputs = (self.output(of, here.key("of")), self.output(over, here.key("over")));
+                let driver = self.driver_or_only(driver.as_deref(), &m.name, here)?;
+                MeasureKind::Slope { of: outputs.0?, over: outputs.1?, driver }
+            }
+            MeasureKindDraft::Combination { expression } => {
+                let at = here.key("expression");
+                let inputs: Vec<_> = expression.names().iter().map(|n| self.output(n, at.clone())).collect();
+                let inputs: Option<Vec<_>> = inputs.into_iter().collect();
+                MeasureKind::Combination(Combination {
+                    expression: expression.clone(),
+                    inputs: inputs?.into_iter().map(|source| (source, 1.0)).collect(),
+                    per_unit: 1.0,
+                    dimension: Dimension::NUMBER,
+                })
+            }
+            MeasureKindDraft::Toe { body, spin_axis } | MeasureKindDraft::Camber { body, spin_axis } => {
+                let body = self.body(body, here.key("body"));
+                let (spin_axis, _) = self.line(spin_axis, &m.name, here, "spin_axis")?;
+                let body = body?;
+                match &m.kind {
+                    MeasureKindDraft::Toe { .. } => MeasureKind::Toe { body, spin_axis },
+                    _ => MeasureKind::Camber { body, spin_axis },
+                }
+            }
+            MeasureKindDraft::Wheel { wheel, what } => self.wheel_measure(wheel, *what, here)?,
+            MeasureKindDraft::Axle { axle, what } => self.axle_measure(axle, *what, here)?,
+        })
+    }
+
+    /// A direction that an angle is measured from or to.
+    fn ray(&mut self, ray: &RayDraft, owner: &str, here: Here, key: &'static str) -> Option<Ray> {
+        match ray {
+            RayDraft::Between([from, to]) => {
+                let points =
+                    (self.point(from, owner, here.item(key, 0)), self.point(to, owner, here.item(key, 1)));
+                let ends = [points.0?, points.1?];
+                let [a, b] = ends.map(|p| self.position(self.model.points[p.0].at));
+                if (b - a).norm() <= SAME_POINT * self.extent.size() {
+                    let message =
+                        format!("the two points of `{key}` of measure `{owner}` are drawn at the same place");
+                    self.fault("HP0216", here.key(key), message).help("name two points that lie apart");
+                    return None;
+                }
+                Some(Ray::Between(ends))
+            }
+            RayDraft::Fixed { body, axis } => {
+                let body = self.body(body, here.key(key));
+                let (axis, _) = self.line(axis, owner, here, key)?;
+                Some(Ray::Fixed { body: body?, axis })
+            }
+        }
+    }
+
+    /// A unit vector, if one is given; `None` where it is null.
+    fn unit_vector(
+        &mut self,
+        v: Option<Vec3>,
+        owner: &str,
+        here: Here,
+        key: &'static str,
+    ) -> Option<Option<Vec3>> {
+        match v {
+            Some(v) => self.line(&Line::Along(v), owner, here, key).map(|(_, unit)| Some(unit)),
+            None => Some(None),
+        }
+    }
+
+    /// The output of that name: a measure, or a component of a point.
+    fn output(&mut self, name: &str, at: Locus) -> Option<OutputSource> {
+        let number = |what: &str, name: &str| self.numbers.get(what).and_then(|n| n.get(name)).copied();
+        if let Some(k) = number("measure", name) {
+            return Some(OutputSource::Measure(k));
+        }
+        let component = name.rsplit_once('.').and_then(|(point, axis)| {
+            let axis = ["x", "y", "z"].iter().position(|a| *a == axis)?;
+            number("point", point).map(|k| OutputSource::Point(PointId(k), axis))
+        });
+        if component.is_some() {
+            return component;
+        }
+        let draft = self.draft;
+        self.find("measure", name, at, draft.measures.iter().map(|m| m.name.as_str()));
+        if !draft.points.is_empty() && self.faults.last().is_some_and(|f| f.help.is_none()) {
+            let fault = self.faults.last_mut().expect("just reported");
+            fault.help("for a component of a point write `POINT.x`, `POINT.y` or `POINT.z`");
+        }
+        None
+    }
+
+    /// The driver of that name, or the only one there is.
+    pub(super) fn driver_or_only(&mut self, name: Option<&str>, owner: &str, here: Here) -> Option<DriverId> {
+        let draft = self.draft;
+        let names = draft.drivers.iter().map(|d| d.name.as_str());
+        match name {
+            Some(name) => self.find("driver", name, here.key("driver"), names).map(DriverId),
+            None if draft.drivers.len() == 1 => Some(DriverId(0)),
+            None => {
+                let listed: Vec<String> = names.map(|n| format!("`{n}`")).collect();
+                let message = format!("measure `{owner}` does not say which driver moves");
+                self.fault("HP0232", here.key("driver"), message)
+                    .note(format!("drivers: {}", listed.join(", ")))
+                    .help("add `driver = ...`");
+                None
+            }
+        }
+    }
+
+    /// Measures of other measures: none of itself, and only of what is known.
+    fn measures_of_measures(&mut self) {
+        let mut state = vec![Visit::New; self.model.measures.len()];
+        for k in 0..state.len() {
+            self.visit(k, &mut state);
+        }
+    }
+
+    /// Looks at a measure after those that it uses; whether it is sound.
+    fn visit(&mut self, k: usize, state: &mut [Visit]) -> bool {
+        let here = Here { section: Section::Measures, index: k };
+        let name = self.model.measures[k].name.clone();
+        match state[k] {
+            Visit::Open => {
+                self.fault("HP0227", here.key("of"), format!("measure `{name}` is measured from itself"))
+                    .help("a measure may use others only where these do not use it in turn");
+                return false;
+            }
+            Visit::Done(sound) => return sound,
+            Visit::New => state[k] = Visit::Open,
+        }
+        let kind = self.model.measures[k].kind.clone();
+        let used: Vec<OutputSource> = match &kind {
+            MeasureKind::Rate { of } => vec![*of],
+            MeasureKind::Slope { of, over, .. } => vec![*of, *over],
+            MeasureKind::Combination(c) => c.sources().collect(),
+            _ => Vec::new(),
+        };
+        let mut sound = true;
+        for source in used {
+            if let OutputSource::Measure(other) = source {
+                sound &= self.visit(other, state);
+            }
+        }
+        if sound {
+            sound = self.is_known(&kind, &name, here);
+        }
+        if sound && let MeasureKind::Combination(c) = &kind {
+            let c = self.in_units(c);
+            self.model.measures[k].kind = MeasureKind::Combination(c);
+        }
+        state[k] = Visit::Done(sound);
+        sound
+    }
+
+    /// HP0233: rates of what has none, slopes of what is no matter of positions.
+    fn is_known(&mut self, kind: &MeasureKind, name: &str, here: Here) -> bool {
+        let label = |c: &Self, source: OutputSource| match source {
+            OutputSource::Measure(k) => c.model.measures[k].name.clone(),
+            OutputSource::Point(p, axis) => format!("{}.{}", c.model.points[p.0].name, ["x", "y", "z"][axis]),
+        };
+        match kind {
+            MeasureKind::Rate { of } if self.model.known(*of).orders < 2 => {
+                let of = label(self, *of);
+                self.fault(
+                    "HP0233",
+                    here.key("of"),
+                    format!("the rate of `{of}` is not known, so `{name}` is not"),
+                )
+                .note("the motion is solved up to accelerations, and slopes over a driver up to their values")
+                .help("measure the rate of something that follows from positions or velocities");
+                false
+            }
+            MeasureKind::Slope { of, over, .. } => {
+                for (key, source) in [("of", *of), ("over", *over)] {
+                    if !self.model.known(source).by_position {
+                        let what = label(self, source);
+                        self.fault(
+                            "HP0233",
+                            here.key(key),
+                            format!("`{name}` needs the slope of `{what}`, which has none"),
+                        )
+                        .note("a slope over a driver is of what follows from positions alone")
+                        .help("take measures that are neither rates nor velocities nor slopes themselves");
+                        return false;
+                    }
+                }
+                true
+            }
+            _ => true,
+        }
+    }
+
+    /// A combination with its units, whose inputs have theirs already.
+    fn in_units(&self, c: &Combination) -> Combination {
+        let per_metre = c.expression.per_metre();
+        let per_unit = |d: Dimension| per_metre.powi(d.length.into());
+        let dimensions: Vec<Dimension> = c.sources().map(|s| self.model.dimension(s)).collect();
+        let dimension = dimension_of(&c.expression, &dimensions);
+        let inputs = c.sources().zip(&dimensions).map(|(source, d)| (source, per_unit(*d)));
+        Combination { inputs: inputs.collect(), per_unit: per_unit(dimension), dimension, ..c.clone() }
+    }
+}
+
+/// How far the look at a measure is.
+#[derive(Clone, Copy)]
+enum Visit {
+    New,
+    Open,
+    Done(bool),
+}
+
+/// A power law holds to this where it holds.
+const HOMOGENEOUS: f64 = 1e-9;
+
+/// What an expression measures: the powers by which it grows when the unit of length, angle or time of all its inputs
+/// changes. Where that is no power law, as in `toe + 3`, it is a plain number in that unit.
+fn dimension_of(expression: &Expression, inputs: &[Dimension]) -> Dimension {
+    let value = |powers: &dyn Fn(&Dimension) -> i8, scale: f64| {
+        // Any numbers will do; below 1, so that inverse sines have values.
+        let at: Vec<f64> = inputs
+            .iter()
+            .enumerate()
+            .map(|(k, d)| (0.31 + 0.17 / (k as f64 + 1.0)) * scale.powi(powers(d).into()))
+            .collect();
+        expression.at(&at)
+    };
+    let power = |powers: &dyn Fn(&Dimension) -> i8| {
+        let base = value(powers, 1.0);
+        let exponent = |scale: f64| (value(powers, scale) / base).ln() / scale.ln();
+        let (found, again) = (exponent(1.25), exponent(0.75));
+        let whole = found.round();
+        let holds = |x: f64| (x - whole).abs() < HOMOGENEOUS;
+        if holds(found) && holds(again) && whole.abs() < 100.0 { whole as i8 } else { 0 }
+    };
+    Dimension { length: power(&|d| d.length), angle: power(&|d| d.angle), time: power(&|d| d.time) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_formula_measures_what_it_grows_by() {
+        let (length, angle) = (Dimension::LENGTH, Dimension::ANGLE);
+        let of = |text: &str| dimension_of(&Expression::parse(text).unwrap(), &[length, angle, length]);
+        assert_eq!(of("a - 0*b + c"), length);
+        assert_eq!(of("a*b/c"), angle);
+        assert_eq!(of("sqrt(a*c) + 0*b"), length);
+        assert_eq!(of("a*sin(b) - max(c, a)"), length);
+        assert_eq!(of("a + 3 + 0*b*c"), Dimension::NUMBER);
+        assert_eq!(of("b/(a*c)"), angle.over(length).over(length));
+        assert_eq!(of("ln(a/c) + b"), Dimension::NUMBER);
+        assert_eq!(dimension_of(&Expression::parse("v/2").unwrap(), &[length.rate(1)]), length.rate(1));
+    }
+}
