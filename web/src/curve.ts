@@ -41,6 +41,35 @@ export function decades(low: number | null, high: number | null): [number, numbe
   return [10 ** Math.min(bottom, top - 1), 10 ** top]
 }
 
+/** Below this part of its largest, a rate is that of a turning point. */
+const TURNS = 1e-4
+
+/**
+ * How much `y` changes per change of `x` along the motion, from the rates and accelerations of both: where `x` turns back, and
+ * its rate with that of `y` is nothing, from the accelerations. NaN where neither tells.
+ */
+export function slope(y: readonly [Curve, Curve, Curve], x: readonly [Curve, Curve, Curve]): Curve {
+  const limits = [peak(x[1]) * TURNS, peak(x[2]) * TURNS]
+  return Float32Array.from(x[0], (_, k) => {
+    if (Math.abs(x[1][k]) > limits[0]) return y[1][k] / x[1][k]
+    return Math.abs(x[2][k]) > limits[1] && Math.abs(y[1][k]) <= peak(y[1]) * TURNS ? y[2][k] / x[2][k] : NaN
+  })
+}
+
+/** A sensitivity at a fixed abscissa rather than a fixed time: `dy - slope dx`. */
+export function atFixedAbscissa(dy: Curve, dx: Curve, slope: Curve): Curve {
+  return dy.map((value, k) => value - slope[k] * dx[k])
+}
+
+/** The step whose value is nearest to `value`; of equals the one nearest to `step`. */
+export function nearestStep(curve: Curve, value: number, step: number): number {
+  let best = 0
+  const range = peak(curve) || 1
+  const apart = (k: number) => Math.abs(curve[k] - value) + (1e-3 * range * Math.abs(k - step)) / curve.length
+  for (let k = 1; k < curve.length; k++) if (apart(k) < apart(best)) best = k
+  return best
+}
+
 /** The value at a fractional step. */
 export function valueAt(curve: Curve, step: number): number {
   const k = Math.min(Math.floor(step), curve.length - 1)

@@ -2,7 +2,7 @@ import uPlot from 'uplot'
 import 'uplot/dist/uPlot.min.css'
 import { css, el, keepFocus, prose } from './dom'
 import { number, pretty, titled } from './format'
-import { decades, positive, valueAt, type Curve, withGaps } from './curve'
+import { decades, nearestStep, positive, valueAt, type Curve, withGaps } from './curve'
 import type { State } from './state'
 
 const HEIGHT = 190
@@ -31,12 +31,14 @@ export interface Content {
   lines: Line[]
   /** From a power of ten to another; what is not positive is left out. */
   logarithmic?: boolean
+  /** What the curves are drawn over instead of time. */
+  over?: { label: string; unit: string; curve: Curve }
   caption?: string
   /** Shown in place of the plot. */
   message?: string
 }
 
-/** Curves over time with a legend that reads the values at the moment shown; dragging moves the time. */
+/** Curves over time or over another quantity, with a legend that reads the values at the moment shown; dragging moves the time. */
 export class Plot {
   readonly element: HTMLElement
   #title = el('h3')
@@ -46,6 +48,7 @@ export class Plot {
   #marker = el('div', { class: 'now' })
   #uplot?: uPlot
   #readings: { curve: Curve; output: HTMLElement }[] = []
+  #over?: Curve
 
   constructor(
     private readonly state: State,
@@ -65,15 +68,17 @@ export class Plot {
     this.#caption.replaceChildren(...prose(content.caption ?? ''))
     this.#area.replaceChildren()
     this.#area.setAttribute('role', 'img')
-    this.#area.setAttribute('aria-label', content.message ?? `${titled(content.title, content.unit)} over time`)
+    this.#area.setAttribute('aria-label', content.message ?? `${titled(content.title, content.unit)} over ${content.over?.label ?? 'time'}`)
     this.#readings = []
+    this.#over = content.over?.curve
     if (content.message) {
       this.#legend.replaceChildren()
       this.#area.append(el('p', { class: 'message' }, ...prose(content.message)))
       return
     }
     keepFocus(this.#legend, () => this.#legend.replaceChildren(...content.lines.map((line) => this.#entry(line))))
-    this.#uplot = new uPlot(this.#options(content), data(this.state, content), this.#area)
+    const all = content.over ? faceted(content.over.curve, content) : data(this.state, content)
+    this.#uplot = new uPlot(this.#options(content), all, this.#area)
     this.#uplot.over.append(this.#marker)
     this.#scrub(this.#uplot)
     this.#showTime()
@@ -85,14 +90,22 @@ export class Plot {
     const grid = { stroke: css('--rule'), width: 1 }
     const axis = { stroke: ink, grid, ticks: { ...grid, size: 4 }, font: css('--plot-font'), labelFont: css('--plot-font') }
     const values = (_: uPlot, splits: number[]) => splits.map((value) => number(value, 6))
+    const { over } = content
+    const abscissa = over ? titled(over.label, over.unit) : titled('time', units.time)
     return {
+      mode: over ? 2 : 1,
+      hooks: { draw: [() => this.#showTime()] },
       width: this.#area.clientWidth || 400,
       height: HEIGHT,
       legend: { show: false },
-      cursor: { drag: { x: false, y: false, setScale: false }, sync: { key: 'time' }, points: { size: 6 } },
-      scales: { x: { time: false }, y: content.logarithmic ? DECADES : { range: (_, low, high) => padded(low, high) } },
+      cursor: {
+        drag: { x: false, y: false, setScale: false },
+        ...(over ? { show: false } : { sync: { key: 'time' } }),
+        points: { size: 6 },
+      },
+      scales: { x: { time: false, ...(over && { range: (_: uPlot, low: number, high: number) => padded(low, high) }) }, y: content.logarithmic ? DECADES : { range: (_, low, high) => padded(low, high) } },
       axes: [
-        { ...axis, values, size: 30, label: titled('time', units.time), labelSize: 18, labelGap: 0, gap: 3 },
+        { ...axis, values, size: 30, label: abscissa, labelSize: 18, labelGap: 0, gap: 3 },
         {
           ...axis,
           values: content.logarithmic ? powers : values,
@@ -102,7 +115,7 @@ export class Plot {
           gap: 4,
         },
       ],
-      series: [{}, ...content.lines.map(series)],
+      series: [{}, ...content.lines.map(over ? facets : series)],
     }
   }
 
@@ -121,7 +134,9 @@ export class Plot {
     const move = (event: PointerEvent) => {
       if (event.buttons !== 1) return
       this.state.pause()
-      this.state.goToTime(uplot.posToVal(event.clientX - uplot.over.getBoundingClientRect().left, 'x'))
+      const x = uplot.posToVal(event.clientX - uplot.over.getBoundingClientRect().left, 'x')
+      if (this.#over) this.state.goToStep(nearestStep(this.#over, x, this.state.step))
+      else this.state.goToTime(x)
     }
     uplot.over.addEventListener('pointerdown', (event) => {
       uplot.over.setPointerCapture(event.pointerId)
@@ -132,7 +147,8 @@ export class Plot {
 
   #showTime(): void {
     if (!this.#uplot) return
-    this.#marker.style.left = `${this.#uplot.valToPos(this.state.time, 'x')}px`
+    const now = this.#over ? valueAt(this.#over, this.state.step) : this.state.time
+    this.#marker.style.left = `${this.#uplot.valToPos(now, 'x')}px`
     for (const { curve, output } of this.#readings) {
       output.textContent = number(valueAt(curve, this.state.step), 4)
     }
@@ -152,6 +168,39 @@ function series(line: Line): uPlot.Series {
 function data(state: State, { lines, logarithmic }: Content): uPlot.AlignedData {
   const values = ({ marks, curve }: Line) => marks ?? (logarithmic ? positive(curve) : withGaps(curve))
   return [Array.from(state.report.times), ...lines.map(values)]
+}
+
+/** A line over an abscissa that may go back and forth. */
+function facets(line: Line): uPlot.Series {
+  const auto = ['x', 'y'].map((scale) => ({ scale, auto: true }))
+  const marks = line.marks !== undefined
+  const paths: uPlot.Series.PathBuilder = (u, index) => {
+    const [xs, ys] = u.data[index] as unknown as [Curve, (number | null)[]]
+    const path = new Path2D()
+    let drawing = false
+    for (let k = 0; k < xs.length; k++) {
+      const y = ys[k]
+      if (y === null || Number.isNaN(xs[k])) {
+        drawing = false
+        continue
+      }
+      const [left, top] = [u.valToPos(xs[k], 'x', true), u.valToPos(y, 'y', true)]
+      if (marks) path.moveTo(left + RADIUS, top), path.arc(left, top, RADIUS, 0, 2 * Math.PI)
+      else if (drawing) path.lineTo(left, top)
+      else path.moveTo(left, top)
+      drawing = true
+    }
+    return { stroke: path }
+  }
+  return { stroke: line.color, width: marks ? 1.5 : (line.width ?? 1.8), dash: line.dash, paths, facets: auto, points: { show: false } }
+}
+
+/** Of the circles over another quantity than time, px. */
+const RADIUS = 3.5
+
+function faceted(over: Curve, { lines }: Content): uPlot.AlignedData {
+  const pair = ({ marks, curve }: Line) => [over, marks ?? withGaps(curve)]
+  return [null, ...lines.map(pair)] as unknown as uPlot.AlignedData
 }
 
 /** Whole powers of ten around the values. */

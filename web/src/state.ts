@@ -5,6 +5,8 @@ export interface Choice {
   quantity: number
   variable: number
   order: Order
+  /** The quantity that curves are drawn over; time where there is none. */
+  over?: number
   /** Plot the sensitivities to all variables of the unit, not just the largest. */
   all: boolean
   /** Body and hardpoint whose path is drawn. */

@@ -1,5 +1,17 @@
 import { expect, test } from 'vitest'
-import { decades, positive, decode, peak, stepAt, thinned, valueAt, withGaps } from '../src/curve'
+import {
+  atFixedAbscissa,
+  decades,
+  decode,
+  nearestStep,
+  peak,
+  positive,
+  slope,
+  stepAt,
+  thinned,
+  valueAt,
+  withGaps,
+} from '../src/curve'
 
 const curve = (...values: number[]) => Float32Array.from(values)
 
@@ -48,4 +60,27 @@ test('a logarithmic axis runs from a power of ten to another', () => {
 
 test('what is not positive is left out of a logarithmic curve', () => {
   expect(positive(Float32Array.of(1, 0, NaN, 0.5))).toEqual([1, null, null, 0.5])
+})
+
+test('a slope over an abscissa that turns back follows from the accelerations there', () => {
+  // x = sin t, y = sin^2 t: the slope is 2 x, also where x turns.
+  const times = [0, Math.PI / 6, Math.PI / 2, Math.PI]
+  const of = (f: (t: number) => number) => Float32Array.from(times, f)
+  const x = [of(Math.sin), of(Math.cos), of((t) => -Math.sin(t))] as const
+  const y = [of((t) => Math.sin(t) ** 2), of((t) => Math.sin(2 * t)), of((t) => 2 * Math.cos(2 * t))] as const
+  const found = slope(y, x)
+  times.forEach((t, k) => expect(found[k]).toBeCloseTo(2 * Math.sin(t), 5))
+  // Where x rests and y does not, there is none.
+  expect(slope(y, [of(() => 1), of(() => 0), of(() => 0)])[1]).toBeNaN()
+})
+
+test('a sensitivity at a fixed abscissa leaves out what the abscissa moves', () => {
+  // y = (x - b)^2 and x = t + b: at fixed t nothing depends on b, at fixed x dy/db = -2 (x - b).
+  expect([...atFixedAbscissa(curve(0, 0), curve(1, 1), curve(0, 4))]).toEqual([0, -4])
+})
+
+test('the nearest step prefers the branch that is shown', () => {
+  const there = curve(0, 1, 2, 1, 0)
+  expect(nearestStep(there, 1, 0)).toBe(1)
+  expect(nearestStep(there, 1, 4)).toBe(3)
 })

@@ -127,6 +127,19 @@ describe('the report', () => {
     await page.getByTestId('order-value').check({ force: true })
   })
 
+  test('curves over another quantity have its name along the axis, and dragging there moves the time', async () => {
+    const first = await page.getByTestId('over').locator('option').nth(1).innerText()
+    const before = await look(page, plot('value'))
+    await page.getByTestId('over').selectOption({ label: first })
+    expect((await look(page, plot('value'))).picture).not.toBe(before.picture)
+    expect(await page.getByTestId('plot-value').getByRole('img').getAttribute('aria-label')).toContain(`over ${first}`)
+    const time = await text(page, 'time')
+    await page.locator('[data-testid=plot-value] .u-over').click({ position: { x: 60, y: 40 } })
+    expect(await text(page, 'time')).not.toBe(time)
+    await page.getByTestId('over').selectOption({ label: 'time' })
+    await scrub(page, 0)
+  })
+
   test('choosing another variable in the ranking changes the comparison', async () => {
     const heading = page.locator('[data-testid=plot-check] h3')
     const before = await heading.innerText()
