@@ -10,6 +10,7 @@ use hardpoint::{Analysis, Solution};
 use hardpoint_file::ModelFile;
 use hardpoint_report::facts::Facts;
 use hardpoint_report::figures::{error, number, seconds, some_of, with_unit};
+use hardpoint_report::metric::MetricFact;
 use hardpoint_report::page::Table;
 use hardpoint_report::payload::payload;
 use hardpoint_report::summary::{RunStatus, Summary};
@@ -169,7 +170,8 @@ fn summary_text(summary: &Summary) -> String {
     rows.push(("time taken", format!("{} ({})", seconds(timings.total), parts.join(", "))));
     let mut out = format!("{}\n{}{}", text::bold(&model.name), text::pairs(&rows), text::notes(summary));
     let assembly = summary.assembly.iter().flat_map(|a| a.tables());
-    for table in assembly.chain(largest(summary).filter(|_| steps.solved > 0)) {
+    let metrics = MetricFact::table(&summary.metrics).into_iter();
+    for table in assembly.chain(metrics).chain(largest(summary).filter(|_| steps.solved > 0)) {
         out += &format!("\n{}", text::table(&table));
     }
     out

@@ -9,6 +9,7 @@ use hardpoint_file::{AngleUnit, LengthUnit, ModelFile, Units};
 use hardpoint_report::diagnose;
 use hardpoint_report::figures::number;
 use hardpoint_report::margin::MarginFact;
+use hardpoint_report::metric::MetricChange;
 use hardpoint_report::whatif::WhatIfFacts;
 
 use crate::args::Whatif;
@@ -104,6 +105,8 @@ fn facts_text(facts: &WhatIfFacts, wanted: &dyn Fn(&str) -> bool) -> String {
         ];
         let table = facts.table(wanted);
         out += &format!("{}\n{}  {}\n", text::pairs(&rows), text::table(&table), table.note);
+        let metrics = MetricChange::table(&facts.metrics);
+        out += &metrics.map_or(String::new(), |table| format!("\n{}", text::table(&table)));
     }
     for measure in facts.ranked().into_iter().filter(|m| wanted(m)) {
         out += &format!("\n{}", text::table(&facts.ranking(measure, SHOWN)));

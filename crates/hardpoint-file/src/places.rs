@@ -63,7 +63,7 @@ impl EntryPlace {
     }
 }
 
-const SECTIONS: [Section; 14] = [
+const SECTIONS: [Section; 15] = [
     Section::Model,
     Section::Parameters,
     Section::Hardpoints,
@@ -77,6 +77,7 @@ const SECTIONS: [Section; 14] = [
     Section::Wheels,
     Section::Axles,
     Section::Measures,
+    Section::Metrics,
     Section::Time,
 ];
 

@@ -41,6 +41,7 @@ const MODEL: &[Key] = &[
     ("wheels", "{}"),
     ("axles", "{}"),
     ("measures", "{}"),
+    ("metrics", "{}"),
     ("time", "{ end = 1.0, steps = 100 }"),
 ];
 const UNITS: &[Key] = &[("length", "\"mm\""), ("angle", "\"deg\"")];
@@ -124,6 +125,7 @@ impl Reader<'_> {
         self.vehicle(&fields, &mut raw);
         self.wheels(&fields, &mut raw);
         self.axles(&fields, &mut raw);
+        self.metrics(&fields, &mut raw);
         self.time(&fields, &mut raw);
         raw
     }

@@ -67,6 +67,9 @@ struct ModelSchema {
     /// Pairs of wheels, for what is measured at both.
     #[schemars(default)]
     axles: BTreeMap<Name, AxleSchema>,
+    /// Numbers that sum measures up over the motion, with their sensitivities.
+    #[schemars(default)]
+    metrics: BTreeMap<Name, MetricSchema>,
     /// Numbers to compute from the motion, with their sensitivities.
     #[schemars(default)]
     measures: BTreeMap<Name, MeasureSchema>,
@@ -1100,6 +1103,44 @@ enum OwnMeasureSchema {
         /// The wheel's spin axis in the design configuration, pointing outboard.
         spin_axis: LineSchema,
     },
+}
+
+/// One number for a whole curve.
+#[derive(JsonSchema)]
+#[schemars(deny_unknown_fields)]
+struct MetricSchema {
+    /// The name of the measure, or `POINT.x`.
+    of: Name,
+    /// What to take of its curve.
+    take: TakeSchema,
+    /// The abscissa: the name of a measure, or `POINT.x`. Default: time.
+    over: Option<Name>,
+    /// For a value or slope: where, in the unit of the abscissa.
+    at: Option<f64>,
+    /// The part of the curve that counts, from where to where its abscissa goes. Default: all of it.
+    window: Option<[f64; 2]>,
+    /// For `rms`: points `[abscissa, value]` of the curve to compare with, straight lines between them. Default: zero.
+    target: Option<Vec<[f64; 2]>>,
+}
+
+/// What a metric takes.
+#[derive(JsonSchema)]
+#[schemars(rename_all = "lowercase")]
+enum TakeSchema {
+    /// The least value.
+    Min,
+    /// The greatest value.
+    Max,
+    /// The greatest less the least value.
+    Range,
+    /// The mean over the output times.
+    Mean,
+    /// The root of the mean square of what is left beyond the target.
+    Rms,
+    /// The value where the abscissa first is `at`.
+    Value,
+    /// The change per change of the abscissa where that first is `at`.
+    Slope,
 }
 
 /// The output times, in seconds.

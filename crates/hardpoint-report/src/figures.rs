@@ -95,7 +95,7 @@ pub fn unit(units: Units, of: impl Into<Dimension>) -> String {
 
 /// The unit of the time derivative of order 0, 1 or 2: `mm`, `mm/s`, `mm/s^2`.
 pub fn order_unit(units: Units, of: impl Into<Dimension>, order: usize) -> String {
-    unit(units, of.into().rate(order))
+    unit(units, of.into().rate(order as i8))
 }
 
 /// The unit of a derivative: `deg/mm`, `mm/s per mm` as `mm/(s*mm)`.

@@ -21,6 +21,7 @@ pub mod diagnose;
 pub mod facts;
 pub mod figures;
 pub mod margin;
+pub mod metric;
 pub mod page;
 pub mod payload;
 pub mod summary;

@@ -20,6 +20,7 @@ use hardpoint_file::{ModelFile, Units};
 
 use crate::facts::{Answer, Facts, written_kind};
 use crate::figures::{error, number, order_unit, rounded, seconds, symbol};
+use crate::metric::MetricFact;
 use crate::page::{
     Admissibility, Arrow, BodyTrack, Curve, Fact, FiniteDifference, JointMark, Margin, Payload, Quantity,
     Sensitivity, Status, Units as PageUnits, Variable,
@@ -75,7 +76,11 @@ pub fn payload(
             note: m.sentence(),
         }),
         variables: compose.variables(&summary.model, differences),
-        checks: summary.assembly.iter().flat_map(|a| a.tables()).chain(summary.model.tables()).collect(),
+        checks: MetricFact::table(&summary.metrics)
+            .into_iter()
+            .chain(summary.assembly.iter().flat_map(|a| a.tables()))
+            .chain(summary.model.tables())
+            .collect(),
     }
 }
 

@@ -14,6 +14,7 @@ use crate::diagnose::{driver_values, named};
 use crate::facts::{Facts, variable_unit};
 use crate::figures::{order_unit, per, symbol};
 use crate::margin::MarginFact;
+use crate::metric::MetricFact;
 
 /// Everything that `summary.json` holds. Figures are in the model's units, times in s.
 #[derive(Clone, Debug, Serialize)]
@@ -34,6 +35,8 @@ pub struct Summary {
     pub assembly: Option<AssemblyFact>,
     /// Why it ended early, if it did.
     pub stop: Option<StopFact>,
+    /// What the metrics come to.
+    pub metrics: Vec<MetricFact>,
     /// The largest sensitivities of every measure.
     pub sensitivities: Vec<Ranking>,
     /// Where the time went.
@@ -190,6 +193,7 @@ impl Summary {
             margin: MarginFact::new(model, topology, &solution.motion),
             assembly: solution.motion.assembly.as_ref().map(|a| AssemblyFact::new(model, file.units, a)),
             stop: stop_fact(file, solution),
+            metrics: MetricFact::all(model, file.units, solution),
             sensitivities: rankings(model, file.units, solution),
             timings: Timings::default(),
             files: Vec::new(),

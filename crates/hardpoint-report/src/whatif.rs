@@ -18,6 +18,7 @@ use crate::csv::numbers;
 use crate::facts::variable_unit;
 use crate::figures::{names, number, per, rounded, unit, with_unit};
 use crate::margin::MarginFact;
+use crate::metric::MetricChange;
 use crate::page::Table;
 
 /// Everything that `whatif.json` holds. Figures are in the model's units, times in s.
@@ -37,6 +38,8 @@ pub struct WhatIfFacts {
     pub margins: [Option<MarginFact>; 2],
     /// Per measure, how it changes and how well that was foreseen.
     pub measures: Vec<MeasureFact>,
+    /// What the change makes of the metrics.
+    pub metrics: Vec<MetricChange>,
     /// Which variable moves which measure most.
     pub influence: Vec<InfluenceFact>,
     /// Output times, s.
@@ -123,6 +126,7 @@ impl WhatIfFacts {
             follows: follows(model, what_if),
             margins: [margin(&what_if.today), margin(&what_if.exact)],
             measures: Vec::new(),
+            metrics: MetricChange::all(model, units, what_if),
             influence: influence(model, units, &what_if.today),
             times: what_if.today.motion.times[..what_if.len()].to_vec(),
         };
@@ -165,6 +169,7 @@ impl WhatIfFacts {
             follows: String::new(),
             margins: [MarginFact::new(&file.model, topology, &today.motion), None],
             measures: Vec::new(),
+            metrics: Vec::new(),
             influence: influence(&file.model, file.units, today),
             times: today.motion.times.clone(),
         }

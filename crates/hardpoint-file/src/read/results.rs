@@ -1,14 +1,14 @@
 //! What is wanted: points to follow, measures, output times.
 
 use hardpoint::model::{
-    AngleKindDraft, AxleMeasure, Line, MeasureDraft, MeasureKindDraft, Place, PointDraft, PointRef, RayDraft,
-    Section, WheelMeasure,
+    AngleKindDraft, AxleMeasure, Line, MeasureDraft, MeasureKindDraft, MetricDraft, Place, PointDraft,
+    PointRef, RayDraft, Section, Take, WheelMeasure,
 };
 use hardpoint::space::Vec3;
 
 use super::Raw;
 use crate::places::EntryPlace;
-use crate::tree::{Field, Fields, Key, Reader, Value};
+use crate::tree::{Field, Fields, Key, Reader, Subject, Value};
 
 /// More output times than this are surely a slip.
 const MOST_TIMES: usize = 1_000_000;
@@ -34,6 +34,14 @@ const SLOPE: &[Key] =
 const EXPRESSION: &[Key] = &[("type", "\"expression\""), ("expression", "\"left.toe + right.toe\"")];
 const AXLE: &[Key] = &[("type", "\"track\""), ("axle", "\"front\"")];
 const WHEEL: &[Key] = &[("type", "\"caster\""), ("wheel", "\"front_left\"")];
+const METRIC: &[Key] = &[
+    ("of", "\"toe\""),
+    ("take", "\"max\""),
+    ("over", "\"wheel_travel\""),
+    ("at", "0"),
+    ("window", "[-20, 20]"),
+    ("target", "[[-50, 0.1], [50, -0.1]]"),
+];
 /// Types of measures but for those of wheels and axles.
 const OWN: [&str; 11] = [
     "coordinate",
@@ -216,6 +224,71 @@ impl Reader<'_> {
                 Some(RayDraft::Fixed { body: "ground".into(), axis: Line::Along(axis) })
             }
         }
+    }
+
+    pub(super) fn metrics(&mut self, model: &Fields<'_>, raw: &mut Raw) {
+        for entry in self.entries(model, "metrics", "metric") {
+            let fields = self.entry("metric", &entry, METRIC);
+            let mut place = EntryPlace::of(&fields);
+            let of = self.named(&fields, "of", "the name of a measure", &mut place);
+            let over = self.optional_name(&fields, "over", "the name of a measure", &mut place);
+            let take = self.take(&fields);
+            let window = fields.get("window").map(|f| {
+                self.numbers::<2>(f.value, &fields.subject("window"), "the lower and the upper end")
+            });
+            if let (Some(of), Some(take), true) = (of, take, window != Some(None)) {
+                let (per_metre, per_radian) = (self.units.length.per_metre(), self.units.angle.per_radian());
+                let window = window.flatten();
+                raw.places.push(Section::Metrics, place);
+                raw.draft.metrics.push(MetricDraft {
+                    name: entry.0,
+                    of,
+                    over,
+                    take,
+                    window,
+                    per_metre,
+                    per_radian,
+                });
+            }
+        }
+    }
+
+    /// What a metric takes, in the file's units.
+    fn take(&mut self, fields: &Fields<'_>) -> Option<Take> {
+        let f = self.need(fields, "take")?;
+        let subject = fields.subject("take");
+        let word = self.name(f.value, &subject, "what to take of the curve")?;
+        if word != "rms" {
+            self.out_of_place(fields, "target", "only `take = \"rms\"` compares with a target");
+        }
+        if word != "value" && word != "slope" {
+            self.out_of_place(fields, "at", "only `take = \"value\"` and `\"slope\"` are taken at one place");
+        } else {
+            self.out_of_place(fields, "window", "it is taken at one place");
+        }
+        Some(match word.as_str() {
+            "min" => Take::Least,
+            "max" => Take::Greatest,
+            "range" => Take::Range,
+            "mean" => Take::Mean,
+            "rms" => Take::Rms(match fields.get("target") {
+                Some(f) => self.pairs(f.value, &fields.subject("target"))?,
+                None => Vec::new(),
+            }),
+            "value" => Take::Value(self.needed_number(fields, "at")?),
+            "slope" => Take::Slope(self.needed_number(fields, "at")?),
+            _ => {
+                self.unknown_word(f.value.span(), &subject, &word, &Take::NAMES);
+                return None;
+            }
+        })
+    }
+
+    /// A list of pairs of numbers.
+    fn pairs(&mut self, value: &Value<'_>, subject: &Subject) -> Option<Vec<[f64; 2]>> {
+        let expected = "a list of points `[abscissa, value]`";
+        let list = self.list(value, subject, expected)?;
+        list.iter().map(|pair| self.numbers::<2>(pair, subject, expected)).collect()
     }
 
     pub(super) fn point_ref(&mut self, fields: &Fields<'_>, f: Field<'_>) -> Option<PointRef> {

@@ -6,6 +6,7 @@ use plotters::prelude::*;
 
 use super::{MeasureFact, WhatIfFacts};
 use crate::figures::{number, rounded};
+use crate::metric::MetricChange;
 use crate::page::Table;
 
 /// Size of one plot, pixels.
@@ -54,6 +55,7 @@ pub(super) fn html(
         }
         page += "</div>";
         page += &table(&facts.table(wanted));
+        page += &MetricChange::table(&facts.metrics).map_or(String::new(), |t| table(&t));
     }
     page += &heat_map(facts);
     for measure in facts.ranked().into_iter().filter(|m| wanted(m)) {

@@ -56,6 +56,7 @@ impl Model {
         c.wheels();
         c.axles();
         c.measures();
+        c.metrics();
         c.variables();
         c.formulas_that_vary();
         c.times();
@@ -135,6 +136,7 @@ impl<'a> Check<'a> {
             wheels: Vec::new(),
             axles: Vec::new(),
             measures: Vec::new(),
+            metrics: Vec::new(),
             idle: Vec::new(),
             times: draft.times.clone(),
         };
@@ -186,7 +188,7 @@ impl<'a> Check<'a> {
     /// HP0201: empty and duplicate names; HP0202: coordinates that are not finite.
     fn names(&mut self) {
         let d = self.draft;
-        let lists: [(Section, &str, Vec<&str>); 11] = [
+        let lists: [(Section, &str, Vec<&str>); 12] = [
             (Section::Parameters, "parameter", d.parameters.iter().map(|x| x.name.as_str()).collect()),
             (Section::Hardpoints, "hardpoint", d.hardpoints.iter().map(|x| x.name.as_str()).collect()),
             (Section::Bodies, "body", d.bodies.iter().map(|x| x.name.as_str()).collect()),
@@ -198,6 +200,7 @@ impl<'a> Check<'a> {
             (Section::Wheels, "wheel", d.wheels.iter().map(|x| x.name.as_str()).collect()),
             (Section::Axles, "axle", d.axles.iter().map(|x| x.name.as_str()).collect()),
             (Section::Measures, "measure", d.measures.iter().map(|x| x.name.as_str()).collect()),
+            (Section::Metrics, "metric", d.metrics.iter().map(|x| x.name.as_str()).collect()),
         ];
         for (section, what, names) in lists {
             let mut first_of = BTreeMap::new();

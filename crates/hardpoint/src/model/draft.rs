@@ -4,7 +4,7 @@ use crate::joint::Quantity;
 use crate::law::{Expression, Law};
 use crate::space::{Pose, Vec3};
 
-use super::{AxleMeasure, End, Side, Vehicle, VehicleEnd, WheelMeasure};
+use super::{AxleMeasure, End, Side, Take, Vehicle, VehicleEnd, WheelMeasure};
 
 /// A mechanism as written. Fill it by hand or from a file; [`super::Model::from_draft`] checks it.
 #[derive(Clone, Debug, Default)]
@@ -37,6 +37,8 @@ pub struct Draft {
     pub axles: Vec<AxleDraft>,
     /// Measures.
     pub measures: Vec<MeasureDraft>,
+    /// Metrics.
+    pub metrics: Vec<MetricDraft>,
     /// Output times, s.
     pub times: Vec<f64>,
 }
@@ -515,6 +517,26 @@ pub enum MeasureKindDraft {
         /// What about it.
         what: AxleMeasure,
     },
+}
+
+/// A metric; see [`super::Metric`]. Its numbers are in units of which so many make a metre or a radian, since what they measure
+/// follows from the measures.
+#[derive(Clone, Debug)]
+pub struct MetricDraft {
+    /// Its name.
+    pub name: String,
+    /// The name of the measure, or of a point's component.
+    pub of: String,
+    /// The same of the abscissa; time where it is left out.
+    pub over: Option<String>,
+    /// What is taken.
+    pub take: Take,
+    /// The part of the curve that counts.
+    pub window: Option<[f64; 2]>,
+    /// How many units of length make a metre.
+    pub per_metre: f64,
+    /// How many units of angle make a radian.
+    pub per_radian: f64,
 }
 
 /// A direction that an angle is measured from or to; see [`super::Ray`].

@@ -59,6 +59,8 @@ pub enum Section {
     Axles,
     /// [`super::Draft::measures`].
     Measures,
+    /// [`super::Draft::metrics`].
+    Metrics,
     /// [`super::Draft::times`].
     Time,
 }
@@ -92,6 +94,7 @@ impl fmt::Display for Section {
             Self::Wheels => "wheels",
             Self::Axles => "axles",
             Self::Measures => "measures",
+            Self::Metrics => "metrics",
             Self::Time => "time",
         })
     }

@@ -192,10 +192,10 @@ impl Dimension {
     /// An angle.
     pub const ANGLE: Self = Self { angle: 1, ..Self::NUMBER };
 
-    /// That of the time derivative of this order.
+    /// That of the time derivative of this order; of -1 that of an integral over time.
     #[must_use]
-    pub const fn rate(self, order: usize) -> Self {
-        Self { time: self.time - order as i8, ..self }
+    pub const fn rate(self, order: i8) -> Self {
+        Self { time: self.time - order, ..self }
     }
 
     /// That of a quotient.
@@ -263,7 +263,7 @@ impl Model {
             MeasureKind::Toe { .. } | MeasureKind::Camber { .. } | MeasureKind::Angle { .. } => {
                 Dimension::ANGLE
             }
-            MeasureKind::Velocity { order, .. } => Dimension::LENGTH.rate(*order),
+            MeasureKind::Velocity { order, .. } => Dimension::LENGTH.rate(*order as i8),
             MeasureKind::Curvature { .. } => Dimension::NUMBER.over(Dimension::LENGTH),
             MeasureKind::Rate { of } => self.dimension(*of).rate(1),
             MeasureKind::Slope { of, over, .. } => self.dimension(*of).over(self.dimension(*over)),

@@ -12,6 +12,7 @@ mod fault;
 mod formula;
 mod idle;
 mod measure;
+mod metric;
 mod wheel;
 
 pub(crate) use curve::Contact;
@@ -21,13 +22,14 @@ pub use design::{Field, Geometry, Kept, MarkerField};
 pub use draft::{
     AngleKindDraft, AxleDraft, BodyDraft, ChangeDraft, CouplerDraft, CouplerKindDraft, CurveDraft, Draft,
     DrivenDraft, DriverDraft, FormulaDraft, FormulaOf, FrameDraft, HardpointDraft, JointDraft, Line,
-    MeasureDraft, MeasureKindDraft, ParameterDraft, Place, PointDraft, PointRef, RayDraft, TermDraft,
-    VariableDraft, WheelDraft, WheelSpinDraft,
+    MeasureDraft, MeasureKindDraft, MetricDraft, ParameterDraft, Place, PointDraft, PointRef, RayDraft,
+    TermDraft, VariableDraft, WheelDraft, WheelSpinDraft,
 };
 pub use fault::{Fault, Locus, Section, did_you_mean};
 pub use formula::{Formula, NamedNumber, Nominal, NotConstant, Source, Target};
 pub use idle::Idle;
 pub use measure::{AngleKind, Combination, Dimension, Known, Measure, MeasureKind, OutputSource, Ray};
+pub use metric::{Metric, Take};
 pub use wheel::{Axle, AxleMeasure, Side, Vehicle, VehicleEnd, Wheel, WheelMeasure, WheelNeed};
 
 use crate::constraint::Ends;
@@ -100,6 +102,8 @@ pub struct Model {
     pub axles: Vec<Axle>,
     /// Measures, in the order of the file.
     pub measures: Vec<Measure>,
+    /// Metrics, in the order of the file.
+    pub metrics: Vec<Metric>,
     /// Idle spins, which are held at rest.
     pub idle: Vec<Idle>,
     /// Output times, s, increasing.

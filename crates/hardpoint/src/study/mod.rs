@@ -1,11 +1,13 @@
 //! Studies: questions that take many solutions.
 
 mod difference;
+mod metric;
 mod second;
 mod verify;
 mod whatif;
 
 pub use difference::{Difference, central_differences, natural_step};
+pub use metric::{MetricValue, metrics};
 pub use second::SecondDerivatives;
 pub use verify::{
     Check, CheckOutcome, PASS, StepError, Verification, VerifyOptions, compare_with_difference, verify,

@@ -100,6 +100,78 @@ impl Check<'_> {
         })
     }
 
+    pub(super) fn metrics(&mut self) {
+        let draft = self.draft;
+        for (index, m) in draft.metrics.iter().enumerate() {
+            let here = Here { section: Section::Metrics, index };
+            let metric = self.one_metric(m, here);
+            self.model.metrics.extend(metric);
+        }
+    }
+
+    fn one_metric(&mut self, m: &MetricDraft, here: Here) -> Option<Metric> {
+        let of = self.output(&m.of, here.key("of"));
+        let over = match &m.over {
+            Some(over) => Some(self.output(over, here.key("over"))?),
+            None => None,
+        };
+        let of = of?;
+        if self.model.measures.len() < self.draft.measures.len() {
+            // What a faulty measure is measured in is not known.
+            return None;
+        }
+        let si = |dimension: Dimension, x: f64| {
+            let [length, angle] = [(m.per_metre, dimension.length), (m.per_radian, dimension.angle)]
+                .map(|(per, power)| per.powi(power.into()));
+            x / (length * angle)
+        };
+        let x = |c: &Self| over.map_or(Dimension::NUMBER, |over| c.model.dimension(over));
+        let (x, y) = (x(self), self.model.dimension(of));
+        let take = match &m.take {
+            Take::Value(at) => Take::Value(si(x, *at)),
+            Take::Slope(at) => Take::Slope(si(x, *at)),
+            Take::Rms(target) => Take::Rms(target.iter().map(|p| [si(x, p[0]), si(y, p[1])]).collect()),
+            take => take.clone(),
+        };
+        let rises = |points: &mut dyn Iterator<Item = f64>| {
+            let points: Vec<f64> = points.collect();
+            points.iter().all(|x| x.is_finite()) && points.windows(2).all(|w| w[0] < w[1])
+        };
+        if let Some(window) = m.window
+            && !rises(&mut window.into_iter())
+        {
+            let message = format!("the window of metric `{}` does not rise", m.name);
+            self.fault("HP0234", here.key("window"), message).help("give the lower and the upper end");
+            return None;
+        }
+        if let Take::Rms(target) = &take
+            && !(rises(&mut target.iter().map(|p| p[0])) && target.iter().all(|p| p[1].is_finite()))
+        {
+            let message = format!("the target of metric `{}` does not go on from point to point", m.name);
+            self.fault("HP0234", here.key("target"), message)
+                .help("list points `[abscissa, value]` in the order of their abscissa");
+            return None;
+        }
+        if let (Take::Slope(_), Known { orders: 1, .. }) = (&take, self.model.known(of)) {
+            let message = format!("the rate of `{}` is not known, so metric `{}` is not", m.of, m.name);
+            self.fault("HP0233", here.key("of"), message)
+                .note("the motion is solved up to accelerations, and slopes over a driver up to their values")
+                .help("take its value, or the slope of something that follows from positions");
+            return None;
+        }
+        if let Some(over) = over
+            && self.model.known(over).orders == 1
+        {
+            let name = m.over.as_deref().unwrap_or_default();
+            let message = format!("the rate of `{name}` is not known, so nothing can be followed over it");
+            self.fault("HP0233", here.key("over"), message)
+                .help("take something that follows from positions or velocities");
+            return None;
+        }
+        let window = m.window.map(|w| w.map(|end| si(x, end)));
+        Some(Metric { name: m.name.clone(), of, over, take, window })
+    }
+
     /// A direction that an angle is measured from or to.
     fn ray(&mut self, ray: &RayDraft, owner: &str, here: Here, key: &'static str) -> Option<Ray> {
         match ray {

@@ -1,0 +1,183 @@
+//! Metrics: what a whole curve comes to, what moves it, and what a changed design makes of it.
+
+use hardpoint::Solution;
+use hardpoint::model::{Metric, Model, OutputSource, Take};
+use hardpoint::study::{MetricValue, WhatIf, metrics};
+use hardpoint_file::Units;
+use serde::Serialize;
+
+use crate::facts::variable_unit;
+use crate::figures::{number, per, rounded, unit, with_unit};
+use crate::page::Table;
+
+/// The value of a metric, with its sensitivities. Figures are in the model's units.
+#[derive(Clone, Debug, Serialize)]
+pub struct MetricFact {
+    /// Its name.
+    pub name: String,
+    /// What it is, in words.
+    pub what: String,
+    /// Its value; `null` where the motion does not reach what is asked for.
+    pub value: Option<f64>,
+    /// Its unit.
+    pub unit: String,
+    /// When it is taken, s; `null` for what is taken of the whole curve.
+    pub time: Option<f64>,
+    /// By every design variable that the mechanism can follow, the strongest first within each unit of variables.
+    pub sensitivities: Vec<MetricSensitivity>,
+}
+
+/// How a metric changes with a design variable.
+#[derive(Clone, Debug, Serialize)]
+pub struct MetricSensitivity {
+    /// The variable.
+    pub variable: String,
+    /// Its unit.
+    pub per: String,
+    /// The derivative.
+    pub value: f64,
+    /// The derivative's unit.
+    pub unit: String,
+}
+
+/// A metric of a changed design.
+#[derive(Clone, Debug, Serialize)]
+pub struct MetricChange {
+    /// Its name.
+    pub name: String,
+    /// Its unit.
+    pub unit: String,
+    /// Today's value.
+    pub today: Option<f64>,
+    /// As foreseen to first order.
+    pub first: Option<f64>,
+    /// Re-solved.
+    pub exact: Option<f64>,
+}
+
+impl MetricFact {
+    /// Those of a solution.
+    pub fn all(model: &Model, units: Units, solution: &Solution) -> Vec<Self> {
+        let values = metrics(model, solution);
+        model.metrics.iter().zip(values).map(|(m, value)| Self::new(model, units, m, value)).collect()
+    }
+
+    fn new(model: &Model, units: Units, metric: &Metric, found: MetricValue) -> Self {
+        let dimension = model.metric_dimension(metric);
+        let sensitivity = |(v, d): (usize, &f64)| {
+            let variable = &model.variables[v];
+            let by = variable_unit(model, units, variable);
+            MetricSensitivity {
+                variable: variable.name.clone(),
+                value: units.derivative_from_si(dimension, variable.quantity, *d),
+                unit: per(&unit(units, dimension), &by),
+                per: by,
+            }
+        };
+        let known = found.d.iter().enumerate().filter(|(_, d)| d.is_finite());
+        let mut sensitivities: Vec<_> = known.map(sensitivity).collect();
+        sensitivities.sort_by(|a, b| a.per.cmp(&b.per).then(b.value.abs().total_cmp(&a.value.abs())));
+        Self {
+            name: metric.name.clone(),
+            what: what(model, units, metric),
+            value: found.value.map(|x| units.from_si(dimension, x)),
+            unit: unit(units, dimension),
+            time: found.time,
+            sensitivities,
+        }
+    }
+
+    /// All of them with what moves each most.
+    pub fn table(facts: &[Self]) -> Option<Table> {
+        const SHOWN: usize = 3;
+        let row = |m: &Self| {
+            let mut strongest: Vec<String> = Vec::new();
+            let mut units: Vec<&str> = m.sensitivities.iter().map(|s| s.per.as_str()).collect();
+            units.dedup();
+            for by in units {
+                let of_unit = m.sensitivities.iter().filter(|s| s.per == by && s.value != 0.0).take(SHOWN);
+                strongest
+                    .extend(of_unit.map(|s| format!("{} {} {}", s.variable, rounded(s.value, 3), s.unit)));
+            }
+            vec![
+                m.name.clone(),
+                m.what.clone(),
+                m.value.map_or("not reached".into(), |x| with_unit(x, &m.unit)),
+                m.time.map_or(String::new(), |t| format!("{} s", number(t))),
+                strongest.join("; "),
+            ]
+        };
+        (!facts.is_empty()).then(|| {
+            Table {
+                title: "Metrics".into(),
+                note: String::new(),
+                header: ["metric", "is", "value", "at t", "strongest variables"].map(String::from).to_vec(),
+                rows: facts.iter().map(row).collect(),
+            }
+            .without_empty_columns()
+        })
+    }
+}
+
+impl MetricChange {
+    /// Those of a changed design.
+    pub fn all(model: &Model, units: Units, what_if: &WhatIf) -> Vec<Self> {
+        let (today, exact) = (metrics(model, &what_if.today), metrics(model, &what_if.exact));
+        let change = |(k, metric): (usize, &Metric)| {
+            let dimension = model.metric_dimension(metric);
+            let shown = |x: Option<f64>| x.map(|x| units.from_si(dimension, x));
+            let changed = what_if.change.iter().zip(&today[k].d).filter(|(by, _)| **by != 0.0);
+            let first: f64 = changed.map(|(by, d)| by * d).sum();
+            Self {
+                name: metric.name.clone(),
+                unit: unit(units, dimension),
+                today: shown(today[k].value),
+                first: shown(today[k].value.map(|now| now + first).filter(|x| x.is_finite())),
+                exact: shown(exact[k].value),
+            }
+        };
+        model.metrics.iter().enumerate().map(change).collect()
+    }
+
+    /// All of them in a table.
+    pub fn table(changes: &[Self]) -> Option<Table> {
+        let row = |m: &Self| {
+            let shown = |x: Option<f64>| x.map_or("-".into(), |x| with_unit(x, &m.unit));
+            let change = m.exact.zip(m.today).map(|(x, now)| x - now);
+            vec![m.name.clone(), shown(m.today), shown(m.first), shown(m.exact), shown(change)]
+        };
+        let header = ["metric", "today", "foreseen, 1st order", "changed", "change"];
+        (!changes.is_empty()).then(|| Table {
+            title: "Metrics".into(),
+            note: String::new(),
+            header: header.map(String::from).to_vec(),
+            rows: changes.iter().map(row).collect(),
+        })
+    }
+}
+
+/// A metric in words: `slope of toe over wheel_travel at 0 mm`.
+fn what(model: &Model, units: Units, metric: &Metric) -> String {
+    let name = |output: OutputSource| match output {
+        OutputSource::Measure(k) => model.measures[k].name.clone(),
+        OutputSource::Point(p, axis) => format!("{}.{}", model.points[p.0].name, ["x", "y", "z"][axis]),
+    };
+    let x = model.abscissa(metric);
+    let place = |at: f64| with_unit(units.from_si(x, at), &unit(units, x));
+    let over = metric.over.map_or("time".into(), name);
+    let of = name(metric.of);
+    let within = metric.window.map_or(String::new(), |[low, high]| {
+        format!(" where {over} is {} to {}", number(units.from_si(x, low)), place(high))
+    });
+    let mean_over = if metric.over.is_some() { format!(" over {over}") } else { String::new() };
+    match &metric.take {
+        Take::Least => format!("least {of}{within}"),
+        Take::Greatest => format!("greatest {of}{within}"),
+        Take::Range => format!("greatest less least {of}{within}"),
+        Take::Mean => format!("mean of {of}{mean_over}{within}"),
+        Take::Rms(target) if target.is_empty() => format!("root mean square of {of}{mean_over}{within}"),
+        Take::Rms(_) => format!("root mean square of {of} beyond its target{mean_over}{within}"),
+        Take::Value(at) => format!("{of} where {over} is {}", place(*at)),
+        Take::Slope(at) => format!("slope of {of} over {over} at {}", place(*at)),
+    }
+}

@@ -1,0 +1,69 @@
+//! Metrics: one number for a whole curve.
+
+use super::{Dimension, Model, OutputSource};
+
+/// One number that sums an output up over the motion.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Metric {
+    /// Its name.
+    pub name: String,
+    /// Of which output.
+    pub of: OutputSource,
+    /// Over which output; over time where there is none.
+    pub over: Option<OutputSource>,
+    /// What is taken.
+    pub take: Take,
+    /// The part of the curve that counts: from where to where its abscissa goes, in SI; all of it where there is none.
+    pub window: Option<[f64; 2]>,
+}
+
+/// What of a curve a metric takes. Formulas: `docs/measures.md`.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Take {
+    /// The least value.
+    Least,
+    /// The greatest value.
+    Greatest,
+    /// The greatest less the least value.
+    Range,
+    /// The mean.
+    Mean,
+    /// The root of the mean square of what is left beyond a target curve: points `[abscissa, value]`, in SI, with straight lines
+    /// between and beyond them; beyond zero where there are none.
+    Rms(Vec<[f64; 2]>),
+    /// The value where the abscissa first is this, in SI.
+    Value(f64),
+    /// The change per change of the abscissa there.
+    Slope(f64),
+}
+
+impl Take {
+    /// The names of all of them, as model files write them.
+    pub const NAMES: [&str; 7] = ["min", "max", "range", "mean", "rms", "value", "slope"];
+
+    /// As model files write it.
+    pub fn name(&self) -> &'static str {
+        Self::NAMES[match self {
+            Self::Least => 0,
+            Self::Greatest => 1,
+            Self::Range => 2,
+            Self::Mean => 3,
+            Self::Rms(_) => 4,
+            Self::Value(_) => 5,
+            Self::Slope(_) => 6,
+        }]
+    }
+}
+
+impl Model {
+    /// What a metric's abscissa measures.
+    pub fn abscissa(&self, metric: &Metric) -> Dimension {
+        metric.over.map_or(Dimension::NUMBER.rate(-1), |over| self.dimension(over))
+    }
+
+    /// What a metric's value is.
+    pub fn metric_dimension(&self, metric: &Metric) -> Dimension {
+        let of = self.dimension(metric.of);
+        if let Take::Slope(_) = metric.take { of.over(self.abscissa(metric)) } else { of }
+    }
+}
