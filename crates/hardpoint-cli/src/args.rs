@@ -179,6 +179,9 @@ pub struct Whatif {
     /// A change of the design; may be given several times
     #[arg(long, value_name = "NAME=CHANGE")]
     pub set: Vec<String>,
+    /// Make the nearest change that keeps all joints closed, where the one asked for does not
+    #[arg(long, requires = "set")]
+    pub admissible: bool,
     /// Show this measure only; may be given several times
     #[arg(long, value_name = "NAME")]
     pub measure: Vec<String>,

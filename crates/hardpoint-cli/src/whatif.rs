@@ -2,15 +2,18 @@
 
 use std::io::Write;
 
+use hardpoint::Analysis;
 use hardpoint::joint::Quantity;
 use hardpoint::model::{Model, did_you_mean};
-use hardpoint::study::{add_coordinates, variable_named, variable_names, what_if};
+use hardpoint::study::{
+    add_coordinates, add_tilts, nearest_admissible, variable_named, variable_names, what_if,
+};
 use hardpoint_file::{AngleUnit, LengthUnit, ModelFile, Units};
 use hardpoint_report::diagnose;
 use hardpoint_report::figures::number;
 use hardpoint_report::margin::MarginFact;
 use hardpoint_report::metric::MetricChange;
-use hardpoint_report::whatif::WhatIfFacts;
+use hardpoint_report::whatif::{ChangeFact, WhatIfFacts};
 
 use crate::args::Whatif;
 use crate::folder::Folder;
@@ -22,6 +25,11 @@ use crate::text;
 const MOST_RANKED: usize = 200;
 /// Variables that the ranking of a measure shows, of each unit.
 const SHOWN: usize = 8;
+
+/// A change whose joints open by less than this part of the mechanism's size, or rad, is admissible as it is ...
+const OPEN: f64 = 1e-9;
+/// ... and another one is offered where it is closed better by this factor.
+const NEARER: f64 = 1e3;
 
 /// Changes the design and prints what that does, or ranks the variables.
 pub fn whatif(options: &Whatif) -> Outcome {
@@ -37,6 +45,16 @@ fn whatif_in(session: &Session, options: &Whatif) -> Result<Outcome, Outcome> {
     }
     if file.model.hardpoints.iter().filter(|h| !h.unnamed).count() <= MOST_RANKED {
         add_coordinates(&mut file.model);
+    }
+    let mut change = vec![0.0; file.model.variables.len()];
+    settings.iter().for_each(|(v, by)| change[*v] += by);
+    let mut nearest = Vec::new();
+    if let Some((model, found)) = nearest_of(&file, options, &change) {
+        if options.admissible {
+            change = taken_over(&mut file.model, &model, &found);
+        } else {
+            nearest = ChangeFact::all(&model, file.units, &found);
+        }
     }
     for name in options.measure.iter().chain(&options.over) {
         measure(&file.model, name).map_err(|why| session.misunderstood(&why))?;
@@ -58,13 +76,11 @@ fn whatif_in(session: &Session, options: &Whatif) -> Result<Outcome, Outcome> {
     let facts = if settings.is_empty() {
         WhatIfFacts::of_today(&file, analysis.topology(), &today)
     } else {
-        let mut change = vec![0.0; file.model.variables.len()];
-        settings.iter().for_each(|(v, by)| change[*v] += by);
         let studied = what_if(&analysis, today, &change);
         if let Some(stop) = &studied.exact.stop {
             outcome = early(stop, studied.exact.motion.len());
         }
-        WhatIfFacts::new(&file, analysis.topology(), &studied)
+        WhatIfFacts { nearest, ..WhatIfFacts::new(&file, analysis.topology(), &studied) }
     };
 
     let names = &options.measure;
@@ -93,6 +109,28 @@ fn whatif_in(session: &Session, options: &Whatif) -> Result<Outcome, Outcome> {
     Ok(outcome)
 }
 
+/// The nearest admissible change, and the model with the variables that it is of; `None` where the change is admissible.
+fn nearest_of(file: &ModelFile, options: &Whatif, change: &[f64]) -> Option<(Model, Vec<f64>)> {
+    let mut model = file.model.clone();
+    add_tilts(&mut model);
+    let analysis = Analysis::with(&model, options.common.formulation()).ok()?;
+    let nearest = nearest_admissible(&analysis, change);
+    let [asked, found] = nearest.defects;
+    let moves = nearest.change.iter().any(|x| *x != 0.0);
+    (asked > NEARER * found && asked > OPEN && moves).then_some((model, nearest.change))
+}
+
+/// A change of another model's variables as one of this model's, which is given those that it lacks.
+fn taken_over(model: &mut Model, of: &Model, change: &[f64]) -> Vec<f64> {
+    let mut own = Vec::new();
+    for (variable, by) in of.variables.iter().zip(change).filter(|(_, by)| **by != 0.0) {
+        own.extend(variable_named(model, &variable.name).map(|v| (v.0, *by)));
+    }
+    let mut change = vec![0.0; model.variables.len()];
+    own.into_iter().for_each(|(v, by)| change[v] = by);
+    change
+}
+
 fn facts_text(facts: &WhatIfFacts, wanted: &dyn Fn(&str) -> bool) -> String {
     let mut out = format!("{}\n", text::bold(&facts.name));
     if !facts.change.is_empty() {
@@ -104,6 +142,14 @@ fn facts_text(facts: &WhatIfFacts, wanted: &dyn Fn(&str) -> bool) -> String {
             ("least margin", format!("{today} today, {changed} changed")),
         ];
         let table = facts.table(wanted);
+        let near = ChangeFact::line(&facts.nearest);
+        let rows: Vec<_> = match near.is_empty() {
+            true => rows.to_vec(),
+            false => {
+                let offer = format!("{near}; `--admissible` makes this change instead");
+                rows.into_iter().chain([("nearest admissible", offer)]).collect()
+            }
+        };
         out += &format!("{}\n{}  {}\n", text::pairs(&rows), text::table(&table), table.note);
         let metrics = MetricChange::table(&facts.metrics);
         out += &metrics.map_or(String::new(), |table| format!("\n{}", text::table(&table)));

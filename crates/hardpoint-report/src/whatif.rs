@@ -32,6 +32,8 @@ pub struct WhatIfFacts {
     pub file: String,
     /// What is changed, and by how much.
     pub change: Vec<ChangeFact>,
+    /// The nearest admissible change, where this one is none: what would keep the joints closed.
+    pub nearest: Vec<ChangeFact>,
     /// Whether and how the mechanism follows, in a sentence.
     pub follows: String,
     /// How far the mechanism stays from singular positions, today and changed.
@@ -55,6 +57,25 @@ pub struct ChangeFact {
     pub by: f64,
     /// Its unit; `1` for a plain number.
     pub unit: String,
+}
+
+impl ChangeFact {
+    /// What a change in SI does to the variables of a model that it touches.
+    pub fn all(model: &Model, units: Units, change: &[f64]) -> Vec<Self> {
+        let changed = model.variables.iter().zip(change).filter(|(_, by)| **by != 0.0);
+        let fact = |(variable, by): (&hardpoint::model::DesignVariable, &f64)| Self {
+            variable: variable.name.clone(),
+            by: units.from_si(variable.quantity, *by),
+            unit: variable_unit(model, units, variable),
+        };
+        changed.map(fact).collect()
+    }
+
+    /// `A.x by 2 mm, B.y by -1 mm`.
+    pub fn line(changes: &[Self]) -> String {
+        let one = |c: &Self| format!("{} by {}", c.variable, with_unit(c.by, &c.unit));
+        changes.iter().map(one).collect::<Vec<_>>().join(", ")
+    }
 }
 
 /// A measure's curves.
@@ -110,19 +131,15 @@ impl WhatIfFacts {
     /// The facts of a changed design.
     pub fn new(file: &ModelFile, topology: &Topology, what_if: &WhatIf) -> Self {
         let (model, units) = (&file.model, file.units);
-        let changed = model.variables.iter().zip(&what_if.change).filter(|(_, by)| **by != 0.0);
-        let change = changed.map(|(variable, by)| ChangeFact {
-            variable: variable.name.clone(),
-            by: units.from_si(variable.quantity, *by),
-            unit: variable_unit(model, units, variable),
-        });
+        let change = ChangeFact::all(model, units, &what_if.change);
         let margin = |s: &Solution| MarginFact::new(model, topology, &s.motion);
         let measured = &what_if.today.measured;
         let mut facts = Self {
             generator: GENERATOR,
             name: model.name.clone(),
             file: file.file_name().into(),
-            change: change.collect(),
+            change,
+            nearest: Vec::new(),
             follows: follows(model, what_if),
             margins: [margin(&what_if.today), margin(&what_if.exact)],
             measures: Vec::new(),
@@ -166,6 +183,7 @@ impl WhatIfFacts {
             name: file.model.name.clone(),
             file: file.file_name().into(),
             change: Vec::new(),
+            nearest: Vec::new(),
             follows: String::new(),
             margins: [MarginFact::new(&file.model, topology, &today.motion), None],
             measures: Vec::new(),
@@ -177,8 +195,7 @@ impl WhatIfFacts {
 
     /// What is changed, in a line.
     pub fn change_line(&self) -> String {
-        let one = |c: &ChangeFact| format!("{} by {}", c.variable, with_unit(c.by, &c.unit));
-        self.change.iter().map(one).collect::<Vec<_>>().join(", ")
+        ChangeFact::line(&self.change)
     }
 
     /// How the measures change, and how well that was foreseen; of those asked for, or of all.

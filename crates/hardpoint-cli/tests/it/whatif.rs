@@ -86,3 +86,32 @@ fn what_cannot_be_set_or_measured_is_refused_with_what_there_is() {
         assert!(text.contains(told) && text.contains("HP0602"), "{text}");
     }
 }
+
+/// A planar mechanism cannot follow the tilt of one joint out of its plane, but that of all four.
+#[test]
+fn a_change_that_cannot_be_followed_is_offered_with_what_makes_it_admissible() {
+    let bench = Bench::with(&[]);
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../models/slider_crank.toml");
+    bench.put("slider_crank.toml", &std::fs::read_to_string(path).unwrap());
+    let set = ["whatif", "slider_crank.toml", "--set", "J4.tilt_y=1deg"];
+    let alone = bench.run(&[&set[..], &["--json"]].concat());
+    let document: Value = serde_json::from_slice(&alone.stdout).unwrap();
+    assert!(document["follows"].as_str().unwrap().contains("cannot follow"), "{}", document["follows"]);
+    let names: Vec<&str> =
+        document["nearest"].as_array().unwrap().iter().map(|c| c["variable"].as_str().unwrap()).collect();
+    assert_eq!(names, ["J4.tilt_y", "J1.tilt_y", "J2.tilt_y", "J3.tilt_y"]);
+    for change in document["nearest"].as_array().unwrap() {
+        assert!((change["by"].as_f64().unwrap() - 1.0).abs() < 1e-6, "{change}");
+    }
+    let offer = String::from_utf8(bench.run(&set).stdout).unwrap();
+    assert!(offer.contains("`--admissible` makes this change instead"), "{offer}");
+
+    // Accepted, the whole motion is solved and everything is foreseen.
+    let taken = bench.run(&[&set[..], &["--admissible", "--json"]].concat());
+    assert_eq!(taken.status.code(), Some(0), "{}", String::from_utf8_lossy(&taken.stderr));
+    let document: Value = serde_json::from_slice(&taken.stdout).unwrap();
+    assert!(document["follows"].as_str().unwrap().starts_with("admissible"), "{}", document["follows"]);
+    assert_eq!(document["change"].as_array().unwrap().len(), 4);
+    assert!(document["nearest"].as_array().unwrap().is_empty());
+    assert_eq!(document["times"].as_array().unwrap().len(), 401);
+}

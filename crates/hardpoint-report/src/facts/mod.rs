@@ -14,7 +14,7 @@ use hardpoint::model::{
     AngleKind, BodyId, Coupler, Direction, Driver, GROUND, Joint, JointId, MeasureKind, Model, OutputSource,
     PointId, Ray, VariableId,
 };
-use hardpoint::sensitivity::{self, JointDefect, admissibility_at_design};
+use hardpoint::sensitivity::{self, Condition, JointDefect, admissibility_at_design, conditions_at_design};
 use hardpoint::topology::{Closure, CutReason, Formulation, Role, Topology};
 use hardpoint_file::{ModelFile, Units};
 use serde::Serialize;
@@ -58,6 +58,8 @@ pub struct Facts {
     pub redundancy: Vec<RedundancyFact>,
     /// Design variables and whether the mechanism can follow them.
     pub variables: Vec<VariableFact>,
+    /// What every joint asks of a change of the design.
+    pub conditions: Vec<ConditionFact>,
     /// Measures.
     pub measures: Vec<MeasureFact>,
     /// Sentences about what is worth knowing and no error.
@@ -274,6 +276,7 @@ impl Facts {
             redundant: redundant(model, topology),
             redundancy: redundancy::redundancy(model, topology),
             variables: variables(model, units, solution),
+            conditions: conditions(model, units),
             measures: measures(model, units),
             notes: [notes::idle_spins(model), notes::jumps(model, units)].concat(),
         }
@@ -519,6 +522,62 @@ fn variables(model: &Model, units: Units, solution: Option<&Solution>) -> Vec<Va
     };
     model.variables.iter().enumerate().map(fact).collect()
 }
+
+/// A condition of kinematic admissibility: an elementary constraint of a joint must stay closed with all bodies where they are.
+#[derive(Clone, Debug, Serialize)]
+pub struct ConditionFact {
+    /// The joint.
+    pub joint: String,
+    /// The constraint.
+    pub constraint: String,
+    /// The design variables that open it, and by how much per unit.
+    pub opened_by: Vec<OpenFact>,
+}
+
+/// By how much a variable opens a constraint.
+#[derive(Clone, Debug, Serialize)]
+pub struct OpenFact {
+    /// The variable.
+    pub variable: String,
+    /// The defect per unit of it.
+    pub defect: f64,
+    /// The defect's unit.
+    pub unit: String,
+}
+
+fn conditions(model: &Model, units: Units) -> Vec<ConditionFact> {
+    if model.variables.is_empty() {
+        return Vec::new();
+    }
+    let mut facts: Vec<(JointId, Row, ConditionFact)> = Vec::new();
+    for (id, joint) in model.named_joints() {
+        let driven = model.drivers.iter().filter(|d| d.joint == id).map(|d| model.driven(d).row);
+        for row in joint.kind.rows.iter().copied().chain(driven) {
+            let (joint, constraint) = (joint_name(model, id), row.describe());
+            facts.push((id, row, ConditionFact { joint, constraint, opened_by: Vec::new() }));
+        }
+    }
+    for (v, variable) in model.variables.iter().enumerate() {
+        let field = model.field(VariableId(v));
+        let unit = variable_unit(model, units, variable);
+        // What of a condition is no more than round-off opens nothing.
+        let opens = admissibility_at_design(model, &field);
+        let counts =
+            |d: &Condition| opens.iter().any(|o| o.joint == d.joint && d.value.abs() > ROUND_OFF * o.value);
+        for condition in conditions_at_design(model, &field).into_iter().filter(counts) {
+            let found = facts.iter_mut().find(|(j, row, _)| (*j, *row) == (condition.joint, condition.row));
+            let Some((.., fact)) = found else { continue };
+            let Condition { joint, row, value } = condition;
+            let d = defect(model, units, (variable.quantity, &unit), &JointDefect { joint, row, value });
+            let (defect, unit) = (d.defect, d.unit);
+            fact.opened_by.push(OpenFact { variable: variable.name.clone(), defect, unit });
+        }
+    }
+    facts.into_iter().map(|f| f.2).collect()
+}
+
+/// Against the condition of its joint that fails most, a defect below this part is round-off.
+const ROUND_OFF: f64 = 1e-9;
 
 fn defect(model: &Model, units: Units, (by, unit): (Quantity, &str), defect: &JointDefect) -> DefectFact {
     // The defect of a direction is a cosine that is 0 when closed: to first order an angle.

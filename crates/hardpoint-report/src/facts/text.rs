@@ -7,7 +7,7 @@ use super::{
     Answer, CouplerFact, DefectFact, DriverFact, Facts, VariableFact, couplers, drivers, joints_on,
     written_kind,
 };
-use crate::figures::{count, number, some_of, with_unit};
+use crate::figures::{count, number, rounded, some_of, with_unit};
 use crate::page::Table;
 
 impl Facts {
@@ -97,6 +97,7 @@ impl Facts {
         tables.push(self.block_table());
         tables.extend(self.redundant_table());
         tables.extend(self.variable_table());
+        tables.extend(self.condition_table());
         tables.extend(self.measure_table());
         tables
     }
@@ -190,6 +191,29 @@ impl Facts {
                  the mechanism closes them by moving. Cannot follow: no motion closes them, so there is no number. \
                  A defect is per unit of the variable.",
                 ["variable", "unit", "change", "at design", "over the motion", "joints and their defect"],
+                rows,
+            )
+        })
+    }
+
+    fn condition_table(&self) -> Option<Table> {
+        let mut rows: Vec<Vec<String>> = Vec::new();
+        let mut before = "";
+        for c in &self.conditions {
+            let opened =
+                c.opened_by.iter().map(|o| format!("{} {} {}", o.variable, rounded(o.defect, 3), o.unit));
+            let opened: Vec<String> = opened.collect();
+            let joint = if c.joint == before { String::new() } else { c.joint.clone() };
+            before = &c.joint;
+            let defect = if opened.is_empty() { "0".into() } else { some_of(&opened, "; ") };
+            rows.push(vec![joint, c.constraint.clone(), defect]);
+        }
+        (!rows.is_empty()).then(|| {
+            table(
+                "Conditions of admissibility",
+                "What each joint asks of a change of the design so that it stays closed with all bodies where they are; d is the \
+                 line between its two points. A defect is that of the variable named, per unit.",
+                ["joint", "condition", "defect"],
                 rows,
             )
         })

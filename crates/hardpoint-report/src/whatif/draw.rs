@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 use plotters::prelude::*;
 
-use super::{MeasureFact, WhatIfFacts};
+use super::{ChangeFact, MeasureFact, WhatIfFacts};
 use crate::figures::{number, rounded};
 use crate::metric::MetricChange;
 use crate::page::Table;
@@ -47,6 +47,12 @@ pub(super) fn html(
             escaped(&facts.change_line()),
             escaped(&facts.follows)
         );
+        if !facts.nearest.is_empty() {
+            page += &format!(
+                "<p>The nearest change that keeps all joints closed: {}.</p>",
+                escaped(&ChangeFact::line(&facts.nearest))
+            );
+        }
         let abscissa = over.and_then(|name| facts.measures.iter().find(|m| m.measure == name));
         page += "<div class=\"plots\">";
         for m in facts.measures.iter().filter(|m| wanted(&m.measure) && Some(m.measure.as_str()) != over) {

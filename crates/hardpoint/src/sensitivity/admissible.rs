@@ -40,11 +40,20 @@ pub struct JointDefect {
 /// A defect below this part of the field's speed is round-off of typed velocities.
 const OPEN: f64 = 1e-7;
 
-/// The joints that a variable opens at the design configuration while all bodies stay: those with
-/// `l . (z_j - z_i) - L' != 0` for one of their elementary constraints (`docs/theory.md` (8), paper
-/// section 4). Empty means admissible there.
-pub fn admissibility_at_design(model: &Model, field: &Field) -> Vec<JointDefect> {
-    let scale = field.markers.iter().map(|m| m.twist.w.norm().max(m.twist.v.norm())).fold(0.0, f64::max);
+/// What a variable does to one elementary constraint of a joint at the design configuration, while all bodies stay.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Condition {
+    /// The joint; of a coupler its first one.
+    pub joint: JointId,
+    /// The constraint.
+    pub row: Row,
+    /// By how much it opens per unit of the variable, with its sign: m or a cosine, per m, rad or unit of tau.
+    pub value: f64,
+}
+
+/// The conditions of all joints that a variable touches: `l . (z_j - z_i) - L' = 0` for each of their elementary constraints
+/// (`docs/theory.md` (8), paper section 4: Dot-1, Dot-2, spherical, distance).
+pub fn conditions_at_design(model: &Model, field: &Field) -> Vec<Condition> {
     let twists = |k: usize| {
         [0, 1].map(|end| {
             let twist = field.twist_of(JointId(k), end).unwrap_or(Twist::ZERO);
@@ -55,22 +64,16 @@ pub fn admissibility_at_design(model: &Model, field: &Field) -> Vec<JointDefect>
     touched.extend(field.kept.iter().map(|(j, _)| j.0));
     touched.sort_unstable();
     touched.dedup();
-    let mut joints = Vec::new();
+    let mut conditions = Vec::new();
     for k in touched {
-        let z = twists(k);
-        let kept = field.kept_rate(JointId(k)).unwrap_or_default();
-        let ends = model.ends(JointId(k));
+        let (joint, z) = (JointId(k), twists(k));
+        let kept = field.kept_rate(joint).unwrap_or_default();
+        let ends = model.ends(joint);
         // A driven coordinate is a constraint too: it must stay at zero in the design configuration.
-        let driven = model.drivers.iter().filter(|d| d.joint.0 == k).map(|d| model.driven(d).row);
+        let driven = model.drivers.iter().filter(|d| d.joint == joint).map(|d| model.driven(d).row);
         let rows = model.joints[k].kind.rows.iter().copied().chain(driven);
-        let worst = rows
-            .map(|row| (row, (row.wrench(&ends).on(z[1] - z[0]) - kept.by(row)).abs()))
-            .max_by(|a, b| a.1.total_cmp(&b.1));
-        if let Some((row, value)) = worst
-            && value > OPEN * scale
-        {
-            joints.push(JointDefect { joint: JointId(k), row, value });
-        }
+        let value = |row: Row| row.wrench(&ends).on(z[1] - z[0]) - kept.by(row);
+        conditions.extend(rows.map(|row| Condition { joint, row, value: value(row) }));
     }
     for coupler in &model.couplers {
         let change = |t: &Term| {
@@ -78,9 +81,26 @@ pub fn admissibility_at_design(model: &Model, field: &Field) -> Vec<JointDefect>
             t.coefficient * model.coupled(t).row.wrench(&model.ends(t.joint)).on(z[1] - z[0])
         };
         let first = coupler.terms[0];
-        let value = (coupler.terms.iter().map(change).sum::<f64>() / first.coefficient).abs();
-        if value > OPEN * scale && joints.iter().all(|j| j.joint != first.joint) {
-            joints.push(JointDefect { joint: first.joint, row: model.coupled(&first).row, value });
+        let value = coupler.terms.iter().map(change).sum::<f64>() / first.coefficient;
+        conditions.push(Condition { joint: first.joint, row: model.coupled(&first).row, value });
+    }
+    conditions
+}
+
+/// The joints that a variable opens at the design configuration while all bodies stay, each with the condition that fails
+/// most. None means admissible there.
+pub fn admissibility_at_design(model: &Model, field: &Field) -> Vec<JointDefect> {
+    let scale = field.markers.iter().map(|m| m.twist.w.norm().max(m.twist.v.norm())).fold(0.0, f64::max);
+    let mut joints: Vec<JointDefect> = Vec::new();
+    for Condition { joint, row, value } in conditions_at_design(model, field) {
+        let value = value.abs();
+        if !(value > OPEN * scale) {
+            continue;
+        }
+        match joints.iter_mut().find(|j| j.joint == joint) {
+            Some(j) if value > j.value => (j.row, j.value) = (row, value),
+            Some(_) => {}
+            None => joints.push(JointDefect { joint, row, value }),
         }
     }
     joints

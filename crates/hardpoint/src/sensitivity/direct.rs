@@ -417,18 +417,28 @@ impl<T: Real> Direct<T> {
         );
     }
 
-    /// Enters row r where it fails most.
-    #[inline(always)]
-    fn defect(
+    /// Defects of the left-out rows under the change that was solved last, with their signs: `out(row, defect)`.
+    pub fn defects(
         &self,
         topology: &Topology,
         state: &State<T>,
         field: &FieldParts<T>,
-        r: usize,
-        worst: &mut [Option<Defect>; LANES],
+        mut out: impl FnMut(usize, T),
     ) {
+        for &c in &field.reach.closures {
+            let closure = &topology.closures[c];
+            for r in closure.first_row..closure.first_row + closure.rows.len() {
+                if !topology.rows[r].selected && !topology.rows[r].is_term {
+                    out(r, self.row_defect(topology, state, field, r).0);
+                }
+            }
+        }
+    }
+
+    /// By how much row r fails, and the largest of the terms that must cancel.
+    #[inline(always)]
+    fn row_defect(&self, topology: &Topology, state: &State<T>, field: &FieldParts<T>, r: usize) -> (T, T) {
         let zero = state.witness.zero();
-        // The sum of all terms, and the largest of them.
         let (mut sum, mut most) = (zero, zero);
         for (k, factor) in topology.parts_of_row(r) {
             let closure = topology.rows[k].closure;
@@ -447,6 +457,21 @@ impl<T: Real> Direct<T> {
             let driven = topology.closures[closure].driver.map_or(zero, |d| field.law_rate(d, 0));
             add(-(rate + driven));
         }
+        (sum, most)
+    }
+
+    /// Enters row r where it fails most.
+    #[inline(always)]
+    fn defect(
+        &self,
+        topology: &Topology,
+        state: &State<T>,
+        field: &FieldParts<T>,
+        r: usize,
+        worst: &mut [Option<Defect>; LANES],
+    ) {
+        let zero = state.witness.zero();
+        let (sum, most) = self.row_defect(topology, state, field, r);
         // What typed coordinates may be off by in the motion, they may be off by in the design's terms.
         let (sum, limit) = (sum.abs(), most * zero.like(LOCKED));
         let limit = limit.larger(field.scale * zero.like(DEFECT_FLOOR));

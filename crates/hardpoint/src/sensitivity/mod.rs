@@ -9,7 +9,8 @@ mod direct;
 mod second;
 mod sensing;
 
-pub use admissible::{Admissibility, JointDefect, admissibility_at_design};
+pub use admissible::{Admissibility, Condition, JointDefect, admissibility_at_design, conditions_at_design};
+pub(crate) use direct::{Direct, FieldParts};
 pub use second::{BodyCurvature, Way};
 pub(crate) use second::{Seconds, along};
 pub(crate) use sensing::{Sensing, SensingDesigns};

@@ -2,14 +2,16 @@
 
 mod difference;
 mod metric;
+mod nearest;
 mod second;
 mod verify;
 mod whatif;
 
 pub use difference::{Difference, central_differences, natural_step};
 pub use metric::{MetricValue, metrics};
+pub use nearest::{Nearest, nearest_admissible};
 pub use second::SecondDerivatives;
 pub use verify::{
     Check, CheckOutcome, PASS, StepError, Verification, VerifyOptions, compare_with_difference, verify,
 };
-pub use whatif::{Foresight, WhatIf, add_coordinates, variable_named, variable_names, what_if};
+pub use whatif::{Foresight, WhatIf, add_coordinates, add_tilts, variable_named, variable_names, what_if};

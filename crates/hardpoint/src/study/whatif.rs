@@ -167,6 +167,19 @@ pub fn add_coordinates(model: &mut Model) {
     }
 }
 
+/// Gives a model the variables that tilt each of its joints with an axis, as far as it has none of that name.
+pub fn add_tilts(model: &mut Model) {
+    let tilts: Vec<String> = model
+        .joints
+        .iter()
+        .filter(|j| !j.unnamed && j.axis.is_some())
+        .flat_map(|j| ["x", "y", "z"].map(|axis| format!("{}.tilt_{axis}", j.name)))
+        .collect();
+    for name in &tilts {
+        variable_named(model, name);
+    }
+}
+
 /// All names that [`variable_named`] knows in a model.
 pub fn variable_names(model: &Model) -> Vec<String> {
     let mut names: Vec<String> = model.variables.iter().map(|v| v.name.clone()).collect();

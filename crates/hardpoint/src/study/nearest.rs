@@ -1,0 +1,160 @@
+//! The nearest admissible change: what was asked for, with as much more as keeps the joints closed.
+
+use std::ops::ControlFlow;
+
+use faer::Mat;
+use faer::linalg::solvers::Solve;
+
+use crate::analysis::{Analysis, Solved, Walk};
+use crate::model::{Change, End, Model, VariableId};
+use crate::motion::Motion;
+use crate::sensitivity::{Direct, FieldParts, conditions_at_design};
+use crate::sink::Store;
+use crate::space::{FullPivot, LANES, Vec3};
+
+use super::difference::natural_step;
+
+/// Conditions that the motion adds are taken at so many of its output times, evenly.
+const TIMES: usize = 24;
+/// A condition is met where its defect is below this part of what the largest change makes of the strongest condition: some
+/// hundred times the round-off of typed coordinates.
+const MET: f64 = 1e-7;
+/// A variable that was asked for moves by this part of what others do: it is kept where they can make up for it.
+const KEPT: f64 = 1e-9;
+
+/// An admissible change near one that was asked for.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Nearest {
+    /// By how much every variable changes, m, rad, or plain.
+    pub change: Vec<f64>,
+    /// How many independent conditions there are.
+    pub conditions: usize,
+    /// The largest defect of the change that was asked for, and of this one, in units of the mechanism's size or rad.
+    pub defects: [f64; 2],
+}
+
+/// The change nearest to `change` that keeps all joints closed with all bodies where they are (paper, section 4), and over the
+/// motion meets what redundant constraints ask for; to first order.
+///
+/// It is the least-squares projection onto the null space of these conditions, over the variables asked for and all others of
+/// the model that move one coordinate of a hardpoint or tilt one joint ([`add_coordinates`](super::add_coordinates),
+/// [`add_tilts`](super::add_tilts)), each measured by its [`natural_step`]; what was asked for is kept as long as others can
+/// make up for it.
+pub fn nearest_admissible(analysis: &Analysis<'_>, change: &[f64]) -> Nearest {
+    let model = analysis.model();
+    let change = model.whole(change);
+    let scales: Vec<f64> = (0..change.len()).map(|v| natural_step(model, VariableId(v))).collect();
+    let rows = conditions(analysis, &scales);
+    // Of a null change nothing is asked, and a mechanism without conditions asks nothing.
+    let asked: Vec<f64> = change.iter().zip(&scales).map(|(x, scale)| x / scale).collect();
+    let defect = |x: &[f64]| rows.iter().map(|r| dot(r, x).abs()).fold(0.0, f64::max);
+    let independent = FullPivot::of(rows.clone(), change.len(), MET).rows;
+    let a: Vec<&Vec<f64>> = independent.iter().map(|&r| &rows[r]).collect();
+    let weight: Vec<f64> = (0..asked.len()).map(|v| weight(model, &asked, v)).collect();
+    let mut found = asked.clone();
+    if !a.is_empty() {
+        // d = x - W A^T (A W A^T)^-1 A x
+        let product =
+            |i: usize, j: usize| (0..weight.len()).map(|v| a[i][v] * weight[v] * a[j][v]).sum::<f64>();
+        let system = Mat::from_fn(a.len(), a.len(), product);
+        let right = Mat::from_fn(a.len(), 1, |i, _| dot(a[i], &asked));
+        let multipliers = system.full_piv_lu().solve(&right);
+        for (v, x) in found.iter_mut().enumerate() {
+            *x -= weight[v] * (0..a.len()).map(|i| a[i][v] * multipliers[(i, 0)]).sum::<f64>();
+        }
+    }
+    let largest = found.iter().fold(0.0_f64, |most, x| most.max(x.abs()));
+    let cleaned = |(x, scale): (&f64, &f64)| if x.abs() > MET * largest { x * scale } else { 0.0 };
+    Nearest {
+        change: found.iter().zip(&scales).map(cleaned).collect(),
+        conditions: a.len(),
+        defects: [defect(&asked), defect(&found)],
+    }
+}
+
+/// How easily a variable moves.
+fn weight(model: &Model, asked: &[f64], v: usize) -> f64 {
+    if asked[v] != 0.0 {
+        return KEPT;
+    }
+    let variable = &model.variables[v];
+    let is_axis = |u: Vec3| Vec3::AXES.contains(&u);
+    let is_simple = match variable.changes.as_slice() {
+        [Change::Move { velocity, .. }] => is_axis(*velocity),
+        [Change::Marker { end: End::Both, position, rotation, .. }] => {
+            *position == Vec3::ZERO && is_axis(*rotation)
+        }
+        _ => false,
+    };
+    // Of two that do the same, one would undo what the other is asked to do.
+    let same = |k: &usize| model.variables[*k].changes == variable.changes;
+    let is_double = (0..asked.len()).filter(same).any(|k| k < v || asked[k] != 0.0);
+    if is_simple && !variable.fixed_length && !is_double { 1.0 } else { 0.0 }
+}
+
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
+}
+
+/// One row per condition: its defect per natural step of every variable; lengths in sizes of the mechanism.
+fn conditions(analysis: &Analysis<'_>, scales: &[f64]) -> Vec<Vec<f64>> {
+    let model = analysis.model();
+    let (variables, size) = (scales.len(), model.size());
+    let mut rows: Vec<Vec<f64>> = Vec::new();
+    let fields = model.fields(&[]);
+    // By joint, constraint and how often that joint has had it: couplers may repeat one.
+    let mut keys = Vec::new();
+    for (v, field) in fields.iter().enumerate() {
+        let mut seen = Vec::new();
+        for c in conditions_at_design(model, field) {
+            let repeat = seen.iter().filter(|k| **k == (c.joint, c.row)).count();
+            seen.push((c.joint, c.row));
+            let key = (c.joint, c.row, repeat);
+            let at = keys.iter().position(|k| *k == key).unwrap_or_else(|| {
+                keys.push(key);
+                rows.push(vec![0.0; variables]);
+                keys.len() - 1
+            });
+            let unit = if c.row.is_length() { size } else { 1.0 };
+            rows[at][v] = c.value * scales[v] / unit;
+        }
+    }
+    // Nothing is stored, and one lane will do.
+    let design = analysis.design(&[], false);
+    let mut walk = Walk::new(analysis, &design, vec![false; model.bodies.len()], 0.0);
+    let (mut done, mut unused) = (0, Motion::default());
+    let mut store = Store { motion: &mut unused, sensitivities: &mut [], variables: 0 };
+    let every = model.times.len().div_ceil(TIMES).max(1);
+    let topology = analysis.topology();
+    let mut direct = Direct::new(model, topology, 0.0);
+    let mut parts: Vec<_> = fields.iter().map(|f| FieldParts::new(topology, f, 0.0)).collect();
+    if topology.redundant().next().is_some() {
+        // A motion that ends early asks for less.
+        let _ = walk.all(analysis, &mut store, &mut |_| ControlFlow::Continue(()), |_, solved, count| {
+            let (Solved::One(stepper) | Solved::Abreast(stepper)) = solved;
+            if done % every == 0 {
+                stepper.state.finish_wrenches(&stepper.topology);
+                let first = rows.len();
+                let mut numbers = Vec::new();
+                for (v, field) in parts.iter_mut().enumerate() {
+                    field.set_times(|d, lane| stepper.parts.law_of(d.0, lane), &[model.times[done]; LANES]);
+                    direct.solve_position(&stepper.topology, &mut stepper.state, field);
+                    direct.defects(&stepper.topology, &stepper.state, field, |r, value| {
+                        let at = numbers.iter().position(|n| *n == r).unwrap_or_else(|| {
+                            numbers.push(r);
+                            rows.push(vec![0.0; variables]);
+                            numbers.len() - 1
+                        });
+                        let place = &topology.rows[r];
+                        let row = topology.closures[place.closure].rows[place.index];
+                        let unit = if row.is_length() { size } else { 1.0 };
+                        rows[first + at][v] = value * scales[v] / unit;
+                    });
+                }
+            }
+            done += count;
+        });
+    }
+    rows.retain(|row| row.iter().any(|x| x.abs() > MET));
+    rows
+}
