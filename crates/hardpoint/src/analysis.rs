@@ -130,6 +130,11 @@ impl<'m> Analysis<'m> {
         Self { measures: false, ..self }
     }
 
+    /// The same analysis, measures included.
+    pub(crate) fn with_measures(self) -> Self {
+        Self { measures: true, ..self }
+    }
+
     /// The plan.
     pub fn topology(&self) -> &Topology {
         &self.topology
@@ -140,7 +145,7 @@ impl<'m> Analysis<'m> {
     }
 
     /// Per variable, the joints that it opens in the nominal design.
-    fn opens(&self) -> &[Vec<JointDefect>] {
+    pub(crate) fn opens(&self) -> &[Vec<JointDefect>] {
         self.opens.get_or_init(|| {
             let nominal = self.effects.fields(&self.model.whole(&[]), 0.0);
             nominal.iter().map(|field| admissibility_at_design(self.model, field)).collect()

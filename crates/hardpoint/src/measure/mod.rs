@@ -247,6 +247,14 @@ impl<T: Real> Moment<'_, T> {
         }
     }
 
+    /// One output.
+    pub fn output(&self, output: &Output) -> T {
+        match output.source {
+            OutputSource::Measure(k) => self.measure(k, &self.model.measures[k]),
+            OutputSource::Point(p, axis) => self.point(p)[axis],
+        }
+    }
+
     fn point(&self, p: PointId) -> Vec3<T> {
         self.poses[self.model.points[p.0].body.0].point(self.fixed.points[p.0])
     }

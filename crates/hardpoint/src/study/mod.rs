@@ -1,11 +1,15 @@
 //! Studies: questions that take many solutions.
 
 mod difference;
+mod gradient;
+mod jerk;
 mod second;
 mod verify;
 mod whatif;
 
 pub use difference::{Difference, central_differences, natural_step};
+pub use gradient::{Gradients, Method};
+pub use jerk::Jerks;
 pub use second::SecondDerivatives;
 pub use verify::{
     Check, CheckOutcome, PASS, StepError, Verification, VerifyOptions, compare_with_difference, verify,

@@ -1,0 +1,341 @@
+//! Gradients of chosen outputs by all design variables, in whichever direction is shorter.
+
+use std::ops::ControlFlow;
+
+use fearless_simd::{Level, dispatch};
+
+use crate::analysis::{Analysis, Design, Solved, Walk};
+use crate::measure::{Moment, Output, bodies_asked_for, outputs};
+use crate::model::{Field, Fixed, GROUND, VariableId};
+use crate::motion::kinematics::State;
+use crate::motion::stepper::Stepper;
+use crate::motion::{Motion, Stop};
+use crate::sensitivity::{Adjoint, Admissibility, Load, Resisting, Support, Watch, admissibility};
+use crate::sink::Store;
+use crate::space::{Dual, LANES, Mat3, Pose, Rates, Real, Twist, Vec3, Wrench, lanes};
+
+/// How gradients are worked out. All ways give the same numbers, to round-off.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Method {
+    /// Whichever is expected to be faster for so many outputs and variables.
+    #[default]
+    Auto,
+    /// Variable by variable: the cost grows with the variables, and outputs are nearly free.
+    Direct,
+    /// Output by output: the cost grows with the outputs, and variables are nearly free.
+    Adjoint,
+}
+
+/// Gradients of outputs by all design variables over a motion.
+#[derive(Clone, Debug, Default)]
+pub struct Gradients {
+    /// Output times that were solved, s.
+    pub times: Vec<f64>,
+    /// The outputs asked for.
+    pub outputs: Vec<Output>,
+    /// How many design variables there are.
+    pub variables: usize,
+    /// How they were worked out: direct or adjoint.
+    pub method: Method,
+    /// Per variable: whether and how the mechanism follows the change.
+    pub admissibility: Vec<Admissibility>,
+    /// Why the run ended before the last output time, if it did.
+    pub stop: Option<Stop>,
+    /// `d[(k * outputs + m) * variables + b]`.
+    d: Vec<[f64; 3]>,
+}
+
+impl Gradients {
+    /// Derivatives by every variable, at fixed t, of value, rate and acceleration of the m-th output asked for, at time k; in
+    /// the output's unit, per s, per s^2, per unit of the variable.
+    ///
+    /// Those of a variable that the mechanism cannot follow are NaN: [`Gradients::admissibility`] says why.
+    pub fn at(&self, k: usize, m: usize) -> &[[f64; 3]] {
+        let first = (k * self.outputs.len() + m) * self.variables;
+        &self.d[first..first + self.variables]
+    }
+}
+
+impl Analysis<'_> {
+    /// Gradients of some outputs, by their indices in [`outputs`], by all variables at the design with variable k at
+    /// `design[k]`.
+    ///
+    /// The adjoint way costs one transposed solution for each output and time, with its first two time derivatives, and a few
+    /// products for each marker that a variable moves (`docs/theory.md`, section 8).
+    ///
+    /// # Panics
+    /// If there is no such output.
+    pub fn gradients(&self, design: &[f64], outputs_asked: &[usize], method: Method) -> Gradients {
+        let all = outputs(self.model());
+        let asked: Vec<Output> = outputs_asked.iter().map(|&m| all[m].clone()).collect();
+        match self.method(asked.len(), method) {
+            Method::Direct => self.gradients_direct(design, outputs_asked, asked),
+            _ => {
+                let design = self.design(design, false);
+                dispatch!(Level::new(), simd => self.gradients_adjoint(&design, asked, lanes(simd)))
+            }
+        }
+    }
+
+    fn method(&self, _outputs: usize, method: Method) -> Method {
+        method
+    }
+
+    fn gradients_direct(&self, design: &[f64], which: &[usize], outputs: Vec<Output>) -> Gradients {
+        let solution = self.clone().with_measures().run_at(design);
+        let (measured, variables) = (&solution.measured, self.model().variables.len());
+        let mut d = Vec::with_capacity(solution.motion.len() * which.len() * variables);
+        for k in 0..solution.motion.len() {
+            for &m in which {
+                d.extend((0..variables).map(|b| measured.d(k, VariableId(b), m)));
+            }
+        }
+        Gradients {
+            times: solution.motion.times,
+            outputs,
+            variables,
+            method: Method::Direct,
+            admissibility: solution.sensitivities.admissibility,
+            stop: solution.stop,
+            d,
+        }
+    }
+
+    fn gradients_adjoint<T: Real>(&self, design: &Design, outputs: Vec<Output>, witness: T) -> Gradients {
+        let model = self.model();
+        let (variables, asked) = (model.variables.len(), outputs.len());
+        let fields = self.effects().fields(&design.values, 0.0);
+        let mut result = Gradients {
+            d: vec![[f64::NAN; 3]; model.times.len() * asked * variables],
+            method: Method::Adjoint,
+            variables,
+            outputs,
+            ..Gradients::default()
+        };
+        let mut one = Tracing::new(self, design, &fields, &result.outputs, 0.0);
+        let mut all = Tracing::new(self, design, &fields, &result.outputs, witness);
+        let mut resisting: Vec<Resisting> = vec![(Vec::new(), 0.0); variables];
+        let mut walk = Walk::new(self, design, vec![false; model.bodies.len()], witness);
+        // Nothing is stored: no body's results are wanted.
+        let mut unused = Motion::default();
+        let mut store = Store { motion: &mut unused, sensitivities: &mut [], variables: 0 };
+        result.stop = walk.all(self, &mut store, &mut |_| ControlFlow::Continue(()), |_, solved, count| {
+            let times = &model.times[result.times.len()..][..count];
+            match solved {
+                Solved::One(stepper) => one.add(stepper, times, &mut resisting, &mut result),
+                Solved::Abreast(stepper) => all.add(stepper, times, &mut resisting, &mut result),
+            }
+        });
+        result.d.truncate(result.times.len() * asked * variables);
+        result.admissibility = admissibility(self.opens(), resisting, result.times.len());
+        for (v, answer) in result.admissibility.iter().enumerate() {
+            if matches!(answer, Admissibility::CannotFollow { .. }) {
+                result.d.iter_mut().skip(v).step_by(variables).for_each(|d| *d = [f64::NAN; 3]);
+            }
+        }
+        result
+    }
+}
+
+/// A number with its rates and its derivative by whatever is asked for.
+type Jet<T> = Dual<Rates<T>>;
+
+/// What the adjoint way needs besides a stepper.
+struct Tracing<'a, T> {
+    analysis: &'a Analysis<'a>,
+    adjoint: Adjoint<T>,
+    watch: Watch<T>,
+    asked: Vec<Asked<T>>,
+    /// Bodies that outputs are measured on.
+    bodies: Vec<usize>,
+    poses: Vec<Pose<Jet<T>>>,
+    /// What measures go by; and the same as it goes with each variable that moves some of it.
+    fixed: Fixed<Jet<T>>,
+    moved: Vec<Option<Fixed<Jet<T>>>>,
+    gradient: Vec<[T; 3]>,
+}
+
+/// An output, and what it depends on.
+struct Asked<T> {
+    output: Output,
+    /// Per body that it depends on: how it goes with the body's twist.
+    loads: Vec<(usize, Load<T>)>,
+    support: Support<T>,
+    /// Variables that move what it is measured with within its body.
+    variables: Vec<usize>,
+}
+
+impl<'a, T: Real> Tracing<'a, T> {
+    fn new(
+        analysis: &'a Analysis<'_>,
+        design: &Design,
+        fields: &[Field],
+        outputs: &[Output],
+        witness: T,
+    ) -> Self {
+        let (model, effects) = (analysis.model(), analysis.effects());
+        let adjoint = Adjoint::new(model, analysis.topology(), fields, witness);
+        let bodies: Vec<usize> = bodies_asked_for(model).into_iter().filter(|b| *b != GROUND.0).collect();
+        let depends = dependences(analysis, &design.values, &bodies, outputs);
+        let none = [Wrench::zero(witness); 3];
+        let asked = outputs.iter().zip(depends).map(|(output, [on, variables])| Asked {
+            output: output.clone(),
+            support: adjoint.support(analysis.topology(), &on),
+            loads: on.into_iter().map(|b| (b, none)).collect(),
+            variables,
+        });
+        let asked: Vec<Asked<T>> = asked.collect();
+        let zero = Dual::constant(Rates([witness.zero(); 3]));
+        let mut values: Vec<Jet<T>> = design.values.iter().map(|v| zero.like(*v)).collect();
+        let mut moved: Vec<Option<Fixed<Jet<T>>>> = values.iter().map(|_| None).collect();
+        for &v in asked.iter().flat_map(|a| &a.variables) {
+            moved[v].get_or_insert_with(|| {
+                let value = values[v];
+                values[v] = Dual::variable(value.v);
+                let fixed = effects.fixed(&values, zero);
+                values[v] = value;
+                fixed
+            });
+        }
+        Self {
+            watch: Watch::new(model, fields.len(), witness),
+            poses: vec![Pose::IDENTITY.spread(zero); model.bodies.len()],
+            fixed: effects.fixed(&values, zero),
+            gradient: vec![[witness.zero(); 3]; fields.len()],
+            analysis,
+            adjoint,
+            asked,
+            bodies,
+            moved,
+        }
+    }
+
+    /// Appends what is found at these times, one per lane.
+    fn add(
+        &mut self,
+        stepper: &mut Stepper<'_, T>,
+        times: &[f64],
+        resisting: &mut [Resisting],
+        result: &mut Gradients,
+    ) {
+        let of_lanes: [f64; LANES] = std::array::from_fn(|lane| times[lane.min(times.len() - 1)]);
+        self.adjoint.set_times(stepper, &of_lanes);
+        let (topology, state) = (&stepper.topology, &mut stepper.state);
+        state.finish_rates(topology);
+        for &b in &self.bodies {
+            self.poses[b] = still(pose_with_rates(state, b));
+        }
+        let (first, asked, variables) = (result.times.len(), self.asked.len(), result.variables);
+        for m in 0..asked {
+            self.find_loads(m);
+            self.gradient.fill([state.witness.zero(); 3]);
+            let Asked { output, loads, support, variables: own } = &self.asked[m];
+            self.adjoint.add_work(topology, state, support, loads, 3, &mut self.gradient);
+            for &v in own {
+                let fixed = self.moved[v].as_ref().expect("laid out for every variable of an output");
+                let Rates(d) = Moment { model: self.analysis.model(), fixed, poses: &self.poses }.output(output).d;
+                (0..3).for_each(|n| self.gradient[v][n] += d[n]);
+            }
+            for lane in 0..times.len() {
+                let at = ((first + lane) * asked + m) * variables;
+                for (out, d) in result.d[at..at + variables].iter_mut().zip(&self.gradient) {
+                    *out = d.map(|x| x.lane(lane));
+                }
+            }
+        }
+        self.watch.look(&mut self.adjoint, topology, state, times, resisting);
+        result.times.extend_from_slice(times);
+    }
+
+    /// How output m goes with the design twists of bodies: its derivatives by the six unit twists of each, which stand still
+    /// in the world, so that their rates are those of the load.
+    fn find_loads(&mut self, m: usize) {
+        let Self { analysis, asked, poses, fixed, .. } = self;
+        let Asked { output, loads, .. } = &mut asked[m];
+        for (b, load) in loads {
+            let pose = poses[*b];
+            let along = |unit: usize| {
+                poses[*b] = moving(pose, unit);
+                Moment { model: analysis.model(), fixed, poses }.output(output).d.0
+            };
+            let d: [[T; 3]; 6] = [0, 1, 2, 3, 4, 5].map(along);
+            poses[*b] = pose;
+            let vector = |first: usize, n: usize| Vec3::new(d[first][n], d[first + 1][n], d[first + 2][n]);
+            *load = [0, 1, 2].map(|n| Wrench { m: vector(0, n), f: vector(3, n) });
+        }
+    }
+}
+
+/// Per output, the bodies that it depends on, and the variables that move what it is measured with.
+///
+/// A derivative that is not a number makes one of everything that depends on it.
+fn dependences(
+    analysis: &Analysis<'_>,
+    values: &[f64],
+    bodies: &[usize],
+    outputs: &[Output],
+) -> Vec<[Vec<usize>; 2]> {
+    let (model, effects) = (analysis.model(), analysis.effects());
+    let zero = Dual::constant(0.0);
+    let unknown = |x: Dual| Dual { v: x.v, d: f64::NAN };
+    let mut values: Vec<Dual> = values.iter().map(|v| Dual::constant(*v)).collect();
+    let mut poses: Vec<Pose<Dual>> = model.bodies.iter().map(|b| b.frame.spread(zero)).collect();
+    let depend = |fixed: &Fixed<Dual>, poses: &[Pose<Dual>]| -> Vec<bool> {
+        outputs.iter().map(|o| Moment { model, fixed, poses }.output(o).d.is_nan()).collect()
+    };
+    let mut found = vec![[Vec::new(), Vec::new()]; outputs.len()];
+    let mut note = |which: usize, what: usize, depends: Vec<bool>| {
+        let depending = found.iter_mut().zip(depends).filter(|(_, depends)| *depends);
+        depending.for_each(|(found, _)| found[which].push(what));
+    };
+    let fixed = effects.fixed(&values, zero);
+    for &b in bodies {
+        let pose = poses[b];
+        poses[b] = Pose { rot: Mat3 { cols: pose.rot.cols.map(|c| c.map(unknown)) }, r: pose.r.map(unknown) };
+        note(0, b, depend(&fixed, &poses));
+        poses[b] = pose;
+    }
+    for v in 0..values.len() {
+        let value = values[v];
+        values[v] = unknown(value);
+        note(1, v, depend(&effects.fixed(&values, zero), &poses));
+        values[v] = value;
+    }
+    found
+}
+
+/// A body's pose with its first two time derivatives.
+fn pose_with_rates<T: Real>(state: &State<T>, b: usize) -> Pose<Rates<T>> {
+    let (pose, v, a) = (state.pose[b], state.v[b], state.a[b]);
+    let rates = |x: Vec3<T>, first: Vec3<T>, second: Vec3<T>| {
+        Vec3::new(
+            Rates([x.x, first.x, second.x]),
+            Rates([x.y, first.y, second.y]),
+            Rates([x.z, first.z, second.z]),
+        )
+    };
+    let column = |e: Vec3<T>| {
+        let first = v.w.cross(e);
+        rates(e, first, a.w.cross(e) + v.w.cross(first))
+    };
+    let velocity = v.at(pose.r);
+    let r = rates(pose.r, velocity, a.at(pose.r) + v.w.cross(velocity));
+    Pose { rot: Mat3 { cols: pose.rot.cols.map(column) }, r }
+}
+
+/// A pose that goes with nothing.
+fn still<T: Real>(pose: Pose<Rates<T>>) -> Pose<Jet<T>> {
+    let cols = pose.rot.cols.map(|c| c.map(Dual::constant));
+    Pose { rot: Mat3 { cols }, r: pose.r.map(Dual::constant) }
+}
+
+/// A pose that goes with a unit twist of the world: turns about x, y, z, then slides.
+fn moving<T: Real>(pose: Pose<Jet<T>>, unit: usize) -> Pose<Jet<T>> {
+    let axis = Vec3::AXES[unit % 3].spread(pose.r.x.v);
+    let twist = if unit < 3 { Twist::turn(axis, Vec3::zero(axis.x)) } else { Twist::slide(axis) };
+    let with = |x: Vec3<Jet<T>>, d: Vec3<Rates<T>>| {
+        Vec3::new(Dual { v: x.x.v, d: d.x }, Dual { v: x.y.v, d: d.y }, Dual { v: x.z.v, d: d.z })
+    };
+    let cols = pose.rot.cols.map(|c| with(c, twist.w.cross(c.map(|x| x.v))));
+    Pose { rot: Mat3 { cols }, r: with(pose.r, twist.at(pose.r.map(|x| x.v))) }
+}

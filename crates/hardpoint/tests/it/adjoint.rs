@@ -1,0 +1,178 @@
+//! Gradients by the adjoint way against the direct one.
+
+use hardpoint::Analysis;
+use hardpoint::measure::outputs;
+use hardpoint::model::*;
+use hardpoint::sensitivity::Admissibility;
+use hardpoint::study::{Gradients, Method};
+use hardpoint::topology::Formulation;
+
+use crate::workbench::*;
+
+/// Two ways to the same gradient, as a part of the largest such gradient over the motion.
+const AGREE: f64 = 1e-11;
+/// Gradients smaller than this part of the largest of all outputs are compared with that part of it: what a plane mechanism
+/// does across its plane is round-off.
+const SMALL: f64 = 1e-2;
+
+const BOTH: [Formulation; 2] = [Formulation::Relative, Formulation::Absolute];
+
+/// Largest deviation, as a part of the size of the output's gradient over the motion.
+fn deviation(a: &Gradients, b: &Gradients) -> f64 {
+    let (outputs, steps) = (a.outputs.len(), a.times.len());
+    let numbers = |g: &Gradients, m: usize, n: usize| -> Vec<f64> {
+        (0..steps).flat_map(|k| g.at(k, m).iter().map(move |d| d[n])).collect()
+    };
+    let most = |x: &[f64]| x.iter().filter(|x| !x.is_nan()).fold(0.0_f64, |most, x| most.max(x.abs()));
+    let mut worst = 0.0_f64;
+    for n in 0..3 {
+        let sizes: Vec<f64> = (0..outputs).map(|m| most(&numbers(a, m, n))).collect();
+        for (m, size) in sizes.iter().enumerate() {
+            let scale = size.max(SMALL * most(&sizes)).max(f64::MIN_POSITIVE);
+            for (x, y) in numbers(a, m, n).into_iter().zip(numbers(b, m, n)) {
+                assert_eq!(x.is_nan(), y.is_nan(), "{}: {x} {y}", a.outputs[m].name);
+                worst = worst.max((x - y).abs() / scale);
+            }
+        }
+    }
+    worst
+}
+
+/// The same answer with the same joints, whose defects agree to the digits that small differences have.
+fn assert_same_answer(a: &Admissibility, b: &Admissibility, what: &str) {
+    use Admissibility::{CannotFollow, Reassembled};
+    let (x, y) = match (a, b) {
+        (CannotFollow { joints: x, .. }, CannotFollow { joints: y, .. }) => (x, y),
+        (Reassembled { joints: x }, Reassembled { joints: y }) => (x, y),
+        _ => return assert_eq!(a, b, "{what}"),
+    };
+    assert_eq!(x.len(), y.len(), "{what}: {a:?} {b:?}");
+    for (x, y) in x.iter().zip(y) {
+        assert_eq!(x.joint, y.joint, "{what}: {a:?} {b:?}");
+        assert!((x.value - y.value).abs() < 1e-9 * (1.0 + x.value), "{what}: {a:?} {b:?}");
+    }
+}
+
+/// Deviation of the adjoint way from the direct one over all outputs, after comparing all else that they say.
+fn compare(analysis: &Analysis<'_>, design: &[f64], what: &str) -> f64 {
+    let all: Vec<usize> = (0..outputs(analysis.model()).len()).collect();
+    let [direct, adjoint] = [Method::Direct, Method::Adjoint].map(|m| analysis.gradients(design, &all, m));
+    assert_eq!([direct.method, adjoint.method], [Method::Direct, Method::Adjoint]);
+    assert_eq!(direct.times, adjoint.times, "{what}");
+    assert_eq!(direct.stop.is_some(), adjoint.stop.is_some(), "{what}");
+    for (v, (a, b)) in direct.admissibility.iter().zip(&adjoint.admissibility).enumerate() {
+        assert_same_answer(a, b, &format!("{what}, variable {v}"));
+    }
+    deviation(&direct, &adjoint)
+}
+
+/// A point on every body, with the measures that a draft has: no body's motion goes unseen.
+fn with_points(mut draft: Draft) -> Draft {
+    for (k, b) in draft.bodies.iter().enumerate() {
+        let at = Place::At([0.1 + 0.01 * k as f64, -0.2, 0.3].into());
+        draft.points.push(PointDraft { name: format!("point on body {k}"), body: b.name.clone(), at });
+    }
+    draft
+}
+
+#[test]
+fn adjoint_and_direct_gradients_agree_on_every_mechanism_at_any_design() {
+    for draft in crate::joints::mechanisms() {
+        let model = Model::from_draft(&with_points(draft)).unwrap();
+        let nominal = Analysis::new(&model).unwrap().run();
+        let follows = |v: usize| nominal.sensitivities.at(0, v).is_some();
+        let changed: Vec<f64> =
+            (0..model.variables.len()).map(|v| if follows(v) { 1e-3 - 1e-4 * v as f64 } else { 0.0 }).collect();
+        for formulation in BOTH {
+            let analysis = Analysis::with(&model, formulation).unwrap();
+            for design in [&[][..], &changed] {
+                let worst = compare(&analysis, design, &model.name);
+                assert!(worst < AGREE, "{}, {formulation:?}: {worst:e}", model.name);
+            }
+        }
+    }
+}
+
+#[test]
+fn variables_that_cannot_be_followed_are_found_by_the_adjoint_way_too() {
+    // Three redundant rows watch the planar four-bar: its law may change, one pivot may not tilt.
+    let mut draft = four_bar([[0.0, 0.0], [0.0, 0.1], [0.3, 0.25], [0.3, 0.0]], "t", &times(3.0, 30));
+    draft.drivers[0].law = hardpoint::law::Law::parse_with("a*sin(3*t)", &[("a", 0.7)]).unwrap();
+    let tilt = ChangeDraft::Marker {
+        joint: "D".into(),
+        end: End::Both,
+        position: [0.0; 3].into(),
+        rotation: [1.0, 0.0, 0.0].into(),
+    };
+    let law = ChangeDraft::Law { driver: "motor".into(), parameter: "a".into(), rate: 1.0 };
+    draft.design = [tilt, law]
+        .into_iter()
+        .enumerate()
+        .map(|(k, change)| VariableDraft {
+            name: format!("change {k}"),
+            changes: vec![change],
+            ..VariableDraft::default()
+        })
+        .collect();
+    let model = Model::from_draft(&draft).unwrap();
+    for formulation in BOTH {
+        let analysis = Analysis::with(&model, formulation).unwrap();
+        let worst = compare(&analysis, &[], "four-bar");
+        assert!(worst < AGREE, "{formulation:?}: {worst:e}");
+        let gradients = analysis.gradients(&[], &[0], Method::Adjoint);
+        assert!(matches!(gradients.admissibility[0], Admissibility::CannotFollow { .. }));
+        assert_eq!(gradients.admissibility[1], Admissibility::Admissible);
+        for k in 0..gradients.times.len() {
+            let [tilted, faster] = gradients.at(k, 0) else { panic!("two variables") };
+            assert!(tilted.iter().all(|d| d.is_nan()) && faster.iter().all(|d| d.is_finite()));
+        }
+    }
+}
+
+#[test]
+fn large_blocks_are_solved_transposed_by_their_sparse_factors() {
+    let (draft, _) = crate::loops::truss(40);
+    let model = Model::from_draft(&with_points(draft)).unwrap();
+    for formulation in BOTH {
+        let analysis = Analysis::with(&model, formulation).unwrap();
+        assert!(analysis.topology().blocks.iter().any(|b| b.unknowns.len() > 40));
+        let worst = compare(&analysis, &[1e-3, 2e-3], "truss");
+        assert!(worst < AGREE, "{formulation:?}: {worst:e}");
+    }
+}
+
+#[test]
+fn adjoint_and_direct_gradients_agree_on_random_mechanisms() {
+    /// Nearer to singular than this each order loses digits, more than the tolerance allows.
+    const LEAST_MARGIN: f64 = 1e-2;
+    let mut compared = 0;
+    for (name, draft) in crate::random::drafts(40) {
+        let model = Model::from_draft(&with_points(draft)).unwrap();
+        for formulation in BOTH {
+            let Ok(analysis) = Analysis::with(&model, formulation) else { continue };
+            let motion = analysis.run_motion().motion;
+            if motion.least_margin().is_some_and(|(_, m)| m.value > LEAST_MARGIN) {
+                let worst = compare(&analysis, &[], &name);
+                assert!(worst < 100.0 * AGREE, "{name}, {formulation:?}: {worst:e}");
+                compared += 1;
+            }
+        }
+    }
+    assert!(compared > 40, "only {compared} were compared");
+}
+
+#[test]
+fn no_step_of_an_adjoint_run_allocates() {
+    for name in ["slider_crank", "macpherson", "double_wishbone"] {
+        let [few, many] = [50, 500].map(|steps| {
+            let mut draft = reference_draft(name);
+            draft.times = (0..steps).map(|k| k as f64 * 1e-3).collect();
+            let model = Model::from_draft(&draft).unwrap();
+            let analysis = Analysis::new(&model).unwrap();
+            let run = || drop(analysis.gradients(&[], &[0, 1], Method::Adjoint));
+            allocation_counter::measure(run).count_total
+        });
+        // The list of times grows by doubling.
+        assert!(many - few <= 4, "{name}: {} allocations in 450 steps", many - few);
+    }
+}
