@@ -67,7 +67,7 @@ pub struct Analysis<'m> {
 pub(crate) struct Design {
     pub values: Vec<f64>,
     geometry: Geometry,
-    laws: Vec<Law>,
+    pub laws: Vec<Law>,
     /// How the variables change it, if that is asked for.
     fields: Vec<Field>,
 }
@@ -128,11 +128,6 @@ impl<'m> Analysis<'m> {
     /// The same analysis for callers that want the bodies only: [`Solution::measured`] stays empty.
     pub fn bodies_only(self) -> Self {
         Self { measures: false, ..self }
-    }
-
-    /// The same analysis, measures included.
-    pub(crate) fn with_measures(self) -> Self {
-        Self { measures: true, ..self }
     }
 
     /// The plan.

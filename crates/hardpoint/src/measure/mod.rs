@@ -136,11 +136,26 @@ pub(crate) fn evaluate(
         unwrap_angles(laws, topology, motion, k, &turns, &mut measured.values, first);
     }
 
-    // Variable by variable, so that what is fixed in the bodies is worked out once for each.
+    measured.d = derivatives(design, &outputs, motion, sensitivities);
+    measured.outputs = outputs;
+    measured
+}
+
+/// Derivatives of some outputs by the variables, `[(k * variables + b) * outputs + m]`.
+///
+/// Variable by variable, so that what is fixed in the bodies is worked out once for each.
+pub(crate) fn derivatives(
+    design: &At<'_>,
+    outputs: &[Output],
+    motion: &Motion,
+    sensitivities: &Sensitivities,
+) -> Vec<[f64; 3]> {
+    let &At { model, effects, values, .. } = design;
+    let (bodies, zero) = (bodies_asked_for(model), Rates([0.0; 3]));
     let (steps, variables, columns) = (motion.len(), sensitivities.variables, outputs.len());
-    measured.d = vec![[f64::NAN; 3]; steps * variables * columns];
+    let mut found = vec![[f64::NAN; 3]; steps * variables * columns];
     let mut poses = vec![Pose::IDENTITY.spread(Dual::constant(zero)); model.bodies.len()];
-    let mut lifted: Vec<Jet> = lifted.into_iter().map(Dual::constant).collect();
+    let mut lifted: Vec<Jet> = values.iter().map(|v| Dual::constant(zero.like(*v))).collect();
     for b in 0..variables {
         lifted[b] = Dual::variable(lifted[b].v);
         let fixed = effects.fixed(&lifted, Dual::constant(zero));
@@ -149,15 +164,14 @@ pub(crate) fn evaluate(
             let Some(d) = sensitivities.at(k, b) else { break };
             let states = motion.at(k);
             bodies.iter().for_each(|&b| poses[b] = with_sensitivity(&states[b], &d[b]));
-            let mut at = (k * variables + b) * columns;
-            Moment { model, fixed: &fixed, poses: &poses }.all(|x| {
-                measured.d[at] = x.d.0;
-                at += 1;
-            });
+            let moment = Moment { model, fixed: &fixed, poses: &poses };
+            let first = (k * variables + b) * columns;
+            for (found, output) in found[first..first + columns].iter_mut().zip(outputs) {
+                *found = moment.output(output).d.0;
+            }
         }
     }
-    measured.outputs = outputs;
-    measured
+    found
 }
 
 /// What tells how many whole turns a joint's angle has made.
@@ -248,18 +262,24 @@ impl<T: Real> Moment<'_, T> {
     }
 
     /// One output.
+    #[inline(never)]
     pub fn output(&self, output: &Output) -> T {
-        match output.source {
-            OutputSource::Measure(k) => self.measure(k, &self.model.measures[k]),
-            OutputSource::Point(p, axis) => self.point(p)[axis],
-        }
+        self.poses[0].r.x.within(
+            #[inline(always)]
+            || match output.source {
+                OutputSource::Measure(k) => self.measure(k, &self.model.measures[k]),
+                OutputSource::Point(p, axis) => self.point(p)[axis],
+            },
+        )
     }
 
+    #[inline(always)]
     fn point(&self, p: PointId) -> Vec3<T> {
         self.poses[self.model.points[p.0].body.0].point(self.fixed.points[p.0])
     }
 
     /// Formulas and signs: `docs/measures.md`.
+    #[inline(always)]
     fn measure(&self, k: usize, measure: &Measure) -> T {
         match measure.kind {
             MeasureKind::Coordinate { joint, coordinate } => self.coordinate(k, joint, coordinate),
@@ -296,11 +316,13 @@ impl<T: Real> Moment<'_, T> {
         }
     }
 
+    #[inline(always)]
     fn spin_axis(&self, k: usize, body: BodyId) -> Vec3<T> {
         self.poses[body.0].rot * self.fixed.spin_axes[k].expect("a measure with a spin axis")
     }
 
     /// A joint's coordinate between its two markers, whether the joint is cut or not.
+    #[inline(always)]
     fn coordinate(&self, k: usize, joint: JointId, coordinate: usize) -> T {
         let j = &self.model.joints[joint.0];
         let markers = self.fixed.markers[k].expect("a measure of a joint's coordinate");

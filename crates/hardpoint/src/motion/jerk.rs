@@ -39,7 +39,7 @@ impl<T: Real> Jerk<T> {
         }
     }
 
-    /// All bodies where a stepper stands with velocity and acceleration, at one time per lane (`docs/theory.md` (11)).
+    /// All bodies where a stepper stands with velocity and acceleration, at one time per lane (`docs/theory.md` (21)).
     pub fn solve(&mut self, stepper: &mut Stepper<'_, T>, times: &[f64; LANES]) {
         let (topology, state, parts) = (&stepper.topology, &mut stepper.state, &stepper.parts);
         state.finish_rates(topology);

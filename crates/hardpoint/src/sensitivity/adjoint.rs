@@ -273,7 +273,7 @@ impl<T: Real> Adjoint<T> {
     }
 
     /// Wrenches on the markers that variables move, seen from their bodies: there the markers' twists stand still, and time
-    /// derivatives are those of the components (`docs/theory.md` (19)).
+    /// derivatives are those of the components (`docs/theory.md` (20)).
     #[inline(always)]
     fn see(&mut self, state: &State<T>, support: &Support<T>, orders: usize) {
         for place in &support.places {
@@ -299,7 +299,7 @@ impl<T: Real> Adjoint<T> {
         }
     }
 
-    /// `docs/theory.md` (20).
+    /// `docs/theory.md` (19).
     #[inline(always)]
     fn work(
         &self,
@@ -384,9 +384,15 @@ impl<T: Real> Watch<T> {
     ) {
         let left_out = |r: &usize| !topology.rows[*r].selected && !topology.rows[*r].is_term;
         self.worst.fill([None; LANES]);
-        for r in (0..topology.rows.len()).filter(left_out) {
-            self.row(adjoint, topology, state, r);
-        }
+        let witness = state.witness;
+        witness.within(
+            #[inline(always)]
+            || {
+                for r in (0..topology.rows.len()).filter(left_out) {
+                    self.row(adjoint, topology, state, r);
+                }
+            },
+        );
         for (worst, resisting) in self.worst.iter().zip(resisting) {
             for (defect, t) in worst.iter().zip(times) {
                 if let Some(defect) = *defect {
@@ -397,6 +403,7 @@ impl<T: Real> Watch<T> {
     }
 
     /// Enters row r where it fails most.
+    #[inline(always)]
     fn row(&mut self, adjoint: &mut Adjoint<T>, topology: &Topology, state: &mut State<T>, r: usize) {
         let (zero, none) = (state.witness.zero(), Wrench::zero(state.witness));
         self.sum.fill(zero);
@@ -443,6 +450,7 @@ impl<T: Real> Watch<T> {
     }
 }
 
+#[inline(always)]
 fn enter<T: Real>(sum: &mut T, most: &mut T, term: T) {
     *sum += term;
     *most = most.larger(term.abs());

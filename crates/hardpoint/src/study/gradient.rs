@@ -4,15 +4,16 @@ use std::ops::ControlFlow;
 
 use fearless_simd::{Level, dispatch};
 
-use crate::analysis::{Analysis, Design, Solved, Walk};
-use crate::measure::{Moment, Output, bodies_asked_for, outputs};
-use crate::model::{Field, Fixed, GROUND, VariableId};
+use crate::analysis::{Analysis, Design, Solution, Solved, Walk};
+use crate::measure::{self, Moment, Output, bodies_asked_for, outputs};
+use crate::model::{Field, Fixed, GROUND};
 use crate::motion::kinematics::State;
 use crate::motion::stepper::Stepper;
 use crate::motion::{Motion, Stop};
 use crate::sensitivity::{Adjoint, Admissibility, Load, Resisting, Support, Watch, admissibility};
 use crate::sink::Store;
 use crate::space::{Dual, LANES, Mat3, Pose, Rates, Real, Twist, Vec3, Wrench, lanes};
+use crate::topology::Topology;
 
 /// How gradients are worked out. All ways give the same numbers, to round-off.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -69,7 +70,7 @@ impl Analysis<'_> {
         let all = outputs(self.model());
         let asked: Vec<Output> = outputs_asked.iter().map(|&m| all[m].clone()).collect();
         match self.method(asked.len(), method) {
-            Method::Direct => self.gradients_direct(design, outputs_asked, asked),
+            Method::Direct => self.gradients_direct(design, asked),
             _ => {
                 let design = self.design(design, false);
                 dispatch!(Level::new(), simd => self.gradients_adjoint(&design, asked, lanes(simd)))
@@ -81,22 +82,23 @@ impl Analysis<'_> {
         method
     }
 
-    fn gradients_direct(&self, design: &[f64], which: &[usize], outputs: Vec<Output>) -> Gradients {
-        let solution = self.clone().with_measures().run_at(design);
-        let (measured, variables) = (&solution.measured, self.model().variables.len());
-        let mut d = Vec::with_capacity(solution.motion.len() * which.len() * variables);
-        for k in 0..solution.motion.len() {
-            for &m in which {
-                d.extend((0..variables).map(|b| measured.d(k, VariableId(b), m)));
-            }
+    fn gradients_direct(&self, design: &[f64], outputs: Vec<Output>) -> Gradients {
+        let Solution { motion, sensitivities, stop, .. } = self.clone().bodies_only().run_at(design);
+        let Design { values, laws, .. } = &self.design(design, false);
+        let at = measure::At { model: self.model(), effects: self.effects(), values, laws };
+        let by_variable = measure::derivatives(&at, &outputs, &motion, &sensitivities);
+        let (asked, variables) = (outputs.len(), self.model().variables.len());
+        let mut d = Vec::with_capacity(by_variable.len());
+        for step in by_variable.chunks_exact(usize::max(asked * variables, 1)) {
+            (0..asked).for_each(|m| d.extend(step.iter().skip(m).step_by(asked)));
         }
         Gradients {
-            times: solution.motion.times,
+            times: motion.times,
             outputs,
             variables,
             method: Method::Direct,
-            admissibility: solution.sensitivities.admissibility,
-            stop: solution.stop,
+            admissibility: sensitivities.admissibility,
+            stop,
             d,
         }
     }
@@ -222,33 +224,48 @@ impl<'a, T: Real> Tracing<'a, T> {
         self.adjoint.set_times(stepper, &of_lanes);
         let (topology, state) = (&stepper.topology, &mut stepper.state);
         state.finish_rates(topology);
-        for &b in &self.bodies {
-            self.poses[b] = still(pose_with_rates(state, b));
-        }
-        let (first, asked, variables) = (result.times.len(), self.asked.len(), result.variables);
-        for m in 0..asked {
-            self.find_loads(m);
-            self.gradient.fill([state.witness.zero(); 3]);
-            let Asked { output, loads, support, variables: own } = &self.asked[m];
-            self.adjoint.add_work(topology, state, support, loads, 3, &mut self.gradient);
-            for &v in own {
-                let fixed = self.moved[v].as_ref().expect("laid out for every variable of an output");
-                let Rates(d) = Moment { model: self.analysis.model(), fixed, poses: &self.poses }.output(output).d;
-                (0..3).for_each(|n| self.gradient[v][n] += d[n]);
-            }
-            for lane in 0..times.len() {
-                let at = ((first + lane) * asked + m) * variables;
-                for (out, d) in result.d[at..at + variables].iter_mut().zip(&self.gradient) {
-                    *out = d.map(|x| x.lane(lane));
+        let (first, asked) = (result.times.len(), self.asked.len());
+        state.witness.within(
+            #[inline(always)]
+            || {
+                for &b in &self.bodies {
+                    self.poses[b] = still(pose_with_rates(state, b));
                 }
-            }
-        }
+                for m in 0..asked {
+                    self.trace(topology, state, m);
+                    for (v, gradient) in self.gradient.iter().enumerate() {
+                        let mut of_lane = [[0.0; LANES]; 3];
+                        (0..3).for_each(|n| gradient[n].store(&mut of_lane[n]));
+                        for lane in 0..times.len() {
+                            let at = ((first + lane) * asked + m) * result.variables + v;
+                            result.d[at] = [0, 1, 2].map(|n| of_lane[n][lane]);
+                        }
+                    }
+                }
+            },
+        );
         self.watch.look(&mut self.adjoint, topology, state, times, resisting);
         result.times.extend_from_slice(times);
     }
 
+    /// The gradient of output m: what its load works on the design, and what variables change in itself.
+    #[inline(always)]
+    fn trace(&mut self, topology: &Topology, state: &mut State<T>, m: usize) {
+        self.find_loads(m);
+        self.gradient.fill([state.witness.zero(); 3]);
+        let Asked { output, loads, support, variables } = &self.asked[m];
+        self.adjoint.add_work(topology, state, support, loads, 3, &mut self.gradient);
+        for &v in variables {
+            let fixed = self.moved[v].as_ref().expect("laid out for every variable of an output");
+            let moment = Moment { model: self.analysis.model(), fixed, poses: &self.poses };
+            let Rates(d) = moment.output(output).d;
+            (0..3).for_each(|n| self.gradient[v][n] += d[n]);
+        }
+    }
+
     /// How output m goes with the design twists of bodies: its derivatives by the six unit twists of each, which stand still
     /// in the world, so that their rates are those of the load.
+    #[inline(always)]
     fn find_loads(&mut self, m: usize) {
         let Self { analysis, asked, poses, fixed, .. } = self;
         let Asked { output, loads, .. } = &mut asked[m];
@@ -305,6 +322,7 @@ fn dependences(
 }
 
 /// A body's pose with its first two time derivatives.
+#[inline(always)]
 fn pose_with_rates<T: Real>(state: &State<T>, b: usize) -> Pose<Rates<T>> {
     let (pose, v, a) = (state.pose[b], state.v[b], state.a[b]);
     let rates = |x: Vec3<T>, first: Vec3<T>, second: Vec3<T>| {
@@ -324,12 +342,14 @@ fn pose_with_rates<T: Real>(state: &State<T>, b: usize) -> Pose<Rates<T>> {
 }
 
 /// A pose that goes with nothing.
+#[inline(always)]
 fn still<T: Real>(pose: Pose<Rates<T>>) -> Pose<Jet<T>> {
     let cols = pose.rot.cols.map(|c| c.map(Dual::constant));
     Pose { rot: Mat3 { cols }, r: pose.r.map(Dual::constant) }
 }
 
 /// A pose that goes with a unit twist of the world: turns about x, y, z, then slides.
+#[inline(always)]
 fn moving<T: Real>(pose: Pose<Jet<T>>, unit: usize) -> Pose<Jet<T>> {
     let axis = Vec3::AXES[unit % 3].spread(pose.r.x.v);
     let twist = if unit < 3 { Twist::turn(axis, Vec3::zero(axis.x)) } else { Twist::slide(axis) };
