@@ -175,7 +175,11 @@ pub fn truss_with_variables(n: usize, steps: usize) -> Draft {
         }
         for axis in 0..2 {
             let changes = vec![ChangeDraft::Move { hardpoint: name.clone(), velocity: Vec3::AXES[axis] }];
-            draft.design.push(VariableDraft { name: format!("{name}.{axis}"), changes, ..VariableDraft::default() });
+            draft.design.push(VariableDraft {
+                name: format!("{name}.{axis}"),
+                changes,
+                ..VariableDraft::default()
+            });
         }
         draft.hardpoints.push(HardpointDraft { name, position: at(k) });
     }

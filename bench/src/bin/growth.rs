@@ -243,17 +243,18 @@ fn gradients() -> Result<String> {
                 1e6 * time.as_secs_f64() / model.times.len() as f64
             };
             let [direct, adjoint] = [us(Method::Direct), us(Method::Adjoint)];
+            let auto = analysis.gradients(&[], &asked, Method::Auto).method;
             let left_out = analysis.topology().redundant().count();
             let ratio = direct / adjoint;
             writeln!(
                 rows,
-                "| {name} | {left_out} | {outputs} | {v} | {direct:.2} | {adjoint:.2} | {ratio:.2} |"
+                "| {name} | {left_out} | {outputs} | {v} | {direct:.2} | {adjoint:.2} | {ratio:.2} | {auto:?} |"
             )?;
         }
     }
     Ok(format!(
-        "| mechanism | rows left out | outputs | variables | us per step, direct | adjoint | direct / adjoint |\n\
-         |---|---|---|---|---|---|---|\n{rows}\n"
+        "| mechanism | rows left out | outputs | variables | us per step, direct | adjoint | direct / adjoint | `Auto` takes |\n\
+         |---|---|---|---|---|---|---|---|\n{rows}\n"
     ))
 }
 

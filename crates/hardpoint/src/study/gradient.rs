@@ -15,10 +15,17 @@ use crate::sink::Store;
 use crate::space::{Dual, LANES, Mat3, Pose, Rates, Real, Twist, Vec3, Wrench, lanes};
 use crate::topology::Topology;
 
+/// What an output costs the adjoint way, in solutions for one variable the direct way: its load takes some evaluations of the
+/// measure besides the three solutions. 2 to 3 in small mechanisms, less in large ones (`docs/performance.md`).
+const OUTPUT_COST: usize = 3;
+/// Likewise a constraint row that was left out and has to be watched: two solutions for the position alone.
+const ROW_COST: usize = 1;
+
 /// How gradients are worked out. All ways give the same numbers, to round-off.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Method {
-    /// Whichever is expected to be faster for so many outputs and variables.
+    /// Whichever is expected to be faster: adjoint where there are more variables than redundant rows and three times the
+    /// outputs together.
     #[default]
     Auto,
     /// Variable by variable: the cost grows with the variables, and outputs are nearly free.
@@ -78,8 +85,14 @@ impl Analysis<'_> {
         }
     }
 
-    fn method(&self, _outputs: usize, method: Method) -> Method {
-        method
+    /// The way to go for so many outputs.
+    fn method(&self, outputs: usize, method: Method) -> Method {
+        let adjoint = OUTPUT_COST * outputs + ROW_COST * self.topology().redundant().count();
+        match method {
+            Method::Auto if adjoint < self.model().variables.len() => Method::Adjoint,
+            Method::Auto => Method::Direct,
+            chosen => chosen,
+        }
     }
 
     fn gradients_direct(&self, design: &[f64], outputs: Vec<Output>) -> Gradients {
@@ -270,15 +283,15 @@ impl<'a, T: Real> Tracing<'a, T> {
         let Self { analysis, asked, poses, fixed, .. } = self;
         let Asked { output, loads, .. } = &mut asked[m];
         for (b, load) in loads {
-            let pose = poses[*b];
-            let along = |unit: usize| {
-                poses[*b] = moving(pose, unit);
-                Moment { model: analysis.model(), fixed, poses }.output(output).d.0
-            };
-            let d: [[T; 3]; 6] = [0, 1, 2, 3, 4, 5].map(along);
-            poses[*b] = pose;
-            let vector = |first: usize, n: usize| Vec3::new(d[first][n], d[first + 1][n], d[first + 2][n]);
-            *load = [0, 1, 2].map(|n| Wrench { m: vector(0, n), f: vector(3, n) });
+            for unit in 0..6 {
+                move_along(&mut poses[*b], unit);
+                let Rates(d) = Moment { model: analysis.model(), fixed, poses }.output(output).d;
+                for (load, d) in load.iter_mut().zip(d) {
+                    let Wrench { m, f } = load;
+                    *[&mut m.x, &mut m.y, &mut m.z, &mut f.x, &mut f.y, &mut f.z][unit] = d;
+                }
+            }
+            stop(&mut poses[*b]);
         }
     }
 }
@@ -338,24 +351,40 @@ fn pose_with_rates<T: Real>(state: &State<T>, b: usize) -> Pose<Rates<T>> {
     };
     let velocity = v.at(pose.r);
     let r = rates(pose.r, velocity, a.at(pose.r) + v.w.cross(velocity));
-    Pose { rot: Mat3 { cols: pose.rot.cols.map(column) }, r }
+    let [x, y, z] = pose.rot.cols;
+    Pose { rot: Mat3 { cols: [column(x), column(y), column(z)] }, r }
 }
 
 /// A pose that goes with nothing.
 #[inline(always)]
 fn still<T: Real>(pose: Pose<Rates<T>>) -> Pose<Jet<T>> {
-    let cols = pose.rot.cols.map(|c| c.map(Dual::constant));
-    Pose { rot: Mat3 { cols }, r: pose.r.map(Dual::constant) }
+    let still = |x: Vec3<Rates<T>>| x.map(Dual::constant);
+    let [x, y, z] = pose.rot.cols;
+    Pose { rot: Mat3 { cols: [still(x), still(y), still(z)] }, r: still(pose.r) }
 }
 
-/// A pose that goes with a unit twist of the world: turns about x, y, z, then slides.
+/// Lets a pose go with a unit twist of the world: a turn about x, y or z, then a slide.
 #[inline(always)]
-fn moving<T: Real>(pose: Pose<Jet<T>>, unit: usize) -> Pose<Jet<T>> {
+fn move_along<T: Real>(pose: &mut Pose<Jet<T>>, unit: usize) {
     let axis = Vec3::AXES[unit % 3].spread(pose.r.x.v);
     let twist = if unit < 3 { Twist::turn(axis, Vec3::zero(axis.x)) } else { Twist::slide(axis) };
-    let with = |x: Vec3<Jet<T>>, d: Vec3<Rates<T>>| {
-        Vec3::new(Dual { v: x.x.v, d: d.x }, Dual { v: x.y.v, d: d.y }, Dual { v: x.z.v, d: d.z })
-    };
-    let cols = pose.rot.cols.map(|c| with(c, twist.w.cross(c.map(|x| x.v))));
-    Pose { rot: Mat3 { cols }, r: with(pose.r, twist.at(pose.r.map(|x| x.v))) }
+    for c in &mut pose.rot.cols {
+        let rate = twist.w.cross(c.map(|x| x.v));
+        set(c, rate);
+    }
+    let velocity = twist.at(pose.r.map(|x| x.v));
+    set(&mut pose.r, velocity);
+}
+
+/// Lets it go with nothing again.
+#[inline(always)]
+fn stop<T: Real>(pose: &mut Pose<Jet<T>>) {
+    let nothing = Vec3::zero(pose.r.x.v);
+    pose.rot.cols.iter_mut().for_each(|c| set(c, nothing));
+    set(&mut pose.r, nothing);
+}
+
+#[inline(always)]
+fn set<T: Real>(of: &mut Vec3<Jet<T>>, d: Vec3<Rates<T>>) {
+    (of.x.d, of.y.d, of.z.d) = (d.x, d.y, d.z);
 }

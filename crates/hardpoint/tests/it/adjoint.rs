@@ -78,8 +78,9 @@ fn adjoint_and_direct_gradients_agree_on_every_mechanism_at_any_design() {
         let model = Model::from_draft(&with_points(draft)).unwrap();
         let nominal = Analysis::new(&model).unwrap().run();
         let follows = |v: usize| nominal.sensitivities.at(0, v).is_some();
-        let changed: Vec<f64> =
-            (0..model.variables.len()).map(|v| if follows(v) { 1e-3 - 1e-4 * v as f64 } else { 0.0 }).collect();
+        let changed: Vec<f64> = (0..model.variables.len())
+            .map(|v| if follows(v) { 1e-3 - 1e-4 * v as f64 } else { 0.0 })
+            .collect();
         for formulation in BOTH {
             let analysis = Analysis::with(&model, formulation).unwrap();
             for design in [&[][..], &changed] {
@@ -156,6 +157,37 @@ fn adjoint_and_direct_gradients_agree_on_random_mechanisms() {
         }
     }
     assert!(compared > 40, "only {compared} were compared");
+}
+
+#[test]
+fn few_outputs_of_many_variables_go_the_adjoint_way_by_themselves() {
+    let model = reference("macpherson");
+    let analysis = Analysis::new(&model).unwrap();
+    let method = |outputs: &[usize]| analysis.gradients(&[], outputs, Method::Auto).method;
+    assert!(model.variables.len() > 30);
+    assert_eq!(method(&[0]), Method::Adjoint);
+    let all: Vec<usize> = (0..outputs(&model).len()).cycle().take(20).collect();
+    assert_eq!(method(&all), Method::Direct);
+}
+
+#[test]
+fn gradients_of_a_motion_that_stops_are_those_up_to_there() {
+    // The crank is longer than the rocker, which stops it.
+    let mut draft = four_bar([[0.0, 0.0], [0.0, 0.3], [0.3, 0.25], [0.3, 0.0]], "t", &times(6.0, 60));
+    let change = ChangeDraft::Marker {
+        joint: "D".into(),
+        end: End::Both,
+        position: [1.0, 0.0, 0.0].into(),
+        rotation: [0.0; 3].into(),
+    };
+    draft.design =
+        vec![VariableDraft { name: "D".into(), changes: vec![change], ..VariableDraft::default() }];
+    let model = Model::from_draft(&draft).unwrap();
+    let analysis = Analysis::new(&model).unwrap();
+    let gradients = analysis.gradients(&[], &[0], Method::Adjoint);
+    assert!(gradients.stop.is_some() && !gradients.times.is_empty() && gradients.times.len() < 61);
+    let worst = compare(&analysis, &[], "four-bar that stops");
+    assert!(worst < 100.0 * AGREE, "{worst:e}");
 }
 
 #[test]

@@ -19,7 +19,8 @@ const BOTH: [Formulation; 2] = [Formulation::Relative, Formulation::Absolute];
 fn jerks_are_the_rates_of_accelerations_on_every_mechanism() {
     for mut draft in crate::joints::mechanisms() {
         let (first, last) = (draft.times[0], draft.times[draft.times.len() - 1]);
-        let middle: Vec<f64> = (1..10).map(|k| first + (last - first) * (f64::from(k) + 0.3) / 10.5).collect();
+        let middle: Vec<f64> =
+            (1..10).map(|k| first + (last - first) * (f64::from(k) + 0.3) / 10.5).collect();
         let error = |draft: &Draft, h: f64, formulation: Formulation| {
             let model = Model::from_draft(draft).unwrap();
             let analysis = Analysis::with(&model, formulation).unwrap();
@@ -29,7 +30,8 @@ fn jerks_are_the_rates_of_accelerations_on_every_mechanism() {
             for k in (1..jerks.times.len()).step_by(3) {
                 for b in 0..jerks.bodies {
                     let (before, after, exact) = (&motion.at(k - 1)[b], &motion.at(k + 1)[b], jerks.at(k)[b]);
-                    let pairs = [(after.a - before.a, exact.jerk), (after.alpha - before.alpha, exact.angular)];
+                    let pairs =
+                        [(after.a - before.a, exact.jerk), (after.alpha - before.alpha, exact.angular)];
                     for (n, (difference, exact)) in pairs.into_iter().enumerate() {
                         worst[n] = worst[n].max(apart(difference * (0.5 / h), exact));
                         scale[n] = scale[n].max(exact.norm());
@@ -87,7 +89,8 @@ fn a_crank_and_a_four_bar_have_the_jerks_of_their_closed_forms() {
     draft.drivers[0].law = Law::parse("2*t + 0.5*sin(3*t)").unwrap();
     let model = Model::from_draft(&draft).unwrap();
     let length = |p: [f64; 2], q: [f64; 2]| (p[0] - q[0]).hypot(p[1] - q[1]);
-    let (crank, coupler, rocker, drawn) = (length(a, b), length(b, c), length(c, d), (b[1] - a[1]).atan2(b[0] - a[0]));
+    let (crank, coupler, rocker, drawn) =
+        (length(a, b), length(b, c), length(c, d), (b[1] - a[1]).atan2(b[0] - a[0]));
     // Of the crank's angle, and of the rocker's: the angle of D to B, less that at D in the triangle B C D.
     let closed = |t: f64| -> [f64; 2] {
         let t = time(t);
@@ -106,7 +109,10 @@ fn a_crank_and_a_four_bar_have_the_jerks_of_their_closed_forms() {
             for (body, want) in [1, 3].into_iter().zip(closed(t)) {
                 let got = jerks.at(k)[body].angular;
                 let error = apart(got, Vec3::new(0.0, 0.0, want));
-                assert!(error < 1e-10 * (1.0 + want.abs()), "{formulation:?}, t = {t}, body {body}: {got:?} {want}");
+                assert!(
+                    error < 1e-10 * (1.0 + want.abs()),
+                    "{formulation:?}, t = {t}, body {body}: {got:?} {want}"
+                );
             }
         }
     }

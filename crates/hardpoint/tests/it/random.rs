@@ -54,7 +54,9 @@ const NONSENSE: Family = Family { number: 5, name: "nonsense", draw: draw::nonse
 /// The first mechanisms of every family that may be solved, as far as their numbers give one.
 pub fn drafts(cases: u64) -> impl Iterator<Item = (String, Draft)> {
     [&SPATIAL, &PLANAR, &TRAIN, &OPEN].into_iter().flat_map(move |family| {
-        let draw = |seed| Some((format!("{} {seed}", family.name), (family.draw)(&mut Rng::new(family.number, seed))?));
+        let draw = |seed| {
+            Some((format!("{} {seed}", family.name), (family.draw)(&mut Rng::new(family.number, seed))?))
+        };
         (0..cases).filter_map(draw)
     })
 }
