@@ -310,6 +310,13 @@ mod tests {
                     for r in 0..n {
                         assert!((b[r].lane(k) - want[r]).abs() < 1e-9 * scale, "n {n}, lane {k}, row {r}");
                     }
+                    let mut b: Vec<_> = (0..n).map(|r| zero.like((r as f64).cos())).collect();
+                    sparse.solve_transposed(&mut b);
+                    let mut transposed: Vec<f64> = (0..n).map(|r| (r as f64).cos()).collect();
+                    dense.solve_transposed(&mut transposed);
+                    let scale_transposed = transposed.iter().fold(0.0, |m: f64, x| m.max(x.abs()));
+                    let same = |r: usize| (b[r].lane(k) - transposed[r]).abs() < 1e-9 * scale_transposed;
+                    assert!((0..n).all(same), "n {n}, lane {k}, transposed");
                     if k == 0 {
                         assert_eq!(found.positive, dense_found.positive, "n {n}");
                         let mut shared = SparseLu::new(&columns, zero);

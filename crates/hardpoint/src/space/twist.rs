@@ -193,3 +193,21 @@ impl<T: Real> AddAssign for Twist<T> {
         self.v += o.v;
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::space::{Mat3, Pose};
+
+    #[test]
+    fn wrenches_go_back_the_way_that_twists_come() {
+        let vector = |k: f64| Vec3::new(k.sin(), (2.0 * k).cos(), k - 1.3);
+        let twist = |k: f64| Twist { w: vector(k), v: vector(k + 0.7) };
+        let l = Wrench { m: vector(0.2), f: vector(2.1) };
+        let (v, e) = (twist(0.4), twist(1.9));
+        let pose = Pose { rot: Mat3::from_rotation_vector(vector(0.9)), r: vector(3.0) };
+        assert!((v.ad_transposed(l).on(e) - l.on(v.ad(e))).abs() < 1e-14);
+        assert!((pose.carry_back(l).on(e) - l.on(pose.carry(e))).abs() < 1e-14);
+        assert!(l.on(pose.carry(e)).abs() > 0.1);
+    }
+}

@@ -298,7 +298,8 @@ impl<'a, T: Real> Tracing<'a, T> {
 
 /// Per output, the bodies that it depends on, and the variables that move what it is measured with.
 ///
-/// A derivative that is not a number makes one of everything that depends on it.
+/// A derivative that is not a number makes one of everything that depends on it. A formula that took the larger of two
+/// numbers would hide it: measures are smooth.
 fn dependences(
     analysis: &Analysis<'_>,
     values: &[f64],
