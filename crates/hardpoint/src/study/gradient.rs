@@ -16,7 +16,7 @@ use crate::space::{Dual, LANES, Mat3, Pose, Rates, Real, Twist, Vec3, Wrench, la
 use crate::topology::Topology;
 
 /// What an output costs the adjoint way, in solutions for one variable the direct way: its load takes some evaluations of the
-/// measure besides the three solutions. 2 to 3 in small mechanisms, less in large ones (`docs/performance.md`).
+/// measure besides the three solutions. 1 to 3 in small mechanisms, less in large ones (`docs/performance.md`).
 const OUTPUT_COST: usize = 3;
 /// Likewise a constraint row that was left out and has to be watched: two solutions for the position alone.
 const ROW_COST: usize = 1;
