@@ -92,6 +92,46 @@ fn adjoint_and_direct_gradients_agree_on_every_mechanism_at_any_design() {
 }
 
 #[test]
+fn all_measures_of_a_wheel_have_the_same_gradients_where_variables_move_its_own_points_too() {
+    let mut draft = reference_draft("double_wishbone");
+    let places =
+        [("hub", [0.0, 0.6, 0.2324]), ("low", [0.009, 0.561, 0.141]), ("up", [-0.016, 0.545, 0.324])];
+    for (k, (name, position)) in places.into_iter().enumerate() {
+        draft.hardpoints.push(HardpointDraft { name: name.into(), position: position.into() });
+        let velocity = [[0.3, 1.0, 0.2], [1.0, 0.1, 0.4], [0.2, -0.4, 1.0]][k].into();
+        let changes = vec![ChangeDraft::Move { hardpoint: name.into(), velocity }];
+        draft.design.push(VariableDraft { name: name.into(), changes, ..VariableDraft::default() });
+    }
+    let at = |name: &str| Place::Hardpoint(name.into());
+    let on_knuckle = |name: &str| PointRef::On { body: "knuckle".into(), at: at(name) };
+    draft.wheels.push(WheelDraft {
+        name: "wheel".into(),
+        body: "knuckle".into(),
+        centre: at("hub"),
+        spin: WheelSpinDraft::Angles { toe: 0.01, camber: -0.02 },
+        radius: 0.2324,
+        side: None,
+        kingpin: Some([on_knuckle("low"), on_knuckle("up")]),
+    });
+    let of_wheel = |&what: &WheelMeasure| MeasureDraft {
+        name: format!("wheel {}", what.name()),
+        kind: MeasureKindDraft::Wheel { wheel: "wheel".into(), what },
+    };
+    draft.measures.extend(WheelMeasure::ALL.iter().map(of_wheel));
+    let kind = MeasureKindDraft::Distance {
+        from: on_knuckle("hub"),
+        to: PointRef::On { body: "uca".into(), at: at("up") },
+    };
+    draft.measures.push(MeasureDraft { name: "hub to arm".into(), kind });
+    let model = Model::from_draft(&draft).unwrap();
+    for formulation in BOTH {
+        let analysis = Analysis::with(&model, formulation).unwrap();
+        let worst = compare(&analysis, &vec![1e-3; model.variables.len()], "wheel");
+        assert!(worst < AGREE, "{formulation:?}: {worst:e}");
+    }
+}
+
+#[test]
 fn variables_that_cannot_be_followed_are_found_by_the_adjoint_way_too() {
     // Three redundant rows watch the planar four-bar: its law may change, one pivot may not tilt.
     let mut draft = four_bar([[0.0, 0.0], [0.0, 0.1], [0.3, 0.25], [0.3, 0.0]], "t", &times(3.0, 30));
