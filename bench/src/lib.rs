@@ -3,7 +3,7 @@
 use hardpoint::law::Law;
 use hardpoint::model::{
     BodyDraft, ChangeDraft, Draft, DrivenDraft, DriverDraft, FrameDraft, HardpointDraft, JointDraft, Line,
-    Model, Place, VariableDraft,
+    Model, Place, PointDraft, VariableDraft,
 };
 use hardpoint::space::{Mat3, Pose, Vec3};
 
@@ -159,6 +159,32 @@ pub fn truss(n: usize, steps: usize) -> Draft {
         &[[tip[0] + 0.3, tip[1] - 1.0], tip],
         None,
     ));
+    draft
+}
+
+/// The truss of [`truss`] with two design variables for each of its nodes but the first, along x and y, and its tip as a point.
+pub fn truss_with_variables(n: usize, steps: usize) -> Draft {
+    let mut draft = truss(n, steps);
+    let at = |k: usize| Vec3::new(0.5 * k as f64, 0.8 * (k % 2) as f64, 0.0);
+    for k in 1..n {
+        let name = format!("P{k}");
+        for place in draft.joints.iter_mut().flat_map(|j| &mut j.at) {
+            if *place == Place::At(at(k)) {
+                *place = Place::Hardpoint(name.clone());
+            }
+        }
+        for axis in 0..2 {
+            let changes = vec![ChangeDraft::Move { hardpoint: name.clone(), velocity: Vec3::AXES[axis] }];
+            draft.design.push(VariableDraft {
+                name: format!("{name}.{axis}"),
+                changes,
+                ..VariableDraft::default()
+            });
+        }
+        draft.hardpoints.push(HardpointDraft { name, position: at(k) });
+    }
+    let tip = Place::Hardpoint(format!("P{}", n - 1));
+    draft.points.push(PointDraft { name: "tip".into(), body: format!("node{}", n - 1), at: tip });
     draft
 }
 

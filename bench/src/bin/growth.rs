@@ -1,6 +1,7 @@
 //! How cost grows: with design variables, with loops and bodies, and with both at once.
 //!
 //!     growth                                  measures all, writes the plots and the tables of docs/performance.md
+//!     growth gradients                        gradients of some outputs, direct and adjoint: writes their table alone
 //!     growth LOOPS VARIABLES STEPS [stored]   one chain: nanoseconds in all, and the peak memory of this process in bytes
 //!
 //! Every chain is measured by a process of its own, so that the peak is its own.
@@ -15,9 +16,10 @@ use std::process::Command;
 use hardpoint::model::{BodyId, Model, VariableId};
 use hardpoint::motion::BodyState;
 use hardpoint::sensitivity::{Admissibility, BodySensitivity};
+use hardpoint::study::Method;
 use hardpoint::{Analysis, Sink, Solution};
 use hardpoint_bench::workloads::{finished, timed};
-use hardpoint_bench::{chain_with_variables, workload_model};
+use hardpoint_bench::{chain_with_variables, truss_with_variables, workload_model};
 use plotters::prelude::*;
 
 type Result<T> = std::result::Result<T, Box<dyn Error>>;
@@ -38,6 +40,7 @@ fn main() -> Result<()> {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     match arguments.as_slice() {
         [] => report(),
+        [gradients] if gradients == "gradients" => write_part("gradients", &self::gradients()?),
         [loops, variables, steps, rest @ ..] => {
             let nanoseconds =
                 time_chain(loops.parse()?, variables.parse()?, steps.parse()?, !rest.is_empty());
@@ -122,13 +125,19 @@ fn report() -> Result<()> {
     text += &variables()?;
     text += &loops()?;
     text += &both()?;
+    write_part("growth", &text)?;
+    write_part("gradients", &gradients()?)
+}
+
+/// Writes what stands between two marks in `docs/performance.md`.
+fn write_part(name: &str, text: &str) -> Result<()> {
     print!("{text}");
     let path = docs().join("performance.md");
     let page = std::fs::read_to_string(&path)?;
-    let (before, rest) = page.split_once("<!-- growth:begin -->\n").ok_or("no growth:begin")?;
-    let (_, after) = rest.split_once("<!-- growth:end -->").ok_or("no growth:end")?;
-    let page = format!("{before}<!-- growth:begin -->\n\n{text}<!-- growth:end -->{after}");
-    Ok(write_whole(&path, &page)?)
+    let [begin, end] = ["begin", "end"].map(|mark| format!("<!-- {name}:{mark} -->"));
+    let (before, rest) = page.split_once(&begin).ok_or_else(|| format!("no {name}:begin"))?;
+    let (_, after) = rest.split_once(&end).ok_or_else(|| format!("no {name}:end"))?;
+    Ok(write_whole(&path, &format!("{before}{begin}\n\n{text}{end}{after}"))?)
 }
 
 fn variables() -> Result<String> {
@@ -201,6 +210,51 @@ fn both() -> Result<String> {
          loops\nfrom there on follow: half of them on average. A step is an eighth of what 19 output times cost more than 11;\nwhat is left of these is laying out the variables before the first step and judging them after the last.\n\n\
          | loops | design variables | ms per step | us per step and variable, motion left out | s besides the steps | \
          peak memory, MB |\n|---|---|---|---|---|---|\n{rows}\n"
+    ))
+}
+
+/// Gradients of a model's first outputs by so many variables: those of the model, over and over where there are more.
+fn gradients() -> Result<String> {
+    let (truss_nodes, steps) = (100, 40);
+    let mut rows = String::new();
+    for (name, outputs, variables) in [
+        ("macpherson", 1, &[2, 7, 14, 224][..]),
+        ("macpherson", 3, &[2, 7, 14]),
+        ("macpherson", 13, &[14]),
+        ("slider_crank", 1, &[2, 8, 128]),
+        ("truss", 1, &[2, 20, 198]),
+        ("truss", 2, &[2, 20, 198]),
+    ] {
+        let mut model = match name {
+            "truss" => Model::from_draft(&truss_with_variables(truss_nodes, steps)).expect("a valid truss"),
+            _ => hardpoint_bench::model(name),
+        };
+        let own = std::mem::take(&mut model.variables);
+        for &v in variables {
+            model.variables = own.iter().cycle().take(v).cloned().collect();
+            let analysis = Analysis::new(&model).expect("a mechanism that can be driven");
+            let asked: Vec<usize> = (0..outputs).collect();
+            let us = |method: Method| {
+                let time = timed(false, || {
+                    let gradients = analysis.gradients(&[], &asked, method);
+                    assert!(gradients.stop.is_none(), "the mechanism stops: {:?}", gradients.stop);
+                    black_box(gradients.at(0, 0));
+                });
+                1e6 * time.as_secs_f64() / model.times.len() as f64
+            };
+            let [direct, adjoint] = [us(Method::Direct), us(Method::Adjoint)];
+            let auto = analysis.gradients(&[], &asked, Method::Auto).method;
+            let left_out = analysis.topology().redundant().count();
+            let ratio = direct / adjoint;
+            writeln!(
+                rows,
+                "| {name} | {left_out} | {outputs} | {v} | {direct:.2} | {adjoint:.2} | {ratio:.2} | {auto:?} |"
+            )?;
+        }
+    }
+    Ok(format!(
+        "| mechanism | rows left out | outputs | variables | us per step, direct | adjoint | direct / adjoint | `Auto` takes |\n\
+         |---|---|---|---|---|---|---|---|\n{rows}\n"
     ))
 }
 

@@ -67,7 +67,7 @@ pub struct Analysis<'m> {
 pub(crate) struct Design {
     pub values: Vec<f64>,
     geometry: Geometry,
-    laws: Vec<Law>,
+    pub laws: Vec<Law>,
     /// How the variables change it, if that is asked for.
     fields: Vec<Field>,
 }
@@ -140,7 +140,7 @@ impl<'m> Analysis<'m> {
     }
 
     /// Per variable, the joints that it opens in the nominal design.
-    fn opens(&self) -> &[Vec<JointDefect>] {
+    pub(crate) fn opens(&self) -> &[Vec<JointDefect>] {
         self.opens.get_or_init(|| {
             let nominal = self.effects.fields(&self.model.whole(&[]), 0.0);
             nominal.iter().map(|field| admissibility_at_design(self.model, field)).collect()

@@ -101,7 +101,7 @@ fn a_change_that_cannot_be_followed_is_offered_with_what_makes_it_admissible() {
         document["nearest"].as_array().unwrap().iter().map(|c| c["variable"].as_str().unwrap()).collect();
     assert_eq!(names, ["J4.tilt_y", "J1.tilt_y", "J2.tilt_y", "J3.tilt_y"]);
     for change in document["nearest"].as_array().unwrap() {
-        assert!((change["by"].as_f64().unwrap() - 1.0).abs() < 1e-6, "{change}");
+        assert!((change["by"].as_f64().unwrap().to_degrees() - 1.0).abs() < 1e-6, "{change}");
     }
     let offer = String::from_utf8(bench.run(&set).stdout).unwrap();
     assert!(offer.contains("`--admissible` makes this change instead"), "{offer}");

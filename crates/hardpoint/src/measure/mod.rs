@@ -125,7 +125,6 @@ pub(crate) fn evaluate(
     let bodies = bodies_asked_for(model);
 
     let zero = Rates([0.0; 3]);
-    let known = |x: f64| Rates([x, f64::NAN, f64::NAN]);
     let lifted: Vec<Rates> = values.iter().map(|v| zero.like(*v)).collect();
     let fixed = effects.fixed(&lifted, zero);
     let mut poses = vec![Pose::IDENTITY.spread(zero); model.bodies.len()];
@@ -138,7 +137,7 @@ pub(crate) fn evaluate(
         let states = motion.at(k);
         bodies.iter().for_each(|&b| poses[b] = with_rates(&states[b]));
         given.clear();
-        given.extend(slopes.at(k).iter().map(|x| known(*x)));
+        given.extend(slopes.at(k).iter().map(|x| only(*x)));
         let moment = Moment { slopes: &given, ..Moment::new(model, &fixed, &poses) };
         moment.all(|x| measured.values.push(x.0.map(finite)));
         let raw = counts.then(|| measured.values[first..].to_vec());
@@ -156,11 +155,41 @@ pub(crate) fn evaluate(
         }
     }
 
-    // Variable by variable, so that what is fixed in the bodies is worked out once for each.
+    let more = More { slopes, whole_turns: &counted };
+    measured.d = derivatives(design, &outputs, motion, sensitivities, &more);
+    measured.outputs = outputs;
+    measured
+}
+
+/// What outputs may ask for besides the motion.
+pub(crate) struct More<'a> {
+    /// Of the measures that go by a driver.
+    pub slopes: &'a SlopeValues,
+    /// By time and measure: the whole turns of its angle, rad; empty where no formula asks for them.
+    pub whole_turns: &'a [f64],
+}
+
+/// A number whose rates are not known.
+fn only(x: f64) -> Rates {
+    Rates([x, f64::NAN, f64::NAN])
+}
+
+/// Derivatives of some outputs by the variables, `[(k * variables + b) * outputs + m]`.
+///
+/// Variable by variable, so that what is fixed in the bodies is worked out once for each.
+pub(crate) fn derivatives(
+    design: &At<'_>,
+    outputs: &[Output],
+    motion: &Motion,
+    sensitivities: &Sensitivities,
+    more: &More<'_>,
+) -> Vec<[f64; 3]> {
+    let &At { model, effects, values, .. } = design;
+    let (bodies, zero) = (bodies_asked_for(model), Rates([0.0; 3]));
     let (steps, variables, columns) = (motion.len(), sensitivities.variables, outputs.len());
-    measured.d = vec![[f64::NAN; 3]; steps * variables * columns];
+    let mut found = vec![[f64::NAN; 3]; steps * variables * columns];
     let mut poses = vec![Pose::IDENTITY.spread(Dual::constant(zero)); model.bodies.len()];
-    let mut lifted: Vec<Jet> = lifted.into_iter().map(Dual::constant).collect();
+    let mut lifted: Vec<Jet> = values.iter().map(|v| Dual::constant(zero.like(*v))).collect();
     let mut given: Vec<Jet> = Vec::new();
     for b in 0..variables {
         lifted[b] = Dual::variable(lifted[b].v);
@@ -171,18 +200,17 @@ pub(crate) fn evaluate(
             let states = motion.at(k);
             bodies.iter().for_each(|&b| poses[b] = with_sensitivity(&states[b], &d[b]));
             given.clear();
-            let both = slopes.at(k).iter().zip(slopes.d(k, b));
-            given.extend(both.map(|(x, d)| Dual { v: known(*x), d: known(*d) }));
-            let whole_turns = if counts { &counted[k * model.measures.len()..] } else { &[] };
-            let mut at = (k * variables + b) * columns;
-            Moment { slopes: &given, whole_turns, ..Moment::new(model, &fixed, &poses) }.all(|x| {
-                measured.d[at] = x.d.0.map(finite);
-                at += 1;
-            });
+            let both = more.slopes.at(k).iter().zip(more.slopes.d(k, b));
+            given.extend(both.map(|(x, d)| Dual { v: only(*x), d: only(*d) }));
+            let whole_turns = more.whole_turns.get(k * model.measures.len()..).unwrap_or_default();
+            let moment = Moment { slopes: &given, whole_turns, ..Moment::new(model, &fixed, &poses) };
+            let first = (k * variables + b) * columns;
+            for (found, output) in found[first..first + columns].iter_mut().zip(outputs) {
+                *found = moment.output(output.source).d.0.map(finite);
+            }
         }
     }
-    measured.outputs = outputs;
-    measured
+    found
 }
 
 /// Where a formula has a pole, there is no number.
@@ -287,21 +315,28 @@ impl<'a, T: Real> Moment<'a, T> {
         }
     }
 
-    fn output(&self, output: OutputSource) -> T {
-        match output {
-            OutputSource::Measure(k) => self.measure(k),
-            OutputSource::Point(p, axis) => {
-                let Vec3 { x, y, z } = self.point(p);
-                [x, y, z][axis]
-            }
-        }
+    /// One output.
+    #[inline(never)]
+    pub fn output(&self, output: OutputSource) -> T {
+        self.poses[0].r.x.within(
+            #[inline(always)]
+            || match output {
+                OutputSource::Measure(k) => self.measure(k),
+                OutputSource::Point(p, axis) => {
+                    let Vec3 { x, y, z } = self.point(p);
+                    [x, y, z][axis]
+                }
+            },
+        )
     }
 
+    #[inline(always)]
     fn point(&self, p: PointId) -> Vec3<T> {
         self.poses[self.model.points[p.0].body.0].point(self.fixed.points[p.0])
     }
 
     /// Formulas and signs: `docs/measures.md`.
+    #[inline(always)]
     fn measure(&self, k: usize) -> T {
         let unknown = || self.poses[0].r.x.like(f64::NAN);
         if self.model.goes_by_driver(k) {
@@ -378,17 +413,14 @@ impl<'a, T: Real> Moment<'a, T> {
                 let [l, r] = headings();
                 r - right_by_ackermann(l, track / wheelbase())
             }
-            AxleMeasure::Ackermann | AxleMeasure::TurningRadius if headings().iter().any(is_straight) => {
-                track.like(f64::NAN)
-            }
             AxleMeasure::Ackermann => {
                 let [l, r] = headings();
-                (l - r) / (l - right_by_ackermann(l, track / wheelbase()))
+                (l - r) / steering(l - right_by_ackermann(l, track / wheelbase()), [l, r])
             }
             AxleMeasure::TurningRadius => {
                 let least = headings().map(|x| x.sin_cos().0.abs());
                 // The outer wheel steers less.
-                wheelbase() / -(-least[0]).larger(-least[1])
+                wheelbase() / steering(-(-least[0]).larger(-least[1]), headings())
             }
             AxleMeasure::RollCentreY | AxleMeasure::RollCentreHeight => track.like(f64::NAN),
         }
@@ -419,11 +451,13 @@ impl<'a, T: Real> Moment<'a, T> {
     }
 
     /// Direction d of measure k, which is fixed in this body.
+    #[inline(always)]
     fn direction(&self, k: usize, d: usize, body: BodyId) -> Vec3<T> {
         self.poses[body.0].rot * self.fixed.directions[k][d].expect("a measure with directions")
     }
 
     /// A joint's coordinate between its two markers, whether the joint is cut or not.
+    #[inline(always)]
     fn coordinate(&self, k: usize, joint: JointId, coordinate: usize) -> T {
         let j = &self.model.joints[joint.0];
         let markers = self.fixed.markers[k].expect("a measure of a joint's coordinate");
@@ -442,8 +476,10 @@ impl<'a, T: Real> Moment<'a, T> {
 /// Ackermann's part a quotient of round-off.
 const STRAIGHT: f64 = 1e-4;
 
-fn is_straight<T: Real>(heading: &T) -> bool {
-    heading.lane(0).abs() < STRAIGHT
+/// A number for division; NaN where one of the headings is straight ahead.
+fn steering<T: Real>(x: T, [l, r]: [T; 2]) -> T {
+    let steered = |k: usize| l.lane(k).abs().min(r.lane(k).abs()) >= STRAIGHT;
+    x.select(x.like(f64::NAN), steered)
 }
 
 /// The heading of the right wheel that turns about the same point of the other axle's line as the left one with heading l:

@@ -7,6 +7,7 @@
 pub(crate) mod abreast;
 mod assembly;
 mod forecast;
+pub(crate) mod jerk;
 pub(crate) mod kinematics;
 pub(crate) mod margin;
 pub(crate) mod parts;
@@ -14,6 +15,7 @@ pub(crate) mod stepper;
 mod stop;
 
 pub use assembly::{Assembly, Closing, Gap, Moved};
+pub use jerk::BodyJerk;
 pub use margin::Margin;
 pub use stop::{Stop, StopKind};
 

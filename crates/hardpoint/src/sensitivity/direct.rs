@@ -22,7 +22,7 @@ pub(crate) struct FieldParts<T> {
     /// What that adds to the driver's value, speed and acceleration at the time that was set last.
     law_rates: Vec<(DriverId, [T; 3])>,
     /// Largest speed in each field: what round-off of a defect is compared with.
-    scale: T,
+    pub(super) scale: T,
     /// How far the change is felt.
     pub reach: Reach,
 }
@@ -187,7 +187,7 @@ impl<T: Real> FieldParts<T> {
 
     /// What a change of its law adds to a driver's value, speed or acceleration.
     #[inline(always)]
-    fn law_rate(&self, driver: DriverId, order: usize) -> T {
+    pub(super) fn law_rate(&self, driver: DriverId, order: usize) -> T {
         let of_driver = self.law_rates.iter().find(|(d, _)| *d == driver);
         of_driver.map_or(self.scale.zero(), |(_, rates)| rates[order])
     }
@@ -221,7 +221,7 @@ pub(crate) struct Defect {
 }
 
 /// A defect below this part of the field's own speed is zero, even if nothing else stands in the row.
-const DEFECT_FLOOR: f64 = 1e-9;
+pub(super) const DEFECT_FLOOR: f64 = 1e-9;
 
 impl<T: Real> Direct<T> {
     pub fn new(model: &Model, topology: &Topology, witness: T) -> Self {

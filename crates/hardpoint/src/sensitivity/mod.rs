@@ -4,16 +4,18 @@
 //! variable b and then in time, that gives three linear systems with the Jacobian of the position
 //! (`docs/theory.md` (11) to (13), paper Eq. 5.6): all variables are right-hand sides of one factorisation.
 
+mod adjoint;
 mod admissible;
 mod direct;
 mod second;
 mod sensing;
 
+pub(crate) use adjoint::{Adjoint, Load, Support, Watch};
 pub use admissible::{Admissibility, Condition, JointDefect, admissibility_at_design, conditions_at_design};
 pub(crate) use direct::{Direct, FieldParts};
 pub use second::{BodyCurvature, Way};
 pub(crate) use second::{Seconds, along};
-pub(crate) use sensing::{Sensing, SensingDesigns};
+pub(crate) use sensing::{Resisting, Sensing, SensingDesigns, admissibility};
 
 use crate::space::Vec3;
 

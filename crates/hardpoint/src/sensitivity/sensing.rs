@@ -30,7 +30,7 @@ pub(crate) struct Sensing<'f, T> {
 }
 
 /// The joints that resist a variable, and the time of the largest defect.
-type Resisting = (Vec<JointDefect>, f64);
+pub(crate) type Resisting = (Vec<JointDefect>, f64);
 
 impl<'f, T: Real> Sensing<'f, T> {
     /// Prepares the sensitivities of the wanted bodies by the variables with these fields.
@@ -225,8 +225,12 @@ fn solve_each<T: Real>(
     }
 }
 
-/// What so many steps say of every variable.
-fn admissibility(opens: &[Vec<JointDefect>], resisting: Vec<Resisting>, steps: usize) -> Vec<Admissibility> {
+/// What so many steps say of every variable, given the joints that each opens in the nominal design.
+pub(crate) fn admissibility(
+    opens: &[Vec<JointDefect>],
+    resisting: Vec<Resisting>,
+    steps: usize,
+) -> Vec<Admissibility> {
     let answer = |(open, (joints, time)): (&Vec<JointDefect>, Resisting)| {
         if !joints.is_empty() {
             Admissibility::CannotFollow { joints, time }
@@ -242,7 +246,7 @@ fn admissibility(opens: &[Vec<JointDefect>], resisting: Vec<Resisting>, steps: u
 }
 
 /// Keeps in mind which joint resists a variable most, and when.
-fn note(resisting: &mut Resisting, topology: &Topology, defect: Defect, t: f64) {
+pub(super) fn note(resisting: &mut Resisting, topology: &Topology, defect: Defect, t: f64) {
     let place = &topology.rows[defect.row];
     let closure = &topology.closures[place.closure];
     let row = closure.rows[place.index];

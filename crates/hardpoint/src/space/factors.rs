@@ -70,4 +70,13 @@ impl<T: Real> Factors<T> {
             Self::Sparse(lu) => lu.solve(b),
         }
     }
+
+    /// Replaces the right-hand side by the solution with the transposed matrix.
+    #[inline(always)]
+    pub fn solve_transposed(&mut self, b: &mut [T]) {
+        match self {
+            Self::Dense(lu) => lu.solve_transposed(b),
+            Self::Sparse(lu) => lu.solve_transposed(b),
+        }
+    }
 }

@@ -181,6 +181,31 @@ impl<T: Real> Elimination<T> {
         }
         b[..n].copy_from_slice(x);
     }
+
+    /// Replaces the right-hand side by the solution with the transposed matrix.
+    ///
+    /// With `P A = L U` that is `U^T y = b`, `L^T z = y`, `P x = z`.
+    #[inline(always)]
+    pub fn solve_transposed(&mut self, b: &mut [T]) {
+        let n = self.n;
+        let a = &self.a[..n * n];
+        let x = &mut self.scratch[..n];
+        x.copy_from_slice(&b[..n]);
+        for k in 0..n {
+            x[k] = x[k] * a[k * n + k];
+            for c in k + 1..n {
+                x[c] = (-a[k * n + c]).times_plus(x[k], x[c]);
+            }
+        }
+        for k in (0..n).rev() {
+            for c in 0..k {
+                x[c] = (-a[k * n + c]).times_plus(x[k], x[c]);
+            }
+        }
+        for (&row, x) in self.order.iter().zip(x) {
+            b[row] = *x;
+        }
+    }
 }
 
 #[cfg(test)]
@@ -198,6 +223,11 @@ mod tests {
         let found = lu.factor();
         let mut b: Vec<f64> = a.iter().map(|row| row.iter().zip(x).map(|(p, q)| p * q).sum()).collect();
         lu.solve(&mut b);
+        for k in 0..3 {
+            assert!((b[k] - x[k]).abs() < 1e-14);
+        }
+        let mut b: Vec<f64> = (0..3).map(|c| (0..3).map(|r| a[r][c] * x[r]).sum()).collect();
+        lu.solve_transposed(&mut b);
         for k in 0..3 {
             assert!((b[k] - x[k]).abs() < 1e-14);
         }

@@ -1,6 +1,6 @@
 //! Where a frame is and how it is turned.
 
-use super::{Mat3, Real, Twist, Vec3};
+use super::{Mat3, Real, Twist, Vec3, Wrench};
 
 /// Position and orientation of a frame in another: `x_outer = r + rot * x_inner`.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -47,6 +47,12 @@ impl<T: Real> Pose<T> {
     pub fn carry(self, e: Twist<T>) -> Twist<T> {
         let w = self.rot * e.w;
         Twist { w, v: self.r.cross_plus(w, self.rot * e.v) }
+    }
+
+    /// A wrench of the outer frame, seen from the inner one: `l . Ad(X) e = carry_back(l) . e`.
+    #[inline(always)]
+    pub fn carry_back(self, l: Wrench<T>) -> Wrench<T> {
+        Wrench { m: self.rot.transpose_mul(l.m - self.r.cross(l.f)), f: self.rot.transpose_mul(l.f) }
     }
 
     /// The poses of all lanes, side by side.

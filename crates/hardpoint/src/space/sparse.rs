@@ -5,7 +5,7 @@ use faer::perm::PermRef;
 use faer::sparse::linalg::SupernodalThreshold;
 use faer::sparse::linalg::lu::simplicial::{
     SimplicialLu, factorize_simplicial_numeric_lu, factorize_simplicial_numeric_lu_scratch,
-    solve_transpose_in_place_scratch,
+    solve_in_place_scratch, solve_transpose_in_place_scratch,
 };
 use faer::sparse::linalg::lu::{LuSymbolicParams, factorize_symbolic_lu};
 use faer::sparse::{SparseColMatRef, SymbolicSparseColMat};
@@ -47,6 +47,17 @@ struct Lane {
     lu: SimplicialLu<usize, f64>,
     pivots: [Vec<usize>; 2],
 }
+
+/// One of faer's two ways to solve with the factors of a lane.
+type Solve = fn(
+    &SimplicialLu<usize, f64>,
+    PermRef<'_, usize>,
+    PermRef<'_, usize>,
+    Conj,
+    MatMut<'_, f64>,
+    Par,
+    &mut MemStack,
+);
 
 /// What faer works in.
 struct Memory {
@@ -92,7 +103,8 @@ impl<T: Real> SparseLu<T> {
         let order = [forward.to_vec(), inverse.to_vec()];
         let entries = pattern.row_idx().len();
         let need = factorize_simplicial_numeric_lu_scratch::<usize, f64>(n, n)
-            .or(solve_transpose_in_place_scratch::<usize, f64>(n, T::LANES, Par::Seq));
+            .or(solve_transpose_in_place_scratch::<usize, f64>(n, T::LANES, Par::Seq))
+            .or(solve_in_place_scratch::<usize, f64>(n, T::LANES, Par::Seq));
         let lane = Lane { lu: SimplicialLu::new(), pivots: [vec![0; n], vec![0; n]] };
         Self {
             odd: is_odd(&order[0], &mut vec![false; n]),
@@ -196,6 +208,17 @@ impl<T: Real> SparseLu<T> {
     /// Replaces the right-hand side by the solution.
     #[inline(never)]
     pub fn solve(&mut self, b: &mut [T]) {
+        self.solve_with(b, SimplicialLu::solve_transpose_in_place_with_conj);
+    }
+
+    /// Replaces the right-hand side by the solution with the transposed matrix, which is the one that was factored.
+    #[inline(never)]
+    pub fn solve_transposed(&mut self, b: &mut [T]) {
+        self.solve_with(b, SimplicialLu::solve_in_place_with_conj);
+    }
+
+    #[inline(always)]
+    fn solve_with(&mut self, b: &mut [T], solve: Solve) {
         let n = self.n();
         for (r, x) in b[..n].iter().enumerate() {
             for k in 0..T::LANES {
@@ -206,7 +229,8 @@ impl<T: Real> SparseLu<T> {
         let group = if self.shared { T::LANES } else { 1 };
         for (k, rhs) in self.rhs.chunks_exact_mut(group * n).enumerate() {
             let Lane { lu, pivots: [forward, inverse] } = &self.lanes[k];
-            lu.solve_transpose_in_place_with_conj(
+            solve(
+                lu,
                 PermRef::new_checked(forward, inverse, n),
                 order,
                 Conj::No,
@@ -286,6 +310,13 @@ mod tests {
                     for r in 0..n {
                         assert!((b[r].lane(k) - want[r]).abs() < 1e-9 * scale, "n {n}, lane {k}, row {r}");
                     }
+                    let mut b: Vec<_> = (0..n).map(|r| zero.like((r as f64).cos())).collect();
+                    sparse.solve_transposed(&mut b);
+                    let mut transposed: Vec<f64> = (0..n).map(|r| (r as f64).cos()).collect();
+                    dense.solve_transposed(&mut transposed);
+                    let scale_transposed = transposed.iter().fold(0.0, |m: f64, x| m.max(x.abs()));
+                    let same = |r: usize| (b[r].lane(k) - transposed[r]).abs() < 1e-9 * scale_transposed;
+                    assert!((0..n).all(same), "n {n}, lane {k}, transposed");
                     if k == 0 {
                         assert_eq!(found.positive, dense_found.positive, "n {n}");
                         let mut shared = SparseLu::new(&columns, zero);

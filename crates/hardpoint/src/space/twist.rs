@@ -1,7 +1,7 @@
 //! Twists and wrenches, all at the world origin and in world components.
 
 use super::{Real, Vec3};
-use std::ops::{Add, AddAssign, Mul, Neg, Sub};
+use std::ops::{Add, AddAssign, Mul, Neg, Sub, SubAssign};
 
 /// A first-order motion of a body: angular part, and velocity of the body point at the world origin.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -57,6 +57,12 @@ impl<T: Real> Twist<T> {
         Self { w: self.w.cross(o.w), v: self.w.cross_plus(o.v, self.v.cross(o.w)) }
     }
 
+    /// What the rate of a carried twist o works: `l . ad(self) o = ad_transposed(l) . o`.
+    #[inline(always)]
+    pub fn ad_transposed(self, l: Wrench<T>) -> Wrench<T> {
+        Wrench { m: l.m.cross_plus(self.w, l.f.cross(self.v)), f: l.f.cross(self.w) }
+    }
+
     /// Velocity of the body point at `p`.
     #[inline(always)]
     pub fn at(self, p: Vec3<T>) -> Vec3<T> {
@@ -91,6 +97,18 @@ impl Wrench<f64> {
 }
 
 impl<T: Real> Wrench<T> {
+    /// No wrench, in the lanes of `witness`.
+    #[inline(always)]
+    pub fn zero(witness: T) -> Self {
+        Self { m: Vec3::zero(witness), f: Vec3::zero(witness) }
+    }
+
+    /// `self * k + addend`.
+    #[inline(always)]
+    pub fn times_plus(self, k: T, addend: Self) -> Self {
+        Self { m: self.m.times_plus(k, addend.m), f: self.f.times_plus(k, addend.f) }
+    }
+
     /// The force `f` acting through `point`.
     #[inline(always)]
     pub fn force(f: Vec3<T>, point: Vec3<T>) -> Self {
@@ -117,6 +135,22 @@ impl<T: Real> Sub for Wrench<T> {
     #[inline(always)]
     fn sub(self, o: Self) -> Self {
         Self { m: self.m - o.m, f: self.f - o.f }
+    }
+}
+
+impl<T: Real> AddAssign for Wrench<T> {
+    #[inline(always)]
+    fn add_assign(&mut self, o: Self) {
+        self.m += o.m;
+        self.f += o.f;
+    }
+}
+
+impl<T: Real> SubAssign for Wrench<T> {
+    #[inline(always)]
+    fn sub_assign(&mut self, o: Self) {
+        self.m = self.m - o.m;
+        self.f = self.f - o.f;
     }
 }
 
@@ -157,5 +191,23 @@ impl<T: Real> AddAssign for Twist<T> {
     fn add_assign(&mut self, o: Self) {
         self.w += o.w;
         self.v += o.v;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::space::{Mat3, Pose};
+
+    #[test]
+    fn wrenches_go_back_the_way_that_twists_come() {
+        let vector = |k: f64| Vec3::new(k.sin(), (2.0 * k).cos(), k - 1.3);
+        let twist = |k: f64| Twist { w: vector(k), v: vector(k + 0.7) };
+        let l = Wrench { m: vector(0.2), f: vector(2.1) };
+        let (v, e) = (twist(0.4), twist(1.9));
+        let pose = Pose { rot: Mat3::from_rotation_vector(vector(0.9)), r: vector(3.0) };
+        assert!((v.ad_transposed(l).on(e) - l.on(v.ad(e))).abs() < 1e-14);
+        assert!((pose.carry_back(l).on(e) - l.on(pose.carry(e))).abs() < 1e-14);
+        assert!(l.on(pose.carry(e)).abs() > 0.1);
     }
 }

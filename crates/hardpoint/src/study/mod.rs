@@ -1,6 +1,8 @@
 //! Studies: questions that take many solutions.
 
 mod difference;
+mod gradient;
+mod jerk;
 mod metric;
 mod nearest;
 mod second;
@@ -8,6 +10,8 @@ mod verify;
 mod whatif;
 
 pub use difference::{Difference, central_differences, natural_step};
+pub use gradient::{Gradients, Method};
+pub use jerk::Jerks;
 pub use metric::{MetricValue, metrics};
 pub use nearest::{Nearest, nearest_admissible};
 pub use second::SecondDerivatives;

@@ -368,7 +368,7 @@ fn marker(name: &str, joint: &str, position: [f64; 3], rotation: [f64; 3]) -> Va
     VariableDraft { name: name.into(), changes: vec![change], ..VariableDraft::default() }
 }
 
-fn mechanisms() -> Vec<Draft> {
+pub fn mechanisms() -> Vec<Draft> {
     REFERENCES
         .iter()
         .map(|n| reference_draft(n))

@@ -78,7 +78,7 @@ fn absolute_coordinates_of_a_chain_give_the_same() {
 
 /// A strip of n nodes, each tied by rods to the two before, that turns about node 0 (on ground) as one rigid
 /// body while a leg of length 1 pushes at its last node: none of the unknowns can be found before the others.
-fn truss(n: usize) -> (Draft, impl Fn(usize) -> [f64; 2]) {
+pub fn truss(n: usize) -> (Draft, impl Fn(usize) -> [f64; 2]) {
     let at = |k: usize| [0.5 * k as f64, 0.8 * (k % 2) as f64];
     let place = move |k: usize| [at(k)[0], at(k)[1], 0.0];
     let node = |k: usize| if k == 0 { "ground".to_owned() } else { format!("node{k}") };

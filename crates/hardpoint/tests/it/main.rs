@@ -1,5 +1,6 @@
 //! The library as its users see it: whole mechanisms, from draft to sensitivities.
 
+mod adjoint;
 mod allocation;
 mod assembly;
 mod design_variables;
@@ -7,6 +8,7 @@ mod diagnosis;
 mod formulas;
 mod house;
 mod identities;
+mod jerk;
 mod joints;
 mod loops;
 mod random;

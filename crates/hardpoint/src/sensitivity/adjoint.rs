@@ -1,0 +1,457 @@
+//! Sensitivities of a few outputs by many variables: one transposed solution for each output instead of one for each variable.
+//!
+//! How an output goes with the design twists of the bodies is a load on them, a wrench each. Carried to ground like a load in
+//! statics, it says what every joint transmits; that, on the design twists of the joint's markers, is the output's
+//! derivative. What is transmitted does not know of any variable (`docs/theory.md` (17) to (20)).
+
+use crate::model::{DriverId, Field, GROUND, Model};
+use crate::motion::kinematics::State;
+use crate::motion::stepper::{LOCKED, Stepper};
+use crate::space::{LANES, Real, Twist, Wrench};
+use crate::topology::{Source, Topology};
+
+use super::direct::{DEFECT_FLOOR, Defect, FieldParts};
+use super::sensing::{Resisting, note};
+
+/// How often the product of an m-th and an (n - m)-th derivative stands in the n-th of a product.
+const BINOMIAL: [[f64; 3]; 3] = [[1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [1.0, 2.0, 1.0]];
+
+/// A wrench with its first two time derivatives, about the world origin.
+pub(crate) type Load<T> = [Wrench<T>; 3];
+
+/// What loads on some bodies are felt by: the way from there to ground, and the variables that change something on it.
+#[derive(Clone, Debug)]
+pub(crate) struct Support<T> {
+    /// Bodies that the load comes to.
+    bodies: Vec<usize>,
+    /// Blocks, and links placed by drivers alone, from the load to ground.
+    blocks: Vec<usize>,
+    driven_links: Vec<usize>,
+    /// Markers that some variable moves.
+    places: Vec<Place>,
+    /// Per variable and marker that it moves: place, and body-fixed twist with the sign of that end.
+    moves: Vec<(usize, usize, Twist<T>)>,
+    /// Per variable and kept value that it changes: row and rate.
+    keeps: Vec<(usize, usize, T)>,
+    /// Per variable and law that it changes: the driver, and what follows it.
+    laws: Vec<(usize, DriverId, Follower)>,
+}
+
+/// A marker on a body.
+#[derive(Clone, Copy, Debug)]
+struct Place {
+    /// Its number in [`Adjoint::seen`].
+    index: usize,
+    joint: Carrier,
+    body: usize,
+}
+
+/// What transmits a wrench.
+#[derive(Clone, Copy, Debug)]
+enum Carrier {
+    Link(usize),
+    Closure(usize),
+}
+
+/// What does as a driver says.
+#[derive(Clone, Copy, Debug)]
+enum Follower {
+    Coordinate(usize),
+    Row(usize),
+}
+
+impl<T: Real> Support<T> {
+    /// Of loads on these bodies; `fields` are those of all variables.
+    fn new(topology: &Topology, fields: &[FieldParts<T>], loaded: &[usize]) -> Self {
+        let mut pushed = vec![false; 1 + topology.links.iter().map(|l| l.child.0).max().unwrap_or(0)];
+        loaded.iter().for_each(|&b| pushed[b] = true);
+        let (mut blocks, mut driven_links) = (Vec::new(), Vec::new());
+        let mut feels = (vec![false; topology.links.len()], vec![false; topology.closures.len()]);
+        for (b, block) in topology.blocks.iter().enumerate().rev() {
+            if block.links.clone().any(|k| pushed[topology.links[k].child.0]) {
+                blocks.push(b);
+                for &c in &block.closures {
+                    feels.1[c] = true;
+                    topology.closures[c].bodies.iter().for_each(|b| pushed[b.0] = true);
+                }
+                for k in block.links.clone().rev() {
+                    feels.0[k] = true;
+                    pushed[topology.links[k].child.0] = true;
+                    pushed[topology.links[k].parent.0] = true;
+                }
+            }
+        }
+        for k in topology.driven_links().rev() {
+            if pushed[topology.links[k].child.0] {
+                feels.0[k] = true;
+                driven_links.push(k);
+                pushed[topology.links[k].parent.0] = true;
+            }
+        }
+        let bodies = (0..pushed.len()).filter(|&b| pushed[b]).collect();
+        let (places, moves, keeps, laws) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
+        let mut support = Self { bodies, blocks, driven_links, places, moves, keeps, laws };
+        for (v, field) in fields.iter().enumerate() {
+            support.add(topology, &feels, v, field);
+        }
+        support.places.sort_unstable_by_key(|p| p.index);
+        support.places.dedup_by_key(|p| p.index);
+        support
+    }
+
+    /// Enters what variable v changes where the load is felt, by link and by closure.
+    fn add(
+        &mut self,
+        topology: &Topology,
+        (links, closures): &(Vec<bool>, Vec<bool>),
+        v: usize,
+        field: &FieldParts<T>,
+    ) {
+        // What a link transmits pushes its child: it works on z_p - z_c; that of a closure pushes j, and works on z_j - z_i.
+        for m in field.links.iter().filter(|m| links[m.at]) {
+            let index = 2 * m.at + m.end;
+            self.places.push(Place { index, joint: Carrier::Link(m.at), body: m.body });
+            self.moves.push((v, index, if m.end == 0 { m.e } else { -m.e }));
+        }
+        for m in field.closures.iter().filter(|m| closures[m.at]) {
+            let index = 2 * (links.len() + m.at) + m.end;
+            self.places.push(Place { index, joint: Carrier::Closure(m.at), body: m.body });
+            self.moves.push((v, index, if m.end == 1 { m.e } else { -m.e }));
+        }
+        let kept = field.kept.iter().filter(|(row, _)| closures[topology.rows[*row].closure]);
+        self.keeps.extend(kept.map(|&(row, rate)| (v, row, rate)));
+        for driver in field.drivers() {
+            for (c, coordinate) in topology.coordinates.iter().enumerate() {
+                if coordinate.source == Source::Driven(driver) && links[coordinate.link] {
+                    self.laws.push((v, driver, Follower::Coordinate(c)));
+                }
+            }
+            for (c, closure) in topology.closures.iter().enumerate() {
+                if closure.driver == Some(driver) && closures[c] {
+                    self.laws.push((v, driver, Follower::Row(closure.first_row)));
+                }
+            }
+        }
+    }
+}
+
+/// Carries loads to ground; nothing is allocated per step.
+pub(crate) struct Adjoint<T> {
+    /// What each variable changes.
+    fields: Vec<FieldParts<T>>,
+    /// Per order and body: what still has to be carried.
+    load: [Vec<Wrench<T>>; 3],
+    /// Per order and link, or closure: the wrench that it transmits.
+    links: [Vec<Wrench<T>>; 3],
+    closures: [Vec<Wrench<T>>; 3],
+    /// Per order and row: how much of its wrench that takes, with the sign that makes it a part of the gradient.
+    rows: [Vec<T>; 3],
+    /// Per body of a block: the load on it and all that it carries.
+    below: Vec<Wrench<T>>,
+    /// Per marker, parent's and child's of the links and then i and j of the closures: the wrench seen from its body.
+    seen: Vec<Load<T>>,
+}
+
+impl<T: Real> Adjoint<T> {
+    /// By the variables with these fields.
+    pub fn new(model: &Model, topology: &Topology, fields: &[Field], witness: T) -> Self {
+        let none = Wrench::zero(witness);
+        let three = |n: usize| std::array::from_fn(|_| vec![none; n]);
+        let parts = |f: &Field| FieldParts::new(topology, &f.spread(witness), witness);
+        Self {
+            fields: fields.iter().map(parts).collect(),
+            load: three(model.bodies.len()),
+            links: three(topology.links.len()),
+            closures: three(topology.closures.len()),
+            rows: std::array::from_fn(|_| vec![witness.zero(); topology.rows.len()]),
+            below: vec![none; model.bodies.len()],
+            seen: vec![[none; 3]; 2 * (topology.links.len() + topology.closures.len())],
+        }
+    }
+
+    /// What loads on these bodies are felt by.
+    pub fn support(&self, topology: &Topology, loaded: &[usize]) -> Support<T> {
+        Support::new(topology, &self.fields, loaded)
+    }
+
+    /// Sets what changing laws do where a stepper stands, at one time per lane.
+    pub fn set_times(&mut self, stepper: &Stepper<'_, T>, times: &[f64; LANES]) {
+        let law = |d: DriverId, lane| stepper.parts.law_of(d.0, lane);
+        self.fields.iter_mut().for_each(|field| field.set_times(law, times));
+    }
+
+    /// Adds to `gradient`, by variable, the work of loads on bodies and its first two time derivatives; only so many
+    /// `orders` of these. `state` stands with all of its rates.
+    pub fn add_work(
+        &mut self,
+        topology: &Topology,
+        state: &mut State<T>,
+        support: &Support<T>,
+        loads: &[(usize, Load<T>)],
+        orders: usize,
+        gradient: &mut [[T; 3]],
+    ) {
+        state.witness.within(
+            #[inline(always)]
+            || {
+                for n in 0..orders {
+                    support.bodies.iter().for_each(|&b| self.load[n][b] = Wrench::zero(state.witness));
+                    loads.iter().for_each(|(b, load)| self.load[n][*b] += load[n]);
+                    self.transmit(topology, state, support, n);
+                }
+                self.see(state, support, orders);
+                self.work(topology, state, support, orders, gradient);
+            },
+        );
+    }
+
+    /// What links, closures and rows transmit, to order n: `docs/theory.md` (18).
+    #[inline(always)]
+    fn transmit(&mut self, topology: &Topology, state: &mut State<T>, support: &Support<T>, n: usize) {
+        let Self { load, links, closures, rows, below, .. } = self;
+        let (zero, none) = (state.witness.zero(), Wrench::zero(state.witness));
+        let (x, l) = ([&state.x, &state.xd, &state.xdd], [&state.l, &state.ld, &state.ldd]);
+        let load = &mut load[n];
+        for &b in &support.blocks {
+            let block = &topology.blocks[b];
+            // What is known before: the parts of lower orders, on wrenches that turn.
+            for &c in &block.closures {
+                let closure = &topology.closures[c];
+                let mut known = none;
+                for r in closure.first_row..closure.first_row + closure.rows.len() {
+                    rows[n][r] = zero;
+                    for m in (0..n).filter(|_| topology.rows[r].drives()) {
+                        known = l[n - m][r].times_plus(rows[m][r] * zero.like(-BINOMIAL[n][m]), known);
+                    }
+                }
+                closures[n][c] = known;
+                load[closure.bodies[1].0] += known;
+                load[closure.bodies[0].0] -= known;
+            }
+            // First as if the closures took nothing: what then works on the unknowns is theirs to take.
+            for link in &topology.links[block.links.clone()] {
+                below[link.child.0] = load[link.child.0];
+            }
+            // Parents outside of the block get some, too, which nobody reads.
+            for link in topology.links[block.links.clone()].iter().rev() {
+                let carried = below[link.child.0];
+                below[link.parent.0] += carried;
+            }
+            for (column, &a) in block.unknowns.iter().enumerate() {
+                let k = topology.coordinates[a].link;
+                let mut works = below[topology.links[k].child.0].on(x[0][a]);
+                for m in 0..n {
+                    works += links[m][k].on(x[n - m][a]) * zero.like(BINOMIAL[n][m]);
+                }
+                state.rhs[column] = works;
+            }
+            state.factors[b].solve_transposed(&mut state.rhs);
+            for (k, &r) in block.selected.iter().enumerate() {
+                for (part, factor) in topology.parts_of_row(r) {
+                    rows[n][part] = state.rhs[k] * zero.like(factor);
+                }
+            }
+            for &c in &block.closures {
+                let closure = &topology.closures[c];
+                let mut taken = none;
+                for r in closure.first_row..closure.first_row + closure.rows.len() {
+                    if topology.rows[r].drives() {
+                        taken = l[0][r].times_plus(-rows[n][r], taken);
+                    }
+                }
+                closures[n][c] += taken;
+                load[closure.bodies[1].0] += taken;
+                load[closure.bodies[0].0] -= taken;
+            }
+            for k in block.links.clone().rev() {
+                pass_on(topology, k, load, &mut links[n]);
+            }
+        }
+        for &k in &support.driven_links {
+            pass_on(topology, k, load, &mut links[n]);
+        }
+    }
+
+    /// Wrenches on the markers that variables move, seen from their bodies: there the markers' twists stand still, and time
+    /// derivatives are those of the components (`docs/theory.md` (20)).
+    #[inline(always)]
+    fn see(&mut self, state: &State<T>, support: &Support<T>, orders: usize) {
+        for place in &support.places {
+            let (pose, v, a) = (&state.pose[place.body], state.v[place.body], state.a[place.body]);
+            let of = |n: usize| match place.joint {
+                Carrier::Link(k) => self.links[n][k],
+                Carrier::Closure(c) => self.closures[n][c],
+            };
+            let seen = &mut self.seen[place.index];
+            seen[0] = pose.carry_back(of(0));
+            if orders > 1 {
+                let mut turned = v.ad_transposed(of(0));
+                let mut first = of(1);
+                first += turned;
+                seen[1] = pose.carry_back(first);
+                turned += of(1);
+                turned += of(1);
+                let mut second = v.ad_transposed(turned);
+                second += of(2);
+                second += a.ad_transposed(of(0));
+                seen[2] = pose.carry_back(second);
+            }
+        }
+    }
+
+    /// `docs/theory.md` (19).
+    #[inline(always)]
+    fn work(
+        &self,
+        topology: &Topology,
+        state: &State<T>,
+        support: &Support<T>,
+        orders: usize,
+        gradient: &mut [[T; 3]],
+    ) {
+        for &(v, place, e) in &support.moves {
+            for n in 0..orders {
+                gradient[v][n] += self.seen[place][n].on(e);
+            }
+        }
+        for &(v, row, rate) in &support.keeps {
+            for n in 0..orders {
+                gradient[v][n] += self.rows[n][row] * rate;
+            }
+        }
+        let (zero, x) = (state.witness.zero(), [&state.x, &state.xd, &state.xdd]);
+        for &(v, driver, follower) in &support.laws {
+            let part = |n: usize| match follower {
+                Follower::Row(r) => self.rows[n][r],
+                Follower::Coordinate(c) => {
+                    let k = topology.coordinates[c].link;
+                    let term = |m: usize| self.links[m][k].on(x[n - m][c]) * zero.like(BINOMIAL[n][m]);
+                    (0..=n).map(term).fold(zero, |sum, x| sum + x)
+                }
+            };
+            for n in 0..orders {
+                for m in 0..=n {
+                    let rate = self.fields[v].law_rate(driver, n - m);
+                    gradient[v][n] += part(m) * rate * zero.like(BINOMIAL[n][m]);
+                }
+            }
+        }
+    }
+}
+
+/// A link transmits what comes to its child, to its parent.
+#[inline(always)]
+fn pass_on<T: Real>(topology: &Topology, k: usize, load: &mut [Wrench<T>], links: &mut [Wrench<T>]) {
+    let link = &topology.links[k];
+    let carried = load[link.child.0];
+    links[k] = carried;
+    load[link.parent.0] += carried;
+}
+
+/// Watches the rows that were left out, as [`Direct::worst_defects`](super::direct::Direct::worst_defects) does: each side
+/// of each row is a load of its own.
+pub(crate) struct Watch<T> {
+    /// Per body that such a row stands on: what loads on it are felt by.
+    supports: Vec<Option<Support<T>>>,
+    /// Per variable: the work on one side, the sum of all terms, and the largest of them.
+    side: Vec<[T; 3]>,
+    sum: Vec<T>,
+    most: Vec<T>,
+    /// Per variable and lane: the row that fails most.
+    worst: Vec<[Option<Defect>; LANES]>,
+}
+
+impl<T: Real> Watch<T> {
+    pub fn new(model: &Model, variables: usize, witness: T) -> Self {
+        let zero = witness.zero();
+        Self {
+            supports: (0..model.bodies.len()).map(|_| None).collect(),
+            side: vec![[zero; 3]; variables],
+            sum: vec![zero; variables],
+            most: vec![zero; variables],
+            worst: vec![[None; LANES]; variables],
+        }
+    }
+
+    /// Notes which joints resist which variables where a stepper stands, at one time per lane.
+    pub fn look(
+        &mut self,
+        adjoint: &mut Adjoint<T>,
+        topology: &Topology,
+        state: &mut State<T>,
+        times: &[f64],
+        resisting: &mut [Resisting],
+    ) {
+        let left_out = |r: &usize| !topology.rows[*r].selected && !topology.rows[*r].is_term;
+        self.worst.fill([None; LANES]);
+        let witness = state.witness;
+        witness.within(
+            #[inline(always)]
+            || {
+                for r in (0..topology.rows.len()).filter(left_out) {
+                    self.row(adjoint, topology, state, r);
+                }
+            },
+        );
+        for (worst, resisting) in self.worst.iter().zip(resisting) {
+            for (defect, t) in worst.iter().zip(times) {
+                if let Some(defect) = *defect {
+                    note(resisting, topology, defect, *t);
+                }
+            }
+        }
+    }
+
+    /// Enters row r where it fails most.
+    #[inline(always)]
+    fn row(&mut self, adjoint: &mut Adjoint<T>, topology: &Topology, state: &mut State<T>, r: usize) {
+        let (zero, none) = (state.witness.zero(), Wrench::zero(state.witness));
+        self.sum.fill(zero);
+        self.most.fill(zero);
+        for (k, factor) in topology.parts_of_row(r) {
+            let closure = &topology.closures[topology.rows[k].closure];
+            for (body, sign) in closure.bodies.into_iter().zip([-factor, factor]) {
+                if body == GROUND {
+                    continue;
+                }
+                let support =
+                    self.supports[body.0].get_or_insert_with(|| adjoint.support(topology, &[body.0]));
+                self.side.fill([zero; 3]);
+                let load = [(body.0, [state.l[k], none, none])];
+                adjoint.add_work(topology, state, support, &load, 1, &mut self.side);
+                for (v, [term, ..]) in self.side.iter().enumerate() {
+                    enter(&mut self.sum[v], &mut self.most[v], *term * zero.like(sign));
+                }
+            }
+            for (v, field) in adjoint.fields.iter().enumerate() {
+                let (sum, most) = (&mut self.sum[v], &mut self.most[v]);
+                for m in field.closures.iter().filter(|m| m.at == topology.rows[k].closure) {
+                    let z = state.l[k].on(state.pose[m.body].carry(m.e));
+                    enter(sum, most, z * zero.like(if m.end == 1 { factor } else { -factor }));
+                }
+                let rate = field.kept.binary_search_by_key(&k, |l| l.0).map_or(zero, |n| field.kept[n].1);
+                let driven = closure.driver.map_or(zero, |d| field.law_rate(d, 0));
+                enter(sum, most, -(rate + driven) * zero.like(factor));
+            }
+        }
+        for (v, field) in adjoint.fields.iter().enumerate() {
+            let sum = self.sum[v].abs();
+            let limit = (self.most[v] * zero.like(LOCKED)).larger(field.scale * zero.like(DEFECT_FLOOR));
+            if (sum - limit).largest() <= 0.0 {
+                continue;
+            }
+            for (lane, worst) in self.worst[v][..T::LANES].iter_mut().enumerate() {
+                let value = sum.lane(lane);
+                if !(value <= limit.lane(lane)) && worst.is_none_or(|w| value > w.value) {
+                    *worst = Some(Defect { row: r, value });
+                }
+            }
+        }
+    }
+}
+
+#[inline(always)]
+fn enter<T: Real>(sum: &mut T, most: &mut T, term: T) {
+    *sum += term;
+    *most = most.larger(term.abs());
+}

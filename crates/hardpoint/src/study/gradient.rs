@@ -1,0 +1,421 @@
+//! Gradients of chosen outputs by all design variables, in whichever direction is shorter.
+
+use std::ops::ControlFlow;
+
+use fearless_simd::{Level, dispatch};
+
+use crate::analysis::{Analysis, Design, Solution, Solved, Walk};
+use crate::measure::{self, Moment, More, Output, SlopeValues, bodies_asked_for, outputs};
+use crate::model::{Field, Fixed, GROUND, MeasureKind, OutputSource, VariableId};
+use crate::motion::kinematics::State;
+use crate::motion::stepper::Stepper;
+use crate::motion::{Motion, Stop};
+use crate::sensitivity::{Adjoint, Admissibility, Load, Resisting, Support, Watch, admissibility};
+use crate::sink::Store;
+use crate::space::{Dual, LANES, Mat3, Pose, Rates, Real, Twist, Vec3, Wrench, lanes};
+use crate::topology::Topology;
+
+/// What an output costs the adjoint way, in solutions for one variable the direct way: its load takes some evaluations of the
+/// measure besides the three solutions. 1 to 3 in small mechanisms, less in large ones (`docs/performance.md`).
+const OUTPUT_COST: usize = 3;
+/// Likewise a constraint row that was left out and has to be watched: two solutions for the position alone.
+const ROW_COST: usize = 1;
+
+/// How gradients are worked out. All ways give the same numbers, to round-off.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Method {
+    /// Whichever is expected to be faster: adjoint where there are more variables than redundant rows and three times the
+    /// outputs together.
+    #[default]
+    Auto,
+    /// Variable by variable: the cost grows with the variables, and outputs are nearly free.
+    Direct,
+    /// Output by output: the cost grows with the outputs, and variables are nearly free.
+    Adjoint,
+}
+
+/// Gradients of outputs by all design variables over a motion.
+#[derive(Clone, Debug, Default)]
+pub struct Gradients {
+    /// Output times that were solved, s.
+    pub times: Vec<f64>,
+    /// The outputs asked for.
+    pub outputs: Vec<Output>,
+    /// How many design variables there are.
+    pub variables: usize,
+    /// How they were worked out: direct or adjoint.
+    pub method: Method,
+    /// Per variable: whether and how the mechanism follows the change.
+    pub admissibility: Vec<Admissibility>,
+    /// Why the run ended before the last output time, if it did.
+    pub stop: Option<Stop>,
+    /// `d[(k * outputs + m) * variables + b]`.
+    d: Vec<[f64; 3]>,
+}
+
+impl Gradients {
+    /// Derivatives by every variable, at fixed t, of value, rate and acceleration of the m-th output asked for, at time k; in
+    /// the output's unit, per s, per s^2, per unit of the variable.
+    ///
+    /// Those of a variable that the mechanism cannot follow are NaN: [`Gradients::admissibility`] says why.
+    pub fn at(&self, k: usize, m: usize) -> &[[f64; 3]] {
+        let first = (k * self.outputs.len() + m) * self.variables;
+        &self.d[first..first + self.variables]
+    }
+}
+
+impl Analysis<'_> {
+    /// Gradients of some outputs, by their indices in [`outputs`], by all variables at the design with variable k at
+    /// `design[k]`.
+    ///
+    /// The adjoint way costs one transposed solution for each output and time, with its first two time derivatives, and a few
+    /// products for each marker that a variable moves (`docs/theory.md`, section 8).
+    ///
+    /// Velocities, slopes over a driver and formulas over other measures always go the direct way.
+    ///
+    /// # Panics
+    /// If there is no such output.
+    pub fn gradients(&self, design: &[f64], outputs_asked: &[usize], method: Method) -> Gradients {
+        let all = outputs(self.model());
+        let asked: Vec<Output> = outputs_asked.iter().map(|&m| all[m].clone()).collect();
+        // What is no smooth function of positions alone has no load.
+        let is_plain = |m: &usize| {
+            let formula = |k: usize| matches!(self.model().measures[k].kind, MeasureKind::Combination(_));
+            all[*m].known.by_position && !matches!(all[*m].source, OutputSource::Measure(k) if formula(k))
+        };
+        if !outputs_asked.iter().all(is_plain) {
+            return self.gradients_of_run(design, outputs_asked, asked);
+        }
+        match self.method(asked.len(), method) {
+            Method::Direct => self.gradients_direct(design, asked),
+            _ => {
+                let design = self.design(design, false);
+                dispatch!(Level::new(), simd => self.gradients_adjoint(&design, asked, lanes(simd)))
+            }
+        }
+    }
+
+    /// The way to go for so many outputs.
+    fn method(&self, outputs: usize, method: Method) -> Method {
+        let adjoint = OUTPUT_COST * outputs + ROW_COST * self.topology().redundant().count();
+        match method {
+            Method::Auto if adjoint < self.model().variables.len() => Method::Adjoint,
+            Method::Auto => Method::Direct,
+            chosen => chosen,
+        }
+    }
+
+    /// Those of outputs that only a whole run knows.
+    fn gradients_of_run(&self, design: &[f64], indices: &[usize], outputs: Vec<Output>) -> Gradients {
+        let Solution { motion, sensitivities, measured, stop } = self.run_at(design);
+        let variables = self.model().variables.len();
+        let of = |k: usize| {
+            let measured = &measured;
+            indices.iter().flat_map(move |&m| (0..variables).map(move |v| measured.d(k, VariableId(v), m)))
+        };
+        Gradients {
+            d: (0..motion.len()).flat_map(of).collect(),
+            times: motion.times,
+            outputs,
+            variables,
+            method: Method::Direct,
+            admissibility: sensitivities.admissibility,
+            stop,
+        }
+    }
+
+    fn gradients_direct(&self, design: &[f64], outputs: Vec<Output>) -> Gradients {
+        let Solution { motion, sensitivities, stop, .. } = self.clone().bodies_only().run_at(design);
+        let Design { values, laws, .. } = &self.design(design, false);
+        let at = measure::At { model: self.model(), effects: self.effects(), values, laws };
+        let more = More { slopes: &SlopeValues::default(), whole_turns: &[] };
+        let by_variable = measure::derivatives(&at, &outputs, &motion, &sensitivities, &more);
+        let (asked, variables) = (outputs.len(), self.model().variables.len());
+        let mut d = Vec::with_capacity(by_variable.len());
+        for step in by_variable.chunks_exact(usize::max(asked * variables, 1)) {
+            (0..asked).for_each(|m| d.extend(step.iter().skip(m).step_by(asked)));
+        }
+        Gradients {
+            times: motion.times,
+            outputs,
+            variables,
+            method: Method::Direct,
+            admissibility: sensitivities.admissibility,
+            stop,
+            d,
+        }
+    }
+
+    fn gradients_adjoint<T: Real>(&self, design: &Design, outputs: Vec<Output>, witness: T) -> Gradients {
+        let model = self.model();
+        let (variables, asked) = (model.variables.len(), outputs.len());
+        let fields = self.effects().fields(&design.values, 0.0);
+        let mut result = Gradients {
+            d: vec![[f64::NAN; 3]; model.times.len() * asked * variables],
+            method: Method::Adjoint,
+            variables,
+            outputs,
+            ..Gradients::default()
+        };
+        let mut one = Tracing::new(self, design, &fields, &result.outputs, 0.0);
+        let mut all = Tracing::new(self, design, &fields, &result.outputs, witness);
+        let mut resisting: Vec<Resisting> = vec![(Vec::new(), 0.0); variables];
+        let mut walk = Walk::new(self, design, vec![false; model.bodies.len()], witness);
+        // Nothing is stored: no body's results are wanted.
+        let mut unused = Motion::default();
+        let mut store = Store { motion: &mut unused, sensitivities: &mut [], variables: 0 };
+        result.stop = walk.all(self, &mut store, &mut |_| ControlFlow::Continue(()), |_, solved, count| {
+            let times = &model.times[result.times.len()..][..count];
+            match solved {
+                Solved::One(stepper) => one.add(stepper, times, &mut resisting, &mut result),
+                Solved::Abreast(stepper) => all.add(stepper, times, &mut resisting, &mut result),
+            }
+        });
+        result.d.truncate(result.times.len() * asked * variables);
+        result.admissibility = admissibility(self.opens(), resisting, result.times.len());
+        for (v, answer) in result.admissibility.iter().enumerate() {
+            if matches!(answer, Admissibility::CannotFollow { .. }) {
+                result.d.iter_mut().skip(v).step_by(variables).for_each(|d| *d = [f64::NAN; 3]);
+            }
+        }
+        result
+    }
+}
+
+/// A number with its rates and its derivative by whatever is asked for.
+type Jet<T> = Dual<Rates<T>>;
+
+/// What the adjoint way needs besides a stepper.
+struct Tracing<'a, T> {
+    analysis: &'a Analysis<'a>,
+    adjoint: Adjoint<T>,
+    watch: Watch<T>,
+    asked: Vec<Asked<T>>,
+    /// Bodies that outputs are measured on.
+    bodies: Vec<usize>,
+    poses: Vec<Pose<Jet<T>>>,
+    /// What measures go by; and the same as it goes with each variable that moves some of it.
+    fixed: Fixed<Jet<T>>,
+    moved: Vec<Option<Fixed<Jet<T>>>>,
+    gradient: Vec<[T; 3]>,
+}
+
+/// An output, and what it depends on.
+struct Asked<T> {
+    output: Output,
+    /// Per body that it depends on: how it goes with the body's twist.
+    loads: Vec<(usize, Load<T>)>,
+    support: Support<T>,
+    /// Variables that move what it is measured with within its body.
+    variables: Vec<usize>,
+}
+
+impl<'a, T: Real> Tracing<'a, T> {
+    fn new(
+        analysis: &'a Analysis<'_>,
+        design: &Design,
+        fields: &[Field],
+        outputs: &[Output],
+        witness: T,
+    ) -> Self {
+        let (model, effects) = (analysis.model(), analysis.effects());
+        let adjoint = Adjoint::new(model, analysis.topology(), fields, witness);
+        let bodies: Vec<usize> = bodies_asked_for(model).into_iter().filter(|b| *b != GROUND.0).collect();
+        let depends = dependences(analysis, &design.values, &bodies, outputs);
+        let none = [Wrench::zero(witness); 3];
+        let asked = outputs.iter().zip(depends).map(|(output, [on, variables])| Asked {
+            output: output.clone(),
+            support: adjoint.support(analysis.topology(), &on),
+            loads: on.into_iter().map(|b| (b, none)).collect(),
+            variables,
+        });
+        let asked: Vec<Asked<T>> = asked.collect();
+        let zero = Dual::constant(Rates([witness.zero(); 3]));
+        let mut values: Vec<Jet<T>> = design.values.iter().map(|v| zero.like(*v)).collect();
+        let mut moved: Vec<Option<Fixed<Jet<T>>>> = values.iter().map(|_| None).collect();
+        for &v in asked.iter().flat_map(|a| &a.variables) {
+            moved[v].get_or_insert_with(|| {
+                let value = values[v];
+                values[v] = Dual::variable(value.v);
+                let fixed = effects.fixed(&values, zero);
+                values[v] = value;
+                fixed
+            });
+        }
+        Self {
+            watch: Watch::new(model, fields.len(), witness),
+            poses: vec![Pose::IDENTITY.spread(zero); model.bodies.len()],
+            fixed: effects.fixed(&values, zero),
+            gradient: vec![[witness.zero(); 3]; fields.len()],
+            analysis,
+            adjoint,
+            asked,
+            bodies,
+            moved,
+        }
+    }
+
+    /// Appends what is found at these times, one per lane.
+    fn add(
+        &mut self,
+        stepper: &mut Stepper<'_, T>,
+        times: &[f64],
+        resisting: &mut [Resisting],
+        result: &mut Gradients,
+    ) {
+        let of_lanes: [f64; LANES] = std::array::from_fn(|lane| times[lane.min(times.len() - 1)]);
+        self.adjoint.set_times(stepper, &of_lanes);
+        let (topology, state) = (&stepper.topology, &mut stepper.state);
+        state.finish_rates(topology);
+        let (first, asked) = (result.times.len(), self.asked.len());
+        state.witness.within(
+            #[inline(always)]
+            || {
+                for &b in &self.bodies {
+                    self.poses[b] = still(pose_with_rates(state, b));
+                }
+                for m in 0..asked {
+                    self.trace(topology, state, m);
+                    for (v, gradient) in self.gradient.iter().enumerate() {
+                        let mut of_lane = [[0.0; LANES]; 3];
+                        (0..3).for_each(|n| gradient[n].store(&mut of_lane[n]));
+                        for lane in 0..times.len() {
+                            let at = ((first + lane) * asked + m) * result.variables + v;
+                            result.d[at] = [0, 1, 2].map(|n| of_lane[n][lane]);
+                        }
+                    }
+                }
+            },
+        );
+        self.watch.look(&mut self.adjoint, topology, state, times, resisting);
+        result.times.extend_from_slice(times);
+    }
+
+    /// The gradient of output m: what its load works on the design, and what variables change in itself.
+    #[inline(always)]
+    fn trace(&mut self, topology: &Topology, state: &mut State<T>, m: usize) {
+        self.find_loads(m);
+        self.gradient.fill([state.witness.zero(); 3]);
+        let Asked { output, loads, support, variables } = &self.asked[m];
+        self.adjoint.add_work(topology, state, support, loads, 3, &mut self.gradient);
+        for &v in variables {
+            let fixed = self.moved[v].as_ref().expect("laid out for every variable of an output");
+            let moment = Moment::new(self.analysis.model(), fixed, &self.poses);
+            let Rates(d) = moment.output(output.source).d;
+            (0..3).for_each(|n| self.gradient[v][n] += d[n]);
+        }
+    }
+
+    /// How output m goes with the design twists of bodies: its derivatives by the six unit twists of each, which stand still
+    /// in the world, so that their rates are those of the load.
+    #[inline(always)]
+    fn find_loads(&mut self, m: usize) {
+        let Self { analysis, asked, poses, fixed, .. } = self;
+        let Asked { output, loads, .. } = &mut asked[m];
+        for (b, load) in loads {
+            for unit in 0..6 {
+                move_along(&mut poses[*b], unit);
+                let Rates(d) = Moment::new(analysis.model(), fixed, poses).output(output.source).d;
+                for (load, d) in load.iter_mut().zip(d) {
+                    let Wrench { m, f } = load;
+                    *[&mut m.x, &mut m.y, &mut m.z, &mut f.x, &mut f.y, &mut f.z][unit] = d;
+                }
+            }
+            stop(&mut poses[*b]);
+        }
+    }
+}
+
+/// Per output, the bodies that it depends on, and the variables that move what it is measured with.
+///
+/// A derivative that is not a number makes one of everything that depends on it. A formula that took the larger of two
+/// numbers would hide it: measures are smooth.
+fn dependences(
+    analysis: &Analysis<'_>,
+    values: &[f64],
+    bodies: &[usize],
+    outputs: &[Output],
+) -> Vec<[Vec<usize>; 2]> {
+    let (model, effects) = (analysis.model(), analysis.effects());
+    let zero = Dual::constant(0.0);
+    let unknown = |x: Dual| Dual { v: x.v, d: f64::NAN };
+    let mut values: Vec<Dual> = values.iter().map(|v| Dual::constant(*v)).collect();
+    let mut poses: Vec<Pose<Dual>> = model.bodies.iter().map(|b| b.frame.spread(zero)).collect();
+    let depend = |fixed: &Fixed<Dual>, poses: &[Pose<Dual>]| -> Vec<bool> {
+        outputs.iter().map(|o| Moment::new(model, fixed, poses).output(o.source).d.is_nan()).collect()
+    };
+    let mut found = vec![[Vec::new(), Vec::new()]; outputs.len()];
+    let mut note = |which: usize, what: usize, depends: Vec<bool>| {
+        let depending = found.iter_mut().zip(depends).filter(|(_, depends)| *depends);
+        depending.for_each(|(found, _)| found[which].push(what));
+    };
+    let fixed = effects.fixed(&values, zero);
+    for &b in bodies {
+        let pose = poses[b];
+        poses[b] = Pose { rot: Mat3 { cols: pose.rot.cols.map(|c| c.map(unknown)) }, r: pose.r.map(unknown) };
+        note(0, b, depend(&fixed, &poses));
+        poses[b] = pose;
+    }
+    for v in 0..values.len() {
+        let value = values[v];
+        values[v] = unknown(value);
+        note(1, v, depend(&effects.fixed(&values, zero), &poses));
+        values[v] = value;
+    }
+    found
+}
+
+/// A body's pose with its first two time derivatives.
+#[inline(always)]
+fn pose_with_rates<T: Real>(state: &State<T>, b: usize) -> Pose<Rates<T>> {
+    let (pose, v, a) = (state.pose[b], state.v[b], state.a[b]);
+    let rates = |x: Vec3<T>, first: Vec3<T>, second: Vec3<T>| {
+        Vec3::new(
+            Rates([x.x, first.x, second.x]),
+            Rates([x.y, first.y, second.y]),
+            Rates([x.z, first.z, second.z]),
+        )
+    };
+    let column = |e: Vec3<T>| {
+        let first = v.w.cross(e);
+        rates(e, first, a.w.cross(e) + v.w.cross(first))
+    };
+    let velocity = v.at(pose.r);
+    let r = rates(pose.r, velocity, a.at(pose.r) + v.w.cross(velocity));
+    let [x, y, z] = pose.rot.cols;
+    Pose { rot: Mat3 { cols: [column(x), column(y), column(z)] }, r }
+}
+
+/// A pose that goes with nothing.
+#[inline(always)]
+fn still<T: Real>(pose: Pose<Rates<T>>) -> Pose<Jet<T>> {
+    let still = |x: Vec3<Rates<T>>| x.map(Dual::constant);
+    let [x, y, z] = pose.rot.cols;
+    Pose { rot: Mat3 { cols: [still(x), still(y), still(z)] }, r: still(pose.r) }
+}
+
+/// Lets a pose go with a unit twist of the world: a turn about x, y or z, then a slide.
+#[inline(always)]
+fn move_along<T: Real>(pose: &mut Pose<Jet<T>>, unit: usize) {
+    let axis = Vec3::AXES[unit % 3].spread(pose.r.x.v);
+    let twist = if unit < 3 { Twist::turn(axis, Vec3::zero(axis.x)) } else { Twist::slide(axis) };
+    for c in &mut pose.rot.cols {
+        let rate = twist.w.cross(c.map(|x| x.v));
+        set(c, rate);
+    }
+    let velocity = twist.at(pose.r.map(|x| x.v));
+    set(&mut pose.r, velocity);
+}
+
+/// Lets it go with nothing again.
+#[inline(always)]
+fn stop<T: Real>(pose: &mut Pose<Jet<T>>) {
+    let nothing = Vec3::zero(pose.r.x.v);
+    pose.rot.cols.iter_mut().for_each(|c| set(c, nothing));
+    set(&mut pose.r, nothing);
+}
+
+#[inline(always)]
+fn set<T: Real>(of: &mut Vec3<Jet<T>>, d: Vec3<Rates<T>>) {
+    (of.x.d, of.y.d, of.z.d) = (d.x, d.y, d.z);
+}

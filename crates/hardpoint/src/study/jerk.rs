@@ -1,0 +1,70 @@
+//! Jerk over a motion.
+
+use std::ops::ControlFlow;
+
+use fearless_simd::{Level, dispatch};
+
+use crate::analysis::{Analysis, Design, Solved, Walk};
+use crate::motion::jerk::Jerk;
+use crate::motion::stepper::Stepper;
+use crate::motion::{BodyJerk, Motion, Stop};
+use crate::sink::Store;
+use crate::space::{LANES, Real, lanes};
+
+/// Third time derivatives of all bodies over a motion.
+#[derive(Clone, Debug, Default)]
+pub struct Jerks {
+    /// Output times that were solved, s.
+    pub times: Vec<f64>,
+    /// `states[k * bodies + b]` at time k of body b; body 0 is ground.
+    pub states: Vec<BodyJerk>,
+    /// How many bodies there are, ground included.
+    pub bodies: usize,
+    /// Why the run ended before the last output time, if it did.
+    pub stop: Option<Stop>,
+}
+
+impl Jerks {
+    /// Jerks of all bodies at output time k.
+    pub fn at(&self, k: usize) -> &[BodyJerk] {
+        &self.states[k * self.bodies..(k + 1) * self.bodies]
+    }
+}
+
+impl Analysis<'_> {
+    /// Jerk of all bodies over the motion of the design with variable k at `design[k]`.
+    ///
+    /// Where the third derivative of a driver's law jumps, it is that on the side which the law itself gives.
+    pub fn jerks(&self, design: &[f64]) -> Jerks {
+        let design = self.design(design, false);
+        dispatch!(Level::new(), simd => self.jerks_in(&design, lanes(simd)))
+    }
+
+    fn jerks_in<T: Real>(&self, design: &Design, witness: T) -> Jerks {
+        let (model, topology) = (self.model(), self.topology());
+        let mut one = Jerk::new(model, topology, 0.0);
+        let mut all = Jerk::new(model, topology, witness);
+        let mut walk = Walk::new(self, design, vec![false; model.bodies.len()], witness);
+        let mut result = Jerks { bodies: model.bodies.len(), ..Jerks::default() };
+        // Nothing else is stored: no body's results are wanted.
+        let mut unused = Motion::default();
+        let mut store = Store { motion: &mut unused, sensitivities: &mut [], variables: 0 };
+        result.stop = walk.all(self, &mut store, &mut |_| ControlFlow::Continue(()), |_, solved, count| {
+            let times = &model.times[result.times.len()..][..count];
+            match solved {
+                Solved::One(stepper) => add(&mut one, stepper, times, &mut result),
+                Solved::Abreast(stepper) => add(&mut all, stepper, times, &mut result),
+            }
+        });
+        result
+    }
+}
+
+/// Appends what is found at these times, one per lane.
+fn add<T: Real>(jerk: &mut Jerk<T>, stepper: &mut Stepper<'_, T>, times: &[f64], result: &mut Jerks) {
+    jerk.solve(stepper, &std::array::from_fn::<f64, LANES, _>(|lane| times[lane.min(times.len() - 1)]));
+    for (lane, &t) in times.iter().enumerate() {
+        result.times.push(t);
+        result.states.extend((0..result.bodies).map(|b| jerk.of_body(stepper, b, lane)));
+    }
+}
