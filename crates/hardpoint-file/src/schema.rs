@@ -635,6 +635,7 @@ enum VariableSchema {
     Tilt(TiltSchema),
     Fields(FieldsSchema),
     Markers(MarkersSchema),
+    Shape(ShapeSchema),
     Length(RodLengthSchema),
     Law(LawParameterSchema),
 }
@@ -705,6 +706,91 @@ struct TiltSchema {
     bounds: Option<[NumberSchema; 2]>,
     /// How large a change of it is usual.
     typical: Option<NumberSchema>,
+}
+
+/// Whole bodies change their shape, and everything on them follows.
+#[derive(JsonSchema)]
+#[schemars(deny_unknown_fields)]
+struct ShapeSchema {
+    /// A body's name, or a list of names.
+    shape: NamesSchema,
+    /// How their points move.
+    field: ShapeFieldSchema,
+    /// Whether rods and legs keep their lengths while it moves their ends.
+    #[schemars(default)]
+    fixed_length: bool,
+    /// The lowest and the highest value that it may have; it is 0 in the file.
+    bounds: Option<[NumberSchema; 2]>,
+    /// How large a change of it is usual.
+    typical: Option<NumberSchema>,
+}
+
+/// How the points of a body move.
+#[derive(JsonSchema)]
+#[schemars(untagged)]
+enum ShapeFieldSchema {
+    Translate(TranslateSchema),
+    Rotate(RotateSchema),
+    Scale(ScaleSchema),
+    Bend(BendSchema),
+    Through(ThroughPointsSchema),
+}
+
+/// All the same way. A length.
+#[derive(JsonSchema)]
+#[schemars(deny_unknown_fields)]
+struct TranslateSchema {
+    /// The direction, of any length.
+    translate: DirectionSchema,
+}
+
+/// About a line. An angle.
+#[derive(JsonSchema)]
+#[schemars(deny_unknown_fields)]
+struct RotateSchema {
+    /// The line's direction.
+    rotate: LineSchema,
+    /// A hardpoint on it.
+    at: Name,
+}
+
+/// Away from a point. A plain number, 1 being twice the size.
+#[derive(JsonSchema)]
+#[schemars(deny_unknown_fields)]
+struct ScaleSchema {
+    /// The hardpoint that stays.
+    scale: Name,
+    /// The only direction that grows. Default: all do.
+    along: Option<LineSchema>,
+}
+
+/// Like a beam. The length by which its free end goes aside.
+#[derive(JsonSchema)]
+#[schemars(deny_unknown_fields)]
+struct BendSchema {
+    /// The hardpoint where it is held, and the one where it is pushed.
+    bend: [Name; 2],
+    /// In which direction, of any length; only what is square to the beam counts.
+    towards: DirectionSchema,
+}
+
+/// As some hardpoints move, and smoothly between them. A length.
+#[derive(JsonSchema)]
+#[schemars(deny_unknown_fields)]
+struct ThroughPointsSchema {
+    /// The hardpoints.
+    through: Vec<ThroughPointSchema>,
+}
+
+/// How a hardpoint moves.
+#[derive(JsonSchema)]
+#[schemars(deny_unknown_fields)]
+struct ThroughPointSchema {
+    /// Its name.
+    at: Name,
+    /// How far, per unit of the variable; it stays where this is left out.
+    #[schemars(rename = "move")]
+    moves: Option<[f64; 3]>,
 }
 
 /// Design velocities V and U of single markers, under one parameter. A plain number.

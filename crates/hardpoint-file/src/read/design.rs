@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use hardpoint::joint::Quantity;
 use hardpoint::law::ParameterKind;
-use hardpoint::model::{ChangeDraft, End, Section, VariableDraft};
+use hardpoint::model::{ChangeDraft, End, Section, ShapeDraft, VariableDraft};
 use hardpoint::space::Vec3;
 
 use super::Raw;
@@ -20,6 +20,8 @@ const DESIGN: &[Key] = &[
     ("about", "\"x\""),
     ("fields", "[{ joint = \"J1\", body = \"crank\", V = [1, 0, 0] }]"),
     ("markers", "[{ joint = \"J1\", on = \"j\", move = [0, 0, 1] }]"),
+    ("shape", "\"lca\""),
+    ("field", "{ scale = \"A\", along = \"x\" }"),
     ("length", "\"rod\""),
     ("driver", "\"turn\""),
     ("parameter", "\"amplitude\""),
@@ -30,12 +32,24 @@ const DESIGN: &[Key] = &[
 const FIELD: &[Key] = &[("joint", "\"J1\""), ("body", "\"crank\""), ("V", "[1, 0, 0]"), ("U", "[0, 0, 0]")];
 const MARKER: &[Key] = &[("joint", "\"J1\""), ("on", "\"j\""), ("move", "[0, 0, 1]"), ("turn", "[0, 0, 0]")];
 
+const SHAPE: &[Key] = &[
+    ("translate", "\"z\""),
+    ("rotate", "\"z\""),
+    ("at", "\"A\""),
+    ("scale", "\"A\""),
+    ("along", "\"x\""),
+    ("bend", "[\"A\", \"B\"]"),
+    ("towards", "\"z\""),
+    ("through", "[{ at = \"A\", move = [0, 0, 1] }]"),
+];
+const THROUGH: &[Key] = &[("at", "\"A\""), ("move", "[0, 0, 1]")];
+
 impl Reader<'_> {
     pub(super) fn design(&mut self, model: &Fields<'_>, raw: &mut Raw) {
         for entry in self.entries(model, "design", "design variable") {
             let fields = self.entry("design variable", &entry, DESIGN);
             let mut place = EntryPlace::of(&fields);
-            let kinds: Vec<_> = ["move", "tilt", "fields", "markers", "length", "driver"]
+            let kinds: Vec<_> = ["move", "tilt", "fields", "markers", "shape", "length", "driver"]
                 .into_iter()
                 .filter(|k| fields.get(k).is_some())
                 .collect();
@@ -47,8 +61,8 @@ impl Reader<'_> {
                 None => {
                     let message = format!("{} does not say what it changes", fields.what);
                     self.report("HP0104", fields.at.clone(), message).help = Some(
-                        "give one of `move` (with `along`), `tilt` (with `about`), `fields`, `markers`, `length`, \
-                         `driver` (with `parameter`); for example `move = \"A\"` and `along = \"z\"`"
+                        "give one of `move` (with `along`), `tilt` (with `about`), `fields`, `markers`, `shape` (with \
+                         `field`), `length`, `driver` (with `parameter`); for example `move = \"A\"` and `along = \"z\"`"
                             .into(),
                     );
                     place.unread("name");
@@ -66,6 +80,9 @@ impl Reader<'_> {
             if first != "tilt" {
                 self.out_of_place(&fields, "about", "`about` goes with `tilt`");
             }
+            if first != "shape" {
+                self.out_of_place(&fields, "field", "`field` goes with `shape`");
+            }
             if first != "driver" {
                 self.out_of_place(&fields, "parameter", "`parameter` goes with `driver`");
             }
@@ -74,6 +91,7 @@ impl Reader<'_> {
                 "tilt" => self.tilt(&fields, &mut place).map(|c| vec![(entry.0.clone(), vec![c])]),
                 "fields" => self.velocity_fields(&fields, &mut place).map(|c| vec![(entry.0.clone(), c)]),
                 "markers" => self.markers(&fields, &mut place).map(|c| vec![(entry.0.clone(), c)]),
+                "shape" => self.shape(&fields, &mut place).map(|c| vec![(entry.0.clone(), vec![c])]),
                 "length" => self.rod_length(&fields, &mut place).map(|c| vec![(entry.0.clone(), vec![c])]),
                 "driver" => {
                     self.law_parameter(&fields, raw, &mut place).map(|c| vec![(entry.0.clone(), vec![c])])
@@ -191,6 +209,85 @@ impl Reader<'_> {
         let joint = self.name(f.value, &fields.subject("tilt"), "the name of a joint");
         let about = self.need(fields, "about").and_then(|f| self.line_of(fields, f, place));
         Some(ChangeDraft::Tilt { joint: joint?, about: about? })
+    }
+
+    /// A velocity field over whole bodies.
+    fn shape(&mut self, fields: &Fields<'_>, place: &mut EntryPlace) -> Option<ChangeDraft> {
+        let f = fields.get("shape")?;
+        place.items("changes", vec![f.value.span()]);
+        let (subject, expected) = (fields.subject("shape"), "a body's name or a list of names");
+        let bodies = match f.value.get_ref().as_array() {
+            None => self.name(f.value, &subject, expected).map(|n| vec![n]),
+            Some(list) => list.iter().map(|v| self.name(v, &subject, expected)).collect(),
+        };
+        let f = self.need(fields, "field")?;
+        let table = self.table(f.value, &fields.subject("field"), "a table that says how points move")?;
+        let field = self.fields(format!("`field` of {}", fields.what), f.value.span(), table, SHAPE);
+        let kinds: Vec<&str> = ["translate", "rotate", "scale", "bend", "through"]
+            .into_iter()
+            .filter(|k| field.get(k).is_some())
+            .collect();
+        let &[kind] = kinds.as_slice() else {
+            let message = format!("{} does not say in one way how points move", field.what);
+            self.report("HP0104", field.at.clone(), message).help = Some(
+                "give one of `translate = \"z\"`, `rotate = \"z\"` with `at = \"A\"`, `scale = \"A\"`, `bend = [\"A\", \"B\"]` with \
+                 `towards = \"z\"`, `through = [{ at = \"A\", move = [0, 0, 1] }]`"
+                    .into(),
+            );
+            return None;
+        };
+        for (key, goes_with) in [("at", "rotate"), ("along", "scale"), ("towards", "bend")] {
+            if kind != goes_with {
+                self.out_of_place(&field, key, format!("`{key}` goes with `{goes_with}`"));
+            }
+        }
+        let field = self.shape_field(kind, &field, place)?;
+        Some(ChangeDraft::Shape { bodies: bodies?, field })
+    }
+
+    fn shape_field(&mut self, kind: &str, fields: &Fields<'_>, place: &mut EntryPlace) -> Option<ShapeDraft> {
+        let f = fields.get(kind)?;
+        let subject = fields.subject(f.key);
+        Some(match kind {
+            "translate" => ShapeDraft::Translate(self.vector(f.value, &subject)?),
+            "rotate" => {
+                let about = self.line_of(fields, f, place);
+                let at = self.required(fields, "at", "a hardpoint's name");
+                ShapeDraft::Rotate { about: about?, at: at? }
+            }
+            "scale" => {
+                let from = self.name(f.value, &subject, "a hardpoint's name");
+                let along = match fields.get("along") {
+                    Some(f) => Some(self.line_of(fields, f, place)?),
+                    None => None,
+                };
+                ShapeDraft::Scale { from: from?, along }
+            }
+            "bend" => {
+                let expected = "a list of two hardpoints' names";
+                let names = self.list(f.value, &subject, expected)?;
+                let names: Vec<_> = names.iter().map(|v| self.name(v, &subject, expected)).collect();
+                let Ok([from, to]) = <[Option<String>; 2]>::try_from(names) else {
+                    self.wrong(f.value, &subject, expected);
+                    return None;
+                };
+                let towards = self.need(fields, "towards");
+                let towards = towards.and_then(|f| self.vector(f.value, &fields.subject("towards")));
+                ShapeDraft::Bend { from: from?, to: to?, towards: towards? }
+            }
+            _ => {
+                let items = self.tables(fields, "through", THROUGH, &mut EntryPlace::of(fields))?;
+                let moves: Vec<_> = items
+                    .iter()
+                    .map(|f| {
+                        let at = self.required(f, "at", "a hardpoint's name");
+                        let v = self.optional_vector(f, "move");
+                        Some((at?, v?.into()))
+                    })
+                    .collect();
+                ShapeDraft::Through(moves.into_iter().collect::<Option<_>>()?)
+            }
+        })
     }
 
     fn rod_length(&mut self, fields: &Fields<'_>, place: &mut EntryPlace) -> Option<ChangeDraft> {
@@ -327,6 +424,11 @@ impl Reader<'_> {
 fn quantity_of(raw: &Raw, changes: &[ChangeDraft]) -> Quantity {
     let of = |change: &ChangeDraft| match change {
         ChangeDraft::Move { .. } | ChangeDraft::Length { .. } => Quantity::Length,
+        ChangeDraft::Shape { field, .. } => match field {
+            ShapeDraft::Rotate { .. } => Quantity::Angle,
+            ShapeDraft::Scale { .. } => Quantity::Number,
+            _ => Quantity::Length,
+        },
         ChangeDraft::Tilt { .. } => Quantity::Angle,
         ChangeDraft::Marker { position, rotation, .. } => {
             match (*position != Vec3::ZERO, *rotation != Vec3::ZERO) {

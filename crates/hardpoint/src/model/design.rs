@@ -755,7 +755,7 @@ impl Model {
 
 impl Direction {
     /// The hardpoints that it follows.
-    fn hardpoints(self) -> impl Iterator<Item = HardpointId> {
+    pub(super) fn hardpoints(self) -> impl Iterator<Item = HardpointId> {
         let through = match self {
             Self::Along(_) => None,
             Self::Through(a, b) => Some([a, b]),

@@ -328,6 +328,13 @@ pub enum ChangeDraft {
         /// In the parameter's own unit, per unit of the variable.
         rate: f64,
     },
+    /// Whole bodies change their shape, and everything on them follows: joints with the markers of both bodies, axes, points.
+    Shape {
+        /// The names of the bodies.
+        bodies: Vec<String>,
+        /// How their points move.
+        field: ShapeDraft,
+    },
     /// The paper's V and U of the marker on one body.
     Field {
         /// The joint's name.
@@ -339,6 +346,38 @@ pub enum ChangeDraft {
         /// U, 3-1-3 Euler angle rates.
         u: Vec3,
     },
+}
+
+/// A velocity field over a body: how each of its points moves in the design configuration. Points are names of hardpoints.
+#[derive(Clone, Debug)]
+pub enum ShapeDraft {
+    /// All the same way, along a direction of any length.
+    Translate(Vec3),
+    /// About a line through a hardpoint.
+    Rotate {
+        /// The line's direction.
+        about: Line,
+        /// The hardpoint.
+        at: String,
+    },
+    /// Away from a hardpoint, in all directions or along one.
+    Scale {
+        /// The hardpoint.
+        from: String,
+        /// The direction.
+        along: Option<Line>,
+    },
+    /// Like a beam that is held at one hardpoint and pushed at another.
+    Bend {
+        /// Held here.
+        from: String,
+        /// Pushed here.
+        to: String,
+        /// In this direction, of any length; only what is square to the beam counts.
+        towards: Vec3,
+    },
+    /// As these hardpoints move, per unit, and smoothly between them.
+    Through(Vec<(String, Vec3)>),
 }
 
 /// A point to follow.

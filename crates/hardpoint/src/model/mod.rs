@@ -13,6 +13,7 @@ mod formula;
 mod idle;
 mod measure;
 mod metric;
+mod shape;
 mod wheel;
 
 pub(crate) use curve::Contact;
@@ -23,7 +24,7 @@ pub use draft::{
     AngleKindDraft, AxleDraft, BodyDraft, ChangeDraft, CouplerDraft, CouplerKindDraft, CurveDraft, Draft,
     DrivenDraft, DriverDraft, FormulaDraft, FormulaOf, FrameDraft, HardpointDraft, JointDraft, Line,
     MeasureDraft, MeasureKindDraft, MetricDraft, ParameterDraft, Place, PointDraft, PointRef, RayDraft,
-    TermDraft, VariableDraft, WheelDraft, WheelSpinDraft,
+    ShapeDraft, TermDraft, VariableDraft, WheelDraft, WheelSpinDraft,
 };
 pub use fault::{Fault, Locus, Section, did_you_mean};
 pub use formula::{Formula, NamedNumber, Nominal, NotConstant, Source, Target};

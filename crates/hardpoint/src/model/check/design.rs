@@ -1,6 +1,7 @@
 //! Checks of design variables.
 
 use super::*;
+use crate::model::shape::{Interpolation, ShapeField};
 
 impl Check<'_> {
     pub(super) fn variables(&mut self) {
@@ -15,9 +16,13 @@ impl Check<'_> {
             let mut quantity: Option<Quantity> = None;
             let mut changes = Vec::new();
             for (k, change) in v.changes.iter().enumerate() {
-                let Some((change, q)) = self.one_change(change, &v.name, here, k) else { continue };
+                let found = match change {
+                    ChangeDraft::Shape { bodies, field } => self.shape(bodies, field, &v.name, here, k),
+                    _ => self.one_change(change, &v.name, here, k).map(|(change, q)| (vec![change], q)),
+                };
+                let Some((found, q)) = found else { continue };
                 quantity = Some(if quantity.is_none_or(|before| before == q) { q } else { Quantity::Number });
-                changes.push(change);
+                changes.extend(found);
             }
             self.range(v, here);
             self.model.variables.push(DesignVariable {
@@ -50,6 +55,117 @@ impl Check<'_> {
             self.fault("HP0229", here.key("typical"), message)
                 .help("give how large a change of it is usual, or leave it out");
         }
+    }
+
+    /// What a velocity field over whole bodies does to everything on them: hardpoints of joints and points move, and axes along
+    /// vectors turn; axes through hardpoints follow these.
+    fn shape(
+        &mut self,
+        bodies: &[String],
+        field: &ShapeDraft,
+        owner: &str,
+        here: Here,
+        k: usize,
+    ) -> Option<(Vec<Change>, Quantity)> {
+        let at = here.item("changes", k);
+        let bodies: Vec<_> = bodies.iter().map(|b| self.body(b, at.clone())).collect();
+        let field = self.shape_field(field, owner, here);
+        let (bodies, (field, quantity)) = (bodies.into_iter().collect::<Option<Vec<BodyId>>>()?, field?);
+        let (mut moved, mut turned): (BTreeSet<usize>, Vec<JointId>) = Default::default();
+        for (j, joint) in self.model.joints.iter().enumerate() {
+            if !joint.bodies.iter().any(|b| bodies.contains(b)) {
+                continue;
+            }
+            moved.extend(joint.at.iter().filter(|h| **h != UNPLACED).map(|h| h.0));
+            let axes = [joint.axis, joint.axis2].into_iter().flatten();
+            moved.extend(axes.clone().flat_map(Direction::hardpoints).map(|h| h.0));
+            if axes.clone().any(|a| matches!(a, Direction::Along(_))) {
+                turned.push(JointId(j));
+            }
+        }
+        let points = self.model.points.iter().filter(|p| bodies.contains(&p.body) && p.at != UNPLACED);
+        moved.extend(points.map(|p| p.at.0));
+        let size = self.extent.size();
+        let mut changes = Vec::new();
+        for h in moved {
+            let [velocity, _] = field.at(self.model.hardpoints[h].position);
+            if velocity.norm() > SAME_POINT * size.min(1.0) && !self.curve_points.contains(&HardpointId(h)) {
+                changes.push(Change::Move { hardpoint: HardpointId(h), velocity });
+            }
+        }
+        for joint in turned {
+            let place = self.model.joints[joint.0].at[0];
+            let [_, rotation] = field.at(self.position(place));
+            if rotation.norm() > SAME_POINT {
+                let (end, position) = (End::Both, Vec3::ZERO);
+                changes.push(Change::Marker { joint, end, position, rotation });
+            }
+        }
+        if changes.is_empty() {
+            let message = format!("the field of design variable `{owner}` moves nothing on its bodies");
+            self.fault("HP0217", at, message).help("no joint or point of them is where the field moves");
+            return None;
+        }
+        Some((changes, quantity))
+    }
+
+    /// A velocity field, and what its variable measures.
+    fn shape_field(&mut self, field: &ShapeDraft, owner: &str, here: Here) -> Option<(ShapeField, Quantity)> {
+        let key = || here.key("field");
+        let length = Quantity::Length;
+        Some(match field {
+            ShapeDraft::Translate(v) => {
+                let (_, along) = self.line(&Line::Along(*v), owner, here, "field")?;
+                (ShapeField::Translate(along), length)
+            }
+            ShapeDraft::Rotate { about, at } => {
+                let through = self.hardpoint(at, key()).map(|h| self.position(h));
+                let (_, axis) = self.line(about, owner, here, "field")?;
+                (ShapeField::Rotate { axis, through: through? }, Quantity::Angle)
+            }
+            ShapeDraft::Scale { from, along } => {
+                let from = self.hardpoint(from, key()).map(|h| self.position(h));
+                let along = match along {
+                    Some(line) => Some(self.line(line, owner, here, "field")?.1),
+                    None => None,
+                };
+                (ShapeField::Scale { from: from?, along }, Quantity::Number)
+            }
+            ShapeDraft::Bend { from, to, towards } => {
+                let ends = [from, to].map(|name| self.hardpoint(name, key()).map(|h| self.position(h)));
+                let [from, to] = [ends[0]?, ends[1]?];
+                let along =
+                    (to - from).unit().filter(|_| (to - from).norm() > SAME_POINT * self.extent.size());
+                let square = along.and_then(|e| (*towards - e * e.dot(*towards)).unit());
+                let Some(towards) = square else {
+                    let message = format!("the bend of design variable `{owner}` has no direction");
+                    self.fault("HP0205", key(), message)
+                        .note("its two hardpoints are at one place, or `towards` is along the line between them")
+                        .help("name two hardpoints that lie apart, and a direction across");
+                    return None;
+                };
+                (ShapeField::Bend { from, to, towards }, length)
+            }
+            ShapeDraft::Through(moves) => {
+                let points: Vec<_> = moves
+                    .iter()
+                    .map(|(name, _)| self.hardpoint(name, key()).map(|h| self.position(h)))
+                    .collect();
+                let points: Vec<Vec3> = points.into_iter().collect::<Option<_>>()?;
+                let velocities: Vec<Vec3> = moves.iter().map(|(_, v)| *v).collect();
+                let found = Interpolation::new(&points, &velocities);
+                let moves =
+                    velocities.iter().any(|v| v.norm() > 0.0) && velocities.iter().all(|v| v.is_finite());
+                let Some(found) = found.filter(|_| moves) else {
+                    let message = format!("no field of design variable `{owner}` goes through these points");
+                    self.fault("HP0217", key(), message)
+                        .note("none of them moves, or two of them are at one place and move differently")
+                        .help("give points at different places, and how far each moves per unit");
+                    return None;
+                };
+                (ShapeField::Through(found), length)
+            }
+        })
     }
 
     fn one_change(
@@ -154,6 +270,7 @@ impl Check<'_> {
                 };
                 Some((Change::Law { driver, parameter: p, rate: *rate }, quantity))
             }
+            ChangeDraft::Shape { .. } => unreachable!("a shape is many changes"),
             ChangeDraft::Field { joint, body, v, u } => {
                 let joint = self.joint(joint, at.clone());
                 let body = self.body(body, at.clone());

@@ -1,0 +1,177 @@
+//! Design velocity fields over the whole of a body: V(s), and the rotation that goes with it, at every point s (paper,
+//! section 3: one parameter tau, many points).
+
+use faer::Mat;
+
+use crate::space::Vec3;
+
+/// How every point of a body moves per unit of a design variable.
+#[derive(Clone, Debug)]
+pub(super) enum ShapeField {
+    /// All points the same way: m per m.
+    Translate(Vec3),
+    /// About a line through a point: per rad.
+    Rotate { axis: Vec3, through: Vec3 },
+    /// Away from a point, or from the plane through it square to a direction: per unit, 1 being twice the size.
+    Scale { from: Vec3, along: Option<Vec3> },
+    /// A beam from one point to another that is held at the first and pushed sideways at the second: m per m there.
+    Bend { from: Vec3, to: Vec3, towards: Vec3 },
+    /// As given points move, and smoothly between them.
+    Through(Interpolation),
+}
+
+impl ShapeField {
+    /// Velocity of the point that is at s, m per unit, and the rate at which what is fixed there turns, rad per unit: half
+    /// the curl of the velocity.
+    pub fn at(&self, s: Vec3) -> [Vec3; 2] {
+        match self {
+            Self::Translate(v) => [*v, Vec3::ZERO],
+            Self::Rotate { axis, through } => [axis.cross(s - *through), *axis],
+            Self::Scale { from, along: None } => [s - *from, Vec3::ZERO],
+            Self::Scale { from, along: Some(u) } => [*u * u.dot(s - *from), Vec3::ZERO],
+            Self::Bend { from, to, towards } => {
+                let length = (*to - *from).norm();
+                let e = (*to - *from) * (1.0 / length);
+                let along = e.dot(s - *from);
+                let (deflection, slope) = cantilever(along / length);
+                // Sections stay plane and square to the bent axis.
+                let turn = e.cross(*towards) * (slope / length);
+                [*towards * deflection + turn.cross(s - *from - e * along), turn]
+            }
+            Self::Through(interpolation) => interpolation.at(s),
+        }
+    }
+}
+
+/// Deflection and slope at x of a beam of unit length that is held at 0 and deflected by 1 at 1; straight on beyond its ends.
+fn cantilever(x: f64) -> (f64, f64) {
+    match x {
+        x if x <= 0.0 => (0.0, 0.0),
+        x if x < 1.0 => (0.5 * x * x * (3.0 - x), 1.5 * x * (2.0 - x)),
+        x => (1.0 + 1.5 * (x - 1.0), 1.5),
+    }
+}
+
+/// Radial basis functions `r^3` at given points and a linear function: the smoothest field through their velocities. Points
+/// that move as a rigid or an evenly stretched body move everything so.
+#[derive(Clone, Debug)]
+pub(super) struct Interpolation {
+    centre: Vec3,
+    scale: f64,
+    points: Vec<Vec3>,
+    /// Per point, in its unit of length.
+    weights: Vec<Vec3>,
+    /// The linear function: its value at the centre, then its derivatives by x, y and z.
+    linear: [Vec3; 4],
+}
+
+/// How well given velocities must be met, as a part of the largest.
+const MET: f64 = 1e-9;
+
+impl Interpolation {
+    /// Through these velocities at these points; `None` where two points are at one place.
+    pub fn new(points: &[Vec3], velocities: &[Vec3]) -> Option<Self> {
+        let n = points.len();
+        let centre = points.iter().fold(Vec3::ZERO, |sum, p| sum + *p) * (1.0 / n as f64);
+        let radius = points.iter().map(|p| (*p - centre).norm()).fold(0.0, f64::max);
+        let scale = if radius > 0.0 { radius } else { 1.0 };
+        let scaled: Vec<Vec3> = points.iter().map(|p| (*p - centre) * (1.0 / scale)).collect();
+        let linear = |p: Vec3, k: usize| [1.0, p.x, p.y, p.z][k];
+        let entry = |i: usize, j: usize| match (i < n, j < n) {
+            (true, true) => (scaled[i] - scaled[j]).norm().powi(3),
+            (true, false) => linear(scaled[i], j - n),
+            (false, true) => linear(scaled[j], i - n),
+            (false, false) => 0.0,
+        };
+        let system = Mat::from_fn(n + 4, n + 4, entry);
+        let right = Mat::from_fn(n + 4, 3, |i, axis| if i < n { velocities[i][axis] } else { 0.0 });
+        // Of few points, or points in a plane, many linear functions go through: the least of them is taken.
+        let found = system.svd().ok()?.pseudoinverse() * right;
+        let row = |i: usize| Vec3::new(found[(i, 0)], found[(i, 1)], found[(i, 2)]);
+        let this = Self {
+            centre,
+            scale,
+            points: scaled,
+            weights: (0..n).map(row).collect(),
+            linear: std::array::from_fn(|k| row(n + k)),
+        };
+        let largest = velocities.iter().map(|v| v.norm()).fold(0.0, f64::max);
+        let meets = |(p, v): (&Vec3, &Vec3)| (this.at(*p)[0] - *v).norm() <= MET * largest;
+        points.iter().zip(velocities).all(meets).then_some(this)
+    }
+
+    fn at(&self, s: Vec3) -> [Vec3; 2] {
+        let s = (s - self.centre) * (1.0 / self.scale);
+        let [value, dx, dy, dz] = self.linear;
+        let mut v = value + dx * s.x + dy * s.y + dz * s.z;
+        // curl(f w) = grad f x w
+        let [x, y, z] = Vec3::AXES;
+        let mut curl = x.cross(dx) + y.cross(dy) + z.cross(dz);
+        for (p, w) in self.points.iter().zip(&self.weights) {
+            let apart = s - *p;
+            let r = apart.norm();
+            v += *w * (r * r * r);
+            curl += (apart * (3.0 * r)).cross(*w);
+        }
+        [v, curl * (0.5 / self.scale)]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn all() -> Vec<ShapeField> {
+        let [x, y, z] = Vec3::AXES;
+        let points = [Vec3::ZERO, x, y * 0.7, z * 1.2, Vec3::new(0.4, 0.6, 0.3)];
+        let velocities = [Vec3::ZERO, z, y * 0.2, x * -0.4, Vec3::new(0.1, -0.2, 0.5)];
+        vec![
+            ShapeField::Translate(Vec3::new(0.2, 1.0, -0.3)),
+            ShapeField::Rotate { axis: Vec3::new(0.6, 0.0, 0.8), through: Vec3::new(0.1, 0.2, 0.3) },
+            ShapeField::Scale { from: Vec3::new(0.5, 0.1, 0.0), along: None },
+            ShapeField::Scale { from: Vec3::ZERO, along: Some(Vec3::new(0.0, 0.6, 0.8)) },
+            ShapeField::Bend { from: Vec3::ZERO, to: x * 2.0, towards: z },
+            ShapeField::Through(Interpolation::new(&points, &velocities).unwrap()),
+        ]
+    }
+
+    #[test]
+    fn what_turns_turns_by_half_the_curl() {
+        let h = 1e-5;
+        for field in all() {
+            for s in [Vec3::new(0.31, 0.24, -0.4), Vec3::new(1.3, -0.2, 0.5), Vec3::new(-0.5, 0.3, 0.2)] {
+                let d = |k: usize| {
+                    let step = Vec3::AXES[k] * h;
+                    (field.at(s + step)[0] - field.at(s - step)[0]) * (0.5 / h)
+                };
+                let [dx, dy, dz] = [d(0), d(1), d(2)];
+                let half = Vec3::new(dy.z - dz.y, dz.x - dx.z, dx.y - dy.x) * 0.5;
+                let found = field.at(s)[1];
+                // Off its axis a bent beam's sections also shear as its curvature changes.
+                let off = if matches!(field, ShapeField::Bend { .. }) { 1.0 } else { 1e-8 };
+                assert!((half - found).norm() < off, "{field:?} at {s:?}: {found:?} {half:?}");
+            }
+        }
+        let bend = &all()[4];
+        let [v, turn] = bend.at(Vec3::new(2.0, 0.0, 0.0));
+        assert!((v - Vec3::AXES[2]).norm() < 1e-15 && (turn - Vec3::new(0.0, -0.75, 0.0)).norm() < 1e-15);
+        assert_eq!(bend.at(Vec3::new(-1.0, 0.3, 0.0)), [Vec3::ZERO; 2]);
+    }
+
+    #[test]
+    fn an_interpolation_meets_its_points_and_repeats_a_rigid_motion() {
+        let [x, y, z] = Vec3::AXES;
+        let turn = Vec3::new(0.3, -0.5, 0.2);
+        let rigid = |p: Vec3| Vec3::new(1.0, 2.0, 3.0) + turn.cross(p);
+        let points = [Vec3::ZERO, x, y, z, x + y * 2.0];
+        let field = Interpolation::new(&points, &points.map(rigid)).unwrap();
+        for p in [Vec3::new(4.0, -2.0, 1.0), Vec3::new(0.3, 0.3, 0.3)] {
+            let [v, w] = field.at(p);
+            assert!((v - rigid(p)).norm() < 1e-12 && (w - turn).norm() < 1e-12, "{v:?} {w:?}");
+        }
+        // Two points, and three on a line, leave much open; they are met all the same.
+        let field = Interpolation::new(&[Vec3::ZERO, x, x * 2.0], &[Vec3::ZERO, z, Vec3::ZERO]).unwrap();
+        assert!((field.at(x)[0] - z).norm() < 1e-9 && field.at(x * 2.0)[0].norm() < 1e-9);
+        assert!(Interpolation::new(&[x, x], &[z, y]).is_none());
+    }
+}
