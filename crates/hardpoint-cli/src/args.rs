@@ -105,6 +105,9 @@ pub struct Run {
     /// Do not re-solve moved designs for the report to compare with
     #[arg(long)]
     pub no_compare: bool,
+    /// Write the third time derivatives of all bodies too, as jerk.csv
+    #[arg(long)]
+    pub jerk: bool,
 }
 
 const AFTER_CHECK: &str = "\

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use hardpoint::model::VariableId;
-use hardpoint::study::{Difference, central_differences, natural_step};
+use hardpoint::study::{Difference, central_differences, natural_step, validity};
 use hardpoint::{Analysis, Solution};
 use hardpoint_file::ModelFile;
 use hardpoint_report::facts::Facts;
@@ -14,6 +14,7 @@ use hardpoint_report::metric::MetricFact;
 use hardpoint_report::page::Table;
 use hardpoint_report::payload::payload;
 use hardpoint_report::summary::{RunStatus, Summary};
+use hardpoint_report::validity::ValidityFact;
 use hardpoint_report::{csv, diagnose, page};
 
 use crate::args::Run;
@@ -53,8 +54,18 @@ fn run_in(session: &Session, options: &Run) -> Result<Outcome, Outcome> {
         if options.no_compare { Vec::new() } else { differences(session, &analysis, &solution) };
     summary.timings.compare = started.elapsed().as_secs_f64();
 
+    summary.validity = trusted(session, &file, &analysis, &solution);
+
     let report = folder.path_of("report.html");
     if !solution.motion.is_empty() {
+        if options.jerk {
+            let jerks = analysis.jerks(&[]);
+            let write = |out: &mut dyn Write| csv::write_jerk(&file.model, file.units, &jerks, out);
+            folder
+                .write("jerk.csv", |out| write(out).map_err(Into::into))
+                .map_err(|e| session.not_written(&e))?;
+            summary.files.push(folder.path_of("jerk.csv").display().to_string());
+        }
         let results =
             Results { file: &file, analysis: &analysis, solution: &solution, differences: &differences };
         results.write(&mut folder, &mut summary, session).map_err(|e| session.not_written(&e))?;
@@ -83,6 +94,21 @@ fn run_in(session: &Session, options: &Run) -> Result<Outcome, Outcome> {
 /// `results/<stem>` under the current folder.
 fn default_folder(model: &Path) -> PathBuf {
     Path::new("results").join(model.file_stem().unwrap_or(model.as_os_str()))
+}
+
+/// How far the sensitivities can be trusted, as far as the user has patience.
+fn trusted(
+    session: &Session,
+    file: &ModelFile,
+    analysis: &Analysis<'_>,
+    solution: &Solution,
+) -> Vec<ValidityFact> {
+    if solution.motion.is_empty() || session.interrupted() {
+        return Vec::new();
+    }
+    let _working = Meter::working("second derivatives");
+    let found = validity(analysis, solution, |_| !session.interrupted());
+    ValidityFact::all(&file.model, file.units, solution, &found)
 }
 
 /// Differences of a complete motion by every variable that it can follow, as far as the user has patience.
@@ -132,9 +158,8 @@ impl Results<'_> {
         let payload = payload(self.file, self.analysis, solution, self.differences, summary);
         let html = page::html(&payload).expect("a payload is plain data");
         folder.write("report.html", |out| out.write_all(html.as_bytes()))?;
-        summary.files = ["motion.csv", "sensitivity.csv", "summary.json", "report.html"]
-            .map(|name| folder.path_of(name).display().to_string())
-            .to_vec();
+        let names = ["motion.csv", "sensitivity.csv", "summary.json", "report.html"];
+        summary.files.splice(0..0, names.map(|name| folder.path_of(name).display().to_string()));
         summary.timings.write = started.elapsed().as_secs_f64();
         summary.timings.total = session.seconds();
         let json = json_text(summary);
@@ -171,7 +196,8 @@ fn summary_text(summary: &Summary) -> String {
     let mut out = format!("{}\n{}{}", text::bold(&model.name), text::pairs(&rows), text::notes(summary));
     let assembly = summary.assembly.iter().flat_map(|a| a.tables());
     let metrics = MetricFact::table(&summary.metrics).into_iter();
-    for table in assembly.chain(metrics).chain(largest(summary).filter(|_| steps.solved > 0)) {
+    let trusted = ValidityFact::table(summary).into_iter();
+    for table in assembly.chain(metrics).chain(trusted).chain(largest(summary).filter(|_| steps.solved > 0)) {
         out += &format!("\n{}", text::table(&table));
     }
     out

@@ -117,34 +117,29 @@ impl Session {
 
     /// Tells that the command line asks for something that the model does not have.
     pub fn misunderstood(&self, why: &str) -> Outcome {
-        const CODE: &str = "HP0602";
-        if self.json {
-            let d = json!({
-                "severity": "error", "code": CODE, "message": why, "file": null,
-                "line": null, "column": null, "label": null, "notes": [], "help": null,
-            });
-            self.print_json(&json!({ "generator": GENERATOR, "status": "error", "diagnostics": [d] }));
-        } else {
-            text::complain(&text::error(CODE, why, "nothing was solved", "see `hardpoint help`"));
-        }
+        self.refuse("HP0602", why, None, "nothing was solved", "see `hardpoint help`");
         Outcome::Misunderstood
     }
 
     /// Tells that a result could not be written.
     pub fn not_written(&self, failure: &NotWritten) -> Outcome {
-        const CODE: &str = "HP0601";
         let message = format!("`{}` cannot be written", failure.path.display());
-        let (note, help) = (failure.error.to_string(), "name a folder that you may write to with `-o`");
+        let help = "name a folder that you may write to with `-o`";
+        self.refuse("HP0601", &message, Some(&failure.path), &failure.error.to_string(), help);
+        Outcome::NotWritten
+    }
+
+    /// Tells what is wrong but not in the model's file.
+    fn refuse(&self, code: &str, message: &str, file: Option<&Path>, note: &str, help: &str) {
         if self.json {
             let d = json!({
-                "severity": "error", "code": CODE, "message": message, "file": failure.path,
+                "severity": "error", "code": code, "message": message, "file": file,
                 "line": null, "column": null, "label": null, "notes": [note], "help": help,
             });
             self.print_json(&json!({ "generator": GENERATOR, "status": "error", "diagnostics": [d] }));
         } else {
-            text::complain(&text::error(CODE, &message, &note, help));
+            text::complain(&text::error(code, message, note, help));
         }
-        Outcome::NotWritten
     }
 
     /// Prints a JSON document.

@@ -13,6 +13,7 @@ use hardpoint::model::{Model, VariableId};
 use hardpoint::motion::BodyState;
 use hardpoint::sensitivity::BodySensitivity;
 use hardpoint::space::Vec3;
+use hardpoint::study::Jerks;
 use hardpoint_file::Units;
 use serde::{Serialize, Serializer};
 
@@ -50,6 +51,30 @@ pub fn write_motion(model: &Model, units: Units, solution: &Solution, out: impl 
             row.extend(
                 known(output, solution.measured.value(k, m)).map(|x| units.from_si(output.dimension, x)),
             );
+        }
+        writer.serialize(numbers(&row))?;
+    }
+    writer.flush()?;
+    Ok(())
+}
+
+/// Writes time, and the third time derivatives of every body but ground: of its origin, and of its orientation.
+///
+/// # Errors
+/// Where `out` cannot be written.
+pub fn write_jerk(model: &Model, units: Units, jerks: &Jerks, out: impl Write) -> csv::Result<()> {
+    let mut header = vec!["t [s]".to_owned()];
+    for body in &model.bodies[1..] {
+        header.extend(components(&body.name, "jerk_", units, Length, 3));
+        header.extend(components(&body.name, "angular_jerk_", units, Angle, 3));
+    }
+    let mut writer = WriterBuilder::new().has_headers(false).from_writer(out);
+    writer.write_record(&header)?;
+    for (k, &t) in jerks.times.iter().enumerate() {
+        let mut row = vec![t];
+        for body in &jerks.at(k)[1..] {
+            row.extend(body.jerk.to_array().map(|x| units.from_si(Length, x)));
+            row.extend(body.angular.to_array().map(|x| units.from_si(Angle, x)));
         }
         writer.serialize(numbers(&row))?;
     }

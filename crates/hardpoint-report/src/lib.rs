@@ -25,6 +25,7 @@ pub mod metric;
 pub mod page;
 pub mod payload;
 pub mod summary;
+pub mod validity;
 pub mod verdict;
 pub mod whatif;
 

@@ -315,8 +315,9 @@ fn fill(template: &str, content: impl Fn(&str) -> String) -> String {
     page
 }
 
-fn escape_text(text: &str) -> String {
-    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;")
+/// Text for between tags, or for an attribute in double quotes.
+pub(crate) fn escape_text(text: &str) -> String {
+    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
 }
 
 #[cfg(test)]

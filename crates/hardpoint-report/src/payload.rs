@@ -26,6 +26,7 @@ use crate::page::{
     Sensitivity, Status, Units as PageUnits, Variable,
 };
 use crate::summary::{RoundOff, RunStatus, Summary};
+use crate::validity::ValidityFact;
 
 /// The page shows at most about this many output times.
 const MOST_STEPS: usize = 1000;
@@ -79,6 +80,7 @@ pub fn payload(
         checks: MetricFact::table(&summary.metrics)
             .into_iter()
             .chain(summary.assembly.iter().flat_map(|a| a.tables()))
+            .chain(ValidityFact::table(summary))
             .chain(summary.model.tables())
             .collect(),
     }

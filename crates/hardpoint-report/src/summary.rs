@@ -15,6 +15,7 @@ use crate::facts::{Facts, variable_unit};
 use crate::figures::{order_unit, per, symbol};
 use crate::margin::MarginFact;
 use crate::metric::MetricFact;
+use crate::validity::ValidityFact;
 
 /// Everything that `summary.json` holds. Figures are in the model's units, times in s.
 #[derive(Clone, Debug, Serialize)]
@@ -35,6 +36,8 @@ pub struct Summary {
     pub assembly: Option<AssemblyFact>,
     /// Why it ended early, if it did.
     pub stop: Option<StopFact>,
+    /// How far sensitivities can be trusted, variable by variable; empty where that was not looked at.
+    pub validity: Vec<ValidityFact>,
     /// What the metrics come to.
     pub metrics: Vec<MetricFact>,
     /// The largest sensitivities of every measure.
@@ -193,6 +196,7 @@ impl Summary {
             margin: MarginFact::new(model, topology, &solution.motion),
             assembly: solution.motion.assembly.as_ref().map(|a| AssemblyFact::new(model, file.units, a)),
             stop: stop_fact(file, solution),
+            validity: Vec::new(),
             metrics: MetricFact::all(model, file.units, solution),
             sensitivities: rankings(model, file.units, solution),
             timings: Timings::default(),

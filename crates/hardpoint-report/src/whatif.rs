@@ -135,17 +135,12 @@ impl WhatIfFacts {
         let margin = |s: &Solution| MarginFact::new(model, topology, &s.motion);
         let measured = &what_if.today.measured;
         let mut facts = Self {
-            generator: GENERATOR,
-            name: model.name.clone(),
-            file: file.file_name().into(),
             change,
-            nearest: Vec::new(),
             follows: follows(model, what_if),
             margins: [margin(&what_if.today), margin(&what_if.exact)],
-            measures: Vec::new(),
             metrics: MetricChange::all(model, units, what_if),
-            influence: influence(model, units, &what_if.today),
             times: what_if.today.motion.times[..what_if.len()].to_vec(),
+            ..Self::of_today(file, topology, &what_if.today)
         };
         for (m, output) in measured.outputs.iter().enumerate() {
             let shown = |x: f64| units.from_si(output.dimension, x);

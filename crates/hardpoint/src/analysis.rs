@@ -16,7 +16,7 @@ use crate::motion::parts::Parts;
 use crate::motion::stepper::Stepper;
 use crate::motion::{BodyState, Effort, Motion, Stop, StopKind};
 use crate::sensitivity::{
-    Admissibility, JointDefect, Sensing, SensingDesigns, Sensitivities, admissibility_at_design,
+    Admissibility, JointDefect, Sensing, SensingDesigns, Sensitivities, admissibility_at_design, along,
 };
 use crate::sink::{Sink, Store};
 use crate::space::{LANES, Real, lanes};
@@ -68,8 +68,9 @@ pub(crate) struct Design {
     pub values: Vec<f64>,
     geometry: Geometry,
     pub laws: Vec<Law>,
-    /// How the variables change it, if that is asked for.
+    /// How the variables change it, if that is asked for, and the joints that each opens in the nominal design.
     fields: Vec<Field>,
+    opens: Vec<Vec<JointDefect>>,
 }
 
 /// What a streamed run says at its end.
@@ -201,8 +202,23 @@ impl<'m> Analysis<'m> {
             geometry: self.effects.geometry(&values, 0.0),
             laws: self.effects.laws(&values),
             fields: if sensitivities { self.effects.fields(&values, 0.0) } else { Vec::new() },
+            opens: if sensitivities { self.opens().to_vec() } else { Vec::new() },
             values,
         }
+    }
+
+    /// Whether and how the mechanism follows a change of the nominal design as a whole, in which variable k goes by `change[k]`:
+    /// together, variables may be followed that are not one by one.
+    pub fn admissibility_of(&self, change: &[f64]) -> Admissibility {
+        let mut design = self.design(&[], false);
+        let along = along(&self.model.whole(change));
+        let field = self.effects.field_along(&along, &design.values, 0.0);
+        design.opens = vec![admissibility_at_design(self.model, &field)];
+        design.fields = vec![field];
+        let mut solution = Solution::default();
+        let bodies = self.clone().bodies_only();
+        bodies.solve(&design, &mut |_| ControlFlow::Continue(()), &mut solution);
+        solution.sensitivities.admissibility.pop().expect("that of the one field")
     }
 
     /// As [`Analysis::run`], but nothing is stored: the sink takes every result as it is found.
@@ -220,7 +236,7 @@ impl<'m> Analysis<'m> {
             let mut walk = Walk::new(self, &design, wanted, lanes(simd));
             let stop = walk.all(self, sink, &mut |_| ControlFlow::Continue(()), |_, _, _| ());
             let effort = walk.one.effort;
-            let admissibility = walk.sensing.map_or_else(Vec::new, |s| s.admissibility(self.opens(), walk.done));
+            let admissibility = walk.sensing.map_or_else(Vec::new, |s| s.admissibility(&design.opens, walk.done));
             Streamed { steps: walk.done, admissibility, effort, stop }
         })
     }
@@ -296,7 +312,7 @@ impl<'m> Analysis<'m> {
         motion.assembly = walk.one.assembly.take();
         sensitivities.states.truncate(steps * variables * motion.bodies);
         sensitivities.admissibility =
-            walk.sensing.map_or_else(Vec::new, |s| s.admissibility(self.opens(), steps));
+            walk.sensing.map_or_else(Vec::new, |s| s.admissibility(&design.opens, steps));
         solution.sensitivities = sensitivities;
         slopes
     }

@@ -7,7 +7,7 @@ use plotters::prelude::*;
 use super::{ChangeFact, MeasureFact, WhatIfFacts};
 use crate::figures::{number, rounded};
 use crate::metric::MetricChange;
-use crate::page::Table;
+use crate::page::{Table, escape_text as escaped};
 
 /// Size of one plot, pixels.
 const SIZE: (u32, u32) = (560, 340);
@@ -226,8 +226,4 @@ fn table(table: &Table) -> String {
         escaped(&table.note),
         cells("th", &table.header)
     )
-}
-
-fn escaped(text: &str) -> String {
-    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
 }

@@ -316,27 +316,21 @@ impl<'a, T: Real> Moment<'a, T> {
     }
 
     /// One output.
-    #[inline(never)]
     pub fn output(&self, output: OutputSource) -> T {
-        self.poses[0].r.x.within(
-            #[inline(always)]
-            || match output {
-                OutputSource::Measure(k) => self.measure(k),
-                OutputSource::Point(p, axis) => {
-                    let Vec3 { x, y, z } = self.point(p);
-                    [x, y, z][axis]
-                }
-            },
-        )
+        match output {
+            OutputSource::Measure(k) => self.measure(k),
+            OutputSource::Point(p, axis) => {
+                let Vec3 { x, y, z } = self.point(p);
+                [x, y, z][axis]
+            }
+        }
     }
 
-    #[inline(always)]
     fn point(&self, p: PointId) -> Vec3<T> {
         self.poses[self.model.points[p.0].body.0].point(self.fixed.points[p.0])
     }
 
     /// Formulas and signs: `docs/measures.md`.
-    #[inline(always)]
     fn measure(&self, k: usize) -> T {
         let unknown = || self.poses[0].r.x.like(f64::NAN);
         if self.model.goes_by_driver(k) {
@@ -451,13 +445,11 @@ impl<'a, T: Real> Moment<'a, T> {
     }
 
     /// Direction d of measure k, which is fixed in this body.
-    #[inline(always)]
     fn direction(&self, k: usize, d: usize, body: BodyId) -> Vec3<T> {
         self.poses[body.0].rot * self.fixed.directions[k][d].expect("a measure with directions")
     }
 
     /// A joint's coordinate between its two markers, whether the joint is cut or not.
-    #[inline(always)]
     fn coordinate(&self, k: usize, joint: JointId, coordinate: usize) -> T {
         let j = &self.model.joints[joint.0];
         let markers = self.fixed.markers[k].expect("a measure of a joint's coordinate");

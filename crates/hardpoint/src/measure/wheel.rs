@@ -18,13 +18,11 @@ pub(super) struct WheelAt<T> {
 }
 
 /// `atan2(e_x, s e_y)` of the outboard spin axis e of a wheel on side s.
-#[inline(always)]
 pub(super) fn toe<T: Real>(e: Vec3<T>, side: T) -> T {
     e.x.atan2(side * e.y)
 }
 
 /// `-asin(e_z)`.
-#[inline(always)]
 pub(super) fn camber<T: Real>(e: Vec3<T>) -> T {
     -e.z.asin()
 }

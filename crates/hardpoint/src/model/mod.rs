@@ -9,6 +9,7 @@ mod curve;
 mod design;
 mod draft;
 mod fault;
+mod field;
 mod formula;
 mod idle;
 mod measure;
@@ -19,7 +20,7 @@ mod wheel;
 pub(crate) use curve::Contact;
 pub use curve::{Curve, CurvePoint};
 pub(crate) use design::{Effects, Fixed};
-pub use design::{Field, Geometry, Kept, MarkerField};
+pub use design::{Geometry, Kept};
 pub use draft::{
     AngleKindDraft, AxleDraft, BodyDraft, ChangeDraft, CouplerDraft, CouplerKindDraft, CurveDraft, Draft,
     DrivenDraft, DriverDraft, FormulaDraft, FormulaOf, FrameDraft, HardpointDraft, JointDraft, Line,
@@ -27,6 +28,7 @@ pub use draft::{
     ShapeDraft, TermDraft, VariableDraft, WheelDraft, WheelSpinDraft,
 };
 pub use fault::{Fault, Locus, Section, did_you_mean};
+pub use field::{Field, MarkerField};
 pub use formula::{Formula, NamedNumber, Nominal, NotConstant, Source, Target};
 pub use idle::Idle;
 pub use measure::{AngleKind, Combination, Dimension, Known, Measure, MeasureKind, OutputSource, Ray};

@@ -12,7 +12,7 @@ use crate::motion::stepper::Stepper;
 use crate::motion::{Motion, Stop};
 use crate::sensitivity::{Adjoint, Admissibility, Load, Resisting, Support, Watch, admissibility};
 use crate::sink::Store;
-use crate::space::{Dual, LANES, Mat3, Pose, Rates, Real, Twist, Vec3, Wrench, lanes};
+use crate::space::{Dual, Jet, LANES, Mat3, Pose, Rates, Real, Twist, Vec3, Wrench, lanes};
 use crate::topology::Topology;
 
 /// What an output costs the adjoint way, in solutions for one variable the direct way: its load takes some evaluations of the
@@ -182,9 +182,6 @@ impl Analysis<'_> {
     }
 }
 
-/// A number with its rates and its derivative by whatever is asked for.
-type Jet<T> = Dual<Rates<T>>;
-
 /// What the adjoint way needs besides a stepper.
 struct Tracing<'a, T> {
     analysis: &'a Analysis<'a>,
@@ -193,10 +190,10 @@ struct Tracing<'a, T> {
     asked: Vec<Asked<T>>,
     /// Bodies that outputs are measured on.
     bodies: Vec<usize>,
-    poses: Vec<Pose<Jet<T>>>,
+    poses: Vec<Pose<Jet>>,
     /// What measures go by; and the same as it goes with each variable that moves some of it.
-    fixed: Fixed<Jet<T>>,
-    moved: Vec<Option<Fixed<Jet<T>>>>,
+    fixed: Fixed<Jet>,
+    moved: Vec<Option<Fixed<Jet>>>,
     gradient: Vec<[T; 3]>,
 }
 
@@ -208,6 +205,9 @@ struct Asked<T> {
     support: Support<T>,
     /// Variables that move what it is measured with within its body.
     variables: Vec<usize>,
+    /// Its derivatives by the six unit twists of each of these bodies, then by each of these variables: of value, rate and
+    /// acceleration, lane by lane.
+    derivatives: Vec<[[f64; LANES]; 3]>,
 }
 
 impl<'a, T: Real> Tracing<'a, T> {
@@ -224,15 +224,16 @@ impl<'a, T: Real> Tracing<'a, T> {
         let depends = dependences(analysis, &design.values, &bodies, outputs);
         let none = [Wrench::zero(witness); 3];
         let asked = outputs.iter().zip(depends).map(|(output, [on, variables])| Asked {
+            derivatives: vec![[[0.0; LANES]; 3]; 6 * on.len() + variables.len()],
             output: output.clone(),
             support: adjoint.support(analysis.topology(), &on),
             loads: on.into_iter().map(|b| (b, none)).collect(),
             variables,
         });
         let asked: Vec<Asked<T>> = asked.collect();
-        let zero = Dual::constant(Rates([witness.zero(); 3]));
-        let mut values: Vec<Jet<T>> = design.values.iter().map(|v| zero.like(*v)).collect();
-        let mut moved: Vec<Option<Fixed<Jet<T>>>> = values.iter().map(|_| None).collect();
+        let zero = Dual::constant(Rates([0.0; 3]));
+        let mut values: Vec<Jet> = design.values.iter().map(|v| zero.like(*v)).collect();
+        let mut moved: Vec<Option<Fixed<Jet>>> = values.iter().map(|_| None).collect();
         for &v in asked.iter().flat_map(|a| &a.variables) {
             moved[v].get_or_insert_with(|| {
                 let value = values[v];
@@ -268,12 +269,12 @@ impl<'a, T: Real> Tracing<'a, T> {
         let (topology, state) = (&stepper.topology, &mut stepper.state);
         state.finish_rates(topology);
         let (first, asked) = (result.times.len(), self.asked.len());
+        for lane in 0..times.len() {
+            self.differentiate(state, lane);
+        }
         state.witness.within(
             #[inline(always)]
             || {
-                for &b in &self.bodies {
-                    self.poses[b] = still(pose_with_rates(state, b));
-                }
                 for m in 0..asked {
                     self.trace(topology, state, m);
                     for (v, gradient) in self.gradient.iter().enumerate() {
@@ -294,34 +295,51 @@ impl<'a, T: Real> Tracing<'a, T> {
     /// The gradient of output m: what its load works on the design, and what variables change in itself.
     #[inline(always)]
     fn trace(&mut self, topology: &Topology, state: &mut State<T>, m: usize) {
-        self.find_loads(m);
-        self.gradient.fill([state.witness.zero(); 3]);
-        let Asked { output, loads, support, variables } = &self.asked[m];
+        let witness = state.witness;
+        let Asked { loads, support, variables, derivatives, .. } = &mut self.asked[m];
+        let (by_twists, by_variables) = derivatives.split_at(6 * loads.len());
+        let number = |of: &[[f64; LANES]; 3], order: usize| witness.like_lanes(|lane| of[order][lane]);
+        for ((_, load), by) in loads.iter_mut().zip(by_twists.chunks_exact(6)) {
+            for (order, load) in load.iter_mut().enumerate() {
+                let part = |first: usize| {
+                    let [x, y, z] = [0, 1, 2].map(|k| number(&by[first + k], order));
+                    Vec3::new(x, y, z)
+                };
+                *load = Wrench { m: part(0), f: part(3) };
+            }
+        }
+        self.gradient.fill([witness.zero(); 3]);
         self.adjoint.add_work(topology, state, support, loads, 3, &mut self.gradient);
-        for &v in variables {
-            let fixed = self.moved[v].as_ref().expect("laid out for every variable of an output");
-            let moment = Moment::new(self.analysis.model(), fixed, &self.poses);
-            let Rates(d) = moment.output(output.source).d;
-            (0..3).for_each(|n| self.gradient[v][n] += d[n]);
+        for (&v, by) in variables.iter().zip(by_variables) {
+            (0..3).for_each(|order| self.gradient[v][order] += number(by, order));
         }
     }
 
-    /// How output m goes with the design twists of bodies: its derivatives by the six unit twists of each, which stand still
-    /// in the world, so that their rates are those of the load.
-    #[inline(always)]
-    fn find_loads(&mut self, m: usize) {
-        let Self { analysis, asked, poses, fixed, .. } = self;
-        let Asked { output, loads, .. } = &mut asked[m];
-        for (b, load) in loads {
-            for unit in 0..6 {
-                move_along(&mut poses[*b], unit);
-                let Rates(d) = Moment::new(analysis.model(), fixed, poses).output(output.source).d;
-                for (load, d) in load.iter_mut().zip(d) {
-                    let Wrench { m, f } = load;
-                    *[&mut m.x, &mut m.y, &mut m.z, &mut f.x, &mut f.y, &mut f.z][unit] = d;
+    /// How all outputs go with the design twists of bodies in one lane: their derivatives by the six unit twists of each, which
+    /// stand still in the world, so that their rates are those of the load; and by variables that move what they are measured
+    /// with. Measures run on scalars, in lanes they would be compiled for every CPU.
+    fn differentiate(&mut self, state: &State<T>, lane: usize) {
+        let Self { analysis, asked, poses, fixed, moved, bodies, .. } = self;
+        let model = analysis.model();
+        for &b in bodies.iter() {
+            poses[b] = still(pose_with_rates(state, b, lane));
+        }
+        let note = |to: &mut [[f64; LANES]; 3], Rates(d): Rates| {
+            to.iter_mut().zip(d).for_each(|(to, d)| to[lane] = d);
+        };
+        for Asked { output, loads, variables, derivatives, .. } in asked {
+            let (by_twists, by_variables) = derivatives.split_at_mut(6 * loads.len());
+            for ((b, _), by) in loads.iter().zip(by_twists.chunks_exact_mut(6)) {
+                for (unit, to) in by.iter_mut().enumerate() {
+                    move_along(&mut poses[*b], unit);
+                    note(to, Moment::new(model, fixed, poses).output(output.source).d);
                 }
+                stop(&mut poses[*b]);
             }
-            stop(&mut poses[*b]);
+            for (&v, to) in variables.iter().zip(by_variables) {
+                let fixed = moved[v].as_ref().expect("laid out for every variable of an output");
+                note(to, Moment::new(model, fixed, poses).output(output.source).d);
+            }
         }
     }
 }
@@ -365,38 +383,30 @@ fn dependences(
     found
 }
 
-/// A body's pose with its first two time derivatives.
-#[inline(always)]
-fn pose_with_rates<T: Real>(state: &State<T>, b: usize) -> Pose<Rates<T>> {
-    let (pose, v, a) = (state.pose[b], state.v[b], state.a[b]);
-    let rates = |x: Vec3<T>, first: Vec3<T>, second: Vec3<T>| {
-        Vec3::new(
-            Rates([x.x, first.x, second.x]),
-            Rates([x.y, first.y, second.y]),
-            Rates([x.z, first.z, second.z]),
-        )
+/// A body's pose in one lane, with its first two time derivatives.
+fn pose_with_rates<T: Real>(state: &State<T>, b: usize, lane: usize) -> Pose<Rates> {
+    let (pose, v, a) = (state.pose[b].lane(lane), state.v[b].lane(lane), state.a[b].lane(lane));
+    let rates = |x: Vec3, first: Vec3, second: Vec3| {
+        let component = |k: usize| Rates([x[k], first[k], second[k]]);
+        Vec3::new(component(0), component(1), component(2))
     };
-    let column = |e: Vec3<T>| {
+    let column = |e: Vec3| {
         let first = v.w.cross(e);
         rates(e, first, a.w.cross(e) + v.w.cross(first))
     };
     let velocity = v.at(pose.r);
     let r = rates(pose.r, velocity, a.at(pose.r) + v.w.cross(velocity));
-    let [x, y, z] = pose.rot.cols;
-    Pose { rot: Mat3 { cols: [column(x), column(y), column(z)] }, r }
+    Pose { rot: Mat3 { cols: pose.rot.cols.map(column) }, r }
 }
 
 /// A pose that goes with nothing.
-#[inline(always)]
-fn still<T: Real>(pose: Pose<Rates<T>>) -> Pose<Jet<T>> {
-    let still = |x: Vec3<Rates<T>>| x.map(Dual::constant);
-    let [x, y, z] = pose.rot.cols;
-    Pose { rot: Mat3 { cols: [still(x), still(y), still(z)] }, r: still(pose.r) }
+fn still(pose: Pose<Rates>) -> Pose<Jet> {
+    let still = |x: Vec3<Rates>| x.map(Dual::constant);
+    Pose { rot: Mat3 { cols: pose.rot.cols.map(still) }, r: still(pose.r) }
 }
 
 /// Lets a pose go with a unit twist of the world: a turn about x, y or z, then a slide.
-#[inline(always)]
-fn move_along<T: Real>(pose: &mut Pose<Jet<T>>, unit: usize) {
+fn move_along(pose: &mut Pose<Jet>, unit: usize) {
     let axis = Vec3::AXES[unit % 3].spread(pose.r.x.v);
     let twist = if unit < 3 { Twist::turn(axis, Vec3::zero(axis.x)) } else { Twist::slide(axis) };
     for c in &mut pose.rot.cols {
@@ -408,14 +418,12 @@ fn move_along<T: Real>(pose: &mut Pose<Jet<T>>, unit: usize) {
 }
 
 /// Lets it go with nothing again.
-#[inline(always)]
-fn stop<T: Real>(pose: &mut Pose<Jet<T>>) {
+fn stop(pose: &mut Pose<Jet>) {
     let nothing = Vec3::zero(pose.r.x.v);
     pose.rot.cols.iter_mut().for_each(|c| set(c, nothing));
     set(&mut pose.r, nothing);
 }
 
-#[inline(always)]
-fn set<T: Real>(of: &mut Vec3<Jet<T>>, d: Vec3<Rates<T>>) {
+fn set(of: &mut Vec3<Jet>, d: Vec3<Rates>) {
     (of.x.d, of.y.d, of.z.d) = (d.x, d.y, d.z);
 }

@@ -6,6 +6,7 @@ mod jerk;
 mod metric;
 mod nearest;
 mod second;
+mod validity;
 mod verify;
 mod whatif;
 
@@ -15,6 +16,7 @@ pub use jerk::Jerks;
 pub use metric::{MetricValue, metrics};
 pub use nearest::{Nearest, nearest_admissible};
 pub use second::SecondDerivatives;
+pub use validity::{Validity, validity};
 pub use verify::{
     Check, CheckOutcome, PASS, StepError, Verification, VerifyOptions, compare_with_difference, verify,
 };

@@ -26,6 +26,8 @@ pub struct SecondDerivatives {
     pub bodies: usize,
     /// `values[(k * pairs + p) * outputs + m]`, and likewise by body.
     values: Vec<f64>,
+    /// Likewise, derivatives along the second direction of each pair.
+    firsts: Vec<f64>,
     curvatures: Vec<BodyCurvature>,
     /// Why the run ended before the last output time, if it did.
     pub stop: Option<Stop>,
@@ -35,6 +37,11 @@ impl SecondDerivatives {
     /// Of the value of output m at time k, along the directions of pair p; in the output's unit per unit of both.
     pub fn value(&self, k: usize, p: usize, m: usize) -> f64 {
         self.values[(k * self.pairs.len() + p) * self.outputs.len() + m]
+    }
+
+    /// The derivative of the value of output m at time k along the second direction of pair p.
+    pub fn first(&self, k: usize, p: usize, m: usize) -> f64 {
+        self.firsts[(k * self.pairs.len() + p) * self.outputs.len() + m]
     }
 
     /// Of a body's position.
@@ -144,7 +151,10 @@ impl<'a, T: Real> Bends<'a, T> {
                     self.poses[b] = self.seconds.pose(state, p, b, lane);
                 }
                 let moment = Moment::new(model, &self.fixed[p], &self.poses);
-                moment.all(|x| result.values.push(x.d.d));
+                moment.all(|x| {
+                    result.values.push(x.d.d);
+                    result.firsts.push(x.v.d);
+                });
                 let body = |b: usize| self.seconds.curvature(state, p, b, lane);
                 result.curvatures.extend((0..result.bodies).map(body));
             }

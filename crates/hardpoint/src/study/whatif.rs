@@ -7,9 +7,7 @@ use crate::sensitivity::{Admissibility, JointDefect, admissibility_at_design};
 use crate::space::Vec3;
 
 use super::second::SecondDerivatives;
-
-/// The second-order part may be this part of the first-order one where a linear prediction is still trusted.
-const LINEAR: f64 = 0.05;
+use super::validity::LINEAR;
 
 /// A changed design: today's curves, those foreseen, and those solved exactly.
 #[derive(Clone, Debug)]
@@ -25,7 +23,7 @@ pub struct WhatIf {
     /// The joints that the change opens in the design configuration, so that the mechanism re-assembles; none where it is
     /// admissible as a whole.
     pub opens: Vec<JointDefect>,
-    /// Changed variables that the mechanism cannot follow: then nothing is foreseen.
+    /// Changed variables that the mechanism cannot follow, not even together: then nothing is foreseen.
     pub cannot_follow: Vec<VariableId>,
 }
 
@@ -46,18 +44,25 @@ pub struct Foresight {
 pub fn what_if(analysis: &Analysis<'_>, today: Solution, change: &[f64]) -> WhatIf {
     let model = analysis.model();
     let change = model.whole(change);
-    let changed = |v: &VariableId| change[v.0] != 0.0;
-    let variables = (0..change.len()).map(VariableId).filter(changed);
-    let resists = |v: &VariableId| {
+    let variables = (0..change.len()).map(VariableId).filter(|v| change[v.0] != 0.0);
+    let alone = |v: &VariableId| {
         let known = today.sensitivities.admissibility.get(v.0);
         matches!(known, Some(Admissibility::CannotFollow { .. }))
+    };
+    let resists = analysis.admissibility_of(&change);
+    let cannot_follow = match resists {
+        Admissibility::CannotFollow { .. } if variables.clone().any(|v| alone(&v)) => {
+            variables.filter(alone).collect()
+        }
+        Admissibility::CannotFollow { .. } => variables.collect(),
+        _ => Vec::new(),
     };
     let field = analysis.effects().field_along(&crate::sensitivity::along(&change), &model.whole(&[]), 0.0);
     WhatIf {
         exact: analysis.run_design(&change),
         bend: analysis.second(&[], std::slice::from_ref(&change), &[[0, 0]]),
         opens: admissibility_at_design(model, &field),
-        cannot_follow: variables.filter(resists).collect(),
+        cannot_follow,
         change,
         today,
     }
@@ -74,10 +79,13 @@ impl WhatIf {
         self.len() == 0
     }
 
-    /// The first-order change of output m at time k: of its value, rate or acceleration (order 0, 1, 2).
-    pub fn first(&self, k: usize, m: usize, order: usize) -> f64 {
+    /// The first-order change of the value of output m at time k.
+    pub fn first(&self, k: usize, m: usize) -> f64 {
+        if self.today.measured.outputs[m].known.by_position {
+            return self.bend.first(k, 0, m);
+        }
         let changed = self.change.iter().enumerate().filter(|(_, d)| **d != 0.0);
-        changed.map(|(v, d)| d * self.today.measured.d(k, VariableId(v), m)[order]).sum()
+        changed.map(|(v, d)| d * self.today.measured.d(k, VariableId(v), m)[0]).sum()
     }
 
     /// The second-order part of the change of its value.
@@ -87,7 +95,7 @@ impl WhatIf {
 
     /// The value of output m at time k as foreseen to first and to second order.
     pub fn foreseen(&self, k: usize, m: usize) -> [f64; 2] {
-        let linear = self.today.measured.value(k, m)[0] + self.first(k, m, 0);
+        let linear = self.today.measured.value(k, m)[0] + self.first(k, m);
         [linear, linear + self.second(k, m)]
     }
 
@@ -118,7 +126,7 @@ impl WhatIf {
             for (most, foreseen) in errors.iter_mut().zip(self.foreseen(k, m)) {
                 *most = most.map(|most| most.max((foreseen - exact).abs()));
             }
-            (first, second) = (first.max(self.first(k, m, 0).abs()), second.max(self.second(k, m).abs()));
+            (first, second) = (first.max(self.first(k, m).abs()), second.max(self.second(k, m).abs()));
         }
         let linear_up_to = (bends && first > 0.0).then(|| LINEAR * first / second);
         Some(Foresight { change, errors, linear_up_to })

@@ -4,6 +4,7 @@ use hardpoint::Analysis;
 use hardpoint::measure::outputs;
 use hardpoint::model::*;
 use hardpoint::sensitivity::Admissibility;
+use hardpoint::space::Vec3;
 use hardpoint::study::{Gradients, Method};
 use hardpoint::topology::Formulation;
 
@@ -52,7 +53,9 @@ fn assert_same_answer(a: &Admissibility, b: &Admissibility, what: &str) {
 
 /// Deviation of the adjoint way from the direct one over all outputs, after comparing all else that they say.
 fn compare(analysis: &Analysis<'_>, design: &[f64], what: &str) -> f64 {
-    let all: Vec<usize> = (0..outputs(analysis.model()).len()).collect();
+    let all = outputs(analysis.model());
+    // What is no matter of positions has no load.
+    let all: Vec<usize> = (0..all.len()).filter(|&m| all[m].known.by_position).collect();
     let [direct, adjoint] = [Method::Direct, Method::Adjoint].map(|m| analysis.gradients(design, &all, m));
     assert_eq!([direct.method, adjoint.method], [Method::Direct, Method::Adjoint]);
     assert_eq!(direct.times, adjoint.times, "{what}");
@@ -112,12 +115,15 @@ fn all_measures_of_a_wheel_have_the_same_gradients_where_variables_move_its_own_
         radius: 0.2324,
         side: None,
         kingpin: Some([on_knuckle("low"), on_knuckle("up")]),
+        bump: None,
+        end: None,
     });
     let of_wheel = |&what: &WheelMeasure| MeasureDraft {
         name: format!("wheel {}", what.name()),
         kind: MeasureKindDraft::Wheel { wheel: "wheel".into(), what },
     };
-    draft.measures.extend(WheelMeasure::ALL.iter().map(of_wheel));
+    let plain = WheelMeasure::ALL.iter().filter(|m| !m.needs().goes_by_driver());
+    draft.measures.extend(plain.map(of_wheel));
     let kind = MeasureKindDraft::Distance {
         from: on_knuckle("hub"),
         to: PointRef::On { body: "uca".into(), at: at("up") },
@@ -128,6 +134,40 @@ fn all_measures_of_a_wheel_have_the_same_gradients_where_variables_move_its_own_
         let analysis = Analysis::with(&model, formulation).unwrap();
         let worst = compare(&analysis, &vec![1e-3; model.variables.len()], "wheel");
         assert!(worst < AGREE, "{formulation:?}: {worst:e}");
+    }
+}
+
+/// Velocities, slopes and formulas have no load: they are taken from a whole run.
+#[test]
+fn gradients_of_what_is_no_matter_of_positions_are_those_of_a_run() {
+    let mut draft = reference_draft("double_wishbone");
+    let point = || PointRef::On { body: "knuckle".into(), at: Place::At([0.0, 0.6, 0.2].into()) };
+    let along: Vec3 = [0.0, 0.0, 1.0].into();
+    let mut add = |name: &str, kind| draft.measures.push(MeasureDraft { name: name.into(), kind });
+    add("height", MeasureKindDraft::Coordinates { point: point(), along });
+    add("aside", MeasureKindDraft::Coordinates { point: point(), along: [0.0, 1.0, 0.0].into() });
+    add("speed", MeasureKindDraft::Velocity { point: point(), along: Some(along), order: 1 });
+    let driver = Some(draft.drivers[0].name.clone());
+    let (of, over) = ("aside".to_owned(), "height".to_owned());
+    let mut add = |name: &str, kind| draft.measures.push(MeasureDraft { name: name.into(), kind });
+    add("slope", MeasureKindDraft::Slope { of, over, driver });
+    let expression = hardpoint::law::Expression::parse("height*aside").unwrap();
+    add("product", MeasureKindDraft::Combination { expression });
+    let model = Model::from_draft(&draft).unwrap();
+    let analysis = Analysis::new(&model).unwrap();
+    let run = analysis.run();
+    let asked: Vec<usize> =
+        ["speed", "slope", "product"].iter().map(|n| run.measured.index(n).unwrap()).collect();
+    let found = analysis.gradients(&[], &asked, Method::Adjoint);
+    assert_eq!(found.method, Method::Direct);
+    let same = |a: f64, b: f64| a == b || a.is_nan() && b.is_nan();
+    for k in 0..run.motion.len() {
+        for (at, m) in asked.iter().enumerate() {
+            for (v, d) in found.at(k, at).iter().enumerate() {
+                let expected = run.measured.d(k, VariableId(v), *m);
+                assert!((0..3).all(|order| same(d[order], expected[order])), "{d:?} {expected:?}");
+            }
+        }
     }
 }
 

@@ -379,6 +379,7 @@ impl Case<'_> {
                 ChangeDraft::Length { .. } => "length".into(),
                 ChangeDraft::Law { .. } => "law".into(),
                 ChangeDraft::Field { .. } => "field".into(),
+                ChangeDraft::Shape { .. } => "shape".into(),
                 ChangeDraft::Parameter { .. } => "parameter".into(),
             });
         }
@@ -705,6 +706,7 @@ fn moved(draft: &Draft, to: Pose) -> Draft {
             ChangeDraft::Marker { position, rotation, .. } => {
                 (*position, *rotation) = (to.rot * *position, to.rot * *rotation);
             }
+            ChangeDraft::Shape { .. } => unreachable!("random mechanisms have no shapes"),
             // In a body's own frame, which is drawn along.
             ChangeDraft::Field { .. }
             | ChangeDraft::Length { .. }

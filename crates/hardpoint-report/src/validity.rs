@@ -1,0 +1,83 @@
+//! How far the sensitivities by each variable can be trusted.
+
+use hardpoint::Solution;
+use hardpoint::model::{Model, OutputSource};
+use hardpoint::study::Validity;
+use hardpoint_file::Units;
+use serde::Serialize;
+
+use crate::facts::variable_unit;
+use crate::figures::rounded;
+use crate::page::Table;
+use crate::summary::Summary;
+
+/// How far the sensitivities by one variable can be trusted as predictions.
+#[derive(Clone, Debug, Serialize)]
+pub struct ValidityFact {
+    /// The variable.
+    pub variable: String,
+    /// Its unit.
+    pub unit: String,
+    /// How far it may go either way before the second-order part of some measure is 5 % of the first-order part, over the
+    /// whole motion; `null` where nothing bends.
+    pub linear_up_to: Option<f64>,
+    /// That measure.
+    pub limited_by: Option<String>,
+    /// The same measure by measure.
+    pub measures: Vec<MeasureValidity>,
+}
+
+/// How far the sensitivity of one measure by one variable can be trusted.
+#[derive(Clone, Debug, Serialize)]
+pub struct MeasureValidity {
+    /// The measure.
+    pub measure: String,
+    /// How far the variable may go, in its unit.
+    pub linear_up_to: f64,
+}
+
+impl ValidityFact {
+    /// Those of a solution: of its measures, or of its points where it has none.
+    pub fn all(model: &Model, units: Units, solution: &Solution, found: &[Validity]) -> Vec<Self> {
+        let outputs = &solution.measured.outputs;
+        let counts =
+            |m: usize| model.measures.is_empty() || matches!(outputs[m].source, OutputSource::Measure(_));
+        let fact = |(variable, validity): (&hardpoint::model::DesignVariable, &Validity)| {
+            let shown = |x: f64| units.from_si(variable.quantity, x);
+            let known = validity.linear_up_to.iter().enumerate().filter(|(m, _)| counts(*m));
+            let known = known.filter_map(|(m, x)| x.filter(|x| x.is_finite()).map(|x| (m, x)));
+            let measures: Vec<_> = known
+                .map(|(m, x)| MeasureValidity { measure: outputs[m].name.clone(), linear_up_to: shown(x) })
+                .collect();
+            let least = measures.iter().min_by(|a, b| a.linear_up_to.total_cmp(&b.linear_up_to));
+            Self {
+                variable: variable.name.clone(),
+                unit: variable_unit(model, units, variable),
+                linear_up_to: least.map(|m| m.linear_up_to),
+                limited_by: least.map(|m| m.measure.clone()),
+                measures,
+            }
+        };
+        model.variables.iter().zip(found).map(fact).collect()
+    }
+
+    /// All of them, with what is known of the motion.
+    pub fn table(summary: &Summary) -> Option<Table> {
+        let row = |v: &Self| {
+            let reach = v.linear_up_to.map(|x| format!("{} {}", rounded(x, 2), v.unit));
+            Some(vec![v.variable.clone(), reach?, v.limited_by.clone().unwrap_or_default()])
+        };
+        let rows: Vec<Vec<String>> = summary.validity.iter().filter_map(row).collect();
+        let margin = summary.margin.as_ref().map_or(String::new(), |m| format!(" Margin: {}.", m.line()));
+        let pivots = rounded(summary.effort.least_pivot_ratio, 2);
+        (!rows.is_empty()).then(|| Table {
+            title: "How far sensitivities can be trusted".into(),
+            note: format!(
+                "As predictions: the variable may go so far either way until the second-order part of the measure named is 5 % of \
+                 the first-order part. As numbers: the least pivot is {pivots} of the largest.{margin}"
+            ),
+            header: ["variable", "linear within", "limited by"].map(String::from).to_vec(),
+            rows,
+        })
+    }
+}

@@ -1,0 +1,71 @@
+//! How far sensitivities can be trusted as predictions: from the second derivatives along each variable.
+
+use crate::analysis::{Analysis, Solution};
+use crate::model::VariableId;
+
+use super::difference::natural_step;
+
+/// The second-order part may be this part of the first-order one where a linear prediction is still trusted.
+pub(super) const LINEAR: f64 = 0.05;
+/// A sensitivity below this part of the output's change over a natural step, m or rad, is none.
+const NOTHING: f64 = 1e-10;
+/// Second derivatives of so many bytes are held at once.
+const MOST_BYTES: usize = 64 << 20;
+
+/// How far the sensitivities by one design variable can be trusted.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Validity {
+    /// Per output: how far the variable may go, m, rad or plain, before the largest second-order part over the motion is 5 % of the
+    /// largest first-order one; infinite where nothing bends, `None` where there is no sensitivity or no second derivative
+    /// ([`Known::by_position`](crate::model::Known)).
+    pub linear_up_to: Vec<Option<f64>>,
+}
+
+impl Validity {
+    /// The output that bends soonest, and how far the variable may go there.
+    pub fn least(&self) -> Option<(usize, f64)> {
+        let known = self.linear_up_to.iter().enumerate().filter_map(|(m, x)| x.map(|x| (m, x)));
+        known.min_by(|a, b| a.1.total_cmp(&b.1))
+    }
+}
+
+/// The validity of the sensitivities of a solution of the nominal design, variable by variable; nothing is said of variables
+/// that the mechanism cannot follow. `more` is asked before every part of the work, and may end it.
+pub fn validity(
+    analysis: &Analysis<'_>,
+    solution: &Solution,
+    mut more: impl FnMut(usize) -> bool,
+) -> Vec<Validity> {
+    let (model, measured) = (analysis.model(), &solution.measured);
+    let (variables, outputs) = (model.variables.len(), measured.outputs.len());
+    let mut found = vec![Validity { linear_up_to: vec![None; outputs] }; variables];
+    if solution.sensitivities.variables == 0 || solution.motion.is_empty() {
+        return found;
+    }
+    let followed: Vec<usize> =
+        (0..variables).filter(|v| solution.sensitivities.at(0, *v).is_some()).collect();
+    let per_variable = solution.motion.len() * (8 * outputs + 48 * model.bodies.len());
+    for (part, group) in followed.chunks((MOST_BYTES / per_variable).max(1)).enumerate() {
+        if !more(part) {
+            break;
+        }
+        let unit = |v: &usize| (0..variables).map(|k| f64::from(u8::from(k == *v))).collect();
+        let directions: Vec<Vec<f64>> = group.iter().map(unit).collect();
+        let pairs: Vec<[usize; 2]> = (0..group.len()).map(|p| [p, p]).collect();
+        let second = analysis.second(&[], &directions, &pairs);
+        let steps = usize::min(second.times.len(), measured.len());
+        for (p, &v) in group.iter().enumerate() {
+            let step = natural_step(model, VariableId(v));
+            for (m, output) in measured.outputs.iter().enumerate().filter(|(_, o)| o.known.by_position) {
+                let most = |x: &dyn Fn(usize) -> f64| (0..steps).map(|k| x(k).abs()).fold(0.0, f64::max);
+                let first = most(&|k| measured.d(k, VariableId(v), m)[0]);
+                let bend = 0.5 * most(&|k| second.value(k, p, m));
+                let unit = model.size().powi(output.dimension.length.into());
+                if first * step > NOTHING * unit {
+                    found[v].linear_up_to[m] = Some(LINEAR * first / bend);
+                }
+            }
+        }
+    }
+    found
+}
