@@ -259,6 +259,11 @@ note: string,
  */
 arrows: Array<Arrow>,
 /**
+ * Per body, how it moves with the variable: six numbers per step, dx dy dz in the length unit and a rotation vector in rad,
+ * per unit of the variable; empty where that is not shown.
+ */
+shifts: Array<Curve>,
+/**
  * Sensitivities, at most one per quantity; empty when the mechanism cannot follow.
  */
 sensitivities: Array<Sensitivity>, };

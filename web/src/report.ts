@@ -29,8 +29,10 @@ export interface Sensitivity {
   differences?: { curves: ByOrder<Curve>; worst: ByOrder<number>; step: number; unit: string }
 }
 
-export interface Variable extends Omit<wire.Variable, 'sensitivities'> {
+export interface Variable extends Omit<wire.Variable, 'sensitivities' | 'shifts'> {
   index: number
+  /** Per body 6 numbers per step: how far its frame goes and turns, per unit of the variable. */
+  shifts: Curve[]
   /** By the quantity's index. */
   sensitivities: Map<number, Sensitivity>
 }
@@ -65,6 +67,7 @@ export function read(payload: wire.Payload): Report {
     variables: payload.variables.map((variable, index) => ({
       ...variable,
       index,
+      shifts: variable.shifts.map(decode),
       sensitivities: new Map(variable.sensitivities.map((item) => [item.quantity, sensitivity(item)])),
     })),
   }

@@ -1,5 +1,7 @@
 import { el, HUES } from './dom'
-import type { Look } from './scene/camera'
+import { figure } from './format'
+import { Extent, type Look } from './scene/camera'
+import { visibleChange, visited } from './scene/poses'
 import { hasWebGL, View } from './scene/view'
 import type { State } from './state'
 import { transport } from './transport'
@@ -22,7 +24,37 @@ export function stage(state: State): HTMLElement[] {
     el('button', { type: 'button', title, onclick: () => view.look(look) }, look === 'iso' ? 'corner' : look),
   )
   view.element.append(el('div', { class: 'looks' }, ...looks))
-  return [view.element, transport(state), el('div', { class: 'under' }, key(state), tracer(state))]
+  return [view.element, transport(state), el('div', { class: 'under' }, key(state), tracer(state), changer(state))]
+}
+
+const STEPS = 50
+
+/** Changes the selected variable in the view. */
+function changer(state: State): HTMLElement {
+  const size = new Extent(visited(state.report)).size
+  const output = el('output')
+  const slider = el('input', {
+    type: 'range',
+    min: -STEPS,
+    max: STEPS,
+    value: 0,
+    'data-testid': 'change',
+    oninput: () => state.choose({ change: (Number(slider.value) / STEPS) * reach() }),
+  })
+  const chosen = () => state.report.variables[state.choice.variable]
+  const reach = () => (chosen() ? visibleChange(chosen(), size) : 0)
+  const field = el('label', { class: 'field' }, el('span', {}, 'Change'), slider, output)
+  const sync = () => {
+    const variable = chosen()
+    field.hidden = !variable || reach() === 0
+    if (!variable) return
+    slider.value = String(Math.round((state.choice.change / (reach() || 1)) * STEPS))
+    const amount = figure(Number(state.choice.change.toPrecision(3)), variable.unit)
+    output.textContent = state.choice.change === 0 ? variable.name : `${variable.name} by ${amount}, foreseen to first order`
+  }
+  state.onChoice(sync)
+  sync()
+  return field
 }
 
 function key({ report }: State): HTMLElement {

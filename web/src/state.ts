@@ -4,6 +4,8 @@ import { groups, type Order, type Quantity, type Report } from './report'
 export interface Choice {
   quantity: number
   variable: number
+  /** By how much the selected variable is changed in the view, in its unit. */
+  change: number
   order: Order
   /** The quantity that curves are drawn over; time where there is none. */
   over?: number
@@ -29,7 +31,7 @@ export class State {
     const moved = ({ index }: Quantity) => report.variables.some(({ sensitivities }) => (sensitivities.get(index)?.peaks[0] ?? 0) > 0)
     const first = offered.find(moved) ?? offered[0]
     const able = report.variables.find((variable) => variable.sensitivities.size > 0)
-    this.choice = { quantity: first?.index ?? 0, variable: able?.index ?? 0, order: 0, all: false }
+    this.choice = { quantity: first?.index ?? 0, variable: able?.index ?? 0, change: 0, order: 0, all: false }
   }
 
   get lastStep(): number {
@@ -49,7 +51,8 @@ export class State {
   }
 
   choose(change: Partial<Choice>): void {
-    Object.assign(this.choice, change)
+    // Another variable has not been changed yet.
+    Object.assign(this.choice, change.variable === undefined ? {} : { change: 0 }, change)
     for (const listener of this.#onChoice) listener()
   }
 

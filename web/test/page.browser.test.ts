@@ -148,6 +148,21 @@ describe('the report', () => {
     expect(await page.locator('[data-testid=ranking] tr[aria-current=true]').count()).toBe(1)
   })
 
+  test('a change of the selected variable is drawn over the mechanism and says that it is foreseen', async () => {
+    const before = await look(page, VIEW)
+    await page.getByTestId('change').evaluate((slider: HTMLInputElement) => {
+      slider.value = slider.max
+      slider.dispatchEvent(new Event('input'))
+    })
+    expect((await look(page, VIEW)).picture).not.toBe(before.picture)
+    expect(await page.getByTestId('change').locator('xpath=..').innerText()).toContain('foreseen to first order')
+    await page.getByTestId('change').evaluate((slider: HTMLInputElement) => {
+      slider.value = '0'
+      slider.dispatchEvent(new Event('input'))
+    })
+    expect((await look(page, VIEW)).picture).toBe(before.picture)
+  })
+
   test('choosing by keyboard keeps the focus where it was', async () => {
     const row = page.locator('[data-testid=ranking] tbody tr[aria-current=false]').first()
     const name = await row.locator('button').innerText()

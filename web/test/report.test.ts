@@ -12,6 +12,7 @@ const variable = (name: string, unit: string, scale?: number): Variable => ({
   admissibility: scale === undefined ? 'cannot_follow' : 'admissible',
   note: '',
   arrows: [],
+  shifts: [],
   sensitivities: scale === undefined ? [] : [{ quantity: 0, ...curves(scale), fd: null }],
 })
 

@@ -172,6 +172,7 @@ fn variables(times: &[f64]) -> Vec<Variable> {
         admissibility: Admissibility::Admissible,
         note: String::new(),
         arrows: vec![Arrow { body, at, v, turn }],
+        shifts: vec![],
         sensitivities: (QUANTITIES.iter().enumerate())
             .map(|(quantity, &(.., formula))| sensitivity(times, quantity, formula, index))
             .collect(),
@@ -206,6 +207,7 @@ fn variables(times: &[f64]) -> Vec<Variable> {
         admissibility: Admissibility::CannotFollow,
         note: "No motion closes `crank_pin`: its axes would part by 1 deg per deg.".into(),
         arrows: vec![Arrow { body: 1, at: [CRANK, 0.0, 0.0], v: still, turn: [1.0, 0.0, 0.0] }],
+        shifts: vec![],
         sensitivities: vec![],
         ..variable(0, "crank_pin_tilt", "axis of the crank pin", "deg", 1, still, still, still)
     };

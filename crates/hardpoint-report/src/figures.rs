@@ -79,9 +79,10 @@ pub fn unit(units: Units, of: impl Into<Dimension>) -> String {
     let powers = [(units.angle.symbol(), angle), (units.length.symbol(), length), ("s", time)];
     let product = |sign: i8| {
         let factors =
-            powers.iter().map(|(symbol, power)| (symbol, power * sign)).filter(|(_, power)| *power > 0);
-        let text =
-            |(symbol, power)| if power == 1 { format!("{symbol}") } else { format!("{symbol}^{power}") };
+            powers.iter().map(|(symbol, power)| (*symbol, power * sign)).filter(|(_, power)| *power > 0);
+        let text = |(symbol, power): (&str, i8)| {
+            if power == 1 { symbol.to_string() } else { format!("{symbol}^{power}") }
+        };
         factors.map(text).collect::<Vec<_>>()
     };
     let (above, below) = (product(1), product(-1));
@@ -104,12 +105,14 @@ pub fn order_unit(units: Units, of: impl Into<Dimension>, order: usize) -> Strin
 /// use hardpoint_report::figures::per;
 /// assert_eq!(per("deg", "mm"), "deg/mm");
 /// assert_eq!(per("deg/s", "mm"), "deg/(s*mm)");
+/// assert_eq!(per("deg/mm", "mm"), "deg/mm^2");
 /// assert_eq!(per("deg", "1"), "deg");
 /// assert_eq!(per("deg", "mm/s"), "deg/(mm/s)");
 /// ```
 pub fn per(of: &str, by: &str) -> String {
     match (of.split_once('/'), by.contains('/')) {
         _ if by == "1" => of.into(),
+        (Some((top, below)), false) if below == by => format!("{top}/{by}^2"),
         (Some((top, below)), _) => {
             let below = below.strip_prefix('(').and_then(|b| b.strip_suffix(')')).unwrap_or(below);
             if by.contains('/') { format!("{top}/({below}*({by}))") } else { format!("{top}/({below}*{by})") }

@@ -1,7 +1,7 @@
 //! Metrics: what a whole curve comes to, what moves it, and what a changed design makes of it.
 
 use hardpoint::Solution;
-use hardpoint::model::{Metric, Model, OutputSource, Take};
+use hardpoint::model::{Metric, Model, Take};
 use hardpoint::study::{MetricValue, WhatIf, metrics};
 use hardpoint_file::Units;
 use serde::Serialize;
@@ -158,10 +158,7 @@ impl MetricChange {
 
 /// A metric in words: `slope of toe over wheel_travel at 0 mm`.
 fn what(model: &Model, units: Units, metric: &Metric) -> String {
-    let name = |output: OutputSource| match output {
-        OutputSource::Measure(k) => model.measures[k].name.clone(),
-        OutputSource::Point(p, axis) => format!("{}.{}", model.points[p.0].name, ["x", "y", "z"][axis]),
-    };
+    let name = |output| model.output_name(output);
     let x = model.abscissa(metric);
     let place = |at: f64| with_unit(units.from_si(x, at), &unit(units, x));
     let over = metric.over.map_or("time".into(), name);

@@ -196,6 +196,9 @@ pub struct Variable {
     pub note: String,
     /// The design velocity at the hardpoints it moves.
     pub arrows: Vec<Arrow>,
+    /// Per body, how it moves with the variable: six numbers per step, dx dy dz in the length unit and a rotation vector in rad,
+    /// per unit of the variable; empty where that is not shown.
+    pub shifts: Vec<Curve>,
     /// Sensitivities, at most one per quantity; empty when the mechanism cannot follow.
     pub sensitivities: Vec<Sensitivity>,
 }

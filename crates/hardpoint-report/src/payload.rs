@@ -126,9 +126,10 @@ impl Detail {
     fn bytes(self, size: Size) -> f64 {
         let both = if size.compared { 2 } else { 1 };
         let origins = 3 * size.bodies;
+        // With the two curves, of place and turn, by which a changed design is drawn.
         let of_origins = match (self.bodies, self.body_differences) {
-            (true, true) => origins * both,
-            (true, false) => origins,
+            (true, true) => origins * both + 2 * size.bodies,
+            (true, false) => origins + 2 * size.bodies,
             (false, _) => 0,
         };
         let motion = 3 * (size.outputs + origins) + 7 * (size.bodies + 1);
@@ -358,10 +359,27 @@ impl Compose<'_> {
                 },
                 note: fact.note(),
                 arrows: self.arrows(VariableId(b)),
+                shifts: if known && self.detail.bodies { self.shifts(b) } else { Vec::new() },
                 sensitivities: if known { self.sensitivities(b, difference, &round_off) } else { Vec::new() },
             }
         };
         facts.variables.iter().enumerate().map(variable).collect()
+    }
+
+    /// How every body moves with a variable, to first order.
+    fn shifts(&self, b: usize) -> Vec<Curve> {
+        let by = self.model.variables[b].quantity;
+        let of_body = |body: usize| {
+            let at = |&k: &usize| {
+                let shift = self.solution.sensitivities.at(k, b).map(|s| s[body]);
+                let shift = shift.unwrap_or(BodySensitivity::ZERO);
+                let dr = shift.dr.to_array().map(|x| self.units.derivative_from_si(Kind::Length, by, x));
+                let turn = shift.dpi.to_array().map(|x| self.units.derivative_from_si(Kind::Number, by, x));
+                dr.into_iter().chain(turn)
+            };
+            self.steps.iter().flat_map(at).collect()
+        };
+        (0..self.model.bodies.len()).map(of_body).collect()
     }
 
     /// The design velocity of every marker and named point that the variable moves, in its body's frame.

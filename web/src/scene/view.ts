@@ -23,8 +23,11 @@ import type { State } from '../state'
 import { cameraFor, Extent, fit, type Look, shapeTo } from './camera'
 import { glyph, isRod, jointName } from './joints'
 import { arrow, bar, groundMarks, named, overlay, ringArrow, skeleton, solid, stretch } from './parts'
-import { path, poseAt, visited } from './poses'
+import { path, poseAt, reshaped, shifted, visited } from './poses'
 import { Triad } from './triad'
+
+/** How opaque a changed design is drawn over today's. */
+const GHOST = 0.45
 
 export function hasWebGL(): boolean {
   return document.createElement('canvas').getContext('webgl2') !== null
@@ -45,6 +48,7 @@ export class View {
   #bodies: Group[] = []
   #rods: { mesh: Mesh; from: [number, Vector3]; to: [number, Vector3] }[] = []
   #arrows: Group[] = []
+  #ghosts: { body: number; group: Group }[] = []
   #trace?: Line2
   #pending = false
   #aspect?: number
@@ -136,12 +140,15 @@ export class View {
   #annotate(): void {
     const { report, choice } = this.state
     const size = this.#extent.size
-    for (const part of [...this.#arrows, ...(this.#trace ? [this.#trace] : [])]) {
+    const ghosts = this.#ghosts.map(({ group }) => group)
+    for (const part of [...this.#arrows, ...ghosts, ...(this.#trace ? [this.#trace] : [])]) {
       dispose(part)
       part.removeFromParent()
     }
     this.#arrows = []
+    this.#ghosts = []
     this.#trace = undefined
+    if (choice.change !== 0) this.#reshape()
 
     const material = overlay(css('--accent'))
     const arrows = report.variables[choice.variable]?.arrows ?? []
@@ -174,6 +181,25 @@ export class View {
     this.#draw()
   }
 
+  /** The bodies as the change of the selected variable makes them. */
+  #reshape(): void {
+    const { report, choice } = this.state
+    const variable = report.variables[choice.variable]
+    const size = this.#extent.size
+    report.bodies.forEach((body, index) => {
+      if (index === 0) return
+      const points = reshaped(body.skeleton, variable.arrows, index, choice.change, size)
+      const group = skeleton({ ...body, skeleton: points }, size, css('--accent'))
+      group.traverse((part) => {
+        const { material } = part as Partial<Mesh>
+        if (material) Object.assign(material, { transparent: true, opacity: GHOST, depthWrite: false })
+        if (part.userData.name) named(part, `${part.userData.name}, ${variable.name} changed`)
+      })
+      this.#ghosts.push({ body: index, group })
+      this.#scene.add(group)
+    })
+  }
+
   #draw(): void {
     if (this.#pending) return
     this.#pending = true
@@ -190,7 +216,7 @@ export class View {
   }
 
   #pose(): void {
-    const { report, step } = this.state
+    const { report, step, choice } = this.state
     this.#bodies.forEach((group, index) => {
       const pose = poseAt(report.bodies[index].poses, step)
       group.visible = pose !== undefined
@@ -199,6 +225,15 @@ export class View {
       group.quaternion.copy(pose.turn)
       group.updateMatrixWorld()
     })
+    const shifts = report.variables[choice.variable]?.shifts
+    for (const { body, group } of this.#ghosts) {
+      const pose = poseAt(report.bodies[body].poses, step)
+      group.visible = pose !== undefined
+      if (!pose) continue
+      const { place, turn } = shifted(pose, shifts?.[body], step, choice.change)
+      group.position.copy(place)
+      group.quaternion.copy(turn)
+    }
     for (const { mesh, from, to } of this.#rods) {
       const [a, b] = [from, to].map(([body, point]) => this.#bodies[body].localToWorld(point.clone()))
       stretch(mesh, a, b)

@@ -133,10 +133,7 @@ impl Reader<'_> {
             "angle" | "transmission_angle" => {
                 let [from, to] =
                     ["from", "to"].map(|key| self.need(fields, key).and_then(|f| self.ray(fields, f, place)));
-                let about = match fields.get("about") {
-                    Some(f) => Some(self.vector(f.value, &fields.subject("about"))?),
-                    None => None,
-                };
+                let about = self.vector_if_any(fields, "about")?;
                 let kind = match (kind, about) {
                     ("angle", Some(about)) => AngleKindDraft::About(about),
                     ("angle", None) => AngleKindDraft::Between,
@@ -146,19 +143,13 @@ impl Reader<'_> {
             }
             "velocity" | "acceleration" => {
                 let point = self.need(fields, "point").and_then(|f| self.point_ref(fields, f));
-                let along = match fields.get("along") {
-                    Some(f) => Some(self.vector(f.value, &fields.subject("along"))?),
-                    None => None,
-                };
+                let along = self.vector_if_any(fields, "along")?;
                 let order = if kind == "velocity" { 1 } else { 2 };
                 Some(MeasureKindDraft::Velocity { point: point?, along, order })
             }
             "curvature" => {
                 let point = self.need(fields, "point").and_then(|f| self.point_ref(fields, f));
-                let about = match fields.get("about") {
-                    Some(f) => Some(self.vector(f.value, &fields.subject("about"))?),
-                    None => None,
-                };
+                let about = self.vector_if_any(fields, "about")?;
                 Some(MeasureKindDraft::Curvature { point: point?, about })
             }
             "rate" => {
@@ -200,6 +191,14 @@ impl Reader<'_> {
                 let what = WheelMeasure::named(kind).expect("the other types are those of wheels");
                 Some(MeasureKindDraft::Wheel { wheel: wheel?, what })
             }
+        }
+    }
+
+    /// A vector that may be left out; `None` where it is there and none.
+    fn vector_if_any(&mut self, fields: &Fields<'_>, key: &str) -> Option<Option<Vec3>> {
+        match fields.get(key) {
+            Some(f) => self.vector(f.value, &fields.subject(key)).map(Some),
+            None => Some(None),
         }
     }
 

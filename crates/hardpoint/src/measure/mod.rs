@@ -83,21 +83,16 @@ impl Measured {
 
 /// The columns that a model's measures and points give.
 pub fn outputs(model: &Model) -> Vec<Output> {
-    let output = |name: String, source| Output {
-        name,
+    let output = |source| Output {
+        name: model.output_name(source),
         dimension: model.dimension(source),
         known: model.known(source),
         source,
     };
-    let measures = model.measures.iter().enumerate();
-    let measures = measures.map(|(k, m)| output(m.name.clone(), OutputSource::Measure(k)));
-    let points = model.points.iter().enumerate().filter(|(_, p)| !p.unnamed).flat_map(|(k, p)| {
-        let component = move |(axis, letter)| {
-            output(format!("{}.{letter}", p.name), OutputSource::Point(PointId(k), axis))
-        };
-        ["x", "y", "z"].into_iter().enumerate().map(component)
-    });
-    measures.chain(points).collect()
+    let measures = (0..model.measures.len()).map(OutputSource::Measure);
+    let points = (0..model.points.len()).filter(|k| !model.points[*k].unnamed);
+    let components = points.flat_map(|k| (0..3).map(move |axis| OutputSource::Point(PointId(k), axis)));
+    measures.chain(components).map(output).collect()
 }
 
 /// The design whose motion is measured.

@@ -225,6 +225,14 @@ pub struct Known {
 }
 
 impl Model {
+    /// `toe` for a measure, `wheel_centre.z` for a point's component.
+    pub fn output_name(&self, output: OutputSource) -> String {
+        match output {
+            OutputSource::Measure(k) => self.measures[k].name.clone(),
+            OutputSource::Point(p, axis) => format!("{}.{}", self.points[p.0].name, ["x", "y", "z"][axis]),
+        }
+    }
+
     /// How much can be known of an output: the motion ends at accelerations.
     pub fn known(&self, output: OutputSource) -> Known {
         let moving = |orders: usize| Known { orders, by_position: false };

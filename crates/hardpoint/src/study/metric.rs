@@ -105,6 +105,13 @@ impl<T: Real> Curve<'_, T> {
         [value, slope / like(h)]
     }
 
+    /// A time of interval k without its round-off.
+    fn within(&self, k: usize, t: T) -> f64 {
+        let (t, [low, high]) = (t.lane(0), [self.times[k], self.times[k + 1]]);
+        let end = if t - low < high - t { low } else { high };
+        if (t - end).abs() < THERE * (high - low) { end } else { t.clamp(low, high) }
+    }
+
     fn number(&self, k: usize, t: f64) -> f64 {
         self.at(k, self.values[k][0].like(t))[0].lane(0)
     }
@@ -131,12 +138,12 @@ fn take<T: Real>(metric: &Metric, y: &Curve<'_, T>, x: &Option<Curve<'_, T>>) ->
         }
         Take::Value(at) => {
             let (k, t) = reach(y, x, *at)?;
-            Some((y.at(k, t)[0], Some(t.lane(0))))
+            Some((y.at(k, t)[0], Some(y.within(k, t))))
         }
         Take::Slope(at) => {
             let (k, t) = reach(y, x, *at)?;
             let by = x.as_ref().map_or(t.like(1.0), |x| x.at(k, t)[1]);
-            Some((y.at(k, t)[1] / by, Some(t.lane(0))))
+            Some((y.at(k, t)[1] / by, Some(y.within(k, t))))
         }
         Take::Mean => mean(metric, y, x, |_, value| value).map(|value| (value, None)),
         Take::Rms(target) => {

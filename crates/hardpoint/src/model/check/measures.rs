@@ -297,13 +297,9 @@ impl Check<'_> {
 
     /// HP0233: rates of what has none, slopes of what is no matter of positions.
     fn is_known(&mut self, kind: &MeasureKind, name: &str, here: Here) -> bool {
-        let label = |c: &Self, source: OutputSource| match source {
-            OutputSource::Measure(k) => c.model.measures[k].name.clone(),
-            OutputSource::Point(p, axis) => format!("{}.{}", c.model.points[p.0].name, ["x", "y", "z"][axis]),
-        };
         match kind {
             MeasureKind::Rate { of } if self.model.known(*of).orders < 2 => {
-                let of = label(self, *of);
+                let of = self.model.output_name(*of);
                 self.fault(
                     "HP0233",
                     here.key("of"),
@@ -316,7 +312,7 @@ impl Check<'_> {
             MeasureKind::Slope { of, over, .. } => {
                 for (key, source) in [("of", *of), ("over", *over)] {
                     if !self.model.known(source).by_position {
-                        let what = label(self, source);
+                        let what = self.model.output_name(source);
                         self.fault(
                             "HP0233",
                             here.key(key),
