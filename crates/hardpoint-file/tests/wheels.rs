@@ -55,6 +55,14 @@ spin_axis = [0.002, -1, 0.01]
 radius = 300
 kingpin = [{ body = "right_knuckle", at = "right_kingpin_lower" }, { body = "right_knuckle", at = "right_kingpin_upper" }]
 measures = "all"
+
+[vehicle]
+wheelbase = 2700
+
+[axles.axle]
+left = "w"
+right = "r"
+measures = ["track", "total_toe", "ackermann_error"]
 "#;
 
 fn text(name: &str) -> String {

@@ -349,10 +349,11 @@ impl<'a, T: Real> Moment<'a, T> {
             }
             MeasureKind::Curvature { point, about } => {
                 let v = self.point(*point).map(T::rate);
-                let turn = v.cross(v.map(T::rate));
-                let speed = v.norm();
+                let a = v.map(T::rate);
+                let (turn, speed) = (v.cross(a), v.norm());
                 let turn = about.map_or_else(|| turn.norm(), |about| about.spread(speed).dot(turn));
-                turn / (speed * speed * speed)
+                let (way, far) = (speed * speed, a.norm() * speed.like(RESTS * self.model.size()));
+                turn / (way.select(unknown(), |k| way.lane(k) > far.lane(k)) * speed)
             }
             MeasureKind::Rate { of } => self.output(*of).rate(),
             MeasureKind::Combination(formula) => formula.at(unknown(), |source| self.output(source)),
@@ -458,6 +459,10 @@ impl<'a, T: Real> Moment<'a, T> {
         }
     }
 }
+
+/// A point that came from rest, at its acceleration, within this part of the mechanism's size rests: its speed is round-off,
+/// and its path has no curvature there.
+const RESTS: f64 = 1e-12;
 
 /// A wheel that heads less aside than this, rad, drives straight ahead: the turning radius would be some 30 km, and
 /// Ackermann's part a quotient of round-off.

@@ -9,6 +9,9 @@ use super::difference::natural_step;
 pub(super) const LINEAR: f64 = 0.05;
 /// A sensitivity below this part of the output's change over a natural step, m or rad, is none.
 const NOTHING: f64 = 1e-10;
+/// A variable that moves an output by less than this part of what the strongest does is not judged by it: next to nothing, any
+/// bend is large.
+const SLIGHT: f64 = 1e-2;
 /// Second derivatives of so many bytes are held at once.
 const MOST_BYTES: usize = 64 << 20;
 
@@ -16,8 +19,8 @@ const MOST_BYTES: usize = 64 << 20;
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Validity {
     /// Per output: how far the variable may go, m, rad or plain, before the largest second-order part over the motion is 5 % of the
-    /// largest first-order one; infinite where nothing bends, `None` where there is no sensitivity or no second derivative
-    /// ([`Known::by_position`](crate::model::Known)).
+    /// largest first-order one; infinite where nothing bends, `None` where there is no sensitivity to speak of or no second
+    /// derivative ([`Known::by_position`](crate::model::Known)).
     pub linear_up_to: Vec<Option<f64>>,
 }
 
@@ -44,6 +47,15 @@ pub fn validity(
     }
     let followed: Vec<usize> =
         (0..variables).filter(|v| solution.sensitivities.at(0, *v).is_some()).collect();
+    // How far each output goes with a natural step of each variable, at most over the motion.
+    let effect = |v: usize, m: usize| {
+        let d = (0..measured.len()).map(|k| measured.d(k, VariableId(v), m)[0].abs());
+        d.fold(0.0, f64::max) * natural_step(model, VariableId(v))
+    };
+    let effects: Vec<Vec<f64>> =
+        followed.iter().map(|v| (0..outputs).map(|m| effect(*v, m)).collect()).collect();
+    let strongest = |m: usize| effects.iter().map(|e| e[m]).fold(0.0, f64::max);
+    let strongest: Vec<f64> = (0..outputs).map(strongest).collect();
     let per_variable = solution.motion.len() * (8 * outputs + 48 * model.bodies.len());
     for (part, group) in followed.chunks((MOST_BYTES / per_variable).max(1)).enumerate() {
         if !more(part) {
@@ -61,7 +73,7 @@ pub fn validity(
                 let first = most(&|k| measured.d(k, VariableId(v), m)[0]);
                 let bend = 0.5 * most(&|k| second.value(k, p, m));
                 let unit = model.size().powi(output.dimension.length.into());
-                if first * step > NOTHING * unit {
+                if first * step > f64::max(NOTHING * unit, SLIGHT * strongest[m]) {
                     found[v].linear_up_to[m] = Some(LINEAR * first / bend);
                 }
             }
