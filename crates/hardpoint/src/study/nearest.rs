@@ -44,13 +44,16 @@ pub fn nearest_admissible(analysis: &Analysis<'_>, change: &[f64]) -> Nearest {
     let model = analysis.model();
     let change = model.whole(change);
     let scales: Vec<f64> = (0..change.len()).map(|v| natural_step(model, VariableId(v))).collect();
-    let rows = conditions(analysis, &scales);
-    // Of a null change nothing is asked, and a mechanism without conditions asks nothing.
     let asked: Vec<f64> = change.iter().zip(&scales).map(|(x, scale)| x / scale).collect();
+    let weight: Vec<f64> = (0..asked.len()).map(|v| weight(model, &asked, v)).collect();
+    let mut rows = conditions(analysis, &scales);
+    // What does not move opens nothing.
+    rows.iter_mut()
+        .for_each(|row| row.iter_mut().zip(&weight).filter(|x| *x.1 == 0.0).for_each(|x| *x.0 = 0.0));
+    rows.retain(|row| row.iter().any(|x| x.abs() > MET));
     let defect = |x: &[f64]| rows.iter().map(|r| dot(r, x).abs()).fold(0.0, f64::max);
     let independent = FullPivot::of(rows.clone(), change.len(), MET).rows;
     let a: Vec<&Vec<f64>> = independent.iter().map(|&r| &rows[r]).collect();
-    let weight: Vec<f64> = (0..asked.len()).map(|v| weight(model, &asked, v)).collect();
     let mut found = asked.clone();
     if !a.is_empty() {
         // d = x - W A^T (A W A^T)^-1 A x
@@ -61,6 +64,9 @@ pub fn nearest_admissible(analysis: &Analysis<'_>, change: &[f64]) -> Nearest {
         let multipliers = system.full_piv_lu().solve(&right);
         for (v, x) in found.iter_mut().enumerate() {
             *x -= weight[v] * (0..a.len()).map(|i| a[i][v] * multipliers[(i, 0)]).sum::<f64>();
+        }
+        if !found.iter().all(|x| x.is_finite()) {
+            found.clone_from(&asked);
         }
     }
     let largest = found.iter().fold(0.0_f64, |most, x| most.max(x.abs()));
@@ -155,6 +161,5 @@ fn conditions(analysis: &Analysis<'_>, scales: &[f64]) -> Vec<Vec<f64>> {
             done += count;
         });
     }
-    rows.retain(|row| row.iter().any(|x| x.abs() > MET));
     rows
 }

@@ -224,3 +224,47 @@ fn a_redundant_mechanism_follows_every_change_of_its_law() {
         assert!(checks.passed(), "{:?}", checks.checks);
     }
 }
+
+/// A planar four-bar with a variable that moves one marker alone, which no other variable here can make up for.
+#[test]
+fn the_nearest_admissible_change_keeps_what_it_can_and_never_more_defects() {
+    use hardpoint::study::{add_coordinates, add_tilts, nearest_admissible};
+    let mut draft = four_bar([[0.0, 0.0], [0.0, 0.1], [0.3, 0.25], [0.3, 0.0]], "t", &times(0.5, 20));
+    let marker = |joint: &str, position: [f64; 3], rotation: [f64; 3]| VariableDraft {
+        name: format!("{joint} alone"),
+        changes: vec![ChangeDraft::Marker {
+            joint: joint.into(),
+            end: End::I,
+            position: position.into(),
+            rotation: rotation.into(),
+        }],
+        ..VariableDraft::default()
+    };
+    draft.design = vec![marker("B", [0.0, 0.001, 0.0], [0.0; 3]), marker("C", [0.0; 3], [0.3, 0.0, 0.0])];
+    let mut model = Model::from_draft(&draft).unwrap();
+    add_coordinates(&mut model);
+    add_tilts(&mut model);
+    let analysis = Analysis::new(&model).unwrap();
+    let unit = |name: &str, by: f64| {
+        let mut change = vec![0.0; model.variables.len()];
+        change[model.variable(name).unwrap().0] = by;
+        change
+    };
+    // What is admissible already stays as it is.
+    let whole = unit("D.tilt_z", 0.1);
+    let nearest = nearest_admissible(&analysis, &whole);
+    assert!(nearest.change.iter().zip(&whole).all(|(a, b)| (a - b).abs() < 1e-12), "{nearest:?}");
+    // The tilt of one pivot, which nothing follows alone, is kept, and others join it so that all can follow.
+    let alone = unit("D.tilt_x", 0.1);
+    assert!(matches!(analysis.admissibility_of(&alone), Admissibility::CannotFollow { .. }));
+    let nearest = nearest_admissible(&analysis, &alone);
+    assert!(nearest.defects[0] > 1e-3 && nearest.defects[1] < 1e-12, "{nearest:?}");
+    assert!((nearest.change[model.variable("D.tilt_x").unwrap().0] - 0.1).abs() < 1e-8, "{nearest:?}");
+    assert_eq!(analysis.admissibility_of(&nearest.change), Admissibility::Admissible);
+    // One marker cannot leave the other, whatever else moves: nothing of it remains.
+    for name in ["B alone", "C alone"] {
+        let nearest = nearest_admissible(&analysis, &unit(name, 1.0));
+        assert!(nearest.change.iter().all(|x| x.abs() < 1e-6), "{name}: {nearest:?}");
+        assert!(nearest.defects[1] < 1e-9, "{name}: {nearest:?}");
+    }
+}
