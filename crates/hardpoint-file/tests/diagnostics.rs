@@ -242,6 +242,41 @@ fn wheels() {
     broken("kingpin_of_a_measure", "wheel = \"front_left\"", "wheel = \"front_left\"\nbody = \"rocker\"");
 }
 
+#[test]
+fn measures_of_measures_metrics_and_shapes() {
+    let with = |name: &str, more: &str| snapshot(name, &format!("{VALID}\n{more}\n"));
+    with(
+        "measure_of_itself",
+        "[measures.a]\ntype = \"rate\"\nof = \"b\"\n[measures.b]\ntype = \"rate\"\nof = \"a\"",
+    );
+    with(
+        "rate_of_an_acceleration",
+        "[measures.a]\ntype = \"acceleration\"\npoint = \"P\"\n[measures.b]\ntype = \"rate\"\nof = \"a\"",
+    );
+    with(
+        "slope_of_a_velocity",
+        "[measures.v]\ntype = \"velocity\"\npoint = \"P\"\n[measures.s]\ntype = \"slope\"\nof = \"v\"\nover = \"height\"",
+    );
+    with("unknown_name_in_a_formula", "[measures.f]\ntype = \"expression\"\nexpression = \"2*heigth + P.x\"");
+    with("angle_of_no_direction", "[measures.g]\ntype = \"angle\"\nfrom = [\"P\", \"P\"]\nto = \"z\"");
+    with("metric_without_place", "[metrics.m]\nof = \"height\"\ntake = \"value\"");
+    with("metric_window_falls", "[metrics.m]\nof = \"height\"\ntake = \"max\"\nwindow = [3, 1]");
+    with("metric_target_out_of_place", "[metrics.m]\nof = \"height\"\ntake = \"mean\"\ntarget = [[0, 1]]");
+    with("metric_of_no_measure", "[metrics.m]\nof = \"hight\"\ntake = \"largest\"");
+    with("shape_without_field", "[design.s]\nshape = \"rocker\"");
+    with("shape_in_two_ways", "[design.s]\nshape = \"rocker\"\nfield = { translate = \"z\", scale = \"A\" }");
+    with(
+        "shape_that_moves_nothing",
+        "[design.s]\nshape = \"rocker\"\nfield = { through = [{ at = \"C\" }, { at = \"D\" }] }",
+    );
+    with(
+        "bend_of_no_beam",
+        "[design.s]\nshape = \"rocker\"\nfield = { bend = [\"C\", \"C\"], towards = \"z\" }",
+    );
+    with("vehicle_of_no_length", "[vehicle]\nwheelbase = -1\nfront_brake_share = 2");
+    with("axle_of_no_wheel", "[axles.a]\nleft = \"l\"\nright = \"r\"");
+}
+
 /// What only follows from something wrong about a wheel is not reported.
 #[test]
 fn consequences_at_wheels_are_not_reported() {
