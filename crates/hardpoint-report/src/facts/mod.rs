@@ -557,15 +557,17 @@ fn conditions(model: &Model, units: Units) -> Vec<ConditionFact> {
             facts.push((id, row, ConditionFact { joint, constraint, opened_by: Vec::new() }));
         }
     }
-    for (v, variable) in model.variables.iter().enumerate() {
-        let field = model.field(VariableId(v));
+    for (variable, field) in model.variables.iter().zip(model.fields(&[])) {
         let unit = variable_unit(model, units, variable);
         // What of a condition is no more than round-off opens nothing.
         let opens = admissibility_at_design(model, &field);
         let counts =
             |d: &Condition| opens.iter().any(|o| o.joint == d.joint && d.value.abs() > ROUND_OFF * o.value);
         for condition in conditions_at_design(model, &field).into_iter().filter(counts) {
-            let found = facts.iter_mut().find(|(j, row, _)| (*j, *row) == (condition.joint, condition.row));
+            // In the order of the joints.
+            let first = facts.partition_point(|f| f.0 < condition.joint);
+            let of_joint = facts[first..].iter_mut().take_while(|f| f.0 == condition.joint);
+            let found = of_joint.into_iter().find(|f| f.1 == condition.row);
             let Some((.., fact)) = found else { continue };
             let Condition { joint, row, value } = condition;
             let d = defect(model, units, (variable.quantity, &unit), &JointDefect { joint, row, value });

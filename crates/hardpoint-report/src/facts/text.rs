@@ -10,6 +10,9 @@ use super::{
 use crate::figures::{count, number, rounded, some_of, with_unit};
 use crate::page::Table;
 
+/// Of more conditions than this only those are listed that some variable opens.
+const MOST_CONDITIONS: usize = 400;
+
 impl Facts {
     /// `12 (1 admissible, 11 re-assembled)`, `12, all admissible`.
     pub fn variables_line(&self) -> String {
@@ -199,7 +202,8 @@ impl Facts {
     fn condition_table(&self) -> Option<Table> {
         let mut rows: Vec<Vec<String>> = Vec::new();
         let mut before = "";
-        for c in &self.conditions {
+        let all = self.conditions.len() <= MOST_CONDITIONS;
+        for c in self.conditions.iter().filter(|c| all || !c.opened_by.is_empty()) {
             let opened =
                 c.opened_by.iter().map(|o| format!("{} {} {}", o.variable, rounded(o.defect, 3), o.unit));
             let opened: Vec<String> = opened.collect();
