@@ -399,3 +399,15 @@ fn jumps_of_laws_are_notes_that_name_time_size_and_consequence() {
     });
     insta::assert_snapshot!(notes.concat());
 }
+
+#[test]
+fn a_variable_that_changes_nothing_is_told() {
+    let mut draft = four_bars();
+    draft.hardpoints.push(HardpointDraft { name: "spare".into(), position: Vec3::ZERO });
+    let velocity = Vec3::AXES[0];
+    let changes = vec![ChangeDraft::Move { hardpoint: "spare".into(), velocity }];
+    draft.design.push(VariableDraft { name: "unused".into(), changes, ..VariableDraft::default() });
+    let file = file(&draft);
+    let (solution, summary) = solved(&file);
+    insta::assert_snapshot!(told(&diagnose::all(&file, &summary, &solution, None)));
+}
