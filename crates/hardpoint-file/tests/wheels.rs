@@ -386,3 +386,71 @@ fn slopes_are_those_of_runs_whose_driver_is_shifted() {
         close("w.anti_rise", -0.5 * 2.7 / 0.62 * difference("w.wheel_recession") / rise);
     }
 }
+
+/// Both wheels of a live rear axle, which its two springs move: what only rear wheels have, and an axle's measures again.
+const REAR: &str = r#"
+[vehicle]
+wheelbase = 2700
+centre_of_gravity = 620
+front_brake_share = 0.68
+front_drive_share = 0.25
+
+[wheels.l]
+body = "axle"
+centre = [0, 740, 310]
+spin_axis = [0, 1, 0.01]
+radius = 310
+bump = "left_spring"
+end = "rear"
+measures = [
+    "toe", "camber", "half_track", "bump_steer", "bump_camber", "bump_recession", "bump_scrub", "roll_centre_height",
+    "roll_centre_height_geometric", "instant_centre_front_y", "instant_centre_front_z", "anti_lift", "anti_squat",
+]
+
+[wheels.r]
+body = "axle"
+centre = [0, -740, 310]
+spin_axis = [0, -1, 0.01]
+radius = 310
+bump = "right_spring"
+end = "rear"
+
+[axles.rear]
+left = "l"
+right = "r"
+measures = ["track", "total_toe", "ackermann_error", "axle_roll_centre_y", "axle_roll_centre_height"]
+"#;
+
+#[test]
+fn a_live_axle_has_the_measures_of_rear_wheels() {
+    let file = parsed(&(text("solid_axle") + REAR));
+    let analysis = Analysis::new(&file.model).unwrap();
+    let solution = analysis.run();
+    assert!(solution.stop.is_none(), "{:?}", solution.stop);
+    let report = verify(&analysis, &solution, &VerifyOptions::default(), |_| ControlFlow::Continue(()));
+    assert!(report.passed(), "{:#?}", report.checks);
+    let index = |name: &str| solution.measured.index(name).unwrap();
+    let felt = |name: &str| {
+        let d = |k, v| solution.measured.d(k, VariableId(v), index(name))[0].abs();
+        let steps = 0..solution.motion.len();
+        steps.flat_map(|k| (0..file.model.variables.len()).map(move |v| d(k, v))).any(|d| d > 1e-4)
+    };
+    for name in ["l.anti_lift", "l.anti_squat", "l.roll_centre_height", "rear.axle_roll_centre_height"] {
+        assert!(felt(name), "{name}");
+    }
+    // The axle is one body: its track is that of its wheels, and what both lean and head is opposite.
+    let value = |k: usize, name: &str| solution.measured.value(k, index(name))[0];
+    let (lift, squat) = (0.32 * 2.7 / 0.62, 0.75 * 2.7 / 0.62);
+    for k in (0..solution.motion.len()).step_by(10) {
+        assert!((value(k, "rear.total_toe")).abs() < 0.01);
+        assert!((value(k, "rear.track") - 1.48).abs() < 0.01);
+        // Driving acts at the wheel centre: its recession is what squats.
+        let expected = value(k, "l.bump_recession") * squat;
+        assert!(
+            (value(k, "l.anti_squat") - expected).abs() < 1e-9,
+            "{} {expected}",
+            value(k, "l.anti_squat")
+        );
+        assert!((value(k, "l.anti_lift") / lift).abs() < 1.0);
+    }
+}
