@@ -119,6 +119,8 @@ struct ParameterTableSchema {
     bounds: Option<[NumberSchema; 2]>,
     /// How large a change of it is usual.
     typical: Option<NumberSchema>,
+    /// By how much it may be off when it is made, either way.
+    tolerance: Option<NumberSchema>,
     /// Whether it is a design variable. Default: true.
     design: Option<bool>,
 }
@@ -660,6 +662,8 @@ struct MoveSchema {
     bounds: Option<[NumberSchema; 2]>,
     /// How large a change of it is usual.
     typical: Option<NumberSchema>,
+    /// By how much it may be off when it is made, either way.
+    tolerance: Option<NumberSchema>,
 }
 
 #[derive(JsonSchema)]
@@ -706,6 +710,8 @@ struct TiltSchema {
     bounds: Option<[NumberSchema; 2]>,
     /// How large a change of it is usual.
     typical: Option<NumberSchema>,
+    /// By how much it may be off when it is made, either way.
+    tolerance: Option<NumberSchema>,
 }
 
 /// Whole bodies change their shape, and everything on them follows.
@@ -723,6 +729,8 @@ struct ShapeSchema {
     bounds: Option<[NumberSchema; 2]>,
     /// How large a change of it is usual.
     typical: Option<NumberSchema>,
+    /// By how much it may be off when it is made, either way.
+    tolerance: Option<NumberSchema>,
 }
 
 /// How the points of a body move.
@@ -806,6 +814,8 @@ struct FieldsSchema {
     bounds: Option<[NumberSchema; 2]>,
     /// How large a change of it is usual.
     typical: Option<NumberSchema>,
+    /// By how much it may be off when it is made, either way.
+    tolerance: Option<NumberSchema>,
 }
 
 /// The design velocity of one joint's marker on one body, in that body's frame.
@@ -837,6 +847,8 @@ struct MarkersSchema {
     bounds: Option<[NumberSchema; 2]>,
     /// How large a change of it is usual.
     typical: Option<NumberSchema>,
+    /// By how much it may be off when it is made, either way.
+    tolerance: Option<NumberSchema>,
 }
 
 /// A global velocity of a joint's markers.
@@ -867,6 +879,8 @@ struct RodLengthSchema {
     bounds: Option<[NumberSchema; 2]>,
     /// How large a change of it is usual.
     typical: Option<NumberSchema>,
+    /// By how much it may be off when it is made, either way.
+    tolerance: Option<NumberSchema>,
 }
 
 /// A parameter of a driver's law grows; the variable has the parameter's unit.
@@ -884,6 +898,8 @@ struct LawParameterSchema {
     bounds: Option<[NumberSchema; 2]>,
     /// How large a change of it is usual.
     typical: Option<NumberSchema>,
+    /// By how much it may be off when it is made, either way.
+    tolerance: Option<NumberSchema>,
 }
 
 #[derive(JsonSchema)]

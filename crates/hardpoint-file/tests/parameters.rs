@@ -15,7 +15,7 @@ name = "arms"
 units = { length = "mm", angle = "deg" }
 
 [parameters]
-reach = { value = 200, unit = "length", bounds = [150, 300], typical = 5 }
+reach = { value = 200, unit = "length", bounds = [150, 300], typical = 5, tolerance = 0.3 }
 droop = { value = 30, unit = "angle", bounds = [0, 60] }
 swing = 20
 half_track = { value = "3*reach", unit = "length" }
@@ -111,6 +111,7 @@ fn parameters_are_design_variables_with_bounds_and_size() {
     assert!(near(reach.bounds, [-0.05, 0.1]) && near(both.bounds, [-0.01, 0.01]));
     assert!(near(droop.bounds, [-30.0, 30.0].map(f64::to_radians)));
     assert_eq!((reach.typical, swing.bounds, both.typical), (Some(0.005), None, Some(0.002)));
+    assert_eq!((reach.tolerance, both.tolerance), (Some(0.0003), None));
     assert!(matches!(reach.changes[..], [Change::Parameter { rate: 1.0, .. }]));
     assert!(m.without_effect().is_empty());
     assert_eq!(file.place(hardpoint::model::Section::Design, 1), Some((7, 1)));

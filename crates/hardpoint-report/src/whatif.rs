@@ -125,6 +125,8 @@ pub struct InfluenceFact {
     /// What the variable's typical change moves the measure by, to first order, in the measure's unit; `null` where the file
     /// gives none.
     pub typical: Option<f64>,
+    /// Likewise, of what its tolerance moves it by, either way.
+    pub tolerance: Option<f64>,
 }
 
 impl WhatIfFacts {
@@ -250,14 +252,15 @@ impl WhatIfFacts {
             for (rank, i) in of_measure().filter(|i| i.per == unit).take(shown).enumerate() {
                 let at = format!("{} s", number(i.time));
                 let typical = i.typical.map_or(String::new(), |x| with_unit(x, &i.of));
+                let tolerance = i.tolerance.map_or(String::new(), |x| format!("±{}", with_unit(x, &i.of)));
                 let largest = with_unit(i.largest, &i.unit);
-                rows.push(vec![(rank + 1).to_string(), i.variable.clone(), largest, at, typical]);
+                rows.push(vec![(rank + 1).to_string(), i.variable.clone(), largest, at, typical, tolerance]);
             }
         }
         Table {
             title: format!("What moves {measure} most"),
             note: String::new(),
-            header: ["rank", "by variable", "largest", "at t", "by a typical change"]
+            header: ["rank", "by variable", "largest", "at t", "by a typical change", "by its tolerance"]
                 .map(String::from)
                 .to_vec(),
             rows,
@@ -359,11 +362,12 @@ fn influence(model: &Model, units: Units, today: &Solution) -> Vec<InfluenceFact
                 per: by,
                 of: unit(units, output.dimension),
                 typical: variable.typical.map(|t| units.from_si(output.dimension, t * at(&k))),
+                tolerance: variable.tolerance.map(|t| units.from_si(output.dimension, (t * at(&k)).abs())),
             });
         }
         let strongest = facts[first..].iter().map(|i| i.largest.abs()).fold(0.0, f64::max);
         for i in facts[first..].iter_mut().filter(|i| i.largest.abs() < ROUND_OFF * strongest) {
-            (i.largest, i.typical) = (0.0, i.typical.map(|_| 0.0));
+            (i.largest, i.typical, i.tolerance) = (0.0, i.typical.map(|_| 0.0), i.tolerance.map(|_| 0.0));
         }
         facts[first..].sort_by(|a, b| b.largest.abs().total_cmp(&a.largest.abs()));
     }

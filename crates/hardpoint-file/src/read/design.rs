@@ -28,6 +28,7 @@ const DESIGN: &[Key] = &[
     ("fixed_length", "true"),
     ("bounds", "[-5, 5]"),
     ("typical", "2"),
+    ("tolerance", "0.1"),
 ];
 const FIELD: &[Key] = &[("joint", "\"J1\""), ("body", "\"crank\""), ("V", "[1, 0, 0]"), ("U", "[0, 0, 0]")];
 const MARKER: &[Key] = &[("joint", "\"J1\""), ("on", "\"j\""), ("move", "[0, 0, 1]"), ("turn", "[0, 0, 0]")];
@@ -103,7 +104,7 @@ impl Reader<'_> {
                 vec![(entry.0.clone(), Vec::new())]
             });
             let quantity = quantity_of(raw, &variables[0].1);
-            let (bounds, typical) = self.range(&fields, quantity, &mut place);
+            let (bounds, [typical, tolerance]) = self.range(&fields, quantity, &mut place);
             for (name, changes) in variables {
                 raw.places.push(Section::Design, place.clone());
                 raw.draft.design.push(VariableDraft {
@@ -112,6 +113,7 @@ impl Reader<'_> {
                     fixed_length: fixed_length.unwrap_or(false),
                     bounds,
                     typical,
+                    tolerance,
                 });
             }
         }

@@ -11,8 +11,14 @@ use crate::diagnostic::shown;
 use crate::places::EntryPlace;
 use crate::tree::{Fields, Key, Reader, Subject, Value};
 
-const PARAMETER: &[Key] =
-    &[("value", "60"), ("unit", "\"length\""), ("bounds", "[50, 70]"), ("typical", "2"), ("design", "false")];
+const PARAMETER: &[Key] = &[
+    ("value", "60"),
+    ("unit", "\"length\""),
+    ("bounds", "[50, 70]"),
+    ("typical", "2"),
+    ("tolerance", "0.1"),
+    ("design", "false"),
+];
 const UNITS: [(&str, Quantity); 3] =
     [("length", Quantity::Length), ("angle", Quantity::Angle), ("number", Quantity::Number)];
 
@@ -87,12 +93,13 @@ impl Reader<'_> {
                 }
                 false => "with `design = false` it is no design variable",
             };
-            let keys = if formula { &["bounds", "typical", "design"][..] } else { &["bounds", "typical"] };
+            let keys = ["bounds", "typical", "tolerance", "design"];
+            let keys = if formula { &keys[..] } else { &keys[..3] };
             keys.iter().for_each(|key| self.out_of_place(fields, key, why));
         } else if p.is_design && !formula {
-            let (bounds, typical) = match fields {
+            let (bounds, [typical, tolerance]) = match fields {
                 Some(fields) => self.range(fields, p.quantity, &mut place),
-                None => (None, None),
+                None => (None, [None; 2]),
             };
             raw.places.push(Section::Design, place.clone());
             raw.draft.design.push(VariableDraft {
@@ -100,6 +107,7 @@ impl Reader<'_> {
                 changes: vec![ChangeDraft::Parameter { parameter: name.clone(), rate: 1.0 }],
                 bounds: bounds.map(|b| b.map(|x| x - number)),
                 typical,
+                tolerance,
                 ..VariableDraft::default()
             });
         }
@@ -107,13 +115,23 @@ impl Reader<'_> {
         raw.draft.parameters.push(ParameterDraft { name, value: number, quantity: p.quantity });
     }
 
-    /// The bounds and the typical size of a design variable that measures this, in SI.
+    /// A number that may be left out; noted as unread where it is there and none.
+    fn number_in(&mut self, fields: &Fields<'_>, key: &'static str, place: &mut EntryPlace) -> Option<f64> {
+        let f = fields.get(key)?;
+        let number = self.number(f.value, &fields.subject(key));
+        if number.is_none() {
+            place.unread(key);
+        }
+        number
+    }
+
+    /// The bounds, the typical size and the tolerance of a design variable that measures this, in SI.
     pub(super) fn range(
         &mut self,
         fields: &Fields<'_>,
         quantity: Quantity,
         place: &mut EntryPlace,
-    ) -> (Option<[f64; 2]>, Option<f64>) {
+    ) -> (Option<[f64; 2]>, [Option<f64>; 2]) {
         let units = self.units;
         let bounds = fields.get("bounds").and_then(|f| {
             let bounds =
@@ -123,14 +141,11 @@ impl Reader<'_> {
             }
             bounds.map(|b| b.map(|x| units.to_si(quantity, x)))
         });
-        let typical = fields.get("typical").and_then(|f| {
-            let typical = self.number(f.value, &fields.subject("typical"));
-            if typical.is_none() {
-                place.unread("typical");
-            }
-            typical.map(|x| units.to_si(quantity, x))
+        let sizes = ["typical", "tolerance"].map(|key| {
+            let size = self.number_in(fields, key, place);
+            size.map(|x| units.to_si(quantity, x))
         });
-        (bounds, typical)
+        (bounds, sizes)
     }
 
     /// An angle in rad: a number is in the file's unit, an expression gives radians.

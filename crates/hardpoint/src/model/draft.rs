@@ -275,6 +275,8 @@ pub struct VariableDraft {
     pub bounds: Option<[f64; 2]>,
     /// How large a change of it is usual, for comparing variables.
     pub typical: Option<f64>,
+    /// By how much it may be off when it is made, either way.
+    pub tolerance: Option<f64>,
 }
 
 /// A part of a design variable; see [`super::Change`].

@@ -219,6 +219,8 @@ pub struct DesignVariable {
     pub bounds: Option<[f64; 2]>,
     /// How large a change of b is usual, in its unit; positive.
     pub typical: Option<f64>,
+    /// By how much b may be off when it is made, either way, in its unit; positive.
+    pub tolerance: Option<f64>,
 }
 
 /// Which marker of a joint.

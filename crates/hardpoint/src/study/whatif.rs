@@ -158,6 +158,7 @@ pub fn variable_named(model: &mut Model, name: &str) -> Option<VariableId> {
         fixed_length: false,
         bounds: None,
         typical: None,
+        tolerance: None,
     });
     Some(VariableId(model.variables.len() - 1))
 }

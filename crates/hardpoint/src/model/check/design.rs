@@ -32,6 +32,7 @@ impl Check<'_> {
                 fixed_length: v.fixed_length,
                 bounds: v.bounds,
                 typical: v.typical,
+                tolerance: v.tolerance,
             });
         }
     }
@@ -50,10 +51,16 @@ impl Check<'_> {
                 );
             }
         }
-        if v.typical.is_some_and(|size| !(size > 0.0 && size.is_finite())) {
+        let is_none = |size: Option<f64>| size.is_some_and(|size| !(size > 0.0 && size.is_finite()));
+        if is_none(v.typical) {
             let message = format!("the typical size of design variable `{}` is not positive", v.name);
             self.fault("HP0229", here.key("typical"), message)
                 .help("give how large a change of it is usual, or leave it out");
+        }
+        if is_none(v.tolerance) {
+            let message = format!("the tolerance of design variable `{}` is not positive", v.name);
+            self.fault("HP0229", here.key("tolerance"), message)
+                .help("give by how much it may be off either way, or leave it out");
         }
     }
 
