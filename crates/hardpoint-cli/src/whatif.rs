@@ -49,7 +49,8 @@ fn whatif_in(session: &Session, options: &Whatif) -> Result<Outcome, Outcome> {
     let mut change = vec![0.0; file.model.variables.len()];
     settings.iter().for_each(|(v, by)| change[*v] += by);
     let mut nearest = Vec::new();
-    if let Some((model, found)) = nearest_of(&file, options, &change) {
+    let found = if settings.is_empty() { None } else { nearest_of(&file, options, &change) };
+    if let Some((model, found)) = found {
         if options.admissible {
             change = taken_over(&mut file.model, &model, &found);
         } else {
@@ -136,20 +137,16 @@ fn facts_text(facts: &WhatIfFacts, wanted: &dyn Fn(&str) -> bool) -> String {
     if !facts.change.is_empty() {
         let margin = |m: &Option<MarginFact>| m.as_ref().map_or("-".into(), |m| number(m.least));
         let [today, changed] = [0, 1].map(|k| margin(&facts.margins[k]));
-        let rows = [
+        let mut rows = vec![
             ("change", facts.change_line()),
             ("it is", facts.follows.clone()),
             ("least margin", format!("{today} today, {changed} changed")),
         ];
+        if !facts.nearest.is_empty() {
+            let near = ChangeFact::line(&facts.nearest);
+            rows.push(("nearest admissible", format!("{near}; `--admissible` makes this change instead")));
+        }
         let table = facts.table(wanted);
-        let near = ChangeFact::line(&facts.nearest);
-        let rows: Vec<_> = match near.is_empty() {
-            true => rows.to_vec(),
-            false => {
-                let offer = format!("{near}; `--admissible` makes this change instead");
-                rows.into_iter().chain([("nearest admissible", offer)]).collect()
-            }
-        };
         out += &format!("{}\n{}  {}\n", text::pairs(&rows), text::table(&table), table.note);
         let metrics = MetricChange::table(&facts.metrics);
         out += &metrics.map_or(String::new(), |table| format!("\n{}", text::table(&table)));

@@ -215,10 +215,12 @@ impl<'m> Analysis<'m> {
         let field = self.effects.field_along(&along, &design.values, 0.0);
         design.opens = vec![admissibility_at_design(self.model, &field)];
         design.fields = vec![field];
-        let mut solution = Solution::default();
-        let bodies = self.clone().bodies_only();
-        bodies.solve(&design, &mut |_| ControlFlow::Continue(()), &mut solution);
-        solution.sensitivities.admissibility.pop().expect("that of the one field")
+        dispatch!(Level::new(), simd => {
+            let mut walk = Walk::new(self, &design, vec![false; self.model.bodies.len()], lanes(simd));
+            walk.each(self, |_, _| ());
+            let sensing = walk.sensing.expect("there is a field");
+            sensing.admissibility(&design.opens, walk.done).pop().expect("that of the one field")
+        })
     }
 
     /// As [`Analysis::run`], but nothing is stored: the sink takes every result as it is found.
@@ -581,6 +583,19 @@ impl<'a, T: Real> Walk<'a, T> {
             wanted,
             done: 0,
         }
+    }
+
+    /// To the last output time, or to what stops it, for those who take what they want from the steppers: nothing is stored.
+    pub fn each(
+        &mut self,
+        analysis: &Analysis<'_>,
+        mut then: impl FnMut(Solved<'_, 'a, T>, usize),
+    ) -> Option<Stop> {
+        let mut unused = Motion::default();
+        let mut store = Store { motion: &mut unused, sensitivities: &mut [], variables: 0 };
+        self.all(analysis, &mut store, &mut |_| ControlFlow::Continue(()), |_, solved, count| {
+            then(solved, count)
+        })
     }
 
     /// To the last output time, or to what stops it. `then` sees what was solved, and how many of it count.

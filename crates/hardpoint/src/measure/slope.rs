@@ -3,10 +3,10 @@
 //! A driver that moves by itself is a direction like a change of the design (`docs/theory.md`, section 7); how the outcome
 //! changes with the design is the second derivative along both.
 
-use crate::model::{DriverId, Effects, Fixed, GROUND, MeasureKind, Model, WheelId};
+use crate::model::{DriverId, Effects, Fixed, GROUND, MeasureKind, Model, VariableId, WheelId};
 use crate::motion::stepper::Stepper;
 use crate::sensitivity::{Seconds, Way};
-use crate::space::{Dual, LANES, Pose, Real};
+use crate::space::{Dual, Pose, Real, of_lanes};
 use crate::topology::Topology;
 
 use super::wheel::{Carried, axle_roll_centre};
@@ -74,7 +74,7 @@ impl<'a, T: Real> Slopes<'a, T> {
             return None;
         }
         let variables = if sensitivities { model.variables.len() } else { 0 };
-        let unit = |v: usize| (0..model.variables.len()).map(|k| f64::from(u8::from(k == v))).collect();
+        let unit = |v: usize| model.alone(VariableId(v), 1.0);
         let ways =
             drivers.iter().map(|d| Way::Driver(*d)).chain((0..variables).map(|v| Way::Design(unit(v))));
         let ways: Vec<Way> = ways.collect();
@@ -101,7 +101,7 @@ impl<'a, T: Real> Slopes<'a, T> {
 
     /// Appends what is found at these times, one per lane.
     pub fn add(&mut self, stepper: &mut Stepper<'_, T>, times: &[f64], out: &mut SlopeValues) {
-        let of_lanes: [f64; LANES] = std::array::from_fn(|lane| times[lane.min(times.len() - 1)]);
+        let of_lanes = of_lanes(times);
         self.seconds.solve(stepper, &of_lanes);
         (out.measures, out.variables) = (self.model.measures.len(), self.variables);
         let state = &stepper.state;

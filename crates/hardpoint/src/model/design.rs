@@ -616,6 +616,13 @@ impl Model {
         (0..self.variables.len()).map(VariableId).filter(is_idle).collect()
     }
 
+    /// A value for every variable: 0 but for this one.
+    pub(crate) fn alone(&self, variable: VariableId, value: f64) -> Vec<f64> {
+        let mut design = self.whole(&[]);
+        design[variable.0] = value;
+        design
+    }
+
     /// A value for every variable: those given, then 0.
     pub(crate) fn whole(&self, design: &[f64]) -> Vec<f64> {
         let given = design.iter().copied().chain(std::iter::repeat(0.0));

@@ -5,7 +5,7 @@ use crate::motion::kinematics::State;
 use crate::motion::stepper::Stepper;
 use crate::motion::turn_over;
 use crate::sink::Sink;
-use crate::space::{LANES, Real, Twist, Vec3};
+use crate::space::{LANES, Real, Twist, Vec3, of_lanes};
 use crate::topology::Topology;
 
 use super::direct::{Defect, Direct, FieldParts};
@@ -111,7 +111,7 @@ impl<'f, T: Real> Sensing<'f, T> {
             let parts = |f: &Field| FieldParts::new(&all.topology, &f.spread(witness), witness);
             self.each = self.fields.iter().map(parts).collect();
         }
-        let of_lanes: [f64; LANES] = std::array::from_fn(|lane| times[lane.min(times.len() - 1)]);
+        let of_lanes = of_lanes(times);
         let resisting = &mut self.resisting;
         solve_each(
             (&mut self.each, &mut self.direct),

@@ -31,4 +31,4 @@ pub use twist::{Twist, Wrench};
 pub use vec3::Vec3;
 
 pub(crate) use rank::FullPivot;
-pub(crate) use real::{LANES, lanes};
+pub(crate) use real::{LANES, lanes, of_lanes};

@@ -5,6 +5,11 @@ use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
 
 use fearless_simd::{Select, Simd, SimdBase, SimdFloat, SimdMask, f64x8};
 
+/// One number per lane; the last one in lanes beyond.
+pub(crate) fn of_lanes(numbers: &[f64]) -> [f64; LANES] {
+    std::array::from_fn(|lane| numbers[lane.min(numbers.len() - 1)])
+}
+
 /// One `f64`, or several of them side by side in SIMD lanes.
 ///
 /// A lane value carries the proof that the CPU has the instructions, so constants are made from a

@@ -48,16 +48,8 @@ pub fn central_differences(
     let mut out = Vec::with_capacity(steps.len());
     // Few at a time: a solution holds its whole motion.
     for group in steps.chunks(4) {
-        let designs: Vec<Vec<f64>> = group
-            .iter()
-            .flat_map(|&(v, h)| {
-                [h, -h].map(|b| {
-                    let mut design = vec![0.0; analysis.model().variables.len()];
-                    design[v.0] = b;
-                    design
-                })
-            })
-            .collect();
+        let designs: Vec<Vec<f64>> =
+            group.iter().flat_map(|&(v, h)| [h, -h].map(|b| analysis.model().alone(v, b))).collect();
         let solutions = analysis.run_designs(&designs);
         for (&(variable, step), pair) in group.iter().zip(solutions.chunks(2)) {
             let stop = pair.iter().find_map(|s| s.stop.clone());

@@ -1,18 +1,15 @@
 //! Gradients of chosen outputs by all design variables, in whichever direction is shorter.
 
-use std::ops::ControlFlow;
-
 use fearless_simd::{Level, dispatch};
 
 use crate::analysis::{Analysis, Design, Solution, Solved, Walk};
 use crate::measure::{self, Moment, More, Output, SlopeValues, bodies_asked_for, outputs};
 use crate::model::{Field, Fixed, GROUND, MeasureKind, OutputSource, VariableId};
+use crate::motion::Stop;
 use crate::motion::kinematics::State;
 use crate::motion::stepper::Stepper;
-use crate::motion::{Motion, Stop};
 use crate::sensitivity::{Adjoint, Admissibility, Load, Resisting, Support, Watch, admissibility};
-use crate::sink::Store;
-use crate::space::{Dual, Jet, LANES, Mat3, Pose, Rates, Real, Twist, Vec3, Wrench, lanes};
+use crate::space::{Dual, Jet, LANES, Mat3, Pose, Rates, Real, Twist, Vec3, Wrench, lanes, of_lanes};
 use crate::topology::Topology;
 
 /// What an output costs the adjoint way, in solutions for one variable the direct way: its load takes some evaluations of the
@@ -161,10 +158,7 @@ impl Analysis<'_> {
         let mut all = Tracing::new(self, design, &fields, &result.outputs, witness);
         let mut resisting: Vec<Resisting> = vec![(Vec::new(), 0.0); variables];
         let mut walk = Walk::new(self, design, vec![false; model.bodies.len()], witness);
-        // Nothing is stored: no body's results are wanted.
-        let mut unused = Motion::default();
-        let mut store = Store { motion: &mut unused, sensitivities: &mut [], variables: 0 };
-        result.stop = walk.all(self, &mut store, &mut |_| ControlFlow::Continue(()), |_, solved, count| {
+        result.stop = walk.each(self, |solved, count| {
             let times = &model.times[result.times.len()..][..count];
             match solved {
                 Solved::One(stepper) => one.add(stepper, times, &mut resisting, &mut result),
@@ -264,7 +258,7 @@ impl<'a, T: Real> Tracing<'a, T> {
         resisting: &mut [Resisting],
         result: &mut Gradients,
     ) {
-        let of_lanes: [f64; LANES] = std::array::from_fn(|lane| times[lane.min(times.len() - 1)]);
+        let of_lanes = of_lanes(times);
         self.adjoint.set_times(stepper, &of_lanes);
         let (topology, state) = (&stepper.topology, &mut stepper.state);
         state.finish_rates(topology);

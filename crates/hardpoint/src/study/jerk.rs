@@ -1,15 +1,12 @@
 //! Jerk over a motion.
 
-use std::ops::ControlFlow;
-
 use fearless_simd::{Level, dispatch};
 
 use crate::analysis::{Analysis, Design, Solved, Walk};
 use crate::motion::jerk::Jerk;
 use crate::motion::stepper::Stepper;
-use crate::motion::{BodyJerk, Motion, Stop};
-use crate::sink::Store;
-use crate::space::{LANES, Real, lanes};
+use crate::motion::{BodyJerk, Stop};
+use crate::space::{Real, lanes, of_lanes};
 
 /// Third time derivatives of all bodies over a motion.
 #[derive(Clone, Debug, Default)]
@@ -46,10 +43,7 @@ impl Analysis<'_> {
         let mut all = Jerk::new(model, topology, witness);
         let mut walk = Walk::new(self, design, vec![false; model.bodies.len()], witness);
         let mut result = Jerks { bodies: model.bodies.len(), ..Jerks::default() };
-        // Nothing else is stored: no body's results are wanted.
-        let mut unused = Motion::default();
-        let mut store = Store { motion: &mut unused, sensitivities: &mut [], variables: 0 };
-        result.stop = walk.all(self, &mut store, &mut |_| ControlFlow::Continue(()), |_, solved, count| {
+        result.stop = walk.each(self, |solved, count| {
             let times = &model.times[result.times.len()..][..count];
             match solved {
                 Solved::One(stepper) => add(&mut one, stepper, times, &mut result),
@@ -62,7 +56,7 @@ impl Analysis<'_> {
 
 /// Appends what is found at these times, one per lane.
 fn add<T: Real>(jerk: &mut Jerk<T>, stepper: &mut Stepper<'_, T>, times: &[f64], result: &mut Jerks) {
-    jerk.solve(stepper, &std::array::from_fn::<f64, LANES, _>(|lane| times[lane.min(times.len() - 1)]));
+    jerk.solve(stepper, &of_lanes(times));
     for (lane, &t) in times.iter().enumerate() {
         result.times.push(t);
         result.states.extend((0..result.bodies).map(|b| jerk.of_body(stepper, b, lane)));

@@ -1,15 +1,11 @@
 //! The nearest admissible change: what was asked for, with as much more as keeps the joints closed.
 
-use std::ops::ControlFlow;
-
 use faer::Mat;
 use faer::linalg::solvers::Solve;
 
 use crate::analysis::{Analysis, Solved, Walk};
 use crate::model::{Change, End, Model, VariableId};
-use crate::motion::Motion;
 use crate::sensitivity::{Direct, FieldParts, conditions_at_design};
-use crate::sink::Store;
 use crate::space::{FullPivot, LANES, Vec3};
 
 use super::difference::natural_step;
@@ -125,18 +121,17 @@ fn conditions(analysis: &Analysis<'_>, scales: &[f64]) -> Vec<Vec<f64>> {
             rows[at][v] = c.value * scales[v] / unit;
         }
     }
-    // Nothing is stored, and one lane will do.
+    // One lane will do.
     let design = analysis.design(&[], false);
     let mut walk = Walk::new(analysis, &design, vec![false; model.bodies.len()], 0.0);
-    let (mut done, mut unused) = (0, Motion::default());
-    let mut store = Store { motion: &mut unused, sensitivities: &mut [], variables: 0 };
+    let mut done = 0;
     let every = model.times.len().div_ceil(TIMES).max(1);
     let topology = analysis.topology();
     let mut direct = Direct::new(model, topology, 0.0);
     let mut parts: Vec<_> = fields.iter().map(|f| FieldParts::new(topology, f, 0.0)).collect();
     if topology.redundant().next().is_some() {
         // A motion that ends early asks for less.
-        let _ = walk.all(analysis, &mut store, &mut |_| ControlFlow::Continue(()), |_, solved, count| {
+        let _ = walk.each(analysis, |solved, count| {
             let (Solved::One(stepper) | Solved::Abreast(stepper)) = solved;
             if done % every == 0 {
                 stepper.state.finish_wrenches(&stepper.topology);

@@ -1,17 +1,14 @@
 //! Second design derivatives over a motion: Hessians, their products with vectors, and how a curve bends along a change.
 
-use std::ops::ControlFlow;
-
 use fearless_simd::{Level, dispatch};
 
 use crate::analysis::{Analysis, Design, Solved, Walk};
 use crate::measure::{Moment, Output, bodies_asked_for, outputs};
 use crate::model::{BodyId, Fixed, GROUND};
+use crate::motion::Stop;
 use crate::motion::stepper::Stepper;
-use crate::motion::{Motion, Stop};
 use crate::sensitivity::{BodyCurvature, Seconds, Way};
-use crate::sink::Store;
-use crate::space::{Dual, LANES, Pose, Real, lanes};
+use crate::space::{Dual, Pose, Real, lanes, of_lanes};
 
 /// Second derivatives of all bodies' positions and of the values of all outputs, for pairs of directions.
 #[derive(Clone, Debug, Default)]
@@ -86,10 +83,8 @@ impl Analysis<'_> {
         };
         let mut one = Bends::new(self, design, directions, pairs, 0.0);
         let mut all = Bends::new(self, design, directions, pairs, witness);
-        let (mut done, mut unused) = (0, Motion::default());
-        // Nothing is stored: no body's results are wanted.
-        let mut store = Store { motion: &mut unused, sensitivities: &mut [], variables: 0 };
-        result.stop = walk.all(self, &mut store, &mut |_| ControlFlow::Continue(()), |_, solved, count| {
+        let mut done = 0;
+        result.stop = walk.each(self, |solved, count| {
             let times = &model.times[done..done + count];
             match solved {
                 Solved::One(stepper) => one.add(stepper, times, &mut result),
@@ -141,7 +136,7 @@ impl<'a, T: Real> Bends<'a, T> {
 
     /// Appends what is found at these times, one per lane.
     fn add(&mut self, stepper: &mut Stepper<'_, T>, times: &[f64], result: &mut SecondDerivatives) {
-        let of_lanes: [f64; LANES] = std::array::from_fn(|lane| times[lane.min(times.len() - 1)]);
+        let of_lanes = of_lanes(times);
         self.seconds.solve(stepper, &of_lanes);
         let (model, state) = (self.analysis.model(), &stepper.state);
         for (lane, &t) in times.iter().enumerate() {

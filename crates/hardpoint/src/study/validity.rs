@@ -24,14 +24,6 @@ pub struct Validity {
     pub linear_up_to: Vec<Option<f64>>,
 }
 
-impl Validity {
-    /// The output that bends soonest, and how far the variable may go there.
-    pub fn least(&self) -> Option<(usize, f64)> {
-        let known = self.linear_up_to.iter().enumerate().filter_map(|(m, x)| x.map(|x| (m, x)));
-        known.min_by(|a, b| a.1.total_cmp(&b.1))
-    }
-}
-
 /// The validity of the sensitivities of a solution of the nominal design, variable by variable; nothing is said of variables
 /// that the mechanism cannot follow. `more` is asked before every part of the work, and may end it.
 pub fn validity(
@@ -47,33 +39,30 @@ pub fn validity(
     }
     let followed: Vec<usize> =
         (0..variables).filter(|v| solution.sensitivities.at(0, *v).is_some()).collect();
-    // How far each output goes with a natural step of each variable, at most over the motion.
-    let effect = |v: usize, m: usize| {
+    // The largest sensitivity of each output over the motion, and how far that takes it with a natural step of the variable.
+    let first = |v: usize, m: usize| {
         let d = (0..measured.len()).map(|k| measured.d(k, VariableId(v), m)[0].abs());
-        d.fold(0.0, f64::max) * natural_step(model, VariableId(v))
+        d.fold(0.0, f64::max)
     };
-    let effects: Vec<Vec<f64>> =
-        followed.iter().map(|v| (0..outputs).map(|m| effect(*v, m)).collect()).collect();
-    let strongest = |m: usize| effects.iter().map(|e| e[m]).fold(0.0, f64::max);
+    let firsts: Vec<Vec<f64>> = (0..variables).map(|v| (0..outputs).map(|m| first(v, m)).collect()).collect();
+    let natural: Vec<f64> = (0..variables).map(|v| natural_step(model, VariableId(v))).collect();
+    let strongest = |m: usize| followed.iter().map(|&v| firsts[v][m] * natural[v]).fold(0.0, f64::max);
     let strongest: Vec<f64> = (0..outputs).map(strongest).collect();
+    let size = model.size();
     let per_variable = solution.motion.len() * (8 * outputs + 48 * model.bodies.len());
     for (part, group) in followed.chunks((MOST_BYTES / per_variable).max(1)).enumerate() {
         if !more(part) {
             break;
         }
-        let unit = |v: &usize| (0..variables).map(|k| f64::from(u8::from(k == *v))).collect();
-        let directions: Vec<Vec<f64>> = group.iter().map(unit).collect();
+        let directions: Vec<Vec<f64>> = group.iter().map(|v| model.alone(VariableId(*v), 1.0)).collect();
         let pairs: Vec<[usize; 2]> = (0..group.len()).map(|p| [p, p]).collect();
         let second = analysis.second(&[], &directions, &pairs);
         let steps = usize::min(second.times.len(), measured.len());
         for (p, &v) in group.iter().enumerate() {
-            let step = natural_step(model, VariableId(v));
             for (m, output) in measured.outputs.iter().enumerate().filter(|(_, o)| o.known.by_position) {
-                let most = |x: &dyn Fn(usize) -> f64| (0..steps).map(|k| x(k).abs()).fold(0.0, f64::max);
-                let first = most(&|k| measured.d(k, VariableId(v), m)[0]);
-                let bend = 0.5 * most(&|k| second.value(k, p, m));
-                let unit = model.size().powi(output.dimension.length.into());
-                if first * step > f64::max(NOTHING * unit, SLIGHT * strongest[m]) {
+                let bend = 0.5 * (0..steps).map(|k| second.value(k, p, m).abs()).fold(0.0, f64::max);
+                let (first, unit) = (firsts[v][m], size.powi(output.dimension.length.into()));
+                if first * natural[v] > f64::max(NOTHING * unit, SLIGHT * strongest[m]) {
                     found[v].linear_up_to[m] = Some(LINEAR * first / bend);
                 }
             }
