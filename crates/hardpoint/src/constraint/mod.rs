@@ -16,7 +16,7 @@ use crate::space::{Mat3, Pose, Real, Twist, Vec3, Wrench};
 /// One elementary constraint equation between two markers. Axes are 0, 1, 2 for x, y, z.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Row {
-    /// One component, along a world axis, of the spherical constraint `d = 0` (paper Eq. 4.7).
+    /// One component of the spherical constraint `d = 0` (paper Eq. 4.7), along the axes of the body on which the loop stands.
     Point(usize),
     /// `a_i . b_j = 0`: axis a of marker i square to axis b of marker j (paper Eq. 4.1).
     Dot1(usize, usize),
@@ -57,6 +57,9 @@ pub struct Ends<T> {
     pub i: Pose<T>,
     /// Marker j in the world.
     pub j: Pose<T>,
+    /// The axes along which their points are compared: any three that are square to each other will do, and as the points
+    /// coincide it does not matter how these turn.
+    pub axes: Mat3<T>,
 }
 
 /// Twists of the two bodies, and the time derivatives of those twists.
@@ -305,7 +308,7 @@ mod tests {
             }
             _ => {}
         }
-        Ends { i, j }
+        Ends { i, j, axes: Mat3::from_rotation_vector(v()) }
     }
 
     #[test]
@@ -336,6 +339,7 @@ mod tests {
                         let e = Ends {
                             i: moved(ends.i, wi, Twist::ZERO, h),
                             j: moved(ends.j, wj, Twist::ZERO, h),
+                            ..ends
                         };
                         row.residual(&e, target)
                     };
@@ -378,6 +382,7 @@ mod tests {
                     row.wrench(&Ends {
                         i: moved(ends.i, rates.v_i, rates.a_i, t),
                         j: moved(ends.j, rates.v_j, rates.a_j, t),
+                        ..ends
                     })
                 };
                 let [l1, l2] = row.wrench_rates(&ends, &rates);

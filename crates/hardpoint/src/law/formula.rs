@@ -9,6 +9,7 @@ use super::kind::Shape;
 use super::lanes::Lanes;
 use super::parameter::{Parameter, ParameterKind, Seed, parameter, seeded};
 use super::program::{Program, fixed};
+use super::range::Stretch;
 use super::scalar::Scalar;
 use crate::space::Real;
 
@@ -55,6 +56,11 @@ impl Shape for Formula {
     #[inline(always)]
     fn at_lanes<R: Real>(&self, times: Lanes<R>) -> TimeJet<Lanes<R>> {
         self.program.at_lanes(times)
+    }
+
+    fn over(&self, from: f64, to: f64) -> Stretch {
+        let middle = self.program.evaluate(TimeJet::time(0.5 * (from + to)), fixed::<f64>).value();
+        self.program.over_stretch(from, to).settled(middle, to - from)
     }
 
     fn parameters(&self) -> Vec<Parameter> {

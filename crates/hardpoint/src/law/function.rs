@@ -3,6 +3,7 @@
 use std::cmp::Ordering;
 
 use super::jet::TimeJet;
+use super::range::{Range, Stretch};
 use super::scalar::Scalar;
 use crate::space::{Function, Real};
 
@@ -28,6 +29,27 @@ pub(super) enum Unary {
 
 impl Unary {
     pub(super) fn apply<S: Scalar>(self, x: TimeJet<S>) -> TimeJet<S> {
+        match self {
+            Self::Neg => -x,
+            Self::Sin => x.sin(),
+            Self::Cos => x.cos(),
+            Self::Tan => x.tan(),
+            Self::Asin => x.asin(),
+            Self::Acos => x.acos(),
+            Self::Atan => x.atan(),
+            Self::Sinh => x.sinh(),
+            Self::Cosh => x.cosh(),
+            Self::Tanh => x.tanh(),
+            Self::Exp => x.exp(),
+            Self::Ln => x.ln(),
+            Self::Log10 => x.log10(),
+            Self::Sqrt => x.sqrt(),
+            Self::Abs => x.abs(),
+        }
+    }
+
+    /// The same over a stretch of time.
+    pub(super) fn over_stretch(self, x: Stretch) -> Stretch {
         match self {
             Self::Neg => -x,
             Self::Sin => x.sin(),
@@ -98,6 +120,21 @@ impl Binary {
         }
     }
 
+    /// The same over a stretch of time.
+    pub(super) fn over_stretch(self, x: Stretch, y: Stretch) -> Stretch {
+        match self {
+            Self::Add => x + y,
+            Self::Sub => x - y,
+            Self::Mul => x * y,
+            Self::Div => x / y,
+            Self::Atan2 => x.atan2(y),
+            Self::Pow => x.pow(y),
+            Self::Hypot => x.hypot(y),
+            Self::Min => x.min(y),
+            Self::Max => x.max(y),
+        }
+    }
+
     /// The same over any scalar that is no function of the time.
     pub(super) fn over<R: Real>(self, x: R, y: R) -> R {
         match self {
@@ -134,5 +171,11 @@ impl Comparison {
             Self::Greater => order == Ordering::Greater,
             Self::GreaterOrEqual => order != Ordering::Less,
         })
+    }
+    /// Whether it holds for all numbers of two ranges, or for none; `None` if that depends.
+    pub(super) fn holds_between(self, a: Range, b: Range) -> Option<bool> {
+        let corners = [(a.low, b.low), (a.low, b.high), (a.high, b.low), (a.high, b.high)];
+        let first = self.holds(a.low, b.high)?;
+        corners.iter().all(|&(a, b)| self.holds(a, b) == Some(first)).then_some(first)
     }
 }

@@ -8,6 +8,7 @@ use super::jet::TimeJet;
 use super::kind::{Shape, write_sum};
 use super::lanes::Lanes;
 use super::parameter::{Parameter, ParameterKind, Seed, parameter, seeded};
+use super::range::Stretch;
 use super::scalar::{Arithmetic, Scalar};
 use crate::space::Real;
 
@@ -55,6 +56,12 @@ impl Shape for Harmonic {
                 |number| times.like(number),
             );
         curve(TimeJet::time(times), amplitude, frequency, phase, offset)
+    }
+
+    fn over(&self, from: f64, to: f64) -> Stretch {
+        let of = Stretch::constant;
+        (Stretch::time(from, to) * of(TAU * self.frequency) + of(self.phase)).sin() * of(self.amplitude)
+            + of(self.offset)
     }
 
     fn parameters(&self) -> Vec<Parameter> {

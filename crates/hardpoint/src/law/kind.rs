@@ -9,6 +9,7 @@ use super::jumps::Break;
 use super::lanes::Lanes;
 use super::parameter::{Parameter, ParameterKind, Seed};
 use super::polynomial::Polynomial;
+use super::range::Stretch;
 use super::scalar::Scalar;
 use super::sequence::Sequence;
 use super::smooth_step::SmoothStep;
@@ -39,6 +40,10 @@ pub(super) trait Shape: fmt::Display {
 
     /// Changes the value of a parameter, as written.
     fn set(&mut self, parameter: usize, value: f64);
+
+    /// Bounds of f and of its rate from one time to another, both included; unbounded where it is undefined, or jumps, anywhere
+    /// between them.
+    fn over(&self, from: f64, to: f64) -> Stretch;
 
     /// Appends where the value or the first two derivatives may jump between `from` and `to`.
     fn find_breaks(&self, _from: f64, _to: f64, _breaks: &mut Vec<Break>) {}
@@ -95,6 +100,10 @@ impl Shape for Kind {
 
     fn set(&mut self, parameter: usize, value: f64) {
         for_kind!(self, shape => shape.set(parameter, value));
+    }
+
+    fn over(&self, from: f64, to: f64) -> Stretch {
+        for_kind!(self, shape => shape.over(from, to))
     }
 
     fn find_breaks(&self, from: f64, to: f64, breaks: &mut Vec<Break>) {

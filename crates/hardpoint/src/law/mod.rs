@@ -51,6 +51,7 @@ mod number;
 mod parameter;
 mod polynomial;
 mod program;
+mod range;
 mod scalar;
 mod sequence;
 mod smooth_step;
@@ -74,6 +75,7 @@ pub use number::Expression;
 use parameter::Seed;
 pub use parameter::{Parameter, ParameterKind};
 use polynomial::Polynomial;
+pub use range::{Range, Stretch};
 use scalar::{Dual, Scalar};
 pub use sequence::Piece;
 use sequence::Sequence;
@@ -415,6 +417,22 @@ impl Law {
         let mut law = self.clone();
         law.kind.set(parameter, if is_in_driver_unit { value / self.factor } else { value });
         law
+    }
+
+    /// Bounds of value and rate from one time to another, both included, in the driver's unit and per s. They hold but for
+    /// rounding; those of the value exceed the law by no more than about the square of the time between. Where the law is
+    /// undefined anywhere there both are unbounded, where it jumps the rate is.
+    ///
+    /// ```
+    /// use hardpoint::law::Law;
+    ///
+    /// let law = Law::parse("20*sin(pi*t)")?;
+    /// let travel = law.over(0.25, 1.0).value;
+    /// assert!(travel.high == 20.0 && travel.low.abs() < 1e-12);
+    /// # Ok::<(), hardpoint::law::ExpressionError>(())
+    /// ```
+    pub fn over(&self, from: f64, to: f64) -> Stretch {
+        self.kind.over(from, to) * Stretch::constant(self.factor)
     }
 
     /// Where between `from` and `to`, both included, the value, the speed or the acceleration jumps, in the order of time.

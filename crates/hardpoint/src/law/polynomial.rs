@@ -7,6 +7,7 @@ use super::jet::TimeJet;
 use super::kind::{Shape, write_sum};
 use super::lanes::Lanes;
 use super::parameter::{Parameter, ParameterKind, Seed, parameter, seeded};
+use super::range::Stretch;
 use super::scalar::{Arithmetic, Scalar};
 use crate::space::Real;
 
@@ -38,6 +39,10 @@ impl Shape for Polynomial {
     #[inline(always)]
     fn at_lanes<R: Real>(&self, times: Lanes<R>) -> TimeJet<Lanes<R>> {
         sum_of_powers_of_time(&self.coefficients, times, |coefficient| times.like(*coefficient))
+    }
+
+    fn over(&self, from: f64, to: f64) -> Stretch {
+        Stretch::of_polynomial(&self.coefficients, from, to)
     }
 
     fn parameters(&self) -> Vec<Parameter> {

@@ -8,6 +8,7 @@ use std::cmp::Ordering;
 use super::function::{Binary, Comparison, Unary};
 use super::jet::TimeJet;
 use super::lanes::{Lanes, lane_by_lane};
+use super::range::Stretch;
 use super::scalar::{Arithmetic, Scalar};
 use crate::space::Real;
 
@@ -97,6 +98,23 @@ impl Operation {
                     self.apply(&single[..operands.len()])
                 })
             }
+        }
+    }
+
+    /// The result for operands over a stretch of time.
+    fn over_stretch(self, operands: &[Stretch]) -> Stretch {
+        match (self, operands) {
+            (Self::One(function), &[x]) => function.over_stretch(x),
+            (Self::Two(function), &[x, y]) => function.over_stretch(x, y),
+            (Self::Powi(exponent), &[x]) => x.powi(exponent),
+            (Self::Powf(exponent), &[x]) => x.powf(exponent),
+            (Self::Step, &[x, x0, h0, x1, h1]) => x.step(x0, h0, x1, h1),
+            (Self::Select(comparison), &[a, b, x, y]) => {
+                Stretch::choose(comparison.holds_between(a.value, b.value), x, y)
+            }
+            // What depends on parameters only does not change.
+            (Self::Settle, &[x]) => x,
+            _ => unreachable!("an operation has as many operands as it says"),
         }
     }
 
@@ -300,6 +318,15 @@ impl Program {
         )
     }
 
+    /// Bounds of the program's result, and of its rate, from one time to another; without parameters.
+    pub(super) fn over_stretch(&self, from: f64, to: f64) -> Stretch {
+        if self.most_waiting <= USUALLY_WAITING {
+            over_stretch::<USUALLY_WAITING>(&self.operations, from, to)
+        } else {
+            over_stretch::<MAX_WAITING>(&self.operations, from, to)
+        }
+    }
+
     /// The program's result over any scalar, for the given parameters; of a program that does not know the time.
     pub(super) fn over<R: Real>(&self, witness: R, parameter: impl Fn(usize) -> R) -> R {
         let mut stack: Vec<R> = Vec::with_capacity(self.most_waiting);
@@ -360,6 +387,23 @@ fn evaluate<S: Scalar, const N: usize>(
             Operation::Parameter(index) => TimeJet::constant(parameter(index)),
             Operation::Time => time,
             _ => operation.apply(&stack[len..len + operands]),
+        };
+        len += 1;
+    }
+    stack[0]
+}
+
+/// Runs the operations over a stretch of time.
+fn over_stretch<const N: usize>(operations: &[Operation], from: f64, to: f64) -> Stretch {
+    let mut stack = [Stretch::constant(0.0); N];
+    let mut len = 0;
+    for &operation in operations {
+        len -= operation.operands();
+        stack[len] = match operation {
+            Operation::Constant(value) => Stretch::constant(value),
+            Operation::Parameter(_) => Stretch::UNBOUNDED,
+            Operation::Time => Stretch::time(from, to),
+            _ => operation.over_stretch(&stack[len..len + operation.operands()]),
         };
         len += 1;
     }

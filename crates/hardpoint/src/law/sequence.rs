@@ -9,6 +9,7 @@ use super::jumps::Break;
 use super::kind::Shape;
 use super::lanes::Lanes;
 use super::parameter::{Parameter, ParameterKind, Seed, parameter, seeded};
+use super::range::{Range, Stretch};
 use super::scalar::{Arithmetic, Scalar};
 use super::table::ROUNDING_OF_TIME;
 use crate::space::Real;
@@ -187,6 +188,22 @@ impl Shape for Sequence {
                 _ => f,
             }),
         }
+    }
+
+    fn over(&self, from: f64, to: f64) -> Stretch {
+        let (Some(first), Some(last)) = (self.piece_at(from, false), self.piece_at(to, false)) else {
+            return Stretch::UNBOUNDED;
+        };
+        let piece = |k: usize| {
+            let (start, end) = (self.starts[k], self.starts[k + 1]);
+            let of_law = self.pieces[k].law.over(from.max(start) - start, to.min(end) - start);
+            of_law + Stretch::constant(self.offsets[k])
+        };
+        (first + 1..=last).fold(piece(first), |all, k| {
+            // A piece that counts from its own zero may begin with a jump.
+            let rate = if self.pieces[k].continued { piece(k).rate } else { Range::UNBOUNDED };
+            all.or(Stretch { rate, ..piece(k) })
+        })
     }
 
     fn parameters(&self) -> Vec<Parameter> {

@@ -10,6 +10,7 @@ use super::kind::Shape;
 use super::lanes::Lanes;
 use super::parameter::{Parameter, ParameterKind, Seed, parameter, seeded};
 use super::polynomial::sum_of_powers;
+use super::range::{Range, Stretch};
 use super::scalar::{Arithmetic, Scalar};
 use crate::space::Real;
 
@@ -112,6 +113,15 @@ impl Shape for SmoothStep {
             times.like(end),
         );
         between.or_where(|lane| t[lane] < start, before).or_where(|lane| t[lane] >= end, after)
+    }
+
+    fn over(&self, from: f64, to: f64) -> Stretch {
+        // It never turns round, and is fastest in the middle.
+        let at = |t: f64| self.at::<f64>(TimeJet::time(t), None);
+        let middle = (0.5 * (self.start + self.end)).clamp(from, to);
+        let [start, fastest, end] = [at(from), at(middle), at(to)];
+        let rate = Range::between(start.d(), end.d()).or(Range::exactly(fastest.d()));
+        Stretch { value: Range::between(start.value(), end.value()), rate }
     }
 
     fn parameters(&self) -> Vec<Parameter> {

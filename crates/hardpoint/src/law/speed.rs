@@ -7,6 +7,7 @@ use super::jet::TimeJet;
 use super::kind::{Shape, write_sum};
 use super::lanes::Lanes;
 use super::parameter::{Parameter, ParameterKind, Seed, parameter, seeded};
+use super::range::{Range, Stretch};
 use super::scalar::{Arithmetic, Scalar};
 use crate::space::Real;
 
@@ -35,6 +36,11 @@ impl Shape for ConstantSpeed {
     #[inline(always)]
     fn at_lanes<R: Real>(&self, times: Lanes<R>) -> TimeJet<Lanes<R>> {
         (TimeJet::time(times) * self.speed).plus(times.like(self.offset))
+    }
+
+    fn over(&self, from: f64, to: f64) -> Stretch {
+        let at = |t: f64| self.speed * t + self.offset;
+        Stretch { value: Range::between(at(from), at(to)), rate: Range::exactly(self.speed) }
     }
 
     fn parameters(&self) -> Vec<Parameter> {

@@ -9,6 +9,7 @@ use super::kind::Shape;
 use super::lanes::Lanes;
 use super::parameter::{Parameter, ParameterKind, Seed, parameter};
 use super::polynomial::{sum_of_powers, sum_of_powers_of_time};
+use super::range::Stretch;
 use super::scalar::Scalar;
 use super::spline::{Basis, EndKind, Segment};
 use crate::space::{LANES, Real};
@@ -262,6 +263,33 @@ impl Shape for Spline {
         sum_of_powers_of_time(&POWERS[..self.order()], since, |&power| {
             since.map_lanes(|lane, _| segments[lane][power])
         })
+    }
+
+    fn over(&self, from: f64, to: f64) -> Stretch {
+        let before = self.periods_before(from, false);
+        let (mut from, mut to) = (from - before, to - before);
+        let (first, last) = (self.times[0], self.times[self.times.len() - 1]);
+        let mut over = None::<Stretch>;
+        let mut add = |from: f64, to: f64| {
+            let first = self.segment_at(from, false);
+            for k in first..=usize::max(first, self.segment_at(to, true)) {
+                let start = self.times[k];
+                let (from, to) = (from.max(start) - start, to.min(self.times[k + 1]).max(start) - start);
+                let segment = Stretch::of_polynomial(&self.segments[k][..self.order()], from, to);
+                over = Some(over.map_or(segment, |all| all.or(segment)));
+            }
+        };
+        if self.is_periodic && to > last {
+            // Beyond the end it begins anew.
+            add(first, if to - from >= last - first { last } else { to - (last - first) });
+            to = last;
+        }
+        if !(self.reaches(from) && self.reaches(to)) {
+            return Stretch::UNBOUNDED;
+        }
+        (from, to) = (from.clamp(first, last), to.clamp(first, last));
+        add(from, to);
+        over.unwrap_or(Stretch::UNBOUNDED)
     }
 
     fn parameters(&self) -> Vec<Parameter> {

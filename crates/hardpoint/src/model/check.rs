@@ -111,8 +111,22 @@ struct Check<'a> {
     numbers: HashMap<&'static str, HashMap<&'a str, usize>>,
     /// Comparisons of names that guesses may still take.
     comparisons: usize,
-    /// The box around the hardpoints listed so far.
+    /// The box around the joints' hardpoints, as far as they are known; what no joint uses has no say in what is small.
     extent: Extent,
+}
+
+/// The box around the hardpoints that joints name; around all if they name none.
+fn extent_of_joints(draft: &Draft, hardpoints: &[Hardpoint]) -> Extent {
+    let places = draft.joints.iter().flat_map(|j| &j.at);
+    let named: BTreeSet<&str> = places
+        .filter_map(|place| match place {
+            Place::Hardpoint(name) => Some(name.as_str()),
+            _ => None,
+        })
+        .collect();
+    let used = |h: &&Hardpoint| h.unnamed || named.contains(h.name.as_str());
+    let extent = Extent::of(hardpoints.iter().filter(used).map(|h| h.position));
+    if extent.size_or_zero() > 0.0 { extent } else { Extent::of(hardpoints.iter().map(|h| h.position)) }
 }
 
 impl<'a> Check<'a> {
@@ -149,7 +163,7 @@ impl<'a> Check<'a> {
             ("point", numbered(draft.points.iter().map(|p| p.name.as_str()))),
             ("measure", numbered(draft.measures.iter().map(|m| m.name.as_str()))),
         ]);
-        let extent = Extent::of(draft.hardpoints.iter().map(|h| h.position));
+        let extent = extent_of_joints(draft, &model.hardpoints);
         let (faults, joint_ids) = (Vec::new(), Vec::new());
         let (mut length_formulas, mut law_formulas) = (HashMap::new(), HashMap::new());
         for f in &draft.formulas {

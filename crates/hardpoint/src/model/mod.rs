@@ -339,7 +339,7 @@ impl Model {
         if let Some(curve) = &self.joints[joint.0].curve {
             i = i.compose(Contact::at(curve, 0.0, curve.start()).frame());
         }
-        Ends { i, j }
+        Ends { i, j, axes: Mat3::IDENTITY }
     }
 
     /// Joints that a person wrote.
@@ -347,11 +347,15 @@ impl Model {
         self.joints.iter().enumerate().filter(|(_, j)| !j.unnamed).map(|(k, j)| (JointId(k), j))
     }
 
-    /// The size of the mechanism, m: the diagonal of the box around its hardpoints (1 if that is 0).
+    /// The size of the mechanism, m: the diagonal of the box around its joints; around all hardpoints if that is 0, and 1 if that
+    /// is 0 as well.
     ///
-    /// Lengths are compared with it wherever a tolerance must not depend on the units of the model.
+    /// Lengths are compared with it wherever a tolerance must not depend on the units of the model, nor on places that have
+    /// nothing to do with its motion; within a loop the loop's own size counts.
     pub fn size(&self) -> f64 {
-        Extent::of(self.hardpoints.iter().map(|h| h.position)).size()
+        let joints = self.joints.iter().flat_map(|j| j.at.map(|m| self.position(m)));
+        let size = Extent::of(joints).size_or_zero();
+        if size > 0.0 { size } else { Extent::of(self.hardpoints.iter().map(|h| h.position)).size() }
     }
 
     /// The variable of that name.
@@ -377,13 +381,13 @@ impl Model {
 
 /// The box around some points.
 #[derive(Clone, Copy, Debug)]
-struct Extent {
+pub(crate) struct Extent {
     low: Vec3,
     high: Vec3,
 }
 
 impl Extent {
-    fn of(points: impl Iterator<Item = Vec3>) -> Self {
+    pub fn of(points: impl Iterator<Item = Vec3>) -> Self {
         let low = Vec3::new(f64::INFINITY, f64::INFINITY, f64::INFINITY);
         let mut extent = Self { low, high: -low };
         points.for_each(|p| extent.include(p));
@@ -398,7 +402,13 @@ impl Extent {
 
     /// Its diagonal; 1 where that is no length to compare with.
     fn size(&self) -> f64 {
+        let size = self.size_or_zero();
+        if size > 0.0 { size } else { 1.0 }
+    }
+
+    /// Its diagonal; 0 where there is no point, or none that is finite.
+    pub fn size_or_zero(&self) -> f64 {
         let size = (self.high - self.low).norm();
-        if size > 0.0 && size.is_finite() { size } else { 1.0 }
+        if size.is_finite() && self.low.x <= self.high.x { size } else { 0.0 }
     }
 }

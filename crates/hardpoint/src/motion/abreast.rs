@@ -9,7 +9,8 @@ use crate::space::{LANES, Real};
 use crate::topology::{Source, Topology};
 
 use super::parts::Parts;
-use super::stepper::Stepper;
+use super::stepper::{Ahead, EVEN, LONGEST, MILD, MILD_CHANGE, RESTS, Stepper};
+use super::walk::PART_OF_WAY;
 
 /// The first correction (rad, or sizes) must be within this: a forecast that fails by more is none.
 const FORESEEN: f64 = 1e-3;
@@ -43,7 +44,7 @@ impl<'m, T: Real> Abreast<'m, T> {
     /// 0 where they are to be walked.
     pub fn advance(&mut self, one: &mut Stepper<'m, f64>, next: &[f64]) -> usize {
         let count = usize::min(next.len(), T::LANES);
-        if !self.suits || count < FEWEST || one.forecast.known() < 3 {
+        if !self.suits || count < FEWEST || one.forecast.known() < 3 || one.ahead == Ahead::Unknown {
             return 0;
         }
         if self.wait > 0 {
@@ -78,6 +79,9 @@ impl<'m, T: Real> Abreast<'m, T> {
                 return false;
             }
         }
+        if !laws_are_even(all, one, &times, last) {
+            return false;
+        }
         all.fastest_driver = one.fastest_driver;
         all.fastest_driver = all.driver_speed();
         let h = t - witness.like(one.time);
@@ -92,7 +96,7 @@ impl<'m, T: Real> Abreast<'m, T> {
             .iter()
             .enumerate()
             .all(|(b, &(ratio, positive))| positive == one.branch[b].0 && ratio >= one.try_others[b]);
-        if !same_branch {
+        if !same_branch || !determinants_are_even(all, one, &times, last) {
             return false;
         }
         if all.uncertain_turn().is_some() || !all.speeds_are_smooth(h) {
@@ -130,6 +134,69 @@ impl<'m, T: Real> Abreast<'m, T> {
     }
 }
 
+/// Whether no law does anything between the output times that these would not show; and, where no step tells yet, no singular
+/// position is known to be near. Notes how far the drivers go from one output time to the next.
+#[inline(always)]
+fn laws_are_even<T: Real>(
+    all: &mut Stepper<'_, T>,
+    one: &mut Stepper<'_, f64>,
+    times: &[f64; LANES],
+    last: usize,
+) -> bool {
+    let mut longest = times[0] - one.time;
+    (1..=last).for_each(|k| longest = longest.max(times[k] - times[k - 1]));
+    for d in 0..all.drivers.len() {
+        let unit = one.driver_units[d];
+        let (mut before, mut moves) = (one.saved.drivers[d][0], 0.0_f64);
+        for k in 0..=last {
+            let value = all.drivers[d][0].lane(k);
+            moves = moves.max((value - before).abs() / unit);
+            before = value;
+        }
+        let travel = longest * one.parts.fastest(d, one.time, times[last]) / unit;
+        if !(travel <= (EVEN * moves).max(RESTS).min(LONGEST)) {
+            return false;
+        }
+        (all.moves[d], one.travel[d]) = (moves, travel * unit);
+    }
+    one.ahead == Ahead::Even || one.around.part_of_way(&one.travel) <= PART_OF_WAY
+}
+
+/// Whether every determinant changes by little from one output time to the next, and about as much as over the step before. Notes
+/// the last of these changes.
+#[inline(always)]
+fn determinants_are_even<T: Real>(
+    all: &mut Stepper<'_, T>,
+    one: &Stepper<'_, f64>,
+    times: &[f64; LANES],
+    last: usize,
+) -> bool {
+    let witness = all.state.witness;
+    let step = |k: usize| if k == 0 { times[0] - one.time } else { times[k] - times[k - 1] };
+    for b in 0..all.changes.len() {
+        let now = all.state.determinants[b];
+        let saved = one.saved.determinants[b];
+        let before = witness.like_lanes(|k| if k == 0 { saved } else { now.lane(k - 1) });
+        let ratio = all.state.factors[b].ratio(now, before);
+        // Written so that NaN is not even.
+        if !(ratio.smallest() >= MILD[0] && ratio.largest() <= MILD[1]) {
+            return false;
+        }
+        let (mut change, mut over) = (one.changes[b], one.change_step);
+        for k in 0..=last {
+            let next = ratio.lane(k) - 1.0;
+            let known = k > 0 || one.ahead == Ahead::Even;
+            if known && !((next - change * (step(k) / over)).abs() <= MILD_CHANGE) {
+                return false;
+            }
+            (change, over) = (next, step(k));
+        }
+        all.changes[b] = witness.like(change);
+    }
+    all.change_step = step(last);
+    true
+}
+
 impl<T: Real> Stepper<'_, T> {
     /// Foresees the positions at the times t, each h beyond where the other stepper stands, `farthest` at the most.
     #[inline(always)]
@@ -165,6 +232,16 @@ impl Stepper<'_, f64> {
             }
         }
         saved.pivots.copy_from_slice(&s.pivots);
+        for (to, from) in saved.determinants.iter_mut().zip(&s.determinants) {
+            *to = from.lane(last);
+        }
+        saved.residual = all.residuals.scaled;
+        for (to, from) in self.changes.iter_mut().zip(&all.changes) {
+            *to = from.lane(0);
+        }
+        self.change_step = all.change_step;
+        self.moves.copy_from_slice(&all.moves);
+        self.ahead = Ahead::Even;
         for (to, from) in saved.drivers.iter_mut().zip(&all.drivers) {
             *to = from.map(|x| x.lane(last));
         }

@@ -10,7 +10,8 @@ use crate::space::{Elimination, Real};
 use crate::topology::Topology;
 
 use super::kinematics::State;
-use super::stepper::{Path, Stepper};
+use super::stepper::Stepper;
+use super::walk::Path;
 use super::{Stop, StopKind};
 
 /// A gap below this part of the mechanism's size (or, for a cosine, below this) is round-off of the drawing.
@@ -67,16 +68,8 @@ pub struct Moved {
 impl<T: Real> State<T> {
     /// The largest gap of the drawing, in sizes or as a cosine.
     pub(super) fn largest_gap(&self, topology: &Topology) -> f64 {
-        let scaled =
-            self.gap.iter().enumerate().map(|(r, gap)| gap.abs().largest() / self.scale_of_row(topology, r));
+        let scaled = self.gap.iter().zip(&topology.rows).map(|(gap, place)| gap.abs().largest() / place.unit);
         scaled.fold(0.0, f64::max)
-    }
-
-    /// What a row's residual is compared with: the size for a length, else 1.
-    fn scale_of_row(&self, topology: &Topology, r: usize) -> f64 {
-        let place = &topology.rows[r];
-        let is_length = topology.closures[place.closure].rows[place.index].is_length();
-        if is_length { self.size } else { 1.0 }
     }
 }
 
@@ -87,7 +80,13 @@ impl<T: Real> Stepper<'_, T> {
         if !(self.state.largest_gap(&self.topology) > CLOSED) {
             self.state.gap.fill(self.state.witness.zero());
         }
-        self.attempt(Path::Assembly, 0.0, 0.0, true).map_err(|r| self.stop(Path::Assembly, 0.0, r, false))?;
+        self.time = 0.0;
+        let drawn = self.drive(Path::Assembly, 0.0).and_then(|()| {
+            self.restore();
+            self.solve_within(f64::INFINITY)
+        });
+        self.settle_branch();
+        drawn.and_then(|()| self.examine_position()).map_err(|r| self.stop(Path::Assembly, 0.0, r, false))?;
         self.save(0.0, 0.0);
         if self.state.largest_gap(&self.topology) == 0.0 {
             return Ok(());
@@ -125,7 +124,7 @@ impl<T: Real> Stepper<'_, T> {
 
     /// The gaps that a value per row gives, summed up per joint, driver or coupler; small ones left out.
     fn gaps(&self, of_row: impl Fn(&Self, usize) -> f64, least: f64) -> Vec<Gap> {
-        let mut gaps: Vec<Gap> = Vec::new();
+        let mut gaps: Vec<(Gap, f64)> = Vec::new();
         for (r, place) in self.topology.rows.iter().enumerate().filter(|(_, p)| !p.is_term) {
             let closure = &self.topology.closures[place.closure];
             let of = match (closure.driver, closure.coupler) {
@@ -134,19 +133,17 @@ impl<T: Real> Stepper<'_, T> {
                 (None, None) => Closing::Joint(closure.joint),
             };
             let size = of_row(self, r);
-            if !(size.abs() > least * self.state.scale_of_row(&self.topology, r)) {
+            if !(size.abs() > least * place.unit) {
                 continue;
             }
             let is_length = closure.rows[place.index].is_length();
-            match gaps.iter_mut().find(|g| g.of == of && g.is_length == is_length) {
-                Some(gap) => gap.size = gap.size.hypot(size),
-                None => gaps.push(Gap { of, size: size.abs(), is_length }),
+            match gaps.iter_mut().find(|(g, _)| g.of == of && g.is_length == is_length) {
+                Some((gap, _)) => gap.size = gap.size.hypot(size),
+                None => gaps.push((Gap { of, size: size.abs(), is_length }, place.unit)),
             }
         }
-        let size = self.state.size;
-        let scaled = |g: &Gap| if g.is_length { g.size / size } else { g.size };
-        gaps.sort_by(|a, b| scaled(b).total_cmp(&scaled(a)));
-        gaps
+        gaps.sort_by(|(a, unit_a), (b, unit_b)| (b.size / unit_b).total_cmp(&(a.size / unit_a)));
+        gaps.into_iter().map(|(gap, _)| gap).collect()
     }
 
     /// How far the bodies are from where they were drawn.
@@ -160,7 +157,8 @@ impl<T: Real> Stepper<'_, T> {
                 angle: pose.rot.lane(0).angle_to(body.frame.rot),
             }
         });
-        moved.filter(|m| m.distance > least * self.state.size || m.angle > least).collect()
+        let size = self.model.size();
+        moved.filter(|m| m.distance > least * size || m.angle > least).collect()
     }
 }
 
@@ -192,8 +190,7 @@ impl Stepper<'_, f64> {
             normal.solve(&mut step);
             let before = (self.state.q.clone(), self.state.balls.clone());
             for (k, &c) in unknowns.iter().enumerate() {
-                let unit = if self.topology.coordinates[c].is_length { self.state.size } else { 1.0 };
-                self.state.q[c] += step[k] * unit;
+                self.state.q[c] += step[k] * self.topology.coordinates[c].unit;
             }
             self.state.turn_balls(&self.topology, 0..self.topology.links.len());
             let (now, jacobian_now) = self.scaled_rows(&rows, &unknowns);
@@ -223,7 +220,7 @@ impl Stepper<'_, f64> {
         let mut jacobian = Vec::new();
         for &r in rows {
             let s = &self.state;
-            let scale = 1.0 / s.scale_of_row(&self.topology, r);
+            let scale = 1.0 / self.topology.rows[r].unit;
             residuals.push(scale * s.residual_of(&self.topology, &self.parts, &self.drivers, r));
             let mut by_coordinate = std::collections::BTreeMap::new();
             for (k, factor) in self.topology.parts_of_row(r) {
@@ -233,7 +230,7 @@ impl Stepper<'_, f64> {
                 for &(link, side) in &closure.links {
                     for step in &self.topology.links[link].steps {
                         for c in step.first..step.first + step.freedom.coordinates() {
-                            let unit = if self.topology.coordinates[c].is_length { s.size } else { 1.0 };
+                            let unit = self.topology.coordinates[c].unit;
                             *by_coordinate.entry(c).or_insert(0.0) +=
                                 scale * unit * side * factor * wrench.on(s.x[c]);
                         }

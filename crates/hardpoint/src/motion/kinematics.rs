@@ -64,8 +64,8 @@ pub(crate) struct State<T> {
     pub contacts: Vec<Contact<T>>,
     /// Per block: smallest over largest pivot, and the sign of the determinant.
     pub pivots: Vec<(f64, bool)>,
-    /// Size of the mechanism, m.
-    pub size: f64,
+    /// Per block: its determinant, to be compared by [`Factors::ratio`].
+    pub determinants: Vec<T>,
     pub iterations: usize,
 }
 
@@ -113,7 +113,7 @@ impl<T: Real> State<T> {
             l: vec![no_wrench; rows],
             ld: vec![no_wrench; rows],
             ldd: Vec::new(),
-            ends: vec![Ends { i: frame, j: frame }; topology.closures.len()],
+            ends: vec![Ends { i: frame, j: frame, axes: frame.rot }; topology.closures.len()],
             factors: topology
                 .blocks
                 .iter()
@@ -128,7 +128,7 @@ impl<T: Real> State<T> {
             gap_left: [0.0; 2],
             contacts: Vec::new(),
             pivots: vec![(1.0, true); topology.blocks.len()],
-            size: model.size(),
+            determinants: vec![o; topology.blocks.len()],
             iterations: 0,
         }
     }
@@ -208,7 +208,8 @@ impl<T: Real> State<T> {
     pub(super) fn place_ends(&mut self, topology: &Topology, parts: &Parts<T>, closure: usize) {
         let [i, j] = topology.closures[closure].bodies;
         let (m_i, m_j) = (parts.ends[0].get(closure, self.witness), parts.ends[1].get(closure, self.witness));
-        self.ends[closure] = Ends { i: self.frame[i.0].compose(m_i), j: self.frame[j.0].compose(m_j) };
+        let axes = self.frame[topology.closures[closure].base.0].rot;
+        self.ends[closure] = Ends { i: self.frame[i.0].compose(m_i), j: self.frame[j.0].compose(m_j), axes };
         if let Some(k) = topology.closures[closure].contact {
             self.touch(parts, closure, k);
         }
@@ -221,12 +222,13 @@ impl<T: Real> State<T> {
         let (m_i, m_j) = (parts.ends[0].get(closure, self.witness), parts.ends[1].get(closure, self.witness));
         let ends = &mut self.ends[closure];
         (ends.i.r, ends.j.r) = (self.frame[i.0].point(m_i.r), self.frame[j.0].point(m_j.r));
+        ends.axes = self.frame[topology.closures[closure].base.0].rot;
     }
 
     /// Lets marker i of a closure walk along its curve to where it is next to marker j.
     #[inline(never)]
     fn touch(&mut self, parts: &Parts<T>, closure: usize, k: usize) {
-        let Ends { i, j } = self.ends[closure];
+        let Ends { i, j, .. } = self.ends[closure];
         let p = i.inverse().point(j.r);
         self.contacts[k] = Contact::nearest(&parts.curves[k], p, self.contacts[k].u);
         self.ends[closure].i = i.compose(self.contacts[k].frame());
@@ -243,7 +245,7 @@ impl<T: Real> State<T> {
 
     #[inline(always)]
     fn walking(&self, closure: usize, k: usize, rates: &EndRates<T>) -> EndRates<T> {
-        let Ends { i: foot, j } = &self.ends[closure];
+        let Ends { i: foot, j, .. } = &self.ends[closure];
         let (v, a, contact) = (rates.v_i, rates.a_i, &self.contacts[k]);
         // The marker that carries the curve, and the follower's motion seen from it.
         let i = foot.compose(contact.frame().inverse());
@@ -332,7 +334,7 @@ impl<T: Real> State<T> {
     }
 
     #[inline(never)]
-    fn wrench_of(&self, row: Row, closure: usize) -> Wrench<T> {
+    pub(super) fn wrench_of(&self, row: Row, closure: usize) -> Wrench<T> {
         self.witness.within(
             #[inline(always)]
             || row.wrench(&self.ends[closure]),
@@ -371,6 +373,7 @@ impl<T: Real> State<T> {
         }
         let found = self.factors[b].factor();
         self.pivots[b] = (found.pivot_ratio, found.positive);
+        self.determinants[b] = found.determinant;
     }
 
     /// Position, velocity and acceleration of all bodies for the drivers' values and their derivatives, from the prediction in
@@ -449,14 +452,12 @@ impl<T: Real> State<T> {
         Err(PositionFailure::NoConvergence { block: b })
     }
 
-    /// Largest component of the correction in `rhs`, lengths in sizes.
+    /// Largest component of the correction in `rhs`, lengths in sizes of their loops.
     #[inline(always)]
     fn correction(&self, topology: &Topology, b: usize) -> f64 {
-        let per_size = self.witness.like(1.0 / self.size);
         let mut most = self.witness.zero();
         for (&c, &d) in topology.blocks[b].unknowns.iter().zip(&self.rhs) {
-            let d = if topology.coordinates[c].is_length { d * per_size } else { d };
-            most = most.larger(d.abs());
+            most = most.larger((d * d.like(topology.coordinates[c].per_unit)).abs());
         }
         most.largest()
     }
@@ -530,6 +531,26 @@ impl<T: Real> State<T> {
         level(topology, b, &mut s.factors, &s.x, &s.l, bias, &s.row_rhs, &mut s.qdd, &mut s.a, &mut s.rhs);
     }
 
+    /// Velocity and acceleration of all bodies where they stand, and first and second rates of all twists and wrenches, for speeds of
+    /// the drivers other than those that the position was solved with; those of driven coordinates stand in `qd` and `qdd`.
+    #[inline(never)]
+    pub(super) fn all_rates(&mut self, topology: &Topology, parts: &Parts<T>, drivers: &[[T; 3]]) {
+        let witness = self.witness;
+        witness.within(
+            #[inline(always)]
+            || {
+                self.rates_of_driven(topology);
+                for b in 0..topology.blocks.len() {
+                    self.rates_of_block(topology, parts, drivers, b);
+                }
+                self.rates_of_twists(topology, 0..topology.links.len(), 2);
+                for &c in topology.blocks.iter().flat_map(|b| &b.closures) {
+                    self.rates_of_wrenches(topology, c, 2);
+                }
+            },
+        );
+    }
+
     /// What the acceleration of these links has besides those of their coordinates.
     #[inline(always)]
     fn biases(&mut self, topology: &Topology, links: std::ops::Range<usize>) {
@@ -582,7 +603,7 @@ impl<T: Real> State<T> {
         self.witness.within(
             #[inline(always)]
             || {
-                let (per_size, zero) = (self.witness.like(1.0 / self.size), self.witness.zero());
+                let zero = self.witness.zero();
                 let (mut largest, mut scaled) = (zero, zero);
                 for (r, place) in topology.rows.iter().enumerate() {
                     if place.is_term {
@@ -593,9 +614,8 @@ impl<T: Real> State<T> {
                     } else {
                         self.residual_of(topology, parts, drivers, r).abs()
                     };
-                    let row = topology.closures[place.closure].rows[place.index];
                     largest = largest.larger(residual);
-                    scaled = scaled.larger(if row.is_length() { residual * per_size } else { residual });
+                    scaled = scaled.larger(residual * zero.like(1.0 / place.unit));
                 }
                 Residuals { largest: largest.largest(), scaled: scaled.largest() }
             },
@@ -606,9 +626,8 @@ impl<T: Real> State<T> {
     pub fn worst_row(&self, topology: &Topology, parts: &Parts<T>, drivers: &[[T; 3]]) -> (usize, f64) {
         let mut worst = (0, 0.0, 0.0);
         for (r, place) in topology.rows.iter().enumerate().filter(|(_, p)| !p.is_term) {
-            let row = topology.closures[place.closure].rows[place.index];
             let residual = self.residual_of(topology, parts, drivers, r).abs().largest();
-            let scaled = if row.is_length() { residual / self.size } else { residual };
+            let scaled = residual / place.unit;
             // Written so that a NaN is the largest of all.
             if !(scaled <= worst.1) {
                 worst = (r, scaled, residual);
@@ -630,14 +649,12 @@ impl<T: Real> State<T> {
     /// Constraint row r of the Jacobian, by column of its block, lengths in sizes.
     #[inline(always)]
     pub fn scaled_row(&self, topology: &Topology, r: usize, out: &mut [T]) {
-        let place = &topology.rows[r];
-        let first = topology.closures[place.closure].rows[place.index];
-        let scale = if first.is_length() { 1.0 / self.size } else { 1.0 };
+        let scale = 1.0 / topology.rows[r].unit;
         let zero = self.witness.zero();
         out.fill(zero);
         for (k, factor) in topology.parts_of_row(r) {
             for &(column, c, side) in &topology.closures[topology.rows[k].closure].entries {
-                let unit = if topology.coordinates[c].is_length { self.size } else { 1.0 };
+                let unit = topology.coordinates[c].unit;
                 out[column] += self.l[k].on(self.x[c]) * zero.like(scale * unit * side * factor);
             }
         }

@@ -28,6 +28,9 @@ pub struct Margin {
 /// Works out margins; keeps its room from step to step.
 pub(crate) struct Margins<T> {
     blocks: Vec<Elimination<T>>,
+    /// Per block: all of its rows, and whether there are more than it needs.
+    rows: Vec<Vec<usize>>,
+    redundant: Vec<bool>,
     row: Vec<T>,
     row_sums: Vec<T>,
 }
@@ -37,7 +40,11 @@ impl<T: Real> Margins<T> {
         let widths = topology.blocks.iter().map(|b| b.unknowns.len());
         let dense = |n: usize| if n <= MOST_UNKNOWNS { n } else { 0 };
         let widest = widths.clone().max().unwrap_or(0);
+        let rows: Vec<Vec<usize>> = (0..topology.blocks.len()).map(|b| topology.rows_of_block(b)).collect();
+        let redundant = rows.iter().zip(&topology.blocks).map(|(r, b)| r.len() > b.unknowns.len()).collect();
         Self {
+            rows,
+            redundant,
             blocks: widths.map(|n| Elimination::new(dense(n), witness)).collect(),
             row: vec![witness.zero(); widest],
             row_sums: vec![witness.zero(); widest],
@@ -68,20 +75,24 @@ impl<T: Real> Margins<T> {
         least
     }
 
-    /// 1 / |J^-1|, the inverse column by column.
+    /// 1 / |J^-1|, the inverse column by column; where constraints are redundant 1 / |J^+| of all of them, so that the margin does
+    /// not depend on which of them the block is solved with.
     #[inline(always)]
     fn of_block(&mut self, topology: &Topology, state: &State<T>, b: usize) -> T {
+        if self.redundant[b] {
+            let all = self.of_all_rows(topology, state, b);
+            if all.smallest() > SQUARED {
+                return all;
+            }
+        }
         let block = &topology.blocks[b];
         let n = block.unknowns.len();
         let (zero, one) = (state.witness.zero(), state.witness.like(1.0));
         let factors = &mut self.blocks[b];
         let (row, sums) = (&mut self.row[..n], &mut self.row_sums[..n]);
         for (k, &r) in block.selected.iter().enumerate() {
-            state.scaled_row(topology, r, row);
-            let per_most = one / most_resistance(topology, state, r);
-            for (to, x) in factors.row_mut(k).iter_mut().zip(row.iter()) {
-                *to = *x * per_most;
-            }
+            relative_row(topology, state, r, row);
+            factors.row_mut(k).copy_from_slice(row);
         }
         if !(factors.factor().pivot_ratio > 0.0) {
             return zero;
@@ -97,27 +108,87 @@ impl<T: Real> Margins<T> {
         }
         one / sums.iter().fold(zero, |most, x| most.larger(*x))
     }
+
+    /// 1 / |J^+| over all rows of a block, `J^+ = (J^T J)^-1 J^T` column by column; 0 where round-off may have a part in it.
+    #[inline(always)]
+    fn of_all_rows(&mut self, topology: &Topology, state: &State<T>, b: usize) -> T {
+        let block = &topology.blocks[b];
+        let n = block.unknowns.len();
+        let (zero, one) = (state.witness.zero(), state.witness.like(1.0));
+        let factors = &mut self.blocks[b];
+        let (row, sums) = (&mut self.row[..n], &mut self.row_sums[..n]);
+        (0..n).for_each(|k| factors.row_mut(k).fill(zero));
+        for &r in &self.rows[b] {
+            relative_row(topology, state, r, row);
+            for k in 0..n {
+                for (to, x) in factors.row_mut(k).iter_mut().zip(row.iter()) {
+                    *to = row[k].times_plus(*x, *to);
+                }
+            }
+        }
+        if !(factors.factor().pivot_ratio > SQUARED * SQUARED) {
+            return zero;
+        }
+        sums.fill(zero);
+        for &r in &self.rows[b] {
+            relative_row(topology, state, r, row);
+            factors.solve(row);
+            for (sum, x) in sums.iter_mut().zip(row.iter()) {
+                *sum += x.abs();
+            }
+        }
+        one / sums.iter().fold(zero, |most, x| most.larger(*x))
+    }
+}
+
+/// Margins below this are found without squares, which would leave less than half of their digits.
+const SQUARED: f64 = 1e-6;
+
+/// Constraint row r of the Jacobian, by column of its block, as a part of the most that it could resist.
+#[inline(always)]
+fn relative_row<T: Real>(topology: &Topology, state: &State<T>, r: usize, row: &mut [T]) {
+    let scale = 1.0 / topology.rows[r].unit;
+    let zero = state.witness.zero();
+    row.fill(zero);
+    for (k, factor) in topology.parts_of_row(r) {
+        let l = wrench(topology, state, k);
+        for &(column, c, side) in &topology.closures[topology.rows[k].closure].entries {
+            let unit = topology.coordinates[c].unit;
+            row[column] += l.on(state.x[c]) * zero.like(scale * unit * side * factor);
+        }
+    }
+    let per_most = zero.like(1.0) / most_resistance(topology, state, r);
+    row.iter_mut().for_each(|x| *x = *x * per_most);
+}
+
+/// The wrench of a row, whether or not the motion needs it.
+#[inline(always)]
+fn wrench<T: Real>(topology: &Topology, state: &State<T>, k: usize) -> Wrench<T> {
+    let place = &topology.rows[k];
+    if place.drives() {
+        return state.l[k];
+    }
+    state.wrench_of(topology.closures[place.closure].rows[place.index], place.closure)
 }
 
 /// The most that constraint row r could resist in any coordinate of its loop, scaled like its row of the Jacobian.
 #[inline(always)]
 fn most_resistance<T: Real>(topology: &Topology, state: &State<T>, r: usize) -> T {
-    let place = &topology.rows[r];
-    let first = topology.closures[place.closure].rows[place.index];
-    let scale = if first.is_length() { 1.0 / state.size } else { 1.0 };
+    let scale = 1.0 / topology.rows[r].unit;
     let mut most = state.witness.like(f64::MIN_POSITIVE);
     for (k, factor) in topology.parts_of_row(r) {
         let at = &topology.rows[k];
         let closure = &topology.closures[at.closure];
-        let Ends { i, j } = &state.ends[at.closure];
+        let Ends { i, j, .. } = &state.ends[at.closure];
+        let l = wrench(topology, state, k);
         for &(link, side) in &closure.links {
             // A rod pulls at either body where it is tied to it; any other force acts at P_j.
             let at_i = side < 0.0 && closure.rows[at.index] == Row::Distance;
             let point = if at_i { i.r } else { j.r };
             for step in &topology.links[link].steps {
                 let resistance = match step.freedom {
-                    Freedom::Slide(_) => state.l[k].f.norm() * most.like(state.size),
-                    Freedom::Turn(_) | Freedom::Ball => most_moment(&state.l[k], point, &state.x[step.first]),
+                    Freedom::Slide(_) => l.f.norm() * most.like(topology.coordinates[step.first].unit),
+                    Freedom::Turn(_) | Freedom::Ball => most_moment(&l, point, &state.x[step.first]),
                 };
                 most = most.larger(resistance * most.like(scale * factor.abs()));
             }

@@ -1,8 +1,8 @@
 //! Position, velocity and acceleration of every body over time.
 //!
 //! One step is: Newton on each block in turn, then velocity and acceleration from the same factors
-//! ([`kinematics`]). The steps are joined by a second-order predictor that watches for limits and
-//! branches ([`stepper`]).
+//! ([`kinematics`]). Output times that follow each other closely are stepped through as they
+//! are ([`stepper`], [`abreast`]); everywhere else the path is followed in steps of its own ([`walk`]).
 
 pub(crate) mod abreast;
 mod assembly;
@@ -11,8 +11,10 @@ pub(crate) mod jerk;
 pub(crate) mod kinematics;
 pub(crate) mod margin;
 pub(crate) mod parts;
+mod singularity;
 pub(crate) mod stepper;
 mod stop;
+mod walk;
 
 pub use assembly::{Assembly, Closing, Gap, Moved};
 pub use jerk::BodyJerk;
@@ -115,6 +117,17 @@ pub struct Motion {
     pub assembly: Option<Assembly>,
     /// What it took.
     pub effort: Effort,
+}
+
+/// A place between output times.
+#[derive(Clone, Debug)]
+pub(crate) struct Passed {
+    /// When, on the path that it belongs to: the time, or from 0 to 1 on a straight one.
+    pub time: f64,
+    /// Whether another path begins here.
+    pub begins: bool,
+    /// Where the bodies are that were asked for.
+    pub states: Vec<(BodyId, BodyState)>,
 }
 
 /// What a solution took, and how well the constraints hold.

@@ -126,9 +126,25 @@ impl<T: Real> Parts<T> {
         }
     }
 
+    /// The laws of driver d: one per lane, or one for all.
+    pub fn laws_of(&self, d: usize) -> &[Law] {
+        &self.laws[d]
+    }
+
     /// The law of driver d in lane k.
     pub fn law_of(&self, d: usize, k: usize) -> &Law {
         &self.laws[d][k.min(self.laws[d].len() - 1)]
+    }
+
+    /// How far driver d gets from a value, at most, from one time to another.
+    pub fn travel(&self, d: usize, from: f64, to: f64, value: T) -> f64 {
+        let laws = self.laws[d].iter().enumerate();
+        laws.map(|(k, law)| law.over(from, to).value.reach_from(value.lane(k))).fold(0.0, f64::max)
+    }
+
+    /// The fastest that driver d moves from one time to another.
+    pub fn fastest(&self, d: usize, from: f64, to: f64) -> f64 {
+        self.laws[d].iter().map(|law| law.over(from, to).fastest()).fold(0.0, f64::max)
     }
 
     /// The same at one time per lane, where all lanes have the same law.

@@ -1,7 +1,10 @@
-//! From one output time to the next: predict, correct, watch for limits and branches.
+//! From one output time to the next: predict, correct, and make sure that it is the same branch.
+//!
+//! Where output times follow each other closely they are the walk themselves ([`Stepper::glide`]): the determinants of the blocks
+//! tell, for free, that no singular position is near. Everywhere else the path is followed in steps of its own
+//! ([`super::walk`]), however the output times are spaced.
 
-use crate::constraint::Row;
-use crate::joint::Freedom;
+use crate::joint::{Freedom, Quantity};
 use crate::model::{Contact, DriverId, Model};
 use crate::space::{FullPivot, LARGEST_DENSE, Quat, Real};
 use crate::topology::{Source, Topology};
@@ -10,32 +13,35 @@ use super::assembly::Assembly;
 use super::forecast::Forecast;
 use super::kinematics::{PositionFailure, Residuals, State, factors_of};
 use super::parts::Parts;
-use super::{Effort, Stop, StopKind};
+use super::singularity::{Prober, Surroundings};
+use super::walk::{PART_OF_WAY, Path};
+use super::{Effort, Passed, Stop};
 
 /// A first correction (rad, or sizes) up to this is accepted whatever the prediction's own length is.
 const TRUST_FLOOR: f64 = 0.02;
 /// The first correction may be this part of the predicted move: more means a prediction gone wrong.
 const TRUST: f64 = 0.5;
-/// Speeds after a step may differ from the predicted ones by this part of the fastest coordinate. At a
-/// dead point two branches meet with different speeds: a step onto the other one shows here however
-/// short it is, while on a smooth motion the difference vanishes with the step.
+/// Speeds after a step between output times may differ from the predicted ones by this part of the fastest coordinate: on a
+/// motion that output times resolve the difference vanishes with the step.
 const SPEED_TRUST: f64 = 0.25;
 /// Differences below this part of the drivers' fastest speed do not count: a start from rest.
 const SPEED_FLOOR: f64 = 1e-3;
 /// The coordinates of a coupler must come within this of their prediction, rad: which turn an angle is in would
 /// otherwise be a guess.
 const TURN_TRUST: f64 = 1.0;
-/// Within this part of an output step the speed of a smooth law hardly changes.
-const SMOOTH_PART: f64 = 1e-3;
-/// Coordinates this much faster than the fastest driver are on their way to a limit position.
-const RUNAWAY: f64 = 1e3;
-/// A pivot ratio that has fallen to this part of its first value is on its way to a singular position.
-const NEARLY_SINGULAR: f64 = 1e-3;
-/// A step is halved at most this often: 2^-40 of an output step decides nothing that a user could see.
-const MAX_HALVINGS: u32 = 40;
-/// A walk to the next output time gives up after this many steps: a path that bends so sharply all the way leads nowhere.
-const MOST_STEPS: usize = 20_000;
-/// A left-out constraint that fails by more than this part of the mechanism's size (or, for a cosine, by
+/// From one output time to the next a determinant may become so many times what it was; a limit position that is nearer than 1.5
+/// such steps, or a crossing nearer than 3.5, changes it by more (405 motions into such positions, in 20 to 500 output times).
+pub(super) const MILD: [f64; 2] = [0.78, 1.28];
+/// ... and that part of it may change by so much from one such step to the next.
+pub(super) const MILD_CHANGE: f64 = 0.125;
+/// Between output times the law may nowhere be faster than so many times what it moves between any two of them nearby: what rests
+/// and pulses in between is looked at closely.
+pub(super) const EVEN: f64 = 2.0;
+/// A driver that moves by less than this between output times, in rad or sizes, rests.
+pub(super) const RESTS: f64 = 1e-12;
+/// Between output times a driver moves by no more than this, rad or sizes: whole turns look like rest from end to end.
+pub(super) const LONGEST: f64 = 1.0;
+/// A left-out constraint that fails by more than this part of its loop's size (or, for a cosine, by
 /// more than this) is a contradiction: the mechanism locks. Typed coordinates have about six digits, and an
 /// axis through two of them is tilted by some times that.
 pub(crate) const LOCKED: f64 = 1e-5;
@@ -57,14 +63,32 @@ pub(crate) struct Stepper<'m, T> {
     pub(super) saved: Saved<T>,
     pub(super) forecast: Forecast<T>,
     pub(super) time: f64,
+    /// What drivers follow on a straight path: from where to where each goes.
+    pub(super) line: Vec<[T; 2]>,
     /// Per block: sign of the determinant on this branch, and the first pivot ratio.
     pub(super) branch: Vec<(bool, f64)>,
     /// Per block: the pivot ratio below which other rows are tried.
     pub(super) try_others: Vec<f64>,
+    /// Per driver: 1 rad, or the size of its loop.
+    pub(super) driver_units: Vec<f64>,
+    /// What is known of the way ahead, and what it is known by.
+    pub(super) ahead: Ahead,
+    pub(super) around: Surroundings<T>,
+    pub(super) beyond: Surroundings<T>,
+    pub(super) prober: Box<Prober<T>>,
+    /// Per block: by what part its determinant changed over the last step between output times, and how long that was.
+    pub(super) changes: Vec<T>,
+    pub(super) change_step: f64,
+    /// Per driver: how far it moved over that step.
+    pub(super) moves: Vec<f64>,
+    /// Per direction: how far it goes at most over the step considered; on a path other than the laws' in these units.
+    pub(super) travel: Vec<f64>,
+    pub(super) travel_unit: f64,
+    pub(super) on_laws: bool,
+    /// Scratch of predictions.
+    pub(super) predicted: Vec<T>,
     /// Fastest driver on the present path (rad, or sizes, per unit of its parameter).
     pub(super) fastest_driver: f64,
-    /// A law whose speed changes much within a step shorter than this has a jump there.
-    shortest_smooth: f64,
     /// By how much the constraints fail at the position tried last.
     pub(super) residuals: Residuals,
     pub effort: Effort,
@@ -72,6 +96,20 @@ pub(crate) struct Stepper<'m, T> {
     pub(super) selections: usize,
     /// How the mechanism was closed, if it was open as drawn.
     pub assembly: Option<Assembly>,
+    /// The bodies that are watched between output times, and where they were since the last one, in lane 0.
+    pub watched: Vec<bool>,
+    pub passed: Vec<Passed>,
+}
+
+/// What is known of the way ahead of the saved position.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Ahead {
+    /// Nothing.
+    Unknown,
+    /// How far singular positions are, by [`Stepper::around`].
+    Examined,
+    /// That the last step was one of an even walk.
+    Even,
 }
 
 /// A position that was accepted.
@@ -82,32 +120,36 @@ pub(super) struct Saved<T> {
     pub qdd: Vec<T>,
     pub balls: Vec<Quat<T>>,
     pub pivots: Vec<(f64, bool)>,
+    pub determinants: Vec<T>,
     pub drivers: Vec<[T; 3]>,
     /// Per row that is a term of a coupler: its coordinate, with speed and acceleration.
     pub coupled: Vec<[T; 3]>,
     /// Per curve: where it is touched.
     pub contacts: Vec<Contact<T>>,
-}
-
-/// What the drivers follow.
-#[derive(Clone, Copy, PartialEq)]
-pub(super) enum Path {
-    /// From the configuration as drawn, where joints may be open, to the closed one, all drivers at zero; the
-    /// parameter runs from 0 to 1 and is the part of every gap that is closed.
-    Assembly,
-    /// From the design configuration, where all drivers are zero, to their values at the start time;
-    /// the parameter runs from 0 to 1.
-    Ramp { start: f64 },
-    /// Their laws, over time.
-    Laws,
+    /// Largest residual there, sizes or rad.
+    pub residual: f64,
 }
 
 /// Why a step was refused.
 pub(super) enum Refusal {
     Position(PositionFailure),
-    Branch { block: usize },
-    Locked { row: usize, residual: f64 },
-    Law { driver: usize },
+    /// The determinant changed its sign, or a turn cannot be told.
+    Branch {
+        block: usize,
+    },
+    Locked {
+        row: usize,
+        residual: f64,
+    },
+    Law {
+        driver: usize,
+    },
+    /// A driver goes too far between two output times.
+    TooFar {
+        driver: usize,
+    },
+    /// Seen from the far end, a singular position is too near for a step of this length.
+    TooNear,
 }
 
 impl<'m, T: Real> Stepper<'m, T> {
@@ -121,30 +163,46 @@ impl<'m, T: Real> Stepper<'m, T> {
             qdd: state.qdd.clone(),
             balls: state.balls.clone(),
             pivots: state.pivots.clone(),
+            determinants: state.determinants.clone(),
             drivers: vec![[witness.zero(); 3]; model.drivers.len()],
             coupled: vec![[witness.zero(); 3]; topology.rows.len()],
             contacts: state.contacts.clone(),
+            residual: 0.0,
         };
-        let branch = vec![(true, 0.0); topology.blocks.len()];
-        let drivers = saved.drivers.clone();
-        let effort = Effort { least_pivot_ratio: f64::INFINITY, ..Effort::default() };
+        let (blocks, drivers) = (topology.blocks.len(), model.drivers.len());
+        let directions = usize::max(drivers, 1);
+        let around = Surroundings::new(topology, directions, witness);
         Self {
             model,
             topology: topology.clone(),
             parts,
             state,
-            drivers,
+            line: vec![[witness.zero(); 2]; drivers],
             forecast: Forecast::new(topology, witness),
-            saved,
             time: 0.0,
-            try_others: vec![0.0; branch.len()],
-            branch,
+            try_others: vec![0.0; blocks],
+            branch: vec![(true, 0.0); blocks],
+            driver_units: driver_units(model, topology),
+            ahead: Ahead::Unknown,
+            beyond: around.clone(),
+            around,
+            prober: Box::new(Prober::new(topology, model.bodies.len(), drivers, witness)),
+            changes: vec![witness.zero(); blocks],
+            change_step: 0.0,
+            moves: vec![0.0; drivers],
+            travel: vec![0.0; directions],
+            travel_unit: 1.0,
+            on_laws: false,
+            predicted: vec![witness.zero(); topology.coordinates.len()],
             fastest_driver: 0.0,
-            shortest_smooth: 0.0,
             residuals: Residuals::default(),
-            effort,
+            effort: Effort { least_pivot_ratio: f64::INFINITY, ..Effort::default() },
             selections: 0,
             assembly: None,
+            watched: Vec::new(),
+            passed: Vec::new(),
+            drivers: saved.drivers.clone(),
+            saved,
         }
     }
 
@@ -152,25 +210,35 @@ impl<'m, T: Real> Stepper<'m, T> {
     ///
     /// A changed design starts from the nominal design configuration and closes there first.
     pub fn start(&mut self, t: f64) -> Result<(), Box<Stop>> {
+        self.passed.clear();
         self.time = 0.0;
         self.assemble()?;
-        let ramp = Path::Ramp { start: t };
+        // From there, where all drivers are zero, to their values at the first output time.
+        for d in 0..self.line.len() {
+            self.line[d] = [self.state.witness.zero(), self.parts.law(d, t, self.state.witness)[0]];
+        }
+        let ramp = Path::Line { at: t };
         self.time = 0.0;
-        self.attempt(ramp, 0.0, 0.0, false).map_err(|r| self.stop(ramp, 0.0, r, false))?;
+        self.attempt(ramp, 0.0).map_err(|r| self.stop(ramp, 0.0, r, false))?;
         self.save(0.0, 0.0);
-        self.walk(ramp, 1.0)?;
+        if self.line.iter().any(|[_, to]| to.abs().largest() != 0.0) {
+            self.walk(ramp, 1.0)?;
+        }
         // The rates left by the ramp are per unit of ramp; solve once more with the laws' own.
-        self.fastest_driver = 0.0;
         self.time = t;
-        self.attempt(Path::Laws, t, 0.0, false).map_err(|r| self.stop(Path::Laws, t, r, false))?;
+        self.attempt(Path::Laws, t).map_err(|r| self.stop(Path::Laws, t, r, false))?;
         self.save(t, 0.0);
+        self.examine_here(Path::Laws);
         self.count();
         Ok(())
     }
 
     /// Moves on to the output time t.
     pub fn advance(&mut self, t: f64) -> Result<(), Box<Stop>> {
-        self.walk(Path::Laws, t)?;
+        self.passed.clear();
+        if !self.glide(t) {
+            self.walk(Path::Laws, t)?;
+        }
         self.count();
         Ok(())
     }
@@ -186,49 +254,104 @@ impl<'m, T: Real> Stepper<'m, T> {
         }
     }
 
-    pub(super) fn walk(&mut self, path: Path, target: f64) -> Result<(), Box<Stop>> {
-        let whole = target - self.time;
-        let mut h = whole;
-        self.shortest_smooth = SMOOTH_PART * whole;
-        let shortest = whole * 0.5_f64.powi(MAX_HALVINGS as i32);
-        let mut attempts = 0;
-        loop {
-            attempts += 1;
-            let rest = target - self.time;
-            let last = h >= rest;
-            let step = if last { rest } else { h };
-            let t = if last { target } else { self.time + step };
-            match self.attempt(path, t, step, false) {
-                Ok(()) => {
-                    self.save(t, step);
-                    if last {
-                        return Ok(());
-                    }
-                    self.effort.substeps += 1;
-                    h = 2.0 * step;
-                }
-                Err(refusal) => {
-                    h = 0.5 * step;
-                    let final_refusal = matches!(refusal, Refusal::Law { .. });
-                    if h < shortest || final_refusal || attempts > MOST_STEPS || self.time + h == self.time {
-                        return Err(self.stop(path, t, refusal, true));
-                    }
-                }
-            }
+    /// Goes on to the output time t in one step, if the way there is known to be even; returns whether it did.
+    fn glide(&mut self, t: f64) -> bool {
+        let h = t - self.time;
+        if self.forecast.known() == 0 || !self.is_clear(t, h) {
+            return false;
         }
+        let witness = self.state.witness;
+        witness.within(
+            #[inline(always)]
+            || self.gliding(t, h),
+        )
+    }
+
+    #[inline(always)]
+    fn gliding(&mut self, t: f64, h: f64) -> bool {
+        if self.drive(Path::Laws, t).is_err() {
+            return false;
+        }
+        self.fastest_driver = self.driver_speed();
+        let moved = self.foresee_at(h);
+        let trust = (TRUST * moved).max(TRUST_FLOOR);
+        if self.state.solve(&self.topology, &self.parts, &self.drivers, trust).is_err() {
+            return false;
+        }
+        let selections = self.selections;
+        if !self.speeds_are_smooth(self.state.witness.like(h)) || self.examine_position().is_err() {
+            return false;
+        }
+        let even = selections == self.selections && self.note_changes(h);
+        if self.ahead == Ahead::Even && !even {
+            return false;
+        }
+        for (d, moved) in self.moves.iter_mut().enumerate() {
+            *moved = (self.drivers[d][0] - self.saved.drivers[d][0]).abs().largest() / self.driver_units[d];
+        }
+        self.save(t, h);
+        self.ahead = if even { Ahead::Even } else { Ahead::Unknown };
+        true
+    }
+
+    /// Whether the laws do nothing between here and the output time t that its two ends would not show, and no singular position is
+    /// known to be near.
+    fn is_clear(&mut self, t: f64, h: f64) -> bool {
+        if self.ahead == Ahead::Unknown {
+            return false;
+        }
+        for d in 0..self.drivers.len() {
+            let unit = self.driver_units[d];
+            let travel = h * self.parts.fastest(d, self.time, t) / unit;
+            let moves = match self.ahead {
+                Ahead::Even => {
+                    let to = self.parts.law(d, t, self.state.witness)[0];
+                    self.moves[d].max((to - self.saved.drivers[d][0]).abs().largest() / unit)
+                }
+                _ => f64::INFINITY,
+            };
+            if !(travel <= (EVEN * moves).max(RESTS).min(LONGEST)) {
+                return false;
+            }
+            self.travel[d] = travel * unit;
+        }
+        self.ahead == Ahead::Even || self.around.part_of_way(&self.travel) <= PART_OF_WAY
+    }
+
+    /// By what part each determinant has changed since the saved position, a step h before; returns whether that is little, and
+    /// about as much as over the step before.
+    #[inline(always)]
+    fn note_changes(&mut self, h: f64) -> bool {
+        let scale = h / self.change_step;
+        let mut even = true;
+        for (b, factors) in self.state.factors.iter().enumerate() {
+            let ratio = factors.ratio(self.state.determinants[b], self.saved.determinants[b]);
+            // Written so that NaN is not even.
+            even &= ratio.smallest() >= MILD[0] && ratio.largest() <= MILD[1];
+            let change = ratio - ratio.like(1.0);
+            if self.ahead == Ahead::Even {
+                let bend = (change - self.changes[b] * ratio.like(scale)).abs();
+                even &= bend.largest() <= MILD_CHANGE;
+            }
+            self.changes[b] = change;
+        }
+        self.change_step = h;
+        even
     }
 
     /// Sets the drivers for the path at t.
-    fn drive(&mut self, path: Path, t: f64) -> Result<(), Refusal> {
+    pub(super) fn drive(&mut self, path: Path, t: f64) -> Result<(), Refusal> {
         self.state.gap_left = if path == Path::Assembly { [1.0 - t, -1.0] } else { [0.0; 2] };
         let witness = self.state.witness;
         for k in 0..self.drivers.len() {
             let law = match path {
                 Path::Assembly => [witness.zero(); 3],
                 Path::Laws => self.parts.law(k, t, witness),
-                Path::Ramp { start } => {
-                    let [f, ..] = self.parts.law(k, start, witness);
-                    [f * witness.like(t), f, witness.zero()]
+                Path::Line { .. } => {
+                    let [from, to] = self.line[k];
+                    // At the end exactly there.
+                    let here = if t == 1.0 { to } else { from + (to - from) * witness.like(t) };
+                    [here, to - from, witness.zero()]
                 }
             };
             if !law.iter().all(|x| x.abs().largest().is_finite()) {
@@ -239,44 +362,41 @@ impl<'m, T: Real> Stepper<'m, T> {
         Ok(())
     }
 
-    /// Tries the position at t, a step h beyond the saved one. `first` sets the branch to stay on.
-    pub(super) fn attempt(&mut self, path: Path, t: f64, h: f64, first: bool) -> Result<(), Refusal> {
-        let witness = self.state.witness;
-        witness.within(
-            #[inline(always)]
-            || self.attempting(path, t, h, first),
-        )
+    /// Solves the position at t on a path, from the saved one, which is about there.
+    pub(super) fn attempt(&mut self, path: Path, t: f64) -> Result<(), Refusal> {
+        self.drive(path, t)?;
+        self.restore();
+        self.solve_within(f64::INFINITY)?;
+        self.examine_position()
     }
 
-    #[inline(always)]
-    fn attempting(&mut self, path: Path, t: f64, h: f64, first: bool) -> Result<(), Refusal> {
-        self.drive(path, t)?;
-        self.fastest_driver = match path {
-            Path::Assembly => self.state.largest_gap(&self.topology),
-            _ => self.driver_speed(),
-        };
-        let moved = self.predict(h);
-        let trust = if first { f64::INFINITY } else { (TRUST * moved).max(TRUST_FLOOR) };
-        self.state.solve(&self.topology, &self.parts, &self.drivers, trust).map_err(Refusal::Position)?;
+    /// Solves from the prediction at hand; the first correction must be within `trust`.
+    pub(super) fn solve_within(&mut self, trust: f64) -> Result<(), Refusal> {
+        // `solve` sees to its instruction set itself.
+        self.state.solve(&self.topology, &self.parts, &self.drivers, trust).map_err(Refusal::Position)
+    }
+
+    /// The first position of all decides which branch it is.
+    pub(super) fn settle_branch(&mut self) {
         for (b, &(ratio, positive)) in self.state.pivots.iter().enumerate() {
-            if first {
-                self.branch[b] = (positive, ratio);
-                self.try_others[b] = RESELECT * ratio;
-            } else if positive != self.branch[b].0 {
+            self.branch[b] = (positive, ratio);
+            self.try_others[b] = RESELECT * ratio;
+        }
+    }
+
+    /// Whether the position just solved is on the branch, in the turn that was expected, and closed.
+    pub(super) fn examine_position(&mut self) -> Result<(), Refusal> {
+        for (b, &(_, positive)) in self.state.pivots.iter().enumerate() {
+            if positive != self.branch[b].0 {
                 return Err(Refusal::Branch { block: b });
             }
         }
         if let Some(block) = self.uncertain_turn() {
             return Err(Refusal::Branch { block });
         }
-        // Where a driver's own speed jumps (`abs`, `if`), those of the mechanism may: but only there.
-        let jump = h < self.shortest_smooth && !self.drivers_are_smooth(h);
-        if h != 0.0 && !jump && !self.speeds_are_smooth(self.state.witness.like(h)) {
-            return Err(Refusal::Branch { block: self.least_regular_block() });
-        }
         self.residuals = self.state.residuals(&self.topology, &self.parts, &self.drivers);
         // On the way to being closed, redundant constraints need not agree yet.
-        let half_open = path == Path::Assembly && t < 1.0;
+        let half_open = self.state.gap_left[0] > 0.0;
         if !half_open && !(self.residuals.scaled <= LOCKED) {
             let (row, residual) = self.state.worst_row(&self.topology, &self.parts, &self.drivers);
             return Err(Refusal::Locked { row, residual });
@@ -284,36 +404,27 @@ impl<'m, T: Real> Stepper<'m, T> {
         self.reselect()
     }
 
-    /// Foresees the position a step h beyond the saved one; returns how far the largest move goes (rad, or sizes), to
-    /// second order.
-    fn predict(&mut self, h: f64) -> f64 {
+    /// Foresees the position a step h beyond the saved one, from where the mechanism has been; returns how far the largest move
+    /// goes (rad, or sizes), to second order.
+    #[inline(always)]
+    fn foresee_at(&mut self, h: f64) -> f64 {
         let witness = self.state.witness;
-        witness.within(
-            #[inline(always)]
-            || {
-                let t = witness.like(self.time + h);
-                let (s, saved) = (&mut self.state, &self.saved);
-                s.q.copy_from_slice(&saved.q);
-                s.balls.copy_from_slice(&saved.balls);
-                s.contacts.copy_from_slice(&saved.contacts);
-                if h != 0.0 && self.forecast.known() > 0 {
-                    self.forecast.set(s, t, h, |x| x);
-                }
-                self.expect_turns(witness.like(h));
-                self.expected_move(witness.like(h)).largest()
-            },
-        )
+        let t = witness.like(self.time + h);
+        self.state.contacts.copy_from_slice(&self.saved.contacts);
+        self.forecast.set(&mut self.state, t, h, |x| x);
+        self.expect_turns(witness.like(h));
+        self.expected_move(witness.like(h)).largest()
     }
 
     /// The largest move (rad, or sizes) over a step h, by speed and acceleration.
     #[inline(always)]
     fn expected_move(&self, h: T) -> T {
-        let (saved, per_size, half) = (&self.saved, h.like(1.0 / self.state.size), h.like(0.5) * h);
+        let (saved, half) = (&self.saved, h.like(0.5) * h);
         let mut most = h.zero();
         for (c, coordinate) in self.topology.coordinates.iter().enumerate() {
             if let Source::Unknown { .. } = coordinate.source {
                 let step = (saved.qd[c] + saved.qdd[c] * half) * h;
-                most = most.larger(if coordinate.is_length { step * per_size } else { step }.abs());
+                most = most.larger((step * h.like(coordinate.per_unit)).abs());
             }
         }
         most
@@ -334,10 +445,10 @@ impl<'m, T: Real> Stepper<'m, T> {
     /// Speed of the fastest driver (rad, or sizes, per unit of the path's parameter), now or before.
     #[inline(always)]
     pub(super) fn driver_speed(&self) -> f64 {
-        self.model.drivers.iter().zip(&self.drivers).fold(self.fastest_driver, |most, (d, f)| {
-            let length = self.model.driven(d).quantity == crate::joint::Quantity::Length;
-            most.max(f[1].abs().largest() / if length { self.state.size } else { 1.0 })
-        })
+        self.driver_units
+            .iter()
+            .zip(&self.drivers)
+            .fold(self.fastest_driver, |most, (unit, f)| most.max(f[1].abs().largest() / unit))
     }
 
     /// The block of a coupler that counts an angle whose turn the prediction does not tell for sure.
@@ -356,34 +467,22 @@ impl<'m, T: Real> Stepper<'m, T> {
         found.and_then(|r| self.topology.closures[self.topology.rows[r].closure].block)
     }
 
-    /// Whether no driver's speed jumps within the step.
-    fn drivers_are_smooth(&self, h: f64) -> bool {
-        self.model.drivers.iter().zip(self.drivers.iter().zip(&self.saved.drivers)).all(
-            |(d, (now, before))| {
-                let length = self.model.driven(d).quantity == crate::joint::Quantity::Length;
-                let size = if length { self.state.size } else { 1.0 };
-                let jump = (now[1] - before[1] - before[2] * now[1].like(h)).abs().largest() / size;
-                jump <= SPEED_FLOOR * self.fastest_driver
-            },
-        )
-    }
-
     /// Whether the speeds are those of the same branch as before the step.
     pub(super) fn speeds_are_smooth(&self, h: T) -> bool {
         self.state.witness.within(
             #[inline(always)]
             || {
                 let (s, saved) = (&self.state, &self.saved);
-                let (zero, per_size) = (s.witness.zero(), s.witness.like(1.0 / s.size));
+                let zero = s.witness.zero();
                 let (mut fastest, mut difference) = (zero, zero);
                 for (c, coordinate) in self.topology.coordinates.iter().enumerate() {
                     if let Source::Unknown { .. } = coordinate.source {
                         let predicted = saved.qd[c] + saved.qdd[c] * h;
                         let speed = s.qd[c].abs().larger(saved.qd[c].abs());
                         let apart = (s.qd[c] - predicted).abs();
-                        let unit = if coordinate.is_length { per_size } else { zero.like(1.0) };
-                        fastest = fastest.larger(speed * unit);
-                        difference = difference.larger(apart * unit);
+                        let per_unit = zero.like(coordinate.per_unit);
+                        fastest = fastest.larger(speed * per_unit);
+                        difference = difference.larger(apart * per_unit);
                     }
                 }
                 // Written so that NaN is refused.
@@ -393,24 +492,7 @@ impl<'m, T: Real> Stepper<'m, T> {
         )
     }
 
-    /// Speed of the fastest unknown at the saved position.
-    fn saved_speed(&self) -> f64 {
-        self.topology.coordinates.iter().enumerate().fold(0.0, |most, (c, coordinate)| {
-            let size = if coordinate.is_length { self.state.size } else { 1.0 };
-            match coordinate.source {
-                Source::Unknown { .. } => most.max(self.saved.qd[c].abs().largest() / size),
-                Source::Driven(_) => most,
-            }
-        })
-    }
-
-    /// The block whose Jacobian is nearest to singular, compared with where it started.
-    fn least_regular_block(&self) -> usize {
-        let regularity = |b: &usize| self.state.pivots[*b].0 / self.branch[*b].1;
-        (0..self.state.pivots.len()).min_by(|a, b| regularity(a).total_cmp(&regularity(b))).unwrap_or(0)
-    }
-
-    /// Accepts the position at t, a step h after the one before (0 at the start of a path).
+    /// Accepts the position at t, a step h after the one before (0 at the start of a path). What lies ahead is not known then.
     pub(super) fn save(&mut self, t: f64, h: f64) {
         let witness = self.state.witness;
         witness.within(
@@ -431,19 +513,30 @@ impl<'m, T: Real> Stepper<'m, T> {
         saved.qdd.copy_from_slice(&s.qdd);
         saved.balls.copy_from_slice(&s.balls);
         saved.pivots.copy_from_slice(&s.pivots);
+        saved.determinants.copy_from_slice(&s.determinants);
         saved.drivers.copy_from_slice(&self.drivers);
         saved.contacts.copy_from_slice(&s.contacts);
+        saved.residual = self.residuals.scaled;
         for &r in &self.topology.coupled_rows {
             for (k, _) in self.topology.parts_of_row(r) {
                 saved.coupled[k] = s.coordinate_of_row(&self.topology, k);
             }
         }
         self.time = t;
+        self.ahead = Ahead::Unknown;
     }
 
-    /// Goes back to the saved position.
+    /// Puts the coordinates back to the saved position.
     pub(super) fn restore(&mut self) {
-        self.predict(0.0);
+        let (s, saved) = (&mut self.state, &self.saved);
+        s.q.copy_from_slice(&saved.q);
+        s.balls.copy_from_slice(&saved.balls);
+        s.contacts.copy_from_slice(&saved.contacts);
+        for &r in &self.topology.coupled_rows {
+            for (k, _) in self.topology.parts_of_row(r) {
+                s.near[k] = saved.coupled[k][0];
+            }
+        }
     }
 
     /// Chooses other independent rows for blocks whose present ones have become nearly dependent.
@@ -495,67 +588,27 @@ impl<'m, T: Real> Stepper<'m, T> {
         self.state.factors[b] = factors_of(&self.topology, block, LARGEST_DENSE, self.state.witness);
     }
 
-    /// What kind of position a walk in ever smaller steps has come to.
-    ///
-    /// At a limit the speeds grow without bound; where branches cross they stay finite while the Jacobian
-    /// becomes singular. Where neither is so, the drivers ask for something out of reach.
-    fn obstacle(&self, block: usize, jumped: bool) -> StopKind {
-        let singular = self.saved.pivots[block].0 < NEARLY_SINGULAR * self.branch[block].1;
-        if self.saved_speed() <= RUNAWAY * self.fastest_driver && (jumped || singular) {
-            StopKind::BranchChange
-        } else {
-            StopKind::Limit
-        }
-    }
-
-    pub(super) fn stop(&self, path: Path, t: f64, refusal: Refusal, moved: bool) -> Box<Stop> {
-        let (kind, block) = match refusal {
-            Refusal::Position(
-                PositionFailure::Singular { block } | PositionFailure::NoConvergence { block },
-            ) => (self.obstacle(block, false), Some(block)),
-            Refusal::Branch { block } => (self.obstacle(block, true), Some(block)),
-            Refusal::Locked { row, residual } => {
-                let place = &self.topology.rows[row];
-                let closure = &self.topology.closures[place.closure];
-                let row: Row = closure.rows[place.index];
-                let kind = StopKind::Locked { joint: closure.joint, residual, is_length: row.is_length() };
-                (kind, closure.block)
-            }
-            Refusal::Law { driver } => (StopKind::LawNotFinite { driver: DriverId(driver) }, None),
-        };
-        let ramp_start = match path {
-            Path::Assembly => Some(0.0),
-            Path::Ramp { start } => Some(start),
-            Path::Laws => None,
-        };
-        Box::new(Stop {
-            kind,
-            last_time: (moved && ramp_start.is_none()).then_some(self.time),
-            failed_time: ramp_start.unwrap_or(t),
-            drivers: self
-                .model
-                .drivers
-                .iter()
-                .map(|d| match path {
-                    Path::Assembly => 0.0,
-                    Path::Ramp { start } => self.time * d.law.at(start).value(),
-                    Path::Laws => d.law.at(self.time).value(),
-                })
-                .collect(),
-            block,
-            pivot_ratio: block.map_or(1.0, |b| self.saved.pivots[b].0),
-            joints: block.map_or_else(Vec::new, |b| self.topology.joints_of_block(b)),
-            remains: Vec::new(),
-            closed: (path == Path::Assembly).then_some(self.time),
-        })
-    }
-
     /// Values of the tree coordinates, lane 0; 0 for those of balls.
     pub fn coordinates(&self) -> impl Iterator<Item = f64> + '_ {
         let ball = self.topology.links.iter().flat_map(|l| &l.steps).filter(|s| s.freedom == Freedom::Ball);
         debug_assert!(ball.map(|s| self.state.q[s.first].lane(0)).all(|q| q == 0.0));
         self.state.q.iter().map(|q| q.lane(0))
     }
+}
+
+/// Per driver, what its travel is compared with: 1 rad, or the size of the largest loop that it moves.
+fn driver_units(model: &Model, topology: &Topology) -> Vec<f64> {
+    let whole = model.size();
+    let unit = |(k, driver): (usize, &crate::model::Driver)| {
+        if model.driven(driver).quantity != Quantity::Length {
+            return 1.0;
+        }
+        let d = DriverId(k);
+        let coordinate = topology.coordinates.iter().find(|c| c.source == Source::Driven(d));
+        let closure = topology.closures.iter().find(|c| c.driver == Some(d));
+        coordinate.map(|c| c.unit).or(closure.map(|c| c.size)).unwrap_or(whole)
+    };
+    model.drivers.iter().enumerate().map(unit).collect()
 }
 
 #[cfg(test)]

@@ -49,6 +49,11 @@ pub enum StopKind {
         /// Which driver.
         driver: crate::model::DriverId,
     },
+    /// A driver moves further between two output times than can be followed (HP0408).
+    TooFar {
+        /// Which driver.
+        driver: crate::model::DriverId,
+    },
     /// The caller asked to stop (HP0405).
     Interrupted,
 }
@@ -63,6 +68,7 @@ impl Stop {
             StopKind::LawNotFinite { .. } => "HP0404",
             StopKind::Interrupted => "HP0405",
             StopKind::DoesNotAssemble => "HP0406",
+            StopKind::TooFar { .. } => "HP0408",
         }
     }
 
@@ -97,6 +103,12 @@ impl Stop {
                     model.drivers[driver.0].name
                 )
             }
+            StopKind::TooFar { driver } => {
+                format!(
+                    "driver `{}` moves too far between two output times to be followed, from t = {t:.6} s on",
+                    model.drivers[driver.0].name
+                )
+            }
             StopKind::Interrupted => format!("interrupted at t = {t:.6} s"),
         }
     }
@@ -121,6 +133,10 @@ impl Stop {
                  freedom"
             }
             StopKind::LawNotFinite { .. } => "change the law, or end the run before that time",
+            StopKind::TooFar { .. } => {
+                "up to 100,000 rad, some 16,000 turns, or as many sizes of the mechanism are followed from one output time to the \
+                 next: ask for more output times, or slow the law down"
+            }
             StopKind::Interrupted => return None,
         })
     }

@@ -1,8 +1,8 @@
 //! Factors of one block: dense for the small blocks that most mechanisms have, sparse for large ones.
 
-use super::Real;
 use super::matrix::{Elimination, Factored};
 use super::sparse::SparseLu;
+use super::{Function, Real};
 
 /// Blocks with more unknowns than this are factored by [`SparseLu`].
 ///
@@ -45,10 +45,19 @@ impl<T: Real> Factors<T> {
     }
 
     #[inline(always)]
-    pub fn factor(&mut self) -> Factored {
+    pub fn factor(&mut self) -> Factored<T> {
         match self {
             Self::Dense(lu) => lu.factor(),
             Self::Sparse(lu) => lu.factor(),
+        }
+    }
+
+    /// One determinant that [`Factors::factor`] found over another.
+    #[inline(always)]
+    pub fn ratio(&self, now: T, before: T) -> T {
+        match self {
+            Self::Dense(_) => now / before,
+            Self::Sparse(_) => (now - before).map(Function::Exp),
         }
     }
 

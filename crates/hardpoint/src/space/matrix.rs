@@ -12,6 +12,7 @@ const MOST_GROWTH: f64 = 4.0;
 #[derive(Clone, Debug)]
 pub(crate) struct Elimination<T> {
     n: usize,
+    witness: T,
     /// Row-major n x n: the matrix.
     rows: Vec<T>,
     /// Its factors, rows in the order of the pivots, diagonal inverted.
@@ -26,11 +27,13 @@ pub(crate) struct Elimination<T> {
 
 /// What a factorisation found.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Factored {
+pub(crate) struct Factored<T> {
     /// Smallest pivot over the largest, over all lanes; 0 where singular or not finite.
     pub pivot_ratio: f64,
     /// Whether the determinant is positive (lane 0 speaks; lanes that disagree make the ratio 0).
     pub positive: bool,
+    /// The size of the determinant; of a sparse matrix its logarithm.
+    pub determinant: T,
 }
 
 impl<T: Real> Elimination<T> {
@@ -38,6 +41,7 @@ impl<T: Real> Elimination<T> {
         let matrix = vec![witness.zero(); n * n];
         Self {
             n,
+            witness,
             rows: matrix.clone(),
             a: matrix,
             order: (0..n).collect(),
@@ -54,9 +58,9 @@ impl<T: Real> Elimination<T> {
     }
 
     #[inline(always)]
-    pub fn factor(&mut self) -> Factored {
+    pub fn factor(&mut self) -> Factored<T> {
         if self.n == 0 {
-            return Factored { pivot_ratio: 1.0, positive: true };
+            return Factored { pivot_ratio: 1.0, positive: true, determinant: self.witness.like(1.0) };
         }
         // Written so that NaN is looked at again, too.
         let (found, growth) = self.eliminate();
@@ -72,7 +76,7 @@ impl<T: Real> Elimination<T> {
 
     /// Eliminates in the present order; returns the largest factor, too.
     #[inline(always)]
-    fn eliminate(&mut self) -> (Factored, f64) {
+    fn eliminate(&mut self) -> (Factored<T>, f64) {
         let n = self.n;
         let (rows, a) = (&self.rows[..n * n], &mut self.a[..n * n]);
         for (to, &from) in a.chunks_exact_mut(n).zip(&self.order) {
@@ -80,15 +84,15 @@ impl<T: Real> Elimination<T> {
         }
         let first = a[0];
         let (zero, one) = (first.zero(), first.like(1.0));
-        // The largest of the pivots and of their inverses, the product of their signs, the largest factor.
-        let (mut most, mut least, mut sign, mut growth) = (zero, zero, one, zero);
+        // The largest of the pivots and of their inverses, the product of the pivots, the largest factor.
+        let (mut most, mut least, mut determinant, mut growth) = (zero, zero, one, zero);
         for k in 0..n {
             let pivot = a[k * n + k];
             let inverse = one / pivot;
             a[k * n + k] = inverse;
             most = most.larger(pivot.abs());
             least = least.larger(inverse.abs());
-            sign = sign * (pivot * inverse.abs());
+            determinant = determinant * pivot;
             for r in k + 1..n {
                 let m = a[r * n + k] * inverse;
                 a[r * n + k] = m;
@@ -98,11 +102,12 @@ impl<T: Real> Elimination<T> {
                 }
             }
         }
-        let (low, high) = (sign.smallest(), sign.largest());
+        let (low, high) = (determinant.smallest(), determinant.largest());
         // Lanes of different signs are on different branches. NaN, as of a pivot of zero, is no sign either.
         let regular = low > 0.0 || high < 0.0;
         let pivot_ratio = if regular { 1.0 / (most.largest() * least.largest()) } else { 0.0 };
-        (Factored { pivot_ratio, positive: (low > 0.0) == self.even }, growth.largest())
+        let positive = (low > 0.0) == self.even;
+        (Factored { pivot_ratio, positive, determinant: determinant.abs() }, growth.largest())
     }
 
     /// Chooses the order of the pivots by their sizes.

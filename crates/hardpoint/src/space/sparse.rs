@@ -11,8 +11,8 @@ use faer::sparse::linalg::lu::{LuSymbolicParams, factorize_symbolic_lu};
 use faer::sparse::{SparseColMatRef, SymbolicSparseColMat};
 use faer::{Conj, MatMut, Par};
 
-use super::Real;
 use super::matrix::Factored;
+use super::{LANES, Real};
 
 /// LU factors of a sparse square matrix whose pattern does not change.
 ///
@@ -136,14 +136,16 @@ impl<T: Real> SparseLu<T> {
 
     /// Factors what the rows were filled with, each lane on its own.
     #[inline(never)]
-    pub fn factor(&mut self) -> Factored {
+    pub fn factor(&mut self) -> Factored<T> {
         self.shared = false;
-        let mut all = Factored { pivot_ratio: 1.0, positive: true };
+        let mut all = Factored { pivot_ratio: 1.0, positive: true, determinant: self.values[0].zero() };
+        let mut determinants = [0.0; LANES];
         for k in 0..T::LANES {
             for (entry, x) in self.entries.iter_mut().zip(&self.values) {
                 *entry = x.lane(k);
             }
             let found = self.factor_lane(k);
+            determinants[k] = found.determinant;
             if k == 0 {
                 all.positive = found.positive;
             }
@@ -155,6 +157,7 @@ impl<T: Real> SparseLu<T> {
                 all.pivot_ratio = 0.0;
             }
         }
+        all.determinant = self.values[0].like_lanes(|k| determinants[k]);
         all
     }
 
@@ -173,7 +176,7 @@ impl<T: Real> SparseLu<T> {
     }
 
     /// Factors what stands in `entries`, for lane k.
-    fn factor_lane(&mut self, k: usize) -> Factored {
+    fn factor_lane(&mut self, k: usize) -> Factored<f64> {
         let n = self.n();
         let Lane { lu, pivots: [forward, inverse] } = &mut self.lanes[k];
         let factored = factorize_simplicial_numeric_lu(
@@ -185,10 +188,11 @@ impl<T: Real> SparseLu<T> {
             MemStack::new(&mut self.memory.buffer),
         );
         if factored.is_err() {
-            return Factored { pivot_ratio: 0.0, positive: true };
+            return Factored { pivot_ratio: 0.0, positive: true, determinant: 0.0 };
         }
         // The determinant is that of U, up to the signs of the two permutations.
         let (mut least, mut most) = (f64::INFINITY, 0.0_f64);
+        let (mut logarithm, mut product) = (0.0, 1.0_f64);
         let mut positive = self.odd == is_odd(forward, &mut self.seen);
         let upper = lu.u_factor_unsorted();
         for column in 0..n {
@@ -196,13 +200,19 @@ impl<T: Real> SparseLu<T> {
             let size = pivot.abs();
             // Written so that a NaN pivot makes the ratio zero, never a good number.
             if !(size > 0.0) {
-                return Factored { pivot_ratio: 0.0, positive };
+                return Factored { pivot_ratio: 0.0, positive, determinant: 0.0 };
+            }
+            // The product of thousands of pivots leaves the range of numbers.
+            product *= size;
+            if !(1e-100..1e100).contains(&product) {
+                (logarithm, product) = (logarithm + product.ln(), 1.0);
             }
             least = least.min(size);
             most = most.max(size);
             positive ^= *pivot < 0.0;
         }
-        Factored { pivot_ratio: if n == 0 { 1.0 } else { least / most }, positive }
+        let determinant = logarithm + product.ln();
+        Factored { pivot_ratio: if n == 0 { 1.0 } else { least / most }, positive, determinant }
     }
 
     /// Replaces the right-hand side by the solution.

@@ -43,26 +43,27 @@ pub(super) fn design_jacobian(model: &Model, topology: &Topology) -> Vec<SparseR
 
 /// The Jacobian of all rows, each by itself.
 ///
-/// Scaled so that a row of a length is per size. A coupler between lengths and angles keeps its own proportions: its
+/// Scaled so that a row of a length is per size of its loop. A coupler between lengths and angles keeps its own proportions: its
 /// row as a whole is scaled like its first term.
 fn jacobian_of_parts(model: &Model, topology: &Topology) -> Vec<SparseRow> {
-    let size = model.size();
+    let mut axes = vec![Mat3::IDENTITY; model.bodies.len()];
+    for link in &topology.links {
+        axes[link.child.0] = link.frame_at_design(model).rot;
+    }
     let mut rows = Vec::with_capacity(topology.rows.len());
     for closure in &topology.closures {
-        let ends = model.ends(closure.joint);
-        let first =
-            closure.coupler.map_or(&closure.rows[0], |c| &model.coupled(&model.couplers[c].terms[0]).row);
+        let mut ends = model.ends(closure.joint);
+        ends.axes = axes[closure.base.0];
         for row in &closure.rows {
             let wrench = row.wrench(&ends);
-            let row = if closure.coupler.is_some() { first } else { row };
-            let scale = if row.is_length() { 1.0 / size } else { 1.0 };
+            let scale = 1.0 / topology.rows[rows.len()].unit;
             let mut entries = Vec::new();
             for &(k, side) in &closure.links {
                 let link = &topology.links[k];
                 let frame = link.frame_at_design(model);
                 for step in &link.steps {
                     for c in 0..step.freedom.coordinates() {
-                        let unit = if topology.coordinates[step.first + c].is_length { size } else { 1.0 };
+                        let unit = topology.coordinates[step.first + c].unit;
                         let entry = side * scale * unit * wrench.on(step.twist(c, &frame.rot, frame.r));
                         entries.push((step.first + c, entry));
                     }
@@ -122,7 +123,7 @@ fn independent_groups(
             let row = &jacobian[range.start + r];
             patterns.push(row.iter().filter(|(c, _)| unknown[*c]).map(|(c, _)| column_of[*c]).collect());
             let closures = topology.parts_of_row(range.start + r).map(|(k, _)| topology.rows[k].closure);
-            bases.push(closures.filter_map(|c| placed_by[topology.base(c).0]).collect());
+            bases.push(closures.filter_map(|c| placed_by[topology.closures[c].base.0]).collect());
         }
     }
     // An unknown depends on every other unknown of the row that it is matched with. A loop could be solved before the body

@@ -10,6 +10,7 @@ mod fault;
 mod matching;
 mod mobility;
 mod redundancy;
+mod size;
 mod tree;
 
 pub use fault::TopologyFault;
@@ -119,6 +120,10 @@ pub struct Coordinate {
     pub source: Source,
     /// Whether it is a length (else an angle).
     pub is_length: bool,
+    /// What it is compared with: the size of the largest loop that it moves, m, if it is a length; else 1 rad.
+    pub unit: f64,
+    /// 1 / unit.
+    pub per_unit: f64,
 }
 
 /// Where a coordinate's value comes from.
@@ -146,6 +151,9 @@ pub struct Closure {
     pub coupler: Option<usize>,
     /// Bodies i and j.
     pub bodies: [BodyId; 2],
+    /// The body on which its loop stands: where the ways from its two bodies to ground meet. Points are held together along the axes
+    /// of the frame that places it, so that the loop knows nothing of where its base goes.
+    pub base: BodyId,
     /// The elementary constraints.
     pub rows: Vec<Row>,
     /// Number of the first row in [`Topology::rows`].
@@ -162,6 +170,8 @@ pub struct Closure {
     pub entries: Vec<(usize, usize, f64)>,
     /// All links around the loop that it closes.
     pub links: Vec<(usize, f64)>,
+    /// Extent of the joints of that loop in the design configuration, m: what its gaps are compared with.
+    pub size: f64,
 }
 
 /// Where a constraint row stands.
@@ -179,6 +189,8 @@ pub struct RowPlace {
     pub columns: Vec<CoupledColumn>,
     /// Whether it is a further term of a coupler, and no constraint by itself.
     pub is_term: bool,
+    /// What its residual is compared with: the size of its loop, m, if that is a length; else 1.
+    pub unit: f64,
 }
 
 /// Where the terms of a coupler meet in a column of its block.
@@ -213,6 +225,7 @@ impl Topology {
     /// a dead point of the design configuration.
     pub fn of(model: &Model, formulation: Formulation) -> Result<Self, TopologyFault> {
         let mut topology = tree::grow(model, formulation);
+        size::measure(model, &mut topology);
         blocks::split(model, &mut topology)?;
         mobility::examine(model, &mut topology)?;
         Ok(topology)
@@ -243,16 +256,6 @@ impl Topology {
         rows.filter(|&r| !self.rows[r].is_term).collect()
     }
 
-    /// The body on which a closure's loop stands: where the ways from its two bodies to ground meet.
-    fn base(&self, closure: usize) -> BodyId {
-        let closure = &self.closures[closure];
-        match closure.links.last() {
-            // Links on the way from i come last, the one nearest to ground at the very end.
-            Some(&(k, side)) if side < 0.0 => self.links[k].parent,
-            _ => closure.bodies[0],
-        }
-    }
-
     /// The rows whose sum, each times its factor, is constraint row r: itself, and a coupler's further terms.
     pub fn parts_of_row(&self, r: usize) -> impl Iterator<Item = (usize, f64)> + '_ {
         std::iter::once((r, 1.0)).chain(self.rows[r].terms.iter().copied())
@@ -262,11 +265,25 @@ impl Topology {
     pub(crate) fn row_name(&self, model: &Model, r: usize) -> String {
         let place = &self.rows[r];
         let closure = &self.closures[place.closure];
-        let row = closure.rows[place.index].describe();
+        let row = self.describe(model, closure, closure.rows[place.index]);
         match (closure.driver, closure.coupler) {
             (Some(d), _) => format!("driver `{}` ({row})", model.drivers[d.0].name),
             (None, Some(c)) => format!("coupler `{}`", model.couplers[c].name),
             (None, None) => format!("`{}` ({row})", model.joints[closure.joint.0].name),
+        }
+    }
+
+    /// What a closure's row asks for, in words.
+    pub fn describe(&self, model: &Model, closure: &Closure, row: Row) -> String {
+        match row {
+            Row::Point(k) if closure.base != GROUND => {
+                format!(
+                    "points coincide along {} of `{}`",
+                    ["x", "y", "z"][k],
+                    model.bodies[closure.base.0].name
+                )
+            }
+            _ => row.describe(),
         }
     }
 

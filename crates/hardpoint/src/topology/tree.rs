@@ -209,6 +209,8 @@ fn add_link(
                 // The block of an unknown is found later.
                 source: driver.map_or(Source::Unknown { block: usize::MAX, column: 0 }, Source::Driven),
                 is_length: matches!(freedom, Freedom::Slide(_)),
+                unit: 1.0,
+                per_unit: 1.0,
             });
         }
     }
@@ -246,9 +248,10 @@ fn add_closure(
             terms: Vec::new(),
             columns: Vec::new(),
             is_term: false,
+            unit: 1.0,
         });
     }
-    let links = loop_links(topology, way, bodies);
+    let (links, base) = loop_links(topology, way, bodies);
     let follows = rows.contains(&Row::Contact);
     let contact = follows.then(|| topology.closures.iter().filter(|c| c.contact.is_some()).count());
     topology.closures.push(Closure {
@@ -256,6 +259,7 @@ fn add_closure(
         driver,
         coupler,
         bodies,
+        base,
         has_axes: rows.iter().any(|r| r.has_axes()),
         rows,
         first_row,
@@ -264,13 +268,14 @@ fn add_closure(
         block: None,
         entries: Vec::new(),
         links,
+        size: 1.0,
     });
 }
 
-/// Links from j (+1) and from i (-1) down to where their ways to ground meet.
+/// Links from j (+1) and from i (-1) down to the body where their ways to ground meet, and that body.
 ///
 /// Neither way is followed further than that: in a chain of loops, the last one is far from ground.
-fn loop_links(topology: &Topology, way: &[Way], [mut i, mut j]: [BodyId; 2]) -> Vec<(usize, f64)> {
+fn loop_links(topology: &Topology, way: &[Way], [mut i, mut j]: [BodyId; 2]) -> (Vec<(usize, f64)>, BodyId) {
     let (mut from_i, mut from_j) = (Vec::new(), Vec::new());
     while i != j {
         let (Way { link: a, depth: depth_i }, Way { link: b, depth: depth_j }) = (way[i.0], way[j.0]);
@@ -284,5 +289,5 @@ fn loop_links(topology: &Topology, way: &[Way], [mut i, mut j]: [BodyId; 2]) -> 
         }
     }
     from_j.extend(from_i);
-    from_j
+    (from_j, i)
 }

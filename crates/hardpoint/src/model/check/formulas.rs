@@ -60,7 +60,7 @@ impl<'a> Check<'a> {
             }
         }
         self.order(written);
-        self.extent = Extent::of(self.model.hardpoints.iter().map(|h| h.position));
+        self.extent = extent_of_joints(self.draft, &self.model.hardpoints);
     }
 
     fn number_of(&self, what: &str, name: &str) -> Option<usize> {

@@ -135,7 +135,7 @@ impl Check<'_> {
         let ids: Vec<_> = ids.into_iter().collect::<Option<_>>()?;
         let m_i = Pose { rot: frame, r: self.position(at[0]) };
         let local: Vec<Vec3> = ids.iter().map(|h| m_i.inverse().point(self.position(*h))).collect();
-        let size = self.model.size();
+        let size = self.extent.size();
         let least = if draft.closed { 4 } else { 3 };
         if local.len() < least {
             let message = format!("the curve of `{name}` has {} points", local.len());

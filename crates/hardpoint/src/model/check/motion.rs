@@ -78,7 +78,7 @@ impl Check<'_> {
                 let (a, b) =
                     (self.point(from, &d.name, here.key("from")), self.point(to, &d.name, here.key("to")));
                 let [i, j] = [a?, b?].map(|p| self.model.points[p.0].clone());
-                if (self.position(i.at) - self.position(j.at)).norm() <= SAME_POINT * self.model.size() {
+                if (self.position(i.at) - self.position(j.at)).norm() <= SAME_POINT * self.extent.size() {
                     let message = format!("the two points of driver `{}` are at the same place", d.name);
                     self.fault("HP0211", here.key("to"), message)
                         .help("an actuator needs two points that lie apart");

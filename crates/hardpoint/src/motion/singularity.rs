@@ -1,0 +1,339 @@
+//! How far ahead the nearest singular position lies, whatever the laws of the drivers do on the way.
+//!
+//! Near a singular position the response of a loop to a load, `s = J^-1 r` with r a fixed disturbance of its rows, grows like
+//! `(u* - u)^-m` along the motion: m = 1/2 at a limit, where the loop cannot be closed beyond, and m = 1 where two motions meet.
+//! However narrow a gap is, and however near a miss, s shows it from afar, where the motion itself still looks smooth. With
+//!
+//! ```text
+//! c0 = J^-1 r,   c1 = -J^-1 (J' c0),   c2 = -J^-1 (J'' c0 / 2 + J' c1)                               docs/theory.md (22)
+//! ```
+//!
+//! its series along a direction, `max(|c1| / |c0|, sqrt(|c2| / |c0|))` is the inverse of the distance to the nearest singular position,
+//! to within a factor of about two. c0, c1, c2 are levels like those of a sensitivity by a length in every row; they ask for no
+//! more of the motion than velocity and acceleration.
+//!
+//! The directions are the drivers, one by one: what is near is near whether the drivers hurry, rest or turn round.
+
+use crate::space::{Real, Twist, Wrench};
+use crate::topology::{Source, Topology};
+
+use super::kinematics::{State, level, sum_couplers};
+use super::parts::Parts;
+
+/// Loads on the rows. One could miss what is singular; two have not (270 hard cases in the plane and in space).
+const LOADS: usize = 2;
+/// Terms of the series.
+const ORDERS: usize = 3;
+
+/// What is known about the surroundings of a position.
+#[derive(Clone, Debug)]
+pub(super) struct Surroundings<T> {
+    /// Per direction and block: the inverse distance to the nearest singular position, per unit of the direction.
+    nearness: Vec<Vec<T>>,
+    /// Per direction: first and second derivatives of the coordinates by it.
+    pub slopes: Vec<Vec<T>>,
+    pub bends: Vec<Vec<T>>,
+    /// Per direction and row of a coupler's term: the same of what it counts.
+    pub turning: Vec<Vec<[T; 2]>>,
+    /// Per direction: the fastest unknown coordinate, in its unit.
+    pub fastest: Vec<T>,
+    /// How many of the directions are known.
+    known: usize,
+}
+
+/// A singular position ahead, by the series of one block's response along a direction.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Ahead {
+    /// The block that becomes singular.
+    pub block: usize,
+    /// How far ahead, in units of the direction; negative where it lies behind.
+    pub distance: f64,
+    /// Which power of the distance the response goes with: about -1/2 at a limit, -1 where two motions meet.
+    pub power: f64,
+}
+
+/// Room to work in.
+#[derive(Clone, Debug)]
+pub(super) struct Prober<T> {
+    /// Rates along a direction, in place of those along the time.
+    qd: Vec<T>,
+    qdd: Vec<T>,
+    v: Vec<Twist<T>>,
+    a: Vec<Twist<T>>,
+    xd: Vec<Twist<T>>,
+    xdd: Vec<Twist<T>>,
+    ld: Vec<Wrench<T>>,
+    ldd: Vec<Wrench<T>>,
+    /// Per load and row.
+    loads: [Vec<T>; LOADS],
+    /// The series of the response: coordinates, and the bodies of one block.
+    c: [Vec<T>; ORDERS],
+    out: [Vec<Twist<T>>; ORDERS],
+    bias: Vec<Twist<T>>,
+    row_rhs: Vec<T>,
+    drivers: Vec<[T; 3]>,
+}
+
+impl<T: Real> Surroundings<T> {
+    pub fn new(topology: &Topology, directions: usize, witness: T) -> Self {
+        let zero = witness.zero();
+        let coordinates = vec![vec![zero; topology.coordinates.len()]; directions];
+        Self {
+            nearness: vec![vec![zero; topology.blocks.len()]; directions],
+            slopes: coordinates.clone(),
+            bends: coordinates,
+            turning: vec![vec![[zero; 2]; topology.rows.len()]; directions],
+            fastest: vec![zero; directions],
+            known: 0,
+        }
+    }
+
+    /// What part of the distance to the nearest singular position a step may be that moves each direction by so much at most.
+    pub fn part_of_way(&self, travel: &[f64]) -> f64 {
+        let mut most = 0.0;
+        for b in 0..self.nearness.first().map_or(0, Vec::len) {
+            let of_block = travel[..self.known].iter().zip(&self.nearness);
+            let sum: f64 = of_block.map(|(du, nearness)| part(*du, nearness[b].largest())).sum();
+            // Written so that NaN is far too much.
+            if !(sum <= most) {
+                most = if sum.is_nan() { f64::INFINITY } else { sum };
+            }
+        }
+        most
+    }
+
+    /// How far the fastest coordinate goes, in its unit, when each direction moves by so much at most.
+    pub fn move_of_fastest(&self, travel: &[f64]) -> f64 {
+        travel[..self.known].iter().zip(&self.fastest).map(|(du, speed)| part(*du, speed.largest())).sum()
+    }
+}
+
+/// A product in which nothing times whatever is nothing.
+fn part(travel: f64, per_unit: f64) -> f64 {
+    if travel == 0.0 { 0.0 } else { travel * per_unit }
+}
+
+impl<T: Real> Prober<T> {
+    pub fn new(topology: &Topology, bodies: usize, drivers: usize, witness: T) -> Self {
+        let (zero, none) = (witness.zero(), Twist::zero(witness));
+        let (coordinates, rows) = (topology.coordinates.len(), topology.rows.len());
+        let wrench = Wrench { m: none.w, f: none.v };
+        // Multiples of the golden ratio are spread evenly and never repeat: all loads differ, and none is small.
+        let mut numbers = (1..).map(|k| (f64::from(k) * 0.618_033_988_749_895).fract());
+        let mut load = || -> Vec<T> {
+            let mut next = || numbers.next().expect("there is always another");
+            let of_row = |unit: f64| {
+                let (size, side) = (0.5 + 0.5 * next(), next());
+                witness.like(unit * if side < 0.5 { -size } else { size })
+            };
+            topology.rows.iter().map(|place| place.unit).map(of_row).collect()
+        };
+        Self {
+            qd: vec![zero; coordinates],
+            qdd: vec![zero; coordinates],
+            v: vec![none; bodies],
+            a: vec![none; bodies],
+            xd: vec![none; coordinates],
+            xdd: vec![none; coordinates],
+            ld: vec![wrench; rows],
+            ldd: vec![wrench; rows],
+            loads: std::array::from_fn(|_| load()),
+            c: std::array::from_fn(|_| vec![zero; coordinates]),
+            out: std::array::from_fn(|_| vec![none; bodies]),
+            bias: vec![none; topology.links.len()],
+            row_rhs: vec![zero; rows],
+            drivers: vec![[zero; 3]; drivers],
+        }
+    }
+
+    /// Puts the rates along a direction in the place of those along the time, or back.
+    fn swap(&mut self, state: &mut State<T>) {
+        use std::mem::swap;
+        swap(&mut self.qd, &mut state.qd);
+        swap(&mut self.qdd, &mut state.qdd);
+        swap(&mut self.v, &mut state.v);
+        swap(&mut self.a, &mut state.a);
+        swap(&mut self.xd, &mut state.xd);
+        swap(&mut self.xdd, &mut state.xdd);
+        swap(&mut self.ld, &mut state.ld);
+        swap(&mut self.ldd, &mut state.ldd);
+    }
+
+    /// Examines the position where a state stands, with its factors, along so many directions. `speed(direction, driver)` is
+    /// how each driver moves along a direction, and `gap_rate` how the gaps of an assembly close.
+    #[expect(clippy::too_many_arguments, reason = "all are borrowed from one stepper, some of them mutably")]
+    pub fn examine(
+        &mut self,
+        topology: &Topology,
+        parts: &Parts<T>,
+        state: &mut State<T>,
+        gap_rate: f64,
+        directions: usize,
+        speed: impl Fn(usize, usize) -> T,
+        found: &mut Surroundings<T>,
+    ) {
+        let witness = state.witness;
+        found.known = directions;
+        self.swap(state);
+        let gap = std::mem::replace(&mut state.gap_left[1], gap_rate);
+        for direction in 0..directions {
+            for (d, driver) in self.drivers.iter_mut().enumerate() {
+                *driver = [witness.zero(), speed(direction, d), witness.zero()];
+            }
+            self.rates(topology, parts, state);
+            found.slopes[direction].copy_from_slice(&state.qd);
+            found.bends[direction].copy_from_slice(&state.qdd);
+            for &r in &topology.coupled_rows {
+                for (k, _) in topology.parts_of_row(r) {
+                    let [_, speed, rate] = state.coordinate_of_row(topology, k);
+                    found.turning[direction][k] = [speed, rate];
+                }
+            }
+            let mut fastest = witness.zero();
+            for (c, coordinate) in topology.coordinates.iter().enumerate() {
+                if matches!(coordinate.source, Source::Unknown { .. }) {
+                    let speed = state.qd[c] * witness.like(coordinate.per_unit);
+                    fastest = fastest.larger(speed.abs());
+                }
+            }
+            found.fastest[direction] = fastest;
+            for b in 0..topology.blocks.len() {
+                let mut nearness = witness.zero();
+                for load in 0..LOADS {
+                    nearness = nearness.larger(self.respond(topology, state, b, load));
+                }
+                found.nearness[direction][b] = nearness;
+            }
+        }
+        state.gap_left[1] = gap;
+        self.swap(state);
+    }
+
+    /// The singular position that the motion comes to first as it goes, by the rates that the drivers have: that of the block with
+    /// the strongest response.
+    pub fn ahead(
+        &mut self,
+        topology: &Topology,
+        parts: &Parts<T>,
+        state: &mut State<T>,
+        gap_rate: f64,
+        drivers: &[[T; 3]],
+    ) -> Option<Ahead> {
+        self.drivers.copy_from_slice(drivers);
+        self.swap(state);
+        let gap = std::mem::replace(&mut state.gap_left[1], gap_rate);
+        let mut nearest: Option<(f64, Ahead)> = None;
+        self.rates(topology, parts, state);
+        for b in 0..topology.blocks.len() {
+            for load in 0..LOADS {
+                let nearness = self.respond(topology, state, b, load).lane(0);
+                let Some(ahead) = self.extrapolate(topology, b) else { continue };
+                if nearest.is_none_or(|(most, _)| nearness > most) {
+                    nearest = Some((nearness, ahead));
+                }
+            }
+        }
+        state.gap_left[1] = gap;
+        self.swap(state);
+        nearest.map(|(_, ahead)| ahead)
+    }
+
+    /// Velocity and acceleration along the drivers' speeds, and all rates of twists and wrenches.
+    fn rates(&mut self, topology: &Topology, parts: &Parts<T>, state: &mut State<T>) {
+        for (c, coordinate) in topology.coordinates.iter().enumerate() {
+            if let Source::Driven(d) = coordinate.source {
+                [_, state.qd[c], state.qdd[c]] = self.drivers[d.0];
+            }
+        }
+        state.all_rates(topology, parts, &self.drivers);
+    }
+
+    /// The response of a block to a load: c0, c1 and 2 c2 of its unknowns; all bodies outside of it stand. Returns how near a
+    /// singular position is by it.
+    #[inline(never)]
+    fn respond(&mut self, topology: &Topology, state: &mut State<T>, b: usize, load: usize) -> T {
+        let witness = state.witness;
+        witness.within(
+            #[inline(always)]
+            || {
+                self.responding(topology, state, b, load);
+                self.nearness(topology, b)
+            },
+        )
+    }
+
+    #[inline(always)]
+    fn responding(&mut self, topology: &Topology, state: &mut State<T>, b: usize, load: usize) {
+        let (block, witness) = (&topology.blocks[b], state.witness);
+        let (zero, two) = (witness.zero(), witness.like(2.0));
+        let Self { loads, c, out, bias, row_rhs, .. } = self;
+        for order in 0..ORDERS {
+            // bias = sum over m < n of binomial(n, m) x^(n - m) c_m
+            for k in block.links.clone() {
+                let link = &topology.links[k];
+                bias[k] = Twist::zero(witness);
+                if order > 0 && !link.keeps_its_twist() {
+                    bias[k] = state.sum_over_link(link, &state.xd, &c[order - 1]);
+                    if order == 2 {
+                        let first = bias[k] * two;
+                        bias[k] = first + state.sum_over_link(link, &state.xdd, &c[0]);
+                    }
+                }
+            }
+            // rhs = r, and then - sum over m < n of binomial(n, m) l^(n - m) . (out_j - out_i)_m
+            for &k in &block.closures {
+                let closure = &topology.closures[k];
+                let [i, j] = closure.bodies.map(|body| body.0);
+                for r in closure.first_row..closure.first_row + closure.rows.len() {
+                    if !topology.rows[r].drives() {
+                        continue;
+                    }
+                    row_rhs[r] = match order {
+                        0 if topology.rows[r].is_term => zero,
+                        0 => loads[load][r],
+                        1 => -state.ld[r].on(out[0][j] - out[0][i]),
+                        _ => {
+                            -(state.ldd[r].on(out[0][j] - out[0][i])
+                                + state.ld[r].on(out[1][j] - out[1][i]) * two)
+                        }
+                    };
+                }
+            }
+            sum_couplers(topology, b, row_rhs);
+            let (factors, rhs) = (&mut state.factors, &mut state.rhs);
+            let (u, out) = (&mut c[order], &mut out[order]);
+            level(topology, b, factors, &state.x, &state.l, Some(&bias[..]), row_rhs, u, out, rhs);
+        }
+        // The next block is examined by itself.
+        for k in block.links.clone() {
+            out.iter_mut().for_each(|out| out[topology.links[k].child.0] = Twist::zero(witness));
+        }
+    }
+
+    /// `max(|c1| / |c0|, sqrt(|c2| / |c0|))` over the block's unknowns, lengths in sizes of their loops.
+    #[inline(always)]
+    fn nearness(&self, topology: &Topology, b: usize) -> T {
+        let zero = self.c[0][topology.blocks[b].unknowns[0]].zero();
+        let norm = |c: &[T]| {
+            let unknowns = topology.blocks[b].unknowns.iter();
+            unknowns.fold(zero, |most, &k| {
+                most.larger((c[k] * zero.like(topology.coordinates[k].per_unit)).abs())
+            })
+        };
+        let [c0, c1, c2] = [&self.c[0], &self.c[1], &self.c[2]].map(|c| norm(c));
+        (c1 / c0).larger((c2 * zero.like(0.5) / c0).sqrt())
+    }
+
+    /// Where the response would be infinite. With s ~ (u* - u)^-m it is `s'/s = m / (u* - u)` and `s''/s = m (m + 1) / (u* - u)^2`,
+    /// read off the unknown that responds most.
+    fn extrapolate(&self, topology: &Topology, b: usize) -> Option<Ahead> {
+        let size = |k: usize| (self.c[0][k].lane(0) * topology.coordinates[k].per_unit).abs();
+        let unknowns = topology.blocks[b].unknowns.iter().copied();
+        let most = unknowns.max_by(|&j, &k| size(j).total_cmp(&size(k)))?;
+        let [c0, c1, c2] = std::array::from_fn(|order| self.c[order][most].lane(0));
+        let (first, second) = (c1 / c0, c2 / c0);
+        let power = first * first / (second - first * first);
+        let distance = power / first;
+        (power.is_finite() && distance.is_finite()).then_some(Ahead { block: b, distance, power })
+    }
+}

@@ -1,0 +1,407 @@
+//! The path between output times, followed in steps of its own.
+//!
+//! A step is as long as the nearest singular position allows ([`super::singularity`]), measured in what the drivers do on the way and
+//! not in time: the range of each law over the step is known ([`crate::law::Law::over`]), so a law that hurries, rests, turns round or
+//! pulses between two output times is followed all the same. The position is predicted along the drivers, too, so kinks of laws
+//! need no care.
+
+use crate::space::Real;
+
+use super::kinematics::PositionFailure;
+use super::stepper::{Ahead, Refusal, Stepper};
+use super::{BodyState, Passed, Stop, StopKind};
+use crate::constraint::Row;
+use crate::model::DriverId;
+
+/// A step may be this part of the estimated distance to the nearest singular position. The estimate is 0.94 to 2.17 times the true
+/// distance (`docs/theory.md`, section 4), so that no step reaches beyond.
+pub(super) const PART_OF_WAY: f64 = 0.4;
+/// Seen from its far end, a step may be this part of the distance there: an equal walk back would be 0.67 of it, and a narrow
+/// miss that symmetry hides from one end shows from the other.
+const PART_FROM_FAR_END: f64 = 2.5 / (1.0 - PART_OF_WAY) * PART_OF_WAY;
+/// No driver moves by more than this in a step, rad or sizes of its loop: symmetry may hide a singular position entirely, and in
+/// uniform rotation there is none.
+const LONGEST: f64 = 1.0;
+/// ... and no unknown coordinate by more than this: which turn an angle is in would be a guess.
+const LONGEST_MOVE: f64 = 2.0;
+/// A singular position nearer than this, in rad or sizes of driver travel, is where the walk ends; nearer by, round-off decides.
+const NEAREST: f64 = 1e-6;
+/// A step that is refused at this length, rad or sizes, is refused for good.
+const SHORTEST: f64 = 1e-10;
+/// Times nearer to each other than this, relative to the times of the path, are one: what changes between them jumps.
+const ONE_TIME: f64 = 1e-14;
+/// The first correction may be this part of the predicted move: more means a prediction gone wrong.
+const TRUST: f64 = 0.5;
+/// A first correction (rad, or sizes) up to this is accepted whatever the prediction's own length is.
+const TRUST_FLOOR: f64 = 0.02;
+/// Redundant constraints that disagree by this part of what counts as locked are looked at in the middle of a step, too.
+const SUSPECT: f64 = 1e-2;
+/// The response to a load goes with this power of the distance, at most, where the loop cannot be closed beyond: 1/2; where two motions
+/// meet it is 1.
+const LIMIT: f64 = 0.75;
+/// A walk gives up after so many steps without a radian, or a size, of any driver.
+const MOST_STEPS: usize = 20_000;
+/// Between two output times no driver is followed further than this, rad or sizes: what runs away would be followed for ever.
+const FARTHEST: f64 = 1e5;
+/// A law that is not bounded over this part of a walk, however near by, and this large there, has a pole, 1e3 times what it is at
+/// the ends.
+const POLE: [f64; 2] = [1e-9, 1e3];
+
+/// What the drivers follow.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Path {
+    /// From the configuration as drawn, where joints may be open, to the closed one, all drivers at zero; the
+    /// parameter runs from 0 to 1 and is the part of every gap that is closed.
+    Assembly,
+    /// All drivers straight from one value to another, [`Stepper::line`], at one time; the parameter runs from 0 to 1. So the
+    /// mechanism comes from the design configuration to its first output time, and over the jumps of laws.
+    Line {
+        /// That time.
+        at: f64,
+    },
+    /// Their laws, over time.
+    Laws,
+}
+
+impl Path {
+    /// How the part of every gap that is left changes along it.
+    fn gap_rate(self) -> f64 {
+        if self == Self::Assembly { -1.0 } else { 0.0 }
+    }
+}
+
+impl<T: Real> Stepper<'_, T> {
+    /// Follows a path to where its parameter is `target`.
+    pub(super) fn walk(&mut self, path: Path, target: f64) -> Result<(), Box<Stop>> {
+        let scale = f64::max(self.time.abs(), target.abs());
+        let (mut steps, mut walked) = (0, 0.0);
+        if self.ahead != Ahead::Examined {
+            self.stand(path).map_err(|r| self.stop(path, self.time, r, true))?;
+            self.examine_here(path);
+        }
+        if path != Path::Laws {
+            self.pass(path, true);
+        }
+        if path == Path::Laws {
+            self.look_for_poles(target)?;
+        }
+        let mut far = 0.0;
+        while self.time < target {
+            let rest = target - self.time;
+            let mut h = self.stride(path, rest, ONE_TIME * scale);
+            if path == Path::Laws && h <= ONE_TIME * scale && h < rest && !(self.travelled() <= SHORTEST) {
+                self.jump(self.time + h)?;
+                continue;
+            }
+            if h < rest && self.travelled() < NEAREST && self.is_singular_ahead(path) {
+                return Err(self.stop(path, self.time + h, Refusal::TooNear, true));
+            }
+            loop {
+                let last = h >= rest;
+                let t = if last { target } else { self.time + h };
+                match self.step_to(path, t, if last { rest } else { h }) {
+                    Ok(()) => break,
+                    Err(refusal) => {
+                        h *= 0.5;
+                        self.measure_travel(path, h);
+                        steps += 1;
+                        let too_short = self.travelled() < SHORTEST || h <= ONE_TIME * scale;
+                        if too_short || steps > MOST_STEPS {
+                            self.stand(path).map_err(|r| self.stop(path, t, r, true))?;
+                            return Err(self.stop(path, t, refusal, true));
+                        }
+                    }
+                }
+            }
+            (steps, walked) = (steps + 1, walked + self.travelled());
+            far += self.travelled();
+            if far > FARTHEST {
+                return Err(self.stop(path, self.time, self.too_far(), true));
+            } else if walked > LONGEST {
+                (steps, walked) = (0, 0.0);
+            } else if steps > MOST_STEPS {
+                return Err(self.stop(path, self.time, Refusal::TooNear, true));
+            }
+            if self.time < target {
+                self.effort.substeps += 1;
+            }
+            // At an output time the output speaks for itself; a straight path has none.
+            if self.time < target || path != Path::Laws {
+                self.pass(path, false);
+            }
+        }
+        Ok(())
+    }
+
+    /// Notes where the watched bodies are.
+    fn pass(&mut self, path: Path, begins: bool) {
+        if path == Path::Assembly || self.watched.is_empty() {
+            return;
+        }
+        let mut states = Vec::with_capacity(self.watched.iter().filter(|w| **w).count());
+        BodyState::each(&self.state, &self.watched, |lane, body, state| {
+            if lane == 0 {
+                states.push((body, state));
+            }
+        });
+        self.passed.push(Passed { time: self.time, begins, states });
+    }
+
+    /// The driver that goes furthest.
+    fn too_far(&self) -> Refusal {
+        let travel = |d: &usize| self.travel[*d] / self.driver_units[*d];
+        let driver = (0..self.drivers.len()).max_by(|a, b| travel(a).total_cmp(&travel(b))).unwrap_or(0);
+        Refusal::TooFar { driver }
+    }
+
+    /// Ends the walk to an output time at once if a law has a pole on the way there.
+    fn look_for_poles(&mut self, target: f64) -> Result<(), Box<Stop>> {
+        let whole = target - self.time;
+        for driver in 0..self.drivers.len() {
+            for law in self.parts.laws_of(driver) {
+                let bounded = |from: f64, to: f64| law.over(from, to).value.is_bounded();
+                let (mut from, mut to) = (self.time, target);
+                while !bounded(from, to) && to - from > POLE[0] * whole {
+                    let middle = 0.5 * (from + to);
+                    (from, to) = if bounded(from, middle) { (middle, to) } else { (from, middle) };
+                }
+                if bounded(from, to) {
+                    continue;
+                }
+                let size = |t: f64| law.at(t).value().abs();
+                let (near, usual) = (size(from).max(size(to)), size(self.time).max(size(target)));
+                // Written so that NaN is a pole: the law has no value there.
+                if !(near <= POLE[1] * usual.max(self.driver_units[driver])) {
+                    return Err(self.stop(Path::Laws, to, Refusal::Law { driver }, true));
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// Solves the saved position once more, so that factors and rates are at hand.
+    fn stand(&mut self, path: Path) -> Result<(), Refusal> {
+        self.drive(path, self.time)?;
+        self.restore();
+        self.solve_within(f64::INFINITY)
+    }
+
+    /// Finds out how near singular positions are to the saved position, where the state stands.
+    pub(super) fn examine_here(&mut self, path: Path) {
+        self.examine(path);
+        std::mem::swap(&mut self.around, &mut self.beyond);
+        self.ahead = Ahead::Examined;
+    }
+
+    /// Finds out how near singular positions are to where the state stands: along each driver alone, or along the whole path where
+    /// all go together.
+    fn examine(&mut self, path: Path) {
+        let Self { prober, topology, parts, state, line, beyond, drivers, .. } = self;
+        let witness = state.witness;
+        let directions = if path == Path::Laws { drivers.len() } else { 1 };
+        let speed = |direction: usize, d: usize| match path {
+            Path::Assembly => witness.zero(),
+            Path::Line { .. } => line[d][1] - line[d][0],
+            Path::Laws => witness.like(if d == direction { 1.0 } else { 0.0 }),
+        };
+        prober.examine(topology, parts, state, path.gap_rate(), directions, speed, beyond);
+    }
+
+    /// How far each direction goes at most over a step h of the path.
+    fn measure_travel(&mut self, path: Path, h: f64) {
+        match path {
+            Path::Assembly | Path::Line { .. } => self.travel[0] = h,
+            Path::Laws => {
+                for d in 0..self.drivers.len() {
+                    let from = self.saved.drivers[d][0];
+                    self.travel[d] = self.parts.travel(d, self.time, self.time + h, from);
+                }
+            }
+        }
+        self.travel_unit = match path {
+            Path::Assembly => self.state.largest_gap(&self.topology),
+            Path::Line { .. } => {
+                let of_driver = self.line.iter().zip(&self.driver_units);
+                of_driver.map(|([from, to], unit)| (*to - *from).abs().largest() / unit).fold(0.0, f64::max)
+            }
+            Path::Laws => 1.0,
+        };
+        self.on_laws = path == Path::Laws;
+    }
+
+    /// The largest travel measured last, rad or sizes.
+    fn travelled(&self) -> f64 {
+        if !self.on_laws {
+            return self.travel[0] * self.travel_unit;
+        }
+        self.travel.iter().zip(&self.driver_units).map(|(x, unit)| x / unit).fold(0.0, f64::max)
+    }
+
+    /// The longest step along a path that stays clear of singular positions, `rest` or shorter, with its travel; `shortest` where
+    /// none does.
+    fn stride(&mut self, path: Path, rest: f64, shortest: f64) -> f64 {
+        let mut h = rest;
+        loop {
+            self.measure_travel(path, h);
+            let part = self.around.part_of_way(&self.travel) / PART_OF_WAY;
+            let moved = self.around.move_of_fastest(&self.travel) / LONGEST_MOVE;
+            let much = part.max(moved).max(self.travelled() / LONGEST);
+            if much <= 1.0 || h <= shortest {
+                return h;
+            }
+            // Where the travel goes with h, the first guess is right; ranges of laws over long steps may be wider.
+            h = (h * (0.95 / much).clamp(0.02, 0.9)).max(shortest);
+        }
+    }
+
+    /// Goes a step h along a path, to t, if it is a safe one.
+    fn step_to(&mut self, path: Path, t: f64, h: f64) -> Result<(), Refusal> {
+        if self.saved.residual > SUSPECT * super::stepper::LOCKED && path == Path::Laws {
+            self.solve_at(path, self.time + 0.5 * h, 0.5 * h)?;
+        }
+        self.measure_travel(path, h);
+        let selections = self.selections;
+        self.solve_at(path, t, h)?;
+        self.examine(path);
+        if selections == self.selections && !(self.beyond.part_of_way(&self.travel) <= PART_FROM_FAR_END) {
+            return Err(Refusal::TooNear);
+        }
+        std::mem::swap(&mut self.around, &mut self.beyond);
+        self.save(t, h);
+        self.ahead = Ahead::Examined;
+        Ok(())
+    }
+
+    /// Solves the position at t on a path, a step h beyond the saved one, from a prediction along the drivers.
+    fn solve_at(&mut self, path: Path, t: f64, h: f64) -> Result<(), Refusal> {
+        self.drive(path, t)?;
+        let moved = self.predict(path, h);
+        self.solve_within((TRUST * moved).max(TRUST_FLOOR))?;
+        self.examine_position()
+    }
+
+    /// Predicts the position where the drivers stand now, `q + sum over the directions of q' du + q'' du^2 / 2`; returns how far the
+    /// largest move goes, rad or sizes.
+    fn predict(&mut self, path: Path, h: f64) -> f64 {
+        self.restore();
+        let witness = self.state.witness;
+        let mut most = 0.0_f64;
+        let directions = if path == Path::Laws { self.drivers.len() } else { 1 };
+        let mut moves = std::mem::take(&mut self.predicted);
+        moves.fill(witness.zero());
+        for k in 0..directions {
+            let du = match path {
+                Path::Laws => self.drivers[k][0] - self.saved.drivers[k][0],
+                _ => witness.like(h),
+            };
+            let half = du * du * witness.like(0.5);
+            let (slopes, bends) = (&self.around.slopes[k], &self.around.bends[k]);
+            for (c, moved) in moves.iter_mut().enumerate() {
+                *moved = bends[c].times_plus(half, slopes[c].times_plus(du, *moved));
+            }
+            for &r in &self.topology.coupled_rows {
+                for (row, _) in self.topology.parts_of_row(r) {
+                    let [slope, bend] = self.around.turning[k][row];
+                    self.state.near[row] += slope * du + bend * half;
+                }
+            }
+        }
+        for (c, coordinate) in self.topology.coordinates.iter().enumerate() {
+            if matches!(coordinate.source, crate::topology::Source::Unknown { .. }) {
+                self.state.q[c] += moves[c];
+                most = most.max((moves[c] * witness.like(coordinate.per_unit)).abs().largest());
+            }
+        }
+        self.predicted = moves;
+        self.state.turn_balls(&self.topology, 0..self.topology.links.len());
+        most
+    }
+
+    /// Takes the drivers over a jump of their laws, straight from their values before to those at t.
+    fn jump(&mut self, t: f64) -> Result<(), Box<Stop>> {
+        let before = self.time;
+        for d in 0..self.line.len() {
+            self.line[d] = [self.saved.drivers[d][0], self.parts.law(d, t, self.state.witness)[0]];
+        }
+        let path = Path::Line { at: t };
+        self.time = 0.0;
+        let walked = self.attempt(path, 0.0).map_err(|r| self.stop(path, 0.0, r, false)).and_then(|()| {
+            self.save(0.0, 0.0);
+            self.walk(path, 1.0)
+        });
+        walked.map_err(|stop| Box::new(Stop { last_time: Some(before), failed_time: t, ..*stop }))?;
+        self.time = t;
+        self.attempt(Path::Laws, t).map_err(|r| self.stop(Path::Laws, t, r, true))?;
+        self.save(t, 0.0);
+        self.examine_here(Path::Laws);
+        Ok(())
+    }
+
+    /// Where the motion becomes singular as it goes on, seen from the saved position; the state must stand there.
+    fn ahead(&mut self, path: Path) -> Option<super::singularity::Ahead> {
+        let Self { prober, topology, parts, state, drivers, .. } = self;
+        prober.ahead(topology, parts, state, path.gap_rate(), drivers)
+    }
+
+    /// Whether what is near lies ahead, not behind.
+    fn is_singular_ahead(&mut self, path: Path) -> bool {
+        if self.stand(path).is_err() {
+            return true;
+        }
+        !self.ahead(path).is_some_and(|ahead| ahead.distance < 0.0)
+    }
+
+    /// Why the path ends at the saved position; the step to t was refused.
+    pub(super) fn stop(&mut self, path: Path, t: f64, refusal: Refusal, moved: bool) -> Box<Stop> {
+        let mut failed = t;
+        let (kind, block) = match refusal {
+            Refusal::Position(
+                PositionFailure::Singular { block } | PositionFailure::NoConvergence { block },
+            ) if !moved => (StopKind::Limit, Some(block)),
+            Refusal::Position(_) | Refusal::Branch { .. } | Refusal::TooNear => {
+                let ahead = self.ahead(path);
+                // The step that failed is no longer than a part of the way.
+                let near = 1e3 * (t - self.time).abs().max(ONE_TIME * t.abs());
+                match ahead.filter(|a| a.distance > 0.0 && a.distance <= near) {
+                    Some(a) => {
+                        failed = self.time + a.distance;
+                        let limit = a.power < LIMIT;
+                        (if limit { StopKind::Limit } else { StopKind::BranchChange }, Some(a.block))
+                    }
+                    None => match refusal {
+                        Refusal::Position(
+                            PositionFailure::Singular { block } | PositionFailure::NoConvergence { block },
+                        ) => (StopKind::Limit, Some(block)),
+                        Refusal::Branch { block } => (StopKind::BranchChange, Some(block)),
+                        _ => (StopKind::BranchChange, ahead.map(|a| a.block)),
+                    },
+                }
+            }
+            Refusal::Locked { row, residual } => {
+                let place = &self.topology.rows[row];
+                let closure = &self.topology.closures[place.closure];
+                let row: Row = closure.rows[place.index];
+                let kind = StopKind::Locked { joint: closure.joint, residual, is_length: row.is_length() };
+                (kind, closure.block)
+            }
+            Refusal::Law { driver } => (StopKind::LawNotFinite { driver: DriverId(driver) }, None),
+            Refusal::TooFar { driver } => (StopKind::TooFar { driver: DriverId(driver) }, None),
+        };
+        let (last_time, failed_time) = match path {
+            Path::Assembly => (None, 0.0),
+            Path::Line { at } => (None, at),
+            Path::Laws => (moved.then_some(self.time), failed),
+        };
+        Box::new(Stop {
+            kind,
+            last_time,
+            failed_time,
+            drivers: self.saved.drivers.iter().map(|f| f[0].lane(0)).collect(),
+            block,
+            pivot_ratio: block.map_or(1.0, |b| self.saved.pivots[b].0),
+            joints: block.map_or_else(Vec::new, |b| self.topology.joints_of_block(b)),
+            remains: Vec::new(),
+            closed: (path == Path::Assembly).then_some(self.time),
+        })
+    }
+}

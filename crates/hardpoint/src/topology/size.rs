@@ -1,0 +1,87 @@
+//! How large every loop is: gaps, corrections and steps are judged by the loop that they are in, and by nothing else in the file.
+
+use std::collections::BTreeSet;
+
+use super::{Closure, Topology};
+use crate::model::{Extent, JointId, Model};
+use crate::space::Vec3;
+
+/// Places nearer to each other than this part of their distance from the origin are one.
+const ONE_PLACE: f64 = 1e-12;
+
+/// Measures the loops, and what coordinates and rows are compared with.
+pub(super) fn measure(model: &Model, topology: &mut Topology) {
+    let joints_of_body = joints_of_bodies(model);
+    let whole = model.size();
+    let sizes: Vec<f64> =
+        topology.closures.iter().map(|c| loop_size(model, topology, c, &joints_of_body, whole)).collect();
+    for (closure, size) in topology.closures.iter_mut().zip(&sizes) {
+        closure.size = *size;
+    }
+    for (r, place) in topology.rows.iter_mut().enumerate() {
+        let closure = &topology.closures[place.closure];
+        let row = &closure.rows[r - closure.first_row];
+        place.unit = if row.is_length() { closure.size } else { 1.0 };
+    }
+    // A coupler is one row: all of its terms are compared with what the first one is.
+    for k in 0..topology.coupled_rows.len() {
+        let r = topology.coupled_rows[k];
+        for (term, _) in topology.rows[r].terms.clone() {
+            topology.rows[term].unit = topology.rows[r].unit;
+        }
+    }
+    // What no loop holds is placed by drivers alone.
+    let mut largest = vec![0.0_f64; topology.links.len()];
+    for closure in &topology.closures {
+        for &(link, _) in &closure.links {
+            largest[link] = largest[link].max(closure.size);
+        }
+    }
+    for coordinate in topology.coordinates.iter_mut().filter(|c| c.is_length) {
+        let size = largest[coordinate.link];
+        coordinate.unit = if size > 0.0 { size } else { whole };
+        coordinate.per_unit = 1.0 / coordinate.unit;
+    }
+}
+
+/// Per body, its joints.
+fn joints_of_bodies(model: &Model) -> Vec<Vec<usize>> {
+    let mut joints = vec![Vec::new(); model.bodies.len()];
+    for (k, joint) in model.joints.iter().enumerate() {
+        for body in joint.bodies {
+            joints[body.0].push(k);
+        }
+    }
+    joints
+}
+
+/// The extent of a loop's joints; where these are at one place, or the bodies move freely, that of all joints of its bodies.
+fn loop_size(
+    model: &Model,
+    topology: &Topology,
+    closure: &Closure,
+    joints_of_body: &[Vec<usize>],
+    whole: f64,
+) -> f64 {
+    let links = || closure.links.iter().map(|&(k, _)| &topology.links[k]);
+    let around: BTreeSet<usize> =
+        links().filter_map(|l| l.joint).chain(std::iter::once(closure.joint)).map(|j| j.0).collect();
+    let size = extent(model, around.iter().copied());
+    if size > 0.0 && links().all(|l| l.joint.is_some()) {
+        return size;
+    }
+    let bodies = links().map(|l| l.child);
+    let size = extent(model, bodies.flat_map(|b| joints_of_body[b.0].iter().copied()));
+    if size > 0.0 { size } else { whole }
+}
+
+/// The extent of the markers of these joints in the design configuration; 0 where they are at one place.
+fn extent(model: &Model, joints: impl Iterator<Item = usize>) -> f64 {
+    let mut far = 0.0_f64;
+    let places: Vec<Vec3> = joints.flat_map(|j| [0, 1].map(|end| model.marker(JointId(j), end).r)).collect();
+    for place in &places {
+        far = far.max(place.norm());
+    }
+    let size = Extent::of(places.into_iter()).size_or_zero();
+    if size > ONE_PLACE * far { size } else { 0.0 }
+}
