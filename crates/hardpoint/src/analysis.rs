@@ -266,6 +266,9 @@ impl<'m> Analysis<'m> {
         witness: T,
     ) -> SlopeValues {
         let mut walk = Walk::new(self, design, vec![true; self.model.bodies.len()], witness);
+        if self.measures {
+            walk.one.watched = measure::watched(self.model, &self.topology);
+        }
         let room = std::mem::take(&mut solution.sensitivities);
         let mut sensitivities = match &walk.sensing {
             Some(sensing) => sensing.room(self.model.times.len(), room),
@@ -289,6 +292,7 @@ impl<'m> Analysis<'m> {
                         found.add(one, times, &mut slopes);
                     }
                     store.motion.coordinates.extend(one.coordinates());
+                    store.motion.passed.extend(one.passed.drain(..).map(|place| (done - 1, place)));
                     if self.measures {
                         store.motion.margins.push(margins.0.at(&one.topology, &one.state)[0]);
                     }
@@ -354,6 +358,7 @@ impl<'m> Analysis<'m> {
         motion.coordinates.reserve(steps * self.topology.coordinates.len());
         motion.margins.clear();
         motion.assembly = None;
+        motion.passed.clear();
     }
 
     fn measure(&self, design: &Design, slopes: &SlopeValues, solution: &mut Solution) {
@@ -545,6 +550,11 @@ impl<'m> Analysis<'m> {
                     },
                 );
             }
+        }
+        // Angles that only the path tells are counted by single runs.
+        if self.measures && stepper.effort.substeps > 0 && !measure::watched(model, &self.topology).is_empty()
+        {
+            return None;
         }
         let admissibility =
             sensing.map_or_else(Vec::new, |s| s.admissibility(self.opens(), model.times.len()).collect());

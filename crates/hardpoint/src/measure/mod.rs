@@ -19,7 +19,7 @@ use crate::model::{
     AngleKind, AxleMeasure, BodyId, Dimension, DriverId, Effects, Fixed, JointId, Known, MeasureKind, Model,
     OutputSource, PointId, Ray, Side, VariableId, WheelId,
 };
-use crate::motion::Motion;
+use crate::motion::{Motion, Passed};
 use crate::sensitivity::Sensitivities;
 use crate::space::{Dual, Jet, Pose, Rates, Real, Vec3};
 use crate::topology::Topology;
@@ -136,7 +136,13 @@ pub(crate) fn evaluate(
         let moment = Moment { slopes: &given, ..Moment::new(model, &fixed, &poses) };
         moment.all(|x| measured.values.push(x.0.map(finite)));
         let raw = counts.then(|| measured.values[first..].to_vec());
-        unwrap_angles(laws, topology, motion, k, &turns, &mut measured.values, first);
+        let on_the_way = |m: usize, place: &Passed| {
+            let mut poses = poses.clone();
+            place.states.iter().for_each(|(body, state)| poses[body.0] = with_rates(state));
+            let Rates([angle, rate, _]) = Moment::new(model, &fixed, &poses).measure(m);
+            [angle, rate]
+        };
+        unwrap_angles(laws, topology, motion, k, &turns, &mut measured.values, first, on_the_way);
         if let Some(raw) = raw {
             let now = counted.len();
             let whole = |(m, x): (usize, &[f64; 3])| x[0] - raw[m][0];
@@ -219,11 +225,34 @@ enum Turns {
     Driver(DriverId),
     /// The tree coordinate, which is the angle itself.
     Coordinate(usize),
-    /// For a cut joint: the turn before and the rates since.
-    Rates,
+    /// The path alone, for a cut joint or an angle between two directions about an axis: where it begins, it is this, or as it is
+    /// measured, without a whole turn.
+    Path(Option<f64>),
 }
 
-/// The outputs that are joint angles, and what tells their turns.
+/// Per body: whether an angle that only the path tells is measured on it; empty where there is no such angle.
+pub(crate) fn watched(model: &Model, topology: &Topology) -> Vec<bool> {
+    let outputs = outputs(model);
+    let mut watched = Vec::new();
+    for (turns, output) in turns(model, topology, &outputs).iter().zip(&outputs) {
+        let (Some(Turns::Path(_)), OutputSource::Measure(m)) = (turns, output.source) else { continue };
+        watched.resize(model.bodies.len(), false);
+        if let MeasureKind::Coordinate { joint, .. } = model.measures[m].kind {
+            model.joints[joint.0].bodies.iter().for_each(|b| watched[b.0] = true);
+        }
+        if let MeasureKind::Angle { between, .. } = &model.measures[m].kind {
+            for point in
+                between.iter().filter_map(|ray| if let Ray::Between(p) = ray { Some(p) } else { None })
+            {
+                point.iter().for_each(|p| watched[model.points[p.0].body.0] = true);
+            }
+        }
+        model.directions(&model.measures[m]).iter().flatten().for_each(|(body, _)| watched[body.0] = true);
+    }
+    watched
+}
+
+/// The outputs that are counted angles, and what tells their turns.
 fn turns(model: &Model, topology: &Topology, outputs: &[Output]) -> Vec<Option<Turns>> {
     let mut link_of = vec![None; model.joints.len()];
     for link in &topology.links {
@@ -238,19 +267,75 @@ fn turns(model: &Model, topology: &Topology, outputs: &[Output]) -> Vec<Option<T
             return Turns::Driver(d);
         }
         let freedom = model.joints[joint.0].kind.coordinates[coordinate].freedom;
-        let Some((link, freedom)) = link_of[joint.0].zip(freedom) else { return Turns::Rates };
+        let Some((link, freedom)) = link_of[joint.0].zip(freedom) else { return Turns::Path(Some(0.0)) };
         let step = if link.parent_end == 0 { freedom } else { link.steps.len() - 1 - freedom };
         Turns::Coordinate(link.steps[step].first)
     };
     let of_output = |output: &Output| {
         let OutputSource::Measure(index) = output.source else { return None };
-        let MeasureKind::Coordinate { joint, coordinate } = model.measures[index].kind else { return None };
-        (output.dimension == Dimension::ANGLE).then(|| of_joint(joint, coordinate))
+        match model.measures[index].kind {
+            MeasureKind::Coordinate { joint, coordinate } => {
+                (output.dimension == Dimension::ANGLE).then(|| of_joint(joint, coordinate))
+            }
+            MeasureKind::Angle { kind: AngleKind::About(_), .. } => Some(Turns::Path(None)),
+            _ => None,
+        }
     };
     outputs.iter().map(of_output).collect()
 }
 
-/// Counts joint angles through whole turns.
+/// One turn, rad.
+const TURN: f64 = 2.0 * std::f64::consts::PI;
+
+/// The angle nearest to another that is a whole number of turns from this one.
+fn turned(angle: f64, near: f64) -> f64 {
+    angle + TURN * ((near - angle) / TURN).round()
+}
+
+/// An angle on its way: its value with all turns, its rate, and when.
+#[derive(Clone, Copy)]
+struct Counted {
+    value: f64,
+    rate: f64,
+    time: f64,
+}
+
+impl Counted {
+    /// About what it is when it is going at this rate at that time.
+    fn then(self, rate: f64, time: f64) -> f64 {
+        self.value + 0.5 * (time - self.time) * (self.rate + rate)
+    }
+}
+
+/// Follows an angle along the places that were passed before an output time; `measure` takes it there, with its rate. Returns about
+/// what it is at the output time, where it is measured as `now`, going at `rate`.
+fn along_the_path<'p>(
+    last: Option<Counted>,
+    begins: Option<f64>,
+    passed: impl Iterator<Item = &'p Passed>,
+    mut measure: impl FnMut(&Passed) -> [f64; 2],
+    [now, rate, time]: [f64; 3],
+) -> f64 {
+    let (mut counted, first) = (last, last.is_none());
+    for place in passed {
+        let [angle, rate] = measure(place);
+        let near = match counted {
+            None => begins.unwrap_or(angle),
+            // Another path begins where the one before ended.
+            Some(before) if place.begins => before.value,
+            Some(before) => before.then(rate, place.time),
+        };
+        counted = Some(Counted { value: turned(angle, near), rate, time: place.time });
+    }
+    match counted {
+        None => begins.unwrap_or(now),
+        // What leads to the first output time ends there.
+        Some(counted) if first => counted.value,
+        Some(counted) => counted.then(rate, time),
+    }
+}
+
+/// Counts angles through whole turns.
 fn unwrap_angles(
     laws: &[Law],
     topology: &Topology,
@@ -259,22 +344,27 @@ fn unwrap_angles(
     turns: &[Option<Turns>],
     values: &mut [[f64; 3]],
     first: usize,
+    measure: impl Fn(usize, &Passed) -> [f64; 2] + Copy,
 ) {
-    const TURN: f64 = 2.0 * std::f64::consts::PI;
     for (m, turns_of) in turns.iter().enumerate() {
         let near = match turns_of {
             None => continue,
             Some(Turns::Driver(d)) => laws[d.0].at(motion.times[k]).value(),
             Some(Turns::Coordinate(q)) => motion.coordinates[k * topology.coordinates.len() + q],
-            Some(Turns::Rates) if k > 0 => {
-                let before = values[first - turns.len() + m];
-                let h = motion.times[k] - motion.times[k - 1];
-                before[0] + 0.5 * h * (before[1] + values[first + m][1])
+            Some(Turns::Path(begins)) => {
+                let last = (k > 0).then(|| {
+                    let [value, rate, _] = values[first - turns.len() + m];
+                    Counted { value, rate, time: motion.times[k - 1] }
+                });
+                let first_passed = motion.passed.partition_point(|(before, _)| *before < k);
+                let passed = motion.passed[first_passed..].iter().take_while(|(before, _)| *before == k);
+                let passed = passed.map(|(_, place)| place);
+                let [now, rate, _] = values[first + m];
+                along_the_path(last, *begins, passed, |p| measure(m, p), [now, rate, motion.times[k]])
             }
-            Some(Turns::Rates) => 0.0,
         };
         let value = &mut values[first + m][0];
-        *value += TURN * ((near - *value) / TURN).round();
+        *value = turned(*value, near);
     }
 }
 
@@ -341,7 +431,10 @@ impl<'a, T: Real> Moment<'a, T> {
                 let p = self.point(*point);
                 along.spread(p.x).dot(p)
             }
-            MeasureKind::Angle { between, kind } => self.angle(k, between, *kind),
+            MeasureKind::Angle { between, kind } => {
+                let within = self.angle(k, between, *kind);
+                self.whole_turns.get(k).map_or(within, |turns| within + within.like(*turns))
+            }
             MeasureKind::Velocity { point, along, order } => {
                 let velocity = self.point(*point).map(T::rate);
                 let v = if *order == 1 { velocity } else { velocity.map(T::rate) };

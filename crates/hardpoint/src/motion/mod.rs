@@ -115,6 +115,8 @@ pub struct Motion {
     pub margins: Vec<Margin>,
     /// How it was closed before it moved, if it was open as drawn.
     pub assembly: Option<Assembly>,
+    /// Places that were passed on the way to an output time, by its number, of the bodies whose turns only the path tells.
+    pub(crate) passed: Vec<(usize, Passed)>,
     /// What it took.
     pub effort: Effort,
 }

@@ -26,6 +26,8 @@ const LONGEST: f64 = 1.0;
 const LONGEST_MOVE: f64 = 2.0;
 /// A singular position nearer than this, in rad or sizes of driver travel, is where the walk ends; nearer by, round-off decides.
 const NEAREST: f64 = 1e-6;
+/// A step that takes this part of what it may is as long as it may be.
+const WHOLE_PART: f64 = 0.2;
 /// A step that is refused at this length, rad or sizes, is refused for good.
 const SHORTEST: f64 = 1e-10;
 /// Times nearer to each other than this, relative to the times of the path, are one: what changes between them jumps.
@@ -93,7 +95,10 @@ impl<T: Real> Stepper<'_, T> {
                 self.jump(self.time + h)?;
                 continue;
             }
-            if h < rest && self.travelled() < NEAREST && self.is_singular_ahead(path) {
+            // The step is short because it is a part of the way there, not because a law rests and moves later.
+            let near = self.travelled() < NEAREST
+                && self.around.part_of_way(&self.travel) > WHOLE_PART * PART_OF_WAY;
+            if h < rest && near && self.is_singular_ahead(path) {
                 return Err(self.stop(path, self.time + h, Refusal::TooNear, true));
             }
             loop {
@@ -334,6 +339,7 @@ impl<T: Real> Stepper<'_, T> {
         self.attempt(Path::Laws, t).map_err(|r| self.stop(Path::Laws, t, r, true))?;
         self.save(t, 0.0);
         self.examine_here(Path::Laws);
+        self.pass(Path::Laws, true);
         Ok(())
     }
 

@@ -1,0 +1,318 @@
+//! The answer does not depend on how the output times are spaced: the path is followed, not sampled.
+
+use std::path::Path;
+
+use hardpoint::model::Model;
+use hardpoint::motion::StopKind;
+use hardpoint::space::Vec3;
+use hardpoint::{Analysis, Solution};
+use hardpoint_file::{parse, read};
+
+/// Numbers of steps in which a run is asked for.
+const COUNTS: [usize; 12] = [1, 2, 3, 5, 7, 10, 20, 50, 100, 200, 1_200, 5_000];
+/// Times at which runs of different spacing stop agree to this part of the run.
+const SAME_TIME: f64 = 1e-6;
+/// Numbers at common times agree to this part of the largest of their kind.
+const SAME: f64 = 1e-9;
+/// Next to a singular position, where a run stops, velocities and accelerations lose digits: there they are not compared.
+const NEAR_THE_END: f64 = 1e-2;
+
+/// How a run ended: where, and why; `None` at the last output time.
+type Verdict = Option<(f64, StopKind)>;
+
+fn model(text: &str) -> Model {
+    parse(text, "path.toml").unwrap_or_else(|e| panic!("{}", e.render(false))).model
+}
+
+fn run(model: &Model, times: Vec<f64>) -> Solution {
+    let model = Model { times, variables: Vec::new(), metrics: Vec::new(), ..model.clone() };
+    Analysis::new(&model).unwrap().run_motion()
+}
+
+fn spaced(model: &Model, n: usize) -> Vec<f64> {
+    let (start, end) = (model.times[0], model.times[model.times.len() - 1]);
+    (0..=n).map(|k| start + (end - start) * (k as f64 / n as f64)).collect()
+}
+
+fn verdict(solution: &Solution) -> Verdict {
+    solution.stop.as_ref().map(|stop| (stop.failed_time, stop.kind))
+}
+
+/// The largest component of everything that is known at time k, by kind, and the differences to another solution's time j.
+fn compare(
+    name: &str,
+    n: usize,
+    model: &Model,
+    (a, k): (&Solution, usize),
+    (b, j): (&Solution, usize),
+    scales: &Scales,
+    rates: bool,
+) {
+    for body in 1..model.bodies.len() {
+        let (x, y) = (a.motion.at(k)[body], b.motion.at(j)[body]);
+        let apart = |p: Vec3, q: Vec3| (p - q).norm();
+        let turned = (0..3).map(|c| apart(x.rotation.cols[c], y.rotation.cols[c])).fold(0.0, f64::max);
+        let mut pairs = vec![("position", apart(x.r, y.r), scales.r), ("orientation", turned, 1.0)];
+        if rates {
+            pairs.extend([
+                ("velocity", apart(x.v, y.v), scales.v),
+                ("angular velocity", apart(x.omega, y.omega), scales.omega),
+                ("acceleration", apart(x.a, y.a), scales.a),
+                ("angular acceleration", apart(x.alpha, y.alpha), scales.alpha),
+            ]);
+        }
+        for (what, difference, scale) in pairs {
+            assert!(
+                difference <= SAME * scale,
+                "{name} in {n} steps: {what} of `{}` differs by {difference} of {scale} at t = {}",
+                model.bodies[body].name,
+                a.motion.times[k]
+            );
+        }
+    }
+    for (m, output) in a.measured.outputs.iter().enumerate() {
+        let (x, y) = (a.measured.value(k, m)[0], b.measured.value(j, m)[0]);
+        let same = (x - y).abs() <= SAME * scales.outputs[m] || x.is_nan() && y.is_nan();
+        assert!(same, "{name} in {n} steps: `{}` is {x}, not {y}, at t = {}", output.name, a.motion.times[k]);
+    }
+}
+
+struct Scales {
+    r: f64,
+    v: f64,
+    omega: f64,
+    a: f64,
+    alpha: f64,
+    outputs: Vec<f64>,
+}
+
+impl Scales {
+    fn of(model: &Model, s: &Solution) -> Self {
+        let most = |of: fn(&hardpoint::motion::BodyState) -> Vec3| {
+            s.motion.states.iter().map(|s| of(s).norm()).fold(0.0, f64::max)
+        };
+        let size = model.size();
+        let (v, omega) = (most(|s| s.v), most(|s| s.omega));
+        let (speed, twirl) = (v.max(omega * size), omega.max(v / size));
+        let (a, alpha) = (most(|s| s.a), most(|s| s.alpha));
+        let outputs = (0..s.measured.outputs.len()).map(|m| {
+            (0..s.measured.len())
+                .map(|k| s.measured.value(k, m)[0].abs())
+                .filter(|x| x.is_finite())
+                .fold(size.min(1.0), f64::max)
+        });
+        Self {
+            r: most(|s| s.r).max(size),
+            v: speed,
+            omega: twirl,
+            a: a.max(alpha * size).max(twirl * speed),
+            alpha: alpha.max(a / size).max(twirl * twirl),
+            outputs: outputs.collect(),
+        }
+    }
+}
+
+/// Runs a model in all numbers of steps and holds every run to one that has all of their output times. Returns how it ended.
+fn same_in_any_number_of_steps(name: &str, model: &Model) -> Verdict {
+    let (start, end) = (model.times[0], model.times[model.times.len() - 1]);
+    let mut all: Vec<f64> = COUNTS.iter().flat_map(|&n| spaced(model, n)).collect();
+    all.sort_by(f64::total_cmp);
+    all.dedup_by(|a, b| *a - *b <= 1e-12 * (end - start));
+    let reference = run(model, all.clone());
+    let expected = verdict(&reference);
+    let scales = Scales::of(model, &reference);
+    for n in COUNTS {
+        let solution = run(model, spaced(model, n));
+        let found = verdict(&solution);
+        let same = match (found, expected) {
+            (None, None) => true,
+            (Some((t, kind)), Some((at, why))) => {
+                std::mem::discriminant(&kind) == std::mem::discriminant(&why)
+                    && (t - at).abs() <= SAME_TIME * (end - start)
+            }
+            _ => false,
+        };
+        assert!(same, "{name} in {n} steps: {found:?}, but {expected:?}");
+        for (k, t) in solution.motion.times.iter().enumerate() {
+            let j = reference.motion.times.partition_point(|x| *x < t - 1e-12 * (end - start));
+            if j == reference.motion.len() {
+                continue; // next to where it stops
+            }
+            let rates = expected.is_none_or(|(at, _)| t + NEAR_THE_END * (end - start) < at);
+            compare(name, n, model, (&solution, k), (&reference, j), &scales, rates);
+        }
+    }
+    expected
+}
+
+fn gallery() -> Vec<(String, Model)> {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../models");
+    let mut names: Vec<_> = std::fs::read_dir(folder).unwrap().map(|e| e.unwrap().path()).collect();
+    names.retain(|p| p.extension().is_some_and(|e| e == "toml"));
+    names.sort();
+    let read = |path: &std::path::PathBuf| {
+        let file = read(path).unwrap_or_else(|e| panic!("{e}"));
+        (path.file_stem().unwrap().to_str().unwrap().to_owned(), file.model)
+    };
+    names.iter().map(read).collect()
+}
+
+#[test]
+fn every_model_of_the_gallery_moves_the_same_in_any_number_of_steps() {
+    for (name, model) in gallery() {
+        let verdict = same_in_any_number_of_steps(&name, &model);
+        assert_eq!(verdict, None, "{name}");
+    }
+}
+
+/// A Hooke joint between shafts at an angle, turned at a speed for a second.
+fn hooke(angle: f64, speed: f64, end: f64) -> Model {
+    let (sin, cos) = angle.to_radians().sin_cos();
+    model(&format!(
+        r#"name = "Hooke"
+        units = {{ length = "mm", angle = "deg" }}
+        [hardpoints]
+        a = [-300, 0, 0]
+        o = [0, 0, 0]
+        [bodies]
+        input = {{}}
+        output = {{}}
+        [joints]
+        in = {{ type = "revolute", bodies = ["ground", "input"], at = "a", axis = "x" }}
+        cross = {{ type = "universal", bodies = ["input", "output"], at = "o", axis = "y", axis2 = "z" }}
+        out = {{ type = "revolute", bodies = ["ground", "output"], at = "o", axis = [{cos}, {sin}, 0] }}
+        [drivers]
+        motor = {{ joint = "in", law = "{speed}*t" }}
+        [measures]
+        input = {{ type = "coordinate", joint = "in" }}
+        output = {{ type = "coordinate", joint = "out" }}
+        [time]
+        end = {end}
+        steps = 10"#
+    ))
+}
+
+/// A planar four-bar with links a (crank), b, c and base d, drawn with the crank at an angle.
+fn four_bar([a, b, c, d]: [f64; 4], angle: f64, law: &str, end: f64) -> Model {
+    let (sin, cos) = angle.to_radians().sin_cos();
+    let (bx, by) = (a * cos, a * sin);
+    // C lies on two circles; the upper one of the two places.
+    let (ex, ey) = (d - bx, -by);
+    let l = ex.hypot(ey);
+    let x = (b * b - c * c + l * l) / (2.0 * l);
+    let y = (b * b - x * x).sqrt();
+    let (cx, cy) = (bx + (x * ex - y * ey) / l, by + (x * ey + y * ex) / l);
+    model(&format!(
+        r#"name = "four-bar"
+        units = {{ length = "m", angle = "rad" }}
+        [hardpoints]
+        A = [0, 0, 0]
+        B = [{bx}, {by}, 0]
+        C = [{cx}, {cy}, 0]
+        D = [{d}, 0, 0]
+        [bodies]
+        crank = {{}}
+        coupler = {{}}
+        rocker = {{}}
+        [joints]
+        a = {{ type = "revolute", bodies = ["ground", "crank"], at = "A", axis = "z" }}
+        b = {{ type = "revolute", bodies = ["crank", "coupler"], at = "B", axis = "z" }}
+        c = {{ type = "revolute", bodies = ["coupler", "rocker"], at = "C", axis = "z" }}
+        d = {{ type = "revolute", bodies = ["ground", "rocker"], at = "D", axis = "z" }}
+        [drivers]
+        motor = {{ joint = "a", law = "{law}" }}
+        [measures]
+        crank = {{ type = "coordinate", joint = "a" }}
+        rocker = {{ type = "coordinate", joint = "d" }}
+        pin = {{ type = "coordinate", joint = "c" }}
+        [time]
+        end = {end}
+        steps = 10"#
+    ))
+}
+
+#[test]
+fn hooke_joints_turn_as_often_as_they_are_driven() {
+    for (angle, speed, end) in [
+        (30.0, 1080.0, 1.0),
+        (30.0, 36_000.0, 1.0),
+        (80.0, 720.0, 1.0),
+        (30.0, 1e6, 0.01),
+        (30.0, 72_000.0, 0.1),
+    ] {
+        let hooke = hooke(angle, speed, end);
+        let name = format!("Hooke joint at {angle} deg, {speed} deg/s");
+        assert_eq!(same_in_any_number_of_steps(&name, &hooke), None, "{name}");
+        let turned = (speed * end).to_radians();
+        let solution = run(&hooke, spaced(&hooke, 1));
+        let out = solution.measured.index("output").unwrap();
+        // tan q2 = tan q1 / cos alpha (or cos alpha tan q1, as the pins stand), in the same quarter turn.
+        let within = turned % std::f64::consts::TAU;
+        let q2 = solution.measured.value(1, out)[0] - (turned - within);
+        assert!((q2 - within).abs() < std::f64::consts::FRAC_PI_2, "{name}: {q2} {within}");
+    }
+}
+
+#[test]
+fn whole_turns_of_an_output_are_counted() {
+    let hooke = hooke(30.0, 72_000.0, 1.0);
+    let solution = run(&hooke, vec![0.0, 1.0]);
+    let out = solution.measured.index("output").unwrap();
+    assert!((solution.measured.value(1, out)[0] / std::f64::consts::TAU - 200.0).abs() < 1e-9);
+}
+
+#[test]
+fn four_bars_with_gaps_stop_at_the_same_place() {
+    // The crank passes the base line, where the coupler and rocker cannot reach: gaps of these parts of the angle driven.
+    for gap in [1e-2, 1e-3, 1e-5] {
+        // At the crank angle pi the pins B and D are a + d apart; b + c falls short of it by what makes the gap's half width.
+        let (a, d) = (1.0, 2.5);
+        let half: f64 = 0.5 * gap * std::f64::consts::TAU;
+        // |BD|^2 = a^2 + d^2 + 2 a d cos(x) at x from there.
+        let reach = (a * a + d * d + 2.0 * a * d * half.cos()).sqrt();
+        let four_bar = four_bar([a, 0.55 * reach, 0.45 * reach, d], 40.0, "t", std::f64::consts::TAU);
+        let name = format!("four-bar with a gap of {gap}");
+        let (at, kind) = same_in_any_number_of_steps(&name, &four_bar).expect("there is a gap");
+        let expected = std::f64::consts::PI - 40_f64.to_radians() - half;
+        assert!((at - expected).abs() < 1e-6 * std::f64::consts::TAU, "{name}: {at} {expected}");
+        assert_eq!(kind, StopKind::Limit, "{name}");
+    }
+}
+
+#[test]
+fn grashof_cranks_turn_whatever_their_speed() {
+    for speed in [10.0, 1e4, 1e6] {
+        let law = format!("{}*t", f64::to_radians(speed));
+        let four_bar = four_bar([0.3, 1.1, 0.9, 1.2], 60.0, &law, 3.3 * 360.0 / speed);
+        let name = format!("crank-rocker at {speed} deg/s");
+        assert_eq!(same_in_any_number_of_steps(&name, &four_bar), None, "{name}");
+    }
+}
+
+#[test]
+fn a_parallelogram_ends_where_two_motions_meet() {
+    let four_bar = four_bar([1.0, 2.0, 1.0, 2.0], 50.0, "t", 6.0);
+    let (at, kind) = same_in_any_number_of_steps("parallelogram", &four_bar).expect("a change point");
+    assert_eq!(kind, StopKind::BranchChange);
+    assert!((at - 130_f64.to_radians()).abs() < 6e-6, "{at}");
+}
+
+#[test]
+fn a_delta_robot_driven_too_far_stops_at_the_same_place() {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../models/delta.toml");
+    let text = std::fs::read_to_string(path).unwrap();
+    let text = text.replace("20*sin", "80*sin").replace("- 5\"", "- 20\"").replace("+ 5\"", "+ 20\"");
+    let (at, kind) = same_in_any_number_of_steps("delta", &model(&text)).expect("it cannot go there");
+    assert_eq!(kind, StopKind::BranchChange);
+    // A walk many times finer, in another program.
+    assert!((at - 0.403_021_4).abs() < 1e-6, "{at}");
+}
+
+#[test]
+fn a_law_that_pulses_between_rests_is_followed() {
+    // The pulse of a millisecond goes beyond the limit and back; no output time but those of the finest runs meets it.
+    let law = "3*(step(t, 0.5003, 0, 0.5008, 1) - step(t, 0.5008, 0, 0.5013, 1))";
+    let four_bar = four_bar([1.0, 1.2, 1.0, 2.0], 60.0, law, 1.0);
+    let (at, _) = same_in_any_number_of_steps("pulse", &four_bar).expect("out of reach");
+    assert!(at > 0.5003 && at < 0.5008, "{at}");
+}
