@@ -193,7 +193,11 @@ fn hooke(angle: f64, speed: f64, end: f64) -> Model {
 }
 
 /// A planar four-bar with links a (crank), b, c and base d, drawn with the crank at an angle.
-fn four_bar([a, b, c, d]: [f64; 4], angle: f64, law: &str, end: f64) -> Model {
+fn four_bar(links: [f64; 4], angle: f64, law: &str, end: f64) -> Model {
+    model(&four_bar_text(links, angle, law, end))
+}
+
+fn four_bar_text([a, b, c, d]: [f64; 4], angle: f64, law: &str, end: f64) -> String {
     let (sin, cos) = angle.to_radians().sin_cos();
     let (bx, by) = (a * cos, a * sin);
     // C lies on two circles; the upper one of the two places.
@@ -202,7 +206,7 @@ fn four_bar([a, b, c, d]: [f64; 4], angle: f64, law: &str, end: f64) -> Model {
     let x = (b * b - c * c + l * l) / (2.0 * l);
     let y = (b * b - x * x).sqrt();
     let (cx, cy) = (bx + (x * ex - y * ey) / l, by + (x * ey + y * ex) / l);
-    model(&format!(
+    format!(
         r#"name = "four-bar"
         units = {{ length = "m", angle = "rad" }}
         [hardpoints]
@@ -228,7 +232,7 @@ fn four_bar([a, b, c, d]: [f64; 4], angle: f64, law: &str, end: f64) -> Model {
         [time]
         end = {end}
         steps = 10"#
-    ))
+    )
 }
 
 #[test]
@@ -315,4 +319,210 @@ fn a_law_that_pulses_between_rests_is_followed() {
     let four_bar = four_bar([1.0, 1.2, 1.0, 2.0], 60.0, law, 1.0);
     let (at, _) = same_in_any_number_of_steps("pulse", &four_bar).expect("out of reach");
     assert!(at > 0.5003 && at < 0.5008, "{at}");
+}
+
+/// The same four-bar built without redundancy: a ball at the crank's pin, a universal joint at the rocker's.
+fn rsur(text: &str) -> String {
+    text.replace(
+        r#"b = { type = "revolute", bodies = ["crank", "coupler"], at = "B", axis = "z" }"#,
+        r#"b = { type = "spherical", bodies = ["crank", "coupler"], at = "B" }"#,
+    )
+    .replace(
+        r#"c = { type = "revolute", bodies = ["coupler", "rocker"], at = "C", axis = "z" }"#,
+        r#"c = { type = "universal", bodies = ["coupler", "rocker"], at = "C", axis = "z", axis2 = { through = ["C", "D"] } }"#,
+    )
+    .replace("pin = { type = \"coordinate\", joint = \"c\" }", "")
+}
+
+/// Its coupler as a rod.
+fn with_a_rod(text: &str) -> String {
+    text.replace("coupler = {}", "")
+        .replace(
+            r#"b = { type = "revolute", bodies = ["crank", "coupler"], at = "B", axis = "z" }"#,
+            r#"rod = { type = "distance", bodies = ["crank", "rocker"], at = ["B", "C"] }"#,
+        )
+        .replace(r#"c = { type = "revolute", bodies = ["coupler", "rocker"], at = "C", axis = "z" }"#, "")
+        .replace("pin = { type = \"coordinate\", joint = \"c\" }", "")
+}
+
+#[test]
+fn spatial_and_rod_four_bars_with_gaps_stop_there_too() {
+    for gap in [1e-2, 1e-3, 1e-5] {
+        let half: f64 = 0.5 * gap * std::f64::consts::TAU;
+        let reach = (1.0 + 2.5 * 2.5 + 5.0 * half.cos()).sqrt();
+        let links = [1.0, 0.55 * reach, 0.45 * reach, 2.5];
+        for (what, variant) in [("RSUR", rsur as fn(&str) -> String), ("rod", with_a_rod)] {
+            let text = variant(&four_bar_text(links, 40.0, "t", std::f64::consts::TAU));
+            let name = format!("{what} four-bar with a gap of {gap}");
+            let (at, kind) = same_in_any_number_of_steps(&name, &model(&text)).expect("there is a gap");
+            let expected = std::f64::consts::PI - 40_f64.to_radians() - half;
+            assert!((at - expected).abs() < 1e-6 * std::f64::consts::TAU, "{name}: {at} {expected}");
+            assert_eq!(kind, StopKind::Limit, "{name}");
+        }
+    }
+}
+
+/// Three wheels of a locomotive coupled by one rod each, the third crank's pin off by a part of its radius.
+fn locomotive(off: f64) -> Model {
+    model(&locomotive_text(off))
+}
+
+fn locomotive_text(off: f64) -> String {
+    let (sin, cos) = 0.6_f64.sin_cos();
+    let r = 0.3 * (1.0 + off);
+    let [x1, y1, x2, y2, x3, y3] = [0.3 * cos, 0.3 * sin, 2.0 + 0.3 * cos, 0.3 * sin, 4.0 + r * cos, r * sin];
+    format!(
+        r#"name = "locomotive"
+        units = {{ length = "m", angle = "rad" }}
+        [hardpoints]
+        A1 = [0, 0, 0]
+        A2 = [2, 0, 0]
+        A3 = [4, 0, 0]
+        P1 = [{x1}, {y1}, 0]
+        P2 = [{x2}, {y2}, 0]
+        P3 = [{x3}, {y3}, 0]
+        [bodies]
+        w1 = {{}}
+        w2 = {{}}
+        w3 = {{}}
+        rod = {{}}
+        [joints]
+        a1 = {{ type = "revolute", bodies = ["ground", "w1"], at = "A1", axis = "z" }}
+        a2 = {{ type = "revolute", bodies = ["ground", "w2"], at = "A2", axis = "z" }}
+        a3 = {{ type = "revolute", bodies = ["ground", "w3"], at = "A3", axis = "z" }}
+        p1 = {{ type = "revolute", bodies = ["w1", "rod"], at = "P1", axis = "z" }}
+        p2 = {{ type = "revolute", bodies = ["w2", "rod"], at = "P2", axis = "z" }}
+        p3 = {{ type = "revolute", bodies = ["w3", "rod"], at = "P3", axis = "z" }}
+        [drivers]
+        motor = {{ joint = "a1", law = "2*pi*t" }}
+        [time]
+        end = 1.0
+        steps = 10"#
+    )
+}
+
+#[test]
+fn a_locomotive_with_unequal_cranks_locks_at_the_same_place() {
+    for off in [1e-2, 1e-4] {
+        let name = format!("locomotive, third crank longer by {off}");
+        let (_, kind) = same_in_any_number_of_steps(&name, &locomotive(off)).expect("it locks");
+        assert!(matches!(kind, StopKind::Locked { .. }), "{name}: {kind:?}");
+    }
+}
+
+/// What happened in a run, for comparison with the same mechanism elsewhere: how it ended, and all measures at all output times.
+fn outcome(text: &str) -> (Verdict, Vec<f64>, Vec<f64>) {
+    let model = model(text);
+    let solution = run(&model, spaced(&model, 60));
+    let outputs = 0..solution.measured.outputs.len();
+    let values = (0..solution.measured.len()).flat_map(|k| outputs.clone().map(move |m| (k, m)));
+    let values = values.map(|(k, m)| solution.measured.value(k, m)[0]).collect();
+    let margins = solution.motion.margins.iter().map(|m| m.value).collect();
+    (verdict(&solution), values, margins)
+}
+
+fn assert_same(what: &str, one: &(Verdict, Vec<f64>, Vec<f64>), other: &(Verdict, Vec<f64>, Vec<f64>)) {
+    match (one.0, other.0) {
+        (None, None) => {}
+        (Some((t, a)), Some((u, b))) => {
+            let same = std::mem::discriminant(&a) == std::mem::discriminant(&b);
+            assert!(same && (t - u).abs() < 1e-6, "{what}: {:?} {:?}", one.0, other.0);
+        }
+        _ => panic!("{what}: {:?} {:?}", one.0, other.0),
+    }
+    assert_eq!(one.1.len(), other.1.len(), "{what}");
+    for (kind, one, other) in [("measure", &one.1, &other.1), ("margin", &one.2, &other.2)] {
+        for (k, (x, y)) in one.iter().zip(other).enumerate() {
+            assert!((x - y).abs() < SAME * x.abs().max(1.0), "{what}: {kind} {k} is {y}, not {x}");
+        }
+    }
+}
+
+/// A four-bar that turns, one that stops at a gap in three builds, and a locomotive that locks; angles in rad.
+fn specimens() -> Vec<(&'static str, String)> {
+    let links = [0.3, 1.1, 0.9, 1.2];
+    let turns = four_bar_text(links, 60.0, "6*t", 1.0);
+    let stops = four_bar_text([1.0, 1.2, 1.0, 2.5], 40.0, "6*t", 1.0);
+    vec![
+        ("crank-rocker", turns),
+        ("locomotive", locomotive_text(1e-3)),
+        ("gap", stops.clone()),
+        ("rod", with_a_rod(&stops)),
+        ("RSUR", rsur(&stops)),
+    ]
+}
+
+#[test]
+fn places_that_nothing_uses_have_no_say() {
+    for (name, text) in specimens() {
+        let expected = outcome(&text);
+        for place in ["[1e4, 0, 0]", "[-3e7, 2e7, 1e8]", "[0.1, 0.1, 0.1]"] {
+            let more = text.replace("[bodies]", &format!("far = {place}\n[bodies]"));
+            assert_same(&format!("{name} with a hardpoint at {place}"), &expected, &outcome(&more));
+        }
+    }
+}
+
+/// The same mechanism with all places scaled and moved.
+fn placed(text: &str, scale: f64, shift: [f64; 3]) -> String {
+    let place = |line: &str| {
+        let (name, rest) = line.split_once('=')?;
+        let name = name.trim();
+        let list = rest.trim().strip_prefix('[')?.strip_suffix(']')?;
+        let numbers: Vec<f64> = list.split(',').map(|x| x.trim().parse().ok()).collect::<Option<_>>()?;
+        let [x, y, z] = std::array::from_fn(|k| numbers[k] * scale + shift[k]);
+        (name.len() <= 2).then(|| format!("{name} = [{x}, {y}, {z}]"))
+    };
+    text.lines().map(|line| place(line).unwrap_or_else(|| line.to_owned())).collect::<Vec<_>>().join("\n")
+}
+
+#[test]
+fn size_and_place_do_not_matter() {
+    for (name, text) in specimens() {
+        let expected = outcome(&text);
+        for scale in [1e-6, 1e6] {
+            assert_same(
+                &format!("{name} scaled by {scale}"),
+                &expected,
+                &outcome(&placed(&text, scale, [0.0; 3])),
+            );
+        }
+        // So far away the file's numbers themselves have eleven digits left.
+        let (at, values, _) = outcome(&placed(&text, 1.0, [1e5, -2e5, 3e4]));
+        assert_eq!(
+            at.map(|a| std::mem::discriminant(&a.1)),
+            expected.0.map(|a| std::mem::discriminant(&a.1)),
+            "{name}"
+        );
+        for (x, y) in expected.1.iter().zip(&values) {
+            assert!((x - y).abs() < 1e-8 * x.abs().max(1.0), "{name} far away: {y}, not {x}");
+        }
+    }
+}
+
+#[test]
+fn a_base_in_motion_does_not_matter() {
+    for (name, text) in specimens() {
+        let expected = outcome(&text);
+        // The base turns about an axis across everything, and so do all measures with it.
+        let moving = text
+            .replace("\"ground\"", "\"base\"")
+            .replace("[bodies]", "[bodies]\nbase = {}")
+            .replace(
+                "[joints]",
+                "[joints]\nturntable = { type = \"revolute\", bodies = [\"ground\", \"base\"], at = \"A\", axis = [1, 0.3, 0.2] }",
+            )
+            .replace("[drivers]", "[drivers]\nturn = { joint = \"turntable\", law = \"2.5*sin(7*t)\" }");
+        assert_same(&format!("{name} on a base in motion"), &expected, &outcome(&moving));
+    }
+}
+
+#[test]
+fn a_lock_is_judged_in_the_size_of_its_loop() {
+    // A crank of 300 mm that is 12 mm too long locks, wherever else a point may be.
+    let text = locomotive_text(0.04);
+    let far = text.replace("[bodies]", "far = [1e4, 0, 0]\n[bodies]");
+    for text in [text, far] {
+        assert!(matches!(outcome(&text).0, Some((_, StopKind::Locked { .. }))), "{:?}", outcome(&text).0);
+    }
 }

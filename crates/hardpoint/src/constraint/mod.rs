@@ -16,8 +16,10 @@ use crate::space::{Mat3, Pose, Real, Twist, Vec3, Wrench};
 /// One elementary constraint equation between two markers. Axes are 0, 1, 2 for x, y, z.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Row {
-    /// One component of the spherical constraint `d = 0` (paper Eq. 4.7), along the axes of the body on which the loop stands.
+    /// One component, along a world axis, of the spherical constraint `d = 0` (paper Eq. 4.7).
     Point(usize),
+    /// The same along an axis of the body on which the loop stands, where that moves.
+    PointOnBase(usize),
     /// `a_i . b_j = 0`: axis a of marker i square to axis b of marker j (paper Eq. 4.1).
     Dot1(usize, usize),
     /// `a_i . d = f`: displacement of marker j along axis a of marker i (paper Eq. 4.4).
@@ -57,8 +59,8 @@ pub struct Ends<T> {
     pub i: Pose<T>,
     /// Marker j in the world.
     pub j: Pose<T>,
-    /// The axes along which their points are compared: any three that are square to each other will do, and as the points
-    /// coincide it does not matter how these turn.
+    /// The axes of the loop's base, along which their points are compared where the base moves. As the points coincide it does not
+    /// matter how these turn.
     pub axes: Mat3<T>,
 }
 
@@ -113,6 +115,7 @@ impl Row {
     pub fn residual<T: Real>(self, ends: &Ends<T>, target: T) -> T {
         match self.common() {
             Self::Point(k) => spherical::residual(k, ends),
+            Self::PointOnBase(k) => spherical::residual_on_base(k, ends),
             Self::Dot1(a, b) => dot1::residual(a, b, ends, target),
             Self::Dot2(a) => dot2::residual(a, ends, target),
             Self::Distance => distance::residual(ends, target),
@@ -139,6 +142,7 @@ impl Row {
     pub fn wrench<T: Real>(self, ends: &Ends<T>) -> Wrench<T> {
         match self.common() {
             Self::Point(k) => spherical::wrench(k, ends),
+            Self::PointOnBase(k) => spherical::wrench_on_base(k, ends),
             Self::Dot1(a, b) => dot1::wrench(a, b, ends),
             Self::Dot2(a) => dot2::wrench(a, ends),
             Self::Distance => distance::wrench(ends),
@@ -165,6 +169,7 @@ impl Row {
     pub fn wrench_rates<T: Real>(self, ends: &Ends<T>, rates: &EndRates<T>) -> [Wrench<T>; 2] {
         match self.common() {
             Self::Point(k) => spherical::wrench_rates(k, ends, rates),
+            Self::PointOnBase(k) => spherical::wrench_rates_on_base(k, ends, rates),
             Self::Dot1(a, b) => dot1::wrench_rates(a, b, ends, rates),
             Self::Dot2(a) => dot2::wrench_rates(a, ends, rates),
             Self::Distance => distance::wrench_rates(ends, rates),
@@ -188,12 +193,28 @@ impl Row {
 
     /// Whether it asks for the markers' axes, rather than for their points only.
     pub(crate) fn has_axes(self) -> bool {
-        !matches!(self, Self::Point(_) | Self::Distance)
+        !matches!(self, Self::Point(_) | Self::PointOnBase(_) | Self::Distance)
+    }
+
+    /// The row for a loop that stands on a body in motion: it knows nothing of where its base goes.
+    pub(crate) fn on_base(self) -> Self {
+        match self {
+            Self::Point(k) => Self::PointOnBase(k),
+            _ => self,
+        }
     }
 
     /// Whether its residual is a length (else it is an angle or a cosine).
     pub fn is_length(self) -> bool {
-        matches!(self, Self::Point(_) | Self::Dot2(_) | Self::Distance | Self::Offset | Self::Contact)
+        matches!(
+            self,
+            Self::Point(_)
+                | Self::PointOnBase(_)
+                | Self::Dot2(_)
+                | Self::Distance
+                | Self::Offset
+                | Self::Contact
+        )
     }
 
     /// What it asks for, in words.
@@ -201,6 +222,7 @@ impl Row {
         const AXIS: [&str; 3] = ["x", "y", "z"];
         match self {
             Self::Point(k) => format!("points coincide along global {}", AXIS[k]),
+            Self::PointOnBase(k) => format!("points coincide along {} of the loop's base", AXIS[k]),
             Self::Dot1(a, b) => format!("Dot-1: {}_i square to {}_j", AXIS[a], AXIS[b]),
             Self::Dot2(a) => format!("Dot-2: d square to {}_i", AXIS[a]),
             Self::Distance => "distance".into(),
@@ -254,7 +276,10 @@ mod tests {
     use super::*;
 
     /// Every kind of row; a new constraint joins the battery here.
-    const BATTERY: [Row; 18] = [
+    const BATTERY: [Row; 21] = [
+        Row::PointOnBase(0),
+        Row::PointOnBase(1),
+        Row::PointOnBase(2),
         Row::Point(0),
         Row::Point(1),
         Row::Point(2),
@@ -297,7 +322,7 @@ mod tests {
         let mut j = Pose { rot: Mat3::from_rotation_vector(v() * 2.0), r: v() };
         match row {
             // These wrenches hold on the manifold: markers together, or z axes parallel.
-            Row::Point(_) => j.r = i.r,
+            Row::Point(_) | Row::PointOnBase(_) => j.r = i.r,
             Row::Angle => {
                 let (s, c) = 0.7_f64.sin_cos();
                 j.rot = i.rot.turned(2, s, c);

@@ -1,24 +1,52 @@
-//! Spherical constraint, one component: `e_k . (P_j - P_i) = 0` (paper Eq. 4.7).
-//!
-//! The e_k may turn: as P_j stays at P_i, that has no part in any rate.
+//! Spherical constraint, one component: `e_k . (P_j - P_i) = 0` (paper Eq. 4.7), with e_k a world axis, or an axis of the loop's base
+//! where that moves.
 
 use super::{EndRates, Ends, axis, point_rates};
-use crate::space::{Real, Wrench};
+use crate::space::{Real, Vec3, Wrench};
 
 #[inline(always)]
 pub(super) fn residual<T: Real>(k: usize, ends: &Ends<T>) -> T {
-    axis(&ends.axes, k).dot(ends.j.r - ends.i.r)
+    ends.j.r[k] - ends.i.r[k]
 }
 
 /// The force e_k through the common point.
 #[inline(always)]
 pub(super) fn wrench<T: Real>(k: usize, ends: &Ends<T>) -> Wrench<T> {
-    Wrench::force(axis(&ends.axes, k), ends.j.r)
+    Wrench { m: across(ends.j.r, k), f: Vec3::AXES[k].spread(ends.j.r.x) }
 }
 
 #[inline(always)]
 pub(super) fn wrench_rates<T: Real>(k: usize, ends: &Ends<T>, rates: &EndRates<T>) -> [Wrench<T>; 2] {
+    let [_, velocity, acceleration] = point_rates(ends.j.r, rates.v_j, rates.a_j);
+    [Wrench::moment(across(velocity, k)), Wrench::moment(across(acceleration, k))]
+}
+
+#[inline(always)]
+pub(super) fn residual_on_base<T: Real>(k: usize, ends: &Ends<T>) -> T {
+    axis(&ends.axes, k).dot(ends.j.r - ends.i.r)
+}
+
+#[inline(always)]
+pub(super) fn wrench_on_base<T: Real>(k: usize, ends: &Ends<T>) -> Wrench<T> {
+    Wrench::force(axis(&ends.axes, k), ends.j.r)
+}
+
+/// As if the base stood: the relative velocity of the points vanishes along every axis, so that how these turn has no part in any
+/// rate of the constraint.
+#[inline(always)]
+pub(super) fn wrench_rates_on_base<T: Real>(k: usize, ends: &Ends<T>, rates: &EndRates<T>) -> [Wrench<T>; 2] {
     let e = axis(&ends.axes, k);
     let [_, velocity, acceleration] = point_rates(ends.j.r, rates.v_j, rates.a_j);
     [Wrench::moment(velocity.cross(e)), Wrench::moment(acceleration.cross(e))]
+}
+
+/// `p x e_k`.
+#[inline(always)]
+fn across<T: Real>(p: Vec3<T>, k: usize) -> Vec3<T> {
+    let zero = p.x.zero();
+    match k {
+        0 => Vec3::new(zero, p.z, -p.y),
+        1 => Vec3::new(-p.z, zero, p.x),
+        _ => Vec3::new(p.y, -p.x, zero),
+    }
 }

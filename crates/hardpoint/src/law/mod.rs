@@ -432,7 +432,13 @@ impl Law {
     /// # Ok::<(), hardpoint::law::ExpressionError>(())
     /// ```
     pub fn over(&self, from: f64, to: f64) -> Stretch {
-        self.kind.over(from, to) * Stretch::constant(self.factor)
+        let over = self.kind.over(from, to) * Stretch::constant(self.factor);
+        over.settled(self.at(0.5 * (from + to)).value(), to - from)
+    }
+
+    /// The largest size of the rate from one time to another, per s.
+    pub(crate) fn fastest(&self, from: f64, to: f64) -> f64 {
+        self.kind.over(from, to).fastest() * self.factor.abs()
     }
 
     /// Where between `from` and `to`, both included, the value, the speed or the acceleration jumps, in the order of time.

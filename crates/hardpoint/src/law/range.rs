@@ -194,8 +194,10 @@ impl Stretch {
     /// What both forms leave, for a quantity that is `middle` in the middle of a stretch of this length.
     pub(super) fn settled(self, middle: f64, length: f64) -> Self {
         let half = 0.5 * length;
+        // Of what is not defined all along, the middle says nothing.
+        let known = self.value.is_bounded();
         let mean = Range::exactly(middle) + self.rate * Range::between(-half, half);
-        Self { value: if mean.is_bounded() { self.value.and(mean) } else { self.value }, ..self }
+        Self { value: if known && mean.is_bounded() { self.value.and(mean) } else { self.value }, ..self }
     }
 
     /// Of c0 + c1 x + c2 x^2 + ... for x from one number to another.
@@ -213,7 +215,7 @@ impl Stretch {
     }
 
     /// The largest size of the rate, per s.
-    pub fn fastest(self) -> f64 {
+    pub(super) fn fastest(self) -> f64 {
         self.rate.reach_from(0.0)
     }
 

@@ -16,6 +16,8 @@ use super::walk::PART_OF_WAY;
 const FORESEEN: f64 = 1e-3;
 /// After a failure so many steps are walked one by one, at the least and at the most.
 const PAUSE: [usize; 2] = [4, 64];
+/// Laws are looked at over so many times the way of all lanes at once.
+const CELL: f64 = 8.0;
 /// Fewer steps than this are not worth it.
 const FEWEST: usize = 3;
 
@@ -153,8 +155,11 @@ fn laws_are_even<T: Real>(
             moves = moves.max((value - before).abs() / unit);
             before = value;
         }
-        let travel = longest * one.parts.fastest(d, one.time, times[last]) / unit;
-        if !(travel <= (EVEN * moves).max(RESTS).min(LONGEST)) {
+        let most = (EVEN * moves).max(RESTS).min(LONGEST);
+        let [from, to] = [one.time, times[last]];
+        let stretch = [from, to, from + CELL * (to - from)];
+        let travel = longest / unit * one.calm[d].fastest(&one.parts, d, stretch, most * unit / longest);
+        if !(travel <= most) {
             return false;
         }
         (all.moves[d], one.travel[d]) = (moves, travel * unit);
@@ -171,29 +176,33 @@ fn determinants_are_even<T: Real>(
     times: &[f64; LANES],
     last: usize,
 ) -> bool {
-    let witness = all.state.witness;
-    let step = |k: usize| if k == 0 { times[0] - one.time } else { times[k] - times[k - 1] };
+    // How long every step is beside the one before it; the first beside the last of the other stepper's.
+    let (mut beside, mut step) = ([1.0; LANES], one.change_step);
+    for k in 0..=last {
+        let next = if k == 0 { times[0] - one.time } else { times[k] - times[k - 1] };
+        (beside[k], step) = (next / step, next);
+    }
+    let (mut at, mut change) = ([0.0; LANES + 1], [0.0; LANES + 1]);
     for b in 0..all.changes.len() {
-        let now = all.state.determinants[b];
-        let saved = one.saved.determinants[b];
-        let before = witness.like_lanes(|k| if k == 0 { saved } else { now.lane(k - 1) });
-        let ratio = all.state.factors[b].ratio(now, before);
-        // Written so that NaN is not even.
-        if !(ratio.smallest() >= MILD[0] && ratio.largest() <= MILD[1]) {
+        at[0] = one.saved.determinants[b];
+        all.state.determinants[b].store(&mut at[1..]);
+        let mut even = true;
+        for k in 0..LANES {
+            let ratio = all.state.factors[b].plain_ratio(at[k + 1], at[k]);
+            // Written so that NaN is not even.
+            even &= ratio >= MILD[0] && ratio <= MILD[1];
+            change[k + 1] = ratio - 1.0;
+        }
+        change[0] = if one.ahead == Ahead::Even { one.changes[b] } else { change[1] / beside[0] };
+        for k in 0..=last {
+            even &= (change[k + 1] - change[k] * beside[k]).abs() <= MILD_CHANGE;
+        }
+        if !even {
             return false;
         }
-        let (mut change, mut over) = (one.changes[b], one.change_step);
-        for k in 0..=last {
-            let next = ratio.lane(k) - 1.0;
-            let known = k > 0 || one.ahead == Ahead::Even;
-            if known && !((next - change * (step(k) / over)).abs() <= MILD_CHANGE) {
-                return false;
-            }
-            (change, over) = (next, step(k));
-        }
-        all.changes[b] = witness.like(change);
+        all.changes[b] = all.state.witness.like(change[last + 1]);
     }
-    all.change_step = step(last);
+    all.change_step = step;
     true
 }
 

@@ -208,8 +208,11 @@ impl<T: Real> State<T> {
     pub(super) fn place_ends(&mut self, topology: &Topology, parts: &Parts<T>, closure: usize) {
         let [i, j] = topology.closures[closure].bodies;
         let (m_i, m_j) = (parts.ends[0].get(closure, self.witness), parts.ends[1].get(closure, self.witness));
-        let axes = self.frame[topology.closures[closure].base.0].rot;
-        self.ends[closure] = Ends { i: self.frame[i.0].compose(m_i), j: self.frame[j.0].compose(m_j), axes };
+        let (base, ends) = (topology.closures[closure].base, &mut self.ends[closure]);
+        (ends.i, ends.j) = (self.frame[i.0].compose(m_i), self.frame[j.0].compose(m_j));
+        if base != GROUND {
+            ends.axes = self.pose[base.0].rot;
+        }
         if let Some(k) = topology.closures[closure].contact {
             self.touch(parts, closure, k);
         }
@@ -222,7 +225,10 @@ impl<T: Real> State<T> {
         let (m_i, m_j) = (parts.ends[0].get(closure, self.witness), parts.ends[1].get(closure, self.witness));
         let ends = &mut self.ends[closure];
         (ends.i.r, ends.j.r) = (self.frame[i.0].point(m_i.r), self.frame[j.0].point(m_j.r));
-        ends.axes = self.frame[topology.closures[closure].base.0].rot;
+        let base = topology.closures[closure].base;
+        if base != GROUND {
+            ends.axes = self.pose[base.0].rot;
+        }
     }
 
     /// Lets marker i of a closure walk along its curve to where it is next to marker j.
@@ -284,10 +290,10 @@ impl<T: Real> State<T> {
             #[inline(always)]
             || {
                 self.place(topology, parts, 0..topology.links.len());
+                self.place_bodies(topology, parts, 0..topology.links.len());
                 for c in 0..topology.closures.len() {
                     self.place_ends(topology, parts, c);
                 }
-                self.place_bodies(topology, parts, 0..topology.links.len());
             },
         );
     }

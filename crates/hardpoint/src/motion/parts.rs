@@ -144,7 +144,7 @@ impl<T: Real> Parts<T> {
 
     /// The fastest that driver d moves from one time to another.
     pub fn fastest(&self, d: usize, from: f64, to: f64) -> f64 {
-        self.laws[d].iter().map(|law| law.over(from, to).fastest()).fold(0.0, f64::max)
+        self.laws[d].iter().map(|law| law.fastest(from, to)).fold(0.0, f64::max)
     }
 
     /// The same at one time per lane, where all lanes have the same law.

@@ -39,6 +39,8 @@ pub(super) const MILD_CHANGE: f64 = 0.125;
 pub(super) const EVEN: f64 = 2.0;
 /// A driver that moves by less than this between output times, in rad or sizes, rests.
 pub(super) const RESTS: f64 = 1e-12;
+/// Laws are looked at over so many output times at once.
+const CELL: f64 = 64.0;
 /// Between output times a driver moves by no more than this, rad or sizes: whole turns look like rest from end to end.
 pub(super) const LONGEST: f64 = 1.0;
 /// A left-out constraint that fails by more than this part of its loop's size (or, for a cosine, by
@@ -81,6 +83,8 @@ pub(crate) struct Stepper<'m, T> {
     pub(super) change_step: f64,
     /// Per driver: how far it moved over that step.
     pub(super) moves: Vec<f64>,
+    /// Per driver: how fast it is at most over a stretch of time.
+    pub(super) calm: Vec<Calm>,
     /// Per direction: how far it goes at most over the step considered; on a path other than the laws' in these units.
     pub(super) travel: Vec<f64>,
     pub(super) travel_unit: f64,
@@ -99,6 +103,31 @@ pub(crate) struct Stepper<'m, T> {
     /// The bodies that are watched between output times, and where they were since the last one, in lane 0.
     pub watched: Vec<bool>,
     pub passed: Vec<Passed>,
+}
+
+/// How fast a driver is at most over a stretch of time.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Calm {
+    from: f64,
+    to: f64,
+    fastest: f64,
+}
+
+impl Calm {
+    /// How fast driver d is at most between two times: as it is known over a longer stretch, up to `ahead`, if that is `enough`.
+    #[inline(always)]
+    pub fn fastest<T: Real>(
+        &mut self,
+        parts: &Parts<T>,
+        d: usize,
+        [from, to, ahead]: [f64; 3],
+        enough: f64,
+    ) -> f64 {
+        if !(self.from <= from && to <= self.to) {
+            *self = Self { from, to: ahead, fastest: parts.fastest(d, from, ahead) };
+        }
+        if self.fastest <= enough { self.fastest } else { parts.fastest(d, from, to) }
+    }
 }
 
 /// What is known of the way ahead of the saved position.
@@ -190,6 +219,7 @@ impl<'m, T: Real> Stepper<'m, T> {
             changes: vec![witness.zero(); blocks],
             change_step: 0.0,
             moves: vec![0.0; drivers],
+            calm: vec![Calm { from: 0.0, to: f64::NEG_INFINITY, fastest: 0.0 }; drivers],
             travel: vec![0.0; directions],
             travel_unit: 1.0,
             on_laws: false,
@@ -257,7 +287,7 @@ impl<'m, T: Real> Stepper<'m, T> {
     /// Goes on to the output time t in one step, if the way there is known to be even; returns whether it did.
     fn glide(&mut self, t: f64) -> bool {
         let h = t - self.time;
-        if self.forecast.known() == 0 || !self.is_clear(t, h) {
+        if self.forecast.known() == 0 || self.ahead == Ahead::Unknown {
             return false;
         }
         let witness = self.state.witness;
@@ -269,7 +299,7 @@ impl<'m, T: Real> Stepper<'m, T> {
 
     #[inline(always)]
     fn gliding(&mut self, t: f64, h: f64) -> bool {
-        if self.drive(Path::Laws, t).is_err() {
+        if self.drive(Path::Laws, t).is_err() || !self.is_clear(t, h) {
             return false;
         }
         self.fastest_driver = self.driver_speed();
@@ -295,22 +325,20 @@ impl<'m, T: Real> Stepper<'m, T> {
     }
 
     /// Whether the laws do nothing between here and the output time t that its two ends would not show, and no singular position is
-    /// known to be near.
+    /// known to be near. The drivers are at t already.
     fn is_clear(&mut self, t: f64, h: f64) -> bool {
-        if self.ahead == Ahead::Unknown {
-            return false;
-        }
         for d in 0..self.drivers.len() {
             let unit = self.driver_units[d];
-            let travel = h * self.parts.fastest(d, self.time, t) / unit;
-            let moves = match self.ahead {
+            let most = match self.ahead {
                 Ahead::Even => {
-                    let to = self.parts.law(d, t, self.state.witness)[0];
-                    self.moves[d].max((to - self.saved.drivers[d][0]).abs().largest() / unit)
+                    let moved = (self.drivers[d][0] - self.saved.drivers[d][0]).abs().largest() / unit;
+                    (EVEN * self.moves[d].max(moved)).max(RESTS).min(LONGEST)
                 }
-                _ => f64::INFINITY,
+                _ => LONGEST,
             };
-            if !(travel <= (EVEN * moves).max(RESTS).min(LONGEST)) {
+            let stretch = [self.time, t, self.time + CELL * h];
+            let travel = h / unit * self.calm[d].fastest(&self.parts, d, stretch, most * unit / h);
+            if !(travel <= most) {
                 return false;
             }
             self.travel[d] = travel * unit;

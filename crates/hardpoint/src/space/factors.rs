@@ -61,6 +61,15 @@ impl<T: Real> Factors<T> {
         }
     }
 
+    /// The same for determinants of one lane.
+    #[inline(always)]
+    pub fn plain_ratio(&self, now: f64, before: f64) -> f64 {
+        match self {
+            Self::Dense(_) => now / before,
+            Self::Sparse(_) => (now - before).exp(),
+        }
+    }
+
     /// Takes over the factors of a scalar system, the same in every lane.
     #[inline(always)]
     pub fn spread(&mut self, from: &Factors<f64>, witness: T) {

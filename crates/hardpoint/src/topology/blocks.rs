@@ -46,14 +46,10 @@ pub(super) fn design_jacobian(model: &Model, topology: &Topology) -> Vec<SparseR
 /// Scaled so that a row of a length is per size of its loop. A coupler between lengths and angles keeps its own proportions: its
 /// row as a whole is scaled like its first term.
 fn jacobian_of_parts(model: &Model, topology: &Topology) -> Vec<SparseRow> {
-    let mut axes = vec![Mat3::IDENTITY; model.bodies.len()];
-    for link in &topology.links {
-        axes[link.child.0] = link.frame_at_design(model).rot;
-    }
     let mut rows = Vec::with_capacity(topology.rows.len());
     for closure in &topology.closures {
         let mut ends = model.ends(closure.joint);
-        ends.axes = axes[closure.base.0];
+        ends.axes = model.bodies[closure.base.0].frame.rot;
         for row in &closure.rows {
             let wrench = row.wrench(&ends);
             let scale = 1.0 / topology.rows[rows.len()].unit;

@@ -151,8 +151,8 @@ pub struct Closure {
     pub coupler: Option<usize>,
     /// Bodies i and j.
     pub bodies: [BodyId; 2],
-    /// The body on which its loop stands: where the ways from its two bodies to ground meet. Points are held together along the axes
-    /// of the frame that places it, so that the loop knows nothing of where its base goes.
+    /// The body on which its loop stands: where the ways from its two bodies to ground meet. Points are held together along
+    /// its axes, so that the loop knows nothing of where its base goes.
     pub base: BodyId,
     /// The elementary constraints.
     pub rows: Vec<Row>,
@@ -276,7 +276,7 @@ impl Topology {
     /// What a closure's row asks for, in words.
     pub fn describe(&self, model: &Model, closure: &Closure, row: Row) -> String {
         match row {
-            Row::Point(k) if closure.base != GROUND => {
+            Row::PointOnBase(k) => {
                 format!(
                     "points coincide along {} of `{}`",
                     ["x", "y", "z"][k],

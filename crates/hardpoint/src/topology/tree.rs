@@ -252,6 +252,8 @@ fn add_closure(
         });
     }
     let (links, base) = loop_links(topology, way, bodies);
+    let on_base = |row: &Row| if base == GROUND { *row } else { row.on_base() };
+    let rows: Vec<Row> = rows.iter().map(on_base).collect();
     let follows = rows.contains(&Row::Contact);
     let contact = follows.then(|| topology.closures.iter().filter(|c| c.contact.is_some()).count());
     topology.closures.push(Closure {
