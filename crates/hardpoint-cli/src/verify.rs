@@ -33,6 +33,7 @@ fn verify_in(session: &Session, options: &Verify) -> Result<Outcome, Outcome> {
         session.fail(&file, &[d]);
         return Err(if session.interrupted() { Outcome::Interrupted } else { Outcome::Stopped });
     }
+    session.tell(&file, &file.remarks);
     session
         .tell(&file, &diagnose::variables(&file, &Facts::new(&file, analysis.topology(), Some(&solution))));
 
