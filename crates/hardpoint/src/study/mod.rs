@@ -21,4 +21,7 @@ pub use verify::{
     Check, CheckOutcome, PASS, PASS_ONE_SIDED, StepError, Verification, VerifyOptions,
     compare_with_difference, verify,
 };
-pub use whatif::{Foresight, WhatIf, add_coordinates, add_tilts, variable_named, variable_names, what_if};
+pub use whatif::{
+    Foresight, WhatIf, add_coordinates, add_tilts, repeats_coordinate, variable_named, variable_names,
+    what_if,
+};
