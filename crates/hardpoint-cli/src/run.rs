@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use hardpoint::model::VariableId;
-use hardpoint::study::{Difference, central_differences, natural_step, validity};
+use hardpoint::study::{Difference, Scheme, finite_differences, natural_step, validity};
 use hardpoint::{Analysis, Solution};
 use hardpoint_file::ModelFile;
 use hardpoint_report::facts::Facts;
@@ -130,7 +130,8 @@ fn differences(session: &Session, analysis: &Analysis<'_>, solution: &Solution) 
         }
         let steps: Vec<(VariableId, f64)> =
             group.iter().map(|v| (*v, STEP * natural_step(model, *v))).collect();
-        for (variable, difference) in group.iter().zip(central_differences(analysis, &steps)) {
+        let found = finite_differences(analysis, solution, Scheme::Central, &steps);
+        for (variable, difference) in group.iter().zip(found) {
             differences[variable.0] = difference.ok();
         }
         meter.show(4 * k + group.len(), variables.len());

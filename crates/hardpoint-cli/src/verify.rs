@@ -7,7 +7,7 @@ use hardpoint::study::{VerifyOptions, verify as verify_designs};
 use hardpoint_report::diagnose;
 use hardpoint_report::facts::Facts;
 use hardpoint_report::figures::{count, error, seconds};
-use hardpoint_report::verdict::{Outcome as Agrees, Verdict};
+use hardpoint_report::verdict::{Differences, Outcome as Agrees, Verdict};
 
 use crate::args::Verify;
 use crate::folder::Folder;
@@ -33,11 +33,12 @@ fn verify_in(session: &Session, options: &Verify) -> Result<Outcome, Outcome> {
         session.fail(&file, &[d]);
         return Err(if session.interrupted() { Outcome::Interrupted } else { Outcome::Stopped });
     }
+    session.tell(&file, &file.remarks);
     session
         .tell(&file, &diagnose::variables(&file, &Facts::new(&file, analysis.topology(), Some(&solution))));
 
     let started = Instant::now();
-    let mut sweep = VerifyOptions::default();
+    let mut sweep = VerifyOptions::new(options.differences.scheme());
     if let Some(steps) = &options.steps {
         sweep.steps.clone_from(steps);
     }
@@ -101,8 +102,14 @@ fn verdict_text(verdict: &Verdict, sweep: bool) -> String {
         (Agrees::CannotFollow, "cannot be followed, so there is nothing to compare"),
     ];
     parts.extend(others.iter().filter(|(o, _)| of(*o) > 0).map(|(o, words)| format!("{} {words}", of(*o))));
+    let differences = match verdict.differences {
+        Differences::Central => "central",
+        Differences::Forward => "forward",
+        Differences::Backward => "backward",
+    };
     out + &format!(
-        "{result}: {}\nA variable agrees if its best step deviates by {} at most; took {}\n",
+        "{result}: {}\nA variable agrees if every quantity deviates from {differences} differences by {} at most, at its best step; \
+         took {}\n",
         parts.join(", "),
         error(verdict.tolerance),
         seconds(verdict.seconds)

@@ -41,7 +41,13 @@ fn whatif_in(session: &Session, options: &Whatif) -> Result<Outcome, Outcome> {
     let mut file = session.read(&options.common.model)?;
     let mut settings = Vec::new();
     for text in &options.set {
-        settings.push(setting(&mut file, text).map_err(|why| session.misunderstood(&why))?);
+        let (variable, by) = setting(&mut file, text).map_err(|why| session.misunderstood(&why))?;
+        if settings.iter().any(|(known, _)| *known == variable) {
+            let name = &file.model.variables[variable].name;
+            let why = format!("`--set {text}`: `{name}` is set already; give each variable one change");
+            return Err(session.misunderstood(&why));
+        }
+        settings.push((variable, by));
     }
     if file.model.hardpoints.iter().filter(|h| !h.unnamed).count() <= MOST_RANKED {
         add_coordinates(&mut file.model);
@@ -83,6 +89,8 @@ fn whatif_in(session: &Session, options: &Whatif) -> Result<Outcome, Outcome> {
         }
         WhatIfFacts { nearest, ..WhatIfFacts::new(&file, analysis.topology(), &studied) }
     };
+
+    session.tell(&file, &facts.diagnostics);
 
     let names = &options.measure;
     let wanted = |name: &str| match names.is_empty() {
@@ -128,7 +136,7 @@ fn taken_over(model: &mut Model, of: &Model, change: &[f64]) -> Vec<f64> {
         own.extend(variable_named(model, &variable.name).map(|v| (v.0, *by)));
     }
     let mut change = vec![0.0; model.variables.len()];
-    own.into_iter().for_each(|(v, by)| change[v] = by);
+    own.into_iter().for_each(|(v, by)| change[v] += by);
     change
 }
 

@@ -22,6 +22,8 @@ pub enum Severity {
     Error,
     /// The result may not be what the user means.
     Warning,
+    /// Worth knowing; nothing is wrong.
+    Note,
 }
 
 /// One thing to tell about a model file.
@@ -82,16 +84,21 @@ pub struct Diagnostics {
     list: Vec<Diagnostic>,
 }
 
+/// Diagnostics in the order of the text, each once; what concerns the file as a whole comes first.
+pub(crate) fn in_order(mut list: Vec<Diagnostic>) -> Vec<Diagnostic> {
+    list.sort_by_key(|d| d.span.as_ref().map(|s| (s.start, s.end)));
+    for d in &mut list {
+        d.help = d.help.take().or_else(|| remedy(d.code).map(Into::into));
+        let texts = d.notes.iter_mut().chain(&mut d.help).chain(&mut d.label);
+        texts.for_each(|text| *text = printable(std::mem::take(text)));
+    }
+    list.dedup_by(|a, b| (a.code, &a.span, &a.message) == (b.code, &b.span, &b.message));
+    list
+}
+
 impl Diagnostics {
-    pub(crate) fn new(source: Source, mut list: Vec<Diagnostic>) -> Self {
-        // What concerns the file as a whole comes first.
-        list.sort_by_key(|d| d.span.as_ref().map(|s| (s.start, s.end)));
-        for d in &mut list {
-            let texts = d.notes.iter_mut().chain(&mut d.help).chain(&mut d.label);
-            texts.for_each(|text| *text = printable(std::mem::take(text)));
-        }
-        list.dedup_by(|a, b| (a.code, &a.span, &a.message) == (b.code, &b.span, &b.message));
-        Self { source, list }
+    pub(crate) fn new(source: Source, list: Vec<Diagnostic>) -> Self {
+        Self { source, list: in_order(list) }
     }
 
     /// The diagnostics, never none.
@@ -186,6 +193,7 @@ impl Source {
         let level = match d.severity {
             Severity::Error => Level::ERROR,
             Severity::Warning => Level::WARNING,
+            Severity::Note => Level::NOTE,
         };
         let mut group: Group<'_> = Group::with_title(level.primary_title(d.message.as_str()).id(d.code));
         let window = d.span.as_ref().map(|s| (s, self.window(s)));
@@ -224,6 +232,55 @@ impl Source {
     fn boundary(&self, at: usize) -> usize {
         self.text.floor_char_boundary(at.min(self.text.len()))
     }
+}
+
+/// What to do about an error of which nothing more particular is known; `docs/diagnostics.md` says more. Every error of a model
+/// file has one.
+fn remedy(code: &str) -> Option<&'static str> {
+    Some(match code {
+        "HP0101" => "check the path, and that the file is a text of at most 64 MiB that you may read",
+        "HP0102" => {
+            "look at this place and just before it: mostly a quote, a bracket, a comma or `=` is missing or one too many"
+        }
+        "HP0103" => "correct the spelling, or remove the key",
+        "HP0104" => "add the key; `docs/file-format.md` shows an example of each table",
+        "HP0105" => "write the value as `docs/file-format.md` describes it",
+        "HP0106" => "write one of the words listed",
+        "HP0107" => "remove one of the two keys",
+        "HP0108" => "correct the underlined part; `docs/file-format.md` lists the functions",
+        "HP0109" => "correct the number",
+        "HP0110" => "correct the underlined part; `docs/file-format.md` says what each kind of law needs",
+        "HP0111" => "put the file beside the model file, and name it from there",
+        "HP0112" => "correct that line of the file, or choose other `columns`",
+        "HP0113" => "correct the underlined part; `docs/file-format.md` says what expressions may name",
+        "HP0201" => "choose another name",
+        "HP0202" => "give finite numbers",
+        "HP0203" => "declare a body besides `ground`, like `[bodies]` with `crank = {}`",
+        "HP0204" => "correct the name, or declare what it names",
+        "HP0205" => "give a vector that is not null, or two different hardpoints",
+        "HP0206" => "choose a third point off the x axis",
+        "HP0207" => "name two different bodies",
+        "HP0208" => "add the axis if the joint's type needs it, else remove it",
+        "HP0209" => "correct one of the two axes",
+        "HP0210" => "give as many places as the joint's type needs; `docs/file-format.md` lists them",
+        "HP0211" => "move one end, or use a spherical joint",
+        "HP0212" => "connect the body with a joint, or remove it",
+        "HP0213" => "name one of the joint's coordinates",
+        "HP0214" => "change the law or the output times",
+        "HP0215" => "remove one of the two drivers",
+        "HP0216" => "name another point",
+        "HP0217" => "give it a velocity that is not null, or remove it",
+        "HP0218" => "name one of the bodies that the joint connects",
+        "HP0219" => "give a `[time]` table with times that increase, like `end = 1.0` and `steps = 100`",
+        "HP0223" => "remove it, or give a length above zero, a lead other than zero",
+        "HP0224" => "give every joint a number other than zero, and name two coordinates",
+        "HP0225" => "give the rod a `length`, or move one of its hardpoints",
+        "HP0226" => "give three points or more (four, if closed) in one plane square to `axis`",
+        _ if code.starts_with("HP02") => {
+            "correct the underlined part; `docs/diagnostics.md` says more about this code"
+        }
+        _ => return None,
+    })
 }
 
 /// A text of the file for use in a message: cut where it is long.

@@ -64,6 +64,8 @@ pub struct ModelFile {
     pub units: Units,
     /// What the file says about itself.
     pub description: Option<String>,
+    /// What the reader has to tell although nothing is wrong: warnings and notes, in the order of the text.
+    pub remarks: Vec<Diagnostic>,
     source: Source,
     places: Places,
 }
@@ -280,7 +282,7 @@ fn parse_in(folder: Option<&Path>, text: &str, file_name: &str) -> Result<ModelF
     }
     let mut reader = Reader::new(&source, folder);
     let raw = reader.model(document.get_ref());
-    let (units, mut found) = (reader.units, reader.found);
+    let (units, mut found, remarks) = (reader.units, reader.found, diagnostic::in_order(reader.remarks));
     let model = match Model::from_draft(&raw.draft) {
         Ok(model) => Some(model),
         Err(faults) => {
@@ -292,7 +294,8 @@ fn parse_in(folder: Option<&Path>, text: &str, file_name: &str) -> Result<ModelF
     drop(document);
     match model {
         Some(model) if found.is_empty() => {
-            Ok(ModelFile { model, units, description: raw.description, source, places: raw.places })
+            let (description, places) = (raw.description, raw.places);
+            Ok(ModelFile { model, units, description, remarks, source, places })
         }
         _ => Err(Diagnostics::new(source, found)),
     }

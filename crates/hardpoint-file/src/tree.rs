@@ -90,12 +90,15 @@ pub(crate) struct Reader<'s> {
     /// The parameters of the law that is being read which expressions give, and those expressions.
     pub law_formulas: Vec<(String, Expression)>,
     pub found: Vec<Diagnostic>,
+    /// What to tell of a model that can be read.
+    pub remarks: Vec<Diagnostic>,
 }
 
 impl<'s> Reader<'s> {
     pub fn new(source: &'s Source, folder: Option<&'s Path>) -> Self {
         let (units, nominal) = (Units::default(), Nominal::default());
-        Self { source, folder, units, nominal, law_formulas: Vec::new(), found: Vec::new() }
+        let (law_formulas, found, remarks) = Default::default();
+        Self { source, folder, units, nominal, law_formulas, found, remarks }
     }
 }
 
@@ -110,6 +113,18 @@ impl Reader<'_> {
         let at = Some(at).filter(|at| *at != (0..0));
         self.found.push(self.source.diagnostic(Severity::Error, code, message, at));
         self.found.last_mut().expect("just pushed")
+    }
+
+    /// Something to tell of a model that can be read all the same.
+    pub fn remark(
+        &mut self,
+        severity: Severity,
+        code: &'static str,
+        at: Range<usize>,
+        message: impl Into<String>,
+    ) -> &mut Diagnostic {
+        self.remarks.push(self.source.diagnostic(severity, code, message, Some(at)));
+        self.remarks.last_mut().expect("just pushed")
     }
 
     /// HP0105: a value of the wrong type or shape.

@@ -70,6 +70,10 @@ fn snapshot(name: &str, text: &str) {
     let error = parse(text, "four-bar.toml").expect_err(name);
     let shown = error.to_string();
     assert!(!error.list().is_empty(), "{name}");
+    for d in error.list() {
+        let help = d.help.as_deref().unwrap_or_default();
+        assert!(!help.trim().is_empty(), "{name}: {} has no help: {}", d.code, d.message);
+    }
     insta::with_settings!({ prepend_module_to_snapshot => false, omit_expression => true, description => name }, {
         insta::assert_snapshot!(name, shown);
     });
@@ -534,4 +538,99 @@ fn mirrors() {
         &[("along = \"xyz\"", "along = \"x\"\nmirror = \"y\"\nmirrored = \"Z\"")],
     );
     broken("bounds_of_a_variable", &[("along = \"xyz\"", "along = \"x\"\nbounds = [1, 5]")]);
+}
+
+/// The remarks of the valid model with some of its text replaced: code, headline, notes and help.
+fn remarks(old: &str, new: &str) -> Vec<(String, String)> {
+    assert!(VALID.contains(old), "{old}");
+    let file = parse(&VALID.replacen(old, new, 1), "four-bar.toml").unwrap_or_else(|e| panic!("{e}"));
+    let text = |d: &hardpoint_file::Diagnostic| file.render(d, false);
+    file.remarks.iter().map(|d| (d.code.to_owned(), text(d))).collect()
+}
+
+#[test]
+fn degrees_in_functions_are_told_and_what_is_meant_in_radians_is_not() {
+    for (law, right) in [
+        ("sin(360*t)", "sin(2*pi*t)"),
+        ("20 + 10*cos( 90 * t )", "cos(pi/2*t)"),
+        ("sin(90)", "sin(pi/2)"),
+        ("5*tan(-30*t)", "tan(-pi/6*t)"),
+        ("10*sin(t*720/2)", "sin(2*pi*t)"),
+        ("10*sin(360*t + 90)", "sin(2*pi*t + pi/2)"),
+        ("10*sin(4*t - 180)", "sin(4*t - pi)"),
+        ("if(t < 1, (sin(60*(t + 0))), 2)", "sin(pi/3*t)"),
+    ] {
+        let found = remarks("360*t", law);
+        assert_eq!(found.len(), 1, "{law}: {found:?}");
+        let (code, text) = &found[0];
+        assert!(code == "HP0114" && text.contains(&format!("write `{right}`")), "{law}: {text}");
+        assert!(text.contains("^"), "{text}");
+    }
+    for law in [
+        "360*t",
+        "10*sin(2*pi*t)",
+        "10*sin(2*pi*60*t)",
+        "10*sin(360*pi/180*t)",
+        "10*sin(6.283*t)",
+        "10*sin(20*t)",
+        "10*sin(45*t)",
+        "10*sin(30*t^2)",
+        "asin(0.5*sin(t)) + 360",
+        "10*sin(sin(t) + 1)",
+        "90",
+    ] {
+        assert_eq!(remarks("360*t", law), [], "{law}");
+    }
+    // In a file in rad nobody expects degrees.
+    let rad = VALID.replacen("angle = \"deg\"", "angle = \"rad\"", 1).replacen("360*t", "sin(360*t)", 1);
+    assert_eq!(parse(&rad, "four-bar.toml").unwrap().remarks, []);
+}
+
+#[test]
+fn models_of_the_gallery_give_no_rise_to_warnings() {
+    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../../models");
+    let mut models = 0;
+    for entry in std::fs::read_dir(folder).unwrap().flatten() {
+        if entry.path().extension().is_some_and(|e| e == "toml") {
+            let file = read(&entry.path()).unwrap_or_else(|e| panic!("{e}"));
+            let shown: Vec<_> = file.remarks.iter().map(|d| file.render(d, false)).collect();
+            let warnings = file.remarks.iter().filter(|d| d.severity != hardpoint_file::Severity::Note);
+            assert_eq!(warnings.count(), 0, "{shown:?}");
+            models += 1;
+        }
+    }
+    assert!(models > 30);
+}
+
+#[test]
+fn measures_that_all_leaves_out_are_named_with_the_reason() {
+    let wheel = "[wheels.w]\nbody = \"rocker\"\ncentre = \"C\"\nspin_axis = \"y\"\nradius = 50\nside = \"left\"\nmeasures = \"all\"\n\n[time]";
+    let with = |more: &str| {
+        let text = VALID.replacen("[time]", wheel, 1).replacen("spin_axis = \"y\"", more, 1);
+        parse(&text, "four-bar.toml").unwrap_or_else(|e| panic!("{e}"))
+    };
+    // The only driver moves the wheel up and down.
+    let file = with("spin_axis = \"y\"");
+    assert!(file.model.measure("w.bump_steer").is_some());
+    assert!(file.model.measure("w.caster").is_none());
+    let [note] = &file.remarks[..] else { panic!("{:?}", file.remarks) };
+    assert_eq!((note.code, note.severity), ("HP0503", hardpoint_file::Severity::Note));
+    assert!(note.notes[0].starts_with("the wheel has no `kingpin`, so there is no `caster`, "), "{note:?}");
+    assert!(file.render(note, false).starts_with("note[HP0503]"));
+    // Whoever lists measures by name has chosen.
+    let listed = VALID.replacen("[time]", &wheel.replace("\"all\"", "[\"toe\"]"), 1);
+    assert_eq!(parse(&listed, "four-bar.toml").unwrap().remarks, []);
+    // Of two drivers it takes neither, and says so.
+    let two = "[bodies]\nspare = {}\n";
+    let more = "[joints.J5]\ntype = \"revolute\"\nbodies = [\"ground\", \"spare\"]\nat = \"A\"\naxis = \"z\"\n\n\
+                [drivers.other]\njoint = \"J5\"\nlaw = \"t\"\n\n[time]";
+    let text = VALID.replacen("[time]", wheel, 1).replacen("[bodies]\n", two, 1).replacen("[time]", more, 1);
+    let file = parse(&text, "four-bar.toml").unwrap_or_else(|e| panic!("{e}"));
+    assert!(file.model.measure("w.bump_steer").is_none());
+    let text = file.render(&file.remarks[0], false);
+    assert!(
+        text.contains("`bump` does not say which of the 2 drivers") && text.contains("`bump_steer`"),
+        "{text}"
+    );
+    assert!(text.contains("= help: "), "{text}");
 }

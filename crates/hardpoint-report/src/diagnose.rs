@@ -3,13 +3,13 @@
 
 use hardpoint::Solution;
 use hardpoint::joint::Quantity;
-use hardpoint::model::{JointId, Model, Section};
+use hardpoint::model::{DesignVariable, JointId, Model, Section};
 use hardpoint::motion::{Closing, Stop, StopKind};
 use hardpoint::topology::TopologyFault;
 use hardpoint_file::{Diagnostic, ModelFile, Severity};
 
 use crate::assembly::GapFact;
-use crate::facts::{Answer, Facts};
+use crate::facts::{Answer, Facts, variable_unit};
 use crate::figures::{names, number, quoted, rounded, some_in_words, some_of, symbol, with_unit};
 use crate::margin::MarginFact;
 use crate::summary::Summary;
@@ -24,7 +24,8 @@ pub fn all(
     solution: &Solution,
     outputs: Option<&str>,
 ) -> Vec<Diagnostic> {
-    let mut list = variables(file, &summary.model);
+    let mut list = file.remarks.clone();
+    list.extend(variables(file, &summary.model));
     // Before a limit the margin falls to zero, and the stop says so.
     if solution.stop.as_ref().is_none_or(|s| s.kind == StopKind::Interrupted) {
         list.extend(summary.margin.as_ref().and_then(|m| margin(file, m)));
@@ -62,7 +63,11 @@ pub fn stop(file: &ModelFile, stop: &Stop, solved: usize, outputs: Option<&str>)
         _ => stop.joints.first().map(|j| (Section::Joints, j.0)),
     };
     let severity = if stop.kind == StopKind::Interrupted { Severity::Warning } else { Severity::Error };
-    let mut d = file.diagnostic(severity, stop.code(), stop.headline(model), place);
+    let mut headline = stop.headline(model);
+    if let (StopKind::DoesNotAssemble, Some(gap)) = (stop.kind, stop.remains.first()) {
+        headline += &format!(" by {} at best", GapFact::new(model, units, gap).size_text());
+    }
+    let mut d = file.diagnostic(severity, stop.code(), headline, place);
     if let Some(closed) = stop.closed {
         d = gap_notes(file, stop, closed).into_iter().fold(d, Diagnostic::note);
     } else {
@@ -98,7 +103,7 @@ pub fn stop(file: &ModelFile, stop: &Stop, solved: usize, outputs: Option<&str>)
     });
     match stop.help() {
         Some(help) => d.help(help),
-        None => d,
+        None => d.help("run it again for the rest"),
     }
 }
 
@@ -106,7 +111,9 @@ pub fn stop(file: &ModelFile, stop: &Stop, solved: usize, outputs: Option<&str>)
 fn gap_notes(file: &ModelFile, stop: &Stop, closed: f64) -> Vec<String> {
     let gaps: Vec<GapFact> = stop.remains.iter().map(|g| GapFact::new(&file.model, file.units, g)).collect();
     let at_best = |g: &GapFact| format!("{} `{}` stays open by {} at best", g.kind, g.name, g.size_text());
-    let mut notes: Vec<String> = gaps.iter().take(MOST_GAPS).map(at_best).collect();
+    // The headline has the largest already.
+    let told = usize::from(stop.kind == StopKind::DoesNotAssemble);
+    let mut notes: Vec<String> = gaps.iter().take(MOST_GAPS).skip(told).map(at_best).collect();
     if gaps.len() > MOST_GAPS {
         notes.push(format!("{} more stay open by less", gaps.len() - MOST_GAPS));
     }
@@ -167,6 +174,24 @@ pub fn margin(file: &ModelFile, margin: &MarginFact) -> Option<Diagnostic> {
     ));
     let d = d.note(format!("the loop consists of {}", names(margin.joints.iter().map(String::as_str))));
     Some(d.help("drive another joint of this loop, or move its hardpoints so that it stays away from there"))
+}
+
+/// A warning for each design variable that a change takes out of its bounds.
+pub fn out_of_bounds(file: &ModelFile, change: &[f64]) -> Vec<Diagnostic> {
+    let warn = |(k, (v, by)): (usize, (&DesignVariable, &f64))| {
+        let [low, high] = v.bounds.filter(|[low, high]| !(low <= by && by <= high))?;
+        let shown =
+            |x: f64| with_unit(file.units.from_si(v.quantity, x), &variable_unit(&file.model, file.units, v));
+        let message = format!("the change of `{}` by {} is outside its bounds", v.name, shown(*by));
+        let d = file.diagnostic(Severity::Warning, "HP0504", message, Some((Section::Design, k)));
+        let d = d.note(format!(
+            "they allow changes of {} to {}; it is solved all the same",
+            shown(low),
+            shown(high)
+        ));
+        Some(d.help("change it by less, or widen its `bounds`"))
+    };
+    file.model.variables.iter().zip(change).enumerate().filter_map(warn).collect()
 }
 
 /// One warning for each design variable that the mechanism cannot follow, or that changes nothing.

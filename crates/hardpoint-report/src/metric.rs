@@ -10,6 +10,10 @@ use crate::facts::variable_unit;
 use crate::figures::{number, per, rounded, unit, with_unit};
 use crate::page::Table;
 
+/// An interpolation error beyond this part of the curve's range (of a slope: of the slope) is told: metrics are read to three
+/// digits.
+const COARSE: f64 = 1e-3;
+
 /// The value of a metric, with its sensitivities. Figures are in the model's units.
 #[derive(Clone, Debug, Serialize)]
 pub struct MetricFact {
@@ -23,6 +27,11 @@ pub struct MetricFact {
     pub unit: String,
     /// When it is taken, s; `null` for what is taken of the whole curve.
     pub time: Option<f64>,
+    /// How far it may be from that of the curve between the output times, which is interpolated; `null` for a mean, and where there
+    /// are too few output times to say.
+    pub interpolation_error: Option<f64>,
+    /// Whether that is more than a thousandth of the curve's range.
+    pub coarse: bool,
     /// By every design variable that the mechanism can follow, the strongest first within each unit of variables.
     pub sensitivities: Vec<MetricSensitivity>,
 }
@@ -83,6 +92,8 @@ impl MetricFact {
             value: found.value.map(|x| units.from_si(dimension, x)),
             unit: unit(units, dimension),
             time: found.time,
+            interpolation_error: found.error.map(|x| units.from_si(dimension, x)),
+            coarse: found.error.is_some_and(|x| !(x <= COARSE * found.range)),
             sensitivities,
         }
     }
@@ -104,14 +115,20 @@ impl MetricFact {
                 m.what.clone(),
                 m.value.map_or("not reached".into(), |x| with_unit(x, &m.unit)),
                 m.time.map_or(String::new(), |t| format!("{} s", number(t))),
+                m.interpolation_error
+                    .filter(|_| m.coarse)
+                    .map_or(String::new(), |x| format!("{} {}", rounded(x, 2), m.unit)),
                 strongest.join("; "),
             ]
         };
         (!facts.is_empty()).then(|| {
             Table {
                 title: "Metrics".into(),
-                note: String::new(),
-                header: ["metric", "is", "value", "at t", "strongest variables"].map(String::from).to_vec(),
+                note: match facts.iter().any(|m| m.coarse) {
+                    true => "Between output times curves are interpolated; more output times make \"off by up to\" smaller.".into(),
+                    false => String::new(),
+                },
+                header: ["metric", "is", "value", "at t", "off by up to", "strongest variables"].map(String::from).to_vec(),
                 rows: facts.iter().map(row).collect(),
             }
             .without_empty_columns()

@@ -19,9 +19,11 @@ pub struct ValidityFact {
     /// Its unit.
     pub unit: String,
     /// How far it may go either way before the second-order part of some measure is 5 % of the first-order part, over the
-    /// whole motion; `null` where nothing bends.
+    /// whole motion; `null` where all measures are exactly linear, or none depends on the variable.
     pub linear_up_to: Option<f64>,
-    /// That measure.
+    /// Whether all measures that depend on it are exactly linear in it: their second-order parts are round-off.
+    pub exactly_linear: bool,
+    /// The measure that limits it.
     pub limited_by: Option<String>,
     /// The same measure by measure.
     pub measures: Vec<MeasureValidity>,
@@ -32,8 +34,10 @@ pub struct ValidityFact {
 pub struct MeasureValidity {
     /// The measure.
     pub measure: String,
-    /// How far the variable may go, in its unit.
-    pub linear_up_to: f64,
+    /// How far the variable may go, in its unit; `null` where the measure is exactly linear in it.
+    pub linear_up_to: Option<f64>,
+    /// Whether the measure is exactly linear in the variable: its second-order part is round-off.
+    pub exactly_linear: bool,
 }
 
 impl ValidityFact {
@@ -45,16 +49,22 @@ impl ValidityFact {
         let fact = |(variable, validity): (&hardpoint::model::DesignVariable, &Validity)| {
             let shown = |x: f64| units.from_si(variable.quantity, x);
             let known = validity.linear_up_to.iter().enumerate().filter(|(m, _)| counts(*m));
-            let known = known.filter_map(|(m, x)| x.filter(|x| x.is_finite()).map(|x| (m, x)));
+            let known = known.filter_map(|(m, x)| x.filter(|x| !x.is_nan()).map(|x| (m, x)));
             let measures: Vec<_> = known
-                .map(|(m, x)| MeasureValidity { measure: outputs[m].name.clone(), linear_up_to: shown(x) })
+                .map(|(m, x)| MeasureValidity {
+                    measure: outputs[m].name.clone(),
+                    linear_up_to: x.is_finite().then(|| shown(x)),
+                    exactly_linear: x.is_infinite(),
+                })
                 .collect();
-            let least = measures.iter().min_by(|a, b| a.linear_up_to.total_cmp(&b.linear_up_to));
+            let bending = measures.iter().filter_map(|m| Some((m.linear_up_to?, &m.measure)));
+            let least = bending.min_by(|a, b| a.0.total_cmp(&b.0));
             Self {
                 variable: variable.name.clone(),
                 unit: variable_unit(model, units, variable),
-                linear_up_to: least.map(|m| m.linear_up_to),
-                limited_by: least.map(|m| m.measure.clone()),
+                linear_up_to: least.map(|(x, _)| x),
+                exactly_linear: least.is_none() && !measures.is_empty(),
+                limited_by: least.map(|(_, measure)| measure.clone()),
                 measures,
             }
         };
@@ -64,7 +74,10 @@ impl ValidityFact {
     /// All of them, with what is known of the motion.
     pub fn table(summary: &Summary) -> Option<Table> {
         let row = |v: &Self| {
-            let reach = v.linear_up_to.map(|x| format!("{} {}", rounded(x, 2), v.unit));
+            let reach = match v.linear_up_to {
+                Some(x) => Some(format!("{} {}", rounded(x, 2), v.unit)),
+                None => v.exactly_linear.then(|| "exactly linear".into()),
+            };
             Some(vec![v.variable.clone(), reach?, v.limited_by.clone().unwrap_or_default()])
         };
         let rows: Vec<Vec<String>> = summary.validity.iter().filter_map(row).collect();

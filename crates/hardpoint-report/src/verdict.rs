@@ -1,7 +1,7 @@
 //! `verify.json`: exact sensitivities against re-solved designs.
 
 use hardpoint::Analysis;
-use hardpoint::study::{CheckOutcome, PASS, StepError, Verification, natural_step};
+use hardpoint::study::{CheckOutcome, Scheme, StepError, Verification, natural_step};
 use hardpoint_file::{ModelFile, Units};
 use serde::Serialize;
 
@@ -24,9 +24,11 @@ pub struct Verdict {
     pub passed: bool,
     /// Whether it was ended before all variables were checked.
     pub interrupted: bool,
-    /// The best agreement must not exceed this.
+    /// Which designs were compared.
+    pub differences: Differences,
+    /// Every quantity must agree to this at some step.
     pub tolerance: f64,
-    /// The variable whose best agreement is worst.
+    /// The variable and quantity that agree worst.
     pub worst: Option<Worst>,
     /// One entry per variable that was checked.
     pub checks: Vec<CheckFact>,
@@ -34,14 +36,26 @@ pub struct Verdict {
     pub seconds: f64,
 }
 
-/// Where the best agreement is worst.
+/// The designs of a difference quotient.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Differences {
+    /// At +h and -h.
+    Central,
+    /// At +h and 0.
+    Forward,
+    /// At 0 and -h.
+    Backward,
+}
+
+/// Where the agreement is worst.
 #[derive(Clone, Debug, Serialize)]
 pub struct Worst {
     /// The variable.
     pub variable: String,
     /// The quantity.
     pub quantity: String,
-    /// Largest relative deviation at the best step.
+    /// Its largest relative deviation at the step where it agrees best.
     pub error: f64,
 }
 
@@ -56,9 +70,9 @@ pub struct CheckFact {
     pub outcome: Outcome,
     /// What to know about it, in a sentence.
     pub note: Option<&'static str>,
-    /// The step that agrees best.
-    pub best: Option<StepFact>,
-    /// All steps that could be solved, from coarse to fine.
+    /// The quantity that agrees worst, each judged at the step where it agrees best; that step.
+    pub worst: Option<StepFact>,
+    /// All steps that could be solved, from coarse to fine, each with the quantity that agrees worst there.
     pub sweep: Vec<StepFact>,
 }
 
@@ -66,9 +80,9 @@ pub struct CheckFact {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Outcome {
-    /// The best step agrees.
+    /// Every quantity agrees at some step.
     Passed,
-    /// No step agrees.
+    /// Some quantity agrees at no step.
     Failed,
     /// The mechanism cannot follow the variable: nothing to compare.
     CannotFollow,
@@ -83,9 +97,9 @@ pub struct StepFact {
     pub part: f64,
     /// The step, in the variable's unit.
     pub step: f64,
-    /// Largest relative deviation over all times and quantities.
+    /// Largest relative deviation over all times.
     pub error: f64,
-    /// The quantity where it is.
+    /// The quantity.
     pub quantity: String,
     /// The time where it is, s.
     pub time: f64,
@@ -95,7 +109,9 @@ impl Verdict {
     /// The verdict of a finished verification.
     pub fn new(file: &ModelFile, analysis: &Analysis<'_>, verification: &Verification, seconds: f64) -> Self {
         let (model, units) = (analysis.model(), file.units);
-        let redundant = analysis.topology().redundant().next().is_some();
+        // One-sided differences fall with the step in any mechanism.
+        let parts_later =
+            verification.scheme == Scheme::Central && analysis.topology().redundant().next().is_some();
         let check = |c: &hardpoint::study::Check| {
             let variable = &model.variables[c.variable.0];
             let natural = natural_step(model, c.variable);
@@ -103,7 +119,7 @@ impl Verdict {
                 part: s.step / natural,
                 step: units.from_si(variable.quantity, s.step),
                 error: s.error,
-                quantity: s.worst.clone(),
+                quantity: s.quantity.clone(),
                 time: s.time,
             };
             CheckFact {
@@ -115,16 +131,16 @@ impl Verdict {
                     CheckOutcome::CannotFollow => Outcome::CannotFollow,
                     CheckOutcome::NotSolved => Outcome::NotSolved,
                 },
-                note: (c.outcome == CheckOutcome::Failed && redundant && falls_in_proportion(&c.sweep))
+                note: (c.outcome == CheckOutcome::Failed && parts_later && falls_in_proportion(&c.sweep))
                     .then_some(FIRST_ORDER),
-                best: c.best().map(step),
+                worst: c.worst().map(step),
                 sweep: c.sweep.iter().map(step).collect(),
             }
         };
         let checks: Vec<CheckFact> = verification.checks.iter().map(check).collect();
         let worst = checks
             .iter()
-            .filter_map(|c| c.best.as_ref().map(|b| (c, b)))
+            .filter_map(|c| c.worst.as_ref().map(|b| (c, b)))
             .max_by(|a, b| a.1.error.total_cmp(&b.1.error))
             .map(|(c, b)| Worst {
                 variable: c.variable.clone(),
@@ -138,14 +154,19 @@ impl Verdict {
             units,
             passed: verification.passed(),
             interrupted: verification.interrupted,
-            tolerance: PASS,
+            differences: match verification.scheme {
+                Scheme::Central => Differences::Central,
+                Scheme::Forward => Differences::Forward,
+                Scheme::Backward => Differences::Backward,
+            },
+            tolerance: verification.scheme.tolerance(),
             worst,
             checks,
             seconds,
         }
     }
 
-    /// Best agreement per variable.
+    /// Per variable, the quantity that agrees worst at its own best step.
     pub fn table(&self) -> Table {
         let row = |c: &CheckFact| {
             let outcome = match c.outcome {
@@ -155,7 +176,7 @@ impl Verdict {
                 Outcome::NotSolved => "NOT SOLVED",
             };
             let mut row = vec![c.variable.clone(), outcome.to_owned()];
-            match &c.best {
+            match &c.worst {
                 Some(b) => row.extend([
                     error(b.error),
                     step_text(b.step, &c.unit),
@@ -167,9 +188,9 @@ impl Verdict {
             row
         };
         Table {
-            title: "Best agreement of each variable".into(),
+            title: "Worst quantity of each variable, at its own best step".into(),
             note: String::new(),
-            header: ["variable", "outcome", "best agreement", "at step", "worst quantity", "at t"]
+            header: ["variable", "outcome", "agrees to", "at step", "worst quantity", "at t"]
                 .map(String::from)
                 .to_vec(),
             rows: self.checks.iter().map(row).collect(),
@@ -235,8 +256,9 @@ mod tests {
 
     fn sweep(error: impl Fn(f64) -> f64) -> Vec<StepError> {
         let steps = (4..=12).map(|k| 10.0_f64.powf(-0.5 * f64::from(k)));
-        let worst = String::from("rod position");
-        steps.map(|step| StepError { step, error: error(step), worst: worst.clone(), time: 0.0 }).collect()
+        let quantity = String::from("rod position");
+        let at = |step| StepError { step, error: error(step), quantity: quantity.clone(), time: 0.0 };
+        steps.map(at).collect()
     }
 
     #[test]

@@ -8,13 +8,14 @@ use std::io::Write;
 use csv::WriterBuilder;
 use hardpoint::Solution;
 use hardpoint::model::{Model, OutputSource, VariableId};
-use hardpoint::study::WhatIf;
+use hardpoint::study::{WhatIf, repeats_coordinate};
 use hardpoint::topology::Topology;
-use hardpoint_file::{ModelFile, Units};
+use hardpoint_file::{Diagnostic, ModelFile, Units};
 use serde::Serialize;
 
 use crate::GENERATOR;
 use crate::csv::numbers;
+use crate::diagnose::out_of_bounds;
 use crate::facts::variable_unit;
 use crate::figures::{names, number, per, rounded, unit, with_unit};
 use crate::margin::MarginFact;
@@ -46,6 +47,8 @@ pub struct WhatIfFacts {
     pub influence: Vec<InfluenceFact>,
     /// Output times, s.
     pub times: Vec<f64>,
+    /// What else there is to tell: of the file, and of changes beyond the bounds of their variables.
+    pub diagnostics: Vec<Diagnostic>,
 }
 
 /// A variable that is changed.
@@ -93,8 +96,10 @@ pub struct MeasureFact {
     /// velocity.
     pub errors: Option<[Option<f64>; 2]>,
     /// How many times this change could be made before the second-order part is 5 % of the first-order one; `null` where
-    /// nothing bends, or nothing changes to first order.
+    /// the measure is exactly linear along the change, or does not change to first order.
     pub linear_up_to: Option<f64>,
+    /// Whether the measure is exactly linear along the change: its second-order part is round-off.
+    pub exactly_linear: bool,
     /// Over the output times: today's value.
     pub today: Vec<f64>,
     /// As foreseen to first order, and to second order; empty where nothing is foreseen.
@@ -142,6 +147,7 @@ impl WhatIfFacts {
             margins: [margin(&what_if.today), margin(&what_if.exact)],
             metrics: MetricChange::all(model, units, what_if),
             times: what_if.today.motion.times[..what_if.len()].to_vec(),
+            diagnostics: [file.remarks.clone(), out_of_bounds(file, &what_if.change)].concat(),
             ..Self::of_today(file, topology, &what_if.today)
         };
         for (m, output) in measured.outputs.iter().enumerate() {
@@ -164,6 +170,7 @@ impl WhatIfFacts {
                 time: change.map(|(_, k)| what_if.today.motion.times[k]),
                 errors: foresight.map(|f| f.errors.map(|e| e.map(shown))),
                 linear_up_to: foresight.and_then(|f| f.linear_up_to).filter(|x| x.is_finite()),
+                exactly_linear: foresight.and_then(|f| f.linear_up_to).is_some_and(f64::is_infinite),
                 today: steps().map(|k| shown(measured.value(k, m)[0])).collect(),
                 first: foreseen(0),
                 second: foreseen(1),
@@ -187,6 +194,7 @@ impl WhatIfFacts {
             metrics: Vec::new(),
             influence: influence(&file.model, file.units, today),
             times: today.motion.times.clone(),
+            diagnostics: file.remarks.clone(),
         }
     }
 
@@ -213,7 +221,10 @@ impl WhatIfFacts {
                 m.time.map_or("-".into(), |t| format!("{} s", number(t))),
                 some(m.errors.and_then(|e| e[0]), ""),
                 some(m.errors.and_then(|e| e[1]), ""),
-                m.linear_up_to.map_or("-".into(), |x| format!("{} x", rounded(x, 2))),
+                match m.linear_up_to {
+                    Some(x) => format!("{} x", rounded(x, 2)),
+                    None => if m.exactly_linear { "exactly linear" } else { "-" }.into(),
+                },
             ]
         };
         Table {
@@ -336,17 +347,20 @@ fn follows(model: &Model, what_if: &WhatIf) -> String {
     format!("re-assembled: {} opens in the design configuration and is closed again by moving", names(joints))
 }
 
-/// Every measure (or every point, where there are no measures) by every variable, the strongest first within each.
+/// Every measure (or every point, where there are no measures) by every variable, the strongest first within each. What goes by
+/// two names is ranked once.
 fn influence(model: &Model, units: Units, today: &Solution) -> Vec<InfluenceFact> {
     let measured = &today.measured;
     let mut facts = Vec::new();
     let counts =
         |source: &OutputSource| model.measures.is_empty() || matches!(source, OutputSource::Measure(_));
     let measures = measured.outputs.iter().enumerate().filter(|(_, o)| counts(&o.source));
+    let repeated: Vec<bool> =
+        (0..model.variables.len()).map(|v| repeats_coordinate(model, VariableId(v))).collect();
     for (m, output) in measures {
         let first = facts.len();
         for (v, variable) in model.variables.iter().enumerate() {
-            if measured.is_empty() || today.sensitivities.at(0, v).is_none() {
+            if measured.is_empty() || today.sensitivities.at(0, v).is_none() || repeated[v] {
                 continue;
             }
             let at = |k: &usize| measured.d(*k, VariableId(v), m)[0];

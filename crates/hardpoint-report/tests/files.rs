@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 
 use hardpoint::model::VariableId;
 use hardpoint::sensitivity::BodySensitivity;
-use hardpoint::study::{central_differences, natural_step};
+use hardpoint::study::{Scheme, finite_differences, natural_step};
 use hardpoint::{Analysis, Solution};
 use hardpoint_file::ModelFile;
 use hardpoint_report::facts::{Answer, Facts};
@@ -177,10 +177,12 @@ fn page_holds_all_quantities_and_their_comparison() {
     let (analysis, solution, summary) = solved(&file);
     let steps: Vec<(VariableId, f64)> =
         [0, 1].map(|b| (VariableId(b), 1e-4 * natural_step(&file.model, VariableId(b)))).to_vec();
-    let mut differences: Vec<_> =
-        central_differences(&analysis, &steps).into_iter().map(Result::ok).collect();
-    differences.push(None);
-    let payload = payload(&file, &analysis, &solution, &differences, &summary);
+    let mut found: Vec<_> = finite_differences(&analysis, &solution, Scheme::Central, &steps)
+        .into_iter()
+        .map(Result::ok)
+        .collect();
+    found.push(None);
+    let payload = payload(&file, &analysis, &solution, &found, &summary);
     // 2 measures, 1 point, 3 bodies.
     assert_eq!(payload.quantities.len(), 2 + 3 + 9);
     assert_eq!(payload.file, "slider.toml", "no folders of this machine");

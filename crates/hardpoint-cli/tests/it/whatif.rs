@@ -87,6 +87,58 @@ fn what_cannot_be_set_or_measured_is_refused_with_what_there_is() {
     }
 }
 
+#[test]
+fn a_variable_and_its_coordinate_are_one() {
+    let bench = Bench::with(&[]);
+    ride(&bench);
+    let ranked = |set: &str| {
+        let output = bench.run(&["whatif", "ride.toml", "--set", set, "--json"]);
+        assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
+        let document: Value = serde_json::from_slice(&output.stdout).unwrap();
+        assert_eq!(document["change"][0]["variable"], "tie_rod_inner_z");
+        let of_toe = document["influence"].as_array().unwrap().iter().filter(|i| i["measure"] == "toe");
+        of_toe.map(|i| i["variable"].as_str().unwrap().to_owned()).collect::<Vec<_>>()
+    };
+    let names = ranked("tie_rod_inner.z=1mm");
+    assert_eq!(names, ranked("tie_rod_inner_z=1mm"));
+    assert!(names.iter().any(|n| n == "tie_rod_inner_z") && !names.iter().any(|n| n == "tie_rod_inner.z"));
+
+    // Set under both names, it would be unclear by how much.
+    let twice = ["whatif", "ride.toml", "--set", "tie_rod_inner.z=1mm", "--set", "tie_rod_inner_z=2mm"];
+    let output = bench.run(&twice);
+    assert_eq!(output.status.code(), Some(2));
+    let text = String::from_utf8(output.stderr).unwrap();
+    assert!(text.contains("`tie_rod_inner_z` is set already"), "{text}");
+
+    // Against its axis it is the same coordinate.
+    let text = bench.text("ride.toml") + "\n[design.down]\nmove = \"strut_top\"\nalong = \"-z\"\n";
+    bench.put("down.toml", &text);
+    let output = bench.run(&["whatif", "down.toml", "--json"]);
+    assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
+    let document: Value = serde_json::from_slice(&output.stdout).unwrap();
+    let names = document["influence"].as_array().unwrap().iter().map(|i| i["variable"].as_str().unwrap());
+    let names: Vec<_> = names.collect();
+    assert!(names.contains(&"down") && !names.contains(&"strut_top.z") && names.contains(&"ball_joint_x"));
+}
+
+#[test]
+fn a_change_beyond_the_bounds_is_told_and_solved() {
+    let bench = Bench::with(&[]);
+    ride(&bench);
+    let text =
+        bench.text("ride.toml") + "\n[design.up]\nmove = \"strut_top\"\nalong = \"z\"\nbounds = [-1, 2]\n";
+    bench.put("ride.toml", &text);
+    let changed = |by: &str| bench.run(&["whatif", "ride.toml", "--set", by, "--measure", "toe"]);
+    let output = changed("up=3mm");
+    assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
+    let told = String::from_utf8(output.stderr).unwrap();
+    assert!(told.contains("warning[HP0504]: the change of `up` by 3 mm is outside its bounds"), "{told}");
+    assert!(told.contains("changes of -1 mm to 2 mm"), "{told}");
+    assert!(changed("up=2mm").stderr.is_empty());
+    // Under the hardpoint's name, too.
+    assert!(!changed("strut_top.z=-1.5mm").stderr.is_empty());
+}
+
 /// A planar mechanism cannot follow the tilt of one joint out of its plane, but that of all four.
 #[test]
 fn a_change_that_cannot_be_followed_is_offered_with_what_makes_it_admissible() {

@@ -230,6 +230,13 @@ fn found(
                 let help = "separate columns with commas, semicolons or tabs, and choose two with `columns = [1, 2]`";
                 return Err(DataError::content(message, help).note(format!("its first line has {columns}")));
             }
+            (Column::Named(wanted), Some(header)) if header.iter().filter(|h| *h == wanted).count() > 1 => {
+                let at: Vec<String> =
+                    (1..).zip(header).filter(|(_, h)| *h == wanted).map(|(n, _)| n.to_string()).collect();
+                let message = format!("`{name}` has several columns `{}`", shown(wanted));
+                let help = "rename them in the file, or choose columns by number, like `columns = [1, 2]`";
+                return Err(DataError::content(message, help).note(format!("columns {}", at.join(", "))));
+            }
             (Column::Named(wanted), Some(header)) => match header.iter().position(|h| h == wanted) {
                 Some(k) => k,
                 None => {
@@ -239,7 +246,10 @@ fn found(
                     let close = closest(wanted, header.iter().map(String::as_str));
                     let mut e =
                         DataError::content(message, "").note(format!("its columns: {}", list.join(", ")));
-                    e.help = close.map(|c| format!("did you mean `{c}`?"));
+                    let close = close.map(|c| format!("did you mean `{c}`?"));
+                    e.help = Some(
+                        close.unwrap_or_else(|| "name one of these columns, or choose by number".into()),
+                    );
                     return Err(e);
                 }
             },
@@ -249,6 +259,11 @@ fn found(
                     .note("its first line holds numbers, not the names of columns"));
             }
         };
+    }
+    if places[0] == places[1] {
+        let message =
+            format!("`columns` takes column {} of `{name}` for both the time and the value", places[0] + 1);
+        return Err(DataError::content(message, "name two columns, the time first"));
     }
     Ok(places)
 }

@@ -9,9 +9,10 @@ use hardpoint::law::{
 };
 use toml::de::{DeTable, DeValue};
 
-use crate::diagnostic::closest;
+use crate::diagnostic::{Severity, closest, shown};
 use crate::read::data;
 use crate::tree::{Field, Fields, Key, MOST_ENTRIES, Reader, Subject, Value};
+use crate::units::AngleUnit;
 
 /// More pieces than this are a table; a sequence takes time that grows with their square.
 const MOST_PIECES: usize = 500;
@@ -79,7 +80,10 @@ impl Reader<'_> {
             }
         }
         match Law::parse_with(text, &parameters) {
-            Ok(law) => Some(law),
+            Ok(law) => {
+                self.degrees_in_functions(of, value, text, &parameters);
+                Some(law)
+            }
             Err(error) => {
                 let unknown =
                     text.get(error.span.clone()).filter(|_| error.message.starts_with("unknown name"));
@@ -90,6 +94,27 @@ impl Reader<'_> {
                 self.report("HP0108", at, message).help = close.or(error.help);
                 None
             }
+        }
+    }
+
+    /// HP0114: what a trigonometric function is given looks like degrees, but it takes rad.
+    fn degrees_in_functions(&mut self, of: &str, value: &Value<'_>, text: &str, parameters: &[(&str, f64)]) {
+        if self.units.angle != AngleUnit::Degree {
+            return;
+        }
+        for (function, argument) in trigonometric(text) {
+            let Some(inside) = text.get(argument.clone()) else { continue };
+            let Some([offset, rate]) = linear(inside, parameters) else { continue };
+            if !looks_like_degrees(rate) && !looks_like_degrees(offset) {
+                continue;
+            }
+            let call = format!("{function}({})", shown(inside));
+            let at = self.inside(value, text, argument);
+            let message = format!("`{call}` in the law of {of} is not in degrees: functions take radians");
+            let right = in_radians(function, [offset, rate]);
+            let d = self.remark(Severity::Warning, "HP0114", at, message);
+            d.notes.push("the file's unit for angles, deg, holds for values alone".into());
+            d.help = Some(format!("write `{right}` if degrees are meant"));
         }
     }
 
@@ -279,11 +304,7 @@ impl Reader<'_> {
             }
             for (name, value) in table {
                 let subject = Subject {
-                    name: format!(
-                        "parameter `{}` of {}",
-                        crate::diagnostic::shown(name.get_ref()),
-                        fields.what
-                    ),
+                    name: format!("parameter `{}` of {}", shown(name.get_ref()), fields.what),
                     example: "for example `parameters = { a = 25 }`".into(),
                 };
                 let name = self.short(name.get_ref(), name.span(), "the name of a parameter");
@@ -458,4 +479,72 @@ impl Reader<'_> {
         });
         Some([time?, value?])
     }
+}
+
+/// The arguments of `sin`, `cos` and `tan` in the text of a law.
+fn trigonometric(text: &str) -> Vec<(&'static str, Range<usize>)> {
+    let mut found = Vec::new();
+    for function in ["sin", "cos", "tan"] {
+        for (at, _) in text.match_indices(function) {
+            // `asin` is another function.
+            let named = text[..at].chars().next_back().is_some_and(|c| c.is_alphanumeric() || c == '_');
+            let rest = &text[at + function.len()..];
+            let open = at + function.len() + (rest.len() - rest.trim_start().len());
+            if named || !text[open..].starts_with('(') {
+                continue;
+            }
+            let mut depth = 0;
+            let end = text[open..].char_indices().find(|(_, c)| {
+                depth += i32::from(*c == '(') - i32::from(*c == ')');
+                depth == 0
+            });
+            found.extend(end.map(|(end, _)| (function, open + 1..open + end)));
+        }
+    }
+    found.sort_by_key(|(_, at)| at.start);
+    found
+}
+
+/// Offset and rate of an expression that is linear in t.
+fn linear(text: &str, parameters: &[(&str, f64)]) -> Option<[f64; 2]> {
+    const ROUND_OFF: f64 = 1e-12;
+    let names = Law::names(text);
+    let used: Vec<_> = parameters.iter().copied().filter(|p| names.contains(&p.0)).collect();
+    let law = Law::parse_with(text.trim(), &used).ok()?;
+    let [offset, one, more] = [0.0, 1.0, 3.7].map(|t| law.at(t).value());
+    let rate = one - offset;
+    let is_linear = (offset + 3.7 * rate - more).abs() <= ROUND_OFF * (offset.abs() + rate.abs());
+    is_linear.then_some([offset, rate])
+}
+
+/// A whole multiple of 30, which angles in degrees often are, and angles in rad that are written with `pi` never.
+fn looks_like_degrees(x: f64) -> bool {
+    const USUAL: f64 = 30.0;
+    x.abs() >= USUAL && x % USUAL == 0.0
+}
+
+/// The same with the degrees in its argument as parts of pi.
+fn in_radians(function: &str, [offset, rate]: [f64; 2]) -> String {
+    let part = |x: f64, of: &str| match x.abs() / 180.0 {
+        1.0 => format!("pi{of}"),
+        k if k < 1.0 && (1.0 / k).fract() == 0.0 => format!("pi/{}{of}", 1.0 / k),
+        k => format!("{k}*pi{of}"),
+    };
+    let sign = |x: f64| if x < 0.0 { "-" } else { "" };
+    let argument = match (rate == 0.0, offset == 0.0) {
+        (true, _) => format!("{}{}", sign(offset), part(offset, "")),
+        (_, true) => format!("{}{}", sign(rate), part(rate, "*t")),
+        _ => {
+            let join = if offset < 0.0 { "-" } else { "+" };
+            let rate = if looks_like_degrees(rate) {
+                format!("{}{}", sign(rate), part(rate, "*t"))
+            } else {
+                // It is in rad already.
+                format!("{rate}*t")
+            };
+            let offset = if looks_like_degrees(offset) { part(offset, "") } else { offset.abs().to_string() };
+            format!("{rate} {join} {offset}")
+        }
+    };
+    format!("{function}({argument})")
 }

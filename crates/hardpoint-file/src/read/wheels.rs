@@ -7,6 +7,7 @@ use hardpoint::model::{
 use hardpoint::space::Vec3;
 
 use super::Raw;
+use crate::diagnostic::Severity;
 use crate::places::EntryPlace;
 use crate::tree::{Field, Fields, Key, Reader};
 
@@ -64,13 +65,21 @@ impl Reader<'_> {
                 ["left", "right"].map(|key| self.named(&fields, key, "the name of a wheel", &mut place));
             raw.places.push(Section::Axles, place);
             let has_wheelbase = raw.draft.vehicle.wheelbase.is_some();
+            // A wheel that names no driver takes the only one.
+            let alone = raw.draft.drivers.len() == 1;
             let moves = [&left, &right].iter().all(|name| {
                 let wheel = raw.draft.wheels.iter().find(|w| Some(&w.name) == name.as_ref());
-                wheel.is_some_and(|w| w.bump.is_some())
+                wheel.is_some_and(|w| w.bump.is_some() || alone)
             });
             let possible =
                 |m: &AxleMeasure| (has_wheelbase || !m.needs_wheelbase()) && (moves || !m.goes_by_driver());
             let possible: Vec<_> = AxleMeasure::ALL.iter().copied().filter(possible).collect();
+            let lacking = |m: &AxleMeasure| match m {
+                m if m.needs_wheelbase() && !has_wheelbase => Some("`[vehicle]` has no `wheelbase`"),
+                m if m.goes_by_driver() && !moves => Some("not both wheels have a `bump` driver"),
+                _ => None,
+            };
+            self.left_out(&fields, AxleMeasure::ALL, AxleMeasure::name, lacking);
             let measures = self.listed(&fields, AxleMeasure::ALL, &possible, AxleMeasure::name);
             for (what, at) in measures {
                 raw.places.push(Section::Measures, EntryPlace::at(at));
@@ -185,14 +194,36 @@ impl Reader<'_> {
         let has = |key: &str| fields.get(key).is_some();
         let end = fields.get("end").and_then(|f| f.value.get_ref().as_str());
         let vehicle = &raw.draft.vehicle;
-        let stands = has("bump") && vehicle.wheelbase.is_some() && vehicle.centre_of_gravity.is_some();
+        // A wheel that names no driver takes the only one.
+        let moves = has("bump") || raw.draft.drivers.len() == 1;
+        let stands = moves && vehicle.wheelbase.is_some() && vehicle.centre_of_gravity.is_some();
         let possible = |m: &WheelMeasure| match m.needs() {
             WheelNeed::Nothing => true,
             WheelNeed::Kingpin => has("kingpin"),
-            WheelNeed::Bump => has("bump"),
+            WheelNeed::Bump => moves,
             WheelNeed::Braking(at) => stands && end == Some(at.name()) && vehicle.front_brake_share.is_some(),
             WheelNeed::Driving(at) => stands && end == Some(at.name()) && vehicle.front_drive_share.is_some(),
         };
+        let drivers = raw.draft.drivers.len();
+        let no_driver = match drivers {
+            0 => "there is no driver that could be its `bump`".to_owned(),
+            n => format!("`bump` does not say which of the {n} drivers moves the wheel up and down"),
+        };
+        let of_vehicle = |share: bool| match () {
+            _ if vehicle.wheelbase.is_none() => Some("`[vehicle]` has no `wheelbase`"),
+            _ if vehicle.centre_of_gravity.is_none() => Some("`[vehicle]` has no `centre_of_gravity`"),
+            _ => (!share).then_some("`[vehicle]` does not say which share of the force this end takes"),
+        };
+        // Whoever says nothing of the vehicle or of its ends does not ask what they do to the pitching.
+        let (brakes, drives) = (vehicle.front_brake_share.is_some(), vehicle.front_drive_share.is_some());
+        let lacking = |m: &WheelMeasure| match m.needs() {
+            WheelNeed::Kingpin => (!has("kingpin")).then_some("the wheel has no `kingpin`"),
+            need if need.goes_by_driver() && !moves => Some(no_driver.as_str()),
+            WheelNeed::Braking(at) if end == Some(at.name()) => of_vehicle(brakes),
+            WheelNeed::Driving(at) if end == Some(at.name()) => of_vehicle(drives),
+            _ => None,
+        };
+        self.left_out(fields, WheelMeasure::ALL, WheelMeasure::name, lacking);
         let possible: Vec<_> = WheelMeasure::ALL.iter().copied().filter(possible).collect();
         for (what, at) in self.listed(fields, WheelMeasure::ALL, &possible, WheelMeasure::name) {
             raw.places.push(Section::Measures, EntryPlace::at(at));
@@ -201,6 +232,37 @@ impl Reader<'_> {
                 kind: MeasureKindDraft::Wheel { wheel: wheel.to_owned(), what },
             });
         }
+    }
+
+    /// HP0503: names what `measures = "all"` leaves out, and why.
+    fn left_out<'w, T: Copy>(
+        &mut self,
+        fields: &Fields<'_>,
+        all: &[T],
+        name: fn(T) -> &'static str,
+        lacking: impl Fn(&T) -> Option<&'w str>,
+    ) {
+        let Some(f) = fields.get("measures").filter(|f| f.value.get_ref().as_str() == Some("all")) else {
+            return;
+        };
+        let missing: Vec<(&str, T)> = all.iter().filter_map(|m| Some((lacking(m)?, *m))).collect();
+        let mut reasons: Vec<&str> = Vec::new();
+        for (why, _) in &missing {
+            if !reasons.contains(why) {
+                reasons.push(why);
+            }
+        }
+        if reasons.is_empty() {
+            return;
+        }
+        let total = all.len();
+        let message = format!("{} measures {} of {total}", fields.what, total - missing.len());
+        let d = self.remark(Severity::Note, "HP0503", f.value.span(), message);
+        for why in reasons {
+            let names = missing.iter().filter(|(w, _)| *w == why).map(|(_, m)| format!("`{}`", name(*m)));
+            d.notes.push(format!("{why}, so there is no {}", names.collect::<Vec<_>>().join(", ")));
+        }
+        d.help = Some("give what is missing, or list the measures wanted by name".into());
     }
 
     /// The measures listed under `measures`, and where: those named, or all that are possible.

@@ -6,12 +6,35 @@ use crate::motion::{BodyState, Stop};
 use crate::sensitivity::BodySensitivity;
 use crate::space::Vec3;
 
-/// Central difference quotients of a whole motion by one design variable.
+/// Which two designs a difference quotient is of.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Scheme {
+    /// Those at +h and -h: the error falls with the square of h.
+    #[default]
+    Central,
+    /// Those at +h and 0: the error falls with h. For a variable that cannot be moved to the other side.
+    Forward,
+    /// Those at 0 and -h, likewise.
+    Backward,
+}
+
+impl Scheme {
+    /// The designs to solve, in steps from the nominal one.
+    fn moves(self) -> &'static [f64] {
+        match self {
+            Self::Central => &[1.0, -1.0],
+            Self::Forward => &[1.0],
+            Self::Backward => &[-1.0],
+        }
+    }
+}
+
+/// Difference quotients of a whole motion by one design variable.
 #[derive(Clone, Debug)]
 pub struct Difference {
     /// The variable.
     pub variable: VariableId,
-    /// Half the distance between the two designs, m, rad, or units of tau.
+    /// From the nominal design to a moved one, m, rad, or units of tau.
     pub step: f64,
     /// `bodies[k * n + i]`: of body i at time k.
     pub bodies: Vec<BodySensitivity>,
@@ -37,33 +60,45 @@ pub fn natural_step(model: &Model, variable: VariableId) -> f64 {
     if speed > 0.0 { 1.0 / speed } else { size }
 }
 
-/// Re-solves the design at +h and -h of each variable, eight designs at a time, and divides.
+/// Re-solves the designs that a scheme asks for, for each variable and step, eight at a time, and divides. `nominal` is the
+/// complete solution of the nominal design.
 ///
 /// # Errors
 /// Per entry: the [`Stop`] of the moved design that did not run to the end.
-pub fn central_differences(
+pub fn finite_differences(
     analysis: &Analysis<'_>,
+    nominal: &Solution,
+    scheme: Scheme,
     steps: &[(VariableId, f64)],
 ) -> Vec<Result<Difference, Stop>> {
+    let moves = scheme.moves();
     let mut out = Vec::with_capacity(steps.len());
     // Few at a time: a solution holds its whole motion.
-    for group in steps.chunks(4) {
-        let designs: Vec<Vec<f64>> =
-            group.iter().flat_map(|&(v, h)| [h, -h].map(|b| analysis.model().alone(v, b))).collect();
+    for group in steps.chunks(8 / moves.len()) {
+        let designs: Vec<Vec<f64>> = group
+            .iter()
+            .flat_map(|&(v, h)| moves.iter().map(move |m| analysis.model().alone(v, m * h)))
+            .collect();
         let solutions = analysis.run_designs(&designs);
-        for (&(variable, step), pair) in group.iter().zip(solutions.chunks(2)) {
-            let stop = pair.iter().find_map(|s| s.stop.clone());
+        for (&(variable, step), moved) in group.iter().zip(solutions.chunks(moves.len())) {
+            let stop = moved.iter().find_map(|s| s.stop.clone());
+            let [plus, minus] = match scheme {
+                Scheme::Central => [&moved[0], &moved[1]],
+                Scheme::Forward => [&moved[0], nominal],
+                Scheme::Backward => [nominal, &moved[0]],
+            };
             out.push(match stop {
                 Some(stop) => Err(stop),
-                None => Ok(quotient(variable, step, &pair[0], &pair[1])),
+                None => Ok(quotient(variable, step, plus, minus, moves.len() as f64 * step)),
             });
         }
     }
     out
 }
 
-fn quotient(variable: VariableId, step: f64, plus: &Solution, minus: &Solution) -> Difference {
-    let k = 0.5 / step;
+/// `apart`: how far the two designs are from each other.
+fn quotient(variable: VariableId, step: f64, plus: &Solution, minus: &Solution, apart: f64) -> Difference {
+    let k = 1.0 / apart;
     let bodies =
         plus.motion.states.iter().zip(&minus.motion.states).map(|(p, m)| body_quotient(p, m, k)).collect();
     let outputs = (0..plus.measured.len())

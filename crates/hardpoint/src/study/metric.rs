@@ -15,6 +15,11 @@ pub struct MetricValue {
     pub value: Option<f64>,
     /// When it is taken, s; `None` for what is taken of the whole curve.
     pub time: Option<f64>,
+    /// How far interpolation between output times may be off, in SI; `None` for a mean, and where there are not enough output
+    /// times to say.
+    pub error: Option<f64>,
+    /// What the error is to be compared with, in SI: greatest less least value of the curve, for a slope its own size.
+    pub range: f64,
     /// Its derivative by every design variable; NaN for those that the mechanism cannot follow, and all of them where no
     /// sensitivities were solved.
     pub d: Vec<f64>,
@@ -27,7 +32,13 @@ pub fn metrics(model: &Model, solution: &Solution) -> Vec<MetricValue> {
 
 fn metric_value(model: &Model, solution: &Solution, metric: &Metric) -> MetricValue {
     let (measured, times) = (&solution.measured, &solution.motion.times[..]);
-    let none = MetricValue { value: None, time: None, d: vec![f64::NAN; model.variables.len()] };
+    let none = MetricValue {
+        value: None,
+        time: None,
+        error: None,
+        range: 0.0,
+        d: vec![f64::NAN; model.variables.len()],
+    };
     let now = |output: OutputSource| {
         let (m, orders) = column(measured, output)?;
         let values = (0..measured.len()).map(|k| measured.value(k, m)).collect();
@@ -51,7 +62,19 @@ fn metric_value(model: &Model, solution: &Solution, metric: &Metric) -> MetricVa
         let found = varied(metric.of).zip(abscissa(metric, varied));
         found.and_then(|(y, x)| take(metric, &y, &x)).map_or(f64::NAN, |(value, _)| value.d)
     };
-    MetricValue { value: Some(value), time, d: (0..model.variables.len()).map(derivative).collect() }
+    let error = interpolation_error(metric, &y, &x, value, time);
+    let finite = || y.values.iter().map(|v| v[0]).filter(|x| x.is_finite());
+    let range = match metric.take {
+        Take::Slope(_) => value.abs(),
+        _ => finite().fold(f64::NEG_INFINITY, f64::max) - finite().fold(f64::INFINITY, f64::min),
+    };
+    MetricValue {
+        value: Some(value),
+        time,
+        error,
+        range,
+        d: (0..model.variables.len()).map(derivative).collect(),
+    }
 }
 
 /// The column of an output, and how many orders of it are known.
@@ -73,17 +96,15 @@ struct Curve<'t, T> {
 }
 
 impl<T: Real> Curve<'_, T> {
-    /// Value and rate at a time of interval k: by the polynomial with the values, rates and accelerations that are known at
-    /// its ends.
-    fn at(&self, k: usize, t: T) -> [T; 2] {
-        let like = |x: f64| t.like(x);
-        let h = self.times[k + 1] - self.times[k];
-        let s = (t - like(self.times[k])) / like(h);
-        let ([a, b], zero) = ([&self.values[k], &self.values[k + 1]], t.zero());
-        // Newton's form on [0, 0, 0, 1, 1, 1], or with fewer ends of each; coefficients in s.
+    /// The polynomial of interval k with the values, rates and accelerations that are known at its ends: its coefficients in the
+    /// part of the interval that has passed.
+    fn coefficients(&self, k: usize) -> [T; 6] {
+        let ([a, b], like) = ([&self.values[k], &self.values[k + 1]], |x: f64| self.values[k][0].like(x));
+        let (h, zero) = (self.times[k + 1] - self.times[k], like(0.0));
+        // Newton's form on [0, 0, 0, 1, 1, 1], or with fewer ends of each.
         let [a0, a1, a2] = [a[0], a[1] * like(h), a[2] * like(0.5 * h * h)];
         let [b0, b1, b2] = [b[0], b[1] * like(h), b[2] * like(0.5 * h * h)];
-        let [c0, c1, c2, c3, c4, c5] = match self.orders {
+        match self.orders {
             1 => [a0, b0 - a0, zero, zero, zero, zero],
             2 => {
                 let rise = b0 - a0;
@@ -98,11 +119,27 @@ impl<T: Real> Curve<'_, T> {
                 let c4 = like(-15.0) * p + like(7.0) * q - like(2.0) * r;
                 [a0, a1, a2, c3, c4, like(6.0) * p - like(3.0) * q + r]
             }
-        };
+        }
+    }
+
+    /// Value and rate at a time of interval k.
+    fn at(&self, k: usize, t: T) -> [T; 2] {
+        let like = |x: f64| t.like(x);
+        let h = self.times[k + 1] - self.times[k];
+        let s = (t - like(self.times[k])) / like(h);
+        let [c0, c1, c2, c3, c4, c5] = self.coefficients(k);
         let value = c0 + s * (c1 + s * (c2 + s * (c3 + s * (c4 + s * c5))));
         let slope =
             c1 + s * (like(2.0) * c2 + s * (like(3.0) * c3 + s * (like(4.0) * c4 + s * like(5.0) * c5)));
         [value, slope / like(h)]
+    }
+
+    /// The times inside interval k where the curve turns.
+    fn turns(&self, k: usize) -> Vec<f64> {
+        let c = self.coefficients(k).map(|c| c.lane(0));
+        let rate = [c[1], 2.0 * c[2], 3.0 * c[3], 4.0 * c[4], 5.0 * c[5]];
+        let (from, h) = (self.times[k], self.times[k + 1] - self.times[k]);
+        roots(&rate).into_iter().map(|s| from + s * h).collect()
     }
 
     /// A time of interval k without its round-off.
@@ -115,11 +152,162 @@ impl<T: Real> Curve<'_, T> {
     fn number(&self, k: usize, t: f64) -> f64 {
         self.at(k, self.values[k][0].like(t))[0].lane(0)
     }
+}
 
-    fn rate(&self, k: usize, t: f64) -> f64 {
-        self.at(k, self.values[k][0].like(t))[1].lane(0)
+/// Where a polynomial, of degree 4 at most, changes its sign between 0 and 1. Between the places where its derivative does, it
+/// does so once at most.
+fn roots(c: &[f64]) -> Vec<f64> {
+    let value = |s: f64| c.iter().rev().fold(0.0, |sum, c| sum * s + c);
+    // In Bernstein's form the coefficients enclose the polynomial.
+    let n = c.len() - 1;
+    let choose = |n: usize, k: usize| (0..k).fold(1.0, |x, i| x * (n - i) as f64 / (i + 1) as f64);
+    let enclosing = (0..=n).map(|i| (0..=i).map(|j| choose(i, j) / choose(n, j) * c[j]).sum::<f64>());
+    let [low, high] = enclosing.fold([f64::INFINITY, f64::NEG_INFINITY], |[l, h], b| [l.min(b), h.max(b)]);
+    if n == 0 || !(low < 0.0 && high > 0.0) {
+        return Vec::new();
+    }
+    let derivative: Vec<f64> = (1..=n).map(|k| k as f64 * c[k]).collect();
+    let mut ends = vec![0.0];
+    ends.extend(roots(&derivative));
+    ends.push(1.0);
+    let mut found = Vec::new();
+    for pair in ends.windows(2) {
+        let [mut low, mut high] = [pair[0], pair[1]];
+        let rising = value(low) < 0.0;
+        if rising == (value(high) < 0.0) {
+            continue;
+        }
+        for _ in 0..HALVINGS {
+            let middle = 0.5 * (low + high);
+            if (value(middle) < 0.0) == rising { low = middle } else { high = middle }
+        }
+        found.push(0.5 * (low + high));
+    }
+    found
+}
+
+/// The polynomial with what is known at the ends of an interval and at the next output time to either side, in Newton's form:
+/// twice the degree of the interval's own. How far the two are apart is how far that may be from the curve.
+struct Wide {
+    /// Each time as often as something is known there.
+    nodes: Vec<f64>,
+    /// Divided differences.
+    c: Vec<f64>,
+}
+
+impl Wide {
+    /// `None` where nothing is known beside the interval.
+    fn new(y: &Curve<'_, f64>, k: usize) -> Option<Self> {
+        let known = |i: &usize| y.values[*i][..y.orders].iter().all(|x| x.is_finite());
+        // The interval's own ends first.
+        let beside = [k.checked_sub(1), Some(k + 2).filter(|i| *i < y.values.len())];
+        let at: Vec<usize> =
+            [k, k + 1].into_iter().chain(beside.into_iter().flatten().filter(known)).collect();
+        if at.len() == 2 || !(known(&k) && known(&(k + 1))) {
+            return None;
+        }
+        let nodes: Vec<usize> = at.iter().flat_map(|i| std::iter::repeat_n(*i, y.orders)).collect();
+        let mut c: Vec<f64> = nodes.iter().map(|i| y.values[*i][0]).collect();
+        for order in 1..c.len() {
+            for i in (order..c.len()).rev() {
+                let (from, to) = (nodes[i - order], nodes[i]);
+                c[i] = if from == to {
+                    // Half the acceleration, or the rate.
+                    y.values[to][order] / order as f64
+                } else {
+                    (c[i] - c[i - 1]) / (y.times[to] - y.times[from])
+                };
+            }
+        }
+        Some(Self { nodes: nodes.into_iter().map(|i| y.times[i]).collect(), c })
+    }
+
+    /// Value and rate.
+    fn at(&self, t: f64) -> [f64; 2] {
+        let ends = self.nodes.iter().zip(&self.c).rev();
+        ends.fold([0.0; 2], |[value, rate], (node, c)| [value * (t - node) + c, rate * (t - node) + value])
     }
 }
+
+/// How far the metric may be from that of the curve itself, because that is interpolated between output times. The curve is taken
+/// for what the polynomials through more output times ([`Wide`]) make of it.
+fn interpolation_error(
+    metric: &Metric,
+    y: &Curve<'_, f64>,
+    x: &Option<Curve<'_, f64>>,
+    value: f64,
+    time: Option<f64>,
+) -> Option<f64> {
+    let interval = |t: f64| {
+        let after = y.times[..y.values.len()].partition_point(|end| *end <= t);
+        (y.values.len() > 1).then(|| after.clamp(1, y.values.len() - 1) - 1)
+    };
+    // Of value and rate at a time, by how much they differ.
+    let apart = |curve: &Curve<'_, f64>, k: usize, t: f64| {
+        let (own, wide) = (curve.at(k, t), Wide::new(curve, k)?.at(t));
+        Some([wide[0] - own[0], wide[1] - own[1]])
+    };
+    // Where the abscissa decides about the time, its error moves the time, and that the value.
+    let at_place = |t: f64| {
+        let Some(k) = interval(t) else { return Some(0.0) };
+        let late = match x {
+            Some(x) => (apart(x, k, t)?[0] / x.at(k, t)[1]).abs(),
+            None => 0.0,
+        };
+        Some(apart(y, k, t)?[0].abs() + late * y.at(k, t)[1].abs())
+    };
+    match &metric.take {
+        Take::Value(_) => at_place(time?),
+        Take::Slope(_) => {
+            let Some(k) = interval(time?) else { return Some(0.0) };
+            let rate = |curve: &Curve<'_, f64>| Some([curve.at(k, time?)[1], apart(curve, k, time?)?[1]]);
+            let [dy, wide_dy] = rate(y)?;
+            let [dx, wide_dx] = x.as_ref().map_or(Some([1.0, 0.0]), rate)?;
+            Some(((dy + wide_dy) / (dx + wide_dx) - dy / dx).abs())
+        }
+        Take::Greatest | Take::Least => {
+            let sign = if metric.take == Take::Greatest { 1.0 } else { -1.0 };
+            let time = time?;
+            let (inside, along) = (|at: f64| within_window(metric, at), |k, t| along(x, k, t));
+            let cut = x.as_ref().is_some_and(|x| {
+                let at = interval(time).map_or(f64::NAN, |k| x.number(k, time));
+                metric
+                    .window
+                    .into_iter()
+                    .flatten()
+                    .any(|end| (at - end).abs() <= THERE * end.abs().max(THERE))
+            });
+            let here = match interval(time) {
+                None => 0.0,
+                Some(_) if cut => at_place(time)?,
+                Some(k) => apart(y, k, time)?[0].abs(),
+            };
+            // Somewhere else the curve may go beyond.
+            let mut beyond: f64 = 0.0;
+            for k in 0..y.values.len() - 1 {
+                let Some(wide) = Wide::new(y, k) else { continue };
+                let h = y.times[k + 1] - y.times[k];
+                let places = (1..PLACES).map(|i| y.times[k] + h * f64::from(i) / f64::from(PLACES));
+                for t in places.filter(|t| inside(along(k, *t))) {
+                    beyond = beyond.max(sign * (wide.at(t)[0] - value));
+                }
+            }
+            Some(here.max(beyond))
+        }
+        Take::Range => {
+            let of = |end: Take| {
+                let end = Metric { take: end, ..metric.clone() };
+                let (value, time) = take(&end, y, x)?;
+                interpolation_error(&end, y, x, value, time)
+            };
+            Some(of(Take::Greatest)? + of(Take::Least)?)
+        }
+        Take::Mean | Take::Rms(_) => None,
+    }
+}
+
+/// Parts of an interval at whose ends a curve between output times is looked at.
+const PLACES: u32 = 8;
 
 /// Bisections of an interval: to the last bit of a time.
 const HALVINGS: usize = 60;
@@ -189,6 +377,16 @@ fn reach<T: Real>(y: &Curve<'_, T>, x: &Option<Curve<'_, T>>, at: f64) -> Option
     Some((k, t - (value - witness.like(at)) / rate))
 }
 
+/// Whether this part of the curve counts.
+fn within_window(metric: &Metric, at: f64) -> bool {
+    metric.window.is_none_or(|[low, high]| low <= at && at <= high)
+}
+
+/// The abscissa at a time of interval k.
+fn along<T: Real>(x: &Option<Curve<'_, T>>, k: usize, t: f64) -> f64 {
+    x.as_ref().map_or(t, |x| x.number(k, t))
+}
+
 /// The greatest value (sign 1) or the least (-1) where the abscissa is in the window, and its time.
 fn extreme<T: Real>(
     metric: &Metric,
@@ -196,8 +394,8 @@ fn extreme<T: Real>(
     x: &Option<Curve<'_, T>>,
     sign: f64,
 ) -> Option<(T, f64)> {
-    let inside = |at: f64| metric.window.is_none_or(|[low, high]| low <= at && at <= high);
-    let along = |k: usize, t: f64| x.as_ref().map_or(t, |x| x.number(k, t));
+    let inside = |at: f64| within_window(metric, at);
+    let along = |k: usize, t: f64| along(x, k, t);
     let mut best: Option<(T, f64)> = None;
     let mut offer = |value: T, t: f64| {
         let better = best.is_none_or(|(most, _)| sign * value.lane(0) > sign * most.lane(0));
@@ -214,15 +412,7 @@ fn extreme<T: Real>(
         if k == last || y.orders == 1 {
             continue;
         }
-        // Between output times, where the curve turns.
-        let (from, to) = (y.values[k][1].lane(0), y.values[k + 1][1].lane(0));
-        if sign * from > 0.0 && sign * to < 0.0 {
-            let [mut low, mut high] = [t, y.times[k + 1]];
-            for _ in 0..HALVINGS {
-                let middle = 0.5 * (low + high);
-                if sign * y.rate(k, middle) > 0.0 { low = middle } else { high = middle }
-            }
-            let turn = 0.5 * (low + high);
+        for turn in y.turns(k) {
             if inside(along(k, turn)) {
                 offer(y.at(k, y.values[k][0].like(turn))[0], turn);
             }

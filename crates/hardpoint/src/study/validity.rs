@@ -6,7 +6,11 @@ use crate::model::VariableId;
 use super::difference::natural_step;
 
 /// The second-order part may be this part of the first-order one where a linear prediction is still trusted.
-pub(super) const LINEAR: f64 = 0.05;
+const LINEAR: f64 = 0.05;
+/// Over a natural step a second-order part below this part of the first-order one is round-off: the output is linear in the
+/// variable. Second derivatives hold to some 1e-13 of the terms that cancel in them, and these may be a thousand times larger
+/// than the first-order part; what bends at all in a mechanism bends by far more.
+const ROUND_OFF: f64 = 1e-10;
 /// A sensitivity below this part of the output's change over a natural step, m or rad, is none.
 const NOTHING: f64 = 1e-10;
 /// A variable that moves an output by less than this part of what the strongest does is not judged by it: next to nothing, any
@@ -19,9 +23,15 @@ const MOST_BYTES: usize = 64 << 20;
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Validity {
     /// Per output: how far the variable may go, m, rad or plain, before the largest second-order part over the motion is 5 % of the
-    /// largest first-order one; infinite where nothing bends, `None` where there is no sensitivity to speak of or no second
+    /// largest first-order one; infinite where it is exactly linear, `None` where there is no sensitivity to speak of or no second
     /// derivative ([`Known::by_position`](crate::model::Known)).
     pub linear_up_to: Vec<Option<f64>>,
+}
+
+/// How many times a change may be made until its second-order part is 5 % of its first-order part; infinite where that is
+/// exactly linear. Both parts are those of a natural step.
+pub(super) fn linear_up_to(first: f64, second: f64) -> f64 {
+    if second <= ROUND_OFF * first { f64::INFINITY } else { LINEAR * first / second }
 }
 
 /// The validity of the sensitivities of a solution of the nominal design, variable by variable; nothing is said of variables
@@ -63,7 +73,8 @@ pub fn validity(
                 let bend = 0.5 * (0..steps).map(|k| second.value(k, p, m).abs()).fold(0.0, f64::max);
                 let (first, unit) = (firsts[v][m], size.powi(output.dimension.length.into()));
                 if first * natural[v] > f64::max(NOTHING * unit, SLIGHT * strongest[m]) {
-                    found[v].linear_up_to[m] = Some(LINEAR * first / bend);
+                    found[v].linear_up_to[m] =
+                        Some(natural[v] * linear_up_to(first * natural[v], bend * natural[v].powi(2)));
                 }
             }
         }

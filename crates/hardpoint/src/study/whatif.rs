@@ -6,8 +6,9 @@ use crate::model::{Change, DesignVariable, Dimension, End, HardpointId, JointId,
 use crate::sensitivity::{Admissibility, JointDefect, admissibility_at_design};
 use crate::space::Vec3;
 
+use super::difference::natural_step;
 use super::second::SecondDerivatives;
-use super::validity::LINEAR;
+use super::validity::linear_up_to;
 
 /// A changed design: today's curves, those foreseen, and those solved exactly.
 #[derive(Clone, Debug)]
@@ -20,6 +21,8 @@ pub struct WhatIf {
     pub exact: Solution,
     /// How the curves bend along the change.
     bend: SecondDerivatives,
+    /// The change as part of a natural one, of the variable that goes farthest.
+    part: f64,
     /// The joints that the change opens in the design configuration, so that the mechanism re-assembles; none where it is
     /// admissible as a whole.
     pub opens: Vec<JointDefect>,
@@ -36,7 +39,7 @@ pub struct Foresight {
     /// ([`Known::by_position`](crate::model::Known)).
     pub errors: [Option<f64>; 2],
     /// How many times the change could be made before its second-order part is 5 % of the first-order one; infinite where
-    /// nothing bends, `None` where the first-order part is nothing or the second-order one is not known.
+    /// it is exactly linear, `None` where the first-order part is nothing or the second-order one is not known.
     pub linear_up_to: Option<f64>,
 }
 
@@ -58,7 +61,9 @@ pub fn what_if(analysis: &Analysis<'_>, today: Solution, change: &[f64]) -> What
         _ => Vec::new(),
     };
     let field = analysis.effects().field_along(&crate::sensitivity::along(&change), &model.whole(&[]), 0.0);
+    let part = |(v, by): (usize, &f64)| by.abs() / natural_step(model, VariableId(v));
     WhatIf {
+        part: change.iter().enumerate().map(part).fold(0.0, f64::max),
         exact: analysis.run_design(&change),
         bend: analysis.second(&[], std::slice::from_ref(&change), &[[0, 0]]),
         opens: admissibility_at_design(model, &field),
@@ -128,13 +133,17 @@ impl WhatIf {
             }
             (first, second) = (first.max(self.first(k, m).abs()), second.max(self.second(k, m).abs()));
         }
-        let linear_up_to = (bends && first > 0.0).then(|| LINEAR * first / second);
+        let natural = |first: f64, second: f64| {
+            linear_up_to(first / self.part, second / (self.part * self.part)) / self.part
+        };
+        let linear_up_to = (bends && first > 0.0).then(|| natural(first, second));
         Some(Foresight { change, errors, linear_up_to })
     }
 }
 
 /// A variable that a name stands for: one of the model's, or else `HARDPOINT.x`, `.y`, `.z`, or `JOINT.tilt_x`, `.tilt_y`,
-/// `.tilt_z` (about a global axis through the joint's place), which the model is given as a new variable.
+/// `.tilt_z` (about a global axis through the joint's place), which the model is given as a new variable. A coordinate that
+/// one of the model's variables is already stands for that variable.
 pub fn variable_named(model: &mut Model, name: &str) -> Option<VariableId> {
     if let Some(known) = model.variable(name) {
         return Some(known);
@@ -142,8 +151,12 @@ pub fn variable_named(model: &mut Model, name: &str) -> Option<VariableId> {
     let (what, part) = name.rsplit_once('.')?;
     let axis = |letter: &str| ["x", "y", "z"].iter().position(|l| *l == letter);
     let (quantity, change) = if let Some(axis) = axis(part) {
-        let hardpoint = model.hardpoints.iter().position(|h| !h.unnamed && h.name == what)?;
-        (Quantity::Length, Change::Move { hardpoint: HardpointId(hardpoint), velocity: Vec3::AXES[axis] })
+        let hardpoint = HardpointId(model.hardpoints.iter().position(|h| !h.unnamed && h.name == what)?);
+        let same = |v: &DesignVariable| coordinate_of(v) == Some((hardpoint, axis, 1.0));
+        if let Some(known) = model.variables.iter().position(same) {
+            return Some(VariableId(known));
+        }
+        (Quantity::Length, Change::Move { hardpoint, velocity: Vec3::AXES[axis] })
     } else {
         let axis = axis(part.strip_prefix("tilt_")?)?;
         let joint = model.joints.iter().position(|j| !j.unnamed && j.name == what)?;
@@ -163,12 +176,39 @@ pub fn variable_named(model: &mut Model, name: &str) -> Option<VariableId> {
     Some(VariableId(model.variables.len() - 1))
 }
 
-/// Gives a model a variable for every coordinate of its hardpoints that no variable of its own moves alone.
+/// The coordinate that a variable is, if it moves one hardpoint along one global axis and does nothing else, and how much of it
+/// a unit is: -1 where the variable goes against the axis.
+fn coordinate_of(variable: &DesignVariable) -> Option<(HardpointId, usize, f64)> {
+    let Change::Move { hardpoint, .. } = *variable.changes.first()? else { return None };
+    let mut velocity = Vec3::ZERO;
+    for change in &variable.changes {
+        match change {
+            Change::Move { hardpoint: h, velocity: v } if *h == hardpoint => velocity += *v,
+            _ => return None,
+        }
+    }
+    let part = |axis: usize| velocity.dot(Vec3::AXES[axis]);
+    let mut along = (0..3).filter(|axis| part(*axis) != 0.0);
+    let axis = along.next().filter(|_| along.next().is_none() && !variable.fixed_length)?;
+    Some((hardpoint, axis, part(axis)))
+}
+
+/// Whether a variable is a hardpoint's coordinate under the hardpoint's name, and an earlier variable is the same coordinate, up
+/// to sign and unit.
+pub fn repeats_coordinate(model: &Model, variable: VariableId) -> bool {
+    let own = &model.variables[variable.0];
+    let Some((hardpoint, axis, _)) = coordinate_of(own) else { return false };
+    let same = |v: &DesignVariable| coordinate_of(v).is_some_and(|(h, a, _)| (h, a) == (hardpoint, axis));
+    let name = format!("{}.{}", model.hardpoints[hardpoint.0].name, ["x", "y", "z"][axis]);
+    own.name == name && model.variables[..variable.0].iter().any(same)
+}
+
+/// Gives a model a variable for every coordinate of its hardpoints that no variable of its own is.
 pub fn add_coordinates(model: &mut Model) {
     for h in (0..model.hardpoints.len()).filter(|h| !model.hardpoints[*h].unnamed).collect::<Vec<_>>() {
         for (axis, letter) in ["x", "y", "z"].into_iter().enumerate() {
-            let alone = Change::Move { hardpoint: HardpointId(h), velocity: Vec3::AXES[axis] };
-            let known = |v: &DesignVariable| !v.fixed_length && v.changes == std::slice::from_ref(&alone);
+            let known =
+                |v: &DesignVariable| coordinate_of(v).is_some_and(|(of, a, _)| (of.0, a) == (h, axis));
             if !model.variables.iter().any(known) {
                 variable_named(model, &format!("{}.{letter}", model.hardpoints[h].name));
             }

@@ -3,6 +3,7 @@
 use hardpoint::Analysis;
 use hardpoint::model::*;
 use hardpoint::space::Vec3;
+use hardpoint::study::{Scheme, compare_with_difference, finite_differences};
 use hardpoint::topology::Formulation;
 
 use crate::workbench::*;
@@ -159,11 +160,10 @@ fn a_coupled_truss_of_any_size_turns_as_one_body() {
                 assert!(apart(moved, want) < 1e-10, "{n} nodes, node {k} at {t}: {moved:?}, {want:?}");
             }
         }
-        for difference in
-            hardpoint::study::central_differences(&analysis, &[(VariableId(0), 1e-4), (VariableId(1), 1e-4)])
-        {
+        let steps = [(VariableId(0), 1e-4), (VariableId(1), 1e-4)];
+        for difference in finite_differences(&analysis, &solution, Scheme::Central, &steps) {
             let difference = difference.unwrap();
-            let errors = hardpoint::study::compare_with_difference(&analysis, &solution, &difference);
+            let errors = compare_with_difference(&analysis, &solution, &difference);
             let worst = errors.iter().max_by(|a, b| a.error.total_cmp(&b.error)).unwrap();
             assert!(worst.error < 1e-5, "{n} nodes, variable {}: {worst:?}", difference.variable.0);
         }

@@ -6,7 +6,7 @@ use hardpoint::model::*;
 use hardpoint::motion::StopKind;
 use hardpoint::sensitivity::Admissibility;
 use hardpoint::space::{Pose, Vec3};
-use hardpoint::study::{central_differences, compare_with_difference, natural_step};
+use hardpoint::study::{Scheme, compare_with_difference, finite_differences, natural_step};
 use hardpoint::topology::{Formulation, Role, Source};
 use hardpoint::{Analysis, Solution};
 
@@ -422,10 +422,10 @@ impl Case<'_> {
             let part =
                 [3e-3, 1e-3, 3e-4, 1e-4, 3e-5, 1e-5, 3e-6].map(|part| (v, part * natural * margin.sqrt()));
             let mut best: Vec<(f64, String)> = Vec::new();
-            for d in central_differences(analysis, &part).into_iter().flatten() {
+            for d in finite_differences(analysis, s, Scheme::Central, &part).into_iter().flatten() {
                 let errors = compare_with_difference(analysis, s, &d);
                 if best.is_empty() {
-                    best = errors.iter().map(|e| (e.error, e.worst.clone())).collect();
+                    best = errors.iter().map(|e| (e.error, e.quantity.clone())).collect();
                 }
                 for (best, e) in best.iter_mut().zip(errors) {
                     best.0 = if e.error < best.0 { e.error } else { best.0 };
