@@ -70,7 +70,7 @@ fn snapshot(name: &str, text: &str) {
     let error = parse(text, "four-bar.toml").expect_err(name);
     let shown = error.to_string();
     assert!(!error.list().is_empty(), "{name}");
-    insta::with_settings!({ prepend_module_to_snapshot => false, omit_expression => true, description => name }, {
+    insta::with_settings!({ snapshot_path => "../snapshots", prepend_module_to_snapshot => false, omit_expression => true, description => name }, {
         insta::assert_snapshot!(name, shown);
     });
 }
@@ -429,7 +429,7 @@ fn unreadable_files() {
     let folder = dir.path().display().to_string();
     let shown = |name: &str| read(&path(name)).unwrap_err().to_string().replace(&folder, "DIR");
     let all = ["strutt.toml", "nowhere/x.toml", "", "latin1.toml"].map(shown).join("\n\n");
-    insta::with_settings!({ prepend_module_to_snapshot => false, omit_expression => true }, {
+    insta::with_settings!({ snapshot_path => "../snapshots", prepend_module_to_snapshot => false, omit_expression => true }, {
         insta::assert_snapshot!("unreadable_files", all);
     });
     let huge = std::fs::File::create(path("huge.toml")).unwrap();
