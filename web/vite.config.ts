@@ -1,5 +1,11 @@
 import { defineConfig } from 'vitest/config'
 
+/**
+ * Milliseconds after which a test counts as hung: an hour, where the slowest takes seconds. No result may depend on how fast
+ * or how busy the machine is, so a limit is there only so that a hang ends at all.
+ */
+const HANG = 3_600_000
+
 // The built files are committed in the Rust crate that embeds them, so their names are fixed
 // and nothing in them depends on the folder or on the time of the build.
 export default defineConfig({
@@ -14,5 +20,12 @@ export default defineConfig({
       output: { entryFileNames: 'app.js', assetFileNames: 'app[extname]', codeSplitting: false },
     },
   },
-  test: { include: ['test/**/*.test.ts'], testTimeout: 60_000, hookTimeout: 300_000 },
+  test: {
+    include: ['test/**/*.test.ts'],
+    globalSetup: 'test/samples.ts',
+    testTimeout: HANG,
+    hookTimeout: HANG,
+    teardownTimeout: HANG,
+    expect: { poll: { timeout: HANG } },
+  },
 })

@@ -2,6 +2,8 @@ import { existsSync } from 'node:fs'
 import { delimiter, join } from 'node:path'
 import { type Browser, type BrowserContext, chromium, type LaunchOptions } from 'playwright-core'
 
+/** Playwright's word for no time limit of its own: that of the test ends what hangs. */
+const NO_LIMIT = 0
 /** Draws WebGL in software, so that the tests need neither a graphics card nor a screen. */
 const SOFTWARE_3D = ['--use-angle=swiftshader', '--enable-unsafe-swiftshader']
 const QUIET = [
@@ -23,7 +25,8 @@ function chromiumPath(): string {
 }
 
 export function launch(graphics: string[] = SOFTWARE_3D, options: LaunchOptions = {}): Promise<Browser> {
-  return chromium.launch({ executablePath: chromiumPath(), headless: true, args: [...QUIET, ...graphics], ...options })
+  const args = [...QUIET, ...graphics]
+  return chromium.launch({ executablePath: chromiumPath(), headless: true, args, timeout: NO_LIMIT, ...options })
 }
 
 export interface Visit {
@@ -34,6 +37,7 @@ export interface Visit {
 
 export async function visit(browser: Browser, url: string, options = {}): Promise<Visit> {
   const page = await browser.newPage({ viewport: { width: 1400, height: 900 }, ...options })
+  page.setDefaultTimeout(NO_LIMIT)
   const complaints: string[] = []
   page.on('console', (message) => message.type() === 'error' && complaints.push(`console: ${message.text()}`))
   page.on('pageerror', (error) => complaints.push(`exception: ${error.message}`))

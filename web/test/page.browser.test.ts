@@ -1,28 +1,13 @@
-import { execFileSync } from 'node:child_process'
-import { mkdtempSync, rmSync } from 'node:fs'
-import { tmpdir } from 'node:os'
-import { join } from 'node:path'
 import { pathToFileURL } from 'node:url'
 import type { Browser, Page } from 'playwright-core'
-import { afterAll, beforeAll, describe, expect, test } from 'vitest'
+import { afterAll, beforeAll, describe, expect, inject, test } from 'vitest'
 import { launch, NO_3D, visit, type Visit } from './browser'
 
 // HARDPOINT_REPORT names a report to test in place of the sample; what is expected here holds for every report
 // that has at least two quantities and two variables with sensitivities.
-const folder = mkdtempSync(join(tmpdir(), 'hardpoint-page-'))
+const samples = inject('samples')
 const given = process.env.HARDPOINT_REPORT
-const file = given ?? join(folder, 'sample.html')
-const url = pathToFileURL(file).href
-
-beforeAll(() => {
-  if (!given) writeSample(file)
-})
-afterAll(() => rmSync(folder, { recursive: true }))
-
-function writeSample(path: string, ...options: string[]): void {
-  const example = ['run', '--quiet', '--package', 'hardpoint-report', '--example', 'sample_page', '--', path, ...options]
-  execFileSync('cargo', example, { cwd: join(import.meta.dirname, '../..'), stdio: 'inherit' })
-}
+const url = pathToFileURL(given ?? samples.whole).href
 
 /** Number of different colours on a canvas, and a sum that changes with its picture. */
 function look(page: Page, selector: string): Promise<{ colours: number; picture: number }> {
@@ -38,6 +23,13 @@ function look(page: Page, selector: string): Promise<{ colours: number; picture:
     for (const pixel of pixels) picture = (Math.imul(picture, 31) + pixel) | 0
     return { colours: new Set(pixels).size, picture }
   }, selector)
+}
+
+/** Lets so many frames pass. */
+function frames(page: Page, count: number): Promise<void> {
+  return page.evaluate(async (count) => {
+    for (let k = 0; k < count; k++) await new Promise(requestAnimationFrame)
+  }, count)
 }
 
 const VIEW = '[data-testid=view-canvas]'
@@ -92,7 +84,8 @@ describe('the report', () => {
     await expect.poll(() => text(page, 'time')).not.toBe(start)
     await page.getByTestId('play').click()
     const stopped = await text(page, 'time')
-    await page.waitForTimeout(200)
+    // While it plays, every frame moves the time.
+    await frames(page, 12)
     expect(await text(page, 'time')).toBe(stopped)
   })
 
@@ -215,11 +208,9 @@ describe.skipIf(given)('the sample', () => {
   })
 
   test('of a motion that stops says so in a banner', async () => {
-    const partial = join(folder, 'partial.html')
-    writeSample(partial, '--partial')
     const browser = await launch()
     try {
-      const { page, complaints } = await visit(browser, pathToFileURL(partial).href)
+      const { page, complaints } = await visit(browser, pathToFileURL(samples.partial).href)
       expect(await page.getByRole('status').first().innerText()).toContain('It stops at t = 1.2 s')
       expect(complaints).toEqual([])
     } finally {

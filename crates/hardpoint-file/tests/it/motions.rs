@@ -6,10 +6,10 @@ use hardpoint::model::{Change, Model};
 use hardpoint_file::{parse, read};
 
 /// Every kind of coupler, driver, law and rare joint once.
-const VALID: &str = include_str!("models/press.toml");
+const VALID: &str = include_str!("../models/press.toml");
 
 fn snapshot(name: &str, shown: &str) {
-    insta::with_settings!({ prepend_module_to_snapshot => false, omit_expression => true, description => name }, {
+    insta::with_settings!({ snapshot_path => "../snapshots", prepend_module_to_snapshot => false, omit_expression => true, description => name }, {
         insta::assert_snapshot!(name, shown);
     });
 }

@@ -74,7 +74,7 @@ fn snapshot(name: &str, text: &str) {
         let help = d.help.as_deref().unwrap_or_default();
         assert!(!help.trim().is_empty(), "{name}: {} has no help: {}", d.code, d.message);
     }
-    insta::with_settings!({ prepend_module_to_snapshot => false, omit_expression => true, description => name }, {
+    insta::with_settings!({ snapshot_path => "../snapshots", prepend_module_to_snapshot => false, omit_expression => true, description => name }, {
         insta::assert_snapshot!(name, shown);
     });
 }
@@ -433,7 +433,7 @@ fn unreadable_files() {
     let folder = dir.path().display().to_string();
     let shown = |name: &str| read(&path(name)).unwrap_err().to_string().replace(&folder, "DIR");
     let all = ["strutt.toml", "nowhere/x.toml", "", "latin1.toml"].map(shown).join("\n\n");
-    insta::with_settings!({ prepend_module_to_snapshot => false, omit_expression => true }, {
+    insta::with_settings!({ snapshot_path => "../snapshots", prepend_module_to_snapshot => false, omit_expression => true }, {
         insta::assert_snapshot!("unreadable_files", all);
     });
     let huge = std::fs::File::create(path("huge.toml")).unwrap();

@@ -1,0 +1,17 @@
+//! Model files as their authors meet them: what is read, what is refused and how that is said, and the models of the gallery
+//! solved and held against what is known of them.
+
+mod diagnostics;
+mod docs;
+mod gallery;
+mod gallery_models;
+mod measures;
+mod metrics;
+mod models;
+mod motions;
+mod parameters;
+mod path;
+mod published;
+mod robustness;
+mod shapes;
+mod wheels;
