@@ -1,12 +1,13 @@
 //! How far a motion stays from singular positions, in words.
 
-use hardpoint::model::Model;
-use hardpoint::motion::Motion;
+use hardpoint::model::{Driver, Model};
+use hardpoint::motion::{Motion, StopKind};
 use hardpoint::topology::Topology;
+use hardpoint_file::Units;
 use serde::Serialize;
 
 use crate::diagnose::named;
-use crate::figures::{number, rounded, some_in_words};
+use crate::figures::{number, rounded, some_in_words, some_of, with_unit};
 
 /// Above this, no more than three digits of the velocities are lost and there is nothing to say.
 const COMFORTABLE: f64 = 1e-3;
@@ -28,8 +29,12 @@ pub struct MarginFact {
     pub digits_lost: f64,
     /// Where the motion starts.
     pub start: f64,
-    /// How long after the last output time the mechanism would be singular if the margin fell on as it does there, s.
+    /// How long after the last output time the motion would come to a singular position if it went on, s, where one is near.
     pub singular_after: Option<f64>,
+    /// How far the drivers would move until then.
+    pub drivers_until: Vec<DriverTravel>,
+    /// What is there: `limit`, beyond which the loop cannot be closed, or `two_motions`, which meet.
+    pub singular_kind: Option<&'static str>,
     /// The margin at every output time.
     pub series: Vec<f64>,
     /// First to last output time, s.
@@ -37,10 +42,21 @@ pub struct MarginFact {
     span: f64,
 }
 
+/// How far a driver moves.
+#[derive(Clone, Debug, Serialize)]
+pub struct DriverTravel {
+    /// The driver.
+    pub driver: String,
+    /// How far, in its unit.
+    pub travel: f64,
+    /// That unit.
+    pub unit: String,
+}
+
 impl MarginFact {
     /// The margins of a motion; `None` where nothing was solved, or nothing but single unknowns, one after the other:
     /// a single equation's condition number is 1 however it stands.
-    pub fn new(model: &Model, topology: &Topology, motion: &Motion) -> Option<Self> {
+    pub fn new(model: &Model, units: Units, topology: &Topology, motion: &Motion) -> Option<Self> {
         if topology.blocks.iter().all(|b| b.unknowns.len() <= 1) {
             return None;
         }
@@ -51,7 +67,23 @@ impl MarginFact {
             joints: named(model, &topology.joints_of_block(least.block)),
             digits_lost: -least.value.log10(),
             start: motion.margins[0].value,
-            singular_after: motion.singular_after(),
+            singular_after: motion.beyond.as_ref().map(|b| b.after),
+            drivers_until: motion.beyond.as_ref().map_or_else(Vec::new, |b| {
+                let moving = model.drivers.iter().zip(&b.travel).filter(|(_, travel)| **travel != 0.0);
+                let fact = |(driver, travel): (&Driver, &f64)| {
+                    let quantity = model.driven(driver).quantity;
+                    DriverTravel {
+                        driver: driver.name.clone(),
+                        travel: units.from_si(quantity, *travel),
+                        unit: symbol(units, quantity).to_owned(),
+                    }
+                };
+                moving.map(fact).collect()
+            }),
+            singular_kind: motion.beyond.as_ref().map(|b| match b.kind {
+                StopKind::Limit => "limit",
+                _ => "two_motions",
+            }),
             series: motion.margins.iter().map(|m| m.value).collect(),
             span: motion.times[motion.len() - 1] - motion.times[0],
         })
@@ -98,8 +130,15 @@ impl MarginFact {
     /// Of a singular position just beyond the end.
     pub fn ahead(&self) -> Option<String> {
         let after = self.singular_after.filter(|after| *after <= SOON * self.span)?;
-        let after = rounded(after, 2);
-        Some(format!("Falling on like this, it would be 0, a singular position, {after} s after the end"))
+        let drivers = self.drivers_until.iter();
+        let drivers: Vec<String> =
+            drivers.map(|d| format!("{} of `{}`", with_unit(d.travel, &d.unit), d.driver)).collect();
+        let what = match self.singular_kind {
+            Some("limit") => "its loop cannot be closed beyond",
+            _ => "two motions meet there",
+        };
+        let until = if drivers.is_empty() { String::new() } else { format!(", {},", some_of(&drivers, ", ")) };
+        Some(format!("A singular position lies {} s{until} beyond the end; {what}", rounded(after, 2)))
     }
 }
 

@@ -193,7 +193,7 @@ impl Summary {
                 least_pivot_ratio: effort.least_pivot_ratio,
                 least_pivot_time: effort.least_pivot_time,
             },
-            margin: MarginFact::new(model, topology, &solution.motion),
+            margin: MarginFact::new(model, file.units, topology, &solution.motion),
             assembly: solution.motion.assembly.as_ref().map(|a| AssemblyFact::new(model, file.units, a)),
             stop: stop_fact(file, solution),
             validity: Vec::new(),

@@ -139,7 +139,7 @@ impl WhatIfFacts {
     pub fn new(file: &ModelFile, topology: &Topology, what_if: &WhatIf) -> Self {
         let (model, units) = (&file.model, file.units);
         let change = ChangeFact::all(model, units, &what_if.change);
-        let margin = |s: &Solution| MarginFact::new(model, topology, &s.motion);
+        let margin = |s: &Solution| MarginFact::new(model, file.units, topology, &s.motion);
         let measured = &what_if.today.measured;
         let mut facts = Self {
             change,
@@ -189,7 +189,7 @@ impl WhatIfFacts {
             change: Vec::new(),
             nearest: Vec::new(),
             follows: String::new(),
-            margins: [MarginFact::new(&file.model, topology, &today.motion), None],
+            margins: [MarginFact::new(&file.model, file.units, topology, &today.motion), None],
             measures: Vec::new(),
             metrics: Vec::new(),
             influence: influence(&file.model, file.units, today),

@@ -316,6 +316,7 @@ impl<'m> Analysis<'m> {
         motion.states.truncate(steps * motion.bodies);
         motion.effort = walk.one.effort;
         motion.assembly = walk.one.assembly.take();
+        motion.beyond = if self.measures && steps > 0 { walk.one.beyond() } else { None };
         sensitivities.states.truncate(steps * variables * motion.bodies);
         sensitivities.admissibility =
             walk.sensing.map_or_else(Vec::new, |s| s.admissibility(&design.opens, steps));
@@ -359,6 +360,7 @@ impl<'m> Analysis<'m> {
         motion.margins.clear();
         motion.assembly = None;
         motion.passed.clear();
+        motion.beyond = None;
     }
 
     fn measure(&self, design: &Design, slopes: &SlopeValues, solution: &mut Solution) {

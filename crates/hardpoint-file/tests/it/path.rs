@@ -510,7 +510,7 @@ fn a_base_in_motion_does_not_matter() {
             .replace("[bodies]", "[bodies]\nbase = {}")
             .replace(
                 "[joints]",
-                "[joints]\nturntable = { type = \"revolute\", bodies = [\"ground\", \"base\"], at = \"A\", axis = [1, 0.3, 0.2] }",
+                "[joints]\nturntable = { type = \"revolute\", bodies = [\"ground\", \"base\"], at = [0, 0, 0], axis = [1, 0.3, 0.2] }",
             )
             .replace("[drivers]", "[drivers]\nturn = { joint = \"turntable\", law = \"2.5*sin(7*t)\" }");
         assert_same(&format!("{name} on a base in motion"), &expected, &outcome(&moving));

@@ -21,7 +21,7 @@ pub use jerk::BodyJerk;
 pub use margin::Margin;
 pub use stop::{Stop, StopKind};
 
-use crate::model::{BodyId, Model};
+use crate::model::{BodyId, JointId, Model};
 use crate::space::{LANES, Mat3, Quat, Real, Vec3};
 
 use kinematics::State;
@@ -115,10 +115,25 @@ pub struct Motion {
     pub margins: Vec<Margin>,
     /// How it was closed before it moved, if it was open as drawn.
     pub assembly: Option<Assembly>,
+    /// The singular position next after its end, if one is near.
+    pub beyond: Option<Singular>,
     /// Places that were passed on the way to an output time, by its number, of the bodies whose turns only the path tells.
     pub(crate) passed: Vec<(usize, Passed)>,
     /// What it took.
     pub effort: Effort,
+}
+
+/// A singular position ahead of a motion.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Singular {
+    /// How long after the last output time, s.
+    pub after: f64,
+    /// How far each driver moves until then, m or rad.
+    pub travel: Vec<f64>,
+    /// [`StopKind::Limit`], or [`StopKind::BranchChange`] where two motions meet.
+    pub kind: StopKind,
+    /// The joints of the loop.
+    pub joints: Vec<JointId>,
 }
 
 /// A place between output times.
@@ -153,15 +168,6 @@ impl Motion {
     /// The least margin of the motion, and the output time that has it.
     pub fn least_margin(&self) -> Option<(usize, Margin)> {
         self.margins.iter().copied().enumerate().min_by(|a, b| a.1.value.total_cmp(&b.1.value))
-    }
-
-    /// Where the motion would become singular beyond its end if the margin went on falling as it does over the last step, s
-    /// after the last output time; `None` where it does not fall.
-    pub fn singular_after(&self) -> Option<f64> {
-        let n = self.margins.len();
-        let (before, last) = (self.margins.get(n.checked_sub(2)?)?.value, self.margins[n - 1].value);
-        let step = self.times[n - 1] - self.times[n - 2];
-        (last < before).then(|| step * last / (before - last))
     }
 
     /// States of all bodies at output time k.

@@ -75,17 +75,31 @@ pub(super) struct Prober<T> {
 }
 
 impl<T: Real> Surroundings<T> {
-    pub fn new(topology: &Topology, directions: usize, witness: T) -> Self {
-        let zero = witness.zero();
-        let coordinates = vec![vec![zero; topology.coordinates.len()]; directions];
+    /// Nothing.
+    pub fn unknown() -> Self {
         Self {
-            nearness: vec![vec![zero; topology.blocks.len()]; directions],
-            slopes: coordinates.clone(),
-            bends: coordinates,
-            turning: vec![vec![[zero; 2]; topology.rows.len()]; directions],
-            fastest: vec![zero; directions],
+            nearness: Vec::new(),
+            slopes: Vec::new(),
+            bends: Vec::new(),
+            turning: Vec::new(),
+            fastest: Vec::new(),
             known: 0,
         }
+    }
+
+    /// Makes room for so many directions.
+    fn make_room(&mut self, topology: &Topology, directions: usize, witness: T) {
+        self.known = directions;
+        if self.fastest.len() >= directions {
+            return;
+        }
+        let zero = witness.zero();
+        self.nearness.resize(directions, vec![zero; topology.blocks.len()]);
+        self.slopes.resize(directions, vec![zero; topology.coordinates.len()]);
+        self.bends.resize(directions, vec![zero; topology.coordinates.len()]);
+        let rows = if topology.coupled_rows.is_empty() { 0 } else { topology.rows.len() };
+        self.turning.resize(directions, vec![[zero; 2]; rows]);
+        self.fastest.resize(directions, zero);
     }
 
     /// What part of the distance to the nearest singular position a step may be that moves each direction by so much at most.
@@ -173,7 +187,7 @@ impl<T: Real> Prober<T> {
         found: &mut Surroundings<T>,
     ) {
         let witness = state.witness;
-        found.known = directions;
+        found.make_room(topology, directions, witness);
         self.swap(state);
         let gap = std::mem::replace(&mut state.gap_left[1], gap_rate);
         for direction in 0..directions {

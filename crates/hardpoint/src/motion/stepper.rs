@@ -77,7 +77,8 @@ pub(crate) struct Stepper<'m, T> {
     pub(super) ahead: Ahead,
     pub(super) around: Surroundings<T>,
     pub(super) beyond: Surroundings<T>,
-    pub(super) prober: Box<Prober<T>>,
+    /// Made when first needed: who takes many steps at once examines nothing.
+    pub(super) prober: Option<Box<Prober<T>>>,
     /// Per block: by what part its determinant changed over the last step between output times, and how long that was.
     pub(super) changes: Vec<T>,
     pub(super) change_step: f64,
@@ -200,7 +201,7 @@ impl<'m, T: Real> Stepper<'m, T> {
         };
         let (blocks, drivers) = (topology.blocks.len(), model.drivers.len());
         let directions = usize::max(drivers, 1);
-        let around = Surroundings::new(topology, directions, witness);
+        let around = Surroundings::unknown();
         Self {
             model,
             topology: topology.clone(),
@@ -215,7 +216,7 @@ impl<'m, T: Real> Stepper<'m, T> {
             ahead: Ahead::Unknown,
             beyond: around.clone(),
             around,
-            prober: Box::new(Prober::new(topology, model.bodies.len(), drivers, witness)),
+            prober: None,
             changes: vec![witness.zero(); blocks],
             change_step: 0.0,
             moves: vec![0.0; drivers],

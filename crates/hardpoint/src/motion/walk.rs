@@ -8,8 +8,9 @@
 use crate::space::Real;
 
 use super::kinematics::PositionFailure;
+use super::singularity::Prober;
 use super::stepper::{Ahead, Refusal, Stepper};
-use super::{BodyState, Passed, Stop, StopKind};
+use super::{BodyState, Passed, Singular, Stop, StopKind};
 use crate::constraint::Row;
 use crate::model::DriverId;
 
@@ -41,6 +42,8 @@ const SUSPECT: f64 = 1e-2;
 /// The response to a load goes with this power of the distance, at most, where the loop cannot be closed beyond: 1/2; where two motions
 /// meet it is 1.
 const LIMIT: f64 = 0.75;
+/// A power this near to 1/2 or 1 tells of what kind a singular position ahead is; farther from it, other things have their part.
+const TELLING: f64 = 0.1;
 /// A walk gives up after so many steps without a radian, or a size, of any driver.
 const MOST_STEPS: usize = 20_000;
 /// Between two output times no driver is followed further than this, rad or sizes: what runs away would be followed for ever.
@@ -204,6 +207,8 @@ impl<T: Real> Stepper<'_, T> {
         let Self { prober, topology, parts, state, line, beyond, drivers, .. } = self;
         let witness = state.witness;
         let directions = if path == Path::Laws { drivers.len() } else { 1 };
+        let prober = prober
+            .get_or_insert_with(|| Box::new(Prober::new(topology, state.pose.len(), drivers.len(), witness)));
         let speed = |direction: usize, d: usize| match path {
             Path::Assembly => witness.zero(),
             Path::Line { .. } => line[d][1] - line[d][0],
@@ -346,7 +351,32 @@ impl<T: Real> Stepper<'_, T> {
     /// Where the motion becomes singular as it goes on, seen from the saved position; the state must stand there.
     fn ahead(&mut self, path: Path) -> Option<super::singularity::Ahead> {
         let Self { prober, topology, parts, state, drivers, .. } = self;
+        let prober = prober.as_mut()?;
         prober.ahead(topology, parts, state, path.gap_rate(), drivers)
+    }
+
+    /// The singular position that the motion would come to if it went on as it does at the last output time; `None` where none is near
+    /// enough to be told from its surroundings.
+    pub fn beyond(&mut self) -> Option<Singular> {
+        self.stand(Path::Laws).ok()?;
+        let ahead = self.ahead(Path::Laws)?;
+        let limit = (ahead.power - 0.5).abs() < TELLING;
+        let meets = (ahead.power - 1.0).abs() < TELLING;
+        if !(ahead.distance > 0.0 && (limit || meets)) {
+            return None;
+        }
+        let now = self.drivers.iter().map(|f| f[0].lane(0));
+        let travel = now.enumerate().map(|(d, now)| {
+            let then = self.parts.law_of(d, 0).at(self.time + ahead.distance).value();
+            // A law that ends there goes on as it does now.
+            if then.is_finite() { then - now } else { self.drivers[d][1].lane(0) * ahead.distance }
+        });
+        Some(Singular {
+            after: ahead.distance,
+            travel: travel.collect(),
+            kind: if limit { StopKind::Limit } else { StopKind::BranchChange },
+            joints: self.topology.joints_of_block(ahead.block),
+        })
     }
 
     /// Whether what is near lies ahead, not behind.

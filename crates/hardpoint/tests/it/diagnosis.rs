@@ -284,5 +284,4 @@ fn the_margin_of_a_slider_crank_driven_at_its_slide_is_the_sine_of_its_transmiss
         let leg = (bar - Vec3::new(1.0, -1.0, 0.0)).unit().unwrap();
         assert!((margin.value - bar.cross(leg).norm()).abs() < 1e-12, "{margin:?}");
     }
-    assert!(solution.motion.singular_after().is_some());
 }
