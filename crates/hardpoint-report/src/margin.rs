@@ -5,6 +5,7 @@ use hardpoint::motion::Motion;
 use hardpoint::topology::Topology;
 use serde::Serialize;
 
+use crate::course::MarginCourse;
 use crate::diagnose::named;
 use crate::figures::{number, rounded, some_in_words};
 
@@ -30,7 +31,7 @@ pub struct MarginFact {
     pub start: f64,
     /// How long after the last output time the mechanism would be singular if the margin fell on as it does there, s.
     pub singular_after: Option<f64>,
-    /// The margin at every output time.
+    /// The margin at every output time; of very many, at those that were kept (`steps.kept_every` of the summary).
     pub series: Vec<f64>,
     /// First to last output time, s.
     #[serde(skip)]
@@ -40,20 +41,20 @@ pub struct MarginFact {
 impl MarginFact {
     /// The margins of a motion; `None` where nothing was solved, or nothing but single unknowns, one after the other:
     /// a single equation's condition number is 1 however it stands.
-    pub fn new(model: &Model, topology: &Topology, motion: &Motion) -> Option<Self> {
+    pub fn new(model: &Model, topology: &Topology, course: &MarginCourse, kept: &Motion) -> Option<Self> {
         if topology.blocks.iter().all(|b| b.unknowns.len() <= 1) {
             return None;
         }
-        let (k, least) = motion.least_margin()?;
+        let (least, time) = course.least?;
         Some(Self {
             least: least.value,
-            time: motion.times[k],
+            time,
             joints: named(model, &topology.joints_of_block(least.block)),
             digits_lost: -least.value.log10(),
-            start: motion.margins[0].value,
-            singular_after: motion.singular_after(),
-            series: motion.margins.iter().map(|m| m.value).collect(),
-            span: motion.times[motion.len() - 1] - motion.times[0],
+            start: course.start?.value,
+            singular_after: course.singular_after(),
+            series: kept.margins.iter().map(|m| m.value).collect(),
+            span: course.span[1] - course.span[0],
         })
     }
 

@@ -37,6 +37,20 @@ pub struct Output {
     pub source: OutputSource,
 }
 
+impl Output {
+    /// What its time derivative of order 0, 1 or 2 is called: `toe`, `toe rate`, `toe acceleration`; of a point's component
+    /// `tip.x`, `tip.vx`, `tip.ax`.
+    pub fn order_name(&self, order: usize) -> String {
+        match (self.source, self.name.rsplit_once('.')) {
+            (_, _) if order == 0 => self.name.clone(),
+            (OutputSource::Point(..), Some((point, axis))) => {
+                format!("{point}.{}{axis}", ["", "v", "a"][order])
+            }
+            _ => format!("{} {}", self.name, ["", "rate", "acceleration"][order]),
+        }
+    }
+}
+
 /// Measures and point components over a motion, with their sensitivities.
 #[derive(Clone, Debug, Default)]
 pub struct Measured {
@@ -45,9 +59,9 @@ pub struct Measured {
     /// How many design variables there are.
     pub variables: usize,
     /// `values[k * outputs + m]`: value, rate and acceleration; m or rad, per s, per s^2.
-    values: Vec<[f64; 3]>,
+    pub(crate) values: Vec<[f64; 3]>,
     /// `d[(k * variables + b) * outputs + m]`: derivatives of those by variable b at fixed t.
-    d: Vec<[f64; 3]>,
+    pub(crate) d: Vec<[f64; 3]>,
 }
 
 impl Measured {
@@ -105,6 +119,14 @@ pub(crate) struct At<'a> {
     pub laws: &'a [Law],
 }
 
+/// What a motion goes on from: the output time before its first.
+#[derive(Clone, Debug)]
+pub(crate) struct Before {
+    pub time: f64,
+    /// Values, rates and accelerations of all outputs, angles counted.
+    pub values: Vec<[f64; 3]>,
+}
+
 /// Evaluates all outputs over a motion, and their derivatives by the variables that it has sensitivities for.
 pub(crate) fn evaluate(
     design: &At<'_>,
@@ -112,6 +134,7 @@ pub(crate) fn evaluate(
     motion: &Motion,
     sensitivities: &Sensitivities,
     slopes: &SlopeValues,
+    before: Option<&Before>,
 ) -> Measured {
     let &At { model, effects, values, laws } = design;
     let outputs = outputs(model);
@@ -136,7 +159,7 @@ pub(crate) fn evaluate(
         let moment = Moment { slopes: &given, ..Moment::new(model, &fixed, &poses) };
         moment.all(|x| measured.values.push(x.0.map(finite)));
         let raw = counts.then(|| measured.values[first..].to_vec());
-        unwrap_angles(laws, topology, motion, k, &turns, &mut measured.values, first);
+        unwrap_angles(laws, topology, (motion, before), k, &turns, &mut measured.values, first);
         if let Some(raw) = raw {
             let now = counted.len();
             let whole = |(m, x): (usize, &[f64; 3])| x[0] - raw[m][0];
@@ -254,7 +277,7 @@ fn turns(model: &Model, topology: &Topology, outputs: &[Output]) -> Vec<Option<T
 fn unwrap_angles(
     laws: &[Law],
     topology: &Topology,
-    motion: &Motion,
+    (motion, before): (&Motion, Option<&Before>),
     k: usize,
     turns: &[Option<Turns>],
     values: &mut [[f64; 3]],
@@ -266,12 +289,16 @@ fn unwrap_angles(
             None => continue,
             Some(Turns::Driver(d)) => laws[d.0].at(motion.times[k]).value(),
             Some(Turns::Coordinate(q)) => motion.coordinates[k * topology.coordinates.len() + q],
-            Some(Turns::Rates) if k > 0 => {
-                let before = values[first - turns.len() + m];
-                let h = motion.times[k] - motion.times[k - 1];
-                before[0] + 0.5 * h * (before[1] + values[first + m][1])
+            Some(Turns::Rates) => {
+                let last = match (k, before) {
+                    (0, None) => None,
+                    (0, Some(before)) => Some((before.time, before.values[m])),
+                    _ => Some((motion.times[k - 1], values[first - turns.len() + m])),
+                };
+                last.map_or(0.0, |(t, last)| {
+                    last[0] + 0.5 * (motion.times[k] - t) * (last[1] + values[first + m][1])
+                })
             }
-            Some(Turns::Rates) => 0.0,
         };
         let value = &mut values[first + m][0];
         *value += TURN * ((near - *value) / TURN).round();
