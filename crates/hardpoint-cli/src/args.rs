@@ -22,8 +22,10 @@ Exit codes:
     4  the mechanism cannot be driven as it is written
     5  the mechanism does not assemble, or its motion ends early (limit position, dead point, lock);
        run writes the part that was solved
-    6  a result could not be written
-  130  interrupted; run writes the part that was solved
+    6  a result could not be written, to a file or to stdout
+  130  interrupted; run writes the part that was solved, unless it was writing already
+
+A closed pipe (as by `| head`) is no failure to write.
 
 Results go to stdout, everything else to stderr. With --json, stdout carries
 exactly one JSON document, also where there is no result (except after code 2):
@@ -86,13 +88,38 @@ const AFTER_RUN: &str = "\
 Writes into the folder, each file whole or not at all:
   report.html      the motion in 3D, curves, sensitivities and checks; opens from disk
   motion.csv       position, velocity and acceleration of bodies, points and measures
-  sensitivity.csv  their derivatives by every design variable
+                   (of bodies where there are 100 of them at most)
+  sensitivity.csv  derivatives of measures and points by every design variable
+                   (of bodies where the model has neither, and is small)
   summary.json     the model, how the run went, the largest sensitivities
+What stands in which column: docs/results.md. Files of an earlier run that this one
+does not write are removed. Ctrl-C while it solves writes the part that was solved;
+while it writes, the files of the earlier run stay.
 
 Examples:
   hardpoint run models/slider_crank.toml
-  hardpoint run models/macpherson.toml -o results/baseline
+  hardpoint run models/macpherson.toml -o results/baseline --bodies
+  hardpoint run models/macpherson.toml --format npy
   hardpoint run models/macpherson.toml --json | jq '.sensitivities[0]'";
+
+/// How tables are written.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Format {
+    /// Text: motion.csv and sensitivity.csv
+    Csv,
+    /// NumPy arrays, less than half as large: motion.npy and sensitivity.npy, with columns.json to name their columns
+    Npy,
+}
+
+impl Format {
+    /// How the files' names end.
+    pub fn suffix(self) -> &'static str {
+        match self {
+            Self::Csv => "csv",
+            Self::Npy => "npy",
+        }
+    }
+}
 
 /// `hardpoint run`.
 #[derive(Args, Debug)]
@@ -109,6 +136,15 @@ pub struct Run {
     /// Write the third time derivatives of all bodies too, as jerk.csv
     #[arg(long)]
     pub jerk: bool,
+    /// Write motion and sensitivities of all bodies, however many there are
+    #[arg(long)]
+    pub bodies: bool,
+    /// Solve the motion only
+    #[arg(long)]
+    pub no_sensitivities: bool,
+    /// Write motion and sensitivities as text (csv), or as NumPy arrays, half as large, with columns.json (npy)
+    #[arg(long, value_enum, default_value_t = Format::Csv, hide_possible_values = true)]
+    pub format: Format,
 }
 
 const AFTER_CHECK: &str = "\

@@ -29,13 +29,15 @@ fn check_in(session: &Session, options: &Check) -> Result<Outcome, Outcome> {
     })?;
     let read = session.seconds();
     let started = Instant::now();
-    let solution = session.solve(&analysis);
-    let facts = Facts::new(&file, analysis.topology(), Some(&solution));
-    let mut summary = Summary::new(&file, analysis.topology(), facts, &solution);
+    session.patient(true);
+    let course = session.solve_in_windows(&analysis, true, |_| true)?;
+    session.patient(false);
+    let facts = Facts::new(&file, analysis.topology(), Some(&course.kept));
+    let mut summary = Summary::new(&file, analysis.topology(), facts, &course);
     summary.timings.read = read;
     summary.timings.solve = started.elapsed().as_secs_f64();
     summary.timings.total = session.seconds();
-    summary.diagnostics = diagnose::all(&file, &summary, &solution, None);
+    summary.diagnostics = diagnose::all(&file, &summary, &course, None);
     if options.common.json {
         session.print_json(&summary);
     } else {

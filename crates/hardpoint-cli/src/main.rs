@@ -6,19 +6,33 @@ mod folder;
 mod outcome;
 mod run;
 mod session;
+mod tables;
 mod text;
 mod verify;
 mod whatif;
 
+use std::io::Write;
 use std::process::ExitCode;
 
 use clap::{CommandFactory, Parser};
 
 use args::{Arguments, Command};
 use outcome::Outcome;
+use session::Session;
 
 fn main() -> ExitCode {
-    let outcome = match Arguments::parse().command {
+    let arguments = match Arguments::try_parse() {
+        Ok(arguments) => arguments,
+        Err(error) => {
+            // Help and version are results, everything else is a complaint.
+            if let Err(failure) = error.print().and_then(|()| std::io::stdout().flush()) {
+                text::note_failure(failure);
+            }
+            let outcome = if error.use_stderr() { Outcome::Misunderstood } else { Outcome::Done };
+            return Session::not_printed(outcome).into();
+        }
+    };
+    let outcome = match arguments.command {
         Command::Run(options) => run::run(&options),
         Command::Check(options) => check::check(&options),
         Command::Verify(options) => verify::verify(&options),
@@ -34,5 +48,5 @@ fn main() -> ExitCode {
             Outcome::Done
         }
     };
-    outcome.into()
+    Session::not_printed(outcome).into()
 }

@@ -4,10 +4,14 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-use hardpoint::model::VariableId;
+use hardpoint::model::{Model, VariableId};
 use hardpoint::study::{Difference, Scheme, finite_differences, natural_step, validity};
+use hardpoint::topology::Formulation;
 use hardpoint::{Analysis, Solution};
 use hardpoint_file::ModelFile;
+use hardpoint_report::columns::Columns;
+use hardpoint_report::course::Course;
+use hardpoint_report::csv::JerkCsv;
 use hardpoint_report::facts::Facts;
 use hardpoint_report::figures::{error, number, seconds, some_of, with_unit};
 use hardpoint_report::metric::MetricFact;
@@ -15,17 +19,41 @@ use hardpoint_report::page::Table;
 use hardpoint_report::payload::payload;
 use hardpoint_report::summary::{RunStatus, Summary};
 use hardpoint_report::validity::ValidityFact;
-use hardpoint_report::{csv, diagnose, page};
+use hardpoint_report::{diagnose, page};
 
 use crate::args::Run;
 use crate::folder::{Folder, NotWritten};
 use crate::outcome::Outcome;
 use crate::session::{Meter, Session, json_text};
+use crate::tables::Plan;
 use crate::text;
 
 /// The step of the differences that the report compares with, as part of the natural step: small enough for
 /// five digits, large enough to stay clear of round-off.
 const STEP: f64 = 1e-4;
+/// Where only some output times are studied further, they must find the motion where it was: within this part of the
+/// mechanism's size.
+const SAME_MOTION: f64 = 1e-6;
+/// What is said where they do not.
+const NOT_THE_SAME: &str = "with the output times that are kept, the motion does not come out the same: the sensitivities were not \
+    compared with re-solved designs, and how far they can be trusted is not known";
+/// What is said where sensitivities of bodies are not kept.
+const TOO_MANY: &str = "the sensitivities were not compared with re-solved designs, because they are too many to be held; \
+    `hardpoint verify` does that for fewer output times";
+/// Jerks of so many output times are held at once.
+const JERK_ROWS: usize = 256;
+
+/// All files that a run may write; the last one vouches for the others.
+const FILES: [&str; 8] = [
+    "motion.csv",
+    "sensitivity.csv",
+    "motion.npy",
+    "sensitivity.npy",
+    "columns.json",
+    "jerk.csv",
+    "report.html",
+    "summary.json",
+];
 
 /// Solves, writes, and prints the summary.
 pub fn run(options: &Run) -> Outcome {
@@ -39,39 +67,67 @@ fn run_in(session: &Session, options: &Run) -> Result<Outcome, Outcome> {
     let read = session.seconds();
     let path = options.output.clone().unwrap_or_else(|| default_folder(&options.common.model));
     let mut folder = Folder::open(&path).map_err(|e| session.not_written(&e))?;
+    let plan = Plan::new(&file, options);
+    if let Some(announcement) = plan.announcement(&path.display().to_string()) {
+        session.remark(&announcement);
+    }
 
     let started = Instant::now();
-    let solution = session.solve(&analysis);
+    let mut tables = plan.begin(&folder).map_err(|e| session.not_written(&e))?;
+    session.patient(true);
+    let course =
+        session.solve_in_windows(&analysis, !options.no_sensitivities, |window| tables.add(window))?;
     let solve = started.elapsed().as_secs_f64();
-    let facts = Facts::new(&file, analysis.topology(), Some(&solution));
-    let mut summary = Summary::new(&file, analysis.topology(), facts, &solution);
+    let solution = &course.kept;
+    let facts = Facts::new(&file, analysis.topology(), Some(solution));
+    let mut summary = Summary::new(&file, analysis.topology(), facts, &course);
     (summary.timings.read, summary.timings.solve) = (read, solve);
     let outputs = format!("the files in `{}`", path.display());
-    summary.diagnostics = diagnose::all(&file, &summary, &solution, Some(&outputs));
+    summary.diagnostics = diagnose::all(&file, &summary, &course, Some(&outputs));
+    let written = tables.end(&mut folder, &solution.sensitivities.admissibility);
+    let written = written.map_err(|e| session.not_written(&e))?;
+    summary.left_out.extend(plan.left_out());
 
-    let started = Instant::now();
-    let differences =
-        if options.no_compare { Vec::new() } else { differences(session, &analysis, &solution) };
-    summary.timings.compare = started.elapsed().as_secs_f64();
-
-    summary.validity = trusted(session, &file, &analysis, &solution);
+    let mut differences = Vec::new();
+    if !session.interrupted() && !solution.motion.is_empty() {
+        let started = Instant::now();
+        let sample = Sample::of(&file, options.common.formulation(), &course);
+        let studied = sample.analysis(&analysis, &course);
+        if let Some(studied) = studied.as_ref().filter(|_| !options.no_compare && course.has_bodies()) {
+            differences = compare(session, studied, solution);
+        }
+        summary.timings.compare = started.elapsed().as_secs_f64();
+        if let Some(studied) = &studied {
+            summary.validity = trusted(session, &file, studied, solution);
+        } else {
+            summary.left_out.push(NOT_THE_SAME.into());
+        }
+        if !options.no_compare && !course.has_bodies() {
+            summary.left_out.push(TOO_MANY.into());
+        }
+    }
 
     let report = folder.path_of("report.html");
-    if !solution.motion.is_empty() {
-        if options.jerk {
-            let jerks = analysis.jerks(&[]);
-            let write = |out: &mut dyn Write| csv::write_jerk(&file.model, file.units, &jerks, out);
-            folder
-                .write("jerk.csv", |out| write(out).map_err(Into::into))
-                .map_err(|e| session.not_written(&e))?;
+    if solution.motion.is_empty() {
+        summary.timings.total = session.seconds();
+    } else {
+        let stopped_before = session.interrupted();
+        if stopped_before && summary.status == RunStatus::Complete {
+            summary.status = RunStatus::Interrupted;
+        }
+        summary.files.extend(written.iter().map(|name| folder.path_of(name).display().to_string()));
+        if options.jerk && !stopped_before {
+            write_jerk(session, &file, &analysis, &mut folder).map_err(|e| session.not_written(&e))?;
             summary.files.push(folder.path_of("jerk.csv").display().to_string());
         }
         let results =
-            Results { file: &file, analysis: &analysis, solution: &solution, differences: &differences };
+            Results { file: &file, analysis: &analysis, course: &course, differences: &differences };
         results.write(&mut folder, &mut summary, session).map_err(|e| session.not_written(&e))?;
-        folder.commit().map_err(|e| session.not_written(&e))?;
-    } else {
-        summary.timings.total = session.seconds();
+        if session.interrupted() && !stopped_before {
+            session.ended_while_writing(&path);
+            return Err(Outcome::Interrupted);
+        }
+        folder.commit(&FILES).map_err(|e| session.not_written(&e))?;
     }
 
     session.tell(&file, &summary.diagnostics);
@@ -86,14 +142,40 @@ fn run_in(session: &Session, options: &Run) -> Result<Outcome, Outcome> {
     }
     Ok(match summary.status {
         RunStatus::Stopped => Outcome::Stopped,
-        _ if session.interrupted() => Outcome::Interrupted,
-        _ => Outcome::Done,
+        RunStatus::Interrupted => Outcome::Interrupted,
+        RunStatus::Complete => Outcome::Done,
     })
 }
 
 /// `results/<stem>` under the current folder.
 fn default_folder(model: &Path) -> PathBuf {
     Path::new("results").join(model.file_stem().unwrap_or(model.as_os_str()))
+}
+
+/// The model with the output times that were kept of a long motion, for what is studied after it.
+struct Sample {
+    /// `None` where all were kept.
+    model: Option<Model>,
+    formulation: Formulation,
+}
+
+impl Sample {
+    fn of(file: &ModelFile, formulation: Formulation, course: &Course) -> Self {
+        let thinned = || Model { times: course.kept.motion.times.clone(), ..file.model.clone() };
+        Self { model: (course.stride > 1).then(thinned), formulation }
+    }
+
+    /// What is studied; `None` where the motion comes out differently with fewer output times.
+    fn analysis<'a>(&'a self, all: &Analysis<'a>, course: &Course) -> Option<Analysis<'a>> {
+        let Some(model) = &self.model else { return Some(all.clone()) };
+        let analysis = Analysis::with(model, self.formulation).ok()?;
+        let again = analysis.run_motion().motion;
+        let kept = &course.kept.motion;
+        let near = SAME_MOTION * model.size();
+        let same = again.len() == kept.len()
+            && again.states.iter().zip(&kept.states).all(|(a, b)| (a.r - b.r).norm() <= near);
+        same.then_some(analysis)
+    }
 }
 
 /// How far the sensitivities can be trusted, as far as the user has patience.
@@ -103,7 +185,8 @@ fn trusted(
     analysis: &Analysis<'_>,
     solution: &Solution,
 ) -> Vec<ValidityFact> {
-    if solution.motion.is_empty() || session.interrupted() {
+    let nothing = solution.motion.is_empty() || solution.measured.outputs.is_empty();
+    if nothing || session.interrupted() {
         return Vec::new();
     }
     let _working = Meter::working("second derivatives");
@@ -112,10 +195,10 @@ fn trusted(
 }
 
 /// Differences of a complete motion by every variable that it can follow, as far as the user has patience.
-fn differences(session: &Session, analysis: &Analysis<'_>, solution: &Solution) -> Vec<Option<Difference>> {
+fn compare(session: &Session, analysis: &Analysis<'_>, solution: &Solution) -> Vec<Option<Difference>> {
     let model = analysis.model();
     let mut differences = vec![None; model.variables.len()];
-    if solution.stop.is_some() || solution.motion.is_empty() {
+    if solution.stop.is_some() || solution.motion.is_empty() || solution.sensitivities.variables == 0 {
         return differences;
     }
     let variables: Vec<VariableId> = (0..model.variables.len())
@@ -139,28 +222,45 @@ fn differences(session: &Session, analysis: &Analysis<'_>, solution: &Solution) 
     differences
 }
 
+fn write_jerk(
+    session: &Session,
+    file: &ModelFile,
+    analysis: &Analysis<'_>,
+    folder: &mut Folder,
+) -> Result<(), NotWritten> {
+    let _working = Meter::working("third derivatives");
+    let columns = Columns { model: &file.model, units: file.units, bodies: true };
+    folder.write("jerk.csv", |out| {
+        // Nothing can end this part of the work but the end of the program; nothing is in its place yet.
+        session.patient(false);
+        let mut table = JerkCsv::new(columns, out)?;
+        let mut failure = None;
+        analysis.jerks_in_windows(JERK_ROWS, |jerks| {
+            if failure.is_none() {
+                failure = table.add(jerks).err();
+            }
+        });
+        session.patient(true);
+        failure.map_or(Ok(()), |e| Err(e.into())).and_then(|()| table.end().map(|_| ()))
+    })
+}
+
 struct Results<'a> {
     file: &'a ModelFile,
     analysis: &'a Analysis<'a>,
-    solution: &'a Solution,
+    course: &'a Course,
     differences: &'a [Option<Difference>],
 }
 
 impl Results<'_> {
     fn write(&self, folder: &mut Folder, summary: &mut Summary, session: &Session) -> Result<(), NotWritten> {
-        let (model, units, solution) = (&self.file.model, self.file.units, self.solution);
         let started = Instant::now();
         let _working = Meter::working("writing");
-        folder
-            .write("motion.csv", |out| csv::write_motion(model, units, solution, out).map_err(Into::into))?;
-        folder.write("sensitivity.csv", |out| {
-            csv::write_sensitivity(model, units, solution, out).map_err(Into::into)
-        })?;
-        let payload = payload(self.file, self.analysis, solution, self.differences, summary);
+        let payload = payload(self.file, self.analysis, self.course, self.differences, summary);
         let html = page::html(&payload).expect("a payload is plain data");
         folder.write("report.html", |out| out.write_all(html.as_bytes()))?;
-        let names = ["motion.csv", "sensitivity.csv", "summary.json", "report.html"];
-        summary.files.splice(0..0, names.map(|name| folder.path_of(name).display().to_string()));
+        let names = ["report.html", "summary.json"];
+        summary.files.extend(names.map(|name| folder.path_of(name).display().to_string()));
         summary.timings.write = started.elapsed().as_secs_f64();
         summary.timings.total = session.seconds();
         let json = json_text(summary);

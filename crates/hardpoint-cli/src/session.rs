@@ -1,6 +1,7 @@
 //! What the commands share: reading the model, solving with progress and interruption, and telling what
 //! went wrong, as text or as JSON.
 
+use std::cell::Cell;
 use std::ops::ControlFlow;
 use std::path::Path;
 use std::sync::Arc;
@@ -8,13 +9,15 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
 use hardpoint::topology::{Formulation, TopologyFault};
-use hardpoint::{Analysis, Solution};
+use hardpoint::{Analysis, Footprint, Solution};
 use hardpoint_file::{Diagnostic, ModelFile, ReadError};
+use hardpoint_report::course::{Course, Gathering};
+use hardpoint_report::figures::bytes;
 use hardpoint_report::{GENERATOR, diagnose};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use serde_json::json;
 
-use crate::folder::NotWritten;
+use crate::folder::{self, NotWritten};
 use crate::outcome::Outcome;
 use crate::text;
 
@@ -23,24 +26,49 @@ pub struct Session {
     json: bool,
     started: Instant,
     interrupted: Arc<AtomicBool>,
+    patient: Arc<AtomicBool>,
 }
+
+/// Results of so many bytes are held at once while a motion is solved: little enough to be written in no time.
+const WINDOW_BYTES: usize = 4 << 20;
+/// A window holds one output time per lane at least; where that takes more than this, the work is not begun.
+const MOST_BYTES: usize = 512 << 20;
+/// Motions that are studied as a whole may take so many bytes; longer ones are looked at every so many output times.
+const STUDY_BYTES: usize = 96 << 20;
 
 impl Session {
     /// Begins; from now on Ctrl-C asks to stop, and another Ctrl-C later ends the program at once.
     pub fn begin(json: bool) -> Self {
         // Shells and job runners may send the same signal to a process and to its group.
         const SAME_REQUEST: Duration = Duration::from_millis(500);
+        /// Whoever looks at the request does so within this time.
+        const PATIENCE: Duration = Duration::from_millis(700);
         let interrupted = Arc::new(AtomicBool::new(false));
-        let flag = Arc::clone(&interrupted);
+        let patient = Arc::new(AtomicBool::new(false));
+        let (flag, waits) = (Arc::clone(&interrupted), Arc::clone(&patient));
         let mut first = None;
         // Without a handler Ctrl-C just ends the program, which is no reason not to run.
         let _ = ctrlc::set_handler(move || {
             flag.store(true, Ordering::SeqCst);
-            if first.get_or_insert_with(Instant::now).elapsed() > SAME_REQUEST {
+            let again = first.get_or_insert_with(Instant::now).elapsed() > SAME_REQUEST;
+            if !again && !waits.load(Ordering::SeqCst) {
+                std::thread::sleep(PATIENCE);
+            }
+            if again || !waits.load(Ordering::SeqCst) {
+                folder::abandon();
+                if json {
+                    text::print(&json_text(&error_document(&[])));
+                }
                 std::process::exit(Outcome::Interrupted as i32);
             }
         });
-        Self { json, started: Instant::now(), interrupted }
+        Self { json, started: Instant::now(), interrupted, patient }
+    }
+
+    /// Whether what is done now ends by itself soon after a request to stop, and has something to save. What is not patient is
+    /// ended where it stands.
+    pub fn patient(&self, yes: bool) {
+        self.patient.store(yes, Ordering::SeqCst);
     }
 
     /// Whether the user asked to stop.
@@ -82,13 +110,78 @@ impl Session {
         self.json
     }
 
-    /// Solves motion and sensitivities, showing progress.
+    /// Solves motion and sensitivities, showing progress; a motion that is studied as a whole ([`Session::fits`]).
     pub fn solve(&self, analysis: &Analysis<'_>) -> Solution {
         let mut meter = Meter::new("solving", "steps");
         analysis.run_with(|progress| {
             meter.show(progress.done, progress.total);
             self.go_on()
         })
+    }
+
+    /// Solves the motion, with sensitivities or without, however long it is: `each` sees it window by window, and may end it.
+    ///
+    /// # Errors
+    /// Where a single window is too large, before anything is solved.
+    pub fn solve_in_windows(
+        &self,
+        analysis: &Analysis<'_>,
+        sensitivities: bool,
+        mut each: impl FnMut(&Solution) -> bool,
+    ) -> Result<Course, Outcome> {
+        let model = analysis.model();
+        let takes = Footprint::of(model, sensitivities).of_window(WINDOW_BYTES);
+        if takes > MOST_BYTES {
+            let (bodies, variables) = (model.bodies.len() - 1, model.variables.len());
+            let message = format!(
+                "a few output times of {bodies} bodies by {variables} variables take {} of memory",
+                bytes(takes as u64)
+            );
+            let note = format!("at most {} are used for that; nothing was solved", bytes(MOST_BYTES as u64));
+            self.refuse(
+                "HP0603",
+                &message,
+                None,
+                &note,
+                "leave out variables, or use `run --no-sensitivities`",
+            );
+            return Err(Outcome::Misunderstood);
+        }
+        let mut meter = Meter::new("solving", "steps");
+        let mut gathering = Gathering::new(model);
+        let goes_on = Cell::new(true);
+        let whole = analysis.run_in_windows(
+            WINDOW_BYTES,
+            sensitivities,
+            |progress| {
+                meter.show(progress.done, progress.total);
+                if goes_on.get() { self.go_on() } else { ControlFlow::Break(()) }
+            },
+            |first, window| {
+                gathering.add(model, first, window);
+                goes_on.set(each(window) && goes_on.get());
+            },
+        );
+        Ok(gathering.end(&whole))
+    }
+
+    /// Makes the motion of a model short enough to be studied as a whole, by leaving out output times, and tells that.
+    pub fn fits(&self, file: &mut ModelFile) {
+        let most = usize::max(STUDY_BYTES / Footprint::of(&file.model, true).bytes().max(1), 2);
+        let steps = file.model.times.len();
+        if steps > most {
+            let every = steps.div_ceil(most);
+            let last = file.model.times[steps - 1];
+            let mut times: Vec<f64> = file.model.times.iter().copied().step_by(every).collect();
+            if times.last() != Some(&last) {
+                times.push(last);
+            }
+            let left = times.len();
+            self.remark(&format!(
+                "{steps} output times are too many to be held at once: every {every}th is looked at, {left} in all"
+            ));
+            file.model.times = times;
+        }
     }
 
     /// For the core's loops: go on unless the user asked to stop.
@@ -121,12 +214,38 @@ impl Session {
         Outcome::Misunderstood
     }
 
+    /// Says what is worth knowing before the work; not where stdout is a document for machines.
+    pub fn remark(&self, what: &str) {
+        if !self.json {
+            text::complain(&format!("note: {what}\n\n"));
+        }
+    }
+
+    /// Tells that the user ended a run while it wrote.
+    pub fn ended_while_writing(&self, folder: &Path) {
+        let note = format!("nothing in `{}` has changed", folder.display());
+        self.refuse("HP0405", "interrupted while the results were written", None, &note, "run it again");
+    }
+
     /// Tells that a result could not be written.
     pub fn not_written(&self, failure: &NotWritten) -> Outcome {
         let message = format!("`{}` cannot be written", failure.path.display());
         let help = "name a folder that you may write to with `-o`";
         self.refuse("HP0601", &message, Some(&failure.path), &failure.error.to_string(), help);
         Outcome::NotWritten
+    }
+
+    /// Tells that stdout could not be written, if it could not; then that is how the command ends.
+    pub fn not_printed(outcome: Outcome) -> Outcome {
+        match text::failed() {
+            None => outcome,
+            Some(error) => {
+                let help = "write somewhere with room, or use `-o`";
+                let message = "the result could not be written to stdout";
+                text::complain(&text::error("HP0601", message, &error.to_string(), help));
+                Outcome::NotWritten
+            }
+        }
     }
 
     /// Tells what is wrong but not in the model's file.
@@ -148,8 +267,13 @@ impl Session {
     }
 
     fn print_error(&self, diagnostics: &[Diagnostic]) {
-        self.print_json(&json!({ "generator": GENERATOR, "status": "error", "diagnostics": diagnostics }));
+        self.print_json(&error_document(diagnostics));
     }
+}
+
+/// The document where there is no result.
+fn error_document(diagnostics: &[Diagnostic]) -> serde_json::Value {
+    json!({ "generator": GENERATOR, "status": "error", "diagnostics": diagnostics })
 }
 
 /// A JSON document as it is printed and written.
@@ -176,6 +300,9 @@ impl Meter {
     /// A sign that work of unknown length goes on.
     pub fn working(what: &'static str) -> Self {
         let bar = ProgressBar::with_draw_target(None, ProgressDrawTarget::stderr()).with_message(what);
+        if let Ok(style) = ProgressStyle::with_template("{spinner} {wide_msg}") {
+            bar.set_style(style);
+        }
         bar.enable_steady_tick(Duration::from_millis(200));
         Self { what, unit: "", started: Instant::now(), bar: Some(bar) }
     }
@@ -185,7 +312,9 @@ impl Meter {
         const PATIENCE: Duration = Duration::from_millis(300);
         if self.bar.is_none() && self.started.elapsed() > PATIENCE {
             let bar = ProgressBar::with_draw_target(Some(total as u64), ProgressDrawTarget::stderr());
-            let template = format!("{} {{bar:32}} {{pos}} of {{len}} {}, {{eta}} left", self.what, self.unit);
+            // What is left of the line is the bar.
+            let template =
+                format!("{} {{wide_bar}} {{pos}} of {{len}} {}, {{eta}} left", self.what, self.unit);
             if let Ok(style) = ProgressStyle::with_template(&template) {
                 bar.set_style(style);
             }

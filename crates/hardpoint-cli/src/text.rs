@@ -1,8 +1,11 @@
 //! Text for people: tables, headings, and what goes where.
 
+use std::borrow::Cow;
 use std::io::{IsTerminal, Write};
+use std::sync::{Mutex, PoisonError};
 
-use comfy_table::{Cell, ContentArrangement, LineStyle, TableStyle};
+use comfy_table::{Cell, ColumnConstraint, ContentArrangement, LineStyle, TableStyle, Width};
+use hardpoint_report::figures::is_odd;
 use hardpoint_report::margin::MarginFact;
 use hardpoint_report::page::Table;
 use hardpoint_report::summary::Summary;
@@ -11,14 +14,77 @@ const BOLD: &str = "\x1b[1m";
 const RED: &str = "\x1b[1;91m";
 const PLAIN: &str = "\x1b[0m";
 
-/// Prints to stdout; escapes are dropped where it is no terminal. A reader that closed the pipe is no error.
+/// Why stdout could not be written, the first time.
+static FAILED: Mutex<Option<std::io::Error>> = Mutex::new(None);
+
+/// Prints to stdout; escapes are dropped where it is no terminal. A reader that closed the pipe is no error; any other failure
+/// is kept for [`failed`].
 pub fn print(text: &str) {
-    let _ = anstream::stdout().lock().write_all(text.as_bytes());
+    let mut out = anstream::stdout().lock();
+    if let Err(error) = out.write_all(printable(text).as_bytes()).and_then(|()| out.flush()) {
+        note_failure(error);
+    }
+}
+
+/// That stdout could not be written.
+pub fn note_failure(error: std::io::Error) {
+    if error.kind() != std::io::ErrorKind::BrokenPipe {
+        FAILED.lock().unwrap_or_else(PoisonError::into_inner).get_or_insert(error);
+    }
+}
+
+/// Why stdout could not be written, if it could not.
+pub fn failed() -> Option<std::io::Error> {
+    FAILED.lock().unwrap_or_else(PoisonError::into_inner).take()
 }
 
 /// Prints to stderr, likewise.
 pub fn complain(text: &str) {
-    let _ = anstream::stderr().lock().write_all(text.as_bytes());
+    let _ = anstream::stderr().lock().write_all(printable(text).as_bytes());
+}
+
+/// What may stand on a terminal: control characters, and those that turn the direction of writing, are written as escapes.
+/// Line ends stay, and so do sequences that choose colours.
+fn printable(text: &str) -> Cow<'_, str> {
+    if !text.chars().any(|c| c != '\n' && is_odd(c)) {
+        return text.into();
+    }
+    let mut out = String::with_capacity(text.len());
+    let mut rest = text;
+    while let Some(c) = rest.chars().next() {
+        let length = match colour(rest) {
+            Some(length) => {
+                out.push_str(&rest[..length]);
+                length
+            }
+            None if c != '\n' && is_odd(c) => {
+                out.extend(c.escape_unicode());
+                c.len_utf8()
+            }
+            None => {
+                out.push(c);
+                c.len_utf8()
+            }
+        };
+        rest = &rest[length..];
+    }
+    out.into()
+}
+
+/// The length of a sequence that chooses a colour, where the text begins with one.
+fn colour(text: &str) -> Option<usize> {
+    let inside = text.strip_prefix("\x1b[")?;
+    let length = inside.find(|c: char| !c.is_ascii_digit() && c != ';')?;
+    inside[length..].starts_with('m').then_some(length + 3)
+}
+
+/// A name or another text of the user's as it is shown: without anything that a terminal would obey.
+pub fn shown(text: &str) -> Cow<'_, str> {
+    if text.chars().any(is_odd) {
+        text.chars().map(|c| if is_odd(c) { c.escape_unicode().to_string() } else { c.to_string() }).collect()
+    } else {
+        text.into()
+    }
 }
 
 /// Whether stderr shows colours.
@@ -28,41 +94,111 @@ pub fn stderr_in_color() -> bool {
 
 /// In bold.
 pub fn bold(text: &str) -> String {
-    format!("{BOLD}{text}{PLAIN}")
+    format!("{BOLD}{}{PLAIN}", shown(text))
 }
 
 /// An error that is not about the model file, in the look of the others.
 pub fn error(code: &str, message: &str, note: &str, help: &str) -> String {
     format!(
-        "{RED}error[{code}]{PLAIN}{BOLD}: {message}{PLAIN}\n  {BOLD}= note{PLAIN}: {note}\n  {BOLD}= help{PLAIN}: {help}\n"
+        "{RED}error[{code}]{PLAIN}{BOLD}: {}{PLAIN}\n  {BOLD}= note{PLAIN}: {note}\n  {BOLD}= help{PLAIN}: {help}\n",
+        shown(message)
     )
 }
 
 /// Labels and values in two aligned columns.
 pub fn pairs(rows: &[(&str, String)]) -> String {
     let width = rows.iter().map(|(label, _)| label.chars().count()).max().unwrap_or(0);
-    rows.iter().map(|(label, value)| format!("  {label:width$}  {value}\n")).collect()
+    rows.iter().map(|(label, value)| format!("  {label:width$}  {}\n", shown(value))).collect()
 }
 
 /// What is worth knowing and no error, a line each, after an empty one.
 pub fn notes(summary: &Summary) -> String {
     let ahead = summary.margin.as_ref().and_then(MarginFact::ahead);
-    let lines = summary.model.all_notes().into_iter().chain(ahead);
-    let lines: String = lines.map(|note| format!("{BOLD}note{PLAIN}: {note}\n")).collect();
+    let lines = summary.model.all_notes().into_iter().chain(ahead).chain(summary.left_out.iter().cloned());
+    let lines: String = lines.map(|note| format!("{BOLD}note{PLAIN}: {}\n", shown(&note))).collect();
     if lines.is_empty() { lines } else { format!("\n{lines}") }
 }
 
+/// Columns of text may be narrowed to so many characters; to less only where no single word is that long.
+const NARROW: usize = 14;
+
 /// A table under its title, as wide as the terminal, or as it needs to be where there is none.
 pub fn table(table: &Table) -> String {
-    let mut grid = comfy_table::Table::new();
-    grid.load_style(TableStyle::new().header_separator(LineStyle::none().fill('─').junction('─')));
+    let mut grid = empty_grid();
     if std::io::stdout().is_terminal() {
         grid.set_content_arrangement(ContentArrangement::Dynamic);
     }
-    grid.set_header(table.header.iter().map(Cell::new));
+    laid_out(grid, table)
+}
+
+fn empty_grid() -> comfy_table::Table {
+    let mut grid = comfy_table::Table::new();
+    grid.load_style(TableStyle::new().header_separator(LineStyle::none().fill('─').junction('─')));
+    grid
+}
+
+fn laid_out(mut grid: comfy_table::Table, table: &Table) -> String {
+    grid.set_header(table.header.iter().map(|cell| Cell::new(shown(cell))));
     for row in &table.rows {
-        grid.add_row(row);
+        grid.add_row(row.iter().map(|cell| shown(cell)));
+    }
+    // Numbers are never broken, and words only where they are long.
+    for (k, column) in grid.column_iter_mut().enumerate() {
+        let cells = || table.rows.iter().filter_map(|row| row.get(k)).chain(table.header.get(k));
+        let numbers = || table.rows.iter().filter_map(|row| row.get(k)).filter(|cell| !cell.is_empty());
+        let constraint = if numbers().next().is_some() && numbers().all(|cell| is_number(cell)) {
+            ColumnConstraint::ContentWidth
+        } else {
+            let words = cells().flat_map(|cell| cell.split_whitespace()).map(|word| word.chars().count());
+            let width = words.max().unwrap_or(0).min(NARROW) + 2;
+            ColumnConstraint::LowerBoundary(Width::Fixed(width as u16))
+        };
+        column.set_constraint(constraint);
     }
     let lines: String = grid.lines().map(|line| format!(" {}\n", line.trim_end())).collect();
     format!("{}\n{lines}", bold(&table.title))
+}
+
+/// Whether a cell is a number with its unit, or stands where there is none.
+fn is_number(cell: &str) -> bool {
+    let digits = cell.trim_start_matches(['-', '+', '±', '≥', '≤', '<', '>', ' ']);
+    matches!(cell, "–" | "-")
+        || digits.starts_with(|c: char| c.is_ascii_digit()) && cell.chars().count() <= 24
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn nothing_that_a_terminal_would_obey_is_printed() {
+        assert_eq!(printable("a\nb"), "a\nb");
+        assert_eq!(printable("\x1b[1;91mred\x1b[0m"), "\x1b[1;91mred\x1b[0m");
+        let odd = "\x1b]0;title\x07 \x1b[2J \u{202e}x\u{2066}\r\u{9b}";
+        let safe = printable(odd);
+        assert!(!safe.chars().any(is_odd), "{safe:?}");
+        assert_eq!(shown("a\x1b[31m\n"), "a\\u{1b}[31m\\u{a}");
+        assert_eq!(shown("straße, 腕"), "straße, 腕");
+    }
+
+    #[test]
+    fn numbers_of_a_narrow_table_stay_whole() {
+        let row = [
+            "a_rather_long_name_of_a_measure",
+            "another_long_name_of_a_variable",
+            "-0.12346 deg/mm",
+            "0.35 s",
+        ];
+        let words = |row: [&str; 4]| row.map(String::from).to_vec();
+        let header = words(["measure", "by variable", "largest", "at t"]);
+        let table = Table { title: "T".into(), note: String::new(), header, rows: vec![words(row); 2] };
+        for width in [80, 60] {
+            let mut grid = empty_grid();
+            grid.set_content_arrangement(ContentArrangement::Dynamic).set_width(width);
+            let text = laid_out(grid, &table);
+            assert_eq!(text.matches("-0.12346 deg/mm").count(), 2, "{text}");
+            assert_eq!(text.matches("0.35 s").count(), 2, "{text}");
+            assert!(text.lines().all(|line| line.chars().count() <= usize::from(width) + 1), "{text}");
+        }
+    }
 }

@@ -22,7 +22,8 @@ pub fn verify(options: &Verify) -> Outcome {
 }
 
 fn verify_in(session: &Session, options: &Verify) -> Result<Outcome, Outcome> {
-    let file = session.read(&options.common.model)?;
+    let mut file = session.read(&options.common.model)?;
+    session.fits(&mut file);
     let analysis = session.plan(&file, options.common.formulation())?;
     let folder = options.output.as_ref().map(|path| Folder::open(path));
     let folder = folder.transpose().map_err(|e| session.not_written(&e))?;
@@ -54,8 +55,9 @@ fn verify_in(session: &Session, options: &Verify) -> Result<Outcome, Outcome> {
     if let Some(mut folder) = folder {
         let json = json_text(&verdict);
         written = Some(folder.path_of("verify.json"));
-        let result =
-            folder.write("verify.json", |out| out.write_all(json.as_bytes())).and_then(|()| folder.commit());
+        let result = folder
+            .write("verify.json", |out| out.write_all(json.as_bytes()))
+            .and_then(|()| folder.commit(&[]));
         result.map_err(|e| session.not_written(&e))?;
     }
     if options.common.json {

@@ -68,6 +68,7 @@ fn whatif_in(session: &Session, options: &Whatif) -> Result<Outcome, Outcome> {
     }
     let folder = options.output.as_ref().map(|path| Folder::open(path));
     let folder = folder.transpose().map_err(|e| session.not_written(&e))?;
+    session.fits(&mut file);
     let analysis = session.plan(&file, options.common.formulation())?;
 
     let today = session.solve(&analysis);
@@ -107,7 +108,7 @@ fn whatif_in(session: &Session, options: &Whatif) -> Result<Outcome, Outcome> {
             .and_then(|()| folder.write("whatif.json", |out| out.write_all(json.as_bytes())))
             .and_then(|()| folder.write("whatif.csv", |out| facts.write_csv(out).map_err(Into::into)));
         written = Some(folder.path_of("whatif.html"));
-        result.and_then(|()| folder.commit()).map_err(|e| session.not_written(&e))?;
+        result.and_then(|()| folder.commit(&[])).map_err(|e| session.not_written(&e))?;
     }
     if options.common.json {
         session.print_json(&facts);

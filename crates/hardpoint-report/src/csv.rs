@@ -1,128 +1,180 @@
-//! `motion.csv` and `sensitivity.csv`: every solved number, in the user's units, with all its digits.
+//! `motion.csv`, `sensitivity.csv` and `jerk.csv`: solved numbers in the user's units, with all their digits.
 //!
-//! Numbers are the shortest decimals that read back as the same double. A column's unit stands in its
-//! header. In `sensitivity.csv` that is the unit of the numerator; that of the denominator is in column `per`.
+//! Numbers are the shortest decimals that read back as the same double; where there is no number, the field is empty. A
+//! column's unit stands in its header. In `sensitivity.csv` that is the unit of the numerator; that of the denominator is in
+//! column `per`. What each column is: `docs/results.md`.
 
-use std::io::Write;
+use std::borrow::Cow;
+use std::io::{self, Read, Write};
 
-use csv::WriterBuilder;
+use csv::{ByteRecord, Reader, Writer, WriterBuilder};
 use hardpoint::Solution;
-use hardpoint::joint::Quantity::{self, Angle, Length};
-use hardpoint::measure::Output;
-use hardpoint::model::{Model, VariableId};
-use hardpoint::motion::BodyState;
-use hardpoint::sensitivity::BodySensitivity;
-use hardpoint::space::Vec3;
 use hardpoint::study::Jerks;
-use hardpoint_file::Units;
 use serde::{Serialize, Serializer};
 
+use crate::columns::{Column, Columns};
 use crate::facts::variable_unit;
-use crate::figures::order_unit;
 
-const ORDERS: [&str; 3] = ["", " rate", " acceleration"];
+/// `motion.csv`, window by window.
+pub struct MotionCsv<'m, W: Write> {
+    columns: Columns<'m>,
+    writer: Writer<W>,
+    row: Vec<f64>,
+}
 
-/// Writes time, state of every body but ground, then value, rate and acceleration of every output.
+impl<'m, W: Write> MotionCsv<'m, W> {
+    /// With its header: time, state of every body but ground, then value, rate and acceleration of every output.
+    ///
+    /// # Errors
+    /// Where `out` cannot be written.
+    pub fn new(columns: Columns<'m>, out: W) -> csv::Result<Self> {
+        let writer = with_header(&["t [s]"], &columns.of_motion(), out)?;
+        Ok(Self { columns, writer, row: Vec::new() })
+    }
+
+    /// Writes the rows of a window.
+    ///
+    /// # Errors
+    /// Where they cannot be written.
+    pub fn add(&mut self, window: &Solution) -> csv::Result<()> {
+        for (k, &t) in window.motion.times.iter().enumerate() {
+            self.row.clear();
+            self.row.push(t);
+            self.columns.motion(window, k, &mut self.row);
+            self.writer.serialize(numbers(&self.row))?;
+        }
+        Ok(())
+    }
+
+    /// Hands back what was written to.
+    ///
+    /// # Errors
+    /// Where it cannot be written.
+    pub fn end(self) -> io::Result<W> {
+        self.writer.into_inner().map_err(|e| e.into_error())
+    }
+}
+
+/// `sensitivity.csv`, window by window.
+pub struct SensitivityCsv<'m, W: Write> {
+    columns: Columns<'m>,
+    /// Per variable, its unit.
+    units: Vec<String>,
+    writer: Writer<W>,
+    row: Vec<f64>,
+}
+
+impl<'m, W: Write> SensitivityCsv<'m, W> {
+    /// With its header. There is one row per output time and variable: derivatives of what is in `motion.csv` by that
+    /// variable, orientation as a rotation vector `pi`.
+    ///
+    /// # Errors
+    /// Where `out` cannot be written.
+    pub fn new(columns: Columns<'m>, out: W) -> csv::Result<Self> {
+        let writer = with_header(&["t [s]", "variable", "per"], &columns.of_sensitivities(), out)?;
+        let variables = columns.model.variables.iter();
+        let units = variables.map(|v| variable_unit(columns.model, columns.units, v)).collect();
+        Ok(Self { columns, units, writer, row: Vec::new() })
+    }
+
+    /// Writes the rows of a window, by the variables that it has sensitivities for.
+    ///
+    /// # Errors
+    /// Where they cannot be written.
+    pub fn add(&mut self, window: &Solution) -> csv::Result<()> {
+        for (k, &t) in window.motion.times.iter().enumerate() {
+            for (b, variable) in self.columns.model.variables.iter().enumerate() {
+                self.row.clear();
+                if self.columns.sensitivities(window, k, b, &mut self.row).is_some() {
+                    let name = no_formula(&variable.name);
+                    self.writer.serialize((t, name, &self.units[b], numbers(&self.row)))?;
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// Hands back what was written to.
+    ///
+    /// # Errors
+    /// Where it cannot be written.
+    pub fn end(self) -> io::Result<W> {
+        self.writer.into_inner().map_err(|e| e.into_error())
+    }
+}
+
+/// Copies a `sensitivity.csv` without the rows of these variables: that the mechanism cannot follow them was not known when they
+/// were written.
 ///
 /// # Errors
-/// Where `out` cannot be written.
-pub fn write_motion(model: &Model, units: Units, solution: &Solution, out: impl Write) -> csv::Result<()> {
-    let mut header = vec!["t [s]".to_owned()];
-    for body in &model.bodies[1..] {
-        let name = &body.name;
-        header.extend(components(name, "", units, Length, 0));
-        header.extend(["qw", "qx", "qy", "qz"].map(|q| format!("{name}.{q}")));
-        header.extend(components(name, "v", units, Length, 1));
-        header.extend(components(name, "omega_", units, Angle, 1));
-        header.extend(components(name, "a", units, Length, 2));
-        header.extend(components(name, "alpha_", units, Angle, 2));
-    }
-    header.extend(output_headers(solution, units, ""));
+/// Where either cannot be read or written.
+pub fn without_variables(file: impl Read, names: &[&str], out: impl Write) -> csv::Result<()> {
+    let mut reader = Reader::from_reader(file);
     let mut writer = WriterBuilder::new().has_headers(false).from_writer(out);
-    writer.write_record(&header)?;
-    let mut row = Vec::with_capacity(header.len());
-    for (k, &t) in solution.motion.times.iter().enumerate() {
-        row.clear();
-        row.push(t);
-        for state in &solution.motion.at(k)[1..] {
-            push_state(&mut row, units, state);
+    writer.write_byte_record(reader.byte_headers()?)?;
+    let names: Vec<_> = names.iter().map(|name| no_formula(name)).collect();
+    let mut record = ByteRecord::new();
+    while reader.read_byte_record(&mut record)? {
+        if !names.iter().any(|name| record.get(1) == Some(name.as_bytes())) {
+            writer.write_byte_record(&record)?;
         }
-        for (m, output) in solution.measured.outputs.iter().enumerate() {
-            row.extend(
-                known(output, solution.measured.value(k, m)).map(|x| units.from_si(output.dimension, x)),
-            );
-        }
-        writer.serialize(numbers(&row))?;
     }
     writer.flush()?;
     Ok(())
 }
 
-/// Writes time, and the third time derivatives of every body but ground: of its origin, and of its orientation.
-///
-/// # Errors
-/// Where `out` cannot be written.
-pub fn write_jerk(model: &Model, units: Units, jerks: &Jerks, out: impl Write) -> csv::Result<()> {
-    let mut header = vec!["t [s]".to_owned()];
-    for body in &model.bodies[1..] {
-        header.extend(components(&body.name, "jerk_", units, Length, 3));
-        header.extend(components(&body.name, "angular_jerk_", units, Angle, 3));
-    }
-    let mut writer = WriterBuilder::new().has_headers(false).from_writer(out);
-    writer.write_record(&header)?;
-    for (k, &t) in jerks.times.iter().enumerate() {
-        let mut row = vec![t];
-        for body in &jerks.at(k)[1..] {
-            row.extend(body.jerk.to_array().map(|x| units.from_si(Length, x)));
-            row.extend(body.angular.to_array().map(|x| units.from_si(Angle, x)));
-        }
-        writer.serialize(numbers(&row))?;
-    }
-    writer.flush()?;
-    Ok(())
+/// `jerk.csv`, part by part.
+pub struct JerkCsv<'m, W: Write> {
+    columns: Columns<'m>,
+    writer: Writer<W>,
+    row: Vec<f64>,
 }
 
-/// Writes one row per output time and design variable: derivatives of everything in `motion.csv` by that
-/// variable, orientation as a rotation vector `pi`. Variables that the mechanism cannot follow have no rows.
-///
-/// # Errors
-/// Where `out` cannot be written.
-pub fn write_sensitivity(
-    model: &Model,
-    units: Units,
-    solution: &Solution,
-    out: impl Write,
-) -> csv::Result<()> {
-    let mut header = vec!["t [s]".to_owned(), "variable".to_owned(), "per".to_owned()];
-    for body in &model.bodies[1..] {
-        let name = format!("d {}", body.name);
-        header.extend(components(&name, "", units, Length, 0));
-        header.extend(components(&name, "pi_", units, Angle, 0));
-        header.extend(components(&name, "v", units, Length, 1));
-        header.extend(components(&name, "omega_", units, Angle, 1));
-        header.extend(components(&name, "a", units, Length, 2));
-        header.extend(components(&name, "alpha_", units, Angle, 2));
+impl<'m, W: Write> JerkCsv<'m, W> {
+    /// With its header: time, and the third time derivatives of every body but ground, of its origin and of its orientation.
+    ///
+    /// # Errors
+    /// Where `out` cannot be written.
+    pub fn new(columns: Columns<'m>, out: W) -> csv::Result<Self> {
+        let writer = with_header(&["t [s]"], &columns.of_jerk(), out)?;
+        Ok(Self { columns, writer, row: Vec::new() })
     }
-    header.extend(output_headers(solution, units, "d "));
-    let mut writer = WriterBuilder::new().has_headers(false).from_writer(out);
-    writer.write_record(&header)?;
-    let mut row = Vec::with_capacity(header.len());
-    for (k, &t) in solution.motion.times.iter().enumerate() {
-        for (b, variable) in model.variables.iter().enumerate() {
-            let Some(bodies) = solution.sensitivities.at(k, b) else { continue };
-            row.clear();
-            for d in &bodies[1..] {
-                push_sensitivity(&mut row, units, variable.quantity, d);
-            }
-            for (m, output) in solution.measured.outputs.iter().enumerate() {
-                let d = known(output, solution.measured.d(k, VariableId(b), m));
-                row.extend(d.map(|x| units.derivative_from_si(output.dimension, variable.quantity, x)));
-            }
-            writer.serialize((t, &variable.name, variable_unit(model, units, variable), numbers(&row)))?;
+
+    /// Writes some rows.
+    ///
+    /// # Errors
+    /// Where they cannot be written.
+    pub fn add(&mut self, jerks: &Jerks) -> csv::Result<()> {
+        for (k, &t) in jerks.times.iter().enumerate() {
+            self.row.clear();
+            self.row.push(t);
+            self.columns.jerk(jerks, k, &mut self.row);
+            self.writer.serialize(numbers(&self.row))?;
         }
+        Ok(())
     }
-    writer.flush()?;
-    Ok(())
+
+    /// Hands back what was written to.
+    ///
+    /// # Errors
+    /// Where it cannot be written.
+    pub fn end(self) -> io::Result<W> {
+        self.writer.into_inner().map_err(|e| e.into_error())
+    }
+}
+
+fn with_header<W: Write>(first: &[&str], columns: &[Column], out: W) -> csv::Result<Writer<W>> {
+    let mut writer = WriterBuilder::new().has_headers(false).from_writer(out);
+    let columns: Vec<String> = columns.iter().map(Column::header).collect();
+    let header = first.iter().copied().map(Cow::Borrowed).chain(columns.iter().map(|c| no_formula(c)));
+    writer.write_record(header.map(|cell| cell.into_owned().into_bytes()))?;
+    Ok(writer)
+}
+
+/// A text that spreadsheets do not take for a formula: one that begins like a formula gets an apostrophe before it, which
+/// they do not show.
+pub(crate) fn no_formula(text: &str) -> Cow<'_, str> {
+    if text.starts_with(['=', '+', '-', '@', '\t', '\r']) { format!("'{text}").into() } else { text.into() }
 }
 
 /// The fields of a row.
@@ -130,58 +182,41 @@ pub(crate) fn numbers(row: &[f64]) -> Vec<Number> {
     row.iter().map(|x| Number(*x)).collect()
 }
 
-fn components(body: &str, prefix: &str, units: Units, quantity: Quantity, order: usize) -> [String; 3] {
-    let unit = order_unit(units, quantity, order);
-    ["x", "y", "z"].map(|c| format!("{body}.{prefix}{c} [{unit}]"))
-}
-
-fn output_headers(solution: &Solution, units: Units, prefix: &str) -> Vec<String> {
-    let outputs = solution.measured.outputs.iter();
-    outputs
-        .flat_map(|o| {
-            let header = |(k, order): (usize, &str)| {
-                format!("{prefix}{}{order} [{}]", o.name, order_unit(units, o.dimension, k))
-            };
-            ORDERS.into_iter().enumerate().take(o.known.orders).map(header)
-        })
-        .collect()
-}
-
-/// Of value, rate and acceleration of an output, those that can be known.
-fn known(output: &Output, orders: [f64; 3]) -> impl Iterator<Item = f64> {
-    orders.into_iter().take(output.known.orders)
-}
-
 /// A number; an empty field where there is none, as for the curvature of a path at rest.
 pub(crate) struct Number(f64);
 
 impl Serialize for Number {
     fn serialize<S: Serializer>(&self, s: S) -> Result<S::Ok, S::Error> {
-        if self.0.is_nan() { s.serialize_none() } else { s.serialize_f64(self.0) }
+        if self.0.is_finite() { s.serialize_f64(self.0) } else { s.serialize_none() }
     }
 }
 
-fn push_state(row: &mut Vec<f64>, units: Units, s: &BodyState) {
-    let mut push = |q: Quantity, v: Vec3| row.extend(v.to_array().map(|x| units.from_si(q, x)));
-    push(Length, s.r);
-    row.extend(s.quaternion());
-    let mut push = |q: Quantity, v: Vec3| row.extend(v.to_array().map(|x| units.from_si(q, x)));
-    push(Length, s.v);
-    push(Angle, s.omega);
-    push(Length, s.a);
-    push(Angle, s.alpha);
-}
+#[cfg(test)]
+mod tests {
+    use super::*;
 
-fn push_sensitivity(row: &mut Vec<f64>, units: Units, by: Quantity, d: &BodySensitivity) {
-    let parts = [
-        (Length, d.dr),
-        (Angle, d.dpi),
-        (Length, d.dv),
-        (Angle, d.domega),
-        (Length, d.da),
-        (Angle, d.dalpha),
-    ];
-    for (of, v) in parts {
-        row.extend(v.to_array().map(|x| units.derivative_from_si(of, by, x)));
+    #[test]
+    fn what_begins_like_a_formula_is_text() {
+        for text in ["=1+1", "+x", "-x", "@x", "\tx", "\rx"] {
+            assert_eq!(no_formula(text), format!("'{text}"));
+        }
+        for text in ["x", "'x", "", "a=b", " =1"] {
+            assert_eq!(no_formula(text), text);
+        }
+    }
+
+    #[test]
+    fn no_number_is_an_empty_field() {
+        let mut writer = WriterBuilder::new().has_headers(false).from_writer(Vec::new());
+        writer.serialize(numbers(&[1.0, f64::NAN, f64::INFINITY, f64::NEG_INFINITY, -0.5])).unwrap();
+        assert_eq!(writer.into_inner().unwrap(), b"1.0,,,,-0.5\n");
+    }
+
+    #[test]
+    fn rows_of_a_variable_are_taken_out() {
+        let file = "t [s],variable,per,d x\n0,a,mm,1\n0,\"'=b,c\",mm,2\n1,a,mm,3\n1,\"'=b,c\",mm,4\n";
+        let mut out = Vec::new();
+        without_variables(file.as_bytes(), &["=b,c"], &mut out).unwrap();
+        assert_eq!(String::from_utf8(out).unwrap(), "t [s],variable,per,d x\n0,a,mm,1\n1,a,mm,3\n");
     }
 }

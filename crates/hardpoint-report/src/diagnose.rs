@@ -1,7 +1,6 @@
 //! Why a mechanism cannot be driven, a run ended early, or a variable has no sensitivity: as diagnostics of
 //! the model file, in the user's names and units.
 
-use hardpoint::Solution;
 use hardpoint::joint::Quantity;
 use hardpoint::model::{DesignVariable, JointId, Model, Section};
 use hardpoint::motion::{Closing, Stop, StopKind};
@@ -9,6 +8,7 @@ use hardpoint::topology::TopologyFault;
 use hardpoint_file::{Diagnostic, ModelFile, Severity};
 
 use crate::assembly::GapFact;
+use crate::course::Course;
 use crate::facts::{Answer, Facts, variable_unit};
 use crate::figures::{names, number, quoted, rounded, some_in_words, some_of, symbol, with_unit};
 use crate::margin::MarginFact;
@@ -18,19 +18,15 @@ use crate::summary::Summary;
 const MOST_GAPS: usize = 5;
 
 /// Everything to tell of a run, warnings first; `outputs` names what was written of a motion that stopped.
-pub fn all(
-    file: &ModelFile,
-    summary: &Summary,
-    solution: &Solution,
-    outputs: Option<&str>,
-) -> Vec<Diagnostic> {
+pub fn all(file: &ModelFile, summary: &Summary, course: &Course, outputs: Option<&str>) -> Vec<Diagnostic> {
+    let ended = &course.kept.stop;
     let mut list = file.remarks.clone();
     list.extend(variables(file, &summary.model));
     // Before a limit the margin falls to zero, and the stop says so.
-    if solution.stop.as_ref().is_none_or(|s| s.kind == StopKind::Interrupted) {
+    if ended.as_ref().is_none_or(|s| s.kind == StopKind::Interrupted) {
         list.extend(summary.margin.as_ref().and_then(|m| margin(file, m)));
     }
-    list.extend(solution.stop.as_ref().map(|s| stop(file, s, solution.motion.len(), outputs)));
+    list.extend(ended.as_ref().map(|s| stop(file, s, course.steps, outputs)));
     list
 }
 

@@ -16,10 +16,13 @@ pub fn number(value: f64) -> String {
     rounded(value, 5)
 }
 
-/// A number with so many significant digits at most, without trailing zeros.
+/// A number with so many significant digits at most, without trailing zeros; a dash where there is none.
 pub fn rounded(value: f64, digits: usize) -> String {
-    if value == 0.0 || !value.is_finite() {
-        return format!("{}", value + 0.0);
+    if !value.is_finite() {
+        return "–".into();
+    }
+    if value == 0.0 {
+        return "0".into();
     }
     // Rounding first: 9.999999 has another power of ten than its five digits.
     let text = format!("{value:.*e}", digits - 1);
@@ -36,9 +39,13 @@ pub fn rounded(value: f64, digits: usize) -> String {
     }
 }
 
-/// A relative error: two digits.
+/// A relative error: two digits; a dash where there is none.
 pub fn error(value: f64) -> String {
-    if value == 0.0 { "0".into() } else { format!("{value:.1e}") }
+    match value {
+        v if !v.is_finite() => "–".into(),
+        0.0 => "0".into(),
+        v => format!("{v:.1e}"),
+    }
 }
 
 /// A duration in the unit that suits it.
@@ -48,6 +55,22 @@ pub fn seconds(value: f64) -> String {
         v if v < 1.0 => format!("{} ms", rounded(v * 1e3, 3)),
         v => format!("{} s", rounded(v, 3)),
     }
+}
+
+/// A size: `3.2 MB`.
+///
+/// ```
+/// use hardpoint_report::figures::bytes;
+/// assert_eq!([0, 999, 1_500, 3_200_000, 5_800_000_000].map(bytes), ["0 B", "999 B", "1.5 kB", "3.2 MB", "5.8 GB"]);
+/// ```
+pub fn bytes(size: u64) -> String {
+    let (mut size, mut unit) = (size as f64, "B");
+    for larger in ["kB", "MB", "GB", "TB"] {
+        if size >= 999.5 {
+            (size, unit) = (size / 1000.0, larger);
+        }
+    }
+    format!("{} {unit}", rounded(size, if size < 10.0 { 2 } else { 3 }))
 }
 
 /// A number with its unit; a plain number has none.
@@ -145,6 +168,13 @@ pub fn some_in_words(items: &[String]) -> String {
 /// ``coupler `a` ``, ``coupler `b` ``.
 pub fn quoted<'a>(what: &'a str, names: &'a [String]) -> impl Iterator<Item = String> + 'a {
     names.iter().map(move |n| format!("{what} `{n}`"))
+}
+
+/// Whether a character is not to be shown as it is: control characters, and those that turn the direction of writing or
+/// separate lines unseen.
+pub fn is_odd(c: char) -> bool {
+    c.is_control()
+        || matches!(c, '\u{61c}' | '\u{200e}' | '\u{200f}' | '\u{2028}'..='\u{202e}' | '\u{2066}'..='\u{2069}' | '\u{feff}')
 }
 
 /// `1 step`, `2 steps`.

@@ -5,23 +5,28 @@
 //! | module | what it makes |
 //! |---|---|
 //! | [`facts`] | what is known of the mechanism; shown alike by `check`, the summary and the page |
+//! | [`course`] | what a whole run comes to, gathered window by window |
 //! | [`summary`] | `summary.json`: the facts, how the run went, the largest sensitivities |
 //! | [`margin`] | how far the motion stays from singular positions |
 //! | [`assembly`] | what was open in the drawing, and how it closed |
 //! | [`verdict`] | `verify.json`: sensitivities against re-solved designs |
 //! | [`whatif`] | `whatif.json`, `.csv` and `.html`: a changed design, foreseen and exact |
-//! | [`csv`] | `motion.csv` and `sensitivity.csv` |
+//! | [`columns`] | what stands in which column of the files of results |
+//! | [`csv`], [`npy`] | `motion`, `sensitivity` and `jerk` as text, or as arrays |
 //! | [`payload`], [`page`] | `report.html` |
 //! | [`diagnose`] | why a run is impossible or ended early, as diagnostics of the model file |
 //! | [`figures`] | numbers and units as text |
 
 pub mod assembly;
+pub mod columns;
+pub mod course;
 pub mod csv;
 pub mod diagnose;
 pub mod facts;
 pub mod figures;
 pub mod margin;
 pub mod metric;
+pub mod npy;
 pub mod page;
 pub mod payload;
 pub mod summary;

@@ -6,8 +6,9 @@ use hardpoint::topology::Topology;
 use hardpoint_file::Units;
 use serde::Serialize;
 
+use crate::course::MarginCourse;
 use crate::diagnose::named;
-use crate::figures::{number, rounded, some_in_words, some_of, with_unit};
+use crate::figures::{number, rounded, some_in_words, some_of, symbol, with_unit};
 
 /// Above this, no more than three digits of the velocities are lost and there is nothing to say.
 const COMFORTABLE: f64 = 1e-3;
@@ -35,7 +36,7 @@ pub struct MarginFact {
     pub drivers_until: Vec<DriverTravel>,
     /// What is there: `limit`, beyond which the loop cannot be closed, or `two_motions`, which meet.
     pub singular_kind: Option<&'static str>,
-    /// The margin at every output time.
+    /// The margin at every output time; of very many, at those that were kept (`steps.kept_every` of the summary).
     pub series: Vec<f64>,
     /// First to last output time, s.
     #[serde(skip)]
@@ -56,19 +57,25 @@ pub struct DriverTravel {
 impl MarginFact {
     /// The margins of a motion; `None` where nothing was solved, or nothing but single unknowns, one after the other:
     /// a single equation's condition number is 1 however it stands.
-    pub fn new(model: &Model, units: Units, topology: &Topology, motion: &Motion) -> Option<Self> {
+    pub fn new(
+        model: &Model,
+        units: Units,
+        topology: &Topology,
+        course: &MarginCourse,
+        kept: &Motion,
+    ) -> Option<Self> {
         if topology.blocks.iter().all(|b| b.unknowns.len() <= 1) {
             return None;
         }
-        let (k, least) = motion.least_margin()?;
+        let (least, time) = course.least?;
         Some(Self {
             least: least.value,
-            time: motion.times[k],
+            time,
             joints: named(model, &topology.joints_of_block(least.block)),
             digits_lost: -least.value.log10(),
-            start: motion.margins[0].value,
-            singular_after: motion.beyond.as_ref().map(|b| b.after),
-            drivers_until: motion.beyond.as_ref().map_or_else(Vec::new, |b| {
+            start: course.start?.value,
+            singular_after: kept.beyond.as_ref().map(|b| b.after),
+            drivers_until: kept.beyond.as_ref().map_or_else(Vec::new, |b| {
                 let moving = model.drivers.iter().zip(&b.travel).filter(|(_, travel)| **travel != 0.0);
                 let fact = |(driver, travel): (&Driver, &f64)| {
                     let quantity = model.driven(driver).quantity;
@@ -80,12 +87,12 @@ impl MarginFact {
                 };
                 moving.map(fact).collect()
             }),
-            singular_kind: motion.beyond.as_ref().map(|b| match b.kind {
+            singular_kind: kept.beyond.as_ref().map(|b| match b.kind {
                 StopKind::Limit => "limit",
                 _ => "two_motions",
             }),
-            series: motion.margins.iter().map(|m| m.value).collect(),
-            span: motion.times[motion.len() - 1] - motion.times[0],
+            series: kept.margins.iter().map(|m| m.value).collect(),
+            span: course.span[1] - course.span[0],
         })
     }
 
@@ -137,7 +144,8 @@ impl MarginFact {
             Some("limit") => "its loop cannot be closed beyond",
             _ => "two motions meet there",
         };
-        let until = if drivers.is_empty() { String::new() } else { format!(", {},", some_of(&drivers, ", ")) };
+        let until =
+            if drivers.is_empty() { String::new() } else { format!(", {},", some_of(&drivers, ", ")) };
         Some(format!("A singular position lies {} s{until} beyond the end; {what}", rounded(after, 2)))
     }
 }

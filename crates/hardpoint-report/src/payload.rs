@@ -18,6 +18,7 @@ use hardpoint::topology::Role;
 use hardpoint::{Analysis, Solution};
 use hardpoint_file::{ModelFile, Units};
 
+use crate::course::{Course, RoundOff};
 use crate::facts::{Answer, Facts, written_kind};
 use crate::figures::{error, number, order_unit, rounded, seconds, symbol};
 use crate::metric::MetricFact;
@@ -25,13 +26,13 @@ use crate::page::{
     Admissibility, Arrow, BodyTrack, Curve, Fact, FiniteDifference, JointMark, Margin, Payload, Quantity,
     Sensitivity, Status, Units as PageUnits, Variable,
 };
-use crate::summary::{RoundOff, RunStatus, Summary};
+use crate::summary::{RunStatus, Summary};
 use crate::validity::ValidityFact;
 
 /// The page shows at most about this many output times.
 const MOST_STEPS: usize = 1000;
 /// All curves together take at most about this many bytes of the page.
-const MOST_BYTES: usize = 9 << 20;
+const MOST_BYTES: usize = 4 << 20;
 /// A value of a curve in the page: 4 bytes in base64.
 const BYTES_PER_VALUE: f64 = 16.0 / 3.0;
 const AXES: [&str; 3] = ["x", "y", "z"];
@@ -40,11 +41,11 @@ const AXES: [&str; 3] = ["x", "y", "z"];
 pub fn payload(
     file: &ModelFile,
     analysis: &Analysis<'_>,
-    solution: &Solution,
+    course: &Course,
     differences: &[Option<Difference>],
     summary: &Summary,
 ) -> Payload {
-    let (model, units) = (&file.model, file.units);
+    let (model, units, solution) = (&file.model, file.units, &course.kept);
     let size = Size {
         steps: solution.motion.len(),
         bodies: model.bodies.len() - 1,
@@ -52,9 +53,10 @@ pub fn payload(
         outputs: solution.measured.outputs.len(),
         compared: differences.iter().any(Option::is_some),
     };
-    let detail = Detail::that_fits(size);
+    let detail = Detail::that_fits(size, course.has_bodies());
     let steps: Vec<usize> = (0..solution.motion.len()).step_by(detail.stride).collect();
-    let compose = Compose { model, units, analysis, solution, steps, detail };
+    let compose =
+        Compose { model, units, analysis, solution, steps, detail, round_off: course.round_off(model) };
     Payload {
         title: model.name.clone(),
         description: file.description.clone().unwrap_or_default(),
@@ -65,7 +67,7 @@ pub fn payload(
             angle: units.angle.symbol().into(),
             time: "s".into(),
         },
-        status: status(summary, detail),
+        status: status(summary, Detail { stride: detail.stride * course.stride, ..detail }),
         summary: headline(summary),
         notes: summary.model.all_notes(),
         times: compose.curve(|k| solution.motion.times[k]),
@@ -91,6 +93,8 @@ pub fn payload(
 struct Detail {
     /// Every so many steps.
     stride: usize,
+    /// Curves of body origins.
+    origins: bool,
     /// Sensitivities of body origins.
     bodies: bool,
     /// Their comparison with differences.
@@ -111,15 +115,23 @@ struct Size {
 
 impl Detail {
     /// All that there is, or as much of it as keeps the page small.
-    fn that_fits(size: Size) -> Self {
+    fn that_fits(size: Size, bodies: bool) -> Self {
         let stride = size.steps.div_ceil(MOST_STEPS).max(1);
-        let all = Self { stride, bodies: true, body_differences: true };
+        let all = Self { stride, origins: true, bodies: true, body_differences: true };
         let exact_bodies = Self { body_differences: false, ..all };
         let least = Self { bodies: false, ..exact_bodies };
-        let coarser = (stride..).map(|stride| Self { stride, ..least });
-        let coarser = coarser.take_while(|d| size.steps.div_ceil(d.stride) >= MOST_STEPS / 10);
-        let mut levels = [all, exact_bodies].into_iter().chain(coarser);
-        levels.find(|d| d.bytes(size) <= MOST_BYTES as f64).unwrap_or(least)
+        // Fewer steps first, as long as curves stay smooth; then the bodies lose their sensitivities, by which a changed design
+        // is drawn; then fewer steps still.
+        let coarser = |detail: Self, least: usize| {
+            let strides = (stride..).map(move |stride| Self { stride, ..detail });
+            strides.take_while(move |d| d.stride == stride || size.steps.div_ceil(d.stride) >= least)
+        };
+        let with_bodies = std::iter::once(all).chain(coarser(exact_bodies, MOST_STEPS / 4));
+        let without = || coarser(least, MOST_STEPS / 10);
+        // In a model of very many bodies, their own curves would be most of the page.
+        let coarsest = without().last().map_or(least, |d| Self { origins: false, ..d });
+        let mut levels = with_bodies.filter(|_| bodies).chain(without());
+        levels.find(|d| d.bytes(size) <= MOST_BYTES as f64).unwrap_or(coarsest)
     }
 
     /// What the curves of the page take.
@@ -132,7 +144,8 @@ impl Detail {
             (true, false) => origins + 2 * size.bodies,
             (false, _) => 0,
         };
-        let motion = 3 * (size.outputs + origins) + 7 * (size.bodies + 1);
+        let shown = if self.origins { origins } else { 0 };
+        let motion = 3 * (size.outputs + shown) + 7 * (size.bodies + 1);
         let curves = motion + 3 * size.variables * (size.outputs * both + of_origins);
         (curves * size.steps.div_ceil(self.stride)) as f64 * BYTES_PER_VALUE
     }
@@ -155,11 +168,12 @@ fn status(summary: &Summary, detail: Detail) -> Status {
         _ => format!("All {} steps were solved.", steps.asked),
     };
     if detail.stride > 1 {
+        let (shown, stride) = (summary.steps.solved.div_ceil(detail.stride), detail.stride);
         message +=
-            &format!(" This page shows every {}th step; the CSV files hold all of them.", detail.stride);
+            &format!(" This page shows every {stride}th step, {shown} in all; the tables hold all of them.");
     }
     if !detail.bodies && summary.model.counts.bodies > 0 && !summary.model.variables.is_empty() {
-        message += " Sensitivities of body origins are in the CSV file only.";
+        message += " Sensitivities of body origins are not shown; `run --bodies` writes them.";
     }
     Status { complete: summary.status == RunStatus::Complete, message }
 }
@@ -203,6 +217,7 @@ struct Compose<'a> {
     /// The output times that are shown.
     steps: Vec<usize>,
     detail: Detail,
+    round_off: RoundOff,
 }
 
 /// Orders of time derivative of a body's origin.
@@ -317,15 +332,15 @@ impl Compose<'_> {
             let group = if matches!(output.source, OutputSource::Measure(_)) { "measure" } else { "point" };
             self.quantity(&output.name, output.dimension, output.known.orders, group, value)
         });
-        let origins =
-            (1..self.model.bodies.len()).flat_map(|b| (0..3).map(move |axis| (b, axis))).map(|(b, axis)| {
-                let name = format!("{}.{}", self.model.bodies[b].name, AXES[axis]);
-                let value = |k, order: usize| {
-                    let s = &self.solution.motion.at(k)[b];
-                    self.length([s.r, s.v, s.a][order])[axis]
-                };
-                self.quantity(&name, Kind::Length, 3, "body", value)
-            });
+        let bodies = if self.detail.origins { self.model.bodies.len() } else { 1 };
+        let origins = (1..bodies).flat_map(|b| (0..3).map(move |axis| (b, axis))).map(|(b, axis)| {
+            let name = format!("{}.{}", self.model.bodies[b].name, AXES[axis]);
+            let value = |k, order: usize| {
+                let s = &self.solution.motion.at(k)[b];
+                self.length([s.r, s.v, s.a][order])[axis]
+            };
+            self.quantity(&name, Kind::Length, 3, "body", value)
+        });
         outputs.chain(origins).collect()
     }
 
@@ -344,7 +359,6 @@ impl Compose<'_> {
     }
 
     fn variables(&self, facts: &Facts, differences: &[Option<Difference>]) -> Vec<Variable> {
-        let round_off = RoundOff::new(self.model, self.solution);
         let variable = |(b, fact): (usize, &crate::facts::VariableFact)| {
             let known = matches!(fact.answer, Answer::Admissible | Answer::Reassembled);
             let difference = differences.get(b).and_then(Option::as_ref);
@@ -360,7 +374,7 @@ impl Compose<'_> {
                 note: fact.note(),
                 arrows: self.arrows(VariableId(b)),
                 shifts: if known && self.detail.bodies { self.shifts(b) } else { Vec::new() },
-                sensitivities: if known { self.sensitivities(b, difference, &round_off) } else { Vec::new() },
+                sensitivities: if known { self.sensitivities(b, difference) } else { Vec::new() },
             }
         };
         facts.variables.iter().enumerate().map(variable).collect()
@@ -422,12 +436,7 @@ impl Compose<'_> {
         markers.chain(points).chain(far_ends).collect()
     }
 
-    fn sensitivities(
-        &self,
-        b: usize,
-        difference: Option<&Difference>,
-        round_off: &RoundOff,
-    ) -> Vec<Sensitivity> {
+    fn sensitivities(&self, b: usize, difference: Option<&Difference>) -> Vec<Sensitivity> {
         let measured = &self.solution.measured;
         let columns = measured.outputs.len();
         let bodies = self.model.bodies.len();
@@ -444,7 +453,6 @@ impl Compose<'_> {
                 b,
                 exact,
                 overlay,
-                round_off,
             ));
         }
         for (body, axis) in (1..bodies).flat_map(|body| (0..3).map(move |axis| (body, axis))) {
@@ -461,7 +469,7 @@ impl Compose<'_> {
             let exact = |k: usize, order: usize| {
                 self.solution.sensitivities.at(k, b).map_or(f64::NAN, |s| of(&s[body], order))
             };
-            list.push(self.sensitivity(list.len(), (Dimension::LENGTH, 3), b, exact, overlay, round_off));
+            list.push(self.sensitivity(list.len(), (Dimension::LENGTH, 3), b, exact, overlay));
         }
         list
     }
@@ -474,10 +482,9 @@ impl Compose<'_> {
         b: usize,
         exact: impl Fn(usize, usize) -> f64,
         overlay: Option<(&Difference, [f64; 3], F)>,
-        round_off: &RoundOff,
     ) -> Sensitivity {
         let by = self.model.variables[b].quantity;
-        let least = [0, 1, 2].map(|order| round_off.of(b, kind, order));
+        let least = [0, 1, 2].map(|order| self.round_off.of(b, kind, order));
         let shown = |x: f64, order: usize| {
             if x.abs() <= least[order] { 0.0 } else { self.units.derivative_from_si(kind, by, x) }
         };
@@ -530,26 +537,35 @@ mod tests {
     const STRUT: Size = Size { steps: 501, bodies: 4, variables: 16, outputs: 13, compared: true };
 
     #[test]
-    fn a_suspension_is_shown_in_full() {
-        let detail = Detail::that_fits(STRUT);
-        assert_eq!(detail, Detail { stride: 1, bodies: true, body_differences: true });
+    fn a_suspension_keeps_the_sensitivities_of_its_bodies() {
+        let detail = Detail::that_fits(STRUT, true);
+        assert_eq!(detail, Detail { stride: 2, origins: true, bodies: true, body_differences: false });
+        assert!(detail.bytes(STRUT) <= MOST_BYTES as f64);
+        let short = Size { steps: 201, ..STRUT };
+        let detail = Detail::that_fits(short, true);
+        assert_eq!(detail, Detail { stride: 1, origins: true, bodies: true, body_differences: true });
+        // What is not there cannot be shown.
+        assert!(!Detail::that_fits(short, false).bodies);
     }
 
     #[test]
     fn a_long_motion_is_thinned() {
-        let detail = Detail::that_fits(Size { steps: 100_001, ..STRUT });
-        assert_eq!(detail.stride, 101);
-        assert!(detail.bytes(Size { steps: 100_001, ..STRUT }) <= MOST_BYTES as f64);
+        let long = Size { steps: 100_001, ..STRUT };
+        let detail = Detail::that_fits(long, true);
+        assert!(detail.bodies && (101..=400).contains(&detail.stride), "{detail:?}");
+        assert!(detail.bytes(long) <= MOST_BYTES as f64);
     }
 
     #[test]
     fn many_variables_cost_the_bodies_their_curves() {
         let many = Size { variables: 30, bodies: 12, ..STRUT };
-        let detail = Detail::that_fits(many);
-        assert_eq!(detail, Detail { stride: 1, bodies: false, body_differences: false });
+        let detail = Detail::that_fits(many, true);
+        assert!(detail.origins && !detail.bodies && !detail.body_differences, "{detail:?}");
         assert!(detail.bytes(many) <= MOST_BYTES as f64);
         // However much there is, a hundred steps remain.
-        let huge = Detail::that_fits(Size { variables: 5000, ..STRUT });
+        let huge = Detail::that_fits(Size { variables: 5000, ..STRUT }, true);
         assert!(!huge.bodies && huge.stride <= 5);
+        let wide = Detail::that_fits(Size { variables: 0, bodies: 2000, ..STRUT }, true);
+        assert!(!wide.origins, "{wide:?}");
     }
 }

@@ -2,14 +2,14 @@
 
 use hardpoint::Solution;
 use hardpoint::joint::Quantity;
-use hardpoint::model::{Dimension, Model, OutputSource, VariableId};
+use hardpoint::model::{Model, OutputSource};
 use hardpoint::motion::StopKind;
-use hardpoint::study::natural_step;
 use hardpoint::topology::Topology;
 use hardpoint_file::{Diagnostic, ModelFile, Units};
 use serde::Serialize;
 
 use crate::assembly::{AssemblyFact, GapFact};
+use crate::course::Course;
 use crate::diagnose::{driver_values, named};
 use crate::facts::{Facts, variable_unit};
 use crate::figures::{order_unit, per, symbol};
@@ -46,6 +46,8 @@ pub struct Summary {
     pub timings: Timings,
     /// The files that were written.
     pub files: Vec<String>,
+    /// What was not done or not written, and how to have it.
+    pub left_out: Vec<String>,
     /// Warnings and errors, also those shown on the terminal.
     pub diagnostics: Vec<Diagnostic>,
 }
@@ -75,6 +77,11 @@ pub struct Steps {
     pub end: f64,
     /// The last one solved.
     pub last_solved: Option<f64>,
+    /// Of so many, one was kept for the page, for the margin's series and for what is compared: 1 where all were. The files of
+    /// results hold all of them.
+    pub kept_every: usize,
+    /// Of so many, metrics are taken from each one.
+    pub metrics_every: usize,
 }
 
 /// What the solution took.
@@ -169,8 +176,9 @@ pub struct Timings {
 
 impl Summary {
     /// The summary of a run, without files.
-    pub fn new(file: &ModelFile, topology: &Topology, facts: Facts, solution: &Solution) -> Self {
-        let (model, effort) = (&file.model, solution.motion.effort);
+    pub fn new(file: &ModelFile, topology: &Topology, facts: Facts, course: &Course) -> Self {
+        let (model, solution) = (&file.model, &course.kept);
+        let effort = solution.motion.effort;
         Self {
             generator: crate::GENERATOR,
             status: match &solution.stop {
@@ -180,11 +188,13 @@ impl Summary {
             },
             model: facts,
             steps: Steps {
-                solved: solution.motion.len(),
+                solved: course.steps,
                 asked: model.times.len(),
                 start: model.times.first().copied().unwrap_or_default(),
                 end: model.times.last().copied().unwrap_or_default(),
-                last_solved: solution.motion.times.last().copied(),
+                last_solved: course.last_time,
+                kept_every: course.stride,
+                metrics_every: course.metric_stride,
             },
             effort: EffortFact {
                 iterations: effort.iterations,
@@ -193,14 +203,15 @@ impl Summary {
                 least_pivot_ratio: effort.least_pivot_ratio,
                 least_pivot_time: effort.least_pivot_time,
             },
-            margin: MarginFact::new(model, file.units, topology, &solution.motion),
+            margin: MarginFact::new(model, file.units, topology, &course.margins, &solution.motion),
             assembly: solution.motion.assembly.as_ref().map(|a| AssemblyFact::new(model, file.units, a)),
             stop: stop_fact(file, solution),
             validity: Vec::new(),
-            metrics: MetricFact::all(model, file.units, solution),
-            sensitivities: rankings(model, file.units, solution),
+            metrics: MetricFact::all(model, file.units, course.curves()),
+            sensitivities: rankings(model, file.units, course),
             timings: Timings::default(),
             files: Vec::new(),
+            left_out: Vec::new(),
             diagnostics: Vec::new(),
         }
     }
@@ -233,36 +244,32 @@ fn stop_fact(file: &ModelFile, solution: &Solution) -> Option<StopFact> {
     })
 }
 
-fn rankings(model: &Model, units: Units, solution: &Solution) -> Vec<Ranking> {
-    let measured = &solution.measured;
-    let round_off = RoundOff::new(model, solution);
+fn rankings(model: &Model, units: Units, course: &Course) -> Vec<Ranking> {
     let mut rankings = Vec::new();
-    for (m, output) in measured.outputs.iter().enumerate() {
-        if !matches!(output.source, OutputSource::Measure(_)) || model.variables.is_empty() {
+    if course.kept.sensitivities.variables == 0 {
+        return rankings;
+    }
+    let round_off = course.round_off(model);
+    for (m, output) in course.kept.measured.outputs.iter().enumerate() {
+        if !matches!(output.source, OutputSource::Measure(_)) {
             continue;
         }
         for (order, name) in
             ["value", "rate", "acceleration"].into_iter().enumerate().take(output.known.orders)
         {
             let mut largest = Vec::new();
-            for (b, variable) in model.variables.iter().enumerate() {
-                if solution.motion.is_empty() || solution.sensitivities.at(0, b).is_none() {
-                    continue;
-                }
+            for (b, variable) in model.variables.iter().enumerate().filter(|(b, _)| course.follows(*b)) {
                 let unit = variable_unit(model, units, variable);
-                let d = |k: usize| measured.d(k, VariableId(b), m)[order];
-                let most = (0..measured.len()).map(|k| d(k).abs()).fold(0.0, f64::max);
-                if most <= round_off.of(b, output.dimension, order) {
+                let Some((most, time)) = course.largest(m, order, b) else { continue };
+                if most.abs() <= round_off.of(b, output.dimension, order) {
                     continue;
                 }
-                // Of the periods of a motion the first, whatever its last digits.
-                let k = (0..measured.len()).find(|&k| d(k).abs() >= most * (1.0 - 1e-9)).unwrap_or(0);
                 largest.push(Ranked {
                     variable: variable.name.clone(),
-                    value: units.derivative_from_si(output.dimension, variable.quantity, d(k)),
+                    value: units.derivative_from_si(output.dimension, variable.quantity, most),
                     unit: per(&order_unit(units, output.dimension, order), &unit),
                     per: unit,
-                    time: solution.motion.times[k],
+                    time,
                 });
             }
             let kinds = [Quantity::Length, Quantity::Angle, Quantity::Number].map(|q| symbol(units, q));
@@ -275,38 +282,4 @@ fn rankings(model: &Model, units: Units, solution: &Solution) -> Vec<Ranking> {
         }
     }
     rankings
-}
-
-/// What counts as no sensitivity at all: a change of the design by the size of the mechanism, or by 1 rad,
-/// would change the quantity by less than this part of the whole motion.
-const NOTHING: f64 = 1e-10;
-
-/// The level below which a sensitivity is round-off and is shown as 0.
-pub(crate) struct RoundOff {
-    size: f64,
-    /// Of the motion at orders 0, 1 and 2: lengths in sizes, angles in rad.
-    magnitude: [f64; 3],
-    natural: Vec<f64>,
-}
-
-impl RoundOff {
-    pub fn new(model: &Model, solution: &Solution) -> Self {
-        let size = model.size();
-        let magnitude = solution.motion.states.iter().fold([1.0_f64, 0.0, 0.0], |m, s| {
-            [
-                m[0],
-                m[1].max(s.omega.norm()).max(s.v.norm() / size),
-                m[2].max(s.alpha.norm()).max(s.a.norm() / size),
-            ]
-        });
-        let natural = (0..model.variables.len()).map(|b| natural_step(model, VariableId(b))).collect();
-        Self { size, magnitude, natural }
-    }
-
-    /// For a quantity's derivative by variable b, SI.
-    pub fn of(&self, b: usize, of: impl Into<Dimension>, order: usize) -> f64 {
-        let of: Dimension = of.into();
-        let order = (order as i8 - of.time).clamp(0, 2) as usize;
-        NOTHING * self.magnitude[order] * self.size.powi(of.length.into()) / self.natural[b]
-    }
 }

@@ -14,7 +14,9 @@ use hardpoint_file::{Diagnostic, ModelFile, Units};
 use serde::Serialize;
 
 use crate::GENERATOR;
-use crate::csv::numbers;
+use crate::columns::Column;
+use crate::course::MarginCourse;
+use crate::csv::{no_formula, numbers};
 use crate::diagnose::out_of_bounds;
 use crate::facts::variable_unit;
 use crate::figures::{names, number, per, rounded, unit, with_unit};
@@ -139,7 +141,9 @@ impl WhatIfFacts {
     pub fn new(file: &ModelFile, topology: &Topology, what_if: &WhatIf) -> Self {
         let (model, units) = (&file.model, file.units);
         let change = ChangeFact::all(model, units, &what_if.change);
-        let margin = |s: &Solution| MarginFact::new(model, file.units, topology, &s.motion);
+        let margin = |s: &Solution| {
+            MarginFact::new(model, file.units, topology, &MarginCourse::of(&s.motion), &s.motion)
+        };
         let measured = &what_if.today.measured;
         let mut facts = Self {
             change,
@@ -189,7 +193,16 @@ impl WhatIfFacts {
             change: Vec::new(),
             nearest: Vec::new(),
             follows: String::new(),
-            margins: [MarginFact::new(&file.model, file.units, topology, &today.motion), None],
+            margins: [
+                MarginFact::new(
+                    &file.model,
+                    file.units,
+                    topology,
+                    &MarginCourse::of(&today.motion),
+                    &today.motion,
+                ),
+                None,
+            ],
             measures: Vec::new(),
             metrics: Vec::new(),
             influence: influence(&file.model, file.units, today),
@@ -297,7 +310,8 @@ impl WhatIfFacts {
     pub fn write_csv(&self, out: impl Write) -> csv::Result<()> {
         let mut header = vec!["t [s]".to_owned()];
         for m in &self.measures {
-            header.extend(m.curves().map(|(name, _)| format!("{} {name} [{}]", m.measure, m.unit)));
+            let column = |name: &str| Column { name: format!("{} {name}", m.measure), unit: m.unit.clone() };
+            header.extend(m.curves().map(|(name, _)| no_formula(&column(name).header()).into_owned()));
         }
         let mut writer = WriterBuilder::new().has_headers(false).from_writer(out);
         writer.write_record(&header)?;

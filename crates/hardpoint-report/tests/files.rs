@@ -7,10 +7,13 @@ use hardpoint::sensitivity::BodySensitivity;
 use hardpoint::study::{Scheme, finite_differences, natural_step};
 use hardpoint::{Analysis, Solution};
 use hardpoint_file::ModelFile;
+use hardpoint_report::columns::Columns;
+use hardpoint_report::course::Course;
+use hardpoint_report::csv::{MotionCsv, SensitivityCsv};
 use hardpoint_report::facts::{Answer, Facts};
+use hardpoint_report::page;
 use hardpoint_report::payload::payload;
 use hardpoint_report::summary::Summary;
-use hardpoint_report::{csv as tables, page};
 use serde_json::Value;
 
 const SLIDER: &str = include_str!("../../hardpoint-cli/tests/models/slider.toml");
@@ -18,6 +21,10 @@ const DEGREES: f64 = 180.0 / PI;
 
 fn file() -> ModelFile {
     hardpoint_file::parse(SLIDER, "models/slider.toml").unwrap()
+}
+
+fn all(file: &ModelFile) -> Columns<'_> {
+    Columns { model: &file.model, units: file.units, bodies: true }
 }
 
 struct Csv {
@@ -53,8 +60,9 @@ fn assert_same(found: f64, expected: f64) {
 fn motion_file_holds_every_number_in_the_units_of_its_header() {
     let file = file();
     let solution = Analysis::new(&file.model).unwrap().run();
-    let mut bytes = Vec::new();
-    tables::write_motion(&file.model, file.units, &solution, &mut bytes).unwrap();
+    let mut table = MotionCsv::new(all(&file), Vec::new()).unwrap();
+    table.add(&solution).unwrap();
+    let bytes = table.end().unwrap();
     let csv = Csv::read(&bytes);
     let outputs = solution.measured.outputs.len();
     assert_eq!(csv.rows.len(), 41);
@@ -62,6 +70,7 @@ fn motion_file_holds_every_number_in_the_units_of_its_header() {
     let rod = file.model.body("rod").unwrap();
     let (stroke, angle) =
         (solution.measured.index("stroke").unwrap(), solution.measured.index("angle").unwrap());
+    let tip_y = solution.measured.index("tip.y").unwrap();
     for k in 0..41 {
         let s = solution.body(k, rod);
         assert_same(csv.number(k, "t [s]"), solution.motion.times[k]);
@@ -72,6 +81,8 @@ fn motion_file_holds_every_number_in_the_units_of_its_header() {
         assert_same(csv.number(k, "rod.ax [mm/s^2]"), s.a.x * 1e3);
         assert_same(csv.number(k, "rod.alpha_z [deg/s^2]"), s.alpha.z * DEGREES);
         assert_same(csv.number(k, "stroke rate [mm/s]"), solution.measured.value(k, stroke)[1] * 1e3);
+        assert_same(csv.number(k, "tip.vy [mm/s]"), solution.measured.value(k, tip_y)[1] * 1e3);
+        assert_same(csv.number(k, "tip.ay [mm/s^2]"), solution.measured.value(k, tip_y)[2] * 1e3);
         assert_same(csv.number(k, "angle [deg]"), solution.measured.value(k, angle)[0] * DEGREES);
         let law = 40.0 * (2.0 * PI * solution.motion.times[k]).sin();
         assert!((csv.number(k, "angle [deg]") - law).abs() < 1e-12);
@@ -82,8 +93,9 @@ fn motion_file_holds_every_number_in_the_units_of_its_header() {
 fn sensitivity_file_converts_numerator_and_denominator() {
     let file = file();
     let solution = Analysis::new(&file.model).unwrap().run();
-    let mut bytes = Vec::new();
-    tables::write_sensitivity(&file.model, file.units, &solution, &mut bytes).unwrap();
+    let mut table = SensitivityCsv::new(all(&file), Vec::new()).unwrap();
+    table.add(&solution).unwrap();
+    let bytes = table.end().unwrap();
     let csv = Csv::read(&bytes);
     let slider = file.model.body("slider").unwrap();
     let stroke = solution.measured.index("stroke").unwrap();
@@ -111,7 +123,7 @@ fn solved(file: &ModelFile) -> (Analysis<'_>, Solution, Summary) {
     let analysis = Analysis::new(&file.model).unwrap();
     let solution = analysis.run();
     let facts = Facts::new(file, analysis.topology(), Some(&solution));
-    let summary = Summary::new(file, analysis.topology(), facts, &solution);
+    let summary = Summary::new(file, analysis.topology(), facts, &Course::of(&file.model, &solution));
     (analysis, solution, summary)
 }
 
@@ -177,12 +189,13 @@ fn page_holds_all_quantities_and_their_comparison() {
     let (analysis, solution, summary) = solved(&file);
     let steps: Vec<(VariableId, f64)> =
         [0, 1].map(|b| (VariableId(b), 1e-4 * natural_step(&file.model, VariableId(b)))).to_vec();
-    let mut found: Vec<_> = finite_differences(&analysis, &solution, Scheme::Central, &steps)
+    let mut differences: Vec<_> = finite_differences(&analysis, &solution, Scheme::Central, &steps)
         .into_iter()
         .map(Result::ok)
         .collect();
-    found.push(None);
-    let payload = payload(&file, &analysis, &solution, &found, &summary);
+    differences.push(None);
+    let course = Course::of(&file.model, &solution);
+    let payload = payload(&file, &analysis, &course, &differences, &summary);
     // 2 measures, 1 point, 3 bodies.
     assert_eq!(payload.quantities.len(), 2 + 3 + 9);
     assert_eq!(payload.file, "slider.toml", "no folders of this machine");
@@ -204,4 +217,76 @@ fn page_holds_all_quantities_and_their_comparison() {
     assert!(x.arrows.iter().all(|a| (a.v[0] - 1.0).abs() < 1e-12 && a.turn == [0.0; 3]));
     assert_eq!(payload.bodies[2].labels, ["B", "C", "tip"]);
     assert!(page::html(&payload).unwrap().contains("slider-crank for tests"));
+}
+
+/// The columns that `docs/results.md` lists for a file, with their units, names filled in.
+fn documented(file: &ModelFile, table: &str) -> Vec<(String, String)> {
+    let text = include_str!("../../../docs/results.md");
+    let (_, after) =
+        text.split_once(&format!("<!-- columns of {table} -->\n\n")).expect("a table in the page");
+    let rows = after.lines().take_while(|line| line.starts_with('|')).skip(2);
+    let mut groups: Vec<(&str, Vec<(String, String)>)> = Vec::new();
+    for row in rows {
+        let cells: Vec<&str> = row.trim_matches('|').split('|').map(str::trim).collect();
+        let names: Vec<&str> = cells[0].split(", ").map(|name| name.trim_matches('`')).collect();
+        let units: Vec<&str> = cells[2].split(", ").collect();
+        let kind =
+            ["BODY", "MEASURE", "POINT"].into_iter().find(|kind| names[0].contains(kind)).unwrap_or("");
+        if groups.last().is_none_or(|(last, _)| *last != kind) {
+            groups.push((kind, Vec::new()));
+        }
+        let columns =
+            names.iter().enumerate().map(|(k, n)| (n.to_string(), units[k.min(units.len() - 1)].into()));
+        groups.last_mut().unwrap().1.extend(columns);
+    }
+    let (model, mut columns) = (&file.model, Vec::new());
+    for (kind, list) in groups {
+        let names: Vec<&str> = match kind {
+            "BODY" => model.bodies[1..].iter().map(|b| b.name.as_str()).collect(),
+            "MEASURE" => model.measures.iter().map(|m| m.name.as_str()).collect(),
+            "POINT" => model.points.iter().map(|p| p.name.as_str()).collect(),
+            _ => vec![""],
+        };
+        for (name, column) in names.iter().flat_map(|n| list.iter().map(move |c| (n, c))) {
+            let own = if kind == "MEASURE" { [("stroke", "mm"), ("angle", "deg")] } else { [("", ""); 2] };
+            let own = own.iter().find(|(n, _)| n == name).map_or("", |(_, unit)| unit);
+            let unit = column.1.replace("length", "mm").replace("angle", "deg").replace("its own", own);
+            columns
+                .push((if kind.is_empty() { column.0.clone() } else { column.0.replace(kind, name) }, unit));
+        }
+    }
+    columns
+}
+
+#[test]
+fn every_column_is_documented_in_its_order() {
+    let file = file();
+    let all = all(&file);
+    let tables = [
+        ("motion.csv", 1, all.of_motion()),
+        ("sensitivity.csv", 3, all.of_sensitivities()),
+        ("jerk.csv", 1, all.of_jerk()),
+    ];
+    for (name, first, columns) in tables {
+        let written: Vec<(String, String)> = columns.into_iter().map(|c| (c.name, c.unit)).collect();
+        let documented = documented(&file, name);
+        assert_eq!(written, documented[first..], "{name}");
+    }
+}
+
+#[test]
+fn every_key_of_the_summary_is_documented() {
+    let file = file();
+    let (_, _, summary) = solved(&file);
+    let text = include_str!("../../../docs/results.md");
+    let (_, after) = text.split_once("## summary.json").unwrap();
+    let (table, _) = after.split_once("## ").unwrap();
+    let documented: Vec<&str> =
+        table.lines().filter_map(|line| line.strip_prefix("| `")?.split('`').next()).collect();
+    let Value::Object(json) = serde_json::to_value(&summary).unwrap() else { panic!("an object") };
+    let mut written: Vec<&str> = json.keys().map(String::as_str).collect();
+    let mut sorted = documented.clone();
+    sorted.sort_unstable();
+    written.sort_unstable();
+    assert_eq!(written, sorted);
 }

@@ -8,6 +8,7 @@ use hardpoint::model::*;
 use hardpoint::space::Vec3;
 use hardpoint::{Analysis, Solution};
 use hardpoint_file::{Diagnostic, ModelFile};
+use hardpoint_report::course::Course;
 use hardpoint_report::diagnose;
 use hardpoint_report::facts::{Facts, outline};
 use hardpoint_report::page::Table;
@@ -35,8 +36,8 @@ fn solved(file: &ModelFile) -> (Solution, Summary) {
     let analysis = Analysis::new(&file.model).unwrap();
     let solution = analysis.run();
     let facts = Facts::new(file, analysis.topology(), Some(&solution));
-    let summary = Summary::new(file, analysis.topology(), facts, &solution);
-    let page = payload(file, &analysis, &solution, &[], &summary);
+    let summary = Summary::new(file, analysis.topology(), facts, &Course::of(&file.model, &solution));
+    let page = payload(file, &analysis, &Course::of(&file.model, &solution), &[], &summary);
     assert_eq!(page.margin.is_some(), summary.margin.is_some());
     (solution, summary)
 }
@@ -284,7 +285,7 @@ fn a_motion_that_ends_next_to_a_singular_position_is_warned_of() {
     assert!(solution.stop.is_none(), "{:?}", solution.stop);
     let margin = summary.margin.as_ref().unwrap();
     assert!(margin.is_thin() && margin.ahead().is_some(), "{margin:?}");
-    let told = told(&diagnose::all(&file, &summary, &solution, None));
+    let told = told(&diagnose::all(&file, &summary, &Course::of(&file.model, &solution), None));
     assert!(
         told.starts_with("[HP0407] the mechanism comes close to a singular position at t = 1 s"),
         "{told}"
@@ -338,7 +339,7 @@ fn an_assembly_is_shown_with_gaps_and_moves() {
 fn what_does_not_assemble_says_what_stays_open() {
     let file = file(&with_a_rod_of(0.7));
     let (solution, summary) = solved(&file);
-    insta::assert_snapshot!(told(&diagnose::all(&file, &summary, &solution, None)));
+    insta::assert_snapshot!(told(&diagnose::all(&file, &summary, &Course::of(&file.model, &solution), None)));
     let stop = summary.stop.as_ref().unwrap();
     assert_eq!((stop.remains[0].kind, stop.remains[0].unit), ("joint", "mm"));
     // The rod reaches from B past D by the rocker's 250 mm.
@@ -409,5 +410,5 @@ fn a_variable_that_changes_nothing_is_told() {
     draft.design.push(VariableDraft { name: "unused".into(), changes, ..VariableDraft::default() });
     let file = file(&draft);
     let (solution, summary) = solved(&file);
-    insta::assert_snapshot!(told(&diagnose::all(&file, &summary, &solution, None)));
+    insta::assert_snapshot!(told(&diagnose::all(&file, &summary, &Course::of(&file.model, &solution), None)));
 }

@@ -8,10 +8,9 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use fearless_simd::{Level, dispatch};
 
 use crate::law::Law;
-use crate::measure::{self, Measured, SlopeValues, Slopes};
+use crate::measure::{self, Before, Measured, SlopeValues};
 use crate::model::{BodyId, Effects, Field, GROUND, Geometry, Model, VariableId};
 use crate::motion::abreast::Abreast;
-use crate::motion::margin::Margins;
 use crate::motion::parts::Parts;
 use crate::motion::stepper::Stepper;
 use crate::motion::{BodyState, Effort, Motion, Stop, StopKind};
@@ -58,7 +57,7 @@ pub struct Analysis<'m> {
     model: &'m Model,
     topology: Topology,
     effects: Effects<'m>,
-    measures: bool,
+    pub(crate) measures: bool,
     /// Per variable, the joints that it opens in the nominal design: worked out when first asked for.
     opens: OnceLock<Vec<Vec<JointDefect>>>,
 }
@@ -70,7 +69,7 @@ pub(crate) struct Design {
     pub laws: Vec<Law>,
     /// How the variables change it, if that is asked for, and the joints that each opens in the nominal design.
     fields: Vec<Field>,
-    opens: Vec<Vec<JointDefect>>,
+    pub opens: Vec<Vec<JointDefect>>,
 }
 
 /// What a streamed run says at its end.
@@ -254,79 +253,7 @@ impl<'m> Analysis<'m> {
         progress: &mut dyn FnMut(Progress) -> ControlFlow<()>,
         solution: &mut Solution,
     ) {
-        let slopes = dispatch!(Level::new(), simd => self.solve_in(design, progress, solution, lanes(simd)));
-        self.measure(design, &slopes, solution);
-    }
-
-    fn solve_in<T: Real>(
-        &self,
-        design: &Design,
-        progress: &mut dyn FnMut(Progress) -> ControlFlow<()>,
-        solution: &mut Solution,
-        witness: T,
-    ) -> SlopeValues {
-        let mut walk = Walk::new(self, design, vec![true; self.model.bodies.len()], witness);
-        if self.measures {
-            walk.one.watched = measure::watched(self.model, &self.topology);
-        }
-        let room = std::mem::take(&mut solution.sensitivities);
-        let mut sensitivities = match &walk.sensing {
-            Some(sensing) => sensing.room(self.model.times.len(), room),
-            None => Sensitivities::default(),
-        };
-        self.make_room(&mut solution.motion);
-        let variables = design.fields.len();
-        let mut store =
-            Store { motion: &mut solution.motion, sensitivities: &mut sensitivities.states, variables };
-        let mut margins = (Margins::new(&self.topology, 0.0), Margins::new(&self.topology, witness));
-        let sensitive = !design.fields.is_empty();
-        let mut one_slopes = self.measures.then(|| self.slopes(design, sensitive, 0.0)).flatten();
-        let mut all_slopes = self.measures.then(|| self.slopes(design, sensitive, witness)).flatten();
-        let (mut slopes, mut done) = (SlopeValues::default(), 0);
-        solution.stop = walk.all(self, &mut store, progress, |store, solved, count| {
-            let times = &self.model.times[done..done + count];
-            done += count;
-            match solved {
-                Solved::One(one) => {
-                    if let Some(found) = &mut one_slopes {
-                        found.add(one, times, &mut slopes);
-                    }
-                    store.motion.coordinates.extend(one.coordinates());
-                    store.motion.passed.extend(one.passed.drain(..).map(|place| (done - 1, place)));
-                    if self.measures {
-                        store.motion.margins.push(margins.0.at(&one.topology, &one.state)[0]);
-                    }
-                }
-                Solved::Abreast(all) => {
-                    if let Some(found) = &mut all_slopes {
-                        found.add(all, times, &mut slopes);
-                    }
-                    for lane in 0..count {
-                        store.motion.coordinates.extend(all.state.q.iter().map(|q| q.lane(lane)));
-                    }
-                    if self.measures {
-                        let margins = margins.1.at(&all.topology, &all.state);
-                        store.motion.margins.extend_from_slice(&margins[..count]);
-                    }
-                }
-            }
-        });
-        let (steps, motion) = (walk.done, &mut solution.motion);
-        motion.times.extend_from_slice(&self.model.times[..steps]);
-        motion.states.truncate(steps * motion.bodies);
-        motion.effort = walk.one.effort;
-        motion.assembly = walk.one.assembly.take();
-        motion.beyond = if self.measures && steps > 0 { walk.one.beyond() } else { None };
-        sensitivities.states.truncate(steps * variables * motion.bodies);
-        sensitivities.admissibility =
-            walk.sensing.map_or_else(Vec::new, |s| s.admissibility(&design.opens, steps));
-        solution.sensitivities = sensitivities;
-        slopes
-    }
-
-    /// What evaluates the measures that go by a driver, if there are any.
-    fn slopes<T: Real>(&self, design: &Design, sensitive: bool, witness: T) -> Option<Slopes<'_, T>> {
-        Slopes::new(&self.effects, &self.topology, &design.values, sensitive, witness)
+        self.walk(design, self.model.times.len(), progress, solution, &mut |_, _| ());
     }
 
     /// The stop of a run that was told to end after time t.
@@ -344,9 +271,9 @@ impl<'m> Analysis<'m> {
         }
     }
 
-    /// Empties a motion, with room for all output times; its bodies' states are there to be overwritten.
-    fn make_room(&self, motion: &mut Motion) {
-        let (steps, bodies) = (self.model.times.len(), self.model.bodies.len());
+    /// Empties a motion, with room for so many output times; its bodies' states are there to be overwritten.
+    pub(crate) fn make_room(&self, motion: &mut Motion, steps: usize) {
+        let bodies = self.model.bodies.len();
         if motion.bodies != bodies {
             motion.states.clear();
         }
@@ -363,13 +290,20 @@ impl<'m> Analysis<'m> {
         motion.beyond = None;
     }
 
-    fn measure(&self, design: &Design, slopes: &SlopeValues, solution: &mut Solution) {
+    /// Evaluates the measures of a motion that goes on from what was `before`.
+    pub(crate) fn measure(
+        &self,
+        design: &Design,
+        slopes: &SlopeValues,
+        before: Option<&Before>,
+        solution: &mut Solution,
+    ) {
         solution.measured = Measured::default();
         if self.measures {
             let Design { values, laws, .. } = design;
             let at = measure::At { model: self.model, effects: &self.effects, values, laws };
-            solution.measured =
-                measure::evaluate(&at, &self.topology, &solution.motion, &solution.sensitivities, slopes);
+            let Solution { motion, sensitivities, measured, .. } = solution;
+            *measured = measure::evaluate(&at, &self.topology, motion, sensitivities, slopes, before);
         }
     }
 
@@ -471,7 +405,7 @@ impl<'m> Analysis<'m> {
                 let mut coordinates = Vec::with_capacity(designs.len());
                 let mut stores = Vec::with_capacity(designs.len());
                 for Solution { motion, .. } in solutions.iter_mut() {
-                    self.make_room(motion);
+                    self.make_room(motion, self.model.times.len());
                     coordinates.push(std::mem::take(&mut motion.coordinates));
                     stores.push(Store { motion, sensitivities: &mut [], variables: 0 });
                 }
@@ -496,7 +430,7 @@ impl<'m> Analysis<'m> {
             if !side_by_side {
                 self.solve(&self.design(design, false), &mut |_| ControlFlow::Continue(()), solution);
             } else if self.measures {
-                self.measure(&self.design(design, false), &SlopeValues::default(), solution);
+                self.measure(&self.design(design, false), &SlopeValues::default(), None, solution);
             } else {
                 solution.measured = Measured::default();
             }
@@ -566,14 +500,14 @@ impl<'m> Analysis<'m> {
 
 /// The way through all output times, where possible as many at once as there are lanes.
 pub(crate) struct Walk<'a, T> {
-    one: Stepper<'a, f64>,
+    pub one: Stepper<'a, f64>,
     abreast: Abreast<'a, T>,
     /// `None` where no sensitivities are asked for.
-    sensing: Option<Sensing<'a, T>>,
+    pub sensing: Option<Sensing<'a, T>>,
     /// Per body: whether its results are wanted.
     wanted: Vec<bool>,
     /// Output times solved.
-    done: usize,
+    pub done: usize,
 }
 
 /// What has just been solved.

@@ -91,6 +91,8 @@ mod sink;
 pub mod space;
 pub mod study;
 pub mod topology;
+mod window;
 
 pub use analysis::{Analysis, Progress, Solution, Streamed};
 pub use sink::Sink;
+pub use window::{Footprint, Keep, Kept};

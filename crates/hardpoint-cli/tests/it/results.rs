@@ -167,3 +167,176 @@ fn the_gallery_runs_and_its_reports_are_complete() {
     }
     assert!(seen >= 5, "only {seen} models");
 }
+
+#[test]
+fn a_long_motion_is_thinned_for_the_page_and_whole_in_the_tables() {
+    let bench = Bench::with(&["slider.toml"]);
+    let long = bench.text("slider.toml").replace("steps = 40", "steps = 30000").replace("40*sin", "4*sin");
+    bench.put("long.toml", &long);
+    let output = bench.run(&["run", "long.toml", "-o", "out"]);
+    assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
+    let summary = bench.json("out/summary.json");
+    let every = summary["steps"]["kept_every"].as_u64().unwrap() as usize;
+    assert!(every > 1);
+    assert_eq!(summary["margin"]["series"].as_array().unwrap().len(), 30001_usize.div_ceil(every));
+    assert!(bench.text("out/report.html").contains("This page shows every "));
+    assert_eq!(rows(&bench.text("out/motion.csv")), 30001);
+    // `guide_jam` cannot be followed, which is known at the end only.
+    let sensitivities = bench.text("out/sensitivity.csv");
+    assert_eq!(rows(&sensitivities), 2 * 30001);
+    assert!(!sensitivities.contains("guide_jam"));
+    // The same numbers as a motion with fewer output times.
+    bench.put("short.toml", &long.replace("steps = 30000", "steps = 300"));
+    bench.run(&["run", "short.toml", "-o", "short"]);
+    let [long, short] = ["out", "short"].map(|f| bench.text(&format!("{f}/motion.csv")));
+    for (k, (p, q)) in long.lines().skip(1).step_by(100).zip(short.lines().skip(1)).enumerate() {
+        for (p, q) in p.split(',').zip(q.split(',')).map(|(p, q)| (p.parse::<f64>(), q.parse::<f64>())) {
+            let (p, q) = (p.unwrap(), q.unwrap());
+            assert!((p - q).abs() <= 1e-7 * (1.0 + p.abs()), "{k}: {p} and {q}");
+        }
+    }
+}
+
+#[test]
+fn arrays_hold_what_the_tables_hold() {
+    let bench = Bench::with(&["slider.toml"]);
+    assert!(bench.run(&["run", "slider.toml", "-o", "out", "--bodies"]).status.success());
+    let [motion, sensitivity] = ["motion", "sensitivity"].map(|f| bench.text(&format!("out/{f}.csv")));
+    assert!(bench.run(&["run", "slider.toml", "-o", "out", "--bodies", "--format", "npy"]).status.success());
+    // The tables of the earlier run do not stay beside the arrays.
+    let files = ["columns.json", "motion.npy", "report.html", "sensitivity.npy", "summary.json"];
+    assert_eq!(bench.list("out"), files);
+    let columns = bench.json("out/columns.json");
+    let names = |list: &Value| -> Vec<String> {
+        let header = |c: &Value| match (c["name"].as_str().unwrap(), c["unit"].as_str().unwrap()) {
+            (name, "1") => name.to_owned(),
+            (name, unit) => format!("{name} [{unit}]"),
+        };
+        list.as_array().unwrap().iter().map(header).collect()
+    };
+    let array = |name: &str| -> Vec<f64> {
+        let bytes = std::fs::read(bench.path(&format!("out/{name}.npy"))).unwrap();
+        bytes[256..].chunks(8).map(|b| f64::from_le_bytes(b.try_into().unwrap())).collect()
+    };
+    let header = names(&columns["motion"]);
+    assert_eq!(motion.lines().next().unwrap(), header.join(","));
+    let numbers = |line: &str, skip: usize| -> Vec<f64> {
+        line.split(',').skip(skip).map(|x| x.parse().unwrap()).collect()
+    };
+    let written: Vec<f64> = motion.lines().skip(1).flat_map(|line| numbers(line, 0)).collect();
+    assert_eq!(array("motion"), written);
+    let header = names(&columns["sensitivity"]["columns"]);
+    assert_eq!(sensitivity.lines().next().unwrap(), format!("t [s],variable,per,{}", header.join(",")));
+    let written: Vec<f64> = sensitivity.lines().skip(1).flat_map(|line| numbers(line, 3)).collect();
+    let array = array("sensitivity");
+    assert_eq!(array.len(), 41 * 3 * header.len());
+    let (known, unknown): (Vec<f64>, Vec<f64>) = array.into_iter().partition(|x| !x.is_nan());
+    assert_eq!(known, written);
+    assert_eq!(unknown.len(), 41 * header.len(), "one of three variables cannot be followed");
+}
+
+#[test]
+fn nothing_is_written_that_nobody_asked_for() {
+    let bench = Bench::with(&["slider.toml"]);
+    let text = bench.text("slider.toml");
+    let (before, after) = text.split_once("[design]").unwrap();
+    let (_, after) = after.split_once("[points]").unwrap();
+    bench.put("plain.toml", &format!("{before}[points]{after}"));
+    // What an earlier run of the model with variables left does not stay.
+    assert!(bench.run(&["run", "slider.toml", "-o", "out", "--jerk"]).status.success());
+    assert!(bench.list("out").contains(&"jerk.csv".to_owned()));
+    bench.put("out/notes.txt", "mine");
+    assert!(bench.run(&["run", "plain.toml", "-o", "out"]).status.success());
+    assert_eq!(bench.list("out"), ["motion.csv", "notes.txt", "report.html", "summary.json"]);
+    assert!(bench.run(&["run", "slider.toml", "-o", "quick", "--no-sensitivities"]).status.success());
+    assert_eq!(bench.list("quick"), ["motion.csv", "report.html", "summary.json"]);
+    assert_eq!(bench.json("quick/summary.json")["sensitivities"], Value::Array(vec![]));
+}
+
+#[test]
+fn names_that_spreadsheets_would_run_are_text() {
+    let bench = Bench::with(&["slider.toml"]);
+    let text = bench.text("slider.toml").replace("guide_turn =", "\"=1+1\" =").replace("tip =", "\"@tip\" =");
+    bench.put("odd.toml", &text);
+    let output = bench.run(&["run", "odd.toml", "-o", "out"]);
+    assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
+    for name in ["motion.csv", "sensitivity.csv"] {
+        let mut reader = csv::Reader::from_path(bench.path(&format!("out/{name}"))).unwrap();
+        let header = reader.headers().unwrap().clone();
+        let cells = reader.records().flat_map(|r| r.unwrap().iter().map(String::from).collect::<Vec<_>>());
+        for cell in header.iter().map(String::from).chain(cells) {
+            let formula = cell.starts_with(['=', '+', '-', '@']) && cell.parse::<f64>().is_err();
+            assert!(!formula, "{name}: {cell}");
+        }
+    }
+    assert!(bench.text("out/motion.csv").contains(",'@tip.x [mm],"));
+    assert!(bench.text("out/sensitivity.csv").contains(",'=1+1,deg,"));
+}
+
+#[test]
+fn nothing_that_a_terminal_obeys_is_printed() {
+    let bench = Bench::with(&["slider.toml"]);
+    let odd = "\"a\\u001b[2J\\u202eb\" =";
+    bench.put("odd.toml", &bench.text("slider.toml").replace("guide_jam =", odd).replace("stroke =", odd));
+    for command in [&["run", "odd.toml"][..], &["check", "odd.toml"], &["verify", "odd.toml", "--sweep"]] {
+        let output = bench.run(command);
+        for text in [output.stdout, output.stderr] {
+            let text = String::from_utf8(text).unwrap();
+            let bad = |c: &char| (c.is_control() && *c != '\n') || *c == '\u{202e}';
+            assert_eq!(text.chars().find(bad), None, "{command:?}: {text}");
+        }
+    }
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn a_full_disk_behind_stdout_ends_with_6_and_a_closed_pipe_quietly() {
+    use std::process::Stdio;
+    let bench = Bench::with(&["slider.toml"]);
+    for command in
+        [&["run", "slider.toml", "--json"][..], &["check", "slider.toml"], &["schema"], &["--help"]]
+    {
+        let full = std::fs::OpenOptions::new().write(true).open("/dev/full").unwrap();
+        let output = bench.command(command).stdout(full).stderr(Stdio::piped()).output().unwrap();
+        assert_eq!(output.status.code(), Some(6), "{command:?}");
+        assert!(String::from_utf8(output.stderr).unwrap().contains("error[HP0601]"), "{command:?}");
+        // Nobody reads.
+        let mut child = bench.command(command).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+        drop(child.stdout.take());
+        assert_eq!(child.wait_with_output().unwrap().status.code(), Some(0), "{command:?}");
+    }
+}
+
+#[test]
+fn what_a_killed_run_left_is_removed_by_the_next() {
+    let bench = Bench::with(&["slider.toml"]);
+    std::fs::create_dir(bench.path("out")).unwrap();
+    bench.put("out/.motion.csv.aB3.part", "half");
+    assert!(bench.run(&["run", "slider.toml", "-o", "out"]).status.success());
+    assert_eq!(bench.list("out"), ["motion.csv", "report.html", "sensitivity.csv", "summary.json"]);
+}
+
+#[test]
+fn work_that_no_memory_holds_is_refused_before_it_begins() {
+    use std::fmt::Write;
+    let bench = Bench::with(&["slider.toml"]);
+    let mut text = bench.text("slider.toml");
+    let (mut variables, mut bodies, mut joints) = (String::new(), String::new(), String::new());
+    for k in 0..800 {
+        writeln!(variables, "v{k} = {{ move = \"B\", along = \"x\" }}").unwrap();
+        writeln!(bodies, "extra{k} = {{}}").unwrap();
+        writeln!(joints, "weld{k} = {{ type = \"fixed\", bodies = [\"ground\", \"extra{k}\"], at = \"A\" }}")
+            .unwrap();
+    }
+    text = text.replace("[design]\n", &format!("[design]\n{variables}"));
+    text = text.replace("[bodies]\n", &format!("[bodies]\n{bodies}"));
+    text = text.replace("[joints]\n", &format!("[joints]\n{joints}"));
+    bench.put("wide.toml", &text);
+    let output = bench.run(&["run", "wide.toml", "-o", "out", "--json"]);
+    assert_eq!(output.status.code(), Some(2), "{}", String::from_utf8_lossy(&output.stdout));
+    let document: Value = serde_json::from_slice(&output.stdout).unwrap();
+    let d = &document["diagnostics"][0];
+    assert_eq!(d["code"], "HP0603");
+    assert!(d["help"].as_str().unwrap().contains("--no-sensitivities"), "{d}");
+    assert!(bench.list("out").is_empty());
+}

@@ -37,6 +37,20 @@ pub struct Output {
     pub source: OutputSource,
 }
 
+impl Output {
+    /// What its time derivative of order 0, 1 or 2 is called: `toe`, `toe rate`, `toe acceleration`; of a point's component
+    /// `tip.x`, `tip.vx`, `tip.ax`.
+    pub fn order_name(&self, order: usize) -> String {
+        match (self.source, self.name.rsplit_once('.')) {
+            (_, _) if order == 0 => self.name.clone(),
+            (OutputSource::Point(..), Some((point, axis))) => {
+                format!("{point}.{}{axis}", ["", "v", "a"][order])
+            }
+            _ => format!("{} {}", self.name, ["", "rate", "acceleration"][order]),
+        }
+    }
+}
+
 /// Measures and point components over a motion, with their sensitivities.
 #[derive(Clone, Debug, Default)]
 pub struct Measured {
@@ -45,9 +59,9 @@ pub struct Measured {
     /// How many design variables there are.
     pub variables: usize,
     /// `values[k * outputs + m]`: value, rate and acceleration; m or rad, per s, per s^2.
-    values: Vec<[f64; 3]>,
+    pub(crate) values: Vec<[f64; 3]>,
     /// `d[(k * variables + b) * outputs + m]`: derivatives of those by variable b at fixed t.
-    d: Vec<[f64; 3]>,
+    pub(crate) d: Vec<[f64; 3]>,
 }
 
 impl Measured {
@@ -105,6 +119,14 @@ pub(crate) struct At<'a> {
     pub laws: &'a [Law],
 }
 
+/// What a motion goes on from: the output time before its first.
+#[derive(Clone, Debug)]
+pub(crate) struct Before {
+    pub time: f64,
+    /// Values, rates and accelerations of all outputs, angles counted.
+    pub values: Vec<[f64; 3]>,
+}
+
 /// Evaluates all outputs over a motion, and their derivatives by the variables that it has sensitivities for.
 pub(crate) fn evaluate(
     design: &At<'_>,
@@ -112,6 +134,7 @@ pub(crate) fn evaluate(
     motion: &Motion,
     sensitivities: &Sensitivities,
     slopes: &SlopeValues,
+    before: Option<&Before>,
 ) -> Measured {
     let &At { model, effects, values, laws } = design;
     let outputs = outputs(model);
@@ -142,7 +165,8 @@ pub(crate) fn evaluate(
             let Rates([angle, rate, _]) = Moment::new(model, &fixed, &poses).measure(m);
             [angle, rate]
         };
-        unwrap_angles(laws, topology, motion, k, &turns, &mut measured.values, first, on_the_way);
+        let values = &mut measured.values;
+        unwrap_angles(laws, topology, (motion, before), k, &turns, values, first, on_the_way);
         if let Some(raw) = raw {
             let now = counted.len();
             let whole = |(m, x): (usize, &[f64; 3])| x[0] - raw[m][0];
@@ -339,7 +363,7 @@ fn along_the_path<'p>(
 fn unwrap_angles(
     laws: &[Law],
     topology: &Topology,
-    motion: &Motion,
+    (motion, before): (&Motion, Option<&Before>),
     k: usize,
     turns: &[Option<Turns>],
     values: &mut [[f64; 3]],
@@ -352,10 +376,12 @@ fn unwrap_angles(
             Some(Turns::Driver(d)) => laws[d.0].at(motion.times[k]).value(),
             Some(Turns::Coordinate(q)) => motion.coordinates[k * topology.coordinates.len() + q],
             Some(Turns::Path(begins)) => {
-                let last = (k > 0).then(|| {
-                    let [value, rate, _] = values[first - turns.len() + m];
-                    Counted { value, rate, time: motion.times[k - 1] }
-                });
+                let counted = |time: f64, [value, rate, _]: [f64; 3]| Counted { value, rate, time };
+                let last = match (k, before) {
+                    (0, None) => None,
+                    (0, Some(before)) => Some(counted(before.time, before.values[m])),
+                    _ => Some(counted(motion.times[k - 1], values[first - turns.len() + m])),
+                };
                 let first_passed = motion.passed.partition_point(|(before, _)| *before < k);
                 let passed = motion.passed[first_passed..].iter().take_while(|(before, _)| *before == k);
                 let passed = passed.map(|(_, place)| place);

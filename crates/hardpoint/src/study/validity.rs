@@ -16,8 +16,8 @@ const NOTHING: f64 = 1e-10;
 /// A variable that moves an output by less than this part of what the strongest does is not judged by it: next to nothing, any
 /// bend is large.
 const SLIGHT: f64 = 1e-2;
-/// Second derivatives of so many bytes are held at once.
-const MOST_BYTES: usize = 64 << 20;
+/// Second derivatives of so many bytes are held at once; between such parts the work can be ended.
+const MOST_BYTES: usize = 8 << 20;
 
 /// How far the sensitivities by one design variable can be trusted.
 #[derive(Clone, Debug, Default, PartialEq)]

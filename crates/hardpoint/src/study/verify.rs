@@ -264,9 +264,7 @@ pub fn compare_with_difference(
     let measured = &solution.measured;
     let columns = measured.outputs.len();
     for (m, output) in measured.outputs.iter().enumerate() {
-        for (order, label) in
-            ["value", "rate", "acceleration"].into_iter().enumerate().take(output.known.orders)
-        {
+        for order in 0..output.known.orders {
             let analytic = |k: usize| measured.d(k, d.variable, m)[order];
             let largest = (0..steps).map(|k| analytic(k).abs()).fold(0.0, f64::max);
             let scale = largest.max(floor(order, output.dimension));
@@ -275,7 +273,8 @@ pub fn compare_with_difference(
                 |k: &usize| measured.value(*k, m)[..output.known.orders].iter().all(|x| x.is_finite());
             let deviation = |k: usize| (analytic(k) - d.outputs[k * columns + m][order]).abs();
             let mut deviations = (0..steps).map(|k| if defined(&k) { deviation(k) } else { 0.0 });
-            push(format!("{} {label}", output.name), scale, &mut deviations);
+            let name = output.order_name(order);
+            push(if order == 0 { format!("{name} value") } else { name }, scale, &mut deviations);
         }
     }
     errors

@@ -147,11 +147,7 @@ impl Check<'_> {
         if let Some((k, p)) = off_plane {
             let message = format!("the curve of `{name}` does not lie in a plane square to its axis");
             self.fault("HP0226", here.key("curve"), message)
-                .note(format!(
-                    "point {} is {:e} m from the plane of the first",
-                    k + 1,
-                    (p.z - local[0].z).abs()
-                ))
+                .note(format!("point {k} is {:e} m from the plane of point 0", (p.z - local[0].z).abs()))
                 .help("let all points have the same coordinate along `axis`");
             return None;
         }

@@ -1,0 +1,236 @@
+//! What a whole run comes to, gathered window by window, so that the run itself need not fit into memory.
+
+use hardpoint::model::{Dimension, Model, OutputSource, VariableId};
+use hardpoint::motion::{Margin, Motion};
+use hardpoint::sensitivity::Admissibility;
+use hardpoint::study::natural_step;
+use hardpoint::{Footprint, Keep, Kept, Solution};
+
+/// What is kept of a run for the page and what is compared afterwards: so many bytes.
+const KEPT_BYTES: usize = 64 << 20;
+/// Sensitivities of bodies are kept where so many output times of them fit.
+const ENOUGH_ROWS: usize = 512;
+/// Curves that metrics are taken from may have so many bytes.
+const METRIC_BYTES: usize = 256 << 20;
+/// The first time of a largest value is the first that comes this near to it: of the periods of a motion the first, whatever its
+/// last digits.
+const AS_LARGE: f64 = 1e-9;
+/// A value that exceeds the largest so far by less than this part is not told from it.
+const SAME: f64 = 1e-12;
+
+/// Gathers what a run comes to.
+#[derive(Clone, Debug)]
+pub struct Gathering {
+    course: Course,
+    orders: Vec<(Dimension, usize)>,
+    kept: Kept,
+    /// Where what is kept for the page is too coarse for metrics.
+    curves: Option<Kept>,
+}
+
+/// What a whole run comes to.
+#[derive(Clone, Debug, Default)]
+pub struct Course {
+    /// Output times solved.
+    pub steps: usize,
+    /// The last of them, s.
+    pub last_time: Option<f64>,
+    /// How far the motion stays from singular positions.
+    pub margins: MarginCourse,
+    /// Some of the output times, with the facts of all.
+    pub kept: Solution,
+    /// Of so many output times, each is kept.
+    pub stride: usize,
+    /// The curves of the metrics, where they are not taken from what is kept.
+    curves: Option<Solution>,
+    /// Of so many output times, metrics are taken from each.
+    pub metric_stride: usize,
+    /// Of the motion at orders 0, 1 and 2: lengths in sizes, angles in rad.
+    magnitude: [f64; 3],
+    /// `peaks[(m * 3 + order) * variables + b]`: of the derivative of order of measure m by variable b.
+    peaks: Vec<Peak>,
+    variables: usize,
+}
+
+/// Margins over all output times.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct MarginCourse {
+    /// The first, where there is any.
+    pub start: Option<Margin>,
+    /// The least, and its time, s.
+    pub least: Option<(Margin, f64)>,
+    /// The first and the last output time, s.
+    pub span: [f64; 2],
+}
+
+/// Where a derivative is largest.
+#[derive(Clone, Debug, Default)]
+struct Peak {
+    /// Values and times of those that come near to the largest, each larger than the one before.
+    near: Vec<(f64, f64)>,
+}
+
+impl Gathering {
+    /// Nothing as yet.
+    pub fn new(model: &Model) -> Self {
+        let footprint = Footprint::of(model, true);
+        let rows = |bytes: usize| KEPT_BYTES / bytes.max(1);
+        let times = model.times.len();
+        let all = rows(footprint.bytes());
+        let bodies = all >= usize::min(times, ENOUGH_ROWS);
+        let rows = if bodies { all } else { rows(footprint.bytes() - footprint.sensitivities) };
+        let mut outputs: Vec<OutputSource> =
+            model.metrics.iter().flat_map(|m| std::iter::once(m.of).chain(m.over)).collect();
+        outputs.dedup();
+        let curve = (outputs.len() * (1 + model.variables.len()) * size_of::<[f64; 3]>()).max(1);
+        let keep = |rows, motion, outputs| Keep { rows, motion, sensitivities: motion && bodies, outputs };
+        let curves = (!outputs.is_empty() && times > rows)
+            .then(|| Kept::new(keep(METRIC_BYTES / curve, false, Some(outputs))));
+        let measures = hardpoint::measure::outputs(model);
+        let measures = measures.iter().filter(|o| matches!(o.source, OutputSource::Measure(_)));
+        let orders: Vec<_> = measures.map(|o| (o.dimension, o.known.orders)).collect();
+        let variables = model.variables.len();
+        let course = Course {
+            magnitude: [1.0, 0.0, 0.0],
+            peaks: vec![Peak::default(); orders.len() * 3 * variables],
+            variables,
+            ..Course::default()
+        };
+        Self { course, orders, kept: Kept::new(keep(rows, true, None)), curves }
+    }
+
+    /// Takes a window that begins with output time `first`.
+    pub fn add(&mut self, model: &Model, first: usize, window: &Solution) {
+        let course = &mut self.course;
+        course.steps += window.motion.len();
+        course.last_time = window.motion.times.last().copied().or(course.last_time);
+        course.margins.add(&window.motion);
+        grow(&mut course.magnitude, model.size(), &window.motion);
+        if window.sensitivities.variables == self.course.variables {
+            for (k, &t) in window.motion.times.iter().enumerate() {
+                self.peaks_at(window, k, t);
+            }
+        }
+        self.kept.add(first, window);
+        if let Some(curves) = &mut self.curves {
+            curves.add(first, window);
+        }
+    }
+
+    fn peaks_at(&mut self, window: &Solution, k: usize, t: f64) {
+        let variables = self.course.variables;
+        for (m, (_, orders)) in self.orders.iter().enumerate() {
+            for b in 0..variables {
+                let d = window.measured.d(k, VariableId(b), m);
+                for (order, d) in d.into_iter().enumerate().take(*orders) {
+                    self.course.peaks[(m * 3 + order) * variables + b].add(d, t);
+                }
+            }
+        }
+    }
+
+    /// Everything, with the facts of the whole run.
+    pub fn end(self, whole: &Solution) -> Course {
+        let mut course = self.course;
+        course.stride = self.kept.stride();
+        course.metric_stride = self.curves.as_ref().map_or(course.stride, Kept::stride);
+        course.curves = self.curves.map(|curves| curves.end(whole));
+        course.kept = self.kept.end(whole);
+        course
+    }
+}
+
+impl Course {
+    /// That of a solution that is there as a whole.
+    pub fn of(model: &Model, solution: &Solution) -> Self {
+        let mut gathering = Gathering::new(model);
+        gathering.add(model, 0, solution);
+        gathering.end(solution)
+    }
+
+    /// What metrics are taken from.
+    pub fn curves(&self) -> &Solution {
+        self.curves.as_ref().unwrap_or(&self.kept)
+    }
+
+    /// Whether sensitivities of bodies were kept.
+    pub fn has_bodies(&self) -> bool {
+        let sensitivities = &self.kept.sensitivities;
+        sensitivities.variables == 0 || sensitivities.bodies > 0
+    }
+
+    /// Whether the mechanism can follow a variable, as far as it was solved.
+    pub fn follows(&self, b: usize) -> bool {
+        let answers = &self.kept.sensitivities.admissibility;
+        self.steps > 0 && answers.get(b).is_some_and(|a| !matches!(a, Admissibility::CannotFollow { .. }))
+    }
+
+    /// The largest derivative of an order of measure m by variable b, with its sign, and its time.
+    pub(crate) fn largest(&self, m: usize, order: usize, b: usize) -> Option<(f64, f64)> {
+        self.peaks[(m * 3 + order) * self.variables + b].near.first().copied()
+    }
+
+    /// The level below which sensitivities are round-off.
+    pub(crate) fn round_off(&self, model: &Model) -> RoundOff {
+        let natural = (0..model.variables.len()).map(|b| natural_step(model, VariableId(b))).collect();
+        RoundOff { size: model.size(), magnitude: self.magnitude, natural }
+    }
+}
+
+impl MarginCourse {
+    /// Those of a motion that is there as a whole.
+    pub fn of(motion: &Motion) -> Self {
+        let mut course = Self::default();
+        course.add(motion);
+        course
+    }
+
+    fn add(&mut self, motion: &Motion) {
+        for (&margin, &t) in motion.margins.iter().zip(&motion.times) {
+            if self.start.is_none() {
+                (self.start, self.span[0]) = (Some(margin), t);
+            }
+            if self.least.is_none_or(|(least, _)| margin.value.total_cmp(&least.value).is_lt()) {
+                self.least = Some((margin, t));
+            }
+            self.span[1] = t;
+        }
+    }
+}
+
+impl Peak {
+    fn add(&mut self, d: f64, t: f64) {
+        let most = self.near.last().map_or(0.0, |(d, _)| d.abs());
+        if d.abs() > most * (1.0 + SAME) {
+            self.near.push((d, t));
+            self.near.retain(|(near, _)| near.abs() >= d.abs() * (1.0 - AS_LARGE));
+        }
+    }
+}
+
+fn grow(magnitude: &mut [f64; 3], size: f64, motion: &Motion) {
+    for s in &motion.states {
+        magnitude[1] = magnitude[1].max(s.omega.norm()).max(s.v.norm() / size);
+        magnitude[2] = magnitude[2].max(s.alpha.norm()).max(s.a.norm() / size);
+    }
+}
+
+/// What counts as no sensitivity at all: a change of the design by the size of the mechanism, or by 1 rad,
+/// would change the quantity by less than this part of the whole motion.
+const NOTHING: f64 = 1e-10;
+
+/// The level below which a sensitivity is round-off and is shown as 0.
+pub(crate) struct RoundOff {
+    size: f64,
+    magnitude: [f64; 3],
+    natural: Vec<f64>,
+}
+
+impl RoundOff {
+    /// For a quantity's derivative by variable b, SI.
+    pub fn of(&self, b: usize, of: impl Into<Dimension>, order: usize) -> f64 {
+        let of: Dimension = of.into();
+        let order = (order as i8 - of.time).clamp(0, 2) as usize;
+        NOTHING * self.magnitude[order] * self.size.powi(of.length.into()) / self.natural[b]
+    }
+}
