@@ -107,7 +107,9 @@ impl<'m> Plan<'m> {
             let writing = folder.begin(&motion)?;
             let failed = |error: std::io::Error| NotWritten { path: folder.path_of(&motion), error };
             tables.motion = Some(match self.format {
-                Format::Csv => Motion::Csv(MotionCsv::new(columns, writing).map_err(|e| failed(e.into()))?),
+                Format::Csv => {
+                    Motion::Csv(Box::new(MotionCsv::new(columns, writing).map_err(|e| failed(e.into()))?))
+                }
                 Format::Npy => {
                     Motion::Npy(columns, Npy::new(&[1 + columns.of_motion().len()], writing).map_err(failed)?)
                 }
@@ -119,9 +121,9 @@ impl<'m> Plan<'m> {
             let failed = |error: std::io::Error| NotWritten { path: folder.path_of(&sensitivity), error };
             let shape = [columns.model.variables.len(), columns.of_sensitivities().len()];
             tables.sensitivity = Some(match self.format {
-                Format::Csv => {
-                    Sensitivity::Csv(SensitivityCsv::new(columns, writing).map_err(|e| failed(e.into()))?)
-                }
+                Format::Csv => Sensitivity::Csv(Box::new(
+                    SensitivityCsv::new(columns, writing).map_err(|e| failed(e.into()))?,
+                )),
                 Format::Npy => Sensitivity::Npy(columns, Npy::new(&shape, writing).map_err(failed)?),
             });
             tables.names.push(sensitivity);
@@ -131,12 +133,12 @@ impl<'m> Plan<'m> {
 }
 
 enum Motion<'m> {
-    Csv(MotionCsv<'m, Writing>),
+    Csv(Box<MotionCsv<'m, Writing>>),
     Npy(Columns<'m>, Npy<Writing>),
 }
 
 enum Sensitivity<'m> {
-    Csv(SensitivityCsv<'m, Writing>),
+    Csv(Box<SensitivityCsv<'m, Writing>>),
     Npy(Columns<'m>, Npy<Writing>),
 }
 
