@@ -268,26 +268,54 @@ fn the_margin_is_told_in_digits_with_its_loop() {
     insta::assert_snapshot!(format!("{}\n{}", margin.line_from_start(), margin.sentence()));
 }
 
-#[test]
-fn a_motion_that_ends_next_to_a_singular_position_is_warned_of() {
+/// One four-bar, whose crank's pin B, and pin C as given, and the angle by which its crank turns until coupler and rocker are in line.
+fn one_four_bar(pin: Vec3, law_of: impl Fn(f64) -> String) -> ModelFile {
     let mut draft = four_bars();
     draft.joints.truncate(4);
     draft.bodies.truncate(3);
     draft.drivers.truncate(1);
-    draft.joints[2].at = vec![Place::At(Vec3::new(0.2, 0.1, 0.0))];
+    draft.joints[2].at = vec![Place::At(pin)];
     // Coupler and rocker are in line where the crank's pin is as far from D as both are long.
     let (crank, coupler, rocker, base) = (0.1_f64, 0.2_f64, 0.02_f64.sqrt(), 0.3_f64);
     let cosine = (crank.powi(2) + base.powi(2) - (coupler + rocker).powi(2)) / (2.0 * crank * base);
     let angle = cosine.acos() - std::f64::consts::FRAC_PI_2;
-    draft.drivers[0].law = law(&format!("{:.17} * t", angle * (1.0 - 1e-13)));
-    let file = file(&draft);
+    draft.drivers[0].law = law(&law_of(angle));
+    file(&draft)
+}
+
+#[test]
+fn a_singular_position_just_beyond_the_end_is_told() {
+    let file = one_four_bar(Vec3::new(0.2, 0.1, 0.0), |angle| format!("{:.17} * t", angle * (1.0 - 1e-5)));
     let (solution, summary) = solved(&file);
     assert!(solution.stop.is_none(), "{:?}", solution.stop);
     let margin = summary.margin.as_ref().unwrap();
-    assert!(margin.is_thin() && margin.ahead().is_some(), "{margin:?}");
+    assert!((margin.singular_after.unwrap() - 1e-5).abs() < 1e-8, "{margin:?}");
+    assert_eq!(margin.singular_kind, Some("limit"));
+    let ahead = margin.ahead().unwrap();
+    assert!(ahead.starts_with("A singular position lies 1.0e-5 s, "), "{ahead}");
+    assert!(ahead.ends_with("beyond the end; its loop cannot be closed beyond"), "{ahead}");
+}
+
+#[test]
+fn a_motion_to_a_singular_position_stops_there() {
+    let file = one_four_bar(Vec3::new(0.2, 0.1, 0.0), |angle| format!("{:.17} * t", angle * (1.0 - 1e-13)));
+    let (solution, _) = solved(&file);
+    let stop = solution.stop.unwrap();
+    assert_eq!(stop.code(), "HP0401");
+    assert!((stop.failed_time - 1.0).abs() < 1e-7, "{stop:?}");
+}
+
+#[test]
+fn a_mechanism_next_to_a_singular_position_is_warned_of() {
+    // Drawn with its coupler and rocker in line but for 0.1 um.
+    let file = one_four_bar(Vec3::new(0.18, 0.04 + 1e-7, 0.0), |_| "0 * t".into());
+    let (solution, summary) = solved(&file);
+    assert!(solution.stop.is_none(), "{:?}", solution.stop);
+    let margin = summary.margin.as_ref().unwrap();
+    assert!(margin.is_thin(), "{margin:?}");
     let told = told(&diagnose::all(&file, &summary, &Course::of(&file.model, &solution), None));
     assert!(
-        told.starts_with("[HP0407] the mechanism comes close to a singular position at t = 1 s"),
+        told.starts_with("[HP0407] the mechanism comes close to a singular position at t = 0 s"),
         "{told}"
     );
     assert!(told.contains("the loop consists of `B1`, `C1` and `D1`"), "{told}");

@@ -27,7 +27,7 @@ const LEAST_MARGIN: f64 = 1e-5;
 /// Rows hold to this part of the size, or as angles and cosines to this.
 const CLOSED: f64 = 1e-11;
 /// More steps than this between a handful of output times are a walk that gets nowhere.
-const MOST_SUBSTEPS: usize = 20_000;
+const MOST_SUBSTEPS: usize = 200_000;
 
 /// What a family promises.
 #[derive(Clone, Copy)]
