@@ -278,7 +278,12 @@ impl Facts {
             variables: variables(model, units, solution),
             conditions: conditions(model, units),
             measures: measures(model, units),
-            notes: [notes::idle_spins(model), notes::jumps(model, units)].concat(),
+            notes: [
+                notes::idle_spins(model),
+                notes::jumps(model, units),
+                notes::far_away(model, units).into_iter().collect(),
+            ]
+            .concat(),
         }
     }
 

@@ -1,10 +1,11 @@
 //! What is worth knowing and no error: idle spins, laws that are not smooth.
 
+use hardpoint::joint::Quantity;
 use hardpoint::law::Jump;
 use hardpoint::model::{Driver, Model};
 use hardpoint_file::Units;
 
-use crate::figures::{names, number, order_unit, with_unit};
+use crate::figures::{names, number, order_unit, rounded, symbol, with_unit};
 
 /// One note per idle spin.
 pub(super) fn idle_spins(model: &Model) -> Vec<String> {
@@ -37,6 +38,25 @@ pub(super) fn jumps(model: &Model, units: Units) -> Vec<String> {
         notes
     };
     model.drivers.iter().flat_map(of_driver).collect()
+}
+
+/// A mechanism this many of its sizes from the origin has lost four digits before anything is computed.
+const FAR: f64 = 1e4;
+
+/// Of a mechanism that is far from the origin.
+pub(super) fn far_away(model: &Model, units: Units) -> Option<String> {
+    let (distance, size) = (model.distance_from_origin(), model.size());
+    let lost = (distance / size).log10();
+    (distance > FAR * size).then(|| {
+        let unit = symbol(units, Quantity::Length);
+        let length = |x: f64| format!("{} {unit}", rounded(units.from_si(Quantity::Length, x), 3));
+        format!(
+            "the joints lie {} from the origin, in a mechanism of {}: numbers have 16 digits, and about {lost:.0} of them go into that \
+             distance; move the origin nearer",
+            length(distance),
+            length(size)
+        )
+    })
 }
 
 fn jump_note(model: &Model, units: Units, driver: &Driver, order: usize, jumps: &[Jump]) -> String {

@@ -358,6 +358,13 @@ impl Model {
         if size > 0.0 { size } else { Extent::of(self.hardpoints.iter().map(|h| h.position)).size() }
     }
 
+    /// How far the nearest joint is from the global origin, m; 0 where there is none.
+    pub fn distance_from_origin(&self) -> f64 {
+        let joints = self.joints.iter().flat_map(|j| j.at.map(|m| self.position(m).norm()));
+        let nearest = joints.fold(f64::INFINITY, f64::min);
+        if nearest.is_finite() { nearest } else { 0.0 }
+    }
+
     /// The variable of that name.
     pub fn variable(&self, name: &str) -> Option<VariableId> {
         self.variables.iter().position(|v| v.name == name).map(VariableId)
