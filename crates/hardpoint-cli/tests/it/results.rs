@@ -111,7 +111,7 @@ fn an_interrupted_run_leaves_the_part_that_was_solved() {
 }
 
 #[test]
-fn verify_passes_on_the_best_step_and_names_the_worst() {
+fn verify_passes_on_the_best_steps_and_names_the_worst() {
     let bench = Bench::with(&["slider.toml"]);
     let output = bench.run(&["verify", "slider.toml", "--sweep", "-o", "out"]);
     let shown = String::from_utf8(output.stdout).unwrap();
@@ -128,7 +128,23 @@ fn verify_passes_on_the_best_step_and_names_the_worst() {
     for check in &verdict["checks"].as_array().unwrap()[..2] {
         let error = |k: usize| check["sweep"][k]["error"].as_f64().unwrap();
         assert!((8.0..12.0).contains(&(error(0) / error(1))), "{check}");
-        assert!(check["best"]["error"].as_f64().unwrap() < 1e-8, "{check}");
+        assert!(check["worst"]["error"].as_f64().unwrap() < 1e-8, "{check}");
+    }
+    assert_eq!(verdict["differences"], "central");
+
+    // One-sided, by ten for a whole decade, and not as far.
+    for side in ["forward", "backward"] {
+        let output = bench.run(&["verify", "slider.toml", "--differences", side, "--json"]);
+        assert_eq!(output.status.code(), Some(0));
+        let verdict: Value = serde_json::from_slice(&output.stdout).unwrap();
+        assert_eq!(verdict["differences"], side);
+        assert_eq!(verdict["tolerance"], 4e-4);
+        for check in &verdict["checks"].as_array().unwrap()[..2] {
+            let error = |k: usize| check["sweep"][k]["error"].as_f64().unwrap();
+            assert!((8.0..12.0).contains(&(error(2) / error(4))), "{check}");
+            let worst = check["worst"]["error"].as_f64().unwrap();
+            assert!(1e-9 < worst && worst < 1e-5, "{check}");
+        }
     }
 }
 

@@ -118,7 +118,7 @@ fn a_variable_and_its_coordinate_are_one() {
     let document: Value = serde_json::from_slice(&output.stdout).unwrap();
     let names = document["influence"].as_array().unwrap().iter().map(|i| i["variable"].as_str().unwrap());
     let names: Vec<_> = names.collect();
-    assert!(names.contains(&"down") && !names.contains(&"strut_top.z") && names.contains(&"ball_joint_x"));
+    assert!(names.contains(&"down") && !names.contains(&"strut_top.z") && names.contains(&"ball_joint.x"));
 }
 
 #[test]
