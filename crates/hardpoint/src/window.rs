@@ -163,7 +163,8 @@ impl Analysis<'_> {
         });
         window.motion.effort = walk.one.effort;
         window.motion.assembly = walk.one.assembly.take();
-        window.motion.beyond = if self.measures && walk.done > 0 { walk.one.beyond() } else { None };
+        window.motion.beyond =
+            if self.measures && stop.is_none() && walk.done > 0 { walk.one.beyond() } else { None };
         window.sensitivities.admissibility =
             walk.sensing.map_or_else(Vec::new, |s| s.admissibility(&design.opens, walk.done));
         window.close(self, design, solution);
