@@ -135,7 +135,7 @@ impl Check<'_> {
         let ids: Vec<_> = ids.into_iter().collect::<Option<_>>()?;
         let m_i = Pose { rot: frame, r: self.position(at[0]) };
         let local: Vec<Vec3> = ids.iter().map(|h| m_i.inverse().point(self.position(*h))).collect();
-        let size = self.model.size();
+        let size = self.extent.size();
         let least = if draft.closed { 4 } else { 3 };
         if local.len() < least {
             let message = format!("the curve of `{name}` has {} points", local.len());
@@ -274,13 +274,22 @@ impl Check<'_> {
 
     /// Joints that need no place get one all the same, amid the places of their bodies' other joints, for their markers.
     pub(super) fn places_of_directions(&mut self) {
+        let mut joints_on = vec![Vec::new(); self.model.bodies.len()];
+        for (k, j) in self.model.joints.iter().enumerate() {
+            for body in j.bodies.iter().filter(|body| **body != GROUND) {
+                joints_on[body.0].push(k);
+            }
+        }
         for k in 0..self.model.joints.len() {
             if self.model.joints[k].at[0] != UNPLACED {
                 continue;
             }
             let bodies = self.model.joints[k].bodies;
+            let mut near: Vec<usize> = bodies.iter().flat_map(|b| &joints_on[b.0]).copied().collect();
+            near.sort_unstable();
+            near.dedup();
             let (mut sum, mut count) = (Vec3::ZERO, 0.0);
-            for j in self.model.joints.iter().filter(|j| j.at[0] != UNPLACED) {
+            for j in near.iter().map(|&j| &self.model.joints[j]).filter(|j| j.at[0] != UNPLACED) {
                 for (body, at) in j.bodies.iter().zip(j.at) {
                     if *body != GROUND && bodies.contains(body) {
                         sum += self.model.hardpoints[at.0].position;
