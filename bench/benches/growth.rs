@@ -42,14 +42,20 @@ fn chain_check_and_plan(bencher: Bencher, n: usize) {
 /// Reading and checking their files.
 #[divan::bench(args = [1, 10, 100, 1000, 10_000], max_time = 3)]
 fn chain_read(bencher: Bencher, n: usize) {
-    let text = hardpoint_bench::chain_text(n);
+    let text = hardpoint_bench::text(&hardpoint_bench::chain(n, 10));
     bencher.bench(|| hardpoint_file::parse(&text, "chain.toml").unwrap());
 }
 
-/// n x n scissors, which fall into many small blocks.
+/// n x n scissors that are driven where they stand, which fall into many small blocks.
 #[divan::bench(args = [2, 5, 10, 20], max_time = 3)]
 fn scissors_motion(bencher: Bencher, n: usize) {
-    motion(bencher, &hardpoint_bench::scissors(n, n, STEPS));
+    motion(bencher, &hardpoint_bench::scissors(n, n, [0; 2], STEPS));
+}
+
+/// The same, driven at the other end: one block of 2 n^2 - 2 unknowns, which loses digits with its size.
+#[divan::bench(args = [2, 5, 10, 20], max_time = 3)]
+fn far_scissors_motion(bencher: Bencher, n: usize) {
+    motion(bencher, &hardpoint_bench::scissors(n, n, [n - 1; 2], STEPS));
 }
 
 /// One block of 2 (n - 1) unknowns.

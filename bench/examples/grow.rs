@@ -1,4 +1,7 @@
-//! What a generated mechanism costs, stage by stage: `grow chain|truss|scissors SIZE STEPS`.
+//! What a generated mechanism costs, stage by stage: `grow chain|truss|scissors|far_scissors SIZE STEPS`; with `text` in place of the
+//! steps, its model file.
+//!
+//! Scissors are driven where they stand on the ground, far ones at the other end.
 
 use std::time::Instant;
 
@@ -8,14 +11,21 @@ use hardpoint::model::Model;
 fn main() {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     let [kind, size, steps] = arguments.as_slice() else {
-        panic!("usage: grow chain|truss|scissors SIZE STEPS");
+        panic!("usage: grow chain|truss|scissors|far_scissors SIZE STEPS|text");
     };
-    let (size, steps) = (size.parse().expect("a size"), steps.parse().expect("a number of steps"));
+    let size: usize = size.parse().expect("a size");
+    let is_text = steps == "text";
+    let steps = if is_text { 10 } else { steps.parse().expect("a number of steps") };
     let draft = match kind.as_str() {
         "chain" => hardpoint_bench::chain(size, steps),
         "truss" => hardpoint_bench::truss(size, steps),
-        _ => hardpoint_bench::scissors(size, size, steps),
+        "far_scissors" => hardpoint_bench::scissors(size, size, [size - 1; 2], steps),
+        _ => hardpoint_bench::scissors(size, size, [0; 2], steps),
     };
+    if is_text {
+        print!("{}", hardpoint_bench::text(&draft));
+        return;
+    }
     let before = Instant::now();
     let model = Model::from_draft(&draft).expect("a valid model");
     let checked = before.elapsed();

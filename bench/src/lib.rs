@@ -107,25 +107,36 @@ pub fn chain_with_variables(n: usize, variables: usize, steps: usize) -> Draft {
     draft
 }
 
-/// The chain of [`chain`] as a model file of eleven steps.
-pub fn chain_text(n: usize) -> String {
+/// A generated model as a model file of eleven steps. All of its joints are at coordinates, and nothing in it has a design variable.
+pub fn text(draft: &Draft) -> String {
     let mut text = format!(
-        "name = 'chain of {n}'\nunits = {{ length = 'm', angle = 'rad' }}\ntime = {{ end = 0.1, steps = 10 }}\n\
-         [drivers]\nmotor = {{ joint = 'pivot0', law = '0.5*sin(2*pi*t)' }}\n"
+        "name = '{}'\nunits = {{ length = 'm', angle = 'rad' }}\ntime = {{ end = 0.1, steps = 10 }}\n[drivers]\n",
+        draft.name
     );
-    let draft = chain(n, 0);
+    for driver in &draft.drivers {
+        let DrivenDraft::Coordinate { joint, .. } = &driver.drives else { unreachable!("joints are driven") };
+        text += &format!("{} = {{ joint = '{joint}', law = '{}' }}\n", driver.name, driver.law);
+    }
     text += "[bodies]\n";
     for body in &draft.bodies {
         text += &format!("{} = {{}}\n", body.name);
     }
     text += "[joints]\n";
     for joint in &draft.joints {
-        let Place::At(at) = &joint.at[0] else { unreachable!("the joints of a chain are at coordinates") };
-        let [i, j] = &joint.bodies;
-        let (name, kind, [x, y, z]) = (&joint.name, &joint.kind, at.to_array());
-        text += &format!(
-            "{name} = {{ type = '{kind}', bodies = ['{i}', '{j}'], at = [{x:?}, {y:?}, {z:?}], axis = 'z' }}\n"
-        );
+        let place = |place: &Place| {
+            let Place::At(at) = place else { unreachable!("joints are at coordinates") };
+            format!("{:?}", at.to_array())
+        };
+        let at = match joint.at.as_slice() {
+            [one] => place(one),
+            more => format!("[{}]", more.iter().map(place).collect::<Vec<_>>().join(", ")),
+        };
+        let axis = match &joint.axis {
+            Some(Line::Along(u)) => format!(", axis = {:?}", u.to_array()),
+            _ => String::new(),
+        };
+        let (name, kind, [i, j]) = (&joint.name, &joint.kind, &joint.bodies);
+        text += &format!("{name} = {{ type = '{kind}', bodies = ['{i}', '{j}'], at = {at}{axis} }}\n");
     }
     text
 }
@@ -188,9 +199,11 @@ pub fn truss_with_variables(n: usize, steps: usize) -> Draft {
     draft
 }
 
-/// n x m scissors, pinned to each other at their corners, that open and close together.
-pub fn scissors(n: usize, m: usize, steps: usize) -> Draft {
-    let mut draft = driven(format!("{n} x {m} scissors"), "cross0_0", "0.3*sin(2*pi*t)", steps);
+/// n x m scissors, pinned to each other at their corners, that open and close together; the first one stands on the ground, and
+/// the crossing of scissor `at` is driven.
+pub fn scissors(n: usize, m: usize, at: [usize; 2], steps: usize) -> Draft {
+    let (name, crossing) = (format!("{n} x {m} scissors"), format!("cross{}_{}", at[0], at[1]));
+    let mut draft = driven(name, &crossing, "0.3*sin(2*pi*t)", steps);
     // Bars rise or fall from left to right; those that end at a corner are pinned to the first of them there.
     let mut at_corner: std::collections::BTreeMap<(usize, usize), Vec<String>> = Default::default();
     for i in 0..n {

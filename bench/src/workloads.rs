@@ -155,7 +155,7 @@ pub fn measure(workload: Workload, reference: Option<&Path>, once: bool) -> io::
 /// # Panics
 /// Where the file is refused.
 pub fn plan_chain(loops: usize) -> [f64; 2] {
-    let text = crate::chain_text(loops);
+    let text = crate::text(&crate::chain(loops, 10));
     let read = || hardpoint_file::parse(&text, "chain.toml").unwrap_or_else(|e| panic!("{e}"));
     let reading = timed(false, || drop(black_box(read())));
     let file = read();

@@ -19,7 +19,7 @@ use hardpoint::{Analysis, Solution};
 use hardpoint_file::{ModelFile, Units};
 
 use crate::course::{Course, RoundOff};
-use crate::facts::{Answer, Facts, written_kind};
+use crate::facts::{Answer, Facts, held_spins, written_kind};
 use crate::figures::{error, number, order_unit, rounded, seconds, symbol};
 use crate::metric::MetricFact;
 use crate::page::{
@@ -306,13 +306,14 @@ impl Compose<'_> {
     fn joints(&self) -> Vec<JointMark> {
         let geometry = self.model.geometry(&[]);
         let roles = &self.analysis.topology().roles;
+        let spins = held_spins(self.model);
         // A driven distance is drawn like a leg; a driven point or orientation has nothing to draw.
         let shown = |joint: &Joint| !joint.unnamed || joint.kind.places == 2;
         let mark = |(j, joint): (usize, &Joint)| {
             let [i, k] = &geometry.markers[j];
             JointMark {
                 name: joint.name.clone(),
-                kind: written_kind(self.model, JointId(j)).into(),
+                kind: written_kind(joint, spins.contains(&JointId(j))).into(),
                 body_i: joint.bodies[0].0,
                 body_j: joint.bodies[1].0,
                 at_i: self.length(i.r),

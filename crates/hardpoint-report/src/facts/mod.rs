@@ -7,12 +7,14 @@ mod notes;
 mod redundancy;
 mod text;
 
+use std::collections::{HashMap, HashSet};
+
 use hardpoint::Solution;
 use hardpoint::constraint::Row;
 use hardpoint::joint::{self, Quantity};
 use hardpoint::model::{
-    AngleKind, BodyId, Coupler, Direction, Driver, GROUND, Joint, JointId, MeasureKind, Model, OutputSource,
-    PointId, Ray, VariableId,
+    AngleKind, BodyId, Coupler, Direction, Driver, GROUND, HardpointId, Joint, JointId, MeasureKind, Model,
+    OutputSource, PointId, Ray, VariableId,
 };
 use hardpoint::sensitivity::{self, Condition, JointDefect, admissibility_at_design, conditions_at_design};
 use hardpoint::topology::{Closure, CutReason, Formulation, Role, Topology};
@@ -313,24 +315,32 @@ fn counts(model: &Model, topology: &Topology) -> Counts {
 }
 
 fn bodies(model: &Model, topology: &Topology) -> Vec<BodyFact> {
-    let fact = |b: usize| {
-        let link = topology.links.iter().find(|l| l.child == BodyId(b));
-        BodyFact {
-            name: model.bodies[b].name.clone(),
-            placed_by: link.and_then(|l| l.joint).map(|j| joint_name(model, j)),
-            carried_by: link.map_or(String::new(), |l| model.bodies[l.parent.0].name.clone()),
-            joints: joints_on(model, BodyId(b)),
-        }
+    let mut link_of = vec![None; model.bodies.len()];
+    for link in &topology.links {
+        link_of[link.child.0] = Some(link);
+    }
+    let fact = |(b, joints): (usize, Vec<String>)| BodyFact {
+        name: model.bodies[b].name.clone(),
+        placed_by: link_of[b].and_then(|l| l.joint).map(|j| joint_name(model, j)),
+        carried_by: link_of[b].map_or(String::new(), |l| model.bodies[l.parent.0].name.clone()),
+        joints,
     };
-    (1..model.bodies.len()).map(fact).collect()
+    joints_on(model).into_iter().enumerate().skip(1).map(fact).collect()
 }
 
-/// The names of the joints on a body.
-fn joints_on(model: &Model, body: BodyId) -> Vec<String> {
-    model.named_joints().filter(|(_, j)| j.bodies.contains(&body)).map(|(_, j)| j.name.clone()).collect()
+/// Per body, ground included: the names of the joints on it.
+fn joints_on(model: &Model) -> Vec<Vec<String>> {
+    let mut joints_on = vec![Vec::new(); model.bodies.len()];
+    for (_, joint) in model.named_joints() {
+        for body in joint.bodies {
+            joints_on[body.0].push(joint.name.clone());
+        }
+    }
+    joints_on
 }
 
 fn joints(model: &Model, topology: &Topology) -> Vec<JointFact> {
+    let spins = held_spins(model);
     let fact = |(id, joint): (JointId, &Joint)| {
         let (role, why) = match &topology.roles[id.0] {
             Role::Tree { child, unknowns } => {
@@ -345,8 +355,8 @@ fn joints(model: &Model, topology: &Topology) -> Vec<JointFact> {
         };
         JointFact {
             name: joint.name.clone(),
-            kind: written_kind(model, id),
-            holds_spin: model.idle.iter().any(|i| i.joint == id),
+            kind: written_kind(joint, spins.contains(&id)),
+            holds_spin: spins.contains(&id),
             bodies: joint.bodies.map(|b| model.bodies[b.0].name.clone()),
             role,
             why,
@@ -356,10 +366,14 @@ fn joints(model: &Model, topology: &Topology) -> Vec<JointFact> {
     model.named_joints().map(fact).collect()
 }
 
+/// The balls that are treated as universal joints, to hold an idle spin.
+pub(crate) fn held_spins(model: &Model) -> HashSet<JointId> {
+    model.idle.iter().map(|i| i.joint).collect()
+}
+
 /// The type of a joint as it was written: a ball that holds an idle spin is still a ball.
-pub(crate) fn written_kind(model: &Model, joint: JointId) -> &'static str {
-    let held = model.idle.iter().any(|i| i.joint == joint);
-    if held { joint::SPHERICAL.name } else { model.joints[joint.0].kind.name }
+pub(crate) fn written_kind(joint: &Joint, holds_spin: bool) -> &'static str {
+    if holds_spin { joint::SPHERICAL.name } else { joint.kind.name }
 }
 
 fn why_cut(joint: &Joint, reason: CutReason) -> &'static str {
@@ -406,13 +420,20 @@ fn relation(terms: &[TermFact]) -> String {
     text + " = 0"
 }
 
+/// The names of the points that a person wrote, the first at each place.
+type Points<'m> = HashMap<(BodyId, HardpointId), &'m str>;
+
 fn drivers(model: &Model, units: Units) -> Vec<DriverFact> {
+    let mut points = Points::new();
+    for point in model.points.iter().filter(|p| !p.unnamed) {
+        points.entry((point.body, point.at)).or_insert(&point.name);
+    }
     let fact = |d: &Driver| {
         let joint = &model.joints[d.joint.0];
         let of_joint = (!joint.unnamed).then(|| (joint.name.clone(), model.driven(d).name));
         let drives = match &of_joint {
             Some((joint, coordinate)) => format!("{joint} {coordinate}"),
-            None => driven_text(model, joint),
+            None => driven_text(model, joint, &points),
         };
         let (joint, coordinate) = of_joint.unzip();
         let unit = symbol(units, model.driven(d).quantity);
@@ -422,14 +443,12 @@ fn drivers(model: &Model, units: Units) -> Vec<DriverFact> {
 }
 
 /// What an unnamed joint stands for.
-fn driven_text(model: &Model, joint: &Joint) -> String {
+fn driven_text(model: &Model, joint: &Joint, points: &Points<'_>) -> String {
     let body = |e: usize| model.bodies[joint.bodies[e].0].name.as_str();
     let place = |e: usize| {
-        let on =
-            |p: &&hardpoint::model::BodyPoint| !p.unnamed && p.body == joint.bodies[e] && p.at == joint.at[e];
         let hardpoint = &model.hardpoints[joint.at[e].0];
-        match model.points.iter().find(on) {
-            Some(point) => format!("point `{}` on `{}`", point.name, body(e)),
+        match points.get(&(joint.bodies[e], joint.at[e])) {
+            Some(point) => format!("point `{point}` on `{}`", body(e)),
             None if !hardpoint.unnamed => format!("`{}` on `{}`", hardpoint.name, body(e)),
             None => format!("point on `{}`", body(e)),
         }
@@ -555,8 +574,12 @@ fn conditions(model: &Model, units: Units) -> Vec<ConditionFact> {
         return Vec::new();
     }
     let mut facts: Vec<(JointId, Row, ConditionFact)> = Vec::new();
+    let mut driven = vec![Vec::new(); model.joints.len()];
+    for driver in &model.drivers {
+        driven[driver.joint.0].push(model.driven(driver).row);
+    }
     for (id, joint) in model.named_joints() {
-        let driven = model.drivers.iter().filter(|d| d.joint == id).map(|d| model.driven(d).row);
+        let driven = driven[id.0].iter().copied();
         for row in joint.kind.rows.iter().copied().chain(driven) {
             let (joint, constraint) = (joint_name(model, id), row.describe());
             facts.push((id, row, ConditionFact { joint, constraint, opened_by: Vec::new() }));
@@ -566,8 +589,8 @@ fn conditions(model: &Model, units: Units) -> Vec<ConditionFact> {
         let unit = variable_unit(model, units, variable);
         // What of a condition is no more than round-off opens nothing.
         let opens = admissibility_at_design(model, &field);
-        let counts =
-            |d: &Condition| opens.iter().any(|o| o.joint == d.joint && d.value.abs() > ROUND_OFF * o.value);
+        let most: HashMap<JointId, f64> = opens.iter().map(|o| (o.joint, o.value)).collect();
+        let counts = |d: &Condition| most.get(&d.joint).is_some_and(|most| d.value.abs() > ROUND_OFF * most);
         for condition in conditions_at_design(model, &field).into_iter().filter(counts) {
             // In the order of the joints.
             let first = facts.partition_point(|f| f.0 < condition.joint);

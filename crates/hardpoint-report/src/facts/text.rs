@@ -1,11 +1,11 @@
 //! The facts in words: lines for headings, sentences, and tables for the terminal and the page.
 
-use hardpoint::model::{BodyId, JointId};
+use hardpoint::model::JointId;
 use hardpoint_file::ModelFile;
 
 use super::{
-    Answer, CouplerFact, DefectFact, DriverFact, Facts, VariableFact, couplers, drivers, joints_on,
-    written_kind,
+    Answer, CouplerFact, DefectFact, DriverFact, Facts, VariableFact, couplers, drivers, held_spins,
+    joints_on, written_kind,
 };
 use crate::figures::{count, number, rounded, some_of, with_unit};
 use crate::page::Table;
@@ -233,13 +233,19 @@ impl Facts {
 /// What can be said of a mechanism that cannot be planned: its bodies, joints, couplers and drivers.
 pub fn outline(file: &ModelFile) -> Vec<Table> {
     let (model, units) = (&file.model, file.units);
-    let body = |b: usize| vec![model.bodies[b].name.clone(), joints_on(model, BodyId(b)).join(", ")];
+    let body = |(b, joints): (usize, Vec<String>)| vec![model.bodies[b].name.clone(), joints.join(", ")];
+    let spins = held_spins(model);
     let joint = |(id, j): (JointId, &hardpoint::model::Joint)| {
         let [i, k] = j.bodies.map(|b| model.bodies[b.0].name.as_str());
-        let kind = written_kind(model, id).to_owned();
+        let kind = written_kind(j, spins.contains(&id)).to_owned();
         vec![j.name.clone(), kind, format!("{i} – {k}"), j.kind.rows.len().to_string()]
     };
-    let bodies = table("Bodies", "", ["body", "joints on it"], (1..model.bodies.len()).map(body));
+    let bodies = table(
+        "Bodies",
+        "",
+        ["body", "joints on it"],
+        joints_on(model).into_iter().enumerate().skip(1).map(body),
+    );
     let header = ["joint", "type", "bodies", "constraints"];
     let mut tables = vec![bodies, table("Joints", "", header, model.named_joints().map(joint))];
     tables.extend(coupler_table(&couplers(model, units)));

@@ -109,6 +109,8 @@ struct Check<'a> {
     law_formulas: HashMap<&'a str, Vec<(&'a str, &'a Expression)>>,
     /// By kind of entry: which number a name has. Only looked up, never walked.
     numbers: HashMap<&'static str, HashMap<&'a str, usize>>,
+    /// Which driver prescribes a coordinate of a joint. Only looked up, never walked.
+    driver_of: HashMap<(JointId, usize), DriverId>,
     /// Comparisons of names that guesses may still take.
     comparisons: usize,
     /// The box around the joints' hardpoints, as far as they are known; what no joint uses has no say in what is small.
@@ -189,6 +191,7 @@ impl<'a> Check<'a> {
             length_formulas,
             law_formulas,
             numbers,
+            driver_of: HashMap::new(),
             comparisons: COMPARISONS,
             extent,
         }

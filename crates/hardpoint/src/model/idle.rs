@@ -1,6 +1,7 @@
 //! Idle freedoms: a rod that can spin between its balls without moving anything else.
 
 use super::*;
+use crate::constraint::Row;
 use crate::space::{FullPivot, Twist};
 
 /// A constraint that is weaker than this part of the strongest does not hold.
@@ -37,6 +38,13 @@ impl Model {
             held && !j.bodies.contains(&GROUND)
         });
         let groups: Vec<Vec<BodyId>> = alone.chain(slides.map(|j| j.bodies.to_vec())).collect();
+        let mut prescribed = vec![Vec::new(); self.joints.len()];
+        for d in &self.drivers {
+            prescribed[d.joint.0].push(self.driven(d).row);
+        }
+        for t in self.couplers.iter().flat_map(|c| &c.terms) {
+            prescribed[t.joint.0].push(self.coupled(t).row);
+        }
         for bodies in groups {
             // Where nothing is a ball there is nothing to hold, and most bodies of a linkage are dealt with here.
             let mut joints: Vec<JointId> =
@@ -46,7 +54,7 @@ impl Model {
             joints.retain(|j| !self.joints[j.0].bodies.iter().all(|b| bodies.contains(b)));
             let is_ball = |j: &JointId| std::ptr::eq(self.joints[j.0].kind, &crate::joint::SPHERICAL);
             let Some(ball) = joints.iter().copied().find(is_ball) else { continue };
-            let Some(axis) = self.spin(&bodies, &joints, ball, size) else { continue };
+            let Some(axis) = self.spin(&bodies, &joints, ball, &prescribed, size) else { continue };
             let z = axis.any_square();
             let frame = Mat3 { cols: [axis.cross(z), z.cross(axis.cross(z)), z] };
             let held = &mut self.joints[ball.0];
@@ -56,17 +64,23 @@ impl Model {
     }
 
     /// The axis through the ball about which these bodies can spin while all others stay, if that is all they can do.
-    fn spin(&self, bodies: &[BodyId], joints: &[JointId], ball: JointId, size: f64) -> Option<Vec3> {
+    ///
+    /// `prescribed` has per joint the rows that drivers and couplers add to its own.
+    fn spin(
+        &self,
+        bodies: &[BodyId],
+        joints: &[JointId],
+        ball: JointId,
+        prescribed: &[Vec<Row>],
+        size: f64,
+    ) -> Option<Vec3> {
         let centre = self.position(self.joints[ball.0].at[0]);
         let mut rows = Vec::new();
         for &j in joints {
             let joint = &self.joints[j.0];
             let ends = self.ends(j);
             let side = if bodies.contains(&joint.bodies[1]) { 1.0 } else { -1.0 };
-            let driven = self.drivers.iter().filter(|d| d.joint == j).map(|d| self.driven(d).row);
-            let coupled = self.couplers.iter().flat_map(|c| &c.terms).filter(|t| t.joint == j);
-            let coupled = coupled.map(|t| self.coupled(t).row);
-            for row in joint.kind.rows.iter().copied().chain(driven).chain(coupled) {
+            for &row in joint.kind.rows.iter().chain(&prescribed[j.0]) {
                 let wrench = row.wrench(&ends);
                 let scale = if row.is_length() { side / size } else { side };
                 // Turns about the ball, then slides in sizes.

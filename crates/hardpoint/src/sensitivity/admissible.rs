@@ -1,5 +1,7 @@
 //! Kinematic admissibility of a design variable: can the joints stay closed, and how.
 
+use std::collections::HashMap;
+
 use crate::constraint::Row;
 use crate::model::{Field, JointId, Model, Term};
 use crate::space::Twist;
@@ -64,13 +66,17 @@ pub fn conditions_at_design(model: &Model, field: &Field) -> Vec<Condition> {
     touched.extend(field.kept.iter().map(|(j, _)| j.0));
     touched.sort_unstable();
     touched.dedup();
+    let mut driven: HashMap<JointId, Vec<Row>> = HashMap::new();
+    for driver in &model.drivers {
+        driven.entry(driver.joint).or_default().push(model.driven(driver).row);
+    }
     let mut conditions = Vec::new();
     for k in touched {
         let (joint, z) = (JointId(k), twists(k));
         let kept = field.kept_rate(joint).unwrap_or_default();
         let ends = model.ends(joint);
         // A driven coordinate is a constraint too: it must stay at zero in the design configuration.
-        let driven = model.drivers.iter().filter(|d| d.joint == joint).map(|d| model.driven(d).row);
+        let driven = driven.get(&joint).into_iter().flatten().copied();
         let rows = model.joints[k].kind.rows.iter().copied().chain(driven);
         let value = |row: Row| row.wrench(&ends).on(z[1] - z[0]) - kept.by(row);
         conditions.extend(rows.map(|row| Condition { joint, row, value: value(row) }));
@@ -92,15 +98,17 @@ pub fn conditions_at_design(model: &Model, field: &Field) -> Vec<Condition> {
 pub fn admissibility_at_design(model: &Model, field: &Field) -> Vec<JointDefect> {
     let scale = field.markers.iter().map(|m| m.twist.w.norm().max(m.twist.v.norm())).fold(0.0, f64::max);
     let mut joints: Vec<JointDefect> = Vec::new();
+    let mut place_of: HashMap<JointId, usize> = HashMap::new();
     for Condition { joint, row, value } in conditions_at_design(model, field) {
         let value = value.abs();
         if !(value > OPEN * scale) {
             continue;
         }
-        match joints.iter_mut().find(|j| j.joint == joint) {
-            Some(j) if value > j.value => (j.row, j.value) = (row, value),
-            Some(_) => {}
-            None => joints.push(JointDefect { joint, row, value }),
+        let next = joints.len();
+        match place_of.entry(joint).or_insert(next) {
+            k if *k == next => joints.push(JointDefect { joint, row, value }),
+            k if value > joints[*k].value => (joints[*k].row, joints[*k].value) = (row, value),
+            _ => {}
         }
     }
     joints

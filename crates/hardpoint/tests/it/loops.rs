@@ -202,8 +202,9 @@ fn ten_thousand_loops_are_planned_in_proportion_and_move_like_one() {
     }
 }
 
-/// n x m scissors of unit cells, pinned to each other at their corners; the first one opens.
-fn scissors(n: usize, m: usize) -> Draft {
+/// n x m scissors of unit cells, pinned to each other at their corners; the first one stands on the ground, and the one at `at` is
+/// driven open.
+fn scissors(n: usize, m: usize, at: [usize; 2]) -> Draft {
     let z = Some([0.0, 0.0, 1.0]);
     let (mut bodies, mut joints) = (Vec::new(), Vec::new());
     let mut at_corner: std::collections::BTreeMap<(usize, usize), Vec<String>> = Default::default();
@@ -228,7 +229,7 @@ fn scissors(n: usize, m: usize) -> Draft {
         name: "scissors".into(),
         bodies,
         joints,
-        drivers: vec![driver("motor", "cross0_0", "0.3*sin(2*pi*t)")],
+        drivers: vec![driver("motor", &format!("cross{}_{}", at[0], at[1]), "0.3*sin(2*pi*t)")],
         times: times(0.3, 3),
         ..Draft::default()
     }
@@ -236,9 +237,24 @@ fn scissors(n: usize, m: usize) -> Draft {
 
 #[test]
 fn a_grid_of_scissors_opens_as_lazy_tongs_do() {
-    let n = 12;
-    let model = Model::from_draft(&scissors(n, n)).unwrap();
-    let solution = Analysis::new(&model).unwrap().run();
+    let largest = opens_as_lazy_tongs_do(12, [0, 0], 1e-10);
+    assert_eq!(largest, 2, "driven where it stands");
+}
+
+#[test]
+fn a_grid_of_scissors_that_is_driven_at_its_other_end_is_one_block() {
+    for n in [3, 8] {
+        // Every loop stands on others that follow from it.
+        let largest = opens_as_lazy_tongs_do(n, [n - 1, n - 1], 1e-10);
+        assert_eq!(largest, 2 * n * n - 2);
+    }
+}
+
+/// Solves n x n scissors and compares with their closed form; the size of the largest block.
+fn opens_as_lazy_tongs_do(n: usize, at: [usize; 2], tolerance: f64) -> usize {
+    let model = Model::from_draft(&scissors(n, n, at)).unwrap();
+    let analysis = Analysis::new(&model).unwrap();
+    let solution = analysis.run();
     assert!(solution.stop.is_none(), "{:?}", solution.stop);
     for (step, &t) in solution.motion.times.iter().enumerate() {
         // The rising bars are parallel to the first, which is fixed; the falling ones are all turned by f. The
@@ -251,20 +267,27 @@ fn a_grid_of_scissors_opens_as_lazy_tongs_do() {
                 let centre = Vec3::new(rise + fall * (c + s), rise + fall * (s - c), 0.0);
                 let body = 1 + 2 * (i * n + j);
                 let (up, down) = (solution.motion.at(step)[body], solution.motion.at(step)[body + 1]);
-                assert!(apart(up.rotation.cols[0], Vec3::new(1.0, 0.0, 0.0)) < 1e-10, "up {i} {j} at {t}");
-                assert!(apart(down.rotation.cols[0], Vec3::new(c, s, 0.0)) < 1e-10, "down {i} {j} at {t}");
+                assert!(
+                    apart(up.rotation.cols[0], Vec3::new(1.0, 0.0, 0.0)) < tolerance,
+                    "up {i} {j} at {t}"
+                );
+                assert!(
+                    apart(down.rotation.cols[0], Vec3::new(c, s, 0.0)) < tolerance,
+                    "down {i} {j} at {t}"
+                );
                 for state in [up, down].iter().zip(body..) {
                     let offset =
                         Vec3::new(i as f64 + 0.5, j as f64 + 0.5, 0.0) - model.bodies[state.1].frame.r;
                     let crossing = state.0.r + state.0.rotation * offset;
                     assert!(
-                        apart(crossing, centre) < 1e-10,
+                        apart(crossing, centre) < tolerance,
                         "crossing {i} {j} at {t}: {crossing:?}, {centre:?}"
                     );
                 }
             }
         }
     }
+    analysis.topology().blocks.iter().map(|b| b.unknowns.len()).max().unwrap()
 }
 
 #[test]

@@ -270,13 +270,22 @@ impl Check<'_> {
 
     /// Joints that need no place get one all the same, amid the places of their bodies' other joints, for their markers.
     pub(super) fn places_of_directions(&mut self) {
+        let mut joints_on = vec![Vec::new(); self.model.bodies.len()];
+        for (k, j) in self.model.joints.iter().enumerate() {
+            for body in j.bodies.iter().filter(|body| **body != GROUND) {
+                joints_on[body.0].push(k);
+            }
+        }
         for k in 0..self.model.joints.len() {
             if self.model.joints[k].at[0] != UNPLACED {
                 continue;
             }
             let bodies = self.model.joints[k].bodies;
+            let mut near: Vec<usize> = bodies.iter().flat_map(|b| &joints_on[b.0]).copied().collect();
+            near.sort_unstable();
+            near.dedup();
             let (mut sum, mut count) = (Vec3::ZERO, 0.0);
-            for j in self.model.joints.iter().filter(|j| j.at[0] != UNPLACED) {
+            for j in near.iter().map(|&j| &self.model.joints[j]).filter(|j| j.at[0] != UNPLACED) {
                 for (body, at) in j.bodies.iter().zip(j.at) {
                     if *body != GROUND && bodies.contains(body) {
                         sum += self.model.hardpoints[at.0].position;

@@ -54,6 +54,7 @@ impl Check<'_> {
                     .help("change the law, or the times, so that all three are finite");
             }
             let Some((joint, coordinate)) = self.driven(d, here) else { continue };
+            self.driver_of.insert((joint, coordinate), DriverId(self.model.drivers.len()));
             self.model.drivers.push(Driver { name: d.name.clone(), joint, coordinate, law });
         }
     }
@@ -142,9 +143,8 @@ impl Check<'_> {
         here: Here,
     ) -> bool {
         let kind = self.model.joints[joint.0].kind;
-        if let Some(other) =
-            self.model.drivers.iter().find(|o| o.joint == joint && o.coordinate == coordinate)
-        {
+        if let Some(other) = self.driver_of.get(&(joint, coordinate)) {
+            let other = &self.model.drivers[other.0];
             let message = format!("drivers `{}` and `{}` prescribe the same coordinate", other.name, d.name);
             let c = kind.coordinates[coordinate].name;
             self.fault("HP0215", here.key("joint"), message)
