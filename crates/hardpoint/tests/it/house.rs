@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 /// The rooms of the core, in the order of the walk: each may use those before it only.
-const ROOMS: [&str; 11] = [
+const ROOMS: [&str; 12] = [
     "space",
     "law",
     "constraint",
@@ -14,6 +14,7 @@ const ROOMS: [&str; 11] = [
     "sensitivity",
     "measure",
     "analysis",
+    "window",
     "study",
 ];
 
