@@ -190,7 +190,8 @@ impl MarginCourse {
             if self.start.is_none() {
                 (self.start, self.span[0]) = (Some(margin), t);
             }
-            if self.least.is_none_or(|(least, _)| margin.value.total_cmp(&least.value).is_lt()) {
+            // Of the periods of a motion the first has the least, whatever the last digits. Written so that NaN is the least of all.
+            if self.least.is_none_or(|(least, _)| !(margin.value >= least.value * (1.0 - AS_LARGE))) {
                 self.least = Some((margin, t));
             }
             self.span[1] = t;
