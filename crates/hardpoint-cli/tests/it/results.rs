@@ -148,6 +148,27 @@ fn verify_passes_on_the_best_steps_and_names_the_worst() {
     }
 }
 
+/// The crank pin so far outboard, the rod is too short for the motion; inboard it is not.
+#[test]
+fn a_backward_difference_serves_where_the_other_side_cannot_be_assembled() {
+    let bench = Bench::with(&["slider.toml"]);
+    let solved = |differences: &str| {
+        let output = bench.run(&[
+            "verify",
+            "slider.toml",
+            "--steps",
+            "0.6,1e-6",
+            "--differences",
+            differences,
+            "--json",
+        ]);
+        assert_eq!(output.status.code(), Some(0));
+        let verdict: Value = serde_json::from_slice(&output.stdout).unwrap();
+        verdict["checks"][0]["sweep"].as_array().unwrap().len()
+    };
+    assert_eq!(["central", "forward", "backward"].map(solved), [1, 1, 2]);
+}
+
 #[test]
 fn verify_fails_where_no_step_agrees() {
     let bench = Bench::with(&["slider.toml"]);

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use hardpoint::Analysis;
 use hardpoint::model::VariableId;
-use hardpoint::study::metrics;
+use hardpoint::study::{metrics, validity};
 use hardpoint_file::{ModelFile, parse};
 
 fn parsed(text: &str) -> ModelFile {
@@ -180,4 +180,26 @@ fn interpolation_errors_of_coarse_curves_are_told() {
     let file = parsed(&CRANK.replace("end = 3.0, steps = 120", "end = 2.0, steps = 1"));
     let found = metrics(&file.model, &Analysis::new(&file.model).unwrap().run());
     assert_eq!(found[0].error, None);
+}
+
+/// The end of a crank goes with its radius in proportion; that of a rod between a crank and a slide does not.
+#[test]
+fn what_is_exactly_linear_is_not_given_a_limit_by_its_round_off() {
+    let reach = |text: &str, output: &str, variable: &str| {
+        let file = parsed(text);
+        let analysis = Analysis::new(&file.model).unwrap();
+        let solution = analysis.run();
+        let found = validity(&analysis, &solution, |_| true);
+        found[file.model.variable(variable).unwrap().0].linear_up_to[solution.measured.index(output).unwrap()]
+    };
+    for output in ["A.x", "A.y"] {
+        assert_eq!(reach(CRANK, output, "a"), Some(f64::INFINITY), "{output}");
+    }
+    let gallery = |name: &str| {
+        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("../../models/{name}.toml"));
+        std::fs::read_to_string(path).unwrap()
+    };
+    assert_eq!(reach(&gallery("sarrus"), "height", "x_knee_x"), Some(f64::INFINITY));
+    let bends = reach(&gallery("slider_crank"), "stroke", "J1_x").unwrap();
+    assert!((0.01..0.1).contains(&bends), "{bends}");
 }

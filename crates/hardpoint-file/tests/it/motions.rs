@@ -9,6 +9,7 @@ use hardpoint_file::{parse, read};
 const VALID: &str = include_str!("../models/press.toml");
 
 fn snapshot(name: &str, shown: &str) {
+    assert_eq!(shown.matches("error[HP").count(), shown.matches("= help: ").count(), "{name}: {shown}");
     insta::with_settings!({ snapshot_path => "../snapshots", prepend_module_to_snapshot => false, omit_expression => true, description => name }, {
         insta::assert_snapshot!(name, shown);
     });
@@ -200,6 +201,9 @@ fn data_files() {
     refused("file_out_of_order", &law(""), "0, 0\n2, 5\n1, 3\n");
     refused("file_of_one_column", &law(""), "0\n1\n");
     refused("file_without_that_name", &law(", columns = [\"time\", \"travle\"]"), rows);
+    let twice = "time, travel, travel\n0, 0, 1\n1, 5, 6\n";
+    refused("file_with_a_name_twice", &law(", columns = [\"time\", \"travel\"]"), twice);
+    refused("file_with_one_column_for_both", &law(", columns = [2, 2]"), rows);
     refused("file_without_names", &law(", columns = [\"time\", \"travel\"]"), "0, 0\n1, 5\n");
     refused("file_without_that_column", &law(", columns = [1, 3]"), rows);
     refused("file_with_one_column_named", &law(", columns = \"travel\""), rows);
