@@ -169,13 +169,27 @@ fn status(summary: &Summary, detail: Detail) -> Status {
     };
     if detail.stride > 1 {
         let (shown, stride) = (summary.steps.solved.div_ceil(detail.stride), detail.stride);
-        message +=
-            &format!(" This page shows every {stride}th step, {shown} in all; the tables hold all of them.");
+        message += &format!(
+            " This page shows every {} step, {shown} in all; the tables hold all of them.",
+            ordinal(stride)
+        );
     }
     if !detail.bodies && summary.model.counts.bodies > 0 && !summary.model.variables.is_empty() {
         message += " Sensitivities of body origins are not shown; `run --bodies` writes them.";
     }
     Status { complete: summary.status == RunStatus::Complete, message }
+}
+
+/// `2nd`, `4th`, `32nd`.
+fn ordinal(n: usize) -> String {
+    let ending = match (n % 10, n % 100) {
+        (_, 11..=13) => "th",
+        (1, _) => "st",
+        (2, _) => "nd",
+        (3, _) => "rd",
+        _ => "th",
+    };
+    format!("{n}{ending}")
 }
 
 /// The handful of figures at the top.

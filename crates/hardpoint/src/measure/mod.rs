@@ -166,7 +166,7 @@ pub(crate) fn evaluate(
             [angle, rate]
         };
         let values = &mut measured.values;
-        unwrap_angles(laws, topology, (motion, before), k, &turns, values, first, on_the_way);
+        unwrap_angles((laws, topology), (motion, before), k, &turns, values, first, on_the_way);
         if let Some(raw) = raw {
             let now = counted.len();
             let whole = |(m, x): (usize, &[f64; 3])| x[0] - raw[m][0];
@@ -361,8 +361,7 @@ fn along_the_path<'p>(
 
 /// Counts angles through whole turns.
 fn unwrap_angles(
-    laws: &[Law],
-    topology: &Topology,
+    (laws, topology): (&[Law], &Topology),
     (motion, before): (&Motion, Option<&Before>),
     k: usize,
     turns: &[Option<Turns>],

@@ -155,7 +155,7 @@ fn laws_are_even<T: Real>(
             moves = moves.max((value - before).abs() / unit);
             before = value;
         }
-        let most = (EVEN * moves).max(RESTS).min(LONGEST);
+        let most = (EVEN * moves).clamp(RESTS, LONGEST);
         let [from, to] = [one.time, times[last]];
         let stretch = [from, to, from + CELL * (to - from)];
         let travel = longest / unit * one.calm[d].fastest(&one.parts, d, stretch, most * unit / longest);
@@ -190,7 +190,7 @@ fn determinants_are_even<T: Real>(
         for k in 0..LANES {
             let ratio = all.state.factors[b].plain_ratio(at[k + 1], at[k]);
             // Written so that NaN is not even.
-            even &= ratio >= MILD[0] && ratio <= MILD[1];
+            even &= (MILD[0]..=MILD[1]).contains(&ratio);
             change[k + 1] = ratio - 1.0;
         }
         change[0] = if one.ahead == Ahead::Even { one.changes[b] } else { change[1] / beside[0] };

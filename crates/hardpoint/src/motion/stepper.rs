@@ -248,11 +248,11 @@ impl<'m, T: Real> Stepper<'m, T> {
         for d in 0..self.line.len() {
             self.line[d] = [self.state.witness.zero(), self.parts.law(d, t, self.state.witness)[0]];
         }
-        let ramp = Path::Line { at: t };
-        self.time = 0.0;
-        self.attempt(ramp, 0.0).map_err(|r| self.stop(ramp, 0.0, r, false))?;
-        self.save(0.0, 0.0);
         if self.line.iter().any(|[_, to]| to.abs().largest() != 0.0) {
+            let ramp = Path::Line { at: t };
+            self.time = 0.0;
+            self.attempt(ramp, 0.0).map_err(|r| self.stop(ramp, 0.0, r, false))?;
+            self.save(0.0, 0.0);
             self.walk(ramp, 1.0)?;
         }
         // The rates left by the ramp are per unit of ramp; solve once more with the laws' own.
@@ -333,7 +333,7 @@ impl<'m, T: Real> Stepper<'m, T> {
             let most = match self.ahead {
                 Ahead::Even => {
                     let moved = (self.drivers[d][0] - self.saved.drivers[d][0]).abs().largest() / unit;
-                    (EVEN * self.moves[d].max(moved)).max(RESTS).min(LONGEST)
+                    (EVEN * self.moves[d].max(moved)).clamp(RESTS, LONGEST)
                 }
                 _ => LONGEST,
             };
