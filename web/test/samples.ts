@@ -1,4 +1,4 @@
-import { execFileSync } from 'node:child_process'
+import { type StdioOptions, execFileSync } from 'node:child_process'
 import { mkdtempSync, rmSync } from 'node:fs'
 import { tmpdir } from 'node:os'
 import { join } from 'node:path'
@@ -31,7 +31,8 @@ export default function setup(project: TestProject): () => void {
 /** The built program: with the whole workspace, as `cargo test` builds it, so that after that there is nothing left to compile. */
 function build(): string {
   const command = ['build', '--workspace', '--example', 'sample_page', '--message-format', 'json']
-  const options = { cwd: join(import.meta.dirname, '../..'), maxBuffer: Infinity, stdio: ['ignore', 'pipe', 'inherit'] } as const
+  const stdio: StdioOptions = ['ignore', 'pipe', 'inherit']
+  const options = { cwd: join(import.meta.dirname, '../..'), maxBuffer: Infinity, stdio }
   const messages = execFileSync('cargo', command, options).toString().trim().split('\n')
   const programs = messages.map((line) => JSON.parse(line).executable as string | null | undefined)
   const program = programs.find((name) => name)
