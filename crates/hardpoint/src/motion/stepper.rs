@@ -18,9 +18,9 @@ use super::walk::{PART_OF_WAY, Path};
 use super::{Effort, Passed, Stop};
 
 /// A first correction (rad, or sizes) up to this is accepted whatever the prediction's own length is.
-const TRUST_FLOOR: f64 = 0.02;
+pub(super) const TRUST_FLOOR: f64 = 0.02;
 /// The first correction may be this part of the predicted move: more means a prediction gone wrong.
-const TRUST: f64 = 0.5;
+pub(super) const TRUST: f64 = 0.5;
 /// Speeds after a step between output times may differ from the predicted ones by this part of the fastest coordinate: on a
 /// motion that output times resolve the difference vanishes with the step.
 const SPEED_TRUST: f64 = 0.25;

@@ -9,7 +9,7 @@ use crate::space::Real;
 
 use super::kinematics::PositionFailure;
 use super::singularity::Prober;
-use super::stepper::{Ahead, Refusal, Stepper};
+use super::stepper::{Ahead, LOCKED, Refusal, Stepper, TRUST, TRUST_FLOOR};
 use super::{BodyState, Passed, Singular, Stop, StopKind};
 use crate::constraint::Row;
 use crate::model::DriverId;
@@ -33,10 +33,6 @@ const WHOLE_PART: f64 = 0.2;
 const SHORTEST: f64 = 1e-10;
 /// Times nearer to each other than this, relative to the times of the path, are one: what changes between them jumps.
 const ONE_TIME: f64 = 1e-14;
-/// The first correction may be this part of the predicted move: more means a prediction gone wrong.
-const TRUST: f64 = 0.5;
-/// A first correction (rad, or sizes) up to this is accepted whatever the prediction's own length is.
-const TRUST_FLOOR: f64 = 0.02;
 /// Redundant constraints that disagree by this part of what counts as locked are looked at in the middle of a step, too.
 const SUSPECT: f64 = 1e-2;
 /// The response to a load goes with this power of the distance, at most, where the loop cannot be closed beyond: 1/2; where two motions
@@ -266,7 +262,7 @@ impl<T: Real> Stepper<'_, T> {
 
     /// Goes a step h along a path, to t, if it is a safe one.
     fn step_to(&mut self, path: Path, t: f64, h: f64) -> Result<(), Refusal> {
-        if self.saved.residual > SUSPECT * super::stepper::LOCKED && path == Path::Laws {
+        if self.saved.residual > SUSPECT * LOCKED && path == Path::Laws {
             self.solve_at(path, self.time + 0.5 * h, 0.5 * h)?;
         }
         self.measure_travel(path, h);
