@@ -84,9 +84,10 @@ fn run_in(session: &Session, options: &Run) -> Result<Outcome, Outcome> {
     (summary.timings.read, summary.timings.solve) = (read, solve);
     let outputs = format!("the files in `{}`", path.display());
     summary.diagnostics = diagnose::all(&file, &summary, &course, Some(&outputs));
-    let written = tables.end(&mut folder, &solution.sensitivities.admissibility);
+    let written = tables.end(&mut folder, &solution.sensitivities.admissibility, session.for_a_moment());
     let written = written.map_err(|e| session.not_written(&e))?;
     summary.left_out.extend(plan.left_out());
+    summary.left_out.extend(written.left_out);
 
     let mut differences = Vec::new();
     if !session.interrupted() && !solution.motion.is_empty() {
@@ -115,7 +116,7 @@ fn run_in(session: &Session, options: &Run) -> Result<Outcome, Outcome> {
         if stopped_before && summary.status == RunStatus::Complete {
             summary.status = RunStatus::Interrupted;
         }
-        summary.files.extend(written.iter().map(|name| folder.path_of(name).display().to_string()));
+        summary.files.extend(written.names.iter().map(|name| folder.path_of(name).display().to_string()));
         if options.jerk && !stopped_before {
             write_jerk(session, &file, &analysis, &mut folder).map_err(|e| session.not_written(&e))?;
             summary.files.push(folder.path_of("jerk.csv").display().to_string());

@@ -184,6 +184,13 @@ impl Session {
         }
     }
 
+    /// For what ends a run that was interrupted: go on unless the user asked to stop, and then for a moment still.
+    pub fn for_a_moment(&self) -> impl FnMut() -> bool {
+        const MOMENT: Duration = Duration::from_millis(300);
+        let mut asked = None;
+        move || !self.interrupted() || asked.get_or_insert_with(Instant::now).elapsed() < MOMENT
+    }
+
     /// For the core's loops: go on unless the user asked to stop.
     pub fn go_on(&self) -> ControlFlow<()> {
         if self.interrupted() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }

@@ -19,6 +19,9 @@ const MOST_BODIES: usize = 100;
 const MOST_MOVED: usize = 200;
 /// What is larger than this is announced before the work.
 const LARGE: u64 = 100 << 20;
+/// Why there is no table of sensitivities.
+const INTERRUPTED: &str = "left out: `sensitivity.csv`, because the run was interrupted while the rows of variables were taken out \
+    of it that the mechanism cannot follow";
 /// A number with all its digits, in CSV.
 const CSV_NUMBER: u64 = 19;
 const NPY_NUMBER: u64 = 8;
@@ -101,8 +104,14 @@ impl<'m> Plan<'m> {
     pub fn begin(self, folder: &Folder) -> Result<Tables<'m>, NotWritten> {
         let [motion, sensitivity] =
             ["motion", "sensitivity"].map(|name| format!("{name}.{}", self.format.suffix()));
-        let mut tables =
-            Tables { plan: self, motion: None, sensitivity: None, names: Vec::new(), failure: None };
+        let mut tables = Tables {
+            plan: self,
+            motion: None,
+            sensitivity: None,
+            names: Vec::new(),
+            rows: Vec::new(),
+            failure: None,
+        };
         if let Some(columns) = self.motion {
             let writing = folder.begin(&motion)?;
             let failed = |error: std::io::Error| NotWritten { path: folder.path_of(&motion), error };
@@ -148,7 +157,18 @@ pub struct Tables<'m> {
     motion: Option<Motion<'m>>,
     sensitivity: Option<Sensitivity<'m>>,
     names: Vec<String>,
+    /// Per variable, how many output times have sensitivities by it.
+    rows: Vec<usize>,
     failure: Option<(String, std::io::Error)>,
+}
+
+/// What was written.
+#[derive(Debug, Default)]
+pub struct Written {
+    /// The names of the files.
+    pub names: Vec<String>,
+    /// What is not among them, and why.
+    pub left_out: Option<String>,
 }
 
 impl Tables<'_> {
@@ -176,12 +196,26 @@ impl Tables<'_> {
             Some(Sensitivity::Npy(columns, table)) => add_sensitivities(table, columns, window),
             None => Ok(()),
         };
-        added.map_err(|e| (name("sensitivity"), e))
+        added.map_err(|e| (name("sensitivity"), e))?;
+        let sensitivities = &window.sensitivities;
+        self.rows.resize(sensitivities.variables, 0);
+        for (rows, answer) in self.rows.iter_mut().zip(&sensitivities.admissibility) {
+            if !cannot(answer) {
+                *rows += window.motion.len();
+            }
+        }
+        Ok(())
     }
 
-    /// Ends the tables, without what turned out not to be followed, and names them.
-    pub fn end(self, folder: &mut Folder, answers: &[Admissibility]) -> Result<Vec<String>, NotWritten> {
-        let Self { plan, motion, sensitivity, mut names, failure } = self;
+    /// Ends the tables, without what turned out not to be followed. `go_on` says whether there is time to take that out.
+    pub fn end(
+        self,
+        folder: &mut Folder,
+        answers: &[Admissibility],
+        go_on: impl FnMut() -> bool,
+    ) -> Result<Written, NotWritten> {
+        let Self { plan, motion, sensitivity, mut names, rows, failure } = self;
+        let mut left_out = None;
         if let Some((name, error)) = failure {
             return Err(NotWritten { path: folder.path_of(&name), error });
         }
@@ -200,30 +234,36 @@ impl Tables<'_> {
             }
             None => {}
         }
-        let cannot = |a: &Admissibility| matches!(a, Admissibility::CannotFollow { .. });
         let unknown: Vec<usize> = (0..answers.len()).filter(|b| cannot(&answers[*b])).collect();
         match sensitivity {
             // By none of the variables is there anything to say.
             Some(_) if unknown.len() == answers.len() => names.retain(|n| !n.starts_with("sensitivity")),
             Some(Sensitivity::Csv(table)) => {
                 let columns = plan.sensitivity.expect("it is under way");
+                let rows = table.rows_up_to(&unknown);
                 let mut writing = table.end().map_err(|e| failed("sensitivity", folder, e))?;
-                if unknown.is_empty() {
+                if rows == 0 {
                     folder.end(writing)?;
                 } else {
-                    let names: Vec<&str> =
+                    let unknown: Vec<&str> =
                         unknown.iter().map(|b| columns.model.variables[*b].name.as_str()).collect();
                     let before = writing.reopen().map_err(|e| writing.failed(e))?;
-                    folder.write("sensitivity.csv", |out| {
-                        without_variables(before, &names, out).map_err(Into::into)
-                    })?;
+                    let mut without = folder.begin("sensitivity.csv")?;
+                    let whole = without_variables(before, &unknown, rows, &mut without, go_on)
+                        .map_err(|e| without.failed(e))?;
+                    if whole {
+                        folder.end(without)?;
+                    } else {
+                        names.retain(|n| !n.starts_with("sensitivity"));
+                        left_out = Some(INTERRUPTED.into());
+                    }
                 }
             }
             Some(Sensitivity::Npy(columns, mut table)) => {
                 let width = columns.of_sensitivities().len();
-                let none = unknown.iter().try_for_each(|b| table.forget(b * width, width));
-                let writing =
-                    none.and_then(|()| table.end()).map_err(|e| failed("sensitivity", folder, e))?;
+                let none = unknown.iter().try_for_each(|&b| table.forget(rows[b], b * width, width));
+                none.map_err(|e| failed("sensitivity", folder, e))?;
+                let writing = table.end().map_err(|e| failed("sensitivity", folder, e))?;
                 folder.end(writing)?;
             }
             None => {}
@@ -234,6 +274,10 @@ impl Tables<'_> {
             folder.write("columns.json", |out| std::io::Write::write_all(out, json.as_bytes()))?;
             names.push("columns.json".into());
         }
-        Ok(names)
+        Ok(Written { names, left_out })
     }
+}
+
+fn cannot(answer: &Admissibility) -> bool {
+    matches!(answer, Admissibility::CannotFollow { .. })
 }

@@ -5,7 +5,7 @@
 //! column `per`. What each column is: `docs/results.md`.
 
 use std::borrow::Cow;
-use std::io::{self, Read, Write};
+use std::io::{self, Read, Seek, SeekFrom, Write};
 
 use csv::{ByteRecord, Reader, Writer, WriterBuilder};
 use hardpoint::Solution;
@@ -62,6 +62,10 @@ pub struct SensitivityCsv<'m, W: Write> {
     units: Vec<String>,
     writer: Writer<W>,
     row: Vec<f64>,
+    /// Rows written, of all variables.
+    rows: u64,
+    /// Per variable, how many rows there are up to its last one.
+    up_to: Vec<u64>,
 }
 
 impl<'m, W: Write> SensitivityCsv<'m, W> {
@@ -73,8 +77,9 @@ impl<'m, W: Write> SensitivityCsv<'m, W> {
     pub fn new(columns: Columns<'m>, out: W) -> csv::Result<Self> {
         let writer = with_header(&["t [s]", "variable", "per"], &columns.of_sensitivities(), out)?;
         let variables = columns.model.variables.iter();
-        let units = variables.map(|v| variable_unit(columns.model, columns.units, v)).collect();
-        Ok(Self { columns, units, writer, row: Vec::new() })
+        let units: Vec<String> = variables.map(|v| variable_unit(columns.model, columns.units, v)).collect();
+        let up_to = vec![0; units.len()];
+        Ok(Self { columns, units, writer, row: Vec::new(), rows: 0, up_to })
     }
 
     /// Writes the rows of a window, by the variables that it has sensitivities for.
@@ -88,10 +93,17 @@ impl<'m, W: Write> SensitivityCsv<'m, W> {
                 if self.columns.sensitivities(window, k, b, &mut self.row).is_some() {
                     let name = no_formula(&variable.name);
                     self.writer.serialize((t, name, &self.units[b], numbers(&self.row)))?;
+                    self.rows += 1;
+                    self.up_to[b] = self.rows;
                 }
             }
         }
         Ok(())
+    }
+
+    /// How many rows there are up to the last one by any of these variables.
+    pub fn rows_up_to(&self, variables: &[usize]) -> u64 {
+        variables.iter().map(|b| self.up_to[*b]).max().unwrap_or(0)
     }
 
     /// Hands back what was written to.
@@ -103,24 +115,45 @@ impl<'m, W: Write> SensitivityCsv<'m, W> {
     }
 }
 
-/// Copies a `sensitivity.csv` without the rows of these variables: that the mechanism cannot follow them was not known when they
-/// were written.
+/// Copies a `sensitivity.csv` without the rows of these variables, which are among its first `rows`: that the mechanism cannot
+/// follow them was not known when they were written. False where it was not to go on.
 ///
 /// # Errors
 /// Where either cannot be read or written.
-pub fn without_variables(file: impl Read, names: &[&str], out: impl Write) -> csv::Result<()> {
-    let mut reader = Reader::from_reader(file);
-    let mut writer = WriterBuilder::new().has_headers(false).from_writer(out);
+pub fn without_variables(
+    mut file: impl Read + Seek,
+    names: &[&str],
+    rows: u64,
+    out: &mut impl Write,
+    mut go_on: impl FnMut() -> bool,
+) -> csv::Result<bool> {
+    /// So many rows, and so many bytes, are copied between two questions whether to go on.
+    const ROWS: u64 = 1 << 16;
+    const BYTES: u64 = 1 << 24;
+    let mut reader = Reader::from_reader(&mut file);
+    let mut writer = WriterBuilder::new().has_headers(false).from_writer(&mut *out);
     writer.write_byte_record(reader.byte_headers()?)?;
     let names: Vec<_> = names.iter().map(|name| no_formula(name)).collect();
     let mut record = ByteRecord::new();
-    while reader.read_byte_record(&mut record)? {
+    for row in 0..rows {
+        if row % ROWS == 0 && !go_on() {
+            return Ok(false);
+        }
+        reader.read_byte_record(&mut record)?;
         if !names.iter().any(|name| record.get(1) == Some(name.as_bytes())) {
             writer.write_byte_record(&record)?;
         }
     }
     writer.flush()?;
-    Ok(())
+    drop(writer);
+    let rest = reader.position().byte();
+    file.seek(SeekFrom::Start(rest))?;
+    while go_on() {
+        if io::copy(&mut (&mut file).take(BYTES), out)? == 0 {
+            return Ok(true);
+        }
+    }
+    Ok(false)
 }
 
 /// `jerk.csv`, part by part.
@@ -214,9 +247,23 @@ mod tests {
 
     #[test]
     fn rows_of_a_variable_are_taken_out() {
-        let file = "t [s],variable,per,d x\n0,a,mm,1\n0,\"'=b,c\",mm,2\n1,a,mm,3\n1,\"'=b,c\",mm,4\n";
-        let mut out = Vec::new();
-        without_variables(file.as_bytes(), &["=b,c"], &mut out).unwrap();
-        assert_eq!(String::from_utf8(out).unwrap(), "t [s],variable,per,d x\n0,a,mm,1\n1,a,mm,3\n");
+        let file = "t [s],variable,per,d x\n0,a,mm,1\n0,\"'=b,c\",mm,2\n1,a,mm,3\n1,\"'=b,c\",mm,4\n2,a,mm,5\n3,a,mm,6\n";
+        // Behind the last of its rows, all rows stay as they are.
+        for rows in 4..=6 {
+            let mut out = Vec::new();
+            let whole = without_variables(io::Cursor::new(file), &["=b,c"], rows, &mut out, || true).unwrap();
+            let left = String::from_utf8(out).unwrap();
+            assert_eq!(left, "t [s],variable,per,d x\n0,a,mm,1\n1,a,mm,3\n2,a,mm,5\n3,a,mm,6\n");
+            assert!(whole);
+        }
+        // It can be ended in either part.
+        for patience in 0..3 {
+            let (mut asked, mut out) = (0, Vec::new());
+            let go_on = || {
+                asked += 1;
+                asked <= patience
+            };
+            assert!(!without_variables(io::Cursor::new(file), &["=b,c"], 4, &mut out, go_on).unwrap());
+        }
     }
 }

@@ -48,14 +48,14 @@ impl<W: Write + Seek> Npy<W> {
         Ok(())
     }
 
-    /// In every row, so many numbers from `first` on are none.
+    /// In the first `rows`, so many numbers from `first` on are none.
     ///
     /// # Errors
     /// Where they cannot be written.
-    pub fn forget(&mut self, first: usize, count: usize) -> io::Result<()> {
+    pub fn forget(&mut self, rows: usize, first: usize, count: usize) -> io::Result<()> {
         let row: usize = self.shape.iter().product();
         let none: Vec<u8> = std::iter::repeat_n(f64::NAN.to_le_bytes(), count).flatten().collect();
-        for k in 0..self.rows {
+        for k in 0..rows.min(self.rows) {
             self.out.seek(SeekFrom::Start((HEADER + 8 * (k * row + first)) as u64))?;
             self.out.write_all(&none)?;
         }
@@ -179,7 +179,7 @@ mod tests {
         let mut npy = Npy::new(&[2, 2], Cursor::new(Vec::new())).unwrap();
         npy.row(&[1.0, 2.0, 3.0, 4.0]).unwrap();
         npy.row(&[5.0, f64::INFINITY, 7.0, 8.0]).unwrap();
-        npy.forget(2, 2).unwrap();
+        npy.forget(2, 2, 2).unwrap();
         let bytes = npy.end().unwrap().into_inner();
         assert_eq!(&bytes[..8], b"\x93NUMPY\x01\x00");
         let length = usize::from(u16::from_le_bytes([bytes[8], bytes[9]]));

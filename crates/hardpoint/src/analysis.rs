@@ -235,7 +235,7 @@ impl<'m> Analysis<'m> {
         let wanted = self.wanted(std::slice::from_ref(sink));
         dispatch!(Level::new(), simd => {
             let mut walk = Walk::new(self, &design, wanted, lanes(simd));
-            let stop = walk.all(self, sink, &mut |_| ControlFlow::Continue(()), |_, _, _| ());
+            let stop = walk.all(self, sink, &mut |_| ControlFlow::Continue(()), |_, _, _, _| ());
             let effort = walk.one.effort;
             let admissibility = walk.sensing.map_or_else(Vec::new, |s| s.admissibility(&design.opens, walk.done));
             Streamed { steps: walk.done, admissibility, effort, stop }
@@ -539,18 +539,19 @@ impl<'a, T: Real> Walk<'a, T> {
     ) -> Option<Stop> {
         let mut unused = Motion::default();
         let mut store = Store { motion: &mut unused, sensitivities: &mut [], variables: 0 };
-        self.all(analysis, &mut store, &mut |_| ControlFlow::Continue(()), |_, solved, count| {
+        self.all(analysis, &mut store, &mut |_| ControlFlow::Continue(()), |_, solved, count, _| {
             then(solved, count)
         })
     }
 
-    /// To the last output time, or to what stops it. `then` sees what was solved, and how many of it count.
+    /// To the last output time, or to what stops it. `then` sees what was solved, how many of it count, and what is known of
+    /// the variables.
     pub fn all<S: Sink>(
         &mut self,
         analysis: &Analysis<'_>,
         sink: &mut S,
         progress: &mut dyn FnMut(Progress) -> ControlFlow<()>,
-        mut then: impl FnMut(&mut S, Solved<'_, 'a, T>, usize),
+        mut then: impl FnMut(&mut S, Solved<'_, 'a, T>, usize, Option<&Sensing<'a, T>>),
     ) -> Option<Stop> {
         let (times, witness) = (&analysis.model.times, self.abreast.stepper.state.witness);
         let total = times.len();
@@ -581,7 +582,7 @@ impl<'a, T: Real> Walk<'a, T> {
                 if let Some(sensing) = &mut self.sensing {
                     sensing.step(one, k, times[k], sink);
                 }
-                then(sink, Solved::One(one), 1);
+                then(sink, Solved::One(one), 1, self.sensing.as_ref());
             } else {
                 let all = &mut self.abreast.stepper;
                 witness.within(
@@ -597,7 +598,7 @@ impl<'a, T: Real> Walk<'a, T> {
                 if let Some(sensing) = &mut self.sensing {
                     sensing.steps(all, k, &times[k..k + solved], count, sink);
                 }
-                then(sink, Solved::Abreast(all), count);
+                then(sink, Solved::Abreast(all), count, self.sensing.as_ref());
             }
             self.done += count;
         }

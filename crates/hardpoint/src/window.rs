@@ -59,8 +59,8 @@ impl Analysis<'_> {
     /// number of its first output time. What comes back are the facts of the whole run (stop, effort, assembly,
     /// admissibility), with the last window.
     ///
-    /// Which variables the mechanism cannot follow is known at the end only: before, there may be numbers by them that mean
-    /// nothing.
+    /// A window knows which variables the mechanism could not follow up to its end. One that resists later has numbers in the
+    /// windows before, which mean nothing.
     pub fn run_in_windows(
         &self,
         bytes: usize,
@@ -124,7 +124,7 @@ impl Analysis<'_> {
             measures.then(|| Slopes::new(effects, topology, &design.values, sensitive, 0.0)).flatten();
         let mut all_slopes =
             measures.then(|| Slopes::new(effects, topology, &design.values, sensitive, witness)).flatten();
-        let stop = walk.all(self, &mut window, progress, |window, solved, count| {
+        let stop = walk.all(self, &mut window, progress, |window, solved, count, sensing| {
             let times = &model.times[window.done..window.done + count];
             window.done += count;
             match solved {
@@ -155,7 +155,8 @@ impl Analysis<'_> {
             // The next round may need a place for every lane.
             let full = window.done - window.first + LANES > rows;
             if full && rows < model.times.len() && window.done < model.times.len() {
-                window.sensitivities.admissibility = vec![Admissibility::Unknown; variables];
+                window.sensitivities.admissibility =
+                    sensing.map_or_else(Vec::new, |s| s.admissibility(&design.opens, window.done));
                 window.close(self, design, solution);
                 each(window.first, solution);
                 window.open(self, rows, solution);

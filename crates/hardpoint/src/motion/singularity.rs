@@ -103,6 +103,7 @@ impl<T: Real> Surroundings<T> {
     }
 
     /// What part of the distance to the nearest singular position a step may be that moves each direction by so much at most.
+    #[inline(always)]
     pub fn part_of_way(&self, travel: &[f64]) -> f64 {
         let mut most = 0.0;
         for b in 0..self.nearness.first().map_or(0, Vec::len) {

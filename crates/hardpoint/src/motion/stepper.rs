@@ -327,6 +327,7 @@ impl<'m, T: Real> Stepper<'m, T> {
 
     /// Whether the laws do nothing between here and the output time t that its two ends would not show, and no singular position is
     /// known to be near. The drivers are at t already.
+    #[inline(always)]
     fn is_clear(&mut self, t: f64, h: f64) -> bool {
         for d in 0..self.drivers.len() {
             let unit = self.driver_units[d];
@@ -351,24 +352,27 @@ impl<'m, T: Real> Stepper<'m, T> {
     /// about as much as over the step before.
     #[inline(always)]
     fn note_changes(&mut self, h: f64) -> bool {
+        const MIDDLE: f64 = 0.5 * (MILD[0] + MILD[1]);
+        const REACH: f64 = 0.5 * (MILD[1] - MILD[0]);
         let scale = h / self.change_step;
-        let mut even = true;
+        let mut most = self.state.witness.zero();
         for (b, factors) in self.state.factors.iter().enumerate() {
             let ratio = factors.ratio(self.state.determinants[b], self.saved.determinants[b]);
-            // Written so that NaN is not even.
-            even &= ratio.smallest() >= MILD[0] && ratio.largest() <= MILD[1];
             let change = ratio - ratio.like(1.0);
+            most = most.larger((ratio - ratio.like(MIDDLE)).abs() * ratio.like(1.0 / REACH));
             if self.ahead == Ahead::Even {
                 let bend = (change - self.changes[b] * ratio.like(scale)).abs();
-                even &= bend.largest() <= MILD_CHANGE;
+                most = most.larger(bend * ratio.like(1.0 / MILD_CHANGE));
             }
             self.changes[b] = change;
         }
         self.change_step = h;
-        even
+        // Written so that NaN is not even.
+        most.largest() <= 1.0
     }
 
     /// Sets the drivers for the path at t.
+    #[inline(always)]
     pub(super) fn drive(&mut self, path: Path, t: f64) -> Result<(), Refusal> {
         self.state.gap_left = if path == Path::Assembly { [1.0 - t, -1.0] } else { [0.0; 2] };
         let witness = self.state.witness;
@@ -383,7 +387,8 @@ impl<'m, T: Real> Stepper<'m, T> {
                     [here, to - from, witness.zero()]
                 }
             };
-            if !law.iter().all(|x| x.abs().largest().is_finite()) {
+            // A sum that is too large is none that a motion can follow either.
+            if !(law[0].abs() + law[1].abs() + law[2].abs()).largest().is_finite() {
                 return Err(Refusal::Law { driver: k });
             }
             self.drivers[k] = law;

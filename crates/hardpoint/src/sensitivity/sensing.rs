@@ -132,8 +132,8 @@ impl<'f, T: Real> Sensing<'f, T> {
     }
 
     /// What so many steps say of every variable's admissibility, given the joints that each opens in the design.
-    pub fn admissibility(self, opens: &[Vec<JointDefect>], steps: usize) -> Vec<Admissibility> {
-        admissibility(opens, self.resisting, steps)
+    pub fn admissibility(&self, opens: &[Vec<JointDefect>], steps: usize) -> Vec<Admissibility> {
+        admissibility(opens, self.resisting.clone(), steps)
     }
 }
 

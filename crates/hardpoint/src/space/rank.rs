@@ -12,6 +12,11 @@ const LARGEST_COMPLETE: usize = 100;
 const STAGE: f64 = 1e-2;
 /// A sparse pivot is at least this part of the largest entry in its row, which bounds the growth of round-off.
 const THRESHOLD: f64 = 0.1;
+/// ... and this part of the largest entry in its column: rows are chosen for good, and one that says little of a column while
+/// another says more makes a bad choice. Loops that hang on each other in a row multiply it: of a 20 x 20 grid of scissors
+/// without this, rows are chosen whose least singular value is 4e-9 (with a third of it still 5e-7), with it 3e-3; all rows
+/// together have 1e-2.
+const CHOICE: f64 = 0.9;
 /// What elimination leaves below this part of the tolerance is taken for zero, so that rounded redundancy does
 /// not fill the rows with dust.
 const DUST: f64 = 1e-4;
@@ -140,6 +145,7 @@ impl Sparse {
                 }
                 if let Some(c) = self.pivot_of(r, stage) {
                     self.eliminate(r, c, DUST * least);
+                    self.ask_again(r);
                 }
             }
             if !(stage > least) {
@@ -151,12 +157,30 @@ impl Sparse {
         FullPivot { rows: self.pivots.into_iter().map(|(r, _)| r).collect(), free }
     }
 
-    /// The column of row r to eliminate, if any entry is large enough: the one with the fewest entries.
+    /// The column of row r to eliminate, if any entry is large enough in row and column: the one with the fewest entries.
     fn pivot_of(&self, r: usize, stage: f64) -> Option<usize> {
         let most = self.rows[r].iter().map(|(_, x)| x.abs()).fold(0.0, f64::max);
         let enough = f64::max(THRESHOLD * most, stage);
-        let large = self.rows[r].iter().filter(|(_, x)| x.abs() >= enough);
-        large.map(|&(c, _)| c).min_by_key(|&c| self.counts[c])
+        let mut large: Vec<_> = self.rows[r].iter().filter(|(_, x)| x.abs() >= enough).collect();
+        large.sort_by_key(|(c, _)| self.counts[*c]);
+        let is_chosen = |(c, x): &&&(usize, f64)| {
+            let others = self.rows_of[*c].iter().filter(|&&r| !self.done[r]);
+            others.into_iter().all(|&other| self.entry(other, *c).abs() * CHOICE <= x.abs())
+        };
+        large.iter().find(is_chosen).map(|(c, _)| *c)
+    }
+
+    fn entry(&self, r: usize, c: usize) -> f64 {
+        self.rows[r].binary_search_by_key(&c, |e| e.0).map_or(0.0, |at| self.rows[r][at].1)
+    }
+
+    /// Queues the rows that may have become pivots because row r is one now.
+    fn ask_again(&mut self, r: usize) {
+        for &(column, _) in &self.rows[r] {
+            for &other in self.rows_of[column].iter().filter(|&&other| !self.done[other]) {
+                self.queue.push(Reverse((self.rows[other].len(), other)));
+            }
+        }
     }
 
     /// Takes column c out of all rows that remain, with row r.
