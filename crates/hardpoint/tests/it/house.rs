@@ -19,8 +19,9 @@ const ROOMS: [&str; 12] = [
 ];
 
 /// Which of our own crates each crate may depend on.
-const CRATES: [(&str, &[&str]); 5] = [
-    ("hardpoint", &[]),
+const CRATES: [(&str, &[&str]); 6] = [
+    ("hardpoint-tape", &[]),
+    ("hardpoint", &["hardpoint-tape"]),
     ("hardpoint-file", &["hardpoint"]),
     ("hardpoint-report", &["hardpoint", "hardpoint-file"]),
     ("hardpoint-cli", &["hardpoint", "hardpoint-file", "hardpoint-report"]),
