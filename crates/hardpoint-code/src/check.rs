@@ -1,0 +1,59 @@
+//! What a program must fulfil so that its code reads and writes only what it is given.
+
+use hardpoint_tape::{Instruction, Operand, Program};
+
+use crate::Unsupported;
+
+/// The most inputs, instructions and so on: 64 bytes of each are a quarter of what offsets of 32 bits reach, and code
+/// for as many instructions is below 2 GB.
+pub const MOST: usize = 1 << 22;
+
+pub fn size(program: &Program) -> Result<(), Unsupported> {
+    let all = [
+        ("inputs", program.inputs),
+        ("uniforms", program.uniforms),
+        ("constants", program.constants.len()),
+        ("instructions", program.instructions.len()),
+        ("outputs", program.outputs.len()),
+    ];
+    match all.into_iter().find(|(_, count)| *count > MOST) {
+        Some((what, count)) => Err(Unsupported::Size { what, count }),
+        None => Ok(()),
+    }
+}
+
+/// Every operand exists, and values are computed before they are read.
+pub fn operands(program: &Program) {
+    let check = |operand, values: usize, what: &dyn Fn() -> String| {
+        let (k, count) = match operand {
+            Operand::Value(k) => (k, values),
+            Operand::Input(k) => (k, program.inputs),
+            Operand::Uniform(k) => (k, program.uniforms),
+            Operand::Constant(k) => (k, program.constants.len()),
+        };
+        assert!((k as usize) < count, "{} reads {operand:?}, but there are {count} of these by then", what());
+    };
+    for (i, instruction) in program.instructions.iter().enumerate() {
+        for operand in operands_of(*instruction).into_iter().flatten() {
+            check(operand, i, &|| format!("instruction {i}"));
+        }
+    }
+    for (j, operand) in program.outputs.iter().enumerate() {
+        check(*operand, program.instructions.len(), &|| format!("output {j}"));
+    }
+}
+
+/// What an instruction reads.
+fn operands_of(instruction: Instruction) -> [Option<Operand>; 3] {
+    use Instruction as I;
+    match instruction {
+        I::Add(a, b) | I::Sub(a, b) | I::Mul(a, b) | I::Div(a, b) | I::Larger(a, b) => {
+            [Some(a), Some(b), None]
+        }
+        I::MulAdd(a, b, c) | I::MulSub(a, b, c) | I::NegMulAdd(a, b, c) | I::NegMulSub(a, b, c) => {
+            [Some(a), Some(b), Some(c)]
+        }
+        I::Neg(a) | I::Abs(a) | I::Sqrt(a) | I::Round(a) => [Some(a), None, None],
+        I::Call(call, a, b) => [Some(a), Some(b).filter(|_| call.is_of_two()), None],
+    }
+}
