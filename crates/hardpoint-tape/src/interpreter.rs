@@ -28,8 +28,13 @@ pub struct Interpreter {
     inputs: usize,
     uniforms: usize,
     outputs: usize,
-    slots: Vec<[Lanes; ABREAST]>,
+    slots: Vec<Row>,
 }
+
+/// The lanes of one group, within one line of the cache: what straddles two takes twice the time.
+#[derive(Clone, Copy, Debug)]
+#[repr(align(64))]
+struct Row(Lanes);
 
 /// One decoded instruction.
 #[derive(Clone, Copy, Debug)]
@@ -104,13 +109,13 @@ impl Interpreter {
             inputs: program.inputs,
             uniforms: program.uniforms,
             outputs: program.outputs.len(),
-            slots: vec![[[0.0; LANES]; ABREAST]; slots],
+            slots: vec![Row([0.0; LANES]); slots * ABREAST],
         }
     }
 
     /// How many slots its values share.
     pub fn slots(&self) -> usize {
-        self.slots.len()
+        self.slots.len() / ABREAST
     }
 
     /// Runs the program for any number of groups of lanes, and allocates nothing.
@@ -162,14 +167,14 @@ impl Interpreter {
     fn block<S: Simd, const N: usize>(&mut self, simd: S, inputs: &[Lanes], outputs: &mut [Lanes]) {
         use Op::*;
         // The slots of one group stand side by side when one group runs.
-        let slots = self.slots.as_flattened_mut().as_chunks_mut::<N>().0;
+        let slots = self.slots.as_chunks_mut::<N>().0;
         let scalars = &self.scalars[..];
         let mut stores = self.stores.iter();
         for code in &self.code {
             // Lanes `g` of an operand: `s` in a slot, `c` a scalar.
             macro_rules! at {
                 ($k:ident s $g:ident) => {
-                    f64x8::load_array_ref(simd, &slots[code.$k as usize][$g])
+                    f64x8::load_array_ref(simd, &slots[code.$k as usize][$g].0)
                 };
                 ($k:ident c $g:ident) => {
                     f64x8::splat(simd, scalars[code.$k as usize])
@@ -235,14 +240,14 @@ impl Interpreter {
                 Larger => binary!(s s, x y => (y.simd_le(x) | !x.simd_eq(x)).select(x, y)),
                 Call(function) => {
                     let (a, b) = (&slots[code.a as usize], &slots[code.b as usize]);
-                    let mut result = [[0.0; LANES]; N];
+                    let mut result = [Row([0.0; LANES]); N];
                     call(function, a, b, &mut result);
-                    all!(g => f64x8::load_array_ref(simd, &result[g]))
+                    all!(g => f64x8::load_array_ref(simd, &result[g].0))
                 }
             };
             let to = &mut slots[code.to as usize];
             for g in 0..N {
-                result[g].store_array(&mut to[g]);
+                result[g].store_array(&mut to[g].0);
             }
             for output in stores.by_ref().take(code.stores as usize) {
                 for g in 0..N {
@@ -255,10 +260,11 @@ impl Interpreter {
 
 /// A function of the standard library, lane by lane.
 #[inline(never)]
-fn call(function: Call, a: &[Lanes], b: &[Lanes], result: &mut [Lanes]) {
-    let lanes = result.as_flattened_mut().iter_mut();
-    for ((r, a), b) in lanes.zip(a.as_flattened()).zip(b.as_flattened()) {
-        *r = function.of(*a, *b);
+fn call(function: Call, a: &[Row], b: &[Row], result: &mut [Row]) {
+    for ((r, a), b) in result.iter_mut().zip(a).zip(b) {
+        for lane in 0..LANES {
+            r.0[lane] = function.of(a.0[lane], b.0[lane]);
+        }
     }
 }
 

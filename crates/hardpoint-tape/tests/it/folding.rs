@@ -10,6 +10,9 @@ fn of(f: impl FnOnce([Number; 3]) -> Vec<Number>, fuse: bool) -> (Program, Count
     record(|| f([2.0, 3.0, 5.0].map(Number::input))).program(Options { fuse })
 }
 
+/// A formula of one number, and its name.
+type Named = (&'static str, fn(Number) -> Number);
+
 fn unfused(f: impl FnOnce([Number; 3]) -> Number) -> Program {
     of(|x| vec![f(x)], false).0
 }
@@ -20,7 +23,7 @@ fn c(x: f64) -> Number {
 
 #[test]
 fn exact_zeros_and_ones_leave_nothing_to_compute() {
-    let input: [(&str, fn(Number) -> Number); 13] = [
+    let input: [Named; 13] = [
         ("x * 1", |x| x * c(1.0)),
         ("1 * x", |x| c(1.0) * x),
         ("x * -1 * -1", |x| x * c(-1.0) * c(-1.0)),
@@ -40,7 +43,7 @@ fn exact_zeros_and_ones_leave_nothing_to_compute() {
         assert_eq!((program.instructions.len(), &program.outputs[..]), (0, &[Input(0)][..]), "{name}");
         assert!(program.constants.is_empty(), "{name}");
     }
-    let zero: [(&str, fn(Number) -> Number); 6] = [
+    let zero: [Named; 6] = [
         ("x * 0", |x| x * c(0.0)),
         ("0 * x", |x| c(0.0) * x),
         ("0 / x", |x| c(0.0) / x),
