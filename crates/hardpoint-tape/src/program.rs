@@ -2,6 +2,10 @@
 //!
 //! Every number is a vector of [`LANES`] scalars side by side; constants and uniforms are the same in all lanes.
 
+use fearless_simd::{Level, SimdBase, SimdFloat, dispatch, f64x8};
+
+use crate::number::larger;
+
 /// How many scalars sit side by side.
 pub const LANES: usize = 8;
 
@@ -120,4 +124,140 @@ pub struct Program {
     pub instructions: Vec<Instruction>,
     /// What is given back, in this order.
     pub outputs: Vec<Operand>,
+}
+
+impl Instruction {
+    /// The operands that it reads, in their order.
+    pub fn operands(self) -> impl Iterator<Item = Operand> {
+        use Instruction::*;
+        let read = match self {
+            Neg(a) | Abs(a) | Sqrt(a) | Round(a) => [Some(a), None, None],
+            Call(function, a, b) => [Some(a), function.is_of_two().then_some(b), None],
+            Add(a, b) | Sub(a, b) | Mul(a, b) | Div(a, b) | Larger(a, b) => [Some(a), Some(b), None],
+            MulAdd(a, b, c) | MulSub(a, b, c) | NegMulAdd(a, b, c) | NegMulSub(a, b, c) => {
+                [Some(a), Some(b), Some(c)]
+            }
+        };
+        read.into_iter().flatten()
+    }
+
+    /// The same instruction of other operands.
+    pub fn map(self, mut f: impl FnMut(Operand) -> Operand) -> Self {
+        use Instruction::*;
+        match self {
+            Add(a, b) => Add(f(a), f(b)),
+            Sub(a, b) => Sub(f(a), f(b)),
+            Mul(a, b) => Mul(f(a), f(b)),
+            Div(a, b) => Div(f(a), f(b)),
+            MulAdd(a, b, c) => MulAdd(f(a), f(b), f(c)),
+            MulSub(a, b, c) => MulSub(f(a), f(b), f(c)),
+            NegMulAdd(a, b, c) => NegMulAdd(f(a), f(b), f(c)),
+            NegMulSub(a, b, c) => NegMulSub(f(a), f(b), f(c)),
+            Neg(a) => Neg(f(a)),
+            Abs(a) => Abs(f(a)),
+            Sqrt(a) => Sqrt(f(a)),
+            Round(a) => Round(f(a)),
+            Larger(a, b) => Larger(f(a), f(b)),
+            Call(function, a, b) if function.is_of_two() => Call(function, f(a), f(b)),
+            Call(function, a, _) => {
+                let a = f(a);
+                Call(function, a, a)
+            }
+        }
+    }
+
+    /// Its result for scalar operands; `fused` says whether products are fused with sums ([`fuses`]).
+    pub fn of(self, mut x: impl FnMut(Operand) -> f64, fused: bool) -> f64 {
+        use Instruction::*;
+        let product_plus = |a: f64, b: f64, c: f64| if fused { a.mul_add(b, c) } else { a * b + c };
+        match self {
+            Add(a, b) => x(a) + x(b),
+            Sub(a, b) => x(a) - x(b),
+            Mul(a, b) => x(a) * x(b),
+            Div(a, b) => x(a) / x(b),
+            MulAdd(a, b, c) => product_plus(x(a), x(b), x(c)),
+            MulSub(a, b, c) => product_plus(x(a), x(b), -x(c)),
+            NegMulAdd(a, b, c) => product_plus(-x(a), x(b), x(c)),
+            NegMulSub(a, b, c) => product_plus(-x(a), x(b), -x(c)),
+            Neg(a) => -x(a),
+            Abs(a) => x(a).abs(),
+            Sqrt(a) => x(a).sqrt(),
+            Round(a) => x(a).round_ties_even(),
+            Larger(a, b) => larger(x(a), x(b)),
+            Call(function, a, b) if function.is_of_two() => function.of(x(a), x(b)),
+            Call(function, a, _) => {
+                let a = x(a);
+                function.of(a, a)
+            }
+        }
+    }
+}
+
+impl Program {
+    /// Runs it once for scalars, instruction by instruction; `values` is working memory, kept by the caller.
+    ///
+    /// What is computed once for many runs ([`Program::hoisted`]) is computed by this. It agrees with the lanes of the
+    /// [`Interpreter`](crate::Interpreter) to the bit.
+    ///
+    /// # Panics
+    ///
+    /// If `inputs`, `uniforms` or `outputs` are fewer than the program has.
+    pub fn evaluate(&self, inputs: &[f64], uniforms: &[f64], values: &mut Vec<f64>, outputs: &mut [f64]) {
+        let fused = fuses();
+        values.clear();
+        values.reserve(self.instructions.len());
+        let find = |operand: Operand, values: &[f64]| match operand {
+            Operand::Value(k) => values[k as usize],
+            Operand::Input(k) => inputs[k as usize],
+            Operand::Uniform(k) => uniforms[k as usize],
+            Operand::Constant(k) => self.constants[k as usize],
+        };
+        for instruction in &self.instructions {
+            let value = instruction.of(|operand| find(operand, values), fused);
+            values.push(value);
+        }
+        for (j, operand) in self.outputs.iter().enumerate() {
+            outputs[j] = find(*operand, values);
+        }
+    }
+
+    /// How many values are live at most at a time: computed, and still to be read. What is only given back is written at once, and is
+    /// not counted.
+    pub fn live(&self) -> usize {
+        let mut last = vec![0; self.instructions.len()];
+        for (k, instruction) in self.instructions.iter().enumerate() {
+            for operand in instruction.operands() {
+                if let Operand::Value(v) = operand {
+                    last[v as usize] = k;
+                }
+            }
+        }
+        let (mut now, mut most) = (0, 0);
+        for (k, instruction) in self.instructions.iter().enumerate() {
+            for operand in instruction.operands() {
+                if let Operand::Value(v) = operand
+                    && last[v as usize] == k
+                {
+                    // Once, also where an instruction reads the same value twice.
+                    last[v as usize] = usize::MAX;
+                    now -= 1;
+                }
+            }
+            if last[k] > k {
+                now += 1;
+                most = most.max(now);
+            }
+        }
+        most
+    }
+}
+
+/// Whether lanes of this CPU fuse a product with a sum, rounding once. Where they cannot, both are rounded.
+pub fn fuses() -> bool {
+    // (1 + h)^2 - (1 + 2 h) is h^2, or 0 where the square is rounded first.
+    const H: f64 = 1.0 / (1u64 << 30) as f64;
+    dispatch!(Level::new(), simd => {
+        let lanes = |x: f64| f64x8::splat(simd, x);
+        std::hint::black_box(lanes(1.0 + H)).mul_sub(lanes(1.0 + H), lanes(1.0 + 2.0 * H)).as_slice()[0] != 0.0
+    })
 }
