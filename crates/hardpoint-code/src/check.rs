@@ -1,6 +1,6 @@
 //! What a program must fulfil so that its code reads and writes only what it is given.
 
-use hardpoint_tape::{Instruction, Operand, Program};
+use hardpoint_tape::{Operand, Program};
 
 use crate::Unsupported;
 
@@ -34,26 +34,11 @@ pub fn operands(program: &Program) {
         assert!((k as usize) < count, "{} reads {operand:?}, but there are {count} of these by then", what());
     };
     for (i, instruction) in program.instructions.iter().enumerate() {
-        for operand in operands_of(*instruction).into_iter().flatten() {
+        for operand in instruction.operands() {
             check(operand, i, &|| format!("instruction {i}"));
         }
     }
     for (j, operand) in program.outputs.iter().enumerate() {
         check(*operand, program.instructions.len(), &|| format!("output {j}"));
-    }
-}
-
-/// What an instruction reads.
-fn operands_of(instruction: Instruction) -> [Option<Operand>; 3] {
-    use Instruction as I;
-    match instruction {
-        I::Add(a, b) | I::Sub(a, b) | I::Mul(a, b) | I::Div(a, b) | I::Larger(a, b) => {
-            [Some(a), Some(b), None]
-        }
-        I::MulAdd(a, b, c) | I::MulSub(a, b, c) | I::NegMulAdd(a, b, c) | I::NegMulSub(a, b, c) => {
-            [Some(a), Some(b), Some(c)]
-        }
-        I::Neg(a) | I::Abs(a) | I::Sqrt(a) | I::Round(a) => [Some(a), None, None],
-        I::Call(call, a, b) => [Some(a), Some(b).filter(|_| call.is_of_two()), None],
     }
 }

@@ -1,7 +1,7 @@
 //! Bit for bit against a plain evaluation, one scalar at a time.
 
 use hardpoint_code::{Code, Counts, Scratch, Width};
-use hardpoint_tape::{Instruction, LANES, Lanes, Operand, Program};
+use hardpoint_tape::{Instruction, Interpreter, LANES, Lanes, Operand, Program};
 
 use crate::plain;
 use crate::random::{self, CALLS, Random, Shape};
@@ -132,6 +132,51 @@ fn special_numbers_meet_in_every_instruction() {
     let program = Program { inputs: 3, instructions, outputs, ..Program::default() };
     let (inputs, _) = data(&mut random, &program, 3000, true);
     holds(&program, 3000, &inputs, &[]);
+}
+
+/// Of zeros of either sign the larger may be any, and one divided by it is one infinity or the other: programs with
+/// `Larger` are compared for what it gives alone.
+#[test]
+fn code_and_interpreter_agree() {
+    let mut random = Random(9);
+    for turn in 0..120 {
+        let shape = Shape {
+            inputs: 1 + random.below(12),
+            uniforms: random.below(12),
+            constants: random.below(12),
+            instructions: [1, 3, 10, 40, 200, 2000][turn % 6],
+            outputs: 1 + random.below(60),
+            near: [2, 8, 40, 400][random.below(4)],
+            calls: [0, 0, 0, 40][random.below(4)],
+            wild: turn % 3 == 0,
+        };
+        let mut program = random::program(&mut random, shape);
+        let last = program.instructions.len() as u32 - 1;
+        for instruction in &mut program.instructions {
+            if let Instruction::Larger(a, b) = *instruction {
+                *instruction = Instruction::Sub(a, b);
+            }
+        }
+        program.instructions.push(Instruction::Larger(Operand::Value(last), Operand::Input(0)));
+        program.outputs.push(Operand::Value(last + 1));
+        let groups = 1 + random.below(9);
+        let (inputs, uniforms) = data(&mut random, &program, groups, turn % 3 == 0);
+        let mut expected = vec![[0.0; LANES]; groups * program.outputs.len()];
+        Interpreter::new(&program).run(&inputs, &uniforms, &mut expected);
+        for width in Width::ALL.into_iter().filter(|w| w.is_here()) {
+            let mut outputs = vec![[0.0; LANES]; expected.len()];
+            Code::with(&program, width).expect("the width is here").run(
+                &mut Scratch::default(),
+                &inputs,
+                &uniforms,
+                &mut outputs,
+            );
+            for (k, (y, e)) in outputs.as_flattened().iter().zip(expected.as_flattened()).enumerate() {
+                let larger = k / LANES % program.outputs.len() == program.outputs.len() - 1;
+                assert!(bits(*y) == bits(*e) || larger && *y == 0.0 && *e == 0.0, "{width}: {y} for {e}");
+            }
+        }
+    }
 }
 
 #[test]
