@@ -551,6 +551,8 @@ struct Writer<'a> {
     flipped: Vec<bool>,
     /// The instruction, or the constant, that is the negative of what `place` is.
     opposite: Vec<u32>,
+    /// Whether a node is an output as it is, and as its negative.
+    given: Vec<[bool; 2]>,
     /// Whether a node is wanted as its negative, by a reader to whom the sign is not free.
     wanted: Vec<Wanted>,
     negations: usize,
@@ -564,22 +566,48 @@ enum Wanted {
     Positive,
 }
 
+/// Who wants what with which sign. A node that is wanted as its negative, and cannot be had so for nothing, passes the wish on to an
+/// operand that nobody else reads.
+fn wanted(graph: &Graph) -> Vec<Wanted> {
+    let mut wanted = vec![Wanted::Either; graph.nodes.len()];
+    let want = |wanted: &mut [Wanted], x: Signed| {
+        let w = &mut wanted[x.node() as usize];
+        *w = if x.negative() && *w != Wanted::Positive { Wanted::Negative } else { Wanted::Positive };
+    };
+    for output in &graph.outputs {
+        want(&mut wanted, *output);
+    }
+    for node in (0..graph.nodes.len() as u32).rev().filter(|n| graph.is_instruction(*n)) {
+        let (operands, many) = graph.operands(node);
+        let operands = &operands[..many];
+        let is_negative =
+            |wanted: &[Wanted], x: Signed| x.negative() != (wanted[x.node() as usize] == Wanted::Negative);
+        match graph.nodes[node as usize].kind {
+            Kind::Sqrt | Kind::Larger | Kind::Call(_) => operands.iter().for_each(|o| want(&mut wanted, *o)),
+            Kind::Add | Kind::Mul | Kind::Div
+                if wanted[node as usize] == Wanted::Negative
+                    && graph.fused[node as usize] == NONE
+                    && operands.iter().all(|o| graph.known(*o).is_none() && !is_negative(&wanted, *o)) =>
+            {
+                let alone = operands.iter().map(|o| o.node() as usize).find(|o| {
+                    graph.uses[*o] == 1 && wanted[*o] == Wanted::Either && graph.is_instruction(*o as u32)
+                });
+                if let Some(operand) = alone {
+                    wanted[operand] = Wanted::Negative;
+                }
+            }
+            _ => {}
+        }
+    }
+    wanted
+}
+
 impl<'a> Writer<'a> {
     fn new(graph: &'a Graph, recording: &Recording) -> Self {
         let size = graph.nodes.len();
-        let mut wanted = vec![Wanted::Either; size];
-        let mut want = |x: Signed| {
-            let w = &mut wanted[x.node() as usize];
-            *w = if x.negative() && *w != Wanted::Positive { Wanted::Negative } else { Wanted::Positive };
-        };
-        graph.outputs.iter().copied().for_each(&mut want);
-        for node in 0..size as u32 {
-            if matches!(graph.nodes[node as usize].kind, Kind::Sqrt | Kind::Larger | Kind::Call(_))
-                && graph.uses[node as usize] > 0
-            {
-                let (operands, many) = graph.operands(node);
-                operands[..many].iter().copied().for_each(&mut want);
-            }
+        let mut given = vec![[false; 2]; size];
+        for output in &graph.outputs {
+            given[output.node() as usize][usize::from(output.negative())] = true;
         }
         let program = Program {
             inputs: recording.inputs as usize,
@@ -587,7 +615,16 @@ impl<'a> Writer<'a> {
             ..Program::default()
         };
         let [place, opposite] = [vec![NONE; size], vec![NONE; size]];
-        Self { graph, program, place, flipped: vec![false; size], opposite, wanted, negations: 0 }
+        Self {
+            graph,
+            program,
+            place,
+            flipped: vec![false; size],
+            opposite,
+            given,
+            wanted: wanted(graph),
+            negations: 0,
+        }
     }
 
     /// The constant `x`, the magnitude of a node or its negative, which the node has in `slot` once it is used.
@@ -662,9 +699,20 @@ impl<'a> Writer<'a> {
         self.flipped[at] = flipped;
         self.place[at] = self.program.instructions.len() as u32;
         self.program.instructions.push(instruction);
+        if self.given[at][usize::from(!flipped)] {
+            // At once: else the number would be kept to the end for this.
+            self.as_it_is(Signed::new(node, !flipped));
+        }
     }
 
-    /// A product or quotient with its sign, free where a factor is constant.
+    /// A number's negative where that is at hand: a constant's, or one that had to be computed.
+    fn opposite(&mut self, x: Signed) -> Option<Operand> {
+        let x = x.times(!self.minus(x));
+        let at_hand = self.graph.known(x).is_some() || self.opposite[x.node() as usize] != NONE;
+        at_hand.then(|| self.as_it_is(x))
+    }
+
+    /// A product or quotient with its sign, free where a factor's negative is at hand.
     fn factors(
         &mut self,
         instruction: fn(Operand, Operand) -> Instruction,
@@ -676,11 +724,11 @@ impl<'a> Writer<'a> {
         if flipped == negative {
             return (instruction(self.either(a).0, self.either(b).0), flipped);
         }
-        if self.graph.known(a).is_some() {
-            return (instruction(self.as_it_is(a.times(true)), self.either(b).0), negative);
+        if let Some(x) = self.opposite(a) {
+            return (instruction(x, self.either(b).0), negative);
         }
-        if self.graph.known(b).is_some() {
-            return (instruction(self.either(a).0, self.as_it_is(b.times(true))), negative);
+        if let Some(y) = self.opposite(b) {
+            return (instruction(self.either(a).0, y), negative);
         }
         (instruction(self.either(a).0, self.either(b).0), flipped)
     }
@@ -696,7 +744,11 @@ impl<'a> Writer<'a> {
                 (false, false) => (Add(x, y), negative),
                 (false, true) => (Sub(x, y), negative),
                 (true, false) => (Sub(y, x), negative),
-                (true, true) => (Add(x, y), !negative),
+                (true, true) => match (self.opposite(a), self.opposite(b)) {
+                    (Some(minus), _) => (Sub(minus, y), negative),
+                    (None, Some(minus)) => (Sub(minus, x), negative),
+                    (None, None) => (Add(x, y), !negative),
+                },
             };
         }
         let (taken, other) = if a.node() == product { (a, b) } else { (b, a) };

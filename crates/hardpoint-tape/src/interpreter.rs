@@ -130,6 +130,11 @@ impl Interpreter {
     ///
     /// If the lengths do not fit the program, or say different numbers of groups.
     pub fn run(&mut self, inputs: &[Lanes], uniforms: &[f64], outputs: &mut [Lanes]) {
+        self.run_at(Level::new(), inputs, uniforms, outputs);
+    }
+
+    /// Runs with the instructions of this level, which need not be all that the CPU has.
+    fn run_at(&mut self, level: Level, inputs: &[Lanes], uniforms: &[f64], outputs: &mut [Lanes]) {
         assert_eq!(uniforms.len(), self.uniforms, "the program has {} uniforms", self.uniforms);
         let groups = outputs.len().checked_div(self.outputs).unwrap_or(0);
         assert_eq!(outputs.len(), groups * self.outputs, "the program has {} outputs a group", self.outputs);
@@ -140,7 +145,7 @@ impl Interpreter {
             inputs.len()
         );
         self.scalars[self.constants..].copy_from_slice(uniforms);
-        dispatch!(Level::new(), simd => self.run_in(simd, groups, inputs, outputs));
+        dispatch!(level, simd => self.run_in(simd, groups, inputs, outputs));
     }
 
     #[inline(always)]
@@ -514,6 +519,95 @@ impl<'a> Assembler<'a> {
             (Place::Slot(b), Place::Scalar(c)) => (ssc, [a, b, c]),
             (Place::Scalar(b), Place::Slot(c)) => (scs, [a, b, c]),
             (Place::Scalar(b), Place::Scalar(c)) => (scc, [a, b, c]),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::program::Call::{Atan2, Exp};
+
+    /// Every instruction of operands of all kinds, each result an output.
+    fn all_instructions() -> Program {
+        use Instruction::*;
+        let operands = [
+            Operand::Input(0),
+            Operand::Input(1),
+            Operand::Uniform(0),
+            Operand::Uniform(1),
+            Operand::Constant(0),
+            Operand::Constant(1),
+        ];
+        let mut program =
+            Program { inputs: 2, uniforms: 2, constants: vec![0.3, -1.7], ..Program::default() };
+        program.instructions = vec![Add(operands[0], operands[3]), Sub(operands[1], operands[4])];
+        let values = [Operand::Value(0), Operand::Value(1)];
+        let all: Vec<Operand> = operands.into_iter().chain(values).collect();
+        for &a in &all {
+            program.instructions.extend([Neg(a), Abs(a), Sqrt(a), Round(a)]);
+            program.instructions.push(Call(Exp, a, Operand::Value(u32::MAX)));
+            for &b in &all {
+                program.instructions.extend([Add(a, b), Sub(a, b), Mul(a, b), Div(a, b), Larger(a, b)]);
+                program.instructions.push(Call(Atan2, a, b));
+                for &c in &all {
+                    let fused = [MulAdd(a, b, c), MulSub(a, b, c), NegMulAdd(a, b, c), NegMulSub(a, b, c)];
+                    program.instructions.extend(fused);
+                }
+            }
+        }
+        program.outputs = (0..program.instructions.len() as u32).map(Operand::Value).collect();
+        program.outputs.extend(operands);
+        program
+    }
+
+    fn check(level: Level, fused: bool) {
+        let program = all_instructions();
+        let mut interpreter = Interpreter::new(&program);
+        // Four groups side by side, and one alone.
+        let groups = ABREAST + 1;
+        let lane = |k: usize, lane: usize| (k * LANES + lane) as f64 * 0.37 - 6.1;
+        let inputs: Vec<Lanes> = (0..2 * groups).map(|k| std::array::from_fn(|l| lane(k, l))).collect();
+        let uniforms = [0.9, -2.3];
+        let many = program.outputs.len();
+        let mut outputs = vec![[0.0; LANES]; groups * many];
+        interpreter.run_at(level, &inputs, &uniforms, &mut outputs);
+        for k in 0..groups * LANES {
+            let (group, lane) = (k / LANES, k % LANES);
+            let mut values: Vec<f64> = Vec::new();
+            let find = |operand: Operand, values: &[f64]| match operand {
+                Operand::Value(v) => values[v as usize],
+                Operand::Input(i) => inputs[2 * group + i as usize][lane],
+                Operand::Uniform(u) => uniforms[u as usize],
+                Operand::Constant(c) => program.constants[c as usize],
+            };
+            for instruction in &program.instructions {
+                let value = instruction.of(|operand| find(operand, &values), fused);
+                values.push(value);
+            }
+            for (j, operand) in program.outputs.iter().enumerate() {
+                let (found, expected) = (outputs[group * many + j][lane], find(*operand, &values));
+                let same = found.to_bits() == expected.to_bits() || found.is_nan() && expected.is_nan();
+                assert!(same, "{level:?}, {:?}: {found} for {expected}", program.instructions.get(j));
+            }
+        }
+    }
+
+    #[test]
+    fn all_instructions_of_all_operands_give_the_bits_of_scalars_at_every_level() {
+        check(Level::new(), crate::fuses());
+        #[cfg(target_arch = "x86_64")]
+        {
+            let level = Level::new();
+            if let Some(avx2) = level.as_avx2() {
+                check(Level::Avx2(avx2), true);
+            }
+            if let Some(sse4_2) = level.as_sse4_2() {
+                check(Level::Sse4_2(sse4_2), false);
+            }
+            if let Some(sse2) = level.as_sse2() {
+                check(Level::Sse2(sse2), false);
+            }
         }
     }
 }
