@@ -8,8 +8,8 @@ use crate::{Counts, Line, Unsupported, Width};
 #[derive(Debug)]
 pub enum Machine {}
 
-pub fn widest() -> Option<Width> {
-    None
+pub fn widest() -> Result<Width, Unsupported> {
+    Err(Unsupported::Target)
 }
 
 pub fn has(_: Width) -> bool {
@@ -21,11 +21,7 @@ impl Machine {
         Err(Unsupported::Target)
     }
 
-    pub fn scratch(&self) -> usize {
-        match *self {}
-    }
-
-    pub fn run(&self, _: usize, _: &[Lanes], _: &[f64], _: &mut [Lanes], _: &mut [Line]) {
+    pub fn run(&self, _: &mut Vec<Line>, _: &[Lanes], _: &[f64], _: &mut [Lanes]) {
         match *self {}
     }
 }

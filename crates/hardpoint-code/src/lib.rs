@@ -36,8 +36,6 @@
 #[cfg_attr(not(all(target_arch = "x86_64", unix)), path = "elsewhere.rs")]
 mod x86_64;
 
-mod check;
-
 use std::fmt;
 
 use hardpoint_tape::{Lanes, Program};
@@ -70,6 +68,10 @@ impl fmt::Display for Width {
     }
 }
 
+/// The most inputs, instructions and so on: 64 bytes of each are an eighth of what offsets of 32 bits reach, and code
+/// for as many instructions is below 2 GB.
+const MOST: usize = 1 << 22;
+
 /// Why there is no machine code.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum Unsupported {
@@ -89,7 +91,7 @@ pub enum Unsupported {
         error: i32,
     },
     /// Offsets would not fit into an instruction.
-    #[error("the program has {count} {what}, more than machine code is made for ({})", check::MOST)]
+    #[error("the program has {count} {what}, more than machine code is made for ({})", MOST)]
     Size {
         /// Of what there are too many.
         what: &'static str,
@@ -132,9 +134,6 @@ pub struct Code {
     machine: x86_64::Machine,
     width: Width,
     counts: Counts,
-    inputs: usize,
-    uniforms: usize,
-    outputs: usize,
 }
 
 impl Code {
@@ -144,9 +143,7 @@ impl Code {
     ///
     /// If an operand does not exist, or a value is read before it is computed.
     pub fn new(program: &Program) -> Result<Self, Unsupported> {
-        let none =
-            if cfg!(all(target_arch = "x86_64", unix)) { Unsupported::Cpu } else { Unsupported::Target };
-        Self::with(program, x86_64::widest().ok_or(none)?)
+        Self::with(program, x86_64::widest()?)
     }
 
     /// For registers of this width.
@@ -155,23 +152,8 @@ impl Code {
     ///
     /// As [`new`](Self::new).
     pub fn with(program: &Program, width: Width) -> Result<Self, Unsupported> {
-        if !cfg!(all(target_arch = "x86_64", unix)) {
-            return Err(Unsupported::Target);
-        }
-        if !width.is_here() {
-            return Err(Unsupported::Width(width));
-        }
-        check::size(program)?;
-        check::operands(program);
         let (machine, counts) = x86_64::Machine::new(program, width)?;
-        Ok(Self {
-            machine,
-            width,
-            counts,
-            inputs: program.inputs,
-            uniforms: program.uniforms,
-            outputs: program.outputs.len(),
-        })
+        Ok(Self { machine, width, counts })
     }
 
     /// Runs the program for any number of groups of eight lanes.
@@ -187,27 +169,9 @@ impl Code {
     ///
     /// # Panics
     ///
-    /// If a length is another.
+    /// If a length is another. Inputs of a program without outputs are not looked at.
     pub fn run(&self, scratch: &mut Scratch, inputs: &[Lanes], uniforms: &[f64], outputs: &mut [Lanes]) {
-        assert_eq!(uniforms.len(), self.uniforms, "as many uniforms as the program has");
-        let Some(groups) = outputs.len().checked_div(self.outputs) else {
-            assert!(outputs.is_empty(), "the program has no outputs");
-            return;
-        };
-        assert_eq!(Some(outputs.len()), groups.checked_mul(self.outputs), "whole groups of outputs");
-        assert_eq!(
-            Some(inputs.len()),
-            groups.checked_mul(self.inputs),
-            "as many groups of inputs as of outputs"
-        );
-        if groups == 0 {
-            return;
-        }
-        let needed = self.machine.scratch();
-        if scratch.lines.len() < needed {
-            scratch.lines.resize(needed, Line::default());
-        }
-        self.machine.run(groups, inputs, uniforms, outputs, &mut scratch.lines);
+        self.machine.run(&mut scratch.lines, inputs, uniforms, outputs);
     }
 
     /// The registers that it uses.

@@ -213,7 +213,7 @@ impl<'l> Allocator<'l> {
 
     /// A call leaves no register as it was: all that is needed later goes to memory before.
     fn call(&mut self, call: hardpoint_tape::Call, step: &Step) -> u8 {
-        let cells = [self.frame.scratch(0), self.frame.scratch(self.frame.lane_bytes())];
+        let cells = [self.frame.scratch(0), self.frame.scratch(self.frame.vector_bytes())];
         // Those in registers first, since loading the others takes one.
         for (name, cell) in step.operands().iter().zip(cells) {
             if let Some(r) = self.register(*name) {

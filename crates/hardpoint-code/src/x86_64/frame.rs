@@ -55,7 +55,7 @@ impl Frame {
     }
 
     /// The size of a vector.
-    pub fn lane_bytes(&self) -> i32 {
+    pub fn vector_bytes(&self) -> i32 {
         match self.width {
             Width::Avx2 => 32,
             Width::Avx512 => 64,
@@ -93,11 +93,11 @@ impl Frame {
     }
 
     fn uniform(&self, k: i32) -> i32 {
-        self.lane_bytes() * (2 + k)
+        self.vector_bytes() * (2 + k)
     }
 
     pub fn slot(&self, k: usize) -> Memory {
-        self.scratch(self.slots_at() + self.lane_bytes() * k as i32)
+        self.scratch(self.slots_at() + self.vector_bytes() * k as i32)
     }
 
     fn slots_at(&self) -> i32 {
@@ -109,7 +109,7 @@ impl Frame {
 
     /// What a run needs of scratch, in bytes.
     pub fn scratch_bytes(&self, slots: usize) -> usize {
-        self.slots_at() as usize + self.lane_bytes() as usize * slots
+        self.slots_at() as usize + self.vector_bytes() as usize * slots
     }
 
     fn at(&self, base: Gpr, offset: i32, broadcast: bool) -> Memory {

@@ -2,6 +2,7 @@
 
 mod allocate;
 mod calls;
+mod check;
 mod encoder;
 mod frame;
 mod lower;
@@ -9,7 +10,7 @@ mod memory;
 
 use std::ffi::c_void;
 
-use hardpoint_tape::{Lanes, Program};
+use hardpoint_tape::{LANES, Lanes, Program};
 
 use crate::{Counts, Line, Unsupported, Width};
 use allocate::Allocator;
@@ -19,7 +20,7 @@ use memory::Executable;
 
 /// Machine code as a function: inputs, uniforms, outputs, scratch, constants, groups.
 ///
-/// Reads `groups` times the program's inputs, its uniforms and constants; writes `groups` times its outputs and the scratch.
+/// Reads `groups` times the program's inputs, its uniforms and constants; writes and reads `groups` times its outputs, and the scratch.
 type Entry = unsafe extern "sysv64" fn(*const Lanes, *const f64, *mut Lanes, *mut Line, *const Line, usize);
 
 /// Code that can be run.
@@ -30,11 +31,14 @@ pub struct Machine {
     constants: Vec<Line>,
     /// How much scratch a run needs.
     scratch: usize,
+    inputs: usize,
+    uniforms: usize,
+    outputs: usize,
 }
 
-/// The widest that this CPU has.
-pub fn widest() -> Option<Width> {
-    Width::ALL.into_iter().rev().find(|w| has(*w))
+/// The widest that is here.
+pub fn widest() -> Result<Width, Unsupported> {
+    Width::ALL.into_iter().rev().find(|w| has(*w)).ok_or(Unsupported::Cpu)
 }
 
 /// Whether CPU and system have it.
@@ -47,47 +51,50 @@ pub fn has(width: Width) -> bool {
 }
 
 impl Machine {
-    /// Expects a program that has been checked, and a width that the CPU has.
     pub fn new(program: &Program, width: Width) -> Result<(Self, Counts), Unsupported> {
+        if !has(width) {
+            return Err(Unsupported::Width(width));
+        }
+        check::size(program)?;
+        check::operands(program);
         let (bytes, frame, counts) = emit(program, width);
         let executable =
             Executable::new(&bytes).map_err(|e| Unsupported::Memory { error: e.raw_os_error() })?;
-        let masks = [f64::from_bits(1 << 63), f64::from_bits(!(1 << 63))];
-        let all = program.constants.iter().chain(&masks);
-        let each = frame.constant_bytes() as usize / size_of::<f64>();
-        let wide: Vec<f64> = all.flat_map(|c| std::iter::repeat_n(*c, each)).collect();
-        let constants = wide
-            .chunks(8)
-            .map(|c| {
-                let mut line = Line::default();
-                line.0[..c.len()].copy_from_slice(c);
-                line
-            })
-            .collect();
-        let scratch = frame.scratch_bytes(counts.slots).div_ceil(size_of::<Line>());
-        Ok((Self { executable, constants, scratch }, counts))
+        let machine = Self {
+            executable,
+            constants: spread(&program.constants, frame.constant_bytes() as usize / size_of::<f64>()),
+            scratch: frame.scratch_bytes(counts.slots).div_ceil(size_of::<Line>()),
+            inputs: program.inputs,
+            uniforms: program.uniforms,
+            outputs: program.outputs.len(),
+        };
+        Ok((machine, counts))
     }
 
-    /// How much scratch a run needs.
-    pub fn scratch(&self) -> usize {
-        self.scratch
-    }
-
-    /// Expects lengths that have been checked, and at least one group.
-    pub fn run(
-        &self,
-        groups: usize,
-        inputs: &[Lanes],
-        uniforms: &[f64],
-        outputs: &mut [Lanes],
-        scratch: &mut [Line],
-    ) {
-        assert!(groups > 0 && scratch.len() >= self.scratch, "there is something to do, and room for it");
+    pub fn run(&self, scratch: &mut Vec<Line>, inputs: &[Lanes], uniforms: &[f64], outputs: &mut [Lanes]) {
+        assert_eq!(uniforms.len(), self.uniforms, "as many uniforms as the program has");
+        let Some(groups) = outputs.len().checked_div(self.outputs) else {
+            assert!(outputs.is_empty(), "the program has no outputs");
+            return;
+        };
+        assert_eq!(outputs.len(), groups * self.outputs, "whole groups of outputs");
+        assert_eq!(
+            Some(inputs.len()),
+            groups.checked_mul(self.inputs),
+            "as many groups of inputs as of outputs"
+        );
+        if groups == 0 {
+            return;
+        }
+        if scratch.len() < self.scratch {
+            scratch.resize(self.scratch, Line::default());
+        }
         let start = self.executable.start();
         // SAFETY: the pages hold, from their first byte on, a function of this type, and live as long as `self`.
         let entry = unsafe { std::mem::transmute::<*const c_void, Entry>(start) };
-        // SAFETY: the code reads and writes what `Entry` says: the operands were checked when it was made, the lengths
-        // by the caller and above. The CPU has the instructions, also checked when it was made.
+        // SAFETY: the code reads and writes what `Entry` says and nothing else: the operands were checked when it was
+        // made. All is as long as that: the lengths were checked above, constants and scratch were made so. The CPU has
+        // the instructions, which was checked when the code was made. There is at least one group.
         unsafe {
             entry(
                 inputs.as_ptr(),
@@ -99,6 +106,17 @@ impl Machine {
             );
         }
     }
+}
+
+/// The constants, so many times each, and after them the masks for signs, as `lower::Names` counts them.
+fn spread(constants: &[f64], times: usize) -> Vec<Line> {
+    let masks = [f64::from_bits(1 << 63), f64::from_bits(!(1 << 63))];
+    let all: Vec<f64> = constants.iter().chain(&masks).flat_map(|c| std::iter::repeat_n(*c, times)).collect();
+    let mut lines = vec![Line::default(); all.len().div_ceil(LANES)];
+    for (line, numbers) in lines.iter_mut().zip(all.chunks(LANES)) {
+        line.0[..numbers.len()].copy_from_slice(numbers);
+    }
+    lines
 }
 
 /// The bytes of the code.

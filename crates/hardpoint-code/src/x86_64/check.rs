@@ -2,12 +2,9 @@
 
 use hardpoint_tape::{Operand, Program};
 
-use crate::Unsupported;
+use crate::{MOST, Unsupported};
 
-/// The most inputs, instructions and so on: 64 bytes of each are a quarter of what offsets of 32 bits reach, and code
-/// for as many instructions is below 2 GB.
-pub const MOST: usize = 1 << 22;
-
+/// Every offset fits into an instruction.
 pub fn size(program: &Program) -> Result<(), Unsupported> {
     let all = [
         ("inputs", program.inputs),
