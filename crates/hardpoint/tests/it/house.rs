@@ -19,8 +19,10 @@ const ROOMS: [&str; 12] = [
 ];
 
 /// Which of our own crates each crate may depend on.
-const CRATES: [(&str, &[&str]); 5] = [
-    ("hardpoint", &[]),
+const CRATES: [(&str, &[&str]); 7] = [
+    ("hardpoint-tape", &[]),
+    ("hardpoint-code", &["hardpoint-tape"]),
+    ("hardpoint", &["hardpoint-tape", "hardpoint-code"]),
     ("hardpoint-file", &["hardpoint"]),
     ("hardpoint-report", &["hardpoint", "hardpoint-file"]),
     ("hardpoint-cli", &["hardpoint", "hardpoint-file", "hardpoint-report"]),
@@ -106,4 +108,32 @@ fn crates_depend_towards_the_core_only() {
         }
     }
     assert_eq!(packages.len(), CRATES.len());
+}
+
+/// The one crate that may hold `unsafe`, and where in it (`docs/machine-code.md`).
+#[test]
+fn unsafe_stands_where_the_safety_argument_says() {
+    let crates = Path::new(env!("CARGO_MANIFEST_DIR")).parent().unwrap();
+    let mut with_lints_of_their_own = Vec::new();
+    for entry in std::fs::read_dir(crates).unwrap() {
+        let path = entry.unwrap().path();
+        let manifest = std::fs::read_to_string(path.join("Cargo.toml")).unwrap();
+        if !manifest.contains("[lints]\nworkspace = true") {
+            with_lints_of_their_own.push(path.file_name().unwrap().to_str().unwrap().to_string());
+        }
+    }
+    assert_eq!(
+        with_lints_of_their_own,
+        ["hardpoint-code"],
+        "all others forbid `unsafe` as the workspace does"
+    );
+
+    let src = crates.join("hardpoint-code/src");
+    let mut holding: Vec<String> = sources(&src)
+        .into_iter()
+        .filter(|(_, text)| text.lines().any(|l| l.contains("unsafe ") && !l.trim_start().starts_with("//")))
+        .map(|(path, _)| path.strip_prefix(&src).unwrap().to_str().unwrap().to_string())
+        .collect();
+    holding.sort();
+    assert_eq!(holding, ["x86_64/memory.rs", "x86_64/mod.rs"]);
 }

@@ -1,0 +1,348 @@
+//! Which number is in which register, and the instructions that follow from it.
+//!
+//! Linear scan in the order of the program. When registers run out, the number that is read furthest ahead makes room.
+//! What has a home in memory (inputs, uniforms, constants, outputs that are known, what was spilled before) is read there and
+//! never stored again; other values are spilled to a slot of the scratch when they make room.
+
+use super::calls;
+use super::encoder::{Assembler, Gpr, Memory, Opcode, Sign, Source};
+use super::frame::{self, Frame};
+use super::lower::{Action, Lowered, NEVER, Name, Step};
+use crate::Counts;
+
+/// No register.
+const NOWHERE: u8 = u8::MAX;
+
+/// A number with a home in memory makes room as if it were read so many instructions later: it need not be stored.
+const CLEAN: u32 = 50;
+
+/// What a register holds.
+#[derive(Clone, Copy, Debug)]
+struct Holder {
+    name: Name,
+    /// The next instruction that reads it.
+    next: u32,
+}
+
+/// Registers and memory, as they are after the instructions so far.
+#[derive(Debug)]
+pub struct Allocator<'l> {
+    lowered: &'l Lowered,
+    frame: Frame,
+    assembler: Assembler,
+    counts: Counts,
+    holders: Vec<Holder>,
+    /// Registers that hold nothing that is needed, as bits.
+    free: u32,
+    /// Of each name, its register.
+    register: Vec<u8>,
+    /// Of each name, where in memory it is found.
+    home: Vec<Option<Memory>>,
+    slots: usize,
+    /// Slots that hold nothing that is needed.
+    free_slots: Vec<Memory>,
+    /// Slots that this instruction reads for the last time: free for the next.
+    last_read: Vec<Memory>,
+    /// How many outputs of values are stored.
+    stored: usize,
+}
+
+impl<'l> Allocator<'l> {
+    pub fn new(lowered: &'l Lowered, frame: Frame, assembler: Assembler) -> Self {
+        let registers = frame.registers();
+        let home = (0..lowered.names.len() as Name).map(|n| frame.home(n)).collect();
+        Self {
+            lowered,
+            frame,
+            assembler,
+            counts: Counts::default(),
+            holders: vec![Holder { name: 0, next: NEVER }; registers],
+            free: (u64::MAX >> (64 - registers)) as u32,
+            register: vec![NOWHERE; lowered.names.len()],
+            home,
+            slots: 0,
+            free_slots: Vec::new(),
+            last_read: Vec::new(),
+            stored: 0,
+        }
+    }
+
+    /// All instructions, and all outputs stored.
+    pub fn run(mut self) -> (Assembler, Counts) {
+        let lowered = self.lowered;
+        for (i, step) in lowered.steps.iter().enumerate().filter(|(_, s)| s.needed) {
+            for (name, next) in step.operands().iter().zip(step.next()) {
+                if let Some(r) = self.register(*name) {
+                    self.holders[usize::from(r)].next = *next;
+                }
+            }
+            let result = match step.action {
+                Action::Unary(op) => self.unary(op, step),
+                Action::Binary(op) => self.binary(op, step, false),
+                Action::Commuting(op) => self.binary(op, step, true),
+                Action::Fused(sign) => self.fused(sign, step),
+                Action::Larger => self.larger(step),
+                Action::Call(call) => self.call(call, step),
+            };
+            self.finish(i as Name, result);
+        }
+        for (name, j) in lowered.outputs.iter().zip(0..) {
+            if !lowered.names.is_value(*name) {
+                let home = self.home[*name as usize].expect("what is no value has a home");
+                self.load(0, home);
+                self.assembler.store(self.frame.output(j), 0);
+            }
+        }
+        self.counts.slots = self.slots;
+        (self.assembler, self.counts)
+    }
+
+    fn unary(&mut self, op: Opcode, step: &Step) -> u8 {
+        let s = self.source(step.operands()[0]);
+        self.leave(step);
+        let d = self.take(0);
+        self.assembler.vector(op, d, 0, s);
+        d
+    }
+
+    fn binary(&mut self, op: Opcode, step: &Step, commutes: bool) -> u8 {
+        let &[mut a, mut b] = step.operands() else { unreachable!("two operands") };
+        let &[next_a, next_b] = step.next() else { unreachable!("two operands") };
+        let mut next = next_a;
+        let swap = match (self.register(a), self.register(b)) {
+            (None, Some(_)) => true,
+            // The one that is loaded stays for a while.
+            (None, None) => next_b < next_a,
+            _ => false,
+        };
+        if commutes && swap {
+            (a, b, next) = (b, a, next_b);
+        }
+        let r = self.loaded(a, next, self.bits(&[b]));
+        let s = self.source(b);
+        self.leave(step);
+        let d = self.take(0);
+        self.assembler.vector(op, d, r, s);
+        d
+    }
+
+    /// The result takes the place of one operand; of the others one may be in memory.
+    fn fused(&mut self, sign: Sign, step: &Step) -> u8 {
+        let &[a, b, c] = step.operands() else { unreachable!("three operands") };
+        let names = [a, b, c];
+        let next: [u32; 3] = step.next().try_into().expect("three operands");
+        let (k, d) = self.overwritten(names, next);
+
+        // The others: two factors, or a factor and the addend.
+        let others = match k {
+            0 => [1, 2],
+            1 => [0, 2],
+            _ => [0, 1],
+        };
+        let place = |all: &Self, o: usize| match names[o] == names[k] {
+            true => Source::Register(d),
+            false => all.source(names[o]),
+        };
+        let in_memory = |s: Source| matches!(s, Source::Memory(_));
+        if others.iter().all(|o| in_memory(place(self, *o))) {
+            // The one that is read again sooner is loaded and stays.
+            let sooner = if next[others[1]] < next[others[0]] { others[1] } else { others[0] };
+            self.loaded(names[sooner], next[sooner], 1 << d);
+        }
+        let [x, y] = others.map(|o| place(self, o));
+        self.leave(step);
+        let (form, first, last) = match (x, y) {
+            (Source::Register(x), y) => {
+                (if k == 2 { Opcode::fused_231(sign) } else { Opcode::fused_213(sign) }, x, y)
+            }
+            (x, Source::Register(y)) => {
+                (if k == 2 { Opcode::fused_231(sign) } else { Opcode::fused_132(sign) }, y, x)
+            }
+            _ => unreachable!("one of the two was loaded"),
+        };
+        self.assembler.vector(form, d, first, last);
+        d
+    }
+
+    /// The operand that the result is to take the place of, and a register that holds it and is nobody else's.
+    fn overwritten(&mut self, names: [Name; 3], next: [u32; 3]) -> (usize, u8) {
+        let found = |all: &Self, k: usize| all.register(names[k]);
+        // One that is read for the last time; or one that will be found in memory.
+        let dying = [2, 0, 1].into_iter().find(|&k| next[k] == NEVER && found(self, k).is_some());
+        let clean = || {
+            let clean = |k: &usize| found(self, *k).is_some() && self.home[names[*k] as usize].is_some();
+            [2, 0, 1].into_iter().filter(clean).max_by_key(|&k| next[k])
+        };
+        if let Some(k) = dying.or_else(clean) {
+            let r = self.register(names[k]).expect("it is in a register");
+            self.register[names[k] as usize] = NOWHERE;
+            return (k, r);
+        }
+        // Else a copy of one in memory, or of the addend.
+        let k = [2, 0, 1].into_iter().filter(|&k| found(self, k).is_none()).max_by_key(|&k| next[k]);
+        let d = self.take(self.bits(&names));
+        match k {
+            Some(k) => {
+                let home = self.home[names[k] as usize].expect("what is in no register is in memory");
+                self.load(d, home);
+            }
+            None => {
+                let r = self.register(names[2]).expect("all are in registers");
+                self.assembler.copy(d, r);
+                self.counts.copies += 1;
+            }
+        }
+        (k.unwrap_or(2), d)
+    }
+
+    /// The machine's maximum is its second operand where either is NaN. Taken both ways it is NaN at least once,
+    /// and a NaN joined with any bits is a NaN; of equal numbers only zeros differ, and joined they are -0.
+    fn larger(&mut self, step: &Step) -> u8 {
+        let &[a, b] = step.operands() else { unreachable!("two operands") };
+        let a = self.loaded(a, step.next()[0], self.bits(&[b]));
+        let b = self.loaded(b, step.next()[1], 1 << a);
+        let other = self.take(1 << a | 1 << b);
+        self.leave(step);
+        let d = self.take(1 << other);
+        self.assembler.vector(Opcode::MAX, other, a, Source::Register(b));
+        self.assembler.vector(Opcode::MAX, d, b, Source::Register(a));
+        self.assembler.vector(Opcode::OR, d, d, Source::Register(other));
+        self.free |= 1 << other;
+        d
+    }
+
+    /// A call leaves no register as it was: all that is needed later goes to memory before.
+    fn call(&mut self, call: hardpoint_tape::Call, step: &Step) -> u8 {
+        let cells = [self.frame.scratch(0), self.frame.scratch(self.frame.vector_bytes())];
+        // Those in registers first, since loading the others takes one.
+        for (name, cell) in step.operands().iter().zip(cells) {
+            if let Some(r) = self.register(*name) {
+                self.assembler.store(cell, r);
+            }
+        }
+        let absent: Vec<(Memory, Memory)> = (step.operands().iter().zip(cells))
+            .filter_map(|(name, cell)| match self.source(*name) {
+                Source::Register(_) => None,
+                Source::Memory(home) => Some((home, cell)),
+            })
+            .collect();
+        self.leave(step);
+        for r in 0..self.holders.len() as u8 {
+            if self.free & 1 << r == 0 {
+                self.evict(r);
+                self.free |= 1 << r;
+            }
+        }
+        for (home, cell) in absent {
+            self.load(0, home);
+            self.assembler.store(cell, 0);
+        }
+        frame::call(&mut self.assembler, cells[0], calls::which(call), calls::address(self.frame.width()));
+        let d = self.take(0);
+        self.load(d, cells[0]);
+        d
+    }
+
+    /// The result of an instruction is in this register.
+    fn finish(&mut self, value: Name, r: u8) {
+        let lowered = self.lowered;
+        self.register[value as usize] = r;
+        self.holders[usize::from(r)] = Holder { name: value, next: lowered.first[value as usize] };
+        for (_, j) in lowered.outputs_of(value, &mut self.stored) {
+            let at = self.frame.output(*j);
+            self.assembler.store(at, r);
+            self.home[value as usize].get_or_insert(at);
+        }
+        if lowered.first[value as usize] == NEVER {
+            self.register[value as usize] = NOWHERE;
+            self.free |= 1 << r;
+        }
+        self.free_slots.append(&mut self.last_read);
+    }
+
+    /// Operands that are read for the last time leave their registers and slots.
+    fn leave(&mut self, step: &Step) {
+        for (name, next) in step.operands().iter().zip(step.next()) {
+            if *next != NEVER {
+                continue;
+            }
+            if let Some(r) = self.register(*name) {
+                self.free |= 1 << r;
+                self.register[*name as usize] = NOWHERE;
+            }
+            let spilled = |m: &mut Memory| self.lowered.names.is_value(*name) && m.base == Gpr::Rcx;
+            if let Some(slot) = self.home[*name as usize].take_if(spilled) {
+                self.last_read.push(slot);
+            }
+        }
+    }
+
+    fn register(&self, name: Name) -> Option<u8> {
+        Some(self.register[name as usize]).filter(|r| *r != NOWHERE)
+    }
+
+    fn source(&self, name: Name) -> Source {
+        match self.register(name) {
+            Some(r) => Source::Register(r),
+            None => Source::Memory(self.home[name as usize].expect("what is in no register is in memory")),
+        }
+    }
+
+    /// The registers of these numbers, as bits.
+    fn bits(&self, names: &[Name]) -> u32 {
+        names.iter().filter_map(|n| self.register(*n)).fold(0, |bits, r| bits | 1 << r)
+    }
+
+    /// A register that holds the number, which is loaded if need be; those in `keep` stay as they are.
+    fn loaded(&mut self, name: Name, next: u32, keep: u32) -> u8 {
+        if let Some(r) = self.register(name) {
+            return r;
+        }
+        let home = self.home[name as usize].expect("what is in no register is in memory");
+        let r = self.take(keep);
+        self.load(r, home);
+        self.register[name as usize] = r;
+        self.holders[usize::from(r)] = Holder { name, next };
+        r
+    }
+
+    fn load(&mut self, r: u8, from: Memory) {
+        self.assembler.load(r, from);
+        self.counts.loads += 1;
+    }
+
+    /// A register whose contents nobody needs; it is none of `keep`.
+    fn take(&mut self, keep: u32) -> u8 {
+        let free = self.free & !keep;
+        let r = if free != 0 {
+            free.trailing_zeros() as u8
+        } else {
+            let r = (0..self.holders.len() as u8)
+                .filter(|r| keep & 1 << r == 0)
+                .max_by_key(|&r| {
+                    let Holder { name, next } = self.holders[usize::from(r)];
+                    next.saturating_add(if self.home[name as usize].is_some() { CLEAN } else { 0 })
+                })
+                .expect("an instruction has fewer operands than there are registers");
+            self.evict(r);
+            r
+        };
+        self.free &= !(1 << r);
+        r
+    }
+
+    /// What the register holds is in memory afterwards, and in no register.
+    fn evict(&mut self, r: u8) {
+        let name = self.holders[usize::from(r)].name;
+        if self.home[name as usize].is_none() {
+            let slot = self.free_slots.pop().unwrap_or_else(|| {
+                self.slots += 1;
+                self.frame.slot(self.slots - 1)
+            });
+            self.assembler.store(slot, r);
+            self.counts.spills += 1;
+            self.home[name as usize] = Some(slot);
+        }
+        self.register[name as usize] = NOWHERE;
+    }
+}

@@ -1,0 +1,43 @@
+//! Functions that machine code calls.
+
+use hardpoint_tape::Call;
+
+use crate::Width;
+
+/// The arguments of a call, and in place of the first its result: the first thing in the scratch.
+type Cell<const N: usize> = [[f64; N]; 2];
+
+/// Evaluates the function for every lane.
+extern "sysv64" fn lane_by_lane<const N: usize>(cell: &mut Cell<N>, call: &Call) {
+    let [a, b] = cell;
+    for (a, b) in a.iter_mut().zip(b) {
+        *a = call.of(*a, *b);
+    }
+}
+
+/// What is to be called with the cell's address and `which(call)`.
+pub fn address(width: Width) -> u64 {
+    let function = match width {
+        Width::Avx2 => lane_by_lane::<4> as extern "sysv64" fn(&mut Cell<4>, &Call) as usize,
+        Width::Avx512 => lane_by_lane::<8> as extern "sysv64" fn(&mut Cell<8>, &Call) as usize,
+    };
+    function as u64
+}
+
+/// Where the program finds which function is meant: for ever, for it is a constant.
+pub fn which(call: Call) -> u64 {
+    let forever: &'static Call = match call {
+        Call::Tan => &Call::Tan,
+        Call::Asin => &Call::Asin,
+        Call::Acos => &Call::Acos,
+        Call::Atan => &Call::Atan,
+        Call::Sinh => &Call::Sinh,
+        Call::Cosh => &Call::Cosh,
+        Call::Tanh => &Call::Tanh,
+        Call::Exp => &Call::Exp,
+        Call::Ln => &Call::Ln,
+        Call::Atan2 => &Call::Atan2,
+        Call::Pow => &Call::Pow,
+    };
+    std::ptr::from_ref(forever).expose_provenance() as u64
+}

@@ -1,0 +1,41 @@
+//! What a program must fulfil so that its code reads and writes only what it is given.
+
+use hardpoint_tape::{Operand, Program};
+
+use crate::{MOST, Unsupported};
+
+/// Every offset fits into an instruction.
+pub fn size(program: &Program) -> Result<(), Unsupported> {
+    let all = [
+        ("inputs", program.inputs),
+        ("uniforms", program.uniforms),
+        ("constants", program.constants.len()),
+        ("instructions", program.instructions.len()),
+        ("outputs", program.outputs.len()),
+    ];
+    match all.into_iter().find(|(_, count)| *count > MOST) {
+        Some((what, count)) => Err(Unsupported::Size { what, count }),
+        None => Ok(()),
+    }
+}
+
+/// Every operand exists, and values are computed before they are read.
+pub fn operands(program: &Program) {
+    let check = |operand, values: usize, what: &dyn Fn() -> String| {
+        let (k, count) = match operand {
+            Operand::Value(k) => (k, values),
+            Operand::Input(k) => (k, program.inputs),
+            Operand::Uniform(k) => (k, program.uniforms),
+            Operand::Constant(k) => (k, program.constants.len()),
+        };
+        assert!((k as usize) < count, "{} reads {operand:?}, but there are {count} of these by then", what());
+    };
+    for (i, instruction) in program.instructions.iter().enumerate() {
+        for operand in instruction.operands() {
+            check(operand, i, &|| format!("instruction {i}"));
+        }
+    }
+    for (j, operand) in program.outputs.iter().enumerate() {
+        check(*operand, program.instructions.len(), &|| format!("output {j}"));
+    }
+}

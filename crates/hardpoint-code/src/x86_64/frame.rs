@@ -1,0 +1,198 @@
+//! Where numbers are in memory, and what stands around the instructions: entry, loop over groups, calls.
+//!
+//! The code is a function by the System V convention,
+//!
+//! ```text
+//! fn(inputs: rdi, uniforms: rsi, outputs: rdx, scratch: rcx, constants: r8, groups: r9)
+//! ```
+//!
+//! All vector registers are its own; of the general ones it changes these, rax and flags. The six point a little into
+//! what they stand for, so that short offsets reach both ways.
+//!
+//! AVX-512 goes through the program once for each group, AVX2 twice: for the first four lanes and for the others.
+//! AVX2 has no operands of one scalar for all lanes, so that constants come four times, and uniforms are spread over
+//! the scratch before the first group.
+
+use hardpoint_tape::Program;
+
+use super::encoder::{Assembler, Gpr, Memory, When};
+use super::lower::{Lowered, NEVER, Name, Names};
+use crate::Width;
+
+const SAVED: [Gpr; 6] = [Gpr::Rdi, Gpr::Rsi, Gpr::Rdx, Gpr::Rcx, Gpr::R8, Gpr::R9];
+
+/// Where numbers are in memory.
+#[derive(Clone, Copy, Debug)]
+pub struct Frame {
+    width: Width,
+    names: Names,
+    inputs: i32,
+    uniforms: i32,
+    outputs: i32,
+}
+
+impl Frame {
+    pub fn new(program: &Program, names: Names, width: Width) -> Self {
+        Self {
+            width,
+            names,
+            inputs: program.inputs as i32,
+            uniforms: program.uniforms as i32,
+            outputs: program.outputs.len() as i32,
+        }
+    }
+
+    pub fn width(&self) -> Width {
+        self.width
+    }
+
+    /// How many vector registers there are.
+    pub fn registers(&self) -> usize {
+        match self.width {
+            Width::Avx2 => 16,
+            Width::Avx512 => 32,
+        }
+    }
+
+    /// The size of a vector.
+    pub fn vector_bytes(&self) -> i32 {
+        match self.width {
+            Width::Avx2 => 32,
+            Width::Avx512 => 64,
+        }
+    }
+
+    /// Where a number is from the start; nowhere if it is a value.
+    pub fn home(&self, name: Name) -> Option<Memory> {
+        let n = self.names;
+        let scalar = self.width == Width::Avx512;
+        Some(match name {
+            _ if n.is_value(name) => return None,
+            _ if name < n.uniforms => self.at(Gpr::Rdi, 64 * (name - n.inputs) as i32, false),
+            _ if name < n.constants && scalar => self.at(Gpr::Rsi, 8 * (name - n.uniforms) as i32, true),
+            _ if name < n.constants => self.scratch(self.uniform((name - n.uniforms) as i32)),
+            _ => self.at(Gpr::R8, self.constant_bytes() * (name - n.constants) as i32, scalar),
+        })
+    }
+
+    /// What a constant takes.
+    pub fn constant_bytes(&self) -> i32 {
+        match self.width {
+            Width::Avx2 => 32,
+            Width::Avx512 => 8,
+        }
+    }
+
+    pub fn output(&self, j: u32) -> Memory {
+        self.at(Gpr::Rdx, 64 * j as i32, false)
+    }
+
+    /// The scratch begins with the two cells of calls; then come spread uniforms, then slots.
+    pub fn scratch(&self, offset: i32) -> Memory {
+        self.at(Gpr::Rcx, offset, false)
+    }
+
+    fn uniform(&self, k: i32) -> i32 {
+        self.vector_bytes() * (2 + k)
+    }
+
+    pub fn slot(&self, k: usize) -> Memory {
+        self.scratch(self.slots_at() + self.vector_bytes() * k as i32)
+    }
+
+    fn slots_at(&self) -> i32 {
+        match self.width {
+            Width::Avx2 => self.uniform(self.uniforms),
+            Width::Avx512 => self.uniform(0),
+        }
+    }
+
+    /// What a run needs of scratch, in bytes.
+    pub fn scratch_bytes(&self, slots: usize) -> usize {
+        self.slots_at() as usize + self.vector_bytes() as usize * slots
+    }
+
+    fn at(&self, base: Gpr, offset: i32, broadcast: bool) -> Memory {
+        Memory { base, offset: offset - self.ahead(base), broadcast }
+    }
+
+    /// How far a register points into what it stands for: 128 short offsets.
+    fn ahead(&self, base: Gpr) -> i32 {
+        match (self.width, base) {
+            (Width::Avx512, Gpr::Rsi | Gpr::R8) => 128 * 8,
+            (Width::Avx512, _) => 128 * 64,
+            (Width::Avx2, _) => 128,
+        }
+    }
+
+    /// All the code: `body` adds what is done for one vector of each number.
+    pub fn around<T>(
+        &self,
+        lowered: &Lowered,
+        body: impl FnOnce(Assembler) -> (Assembler, T),
+    ) -> (Assembler, T) {
+        let mut a = Assembler::new(self.width);
+        for base in [Gpr::Rdi, Gpr::Rsi, Gpr::Rdx, Gpr::Rcx, Gpr::R8] {
+            a.add(base, self.ahead(base));
+        }
+        if self.width == Width::Avx2 {
+            self.spread_uniforms(&mut a, lowered);
+            a.double(Gpr::R9);
+        }
+        let again = a.here();
+        let (mut a, result) = body(a);
+        let strides = [(Gpr::Rdi, 64 * self.inputs), (Gpr::Rdx, 64 * self.outputs)];
+        match self.width {
+            Width::Avx512 => {
+                for (base, stride) in strides {
+                    a.add(base, stride);
+                }
+            }
+            Width::Avx2 => {
+                // An even number of halves to go: this was the first.
+                a.test_odd(Gpr::R9);
+                let first = a.jump(When::Zero);
+                for (base, stride) in strides {
+                    a.add(base, stride - 64);
+                }
+                a.land(first);
+                for (base, _) in strides {
+                    a.add(base, 32);
+                }
+            }
+        }
+        a.decrement(Gpr::R9);
+        a.jump_back(When::NotZero, again);
+        a.zero_upper();
+        a.ret();
+        (a, result)
+    }
+
+    fn spread_uniforms(&self, a: &mut Assembler, lowered: &Lowered) {
+        for k in 0..self.uniforms {
+            let name = self.names.uniforms + k as Name;
+            if lowered.first[name as usize] != NEVER || lowered.outputs.contains(&name) {
+                a.load(0, self.at(Gpr::Rsi, 8 * k, true));
+                a.store(self.scratch(self.uniform(k)), 0);
+            }
+        }
+    }
+}
+
+/// Calls `function(cell, argument)`, which may change all vector registers.
+pub fn call(a: &mut Assembler, cell: Memory, argument: u64, function: u64) {
+    a.zero_upper();
+    for r in SAVED {
+        a.push(r);
+    }
+    // With the return address these are seven: one more, and the stack is aligned to 16 bytes.
+    a.add(Gpr::Rsp, -8);
+    a.address(Gpr::Rdi, cell.base, cell.offset);
+    a.set(Gpr::Rsi, argument);
+    a.set(Gpr::Rax, function);
+    a.call(Gpr::Rax);
+    a.add(Gpr::Rsp, 8);
+    for r in SAVED.into_iter().rev() {
+        a.pop(r);
+    }
+}

@@ -1,0 +1,133 @@
+//! Code for x86-64, on systems that map memory as Unix does.
+
+mod allocate;
+mod calls;
+mod check;
+mod encoder;
+mod frame;
+mod lower;
+mod memory;
+
+use std::ffi::c_void;
+
+use hardpoint_tape::{LANES, Lanes, Program};
+
+use crate::{Counts, Line, Unsupported, Width};
+use allocate::Allocator;
+use frame::Frame;
+use lower::Lowered;
+use memory::Executable;
+
+/// Machine code as a function: inputs, uniforms, outputs, scratch, constants, groups.
+///
+/// Reads `groups` times the program's inputs, its uniforms and constants; writes and reads `groups` times its outputs, and the scratch.
+type Entry = unsafe extern "sysv64" fn(*const Lanes, *const f64, *mut Lanes, *mut Line, *const Line, usize);
+
+/// Code that can be run.
+#[derive(Debug)]
+pub struct Machine {
+    executable: Executable,
+    /// As wide as the code wants them, with the masks for signs.
+    constants: Vec<Line>,
+    /// How much scratch a run needs.
+    scratch: usize,
+    inputs: usize,
+    uniforms: usize,
+    outputs: usize,
+}
+
+/// The widest that is here.
+pub fn widest() -> Result<Width, Unsupported> {
+    Width::ALL.into_iter().rev().find(|w| has(*w)).ok_or(Unsupported::Cpu)
+}
+
+/// Whether CPU and system have it.
+pub fn has(width: Width) -> bool {
+    match width {
+        Width::Avx2 => is_x86_feature_detected!("avx2") && is_x86_feature_detected!("fma"),
+        // The bits of doubles are combined by DQ.
+        Width::Avx512 => is_x86_feature_detected!("avx512f") && is_x86_feature_detected!("avx512dq"),
+    }
+}
+
+impl Machine {
+    pub fn new(program: &Program, width: Width) -> Result<(Self, Counts), Unsupported> {
+        if !has(width) {
+            return Err(Unsupported::Width(width));
+        }
+        check::size(program)?;
+        check::operands(program);
+        let (bytes, frame, counts) = emit(program, width);
+        let executable =
+            Executable::new(&bytes).map_err(|e| Unsupported::Memory { error: e.raw_os_error() })?;
+        let machine = Self {
+            executable,
+            constants: spread(&program.constants, frame.constant_bytes() as usize / size_of::<f64>()),
+            scratch: frame.scratch_bytes(counts.slots).div_ceil(size_of::<Line>()),
+            inputs: program.inputs,
+            uniforms: program.uniforms,
+            outputs: program.outputs.len(),
+        };
+        Ok((machine, counts))
+    }
+
+    pub fn run(&self, scratch: &mut Vec<Line>, inputs: &[Lanes], uniforms: &[f64], outputs: &mut [Lanes]) {
+        assert_eq!(uniforms.len(), self.uniforms, "as many uniforms as the program has");
+        let Some(groups) = outputs.len().checked_div(self.outputs) else {
+            assert!(outputs.is_empty(), "the program has no outputs");
+            return;
+        };
+        assert_eq!(outputs.len(), groups * self.outputs, "whole groups of outputs");
+        assert_eq!(
+            Some(inputs.len()),
+            groups.checked_mul(self.inputs),
+            "as many groups of inputs as of outputs"
+        );
+        if groups == 0 {
+            return;
+        }
+        if scratch.len() < self.scratch {
+            scratch.resize(self.scratch, Line::default());
+        }
+        let start = self.executable.start();
+        // SAFETY: the pages hold, from their first byte on, a function of this type, and live as long as `self`.
+        let entry = unsafe { std::mem::transmute::<*const c_void, Entry>(start) };
+        // SAFETY: the code reads and writes what `Entry` says and nothing else: the operands were checked when it was
+        // made. All is as long as that: the lengths were checked above, constants and scratch were made so. The CPU has
+        // the instructions, which was checked when the code was made. There is at least one group.
+        unsafe {
+            entry(
+                inputs.as_ptr(),
+                uniforms.as_ptr(),
+                outputs.as_mut_ptr(),
+                scratch.as_mut_ptr(),
+                self.constants.as_ptr(),
+                groups,
+            );
+        }
+    }
+}
+
+/// The constants, so many times each, and after them the masks for signs, as `lower::Names` counts them.
+fn spread(constants: &[f64], times: usize) -> Vec<Line> {
+    let masks = [f64::from_bits(1 << 63), f64::from_bits(!(1 << 63))];
+    let all: Vec<f64> = constants.iter().chain(&masks).flat_map(|c| std::iter::repeat_n(*c, times)).collect();
+    let mut lines = vec![Line::default(); all.len().div_ceil(LANES)];
+    for (line, numbers) in lines.iter_mut().zip(all.chunks(LANES)) {
+        line.0[..numbers.len()].copy_from_slice(numbers);
+    }
+    lines
+}
+
+/// The bytes of the code.
+fn emit(program: &Program, width: Width) -> (Vec<u8>, Frame, Counts) {
+    let lowered = Lowered::new(program);
+    let frame = Frame::new(program, lowered.names, width);
+    let (assembler, counts) =
+        frame.around(&lowered, |assembler| Allocator::new(&lowered, frame, assembler).run());
+    let counts = Counts { instructions: assembler.count, bytes: assembler.bytes.len(), ..counts };
+    (assembler.bytes, frame, counts)
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,98 @@
+//! What the code of random programs touches, read back by a decoder.
+
+#[path = "../../tests/it/random.rs"]
+mod random;
+
+use std::collections::HashSet;
+
+use iced_x86::{Decoder, DecoderOptions, InstructionInfoFactory, Mnemonic, OpAccess, Register};
+
+use super::*;
+use random::{Random, Shape};
+
+/// Bytes that an instruction may touch, from the register's place on.
+struct Region {
+    base: Register,
+    bytes: i64,
+    written: bool,
+}
+
+/// Every operand in memory lies in what `run` has checked the length of, and only outputs and scratch are written.
+/// Slots of the scratch are written before they are read.
+fn check(program: &Program, width: Width) {
+    let (bytes, frame, counts) = emit(program, width);
+    let region = |base, bytes: usize, written| Region { base, bytes: bytes as i64, written };
+    let vectors = |n: usize| n * size_of::<Lanes>();
+    // What AVX2 sees of a group begins at its first or its fifth lane: the last half is four lanes shorter.
+    let half = if width == Width::Avx2 { 32 } else { 0 };
+    let regions = [
+        region(Register::RDI, vectors(program.inputs).saturating_sub(half), false),
+        region(Register::RSI, 8 * program.uniforms, false),
+        region(Register::RDX, vectors(program.outputs.len()).saturating_sub(half), true),
+        region(Register::RCX, frame.scratch_bytes(counts.slots), true),
+        region(Register::R8, (program.constants.len() + 2) * frame.constant_bytes() as usize, false),
+    ];
+    let mut ahead = [0; 5];
+    let mut factory = InstructionInfoFactory::new();
+    let mut entered = 0;
+    let mut known = HashSet::new();
+    let mut touched = 0;
+    for i in &mut Decoder::with_ip(64, &bytes, 0, DecoderOptions::NONE) {
+        assert!(!i.is_invalid());
+        // The entry moves every base ahead.
+        if entered < 5 {
+            assert_eq!((i.mnemonic(), i.op0_register()), (Mnemonic::Add, regions[entered].base));
+            ahead[entered] = i.immediate32to64();
+            entered += 1;
+            continue;
+        }
+        for memory in factory.info(&i).used_memory() {
+            let stack =
+                matches!(i.mnemonic(), Mnemonic::Push | Mnemonic::Pop | Mnemonic::Call | Mnemonic::Ret);
+            if stack {
+                assert_eq!(memory.base(), Register::RSP);
+                continue;
+            }
+            let (k, region) =
+                regions.iter().enumerate().find(|(_, r)| r.base == memory.base()).expect("a base of ours");
+            let from = memory.displacement() as i64 + ahead[k];
+            let to = from + memory.memory_size().size() as i64;
+            assert!(0 <= from && to <= region.bytes, "{i} touches {from}..{to} of {}", region.bytes);
+            assert_eq!(memory.index(), Register::None);
+            let written = memory.access() == OpAccess::Write;
+            assert!(region.written || !written, "{i} writes to what it may only read");
+            let scratch = matches!(region.base, Register::RCX | Register::RDX);
+            if written {
+                known.insert((k, from));
+            } else if scratch && i.mnemonic() != Mnemonic::Lea {
+                assert!(known.contains(&(k, from)), "{i} reads what nobody has written");
+            }
+            touched += 1;
+        }
+    }
+    let outputs = (0..program.outputs.len()).all(|j| known.contains(&(2, 64 * j as i64)));
+    assert!(outputs, "every output is written");
+    assert!(touched >= program.outputs.len());
+}
+
+#[test]
+fn code_touches_only_what_it_is_given() {
+    let mut random = Random(1);
+    for instructions in [0, 1, 2, 5, 20, 100, 400, 3000] {
+        for (near, calls) in [(3, 0), (30, 0), (3000, 0), (300, 20)] {
+            for width in Width::ALL {
+                let shape = Shape {
+                    inputs: 1 + random.below(400),
+                    uniforms: random.below(400),
+                    constants: random.below(400),
+                    instructions,
+                    outputs: random.below(100),
+                    near,
+                    calls,
+                    wild: true,
+                };
+                check(&random::program(&mut random, shape), width);
+            }
+        }
+    }
+}

@@ -1,0 +1,208 @@
+//! What code must not do, and what it refuses.
+
+use hardpoint_code::{Code, Scratch, Unsupported, Width};
+use hardpoint_tape::{Call, Instruction, LANES, Operand, Program};
+
+use crate::plain;
+use crate::random::{self, Random, Shape};
+
+fn two_inputs_one_uniform_two_outputs() -> Program {
+    Program {
+        inputs: 2,
+        uniforms: 1,
+        instructions: vec![Instruction::MulAdd(Operand::Input(0), Operand::Input(1), Operand::Uniform(0))],
+        outputs: vec![Operand::Value(0), Operand::Input(0)],
+        ..Program::default()
+    }
+}
+
+/// What `run` says to these numbers of inputs, uniforms and outputs; nothing if it runs.
+fn said(inputs: usize, uniforms: usize, outputs: usize) -> Option<String> {
+    let code = Code::new(&two_inputs_one_uniform_two_outputs()).expect("machine code is here");
+    let run = || {
+        let mut outputs = vec![[0.0; LANES]; outputs];
+        code.run(&mut Scratch::default(), &vec![[0.0; LANES]; inputs], &vec![0.0; uniforms], &mut outputs);
+    };
+    let caught = std::panic::catch_unwind(run).err()?;
+    Some(caught.downcast_ref::<String>().expect("a message").lines().next().unwrap().to_string())
+}
+
+fn is_here() -> bool {
+    Width::ALL.into_iter().any(Width::is_here)
+}
+
+#[test]
+fn arrays_of_other_lengths_are_refused() {
+    if !is_here() {
+        return;
+    }
+    assert_eq!([said(0, 1, 0), said(2, 1, 2), said(6, 1, 6)], [None, None, None]);
+    for (inputs, uniforms, outputs, about) in [
+        (2, 0, 2, "uniforms"),
+        (2, 2, 2, "uniforms"),
+        (0, 0, 0, "uniforms"),
+        (1, 1, 2, "inputs"),
+        (3, 1, 2, "inputs"),
+        (2, 1, 4, "inputs"),
+        (2, 1, 0, "inputs"),
+        (2, 1, 1, "outputs"),
+        (4, 1, 3, "outputs"),
+    ] {
+        let said = said(inputs, uniforms, outputs);
+        assert!(
+            said.as_ref().is_some_and(|s| s.contains(about)),
+            "{inputs}, {uniforms}, {outputs}: {said:?}"
+        );
+    }
+}
+
+#[test]
+fn operands_that_do_not_exist_are_refused() {
+    let Some(width) = Width::ALL.into_iter().find(|w| w.is_here()) else { return };
+    let one = |o| Instruction::Neg(o);
+    let good = two_inputs_one_uniform_two_outputs();
+    for wrong in [
+        // Its own result, and a later one.
+        one(Operand::Value(1)),
+        one(Operand::Value(7)),
+        one(Operand::Input(2)),
+        one(Operand::Uniform(1)),
+        one(Operand::Constant(0)),
+        Instruction::MulAdd(Operand::Value(0), Operand::Value(0), Operand::Value(1)),
+        Instruction::Larger(Operand::Value(0), Operand::Input(u32::MAX)),
+        Instruction::Call(Call::Pow, Operand::Value(0), Operand::Value(1)),
+    ] {
+        let mut program = good.clone();
+        program.instructions.push(wrong);
+        let caught = std::panic::catch_unwind(|| Code::with(&program, width)).expect_err("it is refused");
+        let said = caught.downcast_ref::<String>().expect("a message");
+        assert!(said.starts_with("instruction 1 reads "), "{said}");
+    }
+    let mut program = good.clone();
+    program.outputs.push(Operand::Value(1));
+    let caught = std::panic::catch_unwind(|| Code::with(&program, width)).expect_err("it is refused");
+    assert!(caught.downcast_ref::<String>().expect("a message").starts_with("output 2 reads "));
+
+    // What is ignored need not exist.
+    let mut program = good;
+    program.instructions.push(Instruction::Call(Call::Tan, Operand::Value(0), Operand::Value(9)));
+    assert!(Code::with(&program, width).is_ok());
+}
+
+#[test]
+fn programs_too_large_for_offsets_are_refused_in_words() {
+    let Some(width) = Width::ALL.into_iter().find(|w| w.is_here()) else { return };
+    let program = Program { inputs: usize::MAX, ..Program::default() };
+    let refused = Code::with(&program, width).expect_err("it is refused");
+    assert_eq!(refused, Unsupported::Size { what: "inputs", count: usize::MAX });
+    assert_eq!(
+        refused.to_string(),
+        "the program has 18446744073709551615 inputs, more than machine code is made for (4194304)"
+    );
+}
+
+#[test]
+fn every_reason_is_a_sentence() {
+    for (reason, text) in [
+        (Unsupported::Target, "machine code is made for x86-64 on Unix systems only"),
+        (Unsupported::Cpu, "the CPU has neither AVX2 with fused multiplication nor AVX-512"),
+        (Unsupported::Width(Width::Avx512), "the CPU has no AVX-512"),
+    ] {
+        assert_eq!(reason.to_string(), text);
+    }
+    let text = Unsupported::Memory { error: 13 }.to_string();
+    assert!(text.starts_with("the system does not let memory be made executable ("), "{text}");
+}
+
+/// Where there is no code, there is a reason, and it is the right one.
+#[test]
+fn code_is_made_where_it_can_be() {
+    let program = two_inputs_one_uniform_two_outputs();
+    let made = Code::new(&program).map(|c| c.width());
+    let target = cfg!(all(target_arch = "x86_64", unix));
+    match Width::ALL.into_iter().rev().find(|w| w.is_here()) {
+        Some(widest) => assert_eq!(made, Ok(widest)),
+        None => assert_eq!(made, Err(if target { Unsupported::Cpu } else { Unsupported::Target })),
+    }
+    for width in Width::ALL.into_iter().filter(|w| !w.is_here()) {
+        let reason = if target { Unsupported::Width(width) } else { Unsupported::Target };
+        assert_eq!(Code::with(&program, width).err(), Some(reason));
+    }
+}
+
+#[test]
+fn nothing_beside_the_outputs_is_written_wherever_they_begin() {
+    let mut random = Random(20);
+    for turn in 0..60 {
+        let shape = Shape {
+            inputs: 1 + random.below(5),
+            uniforms: random.below(5),
+            constants: random.below(5),
+            instructions: [5, 100, 600][turn % 3],
+            outputs: 1 + random.below(9),
+            near: 200,
+            calls: [0, 30][turn % 2],
+            wild: false,
+        };
+        let program = random::program(&mut random, shape);
+        let groups = 1 + random.below(3);
+        let uniforms: Vec<f64> = (0..program.uniforms).map(|_| random.tame()).collect();
+        // Groups of lanes need not begin where vectors would: eight places, by as many scalars.
+        let shift = turn % LANES;
+        let inputs: Vec<f64> = (0..shift + LANES * groups * program.inputs).map(|_| random.tame()).collect();
+        let inputs = inputs[shift..].as_chunks().0;
+        let expected = plain::evaluate(&program, groups, inputs, &uniforms);
+        for width in Width::ALL.into_iter().filter(|w| w.is_here()) {
+            const MARK: f64 = 987.654;
+            const MARGIN: usize = 100;
+            let mut all = vec![MARK; 2 * MARGIN + shift + LANES * expected.len()];
+            let inside = MARGIN + shift..MARGIN + shift + LANES * expected.len();
+            let code = Code::with(&program, width).expect("the width is here");
+            let outputs = all[inside.clone()].as_chunks_mut().0;
+            code.run(&mut Scratch::default(), inputs, &uniforms, outputs);
+            let same = |(y, e): (&f64, &f64)| y.to_bits() == e.to_bits() || y.is_nan() && e.is_nan();
+            assert!(all[inside.clone()].iter().zip(expected.as_flattened()).all(same), "{width}");
+            assert!(all[..inside.start].iter().chain(&all[inside.end..]).all(|x| *x == MARK), "{width}");
+        }
+    }
+}
+
+/// How many bytes can be executed that are of no file, which Linux says.
+#[cfg(target_os = "linux")]
+fn executable_bytes() -> usize {
+    let maps = std::fs::read_to_string("/proc/self/maps").expect("Linux has it");
+    let of_no_file = maps.lines().filter(|l| l.contains("r-xp 00000000 00:00 0") && !l.contains('['));
+    let size = |line: &str| {
+        let (from, to) = line.split_once(' ')?.0.split_once('-')?;
+        Some(usize::from_str_radix(to, 16).ok()? - usize::from_str_radix(from, 16).ok()?)
+    };
+    of_no_file.map(|l| size(l).expect("two addresses")).sum()
+}
+
+#[test]
+#[cfg(target_os = "linux")]
+fn dropped_code_gives_its_pages_back() {
+    let Some(width) = Width::ALL.into_iter().find(|w| w.is_here()) else { return };
+    let program = two_inputs_one_uniform_two_outputs();
+    let before = executable_bytes();
+    for _ in 0..5000 {
+        let again = Code::with(&program, width).expect("the width is here");
+        let mut outputs = [[0.0; LANES]; 2];
+        again.run(&mut Scratch::default(), &[[3.0; LANES], [2.0; LANES]], &[1.0], &mut outputs);
+        assert_eq!(outputs, [[7.0; LANES], [3.0; LANES]]);
+    }
+    // 5000 pages are 20 MB; the code of other tests at the same time is a few programs of 0.2 MB at the most.
+    let after = executable_bytes();
+    assert!(after < before + (8 << 20), "{before} bytes before, {after} after");
+}
+
+/// Pages are never writable and executable at once.
+#[test]
+#[cfg(target_os = "linux")]
+fn no_page_is_writable_and_executable() {
+    let Some(width) = Width::ALL.into_iter().find(|w| w.is_here()) else { return };
+    let code = Code::with(&two_inputs_one_uniform_two_outputs(), width).expect("the width is here");
+    let maps = std::fs::read_to_string("/proc/self/maps").expect("Linux has it");
+    assert!(executable_bytes() >= code.counts().bytes, "the code is among them:\n{maps}");
+    assert!(maps.lines().all(|l| !l.contains("wx")), "{maps}");
+}

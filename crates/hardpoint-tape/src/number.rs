@@ -1,0 +1,319 @@
+//! The recording scalar: a number that remembers how it came about.
+
+use std::cell::RefCell;
+use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
+use std::sync::atomic::{AtomicU32, Ordering};
+
+use crate::program::Call;
+
+/// What was computed, step by step, and which of it is wanted.
+///
+/// Made by [`record`]; [`Recording::program`](Recording::program) turns it into a program.
+#[derive(Clone, Debug, Default)]
+pub struct Recording {
+    pub(crate) steps: Vec<Step>,
+    pub(crate) inputs: u32,
+    pub(crate) uniforms: u32,
+    pub(crate) outputs: Vec<u32>,
+}
+
+/// One step of a recording; operands are the numbers of earlier steps.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Step {
+    Constant(f64),
+    Input(u32),
+    Uniform(u32),
+    Add(u32, u32),
+    Sub(u32, u32),
+    Mul(u32, u32),
+    Div(u32, u32),
+    MulAdd(u32, u32, u32),
+    Neg(u32),
+    Abs(u32),
+    Sqrt(u32),
+    Round(u32),
+    Larger(u32, u32),
+    Call(Call, u32, u32),
+}
+
+/// What the thread records at this moment; session 0 is none.
+struct Session {
+    id: u32,
+    recording: Recording,
+}
+
+thread_local! {
+    static SESSION: RefCell<Session> = const {
+        RefCell::new(Session {
+            id: 0,
+            recording: Recording { steps: Vec::new(), inputs: 0, uniforms: 0, outputs: Vec::new() },
+        })
+    };
+}
+
+/// The next session's number: one count for all threads, so that a number that was sent to another thread is known for a stranger.
+static NEXT: AtomicU32 = AtomicU32::new(1);
+
+/// Records what `f` does with [`Number`]s, on this thread; what it returns are the outputs, in this order.
+///
+/// # Panics
+///
+/// If a recording is under way on this thread, or if an output is not a number of this recording. A panic of `f` passes through
+/// and ends the recording.
+pub fn record<O: IntoIterator<Item = Number>>(f: impl FnOnce() -> O) -> Recording {
+    /// Ends the session, also where `f` panics.
+    struct Running;
+    impl Drop for Running {
+        fn drop(&mut self) {
+            SESSION.with_borrow_mut(|s| *s = Session { id: 0, recording: Recording::default() });
+        }
+    }
+    SESSION.with_borrow_mut(|s| {
+        assert!(s.id == 0, "a recording is under way on this thread: recordings do not nest");
+        // Zero is never given out, also after four thousand million recordings.
+        s.id =
+            std::iter::repeat_with(|| NEXT.fetch_add(1, Ordering::Relaxed)).find(|id| *id != 0).unwrap_or(1);
+    });
+    let running = Running;
+    let outputs = f();
+    let mut recording = Recording::default();
+    for number in outputs {
+        recording.outputs.push(SESSION.with_borrow(|s| s.place(number)));
+    }
+    SESSION.with_borrow_mut(|s| {
+        recording.steps = std::mem::take(&mut s.recording.steps);
+        recording.inputs = s.recording.inputs;
+        recording.uniforms = s.recording.uniforms;
+    });
+    drop(running);
+    recording
+}
+
+impl Session {
+    /// Where `number` stands in this session.
+    #[inline(always)]
+    fn place(&self, number: Number) -> u32 {
+        if number.session != self.id {
+            stranger(self.id);
+        }
+        number.id
+    }
+
+    #[inline(always)]
+    fn push(&mut self, step: Step, value: f64) -> Number {
+        let id = self.recording.steps.len() as u32;
+        self.recording.steps.push(step);
+        Number { value, id, session: self.id }
+    }
+}
+
+#[cold]
+#[inline(never)]
+fn stranger(session: u32) -> ! {
+    if session == 0 {
+        panic!("a recorded number was used outside of a recording: nothing records it");
+    }
+    panic!("a number of another recording was used: make it anew, as an input or a constant");
+}
+
+#[inline(always)]
+fn leaf(step: impl FnOnce(&mut Recording) -> Step, value: f64) -> Number {
+    SESSION.with_borrow_mut(|s| {
+        assert!(s.id != 0, "a number was made outside of a recording: nothing records it");
+        let step = step(&mut s.recording);
+        s.push(step, value)
+    })
+}
+
+/// A scalar that records what is done with it.
+///
+/// It has a value, that of the run that is recorded, by which whoever records can decide what to compute: which pivot, which of two
+/// formulas. Such a decision is not recorded, and there are no comparisons that would hide one: who decides asks for
+/// [`value`](Number::value), and makes what it was decided by an output, to be tested after every run.
+///
+/// Numbers belong to the [`record`] that they were made in. Elsewhere every operation with them panics.
+#[derive(Clone, Copy, Debug)]
+pub struct Number {
+    value: f64,
+    id: u32,
+    session: u32,
+}
+
+impl Number {
+    /// A number that is the same in every run.
+    ///
+    /// # Panics
+    ///
+    /// Outside of a recording, as all that makes numbers.
+    #[inline]
+    pub fn constant(x: f64) -> Self {
+        leaf(|_| Step::Constant(x), x)
+    }
+
+    /// The next input: a number that is given lane by lane, and is `x` in the recorded run.
+    #[inline]
+    pub fn input(x: f64) -> Self {
+        leaf(
+            |r| {
+                r.inputs += 1;
+                Step::Input(r.inputs - 1)
+            },
+            x,
+        )
+    }
+
+    /// The next uniform: a number that is the same in all lanes of a run, and is `x` in the recorded one.
+    #[inline]
+    pub fn uniform(x: f64) -> Self {
+        leaf(
+            |r| {
+                r.uniforms += 1;
+                Step::Uniform(r.uniforms - 1)
+            },
+            x,
+        )
+    }
+
+    /// The value in the run that is recorded, computed as `f64` does: every operation rounds.
+    #[inline(always)]
+    pub fn value(self) -> f64 {
+        self.value
+    }
+
+    /// What it is in every run, if it was made a [`constant`](Number::constant).
+    pub fn known(self) -> Option<f64> {
+        SESSION.with_borrow(|s| match s.recording.steps[s.place(self) as usize] {
+            Step::Constant(x) => Some(x),
+            _ => None,
+        })
+    }
+
+    /// `self * factor + addend`, which may be rounded once.
+    #[inline]
+    pub fn times_plus(self, factor: Self, addend: Self) -> Self {
+        SESSION.with_borrow_mut(|s| {
+            let step = Step::MulAdd(s.place(self), s.place(factor), s.place(addend));
+            s.push(step, self.value * factor.value + addend.value)
+        })
+    }
+
+    /// Square root.
+    #[inline]
+    pub fn sqrt(self) -> Self {
+        self.unary(Step::Sqrt, self.value.sqrt())
+    }
+
+    /// Magnitude.
+    #[inline]
+    pub fn abs(self) -> Self {
+        self.unary(Step::Abs, self.value.abs())
+    }
+
+    /// Nearest integer, ties to even.
+    #[inline]
+    pub fn round(self) -> Self {
+        self.unary(Step::Round, self.value.round_ties_even())
+    }
+
+    /// The larger of two; NaN where either is NaN.
+    #[inline]
+    pub fn larger(self, o: Self) -> Self {
+        self.binary(o, Step::Larger, larger(self.value, o.value))
+    }
+
+    /// The function of this number.
+    ///
+    /// # Panics
+    ///
+    /// If it is a function of two.
+    pub fn call(self, function: Call) -> Self {
+        assert!(!function.is_of_two(), "{function:?} is a function of two numbers");
+        self.unary(|a| Step::Call(function, a, a), function.of(self.value, self.value))
+    }
+
+    /// Angle of the point (x, self) from the x axis, rad in [-pi, pi].
+    pub fn atan2(self, x: Self) -> Self {
+        self.binary(x, |a, b| Step::Call(Call::Atan2, a, b), self.value.atan2(x.value))
+    }
+
+    /// This number to a power.
+    pub fn powf(self, exponent: Self) -> Self {
+        self.binary(exponent, |a, b| Step::Call(Call::Pow, a, b), self.value.powf(exponent.value))
+    }
+
+    #[inline(always)]
+    fn unary(self, step: impl FnOnce(u32) -> Step, value: f64) -> Self {
+        SESSION.with_borrow_mut(|s| {
+            let step = step(s.place(self));
+            s.push(step, value)
+        })
+    }
+
+    #[inline(always)]
+    fn binary(self, o: Self, step: impl FnOnce(u32, u32) -> Step, value: f64) -> Self {
+        SESSION.with_borrow_mut(|s| {
+            let step = step(s.place(self), s.place(o));
+            s.push(step, value)
+        })
+    }
+}
+
+/// The larger of two; NaN where either is NaN.
+#[inline(always)]
+pub(crate) fn larger(a: f64, b: f64) -> f64 {
+    if b <= a || a.is_nan() { a } else { b }
+}
+
+impl Add for Number {
+    type Output = Self;
+    #[inline]
+    fn add(self, o: Self) -> Self {
+        self.binary(o, Step::Add, self.value + o.value)
+    }
+}
+
+impl Sub for Number {
+    type Output = Self;
+    #[inline]
+    fn sub(self, o: Self) -> Self {
+        self.binary(o, Step::Sub, self.value - o.value)
+    }
+}
+
+impl Mul for Number {
+    type Output = Self;
+    #[inline]
+    fn mul(self, o: Self) -> Self {
+        self.binary(o, Step::Mul, self.value * o.value)
+    }
+}
+
+impl Div for Number {
+    type Output = Self;
+    #[inline]
+    fn div(self, o: Self) -> Self {
+        self.binary(o, Step::Div, self.value / o.value)
+    }
+}
+
+impl Neg for Number {
+    type Output = Self;
+    #[inline]
+    fn neg(self) -> Self {
+        self.unary(Step::Neg, -self.value)
+    }
+}
+
+impl AddAssign for Number {
+    #[inline]
+    fn add_assign(&mut self, o: Self) {
+        *self = *self + o;
+    }
+}
+
+impl SubAssign for Number {
+    #[inline]
+    fn sub_assign(&mut self, o: Self) {
+        *self = *self - o;
+    }
+}

@@ -1,0 +1,263 @@
+//! A straight-line program: what is left of a recording, in the order in which it is computed.
+//!
+//! Every number is a vector of [`LANES`] scalars side by side; constants and uniforms are the same in all lanes.
+
+use fearless_simd::{Level, SimdBase, SimdFloat, dispatch, f64x8};
+
+use crate::number::larger;
+
+/// How many scalars sit side by side.
+pub const LANES: usize = 8;
+
+/// The scalars of one number, lane by lane.
+pub type Lanes = [f64; LANES];
+
+/// Where an instruction finds a number.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum Operand {
+    /// The result of an earlier instruction.
+    Value(u32),
+    /// An input, lane by lane.
+    Input(u32),
+    /// A number that is the same in all lanes, given with every run.
+    Uniform(u32),
+    /// A number of the program itself, by its place in [`Program::constants`].
+    Constant(u32),
+}
+
+/// A function that is not arithmetic: the standard library evaluates it lane by lane.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum Call {
+    /// Tangent.
+    Tan,
+    /// Arc sine.
+    Asin,
+    /// Arc cosine.
+    Acos,
+    /// Arc tangent.
+    Atan,
+    /// Hyperbolic sine.
+    Sinh,
+    /// Hyperbolic cosine.
+    Cosh,
+    /// Hyperbolic tangent.
+    Tanh,
+    /// Exponential function.
+    Exp,
+    /// Natural logarithm.
+    Ln,
+    /// Of two: `a.atan2(b)`, the angle of the point (b, a).
+    Atan2,
+    /// Of two: `a.powf(b)`.
+    Pow,
+}
+
+impl Call {
+    /// The function of one scalar, or of two; `b` is ignored by functions of one.
+    pub fn of(self, a: f64, b: f64) -> f64 {
+        match self {
+            Self::Tan => a.tan(),
+            Self::Asin => a.asin(),
+            Self::Acos => a.acos(),
+            Self::Atan => a.atan(),
+            Self::Sinh => a.sinh(),
+            Self::Cosh => a.cosh(),
+            Self::Tanh => a.tanh(),
+            Self::Exp => a.exp(),
+            Self::Ln => a.ln(),
+            Self::Atan2 => a.atan2(b),
+            Self::Pow => a.powf(b),
+        }
+    }
+
+    /// Whether it is a function of two numbers.
+    pub fn is_of_two(self) -> bool {
+        matches!(self, Self::Atan2 | Self::Pow)
+    }
+}
+
+/// One instruction; its result is the value of its own number.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Instruction {
+    /// `a + b`.
+    Add(Operand, Operand),
+    /// `a - b`.
+    Sub(Operand, Operand),
+    /// `a b`.
+    Mul(Operand, Operand),
+    /// `a / b`.
+    Div(Operand, Operand),
+    /// `a b + c`, rounded once.
+    MulAdd(Operand, Operand, Operand),
+    /// `a b - c`, rounded once.
+    MulSub(Operand, Operand, Operand),
+    /// `c - a b`, rounded once.
+    NegMulAdd(Operand, Operand, Operand),
+    /// `-(a b) - c`, rounded once.
+    NegMulSub(Operand, Operand, Operand),
+    /// `-a`.
+    Neg(Operand),
+    /// The magnitude of `a`.
+    Abs(Operand),
+    /// The square root of `a`.
+    Sqrt(Operand),
+    /// The nearest integer, ties to even.
+    Round(Operand),
+    /// The larger of two; NaN where either is NaN.
+    Larger(Operand, Operand),
+    /// The second operand is ignored by functions of one number.
+    Call(Call, Operand, Operand),
+}
+
+/// A straight-line program.
+///
+/// Instruction `k` computes [`Operand::Value`]`(k)` and reads values below `k` only.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Program {
+    /// How many inputs a run is given for each group of [`LANES`].
+    pub inputs: usize,
+    /// How many uniforms a run is given.
+    pub uniforms: usize,
+    /// The numbers of the program itself.
+    pub constants: Vec<f64>,
+    /// What is computed, in this order.
+    pub instructions: Vec<Instruction>,
+    /// What is given back, in this order.
+    pub outputs: Vec<Operand>,
+}
+
+impl Instruction {
+    /// The operands that it reads, in their order.
+    pub fn operands(self) -> impl Iterator<Item = Operand> {
+        use Instruction::*;
+        let read = match self {
+            Neg(a) | Abs(a) | Sqrt(a) | Round(a) => [Some(a), None, None],
+            Call(function, a, b) => [Some(a), function.is_of_two().then_some(b), None],
+            Add(a, b) | Sub(a, b) | Mul(a, b) | Div(a, b) | Larger(a, b) => [Some(a), Some(b), None],
+            MulAdd(a, b, c) | MulSub(a, b, c) | NegMulAdd(a, b, c) | NegMulSub(a, b, c) => {
+                [Some(a), Some(b), Some(c)]
+            }
+        };
+        read.into_iter().flatten()
+    }
+
+    /// The same instruction of other operands.
+    pub fn map(self, mut f: impl FnMut(Operand) -> Operand) -> Self {
+        use Instruction::*;
+        match self {
+            Add(a, b) => Add(f(a), f(b)),
+            Sub(a, b) => Sub(f(a), f(b)),
+            Mul(a, b) => Mul(f(a), f(b)),
+            Div(a, b) => Div(f(a), f(b)),
+            MulAdd(a, b, c) => MulAdd(f(a), f(b), f(c)),
+            MulSub(a, b, c) => MulSub(f(a), f(b), f(c)),
+            NegMulAdd(a, b, c) => NegMulAdd(f(a), f(b), f(c)),
+            NegMulSub(a, b, c) => NegMulSub(f(a), f(b), f(c)),
+            Neg(a) => Neg(f(a)),
+            Abs(a) => Abs(f(a)),
+            Sqrt(a) => Sqrt(f(a)),
+            Round(a) => Round(f(a)),
+            Larger(a, b) => Larger(f(a), f(b)),
+            Call(function, a, b) if function.is_of_two() => Call(function, f(a), f(b)),
+            Call(function, a, _) => {
+                let a = f(a);
+                Call(function, a, a)
+            }
+        }
+    }
+
+    /// Its result for scalar operands; `fused` says whether products are fused with sums ([`fuses`]).
+    pub fn of(self, mut x: impl FnMut(Operand) -> f64, fused: bool) -> f64 {
+        use Instruction::*;
+        let product_plus = |a: f64, b: f64, c: f64| if fused { a.mul_add(b, c) } else { a * b + c };
+        match self {
+            Add(a, b) => x(a) + x(b),
+            Sub(a, b) => x(a) - x(b),
+            Mul(a, b) => x(a) * x(b),
+            Div(a, b) => x(a) / x(b),
+            MulAdd(a, b, c) => product_plus(x(a), x(b), x(c)),
+            MulSub(a, b, c) => product_plus(x(a), x(b), -x(c)),
+            NegMulAdd(a, b, c) => product_plus(-x(a), x(b), x(c)),
+            NegMulSub(a, b, c) => product_plus(-x(a), x(b), -x(c)),
+            Neg(a) => -x(a),
+            Abs(a) => x(a).abs(),
+            Sqrt(a) => x(a).sqrt(),
+            Round(a) => x(a).round_ties_even(),
+            Larger(a, b) => larger(x(a), x(b)),
+            Call(function, a, b) if function.is_of_two() => function.of(x(a), x(b)),
+            Call(function, a, _) => {
+                let a = x(a);
+                function.of(a, a)
+            }
+        }
+    }
+}
+
+impl Program {
+    /// Runs it once for scalars, instruction by instruction; `values` is working memory, kept by the caller.
+    ///
+    /// What is computed once for many runs ([`Program::hoisted`]) is computed by this. It agrees with the lanes of the
+    /// [`Interpreter`](crate::Interpreter) to the bit.
+    ///
+    /// # Panics
+    ///
+    /// If `inputs`, `uniforms` or `outputs` are fewer than the program has.
+    pub fn evaluate(&self, inputs: &[f64], uniforms: &[f64], values: &mut Vec<f64>, outputs: &mut [f64]) {
+        let fused = fuses();
+        values.clear();
+        values.reserve(self.instructions.len());
+        let find = |operand: Operand, values: &[f64]| match operand {
+            Operand::Value(k) => values[k as usize],
+            Operand::Input(k) => inputs[k as usize],
+            Operand::Uniform(k) => uniforms[k as usize],
+            Operand::Constant(k) => self.constants[k as usize],
+        };
+        for instruction in &self.instructions {
+            let value = instruction.of(|operand| find(operand, values), fused);
+            values.push(value);
+        }
+        for (j, operand) in self.outputs.iter().enumerate() {
+            outputs[j] = find(*operand, values);
+        }
+    }
+
+    /// How many values are live at most at a time: computed, and still to be read. What is only given back is written at once, and is
+    /// not counted.
+    pub fn live(&self) -> usize {
+        let mut last = vec![0; self.instructions.len()];
+        for (k, instruction) in self.instructions.iter().enumerate() {
+            for operand in instruction.operands() {
+                if let Operand::Value(v) = operand {
+                    last[v as usize] = k;
+                }
+            }
+        }
+        let (mut now, mut most) = (0, 0);
+        for (k, instruction) in self.instructions.iter().enumerate() {
+            for operand in instruction.operands() {
+                if let Operand::Value(v) = operand
+                    && last[v as usize] == k
+                {
+                    // Once, also where an instruction reads the same value twice.
+                    last[v as usize] = usize::MAX;
+                    now -= 1;
+                }
+            }
+            if last[k] > k {
+                now += 1;
+                most = most.max(now);
+            }
+        }
+        most
+    }
+}
+
+/// Whether lanes of this CPU fuse a product with a sum, rounding once. Where they cannot, both are rounded.
+pub fn fuses() -> bool {
+    // (1 + h)^2 - (1 + 2 h) is h^2, or 0 where the square is rounded first.
+    const H: f64 = 1.0 / (1u64 << 30) as f64;
+    dispatch!(Level::new(), simd => {
+        let lanes = |x: f64| f64x8::splat(simd, x);
+        std::hint::black_box(lanes(1.0 + H)).mul_sub(lanes(1.0 + H), lanes(1.0 + 2.0 * H)).as_slice()[0] != 0.0
+    })
+}

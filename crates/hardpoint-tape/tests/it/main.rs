@@ -1,0 +1,8 @@
+//! Programs against the plain arithmetic that they were recorded from.
+
+mod folding;
+mod random;
+mod real;
+mod recording;
+mod samples;
+mod stages;
