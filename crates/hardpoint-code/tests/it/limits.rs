@@ -37,16 +37,21 @@ fn arrays_of_other_lengths_are_refused() {
         return;
     }
     assert_eq!([said(0, 1, 0), said(2, 1, 2), said(6, 1, 6)], [None, None, None]);
+    const UNIFORMS: &str = "as many uniforms as the program has";
+    const INPUTS: &str = "as many groups of inputs as of outputs";
+    const OUTPUTS: &str = "whole groups of outputs";
     for (inputs, uniforms, outputs, about) in [
-        (2, 0, 2, "uniforms"),
-        (2, 2, 2, "uniforms"),
-        (0, 0, 0, "uniforms"),
-        (1, 1, 2, "inputs"),
-        (3, 1, 2, "inputs"),
-        (2, 1, 4, "inputs"),
-        (2, 1, 0, "inputs"),
-        (2, 1, 1, "outputs"),
-        (4, 1, 3, "outputs"),
+        (2, 0, 2, UNIFORMS),
+        (2, 2, 2, UNIFORMS),
+        (0, 0, 0, UNIFORMS),
+        (1, 1, 2, INPUTS),
+        (3, 1, 2, INPUTS),
+        (2, 1, 4, INPUTS),
+        (2, 1, 0, INPUTS),
+        (2, 1, 1, OUTPUTS),
+        (0, 1, 1, OUTPUTS),
+        (2, 1, 3, OUTPUTS),
+        (4, 1, 3, OUTPUTS),
     ] {
         let said = said(inputs, uniforms, outputs);
         assert!(

@@ -15,6 +15,13 @@ fn bits(numbers: &[f64]) -> Vec<Option<u64>> {
     numbers.iter().map(|x| (!x.is_nan()).then_some(x.to_bits())).collect()
 }
 
+/// Whether the first part gives every number once.
+fn gives_once(first: &Program) -> bool {
+    let mut outputs = first.outputs.clone();
+    outputs.sort_unstable();
+    outputs.windows(2).all(|pair| pair[0] != pair[1])
+}
+
 /// Whether some instruction reads nothing but these leaves.
 fn reads_only(program: &Program, early: impl Fn(Operand) -> bool) -> bool {
     program.instructions.iter().any(|i| i.operands().all(&early))
@@ -29,6 +36,7 @@ fn hoisted_programs_give_the_bits_of_the_whole() {
         let (whole, _) = formula.record(&mut random).program(Options::default());
         let (first, rest) = whole.clone().hoisted();
         assert_eq!(first.inputs, 0);
+        assert!(gives_once(&first), "seed {seed}: {first:?}");
         assert_eq!((rest.inputs, rest.uniforms), (whole.inputs, whole.uniforms + first.outputs.len()));
         assert_eq!(first.instructions.len() + rest.instructions.len(), whole.instructions.len());
         assert!(
@@ -69,6 +77,7 @@ fn staged_programs_give_the_bits_of_the_whole() {
         );
         assert!(!reads_only(&rest, of_the_first), "seed {seed}");
         assert_eq!((rest.inputs, rest.uniforms), (whole.inputs + first.outputs.len(), whole.uniforms));
+        assert!(gives_once(&first), "seed {seed}: {first:?}");
         early += first.instructions.len();
         let [inputs, uniforms]: [Vec<f64>; 2] =
             [formula.inputs, formula.uniforms].map(|n| (0..n).map(|_| random.number()).collect());
