@@ -2,8 +2,8 @@
 
 use std::num::NonZero;
 use std::ops::ControlFlow;
-use std::sync::OnceLock;
 use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::{Arc, OnceLock};
 
 use fearless_simd::{Level, dispatch};
 
@@ -13,9 +13,11 @@ use crate::model::{BodyId, Effects, Field, GROUND, Geometry, Model, VariableId};
 use crate::motion::abreast::Abreast;
 use crate::motion::parts::Parts;
 use crate::motion::stepper::Stepper;
-use crate::motion::{BodyState, Effort, Motion, Stop, StopKind};
+use crate::motion::tape::{Besides, Programs};
+use crate::motion::{BodyState, Effort, Execution, Motion, Stop, StopKind};
 use crate::sensitivity::{
-    Admissibility, JointDefect, Sensing, SensingDesigns, Sensitivities, admissibility_at_design, along,
+    Admissibility, Derivatives, JointDefect, Sensing, SensingDesigns, Sensitivities, admissibility_at_design,
+    along,
 };
 use crate::sink::{Sink, Store};
 use crate::space::{LANES, Real, lanes};
@@ -60,7 +62,12 @@ pub struct Analysis<'m> {
     pub(crate) measures: bool,
     /// Per variable, the joints that it opens in the nominal design: worked out when first asked for.
     opens: OnceLock<Vec<Vec<JointDefect>>>,
+    /// Steps as straight-line programs, recorded when they pay.
+    programs: Arc<Programs>,
 }
+
+/// Designs side by side are solved by the kernel up to this output time; then it is known how many passes they need.
+const TAPE_FROM: usize = 4;
 
 /// One design, ready to be analysed.
 pub(crate) struct Design {
@@ -122,12 +129,25 @@ impl<'m> Analysis<'m> {
     /// As [`Analysis::new`].
     pub fn with(model: &'m Model, formulation: Formulation) -> Result<Self, TopologyFault> {
         let topology = Topology::of(model, formulation)?;
-        Ok(Self { model, topology, effects: Effects::of(model), measures: true, opens: OnceLock::new() })
+        let programs = Arc::new(Programs::new(Execution::from_environment()));
+        Ok(Self {
+            model,
+            topology,
+            effects: Effects::of(model),
+            measures: true,
+            opens: OnceLock::new(),
+            programs,
+        })
     }
 
     /// The same analysis for callers that want the bodies only: [`Solution::measured`] stays empty.
     pub fn bodies_only(self) -> Self {
         Self { measures: false, ..self }
+    }
+
+    /// The same analysis with another way to solve its steps than `HARDPOINT_PATH` asks for.
+    pub fn executed(self, execution: Execution) -> Self {
+        Self { programs: Arc::new(Programs::new(execution)), ..self }
     }
 
     /// The plan.
@@ -461,10 +481,13 @@ impl<'m> Analysis<'m> {
         });
         for (k, &t) in model.times.iter().enumerate() {
             if k == 0 { stepper.start(t) } else { stepper.advance(t) }.ok()?;
+            if (k == TAPE_FROM || stepper.tape_fails()) && sensing.is_none() {
+                stepper.use_tape(&self.programs, &wanted, designs.len() * (model.times.len() - k));
+            }
             witness.within(
                 #[inline(always)]
                 || {
-                    BodyState::each(&stepper.state, &wanted, |lane, body, s| {
+                    stepper.each_body(&wanted, |lane, body, s| {
                         if let Some(sink) = sinks.get_mut(lane) {
                             sink.state(k, body, &s);
                         }
@@ -521,9 +544,13 @@ impl<'a, T: Real> Walk<'a, T> {
         let (model, topology) = (analysis.model, &analysis.topology);
         let Design { geometry, laws, fields, .. } = design;
         let parts = Parts::same(model, topology, geometry, laws, witness);
+        // Measures need more of a step than the motion of the bodies, and what it changes by.
+        let besides = Derivatives { model, fields, wanted: wanted.clone() };
+        let programs =
+            (!analysis.measures).then(|| (&*analysis.programs, Box::new(besides) as Box<dyn Besides>));
         Self {
             one: Stepper::new(model, topology, Parts::same(model, topology, geometry, laws, 0.0), 0.0),
-            abreast: Abreast::new(model, topology, parts, witness),
+            abreast: Abreast::new(model, topology, parts, (programs, &wanted), witness),
             sensing: (!fields.is_empty())
                 .then(|| Sensing::new(model, topology, fields, wanted.clone(), witness)),
             wanted,
@@ -588,7 +615,7 @@ impl<'a, T: Real> Walk<'a, T> {
                 witness.within(
                     #[inline(always)]
                     || {
-                        BodyState::each(&all.state, &self.wanted, |lane, body, s| {
+                        all.each_body(&self.wanted, |lane, body, s| {
                             if lane < count {
                                 sink.state(k + lane, body, &s);
                             }

@@ -14,4 +14,5 @@ mod path;
 mod published;
 mod robustness;
 mod shapes;
+mod tape;
 mod wheels;

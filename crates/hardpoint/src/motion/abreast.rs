@@ -10,6 +10,7 @@ use crate::topology::{Source, Topology};
 
 use super::parts::Parts;
 use super::stepper::{Ahead, EVEN, LONGEST, MILD, MILD_CHANGE, RESTS, Stepper};
+use super::tape::{Besides, Programs};
 use super::walk::PART_OF_WAY;
 
 /// The first correction (rad, or sizes) must be within this: a forecast that fails by more is none.
@@ -32,14 +33,42 @@ pub(crate) struct Abreast<'m, T> {
     pause: usize,
     /// How often the other stepper had chosen other rows when this one took them over.
     selections: usize,
+    /// Where a tape may come from, once that pays.
+    programs: Option<(&'m Programs, Box<dyn Besides + 'm>)>,
+    /// Per body: whether its states are wanted.
+    wanted: Vec<bool>,
+    /// Groups of steps that the kernel has solved, and how many corrections any of them needed.
+    groups: usize,
+    corrections: usize,
 }
 
+/// A tape is asked for after so many groups of steps, when it is known how many corrections they need.
+const GROUPS: usize = 2;
+
 impl<'m, T: Real> Abreast<'m, T> {
-    pub fn new(model: &'m Model, topology: &Topology, parts: Parts<T>, witness: T) -> Self {
+    /// With tapes from `programs`, for what needs no more of a step than the states of the wanted bodies, and what stands beside them.
+    pub fn new(
+        model: &'m Model,
+        topology: &Topology,
+        parts: Parts<T>,
+        (programs, wanted): (Option<(&'m Programs, Box<dyn Besides + 'm>)>, &[bool]),
+        witness: T,
+    ) -> Self {
         // A point on a curve is followed step by step, lest it jump to another stretch of it.
         let suits = T::LANES == LANES && parts.curves.is_empty();
         let stepper = Stepper::new(model, topology, parts, witness);
-        Self { stepper, suits, wait: 0, pause: PAUSE[0], selections: 0 }
+        let wanted = wanted.to_vec();
+        Self {
+            stepper,
+            suits,
+            wait: 0,
+            pause: PAUSE[0],
+            selections: 0,
+            programs,
+            wanted,
+            groups: 0,
+            corrections: 1,
+        }
     }
 
     /// Moves on from where the other stepper stands to as many of the next output times as there are lanes; returns how many,
@@ -53,6 +82,7 @@ impl<'m, T: Real> Abreast<'m, T> {
             self.wait -= 1;
             return 0;
         }
+        self.choose_tape(one, next.len());
         let witness = self.stepper.state.witness;
         let done = witness.within(
             #[inline(always)]
@@ -65,6 +95,25 @@ impl<'m, T: Real> Abreast<'m, T> {
         self.wait = self.pause;
         self.pause = usize::min(2 * self.pause, PAUSE[1]);
         0
+    }
+
+    /// Asks for a tape when it is time, and for another or none where it does not fit.
+    fn choose_tape(&mut self, one: &Stepper<'m, f64>, left: usize) {
+        let all = &mut self.stepper;
+        if self.selections != one.selections {
+            (all.tape, self.programs) = (None, None);
+        }
+        let fails = all.tape_fails();
+        let Some((programs, besides)) = self.programs.as_ref().filter(|_| fails || self.groups == GROUPS)
+        else {
+            return;
+        };
+        let corrections = if fails { 2 } else { self.corrections };
+        let again = all.tape.take().is_none_or(|t| t.corrections() < corrections);
+        if again {
+            all.tape = programs.for_times(one, all, (&self.wanted, &**besides), (left, corrections));
+        }
+        self.groups += 1;
     }
 
     #[inline(always)]
@@ -89,8 +138,15 @@ impl<'m, T: Real> Abreast<'m, T> {
         let h = t - witness.like(one.time);
         all.foresee(one, t, h, times[last] - one.time);
         let before = all.state.iterations;
-        if all.state.solve(&all.topology, &all.parts, &all.drivers, FORESEEN).is_err() {
-            return false;
+        if !all.solve_by_tape(Some(one), FORESEEN) {
+            if all.tape.is_some() {
+                all.foresee(one, t, h, times[last] - one.time);
+            }
+            if all.state.solve(&all.topology, &all.parts, &all.drivers, FORESEEN).is_err() {
+                return false;
+            }
+            self.groups += 1;
+            self.corrections = usize::max(self.corrections, all.corrections());
         }
         let same_branch = all
             .state
@@ -104,7 +160,9 @@ impl<'m, T: Real> Abreast<'m, T> {
         if all.uncertain_turn().is_some() || !all.speeds_are_smooth(h) {
             return false;
         }
-        all.residuals = all.state.residuals(&all.topology, &all.parts, &all.drivers);
+        if !all.by_tape {
+            all.residuals = all.state.residuals(&all.topology, &all.parts, &all.drivers);
+        }
         if !(all.residuals.scaled <= super::stepper::LOCKED) {
             return false;
         }
@@ -262,6 +320,7 @@ impl Stepper<'_, f64> {
         self.time = times[last];
         self.fastest_driver = all.fastest_driver;
         self.effort.steps += last + 1;
+        self.effort.by_program += if all.by_tape { last + 1 } else { 0 };
         self.state.iterations += iterations * (last + 1);
         self.effort.iterations = self.state.iterations;
         self.effort.worst_residual = self.effort.worst_residual.max(all.residuals.largest);

@@ -6,13 +6,13 @@
 use crate::constraint::{EndRates, Ends, Row};
 use crate::joint::Freedom;
 use crate::model::{Contact, GROUND, Model};
-use crate::space::{Factors, LARGEST_DENSE, Pose, Quat, Real, Twist, Wrench};
+use crate::space::{Factors, LARGEST_DENSE, Pose, Quat, Real, Twist, Watched, Wrench};
 use crate::topology::{Block, Source, Step, Topology};
 
 use super::parts::Parts;
 
 /// A correction below this (rad, or sizes) leaves an error of its square, which is round-off.
-const QUADRATIC: f64 = 1e-8;
+pub(super) const QUADRATIC: f64 = 1e-8;
 /// A correction below this is round-off itself: nothing is applied.
 const ROUND_OFF: f64 = 1e-14;
 /// Newton from a good prediction needs 1 to 3 iterations; one that needs this many is lost.
@@ -66,8 +66,15 @@ pub(crate) struct State<T> {
     pub pivots: Vec<(f64, bool)>,
     /// Per block: its determinant, to be compared by [`Factors::ratio`].
     pub determinants: Vec<T>,
+    /// Per block: what is watched of its factors.
+    pub watched: Vec<Watched<T>>,
+    /// The largest first, second and later correction of any block, rad or sizes.
+    pub corrections: [T; CORRECTIONS],
     pub iterations: usize,
 }
+
+/// So many corrections are told apart.
+pub(super) const CORRECTIONS: usize = 3;
 
 /// By how much the constraints fail.
 #[derive(Clone, Copy, Debug, Default)]
@@ -129,6 +136,8 @@ impl<T: Real> State<T> {
             contacts: Vec::new(),
             pivots: vec![(1.0, true); topology.blocks.len()],
             determinants: vec![o; topology.blocks.len()],
+            watched: vec![Watched::zero(witness); topology.blocks.len()],
+            corrections: [o; CORRECTIONS],
             iterations: 0,
         }
     }
@@ -380,6 +389,7 @@ impl<T: Real> State<T> {
         let found = self.factors[b].factor();
         self.pivots[b] = (found.pivot_ratio, found.positive);
         self.determinants[b] = found.determinant;
+        self.watched[b] = found.watched;
     }
 
     /// Position, velocity and acceleration of all bodies for the drivers' values and their derivatives, from the prediction in
@@ -397,6 +407,7 @@ impl<T: Real> State<T> {
         witness.within(
             #[inline(always)]
             || {
+                self.corrections = [witness.zero(); CORRECTIONS];
                 for (c, coordinate) in topology.coordinates.iter().enumerate() {
                     if let Source::Driven(d) = coordinate.source {
                         [self.q[c], self.qd[c], self.qdd[c]] = drivers[d.0];
@@ -433,7 +444,7 @@ impl<T: Real> State<T> {
     ) -> Result<(), PositionFailure> {
         let links = topology.blocks[b].links.clone();
         let mut before = trust;
-        for _ in 0..MAX_ITERATIONS {
+        for pass in 0..MAX_ITERATIONS {
             self.place(topology, parts, links.clone());
             self.linearise(topology, parts, drivers, b);
             self.iterations += 1;
@@ -444,7 +455,10 @@ impl<T: Real> State<T> {
                 return Ok(());
             }
             self.factors[b].solve(&mut self.rhs);
-            let correction = self.correction(topology, b);
+            let corrections = self.correction(topology, b);
+            let known = &mut self.corrections[pass.min(CORRECTIONS - 1)];
+            *known = known.larger(corrections);
+            let correction = corrections.largest();
             if correction <= ROUND_OFF {
                 return Ok(());
             }
@@ -460,12 +474,12 @@ impl<T: Real> State<T> {
 
     /// Largest component of the correction in `rhs`, lengths in sizes of their loops.
     #[inline(always)]
-    fn correction(&self, topology: &Topology, b: usize) -> f64 {
+    fn correction(&self, topology: &Topology, b: usize) -> T {
         let mut most = self.witness.zero();
         for (&c, &d) in topology.blocks[b].unknowns.iter().zip(&self.rhs) {
             most = most.larger((d * d.like(topology.coordinates[c].per_unit)).abs());
         }
-        most.largest()
+        most
     }
 
     /// Adds the correction in `rhs` to the unknowns of block b.
@@ -606,6 +620,12 @@ impl<T: Real> State<T> {
 
     /// The largest residuals over all rows, left-out ones included.
     pub fn residuals(&self, topology: &Topology, parts: &Parts<T>, drivers: &[[T; 3]]) -> Residuals {
+        let [largest, scaled] = self.residuals_in_lanes(topology, parts, drivers);
+        Residuals { largest: largest.largest(), scaled: scaled.largest() }
+    }
+
+    /// The same lane by lane: m or rad, and sizes or rad.
+    pub fn residuals_in_lanes(&self, topology: &Topology, parts: &Parts<T>, drivers: &[[T; 3]]) -> [T; 2] {
         self.witness.within(
             #[inline(always)]
             || {
@@ -623,7 +643,7 @@ impl<T: Real> State<T> {
                     largest = largest.larger(residual);
                     scaled = scaled.larger(residual * zero.like(1.0 / place.unit));
                 }
-                Residuals { largest: largest.largest(), scaled: scaled.largest() }
+                [largest, scaled]
             },
         )
     }

@@ -14,12 +14,14 @@ pub(crate) mod parts;
 mod singularity;
 pub(crate) mod stepper;
 mod stop;
+pub(crate) mod tape;
 mod walk;
 
 pub use assembly::{Assembly, Closing, Gap, Moved};
 pub use jerk::BodyJerk;
 pub use margin::Margin;
 pub use stop::{Stop, StopKind};
+pub use tape::Execution;
 
 use crate::model::{BodyId, JointId, Model};
 use crate::space::{LANES, Mat3, Quat, Real, Vec3};
@@ -62,25 +64,31 @@ impl BodyState {
     #[inline(always)]
     pub(crate) fn each<T: Real>(state: &State<T>, wanted: &[bool], mut out: impl FnMut(usize, BodyId, Self)) {
         let mut table = [[0.0; 24]; LANES];
-        for (b, pose) in state.pose.iter().enumerate().skip(1) {
+        for b in 1..state.pose.len() {
             if !wanted[b] {
                 continue;
             }
-            let (v, a) = (state.v[b], state.a[b]);
-            let (r, [f, g, h]) = (pose.r, pose.rot.cols);
-            let u = v.at(r);
-            let n = a.at(r) + v.w.cross(u);
-            let (o, e) = (v.w, a.w);
-            let components = [
-                [r.x, r.y, r.z, f.x, f.y, f.z, g.x, g.y],
-                [g.z, h.x, h.y, h.z, u.x, u.y, u.z, o.x],
-                [o.y, o.z, n.x, n.y, n.z, e.x, e.y, e.z],
-            ];
+            let components = Self::components(state, b);
             turn_over(&components, &mut table);
             for (lane, x) in table[..T::LANES].iter().enumerate() {
                 out(lane, BodyId(b), Self::from_components(x));
             }
         }
+    }
+
+    /// Of body b: r, the columns of A, v, omega, a and alpha, one after the other.
+    #[inline(always)]
+    fn components<T: Real>(state: &State<T>, b: usize) -> [[T; 8]; 3] {
+        let (pose, v, a) = (&state.pose[b], state.v[b], state.a[b]);
+        let (r, [f, g, h]) = (pose.r, pose.rot.cols);
+        let u = v.at(r);
+        let n = a.at(r) + v.w.cross(u);
+        let (o, e) = (v.w, a.w);
+        [
+            [r.x, r.y, r.z, f.x, f.y, f.z, g.x, g.y],
+            [g.z, h.x, h.y, h.z, u.x, u.y, u.z, o.x],
+            [o.y, o.z, n.x, n.y, n.z, e.x, e.y, e.z],
+        ]
     }
 
     /// From r, the columns of A, v, omega, a and alpha, one after the other.
@@ -154,6 +162,8 @@ pub struct Effort {
     pub steps: usize,
     /// Steps in between that the predictor needed.
     pub substeps: usize,
+    /// Output steps that a straight-line program has solved in place of the kernel.
+    pub by_program: usize,
     /// Newton iterations.
     pub iterations: usize,
     /// Largest residual of any constraint row at an output step, redundant rows included; m or rad.

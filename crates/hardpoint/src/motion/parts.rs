@@ -3,7 +3,7 @@
 use crate::constraint::Row;
 use crate::law::Law;
 use crate::model::{BodyId, Curve, GROUND, Geometry, Model};
-use crate::space::{LANES, Pose, Real};
+use crate::space::{LANES, Mat3, Pose, Real, Vec3};
 use crate::topology::Topology;
 
 /// Marker poses per link and per closure, one design per lane.
@@ -124,6 +124,25 @@ impl<T: Real> Parts<T> {
             curves: curves(model, topology),
             laws: (0..model.drivers.len()).map(of_driver).collect(),
         }
+    }
+
+    /// The same geometry in other numbers, one after the other, always in the same order; without laws.
+    pub fn map<U: Real>(&self, witness: T, mut f: impl FnMut(T) -> U) -> Parts<U> {
+        let mut pose = |pose: Pose<T>| {
+            let mut vector = |v: Vec3<T>| Vec3::new(f(v.x), f(v.y), f(v.z));
+            Pose { rot: Mat3 { cols: pose.rot.cols.map(&mut vector) }, r: vector(pose.r) }
+        };
+        let mut poses = |poses: &Poses<T>| {
+            let count = match poses {
+                Poses::Same(list) => list.len(),
+                Poses::Each(list) => list.len(),
+            };
+            Poses::Each((0..count).map(|k| pose(poses.get(k, witness))).collect())
+        };
+        let (parent_marker, child_from_marker) = (poses(&self.parent_marker), poses(&self.child_from_marker));
+        let ends = [poses(&self.ends[0]), poses(&self.ends[1])];
+        let kept = self.kept.iter().map(|x| f(*x)).collect();
+        Parts { parent_marker, child_from_marker, ends, kept, curves: self.curves.clone(), laws: Vec::new() }
     }
 
     /// The laws of driver d: one per lane, or one for all.

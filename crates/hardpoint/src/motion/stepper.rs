@@ -4,18 +4,21 @@
 //! tell, for free, that no singular position is near. Everywhere else the path is followed in steps of its own
 //! ([`super::walk`]), however the output times are spaced.
 
+use hardpoint_tape::Lanes;
+
 use crate::joint::{Freedom, Quantity};
-use crate::model::{Contact, DriverId, Model};
+use crate::model::{BodyId, Contact, DriverId, Model};
 use crate::space::{FullPivot, LARGEST_DENSE, Quat, Real};
 use crate::topology::{Source, Topology};
 
 use super::assembly::Assembly;
 use super::forecast::Forecast;
-use super::kinematics::{PositionFailure, Residuals, State, factors_of};
+use super::kinematics::{PositionFailure, QUADRATIC, Residuals, State, factors_of};
 use super::parts::Parts;
 use super::singularity::{Prober, Surroundings};
+use super::tape::{Programs, Tape};
 use super::walk::{PART_OF_WAY, Path};
-use super::{Effort, Passed, Stop};
+use super::{BodyState, Effort, Passed, Stop};
 
 /// A first correction (rad, or sizes) up to this is accepted whatever the prediction's own length is.
 pub(super) const TRUST_FLOOR: f64 = 0.02;
@@ -104,6 +107,9 @@ pub(crate) struct Stepper<'m, T> {
     /// The bodies that are watched between output times, and where they were since the last one, in lane 0.
     pub watched: Vec<bool>,
     pub passed: Vec<Passed>,
+    /// What solves even steps instead of the kernel, and whether it has solved the last one: then the state has coordinates only.
+    pub(super) tape: Option<Tape>,
+    pub(super) by_tape: bool,
 }
 
 /// How fast a driver is at most over a stretch of time.
@@ -232,6 +238,8 @@ impl<'m, T: Real> Stepper<'m, T> {
             assembly: None,
             watched: Vec::new(),
             passed: Vec::new(),
+            tape: None,
+            by_tape: false,
             drivers: saved.drivers.clone(),
             saved,
         }
@@ -267,7 +275,11 @@ impl<'m, T: Real> Stepper<'m, T> {
     /// Moves on to the output time t.
     pub fn advance(&mut self, t: f64) -> Result<(), Box<Stop>> {
         self.passed.clear();
+        if self.selections != 0 {
+            self.tape = None;
+        }
         if !self.glide(t) {
+            self.by_tape = false;
             self.walk(Path::Laws, t)?;
         }
         self.count();
@@ -276,6 +288,7 @@ impl<'m, T: Real> Stepper<'m, T> {
 
     fn count(&mut self) {
         self.effort.steps += 1;
+        self.effort.by_program += usize::from(self.by_tape);
         self.effort.iterations = self.state.iterations;
         self.effort.worst_residual = self.effort.worst_residual.max(self.residuals.largest);
         for &(ratio, _) in &self.state.pivots {
@@ -306,12 +319,21 @@ impl<'m, T: Real> Stepper<'m, T> {
         self.fastest_driver = self.driver_speed();
         let moved = self.foresee_at(h);
         let trust = (TRUST * moved).max(TRUST_FLOOR);
-        if self.state.solve(&self.topology, &self.parts, &self.drivers, trust).is_err() {
-            return false;
-        }
         let selections = self.selections;
-        if !self.speeds_are_smooth(self.state.witness.like(h)) || self.examine_position().is_err() {
-            return false;
+        if self.solve_by_tape(None, trust) {
+            if !self.speeds_are_smooth(self.state.witness.like(h)) {
+                return false;
+            }
+        } else {
+            if self.tape.is_some() {
+                self.foresee_at(h);
+            }
+            if self.state.solve(&self.topology, &self.parts, &self.drivers, trust).is_err()
+                || !self.speeds_are_smooth(self.state.witness.like(h))
+                || self.examine_position().is_err()
+            {
+                return false;
+            }
         }
         let even = selections == self.selections && self.note_changes(h);
         if self.ahead == Ahead::Even && !even {
@@ -323,6 +345,51 @@ impl<'m, T: Real> Stepper<'m, T> {
         self.save(t, h);
         self.ahead = if even { Ahead::Even } else { Ahead::Unknown };
         true
+    }
+
+    /// Solves what stands in the state by the tape, if there is one and it fits: on the branch of another stepper, or on its own.
+    /// Where not, the prediction may be lost.
+    #[inline(always)]
+    pub(super) fn solve_by_tape(&mut self, other: Option<&Stepper<'_, f64>>, trust: f64) -> bool {
+        let Self { tape, state, drivers, branch, try_others, .. } = self;
+        let judged = other.map_or((&branch[..], &try_others[..]), |o| (&o.branch[..], &o.try_others[..]));
+        let found = tape.as_mut().and_then(|t| t.solve(state, drivers, judged, trust).ok());
+        self.by_tape = found.is_some();
+        self.residuals = found.unwrap_or(self.residuals);
+        self.by_tape
+    }
+
+    /// How many corrections the last step of the kernel needed, of those that a program may have.
+    pub(super) fn corrections(&self) -> usize {
+        if self.state.corrections[0].largest() <= QUADRATIC { 1 } else { 2 }
+    }
+
+    /// A design per lane: lets a tape solve so many steps to come, if that pays.
+    pub fn use_tape(&mut self, programs: &Programs, wanted: &[bool], steps: usize) {
+        let before = self.tape.take();
+        if before.as_ref().is_none_or(|t| t.corrections() == 1) {
+            let corrections = if before.is_some() { 2 } else { self.corrections() };
+            self.tape = programs.for_designs(self, wanted, (steps, corrections));
+        }
+    }
+
+    /// Whether a tape is at work that is refused too often.
+    pub fn tape_fails(&self) -> bool {
+        self.tape.as_ref().is_some_and(Tape::is_of_no_use)
+    }
+
+    /// What a tape handed out besides the motion, if one has solved the last step.
+    pub fn besides(&self) -> Option<&[Lanes]> {
+        self.tape.as_ref().filter(|_| self.by_tape).map(Tape::besides)
+    }
+
+    /// Gives the states of the wanted bodies but ground in every lane to `out(lane, body, state)`.
+    #[inline(always)]
+    pub fn each_body(&self, wanted: &[bool], out: impl FnMut(usize, BodyId, BodyState)) {
+        match self.tape.as_ref().filter(|_| self.by_tape) {
+            Some(tape) => tape.each_body(self.state.witness, out),
+            None => BodyState::each(&self.state, wanted, out),
+        }
     }
 
     /// Whether the laws do nothing between here and the output time t that its two ends would not show, and no singular position is

@@ -152,6 +152,11 @@ impl<T: Real> FieldParts<T> {
         Self { links, closures, kept, laws, shifts, law_rates, scale, reach }
     }
 
+    /// Whether it is the same at all times: no parameter of a law changes.
+    pub fn is_constant(&self) -> bool {
+        self.laws.is_empty()
+    }
+
     /// The drivers whose laws change.
     pub fn drivers(&self) -> impl Iterator<Item = DriverId> {
         self.law_rates.iter().map(|(d, _)| *d)
@@ -182,6 +187,14 @@ impl<T: Real> FieldParts<T> {
             for (_, rate) in self.shifts.iter().filter(|(d, _)| d == driver) {
                 rates[0] += *rate;
             }
+        }
+    }
+
+    /// The same where no law changes: drivers shift at most.
+    pub fn set_shifts(&mut self) {
+        for (driver, rates) in &mut self.law_rates {
+            let of_driver = self.shifts.iter().filter(|(d, _)| d == driver);
+            rates[0] = of_driver.fold(self.scale.zero(), |sum, (_, rate)| sum + *rate);
         }
     }
 
@@ -417,6 +430,21 @@ impl<T: Real> Direct<T> {
         );
     }
 
+    /// By how much the left-out row that fails most does so by more than round-off; not positive where none does.
+    pub fn excess(&self, topology: &Topology, state: &State<T>, field: &FieldParts<T>) -> T {
+        let mut most = -state.witness.like(f64::MAX);
+        for &c in &field.reach.closures {
+            let closure = &topology.closures[c];
+            for r in closure.first_row..closure.first_row + closure.rows.len() {
+                if !topology.rows[r].selected && !topology.rows[r].is_term {
+                    let (sum, limit) = self.judged_defect(topology, state, field, r);
+                    most = most.larger(sum - limit);
+                }
+            }
+        }
+        most
+    }
+
     /// Defects of the left-out rows under the change that was solved last, with their signs: `out(row, defect)`.
     pub fn defects(
         &self,
@@ -460,6 +488,22 @@ impl<T: Real> Direct<T> {
         (sum, most)
     }
 
+    /// The size of the defect of row r, and what of it may be round-off.
+    #[inline(always)]
+    fn judged_defect(
+        &self,
+        topology: &Topology,
+        state: &State<T>,
+        field: &FieldParts<T>,
+        r: usize,
+    ) -> (T, T) {
+        let zero = state.witness.zero();
+        let (sum, most) = self.row_defect(topology, state, field, r);
+        // What typed coordinates may be off by in the motion, they may be off by in the design's terms.
+        let limit = most * zero.like(LOCKED);
+        (sum.abs(), limit.larger(field.scale * zero.like(DEFECT_FLOOR)))
+    }
+
     /// Enters row r where it fails most.
     #[inline(always)]
     fn defect(
@@ -470,11 +514,7 @@ impl<T: Real> Direct<T> {
         r: usize,
         worst: &mut [Option<Defect>; LANES],
     ) {
-        let zero = state.witness.zero();
-        let (sum, most) = self.row_defect(topology, state, field, r);
-        // What typed coordinates may be off by in the motion, they may be off by in the design's terms.
-        let (sum, limit) = (sum.abs(), most * zero.like(LOCKED));
-        let limit = limit.larger(field.scale * zero.like(DEFECT_FLOOR));
+        let (sum, limit) = self.judged_defect(topology, state, field, r);
         if (sum - limit).largest() <= 0.0 {
             return;
         }

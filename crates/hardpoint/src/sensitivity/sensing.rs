@@ -1,8 +1,11 @@
 //! Sensitivities of all design variables, step after step.
 
+use hardpoint_tape::{Lanes, Number};
+
 use crate::model::{BodyId, DriverId, Field, Model, VariableId};
 use crate::motion::kinematics::State;
 use crate::motion::stepper::Stepper;
+use crate::motion::tape::{Besides, Recorded};
 use crate::motion::turn_over;
 use crate::sink::Sink;
 use crate::space::{LANES, Real, Twist, Vec3, of_lanes};
@@ -111,6 +114,9 @@ impl<'f, T: Real> Sensing<'f, T> {
             let parts = |f: &Field| FieldParts::new(&all.topology, &f.spread(witness), witness);
             self.each = self.fields.iter().map(parts).collect();
         }
+        if let Some(results) = all.besides() {
+            return self.steps_by_tape(results, k, count, sink);
+        }
         let of_lanes = of_lanes(times);
         let resisting = &mut self.resisting;
         solve_each(
@@ -126,6 +132,33 @@ impl<'f, T: Real> Sensing<'f, T> {
             |lane, v, topology, defect| {
                 if lane < count {
                     note(&mut resisting[v.0], topology, defect, of_lanes[lane]);
+                }
+            },
+        );
+    }
+
+    /// The same where a tape has solved them; then no joint resists.
+    fn steps_by_tape(&self, results: &[Lanes], k: usize, count: usize, sink: &mut impl Sink) {
+        let witness = self.state.witness;
+        witness.within(
+            #[inline(always)]
+            || {
+                let mut table = [[0.0; 24]; LANES];
+                let (mut of_body, _) = results.as_chunks::<COMPONENTS>();
+                for (v, field) in self.each.iter().enumerate() {
+                    for &body in field.reach.bodies.iter().filter(|&&b| self.wanted[b]) {
+                        let Some((lanes, rest)) = of_body.split_first() else { return };
+                        of_body = rest;
+                        let x = std::array::from_fn(
+                            #[inline(always)]
+                            |n| witness.load(&lanes[n]),
+                        );
+                        hand_over(x, body, &mut table, &mut |lane, body, d| {
+                            if lane < count {
+                                sink.sensitivity(k + lane, VariableId(v), BodyId(body), &d);
+                            }
+                        });
+                    }
                 }
             },
         );
@@ -276,27 +309,84 @@ fn each_derivative<T: Real>(
         #[inline(always)]
         || {
             for body in bodies {
-                let (w0, w1, w2) = (w[0][body], w[1][body], w[2][body]);
-                let (r, v, a) = (state.pose[body].r, state.v[body], state.a[body]);
-                let dv = w1 + w0.ad(v);
-                let da = w2 + w1.ad(v) + w0.ad(a);
-                let p = w0.at(r);
-                let velocity = v.at(r);
-                let u = v.w.cross_plus(p, dv.at(r));
-                let n = a.w.cross_plus(p, dv.w.cross_plus(velocity, v.w.cross_plus(u, da.at(r))));
-                let (q, o, e) = (w0.w, dv.w, da.w);
-                let components = [
-                    [p.x, p.y, p.z, q.x, q.y, q.z, u.x, u.y],
-                    [u.z, o.x, o.y, o.z, n.x, n.y, n.z, e.x],
-                    [e.y, e.z, e.z, e.z, e.z, e.z, e.z, e.z],
-                ];
-                turn_over(&components, &mut table);
-                for (lane, x) in table[..T::LANES].iter().enumerate() {
-                    out(lane, body, BodySensitivity::from_components(x));
-                }
+                hand_over(components(w, state, body), body, &mut table, &mut out);
             }
         },
     );
+}
+
+/// Of one body: derivatives of r, pi, v, omega, a and alpha, one after the other.
+#[inline(always)]
+fn components<T: Real>(w: &[Vec<Twist<T>>; 3], state: &State<T>, body: usize) -> [T; COMPONENTS] {
+    let (w0, w1, w2) = (w[0][body], w[1][body], w[2][body]);
+    let (r, v, a) = (state.pose[body].r, state.v[body], state.a[body]);
+    let dv = w1 + w0.ad(v);
+    let da = w2 + w1.ad(v) + w0.ad(a);
+    let p = w0.at(r);
+    let velocity = v.at(r);
+    let u = v.w.cross_plus(p, dv.at(r));
+    let n = a.w.cross_plus(p, dv.w.cross_plus(velocity, v.w.cross_plus(u, da.at(r))));
+    let (q, o, e) = (w0.w, dv.w, da.w);
+    [p.x, p.y, p.z, q.x, q.y, q.z, u.x, u.y, u.z, o.x, o.y, o.z, n.x, n.y, n.z, e.x, e.y, e.z]
+}
+
+/// So many numbers are the derivatives of a body.
+const COMPONENTS: usize = 18;
+
+/// Gives these derivatives to `out(lane, body, ...)`, lane by lane.
+#[inline(always)]
+fn hand_over<T: Real>(
+    x: [T; COMPONENTS],
+    body: usize,
+    table: &mut [[f64; 24]; LANES],
+    out: &mut impl FnMut(usize, usize, BodySensitivity),
+) {
+    let components: [[T; 8]; 3] = std::array::from_fn(|i| {
+        std::array::from_fn(
+            #[inline(always)]
+            |j| x[usize::min(8 * i + j, COMPONENTS - 1)],
+        )
+    });
+    turn_over(&components, table);
+    for (lane, x) in table[..T::LANES].iter().enumerate() {
+        out(lane, body, BodySensitivity::from_components(x));
+    }
+}
+
+/// What a program of the steps of a design hands out besides the motion: the derivatives of the wanted bodies by all variables.
+pub(crate) struct Derivatives<'f> {
+    pub model: &'f Model,
+    pub fields: &'f [Field],
+    pub wanted: Vec<bool>,
+}
+
+impl Besides for Derivatives<'_> {
+    fn fields(&self) -> &[Field] {
+        self.fields
+    }
+
+    fn record(&self, topology: &Topology, state: &mut State<Number>) -> Option<Recorded> {
+        let witness = state.witness;
+        let mut recorded = Recorded::default();
+        if self.fields.is_empty() {
+            return Some(recorded);
+        }
+        state.finish_rates(topology);
+        let mut direct = Direct::new(self.model, topology, witness);
+        for field in self.fields {
+            let mut field = FieldParts::new(topology, &field.spread(witness), witness);
+            if !field.is_constant() {
+                return None;
+            }
+            field.set_shifts();
+            direct.solve(topology, state, &field);
+            recorded.limits.push(direct.excess(topology, state, &field));
+            for &body in field.reach.bodies.iter().filter(|&&b| self.wanted[b]) {
+                recorded.results.extend(components(&direct.w, state, body));
+            }
+        }
+        Some(recorded)
+    }
 }
 
 impl BodySensitivity {

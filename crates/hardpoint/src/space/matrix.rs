@@ -34,6 +34,38 @@ pub(crate) struct Factored<T> {
     pub positive: bool,
     /// The size of the determinant; of a sparse matrix its logarithm.
     pub determinant: T,
+    /// What that goes by, lane by lane; zero of a sparse matrix.
+    pub watched: Watched<T>,
+}
+
+/// What is watched of an elimination in an order that was chosen before.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Watched<T> {
+    /// The product of the pivots.
+    pub product: T,
+    /// The largest pivot, and the largest inverse of one.
+    pub most: T,
+    pub least: T,
+    /// The largest factor.
+    pub growth: T,
+}
+
+impl<T: Real> Watched<T> {
+    pub fn zero(witness: T) -> Self {
+        let zero = witness.zero();
+        Self { product: zero, most: zero, least: zero, growth: zero }
+    }
+
+    /// Smallest pivot over the largest, over all lanes; 0 where lanes differ in the sign of their determinants, which puts them
+    /// on different branches, or where any is not finite. And that sign.
+    #[inline(always)]
+    pub fn verdict(&self) -> (f64, bool) {
+        let (low, high) = (self.product.smallest(), self.product.largest());
+        // NaN, as of a pivot of zero, is no sign either.
+        let regular = low > 0.0 || high < 0.0;
+        let ratio = if regular { 1.0 / (self.most.largest() * self.least.largest()) } else { 0.0 };
+        (ratio, low > 0.0)
+    }
 }
 
 impl<T: Real> Elimination<T> {
@@ -60,7 +92,9 @@ impl<T: Real> Elimination<T> {
     #[inline(always)]
     pub fn factor(&mut self) -> Factored<T> {
         if self.n == 0 {
-            return Factored { pivot_ratio: 1.0, positive: true, determinant: self.witness.like(1.0) };
+            let one = self.witness.like(1.0);
+            let watched = Watched { product: one, most: one, least: one, growth: one };
+            return Factored { pivot_ratio: 1.0, positive: true, determinant: one, watched };
         }
         // Written so that NaN is looked at again, too.
         let (found, growth) = self.eliminate();
@@ -102,12 +136,10 @@ impl<T: Real> Elimination<T> {
                 }
             }
         }
-        let (low, high) = (determinant.smallest(), determinant.largest());
-        // Lanes of different signs are on different branches. NaN, as of a pivot of zero, is no sign either.
-        let regular = low > 0.0 || high < 0.0;
-        let pivot_ratio = if regular { 1.0 / (most.largest() * least.largest()) } else { 0.0 };
-        let positive = (low > 0.0) == self.even;
-        (Factored { pivot_ratio, positive, determinant: determinant.abs() }, growth.largest())
+        let watched = Watched { product: determinant, most, least, growth };
+        let (pivot_ratio, positive) = watched.verdict();
+        let positive = positive == self.even;
+        (Factored { pivot_ratio, positive, determinant: determinant.abs(), watched }, growth.largest())
     }
 
     /// Chooses the order of the pivots by their sizes.

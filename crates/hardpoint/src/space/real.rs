@@ -38,6 +38,12 @@ pub trait Real:
     /// A value made lane by lane.
     fn like_lanes(self, lane: impl FnMut(usize) -> f64) -> Self;
 
+    /// A value from its lanes.
+    #[inline(always)]
+    fn load(self, lanes: &[f64; LANES]) -> Self {
+        self.like_lanes(|k| lanes[k])
+    }
+
     /// The scalar in lane `k`.
     fn lane(self, k: usize) -> f64;
 
@@ -283,6 +289,10 @@ impl<S: Simd> Real for f64x8<S> {
     #[inline(always)]
     fn like_lanes(self, lane: impl FnMut(usize) -> f64) -> Self {
         f64x8::from_fn(self.simd, lane)
+    }
+    #[inline(always)]
+    fn load(self, lanes: &[f64; LANES]) -> Self {
+        f64x8::load_array_ref(self.simd, lanes)
     }
     #[inline(always)]
     fn lane(self, k: usize) -> f64 {

@@ -11,7 +11,7 @@ use faer::sparse::linalg::lu::{LuSymbolicParams, factorize_symbolic_lu};
 use faer::sparse::{SparseColMatRef, SymbolicSparseColMat};
 use faer::{Conj, MatMut, Par};
 
-use super::matrix::Factored;
+use super::matrix::{Factored, Watched};
 use super::{LANES, Real};
 
 /// LU factors of a sparse square matrix whose pattern does not change.
@@ -138,7 +138,9 @@ impl<T: Real> SparseLu<T> {
     #[inline(never)]
     pub fn factor(&mut self) -> Factored<T> {
         self.shared = false;
-        let mut all = Factored { pivot_ratio: 1.0, positive: true, determinant: self.values[0].zero() };
+        let zero = self.values[0].zero();
+        let watched = Watched::zero(zero);
+        let mut all = Factored { pivot_ratio: 1.0, positive: true, determinant: zero, watched };
         let mut determinants = [0.0; LANES];
         for k in 0..T::LANES {
             for (entry, x) in self.entries.iter_mut().zip(&self.values) {
@@ -177,7 +179,7 @@ impl<T: Real> SparseLu<T> {
 
     /// Factors what stands in `entries`, for lane k.
     fn factor_lane(&mut self, k: usize) -> Factored<f64> {
-        let n = self.n();
+        let (n, watched) = (self.n(), Watched::zero(0.0));
         let Lane { lu, pivots: [forward, inverse] } = &mut self.lanes[k];
         let factored = factorize_simplicial_numeric_lu(
             forward,
@@ -188,7 +190,7 @@ impl<T: Real> SparseLu<T> {
             MemStack::new(&mut self.memory.buffer),
         );
         if factored.is_err() {
-            return Factored { pivot_ratio: 0.0, positive: true, determinant: 0.0 };
+            return Factored { pivot_ratio: 0.0, positive: true, determinant: 0.0, watched };
         }
         // The determinant is that of U, up to the signs of the two permutations.
         let (mut least, mut most) = (f64::INFINITY, 0.0_f64);
@@ -200,7 +202,7 @@ impl<T: Real> SparseLu<T> {
             let size = pivot.abs();
             // Written so that a NaN pivot makes the ratio zero, never a good number.
             if !(size > 0.0) {
-                return Factored { pivot_ratio: 0.0, positive, determinant: 0.0 };
+                return Factored { pivot_ratio: 0.0, positive, determinant: 0.0, watched };
             }
             // The product of thousands of pivots leaves the range of numbers.
             product *= size;
@@ -212,7 +214,7 @@ impl<T: Real> SparseLu<T> {
             positive ^= *pivot < 0.0;
         }
         let determinant = logarithm + product.ln();
-        Factored { pivot_ratio: if n == 0 { 1.0 } else { least / most }, positive, determinant }
+        Factored { pivot_ratio: if n == 0 { 1.0 } else { least / most }, positive, determinant, watched }
     }
 
     /// Replaces the right-hand side by the solution.

@@ -1,0 +1,138 @@
+//! Steps as straight-line programs against the kernel that they were recorded of, on the whole gallery.
+
+use hardpoint::model::Model;
+use hardpoint::motion::{BodyState, Execution};
+use hardpoint::sensitivity::BodySensitivity;
+use hardpoint::{Analysis, Solution};
+
+/// A program fuses and leaves out what the kernel rounds; where a position is ill-conditioned, that is magnified.
+const ROUND_OFF: f64 = 1e-10;
+
+/// Mechanisms that no program is recorded of: their couplers count angles by the turn that is expected, or a point follows a curve.
+const BY_THE_KERNEL: [&str; 5] = ["bennett", "cam", "gear_train", "hooke", "hooke"];
+
+fn gallery() -> Vec<(String, Model)> {
+    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../../models");
+    let mut files: Vec<_> = std::fs::read_dir(folder).unwrap().map(|e| e.unwrap().path()).collect();
+    files.retain(|f| f.extension().is_some_and(|e| e == "toml"));
+    files.sort();
+    assert!(files.len() > 25, "{files:?}");
+    let name = |f: &std::path::Path| f.file_stem().unwrap().to_str().unwrap().to_owned();
+    files.iter().map(|f| (name(f), hardpoint_file::read(f).unwrap().model)).collect()
+}
+
+/// Output times that follow each other closely.
+fn resolved(model: &Model) -> Model {
+    let (first, last) = (model.times[0], model.times[model.times.len() - 1]);
+    let steps = usize::max(model.times.len(), 400);
+    let times = (0..=steps).map(|k| first + (last - first) * k as f64 / steps as f64).collect();
+    Model { times, ..model.clone() }
+}
+
+fn state(s: &BodyState) -> [f64; 24] {
+    let [x, y, z] = s.rotation.cols;
+    let all = [s.r, x, y, z, s.v, s.omega, s.a, s.alpha];
+    std::array::from_fn(|k| [all[k / 3].x, all[k / 3].y, all[k / 3].z][k % 3])
+}
+
+fn derivatives(s: &BodySensitivity) -> [f64; 18] {
+    let all = [s.dr, s.dpi, s.dv, s.domega, s.da, s.dalpha];
+    std::array::from_fn(|k| [all[k / 3].x, all[k / 3].y, all[k / 3].z][k % 3])
+}
+
+/// The largest difference of two tables, column by column as a part of the largest number of its kind (six of them, of three columns
+/// each, or eight).
+fn apart<const N: usize>(a: &[[f64; N]], b: &[[f64; N]]) -> f64 {
+    assert_eq!(a.len(), b.len());
+    let (mut largest, mut differs) = (vec![0.0_f64; N / 3], vec![0.0_f64; N / 3]);
+    for (a, b) in a.iter().zip(b) {
+        for k in 0..N {
+            largest[k / 3] = largest[k / 3].max(b[k].abs());
+            // NaN is as far apart as can be.
+            let d = (a[k] - b[k]).abs();
+            differs[k / 3] = differs[k / 3].max(if d.is_nan() && !(a[k].is_nan() && b[k].is_nan()) {
+                f64::MAX
+            } else {
+                d
+            });
+        }
+    }
+    differs.iter().zip(&largest).map(|(d, l)| d / l.max(1e-3)).fold(0.0, f64::max)
+}
+
+fn states(solution: &Solution) -> Vec<[f64; 24]> {
+    solution.motion.states.iter().map(state).collect()
+}
+
+fn sensitivities(solution: &Solution) -> Vec<[f64; 18]> {
+    solution.sensitivities.states.iter().map(derivatives).collect()
+}
+
+#[test]
+fn output_times_by_programs_are_those_of_the_kernel() {
+    let mut by_kernel = Vec::new();
+    for (name, model) in gallery() {
+        let model = resolved(&model);
+        let solve = |execution| {
+            let analysis = Analysis::new(&model).unwrap().bodies_only().executed(execution);
+            (analysis.run_motion(), analysis.run())
+        };
+        let (motion, whole) = solve(Execution::Kernel);
+        assert_eq!((motion.motion.effort.by_program, whole.motion.effort.by_program), (0, 0));
+        for execution in [Execution::Interpreted, Execution::Compiled] {
+            let (again, with_sensitivities) = solve(execution);
+            assert_eq!(again.motion.len(), motion.motion.len(), "{name}");
+            if again.motion.effort.by_program == 0 {
+                by_kernel.push(name.clone());
+            }
+            let found = [
+                apart(&states(&again), &states(&motion)),
+                apart(&states(&with_sensitivities), &states(&whole)),
+                apart(&sensitivities(&with_sensitivities), &sensitivities(&whole)),
+            ];
+            println!(
+                "{name} {execution:?}: {} and {} of {} steps, {found:?}",
+                again.motion.effort.by_program,
+                with_sensitivities.motion.effort.by_program,
+                motion.motion.len()
+            );
+            assert!(found.iter().all(|d| *d < ROUND_OFF), "{name} {execution:?}: {found:?}");
+        }
+    }
+    by_kernel.dedup();
+    assert_eq!(by_kernel, BY_THE_KERNEL);
+}
+
+#[test]
+fn designs_by_programs_are_those_of_the_kernel() {
+    let mut solved = 0;
+    for (name, model) in gallery().into_iter().filter(|(_, m)| !m.variables.is_empty()) {
+        let model = resolved(&model);
+        // More groups of lanes than one; in some all lanes have one design, in others none are equal.
+        let mut designs: Vec<Vec<f64>> = vec![vec![0.0; model.variables.len()]; 8];
+        for k in 0..20 {
+            let step =
+                |b: usize| 1e-3 * hardpoint::study::natural_step(&model, hardpoint::model::VariableId(b));
+            let sign = |b: usize| if (k * 7 + b * 3) % 5 < 2 { -1.0 } else { 1.0 };
+            designs.push((0..model.variables.len()).map(|b| sign(b) * step(b) * k as f64 / 20.0).collect());
+        }
+        let solve = |execution| {
+            let analysis = Analysis::new(&model).unwrap().bodies_only().executed(execution);
+            analysis.run_designs(&designs)
+        };
+        let right = solve(Execution::Kernel);
+        for execution in [Execution::Interpreted, Execution::Compiled] {
+            let again = solve(execution);
+            let worst =
+                again.iter().zip(&right).map(|(a, b)| apart(&states(a), &states(b))).fold(0.0, f64::max);
+            let steps: usize = again.iter().map(|s| s.motion.effort.by_program).sum();
+            println!(
+                "{name} {execution:?}: {steps} of {} steps, {worst:.1e}",
+                designs.len() * model.times.len()
+            );
+            assert!(worst < ROUND_OFF, "{name} {execution:?}: {worst:e}");
+            solved += usize::from(steps > 0);
+        }
+    }
+    assert!(solved > 30, "{solved}");
+}

@@ -1,0 +1,577 @@
+//! One step of a plan as a straight-line program.
+//!
+//! What [`State::solve`] computes is the same at every output time and for every design, as long as Newton's method takes as many
+//! corrections and the pivots keep their order. So it is recorded once, with a number of the tape in place of each number, and
+//! what is left of it after folding is run eight lanes at a time. What was decided while recording is asked for again after
+//! every run ([`Tape::solve`]); where the answer is another, nothing has happened, and the kernel itself solves the step.
+//!
+//! Not recorded are mechanisms with sparse blocks, with curves, and with couplers, whose angles go by the turn that is expected;
+//! and those that are so large that a program each would cost more than it saves.
+
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::{Arc, Mutex, OnceLock, PoisonError};
+
+use hardpoint_code::{Code, Scratch};
+use hardpoint_tape::{Interpreter, Lanes, Number, Options, Program, record};
+
+use crate::joint::Freedom;
+use crate::model::{BodyId, Field, GROUND};
+use crate::space::{LANES, LARGEST_DENSE, Quat, Real, Vec3, record as recording};
+use crate::topology::{Source, Topology};
+
+use super::kinematics::{QUADRATIC, Residuals, State};
+use super::parts::Parts;
+use super::stepper::{LOCKED, Saved, Stepper};
+use super::{BodyState, turn_over};
+
+/// Newton's first correction while recording, in units of each coordinate, for a program with one correction and for one with two:
+/// the one is followed by round-off, the other by what is accepted as the last.
+const OFFSET: [f64; 2] = [1e-9, 1e-5];
+/// The factors of an elimination may be so many times what they were when its order was recorded.
+const MOST_GROWTH: f64 = 4.0;
+/// Mechanisms with more links than this are not recorded: the program would no longer stay in the fast memory of a core.
+const MOST_LINKS: usize = 200;
+
+/// What a program is for.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Purpose {
+    /// Per number of the geometry, in the order of [`Parts::map`]: its value, or none where it is an input.
+    pub geometry: Vec<Option<f64>>,
+    /// Per body: whether its states are wanted.
+    pub wanted: Vec<bool>,
+    /// The design velocities that its sensitivities go by.
+    pub fields: Vec<Field>,
+    /// Newton's corrections: one or two.
+    pub corrections: usize,
+}
+
+/// What a program hands out besides the motion.
+pub(crate) trait Besides {
+    /// The design velocities that it goes by.
+    fn fields(&self) -> &[Field];
+
+    /// Records it where the state stands; none where that cannot be recorded.
+    fn record(&self, topology: &Topology, state: &mut State<Number>) -> Option<Recorded>;
+}
+
+/// What was recorded besides the motion.
+#[derive(Default)]
+pub(crate) struct Recorded {
+    /// Where any of these is positive, the results do not count.
+    pub limits: Vec<Number>,
+    pub results: Vec<Number>,
+}
+
+/// Nothing.
+impl Besides for () {
+    fn fields(&self) -> &[Field] {
+        &[]
+    }
+
+    fn record(&self, _: &Topology, _: &mut State<Number>) -> Option<Recorded> {
+        Some(Recorded::default())
+    }
+}
+
+/// The program of a step.
+#[derive(Debug)]
+pub(crate) struct StepProgram {
+    purpose: Purpose,
+    /// What depends on the design alone, and what does not.
+    design: Program,
+    step: Program,
+    code: Option<Code>,
+    channels: Vec<Channel>,
+    /// Per block: the largest factor when its order was recorded, and whether a positive product of its pivots is a positive
+    /// determinant.
+    blocks: Vec<(f64, bool)>,
+    /// How many results besides the motion must not be positive.
+    limits: usize,
+}
+
+/// An unknown that a step is predicted by.
+#[derive(Clone, Copy, Debug)]
+enum Channel {
+    Coordinate(usize),
+    /// The ball that begins at a coordinate.
+    Ball(usize),
+}
+
+/// Where the outputs of a program begin.
+#[derive(Clone, Copy, Debug)]
+struct Outputs {
+    blocks: usize,
+    corrections: usize,
+    residuals: usize,
+    bodies: usize,
+    limits: usize,
+}
+
+/// Per block: product, most, least and growth.
+const PER_BLOCK: usize = 4;
+/// Per body: as in [`BodyState`].
+const PER_BODY: usize = 24;
+
+impl Channel {
+    fn all(topology: &Topology) -> Vec<Self> {
+        let mut out = Vec::new();
+        for step in topology.links.iter().flat_map(|l| &l.steps) {
+            match (topology.coordinates[step.first].source, step.freedom) {
+                (Source::Driven(_), _) => {}
+                (_, Freedom::Ball) => out.push(Self::Ball(step.first)),
+                _ => out.push(Self::Coordinate(step.first)),
+            }
+        }
+        out
+    }
+
+    /// How many numbers predict it, and how many say where it is and how it moves.
+    fn counts(self) -> (usize, usize) {
+        match self {
+            Self::Coordinate(_) => (1, 3),
+            Self::Ball(_) => (4, 10),
+        }
+    }
+}
+
+impl StepProgram {
+    /// Records the step that is solved where `one` stands, in lane 0; none where it cannot be recorded.
+    fn record<T: Real>(
+        one: &Stepper<'_, T>,
+        purpose: Purpose,
+        besides: &dyn Besides,
+        execution: Execution,
+    ) -> Option<Self> {
+        let (model, topology) = (one.model, &one.topology);
+        let parts = one.parts.map(one.state.witness, |x| x.lane(0));
+        let large = topology.blocks.iter().any(|b| b.unknowns.len() > LARGEST_DENSE);
+        if large
+            || topology.links.len() > MOST_LINKS
+            || !topology.coupled_rows.is_empty()
+            || !parts.curves.is_empty()
+        {
+            return None;
+        }
+        let channels = Channel::all(topology);
+        let (mut fits, mut blocks, mut limits) = (false, Vec::new(), 0);
+        recording::begin();
+        let recorded = record(|| {
+            let mut state = State::new(model, topology, Number::constant(0.0));
+            predict(topology, &channels, &one.saved, OFFSET[purpose.corrections - 1], &mut state);
+            let drivers = &one.saved.drivers;
+            let drivers: Vec<[Number; 3]> =
+                drivers.iter().map(|f| f.map(|x| Number::input(x.lane(0)))).collect();
+            let mut of_geometry = purpose.geometry.iter();
+            let parts = parts.map(0.0, |x| match of_geometry.next() {
+                Some(Some(x)) => Number::constant(*x),
+                _ => Number::input(x),
+            });
+            fits = state.solve(topology, &parts, &drivers, f64::INFINITY).is_ok()
+                && state.iterations == topology.blocks.len() * (purpose.corrections + 1);
+            let positive = |(found, watched): (&(f64, bool), &crate::space::Watched<Number>)| {
+                (watched.growth.value(), found.1 == (watched.product.value() > 0.0))
+            };
+            blocks = state.pivots.iter().zip(&state.watched).map(positive).collect();
+            let mut out = outputs(topology, &parts, &drivers, &channels, &purpose, &state);
+            match besides.record(topology, &mut state) {
+                Some(found) => {
+                    limits = found.limits.len();
+                    out.extend(found.limits.into_iter().chain(found.results));
+                }
+                None => fits = false,
+            }
+            out
+        });
+        if !fits || !recording::is_arithmetic() {
+            return None;
+        }
+        let (program, _) = recorded.program(Options::default());
+        let first = inputs_before_geometry(&channels, model.drivers.len());
+        let (design, step) = program.staged(|input| input as usize >= first);
+        let code = if execution == Execution::Interpreted { None } else { Code::new(&step).ok() };
+        Some(Self { purpose, design, step, code, channels, blocks, limits })
+    }
+
+    fn outputs(&self) -> Outputs {
+        let blocks = self.channels.iter().map(|c| c.counts().1).sum();
+        let corrections = blocks + PER_BLOCK * self.blocks.len();
+        let residuals = corrections + self.purpose.corrections;
+        let bodies = residuals + 2;
+        let wanted = self.purpose.wanted.iter().skip(1).filter(|w| **w).count();
+        Outputs { blocks, corrections, residuals, bodies, limits: bodies + PER_BODY * wanted }
+    }
+}
+
+fn inputs_before_geometry(channels: &[Channel], drivers: usize) -> usize {
+    channels.iter().map(|c| c.counts().0).sum::<usize>() + 3 * drivers
+}
+
+/// Makes inputs of what predicts the state, `offset` beside where lane 0 of `at` is.
+fn predict<T: Real>(
+    topology: &Topology,
+    channels: &[Channel],
+    at: &Saved<T>,
+    offset: f64,
+    state: &mut State<Number>,
+) {
+    for channel in channels {
+        match *channel {
+            Channel::Coordinate(c) => {
+                state.q[c] = Number::input(at.q[c].lane(0) + offset * topology.coordinates[c].unit);
+            }
+            Channel::Ball(c) => {
+                let beside = at.balls[c].lane(0).nudged(Vec3::new(offset, offset, offset));
+                let component = |k: usize| Number::input(beside.component(k));
+                let w = component(0);
+                state.balls[c] = Quat { w, v: Vec3::new(component(1), component(2), component(3)) };
+            }
+        }
+    }
+}
+
+/// What a step hands out, in order.
+fn outputs(
+    topology: &Topology,
+    parts: &Parts<Number>,
+    drivers: &[[Number; 3]],
+    channels: &[Channel],
+    purpose: &Purpose,
+    state: &State<Number>,
+) -> Vec<Number> {
+    let mut out = Vec::new();
+    for channel in channels {
+        match *channel {
+            Channel::Coordinate(c) => out.extend([state.q[c], state.qd[c], state.qdd[c]]),
+            Channel::Ball(c) => {
+                out.extend((0..4).map(|k| state.balls[c].component(k)));
+                out.extend_from_slice(&state.qd[c..c + 3]);
+                out.extend_from_slice(&state.qdd[c..c + 3]);
+            }
+        }
+    }
+    for w in &state.watched {
+        out.extend([w.product, w.most, w.least, w.growth]);
+    }
+    out.extend_from_slice(&state.corrections[..purpose.corrections]);
+    out.extend(state.residuals_in_lanes(topology, parts, drivers));
+    for body in (0..state.pose.len()).filter(|b| *b != GROUND.0 && purpose.wanted[*b]) {
+        out.extend(BodyState::components(state, body).into_iter().flatten());
+    }
+    out
+}
+
+/// Recording pays from so many steps on: it costs about as much as a few hundred, and a program saves a part of each.
+const PAYS: usize = 4096;
+/// After so many steps, a program that was refused in more than a quarter of them is given up.
+const TRIAL: usize = 8;
+
+/// What even steps are solved by: the kernel, which walks the plan, or a straight-line program that was recorded of it.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Execution {
+    /// By what pays: programs where there are steps enough, as machine code where there can be any.
+    #[default]
+    Fastest,
+    /// By the kernel alone.
+    Kernel,
+    /// By programs that are interpreted, from the first step on.
+    Interpreted,
+    /// By programs as machine code, from the first step on; interpreted where there can be none.
+    Compiled,
+}
+
+impl Execution {
+    /// What the environment variable `HARDPOINT_PATH` asks for: `scalar`, `tape` or `code`; [`Execution::Fastest`] for anything else.
+    pub fn from_environment() -> Self {
+        static ASKED: OnceLock<Execution> = OnceLock::new();
+        *ASKED.get_or_init(|| match std::env::var("HARDPOINT_PATH").as_deref() {
+            Ok("scalar") => Self::Kernel,
+            Ok("tape") => Self::Interpreted,
+            Ok("code") => Self::Compiled,
+            _ => Self::Fastest,
+        })
+    }
+}
+
+/// The programs of a plan: one for the output times of a design, one for many designs.
+#[derive(Debug)]
+pub(crate) struct Programs {
+    execution: Execution,
+    /// Steps that were solved without.
+    solved: AtomicUsize,
+    of_times: Mutex<Option<Arc<StepProgram>>>,
+    of_designs: Mutex<Option<Arc<StepProgram>>>,
+}
+
+impl Programs {
+    /// None as yet.
+    pub fn new(execution: Execution) -> Self {
+        Self {
+            execution,
+            solved: AtomicUsize::new(0),
+            of_times: Mutex::default(),
+            of_designs: Mutex::default(),
+        }
+    }
+
+    /// A tape for `all`, whose lanes are output times of the design that `one` solves, with so many steps to go and so many
+    /// corrections each; none where that does not pay.
+    pub fn for_times<T: Real>(
+        &self,
+        one: &Stepper<'_, f64>,
+        all: &Stepper<'_, T>,
+        (wanted, besides): (&[bool], &dyn Besides),
+        (steps, corrections): (usize, usize),
+    ) -> Option<Tape> {
+        let geometry = || {
+            let mut list = Vec::new();
+            one.parts.map(0.0, |x| {
+                list.push(Some(x));
+                x
+            });
+            list
+        };
+        self.tape(&self.of_times, (one, all), (wanted, besides), (steps, corrections), geometry)
+    }
+
+    /// A tape for `all`, whose lanes are designs.
+    pub fn for_designs<T: Real>(
+        &self,
+        all: &Stepper<'_, T>,
+        wanted: &[bool],
+        (steps, corrections): (usize, usize),
+    ) -> Option<Tape> {
+        let geometry = || {
+            let known = locked(&self.of_designs).as_ref().map(|p| p.purpose.geometry.clone());
+            let mut list = Vec::new();
+            all.parts.map(all.state.witness, |x| {
+                let first = x.lane(0);
+                let same = (1..T::LANES).all(|k| x.lane(k).to_bits() == first.to_bits());
+                // What differed among earlier designs, or from these, stays an input.
+                let before = known.as_ref().is_none_or(|k| k[list.len()] == Some(first));
+                list.push((same && before).then_some(first));
+                x
+            });
+            list
+        };
+        self.tape(&self.of_designs, (all, all), (wanted, &()), (steps, corrections), geometry)
+    }
+
+    fn tape<T: Real, U: Real>(
+        &self,
+        kept: &Mutex<Option<Arc<StepProgram>>>,
+        (at, all): (&Stepper<'_, U>, &Stepper<'_, T>),
+        (wanted, besides): (&[bool], &dyn Besides),
+        (steps, corrections): (usize, usize),
+        geometry: impl FnOnce() -> Vec<Option<f64>>,
+    ) -> Option<Tape> {
+        if self.execution == Execution::Kernel || at.selections != 0 || all.selections != 0 {
+            return None;
+        }
+        let witness = all.state.witness;
+        let program = locked(kept).clone();
+        let serves = |p: &StepProgram| {
+            let made_for = &p.purpose;
+            made_for.wanted == wanted
+                && made_for.corrections >= corrections
+                && made_for.fields == besides.fields()
+        };
+        if let Some(program) = program.filter(|p| serves(p))
+            && let Some(tape) = Tape::new(program, &all.parts, witness)
+        {
+            return Some(tape);
+        }
+        let before = self.solved.fetch_add(steps, Ordering::Relaxed);
+        if self.execution == Execution::Fastest && before + steps < PAYS {
+            return None;
+        }
+        let (wanted, fields) = (wanted.to_vec(), besides.fields().to_vec());
+        let purpose = Purpose { geometry: geometry(), wanted, fields, corrections };
+        let program = Arc::new(StepProgram::record(at, purpose, besides, self.execution)?);
+        *locked(kept) = Some(Arc::clone(&program));
+        Tape::new(program, &all.parts, witness)
+    }
+}
+
+fn locked<X>(mutex: &Mutex<X>) -> std::sync::MutexGuard<'_, X> {
+    mutex.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// A step that the program does not fit: the kernel solves it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Refused;
+
+/// A program at work, with what it works in.
+pub(crate) struct Tape {
+    program: Arc<StepProgram>,
+    interpreter: Option<Interpreter>,
+    scratch: Scratch,
+    inputs: Vec<Lanes>,
+    outputs: Vec<Lanes>,
+    /// Steps that were tried, and those that were refused.
+    tried: usize,
+    refused: usize,
+}
+
+impl Tape {
+    /// Whether it is refused so often that the kernel alone is faster.
+    pub fn is_of_no_use(&self) -> bool {
+        self.tried >= TRIAL && 4 * self.refused > self.tried
+    }
+
+    /// How many corrections it makes.
+    pub fn corrections(&self) -> usize {
+        self.program.purpose.corrections
+    }
+
+    /// For the design in each lane of these parts; none where they differ from the program's in what is no input.
+    pub fn new<T: Real>(program: Arc<StepProgram>, parts: &Parts<T>, witness: T) -> Option<Self> {
+        let mut geometry = Vec::new();
+        let (mut fits, mut of_geometry) = (true, program.purpose.geometry.iter());
+        parts.map(witness, |x| {
+            let mut lanes = [0.0; LANES];
+            (0..LANES).for_each(|k| lanes[k] = x.lane(k.min(T::LANES - 1)));
+            match of_geometry.next() {
+                Some(Some(known)) => fits &= lanes.iter().all(|x| x == known),
+                _ => geometry.push(lanes),
+            }
+            x
+        });
+        if !fits {
+            return None;
+        }
+        let mut of_design = vec![[0.0; LANES]; program.design.outputs.len()];
+        let first = program.step.inputs - of_design.len() - geometry.len();
+        let mut inputs = vec![[0.0; LANES]; first];
+        inputs.extend(geometry);
+        Interpreter::new(&program.design).run(&inputs[..program.design.inputs], &[], &mut of_design);
+        inputs.extend(of_design);
+        let outputs = vec![[0.0; LANES]; program.step.outputs.len()];
+        let interpreter = program.code.is_none().then(|| Interpreter::new(&program.step));
+        Some(Self {
+            interpreter,
+            scratch: Scratch::default(),
+            inputs,
+            outputs,
+            program,
+            tried: 0,
+            refused: 0,
+        })
+    }
+
+    /// Solves what stands in `state`, the prediction, for these drivers: coordinates with their rates, and what the blocks are judged by.
+    /// `branch` says which sign of each determinant is expected, and `least` which pivot ratio at the least; `trust` bounds the first
+    /// correction (rad, or sizes).
+    #[inline(always)]
+    pub fn solve<T: Real>(
+        &mut self,
+        state: &mut State<T>,
+        drivers: &[[T; 3]],
+        (branch, least): (&[(bool, f64)], &[f64]),
+        trust: f64,
+    ) -> Result<Residuals, Refused> {
+        self.tried += 1;
+        let found = self.try_to_solve(state, drivers, (branch, least), trust);
+        self.refused += usize::from(found.is_err());
+        found
+    }
+
+    #[inline(always)]
+    fn try_to_solve<T: Real>(
+        &mut self,
+        state: &mut State<T>,
+        drivers: &[[T; 3]],
+        (branch, least): (&[(bool, f64)], &[f64]),
+        trust: f64,
+    ) -> Result<Residuals, Refused> {
+        let (program, witness) = (&self.program, state.witness);
+        let mut inputs = self.inputs.iter_mut();
+        let mut give = |x: T| {
+            if let Some(lanes) = inputs.next() {
+                x.store(lanes);
+            }
+        };
+        for channel in &program.channels {
+            match *channel {
+                Channel::Coordinate(c) => give(state.q[c]),
+                Channel::Ball(c) => (0..4).for_each(|k| give(state.balls[c].component(k))),
+            }
+        }
+        drivers.iter().flatten().for_each(|f| give(*f));
+        match (&program.code, &mut self.interpreter) {
+            (Some(code), _) => code.run(&mut self.scratch, &self.inputs, &[], &mut self.outputs),
+            (None, Some(interpreter)) => interpreter.run(&self.inputs, &[], &mut self.outputs),
+            (None, None) => return Err(Refused),
+        }
+        let (at, places) = (|k: usize| witness.load(&self.outputs[k]), program.outputs());
+        // All comparisons are written so that NaN is refused.
+        let first = at(places.corrections).largest();
+        let last = at(places.corrections + program.purpose.corrections - 1).largest();
+        if !(first <= trust && last <= QUADRATIC) && !program.blocks.is_empty() {
+            return Err(Refused);
+        }
+        for (b, (growth, is_even)) in program.blocks.iter().enumerate() {
+            let k = places.blocks + PER_BLOCK * b;
+            let watched = crate::space::Watched {
+                product: at(k),
+                most: at(k + 1),
+                least: at(k + 2),
+                growth: at(k + 3),
+            };
+            let (ratio, positive) = watched.verdict();
+            let positive = positive == *is_even;
+            let grown = watched.growth.largest() <= f64::max(MOST_GROWTH, 2.0 * growth);
+            if !(grown && positive == branch[b].0 && ratio > 0.0 && ratio >= least[b]) {
+                return Err(Refused);
+            }
+            state.pivots[b] = (ratio, positive);
+            state.determinants[b] = watched.product.abs();
+        }
+        let residuals =
+            Residuals { largest: at(places.residuals).largest(), scaled: at(places.residuals + 1).largest() };
+        let limits = &self.outputs[places.limits..places.limits + program.limits];
+        if !(residuals.scaled <= LOCKED) || !limits.iter().all(|l| witness.load(l).largest() <= 0.0) {
+            return Err(Refused);
+        }
+        let mut k = 0;
+        for channel in &program.channels {
+            match *channel {
+                Channel::Coordinate(c) => {
+                    (state.q[c], state.qd[c], state.qdd[c]) = (at(k), at(k + 1), at(k + 2));
+                }
+                Channel::Ball(c) => {
+                    let v = Vec3::new(at(k + 1), at(k + 2), at(k + 3));
+                    state.balls[c] = Quat { w: at(k), v };
+                    for axis in 0..3 {
+                        state.q[c + axis] = witness.zero();
+                        (state.qd[c + axis], state.qdd[c + axis]) = (at(k + 4 + axis), at(k + 7 + axis));
+                    }
+                }
+            }
+            k += channel.counts().1;
+        }
+        state.iterations += program.blocks.len() * (program.purpose.corrections + 1);
+        Ok(residuals)
+    }
+
+    /// What the last step handed out besides the motion.
+    pub fn besides(&self) -> &[Lanes] {
+        &self.outputs[self.program.outputs().limits + self.program.limits..]
+    }
+
+    /// Gives the states of the wanted bodies in every lane to `out(lane, body, state)`, as of the last step.
+    #[inline(always)]
+    pub fn each_body<T: Real>(&self, witness: T, mut out: impl FnMut(usize, BodyId, BodyState)) {
+        let mut table = [[0.0; PER_BODY]; LANES];
+        let mut k = self.program.outputs().bodies;
+        let wanted = &self.program.purpose.wanted;
+        for body in (0..wanted.len()).filter(|b| *b != GROUND.0 && wanted[*b]) {
+            let components: [[T; 8]; 3] =
+                std::array::from_fn(|i| std::array::from_fn(|j| witness.load(&self.outputs[k + 8 * i + j])));
+            turn_over(&components, &mut table);
+            for (lane, x) in table[..T::LANES].iter().enumerate() {
+                out(lane, BodyId(body), BodyState::from_components(x));
+            }
+            k += PER_BODY;
+        }
+    }
+}

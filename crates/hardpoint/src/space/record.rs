@@ -1,0 +1,87 @@
+//! The recording scalar as a [`Real`]: kernels are recorded by running them with it.
+
+use std::cell::Cell;
+
+use hardpoint_tape::{Call, Number};
+
+use super::real::{Function, Real};
+
+thread_local! {
+    /// Whether something that is recorded on this thread was looked at lane by lane.
+    static BY_LANES: Cell<bool> = const { Cell::new(false) };
+}
+
+/// Forgets what was recorded before.
+pub(crate) fn begin() {
+    BY_LANES.set(false);
+}
+
+/// Whether everything since [`begin`] is arithmetic: no lane was looked at, since a program takes what is made of it for a constant.
+pub(crate) fn is_arithmetic() -> bool {
+    !BY_LANES.get()
+}
+
+/// Decisions go by the values of the run that is recorded.
+impl Real for Number {
+    const LANES: usize = 1;
+    fn like(self, x: f64) -> Self {
+        Number::constant(x)
+    }
+    fn like_lanes(self, mut lane: impl FnMut(usize) -> f64) -> Self {
+        Number::constant(lane(0))
+    }
+    fn lane(self, _: usize) -> f64 {
+        BY_LANES.set(true);
+        self.value()
+    }
+    fn store(self, out: &mut [f64]) {
+        out[0] = self.lane(0);
+    }
+    fn each_lane(components: &[Self; 8], mut out: impl FnMut(usize, &[f64; 8])) {
+        out(0, &components.map(|x| x.lane(0)));
+    }
+    fn times_plus(self, factor: Self, addend: Self) -> Self {
+        Number::times_plus(self, factor, addend)
+    }
+    fn sqrt(self) -> Self {
+        Number::sqrt(self)
+    }
+    fn abs(self) -> Self {
+        Number::abs(self)
+    }
+    fn round(self) -> Self {
+        Number::round(self)
+    }
+    fn select(self, other: Self, first: impl Fn(usize) -> bool + Copy) -> Self {
+        BY_LANES.set(true);
+        if first(0) { self } else { other }
+    }
+    fn map(self, function: Function) -> Self {
+        self.call(match function {
+            Function::Tan => Call::Tan,
+            Function::Asin => Call::Asin,
+            Function::Acos => Call::Acos,
+            Function::Atan => Call::Atan,
+            Function::Sinh => Call::Sinh,
+            Function::Cosh => Call::Cosh,
+            Function::Tanh => Call::Tanh,
+            Function::Exp => Call::Exp,
+            Function::Ln => Call::Ln,
+        })
+    }
+    fn powf(self, exponent: f64) -> Self {
+        Number::powf(self, Number::constant(exponent))
+    }
+    fn atan2(self, x: Self) -> Self {
+        Number::atan2(self, x)
+    }
+    fn within<R>(self, f: impl FnOnce() -> R) -> R {
+        f()
+    }
+    fn larger(self, o: Self) -> Self {
+        Number::larger(self, o)
+    }
+    fn largest(self) -> f64 {
+        self.value()
+    }
+}
