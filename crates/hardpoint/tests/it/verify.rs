@@ -16,6 +16,9 @@ fn verified(analysis: &Analysis<'_>, solution: &Solution, scheme: Scheme) -> Ver
     verify(analysis, solution, &VerifyOptions::new(scheme), |_| ControlFlow::Continue(()))
 }
 
+/// A variable whose coarsest step errs less than this moves nothing: what is left is round-off, and none where the bits agree.
+const NO_TRUNCATION: f64 = 1e-9;
+
 /// With the square of the step for central differences, with the step for one-sided ones.
 #[test]
 fn sensitivities_match_resolved_designs_and_the_error_falls_as_it_must() {
@@ -38,6 +41,7 @@ fn sensitivities_match_resolved_designs_and_the_error_falls_as_it_must() {
                 let coarse = check
                     .sweep
                     .iter()
+                    .filter(|_| check.sweep[0].error > NO_TRUNCATION)
                     .take_while(|s| s.step > best.step && s.error > a_decade * best.error)
                     .filter(|s| s.error < 1e-2);
                 for pair in coarse.collect::<Vec<_>>().windows(3) {
