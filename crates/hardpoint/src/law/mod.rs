@@ -334,8 +334,8 @@ impl Law {
     /// derivatives, then the second.
     ///
     /// Every lane is what [`at`](Self::at) is at its time, but for the last places of what depends on a sine or cosine, and
-    /// takes its own side where the law is not smooth. It is several times faster: only `abs`, `min`, `max`, `step`, `if`,
-    /// powers that are not whole, and functions other than `sin`, `cos` and `sqrt` are evaluated one time after the other.
+    /// takes its own side where the law is not smooth. It is several times faster: only powers that are not whole and functions
+    /// other than `sin`, `cos`, `sqrt` and `abs` are taken from one time after the other.
     ///
     /// ```
     /// use hardpoint::law::Law;

@@ -89,11 +89,19 @@ impl<T: Real> Term for T {
     }
 
     fn smaller(self, o: Self) -> Self {
-        in_lanes(self, o, |k| is_it(self, o, k, Ordering::Less))
+        rarely(
+            self,
+            #[inline(always)]
+            || in_lanes(self, o, |k| is_it(self, o, k, Ordering::Less)),
+        )
     }
 
     fn greater(self, o: Self) -> Self {
-        in_lanes(self, o, |k| is_it(self, o, k, Ordering::Greater))
+        rarely(
+            self,
+            #[inline(always)]
+            || in_lanes(self, o, |k| is_it(self, o, k, Ordering::Greater)),
+        )
     }
 
     fn step(self, x0: Self, h0: Self, x1: Self, h1: Self) -> Self {
@@ -118,9 +126,18 @@ impl<T: Real> Term for T {
     }
 
     fn choose(self, comparison: Comparison, b: Self, x: Self, y: Self) -> Self {
-        let holds = |k: usize| comparison.holds(self.lane(k), b.lane(k));
-        let chosen = in_lanes(x, y, |k| holds(k) == Some(true));
-        in_lanes(chosen, undefined(self), |k| holds(k).is_some())
+        rarely(
+            self,
+            #[inline(always)]
+            || {
+                let holds = |k: usize| comparison.holds(self.lane(k), b.lane(k));
+                if (1..T::LANES).all(|k| holds(k) == holds(0)) {
+                    return holds(0).map_or(undefined(self), |holds| if holds { x } else { y });
+                }
+                let chosen = in_lanes(x, y, |k| holds(k) == Some(true));
+                in_lanes(chosen, undefined(self), |k| holds(k).is_some())
+            },
+        )
     }
 
     #[inline(always)]
@@ -141,22 +158,26 @@ fn rarely<T: Real>(like: T, f: impl FnOnce() -> T) -> T {
 }
 
 /// One number in the lanes that `first` says, another in the rest.
+#[inline(always)]
 fn in_lanes<T: Real>(one: T, other: T, first: impl Fn(usize) -> bool) -> T {
     let takes = lanes(one, first);
     one.select(other, |k| takes[k])
 }
 
 /// What is so in every lane.
+#[inline(always)]
 fn lanes<T: Real>(_: T, is_so: impl Fn(usize) -> bool) -> [bool; LANES] {
     std::array::from_fn(|k| k < T::LANES && is_so(k))
 }
 
 /// What has no value, and no derivative either.
+#[inline(always)]
 fn undefined<T: Real>(like: T) -> T {
     like.like(f64::NAN) * like
 }
 
 /// Whether `x` is at least as far on a side as `o` is, in lane `k`; or, of two that do not compare, the one without a value.
+#[inline(always)]
 fn is_it<T: Real>(x: T, o: T, k: usize, side: Ordering) -> bool {
     match x.order(o, k) {
         Some(order) => order == side || order == Ordering::Equal,
