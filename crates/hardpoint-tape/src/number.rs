@@ -304,6 +304,20 @@ impl Neg for Number {
     }
 }
 
+impl Add<f64> for Number {
+    type Output = Self;
+    fn add(self, o: f64) -> Self {
+        self + Self::constant(o)
+    }
+}
+
+impl Mul<f64> for Number {
+    type Output = Self;
+    fn mul(self, o: f64) -> Self {
+        self * Self::constant(o)
+    }
+}
+
 impl AddAssign for Number {
     #[inline]
     fn add_assign(&mut self, o: Self) {

@@ -86,6 +86,7 @@ pub mod law;
 pub mod measure;
 pub mod model;
 pub mod motion;
+pub mod number;
 pub mod sensitivity;
 mod sink;
 pub mod space;

@@ -24,8 +24,9 @@ use winnow::prelude::*;
 use winnow::stream::LocatingSlice;
 use winnow::token::{any, one_of, take_while};
 
-use super::function::{Binary, Comparison, Unary};
 use super::program::{MAX_WAITING, Operation, Program};
+use super::term::{Binary, Comparison};
+use crate::number::Function;
 
 /// What is wrong with the text of a law.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
@@ -44,8 +45,8 @@ const MAX_NESTING: usize = 64;
 
 /// How a name that is followed by arguments becomes an operation.
 #[derive(Clone, Copy)]
-enum Function {
-    One(Unary),
+enum Call {
+    One(Function),
     Two(Binary),
     /// Of two or more arguments, taken two at a time.
     Fold(Binary),
@@ -54,34 +55,30 @@ enum Function {
     If,
 }
 
-/// The functions in the order in which help lists them, with the way to call them.
-const FUNCTIONS: [(&str, &str, Function); 21] = [
-    ("sin", "sin(x)", Function::One(Unary::Sin)),
-    ("cos", "cos(x)", Function::One(Unary::Cos)),
-    ("tan", "tan(x)", Function::One(Unary::Tan)),
-    ("asin", "asin(x)", Function::One(Unary::Asin)),
-    ("acos", "acos(x)", Function::One(Unary::Acos)),
-    ("atan", "atan(x)", Function::One(Unary::Atan)),
-    ("atan2", "atan2(y, x)", Function::Two(Binary::Atan2)),
-    ("sinh", "sinh(x)", Function::One(Unary::Sinh)),
-    ("cosh", "cosh(x)", Function::One(Unary::Cosh)),
-    ("tanh", "tanh(x)", Function::One(Unary::Tanh)),
-    ("exp", "exp(x)", Function::One(Unary::Exp)),
-    ("ln", "ln(x)", Function::One(Unary::Ln)),
-    ("log10", "log10(x)", Function::One(Unary::Log10)),
-    ("sqrt", "sqrt(x)", Function::One(Unary::Sqrt)),
-    ("pow", "pow(x, p)", Function::Power),
-    ("hypot", "hypot(x, y)", Function::Two(Binary::Hypot)),
-    ("abs", "abs(x)", Function::One(Unary::Abs)),
-    ("min", "min(a, b, ...)", Function::Fold(Binary::Min)),
-    ("max", "max(a, b, ...)", Function::Fold(Binary::Max)),
-    ("step", "step(x, x0, h0, x1, h1)", Function::Step),
-    ("if", "if(a < b, x, y)", Function::If),
+/// What is called with more than one argument: the function of one that it follows in lists, its name, and the way to call it.
+const OF_MORE: [(Function, &str, &str, Call); 7] = [
+    (Function::Atan, "atan2", "atan2(y, x)", Call::Two(Binary::Atan2)),
+    (Function::Sqrt, "pow", "pow(x, p)", Call::Power),
+    (Function::Sqrt, "hypot", "hypot(x, y)", Call::Two(Binary::Hypot)),
+    (Function::Abs, "min", "min(a, b, ...)", Call::Fold(Binary::Min)),
+    (Function::Abs, "max", "max(a, b, ...)", Call::Fold(Binary::Max)),
+    (Function::Abs, "step", "step(x, x0, h0, x1, h1)", Call::Step),
+    (Function::Abs, "if", "if(a < b, x, y)", Call::If),
 ];
+
+/// All functions in the order in which help lists them, each with the way to call it where that is not `name(x)`.
+fn functions() -> impl Iterator<Item = (&'static str, Option<&'static str>, Call)> {
+    Function::ALL.iter().flat_map(|&function| {
+        let following = OF_MORE.iter().filter(move |(after, ..)| *after == function);
+        let following = following.map(|&(_, name, signature, call)| (name, Some(signature), call));
+        std::iter::once((function.name(), None, Call::One(function))).chain(following)
+    })
+}
 
 /// The program that `text` writes, with `parameters` for further names.
 pub(super) fn parse(text: &str, parameters: &[&str]) -> Result<Program, ExpressionError> {
     let mut descent = Descent::new(text, parameters);
+    descent.program = Program::of_time();
     let mut known = std::collections::BTreeSet::new();
     for name in parameters {
         descent.check_parameter(name, known.insert(name))?;
@@ -280,7 +277,7 @@ impl<'a> Descent<'a> {
         }
         self.power()?;
         if is_negative {
-            self.program.emit(Operation::One(Unary::Neg));
+            self.program.emit(Operation::Neg);
         }
         Ok(())
     }
@@ -313,8 +310,11 @@ impl<'a> Descent<'a> {
                 self.is_used[parameter] = true;
                 self.leaf(Operation::Parameter(parameter))
             }
-            Token::Name(name) => match FUNCTIONS.iter().find(|(known, ..)| *known == name) {
-                Some(&(name, signature, function)) => self.call(name, signature, function),
+            Token::Name(name) => match functions().find(|(known, ..)| *known == name) {
+                Some((name, signature, function)) => {
+                    let signature = signature.map_or_else(|| format!("{name}(x)"), str::to_owned);
+                    self.call(name, &signature, function)
+                }
                 None => match &mut self.free {
                     Some(free) => {
                         let number = free.number(name);
@@ -342,7 +342,7 @@ impl<'a> Descent<'a> {
         Ok(())
     }
 
-    fn call(&mut self, name: &str, signature: &str, function: Function) -> Result<(), ExpressionError> {
+    fn call(&mut self, name: &str, signature: &str, function: Call) -> Result<(), ExpressionError> {
         let name_start = self.span.start;
         self.advance();
         if self.token != Token::Symbol("(") {
@@ -353,24 +353,24 @@ impl<'a> Descent<'a> {
         self.advance();
 
         let (fewest, most) = match function {
-            Function::One(_) => (1, 1),
-            Function::Two(_) | Function::Power => (2, 2),
-            Function::Fold(_) => (2, usize::MAX),
-            Function::If => (3, 3),
-            Function::Step => (5, 5),
+            Call::One(_) => (1, 1),
+            Call::Two(_) | Call::Power => (2, 2),
+            Call::Fold(_) => (2, usize::MAX),
+            Call::If => (3, 3),
+            Call::Step => (5, 5),
         };
         let mut comparison = Comparison::Less;
         let mut arguments = Vec::new(); // where each begins in the program, and its span
         while self.token != Token::Symbol(")") || !arguments.is_empty() {
             let (first_operation, start) = (self.program.len(), self.span.start);
-            if matches!(function, Function::If) && arguments.is_empty() {
+            if matches!(function, Call::If) && arguments.is_empty() {
                 comparison = self.condition()?;
             } else {
                 self.nested(Self::sum)?;
             }
             arguments.push((first_operation, start..self.previous.end));
             match function {
-                Function::Fold(fold) if arguments.len() > 1 => self.program.emit(Operation::Two(fold)),
+                Call::Fold(fold) if arguments.len() > 1 => self.program.emit(Operation::Two(fold)),
                 // To be counted only.
                 _ if arguments.len() > most => self.program.drop_operand(first_operation),
                 _ => {}
@@ -384,20 +384,20 @@ impl<'a> Descent<'a> {
 
         if arguments.len() < fewest || arguments.len() > most {
             let wanted = match function {
-                Function::One(_) => "1 argument".to_owned(),
-                Function::Fold(_) => "2 or more arguments".to_owned(),
+                Call::One(_) => "1 argument".to_owned(),
+                Call::Fold(_) => "2 or more arguments".to_owned(),
                 _ => format!("{fewest} arguments"),
             };
             let message = format!("`{name}` takes {wanted}, not {}", arguments.len());
             return Err(error(name_start..self.previous.end, message, Some(&format!("write `{signature}`"))));
         }
         match function {
-            Function::One(function) => self.program.emit(Operation::One(function)),
-            Function::Two(function) => self.program.emit(Operation::Two(function)),
-            Function::Fold(_) => {} // emitted one by one above
-            Function::Power => self.program.emit_power(),
-            Function::If => self.program.emit(Operation::Select(comparison)),
-            Function::Step => {
+            Call::One(function) => self.program.emit(Operation::One(function)),
+            Call::Two(function) => self.program.emit(Operation::Two(function)),
+            Call::Fold(_) => {} // emitted one by one above
+            Call::Power => self.program.emit_power(),
+            Call::If => self.program.emit(Operation::Select(comparison)),
+            Call::Step => {
                 self.check_step_order(&arguments)?;
                 self.program.emit(Operation::Step);
             }
@@ -548,7 +548,7 @@ impl<'a> Descent<'a> {
     }
 
     fn unknown_name(&self, name: &str) -> ExpressionError {
-        let functions: Vec<&str> = FUNCTIONS.iter().map(|(known, ..)| *known).collect();
+        let functions: Vec<&str> = functions().map(|(known, ..)| known).collect();
         let lower = name.to_lowercase();
         let hint = match lower.as_str() {
             "e" => Some("for Euler's number write `exp(1)`; ".to_owned()),
@@ -581,7 +581,7 @@ impl<'a> Descent<'a> {
 
 /// Whether expressions give the name a meaning of their own.
 fn is_taken(name: &str) -> bool {
-    ["t", "pi"].contains(&name) || FUNCTIONS.iter().any(|(known, ..)| *known == name)
+    ["t", "pi"].contains(&name) || functions().any(|(known, ..)| known == name)
 }
 
 /// Whether expressions can use what has this name.

@@ -3,15 +3,12 @@
 use std::fmt;
 
 use super::expression::{self, ExpressionError};
-use super::jet::TimeJet;
 use super::jumps::{Break, find_switches};
 use super::kind::Shape;
-use super::lanes::Lanes;
 use super::parameter::{Parameter, ParameterKind, Seed, parameter, seeded};
-use super::program::{Program, fixed};
+use super::program::Program;
 use super::range::Stretch;
-use super::scalar::Scalar;
-use crate::space::Real;
+use crate::number::{Jet, Real};
 
 /// An expression, its parameters, and what evaluates it.
 #[derive(Clone)]
@@ -46,20 +43,18 @@ impl Formula {
 }
 
 impl Shape for Formula {
-    fn at<S: Scalar>(&self, time: TimeJet<S>, seed: Option<Seed>) -> TimeJet<S> {
-        match seed {
-            None => self.program.evaluate(time, fixed),
-            Some(_) => self.symbolic.evaluate(time, |index| seeded(self.values[index], index, seed)),
-        }
-    }
-
     #[inline(always)]
-    fn at_lanes<R: Real>(&self, times: Lanes<R>) -> TimeJet<Lanes<R>> {
-        self.program.at_lanes(times)
+    fn at<T: Real, const N: usize>(&self, time: Jet<T, N>, seed: Option<Seed<T>>) -> Jet<T, N> {
+        let program = if seed.is_some() { &self.symbolic } else { &self.program };
+        program.at(
+            time,
+            #[inline(always)]
+            |index| Jet::constant(seeded(time.value(), self.values[index], index, seed)),
+        )
     }
 
     fn over(&self, from: f64, to: f64) -> Stretch {
-        self.program.over_stretch(from, to)
+        self.program.at(Stretch::time(from, to), |_| Stretch::UNBOUNDED)
     }
 
     fn parameters(&self) -> Vec<Parameter> {

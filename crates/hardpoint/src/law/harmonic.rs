@@ -4,13 +4,11 @@ use std::f64::consts::TAU;
 use std::fmt;
 
 use super::error::{LawError, check_finite};
-use super::jet::TimeJet;
 use super::kind::{Shape, write_sum};
-use super::lanes::Lanes;
 use super::parameter::{Parameter, ParameterKind, Seed, parameter, seeded};
 use super::range::Stretch;
-use super::scalar::{Arithmetic, Scalar};
-use crate::space::Real;
+use super::term::Term;
+use crate::number::{Function, Jet, Real};
 
 /// A harmonic law: offset + amplitude sin(2π frequency t + phase).
 ///
@@ -40,27 +38,17 @@ impl Harmonic {
 }
 
 impl Shape for Harmonic {
-    fn at<S: Scalar>(&self, time: TimeJet<S>, seed: Option<Seed>) -> TimeJet<S> {
-        let amplitude: S = seeded(self.amplitude, 0, seed);
-        let frequency: S = seeded(self.frequency, 1, seed);
-        let phase: S = seeded(self.phase, 2, seed);
-        let offset: S = seeded(self.offset, 3, seed);
-        curve(time, amplitude, frequency, phase, offset)
-    }
-
     #[inline(always)]
-    fn at_lanes<R: Real>(&self, times: Lanes<R>) -> TimeJet<Lanes<R>> {
-        let [amplitude, frequency, phase, offset] = [self.amplitude, self.frequency, self.phase, self.offset]
-            .map(
-                #[inline(always)]
-                |number| times.like(number),
-            );
-        curve(TimeJet::time(times), amplitude, frequency, phase, offset)
+    fn at<T: Real, const N: usize>(&self, time: Jet<T, N>, seed: Option<Seed<T>>) -> Jet<T, N> {
+        let number = |value: f64, parameter: usize| seeded(time.value(), value, parameter, seed);
+        let turn = time.times(number(self.frequency, 1) * TAU).plus(number(self.phase, 2));
+        turn.map(Function::Sin).times(number(self.amplitude, 0)).plus(number(self.offset, 3))
     }
 
     fn over(&self, from: f64, to: f64) -> Stretch {
         let of = Stretch::constant;
-        (Stretch::time(from, to) * of(TAU * self.frequency) + of(self.phase)).sin() * of(self.amplitude)
+        (Stretch::time(from, to) * of(TAU * self.frequency) + of(self.phase)).function(Function::Sin)
+            * of(self.amplitude)
             + of(self.offset)
     }
 
@@ -93,12 +81,6 @@ impl Shape for Harmonic {
             _ => &mut self.offset,
         } = value;
     }
-}
-
-/// offset + amplitude sin(2π frequency t + phase)
-#[inline(always)]
-fn curve<S: Arithmetic>(time: TimeJet<S>, amplitude: S, frequency: S, phase: S, offset: S) -> TimeJet<S> {
-    time.times(frequency * TAU).plus(phase).sin().times(amplitude).plus(offset)
 }
 
 /// The expression that is this law.

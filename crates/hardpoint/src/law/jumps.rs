@@ -1,9 +1,10 @@
 //! Where a law is not smooth.
 
 use super::Law;
-use super::jet::TimeJet;
 use super::kind::Shape;
 use super::program::Program;
+use super::sequence::backwards;
+use crate::number::Jet;
 
 /// A jump of a law, of its speed or of its acceleration.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -134,9 +135,9 @@ pub(super) fn jumps(law: &Law, from: f64, to: f64) -> Vec<Jump> {
 }
 
 /// The law at `t`, continued from the times before.
-fn just_before(law: &Law, t: f64) -> TimeJet {
-    let [f, d, dd, ddd] = law.evaluate(TimeJet::from_derivatives([t, -1.0, 0.0, 0.0]), None).derivatives();
-    TimeJet::from_derivatives([f, -d, dd, -ddd])
+fn just_before(law: &Law, t: f64) -> Jet {
+    let [f, d, dd, ddd] = law.evaluate(backwards(t), None).derivatives();
+    Jet([f, -d, dd, -ddd])
 }
 
 /// The breaks in the order of time, those at the same time as one.

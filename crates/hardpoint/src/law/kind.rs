@@ -4,30 +4,24 @@ use std::fmt;
 
 use super::formula::Formula;
 use super::harmonic::Harmonic;
-use super::jet::TimeJet;
 use super::jumps::Break;
-use super::lanes::Lanes;
 use super::parameter::{Parameter, ParameterKind, Seed};
 use super::polynomial::Polynomial;
 use super::range::Stretch;
-use super::scalar::Scalar;
 use super::sequence::Sequence;
 use super::smooth_step::SmoothStep;
 use super::speed::ConstantSpeed;
 use super::table::Spline;
-use crate::space::Real;
+use crate::number::{Jet, Real};
 
 /// A kind of law.
 ///
 /// The time is given as a jet. Where it runs backwards (its derivative is -1) a law takes the side that is active just
 /// *before* the instant, so that one-sided limits need no code of their own.
 pub(super) trait Shape: fmt::Display {
-    /// f at a time, and its derivatives; with the derivative by one parameter if there is a seed.
-    fn at<S: Scalar>(&self, time: TimeJet<S>, seed: Option<Seed>) -> TimeJet<S>;
-
-    /// f at several times side by side, which run forwards. Every lane is what [`at`](Self::at) is at its time, but for the
-    /// last place of a sine.
-    fn at_lanes<R: Real>(&self, times: Lanes<R>) -> TimeJet<Lanes<R>>;
+    /// f at a time, and its derivatives; with the derivative by one parameter if there is a seed. Lanes hold times, and each
+    /// takes its own side.
+    fn at<T: Real, const N: usize>(&self, time: Jet<T, N>, seed: Option<Seed<T>>) -> Jet<T, N>;
 
     /// All parameters, as written.
     fn parameters(&self) -> Vec<Parameter>;
@@ -77,13 +71,9 @@ macro_rules! for_kind {
 }
 
 impl Shape for Kind {
-    fn at<S: Scalar>(&self, time: TimeJet<S>, seed: Option<Seed>) -> TimeJet<S> {
-        for_kind!(self, shape => shape.at(time, seed))
-    }
-
     #[inline(always)]
-    fn at_lanes<R: Real>(&self, times: Lanes<R>) -> TimeJet<Lanes<R>> {
-        for_kind!(self, shape => shape.at_lanes(times))
+    fn at<T: Real, const N: usize>(&self, time: Jet<T, N>, seed: Option<Seed<T>>) -> Jet<T, N> {
+        for_kind!(self, shape => shape.at(time, seed))
     }
 
     fn parameters(&self) -> Vec<Parameter> {

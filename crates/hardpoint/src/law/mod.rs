@@ -32,7 +32,7 @@
 //! | `step(x, x0, h0, x1, h1)` | `h0` up to `x0`, `h1` from `x1` on, between them `h0 + (h1 - h0)(3u² - 2u³)` |
 //! | `if(a < b, x, y)` | `x` where the comparison (`<`, `<=`, `>`, `>=`) holds, else `y` |
 //!
-//! Derivatives are propagated as [`TimeJet`]s, so they carry rounding error only, no step size; `abs`, `min`, `max`, `step`
+//! Derivatives are propagated as [`Jet`]s, so they carry rounding error only, no step size; `abs`, `min`, `max`, `step`
 //! and `if` are differentiated on the side that is active.
 //!
 //! What is *not* here: laws of anything but the time; corners of expressions that no `abs`, `atan2`, `min`, `max`, `step` or
@@ -41,23 +41,20 @@
 mod error;
 mod expression;
 mod formula;
-mod function;
 mod harmonic;
-mod jet;
 mod jumps;
 mod kind;
-mod lanes;
 mod number;
 mod parameter;
 mod polynomial;
 mod program;
 mod range;
-mod scalar;
 mod sequence;
 mod smooth_step;
 mod speed;
 mod spline;
 mod table;
+mod term;
 
 use std::fmt;
 
@@ -67,16 +64,13 @@ pub use error::LawError;
 pub use expression::ExpressionError;
 use formula::Formula;
 pub use harmonic::Harmonic;
-pub use jet::TimeJet;
 pub use jumps::Jump;
 use kind::{Kind, Shape};
-use lanes::Lanes;
 pub use number::Expression;
 use parameter::Seed;
 pub use parameter::{Parameter, ParameterKind};
 use polynomial::Polynomial;
 pub use range::{Range, Stretch};
-use scalar::{Dual, Scalar};
 pub use sequence::Piece;
 use sequence::Sequence;
 pub use smooth_step::SmoothStep;
@@ -84,7 +78,17 @@ pub use speed::ConstantSpeed;
 use table::Spline;
 pub use table::{EndRates, Ends, SplineDegree, Table};
 
-use crate::space::{LANES, Real, lanes};
+use crate::number::{Dual, Jet, LANES, Real, lanes};
+
+/// The value of a law and its first three time derivatives at one instant.
+///
+/// ```
+/// use hardpoint::law::TimeJet;
+///
+/// let t = TimeJet::time(3.0);
+/// assert_eq!((t * t).derivatives(), [9.0, 6.0, 2.0, 0.0]);
+/// ```
+pub type TimeJet<T = f64> = Jet<T, 4>;
 
 /// The law of motion of a driver, f(t), in the driver's own unit with t in seconds.
 ///
@@ -306,23 +310,32 @@ impl Law {
         self
     }
 
-    /// The value and the first three time derivatives at time `t`: driver unit per s⁰, s, s², s³; `t` in seconds.
+    /// The value and the first three time derivatives at time `t`: driver unit per s⁰, s, s², s³; `t` in seconds. Over any
+    /// number: one time, several in lanes, or what carries derivatives.
     ///
     /// Where the law is not smooth these are the derivatives of the side that is active just after `t`; of an `if` the side
     /// whose condition holds at `t`.
     ///
     /// Where the law is not defined (`sqrt` of a negative number, a division by zero, outside of a table) the result is not
     /// finite; reporting that is left to whoever knows the driver's name.
-    pub fn at(&self, t: f64) -> TimeJet {
-        self.evaluate(TimeJet::time(t), None)
+    pub fn at<T: Real>(&self, t: T) -> TimeJet<T> {
+        self.evaluate(Jet::time(t), None)
+    }
+
+    /// The same with as many derivatives as are wanted.
+    pub(crate) fn to_order<T: Real, const N: usize>(&self, t: T) -> Jet<T, N> {
+        t.within(
+            #[inline(always)]
+            || self.kind.at(Jet::time(t), None) * self.factor,
+        )
     }
 
     /// The values and the first two time derivatives at eight times at once: the values at all times, then the first
     /// derivatives, then the second.
     ///
     /// Every lane is what [`at`](Self::at) is at its time, but for the last places of what depends on a sine or cosine, and
-    /// takes its own side where the law is not smooth. It is several times faster: only `abs`, `min`, `max`, `step`, `if`,
-    /// powers that are not whole, and functions other than `sin`, `cos` and `sqrt` are evaluated one time after the other.
+    /// takes its own side where the law is not smooth. It is several times faster: only powers that are not whole and functions
+    /// other than `sin`, `cos`, `sqrt` and `abs` are taken from one time after the other.
     ///
     /// ```
     /// use hardpoint::law::Law;
@@ -335,19 +348,13 @@ impl Law {
     /// ```
     pub fn at_times(&self, times: &[f64; LANES]) -> [[f64; LANES]; 3] {
         dispatch!(Level::new(), simd => {
-            let [f, d, dd] = self.at_lanes(lanes(simd).like_lanes(|lane| times[lane]));
+            let f: Jet<_, 3> = self.to_order(lanes(simd).like_lanes(|lane| times[lane]));
             let mut at = [[0.0; LANES]; 3];
-            f.store(&mut at[0]);
-            d.store(&mut at[1]);
-            dd.store(&mut at[2]);
+            for (at, f) in at.iter_mut().zip(f.derivatives()) {
+                f.store(at);
+            }
             at
         })
-    }
-
-    /// The value and the first two time derivatives at the time of every lane, as [`at_times`](Self::at_times).
-    pub(crate) fn at_lanes<R: Real>(&self, times: R) -> [R; 3] {
-        let [f, d, dd, _] = self.evaluate_lanes(Lanes(times)).derivatives();
-        [f.0, d.0, dd.0]
     }
 
     /// The numbers in the law that may be varied: those of its kind in the order that the kind documents; of an expression
@@ -390,8 +397,9 @@ impl Law {
     /// When there is no such parameter.
     pub fn derivative(&self, parameter: usize, t: f64) -> TimeJet {
         self.check_index(parameter);
-        let f = self.evaluate::<Dual>(TimeJet::time(Dual::fixed(t)), Some(Seed { parameter, size: 1.0 }));
-        TimeJet::from_derivatives(f.derivatives().map(|derivative| derivative.partial))
+        let seed = Seed { parameter, size: Dual::variable(0.0) };
+        let f = self.evaluate(TimeJet::time(Dual::constant(t)), Some(seed));
+        Jet(f.derivatives().map(|f| f.d))
     }
 
     /// This law with another value of one of its [parameters](Self::parameters).
@@ -460,20 +468,17 @@ impl Law {
     }
 
     /// The law over a time that may run backwards, with the derivative by a parameter if there is a seed.
-    fn evaluate<S: Scalar>(&self, time: TimeJet<S>, seed: Option<Seed>) -> TimeJet<S> {
-        let as_written =
-            seed.map(|seed| match self.kind.parameter_kind(seed.parameter).is_in_driver_unit() {
-                true => Seed { size: seed.size / self.factor, ..seed },
-                false => seed,
-            });
-        self.kind.at(time, as_written) * self.factor
-    }
-
-    /// The law at several times side by side, which run forwards.
-    fn evaluate_lanes<R: Real>(&self, times: Lanes<R>) -> TimeJet<Lanes<R>> {
-        times.0.within(
+    fn evaluate<T: Real, const N: usize>(&self, time: Jet<T, N>, seed: Option<Seed<T>>) -> Jet<T, N> {
+        time.within(
             #[inline(always)]
-            || self.kind.at_lanes(times) * self.factor,
+            || {
+                let as_written =
+                    seed.map(|seed| match self.kind.parameter_kind(seed.parameter).is_in_driver_unit() {
+                        true => Seed { size: seed.size / seed.size.like(self.factor), ..seed },
+                        false => seed,
+                    });
+                self.kind.at(time, as_written) * self.factor
+            },
         )
     }
 

@@ -2,7 +2,7 @@
 
 use super::expression::{self, ExpressionError};
 use super::program::{Operation, Program};
-use crate::space::Real;
+use crate::number::Real;
 
 /// A number of a model that is written as an expression in the [language of laws](super), without the time: `hub + shim/2`.
 ///
@@ -73,7 +73,7 @@ impl Expression {
 
     /// As [`at`](Self::at), over any scalar.
     pub(crate) fn over<T: Real>(&self, witness: T, number: impl Fn(usize) -> T) -> T {
-        self.program.over(witness, number)
+        self.program.at(witness.like(f64::NAN), number)
     }
 
     /// The expression with numbers in place of those names that have one; it has the other names.
@@ -118,7 +118,7 @@ mod tests {
 
     use super::*;
     use crate::law::Law;
-    use crate::space::{Dual, lanes};
+    use crate::number::{Dual, lanes};
 
     /// Every operation, with an `a` between 0.2 and 0.9 and a `b` near 2.
     const TEXTS: [&str; 26] = [

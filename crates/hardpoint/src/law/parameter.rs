@@ -1,6 +1,6 @@
 //! The numbers in a law that may be varied.
 
-use super::scalar::Scalar;
+use crate::number::Real;
 
 /// A number in a law that may be varied, as a design variable is.
 #[derive(Clone, Debug, PartialEq)]
@@ -41,17 +41,18 @@ pub(super) fn parameter(name: impl Into<String>, value: f64, kind: ParameterKind
     Parameter { name: name.into(), value, kind }
 }
 
-/// The parameter by which derivatives are taken, and the change of its number in the law per change of the parameter.
+/// The parameter by which derivatives are taken, and what to add to its number in the law: nothing, with a derivative.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Seed {
+pub(super) struct Seed<T> {
     pub parameter: usize,
-    pub size: f64,
+    pub size: T,
 }
 
 /// The number `value` of the parameter with this index, which carries a derivative if it is the one that is varied.
-pub(super) fn seeded<S: Scalar>(value: f64, parameter: usize, seed: Option<Seed>) -> S {
+#[inline(always)]
+pub(super) fn seeded<T: Real>(like: T, value: f64, parameter: usize, seed: Option<Seed<T>>) -> T {
     match seed {
-        Some(seed) if seed.parameter == parameter => S::varied(value, seed.size),
-        _ => S::fixed(value),
+        Some(seed) if seed.parameter == parameter => seed.size + value,
+        _ => like.like(value),
     }
 }

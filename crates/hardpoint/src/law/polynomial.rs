@@ -3,13 +3,10 @@
 use std::fmt;
 
 use super::error::{LawError, check_finite};
-use super::jet::TimeJet;
 use super::kind::{Shape, write_sum};
-use super::lanes::Lanes;
 use super::parameter::{Parameter, ParameterKind, Seed, parameter, seeded};
 use super::range::Stretch;
-use super::scalar::{Arithmetic, Scalar};
-use crate::space::Real;
+use crate::number::{Jet, Real};
 
 /// c0 + c1 t + c2 t² + ..., with the coefficients for parameters.
 #[derive(Clone, Debug, PartialEq)]
@@ -31,14 +28,14 @@ impl Polynomial {
 }
 
 impl Shape for Polynomial {
-    fn at<S: Scalar>(&self, time: TimeJet<S>, seed: Option<Seed>) -> TimeJet<S> {
-        let coefficients = self.coefficients.iter().enumerate();
-        sum_of_powers(coefficients.map(|(k, &value)| seeded(value, k, seed)), time)
-    }
-
     #[inline(always)]
-    fn at_lanes<R: Real>(&self, times: Lanes<R>) -> TimeJet<Lanes<R>> {
-        sum_of_powers_of_time(&self.coefficients, times, |coefficient| times.like(*coefficient))
+    fn at<T: Real, const N: usize>(&self, time: Jet<T, N>, seed: Option<Seed<T>>) -> Jet<T, N> {
+        sum_of_powers(
+            time,
+            self.coefficients.len(),
+            #[inline(always)]
+            |k| seeded(time.value(), self.coefficients[k], k, seed),
+        )
     }
 
     fn over(&self, from: f64, to: f64) -> Stretch {
@@ -66,36 +63,23 @@ impl Shape for Polynomial {
     }
 }
 
-/// c0 + c1 x + c2 x² + ..., by Horner's rule.
+/// c0 + c1 x + c2 x² + ..., so many terms, by Horner's rule.
 #[inline(always)]
-pub(super) fn sum_of_powers<S: Arithmetic>(
-    coefficients: impl DoubleEndedIterator<Item = S>,
-    x: TimeJet<S>,
-) -> TimeJet<S> {
-    let mut sum = TimeJet::constant(x.value().like(0.0));
-    for coefficient in coefficients.rev() {
-        sum = (sum * x).plus(coefficient);
+pub(super) fn sum_of_powers<T: Real, const N: usize>(
+    of: Jet<T, N>,
+    terms: usize,
+    coefficient: impl Fn(usize) -> T,
+) -> Jet<T, N> {
+    // f <- f x + c, differentiated by x: d <- d x + f, dd <- dd x + 2 d, ddd <- ddd x + 3 dd
+    let x = of.value();
+    let [mut f, mut d, mut dd, mut ddd] = [x.zero(); 4];
+    for k in (0..terms).rev() {
+        ddd = ddd * x + dd * 3.0;
+        dd = dd * x + d * 2.0;
+        d = d * x + f;
+        f = f * x + coefficient(k);
     }
-    sum
-}
-
-/// c0 + c1 t + c2 t² + ... and its derivatives, by Horner's rule: what [`sum_of_powers`] is of the time itself, without the
-/// products with the ones and zeros that are the time's derivatives. The coefficients are what `number` makes of `from`.
-#[inline(always)]
-pub(super) fn sum_of_powers_of_time<S: Arithmetic, C>(
-    from: &[C],
-    t: S,
-    number: impl Fn(&C) -> S,
-) -> TimeJet<S> {
-    // f <- f t + c, differentiated: d <- d t + f, dd <- dd t + 2 d, ddd <- ddd t + 3 dd
-    let [mut f, mut d, mut dd, mut ddd] = [t.like(0.0); 4];
-    for coefficient in from.iter().rev() {
-        ddd = ddd * t + dd * 3.0;
-        dd = dd * t + d * 2.0;
-        d = d * t + f;
-        f = f * t + number(coefficient);
-    }
-    TimeJet::from_derivatives([f, d, dd, ddd])
+    of.compose([f, d, dd, ddd])
 }
 
 /// The expression that is this law.

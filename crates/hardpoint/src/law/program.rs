@@ -5,21 +5,17 @@
 
 use std::cmp::Ordering;
 
-use super::function::{Binary, Comparison, Unary};
-use super::jet::TimeJet;
-use super::lanes::{Lanes, lane_by_lane};
-use super::range::Stretch;
-use super::scalar::{Arithmetic, Scalar};
-use crate::space::Real;
+use super::term::{Binary, Comparison, Term};
+use crate::number::{Function, Jet, Real};
 
 /// The most operands that may wait for their operation.
 pub(super) const MAX_WAITING: usize = 256;
 
-/// What suffices for nearly every law; clearing the full stack would cost more than evaluating most of them.
-const USUALLY_WAITING: usize = 12;
-
-/// As much for many times at once, where clearing the stack costs more.
+/// What suffices for most expressions; clearing more of the stack would cost more than evaluating them.
 const FEW_WAITING: usize = 4;
+
+/// What suffices for nearly every expression.
+const USUALLY_WAITING: usize = 12;
 
 /// One operation: takes its operands from the stack, the last on top, and leaves one result.
 #[derive(Clone, Copy, Debug)]
@@ -28,7 +24,8 @@ pub(super) enum Operation {
     /// A named parameter, by its place in the list.
     Parameter(usize),
     Time,
-    One(Unary),
+    Neg,
+    One(Function),
     Two(Binary),
     Powi(i32),
     Powf(f64),
@@ -40,14 +37,11 @@ pub(super) enum Operation {
     Settle,
 }
 
-/// The most operands that an operation has.
-const MOST_OPERANDS: usize = 5;
-
 impl Operation {
     fn operands(self) -> usize {
         match self {
             Self::Constant(_) | Self::Parameter(_) | Self::Time => 0,
-            Self::One(_) | Self::Powi(_) | Self::Powf(_) | Self::Settle => 1,
+            Self::Neg | Self::One(_) | Self::Powi(_) | Self::Powf(_) | Self::Settle => 1,
             Self::Two(_) => 2,
             Self::Select(_) => 4,
             Self::Step => 5,
@@ -55,109 +49,33 @@ impl Operation {
     }
 
     /// The result for these operands; of an operation that has any.
-    fn apply<S: Scalar>(self, operands: &[TimeJet<S>]) -> TimeJet<S> {
-        match (self, operands) {
-            (Self::One(function), &[x]) => function.apply(x),
-            (Self::Two(function), &[x, y]) => function.apply(x, y),
-            (Self::Powi(exponent), &[x]) => x.powi(exponent),
-            (Self::Powf(exponent), &[x]) => x.powf(S::fixed(exponent)),
-            (Self::Step, &[x, x0, h0, x1, h1]) => x.step(x0, h0, x1, h1),
-            (Self::Select(comparison), &[a, b, x, y]) => {
-                match comparison.holds(a.value().value(), b.value().value()) {
-                    Some(true) => x,
-                    Some(false) => y,
-                    None => TimeJet::undefined(),
-                }
-            }
-            (Self::Settle, &[x]) => TimeJet::constant(x.value()),
-            _ => unreachable!("an operation has as many operands as it says"),
-        }
-    }
-
-    /// The result for operands that are several numbers side by side: what is arithmetic side by side, all else lane by
-    /// lane, so that every lane takes its own side.
     #[inline(always)]
-    fn apply_to_lanes<R: Real>(self, operands: &[TimeJet<Lanes<R>>]) -> TimeJet<Lanes<R>> {
+    fn of<V: Term>(self, operands: &[V]) -> V {
         match (self, operands) {
-            (Self::One(Unary::Neg), &[x]) => -x,
-            (Self::One(Unary::Sin), &[x]) => x.sin(),
-            (Self::One(Unary::Cos), &[x]) => x.cos(),
-            (Self::One(Unary::Sqrt), &[x]) => x.sqrt(),
-            (Self::Two(Binary::Add), &[x, y]) => x + y,
-            (Self::Two(Binary::Sub), &[x, y]) => x - y,
-            (Self::Two(Binary::Mul), &[x, y]) => x * y,
-            (Self::Two(Binary::Div), &[x, y]) => x / y,
-            (Self::Powi(exponent), &[x]) => x.powi(exponent),
-            (Self::Settle, &[x]) => TimeJet::constant(x.value()),
-            _ => {
-                let mut single = [TimeJet::constant(0.0); MOST_OPERANDS];
-                lane_by_lane(operands[0].value(), |lane| {
-                    for (single, operand) in single.iter_mut().zip(operands) {
-                        *single = operand.lane(lane);
-                    }
-                    self.apply(&single[..operands.len()])
-                })
-            }
-        }
-    }
-
-    /// The result for operands over a stretch of time.
-    fn over_stretch(self, operands: &[Stretch]) -> Stretch {
-        match (self, operands) {
-            (Self::One(function), &[x]) => function.over_stretch(x),
-            (Self::Two(function), &[x, y]) => function.over_stretch(x, y),
-            (Self::Powi(exponent), &[x]) => x.powi(exponent),
-            (Self::Powf(exponent), &[x]) => x.powf(exponent),
+            (Self::Neg, &[x]) => -x,
+            (Self::One(function), &[x]) => x.function(function),
+            (Self::Two(function), &[x, y]) => function.of(x, y),
+            (Self::Powi(exponent), &[x]) => x.to_whole(exponent),
+            (Self::Powf(exponent), &[x]) => x.to_constant(exponent),
             (Self::Step, &[x, x0, h0, x1, h1]) => x.step(x0, h0, x1, h1),
-            (Self::Select(comparison), &[a, b, x, y]) => {
-                Stretch::choose(comparison.holds_between(a.value, b.value), x, y)
-            }
-            // What depends on parameters only does not change.
-            (Self::Settle, &[x]) => x,
-            _ => unreachable!("an operation has as many operands as it says"),
-        }
-    }
-
-    /// The result for operands over any scalar.
-    fn over<R: Real>(self, operands: &[R]) -> R {
-        match (self, operands) {
-            (Self::One(function), &[x]) => function.over(x),
-            (Self::Two(function), &[x, y]) => function.over(x, y),
-            (Self::Powi(exponent), &[x]) => powi(x, exponent),
-            (Self::Powf(exponent), &[x]) => x.powf(exponent),
-            (Self::Step, &[x, x0, h0, x1, h1]) => {
-                // h0 + (h1 - h0) (3 u² - 2 u³)
-                let u = (x - x0) / (x1 - x0);
-                let between = h0 + (h1 - h0) * (u * u * (x.like(3.0) - u * x.like(2.0)));
-                let up = h1.select(between, |k| x.lane(k) >= x1.lane(k));
-                let up = h0.select(up, |k| x.lane(k) < x0.lane(k));
-                up.select(x.like(f64::NAN), |k| x0.lane(k) < x1.lane(k))
-            }
-            (Self::Select(comparison), &[a, b, x, y]) => {
-                let holds = |k: usize| comparison.holds(a.lane(k), b.lane(k));
-                let chosen = x.select(y, |k| holds(k) == Some(true));
-                chosen.select(x.like(f64::NAN), |k| holds(k).is_some())
-            }
-            (Self::Settle, &[x]) => x,
+            (Self::Select(comparison), &[a, b, x, y]) => a.choose(comparison, b, x, y),
+            (Self::Settle, &[x]) => x.settled(),
             _ => unreachable!("an operation has as many operands as it says"),
         }
     }
 
     /// Which of its sides an operation with sides takes for these operands. Sides that join smoothly may be told apart.
-    fn side(self, operands: &[TimeJet]) -> Option<u8> {
+    fn side(self, operands: &[Jet]) -> Option<u8> {
         let sign = |order: Option<Ordering>| order.map_or(9, |order| order as u8);
-        let zero = TimeJet::constant(0.0);
+        let zero = Jet::constant(0.0);
         Some(match self {
-            Self::One(Unary::Abs) => {
-                u8::from(sign(operands[0].cmp_just_after(zero)) == sign(Some(Ordering::Less)))
-            }
-            Self::Two(Binary::Min | Binary::Max) => sign(operands[0].cmp_just_after(operands[1])),
+            Self::One(Function::Abs) => u8::from(operands[0].order(zero, 0) == Some(Ordering::Less)),
+            Self::Two(Binary::Min | Binary::Max) => sign(operands[0].order(operands[1], 0)),
             // The angle jumps by 2π where the point crosses the negative x axis.
             Self::Two(Binary::Atan2) if operands[1].value() >= 0.0 => 7,
             Self::Two(Binary::Atan2) => u8::from(operands[0].value() >= 0.0),
             Self::Step => {
-                let is_before =
-                    |end: usize| operands[0].cmp_just_after(operands[end]) == Some(Ordering::Less);
+                let is_before = |end: usize| operands[0].order(operands[end], 0) == Some(Ordering::Less);
                 u8::from(is_before(1)) + u8::from(is_before(3))
             }
             Self::Select(comparison) => {
@@ -168,21 +86,6 @@ impl Operation {
     }
 }
 
-/// By repeated squaring, in the order in which `f64::powi` multiplies.
-fn powi<R: Real>(x: R, exponent: i32) -> R {
-    let (mut power, mut square, mut left) = (x.like(1.0), x, exponent.unsigned_abs());
-    while left > 0 {
-        if left & 1 == 1 {
-            power = power * square;
-        }
-        left >>= 1;
-        if left > 0 {
-            square = square * square;
-        }
-    }
-    if exponent < 0 { x.like(1.0) / power } else { power }
-}
-
 /// The operations of an expression.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Program {
@@ -190,9 +93,16 @@ pub(super) struct Program {
     /// For every operand that waits, whether it depends on the time.
     waiting: Vec<bool>,
     most_waiting: usize,
+    /// Whether its parameters are the same at all times, so that what depends on them only has no time derivatives.
+    is_of_time: bool,
 }
 
 impl Program {
+    /// An empty program for a function of the time, with parameters that do not depend on it.
+    pub(super) fn of_time() -> Self {
+        Self { is_of_time: true, ..Self::default() }
+    }
+
     /// The program that is a number.
     pub(super) fn constant(value: f64) -> Self {
         let mut program = Self::default();
@@ -235,12 +145,12 @@ impl Program {
         // What does not depend on t has no derivatives, also where its jet's are infinite times zero: sqrt(0). An
         // operand that is a number is one operation, so the operands are all numbers if that many operations are.
         if (start..self.len() - 1).all(|index| self.constant_at(index).is_some()) {
-            let t = TimeJet::constant(f64::NAN);
-            let value =
-                evaluate::<f64, USUALLY_WAITING>(&self.operations[start..], t, fixed, |_, _| ()).value();
+            let mut stack = [f64::NAN; USUALLY_WAITING];
+            let operations = &self.operations[start..];
+            let value = run(operations, f64::NAN, |_| f64::NAN, |_, _| (), &mut stack);
             self.operations.truncate(start);
             self.operations.push(Operation::Constant(value));
-        } else {
+        } else if self.is_of_time {
             self.operations.push(Operation::Settle);
         }
     }
@@ -275,7 +185,7 @@ impl Program {
 
     /// The program with a number, or another parameter, for each of its parameters.
     pub(super) fn with_leaves(&self, leaf: impl Fn(usize) -> Operation) -> Self {
-        let mut program = Self::default();
+        let mut program = Self { is_of_time: self.is_of_time, ..Self::default() };
         for &operation in &self.operations {
             match operation {
                 Operation::Parameter(parameter) => program.emit(leaf(parameter)),
@@ -287,61 +197,46 @@ impl Program {
         program
     }
 
-    /// The program's result at a time, for the given parameters.
-    pub(super) fn evaluate<S: Scalar>(&self, time: TimeJet<S>, parameter: impl Fn(usize) -> S) -> TimeJet<S> {
-        if self.most_waiting <= USUALLY_WAITING {
-            evaluate::<S, USUALLY_WAITING>(&self.operations, time, parameter, |_, _| ())
-        } else {
-            evaluate::<S, MAX_WAITING>(&self.operations, time, parameter, |_, _| ())
-        }
+    /// The program's result at a time, for the given parameters; in whatever the time is given.
+    #[inline(always)]
+    pub(super) fn at<V: Term>(&self, time: V, parameter: impl Fn(usize) -> V) -> V {
+        self.watched(time, parameter, |_, _| ())
     }
 
-    /// The program's result at several times, which run forwards; without parameters.
+    /// The same; `watch` sees each operation with its operands first.
     #[inline(always)]
-    pub(super) fn at_lanes<R: Real>(&self, times: Lanes<R>) -> TimeJet<Lanes<R>> {
-        if self.most_waiting <= FEW_WAITING {
-            evaluate_lanes::<R, FEW_WAITING>(&self.operations, times)
+    fn watched<V: Term>(
+        &self,
+        time: V,
+        parameter: impl Fn(usize) -> V,
+        watch: impl FnMut(Operation, &[V]),
+    ) -> V {
+        let (mut few, mut usual);
+        let stack: &mut [V] = if self.most_waiting <= FEW_WAITING {
+            few = [time; FEW_WAITING];
+            &mut few
         } else if self.most_waiting <= USUALLY_WAITING {
-            evaluate_lanes::<R, USUALLY_WAITING>(&self.operations, times)
+            usual = [time; USUALLY_WAITING];
+            &mut usual
         } else {
-            self.at_lanes_with_full_stack(times)
-        }
+            return self.with_full_stack(time, parameter, watch);
+        };
+        run(&self.operations, time, parameter, watch, stack)
     }
 
     /// Apart, so that no other program pays for room on the stack that only this one needs.
     #[cold]
     #[inline(never)]
-    fn at_lanes_with_full_stack<R: Real>(&self, times: Lanes<R>) -> TimeJet<Lanes<R>> {
-        times.0.within(
+    fn with_full_stack<V: Term>(
+        &self,
+        time: V,
+        parameter: impl Fn(usize) -> V,
+        watch: impl FnMut(Operation, &[V]),
+    ) -> V {
+        time.within(
             #[inline(always)]
-            || evaluate_lanes::<R, MAX_WAITING>(&self.operations, times),
+            || run(&self.operations, time, parameter, watch, &mut [time; MAX_WAITING]),
         )
-    }
-
-    /// Bounds of the program's result, and of its rate, from one time to another; without parameters.
-    pub(super) fn over_stretch(&self, from: f64, to: f64) -> Stretch {
-        if self.most_waiting <= USUALLY_WAITING {
-            over_stretch::<USUALLY_WAITING>(&self.operations, from, to)
-        } else {
-            over_stretch::<MAX_WAITING>(&self.operations, from, to)
-        }
-    }
-
-    /// The program's result over any scalar, for the given parameters; of a program that does not know the time.
-    pub(super) fn over<R: Real>(&self, witness: R, parameter: impl Fn(usize) -> R) -> R {
-        let mut stack: Vec<R> = Vec::with_capacity(self.most_waiting);
-        for &operation in &self.operations {
-            let left = stack.len() - operation.operands();
-            let result = match operation {
-                Operation::Constant(value) => witness.like(value),
-                Operation::Parameter(index) => parameter(index),
-                Operation::Time => witness.like(f64::NAN),
-                _ => operation.over(&stack[left..]),
-            };
-            stack.truncate(left);
-            stack.push(result);
-        }
-        stack.pop().unwrap_or(witness)
     }
 
     /// Whether any operation has sides that it could switch between.
@@ -350,7 +245,7 @@ impl Program {
             use Operation::{One, Select, Step, Two};
             matches!(
                 operation,
-                One(Unary::Abs) | Two(Binary::Min | Binary::Max | Binary::Atan2) | Step | Select(_)
+                One(Function::Abs) | Two(Binary::Min | Binary::Max | Binary::Atan2) | Step | Select(_)
             )
         })
     }
@@ -358,71 +253,30 @@ impl Program {
     /// The sides that the operations with sides take at time `t`, in the order of the operations; without parameters.
     pub(super) fn sides(&self, t: f64, sides: &mut Vec<u8>) {
         sides.clear();
-        evaluate::<f64, MAX_WAITING>(&self.operations, TimeJet::time(t), fixed, |operation, operands| {
-            sides.extend(operation.side(operands));
-        });
+        let watch = |operation: Operation, operands: &[Jet]| sides.extend(operation.side(operands));
+        self.watched(Jet::time(t), |_| Jet::constant(f64::NAN), watch);
     }
 }
 
-/// The parameters of a program that has none.
-pub(super) fn fixed<S: Scalar>(_: usize) -> S {
-    S::fixed(f64::NAN)
-}
-
-/// Runs the operations; `watch` sees each with its operands first.
-fn evaluate<S: Scalar, const N: usize>(
+/// Runs the operations on an empty stack.
+#[inline(always)]
+fn run<V: Term>(
     operations: &[Operation],
-    time: TimeJet<S>,
-    parameter: impl Fn(usize) -> S,
-    mut watch: impl FnMut(Operation, &[TimeJet<S>]),
-) -> TimeJet<S> {
-    let mut stack = [TimeJet::constant(S::ZERO); N];
-    let mut len = 0;
-    for &operation in operations {
-        let operands = operation.operands();
-        len -= operands;
-        watch(operation, &stack[len..len + operands]);
-        stack[len] = match operation {
-            Operation::Constant(value) => TimeJet::constant(S::fixed(value)),
-            Operation::Parameter(index) => TimeJet::constant(parameter(index)),
-            Operation::Time => time,
-            _ => operation.apply(&stack[len..len + operands]),
-        };
-        len += 1;
-    }
-    stack[0]
-}
-
-/// Runs the operations over a stretch of time.
-fn over_stretch<const N: usize>(operations: &[Operation], from: f64, to: f64) -> Stretch {
-    let mut stack = [Stretch::constant(0.0); N];
+    time: V,
+    parameter: impl Fn(usize) -> V,
+    mut watch: impl FnMut(Operation, &[V]),
+    stack: &mut [V],
+) -> V {
     let mut len = 0;
     for &operation in operations {
         len -= operation.operands();
+        let operands = &stack[len..len + operation.operands()];
+        watch(operation, operands);
         stack[len] = match operation {
-            Operation::Constant(value) => Stretch::constant(value),
-            Operation::Parameter(_) => Stretch::UNBOUNDED,
-            Operation::Time => Stretch::time(from, to),
-            _ => operation.over_stretch(&stack[len..len + operation.operands()]),
-        };
-        len += 1;
-    }
-    stack[0]
-}
-
-/// Runs the operations at several times side by side.
-#[inline(always)]
-fn evaluate_lanes<R: Real, const N: usize>(operations: &[Operation], times: Lanes<R>) -> TimeJet<Lanes<R>> {
-    let mut stack = [TimeJet::constant(times.like(0.0)); N];
-    let mut len = 0;
-    for &operation in operations {
-        let operands = operation.operands();
-        len -= operands;
-        stack[len] = match operation {
-            Operation::Constant(value) => TimeJet::constant(times.like(value)),
-            Operation::Parameter(_) => TimeJet::constant(times.like(f64::NAN)),
-            Operation::Time => TimeJet::time(times),
-            _ => operation.apply_to_lanes(&stack[len..len + operands]),
+            Operation::Constant(value) => time.constant(value),
+            Operation::Parameter(index) => parameter(index),
+            Operation::Time => time,
+            _ => operation.of(operands),
         };
         len += 1;
     }

@@ -8,6 +8,9 @@
 use std::f64::consts::{FRAC_PI_2, LN_10, PI, TAU};
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
+use super::term::{Comparison, Term};
+use crate::number::Function;
+
 /// All numbers from `low` to `high`. What is undefined anywhere is unbounded.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Range {
@@ -228,78 +231,42 @@ impl Stretch {
     pub(super) fn or(self, o: Self) -> Self {
         Self { value: self.value.or(o.value), rate: self.rate.or(o.rate) }
     }
+}
 
-    pub(super) fn sin(self) -> Self {
-        self.chain(self.value.sin(), self.value.cos())
+impl Term for Stretch {
+    fn constant(self, x: f64) -> Self {
+        Self::constant(x)
     }
 
-    pub(super) fn cos(self) -> Self {
-        self.chain(self.value.cos(), -self.value.sin())
-    }
-
-    pub(super) fn tan(self) -> Self {
-        let tan = self.value.tan();
-        self.chain(tan, Range::exactly(1.0) + tan.square())
-    }
-
-    pub(super) fn asin(self) -> Self {
+    fn function(self, function: Function) -> Self {
+        let (x, one) = (self.value, Range::exactly(1.0));
         let unit = Range { low: -1.0, high: 1.0 };
-        self.chain(self.value.monotone_on(unit, f64::asin), asin_slope(self.value))
-    }
-
-    pub(super) fn acos(self) -> Self {
-        let unit = Range { low: -1.0, high: 1.0 };
-        self.chain(self.value.monotone_on(unit, f64::acos), -asin_slope(self.value))
-    }
-
-    pub(super) fn atan(self) -> Self {
-        let one = Range::exactly(1.0);
-        self.chain(self.value.monotone(f64::atan), one / (one + self.value.square()))
-    }
-
-    pub(super) fn sinh(self) -> Self {
-        self.chain(self.value.monotone(f64::sinh), self.value.abs().monotone(f64::cosh))
-    }
-
-    pub(super) fn cosh(self) -> Self {
-        self.chain(self.value.abs().monotone(f64::cosh), self.value.monotone(f64::sinh))
-    }
-
-    pub(super) fn tanh(self) -> Self {
-        let slope = Range::exactly(1.0) / self.value.abs().monotone(f64::cosh).square();
-        self.chain(self.value.monotone(f64::tanh), slope)
-    }
-
-    pub(super) fn exp(self) -> Self {
-        let exp = self.value.monotone(f64::exp);
-        self.chain(exp, exp)
-    }
-
-    pub(super) fn ln(self) -> Self {
-        let domain = Range { low: 0.0, high: f64::INFINITY };
-        self.chain(self.value.monotone_on(domain, f64::ln), Range::exactly(1.0) / self.value)
-    }
-
-    pub(super) fn log10(self) -> Self {
-        let Self { value, rate } = self.ln();
-        let per = Range::exactly(1.0 / LN_10);
-        Self { value: value * per, rate: rate * per }
-    }
-
-    pub(super) fn sqrt(self) -> Self {
-        let sqrt = self.value.sqrt();
-        self.chain(sqrt, Range::exactly(0.5) / sqrt)
-    }
-
-    pub(super) fn abs(self) -> Self {
-        match self.value {
-            Range { low, .. } if low >= 0.0 => self,
-            Range { high, .. } if high <= 0.0 => -self,
-            value => Self { value: value.abs(), rate: self.rate.or(-self.rate) },
+        let positive = Range { low: 0.0, high: f64::INFINITY };
+        match function {
+            Function::Sin => self.chain(x.sin(), x.cos()),
+            Function::Cos => self.chain(x.cos(), -x.sin()),
+            Function::Tan => self.chain(x.tan(), one + x.tan().square()),
+            Function::Asin => self.chain(x.monotone_on(unit, f64::asin), asin_slope(x)),
+            Function::Acos => self.chain(x.monotone_on(unit, f64::acos), -asin_slope(x)),
+            Function::Atan => self.chain(x.monotone(f64::atan), one / (one + x.square())),
+            Function::Sinh => self.chain(x.monotone(f64::sinh), x.abs().monotone(f64::cosh)),
+            Function::Cosh => self.chain(x.abs().monotone(f64::cosh), x.monotone(f64::sinh)),
+            Function::Tanh => self.chain(x.monotone(f64::tanh), one / x.abs().monotone(f64::cosh).square()),
+            Function::Exp => self.chain(x.monotone(f64::exp), x.monotone(f64::exp)),
+            Function::Ln => self.chain(x.monotone_on(positive, f64::ln), one / x),
+            Function::Log10 => {
+                let Self { value, rate } = self.function(Function::Ln);
+                let per = Range::exactly(1.0 / LN_10);
+                Self { value: value * per, rate: rate * per }
+            }
+            Function::Sqrt => self.chain(x.sqrt(), Range::exactly(0.5) / x.sqrt()),
+            Function::Abs if x.low >= 0.0 => self,
+            Function::Abs if x.high <= 0.0 => -self,
+            Function::Abs => Self { value: x.abs(), rate: self.rate.or(-self.rate) },
         }
     }
 
-    pub(super) fn powi(self, exponent: i32) -> Self {
+    fn to_whole(self, exponent: i32) -> Self {
         let slope = match exponent {
             0 => Range::exactly(0.0),
             n => Range::exactly(f64::from(n)) * self.value.powi(n.saturating_sub(1)),
@@ -307,9 +274,9 @@ impl Stretch {
         self.chain(self.value.powi(exponent), slope)
     }
 
-    pub(super) fn powf(self, exponent: f64) -> Self {
+    fn to_constant(self, exponent: f64) -> Self {
         if exponent.fract() == 0.0 && exponent.abs() < f64::from(i32::MAX) {
-            return self.powi(exponent as i32);
+            return self.to_whole(exponent as i32);
         }
         let domain = Range { low: 0.0, high: f64::INFINITY };
         let power = |p: f64| self.value.monotone_on(domain, |x| x.powf(p));
@@ -317,11 +284,11 @@ impl Stretch {
     }
 
     /// Of a positive base: of others it is undefined for all but whole exponents, which do not vary.
-    pub(super) fn pow(self, exponent: Self) -> Self {
-        (exponent * self.ln()).exp()
+    fn to(self, exponent: Self) -> Self {
+        (exponent * self.function(Function::Ln)).function(Function::Exp)
     }
 
-    pub(super) fn atan2(self, x: Self) -> Self {
+    fn angle(self, x: Self) -> Self {
         let y = self;
         let (across, along) = (y.value, x.value);
         let rate = (along * y.rate - across * x.rate) / (along.square() + across.square());
@@ -337,7 +304,7 @@ impl Stretch {
         Self { value, rate }
     }
 
-    pub(super) fn hypot(self, o: Self) -> Self {
+    fn length(self, o: Self) -> Self {
         let length = (self.value.square() + o.value.square()).sqrt();
         let rate = (self.value * self.rate + o.value * o.rate) / length;
         // Whatever the direction, a length changes no faster than its components together.
@@ -345,7 +312,7 @@ impl Stretch {
         Self { value: length, rate: rate.and(fastest.or(-fastest)) }
     }
 
-    pub(super) fn min(self, o: Self) -> Self {
+    fn smaller(self, o: Self) -> Self {
         if self.value.high < o.value.low {
             self
         } else if o.value.high < self.value.low {
@@ -357,12 +324,11 @@ impl Stretch {
         }
     }
 
-    pub(super) fn max(self, o: Self) -> Self {
-        -(-self).min(-o)
+    fn greater(self, o: Self) -> Self {
+        -(-self).smaller(-o)
     }
 
-    /// `h0` up to `x0`, `h1` from `x1` on, between them `h0 + (h1 - h0) (3 u^2 - 2 u^3)`.
-    pub(super) fn step(self, x0: Self, h0: Self, x1: Self, h1: Self) -> Self {
+    fn step(self, x0: Self, h0: Self, x1: Self, h1: Self) -> Self {
         let u = (self - x0) / (x1 - x0);
         if !(x0.value.high < x1.value.low && u.value.is_bounded()) {
             return Self::UNBOUNDED;
@@ -380,14 +346,23 @@ impl Stretch {
         h0 + (h1 - h0) * s
     }
 
-    /// One of two, as far as it is known which.
-    pub(super) fn choose(holds: Option<bool>, x: Self, y: Self) -> Self {
-        match holds {
+    /// As far as it is known which.
+    fn choose(self, comparison: Comparison, b: Self, x: Self, y: Self) -> Self {
+        match comparison.holds_between(self.value, b.value) {
             Some(true) => x,
             Some(false) => y,
             // The value may jump, so that its rate means nothing.
             None => Self { rate: Range::UNBOUNDED, ..x.or(y) },
         }
+    }
+
+    /// What depends on parameters only does not change.
+    fn settled(self) -> Self {
+        self
+    }
+
+    fn within<R>(self, f: impl FnOnce() -> R) -> R {
+        f()
     }
 }
 

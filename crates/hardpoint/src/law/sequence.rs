@@ -4,15 +4,12 @@ use std::fmt;
 
 use super::Law;
 use super::error::LawError;
-use super::jet::TimeJet;
 use super::jumps::Break;
 use super::kind::Shape;
-use super::lanes::Lanes;
 use super::parameter::{Parameter, ParameterKind, Seed, parameter, seeded};
 use super::range::{Range, Stretch};
-use super::scalar::{Arithmetic, Scalar};
 use super::table::ROUNDING_OF_TIME;
-use crate::space::Real;
+use crate::number::{Jet, LANES, Real};
 
 /// A piece of a [sequence](Law::sequence).
 #[derive(Clone, Debug, PartialEq)]
@@ -74,9 +71,9 @@ impl Sequence {
                 }
                 _ => {}
             }
-            let ends = [("start", TimeJet::time(0.0)), ("end", backwards(piece.duration.unwrap_or(0.0)))];
+            let ends = [("start", Jet::time(0.0)), ("end", backwards(piece.duration.unwrap_or(0.0)))];
             for (end, time) in ends {
-                if !piece.law.evaluate(time, None).value().is_finite() {
+                if !piece.law.evaluate::<f64, 4>(time, None).value().is_finite() {
                     let message = format!(
                         "the law of piece {k} of a sequence has no finite value at the piece's {end}"
                     );
@@ -100,23 +97,27 @@ impl Sequence {
 
     /// Works out where every piece starts.
     fn lay_out(&mut self) {
-        let places: Vec<(f64, f64)> = (0..=self.pieces.len()).map(|k| self.place(k, None)).collect();
+        let places: Vec<(f64, f64)> =
+            (0..=self.pieces.len()).map(|k| self.place::<f64, 4>(k, None, 0.0)).collect();
         (self.starts, self.offsets) = places.into_iter().unzip();
     }
 
     /// When the piece k starts and what is added to its law. One beyond the last: when that ends.
-    fn place<S: Scalar>(&self, k: usize, seed: Option<Seed>) -> (S, S) {
-        let (mut start, mut offset) = (S::ZERO, S::ZERO);
+    fn place<T: Real, const N: usize>(&self, k: usize, seed: Option<Seed<T>>, like: T) -> (T, T) {
+        let zero = like.zero();
+        let (mut start, mut offset) = (zero, zero);
         for j in 0..k {
-            let duration: S = self.duration(j, seed);
-            let end = self.pieces[j].law.evaluate(backwards(duration), self.seed_in(j, seed)).value();
-            start = start + duration;
+            let duration = self.duration(j, seed, like);
+            let at_end: Jet<T, N> = backwards(duration);
+            let end = self.pieces[j].law.evaluate(at_end, self.seed_in(j, seed)).value();
+            start += duration;
             offset = match self.pieces.get(j + 1) {
                 Some(next) if next.continued => {
-                    let next_start = next.law.evaluate(TimeJet::time(S::ZERO), self.seed_in(j + 1, seed));
+                    let at_start: Jet<T, N> = Jet::time(zero);
+                    let next_start = next.law.evaluate(at_start, self.seed_in(j + 1, seed));
                     offset + end - next_start.value()
                 }
-                _ => S::ZERO,
+                _ => zero,
             };
         }
         (start, offset)
@@ -136,15 +137,15 @@ impl Sequence {
         Some(begun.saturating_sub(1))
     }
 
-    fn duration<S: Scalar>(&self, k: usize, seed: Option<Seed>) -> S {
+    fn duration<T: Real>(&self, k: usize, seed: Option<Seed<T>>, like: T) -> T {
         match self.pieces[k].duration {
-            Some(duration) => seeded(duration, self.first_parameters[k], seed),
-            None => S::fixed(f64::INFINITY),
+            Some(duration) => seeded(like, duration, self.first_parameters[k], seed),
+            None => like.like(f64::INFINITY),
         }
     }
 
     /// The seed as the law of the piece k counts its parameters, if it is one of them.
-    fn seed_in(&self, k: usize, seed: Option<Seed>) -> Option<Seed> {
+    fn seed_in<T: Real>(&self, k: usize, seed: Option<Seed<T>>) -> Option<Seed<T>> {
         let Seed { parameter, size } = seed?;
         match self.owner(parameter) {
             (owner, Some(parameter)) if owner == k => Some(Seed { parameter, size }),
@@ -161,30 +162,26 @@ impl Sequence {
 }
 
 impl Shape for Sequence {
-    fn at<S: Scalar>(&self, time: TimeJet<S>, seed: Option<Seed>) -> TimeJet<S> {
-        let Some(k) = self.piece_at(time.value().value(), time.d().value() < 0.0) else {
-            return TimeJet::undefined();
-        };
-        let (start, offset) = match seed {
-            None => (S::fixed(self.starts[k]), S::fixed(self.offsets[k])),
-            Some(_) => self.place(k, seed),
-        };
-        self.pieces[k].law.evaluate(time.plus(-start), self.seed_in(k, seed)).plus(offset)
-    }
-
     #[inline(always)]
-    fn at_lanes<R: Real>(&self, times: Lanes<R>) -> TimeJet<Lanes<R>> {
-        let at = times.to_array().map(|t| self.piece_at(t, false));
+    fn at<T: Real, const N: usize>(&self, time: Jet<T, N>, seed: Option<Seed<T>>) -> Jet<T, N> {
+        let mut at = [None; LANES];
+        for (lane, at) in at.iter_mut().enumerate().take(T::LANES) {
+            *at = self.piece_at(time.lane(lane), time.d().lane(lane) < 0.0);
+        }
         let piece = |k: usize| {
-            let f = self.pieces[k].law.evaluate_lanes(times + -self.starts[k]);
-            f.plus(times.like(self.offsets[k]))
+            let like = time.value();
+            let (start, offset) = match seed {
+                None => (like.like(self.starts[k]), like.like(self.offsets[k])),
+                Some(_) => self.place::<T, N>(k, seed, like),
+            };
+            self.pieces[k].law.evaluate(time.plus(-start), self.seed_in(k, seed)).plus(offset)
         };
-        let at = &at[..R::LANES];
+        let lanes = &at[..T::LANES];
         match at[0] {
-            Some(k) if at.iter().all(|other| *other == Some(k)) => piece(k),
+            Some(k) if lanes.iter().all(|other| *other == Some(k)) => piece(k),
             // Every piece is evaluated for all lanes, and counts in its own.
-            _ => (0..R::LANES).fold(TimeJet::undefined_lanes(times), |f, lane| match at[lane] {
-                Some(k) if !at[..lane].contains(&Some(k)) => f.or_where(|lane| at[lane] == Some(k), piece(k)),
+            _ => (0..T::LANES).fold(Jet::undefined(time.value()), |f, lane| match at[lane] {
+                Some(k) if !at[..lane].contains(&Some(k)) => piece(k).select(f, |lane| at[lane] == Some(k)),
                 _ => f,
             }),
         }
@@ -259,8 +256,8 @@ impl Shape for Sequence {
 }
 
 /// The time `t`, running backwards: what is asked there is what holds just before.
-fn backwards<S: Scalar>(t: S) -> TimeJet<S> {
-    TimeJet::from_derivatives([t, -S::ONE, S::ZERO, S::ZERO])
+pub(super) fn backwards<T: Real, const N: usize>(t: T) -> Jet<T, N> {
+    -Jet::time(-t)
 }
 
 impl fmt::Display for Sequence {

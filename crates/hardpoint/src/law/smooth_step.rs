@@ -1,18 +1,14 @@
 //! The law that goes smoothly from one value to another.
 
-use std::cmp::Ordering;
 use std::fmt;
 
 use super::error::{LawError, check_finite};
-use super::jet::TimeJet;
 use super::jumps::Break;
 use super::kind::Shape;
-use super::lanes::Lanes;
 use super::parameter::{Parameter, ParameterKind, Seed, parameter, seeded};
 use super::polynomial::sum_of_powers;
 use super::range::{Range, Stretch};
-use super::scalar::{Arithmetic, Scalar};
-use crate::space::Real;
+use crate::number::{Jet, LANES, Real};
 
 /// A law that holds `from` up to `start`, `to` from `end` on, and is a polynomial between them:
 /// from + (to - from) s(u) with u = (t - start) / (end - start).
@@ -59,65 +55,46 @@ impl SmoothStep {
         Ok(())
     }
 
-    /// The polynomial, for the numbers that are given.
+    /// s(u).
     #[inline(always)]
-    fn between<S: Arithmetic>(&self, time: TimeJet<S>, from: S, to: S, start: S, end: S) -> TimeJet<S> {
-        let u = time.plus(-start).times(end.like(1.0) / (end - start));
+    fn rise<T: Real, const N: usize>(&self, u: Jet<T, N>) -> Jet<T, N> {
         let (lowest, coefficients): (i32, &[f64]) = match self.degree {
             3 => (2, &[3.0, -2.0]),
             5 => (3, &[10.0, -15.0, 6.0]),
             _ => (4, &[35.0, -84.0, 70.0, -20.0]),
         };
-        let s = u.powi(lowest) * sum_of_powers(coefficients.iter().map(|&c| end.like(c)), u);
-        s.times(to - from).plus(from)
+        u.powi(lowest) * sum_of_powers(u, coefficients.len(), |k| u.value().like(coefficients[k]))
     }
 }
 
 impl Shape for SmoothStep {
-    fn at<S: Scalar>(&self, time: TimeJet<S>, seed: Option<Seed>) -> TimeJet<S> {
-        let [from, to]: [S; 2] = [seeded(self.from, 0, seed), seeded(self.to, 1, seed)];
-        let [start, end]: [S; 2] = [seeded(self.start, 2, seed), seeded(self.end, 3, seed)];
-        if !(self.start < self.end) {
-            return TimeJet::undefined();
-        }
-        let is_before = |instant: S| time.cmp_just_after(TimeJet::constant(instant)) == Some(Ordering::Less);
-        if time.value().value().is_nan() {
-            TimeJet::undefined()
-        } else if is_before(start) {
-            TimeJet::constant(from)
-        } else if !is_before(end) {
-            TimeJet::constant(to)
-        } else {
-            self.between(time, from, to, start, end)
-        }
-    }
-
     #[inline(always)]
-    fn at_lanes<R: Real>(&self, times: Lanes<R>) -> TimeJet<Lanes<R>> {
+    fn at<T: Real, const N: usize>(&self, time: Jet<T, N>, seed: Option<Seed<T>>) -> Jet<T, N> {
+        let number = |value: f64, parameter: usize| seeded(time.value(), value, parameter, seed);
+        let [from, to] = [number(self.from, 0), number(self.to, 1)];
+        let [start, end] = [number(self.start, 2), number(self.end, 3)];
         if !(self.start < self.end) {
-            return TimeJet::undefined_lanes(times);
+            return Jet::undefined(from);
         }
-        let [from, to, start, end] = [self.from, self.to, self.start, self.end];
         // What is not a number is neither before nor after, so that the polynomial hands it on.
-        let is_between = |t: &f64| !(*t < start || *t >= end);
-        let t = times.to_array();
-        let [before, after] = [from, to].map(|value| TimeJet::constant(times.like(value)));
-        if !t[..R::LANES].iter().any(is_between) {
-            return before.or_where(|lane| t[lane] >= end, after);
+        let (mut before, mut after) = ([false; LANES], [false; LANES]);
+        for lane in 0..T::LANES {
+            let (t, is_backwards) = (time.lane(lane), time.d().lane(lane) < 0.0);
+            before[lane] = t < self.start || t == self.start && is_backwards;
+            after[lane] = t > self.end || t == self.end && !is_backwards;
         }
-        let between = self.between(
-            TimeJet::time(times),
-            times.like(from),
-            times.like(to),
-            times.like(start),
-            times.like(end),
-        );
-        between.or_where(|lane| t[lane] < start, before).or_where(|lane| t[lane] >= end, after)
+        let [held, reached] = [from, to].map(Jet::constant);
+        if (0..T::LANES).all(|lane| before[lane] || after[lane]) {
+            return held.select(reached, |lane| before[lane]);
+        }
+        let u = time.plus(-start).times(end.like(1.0) / (end - start));
+        let between = self.rise(u).times(to - from).plus(from);
+        held.select(reached.select(between, |lane| after[lane]), |lane| before[lane])
     }
 
     fn over(&self, from: f64, to: f64) -> Stretch {
         // It never turns round, and is fastest in the middle.
-        let at = |t: f64| self.at::<f64>(TimeJet::time(t), None);
+        let at = |t: f64| self.at(Jet::<f64>::time(t), None);
         let middle = (0.5 * (self.start + self.end)).clamp(from, to);
         let [start, fastest, end] = [at(from), at(middle), at(to)];
         let rate = Range::between(start.d(), end.d()).or(Range::exactly(fastest.d()));
@@ -194,7 +171,7 @@ mod tests {
     fn as_many_derivatives_vanish_at_the_ends_as_the_degree_says() {
         for (degree, vanishing) in [(3, 1), (5, 2), (7, 3)] {
             let step = SmoothStep { from: 1.0, to: 4.0, start: 1.0, end: 3.0, degree };
-            for (time, value) in [(TimeJet::time(1.0), 1.0), (-TimeJet::time(-3.0), 4.0)] {
+            for (time, value) in [(Jet::<f64>::time(1.0), 1.0), (-Jet::<f64>::time(-3.0), 4.0)] {
                 let inside = step.at(time, None).derivatives();
                 assert_eq!(inside[0], value, "{degree}");
                 assert!(
@@ -203,7 +180,7 @@ mod tests {
                 );
                 assert!(inside[vanishing + 1..].iter().all(|derivative| *derivative != 0.0), "{inside:?}");
             }
-            assert_eq!(step.at(TimeJet::time(2.0), None).value(), 2.5, "halfway");
+            assert_eq!(step.at(Jet::<f64>::time(2.0), None).value(), 2.5, "halfway");
         }
     }
 }

@@ -3,13 +3,10 @@
 use std::fmt;
 
 use super::error::{LawError, check_finite};
-use super::jet::TimeJet;
 use super::kind::{Shape, write_sum};
-use super::lanes::Lanes;
 use super::parameter::{Parameter, ParameterKind, Seed, parameter, seeded};
 use super::range::{Range, Stretch};
-use super::scalar::{Arithmetic, Scalar};
-use crate::space::Real;
+use crate::number::{Jet, Real};
 
 /// A law of constant speed: offset + speed t.
 ///
@@ -29,13 +26,10 @@ impl ConstantSpeed {
 }
 
 impl Shape for ConstantSpeed {
-    fn at<S: Scalar>(&self, time: TimeJet<S>, seed: Option<Seed>) -> TimeJet<S> {
-        time.times(seeded(self.speed, 0, seed)).plus(seeded(self.offset, 1, seed))
-    }
-
     #[inline(always)]
-    fn at_lanes<R: Real>(&self, times: Lanes<R>) -> TimeJet<Lanes<R>> {
-        (TimeJet::time(times) * self.speed).plus(times.like(self.offset))
+    fn at<T: Real, const N: usize>(&self, time: Jet<T, N>, seed: Option<Seed<T>>) -> Jet<T, N> {
+        let number = |value: f64, parameter: usize| seeded(time.value(), value, parameter, seed);
+        time.times(number(self.speed, 0)).plus(number(self.offset, 1))
     }
 
     fn over(&self, from: f64, to: f64) -> Stretch {

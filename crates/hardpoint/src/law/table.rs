@@ -4,15 +4,12 @@ use std::fmt;
 use std::sync::Arc;
 
 use super::error::LawError;
-use super::jet::TimeJet;
 use super::kind::Shape;
-use super::lanes::Lanes;
 use super::parameter::{Parameter, ParameterKind, Seed, parameter};
-use super::polynomial::{sum_of_powers, sum_of_powers_of_time};
+use super::polynomial::sum_of_powers;
 use super::range::Stretch;
-use super::scalar::Scalar;
 use super::spline::{Basis, EndKind, Segment};
-use crate::space::{LANES, Real};
+use crate::number::{Jet, LANES, Real};
 
 /// A table of points, and the spline to lay through them.
 ///
@@ -142,6 +139,32 @@ impl Spline {
         knots.saturating_sub(1).min(self.segments.len() - 1)
     }
 
+    /// The curve of one segment for every lane, at the times since these began; the coefficients are gathered.
+    #[inline(always)]
+    fn curve<T: Real, const N: usize>(
+        &self,
+        all: &[Segment],
+        at: [usize; LANES],
+        since: Jet<T, N>,
+    ) -> Jet<T, N> {
+        let mut of_lane = [&UNDEFINED; LANES];
+        for lane in 0..T::LANES {
+            of_lane[lane] = all.get(at[lane]).unwrap_or(&UNDEFINED);
+        }
+        sum_of_powers(
+            since,
+            self.order(),
+            #[inline(always)]
+            |power| {
+                let mut coefficients = [0.0; LANES];
+                for lane in 0..T::LANES {
+                    coefficients[lane] = of_lane[lane][power];
+                }
+                since.value().gather(coefficients)
+            },
+        )
+    }
+
     /// The whole periods before time `t`, in s.
     fn periods_before(&self, t: f64, is_backwards: bool) -> f64 {
         if !self.is_periodic {
@@ -222,47 +245,32 @@ impl Table {
 }
 
 impl Shape for Spline {
-    fn at<S: Scalar>(&self, time: TimeJet<S>, seed: Option<Seed>) -> TimeJet<S> {
-        let is_backwards = time.d().value() < 0.0;
-        let time = time.plus(S::fixed(-self.periods_before(time.value().value(), is_backwards)));
-        let t = time.value().value();
-        if !self.reaches(t) {
-            return TimeJet::undefined();
+    #[inline(always)]
+    fn at<T: Real, const N: usize>(&self, time: Jet<T, N>, seed: Option<Seed<T>>) -> Jet<T, N> {
+        // Every lane's segment and the time since it began.
+        let (mut segments, mut k) = ([usize::MAX; LANES], 0);
+        let (mut before, mut starts) = ([0.0; LANES], [0.0; LANES]);
+        for lane in 0..T::LANES {
+            let is_backwards = time.d().lane(lane) < 0.0;
+            before[lane] = self.periods_before(time.lane(lane), is_backwards);
+            let t = time.lane(lane) - before[lane];
+            if !self.reaches(t) {
+                continue;
+            }
+            // Nearly always the segment of the lane before.
+            if is_backwards || !(self.times[k] <= t && t < self.times[k + 1]) {
+                k = self.segment_at(t, is_backwards);
+            }
+            (segments[lane], starts[lane]) = (k, self.times[k]);
         }
-        let k = self.segment_at(t, is_backwards);
-        let since = time.plus(S::fixed(-self.times[k]));
-        let curve =
-            |segment: &Segment| sum_of_powers(segment[..self.order()].iter().map(|&c| S::fixed(c)), since);
-        let f = curve(&self.segments[k]);
+        let since = time.plus(-time.value().gather(before)).plus(-time.value().gather(starts));
+        let f = self.curve(&self.segments, segments, since);
         match seed {
             None => f,
             Some(Seed { parameter, size }) => {
-                f + curve(&self.basis.cardinal(parameter)[k]).times(S::varied(0.0, size))
+                f + self.curve(self.basis.cardinal(parameter), segments, since).times(size)
             }
         }
-    }
-
-    #[inline(always)]
-    fn at_lanes<R: Real>(&self, times: Lanes<R>) -> TimeJet<Lanes<R>> {
-        // Every lane's segment and the time since it began; the coefficients are then gathered.
-        let mut segments = [&UNDEFINED; LANES];
-        let mut k = 0;
-        let since = times.map_lanes(|lane, t| {
-            let t = t - self.periods_before(t, false);
-            if !self.reaches(t) {
-                return f64::NAN;
-            }
-            // Nearly always the segment of the lane before.
-            if !(self.times[k] <= t && t < self.times[k + 1]) {
-                k = self.segment_at(t, false);
-            }
-            segments[lane] = &self.segments[k];
-            t - self.times[k]
-        });
-        const POWERS: [usize; 6] = [0, 1, 2, 3, 4, 5];
-        sum_of_powers_of_time(&POWERS[..self.order()], since, |&power| {
-            since.map_lanes(|lane, _| segments[lane][power])
-        })
     }
 
     fn over(&self, from: f64, to: f64) -> Stretch {

@@ -1,8 +1,9 @@
 //! Where bodies are, as numbers with derivatives.
 
 use crate::motion::BodyState;
+use crate::number::{Dual, Jet, Rates};
 use crate::sensitivity::BodySensitivity;
-use crate::space::{Dual, Jet, Mat3, Pose, Rates, Vec3};
+use crate::space::{Mat3, Pose, Vec3};
 
 /// A body's pose with its rates.
 pub(super) fn with_rates(s: &BodyState) -> Pose<Rates> {
@@ -15,7 +16,7 @@ pub(super) fn with_rates(s: &BodyState) -> Pose<Rates> {
 }
 
 /// The same, with the derivatives of all of it by one design variable.
-pub(super) fn with_sensitivity(s: &BodyState, d: &BodySensitivity) -> Pose<Jet> {
+pub(super) fn with_sensitivity(s: &BodyState, d: &BodySensitivity) -> Pose<Dual<Rates>> {
     let Pose { rot, r } = with_rates(s);
     let column = |k: usize| {
         let e0 = s.rotation.cols[k];
@@ -29,7 +30,7 @@ pub(super) fn with_sensitivity(s: &BodyState, d: &BodySensitivity) -> Pose<Jet> 
 }
 
 fn zip([x, xd, xdd]: [Vec3; 3]) -> Vec3<Rates> {
-    Vec3::new(Rates([x.x, xd.x, xdd.x]), Rates([x.y, xd.y, xdd.y]), Rates([x.z, xd.z, xdd.z]))
+    Vec3::new(Jet([x.x, xd.x, xdd.x]), Jet([x.y, xd.y, xdd.y]), Jet([x.z, xd.z, xdd.z]))
 }
 
 /// A vector and its derivative.

@@ -1,7 +1,7 @@
 //! Measures and followed points: numbers that a person asks for, with rates and sensitivities.
 //!
 //! A measure is written once, over any [`Real`]; its rate, acceleration and the design derivatives of all three follow by
-//! the product and chain rules where it runs on [`Jet`]s.
+//! the product and chain rules where it runs on [`Rates`].
 
 mod bodies;
 mod slope;
@@ -20,8 +20,9 @@ use crate::model::{
     OutputSource, PointId, Ray, Side, VariableId, WheelId,
 };
 use crate::motion::{Motion, Passed};
+use crate::number::{Dual, Jet, Rates, Real};
 use crate::sensitivity::Sensitivities;
-use crate::space::{Dual, Jet, Pose, Rates, Real, Vec3};
+use crate::space::{Pose, Vec3};
 use crate::topology::Topology;
 
 /// A column of [`Measured`].
@@ -142,7 +143,7 @@ pub(crate) fn evaluate(
     let turns = turns(model, topology, &outputs);
     let bodies = bodies_asked_for(model);
 
-    let zero = Rates([0.0; 3]);
+    let zero = Jet([0.0; 3]);
     let lifted: Vec<Rates> = values.iter().map(|v| zero.like(*v)).collect();
     let fixed = effects.fixed(&lifted, zero);
     let mut poses = vec![Pose::IDENTITY.spread(zero); model.bodies.len()];
@@ -162,7 +163,7 @@ pub(crate) fn evaluate(
         let on_the_way = |m: usize, place: &Passed| {
             let mut poses = poses.clone();
             place.states.iter().for_each(|(body, state)| poses[body.0] = with_rates(state));
-            let Rates([angle, rate, _]) = Moment::new(model, &fixed, &poses).measure(m);
+            let Jet([angle, rate, _]) = Moment::new(model, &fixed, &poses).measure(m);
             [angle, rate]
         };
         let values = &mut measured.values;
@@ -196,7 +197,7 @@ pub(crate) struct More<'a> {
 
 /// A number whose rates are not known.
 fn only(x: f64) -> Rates {
-    Rates([x, f64::NAN, f64::NAN])
+    Jet([x, f64::NAN, f64::NAN])
 }
 
 /// Derivatives of some outputs by the variables, `[(k * variables + b) * outputs + m]`.
@@ -210,12 +211,12 @@ pub(crate) fn derivatives(
     more: &More<'_>,
 ) -> Vec<[f64; 3]> {
     let &At { model, effects, values, .. } = design;
-    let (bodies, zero) = (bodies_asked_for(model), Rates([0.0; 3]));
+    let (bodies, zero) = (bodies_asked_for(model), Jet([0.0; 3]));
     let (steps, variables, columns) = (motion.len(), sensitivities.variables, outputs.len());
     let mut found = vec![[f64::NAN; 3]; steps * variables * columns];
     let mut poses = vec![Pose::IDENTITY.spread(Dual::constant(zero)); model.bodies.len()];
-    let mut lifted: Vec<Jet> = values.iter().map(|v| Dual::constant(zero.like(*v))).collect();
-    let mut given: Vec<Jet> = Vec::new();
+    let mut lifted: Vec<Dual<Rates>> = values.iter().map(|v| Dual::constant(zero.like(*v))).collect();
+    let mut given: Vec<Dual<Rates>> = Vec::new();
     for b in 0..variables {
         lifted[b] = Dual::variable(lifted[b].v);
         let fixed = effects.fixed(&lifted, Dual::constant(zero));

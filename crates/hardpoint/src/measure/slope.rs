@@ -5,8 +5,9 @@
 
 use crate::model::{DriverId, Effects, Fixed, GROUND, MeasureKind, Model, VariableId, WheelId};
 use crate::motion::stepper::Stepper;
+use crate::number::{Dual, Real, of_lanes};
 use crate::sensitivity::{Seconds, Way};
-use crate::space::{Dual, Pose, Real, of_lanes};
+use crate::space::Pose;
 use crate::topology::Topology;
 
 use super::wheel::{Carried, axle_roll_centre};

@@ -1,7 +1,8 @@
 //! Formulas of a wheel and its kingpin. Their signs: `docs/measures.md`.
 
 use crate::model::{Vehicle, VehicleEnd, WheelMeasure, WheelNeed};
-use crate::space::{Dual, Real, Twist, Vec3};
+use crate::number::{Dual, Real};
+use crate::space::{Twist, Vec3};
 
 /// A wheel somewhere on its way: z is up and the ground level.
 #[derive(Clone, Copy, Debug)]

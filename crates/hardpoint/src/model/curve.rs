@@ -173,7 +173,7 @@ fn dot(a: [f64; 2], b: [f64; 2]) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::space::Dual;
+    use crate::number::Dual;
 
     #[test]
     fn a_curve_through_points_of_a_circle_is_that_circle() {

@@ -6,7 +6,8 @@ use super::*;
 use crate::constraint::Row;
 use crate::joint::Need;
 use crate::law::Law;
-use crate::space::{Dual, Real, euler_313_from_rotation, rotation_from_euler_313};
+use crate::number::{Dual, Real};
+use crate::space::{euler_313_from_rotation, rotation_from_euler_313};
 
 /// The body-fixed data of one design (or of one per lane): all that the analysis needs of it besides the drivers' laws.
 #[derive(Clone, Debug, PartialEq)]

@@ -169,7 +169,7 @@ impl<T: Real> Parts<T> {
     /// The same at one time per lane, where all lanes have the same law.
     #[inline(always)]
     pub fn law_at_times(&self, d: usize, times: T) -> [T; 3] {
-        self.laws[d][0].at_lanes(times)
+        self.laws[d][0].to_order(times).derivatives()
     }
 
     /// Value, speed and acceleration that driver d prescribes at time t.

@@ -16,7 +16,8 @@ use hardpoint_tape::{Interpreter, Lanes, Number, Options, Program, record};
 
 use crate::joint::Freedom;
 use crate::model::{BodyId, Field, GROUND};
-use crate::space::{LANES, LARGEST_DENSE, Quat, Real, Vec3, record as recording};
+use crate::number::record as recording;
+use crate::space::{LANES, LARGEST_DENSE, Quat, Real, Vec3, Watched};
 use crate::topology::{Source, Topology};
 
 use super::kinematics::{QUADRATIC, Residuals, State};
@@ -168,7 +169,7 @@ impl StepProgram {
             });
             fits = state.solve(topology, &parts, &drivers, f64::INFINITY).is_ok()
                 && state.iterations == topology.blocks.len() * (purpose.corrections + 1);
-            let positive = |(found, watched): (&(f64, bool), &crate::space::Watched<Number>)| {
+            let positive = |(found, watched): (&(f64, bool), &Watched<Number>)| {
                 (watched.growth.value(), found.1 == (watched.product.value() > 0.0))
             };
             blocks = state.pivots.iter().zip(&state.watched).map(positive).collect();
@@ -502,7 +503,7 @@ impl Tape {
             (None, Some(interpreter)) => interpreter.run(&self.inputs, &[], &mut self.outputs),
             (None, None) => return Err(Refused),
         }
-        let (at, places) = (|k: usize| witness.load(&self.outputs[k]), program.outputs());
+        let (at, places) = (|k: usize| witness.gather(self.outputs[k]), program.outputs());
         // All comparisons are written so that NaN is refused.
         let first = at(places.corrections).largest();
         let last = at(places.corrections + program.purpose.corrections - 1).largest();
@@ -511,12 +512,7 @@ impl Tape {
         }
         for (b, (growth, is_even)) in program.blocks.iter().enumerate() {
             let k = places.blocks + PER_BLOCK * b;
-            let watched = crate::space::Watched {
-                product: at(k),
-                most: at(k + 1),
-                least: at(k + 2),
-                growth: at(k + 3),
-            };
+            let watched = Watched { product: at(k), most: at(k + 1), least: at(k + 2), growth: at(k + 3) };
             let (ratio, positive) = watched.verdict();
             let positive = positive == *is_even;
             let grown = watched.growth.largest() <= f64::max(MOST_GROWTH, 2.0 * growth);
@@ -529,7 +525,7 @@ impl Tape {
         let residuals =
             Residuals { largest: at(places.residuals).largest(), scaled: at(places.residuals + 1).largest() };
         let limits = &self.outputs[places.limits..places.limits + program.limits];
-        if !(residuals.scaled <= LOCKED) || !limits.iter().all(|l| witness.load(l).largest() <= 0.0) {
+        if !(residuals.scaled <= LOCKED) || !limits.iter().all(|l| witness.gather(*l).largest() <= 0.0) {
             return Err(Refused);
         }
         let mut k = 0;
@@ -566,7 +562,7 @@ impl Tape {
         let wanted = &self.program.purpose.wanted;
         for body in (0..wanted.len()).filter(|b| *b != GROUND.0 && wanted[*b]) {
             let components: [[T; 8]; 3] =
-                std::array::from_fn(|i| std::array::from_fn(|j| witness.load(&self.outputs[k + 8 * i + j])));
+                std::array::from_fn(|i| std::array::from_fn(|j| witness.gather(self.outputs[k + 8 * i + j])));
             turn_over(&components, &mut table);
             for (lane, x) in table[..T::LANES].iter().enumerate() {
                 out(lane, BodyId(body), BodyState::from_components(x));

@@ -8,7 +8,8 @@ use crate::law::Law;
 use crate::model::{DriverId, Effects, Field, Model};
 use crate::motion::kinematics::{State, carry, level, sum_couplers};
 use crate::motion::stepper::Stepper;
-use crate::space::{Dual, LANES, Mat3, Pose, Real, Twist, Vec3};
+use crate::number::{Dual, LANES, Real};
+use crate::space::{Mat3, Pose, Twist, Vec3};
 use crate::topology::{Source, Topology};
 
 use super::direct::{Direct, FieldParts, Moving};

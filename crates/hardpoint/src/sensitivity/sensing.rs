@@ -151,7 +151,7 @@ impl<'f, T: Real> Sensing<'f, T> {
                         of_body = rest;
                         let x = std::array::from_fn(
                             #[inline(always)]
-                            |n| witness.load(&lanes[n]),
+                            |n| witness.gather(lanes[n]),
                         );
                         hand_over(x, body, &mut table, &mut |lane, body, d| {
                             if lane < count {

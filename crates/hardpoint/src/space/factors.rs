@@ -2,7 +2,7 @@
 
 use super::matrix::{Elimination, Factored};
 use super::sparse::SparseLu;
-use super::{Function, Real};
+use crate::number::{Function, Real};
 
 /// Blocks with more unknowns than this are factored by [`SparseLu`].
 ///

@@ -1,6 +1,7 @@
 //! Rotation matrices.
 
-use super::{Real, Vec3};
+use super::Vec3;
+use crate::number::Real;
 use std::ops::Mul;
 
 /// A rotation, as the unit vectors of the turned frame: `A = [f g h]` (paper Eq. 2.1).

@@ -1,6 +1,6 @@
 //! Small dense systems: the elimination of the hot path.
 
-use super::Real;
+use crate::number::Real;
 
 /// A factor of the elimination above this says that another order of the rows would keep more digits.
 const MOST_GROWTH: f64 = 4.0;

@@ -1,10 +1,9 @@
-//! Points, rotations, poses, twists and wrenches, generic over the scalar.
+//! Points, rotations, poses, twists and wrenches, generic over the number.
 //!
 //! Everything here is written once over [`Real`] and runs with one `f64` or with eight designs (or
 //! times) at a time in SIMD lanes. A [`Twist`] is what moves, a [`Wrench`] is what resists; their
 //! product is the rate at which a constraint is violated (`docs/theory.md`, section 1).
 
-mod dual;
 mod euler;
 mod factors;
 mod mat3;
@@ -12,24 +11,19 @@ mod matrix;
 mod pose;
 mod quat;
 mod rank;
-mod rates;
-mod real;
-pub(crate) mod record;
 mod sparse;
 mod twist;
 mod vec3;
 
-pub use dual::Dual;
 pub use euler::{euler_313_from_rotation, euler_rates, rotation_from_euler_313};
 pub(crate) use factors::{Factors, LARGEST_DENSE};
 pub use mat3::Mat3;
 pub(crate) use matrix::{Elimination, Watched};
 pub use pose::Pose;
 pub use quat::Quat;
-pub use rates::{Jet, Rates};
-pub use real::{Function, Real};
 pub use twist::{Twist, Wrench};
 pub use vec3::Vec3;
 
+pub use crate::number::Real;
+pub(crate) use crate::number::{LANES, lanes, of_lanes};
 pub(crate) use rank::FullPivot;
-pub(crate) use real::{LANES, lanes, of_lanes};

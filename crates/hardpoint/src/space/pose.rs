@@ -1,6 +1,7 @@
 //! Where a frame is and how it is turned.
 
-use super::{Mat3, Real, Twist, Vec3, Wrench};
+use super::{Mat3, Twist, Vec3, Wrench};
+use crate::number::{Dual, Real};
 
 /// Position and orientation of a frame in another: `x_outer = r + rot * x_inner`.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -65,5 +66,34 @@ impl<T: Real> Pose<T> {
     #[inline(always)]
     pub fn lane(self, k: usize) -> Pose<f64> {
         Pose { rot: self.rot.lane(k), r: self.r.lane(k) }
+    }
+}
+
+impl<T: Real> Pose<Dual<T>> {
+    /// The pose, and the twist at which it changes, fixed in the outer frame: `[w; v]` with v at the outer frame's origin.
+    pub fn split(self) -> (Pose<T>, Twist<T>) {
+        let value =
+            Pose { rot: Mat3 { cols: self.rot.cols.map(|c| c.map(|x| x.v)) }, r: self.r.map(|x| x.v) };
+        // The rate of every unit vector c is w x c: w is half the sum of c x c'.
+        let turn = |k: usize| value.rot.cols[k].cross(self.rot.cols[k].map(|x| x.d));
+        let w = (turn(0) + turn(1) + turn(2)) * value.r.x.like(0.5);
+        (value, Twist { w, v: self.r.map(|x| x.d) - w.cross(value.r) })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_turning_pose_gives_its_twist() {
+        let axis = Vec3::new(0.6, 0.0, 0.8);
+        let b = Dual::variable(0.3);
+        let rot = Mat3::about(axis, b);
+        let r = rot * Vec3::new(1.0, 2.0, 3.0).spread(b);
+        let (pose, twist) = Pose { rot, r }.split();
+        assert!((twist.w - axis).norm() < 1e-15, "{twist:?}");
+        assert!(twist.v.norm() < 1e-14, "a turn about the origin leaves it there: {twist:?}");
+        assert!((pose.rot.cols[0] - Mat3::from_rotation_vector(axis * 0.3).cols[0]).norm() < 1e-15);
     }
 }

@@ -1,6 +1,7 @@
 //! Unit quaternions: the rotation of a spherical joint, stored without singularity.
 
-use super::{Mat3, Real, Vec3};
+use super::{Mat3, Vec3};
+use crate::number::Real;
 
 /// A rotation as a unit quaternion `w + x i + y j + z k`.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -12,7 +12,7 @@ use faer::sparse::{SparseColMatRef, SymbolicSparseColMat};
 use faer::{Conj, MatMut, Par};
 
 use super::matrix::{Factored, Watched};
-use super::{LANES, Real};
+use crate::number::{LANES, Real};
 
 /// LU factors of a sparse square matrix whose pattern does not change.
 ///

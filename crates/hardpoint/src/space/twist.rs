@@ -1,6 +1,7 @@
 //! Twists and wrenches, all at the world origin and in world components.
 
-use super::{Real, Vec3};
+use super::Vec3;
+use crate::number::Real;
 use std::ops::{Add, AddAssign, Mul, Neg, Sub, SubAssign};
 
 /// A first-order motion of a body: angular part, and velocity of the body point at the world origin.

@@ -1,6 +1,6 @@
 //! Vectors of three components.
 
-use super::Real;
+use crate::number::Real;
 use std::ops::{Add, AddAssign, Index, Mul, Neg, Sub, SubAssign};
 
 /// A point or a direction with components along x, y and z.

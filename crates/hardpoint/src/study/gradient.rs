@@ -8,8 +8,9 @@ use crate::model::{Field, Fixed, GROUND, MeasureKind, OutputSource, VariableId};
 use crate::motion::Stop;
 use crate::motion::kinematics::State;
 use crate::motion::stepper::Stepper;
+use crate::number::{Dual, Jet, LANES, Rates, Real, lanes, of_lanes};
 use crate::sensitivity::{Adjoint, Admissibility, Load, Resisting, Support, Watch, admissibility};
-use crate::space::{Dual, Jet, LANES, Mat3, Pose, Rates, Real, Twist, Vec3, Wrench, lanes, of_lanes};
+use crate::space::{Mat3, Pose, Twist, Vec3, Wrench};
 use crate::topology::Topology;
 
 /// What an output costs the adjoint way, in solutions for one variable the direct way: its load takes some evaluations of the
@@ -184,10 +185,10 @@ struct Tracing<'a, T> {
     asked: Vec<Asked<T>>,
     /// Bodies that outputs are measured on.
     bodies: Vec<usize>,
-    poses: Vec<Pose<Jet>>,
+    poses: Vec<Pose<Dual<Rates>>>,
     /// What measures go by; and the same as it goes with each variable that moves some of it.
-    fixed: Fixed<Jet>,
-    moved: Vec<Option<Fixed<Jet>>>,
+    fixed: Fixed<Dual<Rates>>,
+    moved: Vec<Option<Fixed<Dual<Rates>>>>,
     gradient: Vec<[T; 3]>,
 }
 
@@ -225,9 +226,9 @@ impl<'a, T: Real> Tracing<'a, T> {
             variables,
         });
         let asked: Vec<Asked<T>> = asked.collect();
-        let zero = Dual::constant(Rates([0.0; 3]));
-        let mut values: Vec<Jet> = design.values.iter().map(|v| zero.like(*v)).collect();
-        let mut moved: Vec<Option<Fixed<Jet>>> = values.iter().map(|_| None).collect();
+        let zero = Dual::constant(Jet([0.0; 3]));
+        let mut values: Vec<Dual<Rates>> = design.values.iter().map(|v| zero.like(*v)).collect();
+        let mut moved: Vec<Option<Fixed<Dual<Rates>>>> = values.iter().map(|_| None).collect();
         for &v in asked.iter().flat_map(|a| &a.variables) {
             moved[v].get_or_insert_with(|| {
                 let value = values[v];
@@ -318,7 +319,7 @@ impl<'a, T: Real> Tracing<'a, T> {
         for &b in bodies.iter() {
             poses[b] = still(pose_with_rates(state, b, lane));
         }
-        let note = |to: &mut [[f64; LANES]; 3], Rates(d): Rates| {
+        let note = |to: &mut [[f64; LANES]; 3], Jet(d): Rates| {
             to.iter_mut().zip(d).for_each(|(to, d)| to[lane] = d);
         };
         for Asked { output, loads, variables, derivatives, .. } in asked {
@@ -381,7 +382,7 @@ fn dependences(
 fn pose_with_rates<T: Real>(state: &State<T>, b: usize, lane: usize) -> Pose<Rates> {
     let (pose, v, a) = (state.pose[b].lane(lane), state.v[b].lane(lane), state.a[b].lane(lane));
     let rates = |x: Vec3, first: Vec3, second: Vec3| {
-        let component = |k: usize| Rates([x[k], first[k], second[k]]);
+        let component = |k: usize| Jet([x[k], first[k], second[k]]);
         Vec3::new(component(0), component(1), component(2))
     };
     let column = |e: Vec3| {
@@ -394,13 +395,13 @@ fn pose_with_rates<T: Real>(state: &State<T>, b: usize, lane: usize) -> Pose<Rat
 }
 
 /// A pose that goes with nothing.
-fn still(pose: Pose<Rates>) -> Pose<Jet> {
+fn still(pose: Pose<Rates>) -> Pose<Dual<Rates>> {
     let still = |x: Vec3<Rates>| x.map(Dual::constant);
     Pose { rot: Mat3 { cols: pose.rot.cols.map(still) }, r: still(pose.r) }
 }
 
 /// Lets a pose go with a unit twist of the world: a turn about x, y or z, then a slide.
-fn move_along(pose: &mut Pose<Jet>, unit: usize) {
+fn move_along(pose: &mut Pose<Dual<Rates>>, unit: usize) {
     let axis = Vec3::AXES[unit % 3].spread(pose.r.x.v);
     let twist = if unit < 3 { Twist::turn(axis, Vec3::zero(axis.x)) } else { Twist::slide(axis) };
     for c in &mut pose.rot.cols {
@@ -412,12 +413,12 @@ fn move_along(pose: &mut Pose<Jet>, unit: usize) {
 }
 
 /// Lets it go with nothing again.
-fn stop(pose: &mut Pose<Jet>) {
+fn stop(pose: &mut Pose<Dual<Rates>>) {
     let nothing = Vec3::zero(pose.r.x.v);
     pose.rot.cols.iter_mut().for_each(|c| set(c, nothing));
     set(&mut pose.r, nothing);
 }
 
-fn set(of: &mut Vec3<Jet>, d: Vec3<Rates>) {
+fn set(of: &mut Vec3<Dual<Rates>>, d: Vec3<Rates>) {
     (of.x.d, of.y.d, of.z.d) = (d.x, d.y, d.z);
 }

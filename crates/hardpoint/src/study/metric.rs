@@ -6,7 +6,7 @@
 use crate::analysis::Solution;
 use crate::measure::Measured;
 use crate::model::{Metric, Model, OutputSource, Take, VariableId};
-use crate::space::{Dual, Real};
+use crate::number::{Dual, Real};
 
 /// The value of a metric.
 #[derive(Clone, Debug, PartialEq)]

@@ -7,8 +7,9 @@ use crate::measure::{Moment, Output, bodies_asked_for, outputs};
 use crate::model::{BodyId, Fixed, GROUND};
 use crate::motion::Stop;
 use crate::motion::stepper::Stepper;
+use crate::number::{Dual, Real, lanes, of_lanes};
 use crate::sensitivity::{BodyCurvature, Seconds, Way};
-use crate::space::{Dual, Pose, Real, lanes, of_lanes};
+use crate::space::Pose;
 
 /// Second derivatives of all bodies' positions and of the values of all outputs, for pairs of directions.
 #[derive(Clone, Debug, Default)]

@@ -3,7 +3,8 @@
 use std::path::{Path, PathBuf};
 
 /// The rooms of the core, in the order of the walk: each may use those before it only.
-const ROOMS: [&str; 12] = [
+const ROOMS: [&str; 13] = [
+    "number",
     "space",
     "law",
     "constraint",

@@ -3,7 +3,8 @@
 use hardpoint::Analysis;
 use hardpoint::law::Law;
 use hardpoint::model::*;
-use hardpoint::space::{Dual, Rates, Real, Vec3};
+use hardpoint::number::{Dual, Jet, Rates, Real};
+use hardpoint::space::Vec3;
 use hardpoint::topology::Formulation;
 
 use crate::workbench::*;
@@ -79,7 +80,7 @@ fn both_formulations_have_the_same_jerks_at_changed_designs_too() {
 
 /// A number with three time derivatives: the third is the derivative of the second.
 fn time(t: f64) -> Rates<Dual> {
-    Rates([Dual::variable(t), Dual::constant(1.0), Dual::constant(0.0)])
+    Jet([Dual::variable(t), Dual::constant(1.0), Dual::constant(0.0)])
 }
 
 #[test]

@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::law::{Expression, Law};
-use crate::space::Dual;
+use crate::number::Dual;
 
 /// A formula, and where it stands.
 pub(super) struct Written {

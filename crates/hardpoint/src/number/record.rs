@@ -4,7 +4,7 @@ use std::cell::Cell;
 
 use hardpoint_tape::{Call, Number};
 
-use super::real::{Function, Real};
+use super::{Function, Real};
 
 thread_local! {
     /// Whether something that is recorded on this thread was looked at lane by lane.
@@ -58,6 +58,11 @@ impl Real for Number {
     }
     fn map(self, function: Function) -> Self {
         self.call(match function {
+            Function::Sin => return self.sin_cos().0,
+            Function::Cos => return self.sin_cos().1,
+            Function::Sqrt => return self.sqrt(),
+            Function::Abs => return self.abs(),
+            Function::Log10 => return self.call(Call::Ln) * std::f64::consts::LOG10_E,
             Function::Tan => Call::Tan,
             Function::Asin => Call::Asin,
             Function::Acos => Call::Acos,
@@ -69,8 +74,14 @@ impl Real for Number {
             Function::Ln => Call::Ln,
         })
     }
-    fn powf(self, exponent: f64) -> Self {
-        Number::powf(self, Number::constant(exponent))
+    fn is_zero(self, _: usize) -> bool {
+        self.value() == 0.0
+    }
+    fn pow(self, exponent: Self) -> Self {
+        Number::powf(self, exponent)
+    }
+    fn hypot(self, o: Self) -> Self {
+        (self * self + o * o).sqrt()
     }
     fn atan2(self, x: Self) -> Self {
         Number::atan2(self, x)

@@ -1,16 +1,19 @@
-//! The scalar that the hot path is generic over.
+//! The number that everything is written over, and the two plain ones: `f64`, and eight lanes.
 
+use std::cmp::Ordering;
 use std::fmt::Debug;
 use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
 
-use fearless_simd::{Select, Simd, SimdBase, SimdFloat, SimdMask, f64x8};
+use fearless_simd::{Select, Simd, SimdBase, SimdFloat, SimdFrom, SimdMask, f64x8};
+
+use super::Function;
 
 /// One number per lane; the last one in lanes beyond.
 pub(crate) fn of_lanes(numbers: &[f64]) -> [f64; LANES] {
     std::array::from_fn(|lane| numbers[lane.min(numbers.len() - 1)])
 }
 
-/// One `f64`, or several of them side by side in SIMD lanes.
+/// One `f64`, or several of them side by side in SIMD lanes; with whatever derivatives it carries.
 ///
 /// A lane value carries the proof that the CPU has the instructions, so constants are made from a
 /// value at hand: `x.like(2.0)`. Lanes fuse multiplications with additions where the CPU can, scalars do not:
@@ -26,6 +29,8 @@ pub trait Real:
     + Mul<Output = Self>
     + Div<Output = Self>
     + Neg<Output = Self>
+    + Add<f64, Output = Self>
+    + Mul<f64, Output = Self>
     + AddAssign
     + SubAssign
 {
@@ -38,10 +43,13 @@ pub trait Real:
     /// A value made lane by lane.
     fn like_lanes(self, lane: impl FnMut(usize) -> f64) -> Self;
 
-    /// A value from its lanes.
+    /// A value with these numbers in its lanes; the first of them, if it has but one.
     #[inline(always)]
-    fn load(self, lanes: &[f64; LANES]) -> Self {
-        self.like_lanes(|k| lanes[k])
+    fn gather(self, lanes: [f64; LANES]) -> Self {
+        self.like_lanes(
+            #[inline(always)]
+            |k| lanes[k],
+        )
     }
 
     /// The scalar in lane `k`.
@@ -71,11 +79,60 @@ pub trait Real:
     /// This value in the lanes that `first` says, `other` in the rest; what is not taken may be NaN.
     fn select(self, other: Self, first: impl Fn(usize) -> bool + Copy) -> Self;
 
-    /// The function of this value, lane by lane, by the standard library.
+    /// The function of this value, lane by lane; by the standard library, but for roots, and for sines in lanes.
     fn map(self, function: Function) -> Self;
 
+    /// Whether it is zero in lane `k`, derivatives that it may carry included.
+    fn is_zero(self, k: usize) -> bool;
+
+    /// How this value compares with another in lane `k`; just after the instant, of numbers that carry time derivatives: ties are
+    /// decided by the first of them that differs.
+    #[inline(always)]
+    fn order(self, o: Self, k: usize) -> Option<Ordering> {
+        self.lane(k).partial_cmp(&o.lane(k))
+    }
+
+    /// This value held: what depends on no time has no time derivatives, whatever infinities its parts brought.
+    #[inline(always)]
+    fn held(self) -> Self {
+        self
+    }
+
+    /// This value to a power, lane by lane.
+    #[inline(always)]
+    fn pow(self, exponent: Self) -> Self {
+        self.like_lanes(|k| self.lane(k).powf(exponent.lane(k)))
+    }
+
     /// This value to a fixed power, lane by lane.
-    fn powf(self, exponent: f64) -> Self;
+    #[inline(always)]
+    fn powf(self, exponent: f64) -> Self {
+        self.pow(self.like(exponent))
+    }
+
+    /// This value to a whole power, by repeated squaring, in the order in which `f64::powi` multiplies.
+    #[inline(always)]
+    fn powi(self, exponent: i32) -> Self {
+        let mut power = self.like(1.0);
+        let (mut square, mut left) = (self, exponent.unsigned_abs());
+        loop {
+            if left & 1 == 1 {
+                power = power * square;
+            }
+            left >>= 1;
+            if left == 0 {
+                break;
+            }
+            square = square * square;
+        }
+        if exponent < 0 { self.like(1.0) / power } else { power }
+    }
+
+    /// The length of the vector (self, o), lane by lane.
+    #[inline(always)]
+    fn hypot(self, o: Self) -> Self {
+        self.like_lanes(|k| self.lane(k).hypot(o.lane(k)))
+    }
 
     /// Runs `f` compiled for the CPU that this value was made for. Large functions of the hot path
     /// begin with it, so that they need not be inlined into their callers to get wide instructions.
@@ -123,6 +180,12 @@ pub trait Real:
         self.like_lanes(|k| self.lane(k).atan2(x.lane(k)))
     }
 
+    /// Sine and cosine of an angle of any size, lane by lane; of one number as the standard library has them.
+    #[inline(always)]
+    fn sin_cos_of_any(self) -> (Self, Self) {
+        if self.abs().largest() <= LARGEST_ANGLE { self.sin_cos() } else { library_sin_cos(self) }
+    }
+
     /// Sine and cosine, lane by lane, to about one unit in the last place for |x| up to 1e5 turns.
     ///
     /// Reduced by multiples of pi/2 in three parts (Cody and Waite), then the polynomials of
@@ -156,60 +219,8 @@ pub trait Real:
     }
 }
 
-/// A function that is evaluated by the standard library, outside of the hot path, and knows its own slope.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Function {
-    /// Tangent.
-    Tan,
-    /// Arc sine.
-    Asin,
-    /// Arc cosine.
-    Acos,
-    /// Arc tangent.
-    Atan,
-    /// Hyperbolic sine.
-    Sinh,
-    /// Hyperbolic cosine.
-    Cosh,
-    /// Hyperbolic tangent.
-    Tanh,
-    /// Exponential function.
-    Exp,
-    /// Natural logarithm.
-    Ln,
-}
-
-impl Function {
-    fn of(self, x: f64) -> f64 {
-        match self {
-            Self::Tan => x.tan(),
-            Self::Asin => x.asin(),
-            Self::Acos => x.acos(),
-            Self::Atan => x.atan(),
-            Self::Sinh => x.sinh(),
-            Self::Cosh => x.cosh(),
-            Self::Tanh => x.tanh(),
-            Self::Exp => x.exp(),
-            Self::Ln => x.ln(),
-        }
-    }
-
-    /// The derivative at `x`, where the value is `y`.
-    pub(super) fn slope<T: Real>(self, x: T, y: T) -> T {
-        let one = x.like(1.0);
-        match self {
-            Self::Tan => one + y * y,
-            Self::Asin => one / (one - x * x).sqrt(),
-            Self::Acos => -(one / (one - x * x).sqrt()),
-            Self::Atan => one / (one + x * x),
-            Self::Sinh => x.map(Self::Cosh),
-            Self::Cosh => x.map(Self::Sinh),
-            Self::Tanh => one - y * y,
-            Self::Exp => y,
-            Self::Ln => one / x,
-        }
-    }
-}
+/// Up to this angle, rad, [`Real::sin_cos`] is good to the last place.
+const LARGEST_ANGLE: f64 = 1e5 * std::f64::consts::TAU;
 
 impl Real for f64 {
     const LANES: usize = 1;
@@ -248,11 +259,17 @@ impl Real for f64 {
     fn select(self, other: Self, first: impl Fn(usize) -> bool + Copy) -> Self {
         if first(0) { self } else { other }
     }
+    #[inline(always)]
     fn map(self, function: Function) -> Self {
         function.of(self)
     }
-    fn powf(self, exponent: f64) -> Self {
-        f64::powf(self, exponent)
+    #[inline(always)]
+    fn is_zero(self, _: usize) -> bool {
+        self == 0.0
+    }
+    #[inline(always)]
+    fn sin_cos_of_any(self) -> (Self, Self) {
+        f64::sin_cos(self)
     }
     #[inline(always)]
     fn largest(self) -> f64 {
@@ -269,6 +286,19 @@ impl Real for f64 {
     fn within<R>(self, f: impl FnOnce() -> R) -> R {
         f()
     }
+}
+
+/// A function of two numbers, by the standard library: the same code for every CPU.
+#[inline(never)]
+fn each(f: fn(f64, f64) -> f64, x: [f64; LANES], y: [f64; LANES]) -> [f64; LANES] {
+    std::array::from_fn(|k| f(x[k], y[k]))
+}
+
+/// Sine and cosine by the standard library.
+#[cold]
+#[inline(never)]
+fn library_sin_cos<T: Real>(angles: T) -> (T, T) {
+    (angles.like_lanes(|k| angles.lane(k).sin()), angles.like_lanes(|k| angles.lane(k).cos()))
 }
 
 /// How many designs are solved side by side in lanes.
@@ -291,8 +321,8 @@ impl<S: Simd> Real for f64x8<S> {
         f64x8::from_fn(self.simd, lane)
     }
     #[inline(always)]
-    fn load(self, lanes: &[f64; LANES]) -> Self {
-        f64x8::load_array_ref(self.simd, lanes)
+    fn gather(self, lanes: [f64; LANES]) -> Self {
+        f64x8::simd_from(self.simd, lanes)
     }
     #[inline(always)]
     fn lane(self, k: usize) -> f64 {
@@ -333,14 +363,42 @@ impl<S: Simd> Real for f64x8<S> {
     fn larger(self, o: Self) -> Self {
         (o.simd_le(self) | !self.simd_eq(self)).select(self, o)
     }
+    #[inline(always)]
     fn select(self, other: Self, first: impl Fn(usize) -> bool + Copy) -> Self {
-        self.like_lanes(|k| if first(k) { self.lane(k) } else { other.lane(k) })
+        let first = self.like_lanes(
+            #[inline(always)]
+            |k| f64::from(u8::from(first(k))),
+        );
+        first.simd_gt(0.0).select(self, other)
     }
+    #[inline(never)]
     fn map(self, function: Function) -> Self {
-        self.like_lanes(|k| function.of(self.lane(k)))
+        self.within(
+            #[inline(always)]
+            || match function {
+                Function::Sin => self.sin_cos_of_any().0,
+                Function::Cos => self.sin_cos_of_any().1,
+                Function::Sqrt => Real::sqrt(self),
+                Function::Abs => Real::abs(self),
+                _ => self.gather(function.of_each(*self.as_array())),
+            },
+        )
     }
-    fn powf(self, exponent: f64) -> Self {
-        self.like_lanes(|k| self.lane(k).powf(exponent))
+    #[inline(always)]
+    fn pow(self, exponent: Self) -> Self {
+        self.gather(each(f64::powf, *self.as_array(), *exponent.as_array()))
+    }
+    #[inline(always)]
+    fn hypot(self, o: Self) -> Self {
+        self.gather(each(f64::hypot, *self.as_array(), *o.as_array()))
+    }
+    #[inline(always)]
+    fn atan2(self, x: Self) -> Self {
+        self.gather(each(f64::atan2, *self.as_array(), *x.as_array()))
+    }
+    #[inline(always)]
+    fn is_zero(self, k: usize) -> bool {
+        self.lane(k) == 0.0
     }
     #[inline(always)]
     fn largest(self) -> f64 {

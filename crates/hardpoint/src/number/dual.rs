@@ -1,13 +1,13 @@
 //! A number with its derivative by one variable.
 
+use std::cmp::Ordering;
 use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
 
-use super::real::Function;
-use super::{Pose, Real, Twist};
+use super::{Function, Real};
 
 /// A number and its derivative. What is written once over [`Real`] is differentiated by running it on these; a dual of
 /// duals has second derivatives.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Dual<T = f64> {
     /// The value.
     pub v: T,
@@ -27,17 +27,12 @@ impl<T: Real> Dual<T> {
     pub fn constant(v: T) -> Self {
         Self { v, d: v.zero() }
     }
-}
 
-impl<T: Real> Pose<Dual<T>> {
-    /// The pose, and the twist at which it changes, fixed in the outer frame: `[w; v]` with v at the outer frame's origin.
-    pub fn split(self) -> (Pose<T>, Twist<T>) {
-        let value =
-            Pose { rot: super::Mat3 { cols: self.rot.cols.map(|c| c.map(|x| x.v)) }, r: self.r.map(|x| x.v) };
-        // The rate of every unit vector c is w x c: w is half the sum of c x c'.
-        let turn = |k: usize| value.rot.cols[k].cross(self.rot.cols[k].map(|x| x.d));
-        let w = (turn(0) + turn(1) + turn(2)) * value.r.x.like(0.5);
-        (value, Twist { w, v: self.r.map(|x| x.d) - w.cross(value.r) })
+    /// A function's value `v` with the derivative that it makes of this number's. What does not depend on the variable does
+    /// not, also where the function has a vertical tangent.
+    #[inline(always)]
+    fn or_constant(self, v: T, d: impl FnOnce(T) -> T) -> Self {
+        Self { v, d: if self.d.vanishes() { v.zero() } else { d(self.d) } }
     }
 }
 
@@ -79,6 +74,22 @@ impl<T: Real> Neg for Dual<T> {
     #[inline(always)]
     fn neg(self) -> Self {
         Self { v: -self.v, d: -self.d }
+    }
+}
+
+impl<T: Real> Add<f64> for Dual<T> {
+    type Output = Self;
+    #[inline(always)]
+    fn add(self, o: f64) -> Self {
+        Self { v: self.v + o, ..self }
+    }
+}
+
+impl<T: Real> Mul<f64> for Dual<T> {
+    type Output = Self;
+    #[inline(always)]
+    fn mul(self, factor: f64) -> Self {
+        Self { v: self.v * factor, d: self.d * factor }
     }
 }
 
@@ -147,11 +158,32 @@ impl<T: Real> Real for Dual<T> {
     }
     fn map(self, function: Function) -> Self {
         let v = self.v.map(function);
-        Self { v, d: self.d * function.slope(self.v, v) }
+        self.or_constant(v, |d| d * function.derivatives(self.v, v)[0])
     }
-    fn powf(self, exponent: f64) -> Self {
-        let slope = self.v.powf(exponent - 1.0) * self.v.like(exponent);
-        Self { v: self.v.powf(exponent), d: self.d * slope }
+    fn is_zero(self, k: usize) -> bool {
+        self.v.is_zero(k) && self.d.is_zero(k)
+    }
+    #[inline(always)]
+    fn order(self, o: Self, k: usize) -> Option<Ordering> {
+        self.v.order(o.v, k)
+    }
+    #[inline(always)]
+    fn held(self) -> Self {
+        Self { v: self.v.held(), d: self.d.held() }
+    }
+    fn pow(self, exponent: Self) -> Self {
+        // d xᵖ = p x^(p-1) dx + xᵖ ln x dp; what vanishes wins over what is infinite.
+        let (x, p, zero) = (self.v, exponent.v, self.v.zero());
+        let power = x.pow(p);
+        let by_base = self.or_constant(power, |d| d * zero.select(p * x.pow(p + -1.0), |k| p.is_zero(k)));
+        let by_exponent = exponent
+            .or_constant(power, |d| d * zero.select(power * x.map(Function::Ln), |k| power.is_zero(k)));
+        Self { v: power, d: by_base.d + by_exponent.d }
+    }
+    fn hypot(self, o: Self) -> Self {
+        let v = self.v.hypot(o.v);
+        let (by_x, by_y) = (self.or_constant(v, |d| d * (self.v / v)), o.or_constant(v, |d| d * (o.v / v)));
+        Self { v, d: by_x.d + by_y.d }
     }
     #[inline(always)]
     fn largest(self) -> f64 {
@@ -167,20 +199,30 @@ impl<T: Real> Real for Dual<T> {
     }
     #[inline(always)]
     fn atan2(self, x: Self) -> Self {
+        let v = self.v.atan2(x.v);
+        if self.d.vanishes() && x.d.vanishes() {
+            return Self::constant(v);
+        }
         let square = self.v * self.v + x.v * x.v;
-        Self { v: self.v.atan2(x.v), d: (self.d * x.v - self.v * x.d) / square }
+        Self { v, d: (self.d * x.v - self.v * x.d) / square }
     }
     #[inline(always)]
     fn sin_cos(self) -> (Self, Self) {
         let (sin, cos) = self.v.sin_cos();
         (Self { v: sin, d: self.d * cos }, Self { v: cos, d: -(self.d * sin) })
     }
+    #[inline(always)]
+    fn sin_cos_of_any(self) -> (Self, Self) {
+        let (sin, cos) = self.v.sin_cos_of_any();
+        (Self { v: sin, d: self.d * cos }, Self { v: cos, d: -(self.d * sin) })
+    }
 }
 
 #[cfg(test)]
 mod tests {
+    use num_dual::{Dual64, DualNum};
+
     use super::*;
-    use crate::space::{Mat3, Vec3};
 
     #[test]
     fn derivatives_of_either_order_match_the_closed_form() {
@@ -230,14 +272,44 @@ mod tests {
     }
 
     #[test]
-    fn a_turning_pose_gives_its_twist() {
-        let axis = Vec3::new(0.6, 0.0, 0.8);
-        let b = Dual::variable(0.3);
-        let rot = Mat3::about(axis, b);
-        let r = rot * Vec3::new(1.0, 2.0, 3.0).spread(b);
-        let (pose, twist) = Pose { rot, r }.split();
-        assert!((twist.w - axis).norm() < 1e-15, "{twist:?}");
-        assert!(twist.v.norm() < 1e-14, "a turn about the origin leaves it there: {twist:?}");
-        assert!((pose.rot.cols[0] - Mat3::from_rotation_vector(axis * 0.3).cols[0]).norm() < 1e-15);
+    fn functions_agree_with_num_dual() {
+        type Case = (&'static str, fn(Dual) -> Dual, fn(Dual64) -> Dual64);
+        let cases: [Case; 17] = [
+            ("sin", |x| x.sin_cos().0, |x| x.sin()),
+            ("cos", |x| x.sin_cos().1, |x| x.cos()),
+            ("tan", |x| x.map(Function::Tan), |x| x.tan()),
+            ("asin", |x| x.map(Function::Asin), |x| x.asin()),
+            ("acos", |x| x.map(Function::Acos), |x| x.acos()),
+            ("atan", |x| x.map(Function::Atan), |x| x.atan()),
+            ("sinh", |x| x.map(Function::Sinh), |x| x.sinh()),
+            ("cosh", |x| x.map(Function::Cosh), |x| x.cosh()),
+            ("tanh", |x| x.map(Function::Tanh), |x| x.tanh()),
+            ("exp", |x| x.map(Function::Exp), |x| x.exp()),
+            ("ln", |x| x.map(Function::Ln), |x| x.ln()),
+            ("log10", |x| x.map(Function::Log10), |x| x.log10()),
+            ("sqrt", |x| x.map(Function::Sqrt), |x| x.sqrt()),
+            ("powi", |x| x.powi(-3), |x| x.powi(-3)),
+            ("powf", |x| x.pow(x * 2.0), |x| (x * 2.0 * x.ln()).exp()),
+            ("atan2", |x| x.atan2(x * x + 0.5), |x| x.atan2(x * x + 0.5)),
+            ("quotient", |x| (x - x * 3.0) / (-x * x + 5.0), |x| (x - x * 3.0) / (-x * x + 5.0)),
+        ];
+        for (name, ours, oracle) in cases {
+            for value in [0.15, 0.4, 0.9] {
+                let (ours, oracle) = (ours(Dual { v: value, d: -1.7 }), oracle(Dual64::new(value, -1.7)));
+                assert!((ours.v - oracle.re).abs() <= 1e-14 * oracle.re.abs().max(1.0), "{name}");
+                assert!((ours.d - oracle.eps).abs() <= 1e-13 * oracle.eps.abs().max(1.0), "{name}");
+                assert!(ours.d != 0.0, "{name}");
+            }
+        }
+        let length = Dual { v: 3.0, d: 1.0 }.hypot(Dual { v: 4.0, d: 2.0 });
+        assert_eq!((length.v, length.d), (5.0, 2.2));
+    }
+
+    #[test]
+    fn what_does_not_depend_on_the_parameter_has_no_derivative_at_a_vertical_tangent() {
+        let [zero, one] = [0.0, 1.0].map(Dual::constant);
+        for root in [zero.map(Function::Sqrt), one.asin(), zero.powf(0.5)] {
+            assert_eq!(root.d, 0.0);
+        }
     }
 }

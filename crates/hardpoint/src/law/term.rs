@@ -1,0 +1,306 @@
+//! What expressions are evaluated in, and the operations of two and more operands there.
+
+use std::cmp::Ordering;
+use std::ops::{Add, Div, Mul, Neg, Sub};
+
+use super::range::Range;
+use crate::number::{Function, LANES, Real};
+
+/// What an expression is evaluated in: a number with whatever derivatives it carries, side by side with others or not; or
+/// [bounds](super::range::Stretch) of one.
+pub(super) trait Term:
+    Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Div<Output = Self> + Neg<Output = Self>
+{
+    /// The number `x`, at all times.
+    fn constant(self, x: f64) -> Self;
+    /// A function of one argument.
+    fn function(self, function: Function) -> Self;
+    /// The power with a whole exponent.
+    fn to_whole(self, exponent: i32) -> Self;
+    /// The power with a constant exponent.
+    fn to_constant(self, exponent: f64) -> Self;
+    /// The power with any exponent.
+    fn to(self, exponent: Self) -> Self;
+    /// The angle of the point (`x`, `self`).
+    fn angle(self, x: Self) -> Self;
+    /// The length of the vector (`self`, `o`).
+    fn length(self, o: Self) -> Self;
+    /// The smaller of the two; not a number if either is.
+    fn smaller(self, o: Self) -> Self;
+    /// The larger of the two; not a number if either is.
+    fn greater(self, o: Self) -> Self;
+    /// The cubic step in `self` from `h0`, up to `x0`, to `h1`, from `x1` on; `x0 < x1`, else not a number.
+    fn step(self, x0: Self, h0: Self, x1: Self, h1: Self) -> Self;
+    /// `x` where the comparison of `self` with `b` holds, else `y`; not a number if either is not.
+    fn choose(self, comparison: Comparison, b: Self, x: Self, y: Self) -> Self;
+    /// What depends on constants only.
+    fn settled(self) -> Self;
+    /// Runs `f` compiled for the CPU that this value was made for.
+    fn within<R>(self, f: impl FnOnce() -> R) -> R;
+}
+
+/// Every lane takes its own side, that which is active just after the instant.
+impl<T: Real> Term for T {
+    #[inline(always)]
+    fn constant(self, x: f64) -> Self {
+        self.like(x)
+    }
+
+    #[inline(always)]
+    fn function(self, function: Function) -> Self {
+        self.map(function)
+    }
+
+    #[inline(always)]
+    fn to_whole(self, exponent: i32) -> Self {
+        self.powi(exponent)
+    }
+
+    fn to_constant(self, exponent: f64) -> Self {
+        rarely(
+            self,
+            #[inline(always)]
+            || self.powf(exponent),
+        )
+    }
+
+    fn to(self, exponent: Self) -> Self {
+        rarely(
+            self,
+            #[inline(always)]
+            || self.pow(exponent),
+        )
+    }
+
+    fn angle(self, x: Self) -> Self {
+        rarely(
+            self,
+            #[inline(always)]
+            || self.atan2(x),
+        )
+    }
+
+    fn length(self, o: Self) -> Self {
+        rarely(
+            self,
+            #[inline(always)]
+            || self.hypot(o),
+        )
+    }
+
+    fn smaller(self, o: Self) -> Self {
+        rarely(
+            self,
+            #[inline(always)]
+            || in_lanes(self, o, |k| is_it(self, o, k, Ordering::Less)),
+        )
+    }
+
+    fn greater(self, o: Self) -> Self {
+        rarely(
+            self,
+            #[inline(always)]
+            || in_lanes(self, o, |k| is_it(self, o, k, Ordering::Greater)),
+        )
+    }
+
+    fn step(self, x0: Self, h0: Self, x1: Self, h1: Self) -> Self {
+        rarely(
+            self,
+            #[inline(always)]
+            || {
+                let is_low = lanes(self, |k| self.order(x0, k) == Some(Ordering::Less));
+                let is_high = lanes(self, |k| !matches!(self.order(x1, k), None | Some(Ordering::Less)));
+                let step = if (0..T::LANES).all(|k| is_low[k] || is_high[k]) {
+                    h1
+                } else {
+                    // h0 + (h1 - h0) (3 u² - 2 u³)
+                    let u = (self - x0) / (x1 - x0);
+                    let between = h0 + (h1 - h0) * (u * u * (self.like(3.0) - u * 2.0));
+                    h1.select(between, |k| is_high[k])
+                };
+                let step = h0.select(step, |k| is_low[k]);
+                in_lanes(step, undefined(self), |k| x0.lane(k) < x1.lane(k))
+            },
+        )
+    }
+
+    fn choose(self, comparison: Comparison, b: Self, x: Self, y: Self) -> Self {
+        rarely(
+            self,
+            #[inline(always)]
+            || {
+                let holds = |k: usize| comparison.holds(self.lane(k), b.lane(k));
+                if (1..T::LANES).all(|k| holds(k) == holds(0)) {
+                    return holds(0).map_or(undefined(self), |holds| if holds { x } else { y });
+                }
+                let chosen = in_lanes(x, y, |k| holds(k) == Some(true));
+                in_lanes(chosen, undefined(self), |k| holds(k).is_some())
+            },
+        )
+    }
+
+    #[inline(always)]
+    fn settled(self) -> Self {
+        self.held()
+    }
+
+    #[inline(always)]
+    fn within<R>(self, f: impl FnOnce() -> R) -> R {
+        Real::within(self, f)
+    }
+}
+
+/// What only few expressions need, apart from the code of all the others.
+#[inline(never)]
+fn rarely<T: Real>(like: T, f: impl FnOnce() -> T) -> T {
+    Real::within(like, f)
+}
+
+/// One number in the lanes that `first` says, another in the rest.
+#[inline(always)]
+fn in_lanes<T: Real>(one: T, other: T, first: impl Fn(usize) -> bool) -> T {
+    let takes = lanes(one, first);
+    one.select(other, |k| takes[k])
+}
+
+/// What is so in every lane.
+#[inline(always)]
+fn lanes<T: Real>(_: T, is_so: impl Fn(usize) -> bool) -> [bool; LANES] {
+    std::array::from_fn(|k| k < T::LANES && is_so(k))
+}
+
+/// What has no value, and no derivative either.
+#[inline(always)]
+fn undefined<T: Real>(like: T) -> T {
+    like.like(f64::NAN) * like
+}
+
+/// Whether `x` is at least as far on a side as `o` is, in lane `k`; or, of two that do not compare, the one without a value.
+#[inline(always)]
+fn is_it<T: Real>(x: T, o: T, k: usize, side: Ordering) -> bool {
+    match x.order(o, k) {
+        Some(order) => order == side || order == Ordering::Equal,
+        None => x.order(x, k).is_none(),
+    }
+}
+
+/// A function of two quantities.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Binary {
+    Add,
+    Sub,
+    Mul,
+    Div,
+    Atan2,
+    Pow,
+    Hypot,
+    Min,
+    Max,
+}
+
+impl Binary {
+    #[inline(always)]
+    pub(super) fn of<V: Term>(self, x: V, y: V) -> V {
+        match self {
+            Self::Add => x + y,
+            Self::Sub => x - y,
+            Self::Mul => x * y,
+            Self::Div => x / y,
+            Self::Atan2 => x.angle(y),
+            Self::Pow => x.to(y),
+            Self::Hypot => x.length(y),
+            Self::Min => x.smaller(y),
+            Self::Max => x.greater(y),
+        }
+    }
+}
+
+/// A comparison of two values.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Comparison {
+    Less,
+    LessOrEqual,
+    Greater,
+    GreaterOrEqual,
+}
+
+impl Comparison {
+    /// Whether `a` compares with `b` in this way; `None` if either is not a number.
+    pub(super) fn holds(self, a: f64, b: f64) -> Option<bool> {
+        let order = a.partial_cmp(&b)?;
+        Some(match self {
+            Self::Less => order == Ordering::Less,
+            Self::LessOrEqual => order != Ordering::Greater,
+            Self::Greater => order == Ordering::Greater,
+            Self::GreaterOrEqual => order != Ordering::Less,
+        })
+    }
+
+    /// Whether it holds for all numbers of two ranges, or for none; `None` if that depends.
+    pub(super) fn holds_between(self, a: Range, b: Range) -> Option<bool> {
+        let corners = [(a.low, b.low), (a.low, b.high), (a.high, b.low), (a.high, b.high)];
+        let first = self.holds(a.low, b.high)?;
+        corners.iter().all(|&(a, b)| self.holds(a, b) == Some(first)).then_some(first)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use num_dual::Dual3_64;
+
+    use super::*;
+    use crate::number::Jet;
+
+    #[test]
+    fn step_between_its_ends_agrees_with_num_dual_to_third_order() {
+        // Own derivatives all different from zero, so that no term of the chain rule drops out.
+        const SLOPES: [[f64; 3]; 3] = [[1.0, 0.0, 0.0], [0.7, -0.4, 1.3], [-1.9, 2.3, -0.6]];
+        let jet = |x, [d, dd, ddd]: [f64; 3]| Jet([x, d, dd, ddd]);
+        let dual = |Jet([x, d, dd, ddd]): Jet| Dual3_64::new(x, d, dd, ddd);
+        for (x, slopes) in [0.2, 0.5, 0.9].iter().flat_map(|x| SLOPES.map(|slopes| (*x, slopes))) {
+            let x = jet(x, slopes);
+            let (x0, h0) = (jet(0.1, SLOPES[1]), jet(-3.0, SLOPES[2]));
+            let (x1, h1) = (jet(1.3, SLOPES[2]), jet(2.0, SLOPES[1]));
+            let u = (dual(x) - dual(x0)) / (dual(x1) - dual(x0));
+            let oracle = dual(h0) + (dual(h1) - dual(h0)) * (u * u * 3.0 - u * u * u * 2.0);
+            let oracle = [oracle.re, oracle.v1, oracle.v2, oracle.v3];
+            let size = oracle.iter().fold(1.0, |size: f64, derivative| size.max(derivative.abs()));
+            let ours = x.step(x0, h0, x1, h1).derivatives();
+            for order in 0..4 {
+                let error = (ours[order] - oracle[order]).abs();
+                assert!(error <= 1e3 * f64::EPSILON * size, "order {order}: {ours:?} is not {oracle:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn ties_are_decided_just_after_the_instant() {
+        let (zero, rising): (Jet, Jet) = (Jet::constant(0.0), Jet::time(0.0));
+        let falling = -rising;
+        assert_eq!(Real::abs(falling).d(), 1.0);
+        assert_eq!(Real::abs(rising).d(), 1.0);
+        assert_eq!(rising.smaller(zero), zero);
+        assert_eq!(zero.greater(rising), rising);
+        assert_eq!(zero.smaller(falling), falling);
+
+        let step = |t: f64| {
+            let [x0, h0, x1, h1] = [0.0, 5.0, 1.0, 6.0].map(Jet::constant);
+            Jet::time(t).step(x0, h0, x1, h1).derivatives()
+        };
+        assert_eq!(step(-1e-9), [5.0, 0.0, 0.0, 0.0]);
+        assert_eq!(step(0.0), [5.0, 0.0, 6.0, -12.0]);
+        assert_eq!(step(1.0), [6.0, 0.0, 0.0, 0.0]);
+    }
+
+    #[test]
+    fn a_value_that_is_not_a_number_is_never_hidden() {
+        let (nan, one): (Jet, Jet) = (Jet::constant(f64::NAN), Jet::constant(1.0));
+        for hidden in [nan.smaller(one), one.smaller(nan), nan.greater(one), one.greater(nan), Real::abs(nan)]
+        {
+            assert!(hidden.value().is_nan());
+        }
+        assert!(nan.step(one, one, one * 2.0, one).value().is_nan());
+        assert!(one.step(one, one, one, one).value().is_nan(), "x0 = x1");
+    }
+}
