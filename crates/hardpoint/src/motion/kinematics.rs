@@ -14,7 +14,7 @@ use super::parts::Parts;
 /// A correction below this (rad, or sizes) leaves an error of its square, which is round-off.
 pub(super) const QUADRATIC: f64 = 1e-8;
 /// A correction below this is round-off itself: nothing is applied.
-const ROUND_OFF: f64 = 1e-14;
+pub(super) const ROUND_OFF: f64 = 1e-14;
 /// Newton from a good prediction needs 1 to 3 iterations; one that needs this many is lost.
 const MAX_ITERATIONS: usize = 12;
 /// A pivot ratio below this is a singular position: velocities would lose all their digits.
@@ -68,8 +68,8 @@ pub(crate) struct State<T> {
     pub determinants: Vec<T>,
     /// Per block: what is watched of its factors.
     pub watched: Vec<Watched<T>>,
-    /// The largest first, second and later correction of any block, rad or sizes.
-    pub corrections: [T; CORRECTIONS],
+    /// Per block: its first, second and last correction, rad or sizes, and how many passes that took.
+    pub corrections: Vec<([T; CORRECTIONS], usize)>,
     pub iterations: usize,
 }
 
@@ -137,7 +137,7 @@ impl<T: Real> State<T> {
             pivots: vec![(1.0, true); topology.blocks.len()],
             determinants: vec![o; topology.blocks.len()],
             watched: vec![Watched::zero(witness); topology.blocks.len()],
-            corrections: [o; CORRECTIONS],
+            corrections: vec![([o; CORRECTIONS], 0); topology.blocks.len()],
             iterations: 0,
         }
     }
@@ -407,7 +407,6 @@ impl<T: Real> State<T> {
         witness.within(
             #[inline(always)]
             || {
-                self.corrections = [witness.zero(); CORRECTIONS];
                 for (c, coordinate) in topology.coordinates.iter().enumerate() {
                     if let Source::Driven(d) = coordinate.source {
                         [self.q[c], self.qd[c], self.qdd[c]] = drivers[d.0];
@@ -448,6 +447,7 @@ impl<T: Real> State<T> {
             self.place(topology, parts, links.clone());
             self.linearise(topology, parts, drivers, b);
             self.iterations += 1;
+            self.corrections[b].1 = pass + 1;
             if !(self.pivots[b].0 > SINGULAR) {
                 return Err(PositionFailure::Singular { block: b });
             }
@@ -456,8 +456,7 @@ impl<T: Real> State<T> {
             }
             self.factors[b].solve(&mut self.rhs);
             let corrections = self.correction(topology, b);
-            let known = &mut self.corrections[pass.min(CORRECTIONS - 1)];
-            *known = known.larger(corrections);
+            self.corrections[b].0[pass.min(CORRECTIONS - 1)] = corrections;
             let correction = corrections.largest();
             if correction <= ROUND_OFF {
                 return Ok(());

@@ -13,7 +13,7 @@ use crate::topology::{Source, Topology};
 
 use super::assembly::Assembly;
 use super::forecast::Forecast;
-use super::kinematics::{PositionFailure, QUADRATIC, Residuals, State, factors_of};
+use super::kinematics::{CORRECTIONS, PositionFailure, QUADRATIC, Residuals, State, factors_of};
 use super::parts::Parts;
 use super::singularity::{Prober, Surroundings};
 use super::tape::{Programs, Tape};
@@ -361,7 +361,8 @@ impl<'m, T: Real> Stepper<'m, T> {
 
     /// How many corrections the last step of the kernel needed, of those that a program may have.
     pub(super) fn corrections(&self) -> usize {
-        if self.state.corrections[0].largest() <= QUADRATIC { 1 } else { 2 }
+        let is_last = |(c, _): &([T; CORRECTIONS], usize)| c[0].largest() <= QUADRATIC;
+        if self.state.corrections.iter().all(is_last) { 1 } else { 2 }
     }
 
     /// A design per lane: lets a tape solve so many steps to come, if that pays.

@@ -20,7 +20,7 @@ use crate::number::record as recording;
 use crate::space::{LANES, LARGEST_DENSE, Quat, Real, Vec3, Watched};
 use crate::topology::{Source, Topology};
 
-use super::kinematics::{QUADRATIC, Residuals, State};
+use super::kinematics::{CORRECTIONS, QUADRATIC, ROUND_OFF, Residuals, State};
 use super::parts::Parts;
 use super::stepper::{LOCKED, Saved, Stepper};
 use super::{BodyState, turn_over};
@@ -83,11 +83,44 @@ pub(crate) struct StepProgram {
     step: Program,
     code: Option<Code>,
     channels: Vec<Channel>,
-    /// Per block: the largest factor when its order was recorded, and whether a positive product of its pivots is a positive
-    /// determinant.
-    blocks: Vec<(f64, bool)>,
+    blocks: Vec<BlockProgram>,
     /// How many results besides the motion must not be positive.
     limits: usize,
+}
+
+/// How a block was recorded.
+#[derive(Clone, Copy, Debug)]
+struct BlockProgram {
+    /// The largest factor in the order of the pivots.
+    growth: f64,
+    /// Whether a positive product of the pivots is a positive determinant.
+    is_even: bool,
+    /// Newton's passes.
+    passes: usize,
+    /// Which correction says that it has converged, and how small it is then.
+    last: usize,
+    limit: f64,
+}
+
+impl BlockProgram {
+    /// Of block b, as it was just solved; none where more corrections were needed than are told apart.
+    fn of(state: &State<Number>, b: usize) -> Option<Self> {
+        let (watched, (corrections, passes)) = (&state.watched[b], &state.corrections[b]);
+        let corrected = passes.checked_sub(2).and_then(|k| corrections.get(k));
+        // Either the last that was applied leaves round-off, or the next one is round-off itself.
+        let (last, limit) = match corrected {
+            Some(c) if c.value() <= QUADRATIC => (passes - 2, QUADRATIC),
+            _ => (passes - 1, ROUND_OFF),
+        };
+        let positive = watched.product.value() > 0.0;
+        (last < CORRECTIONS).then_some(Self {
+            growth: watched.growth.value(),
+            is_even: state.pivots[b].1 == positive,
+            passes: *passes,
+            last,
+            limit,
+        })
+    }
 }
 
 /// An unknown that a step is predicted by.
@@ -102,14 +135,13 @@ enum Channel {
 #[derive(Clone, Copy, Debug)]
 struct Outputs {
     blocks: usize,
-    corrections: usize,
     residuals: usize,
     bodies: usize,
     limits: usize,
 }
 
-/// Per block: product, most, least and growth.
-const PER_BLOCK: usize = 4;
+/// Per block: product, most, least and growth of its factors; the first correction, and the last.
+const PER_BLOCK: usize = 6;
 /// Per body: as in [`BodyState`].
 const PER_BODY: usize = 24;
 
@@ -167,13 +199,11 @@ impl StepProgram {
                 Some(Some(x)) => Number::constant(*x),
                 _ => Number::input(x),
             });
-            fits = state.solve(topology, &parts, &drivers, f64::INFINITY).is_ok()
-                && state.iterations == topology.blocks.len() * (purpose.corrections + 1);
-            let positive = |(found, watched): (&(f64, bool), &Watched<Number>)| {
-                (watched.growth.value(), found.1 == (watched.product.value() > 0.0))
-            };
-            blocks = state.pivots.iter().zip(&state.watched).map(positive).collect();
-            let mut out = outputs(topology, &parts, &drivers, &channels, &purpose, &state);
+            fits = state.solve(topology, &parts, &drivers, f64::INFINITY).is_ok();
+            let recorded = (0..topology.blocks.len()).map_while(|b| BlockProgram::of(&state, b));
+            blocks = recorded.collect::<Vec<_>>();
+            fits &= blocks.len() == topology.blocks.len();
+            let mut out = outputs(topology, (&parts, &drivers), (&channels, &blocks), &purpose, &state);
             match besides.record(topology, &mut state) {
                 Some(found) => {
                     limits = found.limits.len();
@@ -195,11 +225,10 @@ impl StepProgram {
 
     fn outputs(&self) -> Outputs {
         let blocks = self.channels.iter().map(|c| c.counts().1).sum();
-        let corrections = blocks + PER_BLOCK * self.blocks.len();
-        let residuals = corrections + self.purpose.corrections;
+        let residuals = blocks + PER_BLOCK * self.blocks.len();
         let bodies = residuals + 2;
         let wanted = self.purpose.wanted.iter().skip(1).filter(|w| **w).count();
-        Outputs { blocks, corrections, residuals, bodies, limits: bodies + PER_BODY * wanted }
+        Outputs { blocks, residuals, bodies, limits: bodies + PER_BODY * wanted }
     }
 }
 
@@ -233,9 +262,8 @@ fn predict<T: Real>(
 /// What a step hands out, in order.
 fn outputs(
     topology: &Topology,
-    parts: &Parts<Number>,
-    drivers: &[[Number; 3]],
-    channels: &[Channel],
+    (parts, drivers): (&Parts<Number>, &[[Number; 3]]),
+    (channels, blocks): (&[Channel], &[BlockProgram]),
     purpose: &Purpose,
     state: &State<Number>,
 ) -> Vec<Number> {
@@ -250,10 +278,9 @@ fn outputs(
             }
         }
     }
-    for w in &state.watched {
-        out.extend([w.product, w.most, w.least, w.growth]);
+    for ((w, (corrections, _)), block) in state.watched.iter().zip(&state.corrections).zip(blocks) {
+        out.extend([w.product, w.most, w.least, w.growth, corrections[0], corrections[block.last]]);
     }
-    out.extend_from_slice(&state.corrections[..purpose.corrections]);
     out.extend(state.residuals_in_lanes(topology, parts, drivers));
     for body in (0..state.pose.len()).filter(|b| *b != GROUND.0 && purpose.wanted[*b]) {
         out.extend(BodyState::components(state, body).into_iter().flatten());
@@ -505,17 +532,16 @@ impl Tape {
         }
         let (at, places) = (|k: usize| witness.gather(self.outputs[k]), program.outputs());
         // All comparisons are written so that NaN is refused.
-        let first = at(places.corrections).largest();
-        let last = at(places.corrections + program.purpose.corrections - 1).largest();
-        if !(first <= trust && last <= QUADRATIC) && !program.blocks.is_empty() {
-            return Err(Refused);
-        }
-        for (b, (growth, is_even)) in program.blocks.iter().enumerate() {
+        for (b, recorded) in program.blocks.iter().enumerate() {
             let k = places.blocks + PER_BLOCK * b;
-            let watched = Watched { product: at(k), most: at(k + 1), least: at(k + 2), growth: at(k + 3) };
+            let [product, most, least_inverse, growth, first, last] = std::array::from_fn(|n| at(k + n));
+            let watched = Watched { product, most, least: least_inverse, growth };
+            if !(first.largest() <= trust && last.largest() <= recorded.limit) {
+                return Err(Refused);
+            }
             let (ratio, positive) = watched.verdict();
-            let positive = positive == *is_even;
-            let grown = watched.growth.largest() <= f64::max(MOST_GROWTH, 2.0 * growth);
+            let positive = positive == recorded.is_even;
+            let grown = watched.growth.largest() <= f64::max(MOST_GROWTH, 2.0 * recorded.growth);
             if !(grown && positive == branch[b].0 && ratio > 0.0 && ratio >= least[b]) {
                 return Err(Refused);
             }
@@ -545,7 +571,7 @@ impl Tape {
             }
             k += channel.counts().1;
         }
-        state.iterations += program.blocks.len() * (program.purpose.corrections + 1);
+        state.iterations += program.blocks.iter().map(|b| b.passes).sum::<usize>();
         Ok(residuals)
     }
 
