@@ -1,15 +1,13 @@
 //! Runs one model again and again, for profilers and instruction counters:
 //! `repeat MODEL motion|sensitivities|designs TIMES`.
 
-use hardpoint::Analysis;
-
 fn main() {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     let [name, what, times] = arguments.as_slice() else {
         panic!("usage: repeat MODEL motion|sensitivities|designs TIMES");
     };
     let model = hardpoint_bench::model(name);
-    let analysis = Analysis::new(&model).expect("a model that can be driven").bodies_only();
+    let analysis = hardpoint_bench::analysis(&model);
     let designs = vec![vec![1e-5]; 8];
     let mut steps = 0;
     let mut solution = hardpoint::Solution::default();

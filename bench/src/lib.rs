@@ -1,10 +1,12 @@
 //! Models to measure with: those of `models/`, read as a user's file is read, and generated ones of any size.
 
+use hardpoint::Analysis;
 use hardpoint::law::Law;
 use hardpoint::model::{
     BodyDraft, ChangeDraft, Draft, DrivenDraft, DriverDraft, FrameDraft, HardpointDraft, JointDraft, Line,
     Model, Place, PointDraft, VariableDraft,
 };
+use hardpoint::motion::Execution;
 use hardpoint::space::{Mat3, Pose, Vec3};
 
 pub mod designs;
@@ -26,6 +28,16 @@ pub fn model(name: &str) -> Model {
 /// If it does not read.
 pub fn workload_model(name: &str) -> Model {
     hardpoint_file::parse(&workload_text(name), name).unwrap_or_else(|e| panic!("{e}")).model
+}
+
+/// An analysis of the bodies alone, its steps solved as `HARDPOINT_PATH` asks for.
+///
+/// # Panics
+/// If the model cannot be driven.
+pub fn analysis(model: &Model) -> Analysis<'_> {
+    let path = std::env::var("HARDPOINT_PATH").ok();
+    let execution = path.and_then(|name| Execution::named(&name)).unwrap_or_default();
+    Analysis::new(model).expect("a model that can be driven").bodies_only().executed(execution)
 }
 
 /// The text of `bench/models/NAME.toml`.

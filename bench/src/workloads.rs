@@ -131,7 +131,7 @@ pub fn measure(workload: Workload, reference: Option<&Path>, once: bool) -> io::
         Workload::Strut { sensitivities } => single("w2", "W2", sensitivities, file, once)?,
         Workload::Chain(loops) => {
             let model = Model::from_draft(&crate::chain(loops, 200)).expect("a valid chain");
-            let analysis = Analysis::new(&model).expect("a chain that can be driven").bodies_only();
+            let analysis = crate::analysis(&model);
             let mut solution = Solution::default();
             let time = timed(once, || finished(&mut solution, |s| analysis.run_motion_into(s)));
             (per_step(time, model.times.len()), Some(chain_errors(&model, &solution.motion)))
@@ -209,7 +209,7 @@ fn single(
     once: bool,
 ) -> io::Result<(f64, Option<[f64; 3]>)> {
     let model = crate::workload_model(name);
-    let analysis = Analysis::new(&model).expect("a model that can be driven").bodies_only();
+    let analysis = crate::analysis(&model);
     let states = model.times.len() * (model.bodies.len() - 1) * STATE;
     let mut solution = Solution::default();
     let (time, errors) = if sensitivities {
@@ -244,7 +244,7 @@ fn strut(change: &[f64]) -> Model {
 
 fn moved_designs(reference: Option<&[f64]>, once: bool) -> (Duration, Option<[f64; 3]>) {
     let model = strut(&[]);
-    let analysis = Analysis::new(&model).expect("a model that can be driven").bodies_only();
+    let analysis = crate::analysis(&model);
     let designs = designs();
     let run = |look: &mut dyn FnMut(usize, &Solution)| {
         analysis.for_each_design(&designs, |k, solution| {
@@ -267,7 +267,7 @@ fn moved_designs(reference: Option<&[f64]>, once: bool) -> (Duration, Option<[f6
 /// Eight designs at a time, each into memory of its own for one step's results, which the next step overwrites.
 fn moved_designs_with_sensitivities(reference: Option<&[f64]>, once: bool) -> (Duration, Option<[f64; 3]>) {
     let model = strut(&[]);
-    let analysis = Analysis::new(&model).expect("a model that can be driven").bodies_only();
+    let analysis = crate::analysis(&model);
     let designs = designs();
     let end = |design: usize, streamed: Streamed| {
         assert!(streamed.stop.is_none(), "design {design} stops: {:?}", streamed.stop);

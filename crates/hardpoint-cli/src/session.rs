@@ -8,6 +8,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
+use hardpoint::motion::Execution;
 use hardpoint::topology::{Formulation, TopologyFault};
 use hardpoint::{Analysis, Footprint, Solution};
 use hardpoint_file::{Diagnostic, ModelFile, ReadError};
@@ -96,7 +97,16 @@ impl Session {
 
     /// Plans the solution, or tells why the mechanism cannot be driven.
     pub fn plan<'m>(&self, file: &'m ModelFile, formulation: Formulation) -> Result<Analysis<'m>, Outcome> {
-        Analysis::with(&file.model, formulation).map_err(|fault| self.cannot_be_driven(file, &fault))
+        let analysis = Analysis::with(&file.model, formulation);
+        let analysis = analysis.map_err(|fault| self.cannot_be_driven(file, &fault))?;
+        let Ok(name) = std::env::var("HARDPOINT_PATH") else { return Ok(analysis) };
+        Ok(match Execution::named(&name) {
+            Some(execution) => analysis.executed(execution),
+            None => {
+                self.remark("HARDPOINT_PATH is none of `scalar`, `tape` and `code`: it is not heeded");
+                analysis
+            }
+        })
     }
 
     /// Tells why the mechanism cannot be driven.

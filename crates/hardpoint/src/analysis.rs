@@ -7,13 +7,14 @@ use std::sync::{Arc, OnceLock};
 
 use fearless_simd::{Level, dispatch};
 
+use crate::joint::Quantity;
 use crate::law::Law;
 use crate::measure::{self, Before, Measured, SlopeValues};
-use crate::model::{BodyId, Effects, Field, GROUND, Geometry, Model, VariableId};
+use crate::model::{BodyId, DesignVariable, Effects, Field, GROUND, Geometry, Model, VariableId};
 use crate::motion::abreast::Abreast;
 use crate::motion::parts::Parts;
 use crate::motion::stepper::Stepper;
-use crate::motion::tape::{Besides, Programs};
+use crate::motion::tape::{ProgramOf, Programs, Purpose, StepProgram};
 use crate::motion::{BodyState, Effort, Execution, Motion, Stop, StopKind};
 use crate::sensitivity::{
     Admissibility, Derivatives, JointDefect, Sensing, SensingDesigns, Sensitivities, admissibility_at_design,
@@ -67,7 +68,7 @@ pub struct Analysis<'m> {
 }
 
 /// Designs side by side are solved by the kernel up to this output time; then it is known how many passes they need.
-const TAPE_FROM: usize = 4;
+const PROGRAM_FROM: usize = 4;
 
 /// One design, ready to be analysed.
 pub(crate) struct Design {
@@ -129,7 +130,7 @@ impl<'m> Analysis<'m> {
     /// As [`Analysis::new`].
     pub fn with(model: &'m Model, formulation: Formulation) -> Result<Self, TopologyFault> {
         let topology = Topology::of(model, formulation)?;
-        let programs = Arc::new(Programs::new(Execution::from_environment()));
+        let programs = Arc::new(Programs::new(Execution::Fastest));
         Ok(Self {
             model,
             topology,
@@ -145,7 +146,7 @@ impl<'m> Analysis<'m> {
         Self { measures: false, ..self }
     }
 
-    /// The same analysis with another way to solve its steps than `HARDPOINT_PATH` asks for.
+    /// The same analysis, its steps solved in this way.
     pub fn executed(self, execution: Execution) -> Self {
         Self { programs: Arc::new(Programs::new(execution)), ..self }
     }
@@ -415,6 +416,29 @@ impl<'m> Analysis<'m> {
         }
     }
 
+    /// The step of this plan as a program with so many corrections, for any design; or with the sensitivities of the nominal one.
+    fn program(&self, sensitivities: bool, corrections: usize) -> Option<Arc<StepProgram>> {
+        self.programs.get(sensitivities, corrections, |execution| {
+            let (model, topology) = (self.model, &self.topology);
+            let Design { geometry, laws, fields, .. } = self.design(&[], sensitivities);
+            let mut one =
+                Stepper::new(model, topology, Parts::same(model, topology, &geometry, &laws, 0.0), 0.0);
+            one.start(*model.times.first()?).ok()?;
+            let mut numbers = numbers_of(&one.parts).into_iter().map(Some).collect::<Vec<_>>();
+            if !sensitivities {
+                // What another design has otherwise is an input.
+                let values = model.whole(&elsewhere(model));
+                let other = self.effects.geometry(&values, 0.0);
+                let other = numbers_of(&Parts::same(model, topology, &other, &laws, 0.0));
+                for (number, other) in numbers.iter_mut().zip(other) {
+                    *number = number.filter(|x| x.to_bits() == other.to_bits());
+                }
+            }
+            let derivatives = Derivatives { model, fields: &fields };
+            StepProgram::record(&one, Purpose { geometry: numbers, corrections }, &derivatives, execution)
+        })
+    }
+
     /// Motions of up to as many designs as there are lanes, side by side.
     fn solve_designs(&self, designs: &[Vec<f64>], solutions: &mut [Solution]) {
         // What goes by a driver asks for more than positions, which only a single run keeps.
@@ -479,10 +503,11 @@ impl<'m> Analysis<'m> {
                 (0..model.variables.len()).map(|v| (0..LANES).map(|k| of_lane(v, k)).collect()).collect();
             SensingDesigns::new(model, &self.topology, &fields, wanted.clone(), witness)
         });
+        let by_program = sensing.is_none() && self.programs.pay(designs.len() * model.times.len());
         for (k, &t) in model.times.iter().enumerate() {
             if k == 0 { stepper.start(t) } else { stepper.advance(t) }.ok()?;
-            if (k == TAPE_FROM || stepper.tape_fails()) && sensing.is_none() {
-                stepper.use_tape(&self.programs, &wanted, designs.len() * (model.times.len() - k));
+            if by_program && (k == PROGRAM_FROM || stepper.tape_fails()) {
+                stepper.use_program(stepper.corrections(), |corrections| self.program(false, corrections));
             }
             witness.within(
                 #[inline(always)]
@@ -521,6 +546,25 @@ impl<'m> Analysis<'m> {
     }
 }
 
+/// All numbers of a geometry, in the order of [`Parts::map`].
+fn numbers_of(parts: &Parts<f64>) -> Vec<f64> {
+    let mut out = Vec::new();
+    parts.map(0.0, |x| {
+        out.push(x);
+        x
+    });
+    out
+}
+
+/// Another design, in which every variable has changed, each by another part of what is small beside the mechanism: a number of the
+/// geometry that is the same there depends on none of them.
+fn elsewhere(model: &Model) -> Vec<f64> {
+    const SMALL: f64 = 1e-3;
+    let size = |v: &DesignVariable| if v.quantity == Quantity::Length { model.size() } else { 1.0 };
+    let part = |k: usize| 1.0 + ((k + 1) as f64 * 0.618_033_988_749_895).fract();
+    model.variables.iter().enumerate().map(|(k, v)| SMALL * part(k) * size(v)).collect()
+}
+
 /// The way through all output times, where possible as many at once as there are lanes.
 pub(crate) struct Walk<'a, T> {
     pub one: Stepper<'a, f64>,
@@ -544,13 +588,14 @@ impl<'a, T: Real> Walk<'a, T> {
         let (model, topology) = (analysis.model, &analysis.topology);
         let Design { geometry, laws, fields, .. } = design;
         let parts = Parts::same(model, topology, geometry, laws, witness);
-        // Measures need more of a step than the motion of the bodies, and what it changes by.
-        let besides = Derivatives { model, fields, wanted: wanted.clone() };
-        let programs =
-            (!analysis.measures).then(|| (&*analysis.programs, Box::new(besides) as Box<dyn Besides>));
+        // Measures need more of a step than a program hands out; and only the nominal design has a program with sensitivities.
+        let sensitive = !fields.is_empty();
+        let fits = !analysis.measures && (!sensitive || design.values == model.whole(&[]));
+        let programs = (fits && analysis.programs.pay(model.times.len()))
+            .then(|| Box::new(move |corrections| analysis.program(sensitive, corrections)) as ProgramOf<'a>);
         Self {
             one: Stepper::new(model, topology, Parts::same(model, topology, geometry, laws, 0.0), 0.0),
-            abreast: Abreast::new(model, topology, parts, (programs, &wanted), witness),
+            abreast: Abreast::new(model, topology, parts, programs, witness),
             sensing: (!fields.is_empty())
                 .then(|| Sensing::new(model, topology, fields, wanted.clone(), witness)),
             wanted,

@@ -10,7 +10,7 @@ use crate::topology::{Source, Topology};
 
 use super::parts::Parts;
 use super::stepper::{Ahead, EVEN, LONGEST, MILD, MILD_CHANGE, RESTS, Stepper};
-use super::tape::{Besides, Programs};
+use super::tape::ProgramOf;
 use super::walk::PART_OF_WAY;
 
 /// The first correction (rad, or sizes) must be within this: a forecast that fails by more is none.
@@ -33,10 +33,8 @@ pub(crate) struct Abreast<'m, T> {
     pause: usize,
     /// How often the other stepper had chosen other rows when this one took them over.
     selections: usize,
-    /// Where a tape may come from, once that pays.
-    programs: Option<(&'m Programs, Box<dyn Besides + 'm>)>,
-    /// Per body: whether its states are wanted.
-    wanted: Vec<bool>,
+    /// Where a tape may come from.
+    programs: Option<ProgramOf<'m>>,
     /// Groups of steps that the kernel has solved, and how many corrections any of them needed.
     groups: usize,
     corrections: usize,
@@ -46,29 +44,18 @@ pub(crate) struct Abreast<'m, T> {
 const GROUPS: usize = 2;
 
 impl<'m, T: Real> Abreast<'m, T> {
-    /// With tapes from `programs`, for what needs no more of a step than the states of the wanted bodies, and what stands beside them.
+    /// With these programs, for who needs no more of a step than what they hand out.
     pub fn new(
         model: &'m Model,
         topology: &Topology,
         parts: Parts<T>,
-        (programs, wanted): (Option<(&'m Programs, Box<dyn Besides + 'm>)>, &[bool]),
+        programs: Option<ProgramOf<'m>>,
         witness: T,
     ) -> Self {
         // A point on a curve is followed step by step, lest it jump to another stretch of it.
         let suits = T::LANES == LANES && parts.curves.is_empty();
         let stepper = Stepper::new(model, topology, parts, witness);
-        let wanted = wanted.to_vec();
-        Self {
-            stepper,
-            suits,
-            wait: 0,
-            pause: PAUSE[0],
-            selections: 0,
-            programs,
-            wanted,
-            groups: 0,
-            corrections: 1,
-        }
+        Self { stepper, suits, wait: 0, pause: PAUSE[0], selections: 0, programs, groups: 0, corrections: 1 }
     }
 
     /// Moves on from where the other stepper stands to as many of the next output times as there are lanes; returns how many,
@@ -82,7 +69,7 @@ impl<'m, T: Real> Abreast<'m, T> {
             self.wait -= 1;
             return 0;
         }
-        self.choose_tape(one, next.len());
+        self.choose_tape(one);
         let witness = self.stepper.state.witness;
         let done = witness.within(
             #[inline(always)]
@@ -98,22 +85,17 @@ impl<'m, T: Real> Abreast<'m, T> {
     }
 
     /// Asks for a tape when it is time, and for another or none where it does not fit.
-    fn choose_tape(&mut self, one: &Stepper<'m, f64>, left: usize) {
+    fn choose_tape(&mut self, one: &Stepper<'m, f64>) {
         let all = &mut self.stepper;
         if self.selections != one.selections {
             (all.tape, self.programs) = (None, None);
         }
-        let fails = all.tape_fails();
-        let Some((programs, besides)) = self.programs.as_ref().filter(|_| fails || self.groups == GROUPS)
-        else {
-            return;
-        };
-        let corrections = if fails { 2 } else { self.corrections };
-        let again = all.tape.take().is_none_or(|t| t.corrections() < corrections);
-        if again {
-            all.tape = programs.for_times(one, all, (&self.wanted, &**besides), (left, corrections));
+        if let Some(programs) = &self.programs
+            && (all.tape_fails() || self.groups == GROUPS)
+        {
+            all.use_program(self.corrections, programs);
+            self.groups += 1;
         }
-        self.groups += 1;
     }
 
     #[inline(always)]

@@ -4,6 +4,8 @@
 //! tell, for free, that no singular position is near. Everywhere else the path is followed in steps of its own
 //! ([`super::walk`]), however the output times are spaced.
 
+use std::sync::Arc;
+
 use hardpoint_tape::Lanes;
 
 use crate::joint::{Freedom, Quantity};
@@ -16,7 +18,7 @@ use super::forecast::Forecast;
 use super::kinematics::{CORRECTIONS, PositionFailure, QUADRATIC, Residuals, State, factors_of};
 use super::parts::Parts;
 use super::singularity::{Prober, Surroundings};
-use super::tape::{Programs, Tape};
+use super::tape::{StepProgram, Tape};
 use super::walk::{PART_OF_WAY, Path};
 use super::{BodyState, Effort, Passed, Stop};
 
@@ -360,17 +362,18 @@ impl<'m, T: Real> Stepper<'m, T> {
     }
 
     /// How many corrections the last step of the kernel needed, of those that a program may have.
-    pub(super) fn corrections(&self) -> usize {
+    pub fn corrections(&self) -> usize {
         let is_last = |(c, _): &([T; CORRECTIONS], usize)| c[0].largest() <= QUADRATIC;
         if self.state.corrections.iter().all(is_last) { 1 } else { 2 }
     }
 
-    /// A design per lane: lets a tape solve so many steps to come, if that pays.
-    pub fn use_tape(&mut self, programs: &Programs, wanted: &[bool], steps: usize) {
-        let before = self.tape.take();
-        if before.as_ref().is_none_or(|t| t.corrections() == 1) {
-            let corrections = if before.is_some() { 2 } else { self.corrections() };
-            self.tape = programs.for_designs(self, wanted, (steps, corrections));
+    /// Lets a program solve the even steps to come; where one was at work and failed, another with more corrections, or none.
+    pub fn use_program(&mut self, corrections: usize, of: impl Fn(usize) -> Option<Arc<StepProgram>>) {
+        let before = self.tape.take().map(|t| t.corrections());
+        let corrections = before.map_or(corrections, |_| 2);
+        if before.is_none_or(|before| before < corrections) && self.selections == 0 {
+            let program = of(corrections);
+            self.tape = program.and_then(|p| Tape::new(p, &self.parts, self.state.witness));
         }
     }
 
@@ -388,7 +391,7 @@ impl<'m, T: Real> Stepper<'m, T> {
     #[inline(always)]
     pub fn each_body(&self, wanted: &[bool], out: impl FnMut(usize, BodyId, BodyState)) {
         match self.tape.as_ref().filter(|_| self.by_tape) {
-            Some(tape) => tape.each_body(self.state.witness, out),
+            Some(tape) => tape.each_body(wanted, self.state.witness, out),
             None => BodyState::each(&self.state, wanted, out),
         }
     }

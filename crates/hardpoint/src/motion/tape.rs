@@ -8,14 +8,13 @@
 //! Not recorded are mechanisms with sparse blocks, with curves, and with couplers, whose angles go by the turn that is expected;
 //! and those that are so large that a program each would cost more than it saves.
 
-use std::sync::atomic::{AtomicUsize, Ordering};
-use std::sync::{Arc, Mutex, OnceLock, PoisonError};
+use std::sync::{Arc, OnceLock};
 
 use hardpoint_code::{Code, Scratch};
 use hardpoint_tape::{Interpreter, Lanes, Number, Options, Program, record};
 
 use crate::joint::Freedom;
-use crate::model::{BodyId, Field, GROUND};
+use crate::model::BodyId;
 use crate::number::record as recording;
 use crate::space::{LANES, LARGEST_DENSE, Quat, Real, Vec3, Watched};
 use crate::topology::{Source, Topology};
@@ -34,23 +33,16 @@ const MOST_GROWTH: f64 = 4.0;
 const MOST_LINKS: usize = 200;
 
 /// What a program is for.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug)]
 pub(crate) struct Purpose {
     /// Per number of the geometry, in the order of [`Parts::map`]: its value, or none where it is an input.
     pub geometry: Vec<Option<f64>>,
-    /// Per body: whether its states are wanted.
-    pub wanted: Vec<bool>,
-    /// The design velocities that its sensitivities go by.
-    pub fields: Vec<Field>,
     /// Newton's corrections: one or two.
     pub corrections: usize,
 }
 
 /// What a program hands out besides the motion.
 pub(crate) trait Besides {
-    /// The design velocities that it goes by.
-    fn fields(&self) -> &[Field];
-
     /// Records it where the state stands; none where that cannot be recorded.
     fn record(&self, topology: &Topology, state: &mut State<Number>) -> Option<Recorded>;
 }
@@ -65,10 +57,6 @@ pub(crate) struct Recorded {
 
 /// Nothing.
 impl Besides for () {
-    fn fields(&self) -> &[Field] {
-        &[]
-    }
-
     fn record(&self, _: &Topology, _: &mut State<Number>) -> Option<Recorded> {
         Some(Recorded::default())
     }
@@ -84,6 +72,8 @@ pub(crate) struct StepProgram {
     code: Option<Code>,
     channels: Vec<Channel>,
     blocks: Vec<BlockProgram>,
+    /// How many bodies there are but ground.
+    bodies: usize,
     /// How many results besides the motion must not be positive.
     limits: usize,
 }
@@ -169,7 +159,7 @@ impl Channel {
 
 impl StepProgram {
     /// Records the step that is solved where `one` stands, in lane 0; none where it cannot be recorded.
-    fn record<T: Real>(
+    pub fn record<T: Real>(
         one: &Stepper<'_, T>,
         purpose: Purpose,
         besides: &dyn Besides,
@@ -203,7 +193,7 @@ impl StepProgram {
             let recorded = (0..topology.blocks.len()).map_while(|b| BlockProgram::of(&state, b));
             blocks = recorded.collect::<Vec<_>>();
             fits &= blocks.len() == topology.blocks.len();
-            let mut out = outputs(topology, (&parts, &drivers), (&channels, &blocks), &purpose, &state);
+            let mut out = outputs(topology, (&parts, &drivers), (&channels, &blocks), &state);
             match besides.record(topology, &mut state) {
                 Some(found) => {
                     limits = found.limits.len();
@@ -220,15 +210,14 @@ impl StepProgram {
         let first = inputs_before_geometry(&channels, model.drivers.len());
         let (design, step) = program.staged(|input| input as usize >= first);
         let code = if execution == Execution::Interpreted { None } else { Code::new(&step).ok() };
-        Some(Self { purpose, design, step, code, channels, blocks, limits })
+        Some(Self { purpose, design, step, code, channels, blocks, bodies: model.bodies.len() - 1, limits })
     }
 
     fn outputs(&self) -> Outputs {
         let blocks = self.channels.iter().map(|c| c.counts().1).sum();
         let residuals = blocks + PER_BLOCK * self.blocks.len();
         let bodies = residuals + 2;
-        let wanted = self.purpose.wanted.iter().skip(1).filter(|w| **w).count();
-        Outputs { blocks, residuals, bodies, limits: bodies + PER_BODY * wanted }
+        Outputs { blocks, residuals, bodies, limits: bodies + PER_BODY * self.bodies }
     }
 }
 
@@ -264,7 +253,6 @@ fn outputs(
     topology: &Topology,
     (parts, drivers): (&Parts<Number>, &[[Number; 3]]),
     (channels, blocks): (&[Channel], &[BlockProgram]),
-    purpose: &Purpose,
     state: &State<Number>,
 ) -> Vec<Number> {
     let mut out = Vec::new();
@@ -282,14 +270,14 @@ fn outputs(
         out.extend([w.product, w.most, w.least, w.growth, corrections[0], corrections[block.last]]);
     }
     out.extend(state.residuals_in_lanes(topology, parts, drivers));
-    for body in (0..state.pose.len()).filter(|b| *b != GROUND.0 && purpose.wanted[*b]) {
+    for body in 1..state.pose.len() {
         out.extend(BodyState::components(state, body).into_iter().flatten());
     }
     out
 }
 
-/// Recording pays from so many steps on: it costs about as much as a few hundred, and a program saves a part of each.
-const PAYS: usize = 4096;
+/// Recording pays from so many steps on: it costs about as much as they do.
+const PAYS: usize = 1000;
 /// After so many steps, a program that was refused in more than a quarter of them is given up.
 const TRIAL: usize = 8;
 
@@ -308,121 +296,57 @@ pub enum Execution {
 }
 
 impl Execution {
-    /// What the environment variable `HARDPOINT_PATH` asks for: `scalar`, `tape` or `code`; [`Execution::Fastest`] for anything else.
-    pub fn from_environment() -> Self {
-        static ASKED: OnceLock<Execution> = OnceLock::new();
-        *ASKED.get_or_init(|| match std::env::var("HARDPOINT_PATH").as_deref() {
-            Ok("scalar") => Self::Kernel,
-            Ok("tape") => Self::Interpreted,
-            Ok("code") => Self::Compiled,
-            _ => Self::Fastest,
-        })
+    /// What `HARDPOINT_PATH` calls it: `scalar`, `tape` or `code`.
+    pub fn named(name: &str) -> Option<Self> {
+        match name {
+            "scalar" => Some(Self::Kernel),
+            "tape" => Some(Self::Interpreted),
+            "code" => Some(Self::Compiled),
+            _ => None,
+        }
     }
 }
 
-/// The programs of a plan: one for the output times of a design, one for many designs.
+/// The programs of a plan, with one correction and with two, each recorded when it is first asked for.
+///
+/// They are recorded of the nominal design where its motion begins, so that they do not depend on who asks first.
 #[derive(Debug)]
 pub(crate) struct Programs {
     execution: Execution,
-    /// Steps that were solved without.
-    solved: AtomicUsize,
-    of_times: Mutex<Option<Arc<StepProgram>>>,
-    of_designs: Mutex<Option<Arc<StepProgram>>>,
+    /// Of any design; and with the sensitivities of the nominal one.
+    motion: [OnceLock<Option<Arc<StepProgram>>>; 2],
+    sensitivities: [OnceLock<Option<Arc<StepProgram>>>; 2],
 }
 
 impl Programs {
     /// None as yet.
     pub fn new(execution: Execution) -> Self {
-        Self {
-            execution,
-            solved: AtomicUsize::new(0),
-            of_times: Mutex::default(),
-            of_designs: Mutex::default(),
+        Self { execution, motion: Default::default(), sensitivities: Default::default() }
+    }
+
+    /// Whether so many steps are worth a program.
+    pub fn pay(&self, steps: usize) -> bool {
+        match self.execution {
+            Execution::Fastest => steps >= PAYS,
+            Execution::Kernel => false,
+            Execution::Interpreted | Execution::Compiled => true,
         }
     }
 
-    /// A tape for `all`, whose lanes are output times of the design that `one` solves, with so many steps to go and so many
-    /// corrections each; none where that does not pay.
-    pub fn for_times<T: Real>(
+    /// The program with so many corrections; `record` makes it for this execution, if it was not asked for before.
+    pub fn get(
         &self,
-        one: &Stepper<'_, f64>,
-        all: &Stepper<'_, T>,
-        (wanted, besides): (&[bool], &dyn Besides),
-        (steps, corrections): (usize, usize),
-    ) -> Option<Tape> {
-        let geometry = || {
-            let mut list = Vec::new();
-            one.parts.map(0.0, |x| {
-                list.push(Some(x));
-                x
-            });
-            list
-        };
-        self.tape(&self.of_times, (one, all), (wanted, besides), (steps, corrections), geometry)
-    }
-
-    /// A tape for `all`, whose lanes are designs.
-    pub fn for_designs<T: Real>(
-        &self,
-        all: &Stepper<'_, T>,
-        wanted: &[bool],
-        (steps, corrections): (usize, usize),
-    ) -> Option<Tape> {
-        let geometry = || {
-            let known = locked(&self.of_designs).as_ref().map(|p| p.purpose.geometry.clone());
-            let mut list = Vec::new();
-            all.parts.map(all.state.witness, |x| {
-                let first = x.lane(0);
-                let same = (1..T::LANES).all(|k| x.lane(k).to_bits() == first.to_bits());
-                // What differed among earlier designs, or from these, stays an input.
-                let before = known.as_ref().is_none_or(|k| k[list.len()] == Some(first));
-                list.push((same && before).then_some(first));
-                x
-            });
-            list
-        };
-        self.tape(&self.of_designs, (all, all), (wanted, &()), (steps, corrections), geometry)
-    }
-
-    fn tape<T: Real, U: Real>(
-        &self,
-        kept: &Mutex<Option<Arc<StepProgram>>>,
-        (at, all): (&Stepper<'_, U>, &Stepper<'_, T>),
-        (wanted, besides): (&[bool], &dyn Besides),
-        (steps, corrections): (usize, usize),
-        geometry: impl FnOnce() -> Vec<Option<f64>>,
-    ) -> Option<Tape> {
-        if self.execution == Execution::Kernel || at.selections != 0 || all.selections != 0 {
-            return None;
-        }
-        let witness = all.state.witness;
-        let program = locked(kept).clone();
-        let serves = |p: &StepProgram| {
-            let made_for = &p.purpose;
-            made_for.wanted == wanted
-                && made_for.corrections >= corrections
-                && made_for.fields == besides.fields()
-        };
-        if let Some(program) = program.filter(|p| serves(p))
-            && let Some(tape) = Tape::new(program, &all.parts, witness)
-        {
-            return Some(tape);
-        }
-        let before = self.solved.fetch_add(steps, Ordering::Relaxed);
-        if self.execution == Execution::Fastest && before + steps < PAYS {
-            return None;
-        }
-        let (wanted, fields) = (wanted.to_vec(), besides.fields().to_vec());
-        let purpose = Purpose { geometry: geometry(), wanted, fields, corrections };
-        let program = Arc::new(StepProgram::record(at, purpose, besides, self.execution)?);
-        *locked(kept) = Some(Arc::clone(&program));
-        Tape::new(program, &all.parts, witness)
+        sensitivities: bool,
+        corrections: usize,
+        record: impl FnOnce(Execution) -> Option<StepProgram>,
+    ) -> Option<Arc<StepProgram>> {
+        let kept = if sensitivities { &self.sensitivities } else { &self.motion };
+        kept[corrections - 1].get_or_init(|| record(self.execution).map(Arc::new)).clone()
     }
 }
 
-fn locked<X>(mutex: &Mutex<X>) -> std::sync::MutexGuard<'_, X> {
-    mutex.lock().unwrap_or_else(PoisonError::into_inner)
-}
+/// Gives the program with so many corrections, if there is one.
+pub(crate) type ProgramOf<'p> = Box<dyn Fn(usize) -> Option<Arc<StepProgram>> + 'p>;
 
 /// A step that the program does not fit: the kernel solves it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -580,20 +504,24 @@ impl Tape {
         &self.outputs[self.program.outputs().limits + self.program.limits..]
     }
 
-    /// Gives the states of the wanted bodies in every lane to `out(lane, body, state)`, as of the last step.
+    /// Gives the states of the wanted bodies but ground in every lane to `out(lane, body, state)`, as of the last step.
     #[inline(always)]
-    pub fn each_body<T: Real>(&self, witness: T, mut out: impl FnMut(usize, BodyId, BodyState)) {
+    pub fn each_body<T: Real>(
+        &self,
+        wanted: &[bool],
+        witness: T,
+        mut out: impl FnMut(usize, BodyId, BodyState),
+    ) {
         let mut table = [[0.0; PER_BODY]; LANES];
-        let mut k = self.program.outputs().bodies;
-        let wanted = &self.program.purpose.wanted;
-        for body in (0..wanted.len()).filter(|b| *b != GROUND.0 && wanted[*b]) {
+        let first = self.program.outputs().bodies;
+        for body in (1..=self.program.bodies).filter(|b| wanted[*b]) {
+            let k = first + PER_BODY * (body - 1);
             let components: [[T; 8]; 3] =
                 std::array::from_fn(|i| std::array::from_fn(|j| witness.gather(self.outputs[k + 8 * i + j])));
             turn_over(&components, &mut table);
             for (lane, x) in table[..T::LANES].iter().enumerate() {
                 out(lane, BodyId(body), BodyState::from_components(x));
             }
-            k += PER_BODY;
         }
     }
 }

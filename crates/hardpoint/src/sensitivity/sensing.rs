@@ -146,9 +146,12 @@ impl<'f, T: Real> Sensing<'f, T> {
                 let mut table = [[0.0; 24]; LANES];
                 let (mut of_body, _) = results.as_chunks::<COMPONENTS>();
                 for (v, field) in self.each.iter().enumerate() {
-                    for &body in field.reach.bodies.iter().filter(|&&b| self.wanted[b]) {
+                    for &body in &field.reach.bodies {
                         let Some((lanes, rest)) = of_body.split_first() else { return };
                         of_body = rest;
+                        if !self.wanted[body] {
+                            continue;
+                        }
                         let x = std::array::from_fn(
                             #[inline(always)]
                             |n| witness.gather(lanes[n]),
@@ -353,18 +356,13 @@ fn hand_over<T: Real>(
     }
 }
 
-/// What a program of the steps of a design hands out besides the motion: the derivatives of the wanted bodies by all variables.
+/// What a program of the steps of a design hands out besides the motion: the derivatives of all bodies by all variables.
 pub(crate) struct Derivatives<'f> {
     pub model: &'f Model,
     pub fields: &'f [Field],
-    pub wanted: Vec<bool>,
 }
 
 impl Besides for Derivatives<'_> {
-    fn fields(&self) -> &[Field] {
-        self.fields
-    }
-
     fn record(&self, topology: &Topology, state: &mut State<Number>) -> Option<Recorded> {
         let witness = state.witness;
         let mut recorded = Recorded::default();
@@ -381,7 +379,7 @@ impl Besides for Derivatives<'_> {
             field.set_shifts();
             direct.solve(topology, state, &field);
             recorded.limits.push(direct.excess(topology, state, &field));
-            for &body in field.reach.bodies.iter().filter(|&&b| self.wanted[b]) {
+            for &body in &field.reach.bodies {
                 recorded.results.extend(components(&direct.w, state, body));
             }
         }
