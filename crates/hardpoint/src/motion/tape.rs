@@ -210,6 +210,10 @@ impl StepProgram {
         let first = inputs_before_geometry(&channels, model.drivers.len());
         let (design, step) = program.staged(|input| input as usize >= first);
         let code = if execution == Execution::Interpreted { None } else { Code::new(&step).ok() };
+        // The interpreter is no faster than the kernel.
+        if code.is_none() && execution == Execution::Fastest {
+            return None;
+        }
         Some(Self { purpose, design, step, code, channels, blocks, bodies: model.bodies.len() - 1, limits })
     }
 
