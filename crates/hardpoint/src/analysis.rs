@@ -426,12 +426,13 @@ impl<'m> Analysis<'m> {
             one.start(*model.times.first()?).ok()?;
             let mut numbers = numbers_of(&one.parts).into_iter().map(Some).collect::<Vec<_>>();
             if !sensitivities {
-                // What another design has otherwise is an input.
-                let values = model.whole(&elsewhere(model));
-                let other = self.effects.geometry(&values, 0.0);
-                let other = numbers_of(&Parts::same(model, topology, &other, &laws, 0.0));
-                for (number, other) in numbers.iter_mut().zip(other) {
-                    *number = number.filter(|x| x.to_bits() == other.to_bits());
+                // What other designs have otherwise is an input.
+                for n in 0..OTHERS {
+                    let other = self.effects.geometry(&model.whole(&elsewhere(model, n)), 0.0);
+                    let other = numbers_of(&Parts::same(model, topology, &other, &laws, 0.0));
+                    for (number, other) in numbers.iter_mut().zip(other) {
+                        *number = number.filter(|x| x.to_bits() == other.to_bits());
+                    }
                 }
             }
             let derivatives = Derivatives { model, fields: &fields };
@@ -556,12 +557,16 @@ fn numbers_of(parts: &Parts<f64>) -> Vec<f64> {
     out
 }
 
-/// Another design, in which every variable has changed, each by another part of what is small beside the mechanism: a number of the
-/// geometry that is the same there depends on none of them.
-fn elsewhere(model: &Model) -> Vec<f64> {
+/// So many other designs tell what depends on the design: one of them may have the same last digit by chance.
+const OTHERS: usize = 4;
+
+/// The n-th other design, in which every variable has changed, each by another part of what is small beside the mechanism: a number of
+/// the geometry that is the same in all of them depends on none.
+fn elsewhere(model: &Model, n: usize) -> Vec<f64> {
     const SMALL: f64 = 1e-3;
     let size = |v: &DesignVariable| if v.quantity == Quantity::Length { model.size() } else { 1.0 };
-    let part = |k: usize| 1.0 + ((k + 1) as f64 * 0.618_033_988_749_895).fract();
+    // The golden ratio's multiples are spread evenly and never repeat.
+    let part = |k: usize| 2.0 * ((k * OTHERS + n + 1) as f64 * 0.618_033_988_749_895).fract() - 1.0;
     model.variables.iter().enumerate().map(|(k, v)| SMALL * part(k) * size(v)).collect()
 }
 
