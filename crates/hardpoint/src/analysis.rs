@@ -418,8 +418,11 @@ impl<'m> Analysis<'m> {
 
     /// The step of this plan as a program with so many corrections, for any design; or with the sensitivities of the nominal one.
     fn program(&self, sensitivities: bool, corrections: usize) -> Option<Arc<StepProgram>> {
+        let (model, topology) = (self.model, &self.topology);
+        if !StepProgram::suits(topology) {
+            return None;
+        }
         self.programs.get(sensitivities, corrections, |execution| {
-            let (model, topology) = (self.model, &self.topology);
             let Design { geometry, laws, fields, .. } = self.design(&[], sensitivities);
             let mut one =
                 Stepper::new(model, topology, Parts::same(model, topology, &geometry, &laws, 0.0), 0.0);

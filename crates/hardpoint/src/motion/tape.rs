@@ -67,15 +67,28 @@ impl Besides for () {
 pub(crate) struct StepProgram {
     purpose: Purpose,
     /// What depends on the design alone, and what does not.
-    design: Program,
-    step: Program,
-    code: Option<Code>,
+    design: Runnable,
+    step: Runnable,
     channels: Vec<Channel>,
     blocks: Vec<BlockProgram>,
     /// How many bodies there are but ground.
     bodies: usize,
     /// How many results besides the motion must not be positive.
     limits: usize,
+}
+
+/// A program, as machine code where there is any.
+#[derive(Debug)]
+struct Runnable {
+    program: Program,
+    code: Option<Code>,
+}
+
+impl Runnable {
+    fn new(program: Program, execution: Execution) -> Self {
+        let code = if execution == Execution::Interpreted { None } else { Code::new(&program).ok() };
+        Self { program, code }
+    }
 }
 
 /// How a block was recorded.
@@ -158,7 +171,15 @@ impl Channel {
 }
 
 impl StepProgram {
-    /// Records the step that is solved where `one` stands, in lane 0; none where it cannot be recorded.
+    /// Whether the steps of a plan can be recorded, and are short enough for that.
+    pub fn suits(topology: &Topology) -> bool {
+        topology.links.len() <= MOST_LINKS
+            && topology.blocks.iter().all(|b| b.unknowns.len() <= LARGEST_DENSE)
+            && topology.coupled_rows.is_empty()
+            && topology.closures.iter().all(|c| c.contact.is_none())
+    }
+
+    /// Records the step that is solved where `one` stands, in lane 0; none where it cannot be recorded after all.
     pub fn record<T: Real>(
         one: &Stepper<'_, T>,
         purpose: Purpose,
@@ -167,14 +188,6 @@ impl StepProgram {
     ) -> Option<Self> {
         let (model, topology) = (one.model, &one.topology);
         let parts = one.parts.map(one.state.witness, |x| x.lane(0));
-        let large = topology.blocks.iter().any(|b| b.unknowns.len() > LARGEST_DENSE);
-        if large
-            || topology.links.len() > MOST_LINKS
-            || !topology.coupled_rows.is_empty()
-            || !parts.curves.is_empty()
-        {
-            return None;
-        }
         let channels = Channel::all(topology);
         let (mut fits, mut blocks, mut limits) = (false, Vec::new(), 0);
         recording::begin();
@@ -209,12 +222,12 @@ impl StepProgram {
         let (program, _) = recorded.program(Options::default());
         let first = inputs_before_geometry(&channels, model.drivers.len());
         let (design, step) = program.staged(|input| input as usize >= first);
-        let code = if execution == Execution::Interpreted { None } else { Code::new(&step).ok() };
+        let [design, step] = [design, step].map(|program| Runnable::new(program, execution));
         // The interpreter is no faster than the kernel.
-        if code.is_none() && execution == Execution::Fastest {
+        if step.code.is_none() && execution == Execution::Fastest {
             return None;
         }
-        Some(Self { purpose, design, step, code, channels, blocks, bodies: model.bodies.len() - 1, limits })
+        Some(Self { purpose, design, step, channels, blocks, bodies: model.bodies.len() - 1, limits })
     }
 
     fn outputs(&self) -> Outputs {
@@ -395,23 +408,20 @@ impl Tape {
         if !fits {
             return None;
         }
-        let mut of_design = vec![[0.0; LANES]; program.design.outputs.len()];
-        let first = program.step.inputs - of_design.len() - geometry.len();
+        let StepProgram { design, step, .. } = &*program;
+        let mut of_design = vec![[0.0; LANES]; design.program.outputs.len()];
+        let first = step.program.inputs - of_design.len() - geometry.len();
         let mut inputs = vec![[0.0; LANES]; first];
         inputs.extend(geometry);
-        Interpreter::new(&program.design).run(&inputs[..program.design.inputs], &[], &mut of_design);
+        let (mut scratch, given) = (Scratch::default(), &inputs[..design.program.inputs]);
+        match &design.code {
+            Some(code) => code.run(&mut scratch, given, &[], &mut of_design),
+            None => Interpreter::new(&design.program).run(given, &[], &mut of_design),
+        }
         inputs.extend(of_design);
-        let outputs = vec![[0.0; LANES]; program.step.outputs.len()];
-        let interpreter = program.code.is_none().then(|| Interpreter::new(&program.step));
-        Some(Self {
-            interpreter,
-            scratch: Scratch::default(),
-            inputs,
-            outputs,
-            program,
-            tried: 0,
-            refused: 0,
-        })
+        let outputs = vec![[0.0; LANES]; step.program.outputs.len()];
+        let interpreter = step.code.is_none().then(|| Interpreter::new(&step.program));
+        Some(Self { interpreter, scratch, inputs, outputs, program, tried: 0, refused: 0 })
     }
 
     /// Solves what stands in `state`, the prediction, for these drivers: coordinates with their rates, and what the blocks are judged by.
@@ -453,7 +463,7 @@ impl Tape {
             }
         }
         drivers.iter().flatten().for_each(|f| give(*f));
-        match (&program.code, &mut self.interpreter) {
+        match (&program.step.code, &mut self.interpreter) {
             (Some(code), _) => code.run(&mut self.scratch, &self.inputs, &[], &mut self.outputs),
             (None, Some(interpreter)) => interpreter.run(&self.inputs, &[], &mut self.outputs),
             (None, None) => return Err(Refused),
