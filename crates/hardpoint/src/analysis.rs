@@ -428,18 +428,21 @@ impl<'m> Analysis<'m> {
                 Stepper::new(model, topology, Parts::same(model, topology, &geometry, &laws, 0.0), 0.0);
             one.start(*model.times.first()?).ok()?;
             let mut numbers = numbers_of(&one.parts).into_iter().map(Some).collect::<Vec<_>>();
+            // Lengths and parts of axes alike: a marker may be off by as much as its coordinates round.
+            let same = f64::EPSILON * f64::min(model.size(), 1.0);
             if !sensitivities {
                 // What other designs have otherwise is an input.
                 for n in 0..OTHERS {
                     let other = self.effects.geometry(&model.whole(&elsewhere(model, n)), 0.0);
                     let other = numbers_of(&Parts::same(model, topology, &other, &laws, 0.0));
                     for (number, other) in numbers.iter_mut().zip(other) {
-                        *number = number.filter(|x| x.to_bits() == other.to_bits());
+                        *number = number.filter(|x| (x - other).abs() <= same);
                     }
                 }
             }
             let derivatives = Derivatives { model, fields: &fields };
-            StepProgram::record(&one, Purpose { geometry: numbers, corrections }, &derivatives, execution)
+            let purpose = Purpose { geometry: numbers, same, corrections };
+            StepProgram::record(&one, purpose, &derivatives, execution)
         })
     }
 
@@ -560,7 +563,7 @@ fn numbers_of(parts: &Parts<f64>) -> Vec<f64> {
     out
 }
 
-/// So many other designs tell what depends on the design: one of them may have the same last digit by chance.
+/// So many other designs tell what depends on the design: one of them may have the same number by chance.
 const OTHERS: usize = 4;
 
 /// The n-th other design, in which every variable has changed, each by another part of what is small beside the mechanism: a number of

@@ -37,6 +37,8 @@ const MOST_LINKS: usize = 200;
 pub(crate) struct Purpose {
     /// Per number of the geometry, in the order of [`Parts::map`]: its value, or none where it is an input.
     pub geometry: Vec<Option<f64>>,
+    /// Other designs have the same value if it differs by no more than this: their round-off.
+    pub same: f64,
     /// Newton's corrections: one or two.
     pub corrections: usize,
 }
@@ -400,7 +402,7 @@ impl Tape {
             let mut lanes = [0.0; LANES];
             (0..LANES).for_each(|k| lanes[k] = x.lane(k.min(T::LANES - 1)));
             match of_geometry.next() {
-                Some(Some(known)) => fits &= lanes.iter().all(|x| x == known),
+                Some(Some(known)) => fits &= lanes.iter().all(|x| (x - known).abs() <= program.purpose.same),
                 _ => geometry.push(lanes),
             }
             x
