@@ -296,7 +296,7 @@ fn outputs(
 }
 
 /// Recording pays from so many steps on: it costs about as much as they do.
-const PAYS: usize = 1000;
+const PAYS: usize = 500;
 /// After so many steps, a program that was refused in more than a quarter of them is given up.
 const TRIAL: usize = 8;
 
