@@ -163,7 +163,7 @@ pub struct Tables<'m> {
 }
 
 /// What was written.
-#[derive(Debug, Default)]
+#[derive(Debug)]
 pub struct Written {
     /// The names of the files.
     pub names: Vec<String>,
@@ -240,7 +240,9 @@ impl Tables<'_> {
             Some(_) if unknown.len() == answers.len() => names.retain(|n| !n.starts_with("sensitivity")),
             Some(Sensitivity::Csv(table)) => {
                 let columns = plan.sensitivity.expect("it is under way");
-                let rows = table.rows_up_to(&unknown);
+                // Those of all variables, up to the last output time that has any of the unknown.
+                let last = unknown.iter().map(|b| rows[*b]).max().unwrap_or(0);
+                let rows: usize = rows.iter().map(|n| n.min(&last)).sum();
                 let mut writing = table.end().map_err(|e| failed("sensitivity", folder, e))?;
                 if rows == 0 {
                     folder.end(writing)?;
@@ -249,7 +251,7 @@ impl Tables<'_> {
                         unknown.iter().map(|b| columns.model.variables[*b].name.as_str()).collect();
                     let before = writing.reopen().map_err(|e| writing.failed(e))?;
                     let mut without = folder.begin("sensitivity.csv")?;
-                    let whole = without_variables(before, &unknown, rows, &mut without, go_on)
+                    let whole = without_variables(before, &unknown, rows as u64, &mut without, go_on)
                         .map_err(|e| without.failed(e))?;
                     if whole {
                         folder.end(without)?;

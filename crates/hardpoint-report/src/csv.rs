@@ -62,10 +62,6 @@ pub struct SensitivityCsv<'m, W: Write> {
     units: Vec<String>,
     writer: Writer<W>,
     row: Vec<f64>,
-    /// Rows written, of all variables.
-    rows: u64,
-    /// Per variable, how many rows there are up to its last one.
-    up_to: Vec<u64>,
 }
 
 impl<'m, W: Write> SensitivityCsv<'m, W> {
@@ -77,9 +73,8 @@ impl<'m, W: Write> SensitivityCsv<'m, W> {
     pub fn new(columns: Columns<'m>, out: W) -> csv::Result<Self> {
         let writer = with_header(&["t [s]", "variable", "per"], &columns.of_sensitivities(), out)?;
         let variables = columns.model.variables.iter();
-        let units: Vec<String> = variables.map(|v| variable_unit(columns.model, columns.units, v)).collect();
-        let up_to = vec![0; units.len()];
-        Ok(Self { columns, units, writer, row: Vec::new(), rows: 0, up_to })
+        let units = variables.map(|v| variable_unit(columns.model, columns.units, v)).collect();
+        Ok(Self { columns, units, writer, row: Vec::new() })
     }
 
     /// Writes the rows of a window, by the variables that it has sensitivities for.
@@ -93,17 +88,10 @@ impl<'m, W: Write> SensitivityCsv<'m, W> {
                 if self.columns.sensitivities(window, k, b, &mut self.row).is_some() {
                     let name = no_formula(&variable.name);
                     self.writer.serialize((t, name, &self.units[b], numbers(&self.row)))?;
-                    self.rows += 1;
-                    self.up_to[b] = self.rows;
                 }
             }
         }
         Ok(())
-    }
-
-    /// How many rows there are up to the last one by any of these variables.
-    pub fn rows_up_to(&self, variables: &[usize]) -> u64 {
-        variables.iter().map(|b| self.up_to[*b]).max().unwrap_or(0)
     }
 
     /// Hands back what was written to.

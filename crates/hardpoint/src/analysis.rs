@@ -17,8 +17,8 @@ use crate::motion::stepper::Stepper;
 use crate::motion::tape::{ProgramOf, Programs, Purpose, StepProgram};
 use crate::motion::{BodyState, Effort, Execution, Motion, Stop, StopKind};
 use crate::sensitivity::{
-    Admissibility, Derivatives, JointDefect, Sensing, SensingDesigns, Sensitivities, admissibility_at_design,
-    along,
+    Admissibility, JointDefect, Sensing, SensingDesigns, Sensitivities, admissibility_at_design, along,
+    record_derivatives,
 };
 use crate::sink::{Sink, Store};
 use crate::space::{LANES, Real, lanes};
@@ -427,22 +427,26 @@ impl<'m> Analysis<'m> {
             let mut one =
                 Stepper::new(model, topology, Parts::same(model, topology, &geometry, &laws, 0.0), 0.0);
             one.start(*model.times.first()?).ok()?;
-            let mut numbers = numbers_of(&one.parts).into_iter().map(Some).collect::<Vec<_>>();
+            let mut numbers: Vec<_> = one.parts.numbers(0.0).into_iter().map(Some).collect();
             // Lengths and parts of axes alike: a marker may be off by as much as its coordinates round.
             let same = f64::EPSILON * f64::min(model.size(), 1.0);
             if !sensitivities {
                 // What other designs have otherwise is an input.
                 for n in 0..OTHERS {
                     let other = self.effects.geometry(&model.whole(&elsewhere(model, n)), 0.0);
-                    let other = numbers_of(&Parts::same(model, topology, &other, &laws, 0.0));
+                    let other = Parts::same(model, topology, &other, &laws, 0.0).numbers(0.0);
                     for (number, other) in numbers.iter_mut().zip(other) {
                         *number = number.filter(|x| (x - other).abs() <= same);
                     }
                 }
             }
-            let derivatives = Derivatives { model, fields: &fields };
             let purpose = Purpose { geometry: numbers, same, corrections };
-            StepProgram::record(&one, purpose, &derivatives, execution)
+            StepProgram::record(
+                &one,
+                purpose,
+                |plan, state| record_derivatives(model, &fields, plan, state),
+                execution,
+            )
         })
     }
 
@@ -551,16 +555,6 @@ impl<'m> Analysis<'m> {
             sensing.map_or_else(Vec::new, |s| s.admissibility(self.opens(), model.times.len()).collect());
         Some((stepper.effort, admissibility))
     }
-}
-
-/// All numbers of a geometry, in the order of [`Parts::map`].
-fn numbers_of(parts: &Parts<f64>) -> Vec<f64> {
-    let mut out = Vec::new();
-    parts.map(0.0, |x| {
-        out.push(x);
-        x
-    });
-    out
 }
 
 /// So many other designs tell what depends on the design: one of them may have the same number by chance.

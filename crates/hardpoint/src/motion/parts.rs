@@ -145,6 +145,16 @@ impl<T: Real> Parts<T> {
         Parts { parent_marker, child_from_marker, ends, kept, curves: self.curves.clone(), laws: Vec::new() }
     }
 
+    /// All numbers of the geometry, in the order of [`Parts::map`].
+    pub fn numbers(&self, witness: T) -> Vec<T> {
+        let mut numbers = Vec::new();
+        self.map(witness, |x| {
+            numbers.push(x);
+            x
+        });
+        numbers
+    }
+
     /// The laws of driver d: one per lane, or one for all.
     pub fn laws_of(&self, d: usize) -> &[Law] {
         &self.laws[d]

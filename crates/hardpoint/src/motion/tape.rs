@@ -16,7 +16,7 @@ use hardpoint_tape::{Interpreter, Lanes, Number, Options, Program, record};
 use crate::joint::Freedom;
 use crate::model::BodyId;
 use crate::number::record as recording;
-use crate::space::{LANES, LARGEST_DENSE, Quat, Real, Vec3, Watched};
+use crate::space::{LANES, LARGEST_DENSE, MOST_GROWTH, Quat, Real, Vec3, Watched};
 use crate::topology::{Source, Topology};
 
 use super::kinematics::{CORRECTIONS, QUADRATIC, ROUND_OFF, Residuals, State};
@@ -27,8 +27,6 @@ use super::{BodyState, turn_over};
 /// Newton's first correction while recording, in units of each coordinate, for a program with one correction and for one with two:
 /// the one is followed by round-off, the other by what is accepted as the last.
 const OFFSET: [f64; 2] = [1e-9, 1e-5];
-/// The factors of an elimination may be so many times what they were when its order was recorded.
-const MOST_GROWTH: f64 = 4.0;
 /// Mechanisms with more links than this are not recorded: the program would no longer stay in the fast memory of a core.
 const MOST_LINKS: usize = 200;
 
@@ -43,25 +41,12 @@ pub(crate) struct Purpose {
     pub corrections: usize,
 }
 
-/// What a program hands out besides the motion.
-pub(crate) trait Besides {
-    /// Records it where the state stands; none where that cannot be recorded.
-    fn record(&self, topology: &Topology, state: &mut State<Number>) -> Option<Recorded>;
-}
-
 /// What was recorded besides the motion.
 #[derive(Default)]
 pub(crate) struct Recorded {
     /// Where any of these is positive, the results do not count.
     pub limits: Vec<Number>,
     pub results: Vec<Number>,
-}
-
-/// Nothing.
-impl Besides for () {
-    fn record(&self, _: &Topology, _: &mut State<Number>) -> Option<Recorded> {
-        Some(Recorded::default())
-    }
 }
 
 /// The program of a step.
@@ -73,6 +58,7 @@ pub(crate) struct StepProgram {
     step: Runnable,
     channels: Vec<Channel>,
     blocks: Vec<BlockProgram>,
+    places: Outputs,
     /// How many bodies there are but ground.
     bodies: usize,
     /// How many results besides the motion must not be positive.
@@ -145,6 +131,15 @@ struct Outputs {
     limits: usize,
 }
 
+impl Outputs {
+    fn of(channels: &[Channel], blocks: usize, bodies: usize) -> Self {
+        let first = channels.iter().map(|c| c.counts().1).sum();
+        let residuals = first + PER_BLOCK * blocks;
+        let of_bodies = residuals + 2;
+        Self { blocks: first, residuals, bodies: of_bodies, limits: of_bodies + PER_BODY * bodies }
+    }
+}
+
 /// Per block: product, most, least and growth of its factors; the first correction, and the last.
 const PER_BLOCK: usize = 6;
 /// Per body: as in [`BodyState`].
@@ -181,26 +176,23 @@ impl StepProgram {
             && topology.closures.iter().all(|c| c.contact.is_none())
     }
 
-    /// Records the step that is solved where `one` stands, in lane 0; none where it cannot be recorded after all.
-    pub fn record<T: Real>(
-        one: &Stepper<'_, T>,
+    /// Records the step that is solved where `one` stands, and what `besides` makes of it; none where either cannot be recorded.
+    pub fn record(
+        one: &Stepper<'_, f64>,
         purpose: Purpose,
-        besides: &dyn Besides,
+        besides: impl FnOnce(&Topology, &mut State<Number>) -> Option<Recorded>,
         execution: Execution,
     ) -> Option<Self> {
         let (model, topology) = (one.model, &one.topology);
-        let parts = one.parts.map(one.state.witness, |x| x.lane(0));
         let channels = Channel::all(topology);
         let (mut fits, mut blocks, mut limits) = (false, Vec::new(), 0);
         recording::begin();
         let recorded = record(|| {
             let mut state = State::new(model, topology, Number::constant(0.0));
             predict(topology, &channels, &one.saved, OFFSET[purpose.corrections - 1], &mut state);
-            let drivers = &one.saved.drivers;
-            let drivers: Vec<[Number; 3]> =
-                drivers.iter().map(|f| f.map(|x| Number::input(x.lane(0)))).collect();
+            let drivers: Vec<[Number; 3]> = one.saved.drivers.iter().map(|f| f.map(Number::input)).collect();
             let mut of_geometry = purpose.geometry.iter();
-            let parts = parts.map(0.0, |x| match of_geometry.next() {
+            let parts = one.parts.map(0.0, |x| match of_geometry.next() {
                 Some(Some(x)) => Number::constant(*x),
                 _ => Number::input(x),
             });
@@ -209,7 +201,7 @@ impl StepProgram {
             blocks = recorded.collect::<Vec<_>>();
             fits &= blocks.len() == topology.blocks.len();
             let mut out = outputs(topology, (&parts, &drivers), (&channels, &blocks), &state);
-            match besides.record(topology, &mut state) {
+            match besides(topology, &mut state) {
                 Some(found) => {
                     limits = found.limits.len();
                     out.extend(found.limits.into_iter().chain(found.results));
@@ -229,14 +221,9 @@ impl StepProgram {
         if step.code.is_none() && execution == Execution::Fastest {
             return None;
         }
-        Some(Self { purpose, design, step, channels, blocks, bodies: model.bodies.len() - 1, limits })
-    }
-
-    fn outputs(&self) -> Outputs {
-        let blocks = self.channels.iter().map(|c| c.counts().1).sum();
-        let residuals = blocks + PER_BLOCK * self.blocks.len();
-        let bodies = residuals + 2;
-        Outputs { blocks, residuals, bodies, limits: bodies + PER_BODY * self.bodies }
+        let bodies = model.bodies.len() - 1;
+        let places = Outputs::of(&channels, blocks.len(), bodies);
+        Some(Self { purpose, design, step, channels, blocks, places, bodies, limits })
     }
 }
 
@@ -244,21 +231,21 @@ fn inputs_before_geometry(channels: &[Channel], drivers: usize) -> usize {
     channels.iter().map(|c| c.counts().0).sum::<usize>() + 3 * drivers
 }
 
-/// Makes inputs of what predicts the state, `offset` beside where lane 0 of `at` is.
-fn predict<T: Real>(
+/// Makes inputs of what predicts the state, `offset` beside where `at` is.
+fn predict(
     topology: &Topology,
     channels: &[Channel],
-    at: &Saved<T>,
+    at: &Saved<f64>,
     offset: f64,
     state: &mut State<Number>,
 ) {
     for channel in channels {
         match *channel {
             Channel::Coordinate(c) => {
-                state.q[c] = Number::input(at.q[c].lane(0) + offset * topology.coordinates[c].unit);
+                state.q[c] = Number::input(at.q[c] + offset * topology.coordinates[c].unit);
             }
             Channel::Ball(c) => {
-                let beside = at.balls[c].lane(0).nudged(Vec3::new(offset, offset, offset));
+                let beside = at.balls[c].nudged(Vec3::new(offset, offset, offset));
                 let component = |k: usize| Number::input(beside.component(k));
                 let w = component(0);
                 state.balls[c] = Quat { w, v: Vec3::new(component(1), component(2), component(3)) };
@@ -397,18 +384,14 @@ impl Tape {
     /// For the design in each lane of these parts; none where they differ from the program's in what is no input.
     pub fn new<T: Real>(program: Arc<StepProgram>, parts: &Parts<T>, witness: T) -> Option<Self> {
         let mut geometry = Vec::new();
-        let (mut fits, mut of_geometry) = (true, program.purpose.geometry.iter());
-        parts.map(witness, |x| {
-            let mut lanes = [0.0; LANES];
-            (0..LANES).for_each(|k| lanes[k] = x.lane(k.min(T::LANES - 1)));
-            match of_geometry.next() {
-                Some(Some(known)) => fits &= lanes.iter().all(|x| (x - known).abs() <= program.purpose.same),
-                _ => geometry.push(lanes),
+        for (x, known) in parts.numbers(witness).into_iter().zip(&program.purpose.geometry) {
+            let mut lanes = [x.lane(0); LANES];
+            x.store(&mut lanes);
+            match known {
+                None => geometry.push(lanes),
+                Some(known) if lanes.iter().all(|x| (x - known).abs() <= program.purpose.same) => {}
+                Some(_) => return None,
             }
-            x
-        });
-        if !fits {
-            return None;
         }
         let StepProgram { design, step, .. } = &*program;
         let mut of_design = vec![[0.0; LANES]; design.program.outputs.len()];
@@ -438,19 +421,7 @@ impl Tape {
         trust: f64,
     ) -> Result<Residuals, Refused> {
         self.tried += 1;
-        let found = self.try_to_solve(state, drivers, (branch, least), trust);
-        self.refused += usize::from(found.is_err());
-        found
-    }
-
-    #[inline(always)]
-    fn try_to_solve<T: Real>(
-        &mut self,
-        state: &mut State<T>,
-        drivers: &[[T; 3]],
-        (branch, least): (&[(bool, f64)], &[f64]),
-        trust: f64,
-    ) -> Result<Residuals, Refused> {
+        self.refused += 1;
         let (program, witness) = (&self.program, state.witness);
         let mut inputs = self.inputs.iter_mut();
         let mut give = |x: T| {
@@ -470,7 +441,7 @@ impl Tape {
             (None, Some(interpreter)) => interpreter.run(&self.inputs, &[], &mut self.outputs),
             (None, None) => return Err(Refused),
         }
-        let (at, places) = (|k: usize| witness.gather(self.outputs[k]), program.outputs());
+        let (at, places) = (|k: usize| witness.gather(self.outputs[k]), program.places);
         // All comparisons are written so that NaN is refused.
         for (b, recorded) in program.blocks.iter().enumerate() {
             let k = places.blocks + PER_BLOCK * b;
@@ -512,12 +483,13 @@ impl Tape {
             k += channel.counts().1;
         }
         state.iterations += program.blocks.iter().map(|b| b.passes).sum::<usize>();
+        self.refused -= 1;
         Ok(residuals)
     }
 
     /// What the last step handed out besides the motion.
     pub fn besides(&self) -> &[Lanes] {
-        &self.outputs[self.program.outputs().limits + self.program.limits..]
+        &self.outputs[self.program.places.limits + self.program.limits..]
     }
 
     /// Gives the states of the wanted bodies but ground in every lane to `out(lane, body, state)`, as of the last step.
@@ -529,7 +501,7 @@ impl Tape {
         mut out: impl FnMut(usize, BodyId, BodyState),
     ) {
         let mut table = [[0.0; PER_BODY]; LANES];
-        let first = self.program.outputs().bodies;
+        let first = self.program.places.bodies;
         for body in (1..=self.program.bodies).filter(|b| wanted[*b]) {
             let k = first + PER_BODY * (body - 1);
             let components: [[T; 8]; 3] =

@@ -15,7 +15,7 @@ pub use admissible::{Admissibility, Condition, JointDefect, admissibility_at_des
 pub(crate) use direct::{Direct, FieldParts};
 pub use second::{BodyCurvature, Way};
 pub(crate) use second::{Seconds, along};
-pub(crate) use sensing::{Derivatives, Resisting, Sensing, SensingDesigns, admissibility};
+pub(crate) use sensing::{Resisting, Sensing, SensingDesigns, admissibility, record_derivatives};
 
 use crate::space::Vec3;
 

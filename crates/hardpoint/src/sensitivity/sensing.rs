@@ -5,7 +5,7 @@ use hardpoint_tape::{Lanes, Number};
 use crate::model::{BodyId, DriverId, Field, Model, VariableId};
 use crate::motion::kinematics::State;
 use crate::motion::stepper::Stepper;
-use crate::motion::tape::{Besides, Recorded};
+use crate::motion::tape::Recorded;
 use crate::motion::turn_over;
 use crate::sink::Sink;
 use crate::space::{LANES, Real, Twist, Vec3, of_lanes};
@@ -356,35 +356,33 @@ fn hand_over<T: Real>(
     }
 }
 
-/// What a program of the steps of a design hands out besides the motion: the derivatives of all bodies by all variables.
-pub(crate) struct Derivatives<'f> {
-    pub model: &'f Model,
-    pub fields: &'f [Field],
-}
-
-impl Besides for Derivatives<'_> {
-    fn record(&self, topology: &Topology, state: &mut State<Number>) -> Option<Recorded> {
-        let witness = state.witness;
-        let mut recorded = Recorded::default();
-        if self.fields.is_empty() {
-            return Some(recorded);
-        }
-        state.finish_rates(topology);
-        let mut direct = Direct::new(self.model, topology, witness);
-        for field in self.fields {
-            let mut field = FieldParts::new(topology, &field.spread(witness), witness);
-            if !field.is_constant() {
-                return None;
-            }
-            field.set_shifts();
-            direct.solve(topology, state, &field);
-            recorded.limits.push(direct.excess(topology, state, &field));
-            for &body in &field.reach.bodies {
-                recorded.results.extend(components(&direct.w, state, body));
-            }
-        }
-        Some(recorded)
+/// Records the derivatives of all bodies by all variables with these fields, where the state stands; none where a law changes, which no
+/// program knows.
+pub(crate) fn record_derivatives(
+    model: &Model,
+    fields: &[Field],
+    topology: &Topology,
+    state: &mut State<Number>,
+) -> Option<Recorded> {
+    let (witness, mut recorded) = (state.witness, Recorded::default());
+    if fields.is_empty() {
+        return Some(recorded);
     }
+    state.finish_rates(topology);
+    let mut direct = Direct::new(model, topology, witness);
+    for field in fields {
+        let mut field = FieldParts::new(topology, &field.spread(witness), witness);
+        if !field.is_constant() {
+            return None;
+        }
+        field.set_shifts();
+        direct.solve(topology, state, &field);
+        recorded.limits.push(direct.excess(topology, state, &field));
+        for &body in &field.reach.bodies {
+            recorded.results.extend(components(&direct.w, state, body));
+        }
+    }
+    Some(recorded)
 }
 
 impl BodySensitivity {

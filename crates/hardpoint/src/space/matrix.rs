@@ -3,7 +3,7 @@
 use crate::number::Real;
 
 /// A factor of the elimination above this says that another order of the rows would keep more digits.
-const MOST_GROWTH: f64 = 4.0;
+pub(crate) const MOST_GROWTH: f64 = 4.0;
 
 /// LU factors of one block's Jacobian, kept for every right-hand side of a step.
 ///

@@ -18,7 +18,7 @@ mod vec3;
 pub use euler::{euler_313_from_rotation, euler_rates, rotation_from_euler_313};
 pub(crate) use factors::{Factors, LARGEST_DENSE};
 pub use mat3::Mat3;
-pub(crate) use matrix::{Elimination, Watched};
+pub(crate) use matrix::{Elimination, MOST_GROWTH, Watched};
 pub use pose::Pose;
 pub use quat::Quat;
 pub use twist::{Twist, Wrench};
