@@ -415,8 +415,8 @@ fn motion_errors(motion: &Motion, reference: &[f64]) -> [f64; 3] {
     let mut worst = [0.0; 3];
     let mut reference = reference.chunks_exact(STATE);
     for k in 0..motion.len() {
-        for (state, expected) in motion.at(k)[1..].iter().zip(reference.by_ref()) {
-            keep_larger(&mut worst, deviations(&state_layout(state), expected.iter().copied()));
+        for (state, expected) in motion.at(k).iter().skip(1).zip(reference.by_ref()) {
+            keep_larger(&mut worst, deviations(&state_layout(&state), expected.iter().copied()));
         }
     }
     assert!(reference.next().is_none(), "the reference has more steps or bodies");
@@ -432,7 +432,7 @@ fn sensitivity_errors(motion: &Motion, sensitivities: &Sensitivities, reference:
         for b in 0..variables {
             let derivatives = sensitivities.at(k, b).expect("a change that the mechanism can follow");
             for i in 0..bodies {
-                let found = sensitivity_layout(&motion.at(k)[i + 1], &derivatives[i + 1]);
+                let found = sensitivity_layout(&motion.at(k).body(i + 1), &derivatives.body(i + 1));
                 let first = (k * bodies + i) * STATE * variables + b;
                 let expected = reference[first..].iter().copied().step_by(variables).take(STATE);
                 keep_larger(&mut worst, deviations(&found, expected));
@@ -457,7 +457,7 @@ fn chain_errors(model: &Model, motion: &Motion) -> [f64; 3] {
         let a = Vec3::new(-c, -s, 0.0) * second - top * (rate * rate);
         let turned = [Vec3::new(c, -s, 0.0), Vec3::new(s, c, 0.0), Vec3::new(0.0, 0.0, 1.0)];
         let about = |x: f64| Vec3::new(0.0, 0.0, x);
-        for (body, state) in model.bodies.iter().zip(motion.at(k)).skip(1) {
+        for (body, state) in model.bodies.iter().zip(motion.at(k).iter()).skip(1) {
             let expected = if let Some(pivot) = body.name.strip_prefix("bar") {
                 let x: f64 = pivot.parse().expect("a number");
                 let r = Vec3::new(x, 0.0, 0.0) + top * 0.5;
@@ -466,7 +466,7 @@ fn chain_errors(model: &Model, motion: &Motion) -> [f64; 3] {
                 let x: f64 = body.name.trim_start_matches("coupler").parse().expect("a number");
                 layout(Vec3::new(x + 0.5, 0.0, 0.0) + top, Vec3::AXES, [v, o, a, o])
             };
-            keep_larger(&mut worst, deviations(&state_layout(state), expected.into_iter()));
+            keep_larger(&mut worst, deviations(&state_layout(&state), expected.into_iter()));
         }
     }
     worst

@@ -174,7 +174,7 @@ impl Sample {
         let kept = &course.kept.motion;
         let near = SAME_MOTION * model.size();
         let same = again.len() == kept.len()
-            && again.states.iter().zip(&kept.states).all(|(a, b)| (a.r - b.r).norm() <= near);
+            && again.states().zip(kept.states()).all(|(a, b)| (a.r - b.r).norm() <= near);
         same.then_some(analysis)
     }
 }

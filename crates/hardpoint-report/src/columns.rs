@@ -93,7 +93,7 @@ impl Columns<'_> {
     pub fn motion(&self, solution: &Solution, k: usize, row: &mut Vec<f64>) {
         let units = self.units;
         if self.bodies {
-            for s in &solution.motion.at(k)[1..] {
+            for s in solution.motion.at(k).iter().skip(1) {
                 push(row, |x| units.from_si(Length, x), s.r);
                 row.extend(s.quaternion());
                 push(row, |x| units.from_si(Length, x), s.v);
@@ -113,7 +113,7 @@ impl Columns<'_> {
         let bodies = solution.sensitivities.at(k, b)?;
         let (units, by) = (self.units, self.model.variables[b].quantity);
         if self.bodies {
-            for d in &bodies[1..] {
+            for d in bodies.iter().skip(1) {
                 let parts = [
                     (Length, d.dr),
                     (Angle, d.dpi),

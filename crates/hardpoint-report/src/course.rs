@@ -210,7 +210,7 @@ impl Peak {
 }
 
 fn grow(magnitude: &mut [f64; 3], size: f64, motion: &Motion) {
-    for s in &motion.states {
+    for s in motion.states() {
         magnitude[1] = magnitude[1].max(s.omega.norm()).max(s.v.norm() / size);
         magnitude[2] = magnitude[2].max(s.alpha.norm()).max(s.a.norm() / size);
     }

@@ -285,7 +285,7 @@ impl Compose<'_> {
         let states = &self.solution.motion;
         let track = |(b, points): (usize, Vec<(Vec3, String)>)| {
             let poses = self.steps.iter().flat_map(|&k| {
-                let s = &states.at(k)[b];
+                let s = &states.at(k).body(b);
                 let [x, y, z] = self.length(s.r);
                 let [qw, qx, qy, qz] = s.quaternion();
                 [x, y, z, qw, qx, qy, qz]
@@ -351,7 +351,7 @@ impl Compose<'_> {
         let origins = (1..bodies).flat_map(|b| (0..3).map(move |axis| (b, axis))).map(|(b, axis)| {
             let name = format!("{}.{}", self.model.bodies[b].name, AXES[axis]);
             let value = |k, order: usize| {
-                let s = &self.solution.motion.at(k)[b];
+                let s = &self.solution.motion.at(k).body(b);
                 self.length([s.r, s.v, s.a][order])[axis]
             };
             self.quantity(&name, Kind::Length, 3, "body", value)
@@ -400,7 +400,7 @@ impl Compose<'_> {
         let by = self.model.variables[b].quantity;
         let of_body = |body: usize| {
             let at = |&k: &usize| {
-                let shift = self.solution.sensitivities.at(k, b).map(|s| s[body]);
+                let shift = self.solution.sensitivities.at(k, b).map(|s| s.body(body));
                 let shift = shift.unwrap_or(BodySensitivity::ZERO);
                 let dr = shift.dr.to_array().map(|x| self.units.derivative_from_si(Kind::Length, by, x));
                 let turn = shift.dpi.to_array().map(|x| self.units.derivative_from_si(Kind::Number, by, x));
@@ -482,7 +482,7 @@ impl Compose<'_> {
                 })
             });
             let exact = |k: usize, order: usize| {
-                self.solution.sensitivities.at(k, b).map_or(f64::NAN, |s| of(&s[body], order))
+                self.solution.sensitivities.at(k, b).map_or(f64::NAN, |s| of(&s.body(body), order))
             };
             list.push(self.sensitivity(list.len(), (Dimension::LENGTH, 3), b, exact, overlay));
         }

@@ -103,7 +103,7 @@ fn sensitivity_file_converts_numerator_and_denominator() {
     assert_eq!(csv.rows.len(), 41 * 2);
     for (row, _) in csv.rows.iter().enumerate() {
         let (k, b) = (row / 2, row % 2);
-        let d: &BodySensitivity = &solution.sensitivities.at(k, b).unwrap()[slider.0];
+        let d: &BodySensitivity = &solution.sensitivities.at(k, b).unwrap().body(slider.0);
         let output = solution.measured.d(k, VariableId(b), stroke);
         assert_eq!(csv.text(row, "variable"), ["crank_pin_x", "guide_turn"][b]);
         assert_eq!(csv.text(row, "per"), ["mm", "deg"][b]);

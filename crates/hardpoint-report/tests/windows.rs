@@ -14,7 +14,7 @@ fn assert_same(name: &str, whole: &Solution, part: &Solution, first: usize, stri
     for k in 0..part.motion.len() {
         let n = first + k * stride;
         assert_eq!(part.motion.times[k], whole.motion.times[n], "{name}");
-        assert_eq!(part.motion.at(k), whole.motion.at(n), "{name}");
+        assert!(part.motion.at(k).iter().eq(whole.motion.at(n).iter()), "{name}");
         assert_eq!(part.motion.margins[k], whole.motion.margins[n], "{name}");
         for m in 0..whole.measured.outputs.len() {
             let (a, b) = (part.measured.value(k, m), whole.measured.value(n, m));
@@ -23,7 +23,8 @@ fn assert_same(name: &str, whole: &Solution, part: &Solution, first: usize, stri
         for b in 0..whole.sensitivities.variables {
             // Before the end of a run it is not known which variables cannot be followed.
             let Some(bodies) = whole.sensitivities.at(n, b) else { continue };
-            assert_eq!(part.sensitivities.at(k, b), Some(bodies), "{name}");
+            let same = part.sensitivities.at(k, b).is_some_and(|part| part.iter().eq(bodies.iter()));
+            assert!(same, "{name}");
             for m in 0..whole.measured.outputs.len() {
                 let [a, b] = [(part, k), (whole, n)].map(|(s, k)| s.measured.d(k, VariableId(b), m));
                 assert_eq!(bits(a), bits(b), "{name}: {} at {n}", whole.measured.outputs[m].name);

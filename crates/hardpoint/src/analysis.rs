@@ -5,23 +5,25 @@ use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, OnceLock};
 
-use fearless_simd::{Level, dispatch};
+use hardpoint_tape::Number;
 
-use crate::joint::Quantity;
 use crate::law::Law;
 use crate::measure::{self, Before, Measured, SlopeValues};
-use crate::model::{BodyId, DesignVariable, Effects, Field, GROUND, Geometry, Model, VariableId};
+use crate::model::{BodyId, Effects, Field, Geometry, Model};
 use crate::motion::abreast::Abreast;
+use crate::motion::designs::SideBySide;
+use crate::motion::kinematics::State;
 use crate::motion::parts::Parts;
 use crate::motion::stepper::Stepper;
-use crate::motion::tape::{ProgramOf, Programs, Purpose, StepProgram};
+use crate::motion::tape::{Programs, Purpose, Recorded, StepProgram, Tape};
 use crate::motion::{BodyState, Effort, Execution, Motion, Stop, StopKind};
 use crate::sensitivity::{
-    Admissibility, JointDefect, Sensing, SensingDesigns, Sensitivities, admissibility_at_design, along,
-    record_derivatives,
+    Admissibility, BodySensitivity, JointDefect, Sensing, Sensitivities, admissibility, admissibility_at_design,
+    along, record_derivatives,
 };
-use crate::sink::{Sink, Store};
-use crate::space::{LANES, Real, lanes};
+use crate::number::record as recording;
+use crate::sink::{Block, Sink, Store};
+use crate::space::LANES;
 use crate::topology::{Formulation, Topology, TopologyFault};
 
 /// A model with its plan of solution, ready to be run as often as needed.
@@ -67,9 +69,6 @@ pub struct Analysis<'m> {
     programs: Arc<Programs>,
 }
 
-/// Designs side by side are solved by the kernel up to this output time; then it is known how many passes they need.
-const PROGRAM_FROM: usize = 4;
-
 /// One design, ready to be analysed.
 pub(crate) struct Design {
     pub values: Vec<f64>,
@@ -78,6 +77,15 @@ pub(crate) struct Design {
     /// How the variables change it, if that is asked for, and the joints that each opens in the nominal design.
     fields: Vec<Field>,
     pub opens: Vec<Vec<JointDefect>>,
+    /// How many designs are solved in all, itself included: what is worth a program for all of them.
+    of_many: usize,
+}
+
+impl Design {
+    /// Whether its sensitivities are asked for, and there are any.
+    pub fn has_fields(&self) -> bool {
+        !self.fields.is_empty()
+    }
 }
 
 /// What a streamed run says at its end.
@@ -223,6 +231,7 @@ impl<'m> Analysis<'m> {
             laws: self.effects.laws(&values),
             fields: if sensitivities { self.effects.fields(&values, 0.0) } else { Vec::new() },
             opens: if sensitivities { self.opens().to_vec() } else { Vec::new() },
+            of_many: 1,
             values,
         }
     }
@@ -235,12 +244,10 @@ impl<'m> Analysis<'m> {
         let field = self.effects.field_along(&along, &design.values, 0.0);
         design.opens = vec![admissibility_at_design(self.model, &field)];
         design.fields = vec![field];
-        dispatch!(Level::new(), simd => {
-            let mut walk = Walk::new(self, &design, vec![false; self.model.bodies.len()], lanes(simd));
-            walk.each(self, |_, _| ());
-            let sensing = walk.sensing.expect("there is a field");
-            sensing.admissibility(&design.opens, walk.done).pop().expect("that of the one field")
-        })
+        let mut walk = Walk::new(self, &design, vec![false; self.model.bodies.len()]);
+        walk.each(self, |_| ());
+        let sensing = walk.sensing.expect("there is a field");
+        sensing.admissibility(&design.opens, walk.done).pop().expect("that of the one field")
     }
 
     /// As [`Analysis::run`], but nothing is stored: the sink takes every result as it is found.
@@ -254,13 +261,11 @@ impl<'m> Analysis<'m> {
     pub fn stream_at(&self, design: &[f64], sink: &mut impl Sink) -> Streamed {
         let design = self.design(design, true);
         let wanted = self.wanted(std::slice::from_ref(sink));
-        dispatch!(Level::new(), simd => {
-            let mut walk = Walk::new(self, &design, wanted, lanes(simd));
-            let stop = walk.all(self, sink, &mut |_| ControlFlow::Continue(()), |_, _, _, _| ());
-            let effort = walk.one.effort;
-            let admissibility = walk.sensing.map_or_else(Vec::new, |s| s.admissibility(&design.opens, walk.done));
-            Streamed { steps: walk.done, admissibility, effort, stop }
-        })
+        let mut walk = Walk::by_programs(self, &design, wanted, false);
+        let stop = walk.all(self, sink, &mut |_| ControlFlow::Continue(()), |_, _, _, _| ());
+        let effort = walk.one.effort;
+        let admissibility = walk.sensing.map_or_else(Vec::new, |s| s.admissibility(&design.opens, walk.done));
+        Streamed { steps: walk.done, admissibility, effort, stop }
     }
 
     /// Per body, whether any sink wants its results.
@@ -292,19 +297,13 @@ impl<'m> Analysis<'m> {
         }
     }
 
-    /// Empties a motion, with room for so many output times; its bodies' states are there to be overwritten.
+    /// Empties a motion, with room for so many output times.
     pub(crate) fn make_room(&self, motion: &mut Motion, steps: usize) {
-        let bodies = self.model.bodies.len();
-        if motion.bodies != bodies {
-            motion.states.clear();
-        }
-        let ground = BodyState::at_design(self.model, GROUND);
-        motion.states.resize(steps * bodies, ground);
-        motion.bodies = bodies;
+        motion.bodies = self.model.bodies.len();
+        motion.states.shape(BodyState::NUMBERS * (motion.bodies - 1), steps);
+        motion.coordinates.shape(self.topology.coordinates.len(), steps);
         motion.times.clear();
         motion.times.reserve(steps);
-        motion.coordinates.clear();
-        motion.coordinates.reserve(steps * self.topology.coordinates.len());
         motion.margins.clear();
         motion.assembly = None;
         motion.passed.clear();
@@ -334,8 +333,9 @@ impl<'m> Analysis<'m> {
     /// design gets its own outcome. Lanes and single runs agree to round-off (`docs/performance.md`).
     pub fn run_designs(&self, designs: &[Vec<f64>]) -> Vec<Solution> {
         let mut solutions: Vec<Solution> = designs.iter().map(|_| Solution::default()).collect();
+        let (many, mut beside) = (designs.len(), self.side_by_side(designs.len(), false));
         for (designs, solutions) in designs.chunks(LANES).zip(solutions.chunks_mut(LANES)) {
-            self.solve_designs(designs, solutions);
+            self.solve_designs(&mut beside, designs, many, solutions);
         }
         solutions
     }
@@ -344,8 +344,9 @@ impl<'m> Analysis<'m> {
     /// solution, which is overwritten later.
     pub fn for_each_design(&self, designs: &[Vec<f64>], mut visit: impl FnMut(usize, &Solution)) {
         let mut solutions: [Solution; LANES] = std::array::from_fn(|_| Solution::default());
+        let (many, mut beside) = (designs.len(), self.side_by_side(designs.len(), false));
         for (group, designs) in designs.chunks(LANES).enumerate() {
-            self.solve_designs(designs, &mut solutions[..designs.len()]);
+            self.solve_designs(&mut beside, designs, many, &mut solutions[..designs.len()]);
             for (k, solution) in solutions[..designs.len()].iter().enumerate() {
                 visit(group * LANES + k, solution);
             }
@@ -369,11 +370,12 @@ impl<'m> Analysis<'m> {
             for _ in 0..threads.get() {
                 scope.spawn(|| {
                     let mut solutions: [Solution; LANES] = std::array::from_fn(|_| Solution::default());
+                    let mut beside = self.side_by_side(designs.len(), false);
                     let groups = || Some(next.fetch_add(1, Ordering::Relaxed));
                     for group in std::iter::from_fn(groups).take_while(|g| g * LANES < designs.len()) {
                         let first = group * LANES;
                         let some = &designs[first..usize::min(first + LANES, designs.len())];
-                        self.solve_designs(some, &mut solutions[..some.len()]);
+                        self.solve_designs(&mut beside, some, designs.len(), &mut solutions[..some.len()]);
                         solutions[..some.len()].iter().enumerate().for_each(|(k, s)| visit(first + k, s));
                     }
                 });
@@ -392,250 +394,222 @@ impl<'m> Analysis<'m> {
         mut sink: impl FnMut(usize) -> S,
         mut end: impl FnMut(usize, S, Streamed),
     ) {
+        let mut beside = self.side_by_side(designs.len(), true);
         for (group, designs) in designs.chunks(LANES).enumerate() {
             let number = |k: usize| group * LANES + k;
             let mut sinks: Vec<S> = (0..designs.len()).map(|k| sink(number(k))).collect();
-            // Output times fill the lanes of a single design.
-            let solved = if designs.len() > 1 {
-                dispatch!(Level::new(), simd => self.solve_designs_in(designs, &mut sinks, true, |_, _| (), lanes(simd)))
-            } else {
-                None
-            };
-            if let Some((effort, admissibility)) = solved {
-                for (k, (sink, admissibility)) in sinks.into_iter().zip(admissibility).enumerate() {
+            match self.solve_designs_in(&mut beside, designs, &mut sinks, |_, _| ()) {
+                Some(effort) => {
                     let steps = self.model.times.len();
-                    end(number(k), sink, Streamed { steps, admissibility, effort, stop: None });
+                    for (k, sink) in sinks.into_iter().enumerate() {
+                        let resisting = vec![(Vec::new(), 0.0); self.model.variables.len()];
+                        let admissibility = admissibility(self.opens(), resisting, steps);
+                        end(number(k), sink, Streamed { steps, admissibility, effort, stop: None });
+                    }
                 }
-            } else {
-                for (k, design) in designs.iter().enumerate() {
-                    let mut sink = sink(number(k));
-                    let streamed = self.stream_at(design, &mut sink);
-                    end(number(k), sink, streamed);
+                None => {
+                    for (k, design) in designs.iter().enumerate() {
+                        let mut sink = sink(number(k));
+                        let streamed = self.stream_at(design, &mut sink);
+                        end(number(k), sink, streamed);
+                    }
                 }
             }
         }
     }
 
-    /// The step of this plan as a program with so many corrections, for any design; or with the sensitivities of the nominal one.
-    fn program(&self, sensitivities: bool, corrections: usize) -> Option<Arc<StepProgram>> {
-        let (model, topology) = (self.model, &self.topology);
-        if !StepProgram::suits(topology) {
+    /// The step of this plan as a program, recorded where the nominal motion begins.
+    fn program(&self, purpose: Purpose) -> Option<Arc<StepProgram>> {
+        if !StepProgram::suits(&self.topology) {
             return None;
         }
-        self.programs.get(sensitivities, corrections, |execution| {
-            let Design { geometry, laws, fields, .. } = self.design(&[], sensitivities);
-            let mut one =
-                Stepper::new(model, topology, Parts::same(model, topology, &geometry, &laws, 0.0), 0.0);
-            one.start(*model.times.first()?).ok()?;
-            let mut numbers: Vec<_> = one.parts.numbers(0.0).into_iter().map(Some).collect();
-            // Lengths and parts of axes alike: a marker may be off by as much as its coordinates round.
-            let same = f64::EPSILON * f64::min(model.size(), 1.0);
-            if !sensitivities {
-                // What other designs have otherwise is an input.
-                for n in 0..OTHERS {
-                    let other = self.effects.geometry(&model.whole(&elsewhere(model, n)), 0.0);
-                    let other = Parts::same(model, topology, &other, &laws, 0.0).numbers(0.0);
-                    for (number, other) in numbers.iter_mut().zip(other) {
-                        *number = number.filter(|x| (x - other).abs() <= same);
-                    }
+        self.programs.step(purpose, |execution| {
+            let one = self.started()?;
+            let besides = |plan: &Topology, state: &mut State<Number>, values: &[Number]| {
+                if !purpose.sensitivities {
+                    return Some(Recorded::default());
                 }
-            }
-            let purpose = Purpose { geometry: numbers, same, corrections };
-            StepProgram::record(
-                &one,
-                purpose,
-                |plan, state| record_derivatives(model, &fields, plan, state),
-                execution,
-            )
+                let fields = recording::strictly(|| self.effects.fields(values, state.witness));
+                record_derivatives(self.model, &fields, plan, state)
+            };
+            StepProgram::record(&one, &self.effects, purpose, besides, execution)
         })
     }
 
-    /// Motions of up to as many designs as there are lanes, side by side.
-    fn solve_designs(&self, designs: &[Vec<f64>], solutions: &mut [Solution]) {
-        // What goes by a driver asks for more than positions, which only a single run keeps.
-        let by_driver = self.measures && (0..self.model.measures.len()).any(|k| self.model.goes_by_driver(k));
-        let side_by_side = designs.len() > 1
-            && !by_driver
-            && {
-                let mut coordinates = Vec::with_capacity(designs.len());
-                let mut stores = Vec::with_capacity(designs.len());
-                for Solution { motion, .. } in solutions.iter_mut() {
-                    self.make_room(motion, self.model.times.len());
-                    coordinates.push(std::mem::take(&mut motion.coordinates));
-                    stores.push(Store { motion, sensitivities: &mut [], variables: 0 });
-                }
-                let keep = |lane: usize, q: f64| {
-                    if let Some(coordinates) = coordinates.get_mut(lane) {
-                        coordinates.push(q);
-                    }
-                };
-                let solved = dispatch!(Level::new(), simd => self.solve_designs_in(designs, &mut stores, false, keep, lanes(simd)));
-                if let Some((effort, _)) = &solved {
-                    for (solution, coordinates) in solutions.iter_mut().zip(coordinates) {
-                        solution.motion.times.extend_from_slice(&self.model.times);
-                        solution.motion.effort = *effort;
-                        solution.motion.coordinates = coordinates;
-                        solution.sensitivities = Sensitivities::default();
-                        solution.stop = None;
-                    }
-                }
-                solved.is_some()
-            };
-        for (design, solution) in designs.iter().zip(solutions) {
-            if !side_by_side {
-                self.solve(&self.design(design, false), &mut |_| ControlFlow::Continue(()), solution);
-            } else if self.measures {
-                self.measure(&self.design(design, false), &SlopeValues::default(), None, solution);
-            } else {
-                solution.measured = Measured::default();
-            }
-        }
+    /// The nominal design where its motion begins.
+    fn started(&self) -> Option<Stepper<'m, f64>> {
+        let Design { geometry, laws, .. } = self.design(&[], false);
+        let parts = Parts::same(self.model, &self.topology, &geometry, &laws, 0.0);
+        let mut one = Stepper::new(self.model, &self.topology, parts, 0.0);
+        one.start(*self.model.times.first()?).ok()?;
+        Some(one)
     }
 
-    /// All lanes to the end, or nothing where any of them stops. `coordinate` gets those of every step, lane by lane.
-    fn solve_designs_in<T: Real, S: Sink>(
-        &self,
-        designs: &[Vec<f64>],
-        sinks: &mut [S],
-        sensitivities: bool,
-        mut coordinate: impl FnMut(usize, f64),
-        witness: T,
-    ) -> Option<(Effort, Vec<Vec<Admissibility>>)> {
-        let (model, last) = (self.model, designs.len() - 1);
-        let values: Vec<Vec<f64>> = designs.iter().map(|d| model.whole(d)).collect();
-        let geometries: Vec<Geometry> = values.iter().map(|d| self.effects.geometry(d, 0.0)).collect();
-        let laws: Vec<Vec<Law>> = values.iter().map(|v| self.effects.laws(v)).collect();
-        let parts = Parts::each(model, &self.topology, &geometries, &laws, witness);
-        let mut stepper = Stepper::new(model, &self.topology, parts, witness);
-        let wanted = self.wanted(sinks);
-        let mut sensing = sensitivities.then(|| {
-            let of_lane = |v: usize, k: usize| self.effects.field(VariableId(v), &values[k.min(last)], 0.0);
-            let fields: Vec<Vec<Field>> =
-                (0..model.variables.len()).map(|v| (0..LANES).map(|k| of_lane(v, k)).collect()).collect();
-            SensingDesigns::new(model, &self.topology, &fields, wanted.clone(), witness)
-        });
-        let by_program = sensing.is_none() && self.programs.pay(designs.len() * model.times.len());
-        for (k, &t) in model.times.iter().enumerate() {
-            if k == 0 { stepper.start(t) } else { stepper.advance(t) }.ok()?;
-            if by_program && (k == PROGRAM_FROM || stepper.tape_fails()) {
-                stepper.use_program(stepper.corrections(), |corrections| self.program(false, corrections));
-            }
-            witness.within(
-                #[inline(always)]
-                || {
-                    stepper.each_body(&wanted, |lane, body, s| {
-                        if let Some(sink) = sinks.get_mut(lane) {
-                            sink.state(k, body, &s);
-                        }
-                    });
-                },
-            );
-            for lane in 0..designs.len() {
-                stepper.state.q.iter().for_each(|q| coordinate(lane, q.lane(lane)));
-            }
-            if let Some(sensing) = &mut sensing {
-                sensing.step(
-                    &mut stepper,
-                    t,
-                    #[inline(always)]
-                    |lane, variable, body, d| {
-                        if let Some(sink) = sinks.get_mut(lane) {
-                            sink.sensitivity(k, variable, body, d);
-                        }
-                    },
-                );
-            }
-        }
-        // Angles that only the path tells are counted by single runs.
-        if self.measures && stepper.effort.substeps > 0 && !measure::watched(model, &self.topology).is_empty()
-        {
+    /// What solves so many designs side by side, where that pays and can be done.
+    pub(crate) fn side_by_side(&self, designs: usize, sensitivities: bool) -> Option<SideBySide<'m>> {
+        // What goes by a driver asks for more than bodies; so does the course of a law that is another in every design.
+        let by_driver = (0..self.model.measures.len()).any(|k| self.model.goes_by_driver(k));
+        let laws_change = self.effects.laws_change();
+        if designs < 2 || !self.programs.pay(designs * self.model.times.len()) || by_driver || laws_change {
             return None;
         }
-        let admissibility =
-            sensing.map_or_else(Vec::new, |s| s.admissibility(self.opens(), model.times.len()).collect());
-        Some((stepper.effort, admissibility))
+        let one = self.program(Purpose { any_design: true, corrections: 1, sensitivities, margins: false })?;
+        let two = self.program(Purpose { any_design: true, corrections: 2, sensitivities, margins: false })?;
+        SideBySide::new(self.started()?, [one, two])
+    }
+
+    /// Motions of up to as many designs as there are lanes, side by side.
+    pub(crate) fn solve_designs(
+        &self,
+        beside: &mut Option<SideBySide<'m>>,
+        designs: &[Vec<f64>],
+        of_many: usize,
+        solutions: &mut [Solution],
+    ) {
+        let mut stores = Vec::with_capacity(designs.len());
+        let mut coordinates = Vec::with_capacity(designs.len());
+        for Solution { motion, sensitivities, .. } in solutions.iter_mut() {
+            self.make_room(motion, self.model.times.len());
+            coordinates.push(std::mem::take(&mut motion.coordinates));
+            stores.push(Store { motion, sensitivities });
+        }
+        let mut lanes = vec![[0.0; LANES]; self.topology.coordinates.len()];
+        let solved = self.solve_designs_in(beside, designs, &mut stores, |k, tape| {
+            tape.coordinates(&self.topology, &mut lanes);
+            for (lane, coordinates) in coordinates.iter_mut().enumerate() {
+                coordinates.set(k, 0, lanes.iter().map(|q| q[lane]));
+            }
+        });
+        for (Solution { motion, .. }, coordinates) in solutions.iter_mut().zip(coordinates) {
+            motion.coordinates = coordinates;
+        }
+        for (design, solution) in designs.iter().zip(solutions) {
+            let Some(effort) = solved else {
+                let design = Design { of_many, ..self.design(design, false) };
+                self.solve(&design, &mut |_| ControlFlow::Continue(()), solution);
+                continue;
+            };
+            solution.motion.times.extend_from_slice(&self.model.times);
+            solution.motion.effort = effort;
+            solution.sensitivities = Sensitivities::default();
+            solution.stop = None;
+            self.measure(&self.design(design, false), &SlopeValues::default(), None, solution);
+        }
+    }
+
+    /// All designs to the end, or nothing where one of them does not go as expected.
+    fn solve_designs_in<S: Sink>(
+        &self,
+        beside: &mut Option<SideBySide<'m>>,
+        designs: &[Vec<f64>],
+        sinks: &mut [S],
+        mut also: impl FnMut(usize, &Tape),
+    ) -> Option<Effort> {
+        let beside = beside.as_mut().filter(|_| designs.len() > 1)?;
+        let values: Vec<Vec<f64>> = designs.iter().map(|d| self.model.whole(d)).collect();
+        let (wanted, moved) = (self.wanted(sinks), beside.moved());
+        beside.run(&values, |k, tape| {
+            let [states, derivatives] = tape.results();
+            let block = Block { states, derivatives };
+            also(k, tape);
+            for body in (1..wanted.len()).filter(|b| wanted[*b]) {
+                for (lane, sink) in sinks.iter_mut().enumerate() {
+                    sink.state(k, BodyId(body), &block.state(body, lane));
+                }
+            }
+            for ((variable, body), lanes) in moved.iter().zip(block.each_derivative()) {
+                for (lane, sink) in sinks.iter_mut().enumerate().filter(|_| wanted[body.0]) {
+                    sink.sensitivity(k, *variable, *body, &BodySensitivity::of_lane(lanes, lane));
+                }
+            }
+        })
     }
 }
 
-/// So many other designs tell what depends on the design: one of them may have the same number by chance.
-const OTHERS: usize = 4;
-
-/// The n-th other design, in which every variable has changed, each by another part of what is small beside the mechanism: a number of
-/// the geometry that is the same in all of them depends on none.
-fn elsewhere(model: &Model, n: usize) -> Vec<f64> {
-    const SMALL: f64 = 1e-3;
-    let size = |v: &DesignVariable| if v.quantity == Quantity::Length { model.size() } else { 1.0 };
-    // The golden ratio's multiples are spread evenly and never repeat.
-    let part = |k: usize| 2.0 * ((k * OTHERS + n + 1) as f64 * 0.618_033_988_749_895).fract() - 1.0;
-    model.variables.iter().enumerate().map(|(k, v)| SMALL * part(k) * size(v)).collect()
-}
-
-/// The way through all output times, where possible as many at once as there are lanes.
-pub(crate) struct Walk<'a, T> {
+/// The way through all output times.
+pub(crate) struct Walk<'a> {
     pub one: Stepper<'a, f64>,
-    abreast: Abreast<'a, T>,
+    abreast: Abreast<'a>,
     /// `None` where no sensitivities are asked for.
-    pub sensing: Option<Sensing<'a, T>>,
+    pub sensing: Option<Sensing>,
     /// Per body: whether its results are wanted.
     wanted: Vec<bool>,
     /// Output times solved.
     pub done: usize,
 }
 
-/// What has just been solved.
-pub(crate) enum Solved<'w, 'a, T> {
+/// What has just been solved: one output time, or several by a program.
+pub(crate) enum Solved<'w, 'a> {
     One(&'w mut Stepper<'a, f64>),
-    Abreast(&'w mut Stepper<'a, T>),
+    Abreast(&'w Tape),
 }
 
-impl<'a, T: Real> Walk<'a, T> {
-    pub fn new(analysis: &'a Analysis<'_>, design: &'a Design, wanted: Vec<bool>, witness: T) -> Self {
+impl<'a> Walk<'a> {
+    /// Step by step.
+    pub fn new(analysis: &'a Analysis<'_>, design: &'a Design, wanted: Vec<bool>) -> Self {
         let (model, topology) = (analysis.model, &analysis.topology);
         let Design { geometry, laws, fields, .. } = design;
-        let parts = Parts::same(model, topology, geometry, laws, witness);
-        // Measures need more of a step than a program hands out; and only the nominal design has a program with sensitivities.
-        let sensitive = !fields.is_empty();
-        let fits = !analysis.measures && (!sensitive || design.values == model.whole(&[]));
-        let programs = (fits && analysis.programs.pay(model.times.len()))
-            .then(|| Box::new(move |corrections| analysis.program(sensitive, corrections)) as ProgramOf<'a>);
         Self {
             one: Stepper::new(model, topology, Parts::same(model, topology, geometry, laws, 0.0), 0.0),
-            abreast: Abreast::new(model, topology, parts, programs, witness),
-            sensing: (!fields.is_empty())
-                .then(|| Sensing::new(model, topology, fields, wanted.clone(), witness)),
+            abreast: Abreast::new(None, &[], None),
+            sensing: (!fields.is_empty()).then(|| Sensing::new(model, topology, fields, wanted.clone())),
             wanted,
             done: 0,
         }
     }
 
-    /// To the last output time, or to what stops it, for those who take what they want from the steppers: nothing is stored.
+    /// The same by programs, as many output times at once as there are lanes, where that can be done and pays.
+    pub fn by_programs(
+        analysis: &'a Analysis<'_>,
+        design: &'a Design,
+        wanted: Vec<bool>,
+        margins: bool,
+    ) -> Self {
+        let mut walk = Self::new(analysis, design, wanted);
+        if analysis.programs.pay(analysis.model.times.len() * design.of_many) {
+            let (sensitivities, any_design) = (walk.sensing.is_some(), design.values.iter().any(|v| *v != 0.0));
+            let moved: Vec<_> = walk.sensing.iter().flat_map(Sensing::moved).collect();
+            let program = move |corrections| {
+                let purpose = Purpose { any_design, corrections, sensitivities, margins };
+                analysis.program(purpose).filter(|program| program.moved() == moved)
+            };
+            let nominal = analysis.model.drivers.iter().zip(&design.laws).all(|(d, law)| d.law == *law);
+            let laws = if nominal { analysis.programs.laws(analysis.model) } else { None };
+            walk.abreast = Abreast::new(Some(Box::new(program)), &design.values, laws);
+        }
+        walk
+    }
+
+    /// To the last output time, or to what stops it, for those who take what they want from the stepper: nothing is stored.
     pub fn each(
         &mut self,
         analysis: &Analysis<'_>,
-        mut then: impl FnMut(Solved<'_, 'a, T>, usize),
+        mut then: impl FnMut(&mut Stepper<'a, f64>),
     ) -> Option<Stop> {
         let mut unused = Motion::default();
-        let mut store = Store { motion: &mut unused, sensitivities: &mut [], variables: 0 };
-        self.all(analysis, &mut store, &mut |_| ControlFlow::Continue(()), |_, solved, count, _| {
-            then(solved, count)
+        let mut store = Store { motion: &mut unused, sensitivities: &mut Sensitivities::default() };
+        self.all(analysis, &mut store, &mut |_| ControlFlow::Continue(()), |_, solved, _, _| {
+            if let Solved::One(one) = solved {
+                then(one);
+            }
         })
     }
 
-    /// To the last output time, or to what stops it. `then` sees what was solved, how many of it count, and what is known of
-    /// the variables.
+    /// To the last output time, or to what stops it. `then` sees what was solved, how many output times of it count, and what is known
+    /// of the variables.
     pub fn all<S: Sink>(
         &mut self,
         analysis: &Analysis<'_>,
         sink: &mut S,
         progress: &mut dyn FnMut(Progress) -> ControlFlow<()>,
-        mut then: impl FnMut(&mut S, Solved<'_, 'a, T>, usize, Option<&Sensing<'a, T>>),
+        mut then: impl FnMut(&mut S, Solved<'_, 'a>, usize, Option<&Sensing>),
     ) -> Option<Stop> {
-        let (times, witness) = (&analysis.model.times, self.abreast.stepper.state.witness);
+        let times = &analysis.model.times;
         let total = times.len();
         let mut stop = None;
         while self.done < total && stop.is_none() {
             let k = self.done;
-            let at_once = if k == 0 { 0 } else { self.abreast.advance(&mut self.one, &times[k..]) };
+            let at_once = if k == 0 { 0 } else { self.abreast.advance(&mut self.one, k, &times[k..]) };
             if at_once == 0 {
                 let step = if k == 0 { self.one.start(times[k]) } else { self.one.advance(times[k]) };
                 if let Err(mut s) = step {
@@ -655,27 +629,28 @@ impl<'a, T: Real> Walk<'a, T> {
             }
             if at_once == 0 {
                 let one = &mut self.one;
-                BodyState::each(&one.state, &self.wanted, |_, body, s| sink.state(k, body, &s));
+                for body in (1..self.wanted.len()).filter(|b| self.wanted[*b]) {
+                    sink.state(k, BodyId(body), &BodyState::of(&one.state, body));
+                }
                 if let Some(sensing) = &mut self.sensing {
                     sensing.step(one, k, times[k], sink);
                 }
                 then(sink, Solved::One(one), 1, self.sensing.as_ref());
             } else {
-                let all = &mut self.abreast.stepper;
-                witness.within(
-                    #[inline(always)]
-                    || {
-                        all.each_body(&self.wanted, |lane, body, s| {
-                            if lane < count {
-                                sink.state(k + lane, body, &s);
-                            }
-                        });
-                    },
-                );
-                if let Some(sensing) = &mut self.sensing {
-                    sensing.steps(all, k, &times[k..k + solved], count, sink);
+                let tape = self.abreast.solved();
+                let [states, derivatives] = tape.results();
+                let block = Block { states, derivatives };
+                if !sink.block(k, count, &block) {
+                    for body in (1..self.wanted.len()).filter(|b| self.wanted[*b]) {
+                        for lane in 0..count {
+                            sink.state(k + lane, BodyId(body), &block.state(body, lane));
+                        }
+                    }
+                    if let Some(sensing) = &self.sensing {
+                        sensing.take(&block, k, count, sink);
+                    }
                 }
-                then(sink, Solved::Abreast(all), count, self.sensing.as_ref());
+                then(sink, Solved::Abreast(tape), count, self.sensing.as_ref());
             }
             self.done += count;
         }
@@ -686,7 +661,7 @@ impl<'a, T: Real> Walk<'a, T> {
 /// Which body a name stands for, for callers that think in names.
 impl Solution {
     /// State of a body at output time k.
-    pub fn body(&self, k: usize, body: BodyId) -> &BodyState {
-        &self.motion.at(k)[body.0]
+    pub fn body(&self, k: usize, body: BodyId) -> BodyState {
+        self.motion.at(k).body(body.0)
     }
 }

@@ -80,6 +80,7 @@
 //! types beyond [`joint::ALL`]. The shape of a curve as a design variable.
 
 mod analysis;
+mod blocks;
 pub mod constraint;
 pub mod joint;
 pub mod law;

@@ -2,7 +2,7 @@
 
 use crate::model::{BodyId, VariableId};
 use crate::motion::{BodyState, Motion};
-use crate::sensitivity::BodySensitivity;
+use crate::sensitivity::{BodySensitivity, Sensitivities};
 
 /// Takes the results of a run as they are found, so that nothing need be stored that is not wanted.
 ///
@@ -23,23 +23,59 @@ pub trait Sink {
     /// By variables that turn out to be such as the mechanism cannot follow, numbers may come nevertheless: the
     /// [`Admissibility`](crate::sensitivity::Admissibility) at the end tells.
     fn sensitivity(&mut self, k: usize, variable: VariableId, body: BodyId, derivatives: &BodySensitivity);
+
+    /// Output times k to k + count - 1 in one piece, as they were found; returns whether it has taken them. Else they come one by one.
+    fn block(&mut self, k: usize, count: usize, block: &Block<'_>) -> bool {
+        let _ = (k, count, block);
+        false
+    }
+}
+
+/// Results of eight output times, side by side. Those beyond the last mean nothing.
+#[derive(Clone, Copy, Debug)]
+pub struct Block<'b> {
+    /// Per body but ground 24 numbers: position, columns of the rotation, velocity, angular velocity, acceleration, angular
+    /// acceleration.
+    pub states: &'b [[f64; 8]],
+    /// Per variable, and body that it moves, the 18 numbers of a [`BodySensitivity`] in the order of its fields.
+    pub derivatives: &'b [[f64; 8]],
+}
+
+impl Block<'_> {
+    /// The state of a body but ground in one lane.
+    #[inline(always)]
+    pub(crate) fn state(&self, body: usize, lane: usize) -> BodyState {
+        BodyState::from(|n| self.states[BodyState::NUMBERS * (body - 1) + n][lane])
+    }
+
+    /// The derivatives of one body by one variable after the other.
+    #[inline(always)]
+    pub(crate) fn each_derivative(&self) -> impl Iterator<Item = &[[f64; 8]; BodySensitivity::NUMBERS]> {
+        self.derivatives.as_chunks().0.iter()
+    }
 }
 
 /// Stores everything.
 pub(crate) struct Store<'s> {
     pub motion: &'s mut Motion,
-    pub sensitivities: &'s mut [BodySensitivity],
-    pub variables: usize,
+    pub sensitivities: &'s mut Sensitivities,
 }
 
 impl Sink for Store<'_> {
     #[inline(always)]
     fn state(&mut self, k: usize, body: BodyId, state: &BodyState) {
-        self.motion.states[k * self.motion.bodies + body.0] = *state;
+        self.motion.set(k, body, state);
     }
 
     #[inline(always)]
     fn sensitivity(&mut self, k: usize, variable: VariableId, body: BodyId, derivatives: &BodySensitivity) {
-        self.sensitivities[(k * self.variables + variable.0) * self.motion.bodies + body.0] = *derivatives;
+        self.sensitivities.set(k, variable, body, derivatives);
+    }
+
+    #[inline(always)]
+    fn block(&mut self, k: usize, _: usize, block: &Block<'_>) -> bool {
+        self.motion.states.block_mut(k).copy_from_slice(block.states);
+        self.sensitivities.derivatives.block_mut(k).copy_from_slice(block.derivatives);
+        true
     }
 }

@@ -5,16 +5,14 @@
 
 use std::ops::ControlFlow;
 
-use fearless_simd::{Level, dispatch};
-
 use crate::analysis::{Analysis, Design, Progress, Solution, Solved, Walk};
 use crate::measure::{self, Before, Measured, SlopeValues, Slopes};
 use crate::model::{BodyId, Model, OutputSource, VariableId};
 use crate::motion::margin::Margins;
 use crate::motion::{BodyState, Motion};
 use crate::sensitivity::{Admissibility, BodySensitivity, Sensitivities};
-use crate::sink::Sink;
-use crate::space::{LANES, Real, lanes};
+use crate::sink::{Block, Sink, Store};
+use crate::space::LANES;
 
 /// What the results of one output time take, in bytes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -50,7 +48,7 @@ impl Footprint {
     }
 
     fn rows(self, bytes: usize) -> usize {
-        usize::max(bytes / self.bytes().max(1), LANES)
+        usize::max(bytes / self.bytes().max(1) / LANES, 1) * LANES
     }
 }
 
@@ -85,76 +83,58 @@ impl Analysis<'_> {
         solution: &mut Solution,
         each: &mut dyn FnMut(usize, &Solution),
     ) -> usize {
-        dispatch!(Level::new(), simd => self.walk_in(design, rows, progress, solution, each, lanes(simd)))
-    }
-
-    fn walk_in<T: Real>(
-        &self,
-        design: &Design,
-        rows: usize,
-        progress: &mut dyn FnMut(Progress) -> ControlFlow<()>,
-        solution: &mut Solution,
-        each: &mut dyn FnMut(usize, &Solution),
-        witness: T,
-    ) -> usize {
-        let (model, topology) = (self.model(), self.topology());
-        let mut walk = Walk::new(self, design, vec![true; model.bodies.len()], witness);
-        if self.measures {
+        let (model, topology, measures) = (self.model(), self.topology(), self.measures);
+        let sensitive = design.has_fields();
+        let slopes = || Slopes::new(self.effects(), topology, &design.values, sensitive, 0.0);
+        let mut slopes = measures.then(slopes).flatten();
+        let wanted = vec![true; model.bodies.len()];
+        // What goes by a driver asks for more than bodies.
+        let mut walk = match slopes {
+            Some(_) => Walk::new(self, design, wanted),
+            None => Walk::by_programs(self, design, wanted, measures),
+        };
+        if measures {
             walk.one.watched = measure::watched(model, topology);
         }
         let rows = usize::min(rows, model.times.len());
-        let sensitivities = std::mem::take(&mut solution.sensitivities);
+        let mut sensitivities = std::mem::take(&mut solution.sensitivities);
+        match &walk.sensing {
+            Some(sensing) => sensing.make_room(&mut sensitivities, rows),
+            None => sensitivities = Sensitivities::default(),
+        }
         let mut window = Window {
             first: 0,
             done: 0,
             motion: std::mem::take(&mut solution.motion),
-            sensitivities: match &walk.sensing {
-                Some(sensing) => sensing.room(rows, sensitivities),
-                None => Sensitivities::default(),
-            },
+            sensitivities,
             slopes: SlopeValues::default(),
             before: None,
         };
         self.make_room(&mut window.motion, rows);
-        let variables = window.sensitivities.variables;
-        let mut margins = (Margins::new(topology, 0.0), Margins::new(topology, witness));
-        let sensitive = variables > 0;
-        let (measures, effects) = (self.measures, self.effects());
-        let mut one_slopes =
-            measures.then(|| Slopes::new(effects, topology, &design.values, sensitive, 0.0)).flatten();
-        let mut all_slopes =
-            measures.then(|| Slopes::new(effects, topology, &design.values, sensitive, witness)).flatten();
+        let mut margins = Margins::new(topology, 0.0);
         let stop = walk.all(self, &mut window, progress, |window, solved, count, sensing| {
             let times = &model.times[window.done..window.done + count];
+            let k = window.done - window.first;
             window.done += count;
             match solved {
                 Solved::One(one) => {
-                    if let Some(found) = &mut one_slopes {
+                    if let Some(found) = &mut slopes {
                         found.add(one, times, &mut window.slopes);
                     }
-                    window.motion.coordinates.extend(one.coordinates());
-                    let k = window.done - window.first - 1;
+                    window.motion.coordinates.set(k, 0, one.coordinates());
                     window.motion.passed.extend(one.passed.drain(..).map(|place| (k, place)));
                     if measures {
-                        window.motion.margins.push(margins.0.at(&one.topology, &one.state)[0]);
+                        window.motion.margins.push(margins.at(&one.topology, &one.state));
                     }
                 }
-                Solved::Abreast(all) => {
-                    if let Some(found) = &mut all_slopes {
-                        found.add(all, times, &mut window.slopes);
-                    }
-                    for lane in 0..count {
-                        window.motion.coordinates.extend(all.state.q.iter().map(|q| q.lane(lane)));
-                    }
+                Solved::Abreast(tape) => {
+                    tape.coordinates(topology, window.motion.coordinates.block_mut(k));
                     if measures {
-                        let margins = margins.1.at(&all.topology, &all.state);
-                        window.motion.margins.extend_from_slice(&margins[..count]);
+                        window.motion.margins.extend((0..count).map(|lane| tape.margin(lane)));
                     }
                 }
             }
-            // The next round may need a place for every lane.
-            let full = window.done - window.first + LANES > rows;
-            if full && rows < model.times.len() && window.done < model.times.len() {
+            if window.done - window.first == rows && window.done < model.times.len() {
                 window.sensitivities.admissibility =
                     sensing.map_or_else(Vec::new, |s| s.admissibility(&design.opens, window.done));
                 window.close(self, design, solution);
@@ -190,27 +170,27 @@ struct Window {
 impl Sink for Window {
     #[inline(always)]
     fn state(&mut self, k: usize, body: BodyId, state: &BodyState) {
-        self.motion.states[(k - self.first) * self.motion.bodies + body.0] = *state;
+        self.motion.set(k - self.first, body, state);
     }
 
     #[inline(always)]
     fn sensitivity(&mut self, k: usize, variable: VariableId, body: BodyId, derivatives: &BodySensitivity) {
-        let row = (k - self.first) * self.sensitivities.variables + variable.0;
-        self.sensitivities.states[row * self.motion.bodies + body.0] = *derivatives;
+        self.sensitivities.set(k - self.first, variable, body, derivatives);
+    }
+
+    #[inline(always)]
+    fn block(&mut self, k: usize, count: usize, block: &Block<'_>) -> bool {
+        let Self { motion, sensitivities, .. } = self;
+        Store { motion, sensitivities }.block(k - self.first, count, block)
     }
 }
 
 impl Window {
     /// Hands over what there is, measured.
     fn close(&mut self, analysis: &Analysis<'_>, design: &Design, solution: &mut Solution) {
-        let steps = self.done - self.first;
-        let motion = &mut self.motion;
-        motion.times.extend_from_slice(&analysis.model().times[self.first..self.done]);
-        motion.states.truncate(steps * motion.bodies);
-        let sensitivities = &mut self.sensitivities;
-        sensitivities.states.truncate(steps * sensitivities.variables * motion.bodies);
-        solution.motion = std::mem::take(motion);
-        solution.sensitivities = std::mem::take(sensitivities);
+        self.motion.times.extend_from_slice(&analysis.model().times[self.first..self.done]);
+        solution.motion = std::mem::take(&mut self.motion);
+        solution.sensitivities = std::mem::take(&mut self.sensitivities);
         analysis.measure(design, &self.slopes, self.before.as_ref(), solution);
     }
 
@@ -223,8 +203,6 @@ impl Window {
             values: (0..measured.outputs.len()).map(|m| measured.value(last, m)).collect(),
         });
         (self.motion, self.sensitivities) = (std::mem::take(motion), std::mem::take(sensitivities));
-        let room = rows * self.sensitivities.variables * self.motion.bodies;
-        self.sensitivities.states.resize(room, BodySensitivity::ZERO);
         analysis.make_room(&mut self.motion, rows);
         self.slopes = SlopeValues::default();
         self.first = self.done;
@@ -296,18 +274,16 @@ impl Kept {
 
     fn push(&mut self, from: &Solution, k: usize) {
         let Solution { motion, sensitivities, measured, .. } = &mut self.solution;
+        let row = motion.times.len();
         motion.times.push(from.motion.times[k]);
         motion.margins.extend(from.motion.margins.get(k));
         if self.keep.motion {
             motion.bodies = from.motion.bodies;
-            motion.states.extend_from_slice(from.motion.at(k));
-            let n = from.motion.coordinates.len() / from.motion.len();
-            motion.coordinates.extend_from_slice(&from.motion.coordinates[k * n..(k + 1) * n]);
+            motion.states.copy(row, &from.motion.states, k);
+            motion.coordinates.copy(row, &from.motion.coordinates, k);
         }
         if self.keep.sensitivities {
-            sensitivities.bodies = from.sensitivities.bodies;
-            let n = from.sensitivities.bodies * from.sensitivities.variables;
-            sensitivities.states.extend_from_slice(&from.sensitivities.states[k * n..(k + 1) * n]);
+            sensitivities.copy(row, &from.sensitivities, k);
         }
         measured.take_over(&from.measured, k, self.keep.outputs.as_deref());
     }
@@ -319,9 +295,9 @@ impl Kept {
         let rows = motion.times.len();
         thin(&mut motion.times, rows);
         thin(&mut motion.margins, rows);
-        thin(&mut motion.states, rows);
-        thin(&mut motion.coordinates, rows);
-        thin(&mut sensitivities.states, rows);
+        motion.states.thin(rows);
+        motion.coordinates.thin(rows);
+        sensitivities.derivatives.thin(rows);
         measured.thin(rows);
     }
 }

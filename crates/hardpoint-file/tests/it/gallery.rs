@@ -213,11 +213,11 @@ fn both_formulations_agree_on_every_model_of_the_gallery() {
         };
         for i in 1..relative.motion.bodies {
             let body = &file.model.bodies[i].name;
-            agree(format!("{body} acceleration"), &|k| relative.motion.at(k)[i].a, &|k| {
-                absolute.motion.at(k)[i].a
+            agree(format!("{body} acceleration"), &|k| relative.motion.at(k).body(i).a, &|k| {
+                absolute.motion.at(k).body(i).a
             });
-            agree(format!("{body} angular acceleration"), &|k| relative.motion.at(k)[i].alpha, &|k| {
-                absolute.motion.at(k)[i].alpha
+            agree(format!("{body} angular acceleration"), &|k| relative.motion.at(k).body(i).alpha, &|k| {
+                absolute.motion.at(k).body(i).alpha
             });
             for (v, variable) in file.model.variables.iter().enumerate() {
                 if relative.sensitivities.at(0, v).is_none() {
@@ -227,7 +227,7 @@ fn both_formulations_agree_on_every_model_of_the_gallery() {
                 let kinds: [fn(&BodySensitivity) -> Vec3; 3] = [|s| s.dr, |s| s.da, |s| s.dalpha];
                 for of in kinds {
                     let [a, b] = [&relative, &absolute]
-                        .map(|s| move |k: usize| of(&s.sensitivities.at(k, v).unwrap()[i]));
+                        .map(|s| move |k: usize| of(&s.sensitivities.at(k, v).unwrap().body(i)));
                     agree(format!("{body} by {}", variable.name), &a, &b);
                 }
             }

@@ -127,13 +127,13 @@ fn both_formulations_give_the_same_motion() {
         let quantities =
             |s: &BodyState| [s.r, s.rotation.cols[0], s.rotation.cols[1], s.v, s.omega, s.a, s.alpha];
         let mut scale = [1.0_f64; 7];
-        for state in &relative.states {
-            for (k, q) in quantities(state).iter().enumerate() {
+        for state in relative.states() {
+            for (k, q) in quantities(&state).iter().enumerate() {
                 scale[k] = scale[k].max(q.norm());
             }
         }
-        for (a, b) in relative.states.iter().zip(&absolute.states) {
-            for (k, (a, b)) in quantities(a).into_iter().zip(quantities(b)).enumerate() {
+        for (a, b) in relative.states().zip(absolute.states()) {
+            for (k, (a, b)) in quantities(&a).into_iter().zip(quantities(&b)).enumerate() {
                 let apart = (a - b).norm() / scale[k];
                 assert!(apart < 1e-10, "{}: quantity {k} differs by {apart:e}", e.file);
             }
@@ -208,7 +208,7 @@ impl Solved {
         if body.0 == 0 {
             return [p, Vec3::ZERO, Vec3::ZERO];
         }
-        let s = self.solution.motion.at(k)[body.0];
+        let s = self.solution.motion.at(k).body(body.0);
         let arm = s.rotation * self.file.model.bodies[body.0].frame.inverse().point(p);
         let turning = s.omega.cross(arm);
         [s.r + arm, s.v + turning, s.a + s.alpha.cross(arm) + s.omega.cross(turning)]

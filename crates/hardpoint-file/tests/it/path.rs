@@ -49,7 +49,7 @@ fn compare(
     rates: bool,
 ) {
     for body in 1..model.bodies.len() {
-        let (x, y) = (a.motion.at(k)[body], b.motion.at(j)[body]);
+        let (x, y) = (a.motion.at(k).body(body), b.motion.at(j).body(body));
         let apart = |p: Vec3, q: Vec3| (p - q).norm();
         let turned = (0..3).map(|c| apart(x.rotation.cols[c], y.rotation.cols[c])).fold(0.0, f64::max);
         let mut pairs = vec![("position", apart(x.r, y.r), scales.r), ("orientation", turned, 1.0)];
@@ -89,7 +89,7 @@ struct Scales {
 impl Scales {
     fn of(model: &Model, s: &Solution) -> Self {
         let most = |of: fn(&hardpoint::motion::BodyState) -> Vec3| {
-            s.motion.states.iter().map(|s| of(s).norm()).fold(0.0, f64::max)
+            s.motion.states().map(|s| of(&s).norm()).fold(0.0, f64::max)
         };
         let size = model.size();
         let (v, omega) = (most(|s| s.v), most(|s| s.omega));

@@ -61,11 +61,13 @@ fn apart<const N: usize>(a: &[[f64; N]], b: &[[f64; N]]) -> f64 {
 }
 
 fn states(solution: &Solution) -> Vec<[f64; 24]> {
-    solution.motion.states.iter().map(state).collect()
+    solution.motion.states().map(|s| state(&s)).collect()
 }
 
 fn sensitivities(solution: &Solution) -> Vec<[f64; 18]> {
-    solution.sensitivities.states.iter().map(derivatives).collect()
+    let s = &solution.sensitivities;
+    let all = (0..solution.motion.len()).flat_map(|k| (0..s.variables).map(move |v| (k, v)));
+    all.flat_map(|(k, v)| s.at(k, v).into_iter().flat_map(|d| d.iter())).map(|d| derivatives(&d)).collect()
 }
 
 #[test]

@@ -370,12 +370,12 @@ fn slopes_are_those_of_runs_whose_driver_is_shifted() {
         let slope = difference("w.contact_y") / difference("w.contact_z");
         close("w.roll_centre_height", value("w.contact_y") * slope);
         // The carrier's own motion, from where it is in both runs.
-        let [a, b] = [&ahead, &behind].map(|s| s.motion.at(k)[knuckle.0]);
+        let [a, b] = [&ahead, &behind].map(|s| s.motion.at(k).body(knuckle.0));
         let middle = |c: usize| (a.rotation.cols[c] + b.rotation.cols[c]) * 0.5;
         let turned = |c: usize| middle(c).cross(a.rotation.cols[c] - b.rotation.cols[c]);
         let w = (turned(0) + turned(1) + turned(2)) * (0.5 / rise);
         let contact = Vec3::new(value("w.contact_x"), value("w.contact_y"), value("w.contact_z"));
-        let v = (a.r - b.r) * (1.0 / rise) + w.cross(contact - now.motion.at(k)[knuckle.0].r);
+        let v = (a.r - b.r) * (1.0 / rise) + w.cross(contact - now.motion.at(k).body(knuckle.0).r);
         close("w.roll_centre_height_geometric", contact.y * v.y / v.z);
         let at = |y: f64, z: f64| v + w.cross(Vec3::new(0.0, y - contact.y, z - contact.z));
         let still = at(value("w.instant_centre_front_y"), value("w.instant_centre_front_z"));

@@ -280,65 +280,10 @@ const EIGHT_TIMES: [[f64; 8]; 9] = [
 ];
 
 #[test]
-fn eight_times_at_once_are_each_as_if_alone() {
-    let mut laws = every_kind();
-    laws.extend(EXPRESSIONS.map(|text| Law::parse(text).unwrap()));
-    laws.push(Law::parse_with("a*sin(2*pi*f*t) + b", &[("a", 2.0), ("f", 1.5), ("b", 0.3)]).unwrap());
-    laws.push(Law::constant_speed(ConstantSpeed { speed: -3.0, offset: 1.0 }).unwrap());
-    laws.push(Law::constant(-2.5).scaled(3.0));
-    for k in 0..laws.len() {
-        // With a parameter that has been changed, too, be it to something impossible.
-        let count = laws[k].parameters().len();
-        laws.extend((0..count).map(|parameter| laws[k].with_parameter(parameter, 0.9)).collect::<Vec<_>>());
-    }
-    for law in &laws {
-        for times in &EIGHT_TIMES {
-            let at = law.at_times(times);
-            let alone = times.map(|t| law.at(t).derivatives());
-            for order in 0..3 {
-                // A sine near its zero is off by the last place of its amplitude, not of itself.
-                let finite = alone.iter().map(|f| f[order].abs()).filter(|f| f.is_finite());
-                let size = finite.fold(0.0, f64::max);
-                for lane in 0..8 {
-                    let (ours, alone) = (at[order][lane], alone[lane][order]);
-                    // Where the truth is beyond all numbers, either may say so as infinite or as not a number.
-                    let is_same = ours == alone || !ours.is_finite() && !alone.is_finite();
-                    assert!(
-                        is_same || (ours - alone).abs() <= 4.0 * f64::EPSILON * size,
-                        "{law}, derivative {order} at {}: {ours} is not {alone}, by {:e}",
-                        times[lane],
-                        (ours - alone) / (size * f64::EPSILON)
-                    );
-                }
-            }
-        }
-    }
-}
-
-#[test]
-fn what_has_no_sine_is_the_same_to_the_last_bit_at_eight_times() {
-    for law in every_kind() {
-        let is_exact = matches!(law.kind, Kind::Polynomial(_) | Kind::SmoothStep(_) | Kind::Spline(_));
-        for times in EIGHT_TIMES.iter().filter(|_| is_exact) {
-            let at = law.at_times(times);
-            for lane in (0..8).filter(|&lane| times[lane].abs() <= 1e6) {
-                let alone = law.at(times[lane]).derivatives();
-                assert_eq!(
-                    [0, 1, 2].map(|n| at[n][lane].to_bits()),
-                    [0, 1, 2].map(|n| alone[n].to_bits()),
-                    "{law}"
-                );
-            }
-        }
-    }
-}
-
-#[test]
 fn no_evaluation_allocates() {
     for law in every_kind() {
         let counted = allocation_counter::measure(|| {
             std::hint::black_box(law.at(0.7));
-            std::hint::black_box(law.at_times(&EIGHT_TIMES[1]));
         });
         assert_eq!(counted.count_total, 0, "{law}");
     }

@@ -13,7 +13,7 @@
 //!
 //! The same language writes other numbers of a model, which know no time: [`Expression`].
 //!
-//! Whatever its kind, a law is evaluated by [`Law::at`], or at eight times at once by [`Law::at_times`], has
+//! Whatever its kind, a law is evaluated by [`Law::at`], has
 //! [parameters](Law::parameters) by which it is [differentiated](Law::derivative), and says
 //! [where it is not smooth](Law::jumps).
 //!
@@ -58,7 +58,6 @@ mod term;
 
 use std::fmt;
 
-use fearless_simd::{Level, dispatch};
 
 pub use error::LawError;
 pub use expression::ExpressionError;
@@ -78,7 +77,7 @@ pub use speed::ConstantSpeed;
 use table::Spline;
 pub use table::{EndRates, Ends, SplineDegree, Table};
 
-use crate::number::{Dual, Jet, LANES, Real, lanes};
+use crate::number::{Dual, Jet, Real};
 
 /// The value of a law and its first three time derivatives at one instant.
 ///
@@ -328,33 +327,6 @@ impl Law {
             #[inline(always)]
             || self.kind.at(Jet::time(t), None) * self.factor,
         )
-    }
-
-    /// The values and the first two time derivatives at eight times at once: the values at all times, then the first
-    /// derivatives, then the second.
-    ///
-    /// Every lane is what [`at`](Self::at) is at its time, but for the last places of what depends on a sine or cosine, and
-    /// takes its own side where the law is not smooth. It is several times faster: only powers that are not whole and functions
-    /// other than `sin`, `cos`, `sqrt` and `abs` are taken from one time after the other.
-    ///
-    /// ```
-    /// use hardpoint::law::Law;
-    ///
-    /// let law = Law::parse("t^3")?;
-    /// let [f, fd, fdd] = law.at_times(&[0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0]);
-    /// assert_eq!((f[2], fd[2], fdd[2]), (8.0, 12.0, 12.0)); // t³, 3 t², 6 t
-    /// assert_eq!(f[7], 343.0);
-    /// # Ok::<(), hardpoint::law::ExpressionError>(())
-    /// ```
-    pub fn at_times(&self, times: &[f64; LANES]) -> [[f64; LANES]; 3] {
-        dispatch!(Level::new(), simd => {
-            let f: Jet<_, 3> = self.to_order(lanes(simd).like_lanes(|lane| times[lane]));
-            let mut at = [[0.0; LANES]; 3];
-            for (at, f) in at.iter_mut().zip(f.derivatives()) {
-                f.store(at);
-            }
-            at
-        })
     }
 
     /// The numbers in the law that may be varied: those of its kind in the order that the kind documents; of an expression

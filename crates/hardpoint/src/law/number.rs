@@ -114,11 +114,10 @@ impl PartialEq for Expression {
 
 #[cfg(test)]
 mod tests {
-    use fearless_simd::{Level, dispatch};
 
     use super::*;
     use crate::law::Law;
-    use crate::number::{Dual, lanes};
+    use crate::number::Dual;
 
     /// Every operation, with an `a` between 0.2 and 0.9 and a `b` near 2.
     const TEXTS: [&str; 26] = [
@@ -190,14 +189,6 @@ mod tests {
                         "{text}: {found} {second}"
                     );
                 }
-                dispatch!(Level::new(), simd => {
-                    let w = lanes(simd);
-                    let found = number.over(w, |k| w.like_lanes(|lane| names[k].1 + 0.001 * lane as f64));
-                    for lane in 0..8 {
-                        let alone = number.over(0.0, |k| names[k].1 + 0.001 * lane as f64);
-                        close(found.lane(lane), alone, "lane");
-                    }
-                });
             }
         }
     }

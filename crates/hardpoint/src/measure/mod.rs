@@ -154,7 +154,7 @@ pub(crate) fn evaluate(
     for k in 0..motion.len() {
         let first = measured.values.len();
         let states = motion.at(k);
-        bodies.iter().for_each(|&b| poses[b] = with_rates(&states[b]));
+        bodies.iter().for_each(|&b| poses[b] = with_rates(&states.body(b)));
         given.clear();
         given.extend(slopes.at(k).iter().map(|x| only(*x)));
         let moment = Moment { slopes: &given, ..Moment::new(model, &fixed, &poses) };
@@ -167,7 +167,7 @@ pub(crate) fn evaluate(
             [angle, rate]
         };
         let values = &mut measured.values;
-        unwrap_angles((laws, topology), (motion, before), k, &turns, values, first, on_the_way);
+        unwrap_angles(laws, (motion, before), k, &turns, values, first, on_the_way);
         if let Some(raw) = raw {
             let now = counted.len();
             let whole = |(m, x): (usize, &[f64; 3])| x[0] - raw[m][0];
@@ -224,7 +224,7 @@ pub(crate) fn derivatives(
         for k in 0..steps {
             let Some(d) = sensitivities.at(k, b) else { break };
             let states = motion.at(k);
-            bodies.iter().for_each(|&b| poses[b] = with_sensitivity(&states[b], &d[b]));
+            bodies.iter().for_each(|&b| poses[b] = with_sensitivity(&states.body(b), &d.body(b)));
             given.clear();
             let both = more.slopes.at(k).iter().zip(more.slopes.d(k, b));
             given.extend(both.map(|(x, d)| Dual { v: only(*x), d: only(*d) }));
@@ -362,7 +362,7 @@ fn along_the_path<'p>(
 
 /// Counts angles through whole turns.
 fn unwrap_angles(
-    (laws, topology): (&[Law], &Topology),
+    laws: &[Law],
     (motion, before): (&Motion, Option<&Before>),
     k: usize,
     turns: &[Option<Turns>],
@@ -374,7 +374,7 @@ fn unwrap_angles(
         let near = match turns_of {
             None => continue,
             Some(Turns::Driver(d)) => laws[d.0].at(motion.times[k]).value(),
-            Some(Turns::Coordinate(q)) => motion.coordinates[k * topology.coordinates.len() + q],
+            Some(Turns::Coordinate(q)) => motion.coordinates.row(k).get(*q),
             Some(Turns::Path(begins)) => {
                 let counted = |time: f64, [value, rate, _]: [f64; 3]| Counted { value, rate, time };
                 let last = match (k, before) {

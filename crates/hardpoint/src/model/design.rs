@@ -221,6 +221,13 @@ impl<'m> Effects<'m> {
         effects
     }
 
+    /// Whether a variable changes the law of a driver.
+    pub fn laws_change(&self) -> bool {
+        let changes = self.model.variables.iter().flat_map(|v| &v.changes);
+        changes.into_iter().any(|c| matches!(c, Change::Law { .. }))
+            || self.model.formulas.iter().any(|f| matches!(f.of, Target::Law(..)))
+    }
+
     /// The geometry of the designs whose values these are, variable by variable.
     pub fn geometry<T: Real>(&self, values: &[T], witness: T) -> Geometry<T> {
         let model = self.model;

@@ -1,81 +1,104 @@
-//! Eight output times at once: a single design's steps side by side in SIMD lanes.
+//! Eight output times at once: a single design's steps side by side, by a straight-line program.
 //!
 //! Where the motion is smooth, the positions of the next eight output times are foreseen so well that they can be corrected
-//! together. Every check of a single step is made in every lane, and more strictly; where one fails, nothing has happened,
+//! together. Every check of a single step is made at each of them, and more strictly; where one fails, nothing has happened,
 //! and the steps are walked one by one.
 
-use crate::model::Model;
-use crate::space::{LANES, Real};
-use crate::topology::{Source, Topology};
+use std::sync::Arc;
 
-use super::parts::Parts;
-use super::stepper::{Ahead, EVEN, LONGEST, MILD, MILD_CHANGE, RESTS, Stepper};
-use super::tape::ProgramOf;
+use hardpoint_tape::{LANES, Lanes};
+
+use crate::blocks::{Line, lanes_of};
+use crate::space::Real;
+use crate::topology::Source;
+
+use super::forecast::{Forecast, NODES, ORDERS, Weights};
+use super::kinematics::{QUADRATIC, Residuals};
+use super::margin::Margin;
+use super::stepper::{Ahead, EVEN, LONGEST, MILD, MILD_CHANGE, RESTS, Saved, Stepper, smooth};
+use super::tape::{Room, Runnable, StepProgram, Tape};
 use super::walk::PART_OF_WAY;
 
 /// The first correction (rad, or sizes) must be within this: a forecast that fails by more is none.
 const FORESEEN: f64 = 1e-3;
 /// After a failure so many steps are walked one by one, at the least and at the most.
-const PAUSE: [usize; 2] = [4, 64];
+const PAUSE: [usize; 2] = [LANES, 64];
 /// Laws are looked at over so many times the way of all lanes at once.
 const CELL: f64 = 8.0;
 /// Fewer steps than this are not worth it.
 const FEWEST: usize = 3;
 
-/// Takes up to eight steps of another stepper at once.
-pub(crate) struct Abreast<'m, T> {
-    /// Its state is that of the times of the last [`Abreast::advance`], one per lane.
-    pub stepper: Stepper<'m, T>,
-    /// Whether the mechanism can be solved so at all.
-    suits: bool,
+/// Gives the program with so many corrections, if there is one.
+pub(crate) type ProgramOf<'p> = Box<dyn Fn(usize) -> Option<Arc<StepProgram>> + 'p>;
+
+/// Takes up to eight steps of a stepper at once.
+pub(crate) struct Abreast<'p> {
+    /// Where a tape may come from.
+    programs: Option<ProgramOf<'p>>,
+    /// The values of the design's variables.
+    design: Vec<f64>,
+    tape: Option<Tape>,
+    laws: Laws,
+    weights: Weights,
+    /// Positions that are known and stand in the tape, by their slots.
+    forecast: Option<Forecast<f64>>,
     /// Steps to walk before the next try, and how long the next pause is.
     wait: usize,
     pause: usize,
-    /// How often the other stepper had chosen other rows when this one took them over.
-    selections: usize,
-    /// Where a tape may come from.
-    programs: Option<ProgramOf<'m>>,
-    /// Groups of steps that the kernel has solved, and how many corrections any of them needed.
-    groups: usize,
-    corrections: usize,
+    ratios: Vec<f64>,
 }
 
-/// A tape is asked for after so many groups of steps, when it is known how many corrections they need.
-const GROUPS: usize = 2;
+/// The drivers' laws at eight times.
+struct Laws {
+    program: Option<Arc<Runnable>>,
+    room: Room,
+    outputs: Vec<Line>,
+}
 
-impl<'m, T: Real> Abreast<'m, T> {
-    /// With these programs, for who needs no more of a step than what they hand out.
-    pub fn new(
-        model: &'m Model,
-        topology: &Topology,
-        parts: Parts<T>,
-        programs: Option<ProgramOf<'m>>,
-        witness: T,
-    ) -> Self {
-        // A point on a curve is followed step by step, lest it jump to another stretch of it.
-        let suits = T::LANES == LANES && parts.curves.is_empty();
-        let stepper = Stepper::new(model, topology, parts, witness);
-        Self { stepper, suits, wait: 0, pause: PAUSE[0], selections: 0, programs, groups: 0, corrections: 1 }
+impl<'p> Abreast<'p> {
+    /// By these programs, for a design with these values; `laws` are those of its drivers, if there is a program for them.
+    pub fn new(programs: Option<ProgramOf<'p>>, design: &[f64], laws: Option<Arc<Runnable>>) -> Self {
+        let outputs = vec![Line::default(); laws.as_ref().map_or(0, |laws| laws.outputs())];
+        let laws = Laws { program: laws, room: Room::default(), outputs };
+        Self {
+            programs,
+            design: design.to_vec(),
+            tape: None,
+            laws,
+            weights: Weights::default(),
+            forecast: None,
+            wait: 0,
+            pause: PAUSE[0],
+            ratios: Vec::new(),
+        }
     }
 
-    /// Moves on from where the other stepper stands to as many of the next output times as there are lanes; returns how many,
-    /// 0 where they are to be walked.
-    pub fn advance(&mut self, one: &mut Stepper<'m, f64>, next: &[f64]) -> usize {
-        let count = usize::min(next.len(), T::LANES);
-        if !self.suits || count < FEWEST || one.forecast.known() < 3 || one.ahead == Ahead::Unknown {
+    /// What was solved last.
+    ///
+    /// # Panics
+    /// Where nothing was.
+    pub fn solved(&self) -> &Tape {
+        self.tape.as_ref().expect("a tape has solved the steps")
+    }
+
+    /// Output time k comes next: moves on from where the stepper stands to as many of the next output times as can be solved at once;
+    /// returns how many, 0 where they are to be walked.
+    #[inline]
+    pub fn advance(&mut self, one: &mut Stepper<'_, f64>, k: usize, next: &[f64]) -> usize {
+        // Results of output times 8n to 8n + 7 lie side by side.
+        let count = usize::min(next.len(), LANES);
+        if self.programs.is_none() || k % LANES != 0 || count < FEWEST || one.ahead == Ahead::Unknown {
+            self.look_ahead(one);
             return 0;
         }
         if self.wait > 0 {
-            self.wait -= 1;
+            self.wait = self.wait.saturating_sub(LANES);
             return 0;
         }
-        self.choose_tape(one);
-        let witness = self.stepper.state.witness;
-        let done = witness.within(
-            #[inline(always)]
-            || self.try_to(one, &next[..count]),
-        );
-        if done {
+        if one.forecast.known() < NODES || !self.choose_tape(one) {
+            return 0;
+        }
+        if self.try_to(one, &next[..count]).is_some() {
             self.pause = PAUSE[0];
             return count;
         }
@@ -84,117 +107,136 @@ impl<'m, T: Real> Abreast<'m, T> {
         0
     }
 
-    /// Asks for a tape when it is time, and for another or none where it does not fit.
-    fn choose_tape(&mut self, one: &Stepper<'m, f64>) {
-        let all = &mut self.stepper;
-        if self.selections != one.selections {
-            (all.tape, self.programs) = (None, None);
-        }
-        if let Some(programs) = &self.programs
-            && (all.tape_fails() || self.groups == GROUPS)
-        {
-            all.use_program(self.corrections, programs);
-            self.groups += 1;
+    /// Keeps a forecast, to see later how good it was.
+    fn look_ahead(&mut self, one: &Stepper<'_, f64>) {
+        if self.programs.is_some() && self.tape.is_none() && self.forecast.is_none() && one.forecast.known() == NODES {
+            self.forecast = Some(one.forecast.clone());
         }
     }
 
+    /// Makes a tape where there is none, and another or none where it does not fit; returns whether there is one.
+    fn choose_tape(&mut self, one: &mut Stepper<'_, f64>) -> bool {
+        let before = match &self.tape {
+            Some(tape) if !tape.is_of_no_use() && one.selections == 0 => return true,
+            tape => tape.as_ref().map(|t| t.purpose().corrections),
+        };
+        let corrections = before.map_or_else(|| self.corrections(one), |before| before + 1);
+        let program = self.programs.as_ref().filter(|_| corrections <= 2 && one.selections == 0);
+        self.tape = program.and_then(|program| program(corrections)).map(Tape::new);
+        match &mut self.tape {
+            Some(tape) => {
+                tape.set_designs(std::slice::from_ref(&self.design));
+                self.ratios.resize(one.topology.blocks.len(), 0.0);
+                self.weights = Weights::default();
+            }
+            None => self.programs = None,
+        }
+        self.tape.is_some()
+    }
+
+    /// How many corrections eight output times at once will need, by how good a forecast has been.
+    fn corrections(&self, one: &mut Stepper<'_, f64>) -> usize {
+        let Some(before) = &self.forecast else { return 1 };
+        // Positions are then four steps apart, and the farthest output time is eight steps ahead.
+        let far = [8.0, 12.0, 16.0_f64].map(|x| x.powi(3)).iter().product::<f64>();
+        let (nodes, count) = before.nodes(0.0);
+        let step = -nodes[1];
+        let ahead = before.ahead_of(one.time);
+        if !(count == NODES && step > 0.0 && ahead > 0.0) {
+            return 1;
+        }
+        let near = nodes.map(|node| ((ahead - node) / step).powi(3)).iter().product::<f64>();
+        let error = one.forecast_error(&mut before.clone());
+        if error * (far / near) <= QUADRATIC { 1 } else { 2 }
+    }
+
     #[inline(always)]
-    fn try_to(&mut self, one: &mut Stepper<'m, f64>, next: &[f64]) -> bool {
+    fn try_to(&mut self, one: &mut Stepper<'_, f64>, next: &[f64]) -> Option<()> {
         let last = next.len() - 1;
-        let times: [f64; LANES] = std::array::from_fn(|k| next[k.min(last)]);
-        self.adopt(one);
-        let all = &mut self.stepper;
-        let witness = all.state.witness;
-        let t = witness.like_lanes(|k| times[k]);
-        for d in 0..all.drivers.len() {
-            all.drivers[d] = all.parts.law_at_times(d, t);
-            if !all.drivers[d].iter().all(|x| x.abs().largest().is_finite()) {
-                return false;
+        let times: Lanes = std::array::from_fn(|k| next[k.min(last)]);
+        let tape = self.tape.as_mut()?;
+        self.laws.at(one, &times, tape.drivers_mut())?;
+        if !laws_are_even(tape, one, &times, last) {
+            return None;
+        }
+        one.fastest_driver = fastest_driver(tape, one);
+        let ahead = times.map(|t| t - one.time);
+        let nodes = one.forecast.nodes(ahead[last]);
+        if self.weights.set(nodes, &ahead) {
+            tape.weights_mut().copy_from_slice(&self.weights.of);
+        }
+        for channel in 0..tape.channels().len() {
+            let known = one.forecast.known_of(channel);
+            for (to, x) in tape.known_mut(channel).iter_mut().zip(known.as_flattened()) {
+                *to = [*x; LANES];
             }
         }
-        if !laws_are_even(all, one, &times, last) {
-            return false;
-        }
-        all.fastest_driver = one.fastest_driver;
-        all.fastest_driver = all.driver_speed();
-        let h = t - witness.like(one.time);
-        all.foresee(one, t, h, times[last] - one.time);
-        let before = all.state.iterations;
-        if !all.solve_by_tape(Some(one), FORESEEN) {
-            if all.tape.is_some() {
-                all.foresee(one, t, h, times[last] - one.time);
+        let residuals = tape.solve((&one.branch, &one.try_others), FORESEEN, &mut self.ratios).ok()?;
+        let change_step = determinants_are_even(tape, one, &times, last);
+        let fits = change_step.is_some() && speeds_are_smooth(tape, one, &ahead);
+        match change_step.filter(|_| fits) {
+            Some(step) => {
+                one.continue_from(tape, &times, last, (residuals, &self.ratios), step);
+                Some(())
             }
-            if all.state.solve(&all.topology, &all.parts, &all.drivers, FORESEEN).is_err() {
-                return false;
-            }
-            self.groups += 1;
-            self.corrections = usize::max(self.corrections, all.corrections());
-        }
-        let same_branch = all
-            .state
-            .pivots
-            .iter()
-            .enumerate()
-            .all(|(b, &(ratio, positive))| positive == one.branch[b].0 && ratio >= one.try_others[b]);
-        if !same_branch || !determinants_are_even(all, one, &times, last) {
-            return false;
-        }
-        if all.uncertain_turn().is_some() || !all.speeds_are_smooth(h) {
-            return false;
-        }
-        if !all.by_tape {
-            all.residuals = all.state.residuals(&all.topology, &all.parts, &all.drivers);
-        }
-        if !(all.residuals.scaled <= super::stepper::LOCKED) {
-            return false;
-        }
-        one.continue_from(all, &times, last, all.state.iterations - before);
-        true
-    }
-
-    /// Takes over from the other stepper what a step starts with.
-    #[inline(always)]
-    fn adopt(&mut self, one: &Stepper<'m, f64>) {
-        let all = &mut self.stepper;
-        let witness = all.state.witness;
-        if self.selections != one.selections {
-            all.topology = one.topology.clone();
-            (0..all.topology.blocks.len()).for_each(|b| all.renew_factors(b));
-            self.selections = one.selections;
-        }
-        let (to, from) = (&mut all.saved, &one.saved);
-        for c in 0..from.q.len() {
-            to.qd[c] = witness.like(from.qd[c]);
-            to.qdd[c] = witness.like(from.qdd[c]);
-        }
-        for &r in &all.topology.coupled_rows {
-            for (k, _) in all.topology.parts_of_row(r) {
-                let [x, v, a] = from.coupled[k];
-                to.coupled[k] = [witness.like(x), witness.like(v), witness.like(a)];
+            None => {
+                tape.refuse();
+                None
             }
         }
     }
 }
 
+impl Laws {
+    /// Value, speed and acceleration of every driver at these times; none where one is not finite.
+    #[inline(always)]
+    fn at(&mut self, one: &Stepper<'_, f64>, times: &Lanes, drivers: &mut [Lanes]) -> Option<()> {
+        let mut by_program = false;
+        if let Some(program) = &self.program {
+            let found = lanes_of(&mut self.outputs);
+            self.room.run(program, std::slice::from_ref(times), found);
+            let (found, limits) = found.split_at(drivers.len());
+            by_program = limits.iter().all(|l| l.iter().all(|x| *x <= 0.0));
+            drivers.copy_from_slice(found);
+        }
+        if !by_program {
+            for (d, driver) in drivers.chunks_exact_mut(ORDERS).enumerate() {
+                for lane in 0..LANES {
+                    for (to, x) in driver.iter_mut().zip(one.parts.law_of(d, 0).at(times[lane]).derivatives()) {
+                        to[lane] = x;
+                    }
+                }
+            }
+        }
+        let finite = drivers.iter().all(|x| x.iter().all(|x| x.is_finite()));
+        finite.then_some(())
+    }
+}
+
+/// Speed of the fastest driver (rad, or sizes, per unit of the path's parameter), at any of these times or before.
+#[inline(always)]
+fn fastest_driver(tape: &Tape, one: &Stepper<'_, f64>) -> f64 {
+    let mut fastest = one.fastest_driver;
+    for (d, unit) in one.driver_units.iter().enumerate() {
+        fastest = tape.driver(d, 1).iter().fold(fastest, |most, x| most.max(x.abs() / unit));
+    }
+    fastest
+}
+
 /// Whether no law does anything between the output times that these would not show; and, where no step tells yet, no singular
 /// position is known to be near. Notes how far the drivers go from one output time to the next.
 #[inline(always)]
-fn laws_are_even<T: Real>(
-    all: &mut Stepper<'_, T>,
-    one: &mut Stepper<'_, f64>,
-    times: &[f64; LANES],
-    last: usize,
-) -> bool {
+fn laws_are_even(tape: &Tape, one: &mut Stepper<'_, f64>, times: &Lanes, last: usize) -> bool {
     let mut longest = times[0] - one.time;
     (1..=last).for_each(|k| longest = longest.max(times[k] - times[k - 1]));
-    for d in 0..all.drivers.len() {
+    for d in 0..one.drivers.len() {
         let unit = one.driver_units[d];
         let (mut before, mut moves) = (one.saved.drivers[d][0], 0.0_f64);
-        for k in 0..=last {
-            let value = all.drivers[d][0].lane(k);
-            moves = moves.max((value - before).abs() / unit);
+        for &value in &tape.driver(d, 0)[..=last] {
+            moves = moves.max((value - before).abs());
             before = value;
         }
+        moves /= unit;
         let most = (EVEN * moves).clamp(RESTS, LONGEST);
         let [from, to] = [one.time, times[last]];
         let stretch = [from, to, from + CELL * (to - from)];
@@ -202,114 +244,125 @@ fn laws_are_even<T: Real>(
         if !(travel <= most) {
             return false;
         }
-        (all.moves[d], one.travel[d]) = (moves, travel * unit);
+        (one.moves_ahead[d], one.travel[d]) = (moves, travel * unit);
     }
     one.ahead == Ahead::Even || one.around.part_of_way(&one.travel) <= PART_OF_WAY
 }
 
 /// Whether every determinant changes by little from one output time to the next, and about as much as over the step before. Notes
-/// the last of these changes.
+/// the last of these changes, and gives the length of its step.
 #[inline(always)]
-fn determinants_are_even<T: Real>(
-    all: &mut Stepper<'_, T>,
-    one: &Stepper<'_, f64>,
-    times: &[f64; LANES],
-    last: usize,
-) -> bool {
-    // How long every step is beside the one before it; the first beside the last of the other stepper's.
+fn determinants_are_even(tape: &Tape, one: &mut Stepper<'_, f64>, times: &Lanes, last: usize) -> Option<f64> {
+    // How long every step is beside the one before it; the first beside the last of the stepper's.
     let (mut beside, mut step) = ([1.0; LANES], one.change_step);
     for k in 0..=last {
         let next = if k == 0 { times[0] - one.time } else { times[k] - times[k - 1] };
         (beside[k], step) = (next / step, next);
     }
-    let (mut at, mut change) = ([0.0; LANES + 1], [0.0; LANES + 1]);
-    for b in 0..all.changes.len() {
-        at[0] = one.saved.determinants[b];
-        all.state.determinants[b].store(&mut at[1..]);
-        let mut even = true;
-        for k in 0..LANES {
-            let ratio = all.state.factors[b].plain_ratio(at[k + 1], at[k]);
+    for b in 0..one.changes.len() {
+        let determinants = tape.determinant(b);
+        let (mut even, mut change, mut before) = (true, [0.0; LANES + 1], one.saved.determinants[b]);
+        for k in 0..=last {
+            let ratio = determinants[k] / before;
             // Written so that NaN is not even.
             even &= (MILD[0]..=MILD[1]).contains(&ratio);
-            change[k + 1] = ratio - 1.0;
+            (change[k + 1], before) = (ratio - 1.0, determinants[k]);
         }
         change[0] = if one.ahead == Ahead::Even { one.changes[b] } else { change[1] / beside[0] };
         for k in 0..=last {
             even &= (change[k + 1] - change[k] * beside[k]).abs() <= MILD_CHANGE;
         }
         if !even {
-            return false;
+            return None;
         }
-        all.changes[b] = all.state.witness.like(change[last + 1]);
+        one.changes_ahead[b] = change[last + 1];
     }
-    all.change_step = step;
-    true
+    Some(step)
 }
 
-impl<T: Real> Stepper<'_, T> {
-    /// Foresees the positions at the times t, each h beyond where the other stepper stands, `farthest` at the most.
-    #[inline(always)]
-    fn foresee(&mut self, one: &mut Stepper<'_, f64>, t: T, h: T, farthest: f64) {
-        let witness = self.state.witness;
-        one.forecast.set(&mut self.state, t, farthest, |x| witness.like(x));
-        self.expect_turns(h);
+/// Whether the speeds at all times are those of the same branch as where the stepper stands.
+#[inline(always)]
+fn speeds_are_smooth(tape: &Tape, one: &Stepper<'_, f64>, ahead: &Lanes) -> bool {
+    let (mut fastest, mut difference) = ([0.0; LANES], [0.0; LANES]);
+    for (c, [speeds, _]) in tape.unknowns() {
+        let (qd, qdd, per_unit) = (one.saved.qd[c], one.saved.qdd[c], one.topology.coordinates[c].per_unit);
+        for lane in 0..LANES {
+            let speed = f64::max(speeds[lane].abs(), qd.abs());
+            let apart = (speeds[lane] - (qd + qdd * ahead[lane])).abs();
+            fastest[lane] = Real::larger(fastest[lane], speed * per_unit);
+            difference[lane] = Real::larger(difference[lane], apart * per_unit);
+        }
     }
+    let most = |x: &Lanes| x.iter().copied().fold(0.0, Real::larger);
+    smooth(most(&difference), most(&fastest), one.fastest_driver)
 }
 
 impl Stepper<'_, f64> {
-    /// Stands where another stepper's lane `last` does, having passed all before it.
+    /// Stands where a tape has come to in lane `last`, having passed all before it.
     #[inline(always)]
-    fn continue_from<T: Real>(
+    fn continue_from(
         &mut self,
-        all: &Stepper<'_, T>,
-        times: &[f64; LANES],
+        tape: &Tape,
+        times: &Lanes,
         last: usize,
-        iterations: usize,
+        (residuals, ratios): (Residuals, &[f64]),
+        change_step: f64,
     ) {
         // The forecast goes by the middle and the end of the way.
         for lane in [last / 2, last] {
-            self.forecast.learn(times[lane], &all.state, |x| x.lane(lane));
+            let channels = 0..tape.channels().len();
+            self.forecast.learn_values(times[lane], channels.map(|c| tape.channel(c, lane)));
         }
-        let (s, saved) = (&all.state, &mut self.saved);
-        for c in 0..saved.q.len() {
-            (saved.q[c], saved.qd[c], saved.qdd[c]) =
-                (s.q[c].lane(last), s.qd[c].lane(last), s.qdd[c].lane(last));
+        self.stand_in(tape, last);
+        let saved = &mut self.saved;
+        for (b, ratio) in ratios.iter().enumerate() {
+            saved.pivots[b] = (*ratio, self.branch[b].0);
+            saved.determinants[b] = tape.determinant(b)[last];
+        }
+        saved.residual = residuals.scaled;
+        self.changes.copy_from_slice(&self.changes_ahead);
+        self.moves.copy_from_slice(&self.moves_ahead);
+        self.change_step = change_step;
+        self.ahead = Ahead::Even;
+        self.time = times[last];
+        let effort = &mut self.effort;
+        self.state.iterations += tape.passes() * (last + 1);
+        effort.steps += last + 1;
+        effort.by_program += last + 1;
+        effort.iterations = self.state.iterations;
+        effort.worst_residual = effort.worst_residual.max(residuals.largest);
+        for &ratio in ratios {
+            if ratio < effort.least_pivot_ratio {
+                (effort.least_pivot_ratio, effort.least_pivot_time) = (ratio, self.time);
+            }
+        }
+    }
+
+    /// Saves the position and the rates that a tape has found in one lane.
+    #[inline(always)]
+    pub(super) fn stand_in(&mut self, tape: &Tape, lane: usize) {
+        let Saved { q, qd, qdd, balls, drivers, .. } = &mut self.saved;
+        for (n, channel) in tape.channels().iter().enumerate() {
+            channel.save(tape.channel(n, lane)[0], q, balls);
+        }
+        for (c, [speeds, accelerations]) in tape.unknowns() {
+            (qd[c], qdd[c]) = (speeds[lane], accelerations[lane]);
+        }
+        for (d, driver) in drivers.iter_mut().enumerate() {
+            *driver = std::array::from_fn(|order| tape.driver(d, order)[lane]);
         }
         for (c, coordinate) in self.topology.coordinates.iter().enumerate() {
-            if let Source::Unknown { .. } = coordinate.source {
-                saved.balls[c] = s.balls[c].lane(last);
-            }
-        }
-        saved.pivots.copy_from_slice(&s.pivots);
-        for (to, from) in saved.determinants.iter_mut().zip(&s.determinants) {
-            *to = from.lane(last);
-        }
-        saved.residual = all.residuals.scaled;
-        for (to, from) in self.changes.iter_mut().zip(&all.changes) {
-            *to = from.lane(0);
-        }
-        self.change_step = all.change_step;
-        self.moves.copy_from_slice(&all.moves);
-        self.ahead = Ahead::Even;
-        for (to, from) in saved.drivers.iter_mut().zip(&all.drivers) {
-            *to = from.map(|x| x.lane(last));
-        }
-        for &r in &self.topology.coupled_rows {
-            for (k, _) in self.topology.parts_of_row(r) {
-                saved.coupled[k] = s.coordinate_of_row(&self.topology, k).map(|x| x.lane(last));
-            }
-        }
-        self.time = times[last];
-        self.fastest_driver = all.fastest_driver;
-        self.effort.steps += last + 1;
-        self.effort.by_program += if all.by_tape { last + 1 } else { 0 };
-        self.state.iterations += iterations * (last + 1);
-        self.effort.iterations = self.state.iterations;
-        self.effort.worst_residual = self.effort.worst_residual.max(all.residuals.largest);
-        for &(ratio, _) in &s.pivots {
-            if ratio < self.effort.least_pivot_ratio {
-                (self.effort.least_pivot_ratio, self.effort.least_pivot_time) = (ratio, self.time);
+            if let Source::Driven(d) = coordinate.source {
+                [q[c], qd[c], qdd[c]] = drivers[d.0];
             }
         }
     }
 }
+
+impl Tape {
+    /// The margin in one lane.
+    pub fn margin(&self, lane: usize) -> Margin {
+        Margin::least(self.margins().iter().map(|block| block.0[lane]))
+    }
+}
+

@@ -4,6 +4,8 @@
 //! eight per coordinate (Hermite's interpolation, in Newton's form). Newton's method then starts so near to the solution that
 //! one correction is enough, also eight output times ahead.
 
+use hardpoint_tape::{LANES, Lanes};
+
 use crate::joint::Freedom;
 use crate::space::{Quat, Real, Vec3};
 use crate::topology::{Source, Topology};
@@ -11,9 +13,9 @@ use crate::topology::{Source, Topology};
 use super::kinematics::State;
 
 /// Positions that are kept.
-const NODES: usize = 3;
+pub(super) const NODES: usize = 3;
 /// Conditions per position: value, first and second derivative.
-const ORDERS: usize = 3;
+pub(super) const ORDERS: usize = 3;
 /// Farther ahead than this many times the distance between two positions, their round-off would be magnified.
 const FARTHEST: f64 = 8.5;
 
@@ -31,25 +33,79 @@ pub(super) struct Forecast<T> {
     differences: Vec<[T; NODES * ORDERS]>,
 }
 
-#[derive(Clone, Copy)]
-enum Channel {
+/// What is foreseen.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Channel {
     Coordinate(usize),
     /// One of the four components of the quaternion of the ball that begins at a coordinate.
     Ball(usize, usize),
 }
 
-impl<T: Real> Forecast<T> {
-    pub fn new(topology: &Topology, witness: T) -> Self {
+impl Channel {
+    /// All of a plan, those of a ball one after the other.
+    pub fn all(topology: &Topology) -> Vec<Self> {
         let mut channels = Vec::new();
         for step in topology.links.iter().flat_map(|l| &l.steps) {
             if matches!(topology.coordinates[step.first].source, Source::Driven(_)) {
                 continue;
             }
             match step.freedom {
-                Freedom::Ball => channels.extend((0..4).map(|k| Channel::Ball(step.first, k))),
-                _ => channels.push(Channel::Coordinate(step.first)),
+                Freedom::Ball => channels.extend((0..4).map(|k| Self::Ball(step.first, k))),
+                _ => channels.push(Self::Coordinate(step.first)),
             }
         }
+        channels
+    }
+
+    /// Where a state stands: value, first and second derivative.
+    #[inline(always)]
+    pub fn of<T: Real>(self, state: &State<T>) -> [T; ORDERS] {
+        match self {
+            Self::Coordinate(c) => [state.q[c], state.qd[c], state.qdd[c]],
+            Self::Ball(first, k) => {
+                let of = |x: &[T]| Vec3::new(x[first], x[first + 1], x[first + 2]);
+                let (q, w) = (state.balls[first], of(&state.qd));
+                let rate = q.rate(w);
+                let second = q.rate(of(&state.qdd)).plus(rate.rate(w));
+                [q.component(k), rate.component(k), second.component(k)]
+            }
+        }
+    }
+
+    /// Puts what is foreseen into a state; balls with their last component.
+    #[inline(always)]
+    pub fn put<T: Real>(self, x: T, state: &mut State<T>) {
+        self.save(x, &mut state.q, &mut state.balls);
+        if let Self::Ball(first, 3) = self {
+            state.balls[first] = state.balls[first].normalised();
+            state.q[first..first + 3].fill(x.zero());
+        }
+    }
+
+    /// What stands in a saved position.
+    pub fn saved(self, q: &[f64], balls: &[Quat<f64>]) -> f64 {
+        match self {
+            Self::Coordinate(c) => q[c],
+            Self::Ball(first, k) => balls[first].component(k),
+        }
+    }
+
+    /// The same where balls are on the unit sphere already.
+    #[inline(always)]
+    pub fn save<T: Real>(self, x: T, q: &mut [T], balls: &mut [Quat<T>]) {
+        match self {
+            Self::Coordinate(c) => q[c] = x,
+            Self::Ball(first, 0) => balls[first].w = x,
+            Self::Ball(first, 1) => balls[first].v.x = x,
+            Self::Ball(first, 2) => balls[first].v.y = x,
+            Self::Ball(first, _) => balls[first].v.z = x,
+        }
+    }
+}
+
+impl<T: Real> Forecast<T> {
+    pub fn new(topology: &Topology, witness: T) -> Self {
+        let channels = Channel::all(topology);
         let n = channels.len();
         let o = witness.zero();
         Self {
@@ -71,38 +127,61 @@ impl<T: Real> Forecast<T> {
         self.count
     }
 
-    /// Learns where the mechanism stands at time t, in all lanes; `pick` takes them from another state's.
+    /// Learns where the mechanism stands at time t.
     #[inline(always)]
-    pub fn learn<U: Real>(&mut self, t: f64, state: &State<U>, pick: impl Fn(U) -> T) {
+    pub fn learn(&mut self, t: f64, state: &State<T>) {
+        self.remember(t);
+        for (channel, to) in self.channels.iter().zip(&mut self.values[0]) {
+            *to = channel.of(state);
+        }
+    }
+
+    /// The same from value and derivatives of every channel.
+    #[inline(always)]
+    pub fn learn_values(&mut self, t: f64, values: impl Iterator<Item = [T; ORDERS]>) {
+        self.remember(t);
+        for (to, value) in self.values[0].iter_mut().zip(values) {
+            *to = value;
+        }
+    }
+
+    #[inline(always)]
+    fn remember(&mut self, t: f64) {
         self.values.rotate_right(1);
         self.times.rotate_right(1);
         self.times[0] = t;
         self.count = usize::min(self.count + 1, NODES);
-        for (channel, to) in self.channels.iter().zip(&mut self.values[0]) {
-            *to = match *channel {
-                Channel::Coordinate(c) => [pick(state.q[c]), pick(state.qd[c]), pick(state.qdd[c])],
-                Channel::Ball(first, k) => {
-                    let of = |x: &[U]| Vec3::new(pick(x[first]), pick(x[first + 1]), pick(x[first + 2]));
-                    let (ball, w) = (&state.balls[first], of(&state.qd));
-                    let q = Quat {
-                        w: pick(ball.w),
-                        v: Vec3::new(pick(ball.v.x), pick(ball.v.y), pick(ball.v.z)),
-                    };
-                    let first = q.rate(w);
-                    let second = q.rate(of(&state.qdd)).plus(first.rate(w));
-                    [q.component(k), first.component(k), second.component(k)]
-                }
-            };
-        }
+    }
+
+    /// How long before the newest position each of those was that count `h` beyond it.
+    #[inline(always)]
+    pub fn nodes(&self, h: f64) -> ([f64; NODES], usize) {
+        (self.times.map(|t| t - self.times[0]), self.counting(h))
+    }
+
+    /// How long a time is behind the newest position.
+    pub fn ahead_of(&self, t: f64) -> f64 {
+        t - self.times[0]
+    }
+
+    /// What is known of a channel, position by position, the newest first.
+    #[inline(always)]
+    pub fn known_of(&self, channel: usize) -> [[T; ORDERS]; NODES] {
+        std::array::from_fn(|n| self.values[n][channel])
+    }
+
+    /// Farther ahead than some times their distance, older positions do not count.
+    #[inline(always)]
+    fn counting(&self, h: f64) -> usize {
+        let apart = |n: usize| self.times[n - 1] - self.times[n];
+        (1..self.count).take_while(|&n| h <= FARTHEST * apart(n)).count() + 1
     }
 
     /// Divided differences over the newest positions; returns how many conditions they are. Far ahead, `h` beyond
     /// the newest, only that one counts.
     #[inline(always)]
     fn divide(&mut self, h: f64) -> usize {
-        let apart = |n: usize| self.times[n - 1] - self.times[n];
-        let nodes = (1..self.count).take_while(|&n| h <= FARTHEST * apart(n)).count() + 1;
-        let n = ORDERS * nodes;
+        let n = ORDERS * self.counting(h);
         let time = |k: usize| self.times[k / ORDERS];
         // 1 / (t_(i+k) - t_i), where those are different positions.
         let mut inverse = [[0.0; NODES * ORDERS]; NODES * ORDERS];
@@ -134,30 +213,107 @@ impl<T: Real> Forecast<T> {
         n
     }
 
-    /// Sets the unknowns of a state to what is foreseen at the times t, the last of them h beyond the newest position.
+    /// Sets the unknowns of a state to what is foreseen at time t, h beyond the newest position.
     #[inline(always)]
-    pub fn set<U: Real>(&mut self, state: &mut State<U>, t: U, h: f64, spread: impl Fn(T) -> U) {
+    pub fn set(&mut self, state: &mut State<T>, t: T, h: f64) {
         let n = self.divide(h);
-        let ahead: [U; NODES] = std::array::from_fn(|k| t - t.like(self.times[k]));
+        let ahead: [T; NODES] = std::array::from_fn(|k| t - t.like(self.times[k]));
         for (channel, d) in self.channels.iter().zip(&self.differences) {
-            let mut x = spread(d[n - 1]);
+            let mut x = d[n - 1];
             for i in (0..n - 1).rev() {
-                x = x.times_plus(ahead[i / ORDERS], spread(d[i]));
+                x = x.times_plus(ahead[i / ORDERS], d[i]);
             }
-            match *channel {
-                Channel::Coordinate(c) => state.q[c] = x,
-                Channel::Ball(first, k) => {
-                    let ball: &mut Quat<U> = &mut state.balls[first];
-                    match k {
-                        0 => ball.w = x,
-                        1 => ball.v.x = x,
-                        2 => ball.v.y = x,
-                        _ => {
-                            ball.v.z = x;
-                            *ball = ball.normalised();
-                            state.q[first..first + 3].fill(x.zero());
-                        }
-                    }
+            channel.put(x, state);
+        }
+    }
+}
+
+/// Output times may be apart by this part of a step less or more: the forecast is corrected anyway.
+const AS_FAR: f64 = 1e-9;
+
+/// What every position that is known counts for at eight times ahead: at equal steps always the same.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Weights {
+    nodes: [f64; NODES],
+    count: usize,
+    ahead: Lanes,
+    /// By position, the newest first, and order of its derivative.
+    pub of: [Lanes; NODES * ORDERS],
+}
+
+impl Weights {
+    /// For these positions, so many of them, each so long before the newest, and times so long behind it. Returns whether they had to
+    /// be worked out.
+    #[inline(always)]
+    pub fn set(&mut self, (nodes, count): ([f64; NODES], usize), ahead: &Lanes) -> bool {
+        let near = AS_FAR * ahead.iter().fold(0.0, |most: f64, h| most.max(h.abs()));
+        let mut same = self.count == count;
+        for (a, b) in nodes[..count].iter().chain(ahead).zip(self.nodes[..count].iter().chain(&self.ahead)) {
+            same &= (a - b).abs() <= near;
+        }
+        if !same {
+            (self.nodes, self.count, self.ahead) = (nodes, count, *ahead);
+            self.work_out();
+        }
+        !same
+    }
+
+    /// Hermite's interpolation of what is one at a single position and derivative.
+    #[inline(never)]
+    fn work_out(&mut self) {
+        // In parts of the farthest way, so that no power is very large or small.
+        let unit = self.ahead.iter().fold(f64::MIN_POSITIVE, |most, h| most.max(h.abs()));
+        let n = ORDERS * self.count;
+        let node = |i: usize| self.nodes[i / ORDERS] / unit;
+        self.of = [[0.0; LANES]; NODES * ORDERS];
+        for j in 0..n {
+            let (mut column, mut d) = ([0.0; NODES * ORDERS], [0.0; NODES * ORDERS]);
+            for (i, x) in column[..n].iter_mut().enumerate() {
+                *x = f64::from(u8::from(j == ORDERS * (i / ORDERS)));
+            }
+            d[0] = column[0];
+            for k in 1..n {
+                for i in 0..n - k {
+                    column[i] = if i / ORDERS == (i + k) / ORDERS {
+                        let given = f64::from(u8::from(j == ORDERS * (i / ORDERS) + k));
+                        if k == 2 { 0.5 * given } else { given }
+                    } else {
+                        (column[i + 1] - column[i]) / (node(i + k) - node(i))
+                    };
+                }
+                d[k] = column[0];
+            }
+            let scale = [1.0, unit, unit * unit][j % ORDERS];
+            for (weight, h) in self.of[j].iter_mut().zip(self.ahead) {
+                let x = (0..n - 1).rev().fold(d[n - 1], |x, i| x * (h / unit - node(i)) + d[i]);
+                *weight = x * scale;
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn weights_reproduce_polynomials_of_as_many_conditions() {
+        for count in 1..=NODES {
+            let nodes = [0.0, -0.02, -0.05];
+            let ahead = std::array::from_fn(|k| 0.005 * (k + 1) as f64);
+            let mut weights = Weights::default();
+            assert!(weights.set((nodes, count), &ahead));
+            assert!(!weights.set((nodes.map(|t| t * (1.0 + 1e-12)), count), &ahead));
+            for degree in 0..ORDERS * count {
+                // ((t + 0.1) / 0.1)^degree with its derivatives.
+                let power = |t: f64, order: usize| {
+                    let factor: f64 = (0..order).map(|k| (degree as f64 - k as f64) / 0.1).product();
+                    factor * (1.0 + t / 0.1).powi(i32::try_from(degree).unwrap() - order as i32)
+                };
+                for (lane, &t) in ahead.iter().enumerate() {
+                    let all = (0..ORDERS * count).map(|j| (nodes[j / ORDERS], j % ORDERS, weights.of[j][lane]));
+                    let found: f64 = all.map(|(t, order, w)| w * power(t, order)).sum();
+                    assert!((found - power(t, 0)).abs() < 1e-10, "{count} {degree} {t}: {found}");
                 }
             }
         }

@@ -2,7 +2,7 @@
 
 use crate::constraint::{Ends, Row};
 use crate::joint::Freedom;
-use crate::space::{Elimination, LANES, Real, Twist, Vec3, Wrench};
+use crate::space::{Elimination, MOST_GROWTH, Real, Twist, Vec3, Wrench};
 use crate::topology::Topology;
 
 use super::kinematics::State;
@@ -51,39 +51,36 @@ impl<T: Real> Margins<T> {
         }
     }
 
-    /// The margins where `state` stands, one per lane.
-    pub fn at(&mut self, topology: &Topology, state: &State<T>) -> [Margin; LANES] {
-        let mut least = [Margin { value: 1.0, block: 0 }; LANES];
-        for (b, block) in topology.blocks.iter().enumerate() {
-            let n = block.unknowns.len();
-            let value = if n <= MOST_UNKNOWNS {
-                state.witness.within(
-                    #[inline(always)]
-                    || self.of_block(topology, state, b),
-                )
-            } else {
-                state.witness.like(state.pivots[b].0)
-            };
-            for (lane, least) in least[..T::LANES].iter_mut().enumerate() {
-                let value = value.lane(lane);
-                // Written so that NaN is the least of all.
-                if !(value >= least.value) {
-                    *least = Margin { value: if value.is_nan() { 0.0 } else { value }, block: b };
-                }
-            }
-        }
-        least
+    /// The margin where `state` stands.
+    pub fn at(&mut self, topology: &Topology, state: &State<T>) -> Margin {
+        let values = (0..topology.blocks.len()).map(|b| {
+            let small = topology.blocks[b].unknowns.len() <= MOST_UNKNOWNS;
+            let value = if small { self.of_block(topology, state, b, &mut |_| ()) } else { state.witness };
+            if small { value.lane(0) } else { state.pivots[b].0 }
+        });
+        Margin::least(values)
+    }
+
+    /// The margin of every block, and what must not be positive for it to be that.
+    pub fn record(&mut self, topology: &Topology, state: &State<T>) -> (Vec<T>, Vec<T>) {
+        let mut limits = Vec::new();
+        let blocks = 0..topology.blocks.len();
+        let margins = blocks.map(|b| self.of_block(topology, state, b, &mut |x| limits.push(x))).collect();
+        (margins, limits)
     }
 
     /// 1 / |J^-1|, the inverse column by column; where constraints are redundant 1 / |J^+| of all of them, so that the margin does
     /// not depend on which of them the block is solved with.
     #[inline(always)]
-    fn of_block(&mut self, topology: &Topology, state: &State<T>, b: usize) -> T {
+    fn of_block(&mut self, topology: &Topology, state: &State<T>, b: usize, limit: &mut impl FnMut(T)) -> T {
+        let squared = state.witness.like(SQUARED);
         if self.redundant[b] {
-            let all = self.of_all_rows(topology, state, b);
+            let all = self.of_all_rows(topology, state, b, limit);
             if all.smallest() > SQUARED {
+                limit(squared - all);
                 return all;
             }
+            limit(all - squared);
         }
         let block = &topology.blocks[b];
         let n = block.unknowns.len();
@@ -94,7 +91,7 @@ impl<T: Real> Margins<T> {
             relative_row(topology, state, r, row);
             factors.row_mut(k).copy_from_slice(row);
         }
-        if !(factors.factor().pivot_ratio > 0.0) {
+        if !(judged(factors, limit) > 0.0) {
             return zero;
         }
         sums.fill(zero);
@@ -111,7 +108,13 @@ impl<T: Real> Margins<T> {
 
     /// 1 / |J^+| over all rows of a block, `J^+ = (J^T J)^-1 J^T` column by column; 0 where round-off may have a part in it.
     #[inline(always)]
-    fn of_all_rows(&mut self, topology: &Topology, state: &State<T>, b: usize) -> T {
+    fn of_all_rows(
+        &mut self,
+        topology: &Topology,
+        state: &State<T>,
+        b: usize,
+        limit: &mut impl FnMut(T),
+    ) -> T {
         let block = &topology.blocks[b];
         let n = block.unknowns.len();
         let (zero, one) = (state.witness.zero(), state.witness.like(1.0));
@@ -126,7 +129,7 @@ impl<T: Real> Margins<T> {
                 }
             }
         }
-        if !(factors.factor().pivot_ratio > SQUARED * SQUARED) {
+        if !(judged(factors, limit) > SQUARED * SQUARED) {
             return zero;
         }
         sums.fill(zero);
@@ -138,6 +141,26 @@ impl<T: Real> Margins<T> {
             }
         }
         one / sums.iter().fold(zero, |most, x| most.larger(*x))
+    }
+}
+
+/// Factors, and gives the pivot ratio; the order of the pivots must go on to serve.
+#[inline(always)]
+fn judged<T: Real>(factors: &mut Elimination<T>, limit: &mut impl FnMut(T)) -> f64 {
+    let found = factors.factor();
+    let growth = found.watched.growth;
+    limit(growth - growth.like(f64::max(MOST_GROWTH, 2.0 * growth.largest())));
+    found.pivot_ratio
+}
+
+impl Margin {
+    /// The least of those of all blocks; written so that NaN is the least of all.
+    pub(crate) fn least(blocks: impl Iterator<Item = f64>) -> Self {
+        let least = Self { value: 1.0, block: 0 };
+        blocks.enumerate().fold(least, |least, (block, value)| match value >= least.value {
+            true => least,
+            false => Self { value: if value.is_nan() { 0.0 } else { value }, block },
+        })
     }
 }
 

@@ -6,6 +6,7 @@
 
 pub(crate) mod abreast;
 mod assembly;
+pub(crate) mod designs;
 mod forecast;
 pub(crate) mod jerk;
 pub(crate) mod kinematics;
@@ -23,15 +24,15 @@ pub use margin::Margin;
 pub use stop::{Stop, StopKind};
 pub use tape::Execution;
 
+use crate::blocks::{Blocks, Row};
 use crate::model::{BodyId, JointId, Model};
-use crate::space::{LANES, Mat3, Quat, Real, Vec3};
+use crate::space::{Mat3, Quat, Real, Vec3};
 
 use kinematics::State;
 
 /// How a body stands and moves, in global components; position, velocity and acceleration are those of
 /// its frame's origin.
 #[derive(Clone, Copy, Debug, PartialEq)]
-#[repr(C)] // filled in the order of the fields
 pub struct BodyState {
     /// Position, m.
     pub r: Vec3,
@@ -48,6 +49,26 @@ pub struct BodyState {
 }
 
 impl BodyState {
+    /// Ground.
+    pub const GROUND: Self = Self {
+        r: Vec3::ZERO,
+        rotation: Mat3::IDENTITY,
+        v: Vec3::ZERO,
+        omega: Vec3::ZERO,
+        a: Vec3::ZERO,
+        alpha: Vec3::ZERO,
+    };
+    /// So many numbers it is.
+    pub(crate) const NUMBERS: usize = 24;
+
+    /// r, the columns of A, v, omega, a and alpha, one after the other.
+    #[inline(always)]
+    pub(crate) fn numbers(&self) -> impl Iterator<Item = f64> {
+        let [x, y, z] = self.rotation.cols;
+        let all = [self.r, x, y, z, self.v, self.omega, self.a, self.alpha];
+        all.into_iter().flat_map(Vec3::to_array)
+    }
+
     /// A body at rest in its design configuration.
     pub fn at_design(model: &Model, body: BodyId) -> Self {
         let frame = model.bodies[body.0].frame;
@@ -60,51 +81,38 @@ impl BodyState {
         Quat::from_rotation(self.rotation).to_array()
     }
 
-    /// Gives the states of the wanted bodies but ground in every lane to `out(lane, body, state)`.
+    /// Of body b, where a state stands.
     #[inline(always)]
-    pub(crate) fn each<T: Real>(state: &State<T>, wanted: &[bool], mut out: impl FnMut(usize, BodyId, Self)) {
-        let mut table = [[0.0; 24]; LANES];
-        for b in 1..state.pose.len() {
-            if !wanted[b] {
-                continue;
-            }
-            let components = Self::components(state, b);
-            turn_over(&components, &mut table);
-            for (lane, x) in table[..T::LANES].iter().enumerate() {
-                out(lane, BodyId(b), Self::from_components(x));
-            }
-        }
+    pub(crate) fn of<T: Real>(state: &State<T>, b: usize) -> Self {
+        let numbers = Self::numbers_of(state, b);
+        Self::from(|k| numbers[k].lane(0))
+    }
+
+    /// From r, the columns of A, v, omega, a and alpha, one after the other.
+    #[inline(always)]
+    pub(crate) fn from(number: impl Fn(usize) -> f64) -> Self {
+        let vector = |k: usize| Vec3::new(number(3 * k), number(3 * k + 1), number(3 * k + 2));
+        let rotation = Mat3 { cols: [vector(1), vector(2), vector(3)] };
+        Self { r: vector(0), rotation, v: vector(4), omega: vector(5), a: vector(6), alpha: vector(7) }
+    }
+
+    /// Those of all bodies but ground, number by number.
+    pub(crate) fn all<T: Real>(state: &State<T>) -> Vec<T> {
+        (1..state.pose.len()).flat_map(|b| Self::numbers_of(state, b)).collect()
     }
 
     /// Of body b: r, the columns of A, v, omega, a and alpha, one after the other.
     #[inline(always)]
-    fn components<T: Real>(state: &State<T>, b: usize) -> [[T; 8]; 3] {
+    fn numbers_of<T: Real>(state: &State<T>, b: usize) -> [T; Self::NUMBERS] {
         let (pose, v, a) = (&state.pose[b], state.v[b], state.a[b]);
         let (r, [f, g, h]) = (pose.r, pose.rot.cols);
         let u = v.at(r);
         let n = a.at(r) + v.w.cross(u);
         let (o, e) = (v.w, a.w);
         [
-            [r.x, r.y, r.z, f.x, f.y, f.z, g.x, g.y],
-            [g.z, h.x, h.y, h.z, u.x, u.y, u.z, o.x],
-            [o.y, o.z, n.x, n.y, n.z, e.x, e.y, e.z],
+            r.x, r.y, r.z, f.x, f.y, f.z, g.x, g.y, g.z, h.x, h.y, h.z, u.x, u.y, u.z, o.x, o.y, o.z, n.x, n.y, n.z,
+            e.x, e.y, e.z,
         ]
-    }
-
-    /// From r, the columns of A, v, omega, a and alpha, one after the other.
-    #[inline(always)]
-    fn from_components(x: &[f64; 24]) -> Self {
-        let vector = |k: usize| Vec3::new(x[3 * k], x[3 * k + 1], x[3 * k + 2]);
-        let rotation = Mat3 { cols: [vector(1), vector(2), vector(3)] };
-        Self { r: vector(0), rotation, v: vector(4), omega: vector(5), a: vector(6), alpha: vector(7) }
-    }
-}
-
-/// From components side by side by lane to lanes side by side by component.
-#[inline(always)]
-pub(crate) fn turn_over<T: Real>(components: &[[T; 8]; 3], table: &mut [[f64; 24]; LANES]) {
-    for (k, eight) in components.iter().enumerate() {
-        T::each_lane(eight, |lane, x| table[lane][8 * k..8 * k + 8].copy_from_slice(x));
     }
 }
 
@@ -113,12 +121,12 @@ pub(crate) fn turn_over<T: Real>(components: &[[T; 8]; 3], table: &mut [[f64; 24
 pub struct Motion {
     /// Output times that were solved, s.
     pub times: Vec<f64>,
-    /// `states[k * bodies + b]` at time k of body b; body 0 is ground.
-    pub states: Vec<BodyState>,
     /// How many bodies there are, ground included.
     pub bodies: usize,
-    /// `coordinates[k * n + c]`: tree coordinates, m or rad, angles unwrapped; 0 for those of a ball.
-    pub coordinates: Vec<f64>,
+    /// Of all bodies but ground, one after the other.
+    pub(crate) states: Blocks,
+    /// Of the tree.
+    pub(crate) coordinates: Blocks,
     /// Per output time, how far from a singular position; empty where only the bodies were asked for.
     pub margins: Vec<Margin>,
     /// How it was closed before it moved, if it was open as drawn.
@@ -129,6 +137,32 @@ pub struct Motion {
     pub(crate) passed: Vec<(usize, Passed)>,
     /// What it took.
     pub effort: Effort,
+}
+
+/// States of all bodies at one output time.
+#[derive(Clone, Copy, Debug)]
+pub struct States<'m> {
+    row: Row<'m>,
+    bodies: usize,
+}
+
+impl<'m> States<'m> {
+    /// That of body b; body 0 is ground.
+    ///
+    /// # Panics
+    /// Where there is no such body.
+    #[inline]
+    pub fn body(self, b: usize) -> BodyState {
+        if b == 0 {
+            return BodyState::GROUND;
+        }
+        BodyState::from(|k| self.row.get(BodyState::NUMBERS * (b - 1) + k))
+    }
+
+    /// All of them, body by body.
+    pub fn iter(self) -> impl Iterator<Item = BodyState> + 'm {
+        (0..self.bodies).map(move |b| self.body(b))
+    }
 }
 
 /// A singular position ahead of a motion.
@@ -181,8 +215,24 @@ impl Motion {
     }
 
     /// States of all bodies at output time k.
-    pub fn at(&self, k: usize) -> &[BodyState] {
-        &self.states[k * self.bodies..(k + 1) * self.bodies]
+    pub fn at(&self, k: usize) -> States<'_> {
+        States { row: self.states.row(k), bodies: self.bodies }
+    }
+
+    /// States of all bodies at all output times that were solved, time by time.
+    pub fn states(&self) -> impl Iterator<Item = BodyState> {
+        (0..self.len()).flat_map(|k| self.at(k).iter())
+    }
+
+    /// Writes the state of a body but ground at output time k.
+    #[inline(always)]
+    pub fn set(&mut self, k: usize, body: BodyId, state: &BodyState) {
+        self.states.set(k, BodyState::NUMBERS * (body.0 - 1), state.numbers());
+    }
+
+    /// The coordinates of the tree at output time k, m or rad, angles unwrapped; 0 for those of a ball.
+    pub fn coordinates(&self, k: usize) -> impl Iterator<Item = f64> {
+        self.coordinates.row(k).all()
     }
 
     /// How many output times were solved.

@@ -87,6 +87,19 @@ impl<U: Real> Layout<U> {
 }
 
 impl<T: Real> Parts<T> {
+    /// One design in any number, without laws.
+    pub fn of(model: &Model, topology: &Topology, design: &Geometry<T>, witness: T) -> Self {
+        let l = Layout::new(model, topology, |joint, end| design.markers[joint][end], witness);
+        Self {
+            parent_marker: Poses::Each(l.parent_marker),
+            child_from_marker: Poses::Each(l.child_from_marker),
+            ends: l.ends.map(Poses::Each),
+            kept: kept(topology, |joint, row| design.kept[joint].by(row)),
+            curves: curves(model, topology),
+            laws: Vec::new(),
+        }
+    }
+
     /// One design, the same in all lanes.
     pub fn same(model: &Model, topology: &Topology, design: &Geometry, laws: &[Law], witness: T) -> Self {
         let l = Layout::new(model, topology, |joint, end| design.markers[joint][end], 0.0);

@@ -4,23 +4,18 @@
 //! tell, for free, that no singular position is near. Everywhere else the path is followed in steps of its own
 //! ([`super::walk`]), however the output times are spaced.
 
-use std::sync::Arc;
-
-use hardpoint_tape::Lanes;
-
 use crate::joint::{Freedom, Quantity};
-use crate::model::{BodyId, Contact, DriverId, Model};
+use crate::model::{Contact, DriverId, Model};
 use crate::space::{FullPivot, LARGEST_DENSE, Quat, Real};
 use crate::topology::{Source, Topology};
 
 use super::assembly::Assembly;
-use super::forecast::Forecast;
-use super::kinematics::{CORRECTIONS, PositionFailure, QUADRATIC, Residuals, State, factors_of};
+use super::forecast::{Channel, Forecast};
+use super::kinematics::{PositionFailure, Residuals, State, factors_of};
 use super::parts::Parts;
 use super::singularity::{Prober, Surroundings};
-use super::tape::{StepProgram, Tape};
 use super::walk::{PART_OF_WAY, Path};
-use super::{BodyState, Effort, Passed, Stop};
+use super::{Effort, Passed, Stop};
 
 /// A first correction (rad, or sizes) up to this is accepted whatever the prediction's own length is.
 pub(super) const TRUST_FLOOR: f64 = 0.02;
@@ -109,9 +104,9 @@ pub(crate) struct Stepper<'m, T> {
     /// The bodies that are watched between output times, and where they were since the last one, in lane 0.
     pub watched: Vec<bool>,
     pub passed: Vec<Passed>,
-    /// What solves even steps instead of the kernel, and whether it has solved the last one: then the state has coordinates only.
-    pub(super) tape: Option<Tape>,
-    pub(super) by_tape: bool,
+    /// Room for the changes and moves over output times that are tried at once.
+    pub(super) changes_ahead: Vec<T>,
+    pub(super) moves_ahead: Vec<f64>,
 }
 
 /// How fast a driver is at most over a stretch of time.
@@ -240,8 +235,8 @@ impl<'m, T: Real> Stepper<'m, T> {
             assembly: None,
             watched: Vec::new(),
             passed: Vec::new(),
-            tape: None,
-            by_tape: false,
+            changes_ahead: vec![witness.zero(); blocks],
+            moves_ahead: vec![0.0; drivers],
             drivers: saved.drivers.clone(),
             saved,
         }
@@ -277,11 +272,7 @@ impl<'m, T: Real> Stepper<'m, T> {
     /// Moves on to the output time t.
     pub fn advance(&mut self, t: f64) -> Result<(), Box<Stop>> {
         self.passed.clear();
-        if self.selections != 0 {
-            self.tape = None;
-        }
         if !self.glide(t) {
-            self.by_tape = false;
             self.walk(Path::Laws, t)?;
         }
         self.count();
@@ -290,7 +281,6 @@ impl<'m, T: Real> Stepper<'m, T> {
 
     fn count(&mut self) {
         self.effort.steps += 1;
-        self.effort.by_program += usize::from(self.by_tape);
         self.effort.iterations = self.state.iterations;
         self.effort.worst_residual = self.effort.worst_residual.max(self.residuals.largest);
         for &(ratio, _) in &self.state.pivots {
@@ -322,20 +312,11 @@ impl<'m, T: Real> Stepper<'m, T> {
         let moved = self.foresee_at(h);
         let trust = (TRUST * moved).max(TRUST_FLOOR);
         let selections = self.selections;
-        if self.solve_by_tape(None, trust) {
-            if !self.speeds_are_smooth(self.state.witness.like(h)) {
-                return false;
-            }
-        } else {
-            if self.tape.is_some() {
-                self.foresee_at(h);
-            }
-            if self.state.solve(&self.topology, &self.parts, &self.drivers, trust).is_err()
-                || !self.speeds_are_smooth(self.state.witness.like(h))
-                || self.examine_position().is_err()
-            {
-                return false;
-            }
+        if self.state.solve(&self.topology, &self.parts, &self.drivers, trust).is_err()
+            || !self.speeds_are_smooth(self.state.witness.like(h))
+            || self.examine_position().is_err()
+        {
+            return false;
         }
         let even = selections == self.selections && self.note_changes(h);
         if self.ahead == Ahead::Even && !even {
@@ -349,57 +330,10 @@ impl<'m, T: Real> Stepper<'m, T> {
         true
     }
 
-    /// Solves what stands in the state by the tape, if there is one and it fits: on the branch of another stepper, or on its own.
-    /// Where not, the prediction may be lost.
-    #[inline(always)]
-    pub(super) fn solve_by_tape(&mut self, other: Option<&Stepper<'_, f64>>, trust: f64) -> bool {
-        let Self { tape, state, drivers, branch, try_others, .. } = self;
-        let judged = other.map_or((&branch[..], &try_others[..]), |o| (&o.branch[..], &o.try_others[..]));
-        let found = tape.as_mut().and_then(|t| t.solve(state, drivers, judged, trust).ok());
-        self.by_tape = found.is_some();
-        self.residuals = found.unwrap_or(self.residuals);
-        self.by_tape
-    }
-
-    /// How many corrections the last step of the kernel needed, of those that a program may have.
-    pub fn corrections(&self) -> usize {
-        let is_last = |(c, _): &([T; CORRECTIONS], usize)| c[0].largest() <= QUADRATIC;
-        if self.state.corrections.iter().all(is_last) { 1 } else { 2 }
-    }
-
-    /// Lets a program solve the even steps to come; where one was at work and failed, another with more corrections, or none.
-    pub fn use_program(&mut self, corrections: usize, of: impl Fn(usize) -> Option<Arc<StepProgram>>) {
-        let before = self.tape.take().map(|t| t.corrections());
-        let corrections = before.map_or(corrections, |_| 2);
-        if before.is_none_or(|before| before < corrections) && self.selections == 0 {
-            let program = of(corrections);
-            self.tape = program.and_then(|p| Tape::new(p, &self.parts, self.state.witness));
-        }
-    }
-
-    /// Whether a tape is at work that is refused too often.
-    pub fn tape_fails(&self) -> bool {
-        self.tape.as_ref().is_some_and(Tape::is_of_no_use)
-    }
-
-    /// What a tape handed out besides the motion, if one has solved the last step.
-    pub fn besides(&self) -> Option<&[Lanes]> {
-        self.tape.as_ref().filter(|_| self.by_tape).map(Tape::besides)
-    }
-
-    /// Gives the states of the wanted bodies but ground in every lane to `out(lane, body, state)`.
-    #[inline(always)]
-    pub fn each_body(&self, wanted: &[bool], out: impl FnMut(usize, BodyId, BodyState)) {
-        match self.tape.as_ref().filter(|_| self.by_tape) {
-            Some(tape) => tape.each_body(wanted, self.state.witness, out),
-            None => BodyState::each(&self.state, wanted, out),
-        }
-    }
-
     /// Whether the laws do nothing between here and the output time t that its two ends would not show, and no singular position is
     /// known to be near. The drivers are at t already.
     #[inline(always)]
-    fn is_clear(&mut self, t: f64, h: f64) -> bool {
+    pub(super) fn is_clear(&mut self, t: f64, h: f64) -> bool {
         for d in 0..self.drivers.len() {
             let unit = self.driver_units[d];
             let most = match self.ahead {
@@ -516,9 +450,23 @@ impl<'m, T: Real> Stepper<'m, T> {
         let witness = self.state.witness;
         let t = witness.like(self.time + h);
         self.state.contacts.copy_from_slice(&self.saved.contacts);
-        self.forecast.set(&mut self.state, t, h, |x| x);
+        self.forecast.set(&mut self.state, t, h);
         self.expect_turns(witness.like(h));
         self.expected_move(witness.like(h)).largest()
+    }
+
+    /// By how much another forecast would have missed where the mechanism stands, rad or sizes; of balls by components.
+    pub(super) fn forecast_error(&mut self, forecast: &mut Forecast<T>) -> f64 {
+        let (channels, mut state) = (Channel::all(&self.topology), self.state.clone());
+        forecast.set(&mut state, self.state.witness.like(self.time), 0.0);
+        channels.into_iter().fold(0.0, |most, channel| {
+            let per_unit = match channel {
+                Channel::Coordinate(c) => self.topology.coordinates[c].per_unit,
+                Channel::Ball(..) => 1.0,
+            };
+            let [was, is] = [&state, &self.state].map(|s| channel.of(s)[0]);
+            f64::max(most, per_unit * (was - is).abs().largest())
+        })
     }
 
     /// The largest move (rad, or sizes) over a step h, by speed and acceleration.
@@ -590,9 +538,7 @@ impl<'m, T: Real> Stepper<'m, T> {
                         difference = difference.larger(apart * per_unit);
                     }
                 }
-                // Written so that NaN is refused.
-                difference.largest()
-                    <= f64::max(SPEED_TRUST * fastest.largest(), SPEED_FLOOR * self.fastest_driver)
+                smooth(difference.largest(), fastest.largest(), self.fastest_driver)
             },
         )
     }
@@ -612,7 +558,7 @@ impl<'m, T: Real> Stepper<'m, T> {
         if h == 0.0 {
             self.forecast.forget();
         }
-        self.forecast.learn(t, s, |x| x);
+        self.forecast.learn(t, s);
         saved.q.copy_from_slice(&s.q);
         saved.qd.copy_from_slice(&s.qd);
         saved.qdd.copy_from_slice(&s.qdd);
@@ -701,6 +647,14 @@ impl<'m, T: Real> Stepper<'m, T> {
     }
 }
 
+/// Whether speeds that differ by so much from the predicted ones are still those of the same branch, with so fast a coordinate and
+/// driver at the most.
+#[inline(always)]
+pub(super) fn smooth(difference: f64, fastest: f64, fastest_driver: f64) -> bool {
+    // Written so that NaN is refused.
+    difference <= f64::max(SPEED_TRUST * fastest, SPEED_FLOOR * fastest_driver)
+}
+
 /// Per driver, what its travel is compared with: 1 rad, or the size of the largest loop that it moves.
 fn driver_units(model: &Model, topology: &Topology) -> Vec<f64> {
     let whole = model.size();
@@ -718,12 +672,10 @@ fn driver_units(model: &Model, topology: &Topology) -> Vec<f64> {
 
 #[cfg(test)]
 mod tests {
-    use fearless_simd::{Level, dispatch};
-
     use super::*;
     use crate::law::Law;
     use crate::model::*;
-    use crate::space::{Vec3, lanes};
+    use crate::space::Vec3;
     use crate::topology::Formulation;
 
     /// Nodes on two slides each, tied by rods to the two nodes before; a leg pushes at the last.
@@ -796,15 +748,6 @@ mod tests {
                 assert!(apart(dense.pose[b].r, sparse.pose[b].r) < 1e-12 * size, "body {b} of {n}");
                 assert!(apart(dense.v[b].v, sparse.v[b].v) < 1e-11 * size, "body {b} of {n}");
             }
-            dispatch!(Level::new(), simd => {
-                let (side_by_side, signs) = last(&model, &topology, 0, lanes(simd));
-                assert_eq!(signs, sparse_signs);
-                for b in 0..model.bodies.len() {
-                    let r = side_by_side.pose[b].r;
-                    let r = Vec3::new(r.x.lane(3), r.y.lane(3), r.z.lane(3));
-                    assert!(apart(dense.pose[b].r, r) < 1e-12 * size, "body {b} of {n} in lanes");
-                }
-            });
         }
     }
 }

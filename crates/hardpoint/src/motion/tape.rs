@@ -1,44 +1,54 @@
 //! One step of a plan as a straight-line program.
 //!
 //! What [`State::solve`] computes is the same at every output time and for every design, as long as Newton's method takes as many
-//! corrections and the pivots keep their order. So it is recorded once, with a number of the tape in place of each number, and
-//! what is left of it after folding is run eight lanes at a time. What was decided while recording is asked for again after
-//! every run ([`Tape::solve`]); where the answer is another, nothing has happened, and the kernel itself solves the step.
+//! corrections and the pivots keep their order. So it is recorded once, with a number of the tape in place of each number, together
+//! with the forecast before it and whatever is asked of the bodies after it; and what is left of it after folding is run eight lanes
+//! at a time. What was decided while recording is asked for again after every run ([`Tape::judge`]); where the answer is another,
+//! nothing has happened, and the kernel itself solves the step.
 //!
 //! Not recorded are mechanisms with sparse blocks, with curves, and with couplers, whose angles go by the turn that is expected;
 //! and those that are so large that a program each would cost more than it saves.
 
-use std::sync::{Arc, OnceLock};
+use std::collections::BTreeMap;
+use std::sync::{Arc, Mutex};
 
 use hardpoint_code::{Code, Scratch};
-use hardpoint_tape::{Interpreter, Lanes, Number, Options, Program, record};
+use hardpoint_tape::{Interpreter, LANES, Lanes, Number, Options, Program, record};
 
+use crate::blocks::{Line, lanes_of};
 use crate::joint::Freedom;
-use crate::model::BodyId;
+use crate::law::Law;
+use crate::model::{BodyId, Effects, Model, VariableId};
 use crate::number::record as recording;
-use crate::space::{LANES, LARGEST_DENSE, MOST_GROWTH, Quat, Real, Vec3, Watched};
+use crate::space::{LARGEST_DENSE, MOST_GROWTH, Real, Vec3};
 use crate::topology::{Source, Topology};
 
+use super::BodyState;
+use super::forecast::{Channel, NODES, ORDERS};
 use super::kinematics::{CORRECTIONS, QUADRATIC, ROUND_OFF, Residuals, State};
+use super::margin::Margins;
 use super::parts::Parts;
 use super::stepper::{LOCKED, Saved, Stepper};
-use super::{BodyState, turn_over};
 
 /// Newton's first correction while recording, in units of each coordinate, for a program with one correction and for one with two:
 /// the one is followed by round-off, the other by what is accepted as the last.
 const OFFSET: [f64; 2] = [1e-9, 1e-5];
 /// Mechanisms with more links than this are not recorded: the program would no longer stay in the fast memory of a core.
 const MOST_LINKS: usize = 200;
+/// What a channel is foreseen by.
+const CONDITIONS: usize = NODES * ORDERS;
 
 /// What a program is for.
-#[derive(Clone, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) struct Purpose {
-    /// Per number of the geometry, in the order of [`Parts::map`]: its value, or none where it is an input.
-    pub geometry: Vec<Option<f64>>,
-    /// Other designs have the same value if it differs by no more than this: their round-off.
-    pub same: f64,
+    /// Whether the design is an input; else it is the nominal one.
+    pub any_design: bool,
     /// Newton's corrections: one or two.
     pub corrections: usize,
+    /// Whether it works out the derivatives of all bodies by all variables.
+    pub sensitivities: bool,
+    /// Whether it works out how far from a singular position the mechanism is.
+    pub margins: bool,
 }
 
 /// What was recorded besides the motion.
@@ -47,6 +57,8 @@ pub(crate) struct Recorded {
     /// Where any of these is positive, the results do not count.
     pub limits: Vec<Number>,
     pub results: Vec<Number>,
+    /// Which variable moves which body, in the order of the results.
+    pub moved: Vec<(VariableId, BodyId)>,
 }
 
 /// The program of a step.
@@ -57,17 +69,17 @@ pub(crate) struct StepProgram {
     design: Runnable,
     step: Runnable,
     channels: Vec<Channel>,
+    unknowns: Vec<Unknown>,
     blocks: Vec<BlockProgram>,
-    places: Outputs,
-    /// How many bodies there are but ground.
-    bodies: usize,
-    /// How many results besides the motion must not be positive.
-    limits: usize,
+    inputs: Inputs,
+    outputs: Outputs,
+    variables: usize,
+    moved: Vec<(VariableId, BodyId)>,
 }
 
 /// A program, as machine code where there is any.
 #[derive(Debug)]
-struct Runnable {
+pub(crate) struct Runnable {
     program: Program,
     code: Option<Code>,
 }
@@ -76,6 +88,31 @@ impl Runnable {
     fn new(program: Program, execution: Execution) -> Self {
         let code = if execution == Execution::Interpreted { None } else { Code::new(&program).ok() };
         Self { program, code }
+    }
+
+    /// How many numbers it gives.
+    pub fn outputs(&self) -> usize {
+        self.program.outputs.len()
+    }
+}
+
+/// What a program works in.
+#[derive(Debug, Default)]
+pub(crate) struct Room {
+    scratch: Scratch,
+    interpreter: Option<Interpreter>,
+}
+
+impl Room {
+    #[inline(always)]
+    pub fn run(&mut self, runnable: &Runnable, inputs: &[Lanes], outputs: &mut [Lanes]) {
+        match &runnable.code {
+            Some(code) => code.run(&mut self.scratch, inputs, &[], outputs),
+            None => {
+                let interpreter = self.interpreter.get_or_insert_with(|| Interpreter::new(&runnable.program));
+                interpreter.run(inputs, &[], outputs);
+            }
+        }
     }
 }
 
@@ -114,58 +151,44 @@ impl BlockProgram {
     }
 }
 
-/// An unknown that a step is predicted by.
+/// An unknown coordinate, one of a ball's three included, and where its speed is among the outputs; its acceleration comes next.
 #[derive(Clone, Copy, Debug)]
-enum Channel {
-    Coordinate(usize),
-    /// The ball that begins at a coordinate.
-    Ball(usize),
+pub(super) struct Unknown {
+    pub coordinate: usize,
+    pub speed: usize,
 }
 
-/// Where the outputs of a program begin.
+/// Where the inputs of a program begin: weights, then positions of every channel, the newest first, drivers, variables of the
+/// design, and what depends on them alone.
+#[derive(Clone, Copy, Debug)]
+struct Inputs {
+    drivers: usize,
+    design: usize,
+    of_design: usize,
+}
+
+impl Inputs {
+    fn of(channels: &[Channel], drivers: usize, variables: usize) -> Self {
+        let drivers_at = CONDITIONS * (1 + channels.len());
+        let design = drivers_at + ORDERS * drivers;
+        Self { drivers: drivers_at, design, of_design: design + variables }
+    }
+}
+
+/// Where the outputs of a program begin: value, first and second derivative of every channel, speeds and accelerations of balls,
+/// and then these.
 #[derive(Clone, Copy, Debug)]
 struct Outputs {
     blocks: usize,
     residuals: usize,
-    bodies: usize,
     limits: usize,
-}
-
-impl Outputs {
-    fn of(channels: &[Channel], blocks: usize, bodies: usize) -> Self {
-        let first = channels.iter().map(|c| c.counts().1).sum();
-        let residuals = first + PER_BLOCK * blocks;
-        let of_bodies = residuals + 2;
-        Self { blocks: first, residuals, bodies: of_bodies, limits: of_bodies + PER_BODY * bodies }
-    }
+    margins: usize,
+    bodies: usize,
+    besides: usize,
 }
 
 /// Per block: product, most, least and growth of its factors; the first correction, and the last.
 const PER_BLOCK: usize = 6;
-/// Per body: as in [`BodyState`].
-const PER_BODY: usize = 24;
-
-impl Channel {
-    fn all(topology: &Topology) -> Vec<Self> {
-        let mut out = Vec::new();
-        for step in topology.links.iter().flat_map(|l| &l.steps) {
-            match (topology.coordinates[step.first].source, step.freedom) {
-                (Source::Driven(_), _) => {}
-                (_, Freedom::Ball) => out.push(Self::Ball(step.first)),
-                _ => out.push(Self::Coordinate(step.first)),
-            }
-        }
-        out
-    }
-
-    /// How many numbers predict it, and how many say where it is and how it moves.
-    fn counts(self) -> (usize, usize) {
-        match self {
-            Self::Coordinate(_) => (1, 3),
-            Self::Ball(_) => (4, 10),
-        }
-    }
-}
 
 impl StepProgram {
     /// Whether the steps of a plan can be recorded, and are short enough for that.
@@ -176,115 +199,146 @@ impl StepProgram {
             && topology.closures.iter().all(|c| c.contact.is_none())
     }
 
-    /// Records the step that is solved where `one` stands, and what `besides` makes of it; none where either cannot be recorded.
+    /// Records the step that is solved where `one`, of the nominal design, stands, and what `besides` makes of it and of the values
+    /// of the design's variables; none where either cannot be recorded.
     pub fn record(
         one: &Stepper<'_, f64>,
+        effects: &Effects<'_>,
         purpose: Purpose,
-        besides: impl FnOnce(&Topology, &mut State<Number>) -> Option<Recorded>,
+        besides: impl FnOnce(&Topology, &mut State<Number>, &[Number]) -> Option<Recorded>,
         execution: Execution,
     ) -> Option<Self> {
         let (model, topology) = (one.model, &one.topology);
         let channels = Channel::all(topology);
-        let (mut fits, mut blocks, mut limits) = (false, Vec::new(), 0);
+        let unknowns = unknowns(topology, &channels);
+        let (mut places, mut moved) = (None, Vec::new());
+        let (mut fits, mut blocks) = (false, Vec::new());
         recording::begin();
         let recorded = record(|| {
-            let mut state = State::new(model, topology, Number::constant(0.0));
-            predict(topology, &channels, &one.saved, OFFSET[purpose.corrections - 1], &mut state);
+            let zero = Number::constant(0.0);
+            let mut state = State::new(model, topology, zero);
+            foresee(topology, &channels, &one.saved, OFFSET[purpose.corrections - 1], &mut state);
             let drivers: Vec<[Number; 3]> = one.saved.drivers.iter().map(|f| f.map(Number::input)).collect();
-            let mut of_geometry = purpose.geometry.iter();
-            let parts = one.parts.map(0.0, |x| match of_geometry.next() {
-                Some(Some(x)) => Number::constant(*x),
-                _ => Number::input(x),
-            });
+            let nominal = model.whole(&[]).into_iter();
+            let number = if purpose.any_design { Number::input } else { Number::constant };
+            let values: Vec<Number> = nominal.map(number).collect();
+            let geometry = recording::strictly(|| effects.geometry(&values, zero));
+            let parts = Parts::of(model, topology, &geometry, zero);
             fits = state.solve(topology, &parts, &drivers, f64::INFINITY).is_ok();
             let recorded = (0..topology.blocks.len()).map_while(|b| BlockProgram::of(&state, b));
             blocks = recorded.collect::<Vec<_>>();
             fits &= blocks.len() == topology.blocks.len();
-            let mut out = outputs(topology, (&parts, &drivers), (&channels, &blocks), &state);
-            match besides(topology, &mut state) {
-                Some(found) => {
-                    limits = found.limits.len();
-                    out.extend(found.limits.into_iter().chain(found.results));
-                }
-                None => fits = false,
+
+            let mut out = moves(topology, &channels, &state);
+            let blocks_at = out.len();
+            for ((w, (corrections, _)), block) in state.watched.iter().zip(&state.corrections).zip(&blocks) {
+                out.extend([w.product, w.most, w.least, w.growth, corrections[0], corrections[block.last]]);
             }
+            let residuals = out.len();
+            out.extend(state.residuals_in_lanes(topology, &parts, &drivers));
+            let bodies = BodyState::all(&state);
+            let (margins, mut limits) = match purpose.margins {
+                true => Margins::new(topology, zero).record(topology, &state),
+                false => Default::default(),
+            };
+            let Some(more) = besides(topology, &mut state, &values) else {
+                fits = false;
+                return out;
+            };
+            limits.extend(more.limits);
+            moved = more.moved;
+            let limits_at = out.len();
+            let margins_at = limits_at + limits.len();
+            let bodies_at = margins_at + margins.len();
+            places = Some(Outputs {
+                blocks: blocks_at,
+                residuals,
+                limits: limits_at,
+                margins: margins_at,
+                bodies: bodies_at,
+                besides: bodies_at + bodies.len(),
+            });
+            out.extend([limits, margins, bodies, more.results].concat());
             out
         });
-        if !fits || !recording::is_arithmetic() {
-            return None;
-        }
+        let outputs = places.filter(|_| fits && recording::is_arithmetic())?;
+        let variables = if purpose.any_design { model.variables.len() } else { 0 };
+        let inputs = Inputs::of(&channels, model.drivers.len(), variables);
         let (program, _) = recorded.program(Options::default());
-        let first = inputs_before_geometry(&channels, model.drivers.len());
-        let (design, step) = program.staged(|input| input as usize >= first);
+        let (design, step) = program.staged(|input| input as usize >= inputs.design);
         let [design, step] = [design, step].map(|program| Runnable::new(program, execution));
         // The interpreter is no faster than the kernel.
         if step.code.is_none() && execution == Execution::Fastest {
             return None;
         }
-        let bodies = model.bodies.len() - 1;
-        let places = Outputs::of(&channels, blocks.len(), bodies);
-        Some(Self { purpose, design, step, channels, blocks, places, bodies, limits })
+        Some(Self { purpose, design, step, channels, unknowns, blocks, inputs, outputs, variables, moved })
+    }
+
+    /// Which variable moves which body, in the order of their derivatives.
+    pub fn moved(&self) -> &[(VariableId, BodyId)] {
+        &self.moved
     }
 }
 
-fn inputs_before_geometry(channels: &[Channel], drivers: usize) -> usize {
-    channels.iter().map(|c| c.counts().0).sum::<usize>() + 3 * drivers
+/// All unknowns, balls' included.
+fn unknowns(topology: &Topology, channels: &[Channel]) -> Vec<Unknown> {
+    let mut unknowns = Vec::new();
+    for (n, channel) in channels.iter().enumerate() {
+        if let Channel::Coordinate(coordinate) = *channel {
+            unknowns.push(Unknown { coordinate, speed: ORDERS * n + 1 });
+        }
+    }
+    let mut speed = ORDERS * channels.len();
+    for first in balls(topology) {
+        for axis in 0..3 {
+            unknowns.push(Unknown { coordinate: first + axis, speed });
+            speed += 2;
+        }
+    }
+    unknowns
 }
 
-/// Makes inputs of what predicts the state, `offset` beside where `at` is.
-fn predict(
+/// The first coordinates of unknown balls.
+fn balls(topology: &Topology) -> impl Iterator<Item = usize> {
+    let steps = topology.links.iter().flat_map(|l| &l.steps);
+    let balls = steps.filter(|s| s.freedom == Freedom::Ball).map(|s| s.first);
+    balls.filter(|first| matches!(topology.coordinates[*first].source, Source::Unknown { .. }))
+}
+
+/// Value, first and second derivative of every channel; speeds and accelerations of balls.
+fn moves(topology: &Topology, channels: &[Channel], state: &State<Number>) -> Vec<Number> {
+    let mut out: Vec<Number> = channels.iter().flat_map(|c| c.of(state)).collect();
+    for c in balls(topology).flat_map(|first| first..first + 3) {
+        out.extend([state.qd[c], state.qdd[c]]);
+    }
+    out
+}
+
+/// Makes inputs of what foresees the state, `offset` beside where `at` is.
+fn foresee(
     topology: &Topology,
     channels: &[Channel],
     at: &Saved<f64>,
     offset: f64,
     state: &mut State<Number>,
 ) {
+    let first = |n: usize, x: f64| Number::input(if n == 0 { x } else { 0.0 });
+    let weights: [Number; CONDITIONS] = std::array::from_fn(|n| first(n, 1.0));
     for channel in channels {
-        match *channel {
-            Channel::Coordinate(c) => {
-                state.q[c] = Number::input(at.q[c] + offset * topology.coordinates[c].unit);
-            }
-            Channel::Ball(c) => {
-                let beside = at.balls[c].nudged(Vec3::new(offset, offset, offset));
-                let component = |k: usize| Number::input(beside.component(k));
-                let w = component(0);
-                state.balls[c] = Quat { w, v: Vec3::new(component(1), component(2), component(3)) };
-            }
-        }
+        let beside = match *channel {
+            Channel::Coordinate(c) => at.q[c] + offset * topology.coordinates[c].unit,
+            Channel::Ball(c, k) => at.balls[c].nudged(Vec3::new(offset, offset, offset)).component(k),
+        };
+        let known: [Number; CONDITIONS] = std::array::from_fn(|n| first(n, beside));
+        // What counts least comes first.
+        let terms = weights.into_iter().zip(known).rev();
+        channel.put(terms.fold(Number::constant(0.0), |sum, (w, x)| w.times_plus(x, sum)), state);
     }
-}
-
-/// What a step hands out, in order.
-fn outputs(
-    topology: &Topology,
-    (parts, drivers): (&Parts<Number>, &[[Number; 3]]),
-    (channels, blocks): (&[Channel], &[BlockProgram]),
-    state: &State<Number>,
-) -> Vec<Number> {
-    let mut out = Vec::new();
-    for channel in channels {
-        match *channel {
-            Channel::Coordinate(c) => out.extend([state.q[c], state.qd[c], state.qdd[c]]),
-            Channel::Ball(c) => {
-                out.extend((0..4).map(|k| state.balls[c].component(k)));
-                out.extend_from_slice(&state.qd[c..c + 3]);
-                out.extend_from_slice(&state.qdd[c..c + 3]);
-            }
-        }
-    }
-    for ((w, (corrections, _)), block) in state.watched.iter().zip(&state.corrections).zip(blocks) {
-        out.extend([w.product, w.most, w.least, w.growth, corrections[0], corrections[block.last]]);
-    }
-    out.extend(state.residuals_in_lanes(topology, parts, drivers));
-    for body in 1..state.pose.len() {
-        out.extend(BodyState::components(state, body).into_iter().flatten());
-    }
-    out
 }
 
 /// Recording pays from so many steps on: it costs about as much as they do.
 const PAYS: usize = 500;
-/// After so many steps, a program that was refused in more than a quarter of them is given up.
+/// After so many groups of steps, a program that was refused in more than a quarter of them is given up.
 const TRIAL: usize = 8;
 
 /// What even steps are solved by: the kernel, which walks the plan, or a straight-line program that was recorded of it.
@@ -313,21 +367,20 @@ impl Execution {
     }
 }
 
-/// The programs of a plan, with one correction and with two, each recorded when it is first asked for.
+/// The programs of a plan, each recorded when it is first asked for.
 ///
 /// They are recorded of the nominal design where its motion begins, so that they do not depend on who asks first.
 #[derive(Debug)]
 pub(crate) struct Programs {
     execution: Execution,
-    /// Of any design; and with the sensitivities of the nominal one.
-    motion: [OnceLock<Option<Arc<StepProgram>>>; 2],
-    sensitivities: [OnceLock<Option<Arc<StepProgram>>>; 2],
+    steps: Mutex<BTreeMap<Purpose, Option<Arc<StepProgram>>>>,
+    laws: Mutex<Option<Option<Arc<Runnable>>>>,
 }
 
 impl Programs {
     /// None as yet.
     pub fn new(execution: Execution) -> Self {
-        Self { execution, motion: Default::default(), sensitivities: Default::default() }
+        Self { execution, steps: Mutex::default(), laws: Mutex::default() }
     }
 
     /// Whether so many steps are worth a program.
@@ -339,177 +392,226 @@ impl Programs {
         }
     }
 
-    /// The program with so many corrections; `record` makes it for this execution, if it was not asked for before.
-    pub fn get(
+    /// The program for this purpose; `record` makes it for this execution, if it was not asked for before.
+    pub fn step(
         &self,
-        sensitivities: bool,
-        corrections: usize,
+        purpose: Purpose,
         record: impl FnOnce(Execution) -> Option<StepProgram>,
     ) -> Option<Arc<StepProgram>> {
-        let kept = if sensitivities { &self.sensitivities } else { &self.motion };
-        kept[corrections - 1].get_or_init(|| record(self.execution).map(Arc::new)).clone()
+        let mut steps = self.steps.lock().expect("no one panics while recording");
+        steps.entry(purpose).or_insert_with(|| record(self.execution).map(Arc::new)).clone()
+    }
+
+    /// The drivers' laws of the nominal design at eight times: value, speed and acceleration of each driver, and then what must not
+    /// be positive. None where a law is no plain formula.
+    pub fn laws(&self, model: &Model) -> Option<Arc<Runnable>> {
+        let mut laws = self.laws.lock().expect("no one panics while recording");
+        laws.get_or_insert_with(|| {
+            recording::begin();
+            let recorded = record(|| {
+                let t = Number::input(*model.times.first().unwrap_or(&0.0));
+                let of = |law: &Law| law.to_order::<_, 3>(t).derivatives();
+                let laws: Vec<Number> = model.drivers.iter().flat_map(|d| of(&d.law)).collect();
+                [laws, recording::limits()].concat()
+            });
+            let fits = recording::is_arithmetic();
+            fits.then(|| Arc::new(Runnable::new(recorded.program(Options::default()).0, self.execution)))
+        })
+        .clone()
     }
 }
-
-/// Gives the program with so many corrections, if there is one.
-pub(crate) type ProgramOf<'p> = Box<dyn Fn(usize) -> Option<Arc<StepProgram>> + 'p>;
 
 /// A step that the program does not fit: the kernel solves it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Refused;
 
-/// A program at work, with what it works in.
+/// A program at work, with what it works in: one design in all lanes, or one in each.
 pub(crate) struct Tape {
     program: Arc<StepProgram>,
-    interpreter: Option<Interpreter>,
-    scratch: Scratch,
-    inputs: Vec<Lanes>,
-    outputs: Vec<Lanes>,
-    /// Steps that were tried, and those that were refused.
+    room: Room,
+    inputs: Vec<Line>,
+    outputs: Vec<Line>,
+    /// Groups of steps that were tried, and those that were refused.
     tried: usize,
     refused: usize,
 }
 
 impl Tape {
+    pub fn new(program: Arc<StepProgram>) -> Self {
+        let inputs = program.inputs.of_design + program.design.outputs();
+        let inputs = vec![Line::default(); usize::max(inputs, program.step.program.inputs)];
+        let outputs = vec![Line::default(); program.step.outputs()];
+        Self { room: Room::default(), inputs, outputs, program, tried: 0, refused: 0 }
+    }
+
+    /// Takes the designs whose values these are, one per lane; the last one in lanes beyond.
+    pub fn set_designs(&mut self, designs: &[Vec<f64>]) {
+        let StepProgram { design, inputs, variables, .. } = &*self.program;
+        for v in 0..*variables {
+            let of_lane = |k: usize| designs[usize::min(k, designs.len() - 1)][v];
+            self.inputs[inputs.design + v] = Line(std::array::from_fn(of_lane));
+        }
+        let (given, found) = self.inputs.split_at_mut(inputs.of_design);
+        let (given, found) = (&lanes_of(given)[..design.program.inputs], &mut lanes_of(found)[..design.outputs()]);
+        Room::default().run(design, given, found);
+    }
+
     /// Whether it is refused so often that the kernel alone is faster.
     pub fn is_of_no_use(&self) -> bool {
         self.tried >= TRIAL && 4 * self.refused > self.tried
     }
 
-    /// How many corrections it makes.
-    pub fn corrections(&self) -> usize {
-        self.program.purpose.corrections
+    /// Which variable moves which body, in the order of their derivatives.
+    pub fn moved(&self) -> &[(VariableId, BodyId)] {
+        &self.program.moved
     }
 
-    /// For the design in each lane of these parts; none where they differ from the program's in what is no input.
-    pub fn new<T: Real>(program: Arc<StepProgram>, parts: &Parts<T>, witness: T) -> Option<Self> {
-        let mut geometry = Vec::new();
-        for (x, known) in parts.numbers(witness).into_iter().zip(&program.purpose.geometry) {
-            let mut lanes = [x.lane(0); LANES];
-            x.store(&mut lanes);
-            match known {
-                None => geometry.push(lanes),
-                Some(known) if lanes.iter().all(|x| (x - known).abs() <= program.purpose.same) => {}
-                Some(_) => return None,
+    /// The coordinates of the tree; 0 for those of balls.
+    #[inline(always)]
+    pub fn coordinates(&self, topology: &Topology, out: &mut [Lanes]) {
+        for (coordinate, out) in topology.coordinates.iter().zip(&mut *out) {
+            *out = match coordinate.source {
+                Source::Driven(d) => *self.driver(d.0, 0),
+                Source::Unknown { .. } => [0.0; LANES],
+            };
+        }
+        for (n, channel) in self.program.channels.iter().enumerate() {
+            if let Channel::Coordinate(c) = *channel {
+                out[c] = *self.channel_lanes(n, 0);
             }
         }
-        let StepProgram { design, step, .. } = &*program;
-        let mut of_design = vec![[0.0; LANES]; design.program.outputs.len()];
-        let first = step.program.inputs - of_design.len() - geometry.len();
-        let mut inputs = vec![[0.0; LANES]; first];
-        inputs.extend(geometry);
-        let (mut scratch, given) = (Scratch::default(), &inputs[..design.program.inputs]);
-        match &design.code {
-            Some(code) => code.run(&mut scratch, given, &[], &mut of_design),
-            None => Interpreter::new(&design.program).run(given, &[], &mut of_design),
-        }
-        inputs.extend(of_design);
-        let outputs = vec![[0.0; LANES]; step.program.outputs.len()];
-        let interpreter = step.code.is_none().then(|| Interpreter::new(&step.program));
-        Some(Self { interpreter, scratch, inputs, outputs, program, tried: 0, refused: 0 })
     }
 
-    /// Solves what stands in `state`, the prediction, for these drivers: coordinates with their rates, and what the blocks are judged by.
-    /// `branch` says which sign of each determinant is expected, and `least` which pivot ratio at the least; `trust` bounds the first
-    /// correction (rad, or sizes).
+    /// What it is for.
+    pub fn purpose(&self) -> Purpose {
+        self.program.purpose
+    }
+
+    /// What every position counts for: by position, the newest first, and order of its derivative.
+    pub fn weights_mut(&mut self) -> &mut [Lanes] {
+        &mut lanes_of(&mut self.inputs)[..CONDITIONS]
+    }
+
+    /// What is known of a channel, ordered like the weights.
     #[inline(always)]
-    pub fn solve<T: Real>(
+    pub fn known_mut(&mut self, channel: usize) -> &mut [Lanes] {
+        &mut lanes_of(&mut self.inputs)[CONDITIONS * (1 + channel)..][..CONDITIONS]
+    }
+
+    /// Value, speed and acceleration of every driver.
+    #[inline(always)]
+    pub fn drivers_mut(&mut self) -> &mut [Lanes] {
+        let Inputs { drivers, design, .. } = self.program.inputs;
+        &mut lanes_of(&mut self.inputs)[drivers..design]
+    }
+
+    /// The same, read.
+    #[inline(always)]
+    pub fn driver(&self, d: usize, order: usize) -> &Lanes {
+        &self.inputs[self.program.inputs.drivers + ORDERS * d + order].0
+    }
+
+    /// Solves the steps that were given, and judges each in the lanes up to `last`: `branch` says which sign of each determinant is
+    /// expected, and `least` which pivot ratio at the least; `trust` bounds the first correction (rad, or sizes). Gives the largest
+    /// residuals; the smallest pivot ratio of each block goes to `ratios`.
+    #[inline(always)]
+    pub fn solve(
         &mut self,
-        state: &mut State<T>,
-        drivers: &[[T; 3]],
         (branch, least): (&[(bool, f64)], &[f64]),
         trust: f64,
+        ratios: &mut [f64],
     ) -> Result<Residuals, Refused> {
         self.tried += 1;
         self.refused += 1;
-        let (program, witness) = (&self.program, state.witness);
-        let mut inputs = self.inputs.iter_mut();
-        let mut give = |x: T| {
-            if let Some(lanes) = inputs.next() {
-                x.store(lanes);
-            }
-        };
-        for channel in &program.channels {
-            match *channel {
-                Channel::Coordinate(c) => give(state.q[c]),
-                Channel::Ball(c) => (0..4).for_each(|k| give(state.balls[c].component(k))),
-            }
-        }
-        drivers.iter().flatten().for_each(|f| give(*f));
-        match (&program.step.code, &mut self.interpreter) {
-            (Some(code), _) => code.run(&mut self.scratch, &self.inputs, &[], &mut self.outputs),
-            (None, Some(interpreter)) => interpreter.run(&self.inputs, &[], &mut self.outputs),
-            (None, None) => return Err(Refused),
-        }
-        let (at, places) = (|k: usize| witness.gather(self.outputs[k]), program.places);
+        let program = &*self.program;
+        self.room.run(
+            &program.step,
+            bytemuck::cast_slice(&self.inputs),
+            bytemuck::cast_slice_mut(&mut self.outputs),
+        );
+        let at = |k: usize| &self.outputs[k].0;
         // All comparisons are written so that NaN is refused.
         for (b, recorded) in program.blocks.iter().enumerate() {
-            let k = places.blocks + PER_BLOCK * b;
-            let [product, most, least_inverse, growth, first, last] = std::array::from_fn(|n| at(k + n));
-            let watched = Watched { product, most, least: least_inverse, growth };
-            if !(first.largest() <= trust && last.largest() <= recorded.limit) {
+            let k = program.outputs.blocks + PER_BLOCK * b;
+            let grown = f64::max(MOST_GROWTH, 2.0 * recorded.growth);
+            let sign = if recorded.is_even == branch[b].0 { 1.0 } else { -1.0 };
+            let mut fits = true;
+            for lane in 0..LANES {
+                fits &= at(k)[lane] * sign > 0.0
+                    && at(k + 3)[lane] <= grown
+                    && at(k + 4)[lane] <= trust
+                    && at(k + 5)[lane] <= recorded.limit;
+            }
+            ratios[b] = 1.0 / (largest(at(k + 1)) * largest(at(k + 2)));
+            if !(fits && ratios[b] > 0.0 && ratios[b] >= least[b]) {
                 return Err(Refused);
             }
-            let (ratio, positive) = watched.verdict();
-            let positive = positive == recorded.is_even;
-            let grown = watched.growth.largest() <= f64::max(MOST_GROWTH, 2.0 * recorded.growth);
-            if !(grown && positive == branch[b].0 && ratio > 0.0 && ratio >= least[b]) {
-                return Err(Refused);
-            }
-            state.pivots[b] = (ratio, positive);
-            state.determinants[b] = watched.product.abs();
         }
-        let residuals =
-            Residuals { largest: at(places.residuals).largest(), scaled: at(places.residuals + 1).largest() };
-        let limits = &self.outputs[places.limits..places.limits + program.limits];
-        if !(residuals.scaled <= LOCKED) || !limits.iter().all(|l| witness.gather(*l).largest() <= 0.0) {
+        let residuals = program.outputs.residuals;
+        let residuals = Residuals { largest: largest(at(residuals)), scaled: largest(at(residuals + 1)) };
+        let limits = &self.outputs[program.outputs.limits..program.outputs.margins];
+        if !(residuals.scaled <= LOCKED && limits.iter().all(|l| l.0.iter().all(|x| *x <= 0.0))) {
             return Err(Refused);
         }
-        let mut k = 0;
-        for channel in &program.channels {
-            match *channel {
-                Channel::Coordinate(c) => {
-                    (state.q[c], state.qd[c], state.qdd[c]) = (at(k), at(k + 1), at(k + 2));
-                }
-                Channel::Ball(c) => {
-                    let v = Vec3::new(at(k + 1), at(k + 2), at(k + 3));
-                    state.balls[c] = Quat { w: at(k), v };
-                    for axis in 0..3 {
-                        state.q[c + axis] = witness.zero();
-                        (state.qd[c + axis], state.qdd[c + axis]) = (at(k + 4 + axis), at(k + 7 + axis));
-                    }
-                }
-            }
-            k += channel.counts().1;
-        }
-        state.iterations += program.blocks.iter().map(|b| b.passes).sum::<usize>();
         self.refused -= 1;
         Ok(residuals)
     }
 
-    /// What the last step handed out besides the motion.
-    pub fn besides(&self) -> &[Lanes] {
-        &self.outputs[self.program.places.limits + self.program.limits..]
+    /// Calls that refused, which seemed solved.
+    pub fn refuse(&mut self) {
+        self.refused += 1;
     }
 
-    /// Gives the states of the wanted bodies but ground in every lane to `out(lane, body, state)`, as of the last step.
-    #[inline(always)]
-    pub fn each_body<T: Real>(
-        &self,
-        wanted: &[bool],
-        witness: T,
-        mut out: impl FnMut(usize, BodyId, BodyState),
-    ) {
-        let mut table = [[0.0; PER_BODY]; LANES];
-        let first = self.program.places.bodies;
-        for body in (1..=self.program.bodies).filter(|b| wanted[*b]) {
-            let k = first + PER_BODY * (body - 1);
-            let components: [[T; 8]; 3] =
-                std::array::from_fn(|i| std::array::from_fn(|j| witness.gather(self.outputs[k + 8 * i + j])));
-            turn_over(&components, &mut table);
-            for (lane, x) in table[..T::LANES].iter().enumerate() {
-                out(lane, BodyId(body), BodyState::from_components(x));
-            }
-        }
+    /// Newton's passes in all blocks.
+    pub fn passes(&self) -> usize {
+        self.program.blocks.iter().map(|b| b.passes).sum()
     }
+
+    /// The determinant of a block, without its sign.
+    #[inline(always)]
+    pub fn determinant(&self, b: usize) -> Lanes {
+        self.outputs[self.program.outputs.blocks + PER_BLOCK * b].0.map(f64::abs)
+    }
+
+    /// Value, first and second derivative of a channel, in one lane.
+    #[inline(always)]
+    pub fn channel(&self, channel: usize, lane: usize) -> [f64; ORDERS] {
+        std::array::from_fn(|order| self.outputs[ORDERS * channel + order].0[lane])
+    }
+
+    /// The same, in all lanes.
+    #[inline(always)]
+    pub fn channel_lanes(&self, channel: usize, order: usize) -> &Lanes {
+        &self.outputs[ORDERS * channel + order].0
+    }
+
+    pub fn channels(&self) -> &[Channel] {
+        &self.program.channels
+    }
+
+    /// Every unknown coordinate with its speed and acceleration.
+    #[inline(always)]
+    pub fn unknowns(&self) -> impl Iterator<Item = (usize, [&Lanes; 2])> {
+        let at = |k: usize| &self.outputs[k].0;
+        self.program.unknowns.iter().map(move |u| (u.coordinate, [at(u.speed), at(u.speed + 1)]))
+    }
+
+    /// The margins of the blocks, if they are worked out.
+    pub fn margins(&self) -> &[Line] {
+        &self.outputs[self.program.outputs.margins..self.program.outputs.bodies]
+    }
+
+    /// The numbers of all bodies but ground, and what was recorded besides.
+    #[inline(always)]
+    pub fn results(&self) -> [&[Lanes]; 2] {
+        let Outputs { bodies, besides, .. } = self.program.outputs;
+        let (bodies, besides) = self.outputs[bodies..].split_at(besides - bodies);
+        [bytemuck::cast_slice(bodies), bytemuck::cast_slice(besides)]
+    }
+}
+
+/// The largest lane; NaN if any is NaN.
+#[inline(always)]
+fn largest(lanes: &Lanes) -> f64 {
+    lanes.iter().fold(f64::NEG_INFINITY, |most, x| Real::larger(most, *x))
 }

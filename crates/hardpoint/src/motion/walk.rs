@@ -12,7 +12,7 @@ use super::singularity::Prober;
 use super::stepper::{Ahead, LOCKED, Refusal, Stepper, TRUST, TRUST_FLOOR};
 use super::{BodyState, Passed, Singular, Stop, StopKind};
 use crate::constraint::Row;
-use crate::model::DriverId;
+use crate::model::{BodyId, DriverId};
 
 /// A step may be this part of the estimated distance to the nearest singular position. The estimate is 0.94 to 2.17 times the true
 /// distance (`docs/theory.md`, section 4), so that no step reaches beyond.
@@ -142,12 +142,8 @@ impl<T: Real> Stepper<'_, T> {
         if path == Path::Assembly || self.watched.is_empty() {
             return;
         }
-        let mut states = Vec::with_capacity(self.watched.iter().filter(|w| **w).count());
-        BodyState::each(&self.state, &self.watched, |lane, body, state| {
-            if lane == 0 {
-                states.push((body, state));
-            }
-        });
+        let watched = (1..self.watched.len()).filter(|b| self.watched[*b]);
+        let states = watched.map(|b| (BodyId(b), BodyState::of(&self.state, b))).collect();
         self.passed.push(Passed { time: self.time, begins, states });
     }
 

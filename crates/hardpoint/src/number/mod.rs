@@ -3,7 +3,6 @@
 //! | number | what it carries |
 //! |---|---|
 //! | `f64` | itself |
-//! | eight lanes | as many designs, variables or output times side by side |
 //! | [`Dual`] | the derivative by one variable; nested, second ones |
 //! | [`Jet`] | up to three time derivatives |
 //! | [`hardpoint_tape::Number`] | how it came about: kernels are recorded with it |
@@ -22,4 +21,4 @@ pub use dual::Dual;
 pub use function::Function;
 pub use jet::{Jet, Rates};
 pub use real::Real;
-pub(crate) use real::{LANES, lanes, of_lanes};
+pub(crate) use real::{LANES, of_lanes};

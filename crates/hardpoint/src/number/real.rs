@@ -4,8 +4,6 @@ use std::cmp::Ordering;
 use std::fmt::Debug;
 use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
 
-use fearless_simd::{Select, Simd, SimdBase, SimdFloat, SimdFrom, SimdMask, f64x8};
-
 use super::Function;
 
 /// One number per lane; the last one in lanes beyond.
@@ -220,7 +218,7 @@ pub trait Real:
 }
 
 /// Up to this angle, rad, [`Real::sin_cos`] is good to the last place.
-const LARGEST_ANGLE: f64 = 1e5 * std::f64::consts::TAU;
+pub(super) const LARGEST_ANGLE: f64 = 1e5 * std::f64::consts::TAU;
 
 impl Real for f64 {
     const LANES: usize = 1;
@@ -288,12 +286,6 @@ impl Real for f64 {
     }
 }
 
-/// A function of two numbers, by the standard library: the same code for every CPU.
-#[inline(never)]
-fn each(f: fn(f64, f64) -> f64, x: [f64; LANES], y: [f64; LANES]) -> [f64; LANES] {
-    std::array::from_fn(|k| f(x[k], y[k]))
-}
-
 /// Sine and cosine by the standard library.
 #[cold]
 #[inline(never)]
@@ -304,120 +296,9 @@ fn library_sin_cos<T: Real>(angles: T) -> (T, T) {
 /// How many designs are solved side by side in lanes.
 pub(crate) const LANES: usize = 8;
 
-/// Zero in every lane, for the CPU that `simd` proves.
-#[inline(always)]
-pub(crate) fn lanes<S: Simd>(simd: S) -> f64x8<S> {
-    f64x8::splat(simd, 0.0)
-}
-
-impl<S: Simd> Real for f64x8<S> {
-    const LANES: usize = LANES;
-    #[inline(always)]
-    fn like(self, x: f64) -> Self {
-        f64x8::splat(self.simd, x)
-    }
-    #[inline(always)]
-    fn like_lanes(self, lane: impl FnMut(usize) -> f64) -> Self {
-        f64x8::from_fn(self.simd, lane)
-    }
-    #[inline(always)]
-    fn gather(self, lanes: [f64; LANES]) -> Self {
-        f64x8::simd_from(self.simd, lanes)
-    }
-    #[inline(always)]
-    fn lane(self, k: usize) -> f64 {
-        self.as_slice()[k]
-    }
-    #[inline(always)]
-    fn store(self, out: &mut [f64]) {
-        out[..LANES].copy_from_slice(self.as_slice());
-    }
-    #[inline(always)]
-    fn each_lane(components: &[Self; 8], mut out: impl FnMut(usize, &[f64; 8])) {
-        // Three perfect shuffles of the 64 numbers transpose them.
-        let mut m = *components;
-        for _ in 0..3 {
-            let o = m;
-            for k in 0..4 {
-                m[2 * k] = o[k].zip_low(o[k + 4]);
-                m[2 * k + 1] = o[k].zip_high(o[k + 4]);
-            }
-        }
-        for (lane, row) in m.iter().enumerate() {
-            out(lane, row.as_array());
-        }
-    }
-    #[inline(always)]
-    fn times_plus(self, factor: Self, addend: Self) -> Self {
-        self.mul_add(factor, addend)
-    }
-    #[inline(always)]
-    fn sqrt(self) -> Self {
-        SimdFloat::sqrt(self)
-    }
-    #[inline(always)]
-    fn abs(self) -> Self {
-        SimdBase::abs(self)
-    }
-    #[inline(always)]
-    fn larger(self, o: Self) -> Self {
-        (o.simd_le(self) | !self.simd_eq(self)).select(self, o)
-    }
-    #[inline(always)]
-    fn select(self, other: Self, first: impl Fn(usize) -> bool + Copy) -> Self {
-        let first = self.like_lanes(
-            #[inline(always)]
-            |k| f64::from(u8::from(first(k))),
-        );
-        first.simd_gt(0.0).select(self, other)
-    }
-    #[inline(never)]
-    fn map(self, function: Function) -> Self {
-        self.within(
-            #[inline(always)]
-            || match function {
-                Function::Sin => self.sin_cos_of_any().0,
-                Function::Cos => self.sin_cos_of_any().1,
-                Function::Sqrt => Real::sqrt(self),
-                Function::Abs => Real::abs(self),
-                _ => self.gather(function.of_each(*self.as_array())),
-            },
-        )
-    }
-    #[inline(always)]
-    fn pow(self, exponent: Self) -> Self {
-        self.gather(each(f64::powf, *self.as_array(), *exponent.as_array()))
-    }
-    #[inline(always)]
-    fn hypot(self, o: Self) -> Self {
-        self.gather(each(f64::hypot, *self.as_array(), *o.as_array()))
-    }
-    #[inline(always)]
-    fn atan2(self, x: Self) -> Self {
-        self.gather(each(f64::atan2, *self.as_array(), *x.as_array()))
-    }
-    #[inline(always)]
-    fn is_zero(self, k: usize) -> bool {
-        self.lane(k) == 0.0
-    }
-    #[inline(always)]
-    fn largest(self) -> f64 {
-        if self.simd_eq(self).all_true() { self.reduce_max() } else { f64::NAN }
-    }
-    #[inline(always)]
-    fn round(self) -> Self {
-        self.round_ties_even()
-    }
-    #[inline(always)]
-    fn within<R>(self, f: impl FnOnce() -> R) -> R {
-        self.simd.vectorize(f)
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-    use fearless_simd::{Level, dispatch};
 
     #[test]
     fn sine_and_cosine_agree_with_the_library_over_many_turns() {
@@ -431,29 +312,5 @@ mod tests {
             let (s, c) = Real::sin_cos(x);
             assert!((s - x.sin()).abs() < 4e-16 && (c - x.cos()).abs() < 4e-16, "at {k} quarters");
         }
-    }
-
-    #[test]
-    fn lanes_and_scalar_give_the_same_bits() {
-        dispatch!(Level::new(), simd => {
-            let w = f64x8::splat(simd, 0.0);
-            let x = w.like_lanes(|k| 0.37 * (k as f64) * (k as f64) - 3.0);
-            let (s, c) = Real::sin_cos(x);
-            for k in 0..8 {
-                let (sk, ck) = Real::sin_cos(x.lane(k));
-                assert_eq!((s.lane(k), c.lane(k)), (sk, ck));
-                assert_eq!(Real::sqrt(Real::abs(x)).lane(k), x.lane(k).abs().sqrt());
-            }
-            assert_eq!(x.largest(), x.lane(7));
-            let components = std::array::from_fn(|c| w.like_lanes(|k| (10 * c + k) as f64));
-            Real::each_lane(&components, |lane, row| {
-                assert_eq!(*row, std::array::from_fn(|c| (10 * c + lane) as f64));
-            });
-            assert_eq!(x.smallest(), -3.0);
-            let broken = w.like_lanes(|k| if k == 5 { f64::NAN } else { 1.0 });
-            assert!(broken.largest().is_nan() && broken.smallest().is_nan());
-            assert!(broken.larger(w).lane(5).is_nan() && w.larger(broken).lane(5).is_nan());
-            assert_eq!((broken.larger(x).lane(0), x.larger(broken).lane(7)), (1.0, x.lane(7)));
-        });
     }
 }

@@ -1,19 +1,38 @@
 //! The recording scalar as a [`Real`]: kernels are recorded by running them with it.
 
-use std::cell::Cell;
+use std::cell::{Cell, RefCell};
 
 use hardpoint_tape::{Call, Number};
 
-use super::{Function, Real};
+use super::Function;
+use super::real::{LARGEST_ANGLE, Real};
 
 thread_local! {
     /// Whether something that is recorded on this thread was looked at lane by lane.
     static BY_LANES: Cell<bool> = const { Cell::new(false) };
+    static STRICT: Cell<bool> = const { Cell::new(false) };
+    static LIMITS: RefCell<Vec<Number>> = const { RefCell::new(Vec::new()) };
 }
 
 /// Forgets what was recorded before.
 pub(crate) fn begin() {
     BY_LANES.set(false);
+    STRICT.set(false);
+    LIMITS.take();
+}
+
+/// Records what goes by no value that is unknown: where a number that may be another is looked at and is zero by chance, it is no
+/// arithmetic.
+pub(crate) fn strictly<R>(f: impl FnOnce() -> R) -> R {
+    STRICT.set(true);
+    let result = f();
+    STRICT.set(false);
+    result
+}
+
+/// What has come up since [`begin`], and must not be positive where the program is run.
+pub(crate) fn limits() -> Vec<Number> {
+    LIMITS.take()
 }
 
 /// Whether everything since [`begin`] is arithmetic: no lane was looked at, since a program takes what is made of it for a constant.
@@ -58,8 +77,8 @@ impl Real for Number {
     }
     fn map(self, function: Function) -> Self {
         self.call(match function {
-            Function::Sin => return self.sin_cos().0,
-            Function::Cos => return self.sin_cos().1,
+            Function::Sin => return self.sin_cos_of_any().0,
+            Function::Cos => return self.sin_cos_of_any().1,
             Function::Sqrt => return self.sqrt(),
             Function::Abs => return self.abs(),
             Function::Log10 => return self.call(Call::Ln) * std::f64::consts::LOG10_E,
@@ -75,7 +94,17 @@ impl Real for Number {
         })
     }
     fn is_zero(self, _: usize) -> bool {
-        self.value() == 0.0
+        match self.known() {
+            Some(x) => x == 0.0,
+            None => self.lane(0) == 0.0,
+        }
+    }
+    fn vanishes(self) -> bool {
+        self.known() == Some(0.0)
+    }
+    fn sin_cos_of_any(self) -> (Self, Self) {
+        LIMITS.with_borrow_mut(|limits| limits.push(self.abs() + -LARGEST_ANGLE));
+        self.sin_cos()
     }
     fn pow(self, exponent: Self) -> Self {
         Number::powf(self, exponent)
@@ -93,6 +122,9 @@ impl Real for Number {
         Number::larger(self, o)
     }
     fn largest(self) -> f64 {
+        if STRICT.get() && self.known().is_none() && self.value() == 0.0 {
+            BY_LANES.set(true);
+        }
         self.value()
     }
 }

@@ -15,8 +15,10 @@ pub use admissible::{Admissibility, Condition, JointDefect, admissibility_at_des
 pub(crate) use direct::{Direct, FieldParts};
 pub use second::{BodyCurvature, Way};
 pub(crate) use second::{Seconds, along};
-pub(crate) use sensing::{Resisting, Sensing, SensingDesigns, admissibility, record_derivatives};
+pub(crate) use sensing::{Resisting, Sensing, admissibility, record_derivatives};
 
+use crate::blocks::{Blocks, Row};
+use crate::model::{BodyId, VariableId};
 use crate::space::Vec3;
 
 /// Derivatives by one design variable b of one body's state, global components, per unit of b at fixed t.
@@ -29,7 +31,6 @@ use crate::space::Vec3;
 ///
 /// All are plain derivatives; in particular domega = d(dpi)/dt + dpi x omega.
 #[derive(Clone, Copy, Debug, PartialEq)]
-#[repr(C)] // filled in the order of the fields
 pub struct BodySensitivity {
     /// Of position.
     pub dr: Vec3,
@@ -46,6 +47,36 @@ pub struct BodySensitivity {
 }
 
 impl BodySensitivity {
+    /// So many numbers it is.
+    pub(crate) const NUMBERS: usize = 18;
+
+    /// From them, in the order of the fields.
+    #[inline(always)]
+    fn from(number: impl Fn(usize) -> f64) -> Self {
+        let vector = |k: usize| Vec3::new(number(3 * k), number(3 * k + 1), number(3 * k + 2));
+        Self {
+            dr: vector(0),
+            dpi: vector(1),
+            dv: vector(2),
+            domega: vector(3),
+            da: vector(4),
+            dalpha: vector(5),
+        }
+    }
+
+    /// In one of eight lanes.
+    #[inline(always)]
+    pub(crate) fn of_lane(lanes: &[[f64; 8]; Self::NUMBERS], lane: usize) -> Self {
+        Self::from(|n| lanes[n][lane])
+    }
+
+    /// All of them, in the order of the fields.
+    #[inline(always)]
+    pub(crate) fn numbers(&self) -> impl Iterator<Item = f64> {
+        let all = [self.dr, self.dpi, self.dv, self.domega, self.da, self.dalpha];
+        all.into_iter().flat_map(Vec3::to_array)
+    }
+
     /// No change.
     pub const ZERO: Self = Self {
         dr: Vec3::ZERO,
@@ -60,27 +91,94 @@ impl BodySensitivity {
 /// Sensitivities of all bodies over a solved motion.
 #[derive(Clone, Debug, Default)]
 pub struct Sensitivities {
-    /// `bodies[(k * variables + b) * n + i]`: at time k, by variable b, of body i; NaN for variables that
-    /// the mechanism cannot follow.
-    pub states: Vec<BodySensitivity>,
     /// How many variables there are.
     pub variables: usize,
     /// How many bodies, ground included.
     pub bodies: usize,
     /// Per variable: whether and how the mechanism follows the change.
     pub admissibility: Vec<Admissibility>,
-    /// Per variable and body: whether it was written to.
-    moved: Vec<bool>,
+    /// Of every body by every variable that moves it.
+    pub(crate) derivatives: Blocks,
+    /// `places[b * bodies + i]`: where the numbers of body i by variable b begin, if b moves it.
+    places: Vec<Option<usize>>,
 }
 
 impl Sensitivities {
     /// Sensitivities of all bodies at output time k by variable b; `None` where the mechanism cannot
     /// follow that variable, for then there is no such number.
-    pub fn at(&self, k: usize, b: usize) -> Option<&[BodySensitivity]> {
+    pub fn at(&self, k: usize, b: usize) -> Option<Derivatives<'_>> {
         if matches!(self.admissibility[b], Admissibility::CannotFollow { .. }) {
             return None;
         }
-        let first = (k * self.variables + b) * self.bodies;
-        Some(&self.states[first..first + self.bodies])
+        let places = &self.places[b * self.bodies..(b + 1) * self.bodies];
+        Some(Derivatives { row: self.derivatives.row(k), places })
+    }
+
+    /// Whether a variable moves a body at all.
+    pub fn moves(&self, variable: VariableId, body: BodyId) -> bool {
+        self.places[variable.0 * self.bodies + body.0].is_some()
+    }
+
+    /// Writes the sensitivity of a body by a variable at output time k.
+    ///
+    /// # Panics
+    /// Where the variable does not move the body.
+    #[inline(always)]
+    pub fn set(&mut self, k: usize, variable: VariableId, body: BodyId, derivatives: &BodySensitivity) {
+        let place = self.places[variable.0 * self.bodies + body.0];
+        self.derivatives.set(k, place.expect("the variable moves the body"), derivatives.numbers());
+    }
+
+    /// Takes over output time j of another one as its own output time k.
+    pub(crate) fn copy(&mut self, k: usize, from: &Self, j: usize) {
+        if self.bodies == 0 {
+            self.bodies = from.bodies;
+            self.places.clone_from(&from.places);
+        }
+        self.derivatives.copy(k, &from.derivatives, j);
+    }
+
+    /// Room for so many output times, in the memory that there is. `moved` says which variable moves which body.
+    pub(crate) fn shape(
+        &mut self,
+        bodies: usize,
+        variables: usize,
+        moved: impl Iterator<Item = (VariableId, BodyId)>,
+        steps: usize,
+    ) {
+        (self.bodies, self.variables) = (bodies, variables);
+        self.admissibility.clear();
+        self.places.clear();
+        self.places.resize(variables * bodies, None);
+        let mut width = 0;
+        for (variable, body) in moved {
+            self.places[variable.0 * bodies + body.0] = Some(width);
+            width += BodySensitivity::NUMBERS;
+        }
+        self.derivatives.shape(width, steps);
+    }
+}
+
+/// Sensitivities of all bodies by one variable at one output time.
+#[derive(Clone, Copy, Debug)]
+pub struct Derivatives<'s> {
+    row: Row<'s>,
+    places: &'s [Option<usize>],
+}
+
+impl<'s> Derivatives<'s> {
+    /// That of body i; zero if the variable does not move it.
+    ///
+    /// # Panics
+    /// Where there is no such body.
+    #[inline]
+    pub fn body(self, i: usize) -> BodySensitivity {
+        let Some(first) = self.places[i] else { return BodySensitivity::ZERO };
+        BodySensitivity::from(|k| self.row.get(first + k))
+    }
+
+    /// All of them, body by body.
+    pub fn iter(self) -> impl Iterator<Item = BodySensitivity> + 's {
+        (0..self.places.len()).map(move |i| self.body(i))
     }
 }

@@ -25,5 +25,5 @@ pub use twist::{Twist, Wrench};
 pub use vec3::Vec3;
 
 pub use crate::number::Real;
-pub(crate) use crate::number::{LANES, lanes, of_lanes};
+pub(crate) use crate::number::{LANES, of_lanes};
 pub(crate) use rank::FullPivot;

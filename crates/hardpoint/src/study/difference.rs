@@ -100,7 +100,7 @@ pub fn finite_differences(
 fn quotient(variable: VariableId, step: f64, plus: &Solution, minus: &Solution, apart: f64) -> Difference {
     let k = 1.0 / apart;
     let bodies =
-        plus.motion.states.iter().zip(&minus.motion.states).map(|(p, m)| body_quotient(p, m, k)).collect();
+        plus.motion.states().zip(minus.motion.states()).map(|(p, m)| body_quotient(&p, &m, k)).collect();
     let outputs = (0..plus.measured.len())
         .flat_map(|t| (0..plus.measured.outputs.len()).map(move |m| (t, m)))
         .map(|(t, m)| {

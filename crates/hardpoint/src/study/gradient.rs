@@ -1,14 +1,12 @@
 //! Gradients of chosen outputs by all design variables, in whichever direction is shorter.
 
-use fearless_simd::{Level, dispatch};
-
-use crate::analysis::{Analysis, Design, Solution, Solved, Walk};
+use crate::analysis::{Analysis, Design, Solution, Walk};
 use crate::measure::{self, Moment, More, Output, SlopeValues, bodies_asked_for, outputs};
 use crate::model::{Field, Fixed, GROUND, MeasureKind, OutputSource, VariableId};
 use crate::motion::Stop;
 use crate::motion::kinematics::State;
 use crate::motion::stepper::Stepper;
-use crate::number::{Dual, Jet, LANES, Rates, Real, lanes, of_lanes};
+use crate::number::{Dual, Jet, LANES, Rates, Real, of_lanes};
 use crate::sensitivity::{Adjoint, Admissibility, Load, Resisting, Support, Watch, admissibility};
 use crate::space::{Mat3, Pose, Twist, Vec3, Wrench};
 use crate::topology::Topology;
@@ -88,7 +86,7 @@ impl Analysis<'_> {
             Method::Direct => self.gradients_direct(design, asked),
             _ => {
                 let design = self.design(design, false);
-                dispatch!(Level::new(), simd => self.gradients_adjoint(&design, asked, lanes(simd)))
+                self.gradients_adjoint(&design, asked)
             }
         }
     }
@@ -144,7 +142,7 @@ impl Analysis<'_> {
         }
     }
 
-    fn gradients_adjoint<T: Real>(&self, design: &Design, outputs: Vec<Output>, witness: T) -> Gradients {
+    fn gradients_adjoint(&self, design: &Design, outputs: Vec<Output>) -> Gradients {
         let model = self.model();
         let (variables, asked) = (model.variables.len(), outputs.len());
         let fields = self.effects().fields(&design.values, 0.0);
@@ -155,16 +153,12 @@ impl Analysis<'_> {
             outputs,
             ..Gradients::default()
         };
-        let mut one = Tracing::new(self, design, &fields, &result.outputs, 0.0);
-        let mut all = Tracing::new(self, design, &fields, &result.outputs, witness);
+        let mut tracing = Tracing::new(self, design, &fields, &result.outputs, 0.0);
         let mut resisting: Vec<Resisting> = vec![(Vec::new(), 0.0); variables];
-        let mut walk = Walk::new(self, design, vec![false; model.bodies.len()], witness);
-        result.stop = walk.each(self, |solved, count| {
-            let times = &model.times[result.times.len()..][..count];
-            match solved {
-                Solved::One(stepper) => one.add(stepper, times, &mut resisting, &mut result),
-                Solved::Abreast(stepper) => all.add(stepper, times, &mut resisting, &mut result),
-            }
+        let mut walk = Walk::new(self, design, vec![false; model.bodies.len()]);
+        let mut times = model.times.chunks(1);
+        result.stop = walk.each(self, |one| {
+            tracing.add(one, times.next().unwrap_or_default(), &mut resisting, &mut result);
         });
         result.d.truncate(result.times.len() * asked * variables);
         result.admissibility = admissibility(self.opens(), resisting, result.times.len());

@@ -1,12 +1,10 @@
 //! Jerk over a motion.
 
-use fearless_simd::{Level, dispatch};
-
-use crate::analysis::{Analysis, Design, Solved, Walk};
+use crate::analysis::{Analysis, Design, Walk};
 use crate::motion::jerk::Jerk;
 use crate::motion::stepper::Stepper;
 use crate::motion::{BodyJerk, Stop};
-use crate::space::{Real, lanes, of_lanes};
+use crate::space::{Real, of_lanes};
 
 /// Third time derivatives of all bodies over a motion.
 #[derive(Clone, Debug, Default)]
@@ -34,41 +32,29 @@ impl Analysis<'_> {
     /// Where the third derivative of a driver's law jumps, it is that on the side which the law itself gives.
     pub fn jerks(&self, design: &[f64]) -> Jerks {
         let design = self.design(design, false);
-        dispatch!(Level::new(), simd => self.jerks_in(&design, usize::MAX, &mut |_| (), lanes(simd)))
+        self.jerks_in(&design, usize::MAX, &mut |_| ())
     }
 
     /// As [`Analysis::jerks`] of the nominal design, so many output times at a time: `each` sees them one part after the other.
     pub fn jerks_in_windows(&self, rows: usize, mut each: impl FnMut(&Jerks)) {
         let design = self.design(&[], false);
-        let last = dispatch!(Level::new(), simd => self.jerks_in(&design, rows, &mut each, lanes(simd)));
+        let last = self.jerks_in(&design, rows, &mut each);
         each(&last);
     }
 
-    fn jerks_in<T: Real>(
-        &self,
-        design: &Design,
-        rows: usize,
-        each: &mut dyn FnMut(&Jerks),
-        witness: T,
-    ) -> Jerks {
-        let (model, topology) = (self.model(), self.topology());
-        let mut one = Jerk::new(model, topology, 0.0);
-        let mut all = Jerk::new(model, topology, witness);
-        let mut walk = Walk::new(self, design, vec![false; model.bodies.len()], witness);
+    fn jerks_in(&self, design: &Design, rows: usize, each: &mut dyn FnMut(&Jerks)) -> Jerks {
+        let model = self.model();
+        let mut jerk = Jerk::new(model, self.topology(), 0.0);
+        let mut walk = Walk::new(self, design, vec![false; model.bodies.len()]);
         let mut result = Jerks { bodies: model.bodies.len(), ..Jerks::default() };
-        let mut done = 0;
-        result.stop = walk.each(self, |solved, count| {
+        let mut times = model.times.chunks(1);
+        result.stop = walk.each(self, |one| {
             if result.times.len() >= rows {
                 each(&result);
                 result.times.clear();
                 result.states.clear();
             }
-            let times = &model.times[done..done + count];
-            done += count;
-            match solved {
-                Solved::One(stepper) => add(&mut one, stepper, times, &mut result),
-                Solved::Abreast(stepper) => add(&mut all, stepper, times, &mut result),
-            }
+            add(&mut jerk, one, times.next().unwrap_or_default(), &mut result);
         });
         result
     }

@@ -3,7 +3,7 @@
 use faer::Mat;
 use faer::linalg::solvers::Solve;
 
-use crate::analysis::{Analysis, Solved, Walk};
+use crate::analysis::{Analysis, Walk};
 use crate::model::{Change, End, Model, VariableId};
 use crate::sensitivity::{Direct, FieldParts, conditions_at_design};
 use crate::space::{FullPivot, LANES, Vec3};
@@ -121,9 +121,8 @@ fn conditions(analysis: &Analysis<'_>, scales: &[f64]) -> Vec<Vec<f64>> {
             rows[at][v] = c.value * scales[v] / unit;
         }
     }
-    // One lane will do.
     let design = analysis.design(&[], false);
-    let mut walk = Walk::new(analysis, &design, vec![false; model.bodies.len()], 0.0);
+    let mut walk = Walk::new(analysis, &design, vec![false; model.bodies.len()]);
     let mut done = 0;
     let every = model.times.len().div_ceil(TIMES).max(1);
     let topology = analysis.topology();
@@ -131,8 +130,7 @@ fn conditions(analysis: &Analysis<'_>, scales: &[f64]) -> Vec<Vec<f64>> {
     let mut parts: Vec<_> = fields.iter().map(|f| FieldParts::new(topology, f, 0.0)).collect();
     if topology.redundant().next().is_some() {
         // A motion that ends early asks for less.
-        let _ = walk.each(analysis, |solved, count| {
-            let (Solved::One(stepper) | Solved::Abreast(stepper)) = solved;
+        let _ = walk.each(analysis, |stepper| {
             if done % every == 0 {
                 stepper.state.finish_wrenches(&stepper.topology);
                 let first = rows.len();
@@ -153,7 +151,7 @@ fn conditions(analysis: &Analysis<'_>, scales: &[f64]) -> Vec<Vec<f64>> {
                     });
                 }
             }
-            done += count;
+            done += 1;
         });
     }
     rows

@@ -1,13 +1,11 @@
 //! Second design derivatives over a motion: Hessians, their products with vectors, and how a curve bends along a change.
 
-use fearless_simd::{Level, dispatch};
-
-use crate::analysis::{Analysis, Design, Solved, Walk};
+use crate::analysis::{Analysis, Design, Walk};
 use crate::measure::{Moment, Output, bodies_asked_for, outputs};
 use crate::model::{BodyId, Fixed, GROUND};
 use crate::motion::Stop;
 use crate::motion::stepper::Stepper;
-use crate::number::{Dual, Real, lanes, of_lanes};
+use crate::number::{Dual, Real, of_lanes};
 use crate::sensitivity::{BodyCurvature, Seconds, Way};
 use crate::space::Pose;
 
@@ -64,35 +62,17 @@ impl Analysis<'_> {
     pub fn second(&self, design: &[f64], directions: &[Vec<f64>], pairs: &[[usize; 2]]) -> SecondDerivatives {
         let design = self.design(design, false);
         let directions: Vec<Vec<f64>> = directions.iter().map(|d| self.model().whole(d)).collect();
-        dispatch!(Level::new(), simd => self.second_in(&design, &directions, pairs, lanes(simd)))
-    }
-
-    fn second_in<T: Real>(
-        &self,
-        design: &Design,
-        directions: &[Vec<f64>],
-        pairs: &[[usize; 2]],
-        witness: T,
-    ) -> SecondDerivatives {
         let model = self.model();
-        let mut walk = Walk::new(self, design, vec![false; model.bodies.len()], witness);
+        let mut walk = Walk::new(self, &design, vec![false; model.bodies.len()]);
         let mut result = SecondDerivatives {
             pairs: pairs.to_vec(),
             outputs: outputs(model),
             bodies: model.bodies.len(),
             ..SecondDerivatives::default()
         };
-        let mut one = Bends::new(self, design, directions, pairs, 0.0);
-        let mut all = Bends::new(self, design, directions, pairs, witness);
-        let mut done = 0;
-        result.stop = walk.each(self, |solved, count| {
-            let times = &model.times[done..done + count];
-            match solved {
-                Solved::One(stepper) => one.add(stepper, times, &mut result),
-                Solved::Abreast(stepper) => all.add(stepper, times, &mut result),
-            }
-            done += count;
-        });
+        let mut bends = Bends::new(self, &design, &directions, pairs, 0.0);
+        let mut times = model.times.chunks(1);
+        result.stop = walk.each(self, |one| bends.add(one, times.next().unwrap_or_default(), &mut result));
         result
     }
 }

@@ -221,7 +221,7 @@ pub fn compare_with_difference(
     // stands still, or runs at a steady speed, the next order is round-off: it is judged as if it made up
     // the order before it once in the run.
     let span = if steps > 1 { times[steps - 1] - times[0] } else { 1.0 };
-    let mut magnitude = solution.motion.states.iter().fold([1.0_f64, 0.0, 0.0], |m, s| {
+    let mut magnitude = solution.motion.states().fold([1.0_f64, 0.0, 0.0], |m, s| {
         [
             m[0],
             m[1].max(s.omega.norm()).max(s.v.norm() / size),
@@ -250,7 +250,7 @@ pub fn compare_with_difference(
     ];
     let n = solution.motion.bodies;
     for (kind, of, order, dimension) in kinds {
-        let analytic = |k: usize, i: usize| solution.sensitivities.at(k, d.variable.0).map(|s| of(&s[i]));
+        let analytic = |k: usize, i: usize| solution.sensitivities.at(k, d.variable.0).map(|s| of(&s.body(i)));
         let everywhere = (0..steps).flat_map(|k| (0..n).map(move |i| (k, i)));
         let largest = everywhere.filter_map(|(k, i)| analytic(k, i)).map(Vec3::norm).fold(0.0, f64::max);
         let scale = largest.max(floor(order, dimension));

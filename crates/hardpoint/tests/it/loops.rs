@@ -52,7 +52,7 @@ fn a_chain_of_four_bars_is_solved_loop_by_loop_and_matches_its_closed_form() {
         let (s, c) = angle.sin_cos();
         for i in 0..=n {
             // A bar's frame is in its middle; its ends carry two joints on top, so weigh those.
-            let state = solution.motion.at(k)[1 + i];
+            let state = solution.motion.at(k).body(1 + i);
             let middle = model.bodies[1 + i].frame.r - Vec3::new(i as f64, 0.0, 0.0);
             let want = Vec3::new(i as f64 - s * middle.y, c * middle.y, 0.0);
             assert!(apart(state.r, want) < 1e-12, "bar {i} at {t}");
@@ -61,7 +61,7 @@ fn a_chain_of_four_bars_is_solved_loop_by_loop_and_matches_its_closed_form() {
             assert!(apart(state.a, want * middle.y) < 1e-9, "bar {i} at {t}");
         }
         for i in 0..n {
-            let state = solution.motion.at(k)[2 + n + i];
+            let state = solution.motion.at(k).body(2 + n + i);
             assert!(state.omega.norm() < 1e-11 && state.alpha.norm() < 1e-9, "coupler {i} at {t}");
         }
     }
@@ -72,7 +72,7 @@ fn absolute_coordinates_of_a_chain_give_the_same() {
     let model = Model::from_draft(&chain(4)).unwrap();
     let relative = Analysis::new(&model).unwrap().run();
     let absolute = Analysis::with(&model, Formulation::Absolute).unwrap().run();
-    for (a, b) in relative.motion.states.iter().zip(&absolute.motion.states) {
+    for (a, b) in relative.motion.states().zip(absolute.motion.states()) {
         assert!(apart(a.r, b.r) < 1e-12 && apart(a.a, b.a) < 1e-10);
     }
 }
@@ -153,7 +153,7 @@ fn a_coupled_truss_of_any_size_turns_as_one_body() {
         for (step, &t) in solution.motion.times.iter().enumerate() {
             let (s, c) = turned(at(n - 1), 0.1 * (2.0 * std::f64::consts::PI * t).sin()).sin_cos();
             for k in 1..n {
-                let state = solution.motion.at(step)[2 * k];
+                let state = solution.motion.at(step).body(2 * k);
                 let moved = state.r - model.bodies[2 * k].frame.r;
                 let [x, y] = at(k);
                 let want = Vec3::new(c * x - s * y - x, s * x + c * y - y, 0.0);
@@ -185,7 +185,7 @@ fn ten_thousand_loops_are_planned_in_proportion_and_move_like_one() {
         assert!(motion.stop.is_none());
         // What is one bar's motion is every bar's; the couplers stay level.
         let states = motion.motion.at(2);
-        (counts, largest, [states[1], states[n], states[1 + n]].map(|s| (s.omega, s.alpha)))
+        (counts, largest, [1, n, 1 + n].map(|b| states.body(b)).map(|s| (s.omega, s.alpha)))
     };
     let (one, two, many) = (plan(1), plan(2), plan(10_000));
     assert_eq!(many.1, one.1, "the largest block");
@@ -266,7 +266,7 @@ fn opens_as_lazy_tongs_do(n: usize, at: [usize; 2], tolerance: f64) -> usize {
                 let (rise, fall) = (0.5 * (i + j + 1) as f64, 0.5 * (i as f64 - j as f64));
                 let centre = Vec3::new(rise + fall * (c + s), rise + fall * (s - c), 0.0);
                 let body = 1 + 2 * (i * n + j);
-                let (up, down) = (solution.motion.at(step)[body], solution.motion.at(step)[body + 1]);
+                let (up, down) = (solution.motion.at(step).body(body), solution.motion.at(step).body(body + 1));
                 assert!(
                     apart(up.rotation.cols[0], Vec3::new(1.0, 0.0, 0.0)) < tolerance,
                     "up {i} {j} at {t}"

@@ -152,7 +152,7 @@ impl Case {
             let at = format!("t = {}", result["t"]);
             for (name, body) in result["bodies"].as_object().ok_or("no bodies")? {
                 let id = model.body(name).ok_or("unknown body")?;
-                let s = solution.motion.at(k)[id.0];
+                let s = solution.motion.at(k).body(id.0);
                 let mut check = |key: &str, got: Vec3| {
                     out.check(&scales, &["bodies", key], got, &body[key], || format!("{name} {key} at {at}"))
                 };
@@ -167,7 +167,8 @@ impl Case {
                     let d = solution
                         .sensitivities
                         .at(k, b.0)
-                        .ok_or_else(|| format!("`{variable}` has no numbers"))?[id.0];
+                        .ok_or_else(|| format!("`{variable}` has no numbers"))?
+                        .body(id.0);
                     let all = [
                         ("dr", d.dr),
                         ("dpi", d.dpi),

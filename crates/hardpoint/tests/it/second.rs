@@ -44,7 +44,7 @@ fn deviation(
             let along = |s: &hardpoint::Solution, b: usize| {
                 let mut sum = [Vec3::ZERO; 2];
                 for v in (0..variables).filter(|v| directions[u][*v] != 0.0) {
-                    let d = s.sensitivities.at(k, v).expect("followed")[b];
+                    let d = s.sensitivities.at(k, v).expect("followed").body(b);
                     sum[0] += d.dr * directions[u][v];
                     sum[1] += d.dpi * directions[u][v];
                 }

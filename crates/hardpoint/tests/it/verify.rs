@@ -2,7 +2,7 @@
 
 use std::ops::ControlFlow;
 
-use hardpoint::model::{Model, Place, VariableId};
+use hardpoint::model::{BodyId, Model, Place, VariableId};
 use hardpoint::sensitivity::BodySensitivity;
 use hardpoint::space::Vec3;
 use hardpoint::study::{CheckOutcome, Scheme, Verification, VerifyOptions, verify};
@@ -81,16 +81,15 @@ fn a_wrong_sensitivity_fails_and_is_named() {
         assert!(verified(&analysis, &right, scheme).passed());
         for (kind, of) in kinds {
             let mut wrong = right.clone();
-            let at = |k: usize, i: usize| (k * right.sensitivities.variables + variable.0) * n + i;
-            let states = &mut wrong.sensitivities.states;
-            let size =
-                |(k, i): &(usize, usize)| of(&mut right.sensitivities.states[at(*k, *i)].clone()).norm();
+            let at = |(k, i): (usize, usize)| right.sensitivities.at(k, variable.0).unwrap().body(i);
+            let size = |place: &(usize, usize)| of(&mut at(*place)).norm();
             let all = (0..steps).flat_map(|k| (1..n).map(move |i| (k, i)));
             let (k, i) = all.max_by(|a, b| size(a).total_cmp(&size(b))).unwrap();
             // At one output time alone: by three times what is tolerated, and by half.
-            let x = *of(&mut states[at(k, i)]);
             for part in [3.0 * scheme.tolerance(), 0.5] {
-                *of(&mut wrong.sensitivities.states[at(k, i)]) = x * (1.0 + part);
+                let (x, mut changed) = (*of(&mut at((k, i))), at((k, i)));
+                *of(&mut changed) = x * (1.0 + part);
+                wrong.sensitivities.set(k, variable, BodyId(i), &changed);
                 let report = verified(&analysis, &wrong, scheme);
                 let check = &report.checks[variable.0];
                 let worst = check.worst().unwrap();

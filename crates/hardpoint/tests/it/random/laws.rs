@@ -216,9 +216,7 @@ impl Case<'_> {
     /// Nothing that is given out is NaN or infinite.
     pub fn is_finite(&mut self, s: &Solution) {
         let states = s
-            .motion
-            .states
-            .iter()
+            .motion.states()
             .flat_map(|s| [s.r, s.v, s.omega, s.a, s.alpha].into_iter().chain(s.rotation.cols));
         let mut bad = Vec::new();
         // A distance of zero has no rate.
@@ -231,7 +229,7 @@ impl Case<'_> {
         if !states.into_iter().all(Vec3::is_finite) {
             bad.push("a body's state".to_string());
         }
-        if !s.motion.coordinates.iter().all(|q| q.is_finite())
+        if !(0..s.motion.len()).all(|k| s.motion.coordinates(k).all(f64::is_finite))
             || !s.motion.margins.iter().all(|m| m.value.is_finite())
         {
             bad.push("a coordinate or margin".into());
@@ -400,7 +398,7 @@ impl Case<'_> {
             }
             let at_rest = s.motion.times[0] == 0.0 && promise.closed;
             if at_rest && *admissibility == Admissibility::Admissible {
-                let moved = s.sensitivities.at(0, v).into_iter().flatten();
+                let moved = s.sensitivities.at(0, v).into_iter().flat_map(|d| d.iter());
                 let moved = moved.map(|d| (d.dr.norm() / model.size()).max(d.dpi.norm())).fold(0.0, f64::max);
                 let moved = moved * natural_step(model, VariableId(v));
                 let margin = s.motion.margins[0].value;
@@ -468,7 +466,7 @@ impl Case<'_> {
                     errors.push(((slope(value) - rate(3)).abs() / all, name));
                 };
             for b in 1..s.motion.bodies {
-                let state = |k: usize| &s.motion.at(k)[b];
+                let state = |k: usize| s.motion.at(k).body(b);
                 for axis in 0..3 {
                     let name = |what: &str| format!("{what} of {}", model.bodies[b].name);
                     let size = model.size();
@@ -597,9 +595,9 @@ fn flat(model: &Model, s: &Solution, size: f64, moved: Option<Pose>, anywhere: b
     };
     let zero = Vec3::ZERO;
     let of_states: [&dyn Fn(usize, usize) -> [Vec3; 2]; 3] = [
-        &|k, b| [place(s.motion.at(k)[b].r) * (1.0 / size), zero],
-        &|k, b| [back(s.motion.at(k)[b].v) * (1.0 / size), back(s.motion.at(k)[b].omega)],
-        &|k, b| [back(s.motion.at(k)[b].a) * (1.0 / size), back(s.motion.at(k)[b].alpha)],
+        &|k, b| [place(s.motion.at(k).body(b).r) * (1.0 / size), zero],
+        &|k, b| [back(s.motion.at(k).body(b).v) * (1.0 / size), back(s.motion.at(k).body(b).omega)],
+        &|k, b| [back(s.motion.at(k).body(b).a) * (1.0 / size), back(s.motion.at(k).body(b).alpha)],
     ];
     let states = of_states.map(vectors);
     let largest = |x: &[f64]| x.iter().map(|x| x.abs()).fold(0.0, f64::max);
@@ -610,7 +608,7 @@ fn flat(model: &Model, s: &Solution, size: f64, moved: Option<Pose>, anywhere: b
     }
     for &v in variables.iter().filter(|&&v| s.sensitivities.at(0, v).is_some()) {
         let natural = natural_step(model, VariableId(v));
-        let at = |k: usize, b: usize| s.sensitivities.at(k, v).expect("followed")[b];
+        let at = |k: usize, b: usize| s.sensitivities.at(k, v).expect("followed").body(b);
         let of: [&dyn Fn(usize, usize) -> [Vec3; 2]; 3] = [
             &|k, b| [back(at(k, b).dr) * (1.0 / size), back(at(k, b).dpi)],
             &|k, b| [back(at(k, b).dv) * (1.0 / size), back(at(k, b).domega)],
