@@ -105,6 +105,42 @@ impl Session {
         self.recording.steps.push(step);
         Number { value, id, session: self.id }
     }
+
+    #[inline(always)]
+    fn constant(&self, id: u32) -> Option<f64> {
+        match self.recording.steps[id as usize] {
+            Step::Constant(x) => Some(x),
+            _ => None,
+        }
+    }
+
+    /// The same, where it is no constant and no other number: what is known in every run is known while recording.
+    #[inline(always)]
+    fn push_folded(&mut self, step: Step, value: f64) -> Number {
+        let same = |id: u32| Number { value, id, session: self.id };
+        let (zero, one) = (|id| self.constant(id) == Some(0.0), |id| self.constant(id) == Some(1.0));
+        let all = |ids: &[u32]| ids.iter().all(|id| self.constant(*id).is_some());
+        let known = match step {
+            Step::Add(a, b) if zero(a) => return same(b),
+            Step::Add(a, b) | Step::Sub(a, b) if zero(b) => return same(a),
+            Step::Sub(a, b) if a == b => return self.push(Step::Constant(0.0), 0.0),
+            Step::Mul(a, b) if zero(a) || zero(b) => return self.push(Step::Constant(0.0), 0.0),
+            Step::Mul(a, b) if one(a) => return same(b),
+            Step::Mul(a, b) | Step::Div(a, b) if one(b) => return same(a),
+            Step::Div(a, b) if zero(a) && !zero(b) => return self.push(Step::Constant(0.0), 0.0),
+            Step::MulAdd(a, b, c) if zero(a) || zero(b) => return same(c),
+            Step::MulAdd(a, b, c) => all(&[a, b, c]),
+            Step::Add(a, b)
+            | Step::Sub(a, b)
+            | Step::Mul(a, b)
+            | Step::Div(a, b)
+            | Step::Larger(a, b)
+            | Step::Call(_, a, b) => all(&[a, b]),
+            Step::Neg(a) | Step::Abs(a) | Step::Sqrt(a) | Step::Round(a) => all(&[a]),
+            Step::Constant(_) | Step::Input(_) | Step::Uniform(_) => false,
+        };
+        self.push(if known { Step::Constant(value) } else { step }, value)
+    }
 }
 
 #[cold]
@@ -180,7 +216,7 @@ impl Number {
         self.value
     }
 
-    /// What it is in every run, if it was made a [`constant`](Number::constant).
+    /// What it is in every run, if it was made a [`constant`](Number::constant), or of constants alone.
     pub fn known(self) -> Option<f64> {
         SESSION.with_borrow(|s| match s.recording.steps[s.place(self) as usize] {
             Step::Constant(x) => Some(x),
@@ -193,7 +229,7 @@ impl Number {
     pub fn times_plus(self, factor: Self, addend: Self) -> Self {
         SESSION.with_borrow_mut(|s| {
             let step = Step::MulAdd(s.place(self), s.place(factor), s.place(addend));
-            s.push(step, self.value * factor.value + addend.value)
+            s.push_folded(step, self.value * factor.value + addend.value)
         })
     }
 
@@ -245,7 +281,7 @@ impl Number {
     fn unary(self, step: impl FnOnce(u32) -> Step, value: f64) -> Self {
         SESSION.with_borrow_mut(|s| {
             let step = step(s.place(self));
-            s.push(step, value)
+            s.push_folded(step, value)
         })
     }
 
@@ -253,7 +289,7 @@ impl Number {
     fn binary(self, o: Self, step: impl FnOnce(u32, u32) -> Step, value: f64) -> Self {
         SESSION.with_borrow_mut(|s| {
             let step = step(s.place(self), s.place(o));
-            s.push(step, value)
+            s.push_folded(step, value)
         })
     }
 }

@@ -17,11 +17,11 @@ use crate::motion::parts::Parts;
 use crate::motion::stepper::Stepper;
 use crate::motion::tape::{Programs, Purpose, Recorded, StepProgram, Tape};
 use crate::motion::{BodyState, Effort, Execution, Motion, Stop, StopKind};
-use crate::sensitivity::{
-    Admissibility, BodySensitivity, JointDefect, Sensing, Sensitivities, admissibility, admissibility_at_design,
-    along, record_derivatives,
-};
 use crate::number::record as recording;
+use crate::sensitivity::{
+    Admissibility, BodySensitivity, JointDefect, Sensing, Sensitivities, admissibility,
+    admissibility_at_design, along, record_derivatives,
+};
 use crate::sink::{Block, Sink, Store};
 use crate::space::LANES;
 use crate::topology::{Formulation, Topology, TopologyFault};
@@ -453,8 +453,10 @@ impl<'m> Analysis<'m> {
         if designs < 2 || !self.programs.pay(designs * self.model.times.len()) || by_driver || laws_change {
             return None;
         }
-        let one = self.program(Purpose { any_design: true, corrections: 1, sensitivities, margins: false })?;
-        let two = self.program(Purpose { any_design: true, corrections: 2, sensitivities, margins: false })?;
+        let one =
+            self.program(Purpose { any_design: true, corrections: 1, sensitivities, margins: false })?;
+        let two =
+            self.program(Purpose { any_design: true, corrections: 2, sensitivities, margins: false })?;
         SideBySide::new(self.started()?, [one, two])
     }
 
@@ -567,7 +569,8 @@ impl<'a> Walk<'a> {
     ) -> Self {
         let mut walk = Self::new(analysis, design, wanted);
         if analysis.programs.pay(analysis.model.times.len() * design.of_many) {
-            let (sensitivities, any_design) = (walk.sensing.is_some(), design.values.iter().any(|v| *v != 0.0));
+            let (sensitivities, any_design) =
+                (walk.sensing.is_some(), design.values.iter().any(|v| *v != 0.0));
             let moved: Vec<_> = walk.sensing.iter().flat_map(Sensing::moved).collect();
             let program = move |corrections| {
                 let purpose = Purpose { any_design, corrections, sensitivities, margins };

@@ -58,7 +58,6 @@ mod term;
 
 use std::fmt;
 
-
 pub use error::LawError;
 pub use expression::ExpressionError;
 use formula::Formula;

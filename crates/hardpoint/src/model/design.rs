@@ -563,8 +563,12 @@ impl<'e, T: Real> Design<'e, T> {
             given
         });
         // Markers at one place keep no distance, and it would have no derivative.
-        let apart = d.dot(d).largest() > 0.0;
-        let distance = given.unwrap_or_else(|| if apart { d.norm() } else { zero });
+        let keeps = || {
+            joint.kind.rows.contains(&Row::Distance)
+                || joint.kind.coordinates.iter().any(|c| c.row == Row::Distance)
+        };
+        let distance =
+            given.unwrap_or_else(|| if keeps() && d.dot(d).largest() > 0.0 { d.norm() } else { zero });
         let contact = joint.curve.as_ref().map_or(zero, |curve| {
             let drawn = curve.distance(m_i.rot.transpose_mul(d));
             let sign = || self.witness.like_lanes(|k| f64::signum(drawn.lane(k)));

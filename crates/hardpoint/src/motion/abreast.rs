@@ -109,7 +109,11 @@ impl<'p> Abreast<'p> {
 
     /// Keeps a forecast, to see later how good it was.
     fn look_ahead(&mut self, one: &Stepper<'_, f64>) {
-        if self.programs.is_some() && self.tape.is_none() && self.forecast.is_none() && one.forecast.known() == NODES {
+        if self.programs.is_some()
+            && self.tape.is_none()
+            && self.forecast.is_none()
+            && one.forecast.known() == NODES
+        {
             self.forecast = Some(one.forecast.clone());
         }
     }
@@ -202,7 +206,8 @@ impl Laws {
         if !by_program {
             for (d, driver) in drivers.chunks_exact_mut(ORDERS).enumerate() {
                 for lane in 0..LANES {
-                    for (to, x) in driver.iter_mut().zip(one.parts.law_of(d, 0).at(times[lane]).derivatives()) {
+                    for (to, x) in driver.iter_mut().zip(one.parts.law_of(d, 0).at(times[lane]).derivatives())
+                    {
                         to[lane] = x;
                     }
                 }
@@ -365,4 +370,3 @@ impl Tape {
         Margin::least(self.margins().iter().map(|block| block.0[lane]))
     }
 }
-

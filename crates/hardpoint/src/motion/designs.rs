@@ -87,7 +87,11 @@ impl<'m> SideBySide<'m> {
         }
         let mut effort = Effort { least_pivot_ratio: f64::INFINITY, ..Effort::default() };
         for (k, &t) in model.times.iter().enumerate() {
-            if k == 0 { self.start(t, &mut effort)? } else { self.step(t, &mut effort)? }
+            if k == 0 {
+                self.start(t, &mut effort)?
+            } else {
+                self.step(t, &mut effort)?
+            }
             each(k, &self.tapes[self.by]);
             effort.steps += 1;
             effort.by_program += 1;

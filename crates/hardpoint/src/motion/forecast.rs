@@ -311,7 +311,8 @@ mod tests {
                     factor * (1.0 + t / 0.1).powi(i32::try_from(degree).unwrap() - order as i32)
                 };
                 for (lane, &t) in ahead.iter().enumerate() {
-                    let all = (0..ORDERS * count).map(|j| (nodes[j / ORDERS], j % ORDERS, weights.of[j][lane]));
+                    let all =
+                        (0..ORDERS * count).map(|j| (nodes[j / ORDERS], j % ORDERS, weights.of[j][lane]));
                     let found: f64 = all.map(|(t, order, w)| w * power(t, order)).sum();
                     assert!((found - power(t, 0)).abs() < 1e-10, "{count} {degree} {t}: {found}");
                 }

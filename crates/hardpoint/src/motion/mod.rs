@@ -110,8 +110,8 @@ impl BodyState {
         let n = a.at(r) + v.w.cross(u);
         let (o, e) = (v.w, a.w);
         [
-            r.x, r.y, r.z, f.x, f.y, f.z, g.x, g.y, g.z, h.x, h.y, h.z, u.x, u.y, u.z, o.x, o.y, o.z, n.x, n.y, n.z,
-            e.x, e.y, e.z,
+            r.x, r.y, r.z, f.x, f.y, f.z, g.x, g.y, g.z, h.x, h.y, h.z, u.x, u.y, u.z, o.x, o.y, o.z, n.x,
+            n.y, n.z, e.x, e.y, e.z,
         ]
     }
 }

@@ -452,7 +452,8 @@ impl Tape {
             self.inputs[inputs.design + v] = Line(std::array::from_fn(of_lane));
         }
         let (given, found) = self.inputs.split_at_mut(inputs.of_design);
-        let (given, found) = (&lanes_of(given)[..design.program.inputs], &mut lanes_of(found)[..design.outputs()]);
+        let (given, found) =
+            (&lanes_of(given)[..design.program.inputs], &mut lanes_of(found)[..design.outputs()]);
         Room::default().run(design, given, found);
     }
 

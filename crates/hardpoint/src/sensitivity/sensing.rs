@@ -129,7 +129,11 @@ pub(super) fn note(resisting: &mut Resisting, topology: &Topology, defect: Defec
 /// after the other. Those of r and pi are W at r and its turning; all others are plain time derivatives of these
 /// (`docs/theory.md` (14)).
 #[inline(always)]
-fn components<T: Real>(w: &[Vec<Twist<T>>; 3], state: &State<T>, body: usize) -> [T; BodySensitivity::NUMBERS] {
+fn components<T: Real>(
+    w: &[Vec<Twist<T>>; 3],
+    state: &State<T>,
+    body: usize,
+) -> [T; BodySensitivity::NUMBERS] {
     let (w0, w1, w2) = (w[0][body], w[1][body], w[2][body]);
     let (r, v, a) = (state.pose[body].r, state.v[body], state.a[body]);
     let velocity = v.at(r);

@@ -250,7 +250,8 @@ pub fn compare_with_difference(
     ];
     let n = solution.motion.bodies;
     for (kind, of, order, dimension) in kinds {
-        let analytic = |k: usize, i: usize| solution.sensitivities.at(k, d.variable.0).map(|s| of(&s.body(i)));
+        let analytic =
+            |k: usize, i: usize| solution.sensitivities.at(k, d.variable.0).map(|s| of(&s.body(i)));
         let everywhere = (0..steps).flat_map(|k| (0..n).map(move |i| (k, i)));
         let largest = everywhere.filter_map(|(k, i)| analytic(k, i)).map(Vec3::norm).fold(0.0, f64::max);
         let scale = largest.max(floor(order, dimension));

@@ -60,8 +60,12 @@ fn moving_a_hardpoint_is_the_reference_change_of_every_marker_on_it() {
         let Some(w) = reference.variable(&variable.name) else { continue };
         compared += 1;
         for k in 0..ours.motion.len() {
-            for (a, b) in
-                ours.sensitivities.at(k, v).unwrap().iter().zip(theirs.sensitivities.at(k, w.0).unwrap().iter())
+            for (a, b) in ours
+                .sensitivities
+                .at(k, v)
+                .unwrap()
+                .iter()
+                .zip(theirs.sensitivities.at(k, w.0).unwrap().iter())
             {
                 for (p, q) in [(a.dr, b.dr), (a.dpi, b.dpi), (a.da, b.da), (a.dalpha, b.dalpha)] {
                     assert!(apart(p, q) < 1e-11, "{}: {p:?} {q:?}", variable.name);
@@ -194,7 +198,8 @@ fn a_point_on_a_hardpoint_follows_it_and_a_point_at_coordinates_stays_in_its_bod
     let solution = Analysis::new(&model).unwrap().run();
     let column = |name: &str| solution.measured.index(name).unwrap();
     for k in 0..solution.motion.len() {
-        let f = solution.motion.at(k).body(2).rotation * model.bodies[2].frame.rot.transpose_mul(Vec3::AXES[1]);
+        let f =
+            solution.motion.at(k).body(2).rotation * model.bodies[2].frame.rot.transpose_mul(Vec3::AXES[1]);
         assert!((solution.measured.d(k, VariableId(0), column("on.y"))[0] - f.y).abs() < 1e-13);
         assert_eq!(solution.measured.d(k, VariableId(0), column("off.y"))[0], 0.0);
     }

@@ -30,7 +30,8 @@ fn jerks_are_the_rates_of_accelerations_on_every_mechanism() {
             let (mut worst, mut scale) = ([0.0_f64; 2], [0.0_f64; 2]);
             for k in (1..jerks.times.len()).step_by(3) {
                 for b in 0..jerks.bodies {
-                    let (before, after, exact) = (&motion.at(k - 1).body(b), &motion.at(k + 1).body(b), jerks.at(k)[b]);
+                    let (before, after, exact) =
+                        (&motion.at(k - 1).body(b), &motion.at(k + 1).body(b), jerks.at(k)[b]);
                     let pairs =
                         [(after.a - before.a, exact.jerk), (after.alpha - before.alpha, exact.angular)];
                     for (n, (difference, exact)) in pairs.into_iter().enumerate() {

@@ -266,7 +266,8 @@ fn opens_as_lazy_tongs_do(n: usize, at: [usize; 2], tolerance: f64) -> usize {
                 let (rise, fall) = (0.5 * (i + j + 1) as f64, 0.5 * (i as f64 - j as f64));
                 let centre = Vec3::new(rise + fall * (c + s), rise + fall * (s - c), 0.0);
                 let body = 1 + 2 * (i * n + j);
-                let (up, down) = (solution.motion.at(step).body(body), solution.motion.at(step).body(body + 1));
+                let (up, down) =
+                    (solution.motion.at(step).body(body), solution.motion.at(step).body(body + 1));
                 assert!(
                     apart(up.rotation.cols[0], Vec3::new(1.0, 0.0, 0.0)) < tolerance,
                     "up {i} {j} at {t}"

@@ -216,7 +216,8 @@ impl Case<'_> {
     /// Nothing that is given out is NaN or infinite.
     pub fn is_finite(&mut self, s: &Solution) {
         let states = s
-            .motion.states()
+            .motion
+            .states()
             .flat_map(|s| [s.r, s.v, s.omega, s.a, s.alpha].into_iter().chain(s.rotation.cols));
         let mut bad = Vec::new();
         // A distance of zero has no rate.
