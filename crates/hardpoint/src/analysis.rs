@@ -446,24 +446,23 @@ impl<'m> Analysis<'m> {
     }
 
     /// What solves so many designs side by side, where that pays and can be done.
-    pub(crate) fn side_by_side(&self, designs: usize, sensitivities: bool) -> Option<SideBySide<'m>> {
+    pub(crate) fn side_by_side(&self, designs: usize, sensitivities: bool) -> Option<SideBySide<'_>> {
         // What goes by a driver asks for more than bodies; so does the course of a law that is another in every design.
         let by_driver = (0..self.model.measures.len()).any(|k| self.model.goes_by_driver(k));
         let laws_change = self.effects.laws_change();
         if designs < 2 || !self.programs.pay(designs * self.model.times.len()) || by_driver || laws_change {
             return None;
         }
-        let one =
-            self.program(Purpose { any_design: true, corrections: 1, sensitivities, margins: false })?;
-        let two =
-            self.program(Purpose { any_design: true, corrections: 2, sensitivities, margins: false })?;
-        SideBySide::new(self.started()?, [one, two])
+        let program = move |corrections| {
+            self.program(Purpose { any_design: true, corrections, sensitivities, margins: false })
+        };
+        SideBySide::new(self.started()?, Box::new(program))
     }
 
     /// Motions of up to as many designs as there are lanes, side by side.
     pub(crate) fn solve_designs(
         &self,
-        beside: &mut Option<SideBySide<'m>>,
+        beside: &mut Option<SideBySide<'_>>,
         designs: &[Vec<f64>],
         of_many: usize,
         solutions: &mut [Solution],
@@ -502,7 +501,7 @@ impl<'m> Analysis<'m> {
     /// All designs to the end, or nothing where one of them does not go as expected.
     fn solve_designs_in<S: Sink>(
         &self,
-        beside: &mut Option<SideBySide<'m>>,
+        beside: &mut Option<SideBySide<'_>>,
         designs: &[Vec<f64>],
         sinks: &mut [S],
         mut also: impl FnMut(usize, &Tape),

@@ -16,7 +16,7 @@ use super::forecast::{Forecast, NODES, ORDERS, Weights};
 use super::kinematics::{QUADRATIC, Residuals};
 use super::margin::Margin;
 use super::stepper::{Ahead, EVEN, LONGEST, MILD, MILD_CHANGE, RESTS, Saved, Stepper, smooth};
-use super::tape::{Room, Runnable, StepProgram, Tape};
+use super::tape::{MOST_CORRECTIONS, Room, Runnable, StepProgram, Tape};
 use super::walk::PART_OF_WAY;
 
 /// The first correction (rad, or sizes) must be within this: a forecast that fails by more is none.
@@ -125,7 +125,8 @@ impl<'p> Abreast<'p> {
             tape => tape.as_ref().map(|t| t.purpose().corrections),
         };
         let corrections = before.map_or_else(|| self.corrections(one), |before| before + 1);
-        let program = self.programs.as_ref().filter(|_| corrections <= 2 && one.selections == 0);
+        let program =
+            self.programs.as_ref().filter(|_| corrections <= MOST_CORRECTIONS && one.selections == 0);
         self.tape = program.and_then(|program| program(corrections)).map(Tape::new);
         match &mut self.tape {
             Some(tape) => {

@@ -3,27 +3,34 @@
 //! They start from where the nominal design does, and every check of a single design's step is made in every lane. Where one
 //! fails, nobody knows which design goes another way: each is then solved alone.
 
-use std::sync::Arc;
-
 use hardpoint_tape::{LANES, Lanes};
 
 use crate::model::{BodyId, VariableId};
 use crate::space::Real;
 
 use super::Effort;
+use super::abreast::ProgramOf;
 use super::forecast::{NODES, ORDERS, Weights};
+use super::kinematics::QUADRATIC;
 use super::stepper::{Ahead, MILD, MILD_CHANGE, Stepper, TRUST_FLOOR, smooth};
-use super::tape::{StepProgram, Tape};
+use super::tape::{MOST_CORRECTIONS, Tape};
 use super::walk::Path;
+
+/// A forecast that was so good at the last step will be good enough for one correction at the next one, and for two.
+const GOOD: [f64; 2] = [0.1 * QUADRATIC, 1e-5];
 
 /// Designs on their way through time.
 pub(crate) struct SideBySide<'m> {
     /// Of the nominal design, at the first output time; on the way it knows the laws, and nothing of positions.
     nominal: Stepper<'m, f64>,
-    /// With one correction, which serves where the forecast is good, and with two.
-    tapes: [Tape; 2],
-    /// Which of them has solved the last step.
+    /// Where tapes come from.
+    programs: ProgramOf<'m>,
+    /// With one correction, two and three; and whether they know the present designs.
+    tapes: [Option<(Tape, bool)>; MOST_CORRECTIONS],
+    /// Which of them has solved the last step, and the largest first correction then.
     by: usize,
+    corrected: f64,
+    designs: Vec<Vec<f64>>,
     weights: Weights,
     /// Per channel: what is known of it.
     known: Vec<[Lanes; NODES * ORDERS]>,
@@ -39,18 +46,24 @@ pub(crate) struct SideBySide<'m> {
 }
 
 impl<'m> SideBySide<'m> {
-    /// By these programs, with one correction and with two. None where the nominal design is not as drawn at its first output time,
-    /// where `nominal` stands: designs could have gone other ways till there.
-    pub fn new(nominal: Stepper<'m, f64>, programs: [Arc<StepProgram>; 2]) -> Option<Self> {
+    /// By these programs. None where there is none, and where the nominal design is not as drawn at its first output time, where
+    /// `nominal` stands: designs could have gone other ways till there.
+    pub fn new(nominal: Stepper<'m, f64>, programs: ProgramOf<'m>) -> Option<Self> {
         if nominal.saved.drivers.iter().any(|f| f[0] != 0.0) {
             return None;
         }
         let blocks = nominal.topology.blocks.len();
-        let tapes = programs.map(Tape::new);
-        let (channels, unknowns) = (tapes[0].channels().len(), tapes[0].unknowns().count());
+        let first = Tape::new(programs(MOST_CORRECTIONS)?);
+        let (channels, unknowns) = (first.channels().len(), first.unknowns().count());
+        let mut tapes = [const { None }; MOST_CORRECTIONS];
+        tapes[MOST_CORRECTIONS - 1] = Some((first, false));
         Some(Self {
             nominal,
-            by: 1,
+            programs,
+            tapes,
+            by: MOST_CORRECTIONS - 1,
+            corrected: 0.0,
+            designs: Vec::new(),
             weights: Weights::default(),
             known: vec![[[0.0; LANES]; NODES * ORDERS]; channels],
             times: [0.0; NODES],
@@ -59,13 +72,18 @@ impl<'m> SideBySide<'m> {
             determinants: vec![[0.0; LANES]; blocks],
             changes: vec![[0.0; LANES]; blocks],
             ratios: vec![0.0; blocks],
-            tapes,
         })
+    }
+
+    /// What has solved the last step.
+    fn tape(&self) -> &Tape {
+        let (tape, _) = self.tapes[self.by].as_ref().expect("the tape that is at work");
+        tape
     }
 
     /// Which variable moves which body, in the order of the derivatives.
     pub fn moved(&self) -> Vec<(VariableId, BodyId)> {
-        self.tapes[0].moved().to_vec()
+        self.tape().moved().to_vec()
     }
 
     /// These designs at all output times, one per lane; `each(k, ...)` sees the results of output time k. None where a step does not go
@@ -82,9 +100,11 @@ impl<'m> SideBySide<'m> {
 
     fn go(&mut self, designs: &[Vec<f64>], mut each: impl FnMut(usize, &Tape)) -> Option<Effort> {
         let model = self.nominal.model;
-        for tape in &mut self.tapes {
-            tape.set_designs(designs);
+        for (_, knows) in self.tapes.iter_mut().flatten() {
+            *knows = false;
         }
+        self.designs.clear();
+        self.designs.extend_from_slice(designs);
         let mut effort = Effort { least_pivot_ratio: f64::INFINITY, ..Effort::default() };
         for (k, &t) in model.times.iter().enumerate() {
             if k == 0 {
@@ -92,10 +112,10 @@ impl<'m> SideBySide<'m> {
             } else {
                 self.step(t, &mut effort)?
             }
-            each(k, &self.tapes[self.by]);
+            each(k, self.tape());
             effort.steps += 1;
             effort.by_program += 1;
-            effort.iterations += self.tapes[self.by].passes();
+            effort.iterations += self.tape().passes();
             for &ratio in &self.ratios {
                 if ratio < effort.least_pivot_ratio {
                     (effort.least_pivot_ratio, effort.least_pivot_time) = (ratio, t);
@@ -108,17 +128,17 @@ impl<'m> SideBySide<'m> {
     /// All designs at the first output time, from where the nominal one is.
     fn start(&mut self, t: f64, effort: &mut Effort) -> Option<()> {
         let saved = &self.nominal.saved;
-        let tape = &self.tapes[0];
-        for (known, channel) in self.known.iter_mut().zip(tape.channels()) {
-            *known = [[0.0; LANES]; NODES * ORDERS];
-            known[0] = [channel.saved(&saved.q, &saved.balls); LANES];
+        for n in 0..self.known.len() {
+            let x = self.tape().channels()[n].saved(&saved.q, &saved.balls);
+            self.known[n] = [[0.0; LANES]; NODES * ORDERS];
+            self.known[n][0] = [x; LANES];
         }
         (self.times, self.count) = ([t; NODES], 1);
         let before = saved.determinants.clone();
         self.nominal.drive(Path::Laws, t).ok()?;
-        self.solve(1, &[0.0; LANES], effort)?;
+        self.solve(MOST_CORRECTIONS, &[0.0; LANES], effort)?;
         for (b, before) in before.into_iter().enumerate() {
-            let now = self.tapes[self.by].determinant(b);
+            let now = self.tape().determinant(b);
             if !now.iter().all(|x| (MILD[0]..=MILD[1]).contains(&(x / before))) {
                 return None;
             }
@@ -139,9 +159,9 @@ impl<'m> SideBySide<'m> {
         }
         nominal.fastest_driver = nominal.driver_speed();
         let ahead = [h; LANES];
-        if self.count < NODES || self.solve(0, &ahead, effort).is_none() {
-            self.solve(1, &ahead, effort)?;
-        }
+        let poor = GOOD.iter().filter(|good| !(self.corrected <= **good)).count();
+        let least = if self.count < NODES { MOST_CORRECTIONS } else { 1 + poor };
+        (least..=MOST_CORRECTIONS).find(|corrections| self.solve(*corrections, &ahead, effort).is_some())?;
         if !self.speeds_are_smooth(h) || !self.determinants_are_even(h) {
             return None;
         }
@@ -154,11 +174,19 @@ impl<'m> SideBySide<'m> {
         Some(())
     }
 
-    /// Tries one of the tapes, so long beyond the newest position, with the drivers where the nominal stepper has put them.
-    fn solve(&mut self, by: usize, ahead: &Lanes, effort: &mut Effort) -> Option<()> {
-        self.by = by;
+    /// Tries the tape with so many corrections, so long beyond the newest position, with the drivers where the nominal stepper has put
+    /// them.
+    fn solve(&mut self, corrections: usize, ahead: &Lanes, effort: &mut Effort) -> Option<()> {
         self.weights.set((self.times.map(|t| t - self.times[0]), self.count), ahead);
-        let (tape, nominal) = (&mut self.tapes[by], &self.nominal);
+        let kept = &mut self.tapes[corrections - 1];
+        if kept.is_none() {
+            *kept = Some((Tape::new((self.programs)(corrections)?), false));
+        }
+        let (tape, knows) = kept.as_mut()?;
+        if !std::mem::replace(knows, true) {
+            tape.set_designs(&self.designs);
+        }
+        let nominal = &self.nominal;
         tape.weights_mut().copy_from_slice(&self.weights.of);
         for (channel, known) in self.known.iter().enumerate() {
             tape.known_mut(channel).copy_from_slice(known);
@@ -169,13 +197,14 @@ impl<'m> SideBySide<'m> {
         let judged = (&nominal.branch[..], &nominal.try_others[..]);
         let residuals = tape.solve(judged, TRUST_FLOOR, &mut self.ratios).ok()?;
         effort.worst_residual = effort.worst_residual.max(residuals.largest);
+        (self.by, self.corrected) = (corrections - 1, tape.first_correction());
         Some(())
     }
 
     /// Whether the speeds are those of the same branch as a step h before.
     fn speeds_are_smooth(&self, h: f64) -> bool {
         let (mut fastest, mut difference) = (0.0, 0.0);
-        for ((c, [speeds, _]), [before, acceleration]) in self.tapes[self.by].unknowns().zip(&self.rates) {
+        for ((c, [speeds, _]), [before, acceleration]) in self.tape().unknowns().zip(&self.rates) {
             let per_unit = self.nominal.topology.coordinates[c].per_unit;
             for lane in 0..LANES {
                 let speed = f64::max(speeds[lane].abs(), before[lane].abs());
@@ -192,7 +221,7 @@ impl<'m> SideBySide<'m> {
         let beside = h / self.nominal.change_step;
         let mut even = true;
         for b in 0..self.determinants.len() {
-            let now = self.tapes[self.by].determinant(b);
+            let now = self.tape().determinant(b);
             for lane in 0..LANES {
                 let ratio = now[lane] / self.determinants[b][lane];
                 let change = ratio - 1.0;
@@ -210,7 +239,7 @@ impl<'m> SideBySide<'m> {
 
     /// Goes on from where the designs are at time t.
     fn save(&mut self, t: f64) {
-        let tape = &self.tapes[self.by];
+        let Some((tape, _)) = &self.tapes[self.by] else { return };
         for (channel, known) in self.known.iter_mut().enumerate() {
             known.copy_within(..(NODES - 1) * ORDERS, ORDERS);
             for (order, to) in known[..ORDERS].iter_mut().enumerate() {

@@ -30,9 +30,11 @@ use super::margin::Margins;
 use super::parts::Parts;
 use super::stepper::{LOCKED, Saved, Stepper};
 
-/// Newton's first correction while recording, in units of each coordinate, for a program with one correction and for one with two:
-/// the one is followed by round-off, the other by what is accepted as the last.
-const OFFSET: [f64; 2] = [1e-9, 1e-5];
+/// Newton's first correction while recording, in units of each coordinate, for programs with one correction, two and three: the last
+/// of them leaves round-off.
+const OFFSET: [f64; MOST_CORRECTIONS] = [1e-9, 1e-5, 1e-3];
+/// Steps that need more corrections are left to the kernel.
+pub(super) const MOST_CORRECTIONS: usize = 3;
 /// Mechanisms with more links than this are not recorded: the program would no longer stay in the fast memory of a core.
 const MOST_LINKS: usize = 200;
 /// What a channel is foreseen by.
@@ -43,7 +45,7 @@ const CONDITIONS: usize = NODES * ORDERS;
 pub(crate) struct Purpose {
     /// Whether the design is an input; else it is the nominal one.
     pub any_design: bool,
-    /// Newton's corrections: one or two.
+    /// Newton's corrections: one, two or three.
     pub corrections: usize,
     /// Whether it works out the derivatives of all bodies by all variables.
     pub sensitivities: bool,
@@ -267,10 +269,6 @@ impl StepProgram {
         let (program, _) = recorded.program(Options::default());
         let (design, step) = program.staged(|input| input as usize >= inputs.design);
         let [design, step] = [design, step].map(|program| Runnable::new(program, execution));
-        // The interpreter is no faster than the kernel.
-        if step.code.is_none() && execution == Execution::Fastest {
-            return None;
-        }
         Some(Self { purpose, design, step, channels, unknowns, blocks, inputs, outputs, variables, moved })
     }
 
@@ -336,8 +334,8 @@ fn foresee(
     }
 }
 
-/// Recording pays from so many steps on: it costs about as much as they do.
-const PAYS: usize = 500;
+/// Recording pays from so many steps on: it costs less than a millisecond or two beside them, and later runs have it for nothing.
+const PAYS: usize = 100;
 /// After so many groups of steps, a program that was refused in more than a quarter of them is given up.
 const TRIAL: usize = 8;
 
@@ -561,6 +559,13 @@ impl Tape {
     /// Calls that refused, which seemed solved.
     pub fn refuse(&mut self) {
         self.refused += 1;
+    }
+
+    /// The largest first correction of all blocks, rad or sizes.
+    #[inline(always)]
+    pub fn first_correction(&self) -> f64 {
+        let at = |b: usize| &self.outputs[self.program.outputs.blocks + PER_BLOCK * b + 4].0;
+        (0..self.program.blocks.len()).map(|b| largest(at(b))).fold(0.0, f64::max)
     }
 
     /// Newton's passes in all blocks.
