@@ -7,6 +7,7 @@ use std::sync::{Arc, OnceLock};
 
 use hardpoint_tape::Number;
 
+use crate::blocks::Turning;
 use crate::law::Law;
 use crate::measure::{self, Before, Measured, SlopeValues};
 use crate::model::{BodyId, Effects, Field, Geometry, Model};
@@ -398,7 +399,7 @@ impl<'m> Analysis<'m> {
         for (group, designs) in designs.chunks(LANES).enumerate() {
             let number = |k: usize| group * LANES + k;
             let mut sinks: Vec<S> = (0..designs.len()).map(|k| sink(number(k))).collect();
-            match self.solve_designs_in(&mut beside, designs, &mut sinks, |_, _| ()) {
+            match self.stream_side_by_side(&mut beside, designs, &mut sinks) {
                 Some(effort) => {
                     let steps = self.model.times.len();
                     for (k, sink) in sinks.into_iter().enumerate() {
@@ -467,23 +468,26 @@ impl<'m> Analysis<'m> {
         of_many: usize,
         solutions: &mut [Solution],
     ) {
-        let mut stores = Vec::with_capacity(designs.len());
-        let mut coordinates = Vec::with_capacity(designs.len());
-        for Solution { motion, sensitivities, .. } in solutions.iter_mut() {
+        for Solution { motion, .. } in solutions.iter_mut() {
             self.make_room(motion, self.model.times.len());
-            coordinates.push(std::mem::take(&mut motion.coordinates));
-            stores.push(Store { motion, sensitivities });
         }
-        let mut lanes = vec![[0.0; LANES]; self.topology.coordinates.len()];
-        let solved = self.solve_designs_in(beside, designs, &mut stores, |k, tape| {
-            tape.coordinates(&self.topology, &mut lanes);
-            for (lane, coordinates) in coordinates.iter_mut().enumerate() {
-                coordinates.set(k, 0, lanes.iter().map(|q| q[lane]));
-            }
+        let mut turning = Turning::default();
+        let mut coordinates = vec![[0.0; LANES]; self.topology.coordinates.len()];
+        let last = self.model.times.len() - 1;
+        let solved = beside.as_mut().filter(|_| designs.len() > 1).and_then(|beside| {
+            let values: Vec<Vec<f64>> = designs.iter().map(|d| self.model.whole(d)).collect();
+            beside.run(&values, |k, tape| {
+                let [states, _] = tape.results();
+                tape.coordinates(&self.topology, &mut coordinates);
+                turning.put(k, [states, &coordinates]);
+                if k % LANES == LANES - 1 || k == last {
+                    for (design, Solution { motion, .. }) in solutions.iter_mut().enumerate() {
+                        let blocks = [motion.states.block_mut(k), motion.coordinates.block_mut(k)];
+                        turning.take(design, blocks);
+                    }
+                }
+            })
         });
-        for (Solution { motion, .. }, coordinates) in solutions.iter_mut().zip(coordinates) {
-            motion.coordinates = coordinates;
-        }
         for (design, solution) in designs.iter().zip(solutions) {
             let Some(effort) = solved else {
                 let design = Design { of_many, ..self.design(design, false) };
@@ -494,17 +498,19 @@ impl<'m> Analysis<'m> {
             solution.motion.effort = effort;
             solution.sensitivities = Sensitivities::default();
             solution.stop = None;
-            self.measure(&self.design(design, false), &SlopeValues::default(), None, solution);
+            solution.measured = Measured::default();
+            if self.measures {
+                self.measure(&self.design(design, false), &SlopeValues::default(), None, solution);
+            }
         }
     }
 
     /// All designs to the end, or nothing where one of them does not go as expected.
-    fn solve_designs_in<S: Sink>(
+    fn stream_side_by_side<S: Sink>(
         &self,
         beside: &mut Option<SideBySide<'_>>,
         designs: &[Vec<f64>],
         sinks: &mut [S],
-        mut also: impl FnMut(usize, &Tape),
     ) -> Option<Effort> {
         let beside = beside.as_mut().filter(|_| designs.len() > 1)?;
         let values: Vec<Vec<f64>> = designs.iter().map(|d| self.model.whole(d)).collect();
@@ -512,7 +518,6 @@ impl<'m> Analysis<'m> {
         beside.run(&values, |k, tape| {
             let [states, derivatives] = tape.results();
             let block = Block { states, derivatives };
-            also(k, tape);
             for body in (1..wanted.len()).filter(|b| wanted[*b]) {
                 for (lane, sink) in sinks.iter_mut().enumerate() {
                     sink.state(k, BodyId(body), &block.state(body, lane));

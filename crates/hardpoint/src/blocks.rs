@@ -100,6 +100,36 @@ impl<'b> Row<'b> {
     }
 }
 
+/// Turns what lies side by side by design into what lies side by side by output time, eight of each.
+#[derive(Debug, Default)]
+pub(crate) struct Turning {
+    /// The numbers of one output time after the other, number by number.
+    lines: Vec<Line>,
+    width: usize,
+}
+
+impl Turning {
+    /// Takes the numbers of output time k, which come in two lists, those of eight designs side by side.
+    #[inline(always)]
+    pub fn put(&mut self, k: usize, lists: [&[Lanes]; 2]) {
+        self.width = lists[0].len() + lists[1].len();
+        self.lines.resize(LANES * self.width, Line::default());
+        let to = &mut lanes_of(&mut self.lines)[k % LANES * self.width..][..self.width];
+        let (first, second) = to.split_at_mut(lists[0].len());
+        first.copy_from_slice(lists[0]);
+        second.copy_from_slice(lists[1]);
+    }
+
+    /// Writes the numbers of one design, those of eight output times side by side.
+    #[inline(always)]
+    pub fn take(&self, design: usize, lists: [&mut [Lanes]; 2]) {
+        let of_times: [&[Line]; LANES] = std::array::from_fn(|k| &self.lines[k * self.width..][..self.width]);
+        for (column, to) in lists.into_iter().flatten().enumerate() {
+            *to = std::array::from_fn(|k| of_times[k][column].0[design]);
+        }
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
