@@ -481,10 +481,19 @@ impl<'m> Analysis<'m> {
                 tape.coordinates(&self.topology, &mut coordinates);
                 turning.put(k, [states, &coordinates]);
                 if k % LANES == LANES - 1 || k == last {
-                    for (design, Solution { motion, .. }) in solutions.iter_mut().enumerate() {
-                        let blocks = [motion.states.block_mut(k), motion.coordinates.block_mut(k)];
-                        turning.take(design, blocks);
-                    }
+                    let mut blocks = solutions.iter_mut().map(|Solution { motion, .. }| {
+                        [motion.states.block_mut(k), motion.coordinates.block_mut(k)]
+                    });
+                    let mut blocks: [_; LANES] = std::array::from_fn(|_| blocks.next().unwrap_or_default());
+                    let first = states.len();
+                    turning.each(|column, designs| {
+                        let (list, column) = if column < first { (0, column) } else { (1, column - first) };
+                        for (blocks, lanes) in blocks.iter_mut().zip(designs) {
+                            if let Some(to) = blocks[list].get_mut(column) {
+                                *to = *lanes;
+                            }
+                        }
+                    });
                 }
             })
         });

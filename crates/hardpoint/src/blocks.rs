@@ -120,14 +120,28 @@ impl Turning {
         second.copy_from_slice(lists[1]);
     }
 
-    /// Writes the numbers of one design, those of eight output times side by side.
+    /// Number by number, those of eight designs, each with its eight output times side by side.
     #[inline(always)]
-    pub fn take(&self, design: usize, lists: [&mut [Lanes]; 2]) {
+    pub fn each(&self, mut out: impl FnMut(usize, &[Lanes; LANES])) {
         let of_times: [&[Line]; LANES] = std::array::from_fn(|k| &self.lines[k * self.width..][..self.width]);
-        for (column, to) in lists.into_iter().flatten().enumerate() {
-            *to = std::array::from_fn(|k| of_times[k][column].0[design]);
+        for column in 0..self.width {
+            out(column, &transposed(&of_times.map(|lines| lines[column].0)));
         }
     }
+}
+
+/// By blocks of two by two, which a register of two numbers turns.
+#[inline(always)]
+fn transposed(rows: &[Lanes; LANES]) -> [Lanes; LANES] {
+    let mut columns = [[0.0; LANES]; LANES];
+    for i in (0..LANES).step_by(2) {
+        for j in (0..LANES).step_by(2) {
+            let [[a, b], [c, d]] = [[rows[i][j], rows[i][j + 1]], [rows[i + 1][j], rows[i + 1][j + 1]]];
+            ([columns[j][i], columns[j][i + 1]], [columns[j + 1][i], columns[j + 1][i + 1]]) =
+                ([a, c], [b, d]);
+        }
+    }
+    columns
 }
 
 #[cfg(test)]

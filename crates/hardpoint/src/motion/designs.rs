@@ -19,10 +19,22 @@ use super::walk::Path;
 /// A forecast that was so good at the last step will be good enough for one correction at the next one, and for two.
 const GOOD: [f64; 2] = [0.1 * QUADRATIC, 1e-5];
 
+/// What the drivers do up to an output time: the same for all designs.
+#[derive(Clone, Debug)]
+struct Drive {
+    /// Since the output time before.
+    h: f64,
+    /// Speed of the fastest driver (rad, or sizes, per s), there or before.
+    fastest: f64,
+}
+
 /// Designs on their way through time.
 pub(crate) struct SideBySide<'m> {
-    /// Of the nominal design, at the first output time; on the way it knows the laws, and nothing of positions.
+    /// Of the nominal design, at the first output time.
     nominal: Stepper<'m, f64>,
+    /// What the drivers do at every output time, up to the first where they do not go there evenly.
+    course: Vec<Drive>,
+    drivers: Vec<[f64; ORDERS]>,
     /// Where tapes come from.
     programs: ProgramOf<'m>,
     /// With one correction, two and three; and whether they know the present designs.
@@ -48,7 +60,7 @@ pub(crate) struct SideBySide<'m> {
 impl<'m> SideBySide<'m> {
     /// By these programs. None where there is none, and where the nominal design is not as drawn at its first output time, where
     /// `nominal` stands: designs could have gone other ways till there.
-    pub fn new(nominal: Stepper<'m, f64>, programs: ProgramOf<'m>) -> Option<Self> {
+    pub fn new(mut nominal: Stepper<'m, f64>, programs: ProgramOf<'m>) -> Option<Self> {
         if nominal.saved.drivers.iter().any(|f| f[0] != 0.0) {
             return None;
         }
@@ -57,8 +69,11 @@ impl<'m> SideBySide<'m> {
         let (channels, unknowns) = (first.channels().len(), first.unknowns().count());
         let mut tapes = [const { None }; MOST_CORRECTIONS];
         tapes[MOST_CORRECTIONS - 1] = Some((first, false));
+        let (course, drivers) = course(&mut nominal);
         Some(Self {
             nominal,
+            course,
+            drivers,
             programs,
             tapes,
             by: MOST_CORRECTIONS - 1,
@@ -88,17 +103,7 @@ impl<'m> SideBySide<'m> {
 
     /// These designs at all output times, one per lane; `each(k, ...)` sees the results of output time k. None where a step does not go
     /// as expected in some lane.
-    pub fn run(&mut self, designs: &[Vec<f64>], each: impl FnMut(usize, &Tape)) -> Option<Effort> {
-        let Stepper { time, ahead, fastest_driver, .. } = self.nominal;
-        let (drivers, moves) = (self.nominal.saved.drivers.clone(), self.nominal.moves.clone());
-        let effort = self.go(designs, each);
-        let nominal = &mut self.nominal;
-        (nominal.time, nominal.ahead, nominal.fastest_driver) = (time, ahead, fastest_driver);
-        (nominal.saved.drivers, nominal.moves) = (drivers, moves);
-        effort
-    }
-
-    fn go(&mut self, designs: &[Vec<f64>], mut each: impl FnMut(usize, &Tape)) -> Option<Effort> {
+    pub fn run(&mut self, designs: &[Vec<f64>], mut each: impl FnMut(usize, &Tape)) -> Option<Effort> {
         let model = self.nominal.model;
         for (_, knows) in self.tapes.iter_mut().flatten() {
             *knows = false;
@@ -110,7 +115,7 @@ impl<'m> SideBySide<'m> {
             if k == 0 {
                 self.start(t, &mut effort)?
             } else {
-                self.step(t, &mut effort)?
+                self.step(k, t, &mut effort)?
             }
             each(k, self.tape());
             effort.steps += 1;
@@ -134,11 +139,9 @@ impl<'m> SideBySide<'m> {
             self.known[n][0] = [x; LANES];
         }
         (self.times, self.count) = ([t; NODES], 1);
-        let before = saved.determinants.clone();
-        self.nominal.drive(Path::Laws, t).ok()?;
-        self.solve(MOST_CORRECTIONS, &[0.0; LANES], effort)?;
-        for (b, before) in before.into_iter().enumerate() {
-            let now = self.tape().determinant(b);
+        self.solve(MOST_CORRECTIONS, 0, &[0.0; LANES], effort)?;
+        for b in 0..self.determinants.len() {
+            let (now, before) = (self.tape().determinant(b), self.nominal.saved.determinants[b]);
             if !now.iter().all(|x| (MILD[0]..=MILD[1]).contains(&(x / before))) {
                 return None;
             }
@@ -149,34 +152,22 @@ impl<'m> SideBySide<'m> {
         Some(())
     }
 
-    /// All designs at the next output time.
-    fn step(&mut self, t: f64, effort: &mut Effort) -> Option<()> {
-        let h = t - self.nominal.time;
-        let nominal = &mut self.nominal;
-        nominal.drive(Path::Laws, t).ok()?;
-        if !nominal.is_clear(t, h) {
-            return None;
-        }
-        nominal.fastest_driver = nominal.driver_speed();
-        let ahead = [h; LANES];
+    /// All designs at the next output time, k.
+    fn step(&mut self, k: usize, t: f64, effort: &mut Effort) -> Option<()> {
+        let ahead = [self.course.get(k)?.h; LANES];
         let poor = GOOD.iter().filter(|good| !(self.corrected <= **good)).count();
         let least = if self.count < NODES { MOST_CORRECTIONS } else { 1 + poor };
-        (least..=MOST_CORRECTIONS).find(|corrections| self.solve(*corrections, &ahead, effort).is_some())?;
-        if !self.speeds_are_smooth(h) || !self.determinants_are_even(h) {
+        (least..=MOST_CORRECTIONS)
+            .find(|corrections| self.solve(*corrections, k, &ahead, effort).is_some())?;
+        if !self.speeds_are_smooth(k) || !self.determinants_are_even(k) {
             return None;
         }
-        for d in 0..self.nominal.drivers.len() {
-            let moved = self.nominal.drivers[d][0] - self.nominal.saved.drivers[d][0];
-            self.nominal.moves[d] = moved.abs() / self.nominal.driver_units[d];
-        }
-        self.nominal.ahead = Ahead::Even;
         self.save(t);
         Some(())
     }
 
-    /// Tries the tape with so many corrections, so long beyond the newest position, with the drivers where the nominal stepper has put
-    /// them.
-    fn solve(&mut self, corrections: usize, ahead: &Lanes, effort: &mut Effort) -> Option<()> {
+    /// Tries the tape with so many corrections at output time k, so long beyond the newest position.
+    fn solve(&mut self, corrections: usize, k: usize, ahead: &Lanes, effort: &mut Effort) -> Option<()> {
         self.weights.set((self.times.map(|t| t - self.times[0]), self.count), ahead);
         let kept = &mut self.tapes[corrections - 1];
         if kept.is_none() {
@@ -191,7 +182,8 @@ impl<'m> SideBySide<'m> {
         for (channel, known) in self.known.iter().enumerate() {
             tape.known_mut(channel).copy_from_slice(known);
         }
-        for (to, x) in tape.drivers_mut().iter_mut().zip(nominal.drivers.as_flattened()) {
+        let drivers = nominal.drivers.len();
+        for (to, x) in tape.drivers_mut().iter_mut().zip(self.drivers[k * drivers..].as_flattened()) {
             *to = [*x; LANES];
         }
         let judged = (&nominal.branch[..], &nominal.try_others[..]);
@@ -201,8 +193,9 @@ impl<'m> SideBySide<'m> {
         Some(())
     }
 
-    /// Whether the speeds are those of the same branch as a step h before.
-    fn speeds_are_smooth(&self, h: f64) -> bool {
+    /// Whether the speeds at output time k are those of the same branch as at the one before.
+    fn speeds_are_smooth(&self, k: usize) -> bool {
+        let Drive { h, fastest: fastest_driver } = self.course[k];
         let (mut fastest, mut difference) = (0.0, 0.0);
         for ((c, [speeds, _]), [before, acceleration]) in self.tape().unknowns().zip(&self.rates) {
             let per_unit = self.nominal.topology.coordinates[c].per_unit;
@@ -213,12 +206,12 @@ impl<'m> SideBySide<'m> {
                 difference = Real::larger(difference, apart * per_unit);
             }
         }
-        smooth(difference, fastest, self.nominal.fastest_driver)
+        smooth(difference, fastest, fastest_driver)
     }
 
-    /// Whether every determinant has changed by little over a step h, and about as much as over the step before.
-    fn determinants_are_even(&mut self, h: f64) -> bool {
-        let beside = h / self.nominal.change_step;
+    /// Whether every determinant has changed by little up to output time k, and about as much as over the step before.
+    fn determinants_are_even(&mut self, k: usize) -> bool {
+        let beside = self.course[k].h / self.course[k - 1].h;
         let mut even = true;
         for b in 0..self.determinants.len() {
             let now = self.tape().determinant(b);
@@ -227,13 +220,12 @@ impl<'m> SideBySide<'m> {
                 let change = ratio - 1.0;
                 // Written so that NaN is not even.
                 even &= (MILD[0]..=MILD[1]).contains(&ratio);
-                if self.nominal.ahead == Ahead::Even {
+                if k > 1 {
                     even &= (change - self.changes[b][lane] * beside).abs() <= MILD_CHANGE;
                 }
                 (self.changes[b][lane], self.determinants[b][lane]) = (change, now[lane]);
             }
         }
-        self.nominal.change_step = h;
         even
     }
 
@@ -252,7 +244,30 @@ impl<'m> SideBySide<'m> {
         self.times.rotate_right(1);
         self.times[0] = t;
         self.count = usize::min(self.count + 1, NODES);
-        self.nominal.saved.drivers.copy_from_slice(&self.nominal.drivers);
-        self.nominal.time = t;
     }
+}
+
+/// What the drivers do, as long as nothing else happens between two output times than these show, and as long as no singular position
+/// is known to be near where they begin; value, speed and acceleration of each at every output time.
+fn course(nominal: &mut Stepper<'_, f64>) -> (Vec<Drive>, Vec<[f64; ORDERS]>) {
+    let (mut course, mut drivers) = (Vec::new(), Vec::new());
+    for (k, &t) in nominal.model.times.iter().enumerate() {
+        let h = t - nominal.time;
+        if nominal.drive(Path::Laws, t).is_err() || k > 0 && !nominal.is_clear(t, h) {
+            break;
+        }
+        nominal.fastest_driver = nominal.driver_speed();
+        if k > 0 {
+            for d in 0..nominal.drivers.len() {
+                let moved = nominal.drivers[d][0] - nominal.saved.drivers[d][0];
+                nominal.moves[d] = moved.abs() / nominal.driver_units[d];
+            }
+            nominal.ahead = Ahead::Even;
+        }
+        nominal.saved.drivers.copy_from_slice(&nominal.drivers);
+        nominal.time = t;
+        course.push(Drive { h, fastest: nominal.fastest_driver });
+        drivers.extend_from_slice(&nominal.drivers);
+    }
+    (course, drivers)
 }
