@@ -36,7 +36,7 @@ const OFFSET: [f64; MOST_CORRECTIONS] = [1e-9, 1e-5, 1e-3];
 /// Steps that need more corrections are left to the kernel.
 pub(super) const MOST_CORRECTIONS: usize = 3;
 /// Mechanisms with more links than this are not recorded: the program would no longer stay in the fast memory of a core.
-const MOST_LINKS: usize = 200;
+const MOST_LINKS: usize = 4000;
 /// What a channel is foreseen by.
 const CONDITIONS: usize = NODES * ORDERS;
 
