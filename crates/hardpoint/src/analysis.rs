@@ -20,8 +20,8 @@ use crate::motion::tape::{Programs, Purpose, Recorded, StepProgram, Tape};
 use crate::motion::{BodyState, Effort, Execution, Motion, Stop, StopKind};
 use crate::number::record as recording;
 use crate::sensitivity::{
-    Admissibility, BodySensitivity, JointDefect, Sensing, Sensitivities, admissibility,
-    admissibility_at_design, along, record_derivatives,
+    Admissibility, BodySensitivity, JointDefect, Resisting, Sensing, Sensitivities, admissibility,
+    admissibility_at_design, along, note_defects, record_derivatives,
 };
 use crate::sink::{Block, Sink, Store};
 use crate::space::LANES;
@@ -400,10 +400,10 @@ impl<'m> Analysis<'m> {
             let number = |k: usize| group * LANES + k;
             let mut sinks: Vec<S> = (0..designs.len()).map(|k| sink(number(k))).collect();
             match self.stream_side_by_side(&mut beside, designs, &mut sinks) {
-                Some(effort) => {
-                    let steps = self.model.times.len();
+                Some((effort, mut resisting)) => {
+                    let (steps, variables) = (self.model.times.len(), self.model.variables.len());
                     for (k, sink) in sinks.into_iter().enumerate() {
-                        let resisting = vec![(Vec::new(), 0.0); self.model.variables.len()];
+                        let resisting = resisting.drain(..variables).collect();
                         let admissibility = admissibility(self.opens(), resisting, steps);
                         end(number(k), sink, Streamed { steps, admissibility, effort, stop: None });
                     }
@@ -520,11 +520,15 @@ impl<'m> Analysis<'m> {
         beside: &mut Option<SideBySide<'_>>,
         designs: &[Vec<f64>],
         sinks: &mut [S],
-    ) -> Option<Effort> {
+    ) -> Option<(Effort, Vec<Resisting>)> {
         let beside = beside.as_mut().filter(|_| designs.len() > 1)?;
         let values: Vec<Vec<f64>> = designs.iter().map(|d| self.model.whole(d)).collect();
         let (wanted, moved) = (self.wanted(sinks), beside.moved());
-        beside.run(&values, |k, tape| {
+        let variables = self.model.variables.len();
+        let mut resisting = vec![(Vec::new(), 0.0); LANES * variables];
+        let effort = beside.run(&values, |k, tape| {
+            let times = [self.model.times[k]; LANES];
+            note_defects(tape, &self.topology, &times[..designs.len()], (&mut resisting, variables));
             let [states, derivatives] = tape.results();
             let block = Block { states, derivatives };
             for body in (1..wanted.len()).filter(|b| wanted[*b]) {
@@ -537,7 +541,8 @@ impl<'m> Analysis<'m> {
                     sink.sensitivity(k, *variable, *body, &BodySensitivity::of_lane(lanes, lane));
                 }
             }
-        })
+        })?;
+        Some((effort, resisting))
     }
 }
 
@@ -665,6 +670,9 @@ impl<'a> Walk<'a> {
                     if let Some(sensing) = &self.sensing {
                         sensing.take(&block, k, count, sink);
                     }
+                }
+                if let Some(sensing) = &mut self.sensing {
+                    sensing.note(tape, &self.one.topology, &times[k..k + count]);
                 }
                 then(sink, Solved::Abreast(tape), count, self.sensing.as_ref());
             }

@@ -8,6 +8,9 @@ use hardpoint::{Analysis, Solution};
 /// A program fuses and leaves out what the kernel rounds; where a position is ill-conditioned, that is magnified.
 const ROUND_OFF: f64 = 1e-10;
 
+/// Accelerations of measures divide by speeds, and their derivatives once more.
+const MEASURED: f64 = 1e-8;
+
 /// Mechanisms that no program is recorded of: their couplers count angles by the turn that is expected, or a point follows a curve.
 const BY_THE_KERNEL: [&str; 2] = ["cam", "gear_train"];
 
@@ -103,6 +106,51 @@ fn output_times_by_programs_are_those_of_the_kernel() {
     }
     by_kernel.dedup();
     assert_eq!(by_kernel, BY_THE_KERNEL);
+}
+
+#[test]
+fn measures_and_margins_by_programs_are_those_of_the_kernel() {
+    let mut by_programs = 0;
+    for (name, model) in gallery() {
+        let model = resolved(&model);
+        let solve = |execution| Analysis::new(&model).unwrap().executed(execution).run();
+        let right = solve(Execution::Kernel);
+        for execution in [Execution::Interpreted, Execution::Compiled] {
+            let again = solve(execution);
+            by_programs += usize::from(again.motion.effort.by_program > 0);
+            // Values, rates and accelerations of every output; then their derivatives.
+            let outputs = 0..right.measured.outputs.len();
+            let values = |s: &Solution, m: usize| -> Vec<[f64; 3]> {
+                (0..s.motion.len()).map(|k| s.measured.value(k, m)).collect()
+            };
+            let slopes = |s: &Solution, m: usize| -> Vec<[f64; 3]> {
+                let all = (0..s.motion.len()).flat_map(|k| (0..s.measured.variables).map(move |v| (k, v)));
+                all.map(|(k, v)| s.measured.d(k, hardpoint::model::VariableId(v), m)).collect()
+            };
+            let margins = |s: &Solution| -> Vec<[f64; 3]> {
+                s.motion.margins.iter().map(|m| [m.value, 0.0, 0.0]).collect()
+            };
+            for m in outputs {
+                let found =
+                    [values, slopes].map(|of| apart(&columns(&of(&again, m)), &columns(&of(&right, m))));
+                let output = &right.measured.outputs[m].name;
+                assert!(found.iter().all(|d| *d < MEASURED), "{name} {output} {execution:?}: {found:?}");
+            }
+            let found = apart(&margins(&again), &margins(&right));
+            assert!(found < ROUND_OFF, "{name}: margins by {found:e}");
+            let admissibility = |s: &Solution| {
+                let all = s.sensitivities.admissibility.iter();
+                all.map(|a| format!("{a:?}").split('{').next().map(str::to_owned)).collect::<Vec<_>>()
+            };
+            assert_eq!(admissibility(&again), admissibility(&right), "{name}");
+        }
+    }
+    assert!(by_programs > 30, "{by_programs}");
+}
+
+/// Value, rate and acceleration, each a kind of its own.
+fn columns(rows: &[[f64; 3]]) -> Vec<[f64; 9]> {
+    rows.iter().map(|[x, y, z]| [*x, 0.0, 0.0, *y, 0.0, 0.0, *z, 0.0, 0.0]).collect()
 }
 
 #[test]

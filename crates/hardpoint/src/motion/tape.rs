@@ -61,6 +61,9 @@ pub(crate) struct Recorded {
     pub results: Vec<Number>,
     /// Which variable moves which body, in the order of the results.
     pub moved: Vec<(VariableId, BodyId)>,
+    /// Which variable could fail which row of the constraints; behind the other results stand, of each, the size of the defect and
+    /// what of it may be round-off.
+    pub defects: Vec<(VariableId, usize)>,
 }
 
 /// The program of a step.
@@ -77,6 +80,7 @@ pub(crate) struct StepProgram {
     outputs: Outputs,
     variables: usize,
     moved: Vec<(VariableId, BodyId)>,
+    defects: Vec<(VariableId, usize)>,
 }
 
 /// A program, as machine code where there is any.
@@ -186,7 +190,8 @@ struct Outputs {
     limits: usize,
     margins: usize,
     bodies: usize,
-    besides: usize,
+    derivatives: usize,
+    defects: usize,
 }
 
 /// Per block: product, most, least and growth of its factors; the first correction, and the last.
@@ -213,7 +218,7 @@ impl StepProgram {
         let (model, topology) = (one.model, &one.topology);
         let channels = Channel::all(topology);
         let unknowns = unknowns(topology, &channels);
-        let (mut places, mut moved) = (None, Vec::new());
+        let (mut places, mut moved, mut defects) = (None, Vec::new(), Vec::new());
         let (mut fits, mut blocks) = (false, Vec::new());
         recording::begin();
         let recorded = record(|| {
@@ -248,8 +253,8 @@ impl StepProgram {
                 return out;
             };
             limits.extend(more.limits);
-            moved = more.moved;
-            let limits_at = out.len();
+            (moved, defects) = (more.moved, more.defects);
+            let (limits_at, derivatives) = (out.len(), more.results.len() - 2 * defects.len());
             let margins_at = limits_at + limits.len();
             let bodies_at = margins_at + margins.len();
             places = Some(Outputs {
@@ -258,7 +263,8 @@ impl StepProgram {
                 limits: limits_at,
                 margins: margins_at,
                 bodies: bodies_at,
-                besides: bodies_at + bodies.len(),
+                derivatives: bodies_at + bodies.len(),
+                defects: bodies_at + bodies.len() + derivatives,
             });
             out.extend([limits, margins, bodies, more.results].concat());
             out
@@ -269,7 +275,19 @@ impl StepProgram {
         let (program, _) = recorded.program(Options::default());
         let (design, step) = program.staged(|input| input as usize >= inputs.design);
         let [design, step] = [design, step].map(|program| Runnable::new(program, execution));
-        Some(Self { purpose, design, step, channels, unknowns, blocks, inputs, outputs, variables, moved })
+        Some(Self {
+            purpose,
+            design,
+            step,
+            channels,
+            unknowns,
+            blocks,
+            inputs,
+            outputs,
+            variables,
+            moved,
+            defects,
+        })
     }
 
     /// Which variable moves which body, in the order of their derivatives.
@@ -607,12 +625,18 @@ impl Tape {
         &self.outputs[self.program.outputs.margins..self.program.outputs.bodies]
     }
 
-    /// The numbers of all bodies but ground, and what was recorded besides.
+    /// The numbers of all bodies but ground, and their derivatives.
     #[inline(always)]
     pub fn results(&self) -> [&[Lanes]; 2] {
-        let Outputs { bodies, besides, .. } = self.program.outputs;
-        let (bodies, besides) = self.outputs[bodies..].split_at(besides - bodies);
-        [bytemuck::cast_slice(bodies), bytemuck::cast_slice(besides)]
+        let Outputs { bodies, derivatives, defects, .. } = self.program.outputs;
+        [bodies..derivatives, derivatives..defects].map(|range| bytemuck::cast_slice(&self.outputs[range]))
+    }
+
+    /// Which variable fails which row, by how much, and what of it may be round-off; variable by variable.
+    pub fn defects(&self) -> impl Iterator<Item = (VariableId, usize, &[Lanes; 2])> {
+        let found: &[Lanes] = bytemuck::cast_slice(&self.outputs[self.program.outputs.defects..]);
+        let found = found.as_chunks().0;
+        self.program.defects.iter().zip(found).map(|(&(variable, row), found)| (variable, row, found))
     }
 }
 

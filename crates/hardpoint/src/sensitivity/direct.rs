@@ -430,19 +430,24 @@ impl<T: Real> Direct<T> {
         );
     }
 
-    /// By how much the left-out row that fails most does so by more than round-off; not positive where none does.
-    pub fn excess(&self, topology: &Topology, state: &State<T>, field: &FieldParts<T>) -> T {
-        let mut most = -state.witness.like(f64::MAX);
+    /// The left-out rows under the change that was solved last: `out(row, defect, limit)`, the size of the defect and what of it may
+    /// be round-off.
+    pub fn judged_defects(
+        &self,
+        topology: &Topology,
+        state: &State<T>,
+        field: &FieldParts<T>,
+        mut out: impl FnMut(usize, T, T),
+    ) {
         for &c in &field.reach.closures {
             let closure = &topology.closures[c];
             for r in closure.first_row..closure.first_row + closure.rows.len() {
                 if !topology.rows[r].selected && !topology.rows[r].is_term {
-                    let (sum, limit) = self.judged_defect(topology, state, field, r);
-                    most = most.larger(sum - limit);
+                    let (defect, limit) = self.judged_defect(topology, state, field, r);
+                    out(r, defect, limit);
                 }
             }
         }
-        most
     }
 
     /// Defects of the left-out rows under the change that was solved last, with their signs: `out(row, defect)`.

@@ -15,7 +15,7 @@ pub use admissible::{Admissibility, Condition, JointDefect, admissibility_at_des
 pub(crate) use direct::{Direct, FieldParts};
 pub use second::{BodyCurvature, Way};
 pub(crate) use second::{Seconds, along};
-pub(crate) use sensing::{Resisting, Sensing, admissibility, record_derivatives};
+pub(crate) use sensing::{Resisting, Sensing, admissibility, note_defects, record_derivatives};
 
 use crate::blocks::{Blocks, Row};
 use crate::model::{BodyId, VariableId};

@@ -1,11 +1,11 @@
 //! Sensitivities of all design variables, step after step.
 
-use hardpoint_tape::Number;
+use hardpoint_tape::{Lanes, Number};
 
 use crate::model::{BodyId, DriverId, Field, Model, VariableId};
 use crate::motion::kinematics::State;
 use crate::motion::stepper::Stepper;
-use crate::motion::tape::Recorded;
+use crate::motion::tape::{Recorded, Tape};
 use crate::sink::{Block, Sink};
 use crate::space::{LANES, Real, Twist};
 use crate::topology::Topology;
@@ -73,13 +73,18 @@ impl Sensing {
         }
     }
 
-    /// Output times k and on, as many as `count`, as a program has found them. No joint resists then.
+    /// Output times k and on, as many as `count`, as a program has found them.
     pub fn take(&self, block: &Block<'_>, k: usize, count: usize, sink: &mut impl Sink) {
         for ((variable, body), lanes) in self.moved().zip(block.each_derivative()) {
             for lane in (0..count).filter(|_| self.wanted[body.0]) {
                 sink.sensitivity(k + lane, variable, body, &BodySensitivity::of_lane(lanes, lane));
             }
         }
+    }
+
+    /// Notes what resists at these output times, as a program has found them.
+    pub fn note(&mut self, tape: &Tape, topology: &Topology, times: &[f64]) {
+        note_defects(tape, topology, times, (&mut self.resisting, 0));
     }
 
     /// What so many steps say of every variable's admissibility, given the joints that each opens in the design.
@@ -155,7 +160,7 @@ pub(crate) fn record_derivatives(
     topology: &Topology,
     state: &mut State<Number>,
 ) -> Option<Recorded> {
-    let (witness, mut recorded) = (state.witness, Recorded::default());
+    let (witness, mut recorded, mut defects) = (state.witness, Recorded::default(), Vec::new());
     if fields.is_empty() {
         return Some(recorded);
     }
@@ -168,11 +173,44 @@ pub(crate) fn record_derivatives(
         }
         field.set_shifts();
         direct.solve(topology, state, &field);
-        recorded.limits.push(direct.excess(topology, state, &field));
+        direct.judged_defects(topology, state, &field, |row, defect, limit| {
+            recorded.defects.push((VariableId(v), row));
+            defects.extend([defect, limit]);
+        });
         for &body in &field.reach.bodies {
             recorded.results.extend(components(&direct.w, state, body));
             recorded.moved.push((VariableId(v), BodyId(body)));
         }
     }
+    recorded.results.extend(defects);
     Some(recorded)
+}
+
+/// Notes what resists where a tape has come to, at these times in its lanes; what is kept in mind of one lane's variables begins
+/// `apart` after that of the lane before: 0 where all are times of one design.
+pub(crate) fn note_defects(
+    tape: &Tape,
+    topology: &Topology,
+    times: &[f64],
+    (resisting, apart): (&mut [Resisting], usize),
+) {
+    // Written so that NaN resists.
+    let fails = |[defect, limit]: &[Lanes; 2], lane: usize| !(defect[lane] <= limit[lane]);
+    if tape.defects().all(|(_, _, found)| (0..times.len()).all(|lane| !fails(found, lane))) {
+        return;
+    }
+    for (lane, &t) in times.iter().enumerate() {
+        let failing = tape.defects().filter(|(_, _, found)| fails(found, lane));
+        let mut failing = failing
+            .map(|(variable, row, found)| (variable, Defect { row, value: found[0][lane] }))
+            .peekable();
+        while let Some((variable, mut worst)) = failing.next() {
+            while let Some((_, other)) = failing.next_if(|(v, _)| *v == variable) {
+                if other.value > worst.value {
+                    worst = other;
+                }
+            }
+            note(&mut resisting[apart * lane + variable.0], topology, worst, t);
+        }
+    }
 }
