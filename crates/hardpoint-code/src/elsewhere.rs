@@ -2,7 +2,7 @@
 
 use hardpoint_tape::{Lanes, Program};
 
-use crate::{Counts, Line, Unsupported, Width};
+use crate::{Counts, Line, PARTS, Unsupported, Width};
 
 /// There is none.
 #[derive(Debug)]
@@ -17,11 +17,11 @@ pub fn has(_: Width) -> bool {
 }
 
 impl Machine {
-    pub fn new(_: &Program, _: Width) -> Result<(Self, Counts), Unsupported> {
+    pub fn new(_: &Program, _: [usize; PARTS - 1], _: Width) -> Result<(Self, Counts), Unsupported> {
         Err(Unsupported::Target)
     }
 
-    pub fn run(&self, _: &mut Vec<Line>, _: &[Lanes], _: &[f64], _: &mut [Lanes]) {
+    pub fn run(&self, _: &mut Vec<Line>, _: &[Lanes], _: &[f64], _: [&mut [Lanes]; PARTS]) {
         match *self {}
     }
 }

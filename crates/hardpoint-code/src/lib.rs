@@ -28,6 +28,8 @@
 //! }
 //! ```
 //!
+//! Outputs may go to up to three areas of memory in one run: [`Code::in_parts`] and [`Code::run_in_parts`].
+//!
 //! This is the only crate of Hardpoint that holds `unsafe`; `docs/machine-code.md` says where, and why it is sound.
 //!
 //! Not supported: other machines than x86-64, Windows, and systems that do not let memory become executable. [`Unsupported`]
@@ -67,6 +69,9 @@ impl fmt::Display for Width {
         })
     }
 }
+
+/// In how many areas of memory the outputs of one run may be.
+pub const PARTS: usize = 3;
 
 /// The most inputs, instructions and so on: 64 bytes of each are an eighth of what offsets of 32 bits reach, and code
 /// for as many instructions is below 2 GB.
@@ -152,7 +157,30 @@ impl Code {
     ///
     /// As [`new`](Self::new).
     pub fn with(program: &Program, width: Width) -> Result<Self, Unsupported> {
-        let (machine, counts) = x86_64::Machine::new(program, width)?;
+        Self::in_parts_with(program, [program.outputs.len(); PARTS - 1], width)
+    }
+
+    /// For the widest registers of this CPU, and outputs in up to three areas of memory: part 0 is those before `ends[0]`,
+    /// part 1 those from there to `ends[1]`, part 2 the others. Parts may be empty.
+    ///
+    /// # Panics
+    ///
+    /// As [`new`](Self::new), and if the ends do not ascend or lie beyond the outputs.
+    pub fn in_parts(program: &Program, ends: [usize; PARTS - 1]) -> Result<Self, Unsupported> {
+        Self::in_parts_with(program, ends, x86_64::widest()?)
+    }
+
+    /// For registers of this width, and outputs in parts.
+    ///
+    /// # Panics
+    ///
+    /// As [`in_parts`](Self::in_parts).
+    pub fn in_parts_with(
+        program: &Program,
+        ends: [usize; PARTS - 1],
+        width: Width,
+    ) -> Result<Self, Unsupported> {
+        let (machine, counts) = x86_64::Machine::new(program, ends, width)?;
         Ok(Self { machine, width, counts })
     }
 
@@ -169,8 +197,28 @@ impl Code {
     ///
     /// # Panics
     ///
-    /// If a length is another. Inputs of a program without outputs are not looked at.
+    /// If a length is another, or the code was made for outputs in other parts than the first. Inputs of a program without outputs
+    /// are not looked at.
     pub fn run(&self, scratch: &mut Scratch, inputs: &[Lanes], uniforms: &[f64], outputs: &mut [Lanes]) {
+        self.run_in_parts(scratch, inputs, uniforms, [outputs, &mut [], &mut []]);
+    }
+
+    /// As [`run`](Self::run), with outputs in parts.
+    ///
+    /// | array | length | where |
+    /// |---|---|---|
+    /// | `outputs[p]` | groups x outputs of part `p` | output `j` of part `p` of group `g` at `g * outputs of part p + j` |
+    ///
+    /// # Panics
+    ///
+    /// As [`run`](Self::run), and if parts that are not empty say different numbers of groups.
+    pub fn run_in_parts(
+        &self,
+        scratch: &mut Scratch,
+        inputs: &[Lanes],
+        uniforms: &[f64],
+        outputs: [&mut [Lanes]; PARTS],
+    ) {
         self.machine.run(&mut scratch.lines, inputs, uniforms, outputs);
     }
 

@@ -2,7 +2,7 @@
 
 use hardpoint_tape::{Operand, Program};
 
-use crate::{MOST, Unsupported};
+use crate::{MOST, PARTS, Unsupported};
 
 /// Every offset fits into an instruction.
 pub fn size(program: &Program) -> Result<(), Unsupported> {
@@ -38,4 +38,15 @@ pub fn operands(program: &Program) {
     for (j, operand) in program.outputs.iter().enumerate() {
         check(*operand, program.instructions.len(), &|| format!("output {j}"));
     }
+}
+
+/// How many outputs each part has.
+pub fn parts(program: &Program, ends: [usize; PARTS - 1]) -> [usize; PARTS] {
+    let count = program.outputs.len();
+    let [first, second] = ends;
+    assert!(
+        first <= second && second <= count,
+        "parts of {count} outputs end at {first} and {second}: these do not ascend, or lie beyond the outputs"
+    );
+    [first, second - first, count - second]
 }

@@ -15,6 +15,8 @@ pub enum Gpr {
     Rdi = 7,
     R8 = 8,
     R9 = 9,
+    R10 = 10,
+    R11 = 11,
 }
 
 /// A number in memory.
@@ -256,10 +258,20 @@ impl Assembler {
 
     /// `d` = the address `base + offset`.
     pub fn address(&mut self, d: Gpr, base: Gpr, offset: i32) {
+        self.general(0x8d, d, base, offset);
+    }
+
+    /// `d` = what is at `base + offset`.
+    pub fn read(&mut self, d: Gpr, base: Gpr, offset: i32) {
+        self.general(0x8b, d, base, offset);
+    }
+
+    /// An instruction on `d` and the place `base + offset`.
+    fn general(&mut self, code: u8, d: Gpr, base: Gpr, offset: i32) {
         let (d, base) = (d as u8, base as u8);
         assert!(base & 7 != 4, "rsp is no base of operands");
         let [a, b, c, e] = offset.to_le_bytes();
-        self.raw(&[0x48 | d >> 3 << 2 | base >> 3, 0x8d, 0b10 << 6 | (d & 7) << 3 | base & 7, a, b, c, e]);
+        self.raw(&[0x48 | d >> 3 << 2 | base >> 3, code, 0b10 << 6 | (d & 7) << 3 | base & 7, a, b, c, e]);
     }
 
     pub fn set(&mut self, r: Gpr, to: u64) {

@@ -3,11 +3,14 @@
 //! The code is a function by the System V convention,
 //!
 //! ```text
-//! fn(inputs: rdi, uniforms: rsi, outputs: rdx, scratch: rcx, constants: r8, groups: r9)
+//! fn(inputs: rdi, uniforms: rsi, parts: rdx, scratch: rcx, constants: r8, groups: r9)
 //! ```
 //!
-//! All vector registers are its own; of the general ones it changes these, rax and flags. The six point a little into
-//! what they stand for, so that short offsets reach both ways.
+//! The parts are three addresses in memory. The entry brings those of parts that are not empty to rdx, r10 and r11;
+//! nobody reads the others.
+//!
+//! All vector registers are its own; of the general ones it changes these, rax and flags. Those with addresses point a little
+//! into what they stand for, so that short offsets reach both ways.
 //!
 //! AVX-512 goes through the program once for each group, AVX2 twice: for the first four lanes and for the others.
 //! AVX2 has no operands of one scalar for all lanes, so that constants come four times, and uniforms are spread over
@@ -17,9 +20,12 @@ use hardpoint_tape::Program;
 
 use super::encoder::{Assembler, Gpr, Memory, When};
 use super::lower::{Lowered, NEVER, Name, Names};
-use crate::Width;
+use crate::{PARTS, Width};
 
-const SAVED: [Gpr; 6] = [Gpr::Rdi, Gpr::Rsi, Gpr::Rdx, Gpr::Rcx, Gpr::R8, Gpr::R9];
+/// Where the parts of the outputs are.
+const OUTPUTS: [Gpr; PARTS] = [Gpr::Rdx, Gpr::R10, Gpr::R11];
+
+const SAVED: [Gpr; 8] = [Gpr::Rdi, Gpr::Rsi, Gpr::Rdx, Gpr::Rcx, Gpr::R8, Gpr::R9, Gpr::R10, Gpr::R11];
 
 /// Where numbers are in memory.
 #[derive(Clone, Copy, Debug)]
@@ -28,17 +34,18 @@ pub struct Frame {
     names: Names,
     inputs: i32,
     uniforms: i32,
-    outputs: i32,
+    /// Of each part.
+    outputs: [i32; PARTS],
 }
 
 impl Frame {
-    pub fn new(program: &Program, names: Names, width: Width) -> Self {
+    pub fn new(program: &Program, outputs: [usize; PARTS], names: Names, width: Width) -> Self {
         Self {
             width,
             names,
             inputs: program.inputs as i32,
             uniforms: program.uniforms as i32,
-            outputs: program.outputs.len() as i32,
+            outputs: outputs.map(|n| n as i32),
         }
     }
 
@@ -84,7 +91,20 @@ impl Frame {
     }
 
     pub fn output(&self, j: u32) -> Memory {
-        self.at(Gpr::Rdx, 64 * j as i32, false)
+        let mut rest = j as i32;
+        for (base, outputs) in OUTPUTS.into_iter().zip(self.outputs) {
+            if rest < outputs {
+                return self.at(base, 64 * rest, false);
+            }
+            rest -= outputs;
+        }
+        unreachable!("the parts are all the outputs")
+    }
+
+    /// The parts that are not empty: which, its register, and how many outputs it has.
+    fn parts(&self) -> impl DoubleEndedIterator<Item = (i32, Gpr, i32)> {
+        let all: [_; PARTS] = std::array::from_fn(|p| (p as i32, OUTPUTS[p], self.outputs[p]));
+        all.into_iter().filter(|(_, _, outputs)| *outputs > 0)
     }
 
     /// The scratch begins with the two cells of calls; then come spread uniforms, then slots.
@@ -132,7 +152,12 @@ impl Frame {
         body: impl FnOnce(Assembler) -> (Assembler, T),
     ) -> (Assembler, T) {
         let mut a = Assembler::new(self.width);
-        for base in [Gpr::Rdi, Gpr::Rsi, Gpr::Rdx, Gpr::Rcx, Gpr::R8] {
+        // The first part's last: it takes the place of where the others are found.
+        for (p, base, _) in self.parts().rev() {
+            a.read(base, Gpr::Rdx, 8 * p);
+        }
+        let outputs = self.parts().map(|(_, base, _)| base);
+        for base in [Gpr::Rdi, Gpr::Rsi, Gpr::Rcx, Gpr::R8].into_iter().chain(outputs) {
             a.add(base, self.ahead(base));
         }
         if self.width == Width::Avx2 {
@@ -141,7 +166,9 @@ impl Frame {
         }
         let again = a.here();
         let (mut a, result) = body(a);
-        let strides = [(Gpr::Rdi, 64 * self.inputs), (Gpr::Rdx, 64 * self.outputs)];
+        let strides: Vec<(Gpr, i32)> = std::iter::once((Gpr::Rdi, 64 * self.inputs))
+            .chain(self.parts().map(|(_, base, outputs)| (base, 64 * outputs)))
+            .collect();
         match self.width {
             Width::Avx512 => {
                 for (base, stride) in strides {
@@ -152,8 +179,8 @@ impl Frame {
                 // An even number of halves to go: this was the first.
                 a.test_odd(Gpr::R9);
                 let first = a.jump(When::Zero);
-                for (base, stride) in strides {
-                    a.add(base, stride - 64);
+                for (base, stride) in &strides {
+                    a.add(*base, stride - 64);
                 }
                 a.land(first);
                 for (base, _) in strides {
@@ -185,7 +212,7 @@ pub fn call(a: &mut Assembler, cell: Memory, argument: u64, function: u64) {
     for r in SAVED {
         a.push(r);
     }
-    // With the return address these are seven: one more, and the stack is aligned to 16 bytes.
+    // With the return address these are nine: one more, and the stack is aligned to 16 bytes.
     a.add(Gpr::Rsp, -8);
     a.address(Gpr::Rdi, cell.base, cell.offset);
     a.set(Gpr::Rsi, argument);

@@ -12,16 +12,24 @@ use std::ffi::c_void;
 
 use hardpoint_tape::{LANES, Lanes, Program};
 
-use crate::{Counts, Line, Unsupported, Width};
+use crate::{Counts, Line, PARTS, Unsupported, Width};
 use allocate::Allocator;
 use frame::Frame;
 use lower::Lowered;
 use memory::Executable;
 
-/// Machine code as a function: inputs, uniforms, outputs, scratch, constants, groups.
+/// Machine code as a function: inputs, uniforms, where the parts of the outputs are, scratch, constants, groups.
 ///
-/// Reads `groups` times the program's inputs, its uniforms and constants; writes and reads `groups` times its outputs, and the scratch.
-type Entry = unsafe extern "sysv64" fn(*const Lanes, *const f64, *mut Lanes, *mut Line, *const Line, usize);
+/// Reads `groups` times the program's inputs, its uniforms and constants, and the addresses of parts that are not empty; writes and reads
+/// `groups` times the outputs of each such part there, and the scratch.
+type Entry = unsafe extern "sysv64" fn(
+    *const Lanes,
+    *const f64,
+    *const [*mut Lanes; PARTS],
+    *mut Line,
+    *const Line,
+    usize,
+);
 
 /// Code that can be run.
 #[derive(Debug)]
@@ -33,7 +41,8 @@ pub struct Machine {
     scratch: usize,
     inputs: usize,
     uniforms: usize,
-    outputs: usize,
+    /// Of each part.
+    outputs: [usize; PARTS],
 }
 
 /// The widest that is here.
@@ -51,13 +60,18 @@ pub fn has(width: Width) -> bool {
 }
 
 impl Machine {
-    pub fn new(program: &Program, width: Width) -> Result<(Self, Counts), Unsupported> {
+    pub fn new(
+        program: &Program,
+        ends: [usize; PARTS - 1],
+        width: Width,
+    ) -> Result<(Self, Counts), Unsupported> {
         if !has(width) {
             return Err(Unsupported::Width(width));
         }
         check::size(program)?;
         check::operands(program);
-        let (bytes, frame, counts) = emit(program, width);
+        let outputs = check::parts(program, ends);
+        let (bytes, frame, counts) = emit(program, outputs, width);
         let executable =
             Executable::new(&bytes).map_err(|e| Unsupported::Memory { error: e.raw_os_error() })?;
         let machine = Self {
@@ -66,18 +80,20 @@ impl Machine {
             scratch: frame.scratch_bytes(counts.slots).div_ceil(size_of::<Line>()),
             inputs: program.inputs,
             uniforms: program.uniforms,
-            outputs: program.outputs.len(),
+            outputs,
         };
         Ok((machine, counts))
     }
 
-    pub fn run(&self, scratch: &mut Vec<Line>, inputs: &[Lanes], uniforms: &[f64], outputs: &mut [Lanes]) {
+    pub fn run(
+        &self,
+        scratch: &mut Vec<Line>,
+        inputs: &[Lanes],
+        uniforms: &[f64],
+        outputs: [&mut [Lanes]; PARTS],
+    ) {
         assert_eq!(uniforms.len(), self.uniforms, "as many uniforms as the program has");
-        let Some(groups) = outputs.len().checked_div(self.outputs) else {
-            assert!(outputs.is_empty(), "the program has no outputs");
-            return;
-        };
-        assert_eq!(outputs.len(), groups * self.outputs, "whole groups of outputs");
+        let Some(groups) = self.groups(outputs.each_ref().map(|part| part.len())) else { return };
         assert_eq!(
             Some(inputs.len()),
             groups.checked_mul(self.inputs),
@@ -89,22 +105,38 @@ impl Machine {
         if scratch.len() < self.scratch {
             scratch.resize(self.scratch, Line::default());
         }
+        let parts = outputs.map(<[Lanes]>::as_mut_ptr);
         let start = self.executable.start();
         // SAFETY: the pages hold, from their first byte on, a function of this type, and live as long as `self`.
         let entry = unsafe { std::mem::transmute::<*const c_void, Entry>(start) };
         // SAFETY: the code reads and writes what `Entry` says and nothing else: the operands were checked when it was
-        // made. All is as long as that: the lengths were checked above, constants and scratch were made so. The CPU has
-        // the instructions, which was checked when the code was made. There is at least one group.
+        // made. All is as long as that: the lengths were checked above, those of every part too, constants and scratch
+        // were made so. The parts are borrowed mutably, and outlive their addresses. The CPU has the instructions, which
+        // was checked when the code was made. There is at least one group.
         unsafe {
             entry(
                 inputs.as_ptr(),
                 uniforms.as_ptr(),
-                outputs.as_mut_ptr(),
+                &raw const parts,
                 scratch.as_mut_ptr(),
                 self.constants.as_ptr(),
                 groups,
             );
         }
+    }
+
+    /// How many groups parts of these lengths are; nothing if the program has no outputs.
+    fn groups(&self, lengths: [usize; PARTS]) -> Option<usize> {
+        let mut groups = None;
+        for (length, outputs) in lengths.into_iter().zip(self.outputs) {
+            let Some(whole) = length.checked_div(outputs) else {
+                assert_eq!(length, 0, "nothing where a part has no outputs");
+                continue;
+            };
+            assert_eq!(length, whole * outputs, "whole groups of outputs");
+            assert_eq!(whole, *groups.get_or_insert(whole), "as many groups in every part of the outputs");
+        }
+        groups
     }
 }
 
@@ -119,10 +151,10 @@ fn spread(constants: &[f64], times: usize) -> Vec<Line> {
     lines
 }
 
-/// The bytes of the code.
-fn emit(program: &Program, width: Width) -> (Vec<u8>, Frame, Counts) {
+/// The bytes of the code, for so many outputs in each part.
+fn emit(program: &Program, outputs: [usize; PARTS], width: Width) -> (Vec<u8>, Frame, Counts) {
     let lowered = Lowered::new(program);
-    let frame = Frame::new(program, lowered.names, width);
+    let frame = Frame::new(program, outputs, lowered.names, width);
     let (assembler, counts) =
         frame.around(&lowered, |assembler| Allocator::new(&lowered, frame, assembler).run());
     let counts = Counts { instructions: assembler.count, bytes: assembler.bytes.len(), ..counts };

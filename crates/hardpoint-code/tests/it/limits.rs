@@ -1,7 +1,7 @@
 //! What code must not do, and what it refuses.
 
-use hardpoint_code::{Code, Scratch, Unsupported, Width};
-use hardpoint_tape::{Call, Instruction, LANES, Operand, Program};
+use hardpoint_code::{Code, PARTS, Scratch, Unsupported, Width};
+use hardpoint_tape::{Call, Instruction, LANES, Lanes, Operand, Program};
 
 use crate::plain;
 use crate::random::{self, Random, Shape};
@@ -58,6 +58,93 @@ fn arrays_of_other_lengths_are_refused() {
             said.as_ref().is_some_and(|s| s.contains(about)),
             "{inputs}, {uniforms}, {outputs}: {said:?}"
         );
+    }
+}
+
+/// What `run_in_parts` says to code with parts that end there and arrays of these lengths; nothing if it runs.
+fn said_in_parts(ends: [usize; PARTS - 1], inputs: usize, lengths: [usize; PARTS]) -> Option<String> {
+    let program = two_inputs_one_uniform_two_outputs();
+    let code = Code::in_parts(&program, ends).expect("machine code is here");
+    let run = || {
+        let mut outputs = lengths.map(|n| vec![[0.0; LANES]; n]);
+        code.run_in_parts(
+            &mut Scratch::default(),
+            &vec![[0.0; LANES]; inputs],
+            &[0.0],
+            outputs.each_mut().map(Vec::as_mut_slice),
+        );
+    };
+    let caught = std::panic::catch_unwind(run).err()?;
+    Some(caught.downcast_ref::<String>().expect("a message").lines().next().unwrap().to_string())
+}
+
+#[test]
+fn parts_of_other_lengths_are_refused() {
+    if !is_here() {
+        return;
+    }
+    for (ends, inputs, lengths) in [
+        ([1, 2], 0, [0, 0, 0]),
+        ([1, 2], 6, [3, 3, 0]),
+        ([0, 1], 4, [0, 2, 2]),
+        ([1, 1], 2, [1, 0, 1]),
+        ([0, 0], 4, [0, 0, 4]),
+        ([2, 2], 4, [4, 0, 0]),
+    ] {
+        assert_eq!(said_in_parts(ends, inputs, lengths), None, "{ends:?}, {inputs}, {lengths:?}");
+    }
+    const EMPTY: &str = "nothing where a part has no outputs";
+    const WHOLE: &str = "whole groups of outputs";
+    const AS_MANY: &str = "as many groups in every part of the outputs";
+    const INPUTS: &str = "as many groups of inputs as of outputs";
+    for (ends, inputs, lengths, about) in [
+        ([1, 2], 2, [1, 1, 1], EMPTY),
+        ([0, 1], 2, [1, 1, 1], EMPTY),
+        ([2, 2], 0, [0, 0, 2], EMPTY),
+        ([0, 2], 2, [0, 3, 0], WHOLE),
+        ([0, 0], 0, [0, 0, 1], WHOLE),
+        ([1, 2], 2, [1, 2, 0], AS_MANY),
+        ([1, 2], 4, [2, 1, 0], AS_MANY),
+        ([1, 2], 2, [1, 0, 0], AS_MANY),
+        ([1, 1], 2, [0, 0, 1], AS_MANY),
+        ([1, 2], 2, [2, 2, 0], INPUTS),
+        ([0, 1], 2, [0, 0, 0], INPUTS),
+    ] {
+        let said = said_in_parts(ends, inputs, lengths);
+        assert!(
+            said.as_ref().is_some_and(|s| s.contains(about)),
+            "{ends:?}, {inputs}, {lengths:?}: {said:?}"
+        );
+    }
+}
+
+#[test]
+fn code_for_several_parts_does_not_run_in_one() {
+    if !is_here() {
+        return;
+    }
+    let program = two_inputs_one_uniform_two_outputs();
+    for ends in [[1, 2], [1, 1], [0, 2], [0, 0]] {
+        let code = Code::in_parts(&program, ends).expect("machine code is here");
+        let run = || {
+            let mut outputs = [[0.0; LANES]; 2];
+            code.run(&mut Scratch::default(), &[[0.0; LANES]; 2], &[0.0], &mut outputs);
+        };
+        assert!(std::panic::catch_unwind(run).is_err(), "{ends:?}");
+    }
+}
+
+#[test]
+fn parts_that_end_nowhere_are_refused() {
+    if !is_here() {
+        return;
+    }
+    let program = two_inputs_one_uniform_two_outputs();
+    for [first, second] in [[2, 1], [1, 3], [3, 3], [0, usize::MAX], [usize::MAX, 2]] {
+        let caught = std::panic::catch_unwind(|| Code::in_parts(&program, [first, second]))
+            .expect_err("it is refused");
+        let said = caught.downcast_ref::<String>().expect("a message");
+        assert!(said.starts_with(&format!("parts of 2 outputs end at {first} and {second}: ")), "{said}");
     }
 }
 
@@ -168,6 +255,35 @@ fn nothing_beside_the_outputs_is_written_wherever_they_begin() {
             let same = |(y, e): (&f64, &f64)| y.to_bits() == e.to_bits() || y.is_nan() && e.is_nan();
             assert!(all[inside.clone()].iter().zip(expected.as_flattened()).all(same), "{width}");
             assert!(all[..inside.start].iter().chain(&all[inside.end..]).all(|x| *x == MARK), "{width}");
+
+            // The same in parts, with margins between them, the last one first.
+            let ends = random::ends(&mut random, program.outputs.len());
+            let expected = plain::parts(&program, ends, &expected);
+            let code = Code::in_parts_with(&program, ends, width).expect("the width is here");
+            let mut all =
+                vec![
+                    MARK;
+                    shift + (PARTS + 1) * MARGIN + LANES * expected.iter().map(Vec::len).sum::<usize>()
+                ];
+            let mut rest = &mut all[shift..];
+            let mut outputs: [&mut [Lanes]; PARTS] = Default::default();
+            for (part, expected) in outputs.iter_mut().zip(&expected).rev() {
+                let (inside, behind) = rest[MARGIN..].split_at_mut(LANES * expected.len());
+                *part = inside.as_chunks_mut().0;
+                rest = behind;
+            }
+            code.run_in_parts(&mut Scratch::default(), inputs, &uniforms, outputs);
+            let mut from = shift;
+            for expected in expected.iter().rev() {
+                let inside = from + MARGIN..from + MARGIN + LANES * expected.len();
+                assert!(all[from..inside.start].iter().all(|x| *x == MARK), "{width}, ends {ends:?}");
+                assert!(
+                    all[inside.clone()].iter().zip(expected.as_flattened()).all(same),
+                    "{width}, ends {ends:?}"
+                );
+                from = inside.end;
+            }
+            assert!(all[from..].iter().all(|x| *x == MARK), "{width}, ends {ends:?}");
         }
     }
 }

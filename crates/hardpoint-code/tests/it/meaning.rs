@@ -18,10 +18,14 @@ fn bits(x: f64) -> u64 {
     if x.is_nan() { f64::NAN.to_bits() } else { x.to_bits() }
 }
 
-/// Code of this program for every width that is here; fails unless all outputs are those of `plain::evaluate`.
+/// Code of this program for every width that is here, with outputs in one part and in several; fails unless all outputs
+/// are those of `plain::evaluate`.
 /// Gives how many outputs were finite, and what the code of the widest comes to.
 fn holds(program: &Program, groups: usize, inputs: &[Lanes], uniforms: &[f64]) -> (usize, Counts) {
     let expected = plain::evaluate(program, groups, inputs, uniforms);
+    let seed = inputs.first().map_or(program.outputs.len() as u64, |x| x[0].to_bits());
+    let ends = random::ends(&mut Random(seed), program.outputs.len());
+    let expected_in_parts = plain::parts(program, ends, &expected);
     let mut counts = Counts::default();
     let mut scratch = Scratch::default();
     for width in Width::ALL.into_iter().filter(|w| w.is_here()) {
@@ -37,6 +41,19 @@ fn holds(program: &Program, groups: usize, inputs: &[Lanes], uniforms: &[f64]) -
             );
         }
         counts = code.counts();
+
+        let code = Code::in_parts_with(program, ends, width).expect("the width is here");
+        let mut outputs = expected_in_parts.each_ref().map(|part| vec![[1234.5; LANES]; part.len()]);
+        code.run_in_parts(&mut scratch, inputs, uniforms, outputs.each_mut().map(Vec::as_mut_slice));
+        for (p, (outputs, expected)) in outputs.iter().zip(&expected_in_parts).enumerate() {
+            for (k, (y, e)) in outputs.iter().zip(expected).enumerate() {
+                assert_eq!(
+                    y.map(bits),
+                    e.map(bits),
+                    "{width}, output {k} of part {p}, ends {ends:?}: {y:?} for {e:?}"
+                );
+            }
+        }
     }
     (expected.as_flattened().iter().filter(|x| x.is_finite()).count(), counts)
 }
@@ -174,6 +191,19 @@ fn code_and_interpreter_agree() {
             for (k, (y, e)) in outputs.as_flattened().iter().zip(expected.as_flattened()).enumerate() {
                 let larger = k / LANES % program.outputs.len() == program.outputs.len() - 1;
                 assert!(bits(*y) == bits(*e) || larger && *y == 0.0 && *e == 0.0, "{width}: {y} for {e}");
+            }
+
+            let ends = random::ends(&mut random, program.outputs.len());
+            let whole = plain::parts(&program, ends, &outputs);
+            let mut outputs = whole.each_ref().map(|part| vec![[0.0; LANES]; part.len()]);
+            Code::in_parts_with(&program, ends, width).expect("the width is here").run_in_parts(
+                &mut Scratch::default(),
+                &inputs,
+                &uniforms,
+                outputs.each_mut().map(Vec::as_mut_slice),
+            );
+            for (y, e) in outputs.iter().flatten().zip(whole.iter().flatten()) {
+                assert_eq!(y.map(bits), e.map(bits), "{width}, ends {ends:?}");
             }
         }
     }

@@ -1,5 +1,6 @@
 //! What programs say, one scalar at a time.
 
+use hardpoint_code::PARTS;
 use hardpoint_tape::{LANES, Lanes, Program};
 
 use crate::random::{at, compute};
@@ -23,4 +24,12 @@ pub fn evaluate(program: &Program, groups: usize, inputs: &[Lanes], uniforms: &[
         }
     }
     outputs
+}
+
+/// The same outputs, laid out as for code with outputs in parts.
+pub fn parts(program: &Program, ends: [usize; PARTS - 1], outputs: &[Lanes]) -> [Vec<Lanes>; PARTS] {
+    let count = program.outputs.len();
+    let [first, second] = ends;
+    [0..first, first..second, second..count]
+        .map(|part| outputs.chunks(count.max(1)).flat_map(|group| &group[part.clone()]).copied().collect())
 }

@@ -131,6 +131,18 @@ pub fn program(random: &mut Random, shape: Shape) -> Program {
     program
 }
 
+/// Where parts of so many outputs end; often some are empty.
+pub fn ends(random: &mut Random, outputs: usize) -> [usize; 2] {
+    let [a, b] = [(); 2].map(|()| random.below(outputs + 1));
+    match random.below(6) {
+        0 => [0, a],
+        1 => [a, a],
+        2 => [a, outputs],
+        3 => [[0, 0], [0, outputs], [outputs, outputs]][random.below(3)],
+        _ => [a.min(b), a.max(b)],
+    }
+}
+
 /// All instructions but calls.
 pub fn plain(a: Operand, b: Operand, c: Operand) -> [Instruction; 13] {
     use Instruction as I;

@@ -48,7 +48,7 @@ fn all() -> Vec<(String, Opcode, usize, &'static str)> {
     all
 }
 
-const BASES: [(Gpr, &str); 7] = [
+const BASES: [(Gpr, &str); 9] = [
     (Gpr::Rax, "rax"),
     (Gpr::Rcx, "rcx"),
     (Gpr::Rdx, "rdx"),
@@ -56,6 +56,8 @@ const BASES: [(Gpr, &str); 7] = [
     (Gpr::Rdi, "rdi"),
     (Gpr::R8, "r8"),
     (Gpr::R9, "r9"),
+    (Gpr::R10, "r10"),
+    (Gpr::R11, "r11"),
 ];
 
 /// At and around the ends of short offsets, counted in bytes, scalars and vectors.
@@ -173,6 +175,8 @@ fn other_instructions_are_what_a_decoder_reads() {
         a.pop(r);
         a.address(r, Gpr::Rcx, -0x2000);
         a.address(Gpr::Rdi, r, 0x10);
+        a.read(r, Gpr::Rdx, 8);
+        a.read(Gpr::R11, r, -0x10);
         a.set(r, 0x0123_4567_89ab_cdef);
         a.call(r);
     }
@@ -188,7 +192,7 @@ fn other_instructions_are_what_a_decoder_reads() {
         let low = match r {
             Gpr::Rsi => "sil".to_string(),
             Gpr::Rdi => "dil".to_string(),
-            Gpr::R8 | Gpr::R9 => format!("{name}l").replace('l', "b"),
+            Gpr::R8 | Gpr::R9 | Gpr::R10 | Gpr::R11 => format!("{name}b"),
             _ => format!("{}l", &name[1..2]),
         };
         expected.push(format!("add {name},0FFFFFFFFFFFFFEDDh"));
@@ -199,6 +203,8 @@ fn other_instructions_are_what_a_decoder_reads() {
         expected.push(format!("pop {name}"));
         expected.push(format!("lea {name},[rcx-2000h]"));
         expected.push(format!("lea rdi,[{name}+10h]"));
+        expected.push(format!("mov {name},[rdx+8]"));
+        expected.push(format!("mov r11,[{name}-10h]"));
         expected.push(format!("mov {name},123456789ABCDEFh"));
         expected.push(format!("call {name}"));
     }
