@@ -47,6 +47,8 @@ impl Recording {
         let recorded: Vec<u32> = (0..graph.nodes.len() as u32).filter(|n| graph.is_instruction(*n)).collect();
         let needed = graph.by_need();
         let order = if graph.live_in(&needed) < graph.live_in(&recorded) { needed } else { recorded };
+        graph.counts.recorded += self.folded;
+        graph.counts.folded += self.folded;
         graph.emit(&order, self)
     }
 }

@@ -15,6 +15,8 @@ pub struct Recording {
     pub(crate) inputs: u32,
     pub(crate) uniforms: u32,
     pub(crate) outputs: Vec<u32>,
+    /// Operations that were folded at once.
+    pub(crate) folded: usize,
 }
 
 /// One step of a recording; operands are the numbers of earlier steps.
@@ -46,7 +48,7 @@ thread_local! {
     static SESSION: RefCell<Session> = const {
         RefCell::new(Session {
             id: 0,
-            recording: Recording { steps: Vec::new(), inputs: 0, uniforms: 0, outputs: Vec::new() },
+            recording: Recording { steps: Vec::new(), inputs: 0, uniforms: 0, outputs: Vec::new(), folded: 0 },
         })
     };
 }
@@ -83,6 +85,7 @@ pub fn record<O: IntoIterator<Item = Number>>(f: impl FnOnce() -> O) -> Recordin
     SESSION.with_borrow_mut(|s| {
         recording.steps = std::mem::take(&mut s.recording.steps);
         recording.inputs = s.recording.inputs;
+        recording.folded = s.recording.folded;
         recording.uniforms = s.recording.uniforms;
     });
     drop(running);
@@ -117,29 +120,44 @@ impl Session {
     /// The same, where it is no constant and no other number: what is known in every run is known while recording.
     #[inline(always)]
     fn push_folded(&mut self, step: Step, value: f64) -> Number {
-        let same = |id: u32| Number { value, id, session: self.id };
+        /// What a step comes to.
+        enum Fold {
+            Same(u32),
+            Constant(f64),
+            None,
+        }
+        use Fold::{Constant, Same};
         let (zero, one) = (|id| self.constant(id) == Some(0.0), |id| self.constant(id) == Some(1.0));
-        let all = |ids: &[u32]| ids.iter().all(|id| self.constant(*id).is_some());
-        let known = match step {
-            Step::Add(a, b) if zero(a) => return same(b),
-            Step::Add(a, b) | Step::Sub(a, b) if zero(b) => return same(a),
-            Step::Sub(a, b) if a == b => return self.push(Step::Constant(0.0), 0.0),
-            Step::Mul(a, b) if zero(a) || zero(b) => return self.push(Step::Constant(0.0), 0.0),
-            Step::Mul(a, b) if one(a) => return same(b),
-            Step::Mul(a, b) | Step::Div(a, b) if one(b) => return same(a),
-            Step::Div(a, b) if zero(a) && !zero(b) => return self.push(Step::Constant(0.0), 0.0),
-            Step::MulAdd(a, b, c) if zero(a) || zero(b) => return same(c),
-            Step::MulAdd(a, b, c) => all(&[a, b, c]),
+        let known = |ids: &[u32]| match ids.iter().all(|id| self.constant(*id).is_some()) {
+            true => Constant(value),
+            false => Fold::None,
+        };
+        let fold = match step {
+            Step::Add(a, b) if zero(a) => Same(b),
+            Step::Add(a, b) | Step::Sub(a, b) if zero(b) => Same(a),
+            Step::Sub(a, b) if a == b => Constant(0.0),
+            Step::Mul(a, b) if zero(a) || zero(b) => Constant(0.0),
+            Step::Mul(a, b) if one(a) => Same(b),
+            Step::Mul(a, b) | Step::Div(a, b) if one(b) => Same(a),
+            Step::Div(a, b) if zero(a) && !zero(b) => Constant(0.0),
+            Step::MulAdd(a, b, c) if zero(a) || zero(b) => Same(c),
+            Step::MulAdd(a, b, c) => known(&[a, b, c]),
             Step::Add(a, b)
             | Step::Sub(a, b)
             | Step::Mul(a, b)
             | Step::Div(a, b)
             | Step::Larger(a, b)
-            | Step::Call(_, a, b) => all(&[a, b]),
-            Step::Neg(a) | Step::Abs(a) | Step::Sqrt(a) | Step::Round(a) => all(&[a]),
-            Step::Constant(_) | Step::Input(_) | Step::Uniform(_) => false,
+            | Step::Call(_, a, b) => known(&[a, b]),
+            Step::Neg(a) | Step::Abs(a) | Step::Sqrt(a) | Step::Round(a) => known(&[a]),
+            Step::Constant(_) | Step::Input(_) | Step::Uniform(_) => Fold::None,
         };
-        self.push(if known { Step::Constant(value) } else { step }, value)
+        let operations = if matches!(step, Step::MulAdd(..)) { 2 } else { 1 };
+        self.recording.folded += if matches!(fold, Fold::None) { 0 } else { operations };
+        match fold {
+            Same(id) => Number { value, id, session: self.id },
+            Constant(x) => self.push(Step::Constant(x), x),
+            Fold::None => self.push(step, value),
+        }
     }
 }
 

@@ -7,7 +7,7 @@ use std::sync::{Arc, OnceLock};
 
 use hardpoint_tape::Number;
 
-use crate::blocks::Turning;
+use crate::blocks::turned;
 use crate::law::Law;
 use crate::measure::{self, Before, Measured, SlopeValues};
 use crate::model::{BodyId, Effects, Field, Geometry, Model};
@@ -471,29 +471,31 @@ impl<'m> Analysis<'m> {
         for Solution { motion, .. } in solutions.iter_mut() {
             self.make_room(motion, self.model.times.len());
         }
-        let mut turning = Turning::default();
-        let mut coordinates = vec![[0.0; LANES]; self.topology.coordinates.len()];
+        let mut coordinates = vec![[[0.0; LANES]; LANES]; self.topology.coordinates.len()];
+        let mut now = vec![[0.0; LANES]; coordinates.len()];
         let last = self.model.times.len() - 1;
         let solved = beside.as_mut().filter(|_| designs.len() > 1).and_then(|beside| {
             let values: Vec<Vec<f64>> = designs.iter().map(|d| self.model.whole(d)).collect();
-            beside.run(&values, |k, tape| {
-                let [states, _] = tape.results();
-                tape.coordinates(&self.topology, &mut coordinates);
-                turning.put(k, [states, &coordinates]);
-                if k % LANES == LANES - 1 || k == last {
-                    let mut blocks = solutions.iter_mut().map(|Solution { motion, .. }| {
-                        [motion.states.block_mut(k), motion.coordinates.block_mut(k)]
-                    });
-                    let mut blocks: [_; LANES] = std::array::from_fn(|_| blocks.next().unwrap_or_default());
-                    let first = states.len();
-                    turning.each(|column, designs| {
-                        let (list, column) = if column < first { (0, column) } else { (1, column - first) };
-                        for (blocks, lanes) in blocks.iter_mut().zip(designs) {
-                            if let Some(to) = blocks[list].get_mut(column) {
-                                *to = *lanes;
-                            }
+            beside.run(&values, |k, found| {
+                found.tape.coordinates(&self.topology, &mut now);
+                for (q, now) in coordinates.iter_mut().zip(&now) {
+                    (0..LANES).for_each(|lane| q[lane][k % LANES] = now[lane]);
+                }
+                if k % LANES < LANES - 1 && k < last {
+                    return;
+                }
+                let mut rooms = solutions.iter_mut().map(|s| s.motion.states.block_mut(k));
+                let mut rooms: [_; LANES] = std::array::from_fn(|_| rooms.next().unwrap_or_default());
+                turned(std::array::from_fn(|lane| found.states(lane)), |column, designs| {
+                    for (room, lanes) in rooms.iter_mut().zip(designs) {
+                        if let Some(to) = room.get_mut(column) {
+                            *to = *lanes;
                         }
-                    });
+                    }
+                });
+                for (lane, Solution { motion, .. }) in solutions.iter_mut().enumerate() {
+                    let room = motion.coordinates.block_mut(k).iter_mut();
+                    room.zip(&coordinates).for_each(|(to, q)| *to = q[lane]);
                 }
             })
         });
@@ -526,11 +528,10 @@ impl<'m> Analysis<'m> {
         let (wanted, moved) = (self.wanted(sinks), beside.moved());
         let variables = self.model.variables.len();
         let mut resisting = vec![(Vec::new(), 0.0); LANES * variables];
-        let effort = beside.run(&values, |k, tape| {
+        let effort = beside.run(&values, |k, found| {
             let times = [self.model.times[k]; LANES];
-            note_defects(tape, &self.topology, &times[..designs.len()], (&mut resisting, variables));
-            let [states, derivatives] = tape.results();
-            let block = Block { states, derivatives };
+            note_defects(found.tape, &self.topology, &times[..designs.len()], (&mut resisting, variables));
+            let block = Block { states: found.states(k), derivatives: found.derivatives };
             for body in (1..wanted.len()).filter(|b| wanted[*b]) {
                 for (lane, sink) in sinks.iter_mut().enumerate() {
                     sink.state(k, BodyId(body), &block.state(body, lane));
@@ -630,7 +631,10 @@ impl<'a> Walk<'a> {
         let mut stop = None;
         while self.done < total && stop.is_none() {
             let k = self.done;
-            let at_once = if k == 0 { 0 } else { self.abreast.advance(&mut self.one, k, &times[k..]) };
+            let at_once = match k {
+                0 => 0,
+                _ => self.abreast.advance(&mut self.one, k, &times[k..], || sink.room(k)),
+            };
             if at_once == 0 {
                 let step = if k == 0 { self.one.start(times[k]) } else { self.one.advance(times[k]) };
                 if let Err(mut s) = step {
@@ -659,9 +663,7 @@ impl<'a> Walk<'a> {
                 then(sink, Solved::One(one), 1, self.sensing.as_ref());
             } else {
                 let tape = self.abreast.solved();
-                let [states, derivatives] = tape.results();
-                let block = Block { states, derivatives };
-                if !sink.block(k, count, &block) {
+                if let Some(block) = self.abreast.own_results() {
                     for body in (1..self.wanted.len()).filter(|b| self.wanted[*b]) {
                         for lane in 0..count {
                             sink.state(k + lane, BodyId(body), &block.state(body, lane));

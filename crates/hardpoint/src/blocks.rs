@@ -11,6 +11,7 @@ use crate::space::Vec3;
 pub(crate) struct Line(pub Lanes);
 
 /// Lines as the lanes that they are.
+#[inline(always)]
 pub(crate) fn lanes_of(lines: &mut [Line]) -> &mut [Lanes] {
     bytemuck::cast_slice_mut(lines)
 }
@@ -100,39 +101,20 @@ impl<'b> Row<'b> {
     }
 }
 
-/// Turns what lies side by side by design into what lies side by side by output time, eight of each.
-#[derive(Debug, Default)]
-pub(crate) struct Turning {
-    /// The numbers of one output time after the other, number by number.
-    lines: Vec<Line>,
-    width: usize,
-}
-
-impl Turning {
-    /// Takes the numbers of output time k, which come in two lists, those of eight designs side by side.
-    #[inline(always)]
-    pub fn put(&mut self, k: usize, lists: [&[Lanes]; 2]) {
-        self.width = lists[0].len() + lists[1].len();
-        self.lines.resize(LANES * self.width, Line::default());
-        let to = &mut lanes_of(&mut self.lines)[k % LANES * self.width..][..self.width];
-        let (first, second) = to.split_at_mut(lists[0].len());
-        first.copy_from_slice(lists[0]);
-        second.copy_from_slice(lists[1]);
-    }
-
-    /// Number by number, those of eight designs, each with its eight output times side by side.
-    #[inline(always)]
-    pub fn each(&self, mut out: impl FnMut(usize, &[Lanes; LANES])) {
-        let of_times: [&[Line]; LANES] = std::array::from_fn(|k| &self.lines[k * self.width..][..self.width]);
-        for column in 0..self.width {
-            out(column, &transposed(&of_times.map(|lines| lines[column].0)));
-        }
+/// Turns what lies side by side by design, output time by output time, into what lies side by side by output time: number by
+/// number, those of eight designs.
+#[inline(always)]
+pub(crate) fn turned(times: [&[Lanes]; LANES], mut out: impl FnMut(usize, &[Lanes; LANES])) {
+    let width = times.iter().map(|lanes| lanes.len()).min().unwrap_or(0);
+    let times = times.map(|lanes| &lanes[..width]);
+    for column in 0..width {
+        out(column, &transposed(times.map(|lanes| &lanes[column])));
     }
 }
 
 /// By blocks of two by two, which a register of two numbers turns.
 #[inline(always)]
-fn transposed(rows: &[Lanes; LANES]) -> [Lanes; LANES] {
+fn transposed(rows: [&Lanes; LANES]) -> [Lanes; LANES] {
     let mut columns = [[0.0; LANES]; LANES];
     for i in (0..LANES).step_by(2) {
         for j in (0..LANES).step_by(2) {

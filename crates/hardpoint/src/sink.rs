@@ -24,16 +24,21 @@ pub trait Sink {
     /// [`Admissibility`](crate::sensitivity::Admissibility) at the end tells.
     fn sensitivity(&mut self, k: usize, variable: VariableId, body: BodyId, derivatives: &BodySensitivity);
 
-    /// Output times k to k + count - 1 in one piece, as they were found; returns whether it has taken them. Else they come one by one.
-    fn block(&mut self, k: usize, count: usize, block: &Block<'_>) -> bool {
-        let _ = (k, count, block);
-        false
+    /// Memory for eight output times, k to k + 7, that are found at once, those of every number side by side. First, per body but
+    /// ground, position, columns of the rotation, velocity, angular velocity, acceleration, angular acceleration (24 numbers); second,
+    /// per variable and body that it moves, a [`BodySensitivity`] in the order of its fields (18).
+    ///
+    /// What is written to it comes no other way, and means nothing beyond the last output time. Where there is none, as here, or of
+    /// another size, results come one by one.
+    fn room(&mut self, k: usize) -> Option<[&mut [[f64; 8]]; 2]> {
+        let _ = k;
+        None
     }
 }
 
-/// Results of eight output times, side by side. Those beyond the last mean nothing.
+/// Results of eight output times, or of eight designs, side by side.
 #[derive(Clone, Copy, Debug)]
-pub struct Block<'b> {
+pub(crate) struct Block<'b> {
     /// Per body but ground 24 numbers: position, columns of the rotation, velocity, angular velocity, acceleration, angular
     /// acceleration.
     pub states: &'b [[f64; 8]],
@@ -73,9 +78,7 @@ impl Sink for Store<'_> {
     }
 
     #[inline(always)]
-    fn block(&mut self, k: usize, _: usize, block: &Block<'_>) -> bool {
-        self.motion.states.block_mut(k).copy_from_slice(block.states);
-        self.sensitivities.derivatives.block_mut(k).copy_from_slice(block.derivatives);
-        true
+    fn room(&mut self, k: usize) -> Option<[&mut [[f64; 8]]; 2]> {
+        Some([self.motion.states.block_mut(k), self.sensitivities.derivatives.block_mut(k)])
     }
 }

@@ -11,7 +11,7 @@ use crate::model::{BodyId, Model, OutputSource, VariableId};
 use crate::motion::margin::Margins;
 use crate::motion::{BodyState, Motion};
 use crate::sensitivity::{Admissibility, BodySensitivity, Sensitivities};
-use crate::sink::{Block, Sink, Store};
+use crate::sink::Sink;
 use crate::space::LANES;
 
 /// What the results of one output time take, in bytes.
@@ -179,9 +179,9 @@ impl Sink for Window {
     }
 
     #[inline(always)]
-    fn block(&mut self, k: usize, count: usize, block: &Block<'_>) -> bool {
-        let Self { motion, sensitivities, .. } = self;
-        Store { motion, sensitivities }.block(k - self.first, count, block)
+    fn room(&mut self, k: usize) -> Option<[&mut [[f64; 8]]; 2]> {
+        let k = k - self.first;
+        Some([self.motion.states.block_mut(k), self.sensitivities.derivatives.block_mut(k)])
     }
 }
 

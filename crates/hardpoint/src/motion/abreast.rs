@@ -9,6 +9,7 @@ use std::sync::Arc;
 use hardpoint_tape::{LANES, Lanes};
 
 use crate::blocks::{Line, lanes_of};
+use crate::sink::Block;
 use crate::space::Real;
 use crate::topology::Source;
 
@@ -46,6 +47,9 @@ pub(crate) struct Abreast<'p> {
     wait: usize,
     pause: usize,
     ratios: Vec<f64>,
+    /// Results, where nobody gives room for them; and whether they are here.
+    own: [Vec<Line>; 2],
+    is_own: bool,
 }
 
 /// The drivers' laws at eight times.
@@ -70,6 +74,8 @@ impl<'p> Abreast<'p> {
             wait: 0,
             pause: PAUSE[0],
             ratios: Vec::new(),
+            own: [Vec::new(), Vec::new()],
+            is_own: false,
         }
     }
 
@@ -81,10 +87,23 @@ impl<'p> Abreast<'p> {
         self.tape.as_ref().expect("a tape has solved the steps")
     }
 
+    /// Its results, where there was no room for them elsewhere.
+    pub fn own_results(&self) -> Option<Block<'_>> {
+        let [states, derivatives] = self.own.each_ref().map(|own| bytemuck::cast_slice(own));
+        self.is_own.then_some(Block { states, derivatives })
+    }
+
     /// Output time k comes next: moves on from where the stepper stands to as many of the next output times as can be solved at once;
-    /// returns how many, 0 where they are to be walked.
+    /// returns how many, 0 where they are to be walked. Results go to the room that
+    /// there is, or are kept here.
     #[inline]
-    pub fn advance(&mut self, one: &mut Stepper<'_, f64>, k: usize, next: &[f64]) -> usize {
+    pub fn advance<'r>(
+        &mut self,
+        one: &mut Stepper<'_, f64>,
+        k: usize,
+        next: &[f64],
+        room: impl FnOnce() -> Option<[&'r mut [Lanes]; 2]>,
+    ) -> usize {
         // Results of output times 8n to 8n + 7 lie side by side.
         let count = usize::min(next.len(), LANES);
         if self.programs.is_none() || k % LANES != 0 || count < FEWEST || one.ahead == Ahead::Unknown {
@@ -98,7 +117,7 @@ impl<'p> Abreast<'p> {
         if one.forecast.known() < NODES || !self.choose_tape(one) {
             return 0;
         }
-        if self.try_to(one, &next[..count]).is_some() {
+        if self.try_to(one, &next[..count], room()).is_some() {
             self.pause = PAUSE[0];
             return count;
         }
@@ -156,7 +175,12 @@ impl<'p> Abreast<'p> {
     }
 
     #[inline(always)]
-    fn try_to(&mut self, one: &mut Stepper<'_, f64>, next: &[f64]) -> Option<()> {
+    fn try_to(
+        &mut self,
+        one: &mut Stepper<'_, f64>,
+        next: &[f64],
+        room: Option<[&mut [Lanes]; 2]>,
+    ) -> Option<()> {
         let last = next.len() - 1;
         let times: Lanes = std::array::from_fn(|k| next[k.min(last)]);
         let tape = self.tape.as_mut()?;
@@ -176,7 +200,16 @@ impl<'p> Abreast<'p> {
                 *to = [*x; LANES];
             }
         }
-        let residuals = tape.solve((&one.branch, &one.try_others), FORESEEN, &mut self.ratios).ok()?;
+        let room = room.filter(|room| room.each_ref().map(|part| part.len()) == tape.sizes());
+        self.is_own = room.is_none();
+        let results = room.unwrap_or_else(|| {
+            for (own, size) in self.own.iter_mut().zip(tape.sizes()) {
+                own.resize(size, Line::default());
+            }
+            self.own.each_mut().map(|own| lanes_of(own))
+        });
+        let residuals =
+            tape.solve((&one.branch, &one.try_others), FORESEEN, &mut self.ratios, results).ok()?;
         let change_step = determinants_are_even(tape, one, &times, last);
         let fits = change_step.is_some() && speeds_are_smooth(tape, one, &ahead);
         match change_step.filter(|_| fits) {
@@ -199,7 +232,7 @@ impl Laws {
         let mut by_program = false;
         if let Some(program) = &self.program {
             let found = lanes_of(&mut self.outputs);
-            self.room.run(program, std::slice::from_ref(times), found);
+            self.room.run(program, std::slice::from_ref(times), [found, &mut [], &mut []]);
             let (found, limits) = found.split_at(drivers.len());
             by_program = limits.iter().all(|l| l.iter().all(|x| *x <= 0.0));
             drivers.copy_from_slice(found);

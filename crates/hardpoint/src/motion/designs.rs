@@ -5,6 +5,7 @@
 
 use hardpoint_tape::{LANES, Lanes};
 
+use crate::blocks::{Line, lanes_of};
 use crate::model::{BodyId, VariableId};
 use crate::space::Real;
 
@@ -55,6 +56,24 @@ pub(crate) struct SideBySide<'m> {
     determinants: Vec<Lanes>,
     changes: Vec<Lanes>,
     ratios: Vec<f64>,
+    /// The numbers of all bodies at the last eight output times, and their derivatives at the last.
+    states: [Vec<Line>; LANES],
+    derivatives: Vec<Line>,
+}
+
+/// What was found at an output time.
+pub(crate) struct Found<'f> {
+    pub tape: &'f Tape,
+    states: &'f [Vec<Line>; LANES],
+    pub derivatives: &'f [Lanes],
+}
+
+impl<'f> Found<'f> {
+    /// The numbers of all bodies but ground at output time k, this one or one of the seven before.
+    #[inline(always)]
+    pub fn states(&self, k: usize) -> &'f [Lanes] {
+        bytemuck::cast_slice(&self.states[k % LANES])
+    }
 }
 
 impl<'m> SideBySide<'m> {
@@ -67,6 +86,7 @@ impl<'m> SideBySide<'m> {
         let blocks = nominal.topology.blocks.len();
         let first = Tape::new(programs(MOST_CORRECTIONS)?);
         let (channels, unknowns) = (first.channels().len(), first.unknowns().count());
+        let [states, derivatives] = first.sizes().map(|size| vec![Line::default(); size]);
         let mut tapes = [const { None }; MOST_CORRECTIONS];
         tapes[MOST_CORRECTIONS - 1] = Some((first, false));
         let (course, drivers) = course(&mut nominal);
@@ -87,6 +107,8 @@ impl<'m> SideBySide<'m> {
             determinants: vec![[0.0; LANES]; blocks],
             changes: vec![[0.0; LANES]; blocks],
             ratios: vec![0.0; blocks],
+            states: std::array::from_fn(|_| states.clone()),
+            derivatives,
         })
     }
 
@@ -103,7 +125,7 @@ impl<'m> SideBySide<'m> {
 
     /// These designs at all output times, one per lane; `each(k, ...)` sees the results of output time k. None where a step does not go
     /// as expected in some lane.
-    pub fn run(&mut self, designs: &[Vec<f64>], mut each: impl FnMut(usize, &Tape)) -> Option<Effort> {
+    pub fn run(&mut self, designs: &[Vec<f64>], mut each: impl FnMut(usize, &Found<'_>)) -> Option<Effort> {
         let model = self.nominal.model;
         for (_, knows) in self.tapes.iter_mut().flatten() {
             *knows = false;
@@ -117,7 +139,8 @@ impl<'m> SideBySide<'m> {
             } else {
                 self.step(k, t, &mut effort)?
             }
-            each(k, self.tape());
+            let (tape, derivatives) = (self.tape(), bytemuck::cast_slice(&self.derivatives));
+            each(k, &Found { tape, states: &self.states, derivatives });
             effort.steps += 1;
             effort.by_program += 1;
             effort.iterations += self.tape().passes();
@@ -186,8 +209,9 @@ impl<'m> SideBySide<'m> {
         for (to, x) in tape.drivers_mut().iter_mut().zip(self.drivers[k * drivers..].as_flattened()) {
             *to = [*x; LANES];
         }
+        let results = [lanes_of(&mut self.states[k % LANES]), lanes_of(&mut self.derivatives)];
         let judged = (&nominal.branch[..], &nominal.try_others[..]);
-        let residuals = tape.solve(judged, TRUST_FLOOR, &mut self.ratios).ok()?;
+        let residuals = tape.solve(judged, TRUST_FLOOR, &mut self.ratios, results).ok()?;
         effort.worst_residual = effort.worst_residual.max(residuals.largest);
         (self.by, self.corrected) = (corrections - 1, tape.first_correction());
         Some(())

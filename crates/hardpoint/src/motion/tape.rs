@@ -12,7 +12,7 @@
 use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex};
 
-use hardpoint_code::{Code, Scratch};
+use hardpoint_code::{Code, PARTS, Scratch};
 use hardpoint_tape::{Interpreter, LANES, Lanes, Number, Options, Program, record};
 
 use crate::blocks::{Line, lanes_of};
@@ -59,10 +59,11 @@ pub(crate) struct Recorded {
     /// Where any of these is positive, the results do not count.
     pub limits: Vec<Number>,
     pub results: Vec<Number>,
+    /// Of each row that a variable could fail: the size of the defect, and what of it may be round-off.
+    pub judged: Vec<Number>,
     /// Which variable moves which body, in the order of the results.
     pub moved: Vec<(VariableId, BodyId)>,
-    /// Which variable could fail which row of the constraints; behind the other results stand, of each, the size of the defect and
-    /// what of it may be round-off.
+    /// Which variable could fail which row of the constraints.
     pub defects: Vec<(VariableId, usize)>,
 }
 
@@ -87,13 +88,16 @@ pub(crate) struct StepProgram {
 #[derive(Debug)]
 pub(crate) struct Runnable {
     program: Program,
+    ends: [usize; PARTS - 1],
     code: Option<Code>,
 }
 
 impl Runnable {
-    fn new(program: Program, execution: Execution) -> Self {
-        let code = if execution == Execution::Interpreted { None } else { Code::new(&program).ok() };
-        Self { program, code }
+    /// Its outputs in parts that end there.
+    fn new(program: Program, ends: [usize; PARTS - 1], execution: Execution) -> Self {
+        let code =
+            if execution == Execution::Interpreted { None } else { Code::in_parts(&program, ends).ok() };
+        Self { program, ends, code }
     }
 
     /// How many numbers it gives.
@@ -107,16 +111,24 @@ impl Runnable {
 pub(crate) struct Room {
     scratch: Scratch,
     interpreter: Option<Interpreter>,
+    /// What that gives.
+    outputs: Vec<Lanes>,
 }
 
 impl Room {
     #[inline(always)]
-    pub fn run(&mut self, runnable: &Runnable, inputs: &[Lanes], outputs: &mut [Lanes]) {
+    pub fn run(&mut self, runnable: &Runnable, inputs: &[Lanes], outputs: [&mut [Lanes]; PARTS]) {
         match &runnable.code {
-            Some(code) => code.run(&mut self.scratch, inputs, &[], outputs),
+            Some(code) => code.run_in_parts(&mut self.scratch, inputs, &[], outputs),
             None => {
                 let interpreter = self.interpreter.get_or_insert_with(|| Interpreter::new(&runnable.program));
-                interpreter.run(inputs, &[], outputs);
+                self.outputs.resize(runnable.outputs(), [0.0; LANES]);
+                interpreter.run(inputs, &[], &mut self.outputs);
+                let [first, second] = runnable.ends;
+                let parts = [0..first, first..second, second..self.outputs.len()];
+                for (to, part) in outputs.into_iter().zip(parts) {
+                    to.copy_from_slice(&self.outputs[part]);
+                }
             }
         }
     }
@@ -189,9 +201,9 @@ struct Outputs {
     residuals: usize,
     limits: usize,
     margins: usize,
-    bodies: usize,
-    derivatives: usize,
     defects: usize,
+    states: usize,
+    derivatives: usize,
 }
 
 /// Per block: product, most, least and growth of its factors; the first correction, and the last.
@@ -254,19 +266,20 @@ impl StepProgram {
             };
             limits.extend(more.limits);
             (moved, defects) = (more.moved, more.defects);
-            let (limits_at, derivatives) = (out.len(), more.results.len() - 2 * defects.len());
+            let limits_at = out.len();
             let margins_at = limits_at + limits.len();
-            let bodies_at = margins_at + margins.len();
+            let defects_at = margins_at + margins.len();
+            let states = defects_at + more.judged.len();
             places = Some(Outputs {
                 blocks: blocks_at,
                 residuals,
                 limits: limits_at,
                 margins: margins_at,
-                bodies: bodies_at,
-                derivatives: bodies_at + bodies.len(),
-                defects: bodies_at + bodies.len() + derivatives,
+                defects: defects_at,
+                states,
+                derivatives: states + bodies.len(),
             });
-            out.extend([limits, margins, bodies, more.results].concat());
+            out.extend([limits, margins, more.judged, bodies, more.results].concat());
             out
         });
         let outputs = places.filter(|_| fits && recording::is_arithmetic())?;
@@ -274,7 +287,9 @@ impl StepProgram {
         let inputs = Inputs::of(&channels, model.drivers.len(), variables);
         let (program, _) = recorded.program(Options::default());
         let (design, step) = program.staged(|input| input as usize >= inputs.design);
-        let [design, step] = [design, step].map(|program| Runnable::new(program, execution));
+        let all = design.outputs.len();
+        let design = Runnable::new(design, [all; PARTS - 1], execution);
+        let step = Runnable::new(step, [outputs.states, outputs.derivatives], execution);
         Some(Self {
             purpose,
             design,
@@ -431,7 +446,9 @@ impl Programs {
                 [laws, recording::limits()].concat()
             });
             let fits = recording::is_arithmetic();
-            fits.then(|| Arc::new(Runnable::new(recorded.program(Options::default()).0, self.execution)))
+            let program = recorded.program(Options::default()).0;
+            let all = program.outputs.len();
+            fits.then(|| Arc::new(Runnable::new(program, [all; PARTS - 1], self.execution)))
         })
         .clone()
     }
@@ -456,7 +473,7 @@ impl Tape {
     pub fn new(program: Arc<StepProgram>) -> Self {
         let inputs = program.inputs.of_design + program.design.outputs();
         let inputs = vec![Line::default(); usize::max(inputs, program.step.program.inputs)];
-        let outputs = vec![Line::default(); program.step.outputs()];
+        let outputs = vec![Line::default(); program.outputs.states];
         Self { room: Room::default(), inputs, outputs, program, tried: 0, refused: 0 }
     }
 
@@ -470,7 +487,7 @@ impl Tape {
         let (given, found) = self.inputs.split_at_mut(inputs.of_design);
         let (given, found) =
             (&lanes_of(given)[..design.program.inputs], &mut lanes_of(found)[..design.outputs()]);
-        Room::default().run(design, given, found);
+        Room::default().run(design, given, [found, &mut [], &mut []]);
     }
 
     /// Whether it is refused so often that the kernel alone is faster.
@@ -530,22 +547,21 @@ impl Tape {
 
     /// Solves the steps that were given, and judges each in the lanes up to `last`: `branch` says which sign of each determinant is
     /// expected, and `least` which pivot ratio at the least; `trust` bounds the first correction (rad, or sizes). Gives the largest
-    /// residuals; the smallest pivot ratio of each block goes to `ratios`.
+    /// residuals; the smallest pivot ratio of each block goes to `ratios`, the numbers of all bodies but ground and their derivatives
+    /// to the two lists, where they mean nothing if the steps are refused.
     #[inline(always)]
     pub fn solve(
         &mut self,
         (branch, least): (&[(bool, f64)], &[f64]),
         trust: f64,
         ratios: &mut [f64],
+        [states, derivatives]: [&mut [Lanes]; 2],
     ) -> Result<Residuals, Refused> {
         self.tried += 1;
         self.refused += 1;
         let program = &*self.program;
-        self.room.run(
-            &program.step,
-            bytemuck::cast_slice(&self.inputs),
-            bytemuck::cast_slice_mut(&mut self.outputs),
-        );
+        let outputs = [lanes_of(&mut self.outputs), states, derivatives];
+        self.room.run(&program.step, bytemuck::cast_slice(&self.inputs), outputs);
         let at = |k: usize| &self.outputs[k].0;
         // All comparisons are written so that NaN is refused.
         for (b, recorded) in program.blocks.iter().enumerate() {
@@ -622,14 +638,13 @@ impl Tape {
 
     /// The margins of the blocks, if they are worked out.
     pub fn margins(&self) -> &[Line] {
-        &self.outputs[self.program.outputs.margins..self.program.outputs.bodies]
+        &self.outputs[self.program.outputs.margins..self.program.outputs.defects]
     }
 
-    /// The numbers of all bodies but ground, and their derivatives.
-    #[inline(always)]
-    pub fn results(&self) -> [&[Lanes]; 2] {
-        let Outputs { bodies, derivatives, defects, .. } = self.program.outputs;
-        [bodies..derivatives, derivatives..defects].map(|range| bytemuck::cast_slice(&self.outputs[range]))
+    /// How many numbers all bodies but ground have, and how many their derivatives.
+    pub fn sizes(&self) -> [usize; 2] {
+        let Outputs { states, derivatives, .. } = self.program.outputs;
+        [derivatives - states, self.program.step.outputs() - derivatives]
     }
 
     /// Which variable fails which row, by how much, and what of it may be round-off; variable by variable.

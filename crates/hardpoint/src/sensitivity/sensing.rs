@@ -182,7 +182,7 @@ pub(crate) fn record_derivatives(
             recorded.moved.push((VariableId(v), BodyId(body)));
         }
     }
-    recorded.results.extend(defects);
+    recorded.judged = defects;
     Some(recorded)
 }
 
