@@ -72,6 +72,7 @@ fn facts_text(summary: &Summary) -> String {
         ("loops", facts.loops_line()),
         ("motion", format!("{} of {} steps solved", steps.solved, steps.asked)),
     ];
+    rows.extend(summary.effort.solved_by.clone().map(|by| ("even steps by", by)));
     rows.extend(summary.margin.as_ref().map(|m| ("margin", m.line_from_start())));
     rows.push(("design variables", facts.variables_line()));
     let mut out = heading(&facts.name, facts.description.as_deref());

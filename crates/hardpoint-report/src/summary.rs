@@ -87,6 +87,10 @@ pub struct Steps {
 /// What the solution took.
 #[derive(Clone, Debug, Serialize)]
 pub struct EffortFact {
+    /// What solved the even steps: machine code, an interpreted program or the kernel; and why not machine code, if not.
+    pub solved_by: Option<String>,
+    /// Output times that a program has solved; the kernel all others.
+    pub steps_by_program: usize,
     /// Newton iterations over all steps.
     pub iterations: usize,
     /// Steps in between that the predictor needed.
@@ -197,6 +201,8 @@ impl Summary {
                 metrics_every: course.metric_stride,
             },
             effort: EffortFact {
+                solved_by: course.kept.motion.solved_by.as_ref().map(ToString::to_string),
+                steps_by_program: effort.by_program,
                 iterations: effort.iterations,
                 substeps: effort.substeps,
                 worst_residual_si: effort.worst_residual,

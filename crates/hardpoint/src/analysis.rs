@@ -17,7 +17,7 @@ use crate::motion::kinematics::State;
 use crate::motion::parts::Parts;
 use crate::motion::stepper::Stepper;
 use crate::motion::tape::{Programs, Purpose, Recorded, StepProgram, Tape};
-use crate::motion::{BodyState, Effort, Execution, Motion, Stop, StopKind};
+use crate::motion::{BodyState, Effort, Execution, Motion, SolvedBy, Stop, StopKind};
 use crate::number::record as recording;
 use crate::sensitivity::{
     Admissibility, BodySensitivity, JointDefect, Resisting, Sensing, Sensitivities, admissibility,
@@ -139,7 +139,7 @@ impl<'m> Analysis<'m> {
     /// As [`Analysis::new`].
     pub fn with(model: &'m Model, formulation: Formulation) -> Result<Self, TopologyFault> {
         let topology = Topology::of(model, formulation)?;
-        let programs = Arc::new(Programs::new(Execution::Fastest));
+        let programs = Arc::new(Programs::new(Execution::default()));
         Ok(Self {
             model,
             topology,
@@ -158,6 +158,16 @@ impl<'m> Analysis<'m> {
     /// The same analysis, its steps solved in this way.
     pub fn executed(self, execution: Execution) -> Self {
         Self { programs: Arc::new(Programs::new(execution)), ..self }
+    }
+
+    /// How the even steps of the nominal design's motion are solved.
+    pub fn solved_by(&self) -> SolvedBy {
+        let by_driver = self.measures && (0..self.model.measures.len()).any(|k| self.model.goes_by_driver(k));
+        let hindrance = StepProgram::hindrance(&self.topology);
+        match hindrance.or(by_driver.then_some("measures go by a driver that moves alone")) {
+            Some(why) => SolvedBy::Kernel(why.into()),
+            None => self.programs.solve(self.model.times.len()),
+        }
     }
 
     /// The plan.
@@ -421,7 +431,7 @@ impl<'m> Analysis<'m> {
 
     /// The step of this plan as a program, recorded where the nominal motion begins.
     fn program(&self, purpose: Purpose) -> Option<Arc<StepProgram>> {
-        if !StepProgram::suits(&self.topology) {
+        if StepProgram::hindrance(&self.topology).is_some() {
             return None;
         }
         self.programs.step(purpose, |execution| {

@@ -143,6 +143,7 @@ impl Analysis<'_> {
             }
         });
         window.motion.effort = walk.one.effort;
+        window.motion.solved_by = Some(self.solved_by());
         window.motion.assembly = walk.one.assembly.take();
         window.motion.beyond =
             if self.measures && stop.is_none() && walk.done > 0 { walk.one.beyond() } else { None };
@@ -259,6 +260,7 @@ impl Kept {
     /// What was kept, with the facts of the whole run.
     pub fn end(mut self, whole: &Solution) -> Solution {
         self.solution.motion.effort = whole.motion.effort;
+        self.solution.motion.solved_by = whole.motion.solved_by.clone();
         self.solution.motion.assembly = whole.motion.assembly.clone();
         self.solution.motion.beyond = whole.motion.beyond.clone();
         self.solution.sensitivities.admissibility = whole.sensitivities.admissibility.clone();

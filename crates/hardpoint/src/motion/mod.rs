@@ -22,7 +22,7 @@ pub use assembly::{Assembly, Closing, Gap, Moved};
 pub use jerk::BodyJerk;
 pub use margin::Margin;
 pub use stop::{Stop, StopKind};
-pub use tape::Execution;
+pub use tape::{Execution, SolvedBy};
 
 use crate::blocks::{Blocks, Row};
 use crate::model::{BodyId, JointId, Model};
@@ -137,6 +137,8 @@ pub struct Motion {
     pub(crate) passed: Vec<(usize, Passed)>,
     /// What it took.
     pub effort: Effort,
+    /// What solved the steps that are even.
+    pub solved_by: Option<SolvedBy>,
 }
 
 /// States of all bodies at one output time.

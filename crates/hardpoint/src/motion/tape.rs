@@ -10,9 +10,10 @@
 //! and those that are so large that a program each would cost more than it saves.
 
 use std::collections::BTreeMap;
+use std::fmt;
 use std::sync::{Arc, Mutex};
 
-use hardpoint_code::{Code, PARTS, Scratch};
+use hardpoint_code::{Code, PARTS, Scratch, Width};
 use hardpoint_tape::{Interpreter, LANES, Lanes, Number, Options, Program, record};
 
 use crate::blocks::{Line, lanes_of};
@@ -210,12 +211,19 @@ struct Outputs {
 const PER_BLOCK: usize = 6;
 
 impl StepProgram {
-    /// Whether the steps of a plan can be recorded, and are short enough for that.
-    pub fn suits(topology: &Topology) -> bool {
-        topology.links.len() <= MOST_LINKS
-            && topology.blocks.iter().all(|b| b.unknowns.len() <= LARGEST_DENSE)
-            && topology.coupled_rows.is_empty()
-            && topology.closures.iter().all(|c| c.contact.is_none())
+    /// Why the steps of a plan are not recorded, if they are not.
+    pub fn hindrance(topology: &Topology) -> Option<&'static str> {
+        if !topology.coupled_rows.is_empty() {
+            Some("couplers count angles by the turn that is expected")
+        } else if topology.closures.iter().any(|c| c.contact.is_some()) {
+            Some("a point follows a curve")
+        } else if topology.blocks.iter().any(|b| b.unknowns.len() > LARGEST_DENSE) {
+            Some("a block is so large that it is solved by sparse factors")
+        } else if topology.links.len() > MOST_LINKS {
+            Some("the program would be too long")
+        } else {
+            None
+        }
     }
 
     /// Records the step that is solved where `one`, of the nominal design, stands, and what `besides` makes of it and of the values
@@ -398,6 +406,27 @@ impl Execution {
     }
 }
 
+/// How the even steps of a motion are solved, eight output times at once or one by one.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum SolvedBy {
+    /// By programs as machine code.
+    Code(Width),
+    /// By programs that are interpreted, and why there is no machine code.
+    Interpreter(String),
+    /// By the kernel, one by one, and why.
+    Kernel(String),
+}
+
+impl fmt::Display for SolvedBy {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Code(width) => write!(f, "machine code ({width}), eight output times at once"),
+            Self::Interpreter(why) => write!(f, "an interpreted program, eight output times at once: {why}"),
+            Self::Kernel(why) => write!(f, "the kernel, one by one: {why}"),
+        }
+    }
+}
+
 /// The programs of a plan, each recorded when it is first asked for.
 ///
 /// They are recorded of the nominal design where its motion begins, so that they do not depend on who asks first.
@@ -412,6 +441,19 @@ impl Programs {
     /// None as yet.
     pub fn new(execution: Execution) -> Self {
         Self { execution, steps: Mutex::default(), laws: Mutex::default() }
+    }
+
+    /// How so many steps are solved, if they can be recorded.
+    pub fn solve(&self, steps: usize) -> SolvedBy {
+        let asked = || "it was asked for".to_owned();
+        // What can be made of nothing can be made of all.
+        match (self.execution, Code::new(&Program::default())) {
+            (Execution::Kernel, _) => SolvedBy::Kernel(asked()),
+            _ if !self.pay(steps) => SolvedBy::Kernel(format!("recording pays from {PAYS} output times on")),
+            (Execution::Interpreted, _) => SolvedBy::Interpreter(asked()),
+            (_, Ok(code)) => SolvedBy::Code(code.width()),
+            (_, Err(why)) => SolvedBy::Interpreter(why.to_string()),
+        }
     }
 
     /// Whether so many steps are worth a program.

@@ -5,6 +5,7 @@
 //! that names it.
 
 use crate::reference_case::{Case, Comparison};
+use hardpoint::motion::Execution;
 use hardpoint::topology::Formulation;
 use hardpoint::{Analysis, model::Model};
 use std::path::PathBuf;
@@ -30,7 +31,7 @@ fn cases() -> Vec<PathBuf> {
 
 #[test]
 fn every_number_of_every_case_holds_in_both_formulations() {
-    let mut failures = Vec::new();
+    let (mut failures, mut by_programs) = (Vec::new(), 0);
     for file in cases() {
         let name = file.file_stem().unwrap().to_string_lossy().into_owned();
         let case = match Case::read(&file) {
@@ -48,20 +49,51 @@ fn every_number_of_every_case_holds_in_both_formulations() {
             }
         };
         for formulation in [Formulation::Relative, Formulation::Absolute] {
-            match compare(&case, &model, formulation) {
-                Ok(c) => println!(
-                    "{name} ({formulation:?}): {} numbers, worst deviation {:.1e} in {}",
-                    c.count, c.worst, c.worst_name
-                ),
-                Err(e) => failures.push(format!("{name} ({formulation:?}): {e}")),
+            // As the case has its output times; and with many between them, on every path that steps can take.
+            let close = refined(&model);
+            let ways = [(&model, Execution::Fastest)].into_iter().chain(EXECUTIONS.map(|by| (&close, by)));
+            for (model, execution) in ways {
+                let every = (model.times.len() - 1) / (case.draft.times.len() - 1).max(1);
+                match compare(&case, model, formulation, execution, every.max(1)) {
+                    Ok((c, steps)) => {
+                        by_programs += usize::from(steps > 0);
+                        println!(
+                            "{name} ({formulation:?}, {execution:?}): {} numbers, worst deviation {:.1e} in {}; \
+                             {steps} steps by programs",
+                            c.count, c.worst, c.worst_name
+                        );
+                    }
+                    Err(e) => failures.push(format!("{name} ({formulation:?}, {execution:?}): {e}")),
+                }
             }
         }
     }
     assert!(failures.is_empty(), "{} failures:\n{}", failures.len(), failures.join("\n"));
+    assert!(by_programs > 10, "{by_programs} by programs");
 }
 
-fn compare(case: &Case, model: &Model, formulation: Formulation) -> Result<Comparison, String> {
+const EXECUTIONS: [Execution; 3] = [Execution::Kernel, Execution::Interpreted, Execution::Compiled];
+
+/// With so many steps from one output time to the next.
+const BETWEEN: usize = 64;
+
+fn refined(model: &Model) -> Model {
+    let step = |w: &[f64], n: usize| w[0] + (w[1] - w[0]) * n as f64 / BETWEEN as f64;
+    let mut times: Vec<f64> =
+        model.times.windows(2).flat_map(|w| (0..BETWEEN).map(move |n| step(w, n))).collect();
+    times.extend(model.times.last());
+    Model { times, ..model.clone() }
+}
+
+fn compare(
+    case: &Case,
+    model: &Model,
+    formulation: Formulation,
+    execution: Execution,
+    every: usize,
+) -> Result<(Comparison, usize), String> {
     let analysis = Analysis::with(model, formulation).map_err(|e| format!("{e}: {:?}", e.notes()))?;
+    let analysis = analysis.executed(execution);
     let topology = analysis.topology();
     let solution = analysis.run();
     if let Some(stop) = &solution.stop {
@@ -72,9 +104,9 @@ fn compare(case: &Case, model: &Model, formulation: Formulation) -> Result<Compa
         return Err(format!("{redundant} redundant constraints, {} expected", case.redundant));
     }
     case.check_admissibility(model, &solution)?;
-    let comparison = case.compare(model, &solution)?;
+    let comparison = case.compare(model, &solution, every)?;
     if comparison.worst > TOLERANCE {
         return Err(format!("{} deviates by {:.2e}", comparison.worst_name, comparison.worst));
     }
-    Ok(comparison)
+    Ok((comparison, solution.motion.effort.by_program))
 }

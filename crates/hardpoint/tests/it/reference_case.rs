@@ -142,13 +142,14 @@ impl Case {
         Ok(())
     }
 
-    pub fn compare(&self, model: &Model, solution: &Solution) -> Result<Comparison, String> {
+    /// The case's output times are every so many of the solution's.
+    pub fn compare(&self, model: &Model, solution: &Solution, every: usize) -> Result<Comparison, String> {
         let mut scales = Scales::default();
         for result in &self.results {
             scales.gather(result, &mut Vec::new());
         }
         let mut out = Comparison::default();
-        for (k, result) in self.results.iter().enumerate() {
+        for (k, result) in self.results.iter().enumerate().map(|(k, result)| (every * k, result)) {
             let at = format!("t = {}", result["t"]);
             for (name, body) in result["bodies"].as_object().ok_or("no bodies")? {
                 let id = model.body(name).ok_or("unknown body")?;

@@ -3,7 +3,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use hardpoint::model::*;
-use hardpoint::motion::StopKind;
+use hardpoint::motion::{Execution, StopKind};
 use hardpoint::sensitivity::Admissibility;
 use hardpoint::space::{Pose, Vec3};
 use hardpoint::study::{Scheme, compare_with_difference, finite_differences, natural_step};
@@ -100,6 +100,9 @@ pub fn used_where_solved(draft: &Draft) -> BTreeSet<String> {
     tally.used
 }
 
+/// Every case is solved in one of these ways.
+const EXECUTIONS: [Execution; 3] = [Execution::Kernel, Execution::Interpreted, Execution::Compiled];
+
 /// A case under examination.
 pub struct Case<'a> {
     pub seed: u64,
@@ -129,7 +132,9 @@ impl Case<'_> {
             Err(faults) => return self.fail(format!("a sound draft has faults: {faults:?}")),
         };
         let mobility = rank::mobility(&model);
-        let both = [Formulation::Relative, Formulation::Absolute].map(|f| Analysis::with(&model, f));
+        let by = EXECUTIONS[self.seed as usize % EXECUTIONS.len()];
+        let both = [Formulation::Relative, Formulation::Absolute]
+            .map(|f| Analysis::with(&model, f).map(|a| a.executed(by)));
         let [relative, absolute] = match both {
             [Ok(relative), Ok(absolute)] => [relative, absolute],
             [Err(a), Err(b)] => {
