@@ -24,8 +24,8 @@ use crate::sensitivity::{
     admissibility_at_design, along, note_defects, record_derivatives,
 };
 use crate::sink::{Block, Sink, Store};
-use crate::space::LANES;
 use crate::topology::{Formulation, Topology, TopologyFault};
+use hardpoint_tape::LANES;
 
 /// A model with its plan of solution, ready to be run as often as needed.
 ///
@@ -448,7 +448,7 @@ impl<'m> Analysis<'m> {
     }
 
     /// The nominal design where its motion begins.
-    fn started(&self) -> Option<Stepper<'m, f64>> {
+    fn started(&self) -> Option<Stepper<'m>> {
         let Design { geometry, laws, .. } = self.design(&[], false);
         let parts = Parts::same(self.model, &self.topology, &geometry, &laws, 0.0);
         let mut one = Stepper::new(self.model, &self.topology, parts, 0.0);
@@ -559,7 +559,7 @@ impl<'m> Analysis<'m> {
 
 /// The way through all output times.
 pub(crate) struct Walk<'a> {
-    pub one: Stepper<'a, f64>,
+    pub one: Stepper<'a>,
     abreast: Abreast<'a>,
     /// `None` where no sensitivities are asked for.
     pub sensing: Option<Sensing>,
@@ -571,7 +571,7 @@ pub(crate) struct Walk<'a> {
 
 /// What has just been solved: one output time, or several by a program.
 pub(crate) enum Solved<'w, 'a> {
-    One(&'w mut Stepper<'a, f64>),
+    One(&'w mut Stepper<'a>),
     Abreast(&'w Tape),
 }
 
@@ -613,11 +613,7 @@ impl<'a> Walk<'a> {
     }
 
     /// To the last output time, or to what stops it, for those who take what they want from the stepper: nothing is stored.
-    pub fn each(
-        &mut self,
-        analysis: &Analysis<'_>,
-        mut then: impl FnMut(&mut Stepper<'a, f64>),
-    ) -> Option<Stop> {
+    pub fn each(&mut self, analysis: &Analysis<'_>, mut then: impl FnMut(&mut Stepper<'a>)) -> Option<Stop> {
         let mut unused = Motion::default();
         let mut store = Store { motion: &mut unused, sensitivities: &mut Sensitivities::default() };
         self.all(analysis, &mut store, &mut |_| ControlFlow::Continue(()), |_, solved, _, _| {

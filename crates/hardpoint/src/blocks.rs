@@ -3,8 +3,6 @@
 use bytemuck::{Pod, Zeroable};
 use hardpoint_tape::{LANES, Lanes};
 
-use crate::space::Vec3;
-
 /// Eight numbers where memory is read and written fastest.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
 #[repr(C, align(64))]
@@ -93,12 +91,6 @@ impl<'b> Row<'b> {
     pub fn all(self) -> impl Iterator<Item = f64> + 'b {
         self.lines.iter().map(move |line| line.0[self.lane])
     }
-
-    /// Three numbers, from this one on.
-    #[inline(always)]
-    pub fn vector(self, first: usize) -> Vec3 {
-        Vec3::new(self.get(first), self.get(first + 1), self.get(first + 2))
-    }
 }
 
 /// Turns what lies side by side by design, output time by output time, into what lies side by side by output time: number by
@@ -143,7 +135,7 @@ mod tests {
         }
         for blocks in [&one_by_one, &by_eights] {
             for k in 0..20 {
-                assert_eq!(blocks.row(k).vector(2).to_array(), [2, 3, 4].map(|c| number(k, c)));
+                assert_eq!([2, 3, 4].map(|c| blocks.row(k).get(c)), [2, 3, 4].map(|c| number(k, c)));
             }
         }
         let mut kept = Blocks::default();

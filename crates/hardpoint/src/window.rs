@@ -12,7 +12,7 @@ use crate::motion::margin::Margins;
 use crate::motion::{BodyState, Motion};
 use crate::sensitivity::{Admissibility, BodySensitivity, Sensitivities};
 use crate::sink::Sink;
-use crate::space::LANES;
+use hardpoint_tape::LANES;
 
 /// What the results of one output time take, in bytes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -119,7 +119,7 @@ impl Analysis<'_> {
             match solved {
                 Solved::One(one) => {
                     if let Some(found) = &mut slopes {
-                        found.add(one, times, &mut window.slopes);
+                        found.add(one, times[0], &mut window.slopes);
                     }
                     window.motion.coordinates.set(k, 0, one.coordinates());
                     window.motion.passed.extend(one.passed.drain(..).map(|place| (k, place)));

@@ -30,10 +30,8 @@ fn sine_of_difference<T: Real>([s, c]: [T; 2], target: T) -> T {
 #[inline(never)]
 fn unwrapped<T: Real>([s, c]: [T; 2], near: T) -> T {
     const TURN: f64 = 2.0 * std::f64::consts::PI;
-    near.like_lanes(|lane| {
-        let (angle, near) = (s.lane(lane).atan2(c.lane(lane)), near.lane(lane));
-        angle + TURN * ((near - angle) / TURN).round()
-    })
+    let angle = s.value().atan2(c.value());
+    near.like(angle + TURN * ((near.value() - angle) / TURN).round())
 }
 
 /// The angle about z_i nearest to `near`.
@@ -97,7 +95,6 @@ pub(super) fn heading_wrench<T: Real>(ends: &Ends<T>) -> Wrench<T> {
     Wrench::moment(axis(&ends.j.rot, 0).cross(g) * (s.like(1.0) / (s * s + c * c)))
 }
 
-#[inline(always)]
 pub(super) fn heading_wrench_rates<T: Real>(ends: &Ends<T>, rates: &EndRates<T>) -> [Wrench<T>; 2] {
     let [x_i, y_i] = [0, 1].map(|k| direction_rates(axis(&ends.i.rot, k), rates.v_i, rates.a_i));
     let x_j = direction_rates(axis(&ends.j.rot, 0), rates.v_j, rates.a_j);

@@ -126,15 +126,12 @@ impl Row {
 
     #[inline(never)]
     fn rare_residual<T: Real>(self, ends: &Ends<T>, target: T) -> T {
-        target.within(
-            #[inline(always)]
-            || match self {
-                Self::AngleOnJ => angle::residual_on_j(ends, target),
-                Self::Heading => angle::heading_residual(ends, target),
-                Self::ConstantVelocity => convel::residual(ends, target),
-                _ => unreachable!("a common row"),
-            },
-        )
+        match self {
+            Self::AngleOnJ => angle::residual_on_j(ends, target),
+            Self::Heading => angle::heading_residual(ends, target),
+            Self::ConstantVelocity => convel::residual(ends, target),
+            _ => unreachable!("a common row"),
+        }
     }
 
     /// The wrench l.
@@ -153,15 +150,12 @@ impl Row {
 
     #[inline(never)]
     fn rare_wrench<T: Real>(self, ends: &Ends<T>) -> Wrench<T> {
-        ends.j.r.x.within(
-            #[inline(always)]
-            || match self {
-                Self::AngleOnJ => angle::wrench_on_j(ends),
-                Self::Heading => angle::heading_wrench(ends),
-                Self::ConstantVelocity => convel::wrench(ends),
-                _ => unreachable!("a common row"),
-            },
-        )
+        match self {
+            Self::AngleOnJ => angle::wrench_on_j(ends),
+            Self::Heading => angle::heading_wrench(ends),
+            Self::ConstantVelocity => convel::wrench(ends),
+            _ => unreachable!("a common row"),
+        }
     }
 
     /// The first and second time derivatives of the wrench.
@@ -180,15 +174,12 @@ impl Row {
 
     #[inline(never)]
     fn rare_wrench_rates<T: Real>(self, ends: &Ends<T>, rates: &EndRates<T>) -> [Wrench<T>; 2] {
-        ends.j.r.x.within(
-            #[inline(always)]
-            || match self {
-                Self::AngleOnJ => angle::wrench_rates_on_j(ends, rates),
-                Self::Heading => angle::heading_wrench_rates(ends, rates),
-                Self::ConstantVelocity => convel::wrench_rates(ends, rates),
-                _ => unreachable!("a common row"),
-            },
-        )
+        match self {
+            Self::AngleOnJ => angle::wrench_rates_on_j(ends, rates),
+            Self::Heading => angle::heading_wrench_rates(ends, rates),
+            Self::ConstantVelocity => convel::wrench_rates(ends, rates),
+            _ => unreachable!("a common row"),
+        }
     }
 
     /// Whether it asks for the markers' axes, rather than for their points only.

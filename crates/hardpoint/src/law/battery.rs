@@ -237,48 +237,6 @@ fn parameters_of_an_expression_act_as_the_numbers_they_stand_for() {
     assert!(error.help.unwrap().starts_with("did you mean `amplitude`? known are t, pi, amplitude, sin,"));
 }
 
-/// Expressions with every operation of the language, and among them every side that there is.
-const EXPRESSIONS: [&str; 24] = [
-    "0.06*sin(pi*t)",
-    "360*t",
-    "7",
-    "-cos(3*t - 1)/(2 + t^2)",
-    "sqrt(t) + t^-2",
-    "t^5 - (t + 1)^-3 + t^16",
-    "t^0.5 + t^1.5 + 2^t",
-    "tan(t) + asin(t/3) + acos(t/3) + atan(t)",
-    "sinh(t/9) + cosh(t/9) + tanh(t)",
-    "exp(-t) + ln(t) + log10(t)",
-    "atan2(sin(t), cos(t))",
-    "hypot(t, 3)",
-    "pow(2 + sin(t), t/9)",
-    "abs(t - 1) + abs(sin(t))",
-    "abs(t^3)",
-    "min(t, 1, 3 - t)",
-    "max(t^2, 2*t)",
-    "step(t, 0.5, -1, 1.5, 2)",
-    "step(sin(t), -0.5, t, 0.5, 2*t)",
-    "if(t < 1, t, 2 - t)",
-    "if(sin(t) >= 0.5, sqrt(t), 1/t)",
-    "if(t > 0, sqrt(t), 0)",
-    "sin(1e9*t)",
-    "t + (2*t + (3*t + (4*t + (5*t + (6*t + (7*t + (8*t + (9*t + (10*t + (11*t + (12*t + (13*t + sin(t)))))))))))))",
-];
-
-/// Eight times each: on different sides and in different segments, at knots and just beside them, the same in all lanes,
-/// backwards, of both signs, and far away.
-const EIGHT_TIMES: [[f64; 8]; 9] = [
-    [0.0, 0.1, 0.2, 0.3, 0.41, 0.5, 0.6, 0.7],
-    [0.0, 0.4, 0.45, 1.1, 1.2, 1.7, 1.9, 2.2],
-    [2.2, 2.6, 0.1, 1.0, 0.5, 1.5, 1.3, 0.4],
-    [0.7; 8],
-    [3.0, 2.5, 2.0, 1.5, 1.0, 0.5, 0.0, -0.5],
-    [-3.0, -2.6, -2.2, -1.1, -0.4, -1e-3, -0.0, 0.0],
-    [-1e-13, 1e-13, 2.2 + 1e-13, 2.2 + 1e-9, 1.1 - 1e-15, 1.1 + 1e-15, 0.4 - 1e-12, 1e-300],
-    [1e6, 1e6 + 0.1, -1e6, 123_456.789, 3e3, -77.0, 2.9e5, 1e6 + 1.7],
-    [f64::NAN, 0.7, f64::INFINITY, 1.9, -f64::INFINITY, 1e6, 1e300, 0.1],
-];
-
 #[test]
 fn no_evaluation_allocates() {
     for law in every_kind() {

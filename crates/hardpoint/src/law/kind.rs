@@ -19,8 +19,7 @@ use crate::number::{Jet, Real};
 /// The time is given as a jet. Where it runs backwards (its derivative is -1) a law takes the side that is active just
 /// *before* the instant, so that one-sided limits need no code of their own.
 pub(super) trait Shape: fmt::Display {
-    /// f at a time, and its derivatives; with the derivative by one parameter if there is a seed. Lanes hold times, and each
-    /// takes its own side.
+    /// f at a time, and its derivatives; with the derivative by one parameter if there is a seed.
     fn at<T: Real, const N: usize>(&self, time: Jet<T, N>, seed: Option<Seed<T>>) -> Jet<T, N>;
 
     /// All parameters, as written.

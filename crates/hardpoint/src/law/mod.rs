@@ -309,7 +309,7 @@ impl Law {
     }
 
     /// The value and the first three time derivatives at time `t`: driver unit per s⁰, s, s², s³; `t` in seconds. Over any
-    /// number: one time, several in lanes, or what carries derivatives.
+    /// number, such as one that carries derivatives.
     ///
     /// Where the law is not smooth these are the derivatives of the side that is active just after `t`; of an `if` the side
     /// whose condition holds at `t`.
@@ -322,10 +322,7 @@ impl Law {
 
     /// The same with as many derivatives as are wanted.
     pub(crate) fn to_order<T: Real, const N: usize>(&self, t: T) -> Jet<T, N> {
-        t.within(
-            #[inline(always)]
-            || self.kind.at(Jet::time(t), None) * self.factor,
-        )
+        self.kind.at(Jet::time(t), None) * self.factor
     }
 
     /// The numbers in the law that may be varied: those of its kind in the order that the kind documents; of an expression
@@ -440,17 +437,12 @@ impl Law {
 
     /// The law over a time that may run backwards, with the derivative by a parameter if there is a seed.
     fn evaluate<T: Real, const N: usize>(&self, time: Jet<T, N>, seed: Option<Seed<T>>) -> Jet<T, N> {
-        time.within(
-            #[inline(always)]
-            || {
-                let as_written =
-                    seed.map(|seed| match self.kind.parameter_kind(seed.parameter).is_in_driver_unit() {
-                        true => Seed { size: seed.size / seed.size.like(self.factor), ..seed },
-                        false => seed,
-                    });
-                self.kind.at(time, as_written) * self.factor
-            },
-        )
+        let as_written =
+            seed.map(|seed| match self.kind.parameter_kind(seed.parameter).is_in_driver_unit() {
+                true => Seed { size: seed.size / seed.size.like(self.factor), ..seed },
+                false => seed,
+            });
+        self.kind.at(time, as_written) * self.factor
     }
 
     fn check_index(&self, parameter: usize) {

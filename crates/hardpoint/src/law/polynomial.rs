@@ -30,12 +30,7 @@ impl Polynomial {
 impl Shape for Polynomial {
     #[inline(always)]
     fn at<T: Real, const N: usize>(&self, time: Jet<T, N>, seed: Option<Seed<T>>) -> Jet<T, N> {
-        sum_of_powers(
-            time,
-            self.coefficients.len(),
-            #[inline(always)]
-            |k| seeded(time.value(), self.coefficients[k], k, seed),
-        )
+        sum_of_powers(time, self.coefficients.len(), |k| seeded(time.value(), self.coefficients[k], k, seed))
     }
 
     fn over(&self, from: f64, to: f64) -> Stretch {

@@ -69,13 +69,13 @@ impl Operation {
         let sign = |order: Option<Ordering>| order.map_or(9, |order| order as u8);
         let zero = Jet::constant(0.0);
         Some(match self {
-            Self::One(Function::Abs) => u8::from(operands[0].order(zero, 0) == Some(Ordering::Less)),
-            Self::Two(Binary::Min | Binary::Max) => sign(operands[0].order(operands[1], 0)),
+            Self::One(Function::Abs) => u8::from(operands[0].order(zero) == Some(Ordering::Less)),
+            Self::Two(Binary::Min | Binary::Max) => sign(operands[0].order(operands[1])),
             // The angle jumps by 2π where the point crosses the negative x axis.
             Self::Two(Binary::Atan2) if operands[1].value() >= 0.0 => 7,
             Self::Two(Binary::Atan2) => u8::from(operands[0].value() >= 0.0),
             Self::Step => {
-                let is_before = |end: usize| operands[0].order(operands[end], 0) == Some(Ordering::Less);
+                let is_before = |end: usize| operands[0].order(operands[end]) == Some(Ordering::Less);
                 u8::from(is_before(1)) + u8::from(is_before(3))
             }
             Self::Select(comparison) => {
@@ -233,10 +233,7 @@ impl Program {
         parameter: impl Fn(usize) -> V,
         watch: impl FnMut(Operation, &[V]),
     ) -> V {
-        time.within(
-            #[inline(always)]
-            || run(&self.operations, time, parameter, watch, &mut [time; MAX_WAITING]),
-        )
+        run(&self.operations, time, parameter, watch, &mut [time; MAX_WAITING])
     }
 
     /// Whether any operation has sides that it could switch between.

@@ -360,10 +360,6 @@ impl Term for Stretch {
     fn settled(self) -> Self {
         self
     }
-
-    fn within<R>(self, f: impl FnOnce() -> R) -> R {
-        f()
-    }
 }
 
 /// 1 / sqrt(1 - x^2).

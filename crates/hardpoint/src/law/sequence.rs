@@ -9,7 +9,7 @@ use super::kind::Shape;
 use super::parameter::{Parameter, ParameterKind, Seed, parameter, seeded};
 use super::range::{Range, Stretch};
 use super::table::ROUNDING_OF_TIME;
-use crate::number::{Jet, LANES, Real};
+use crate::number::{Jet, Real};
 
 /// A piece of a [sequence](Law::sequence).
 #[derive(Clone, Debug, PartialEq)]
@@ -164,27 +164,15 @@ impl Sequence {
 impl Shape for Sequence {
     #[inline(always)]
     fn at<T: Real, const N: usize>(&self, time: Jet<T, N>, seed: Option<Seed<T>>) -> Jet<T, N> {
-        let mut at = [None; LANES];
-        for (lane, at) in at.iter_mut().enumerate().take(T::LANES) {
-            *at = self.piece_at(time.lane(lane), time.d().lane(lane) < 0.0);
-        }
-        let piece = |k: usize| {
-            let like = time.value();
-            let (start, offset) = match seed {
-                None => (like.like(self.starts[k]), like.like(self.offsets[k])),
-                Some(_) => self.place::<T, N>(k, seed, like),
-            };
-            self.pieces[k].law.evaluate(time.plus(-start), self.seed_in(k, seed)).plus(offset)
+        let like = time.value();
+        let Some(k) = self.piece_at(like.value(), time.d().value() < 0.0) else {
+            return Jet::undefined(like);
         };
-        let lanes = &at[..T::LANES];
-        match at[0] {
-            Some(k) if lanes.iter().all(|other| *other == Some(k)) => piece(k),
-            // Every piece is evaluated for all lanes, and counts in its own.
-            _ => (0..T::LANES).fold(Jet::undefined(time.value()), |f, lane| match at[lane] {
-                Some(k) if !at[..lane].contains(&Some(k)) => piece(k).select(f, |lane| at[lane] == Some(k)),
-                _ => f,
-            }),
-        }
+        let (start, offset) = match seed {
+            None => (like.like(self.starts[k]), like.like(self.offsets[k])),
+            Some(_) => self.place::<T, N>(k, seed, like),
+        };
+        self.pieces[k].law.evaluate(time.plus(-start), self.seed_in(k, seed)).plus(offset)
     }
 
     fn over(&self, from: f64, to: f64) -> Stretch {

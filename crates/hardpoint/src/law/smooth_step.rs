@@ -8,7 +8,7 @@ use super::kind::Shape;
 use super::parameter::{Parameter, ParameterKind, Seed, parameter, seeded};
 use super::polynomial::sum_of_powers;
 use super::range::{Range, Stretch};
-use crate::number::{Jet, LANES, Real};
+use crate::number::{Jet, Real};
 
 /// A law that holds `from` up to `start`, `to` from `end` on, and is a polynomial between them:
 /// from + (to - from) s(u) with u = (t - start) / (end - start).
@@ -77,19 +77,15 @@ impl Shape for SmoothStep {
             return Jet::undefined(from);
         }
         // What is not a number is neither before nor after, so that the polynomial hands it on.
-        let (mut before, mut after) = ([false; LANES], [false; LANES]);
-        for lane in 0..T::LANES {
-            let (t, is_backwards) = (time.lane(lane), time.d().lane(lane) < 0.0);
-            before[lane] = t < self.start || t == self.start && is_backwards;
-            after[lane] = t > self.end || t == self.end && !is_backwards;
+        let (t, is_backwards) = (time.value().value(), time.d().value() < 0.0);
+        if t < self.start || t == self.start && is_backwards {
+            return Jet::constant(from);
         }
-        let [held, reached] = [from, to].map(Jet::constant);
-        if (0..T::LANES).all(|lane| before[lane] || after[lane]) {
-            return held.select(reached, |lane| before[lane]);
+        if t > self.end || t == self.end && !is_backwards {
+            return Jet::constant(to);
         }
         let u = time.plus(-start).times(end.like(1.0) / (end - start));
-        let between = self.rise(u).times(to - from).plus(from);
-        held.select(reached.select(between, |lane| after[lane]), |lane| before[lane])
+        self.rise(u).times(to - from).plus(from)
     }
 
     fn over(&self, from: f64, to: f64) -> Stretch {

@@ -9,7 +9,7 @@ use super::parameter::{Parameter, ParameterKind, Seed, parameter};
 use super::polynomial::sum_of_powers;
 use super::range::Stretch;
 use super::spline::{Basis, EndKind, Segment};
-use crate::number::{Jet, LANES, Real};
+use crate::number::{Jet, Real};
 
 /// A table of points, and the spline to lay through them.
 ///
@@ -139,30 +139,10 @@ impl Spline {
         knots.saturating_sub(1).min(self.segments.len() - 1)
     }
 
-    /// The curve of one segment for every lane, at the times since these began; the coefficients are gathered.
+    /// The curve of one segment, at the time since it began.
     #[inline(always)]
-    fn curve<T: Real, const N: usize>(
-        &self,
-        all: &[Segment],
-        at: [usize; LANES],
-        since: Jet<T, N>,
-    ) -> Jet<T, N> {
-        let mut of_lane = [&UNDEFINED; LANES];
-        for lane in 0..T::LANES {
-            of_lane[lane] = all.get(at[lane]).unwrap_or(&UNDEFINED);
-        }
-        sum_of_powers(
-            since,
-            self.order(),
-            #[inline(always)]
-            |power| {
-                let mut coefficients = [0.0; LANES];
-                for lane in 0..T::LANES {
-                    coefficients[lane] = of_lane[lane][power];
-                }
-                since.value().gather(coefficients)
-            },
-        )
+    fn curve<T: Real, const N: usize>(&self, segment: &Segment, since: Jet<T, N>) -> Jet<T, N> {
+        sum_of_powers(since, self.order(), |power| since.value().like(segment[power]))
     }
 
     /// The whole periods before time `t`, in s.
@@ -247,29 +227,17 @@ impl Table {
 impl Shape for Spline {
     #[inline(always)]
     fn at<T: Real, const N: usize>(&self, time: Jet<T, N>, seed: Option<Seed<T>>) -> Jet<T, N> {
-        // Every lane's segment and the time since it began.
-        let (mut segments, mut k) = ([usize::MAX; LANES], 0);
-        let (mut before, mut starts) = ([0.0; LANES], [0.0; LANES]);
-        for lane in 0..T::LANES {
-            let is_backwards = time.d().lane(lane) < 0.0;
-            before[lane] = self.periods_before(time.lane(lane), is_backwards);
-            let t = time.lane(lane) - before[lane];
-            if !self.reaches(t) {
-                continue;
-            }
-            // Nearly always the segment of the lane before.
-            if is_backwards || !(self.times[k] <= t && t < self.times[k + 1]) {
-                k = self.segment_at(t, is_backwards);
-            }
-            (segments[lane], starts[lane]) = (k, self.times[k]);
-        }
-        let since = time.plus(-time.value().gather(before)).plus(-time.value().gather(starts));
-        let f = self.curve(&self.segments, segments, since);
+        let (now, is_backwards) = (time.value().value(), time.d().value() < 0.0);
+        let before = self.periods_before(now, is_backwards);
+        let k = self.reaches(now - before).then(|| self.segment_at(now - before, is_backwards));
+        // The time since the segment began.
+        let like = time.value();
+        let since = time.plus(-like.like(before)).plus(-like.like(k.map_or(0.0, |k| self.times[k])));
+        let of = |all: &[Segment]| self.curve(k.map_or(&UNDEFINED, |k| &all[k]), since);
+        let f = of(&self.segments);
         match seed {
             None => f,
-            Some(Seed { parameter, size }) => {
-                f + self.curve(self.basis.cardinal(parameter), segments, since).times(size)
-            }
+            Some(Seed { parameter, size }) => f + of(self.basis.cardinal(parameter)).times(size),
         }
     }
 

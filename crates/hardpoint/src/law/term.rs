@@ -4,9 +4,9 @@ use std::cmp::Ordering;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
 use super::range::Range;
-use crate::number::{Function, LANES, Real};
+use crate::number::{Function, Real};
 
-/// What an expression is evaluated in: a number with whatever derivatives it carries, side by side with others or not; or
+/// What an expression is evaluated in: a number with whatever derivatives it carries; or
 /// [bounds](super::range::Stretch) of one.
 pub(super) trait Term:
     Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Div<Output = Self> + Neg<Output = Self>
@@ -35,11 +35,9 @@ pub(super) trait Term:
     fn choose(self, comparison: Comparison, b: Self, x: Self, y: Self) -> Self;
     /// What depends on constants only.
     fn settled(self) -> Self;
-    /// Runs `f` compiled for the CPU that this value was made for.
-    fn within<R>(self, f: impl FnOnce() -> R) -> R;
 }
 
-/// Every lane takes its own side, that which is active just after the instant.
+/// Of two sides, that which is active just after the instant.
 impl<T: Real> Term for T {
     #[inline(always)]
     fn constant(self, x: f64) -> Self {
@@ -56,118 +54,60 @@ impl<T: Real> Term for T {
         self.powi(exponent)
     }
 
+    // What only few expressions need is apart from the code of all the others.
+    #[inline(never)]
     fn to_constant(self, exponent: f64) -> Self {
-        rarely(
-            self,
-            #[inline(always)]
-            || self.powf(exponent),
-        )
+        self.powf(exponent)
     }
 
+    #[inline(never)]
     fn to(self, exponent: Self) -> Self {
-        rarely(
-            self,
-            #[inline(always)]
-            || self.pow(exponent),
-        )
+        self.pow(exponent)
     }
 
+    #[inline(never)]
     fn angle(self, x: Self) -> Self {
-        rarely(
-            self,
-            #[inline(always)]
-            || self.atan2(x),
-        )
+        self.atan2(x)
     }
 
+    #[inline(never)]
     fn length(self, o: Self) -> Self {
-        rarely(
-            self,
-            #[inline(always)]
-            || self.hypot(o),
-        )
+        self.hypot(o)
     }
 
+    #[inline(never)]
     fn smaller(self, o: Self) -> Self {
-        rarely(
-            self,
-            #[inline(always)]
-            || in_lanes(self, o, |k| is_it(self, o, k, Ordering::Less)),
-        )
+        self.select(o, is_it(self, o, Ordering::Less))
     }
 
+    #[inline(never)]
     fn greater(self, o: Self) -> Self {
-        rarely(
-            self,
-            #[inline(always)]
-            || in_lanes(self, o, |k| is_it(self, o, k, Ordering::Greater)),
-        )
+        self.select(o, is_it(self, o, Ordering::Greater))
     }
 
+    #[inline(never)]
     fn step(self, x0: Self, h0: Self, x1: Self, h1: Self) -> Self {
-        rarely(
-            self,
-            #[inline(always)]
-            || {
-                let is_low = lanes(self, |k| self.order(x0, k) == Some(Ordering::Less));
-                let is_high = lanes(self, |k| !matches!(self.order(x1, k), None | Some(Ordering::Less)));
-                let step = if (0..T::LANES).all(|k| is_low[k] || is_high[k]) {
-                    h1
-                } else {
-                    // h0 + (h1 - h0) (3 u² - 2 u³)
-                    let u = (self - x0) / (x1 - x0);
-                    let between = h0 + (h1 - h0) * (u * u * (self.like(3.0) - u * 2.0));
-                    h1.select(between, |k| is_high[k])
-                };
-                let step = h0.select(step, |k| is_low[k]);
-                in_lanes(step, undefined(self), |k| x0.lane(k) < x1.lane(k))
-            },
-        )
+        let is_low = self.order(x0) == Some(Ordering::Less);
+        let is_high = !matches!(self.order(x1), None | Some(Ordering::Less));
+        let step = if is_low || is_high {
+            h0.select(h1, is_low)
+        } else {
+            // h0 + (h1 - h0) (3 u² - 2 u³)
+            let u = (self - x0) / (x1 - x0);
+            h0 + (h1 - h0) * (u * u * (self.like(3.0) - u * 2.0))
+        };
+        step.select(undefined(self), x0.value() < x1.value())
     }
 
+    #[inline(never)]
     fn choose(self, comparison: Comparison, b: Self, x: Self, y: Self) -> Self {
-        rarely(
-            self,
-            #[inline(always)]
-            || {
-                let holds = |k: usize| comparison.holds(self.lane(k), b.lane(k));
-                if (1..T::LANES).all(|k| holds(k) == holds(0)) {
-                    return holds(0).map_or(undefined(self), |holds| if holds { x } else { y });
-                }
-                let chosen = in_lanes(x, y, |k| holds(k) == Some(true));
-                in_lanes(chosen, undefined(self), |k| holds(k).is_some())
-            },
-        )
+        comparison.holds(self.value(), b.value()).map_or(undefined(self), |holds| if holds { x } else { y })
     }
 
     #[inline(always)]
     fn settled(self) -> Self {
         self.held()
     }
-
-    #[inline(always)]
-    fn within<R>(self, f: impl FnOnce() -> R) -> R {
-        Real::within(self, f)
-    }
-}
-
-/// What only few expressions need, apart from the code of all the others.
-#[inline(never)]
-fn rarely<T: Real>(like: T, f: impl FnOnce() -> T) -> T {
-    Real::within(like, f)
-}
-
-/// One number in the lanes that `first` says, another in the rest.
-#[inline(always)]
-fn in_lanes<T: Real>(one: T, other: T, first: impl Fn(usize) -> bool) -> T {
-    let takes = lanes(one, first);
-    one.select(other, |k| takes[k])
-}
-
-/// What is so in every lane.
-#[inline(always)]
-fn lanes<T: Real>(_: T, is_so: impl Fn(usize) -> bool) -> [bool; LANES] {
-    std::array::from_fn(|k| k < T::LANES && is_so(k))
 }
 
 /// What has no value, and no derivative either.
@@ -176,12 +116,12 @@ fn undefined<T: Real>(like: T) -> T {
     like.like(f64::NAN) * like
 }
 
-/// Whether `x` is at least as far on a side as `o` is, in lane `k`; or, of two that do not compare, the one without a value.
+/// Whether `x` is at least as far on a side as `o` is; or, of two that do not compare, the one without a value.
 #[inline(always)]
-fn is_it<T: Real>(x: T, o: T, k: usize, side: Ordering) -> bool {
-    match x.order(o, k) {
+fn is_it<T: Real>(x: T, o: T, side: Ordering) -> bool {
+    match x.order(o) {
         Some(order) => order == side || order == Ordering::Equal,
-        None => x.order(x, k).is_none(),
+        None => x.order(x).is_none(),
     }
 }
 

@@ -472,7 +472,7 @@ impl<'a, T: Real> Moment<'a, T> {
                 let (turn, speed) = (v.cross(a), v.norm());
                 let turn = about.map_or_else(|| turn.norm(), |about| about.spread(speed).dot(turn));
                 let (way, far) = (speed * speed, a.norm() * speed.like(RESTS * self.model.size()));
-                turn / (way.select(unknown(), |k| way.lane(k) > far.lane(k)) * speed)
+                turn / (way.select(unknown(), way.value() > far.value()) * speed)
             }
             MeasureKind::Rate { of } => self.output(*of).rate(),
             MeasureKind::Combination(formula) => formula.at(unknown(), |source| self.output(source)),
@@ -589,8 +589,7 @@ const STRAIGHT: f64 = 1e-4;
 
 /// A number for division; NaN where one of the headings is straight ahead.
 fn steering<T: Real>(x: T, [l, r]: [T; 2]) -> T {
-    let steered = |k: usize| l.lane(k).abs().min(r.lane(k).abs()) >= STRAIGHT;
-    x.select(x.like(f64::NAN), steered)
+    x.select(x.like(f64::NAN), l.value().abs().min(r.value().abs()) >= STRAIGHT)
 }
 
 /// The heading of the right wheel that turns about the same point of the other axle's line as the left one with heading l:

@@ -5,7 +5,7 @@
 
 use crate::model::{DriverId, Effects, Fixed, GROUND, MeasureKind, Model, VariableId, WheelId};
 use crate::motion::stepper::Stepper;
-use crate::number::{Dual, Real, of_lanes};
+use crate::number::{Dual, Real};
 use crate::sensitivity::{Seconds, Way};
 use crate::space::Pose;
 use crate::topology::Topology;
@@ -44,11 +44,11 @@ impl SlopeValues {
 }
 
 /// Evaluates the measures that go by a driver, where a stepper stands.
-pub(crate) struct Slopes<'a, T> {
+pub(crate) struct Slopes<'a> {
     model: &'a Model,
     drivers: Vec<DriverId>,
     variables: usize,
-    seconds: Seconds<T>,
+    seconds: Seconds,
     /// Per variable, what measures go by; the last is that of no change.
     fixed: Vec<Fixed<Dual<Dual>>>,
     asked_for: Vec<usize>,
@@ -56,7 +56,7 @@ pub(crate) struct Slopes<'a, T> {
     poses: Vec<Vec<Pose<Dual<Dual>>>>,
 }
 
-impl<'a, T: Real> Slopes<'a, T> {
+impl<'a> Slopes<'a> {
     /// For the design with these values, with derivatives by the variables if they are wanted; `None` for a model without
     /// such measures.
     pub fn new(
@@ -64,7 +64,7 @@ impl<'a, T: Real> Slopes<'a, T> {
         topology: &Topology,
         values: &[f64],
         sensitivities: bool,
-        witness: T,
+        witness: f64,
     ) -> Option<Self> {
         let model = effects.model;
         let mut drivers: Vec<DriverId> =
@@ -100,31 +100,28 @@ impl<'a, T: Real> Slopes<'a, T> {
         })
     }
 
-    /// Appends what is found at these times, one per lane.
-    pub fn add(&mut self, stepper: &mut Stepper<'_, T>, times: &[f64], out: &mut SlopeValues) {
-        let of_lanes = of_lanes(times);
-        self.seconds.solve(stepper, &of_lanes);
+    /// Appends what is found at time t.
+    pub fn add(&mut self, stepper: &mut Stepper<'_>, t: f64, out: &mut SlopeValues) {
+        self.seconds.solve(stepper, t);
         (out.measures, out.variables) = (self.model.measures.len(), self.variables);
         let state = &stepper.state;
-        for lane in 0..times.len() {
-            for by in 0..=self.variables {
-                for (d, poses) in self.poses.iter_mut().enumerate() {
-                    for &body in &self.asked_for {
-                        poses[body] = if by < self.variables {
-                            self.seconds.pose(state, by * self.drivers.len() + d, body, lane)
-                        } else {
-                            self.seconds.pose_along(state, d, body, lane)
-                        };
-                    }
+        for by in 0..=self.variables {
+            for (d, poses) in self.poses.iter_mut().enumerate() {
+                for &body in &self.asked_for {
+                    poses[body] = if by < self.variables {
+                        self.seconds.pose(state, by * self.drivers.len() + d, body)
+                    } else {
+                        self.seconds.pose_along(state, d, body)
+                    };
                 }
-                let alone = Alone {
-                    drivers: &self.drivers,
-                    moments: self.poses.iter().map(|p| Moment::new(self.model, &self.fixed[by], p)).collect(),
-                };
-                for k in 0..self.model.measures.len() {
-                    let x = alone.measure(self.model, k);
-                    if by < self.variables { out.d.push(x.d) } else { out.values.push(x.v) }
-                }
+            }
+            let alone = Alone {
+                drivers: &self.drivers,
+                moments: self.poses.iter().map(|p| Moment::new(self.model, &self.fixed[by], p)).collect(),
+            };
+            for k in 0..self.model.measures.len() {
+                let x = alone.measure(self.model, k);
+                if by < self.variables { out.d.push(x.d) } else { out.values.push(x.v) }
             }
         }
     }

@@ -174,7 +174,7 @@ const AT_INFINITY: f64 = 1e-2;
 
 /// A component of a turn, for division; NaN where an instant centre seen along it is at infinity.
 fn seen<T: Real>(component: T, turn: Vec3<T>) -> T {
-    if component.lane(0).abs() < AT_INFINITY * turn.norm().lane(0) {
+    if component.value().abs() < AT_INFINITY * turn.norm().value() {
         component.like(f64::NAN)
     } else {
         component

@@ -1,7 +1,7 @@
 //! The curve that a point follows: a smooth line in the x-y plane of a marker.
 
 use crate::law::{Ends, Law, LawError, SplineDegree, Table};
-use crate::space::{LANES, Mat3, Pose, Real, Vec3};
+use crate::space::{Mat3, Pose, Real, Vec3};
 
 /// Newton for the nearest point from a near start takes a few steps; more than this and it is lost.
 const MAX_STEPS: usize = 50;
@@ -23,7 +23,7 @@ pub struct Curve {
     start: f64,
 }
 
-/// Where a curve is touched, in the frame of the marker that carries it, one design per lane.
+/// Where a curve is touched, in the frame of the marker that carries it.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Contact<T = f64> {
     /// The parameter.
@@ -35,22 +35,13 @@ pub(crate) struct Contact<T = f64> {
 impl<T: Real> Contact<T> {
     /// The curve's place u.
     pub fn at(curve: &Curve, witness: T, u: T) -> Self {
-        let mut c = [[[0.0; 2]; LANES]; 4];
-        for lane in 0..T::LANES {
-            for (k, point) in curve.at(u.lane(lane)).into_iter().enumerate() {
-                c[k][lane] = point;
-            }
-        }
-        let vector = |k: usize| {
-            let [x, y] = [0, 1].map(|axis| witness.like_lanes(|lane| c[k][lane][axis]));
-            Vec3::new(x, y, witness.zero())
-        };
-        Self { u, c: [vector(0), vector(1), vector(2), vector(3)] }
+        let vector = |[x, y]: [f64; 2]| Vec3::new(x, y, 0.0).spread(witness);
+        Self { u, c: curve.at(u.value()).map(vector) }
     }
 
     /// The place next to p.
     pub fn nearest(curve: &Curve, p: Vec3<T>, near: T) -> Self {
-        let u = near.like_lanes(|lane| curve.nearest([p.x.lane(lane), p.y.lane(lane)], near.lane(lane)));
+        let u = near.like(curve.nearest([p.x.value(), p.y.value()], near.value()));
         Self::at(curve, near, u)
     }
 

@@ -9,7 +9,7 @@ use crate::law::Law;
 use crate::number::{Dual, Real};
 use crate::space::{euler_313_from_rotation, rotation_from_euler_313};
 
-/// The body-fixed data of one design (or of one per lane): all that the analysis needs of it besides the drivers' laws.
+/// The body-fixed data of one design: all that the analysis needs of it besides the drivers' laws.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Geometry<T = f64> {
     /// Per joint, marker i in body i and marker j in body j.
@@ -62,15 +62,6 @@ impl<T: Real> Kept<T> {
             offset: f(self.offset),
             cosine: f(self.cosine),
             contact: f(self.contact),
-        }
-    }
-
-    pub(super) fn gather(witness: T, lane: impl Fn(usize) -> Kept) -> Self {
-        Self {
-            distance: witness.like_lanes(|k| lane(k).distance),
-            offset: witness.like_lanes(|k| lane(k).offset),
-            cosine: witness.like_lanes(|k| lane(k).cosine),
-            contact: witness.like_lanes(|k| lane(k).contact),
         }
     }
 
@@ -538,7 +529,7 @@ impl<'e, T: Real> Design<'e, T> {
             let (d, z) = (self.direction(axis2, values), rot.cols[2]);
             let across = d - z * z.dot(d);
             let length = across.norm();
-            if length.smallest() > ALONG {
+            if length.decisive() > ALONG {
                 let x = across * (self.witness.like(1.0) / length);
                 rot = Mat3 { cols: [x, z.cross(x), z] };
             }
@@ -568,10 +559,10 @@ impl<'e, T: Real> Design<'e, T> {
                 || joint.kind.coordinates.iter().any(|c| c.row == Row::Distance)
         };
         let distance =
-            given.unwrap_or_else(|| if keeps() && d.dot(d).largest() > 0.0 { d.norm() } else { zero });
+            given.unwrap_or_else(|| if keeps() && d.dot(d).decisive() > 0.0 { d.norm() } else { zero });
         let contact = joint.curve.as_ref().map_or(zero, |curve| {
             let drawn = curve.distance(m_i.rot.transpose_mul(d));
-            let sign = || self.witness.like_lanes(|k| f64::signum(drawn.lane(k)));
+            let sign = || self.witness.like(f64::signum(drawn.value()));
             given.map_or(drawn, |length| length.abs() * sign())
         });
         Kept { distance, offset: z_i.dot(d), cosine: z_i.dot(z_j), contact }

@@ -62,57 +62,16 @@ impl<T: Real> Field<T> {
 }
 
 impl Field {
-    /// The fields of several variables, one per lane; lanes without one are at rest. Points are left out.
-    pub(crate) fn gather<T: Real>(fields: &[Field], witness: T) -> Field<T> {
-        Self::in_lanes(fields, |k| fields.get(k), witness)
+    /// The same with every parameter of a law once, in the order of drivers and parameters.
+    pub(crate) fn with_laws_in_order(mut self) -> Self {
+        self.laws.sort_by_key(|(driver, parameter, _)| (*driver, *parameter));
+        self.laws.dedup_by(|next, known| {
+            let same = (next.0, next.1) == (known.0, known.1);
+            if same {
+                known.2 += next.2;
+            }
+            same
+        });
+        self
     }
-
-    /// The same field in every lane. Points are left out.
-    pub(crate) fn spread<T: Real>(&self, witness: T) -> Field<T> {
-        Self::in_lanes(std::slice::from_ref(self), |_| Some(self), witness)
-    }
-
-    fn in_lanes<'f, T: Real>(
-        fields: &'f [Field],
-        of: impl Fn(usize) -> Option<&'f Field>,
-        witness: T,
-    ) -> Field<T> {
-        Field {
-            markers: union(fields, |f| f.markers.iter().map(|m| (m.joint, m.end)))
-                .map(|(joint, end)| {
-                    let twist = |k| of(k).and_then(|f| f.twist_of(joint, end)).unwrap_or(Twist::ZERO);
-                    MarkerField { joint, end, twist: Twist::gather(witness, twist) }
-                })
-                .collect(),
-            kept: union(fields, |f| f.kept.iter().map(|k| k.0))
-                .map(|joint| {
-                    let kept = |k| of(k).and_then(|f| f.kept_rate(joint)).unwrap_or_default();
-                    (joint, Kept::gather(witness, kept))
-                })
-                .collect(),
-            points: Vec::new(),
-            laws: union(fields, |f| f.laws.iter().map(|(d, p, _)| (*d, *p)))
-                .map(|(driver, parameter)| {
-                    let same = |l: &&(DriverId, usize, f64)| (l.0, l.1) == (driver, parameter);
-                    let rate = |k| of(k).map_or(0.0, |f| f.laws.iter().filter(same).map(|l| l.2).sum());
-                    (driver, parameter, witness.like_lanes(rate))
-                })
-                .collect(),
-            shifts: union(fields, |f| f.shifts.iter().map(|(d, _)| *d))
-                .map(|driver| {
-                    let same = |s: &&(DriverId, f64)| s.0 == driver;
-                    let rate = |k| of(k).map_or(0.0, |f| f.shifts.iter().filter(same).map(|s| s.1).sum());
-                    (driver, witness.like_lanes(rate))
-                })
-                .collect(),
-        }
-    }
-}
-
-/// The keys of all fields, each once, in order.
-fn union<'f, K: Ord + 'f, I: Iterator<Item = K> + 'f>(
-    fields: &'f [Field],
-    keys: impl Fn(&'f Field) -> I,
-) -> impl Iterator<Item = K> {
-    fields.iter().flat_map(keys).collect::<std::collections::BTreeSet<K>>().into_iter()
 }

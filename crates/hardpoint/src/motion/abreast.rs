@@ -42,7 +42,7 @@ pub(crate) struct Abreast<'p> {
     laws: Laws,
     weights: Weights,
     /// Positions that are known and stand in the tape, by their slots.
-    forecast: Option<Forecast<f64>>,
+    forecast: Option<Forecast>,
     /// Steps to walk before the next try, and how long the next pause is.
     wait: usize,
     pause: usize,
@@ -99,14 +99,18 @@ impl<'p> Abreast<'p> {
     #[inline]
     pub fn advance<'r>(
         &mut self,
-        one: &mut Stepper<'_, f64>,
+        one: &mut Stepper<'_>,
         k: usize,
         next: &[f64],
         room: impl FnOnce() -> Option<[&'r mut [Lanes]; 2]>,
     ) -> usize {
         // Results of output times 8n to 8n + 7 lie side by side.
         let count = usize::min(next.len(), LANES);
-        if self.programs.is_none() || k % LANES != 0 || count < FEWEST || one.ahead == Ahead::Unknown {
+        if self.programs.is_none()
+            || !k.is_multiple_of(LANES)
+            || count < FEWEST
+            || one.ahead == Ahead::Unknown
+        {
             self.look_ahead(one);
             return 0;
         }
@@ -127,7 +131,7 @@ impl<'p> Abreast<'p> {
     }
 
     /// Keeps a forecast, to see later how good it was.
-    fn look_ahead(&mut self, one: &Stepper<'_, f64>) {
+    fn look_ahead(&mut self, one: &Stepper<'_>) {
         if self.programs.is_some()
             && self.tape.is_none()
             && self.forecast.is_none()
@@ -138,7 +142,7 @@ impl<'p> Abreast<'p> {
     }
 
     /// Makes a tape where there is none, and another or none where it does not fit; returns whether there is one.
-    fn choose_tape(&mut self, one: &mut Stepper<'_, f64>) -> bool {
+    fn choose_tape(&mut self, one: &mut Stepper<'_>) -> bool {
         let before = match &self.tape {
             Some(tape) if !tape.is_of_no_use() && one.selections == 0 => return true,
             tape => tape.as_ref().map(|t| t.purpose().corrections),
@@ -159,7 +163,7 @@ impl<'p> Abreast<'p> {
     }
 
     /// How many corrections eight output times at once will need, by how good a forecast has been.
-    fn corrections(&self, one: &mut Stepper<'_, f64>) -> usize {
+    fn corrections(&self, one: &mut Stepper<'_>) -> usize {
         let Some(before) = &self.forecast else { return 1 };
         // Positions are then four steps apart, and the farthest output time is eight steps ahead.
         let far = [8.0, 12.0, 16.0_f64].map(|x| x.powi(3)).iter().product::<f64>();
@@ -175,12 +179,7 @@ impl<'p> Abreast<'p> {
     }
 
     #[inline(always)]
-    fn try_to(
-        &mut self,
-        one: &mut Stepper<'_, f64>,
-        next: &[f64],
-        room: Option<[&mut [Lanes]; 2]>,
-    ) -> Option<()> {
+    fn try_to(&mut self, one: &mut Stepper<'_>, next: &[f64], room: Option<[&mut [Lanes]; 2]>) -> Option<()> {
         let last = next.len() - 1;
         let times: Lanes = std::array::from_fn(|k| next[k.min(last)]);
         let tape = self.tape.as_mut()?;
@@ -228,7 +227,7 @@ impl<'p> Abreast<'p> {
 impl Laws {
     /// Value, speed and acceleration of every driver at these times; none where one is not finite.
     #[inline(always)]
-    fn at(&mut self, one: &Stepper<'_, f64>, times: &Lanes, drivers: &mut [Lanes]) -> Option<()> {
+    fn at(&mut self, one: &Stepper<'_>, times: &Lanes, drivers: &mut [Lanes]) -> Option<()> {
         let mut by_program = false;
         if let Some(program) = &self.program {
             let found = lanes_of(&mut self.outputs);
@@ -240,8 +239,7 @@ impl Laws {
         if !by_program {
             for (d, driver) in drivers.chunks_exact_mut(ORDERS).enumerate() {
                 for lane in 0..LANES {
-                    for (to, x) in driver.iter_mut().zip(one.parts.law_of(d, 0).at(times[lane]).derivatives())
-                    {
+                    for (to, x) in driver.iter_mut().zip(one.parts.law_of(d).at(times[lane]).derivatives()) {
                         to[lane] = x;
                     }
                 }
@@ -254,7 +252,7 @@ impl Laws {
 
 /// Speed of the fastest driver (rad, or sizes, per unit of the path's parameter), at any of these times or before.
 #[inline(always)]
-fn fastest_driver(tape: &Tape, one: &Stepper<'_, f64>) -> f64 {
+fn fastest_driver(tape: &Tape, one: &Stepper<'_>) -> f64 {
     let mut fastest = one.fastest_driver;
     for (d, unit) in one.driver_units.iter().enumerate() {
         fastest = tape.driver(d, 1).iter().fold(fastest, |most, x| most.max(x.abs() / unit));
@@ -265,7 +263,7 @@ fn fastest_driver(tape: &Tape, one: &Stepper<'_, f64>) -> f64 {
 /// Whether no law does anything between the output times that these would not show; and, where no step tells yet, no singular
 /// position is known to be near. Notes how far the drivers go from one output time to the next.
 #[inline(always)]
-fn laws_are_even(tape: &Tape, one: &mut Stepper<'_, f64>, times: &Lanes, last: usize) -> bool {
+fn laws_are_even(tape: &Tape, one: &mut Stepper<'_>, times: &Lanes, last: usize) -> bool {
     let mut longest = times[0] - one.time;
     (1..=last).for_each(|k| longest = longest.max(times[k] - times[k - 1]));
     for d in 0..one.drivers.len() {
@@ -291,7 +289,7 @@ fn laws_are_even(tape: &Tape, one: &mut Stepper<'_, f64>, times: &Lanes, last: u
 /// Whether every determinant changes by little from one output time to the next, and about as much as over the step before. Notes
 /// the last of these changes, and gives the length of its step.
 #[inline(always)]
-fn determinants_are_even(tape: &Tape, one: &mut Stepper<'_, f64>, times: &Lanes, last: usize) -> Option<f64> {
+fn determinants_are_even(tape: &Tape, one: &mut Stepper<'_>, times: &Lanes, last: usize) -> Option<f64> {
     // How long every step is beside the one before it; the first beside the last of the stepper's.
     let (mut beside, mut step) = ([1.0; LANES], one.change_step);
     for k in 0..=last {
@@ -321,7 +319,7 @@ fn determinants_are_even(tape: &Tape, one: &mut Stepper<'_, f64>, times: &Lanes,
 
 /// Whether the speeds at all times are those of the same branch as where the stepper stands.
 #[inline(always)]
-fn speeds_are_smooth(tape: &Tape, one: &Stepper<'_, f64>, ahead: &Lanes) -> bool {
+fn speeds_are_smooth(tape: &Tape, one: &Stepper<'_>, ahead: &Lanes) -> bool {
     let (mut fastest, mut difference) = ([0.0; LANES], [0.0; LANES]);
     for (c, [speeds, _]) in tape.unknowns() {
         let (qd, qdd, per_unit) = (one.saved.qd[c], one.saved.qdd[c], one.topology.coordinates[c].per_unit);
@@ -336,7 +334,7 @@ fn speeds_are_smooth(tape: &Tape, one: &Stepper<'_, f64>, ahead: &Lanes) -> bool
     smooth(most(&difference), most(&fastest), one.fastest_driver)
 }
 
-impl Stepper<'_, f64> {
+impl Stepper<'_> {
     /// Stands where a tape has come to in lane `last`, having passed all before it.
     #[inline(always)]
     fn continue_from(

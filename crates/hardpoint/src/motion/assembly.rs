@@ -6,7 +6,7 @@
 //! it is. Where the path ends before the gaps are closed, least squares say how near the joints can come.
 
 use crate::model::{BodyId, DriverId, JointId};
-use crate::space::{Elimination, Real};
+use crate::space::Elimination;
 use crate::topology::Topology;
 
 use super::kinematics::State;
@@ -65,20 +65,20 @@ pub struct Moved {
     pub angle: f64,
 }
 
-impl<T: Real> State<T> {
+impl State<f64> {
     /// The largest gap of the drawing, in sizes or as a cosine.
     pub(super) fn largest_gap(&self, topology: &Topology) -> f64 {
-        let scaled = self.gap.iter().zip(&topology.rows).map(|(gap, place)| gap.abs().largest() / place.unit);
+        let scaled = self.gap.iter().zip(&topology.rows).map(|(gap, place)| gap.abs() / place.unit);
         scaled.fold(0.0, f64::max)
     }
 }
 
-impl<T: Real> Stepper<'_, T> {
+impl Stepper<'_> {
     /// Closes the mechanism as drawn, all drivers at zero, and stands on its branch.
     pub(super) fn assemble(&mut self) -> Result<(), Box<Stop>> {
         self.measure_gaps();
         if !(self.state.largest_gap(&self.topology) > CLOSED) {
-            self.state.gap.fill(self.state.witness.zero());
+            self.state.gap.fill(0.0);
         }
         self.time = 0.0;
         let drawn = self.drive(Path::Assembly, 0.0).and_then(|()| {
@@ -98,18 +98,18 @@ impl<T: Real> Stepper<'_, T> {
             return Err(Box::new(Stop { kind: StopKind::DoesNotAssemble, ..*stop }));
         }
         let told = WORTH_TELLING;
-        let gaps = self.gaps(|s, r| s.state.gap[r].lane(0), told);
+        let gaps = self.gaps(|s, r| s.state.gap[r], told);
         if !gaps.is_empty() {
             self.assembly = Some(Assembly { gaps, moved: self.moved(told) });
         }
-        self.state.gap.fill(self.state.witness.zero());
+        self.state.gap.fill(0.0);
         self.state.gap_left = [0.0; 2];
         Ok(())
     }
 
     /// By how much every row fails where the tree's joints are closed as drawn.
     fn measure_gaps(&mut self) {
-        let zero = self.state.witness.zero();
+        let zero = 0.0;
         self.drivers.fill([zero; 3]);
         self.state.gap_left = [0.0; 2];
         self.state.stand(&self.topology, &self.parts);
@@ -153,8 +153,8 @@ impl<T: Real> Stepper<'_, T> {
             let pose = &self.state.pose[b];
             Moved {
                 body: BodyId(b),
-                distance: (pose.r.lane(0) - body.frame.r).norm(),
-                angle: pose.rot.lane(0).angle_to(body.frame.rot),
+                distance: (pose.r - body.frame.r).norm(),
+                angle: pose.rot.angle_to(body.frame.rot),
             }
         });
         let size = self.model.size();
@@ -162,7 +162,7 @@ impl<T: Real> Stepper<'_, T> {
     }
 }
 
-impl Stepper<'_, f64> {
+impl Stepper<'_> {
     /// How near the joints can come: least squares over the residuals of all rows of the block that
     /// could not be closed, from where the path ended.
     ///
@@ -213,7 +213,7 @@ impl Stepper<'_, f64> {
         self.gaps(|s, r| s.state.residual_of(&s.topology, &s.parts, &s.drivers, r), WORTH_TELLING)
     }
 
-    /// Scaled residuals of constraint rows, and their derivatives by these coordinates, in lane 0.
+    /// Scaled residuals of constraint rows, and their derivatives by these coordinates.
     fn scaled_rows(&mut self, rows: &[usize], unknowns: &[usize]) -> (Vec<f64>, Vec<Vec<f64>>) {
         self.state.stand(&self.topology, &self.parts);
         let mut residuals = Vec::new();

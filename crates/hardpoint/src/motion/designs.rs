@@ -32,7 +32,7 @@ struct Drive {
 /// Designs on their way through time.
 pub(crate) struct SideBySide<'m> {
     /// Of the nominal design, at the first output time.
-    nominal: Stepper<'m, f64>,
+    nominal: Stepper<'m>,
     /// What the drivers do at every output time, up to the first where they do not go there evenly.
     course: Vec<Drive>,
     drivers: Vec<[f64; ORDERS]>,
@@ -79,7 +79,7 @@ impl<'f> Found<'f> {
 impl<'m> SideBySide<'m> {
     /// By these programs. None where there is none, and where the nominal design is not as drawn at its first output time, where
     /// `nominal` stands: designs could have gone other ways till there.
-    pub fn new(mut nominal: Stepper<'m, f64>, programs: ProgramOf<'m>) -> Option<Self> {
+    pub fn new(mut nominal: Stepper<'m>, programs: ProgramOf<'m>) -> Option<Self> {
         if nominal.saved.drivers.iter().any(|f| f[0] != 0.0) {
             return None;
         }
@@ -273,7 +273,7 @@ impl<'m> SideBySide<'m> {
 
 /// What the drivers do, as long as nothing else happens between two output times than these show, and as long as no singular position
 /// is known to be near where they begin; value, speed and acceleration of each at every output time.
-fn course(nominal: &mut Stepper<'_, f64>) -> (Vec<Drive>, Vec<[f64; ORDERS]>) {
+fn course(nominal: &mut Stepper<'_>) -> (Vec<Drive>, Vec<[f64; ORDERS]>) {
     let (mut course, mut drivers) = (Vec::new(), Vec::new());
     for (k, &t) in nominal.model.times.iter().enumerate() {
         let h = t - nominal.time;

@@ -21,21 +21,21 @@ const FARTHEST: f64 = 8.5;
 
 /// Polynomials through the last accepted positions.
 #[derive(Clone)]
-pub(super) struct Forecast<T> {
+pub(super) struct Forecast {
     /// What is foreseen: unknown coordinates, and quaternions of unknown balls.
     channels: Vec<Channel>,
     /// Times of the positions, the newest first; how many there are.
     times: [f64; NODES],
     count: usize,
     /// Per position and channel: value and derivatives.
-    values: [Vec<[T; ORDERS]>; NODES],
+    values: [Vec<[f64; ORDERS]>; NODES],
     /// Per channel: divided differences.
-    differences: Vec<[T; NODES * ORDERS]>,
+    differences: Vec<[f64; NODES * ORDERS]>,
 }
 
 /// What is foreseen.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Channel {
+pub(crate) enum Channel {
     Coordinate(usize),
     /// One of the four components of the quaternion of the ball that begins at a coordinate.
     Ball(usize, usize),
@@ -103,17 +103,16 @@ impl Channel {
     }
 }
 
-impl<T: Real> Forecast<T> {
-    pub fn new(topology: &Topology, witness: T) -> Self {
+impl Forecast {
+    pub fn new(topology: &Topology) -> Self {
         let channels = Channel::all(topology);
         let n = channels.len();
-        let o = witness.zero();
         Self {
             channels,
             times: [0.0; NODES],
             count: 0,
-            values: std::array::from_fn(|_| vec![[o; ORDERS]; n]),
-            differences: vec![[o; NODES * ORDERS]; n],
+            values: std::array::from_fn(|_| vec![[0.0; ORDERS]; n]),
+            differences: vec![[0.0; NODES * ORDERS]; n],
         }
     }
 
@@ -129,7 +128,7 @@ impl<T: Real> Forecast<T> {
 
     /// Learns where the mechanism stands at time t.
     #[inline(always)]
-    pub fn learn(&mut self, t: f64, state: &State<T>) {
+    pub fn learn(&mut self, t: f64, state: &State<f64>) {
         self.remember(t);
         for (channel, to) in self.channels.iter().zip(&mut self.values[0]) {
             *to = channel.of(state);
@@ -138,7 +137,7 @@ impl<T: Real> Forecast<T> {
 
     /// The same from value and derivatives of every channel.
     #[inline(always)]
-    pub fn learn_values(&mut self, t: f64, values: impl Iterator<Item = [T; ORDERS]>) {
+    pub fn learn_values(&mut self, t: f64, values: impl Iterator<Item = [f64; ORDERS]>) {
         self.remember(t);
         for (to, value) in self.values[0].iter_mut().zip(values) {
             *to = value;
@@ -166,7 +165,7 @@ impl<T: Real> Forecast<T> {
 
     /// What is known of a channel, position by position, the newest first.
     #[inline(always)]
-    pub fn known_of(&self, channel: usize) -> [[T; ORDERS]; NODES] {
+    pub fn known_of(&self, channel: usize) -> [[f64; ORDERS]; NODES] {
         std::array::from_fn(|n| self.values[n][channel])
     }
 
@@ -179,7 +178,6 @@ impl<T: Real> Forecast<T> {
 
     /// Divided differences over the newest positions; returns how many conditions they are. Far ahead, `h` beyond
     /// the newest, only that one counts.
-    #[inline(always)]
     fn divide(&mut self, h: f64) -> usize {
         let n = ORDERS * self.counting(h);
         let time = |k: usize| self.times[k / ORDERS];
@@ -202,9 +200,9 @@ impl<T: Real> Forecast<T> {
                 for i in 0..n - k {
                     column[i] = if i / ORDERS == (i + k) / ORDERS {
                         let x = self.values[i / ORDERS][c][k];
-                        if k == 2 { x * x.like(0.5) } else { x }
+                        if k == 2 { x * 0.5 } else { x }
                     } else {
-                        (column[i + 1] - column[i]) * column[i].like(inverse[k][i])
+                        (column[i + 1] - column[i]) * inverse[k][i]
                     };
                 }
                 d[k] = column[0];
@@ -215,9 +213,9 @@ impl<T: Real> Forecast<T> {
 
     /// Sets the unknowns of a state to what is foreseen at time t, h beyond the newest position.
     #[inline(always)]
-    pub fn set(&mut self, state: &mut State<T>, t: T, h: f64) {
+    pub fn set(&mut self, state: &mut State<f64>, t: f64, h: f64) {
         let n = self.divide(h);
-        let ahead: [T; NODES] = std::array::from_fn(|k| t - t.like(self.times[k]));
+        let ahead: [f64; NODES] = std::array::from_fn(|k| t - self.times[k]);
         for (channel, d) in self.channels.iter().zip(&self.differences) {
             let mut x = d[n - 1];
             for i in (0..n - 1).rev() {

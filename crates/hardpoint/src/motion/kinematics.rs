@@ -142,47 +142,12 @@ impl<T: Real> State<T> {
         }
     }
 
-    /// Takes over from a scalar state all that the sensitivity levels need, the same in every lane.
-    pub fn spread(&mut self, from: &State<f64>) {
-        fn copy<A: Copy, B>(to: &mut [B], from: &[A], spread: impl Fn(A) -> B) {
-            for (to, x) in to.iter_mut().zip(from) {
-                *to = spread(*x);
-            }
-        }
-        let witness = self.witness;
-        self.xdd.resize(self.x.len(), Twist::zero(witness));
-        self.ldd.resize(self.l.len(), Wrench::moment(Twist::zero(witness).w));
-        witness.within(
-            #[inline(always)]
-            || {
-                copy(&mut self.pose, &from.pose, |p| p.spread(witness));
-                for (to, from) in [
-                    (&mut self.v, &from.v),
-                    (&mut self.a, &from.a),
-                    (&mut self.x, &from.x),
-                    (&mut self.xd, &from.xd),
-                    (&mut self.xdd, &from.xdd),
-                ] {
-                    copy(to, from, |t| t.spread(witness));
-                }
-                for (to, from) in
-                    [(&mut self.l, &from.l), (&mut self.ld, &from.ld), (&mut self.ldd, &from.ldd)]
-                {
-                    copy(to, from, |l| l.spread(witness));
-                }
-                for (to, from) in self.factors.iter_mut().zip(&from.factors) {
-                    to.spread(from, witness);
-                }
-            },
-        );
-    }
-
     /// Places the children of these links and their unit twists (`docs/theory.md` (4)).
     #[inline(always)]
     pub(super) fn place(&mut self, topology: &Topology, parts: &Parts<T>, links: std::ops::Range<usize>) {
         for k in links {
             let link = &topology.links[k];
-            let marker = parts.parent_marker.get(k, self.witness);
+            let marker = parts.parent_marker[k];
             let on_ground = link.parent == GROUND;
             let mut frame = if on_ground { marker } else { self.frame[link.parent.0].compose(marker) };
             for step in &link.steps {
@@ -208,7 +173,7 @@ impl<T: Real> State<T> {
     fn place_bodies(&mut self, topology: &Topology, parts: &Parts<T>, links: std::ops::Range<usize>) {
         for k in links {
             let child = topology.links[k].child.0;
-            self.pose[child] = self.frame[child].compose(parts.child_from_marker.get(k, self.witness));
+            self.pose[child] = self.frame[child].compose(parts.child_from_marker[k]);
         }
     }
 
@@ -216,7 +181,7 @@ impl<T: Real> State<T> {
     #[inline(always)]
     pub(super) fn place_ends(&mut self, topology: &Topology, parts: &Parts<T>, closure: usize) {
         let [i, j] = topology.closures[closure].bodies;
-        let (m_i, m_j) = (parts.ends[0].get(closure, self.witness), parts.ends[1].get(closure, self.witness));
+        let (m_i, m_j) = (parts.ends[0][closure], parts.ends[1][closure]);
         let (base, ends) = (topology.closures[closure].base, &mut self.ends[closure]);
         (ends.i, ends.j) = (self.frame[i.0].compose(m_i), self.frame[j.0].compose(m_j));
         if base != GROUND {
@@ -231,7 +196,7 @@ impl<T: Real> State<T> {
     #[inline(always)]
     fn place_end_points(&mut self, topology: &Topology, parts: &Parts<T>, closure: usize) {
         let [i, j] = topology.closures[closure].bodies;
-        let (m_i, m_j) = (parts.ends[0].get(closure, self.witness), parts.ends[1].get(closure, self.witness));
+        let (m_i, m_j) = (parts.ends[0][closure], parts.ends[1][closure]);
         let ends = &mut self.ends[closure];
         (ends.i.r, ends.j.r) = (self.frame[i.0].point(m_i.r), self.frame[j.0].point(m_j.r));
         let base = topology.closures[closure].base;
@@ -252,14 +217,6 @@ impl<T: Real> State<T> {
     /// Rates of a marker i that walks along its curve: those of its body and its own turning.
     #[inline(never)]
     pub fn walk(&self, closure: usize, k: usize, rates: &EndRates<T>) -> EndRates<T> {
-        self.witness.within(
-            #[inline(always)]
-            || self.walking(closure, k, rates),
-        )
-    }
-
-    #[inline(always)]
-    fn walking(&self, closure: usize, k: usize, rates: &EndRates<T>) -> EndRates<T> {
         let Ends { i: foot, j, .. } = &self.ends[closure];
         let (v, a, contact) = (rates.v_i, rates.a_i, &self.contacts[k]);
         // The marker that carries the curve, and the follower's motion seen from it.
@@ -295,25 +252,17 @@ impl<T: Real> State<T> {
     /// Places everything where the coordinates say, the drivers' own values included.
     #[inline(never)]
     pub fn stand(&mut self, topology: &Topology, parts: &Parts<T>) {
-        self.witness.within(
-            #[inline(always)]
-            || {
-                self.place(topology, parts, 0..topology.links.len());
-                self.place_bodies(topology, parts, 0..topology.links.len());
-                for c in 0..topology.closures.len() {
-                    self.place_ends(topology, parts, c);
-                }
-            },
-        );
+        self.place(topology, parts, 0..topology.links.len());
+        self.place_bodies(topology, parts, 0..topology.links.len());
+        for c in 0..topology.closures.len() {
+            self.place_ends(topology, parts, c);
+        }
     }
 
     /// [`State::residual`] for callers that are not in a hurry.
     #[inline(never)]
     pub fn residual_of(&self, topology: &Topology, parts: &Parts<T>, drivers: &[[T; 3]], r: usize) -> T {
-        self.witness.within(
-            #[inline(always)]
-            || self.residual(topology, parts, drivers, r),
-        )
+        self.residual(topology, parts, drivers, r)
     }
 
     /// The sum of a coupler's terms. Kept out of the way of the other rows, which are many.
@@ -350,14 +299,10 @@ impl<T: Real> State<T> {
 
     #[inline(never)]
     pub(super) fn wrench_of(&self, row: Row, closure: usize) -> Wrench<T> {
-        self.witness.within(
-            #[inline(always)]
-            || row.wrench(&self.ends[closure]),
-        )
+        row.wrench(&self.ends[closure])
     }
 
     /// Residuals, wrenches and factors of block b where it stands.
-    #[inline(always)]
     pub(super) fn linearise(&mut self, topology: &Topology, parts: &Parts<T>, drivers: &[[T; 3]], b: usize) {
         let block: &Block = &topology.blocks[b];
         for &c in &block.closures {
@@ -377,10 +322,10 @@ impl<T: Real> State<T> {
             self.l[r] = wrench;
             if place.terms.is_empty() {
                 let x = &self.x;
-                let entries = closure.entries.iter().map(
-                    #[inline(always)]
-                    |&(column, coordinate, side)| (column, wrench.on(x[coordinate]) * zero.like(side)),
-                );
+                let entries = closure
+                    .entries
+                    .iter()
+                    .map(|&(column, coordinate, side)| (column, wrench.on(x[coordinate]) * zero.like(side)));
                 self.factors[b].set_row(k, entries, zero);
             } else {
                 self.enter_coupler(topology, b, k, r);
@@ -403,36 +348,29 @@ impl<T: Real> State<T> {
         drivers: &[[T; 3]],
         trust: f64,
     ) -> Result<(), PositionFailure> {
-        let witness = self.witness;
-        witness.within(
-            #[inline(always)]
-            || {
-                for (c, coordinate) in topology.coordinates.iter().enumerate() {
-                    if let Source::Driven(d) = coordinate.source {
-                        [self.q[c], self.qd[c], self.qdd[c]] = drivers[d.0];
-                    }
-                }
-                self.place(topology, parts, topology.driven_links());
-                self.place_bodies(topology, parts, topology.driven_links());
-                self.rates_of_driven(topology);
-                for b in 0..topology.blocks.len() {
-                    self.newton(topology, parts, drivers, b, trust)?;
-                    self.place_bodies(topology, parts, topology.blocks[b].links.clone());
-                    self.rates_of_block(topology, parts, drivers, b);
-                }
-                for (c, closure) in topology.closures.iter().enumerate() {
-                    if closure.block.is_none() {
-                        self.place_ends(topology, parts, c);
-                        self.finish_closure(topology, c);
-                        self.rates_of_wrenches(topology, c, 1);
-                    }
-                }
-                Ok(())
-            },
-        )
+        for (c, coordinate) in topology.coordinates.iter().enumerate() {
+            if let Source::Driven(d) = coordinate.source {
+                [self.q[c], self.qd[c], self.qdd[c]] = drivers[d.0];
+            }
+        }
+        self.place(topology, parts, topology.driven_links());
+        self.place_bodies(topology, parts, topology.driven_links());
+        self.rates_of_driven(topology);
+        for b in 0..topology.blocks.len() {
+            self.newton(topology, parts, drivers, b, trust)?;
+            self.place_bodies(topology, parts, topology.blocks[b].links.clone());
+            self.rates_of_block(topology, parts, drivers, b);
+        }
+        for (c, closure) in topology.closures.iter().enumerate() {
+            if closure.block.is_none() {
+                self.place_ends(topology, parts, c);
+                self.finish_closure(topology, c);
+                self.rates_of_wrenches(topology, c, 1);
+            }
+        }
+        Ok(())
     }
 
-    #[inline(always)]
     fn newton(
         &mut self,
         topology: &Topology,
@@ -457,7 +395,7 @@ impl<T: Real> State<T> {
             self.factors[b].solve(&mut self.rhs);
             let corrections = self.correction(topology, b);
             self.corrections[b].0[pass.min(CORRECTIONS - 1)] = corrections;
-            let correction = corrections.largest();
+            let correction = corrections.decisive();
             if correction <= ROUND_OFF {
                 return Ok(());
             }
@@ -505,7 +443,6 @@ impl<T: Real> State<T> {
     }
 
     /// Velocity and acceleration of the bodies that drivers alone place.
-    #[inline(always)]
     fn rates_of_driven(&mut self, topology: &Topology) {
         let links = topology.driven_links();
         carry(topology, links.clone(), &self.x, None, &self.qd, &mut self.v, |_| true);
@@ -516,7 +453,6 @@ impl<T: Real> State<T> {
 
     /// Velocity and acceleration of the bodies of block b, with the factors that its position left (`docs/theory.md`
     /// (9), (10)).
-    #[inline(always)]
     fn rates_of_block(&mut self, topology: &Topology, parts: &Parts<T>, drivers: &[[T; 3]], b: usize) {
         let (block, witness, s) = (&topology.blocks[b], self.witness, self);
         for &c in &block.closures {
@@ -554,20 +490,14 @@ impl<T: Real> State<T> {
     /// the drivers other than those that the position was solved with; those of driven coordinates stand in `qd` and `qdd`.
     #[inline(never)]
     pub(super) fn all_rates(&mut self, topology: &Topology, parts: &Parts<T>, drivers: &[[T; 3]]) {
-        let witness = self.witness;
-        witness.within(
-            #[inline(always)]
-            || {
-                self.rates_of_driven(topology);
-                for b in 0..topology.blocks.len() {
-                    self.rates_of_block(topology, parts, drivers, b);
-                }
-                self.rates_of_twists(topology, 0..topology.links.len(), 2);
-                for &c in topology.blocks.iter().flat_map(|b| &b.closures) {
-                    self.rates_of_wrenches(topology, c, 2);
-                }
-            },
-        );
+        self.rates_of_driven(topology);
+        for b in 0..topology.blocks.len() {
+            self.rates_of_block(topology, parts, drivers, b);
+        }
+        self.rates_of_twists(topology, 0..topology.links.len(), 2);
+        for &c in topology.blocks.iter().flat_map(|b| &b.closures) {
+            self.rates_of_wrenches(topology, c, 2);
+        }
     }
 
     /// What the acceleration of these links has besides those of their coordinates.
@@ -587,15 +517,10 @@ impl<T: Real> State<T> {
         self.finish_wrenches(topology);
         self.xdd.resize(self.x.len(), Twist::zero(witness));
         self.ldd.resize(self.l.len(), Wrench::moment(Twist::zero(witness).w));
-        witness.within(
-            #[inline(always)]
-            || {
-                self.rates_of_twists(topology, 0..topology.links.len(), 2);
-                for c in 0..topology.closures.len() {
-                    self.rates_of_wrenches(topology, c, 2);
-                }
-            },
-        );
+        self.rates_of_twists(topology, 0..topology.links.len(), 2);
+        for c in 0..topology.closures.len() {
+            self.rates_of_wrenches(topology, c, 2);
+        }
     }
 
     /// Wrenches of the rows that the motion is not solved with.
@@ -619,39 +544,34 @@ impl<T: Real> State<T> {
 
     /// The largest residuals over all rows, left-out ones included.
     pub fn residuals(&self, topology: &Topology, parts: &Parts<T>, drivers: &[[T; 3]]) -> Residuals {
-        let [largest, scaled] = self.residuals_in_lanes(topology, parts, drivers);
-        Residuals { largest: largest.largest(), scaled: scaled.largest() }
+        let [largest, scaled] = self.largest_residuals(topology, parts, drivers);
+        Residuals { largest: largest.decisive(), scaled: scaled.decisive() }
     }
 
-    /// The same lane by lane: m or rad, and sizes or rad.
-    pub fn residuals_in_lanes(&self, topology: &Topology, parts: &Parts<T>, drivers: &[[T; 3]]) -> [T; 2] {
-        self.witness.within(
-            #[inline(always)]
-            || {
-                let zero = self.witness.zero();
-                let (mut largest, mut scaled) = (zero, zero);
-                for (r, place) in topology.rows.iter().enumerate() {
-                    if place.is_term {
-                        continue;
-                    }
-                    let residual = if place.selected {
-                        self.residual[r].abs()
-                    } else {
-                        self.residual_of(topology, parts, drivers, r).abs()
-                    };
-                    largest = largest.larger(residual);
-                    scaled = scaled.larger(residual * zero.like(1.0 / place.unit));
-                }
-                [largest, scaled]
-            },
-        )
+    /// The same as they are: m or rad, and sizes or rad.
+    pub fn largest_residuals(&self, topology: &Topology, parts: &Parts<T>, drivers: &[[T; 3]]) -> [T; 2] {
+        let zero = self.witness.zero();
+        let (mut largest, mut scaled) = (zero, zero);
+        for (r, place) in topology.rows.iter().enumerate() {
+            if place.is_term {
+                continue;
+            }
+            let residual = if place.selected {
+                self.residual[r].abs()
+            } else {
+                self.residual_of(topology, parts, drivers, r).abs()
+            };
+            largest = largest.larger(residual);
+            scaled = scaled.larger(residual * zero.like(1.0 / place.unit));
+        }
+        [largest, scaled]
     }
 
     /// The row that fails most, and its residual.
     pub fn worst_row(&self, topology: &Topology, parts: &Parts<T>, drivers: &[[T; 3]]) -> (usize, f64) {
         let mut worst = (0, 0.0, 0.0);
         for (r, place) in topology.rows.iter().enumerate().filter(|(_, p)| !p.is_term) {
-            let residual = self.residual_of(topology, parts, drivers, r).abs().largest();
+            let residual = self.residual_of(topology, parts, drivers, r).abs().decisive();
             let scaled = residual / place.unit;
             // Written so that a NaN is the largest of all.
             if !(scaled <= worst.1) {
@@ -672,7 +592,6 @@ impl<T: Real> State<T> {
     }
 
     /// Constraint row r of the Jacobian, by column of its block, lengths in sizes.
-    #[inline(always)]
     pub fn scaled_row(&self, topology: &Topology, r: usize, out: &mut [T]) {
         let scale = 1.0 / topology.rows[r].unit;
         let zero = self.witness.zero();
@@ -698,7 +617,6 @@ impl<T: Real> State<T> {
     }
 
     /// First or second time derivative of the unit twists, each carried by the frame before its freedom.
-    #[inline(always)]
     fn rates_of_twists(&mut self, topology: &Topology, links: std::ops::Range<usize>, order: usize) {
         for link in &topology.links[links] {
             if link.keeps_its_twist() {
@@ -729,7 +647,6 @@ impl<T: Real> State<T> {
     }
 
     /// First time derivative of the wrenches that the motion needs; or all of what sensitivities need besides.
-    #[inline(always)]
     fn rates_of_wrenches(&mut self, topology: &Topology, c: usize, order: usize) {
         let closure = &topology.closures[c];
         {

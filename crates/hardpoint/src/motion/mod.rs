@@ -85,7 +85,7 @@ impl BodyState {
     #[inline(always)]
     pub(crate) fn of<T: Real>(state: &State<T>, b: usize) -> Self {
         let numbers = Self::numbers_of(state, b);
-        Self::from(|k| numbers[k].lane(0))
+        Self::from(|k| numbers[k].value())
     }
 
     /// From r, the columns of A, v, omega, a and alpha, one after the other.

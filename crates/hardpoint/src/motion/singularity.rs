@@ -27,16 +27,16 @@ const ORDERS: usize = 3;
 
 /// What is known about the surroundings of a position.
 #[derive(Clone, Debug)]
-pub(super) struct Surroundings<T> {
+pub(super) struct Surroundings {
     /// Per direction and block: the inverse distance to the nearest singular position, per unit of the direction.
-    nearness: Vec<Vec<T>>,
+    nearness: Vec<Vec<f64>>,
     /// Per direction: first and second derivatives of the coordinates by it.
-    pub slopes: Vec<Vec<T>>,
-    pub bends: Vec<Vec<T>>,
+    pub slopes: Vec<Vec<f64>>,
+    pub bends: Vec<Vec<f64>>,
     /// Per direction and row of a coupler's term: the same of what it counts.
-    pub turning: Vec<Vec<[T; 2]>>,
+    pub turning: Vec<Vec<[f64; 2]>>,
     /// Per direction: the fastest unknown coordinate, in its unit.
-    pub fastest: Vec<T>,
+    pub fastest: Vec<f64>,
     /// How many of the directions are known.
     known: usize,
 }
@@ -54,27 +54,27 @@ pub(super) struct Ahead {
 
 /// Room to work in.
 #[derive(Clone, Debug)]
-pub(super) struct Prober<T> {
+pub(super) struct Prober {
     /// Rates along a direction, in place of those along the time.
-    qd: Vec<T>,
-    qdd: Vec<T>,
-    v: Vec<Twist<T>>,
-    a: Vec<Twist<T>>,
-    xd: Vec<Twist<T>>,
-    xdd: Vec<Twist<T>>,
-    ld: Vec<Wrench<T>>,
-    ldd: Vec<Wrench<T>>,
+    qd: Vec<f64>,
+    qdd: Vec<f64>,
+    v: Vec<Twist<f64>>,
+    a: Vec<Twist<f64>>,
+    xd: Vec<Twist<f64>>,
+    xdd: Vec<Twist<f64>>,
+    ld: Vec<Wrench<f64>>,
+    ldd: Vec<Wrench<f64>>,
     /// Per load and row.
-    loads: [Vec<T>; LOADS],
+    loads: [Vec<f64>; LOADS],
     /// The series of the response: coordinates, and the bodies of one block.
-    c: [Vec<T>; ORDERS],
-    out: [Vec<Twist<T>>; ORDERS],
-    bias: Vec<Twist<T>>,
-    row_rhs: Vec<T>,
-    drivers: Vec<[T; 3]>,
+    c: [Vec<f64>; ORDERS],
+    out: [Vec<Twist<f64>>; ORDERS],
+    bias: Vec<Twist<f64>>,
+    row_rhs: Vec<f64>,
+    drivers: Vec<[f64; 3]>,
 }
 
-impl<T: Real> Surroundings<T> {
+impl Surroundings {
     /// Nothing.
     pub fn unknown() -> Self {
         Self {
@@ -88,12 +88,12 @@ impl<T: Real> Surroundings<T> {
     }
 
     /// Makes room for so many directions.
-    fn make_room(&mut self, topology: &Topology, directions: usize, witness: T) {
+    fn make_room(&mut self, topology: &Topology, directions: usize) {
         self.known = directions;
         if self.fastest.len() >= directions {
             return;
         }
-        let zero = witness.zero();
+        let zero = 0.0;
         self.nearness.resize(directions, vec![zero; topology.blocks.len()]);
         self.slopes.resize(directions, vec![zero; topology.coordinates.len()]);
         self.bends.resize(directions, vec![zero; topology.coordinates.len()]);
@@ -103,12 +103,11 @@ impl<T: Real> Surroundings<T> {
     }
 
     /// What part of the distance to the nearest singular position a step may be that moves each direction by so much at most.
-    #[inline(always)]
     pub fn part_of_way(&self, travel: &[f64]) -> f64 {
         let mut most = 0.0;
         for b in 0..self.nearness.first().map_or(0, Vec::len) {
             let of_block = travel[..self.known].iter().zip(&self.nearness);
-            let sum: f64 = of_block.map(|(du, nearness)| part(*du, nearness[b].largest())).sum();
+            let sum: f64 = of_block.map(|(du, nearness)| part(*du, nearness[b])).sum();
             // Written so that NaN is far too much.
             if !(sum <= most) {
                 most = if sum.is_nan() { f64::INFINITY } else { sum };
@@ -119,7 +118,7 @@ impl<T: Real> Surroundings<T> {
 
     /// How far the fastest coordinate goes, in its unit, when each direction moves by so much at most.
     pub fn move_of_fastest(&self, travel: &[f64]) -> f64 {
-        travel[..self.known].iter().zip(&self.fastest).map(|(du, speed)| part(*du, speed.largest())).sum()
+        travel[..self.known].iter().zip(&self.fastest).map(|(du, speed)| part(*du, *speed)).sum()
     }
 }
 
@@ -128,18 +127,18 @@ fn part(travel: f64, per_unit: f64) -> f64 {
     if travel == 0.0 { 0.0 } else { travel * per_unit }
 }
 
-impl<T: Real> Prober<T> {
-    pub fn new(topology: &Topology, bodies: usize, drivers: usize, witness: T) -> Self {
-        let (zero, none) = (witness.zero(), Twist::zero(witness));
+impl Prober {
+    pub fn new(topology: &Topology, bodies: usize, drivers: usize) -> Self {
+        let (zero, none) = (0.0, Twist::ZERO);
         let (coordinates, rows) = (topology.coordinates.len(), topology.rows.len());
         let wrench = Wrench { m: none.w, f: none.v };
         // Multiples of the golden ratio are spread evenly and never repeat: all loads differ, and none is small.
         let mut numbers = (1..).map(|k| (f64::from(k) * 0.618_033_988_749_895).fract());
-        let mut load = || -> Vec<T> {
+        let mut load = || -> Vec<f64> {
             let mut next = || numbers.next().expect("there is always another");
             let of_row = |unit: f64| {
                 let (size, side) = (0.5 + 0.5 * next(), next());
-                witness.like(unit * if side < 0.5 { -size } else { size })
+                unit * if side < 0.5 { -size } else { size }
             };
             topology.rows.iter().map(|place| place.unit).map(of_row).collect()
         };
@@ -162,7 +161,7 @@ impl<T: Real> Prober<T> {
     }
 
     /// Puts the rates along a direction in the place of those along the time, or back.
-    fn swap(&mut self, state: &mut State<T>) {
+    fn swap(&mut self, state: &mut State<f64>) {
         use std::mem::swap;
         swap(&mut self.qd, &mut state.qd);
         swap(&mut self.qdd, &mut state.qdd);
@@ -180,20 +179,19 @@ impl<T: Real> Prober<T> {
     pub fn examine(
         &mut self,
         topology: &Topology,
-        parts: &Parts<T>,
-        state: &mut State<T>,
+        parts: &Parts<f64>,
+        state: &mut State<f64>,
         gap_rate: f64,
         directions: usize,
-        speed: impl Fn(usize, usize) -> T,
-        found: &mut Surroundings<T>,
+        speed: impl Fn(usize, usize) -> f64,
+        found: &mut Surroundings,
     ) {
-        let witness = state.witness;
-        found.make_room(topology, directions, witness);
+        found.make_room(topology, directions);
         self.swap(state);
         let gap = std::mem::replace(&mut state.gap_left[1], gap_rate);
         for direction in 0..directions {
             for (d, driver) in self.drivers.iter_mut().enumerate() {
-                *driver = [witness.zero(), speed(direction, d), witness.zero()];
+                *driver = [0.0, speed(direction, d), 0.0];
             }
             self.rates(topology, parts, state);
             found.slopes[direction].copy_from_slice(&state.qd);
@@ -204,16 +202,16 @@ impl<T: Real> Prober<T> {
                     found.turning[direction][k] = [speed, rate];
                 }
             }
-            let mut fastest = witness.zero();
+            let mut fastest = 0.0;
             for (c, coordinate) in topology.coordinates.iter().enumerate() {
                 if matches!(coordinate.source, Source::Unknown { .. }) {
-                    let speed = state.qd[c] * witness.like(coordinate.per_unit);
+                    let speed = state.qd[c] * coordinate.per_unit;
                     fastest = fastest.larger(speed.abs());
                 }
             }
             found.fastest[direction] = fastest;
             for b in 0..topology.blocks.len() {
-                let mut nearness = witness.zero();
+                let mut nearness = 0.0;
                 for load in 0..LOADS {
                     nearness = nearness.larger(self.respond(topology, state, b, load));
                 }
@@ -229,10 +227,10 @@ impl<T: Real> Prober<T> {
     pub fn ahead(
         &mut self,
         topology: &Topology,
-        parts: &Parts<T>,
-        state: &mut State<T>,
+        parts: &Parts<f64>,
+        state: &mut State<f64>,
         gap_rate: f64,
-        drivers: &[[T; 3]],
+        drivers: &[[f64; 3]],
     ) -> Option<Ahead> {
         self.drivers.copy_from_slice(drivers);
         self.swap(state);
@@ -241,7 +239,7 @@ impl<T: Real> Prober<T> {
         self.rates(topology, parts, state);
         for b in 0..topology.blocks.len() {
             for load in 0..LOADS {
-                let nearness = self.respond(topology, state, b, load).lane(0);
+                let nearness = self.respond(topology, state, b, load);
                 let Some(ahead) = self.extrapolate(topology, b) else { continue };
                 if nearest.is_none_or(|(most, _)| nearness > most) {
                     nearest = Some((nearness, ahead));
@@ -254,7 +252,7 @@ impl<T: Real> Prober<T> {
     }
 
     /// Velocity and acceleration along the drivers' speeds, and all rates of twists and wrenches.
-    fn rates(&mut self, topology: &Topology, parts: &Parts<T>, state: &mut State<T>) {
+    fn rates(&mut self, topology: &Topology, parts: &Parts<f64>, state: &mut State<f64>) {
         for (c, coordinate) in topology.coordinates.iter().enumerate() {
             if let Source::Driven(d) = coordinate.source {
                 [_, state.qd[c], state.qdd[c]] = self.drivers[d.0];
@@ -266,31 +264,18 @@ impl<T: Real> Prober<T> {
     /// The response of a block to a load: c0, c1 and 2 c2 of its unknowns; all bodies outside of it stand. Returns how near a
     /// singular position is by it.
     #[inline(never)]
-    fn respond(&mut self, topology: &Topology, state: &mut State<T>, b: usize, load: usize) -> T {
-        let witness = state.witness;
-        witness.within(
-            #[inline(always)]
-            || {
-                self.responding(topology, state, b, load);
-                self.nearness(topology, b)
-            },
-        )
-    }
-
-    #[inline(always)]
-    fn responding(&mut self, topology: &Topology, state: &mut State<T>, b: usize, load: usize) {
-        let (block, witness) = (&topology.blocks[b], state.witness);
-        let (zero, two) = (witness.zero(), witness.like(2.0));
+    fn respond(&mut self, topology: &Topology, state: &mut State<f64>, b: usize, load: usize) -> f64 {
+        let block = &topology.blocks[b];
         let Self { loads, c, out, bias, row_rhs, .. } = self;
         for order in 0..ORDERS {
             // bias = sum over m < n of binomial(n, m) x^(n - m) c_m
             for k in block.links.clone() {
                 let link = &topology.links[k];
-                bias[k] = Twist::zero(witness);
+                bias[k] = Twist::ZERO;
                 if order > 0 && !link.keeps_its_twist() {
                     bias[k] = state.sum_over_link(link, &state.xd, &c[order - 1]);
                     if order == 2 {
-                        let first = bias[k] * two;
+                        let first = bias[k] * 2.0;
                         bias[k] = first + state.sum_over_link(link, &state.xdd, &c[0]);
                     }
                 }
@@ -304,12 +289,12 @@ impl<T: Real> Prober<T> {
                         continue;
                     }
                     row_rhs[r] = match order {
-                        0 if topology.rows[r].is_term => zero,
+                        0 if topology.rows[r].is_term => 0.0,
                         0 => loads[load][r],
                         1 => -state.ld[r].on(out[0][j] - out[0][i]),
                         _ => {
                             -(state.ldd[r].on(out[0][j] - out[0][i])
-                                + state.ld[r].on(out[1][j] - out[1][i]) * two)
+                                + state.ld[r].on(out[1][j] - out[1][i]) * 2.0)
                         }
                     };
                 }
@@ -321,31 +306,29 @@ impl<T: Real> Prober<T> {
         }
         // The next block is examined by itself.
         for k in block.links.clone() {
-            out.iter_mut().for_each(|out| out[topology.links[k].child.0] = Twist::zero(witness));
+            out.iter_mut().for_each(|out| out[topology.links[k].child.0] = Twist::ZERO);
         }
+        self.nearness(topology, b)
     }
 
     /// `max(|c1| / |c0|, sqrt(|c2| / |c0|))` over the block's unknowns, lengths in sizes of their loops.
-    #[inline(always)]
-    fn nearness(&self, topology: &Topology, b: usize) -> T {
+    fn nearness(&self, topology: &Topology, b: usize) -> f64 {
         let zero = self.c[0][topology.blocks[b].unknowns[0]].zero();
-        let norm = |c: &[T]| {
+        let norm = |c: &[f64]| {
             let unknowns = topology.blocks[b].unknowns.iter();
-            unknowns.fold(zero, |most, &k| {
-                most.larger((c[k] * zero.like(topology.coordinates[k].per_unit)).abs())
-            })
+            unknowns.fold(zero, |most, &k| most.larger((c[k] * topology.coordinates[k].per_unit).abs()))
         };
         let [c0, c1, c2] = [&self.c[0], &self.c[1], &self.c[2]].map(|c| norm(c));
-        (c1 / c0).larger((c2 * zero.like(0.5) / c0).sqrt())
+        (c1 / c0).larger((c2 * 0.5 / c0).sqrt())
     }
 
     /// Where the response would be infinite. With s ~ (u* - u)^-m it is `s'/s = m / (u* - u)` and `s''/s = m (m + 1) / (u* - u)^2`,
     /// read off the unknown that responds most.
     fn extrapolate(&self, topology: &Topology, b: usize) -> Option<Ahead> {
-        let size = |k: usize| (self.c[0][k].lane(0) * topology.coordinates[k].per_unit).abs();
+        let size = |k: usize| (self.c[0][k] * topology.coordinates[k].per_unit).abs();
         let unknowns = topology.blocks[b].unknowns.iter().copied();
         let most = unknowns.max_by(|&j, &k| size(j).total_cmp(&size(k)))?;
-        let [c0, c1, c2] = std::array::from_fn(|order| self.c[order][most].lane(0));
+        let [c0, c1, c2] = std::array::from_fn(|order| self.c[order][most]);
         let (first, second) = (c1 / c0, c2 / c0);
         let power = first * first / (second - first * first);
         let distance = power / first;

@@ -53,20 +53,20 @@ const RESELECT: f64 = 0.1;
 /// Where others did not serve better, they are tried again when the ratio has fallen by this factor once more.
 const LOOK_AGAIN: f64 = 0.3;
 
-/// A mechanism on its way through time, one design per lane.
-pub(crate) struct Stepper<'m, T> {
+/// A mechanism on its way through time.
+pub(crate) struct Stepper<'m> {
     pub(super) model: &'m Model,
     /// Own copy: the selection of independent rows may change on the way.
     pub topology: Topology,
-    pub parts: Parts<T>,
-    pub state: State<T>,
-    pub drivers: Vec<[T; 3]>,
+    pub parts: Parts<f64>,
+    pub state: State<f64>,
+    pub drivers: Vec<[f64; 3]>,
     /// The last accepted position.
-    pub(super) saved: Saved<T>,
-    pub(super) forecast: Forecast<T>,
+    pub(super) saved: Saved,
+    pub(super) forecast: Forecast,
     pub(super) time: f64,
     /// What drivers follow on a straight path: from where to where each goes.
-    pub(super) line: Vec<[T; 2]>,
+    pub(super) line: Vec<[f64; 2]>,
     /// Per block: sign of the determinant on this branch, and the first pivot ratio.
     pub(super) branch: Vec<(bool, f64)>,
     /// Per block: the pivot ratio below which other rows are tried.
@@ -75,12 +75,12 @@ pub(crate) struct Stepper<'m, T> {
     pub(super) driver_units: Vec<f64>,
     /// What is known of the way ahead, and what it is known by.
     pub(super) ahead: Ahead,
-    pub(super) around: Surroundings<T>,
-    pub(super) beyond: Surroundings<T>,
+    pub(super) around: Surroundings,
+    pub(super) beyond: Surroundings,
     /// Made when first needed: who takes many steps at once examines nothing.
-    pub(super) prober: Option<Box<Prober<T>>>,
+    pub(super) prober: Option<Box<Prober>>,
     /// Per block: by what part its determinant changed over the last step between output times, and how long that was.
-    pub(super) changes: Vec<T>,
+    pub(super) changes: Vec<f64>,
     pub(super) change_step: f64,
     /// Per driver: how far it moved over that step.
     pub(super) moves: Vec<f64>,
@@ -91,7 +91,7 @@ pub(crate) struct Stepper<'m, T> {
     pub(super) travel_unit: f64,
     pub(super) on_laws: bool,
     /// Scratch of predictions.
-    pub(super) predicted: Vec<T>,
+    pub(super) predicted: Vec<f64>,
     /// Fastest driver on the present path (rad, or sizes, per unit of its parameter).
     pub(super) fastest_driver: f64,
     /// By how much the constraints fail at the position tried last.
@@ -101,11 +101,11 @@ pub(crate) struct Stepper<'m, T> {
     pub(super) selections: usize,
     /// How the mechanism was closed, if it was open as drawn.
     pub assembly: Option<Assembly>,
-    /// The bodies that are watched between output times, and where they were since the last one, in lane 0.
+    /// The bodies that are watched between output times, and where they were since the last one.
     pub watched: Vec<bool>,
     pub passed: Vec<Passed>,
     /// Room for the changes and moves over output times that are tried at once.
-    pub(super) changes_ahead: Vec<T>,
+    pub(super) changes_ahead: Vec<f64>,
     pub(super) moves_ahead: Vec<f64>,
 }
 
@@ -120,13 +120,7 @@ pub(super) struct Calm {
 impl Calm {
     /// How fast driver d is at most between two times: as it is known over a longer stretch, up to `ahead`, if that is `enough`.
     #[inline(always)]
-    pub fn fastest<T: Real>(
-        &mut self,
-        parts: &Parts<T>,
-        d: usize,
-        [from, to, ahead]: [f64; 3],
-        enough: f64,
-    ) -> f64 {
+    pub fn fastest(&mut self, parts: &Parts<f64>, d: usize, [from, to, ahead]: [f64; 3], enough: f64) -> f64 {
         if !(self.from <= from && to <= self.to) {
             *self = Self { from, to: ahead, fastest: parts.fastest(d, from, ahead) };
         }
@@ -147,18 +141,18 @@ pub(super) enum Ahead {
 
 /// A position that was accepted.
 #[derive(Clone)]
-pub(super) struct Saved<T> {
-    pub q: Vec<T>,
-    pub qd: Vec<T>,
-    pub qdd: Vec<T>,
-    pub balls: Vec<Quat<T>>,
+pub(super) struct Saved {
+    pub q: Vec<f64>,
+    pub qd: Vec<f64>,
+    pub qdd: Vec<f64>,
+    pub balls: Vec<Quat<f64>>,
     pub pivots: Vec<(f64, bool)>,
-    pub determinants: Vec<T>,
-    pub drivers: Vec<[T; 3]>,
+    pub determinants: Vec<f64>,
+    pub drivers: Vec<[f64; 3]>,
     /// Per row that is a term of a coupler: its coordinate, with speed and acceleration.
-    pub coupled: Vec<[T; 3]>,
+    pub coupled: Vec<[f64; 3]>,
     /// Per curve: where it is touched.
-    pub contacts: Vec<Contact<T>>,
+    pub contacts: Vec<Contact<f64>>,
     /// Largest residual there, sizes or rad.
     pub residual: f64,
 }
@@ -185,11 +179,10 @@ pub(super) enum Refusal {
     TooNear,
 }
 
-impl<'m, T: Real> Stepper<'m, T> {
-    pub fn new(model: &'m Model, topology: &Topology, parts: Parts<T>, witness: T) -> Self {
+impl<'m> Stepper<'m> {
+    pub fn new(model: &'m Model, topology: &Topology, parts: Parts<f64>, witness: f64) -> Self {
         let mut state = State::new(model, topology, witness);
-        state.contacts =
-            parts.curves.iter().map(|c| Contact::at(c, witness, witness.like(c.start()))).collect();
+        state.contacts = parts.curves.iter().map(|c| Contact::at(c, witness, c.start())).collect();
         let saved = Saved {
             q: state.q.clone(),
             qd: state.qd.clone(),
@@ -197,8 +190,8 @@ impl<'m, T: Real> Stepper<'m, T> {
             balls: state.balls.clone(),
             pivots: state.pivots.clone(),
             determinants: state.determinants.clone(),
-            drivers: vec![[witness.zero(); 3]; model.drivers.len()],
-            coupled: vec![[witness.zero(); 3]; topology.rows.len()],
+            drivers: vec![[0.0; 3]; model.drivers.len()],
+            coupled: vec![[0.0; 3]; topology.rows.len()],
             contacts: state.contacts.clone(),
             residual: 0.0,
         };
@@ -210,8 +203,8 @@ impl<'m, T: Real> Stepper<'m, T> {
             topology: topology.clone(),
             parts,
             state,
-            line: vec![[witness.zero(); 2]; drivers],
-            forecast: Forecast::new(topology, witness),
+            line: vec![[0.0; 2]; drivers],
+            forecast: Forecast::new(topology),
             time: 0.0,
             try_others: vec![0.0; blocks],
             branch: vec![(true, 0.0); blocks],
@@ -220,14 +213,14 @@ impl<'m, T: Real> Stepper<'m, T> {
             beyond: around.clone(),
             around,
             prober: None,
-            changes: vec![witness.zero(); blocks],
+            changes: vec![0.0; blocks],
             change_step: 0.0,
             moves: vec![0.0; drivers],
             calm: vec![Calm { from: 0.0, to: f64::NEG_INFINITY, fastest: 0.0 }; drivers],
             travel: vec![0.0; directions],
             travel_unit: 1.0,
             on_laws: false,
-            predicted: vec![witness.zero(); topology.coordinates.len()],
+            predicted: vec![0.0; topology.coordinates.len()],
             fastest_driver: 0.0,
             residuals: Residuals::default(),
             effort: Effort { least_pivot_ratio: f64::INFINITY, ..Effort::default() },
@@ -235,7 +228,7 @@ impl<'m, T: Real> Stepper<'m, T> {
             assembly: None,
             watched: Vec::new(),
             passed: Vec::new(),
-            changes_ahead: vec![witness.zero(); blocks],
+            changes_ahead: vec![0.0; blocks],
             moves_ahead: vec![0.0; drivers],
             drivers: saved.drivers.clone(),
             saved,
@@ -251,9 +244,9 @@ impl<'m, T: Real> Stepper<'m, T> {
         self.assemble()?;
         // From there, where all drivers are zero, to their values at the first output time.
         for d in 0..self.line.len() {
-            self.line[d] = [self.state.witness.zero(), self.parts.law(d, t, self.state.witness)[0]];
+            self.line[d] = [0.0, self.parts.law(d, t)[0]];
         }
-        if self.line.iter().any(|[_, to]| to.abs().largest() != 0.0) {
+        if self.line.iter().any(|[_, to]| to.abs() != 0.0) {
             let ramp = Path::Line { at: t };
             self.time = 0.0;
             self.attempt(ramp, 0.0).map_err(|r| self.stop(ramp, 0.0, r, false))?;
@@ -296,15 +289,6 @@ impl<'m, T: Real> Stepper<'m, T> {
         if self.forecast.known() == 0 || self.ahead == Ahead::Unknown {
             return false;
         }
-        let witness = self.state.witness;
-        witness.within(
-            #[inline(always)]
-            || self.gliding(t, h),
-        )
-    }
-
-    #[inline(always)]
-    fn gliding(&mut self, t: f64, h: f64) -> bool {
         if self.drive(Path::Laws, t).is_err() || !self.is_clear(t, h) {
             return false;
         }
@@ -313,7 +297,7 @@ impl<'m, T: Real> Stepper<'m, T> {
         let trust = (TRUST * moved).max(TRUST_FLOOR);
         let selections = self.selections;
         if self.state.solve(&self.topology, &self.parts, &self.drivers, trust).is_err()
-            || !self.speeds_are_smooth(self.state.witness.like(h))
+            || !self.speeds_are_smooth(h)
             || self.examine_position().is_err()
         {
             return false;
@@ -323,7 +307,7 @@ impl<'m, T: Real> Stepper<'m, T> {
             return false;
         }
         for (d, moved) in self.moves.iter_mut().enumerate() {
-            *moved = (self.drivers[d][0] - self.saved.drivers[d][0]).abs().largest() / self.driver_units[d];
+            *moved = (self.drivers[d][0] - self.saved.drivers[d][0]).abs() / self.driver_units[d];
         }
         self.save(t, h);
         self.ahead = if even { Ahead::Even } else { Ahead::Unknown };
@@ -332,13 +316,12 @@ impl<'m, T: Real> Stepper<'m, T> {
 
     /// Whether the laws do nothing between here and the output time t that its two ends would not show, and no singular position is
     /// known to be near. The drivers are at t already.
-    #[inline(always)]
     pub(super) fn is_clear(&mut self, t: f64, h: f64) -> bool {
         for d in 0..self.drivers.len() {
             let unit = self.driver_units[d];
             let most = match self.ahead {
                 Ahead::Even => {
-                    let moved = (self.drivers[d][0] - self.saved.drivers[d][0]).abs().largest() / unit;
+                    let moved = (self.drivers[d][0] - self.saved.drivers[d][0]).abs() / unit;
                     (EVEN * self.moves[d].max(moved)).clamp(RESTS, LONGEST)
                 }
                 _ => LONGEST,
@@ -355,45 +338,42 @@ impl<'m, T: Real> Stepper<'m, T> {
 
     /// By what part each determinant has changed since the saved position, a step h before; returns whether that is little, and
     /// about as much as over the step before.
-    #[inline(always)]
     fn note_changes(&mut self, h: f64) -> bool {
         const MIDDLE: f64 = 0.5 * (MILD[0] + MILD[1]);
         const REACH: f64 = 0.5 * (MILD[1] - MILD[0]);
         let scale = h / self.change_step;
-        let mut most = self.state.witness.zero();
+        let mut most = 0.0;
         for (b, factors) in self.state.factors.iter().enumerate() {
             let ratio = factors.ratio(self.state.determinants[b], self.saved.determinants[b]);
-            let change = ratio - ratio.like(1.0);
-            most = most.larger((ratio - ratio.like(MIDDLE)).abs() * ratio.like(1.0 / REACH));
+            let change = ratio - 1.0;
+            most = most.larger((ratio - MIDDLE).abs() * (1.0 / REACH));
             if self.ahead == Ahead::Even {
-                let bend = (change - self.changes[b] * ratio.like(scale)).abs();
-                most = most.larger(bend * ratio.like(1.0 / MILD_CHANGE));
+                let bend = (change - self.changes[b] * scale).abs();
+                most = most.larger(bend * (1.0 / MILD_CHANGE));
             }
             self.changes[b] = change;
         }
         self.change_step = h;
         // Written so that NaN is not even.
-        most.largest() <= 1.0
+        most <= 1.0
     }
 
     /// Sets the drivers for the path at t.
-    #[inline(always)]
     pub(super) fn drive(&mut self, path: Path, t: f64) -> Result<(), Refusal> {
         self.state.gap_left = if path == Path::Assembly { [1.0 - t, -1.0] } else { [0.0; 2] };
-        let witness = self.state.witness;
         for k in 0..self.drivers.len() {
             let law = match path {
-                Path::Assembly => [witness.zero(); 3],
-                Path::Laws => self.parts.law(k, t, witness),
+                Path::Assembly => [0.0; 3],
+                Path::Laws => self.parts.law(k, t),
                 Path::Line { .. } => {
                     let [from, to] = self.line[k];
                     // At the end exactly there.
-                    let here = if t == 1.0 { to } else { from + (to - from) * witness.like(t) };
-                    [here, to - from, witness.zero()]
+                    let here = if t == 1.0 { to } else { from + (to - from) * t };
+                    [here, to - from, 0.0]
                 }
             };
             // A sum that is too large is none that a motion can follow either.
-            if !(law[0].abs() + law[1].abs() + law[2].abs()).largest().is_finite() {
+            if !(law[0].abs() + law[1].abs() + law[2].abs()).is_finite() {
                 return Err(Refusal::Law { driver: k });
             }
             self.drivers[k] = law;
@@ -411,7 +391,6 @@ impl<'m, T: Real> Stepper<'m, T> {
 
     /// Solves from the prediction at hand; the first correction must be within `trust`.
     pub(super) fn solve_within(&mut self, trust: f64) -> Result<(), Refusal> {
-        // `solve` sees to its instruction set itself.
         self.state.solve(&self.topology, &self.parts, &self.drivers, trust).map_err(Refusal::Position)
     }
 
@@ -445,48 +424,44 @@ impl<'m, T: Real> Stepper<'m, T> {
 
     /// Foresees the position a step h beyond the saved one, from where the mechanism has been; returns how far the largest move
     /// goes (rad, or sizes), to second order.
-    #[inline(always)]
     fn foresee_at(&mut self, h: f64) -> f64 {
-        let witness = self.state.witness;
-        let t = witness.like(self.time + h);
+        let t = self.time + h;
         self.state.contacts.copy_from_slice(&self.saved.contacts);
         self.forecast.set(&mut self.state, t, h);
-        self.expect_turns(witness.like(h));
-        self.expected_move(witness.like(h)).largest()
+        self.expect_turns(h);
+        self.expected_move(h)
     }
 
     /// By how much another forecast would have missed where the mechanism stands, rad or sizes; of balls by components.
-    pub(super) fn forecast_error(&mut self, forecast: &mut Forecast<T>) -> f64 {
+    pub(super) fn forecast_error(&mut self, forecast: &mut Forecast) -> f64 {
         let (channels, mut state) = (Channel::all(&self.topology), self.state.clone());
-        forecast.set(&mut state, self.state.witness.like(self.time), 0.0);
+        forecast.set(&mut state, self.time, 0.0);
         channels.into_iter().fold(0.0, |most, channel| {
             let per_unit = match channel {
                 Channel::Coordinate(c) => self.topology.coordinates[c].per_unit,
                 Channel::Ball(..) => 1.0,
             };
             let [was, is] = [&state, &self.state].map(|s| channel.of(s)[0]);
-            f64::max(most, per_unit * (was - is).abs().largest())
+            f64::max(most, per_unit * (was - is).abs())
         })
     }
 
     /// The largest move (rad, or sizes) over a step h, by speed and acceleration.
-    #[inline(always)]
-    fn expected_move(&self, h: T) -> T {
-        let (saved, half) = (&self.saved, h.like(0.5) * h);
-        let mut most = h.zero();
+    fn expected_move(&self, h: f64) -> f64 {
+        let (saved, half) = (&self.saved, 0.5 * h);
+        let mut most = 0.0;
         for (c, coordinate) in self.topology.coordinates.iter().enumerate() {
             if let Source::Unknown { .. } = coordinate.source {
                 let step = (saved.qd[c] + saved.qdd[c] * half) * h;
-                most = most.larger((step * h.like(coordinate.per_unit)).abs());
+                most = most.larger((step * coordinate.per_unit).abs());
             }
         }
         most
     }
 
     /// About what the coordinates of couplers are, a step h beyond the saved position.
-    #[inline(always)]
-    pub(super) fn expect_turns(&mut self, h: T) {
-        let half = h.like(0.5) * h;
+    pub(super) fn expect_turns(&mut self, h: f64) {
+        let half = 0.5 * h;
         for &r in &self.topology.coupled_rows {
             for (k, _) in self.topology.parts_of_row(r) {
                 let [x, v, a] = self.saved.coupled[k];
@@ -496,16 +471,14 @@ impl<'m, T: Real> Stepper<'m, T> {
     }
 
     /// Speed of the fastest driver (rad, or sizes, per unit of the path's parameter), now or before.
-    #[inline(always)]
     pub(super) fn driver_speed(&self) -> f64 {
         self.driver_units
             .iter()
             .zip(&self.drivers)
-            .fold(self.fastest_driver, |most, (unit, f)| most.max(f[1].abs().largest() / unit))
+            .fold(self.fastest_driver, |most, (unit, f)| most.max(f[1].abs() / unit))
     }
 
     /// The block of a coupler that counts an angle whose turn the prediction does not tell for sure.
-    #[inline(always)]
     pub(super) fn uncertain_turn(&self) -> Option<usize> {
         let s = &self.state;
         let uncertain = |k: usize| {
@@ -513,7 +486,7 @@ impl<'m, T: Real> Stepper<'m, T> {
             let closure = &self.topology.closures[self.topology.rows[k].closure];
             let row = closure.rows[self.topology.rows[k].index];
             // Written so that NaN is uncertain.
-            !row.is_length() && !((value - s.near[k]).abs().largest() <= TURN_TRUST)
+            !row.is_length() && !((value - s.near[k]).abs() <= TURN_TRUST)
         };
         let rows = self.topology.coupled_rows.iter();
         let found = rows.copied().find(|&r| self.topology.parts_of_row(r).any(|(k, _)| uncertain(k)));
@@ -521,39 +494,23 @@ impl<'m, T: Real> Stepper<'m, T> {
     }
 
     /// Whether the speeds are those of the same branch as before the step.
-    pub(super) fn speeds_are_smooth(&self, h: T) -> bool {
-        self.state.witness.within(
-            #[inline(always)]
-            || {
-                let (s, saved) = (&self.state, &self.saved);
-                let zero = s.witness.zero();
-                let (mut fastest, mut difference) = (zero, zero);
-                for (c, coordinate) in self.topology.coordinates.iter().enumerate() {
-                    if let Source::Unknown { .. } = coordinate.source {
-                        let predicted = saved.qd[c] + saved.qdd[c] * h;
-                        let speed = s.qd[c].abs().larger(saved.qd[c].abs());
-                        let apart = (s.qd[c] - predicted).abs();
-                        let per_unit = zero.like(coordinate.per_unit);
-                        fastest = fastest.larger(speed * per_unit);
-                        difference = difference.larger(apart * per_unit);
-                    }
-                }
-                smooth(difference.largest(), fastest.largest(), self.fastest_driver)
-            },
-        )
+    pub(super) fn speeds_are_smooth(&self, h: f64) -> bool {
+        let (s, saved) = (&self.state, &self.saved);
+        let (mut fastest, mut difference) = (0.0_f64, 0.0_f64);
+        for (c, coordinate) in self.topology.coordinates.iter().enumerate() {
+            if let Source::Unknown { .. } = coordinate.source {
+                let predicted = saved.qd[c] + saved.qdd[c] * h;
+                let speed = s.qd[c].abs().larger(saved.qd[c].abs());
+                let apart = (s.qd[c] - predicted).abs();
+                fastest = fastest.larger(speed * coordinate.per_unit);
+                difference = difference.larger(apart * coordinate.per_unit);
+            }
+        }
+        smooth(difference, fastest, self.fastest_driver)
     }
 
     /// Accepts the position at t, a step h after the one before (0 at the start of a path). What lies ahead is not known then.
     pub(super) fn save(&mut self, t: f64, h: f64) {
-        let witness = self.state.witness;
-        witness.within(
-            #[inline(always)]
-            || self.saving(t, h),
-        );
-    }
-
-    #[inline(always)]
-    fn saving(&mut self, t: f64, h: f64) {
         let (s, saved) = (&self.state, &mut self.saved);
         if h == 0.0 {
             self.forecast.forget();
@@ -607,9 +564,9 @@ impl<'m, T: Real> Stepper<'m, T> {
             let matrix = rows
                 .iter()
                 .map(|&r| {
-                    let mut row = vec![s.witness.zero(); block.unknowns.len()];
+                    let mut row = vec![0.0; block.unknowns.len()];
                     s.scaled_row(&self.topology, r, &mut row);
-                    let entries = row.into_iter().map(|x| x.lane(0)).enumerate();
+                    let entries = row.into_iter().enumerate();
                     entries.filter(|(_, x)| *x != 0.0).collect()
                 })
                 .collect();
@@ -639,11 +596,11 @@ impl<'m, T: Real> Stepper<'m, T> {
         self.state.factors[b] = factors_of(&self.topology, block, LARGEST_DENSE, self.state.witness);
     }
 
-    /// Values of the tree coordinates, lane 0; 0 for those of balls.
+    /// Values of the tree coordinates; 0 for those of balls.
     pub fn coordinates(&self) -> impl Iterator<Item = f64> + '_ {
         let ball = self.topology.links.iter().flat_map(|l| &l.steps).filter(|s| s.freedom == Freedom::Ball);
-        debug_assert!(ball.map(|s| self.state.q[s.first].lane(0)).all(|q| q == 0.0));
-        self.state.q.iter().map(|q| q.lane(0))
+        debug_assert!(ball.map(|s| self.state.q[s.first]).all(|q| q == 0.0));
+        self.state.q.iter().copied()
     }
 }
 
@@ -717,17 +674,12 @@ mod tests {
     }
 
     /// The states of all bodies at the last output time, with blocks up to this size factored densely.
-    fn last<T: Real>(
-        model: &Model,
-        topology: &Topology,
-        largest_dense: usize,
-        zero: T,
-    ) -> (State<T>, Vec<bool>) {
+    fn last(model: &Model, topology: &Topology, largest_dense: usize) -> (State<f64>, Vec<bool>) {
         let (design, laws) = (model.geometry(&[]), model.laws(&[]));
         let mut stepper =
-            Stepper::new(model, topology, Parts::same(model, topology, &design, &laws, zero), zero);
+            Stepper::new(model, topology, Parts::same(model, topology, &design, &laws, 0.0), 0.0);
         let blocks = topology.blocks.iter();
-        stepper.state.factors = blocks.map(|b| factors_of(topology, b, largest_dense, zero)).collect();
+        stepper.state.factors = blocks.map(|b| factors_of(topology, b, largest_dense, 0.0)).collect();
         stepper.start(model.times[0]).unwrap();
         model.times[1..].iter().for_each(|t| stepper.advance(*t).unwrap());
         let signs = stepper.state.pivots.iter().map(|p| p.1).collect();
@@ -740,8 +692,8 @@ mod tests {
             let model = truss(n);
             let topology = Topology::of(&model, Formulation::Relative).unwrap();
             let size = model.size();
-            let (dense, dense_signs) = last(&model, &topology, usize::MAX, 0.0);
-            let (sparse, sparse_signs) = last(&model, &topology, 0, 0.0);
+            let (dense, dense_signs) = last(&model, &topology, usize::MAX);
+            let (sparse, sparse_signs) = last(&model, &topology, 0);
             assert_eq!(dense_signs, sparse_signs);
             let apart = |a: Vec3, b: Vec3| (a - b).norm();
             for b in 0..model.bodies.len() {

@@ -229,7 +229,7 @@ impl StepProgram {
     /// Records the step that is solved where `one`, of the nominal design, stands, and what `besides` makes of it and of the values
     /// of the design's variables; none where either cannot be recorded.
     pub fn record(
-        one: &Stepper<'_, f64>,
+        one: &Stepper<'_>,
         effects: &Effects<'_>,
         purpose: Purpose,
         besides: impl FnOnce(&Topology, &mut State<Number>, &[Number]) -> Option<Recorded>,
@@ -262,7 +262,7 @@ impl StepProgram {
                 out.extend([w.product, w.most, w.least, w.growth, corrections[0], corrections[block.last]]);
             }
             let residuals = out.len();
-            out.extend(state.residuals_in_lanes(topology, &parts, &drivers));
+            out.extend(state.largest_residuals(topology, &parts, &drivers));
             let bodies = BodyState::all(&state);
             let (margins, mut limits) = match purpose.margins {
                 true => Margins::new(topology, zero).record(topology, &state),
@@ -354,13 +354,7 @@ fn moves(topology: &Topology, channels: &[Channel], state: &State<Number>) -> Ve
 }
 
 /// Makes inputs of what foresees the state, `offset` beside where `at` is.
-fn foresee(
-    topology: &Topology,
-    channels: &[Channel],
-    at: &Saved<f64>,
-    offset: f64,
-    state: &mut State<Number>,
-) {
+fn foresee(topology: &Topology, channels: &[Channel], at: &Saved, offset: f64, state: &mut State<Number>) {
     let first = |n: usize, x: f64| Number::input(if n == 0 { x } else { 0.0 });
     let weights: [Number; CONDITIONS] = std::array::from_fn(|n| first(n, 1.0));
     for channel in channels {

@@ -71,7 +71,7 @@ impl Path {
     }
 }
 
-impl<T: Real> Stepper<'_, T> {
+impl Stepper<'_> {
     /// Follows a path to where its parameter is `target`.
     pub(super) fn walk(&mut self, path: Path, target: f64) -> Result<(), Box<Stop>> {
         let scale = f64::max(self.time.abs(), target.abs());
@@ -158,22 +158,21 @@ impl<T: Real> Stepper<'_, T> {
     fn look_for_poles(&mut self, target: f64) -> Result<(), Box<Stop>> {
         let whole = target - self.time;
         for driver in 0..self.drivers.len() {
-            for law in self.parts.laws_of(driver) {
-                let bounded = |from: f64, to: f64| law.over(from, to).value.is_bounded();
-                let (mut from, mut to) = (self.time, target);
-                while !bounded(from, to) && to - from > POLE[0] * whole {
-                    let middle = 0.5 * (from + to);
-                    (from, to) = if bounded(from, middle) { (middle, to) } else { (from, middle) };
-                }
-                if bounded(from, to) {
-                    continue;
-                }
-                let size = |t: f64| law.at(t).value().abs();
-                let (near, usual) = (size(from).max(size(to)), size(self.time).max(size(target)));
-                // Written so that NaN is a pole: the law has no value there.
-                if !(near <= POLE[1] * usual.max(self.driver_units[driver])) {
-                    return Err(self.stop(Path::Laws, to, Refusal::Law { driver }, true));
-                }
+            let law = self.parts.law_of(driver);
+            let bounded = |from: f64, to: f64| law.over(from, to).value.is_bounded();
+            let (mut from, mut to) = (self.time, target);
+            while !bounded(from, to) && to - from > POLE[0] * whole {
+                let middle = 0.5 * (from + to);
+                (from, to) = if bounded(from, middle) { (middle, to) } else { (from, middle) };
+            }
+            if bounded(from, to) {
+                continue;
+            }
+            let size = |t: f64| law.at(t).value().abs();
+            let (near, usual) = (size(from).max(size(to)), size(self.time).max(size(target)));
+            // Written so that NaN is a pole: the law has no value there.
+            if !(near <= POLE[1] * usual.max(self.driver_units[driver])) {
+                return Err(self.stop(Path::Laws, to, Refusal::Law { driver }, true));
             }
         }
         Ok(())
@@ -197,14 +196,19 @@ impl<T: Real> Stepper<'_, T> {
     /// all go together.
     fn examine(&mut self, path: Path) {
         let Self { prober, topology, parts, state, line, beyond, drivers, .. } = self;
-        let witness = state.witness;
         let directions = if path == Path::Laws { drivers.len() } else { 1 };
-        let prober = prober
-            .get_or_insert_with(|| Box::new(Prober::new(topology, state.pose.len(), drivers.len(), witness)));
+        let prober =
+            prober.get_or_insert_with(|| Box::new(Prober::new(topology, state.pose.len(), drivers.len())));
         let speed = |direction: usize, d: usize| match path {
-            Path::Assembly => witness.zero(),
+            Path::Assembly => 0.0,
             Path::Line { .. } => line[d][1] - line[d][0],
-            Path::Laws => witness.like(if d == direction { 1.0 } else { 0.0 }),
+            Path::Laws => {
+                if d == direction {
+                    1.0
+                } else {
+                    0.0
+                }
+            }
         };
         prober.examine(topology, parts, state, path.gap_rate(), directions, speed, beyond);
     }
@@ -224,7 +228,7 @@ impl<T: Real> Stepper<'_, T> {
             Path::Assembly => self.state.largest_gap(&self.topology),
             Path::Line { .. } => {
                 let of_driver = self.line.iter().zip(&self.driver_units);
-                of_driver.map(|([from, to], unit)| (*to - *from).abs().largest() / unit).fold(0.0, f64::max)
+                of_driver.map(|([from, to], unit)| (*to - *from).abs() / unit).fold(0.0, f64::max)
             }
             Path::Laws => 1.0,
         };
@@ -286,17 +290,16 @@ impl<T: Real> Stepper<'_, T> {
     /// largest move goes, rad or sizes.
     fn predict(&mut self, path: Path, h: f64) -> f64 {
         self.restore();
-        let witness = self.state.witness;
         let mut most = 0.0_f64;
         let directions = if path == Path::Laws { self.drivers.len() } else { 1 };
         let mut moves = std::mem::take(&mut self.predicted);
-        moves.fill(witness.zero());
+        moves.fill(0.0);
         for k in 0..directions {
             let du = match path {
                 Path::Laws => self.drivers[k][0] - self.saved.drivers[k][0],
-                _ => witness.like(h),
+                _ => h,
             };
-            let half = du * du * witness.like(0.5);
+            let half = du * du * 0.5;
             let (slopes, bends) = (&self.around.slopes[k], &self.around.bends[k]);
             for (c, moved) in moves.iter_mut().enumerate() {
                 *moved = bends[c].times_plus(half, slopes[c].times_plus(du, *moved));
@@ -311,7 +314,7 @@ impl<T: Real> Stepper<'_, T> {
         for (c, coordinate) in self.topology.coordinates.iter().enumerate() {
             if matches!(coordinate.source, crate::topology::Source::Unknown { .. }) {
                 self.state.q[c] += moves[c];
-                most = most.max((moves[c] * witness.like(coordinate.per_unit)).abs().largest());
+                most = most.max((moves[c] * coordinate.per_unit).abs());
             }
         }
         self.predicted = moves;
@@ -323,7 +326,7 @@ impl<T: Real> Stepper<'_, T> {
     fn jump(&mut self, t: f64) -> Result<(), Box<Stop>> {
         let before = self.time;
         for d in 0..self.line.len() {
-            self.line[d] = [self.saved.drivers[d][0], self.parts.law(d, t, self.state.witness)[0]];
+            self.line[d] = [self.saved.drivers[d][0], self.parts.law(d, t)[0]];
         }
         let path = Path::Line { at: t };
         self.time = 0.0;
@@ -357,11 +360,11 @@ impl<T: Real> Stepper<'_, T> {
         if !(ahead.distance > 0.0 && (limit || meets)) {
             return None;
         }
-        let now = self.drivers.iter().map(|f| f[0].lane(0));
+        let now = self.drivers.iter().map(|f| f[0]);
         let travel = now.enumerate().map(|(d, now)| {
-            let then = self.parts.law_of(d, 0).at(self.time + ahead.distance).value();
+            let then = self.parts.law_of(d).at(self.time + ahead.distance).value();
             // A law that ends there goes on as it does now.
-            if then.is_finite() { then - now } else { self.drivers[d][1].lane(0) * ahead.distance }
+            if then.is_finite() { then - now } else { self.drivers[d][1] * ahead.distance }
         });
         Some(Singular {
             after: ahead.distance,
@@ -424,7 +427,7 @@ impl<T: Real> Stepper<'_, T> {
             kind,
             last_time,
             failed_time,
-            drivers: self.saved.drivers.iter().map(|f| f[0].lane(0)).collect(),
+            drivers: self.saved.drivers.iter().map(|f| f[0]).collect(),
             block,
             pivot_ratio: block.map_or(1.0, |b| self.saved.pivots[b].0),
             joints: block.map_or_else(Vec::new, |b| self.topology.joints_of_block(b)),

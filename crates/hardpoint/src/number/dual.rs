@@ -107,28 +107,19 @@ impl<T: Real> SubAssign for Dual<T> {
     }
 }
 
-/// Lanes, and whatever else only looks at a number, see the value.
+/// Whatever only looks at a number sees the value.
 impl<T: Real> Real for Dual<T> {
-    const LANES: usize = T::LANES;
     #[inline(always)]
     fn like(self, x: f64) -> Self {
         Self::constant(self.v.like(x))
     }
     #[inline(always)]
-    fn like_lanes(self, lane: impl FnMut(usize) -> f64) -> Self {
-        Self::constant(self.v.like_lanes(lane))
+    fn value(self) -> f64 {
+        self.v.value()
     }
     #[inline(always)]
-    fn lane(self, k: usize) -> f64 {
-        self.v.lane(k)
-    }
-    #[inline(always)]
-    fn store(self, out: &mut [f64]) {
-        self.v.store(out);
-    }
-    #[inline(always)]
-    fn each_lane(components: &[Self; 8], out: impl FnMut(usize, &[f64; 8])) {
-        T::each_lane(&components.map(|c| c.v), out);
+    fn decisive(self) -> f64 {
+        self.v.decisive()
     }
     #[inline(always)]
     fn sqrt(self) -> Self {
@@ -137,7 +128,7 @@ impl<T: Real> Real for Dual<T> {
     }
     #[inline(always)]
     fn abs(self) -> Self {
-        let sign = self.v.like_lanes(|k| f64::signum(self.v.lane(k)));
+        let sign = self.v.like(f64::signum(self.v.value()));
         Self { v: self.v.abs(), d: self.d * sign }
     }
     #[inline(always)]
@@ -145,27 +136,23 @@ impl<T: Real> Real for Dual<T> {
         Self::constant(self.v.round())
     }
     #[inline(always)]
-    fn within<R>(self, f: impl FnOnce() -> R) -> R {
-        self.v.within(f)
-    }
-    #[inline(always)]
     fn larger(self, o: Self) -> Self {
         let v = self.v.larger(o.v);
-        Self { v, d: self.d.select(o.d, |k| v.lane(k) == self.v.lane(k)) }
+        Self { v, d: self.d.select(o.d, v.value() == self.v.value()) }
     }
-    fn select(self, other: Self, first: impl Fn(usize) -> bool + Copy) -> Self {
+    fn select(self, other: Self, first: bool) -> Self {
         Self { v: self.v.select(other.v, first), d: self.d.select(other.d, first) }
     }
     fn map(self, function: Function) -> Self {
         let v = self.v.map(function);
         self.or_constant(v, |d| d * function.derivatives(self.v, v)[0])
     }
-    fn is_zero(self, k: usize) -> bool {
-        self.v.is_zero(k) && self.d.is_zero(k)
+    fn is_zero(self) -> bool {
+        self.v.is_zero() && self.d.is_zero()
     }
     #[inline(always)]
-    fn order(self, o: Self, k: usize) -> Option<Ordering> {
-        self.v.order(o.v, k)
+    fn order(self, o: Self) -> Option<Ordering> {
+        self.v.order(o.v)
     }
     #[inline(always)]
     fn held(self) -> Self {
@@ -175,19 +162,15 @@ impl<T: Real> Real for Dual<T> {
         // d xᵖ = p x^(p-1) dx + xᵖ ln x dp; what vanishes wins over what is infinite.
         let (x, p, zero) = (self.v, exponent.v, self.v.zero());
         let power = x.pow(p);
-        let by_base = self.or_constant(power, |d| d * zero.select(p * x.pow(p + -1.0), |k| p.is_zero(k)));
-        let by_exponent = exponent
-            .or_constant(power, |d| d * zero.select(power * x.map(Function::Ln), |k| power.is_zero(k)));
+        let by_base = self.or_constant(power, |d| d * zero.select(p * x.pow(p + -1.0), p.is_zero()));
+        let by_exponent =
+            exponent.or_constant(power, |d| d * zero.select(power * x.map(Function::Ln), power.is_zero()));
         Self { v: power, d: by_base.d + by_exponent.d }
     }
     fn hypot(self, o: Self) -> Self {
         let v = self.v.hypot(o.v);
         let (by_x, by_y) = (self.or_constant(v, |d| d * (self.v / v)), o.or_constant(v, |d| d * (o.v / v)));
         Self { v, d: by_x.d + by_y.d }
-    }
-    #[inline(always)]
-    fn largest(self) -> f64 {
-        self.v.largest()
     }
     #[inline(always)]
     fn rate(self) -> Self {
@@ -256,7 +239,7 @@ mod tests {
             ("powf", |x| x.powf(2.7), |x| x.powf(2.7)),
             ("atan2", |x| x.atan2(x * x + x.like(0.5)), |x| x.atan2(x * x + 0.5)),
             ("larger", |x| (x * x * x).larger(x * x), |x| (x * x * x).max(x * x)),
-            ("select", |x| (x * x).select(x.like(f64::NAN), |_| true), |x| x * x),
+            ("select", |x| (x * x).select(x.like(f64::NAN), true), |x| x * x),
         ];
         for (name, f, at) in cases {
             for x in [0.2, 0.7] {

@@ -1,6 +1,6 @@
 //! The functions of one number: each is named, evaluated and differentiated here, in one row.
 
-use super::{LANES, Real};
+use super::Real;
 
 /// Rows of a variant, its name in expressions, the function of a plain number, and its first three derivatives at `x`, where its
 /// value is `y`.
@@ -104,15 +104,7 @@ functions! { |x, y|
         [d, d * inverse * -0.5, d * inverse * inverse * 0.75]
     };
     /// Magnitude.
-    Abs "abs", f64::abs, [x.like_lanes(|k| x.lane(k).signum()), x.zero(), x.zero()];
-}
-
-impl Function {
-    /// Its values for several numbers: the same code for every CPU.
-    #[inline(never)]
-    pub(super) fn of_each(self, x: [f64; LANES]) -> [f64; LANES] {
-        x.map(|x| self.of(x))
-    }
+    Abs "abs", f64::abs, [x.like(x.value().signum()), x.zero(), x.zero()];
 }
 
 /// The derivatives of the arc sine: s, x s³, (1 + 2 x²) s⁵ with s = 1/√(1 - x²).

@@ -77,12 +77,12 @@ impl<T: Real, const N: usize> Jet<T, N> {
         self.0[3]
     }
 
-    /// Whether the value and all derivatives are finite, in all lanes.
+    /// Whether the value and all derivatives are finite.
     pub fn is_finite(self) -> bool {
-        self.0.iter().all(|x| (0..T::LANES).all(|k| x.lane(k).is_finite()))
+        self.0.iter().all(|x| x.value().is_finite())
     }
 
-    /// What has no value; `like` gives the lanes.
+    /// What has no value.
     #[inline(always)]
     pub(crate) fn undefined(like: T) -> Self {
         Self([like.like(f64::NAN); N])
@@ -127,14 +127,9 @@ impl<T: Real, const N: usize> Jet<T, N> {
     #[inline(never)]
     fn compose_rare(self, function: Function) -> Self {
         let x = self.0[0];
-        x.within(
-            #[inline(always)]
-            || {
-                let y = x.map(function);
-                let [d, dd, ddd] = function.derivatives(x, y);
-                self.compose([y, d, dd, ddd])
-            },
-        )
+        let y = x.map(function);
+        let [d, dd, ddd] = function.derivatives(x, y);
+        self.compose([y, d, dd, ddd])
     }
 
     /// The power with an exponent that is the same at all times.
@@ -148,7 +143,7 @@ impl<T: Real, const N: usize> Jet<T, N> {
         for (k, g) in g.iter_mut().enumerate().take(N).skip(1) {
             let lowered = exponent + -(k as f64);
             if !coefficient.vanishes() {
-                *g = zero.select(coefficient * x.pow(lowered), |lane| coefficient.is_zero(lane));
+                *g = zero.select(coefficient * x.pow(lowered), coefficient.is_zero());
             }
             coefficient = coefficient * lowered;
         }
@@ -180,10 +175,10 @@ impl<T: Real, const N: usize> Jet<T, N> {
         (self.compose([sin, cos, -sin, -cos]), self.compose([cos, -sin, -cos, sin]))
     }
 
-    /// Whether it is the same just before and after, in lane `k`.
+    /// Whether it is the same just before and after.
     #[inline(always)]
-    fn is_still(self, k: usize) -> bool {
-        self.0[1..].iter().all(|x| x.is_zero(k))
+    fn is_still(self) -> bool {
+        self.0[1..].iter().all(|x| x.is_zero())
     }
 }
 
@@ -294,42 +289,33 @@ impl<T: Real, const N: usize> SubAssign for Jet<T, N> {
     }
 }
 
-/// Lanes, and whatever else only looks at a number, see the value.
+/// Whatever only looks at a number sees the value.
 impl<T: Real, const N: usize> Real for Jet<T, N> {
-    const LANES: usize = T::LANES;
     #[inline(always)]
     fn like(self, x: f64) -> Self {
         Self::constant(self.0[0].like(x))
     }
     #[inline(always)]
-    fn like_lanes(self, lane: impl FnMut(usize) -> f64) -> Self {
-        Self::constant(self.0[0].like_lanes(lane))
+    fn value(self) -> f64 {
+        self.0[0].value()
     }
     #[inline(always)]
-    fn lane(self, k: usize) -> f64 {
-        self.0[0].lane(k)
-    }
-    #[inline(always)]
-    fn store(self, out: &mut [f64]) {
-        self.0[0].store(out);
-    }
-    #[inline(always)]
-    fn each_lane(components: &[Self; 8], out: impl FnMut(usize, &[f64; 8])) {
-        T::each_lane(&components.map(|c| c.0[0]), out);
+    fn decisive(self) -> f64 {
+        self.0[0].decisive()
     }
     #[inline(always)]
     fn vanishes(self) -> bool {
         self.0.into_iter().all(T::vanishes)
     }
     #[inline(always)]
-    fn is_zero(self, k: usize) -> bool {
-        self.0.iter().all(|x| x.is_zero(k))
+    fn is_zero(self) -> bool {
+        self.0.iter().all(|x| x.is_zero())
     }
     #[inline(always)]
-    fn order(self, o: Self, k: usize) -> Option<Ordering> {
-        let differing = (0..N - 1).find(|&n| self.0[n].order(o.0[n], k) != Some(Ordering::Equal));
+    fn order(self, o: Self) -> Option<Ordering> {
+        let differing = (0..N - 1).find(|&n| self.0[n].order(o.0[n]) != Some(Ordering::Equal));
         let n = differing.unwrap_or(N - 1);
-        self.0[n].order(o.0[n], k)
+        self.0[n].order(o.0[n])
     }
     #[inline(always)]
     fn held(self) -> Self {
@@ -342,14 +328,14 @@ impl<T: Real, const N: usize> Real for Jet<T, N> {
     #[inline(always)]
     fn abs(self) -> Self {
         let zero = self.zero();
-        (-self).select(self, |k| self.order(zero, k) == Some(Ordering::Less))
+        (-self).select(self, self.order(zero) == Some(Ordering::Less))
     }
     #[inline(always)]
     fn round(self) -> Self {
         Self::constant(self.0[0].round())
     }
     #[inline(always)]
-    fn select(mut self, o: Self, first: impl Fn(usize) -> bool + Copy) -> Self {
+    fn select(mut self, o: Self, first: bool) -> Self {
         for n in 0..N {
             self.0[n] = self.0[n].select(o.0[n], first);
         }
@@ -367,16 +353,12 @@ impl<T: Real, const N: usize> Real for Jet<T, N> {
     }
     #[inline(always)]
     fn pow(self, exponent: Self) -> Self {
-        if exponent.0[1..].iter().all(|x| x.vanishes()) {
+        if exponent.is_still() {
             return self.power(exponent.0[0]);
         }
-        // xᵖ = exp(p ln x), of a positive base and with the value that is more accurate; but where p is still, as above.
+        // xᵖ = exp(p ln x), of a positive base and with the value that is more accurate.
         let power = self.0[0].pow(exponent.0[0]);
-        let varying = (exponent * self.map(Function::Ln)).compose([power; 4]);
-        if (0..T::LANES).any(|k| exponent.is_still(k)) {
-            return self.power(exponent.0[0]).select(varying, |k| exponent.is_still(k));
-        }
-        varying
+        (exponent * self.map(Function::Ln)).compose([power; 4])
     }
     #[inline(always)]
     fn powi(self, exponent: i32) -> Self {
@@ -403,13 +385,9 @@ impl<T: Real, const N: usize> Real for Jet<T, N> {
         hypot
     }
     #[inline(always)]
-    fn within<R>(self, f: impl FnOnce() -> R) -> R {
-        self.0[0].within(f)
-    }
-    #[inline(always)]
     fn larger(self, o: Self) -> Self {
         let most = self.0[0].larger(o.0[0]);
-        let mut larger = self.select(o, |k| most.lane(k) == self.lane(k));
+        let mut larger = self.select(o, most.value() == self.0[0].value());
         larger.0[0] = most;
         larger
     }
@@ -420,10 +398,6 @@ impl<T: Real, const N: usize> Real for Jet<T, N> {
             rate.0[n - 1] = self.0[n];
         }
         rate
-    }
-    #[inline(always)]
-    fn largest(self) -> f64 {
-        self.0[0].largest()
     }
     #[inline(always)]
     fn sin_cos(self) -> (Self, Self) {

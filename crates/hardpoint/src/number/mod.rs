@@ -1,4 +1,4 @@
-//! The numbers that everything is written over: plain ones, several side by side, and ones that carry derivatives.
+//! The numbers that everything is written over: plain ones, and ones that carry something besides.
 //!
 //! | number | what it carries |
 //! |---|---|
@@ -21,4 +21,3 @@ pub use dual::Dual;
 pub use function::Function;
 pub use jet::{Jet, Rates};
 pub use real::Real;
-pub(crate) use real::{LANES, of_lanes};

@@ -1,4 +1,4 @@
-//! The number that everything is written over, and the two plain ones: `f64`, and eight lanes.
+//! The number that everything is written over, and the plain one: `f64`.
 
 use std::cmp::Ordering;
 use std::fmt::Debug;
@@ -6,16 +6,9 @@ use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
 
 use super::Function;
 
-/// One number per lane; the last one in lanes beyond.
-pub(crate) fn of_lanes(numbers: &[f64]) -> [f64; LANES] {
-    std::array::from_fn(|lane| numbers[lane.min(numbers.len() - 1)])
-}
-
-/// One `f64`, or several of them side by side in SIMD lanes; with whatever derivatives it carries.
+/// A number, with whatever it carries besides: derivatives, or how it came about.
 ///
-/// A lane value carries the proof that the CPU has the instructions, so constants are made from a
-/// value at hand: `x.like(2.0)`. Lanes fuse multiplications with additions where the CPU can, scalars do not:
-/// they agree to round-off.
+/// Constants are made from a value at hand: `x.like(2.0)`.
 pub trait Real:
     Copy
     + Debug
@@ -32,62 +25,45 @@ pub trait Real:
     + AddAssign
     + SubAssign
 {
-    /// How many scalars sit side by side.
-    const LANES: usize;
-
-    /// The constant `x` in every lane.
+    /// The constant `x`.
     fn like(self, x: f64) -> Self;
 
-    /// A value made lane by lane.
-    fn like_lanes(self, lane: impl FnMut(usize) -> f64) -> Self;
+    /// The plain value. What is recorded is no arithmetic then: a program would take what is made of it for a constant. What a
+    /// number has for a `value` of its own is another thing.
+    fn value(self) -> f64;
 
-    /// A value with these numbers in its lanes; the first of them, if it has but one.
-    #[inline(always)]
-    fn gather(self, lanes: [f64; LANES]) -> Self {
-        self.like_lanes(
-            #[inline(always)]
-            |k| lanes[k],
-        )
-    }
+    /// The plain value to decide by, where a recording is told otherwise what must hold for the decision to stand.
+    fn decisive(self) -> f64;
 
-    /// The scalar in lane `k`.
-    fn lane(self, k: usize) -> f64;
-
-    /// Writes all lanes to the start of `out`.
-    fn store(self, out: &mut [f64]);
-
-    /// Gives every lane its eight components: what stands side by side by lane comes to stand side by side by component.
-    fn each_lane(components: &[Self; 8], out: impl FnMut(usize, &[f64; 8]));
-
-    /// `self * factor + addend`; lanes round once where the CPU can.
+    /// `self * factor + addend`; programs may round once.
     #[inline(always)]
     fn times_plus(self, factor: Self, addend: Self) -> Self {
         self * factor + addend
     }
 
-    /// Square root, lane by lane.
+    /// Square root.
     fn sqrt(self) -> Self;
 
-    /// Magnitude, lane by lane.
+    /// Magnitude.
     fn abs(self) -> Self;
 
-    /// Nearest integer, lane by lane.
+    /// Nearest integer.
     fn round(self) -> Self;
 
-    /// This value in the lanes that `first` says, `other` in the rest; what is not taken may be NaN.
-    fn select(self, other: Self, first: impl Fn(usize) -> bool + Copy) -> Self;
+    /// This value if `first`, else the `other`; what is not taken may be NaN. What is recorded is no arithmetic then.
+    fn select(self, other: Self, first: bool) -> Self;
 
-    /// The function of this value, lane by lane; by the standard library, but for roots, and for sines in lanes.
+    /// The function of this value; by the standard library.
     fn map(self, function: Function) -> Self;
 
-    /// Whether it is zero in lane `k`, derivatives that it may carry included.
-    fn is_zero(self, k: usize) -> bool;
+    /// Whether it is zero, derivatives that it may carry included.
+    fn is_zero(self) -> bool;
 
-    /// How this value compares with another in lane `k`; just after the instant, of numbers that carry time derivatives: ties are
-    /// decided by the first of them that differs.
+    /// How this value compares with another; just after the instant, of numbers that carry time derivatives: ties are decided by the
+    /// first of them that differs.
     #[inline(always)]
-    fn order(self, o: Self, k: usize) -> Option<Ordering> {
-        self.lane(k).partial_cmp(&o.lane(k))
+    fn order(self, o: Self) -> Option<Ordering> {
+        self.value().partial_cmp(&o.value())
     }
 
     /// This value held: what depends on no time has no time derivatives, whatever infinities its parts brought.
@@ -96,13 +72,13 @@ pub trait Real:
         self
     }
 
-    /// This value to a power, lane by lane.
+    /// This value to a power.
     #[inline(always)]
     fn pow(self, exponent: Self) -> Self {
-        self.like_lanes(|k| self.lane(k).powf(exponent.lane(k)))
+        self.like(self.value().powf(exponent.value()))
     }
 
-    /// This value to a fixed power, lane by lane.
+    /// This value to a fixed power.
     #[inline(always)]
     fn powf(self, exponent: f64) -> Self {
         self.pow(self.like(exponent))
@@ -126,38 +102,25 @@ pub trait Real:
         if exponent < 0 { self.like(1.0) / power } else { power }
     }
 
-    /// The length of the vector (self, o), lane by lane.
+    /// The length of the vector (self, o).
     #[inline(always)]
     fn hypot(self, o: Self) -> Self {
-        self.like_lanes(|k| self.lane(k).hypot(o.lane(k)))
+        self.like(self.value().hypot(o.value()))
     }
 
-    /// Runs `f` compiled for the CPU that this value was made for. Large functions of the hot path
-    /// begin with it, so that they need not be inlined into their callers to get wide instructions.
-    fn within<R>(self, f: impl FnOnce() -> R) -> R;
-
-    /// The larger of two, lane by lane; NaN where either is NaN.
+    /// The larger of two; NaN if either is NaN.
     fn larger(self, o: Self) -> Self;
 
-    /// The largest lane; NaN if any lane is NaN.
-    fn largest(self) -> f64;
-
-    /// The smallest lane; NaN if any lane is NaN.
-    #[inline(always)]
-    fn smallest(self) -> f64 {
-        -(-self).largest()
-    }
-
-    /// Zero in every lane.
+    /// Zero.
     #[inline(always)]
     fn zero(self) -> Self {
         self.like(0.0)
     }
 
-    /// Whether it is zero in every lane, derivatives that it may carry included.
+    /// Whether it is known to be zero, derivatives that it may carry included.
     #[inline(always)]
     fn vanishes(self) -> bool {
-        self.abs().largest() == 0.0
+        self.decisive() == 0.0
     }
 
     /// Time derivative, of numbers that carry it; NaN of all others, and where they carry it no further.
@@ -166,28 +129,25 @@ pub trait Real:
         self.like(f64::NAN)
     }
 
-    /// Inverse sine, lane by lane, rad.
+    /// Inverse sine, rad.
     #[inline(always)]
     fn asin(self) -> Self {
         self.map(Function::Asin)
     }
 
-    /// Angle of the point (x, self) from the x axis, lane by lane, rad in (-pi, pi].
+    /// Angle of the point (x, self) from the x axis, rad in (-pi, pi].
     #[inline(always)]
     fn atan2(self, x: Self) -> Self {
-        self.like_lanes(|k| self.lane(k).atan2(x.lane(k)))
+        self.like(self.value().atan2(x.value()))
     }
 
-    /// Sine and cosine of an angle of any size, lane by lane; of one number as the standard library has them.
-    #[inline(always)]
-    fn sin_cos_of_any(self) -> (Self, Self) {
-        if self.abs().largest() <= LARGEST_ANGLE { self.sin_cos() } else { library_sin_cos(self) }
-    }
+    /// Sine and cosine of an angle of any size; of a plain number as the standard library has them.
+    fn sin_cos_of_any(self) -> (Self, Self);
 
-    /// Sine and cosine, lane by lane, to about one unit in the last place for |x| up to 1e5 turns.
+    /// Sine and cosine, to about one unit in the last place for |x| up to 1e5 turns.
     ///
     /// Reduced by multiples of pi/2 in three parts (Cody and Waite), then the polynomials of
-    /// fdlibm's kernels. The scalar and the lanes share these operations, so they agree bit for bit.
+    /// fdlibm's kernels.
     #[inline(always)]
     #[expect(clippy::excessive_precision, reason = "the constants are written as published")]
     fn sin_cos(self) -> (Self, Self) {
@@ -207,7 +167,7 @@ pub trait Real:
             + z * (c(2.480_158_728_947_673e-5) + z * (c(-2.755_731_435_139_066_3e-7) + z * k));
         let half = c(0.5) * z;
         let cos = c(1.0) - (half - z * z * (c(4.166_666_666_666_66e-2) + z * k));
-        // The quadrant as numbers 0 or +-1, so that no lane branches: (cos, sin) of n * 90 degrees.
+        // The quadrant as numbers 0 or +-1, so that nothing branches: (cos, sin) of n * 90 degrees.
         let q = n - c(4.0) * (n * c(0.25)).round(); // -2, -1, 0, 1, 2
         let odd = q * q * (c(4.0) - q * q) * c(1.0 / 3.0); // 1 where |q| = 1, else 0
         let odd = odd.round();
@@ -221,26 +181,17 @@ pub trait Real:
 pub(super) const LARGEST_ANGLE: f64 = 1e5 * std::f64::consts::TAU;
 
 impl Real for f64 {
-    const LANES: usize = 1;
     #[inline(always)]
     fn like(self, x: f64) -> Self {
         x
     }
     #[inline(always)]
-    fn like_lanes(self, mut lane: impl FnMut(usize) -> f64) -> Self {
-        lane(0)
-    }
-    #[inline(always)]
-    fn lane(self, _: usize) -> f64 {
+    fn value(self) -> f64 {
         self
     }
     #[inline(always)]
-    fn store(self, out: &mut [f64]) {
-        out[0] = self;
-    }
-    #[inline(always)]
-    fn each_lane(components: &[Self; 8], mut out: impl FnMut(usize, &[f64; 8])) {
-        out(0, components);
+    fn decisive(self) -> f64 {
+        self
     }
     #[inline(always)]
     fn sqrt(self) -> Self {
@@ -254,24 +205,21 @@ impl Real for f64 {
     fn larger(self, o: Self) -> Self {
         if o <= self || self.is_nan() { self } else { o }
     }
-    fn select(self, other: Self, first: impl Fn(usize) -> bool + Copy) -> Self {
-        if first(0) { self } else { other }
+    #[inline(always)]
+    fn select(self, other: Self, first: bool) -> Self {
+        if first { self } else { other }
     }
     #[inline(always)]
     fn map(self, function: Function) -> Self {
         function.of(self)
     }
     #[inline(always)]
-    fn is_zero(self, _: usize) -> bool {
+    fn is_zero(self) -> bool {
         self == 0.0
     }
     #[inline(always)]
     fn sin_cos_of_any(self) -> (Self, Self) {
         f64::sin_cos(self)
-    }
-    #[inline(always)]
-    fn largest(self) -> f64 {
-        self
     }
     #[inline(always)]
     fn round(self) -> Self {
@@ -280,21 +228,7 @@ impl Real for f64 {
         const SHIFT: f64 = 6_755_399_441_055_744.0;
         (self + SHIFT) - SHIFT
     }
-    #[inline(always)]
-    fn within<R>(self, f: impl FnOnce() -> R) -> R {
-        f()
-    }
 }
-
-/// Sine and cosine by the standard library.
-#[cold]
-#[inline(never)]
-fn library_sin_cos<T: Real>(angles: T) -> (T, T) {
-    (angles.like_lanes(|k| angles.lane(k).sin()), angles.like_lanes(|k| angles.lane(k).cos()))
-}
-
-/// How many designs are solved side by side in lanes.
-pub(crate) const LANES: usize = 8;
 
 #[cfg(test)]
 mod tests {

@@ -8,15 +8,15 @@ use super::Function;
 use super::real::{LARGEST_ANGLE, Real};
 
 thread_local! {
-    /// Whether something that is recorded on this thread was looked at lane by lane.
-    static BY_LANES: Cell<bool> = const { Cell::new(false) };
+    /// Whether the value of something that is recorded on this thread was looked at.
+    static LOOKED_AT: Cell<bool> = const { Cell::new(false) };
     static STRICT: Cell<bool> = const { Cell::new(false) };
     static LIMITS: RefCell<Vec<Number>> = const { RefCell::new(Vec::new()) };
 }
 
 /// Forgets what was recorded before.
 pub(crate) fn begin() {
-    BY_LANES.set(false);
+    LOOKED_AT.set(false);
     STRICT.set(false);
     LIMITS.take();
 }
@@ -35,29 +35,26 @@ pub(crate) fn limits() -> Vec<Number> {
     LIMITS.take()
 }
 
-/// Whether everything since [`begin`] is arithmetic: no lane was looked at, since a program takes what is made of it for a constant.
+/// Whether everything since [`begin`] is arithmetic: no value was looked at, since a program takes what is made of it for a constant.
 pub(crate) fn is_arithmetic() -> bool {
-    !BY_LANES.get()
+    !LOOKED_AT.get()
 }
 
 /// Decisions go by the values of the run that is recorded.
 impl Real for Number {
-    const LANES: usize = 1;
     fn like(self, x: f64) -> Self {
         Number::constant(x)
     }
-    fn like_lanes(self, mut lane: impl FnMut(usize) -> f64) -> Self {
-        Number::constant(lane(0))
+    fn value(self) -> f64 {
+        LOOKED_AT.set(true);
+        Number::value(self)
     }
-    fn lane(self, _: usize) -> f64 {
-        BY_LANES.set(true);
-        self.value()
-    }
-    fn store(self, out: &mut [f64]) {
-        out[0] = self.lane(0);
-    }
-    fn each_lane(components: &[Self; 8], mut out: impl FnMut(usize, &[f64; 8])) {
-        out(0, &components.map(|x| x.lane(0)));
+    fn decisive(self) -> f64 {
+        let value = Number::value(self);
+        if STRICT.get() && self.known().is_none() && value == 0.0 {
+            LOOKED_AT.set(true);
+        }
+        value
     }
     fn times_plus(self, factor: Self, addend: Self) -> Self {
         Number::times_plus(self, factor, addend)
@@ -71,9 +68,9 @@ impl Real for Number {
     fn round(self) -> Self {
         Number::round(self)
     }
-    fn select(self, other: Self, first: impl Fn(usize) -> bool + Copy) -> Self {
-        BY_LANES.set(true);
-        if first(0) { self } else { other }
+    fn select(self, other: Self, first: bool) -> Self {
+        LOOKED_AT.set(true);
+        if first { self } else { other }
     }
     fn map(self, function: Function) -> Self {
         self.call(match function {
@@ -93,11 +90,8 @@ impl Real for Number {
             Function::Ln => Call::Ln,
         })
     }
-    fn is_zero(self, _: usize) -> bool {
-        match self.known() {
-            Some(x) => x == 0.0,
-            None => self.lane(0) == 0.0,
-        }
+    fn is_zero(self) -> bool {
+        self.known().unwrap_or_else(|| Real::value(self)) == 0.0
     }
     fn vanishes(self) -> bool {
         self.known() == Some(0.0)
@@ -115,16 +109,7 @@ impl Real for Number {
     fn atan2(self, x: Self) -> Self {
         Number::atan2(self, x)
     }
-    fn within<R>(self, f: impl FnOnce() -> R) -> R {
-        f()
-    }
     fn larger(self, o: Self) -> Self {
         Number::larger(self, o)
-    }
-    fn largest(self) -> f64 {
-        if STRICT.get() && self.known().is_none() && self.value() == 0.0 {
-            BY_LANES.set(true);
-        }
-        self.value()
     }
 }

@@ -7,7 +7,7 @@
 use crate::model::{DriverId, Field, GROUND, Model};
 use crate::motion::kinematics::State;
 use crate::motion::stepper::{LOCKED, Stepper};
-use crate::space::{LANES, Real, Twist, Wrench};
+use crate::space::{Real, Twist, Wrench};
 use crate::topology::{Source, Topology};
 
 use super::direct::{DEFECT_FLOOR, Defect, FieldParts};
@@ -17,11 +17,11 @@ use super::sensing::{Resisting, note};
 const BINOMIAL: [[f64; 3]; 3] = [[1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [1.0, 2.0, 1.0]];
 
 /// A wrench with its first two time derivatives, about the world origin.
-pub(crate) type Load<T> = [Wrench<T>; 3];
+pub(crate) type Load = [Wrench; 3];
 
 /// What loads on some bodies are felt by: the way from there to ground, and the variables that change something on it.
 #[derive(Clone, Debug)]
-pub(crate) struct Support<T> {
+pub(crate) struct Support {
     /// Bodies that the load comes to.
     bodies: Vec<usize>,
     /// Blocks, and links placed by drivers alone, from the load to ground.
@@ -30,9 +30,9 @@ pub(crate) struct Support<T> {
     /// Markers that some variable moves.
     places: Vec<Place>,
     /// Per variable and marker that it moves: place, and body-fixed twist with the sign of that end.
-    moves: Vec<(usize, usize, Twist<T>)>,
+    moves: Vec<(usize, usize, Twist)>,
     /// Per variable and kept value that it changes: row and rate.
-    keeps: Vec<(usize, usize, T)>,
+    keeps: Vec<(usize, usize, f64)>,
     /// Per variable and law that it changes: the driver, and what follows it.
     laws: Vec<(usize, DriverId, Follower)>,
 }
@@ -60,9 +60,9 @@ enum Follower {
     Row(usize),
 }
 
-impl<T: Real> Support<T> {
+impl Support {
     /// Of loads on these bodies; `fields` are those of all variables.
-    fn new(topology: &Topology, fields: &[FieldParts<T>], loaded: &[usize]) -> Self {
+    fn new(topology: &Topology, fields: &[FieldParts<f64>], loaded: &[usize]) -> Self {
         let mut pushed = vec![false; 1 + topology.links.iter().map(|l| l.child.0).max().unwrap_or(0)];
         loaded.iter().for_each(|&b| pushed[b] = true);
         let (mut blocks, mut driven_links) = (Vec::new(), Vec::new());
@@ -105,7 +105,7 @@ impl<T: Real> Support<T> {
         topology: &Topology,
         (links, closures): &(Vec<bool>, Vec<bool>),
         v: usize,
-        field: &FieldParts<T>,
+        field: &FieldParts<f64>,
     ) {
         // What a link transmits pushes its child: it works on z_p - z_c; that of a closure pushes j, and works on z_j - z_i.
         for m in field.links.iter().filter(|m| links[m.at]) {
@@ -136,48 +136,48 @@ impl<T: Real> Support<T> {
 }
 
 /// Carries loads to ground; nothing is allocated per step.
-pub(crate) struct Adjoint<T> {
+pub(crate) struct Adjoint {
     /// What each variable changes.
-    fields: Vec<FieldParts<T>>,
+    fields: Vec<FieldParts<f64>>,
     /// Per order and body: what still has to be carried.
-    load: [Vec<Wrench<T>>; 3],
+    load: [Vec<Wrench>; 3],
     /// Per order and link, or closure: the wrench that it transmits.
-    links: [Vec<Wrench<T>>; 3],
-    closures: [Vec<Wrench<T>>; 3],
+    links: [Vec<Wrench>; 3],
+    closures: [Vec<Wrench>; 3],
     /// Per order and row: how much of its wrench that takes, with the sign that makes it a part of the gradient.
-    rows: [Vec<T>; 3],
+    rows: [Vec<f64>; 3],
     /// Per body of a block: the load on it and all that it carries.
-    below: Vec<Wrench<T>>,
+    below: Vec<Wrench>,
     /// Per marker, parent's and child's of the links and then i and j of the closures: the wrench seen from its body.
-    seen: Vec<Load<T>>,
+    seen: Vec<Load>,
 }
 
-impl<T: Real> Adjoint<T> {
+impl Adjoint {
     /// By the variables with these fields.
-    pub fn new(model: &Model, topology: &Topology, fields: &[Field], witness: T) -> Self {
+    pub fn new(model: &Model, topology: &Topology, fields: &[Field], witness: f64) -> Self {
         let none = Wrench::zero(witness);
         let three = |n: usize| std::array::from_fn(|_| vec![none; n]);
-        let parts = |f: &Field| FieldParts::new(topology, &f.spread(witness), witness);
+        let parts = |f: &Field| FieldParts::new(topology, &f.clone().with_laws_in_order(), witness);
         Self {
             fields: fields.iter().map(parts).collect(),
             load: three(model.bodies.len()),
             links: three(topology.links.len()),
             closures: three(topology.closures.len()),
-            rows: std::array::from_fn(|_| vec![witness.zero(); topology.rows.len()]),
+            rows: std::array::from_fn(|_| vec![0.0; topology.rows.len()]),
             below: vec![none; model.bodies.len()],
             seen: vec![[none; 3]; 2 * (topology.links.len() + topology.closures.len())],
         }
     }
 
     /// What loads on these bodies are felt by.
-    pub fn support(&self, topology: &Topology, loaded: &[usize]) -> Support<T> {
+    pub fn support(&self, topology: &Topology, loaded: &[usize]) -> Support {
         Support::new(topology, &self.fields, loaded)
     }
 
-    /// Sets what changing laws do where a stepper stands, at one time per lane.
-    pub fn set_times(&mut self, stepper: &Stepper<'_, T>, times: &[f64; LANES]) {
-        let law = |d: DriverId, lane| stepper.parts.law_of(d.0, lane);
-        self.fields.iter_mut().for_each(|field| field.set_times(law, times));
+    /// Sets what changing laws do where a stepper stands, at time t.
+    pub fn set_time(&mut self, stepper: &Stepper<'_>, t: f64) {
+        let law = |d: DriverId| stepper.parts.law_of(d.0);
+        self.fields.iter_mut().for_each(|field| field.set_time(law, t));
     }
 
     /// Adds to `gradient`, by variable, the work of loads on bodies and its first two time derivatives; only so many
@@ -185,31 +185,25 @@ impl<T: Real> Adjoint<T> {
     pub fn add_work(
         &mut self,
         topology: &Topology,
-        state: &mut State<T>,
-        support: &Support<T>,
-        loads: &[(usize, Load<T>)],
+        state: &mut State<f64>,
+        support: &Support,
+        loads: &[(usize, Load)],
         orders: usize,
-        gradient: &mut [[T; 3]],
+        gradient: &mut [[f64; 3]],
     ) {
-        state.witness.within(
-            #[inline(always)]
-            || {
-                for n in 0..orders {
-                    support.bodies.iter().for_each(|&b| self.load[n][b] = Wrench::zero(state.witness));
-                    loads.iter().for_each(|(b, load)| self.load[n][*b] += load[n]);
-                    self.transmit(topology, state, support, n);
-                }
-                self.see(state, support, orders);
-                self.work(topology, state, support, orders, gradient);
-            },
-        );
+        for n in 0..orders {
+            support.bodies.iter().for_each(|&b| self.load[n][b] = Wrench::zero(state.witness));
+            loads.iter().for_each(|(b, load)| self.load[n][*b] += load[n]);
+            self.transmit(topology, state, support, n);
+        }
+        self.see(state, support, orders);
+        self.work(topology, state, support, orders, gradient);
     }
 
     /// What links, closures and rows transmit, to order n: `docs/theory.md` (18).
-    #[inline(always)]
-    fn transmit(&mut self, topology: &Topology, state: &mut State<T>, support: &Support<T>, n: usize) {
+    fn transmit(&mut self, topology: &Topology, state: &mut State<f64>, support: &Support, n: usize) {
         let Self { load, links, closures, rows, below, .. } = self;
-        let (zero, none) = (state.witness.zero(), Wrench::zero(state.witness));
+        let (zero, none) = (0.0, Wrench::zero(state.witness));
         let (x, l) = ([&state.x, &state.xd, &state.xdd], [&state.l, &state.ld, &state.ldd]);
         let load = &mut load[n];
         for &b in &support.blocks {
@@ -221,7 +215,7 @@ impl<T: Real> Adjoint<T> {
                 for r in closure.first_row..closure.first_row + closure.rows.len() {
                     rows[n][r] = zero;
                     for m in (0..n).filter(|_| topology.rows[r].drives()) {
-                        known = l[n - m][r].times_plus(rows[m][r] * zero.like(-BINOMIAL[n][m]), known);
+                        known = l[n - m][r].times_plus(rows[m][r] * -BINOMIAL[n][m], known);
                     }
                 }
                 closures[n][c] = known;
@@ -241,14 +235,14 @@ impl<T: Real> Adjoint<T> {
                 let k = topology.coordinates[a].link;
                 let mut works = below[topology.links[k].child.0].on(x[0][a]);
                 for m in 0..n {
-                    works += links[m][k].on(x[n - m][a]) * zero.like(BINOMIAL[n][m]);
+                    works += links[m][k].on(x[n - m][a]) * BINOMIAL[n][m];
                 }
                 state.rhs[column] = works;
             }
             state.factors[b].solve_transposed(&mut state.rhs);
             for (k, &r) in block.selected.iter().enumerate() {
                 for (part, factor) in topology.parts_of_row(r) {
-                    rows[n][part] = state.rhs[k] * zero.like(factor);
+                    rows[n][part] = state.rhs[k] * factor;
                 }
             }
             for &c in &block.closures {
@@ -274,8 +268,7 @@ impl<T: Real> Adjoint<T> {
 
     /// Wrenches on the markers that variables move, seen from their bodies: there the markers' twists stand still, and time
     /// derivatives are those of the components (`docs/theory.md` (20)).
-    #[inline(always)]
-    fn see(&mut self, state: &State<T>, support: &Support<T>, orders: usize) {
+    fn see(&mut self, state: &State<f64>, support: &Support, orders: usize) {
         for place in &support.places {
             let (pose, v, a) = (&state.pose[place.body], state.v[place.body], state.a[place.body]);
             let of = |n: usize| match place.joint {
@@ -300,14 +293,13 @@ impl<T: Real> Adjoint<T> {
     }
 
     /// `docs/theory.md` (19).
-    #[inline(always)]
     fn work(
         &self,
         topology: &Topology,
-        state: &State<T>,
-        support: &Support<T>,
+        state: &State<f64>,
+        support: &Support,
         orders: usize,
-        gradient: &mut [[T; 3]],
+        gradient: &mut [[f64; 3]],
     ) {
         for &(v, place, e) in &support.moves {
             for n in 0..orders {
@@ -319,20 +311,20 @@ impl<T: Real> Adjoint<T> {
                 gradient[v][n] += self.rows[n][row] * rate;
             }
         }
-        let (zero, x) = (state.witness.zero(), [&state.x, &state.xd, &state.xdd]);
+        let (zero, x) = (0.0, [&state.x, &state.xd, &state.xdd]);
         for &(v, driver, follower) in &support.laws {
             let part = |n: usize| match follower {
                 Follower::Row(r) => self.rows[n][r],
                 Follower::Coordinate(c) => {
                     let k = topology.coordinates[c].link;
-                    let term = |m: usize| self.links[m][k].on(x[n - m][c]) * zero.like(BINOMIAL[n][m]);
+                    let term = |m: usize| self.links[m][k].on(x[n - m][c]) * BINOMIAL[n][m];
                     (0..=n).map(term).fold(zero, |sum, x| sum + x)
                 }
             };
             for n in 0..orders {
                 for m in 0..=n {
                     let rate = self.fields[v].law_rate(driver, n - m);
-                    gradient[v][n] += part(m) * rate * zero.like(BINOMIAL[n][m]);
+                    gradient[v][n] += part(m) * rate * BINOMIAL[n][m];
                 }
             }
         }
@@ -341,7 +333,7 @@ impl<T: Real> Adjoint<T> {
 
 /// A link transmits what comes to its child, to its parent.
 #[inline(always)]
-fn pass_on<T: Real>(topology: &Topology, k: usize, load: &mut [Wrench<T>], links: &mut [Wrench<T>]) {
+fn pass_on(topology: &Topology, k: usize, load: &mut [Wrench], links: &mut [Wrench]) {
     let link = &topology.links[k];
     let carried = load[link.child.0];
     links[k] = carried;
@@ -350,62 +342,53 @@ fn pass_on<T: Real>(topology: &Topology, k: usize, load: &mut [Wrench<T>], links
 
 /// Watches the rows that were left out, as [`Direct::worst_defects`](super::direct::Direct::worst_defects) does: each side
 /// of each row is a load of its own.
-pub(crate) struct Watch<T> {
+pub(crate) struct Watch {
     /// Per body that such a row stands on: what loads on it are felt by.
-    supports: Vec<Option<Support<T>>>,
+    supports: Vec<Option<Support>>,
     /// Per variable: the work on one side, the sum of all terms, and the largest of them.
-    side: Vec<[T; 3]>,
-    sum: Vec<T>,
-    most: Vec<T>,
-    /// Per variable and lane: the row that fails most.
-    worst: Vec<[Option<Defect>; LANES]>,
+    side: Vec<[f64; 3]>,
+    sum: Vec<f64>,
+    most: Vec<f64>,
+    /// Per variable: the row that fails most.
+    worst: Vec<Option<Defect>>,
 }
 
-impl<T: Real> Watch<T> {
-    pub fn new(model: &Model, variables: usize, witness: T) -> Self {
-        let zero = witness.zero();
+impl Watch {
+    pub fn new(model: &Model, variables: usize) -> Self {
+        let zero = 0.0;
         Self {
             supports: (0..model.bodies.len()).map(|_| None).collect(),
             side: vec![[zero; 3]; variables],
             sum: vec![zero; variables],
             most: vec![zero; variables],
-            worst: vec![[None; LANES]; variables],
+            worst: vec![None; variables],
         }
     }
 
-    /// Notes which joints resist which variables where a stepper stands, at one time per lane.
+    /// Notes which joints resist which variables where a stepper stands, at time t.
     pub fn look(
         &mut self,
-        adjoint: &mut Adjoint<T>,
+        adjoint: &mut Adjoint,
         topology: &Topology,
-        state: &mut State<T>,
-        times: &[f64],
+        state: &mut State<f64>,
+        t: f64,
         resisting: &mut [Resisting],
     ) {
         let left_out = |r: &usize| !topology.rows[*r].selected && !topology.rows[*r].is_term;
-        self.worst.fill([None; LANES]);
-        let witness = state.witness;
-        witness.within(
-            #[inline(always)]
-            || {
-                for r in (0..topology.rows.len()).filter(left_out) {
-                    self.row(adjoint, topology, state, r);
-                }
-            },
-        );
+        self.worst.fill(None);
+        for r in (0..topology.rows.len()).filter(left_out) {
+            self.row(adjoint, topology, state, r);
+        }
         for (worst, resisting) in self.worst.iter().zip(resisting) {
-            for (defect, t) in worst.iter().zip(times) {
-                if let Some(defect) = *defect {
-                    note(resisting, topology, defect, *t);
-                }
+            if let Some(defect) = *worst {
+                note(resisting, topology, defect, t);
             }
         }
     }
 
     /// Enters row r where it fails most.
-    #[inline(always)]
-    fn row(&mut self, adjoint: &mut Adjoint<T>, topology: &Topology, state: &mut State<T>, r: usize) {
-        let (zero, none) = (state.witness.zero(), Wrench::zero(state.witness));
+    fn row(&mut self, adjoint: &mut Adjoint, topology: &Topology, state: &mut State<f64>, r: usize) {
+        let (zero, none) = (0.0, Wrench::zero(state.witness));
         self.sum.fill(zero);
         self.most.fill(zero);
         for (k, factor) in topology.parts_of_row(r) {
@@ -420,38 +403,30 @@ impl<T: Real> Watch<T> {
                 let load = [(body.0, [state.l[k], none, none])];
                 adjoint.add_work(topology, state, support, &load, 1, &mut self.side);
                 for (v, [term, ..]) in self.side.iter().enumerate() {
-                    enter(&mut self.sum[v], &mut self.most[v], *term * zero.like(sign));
+                    enter(&mut self.sum[v], &mut self.most[v], *term * sign);
                 }
             }
             for (v, field) in adjoint.fields.iter().enumerate() {
                 let (sum, most) = (&mut self.sum[v], &mut self.most[v]);
                 for m in field.closures.iter().filter(|m| m.at == topology.rows[k].closure) {
                     let z = state.l[k].on(state.pose[m.body].carry(m.e));
-                    enter(sum, most, z * zero.like(if m.end == 1 { factor } else { -factor }));
+                    enter(sum, most, if m.end == 1 { z * factor } else { z * -factor });
                 }
                 let rate = field.kept.binary_search_by_key(&k, |l| l.0).map_or(zero, |n| field.kept[n].1);
                 let driven = closure.driver.map_or(zero, |d| field.law_rate(d, 0));
-                enter(sum, most, -(rate + driven) * zero.like(factor));
+                enter(sum, most, -(rate + driven) * factor);
             }
         }
         for (v, field) in adjoint.fields.iter().enumerate() {
             let sum = self.sum[v].abs();
-            let limit = (self.most[v] * zero.like(LOCKED)).larger(field.scale * zero.like(DEFECT_FLOOR));
-            if (sum - limit).largest() <= 0.0 {
-                continue;
-            }
-            for (lane, worst) in self.worst[v][..T::LANES].iter_mut().enumerate() {
-                let value = sum.lane(lane);
-                if !(value <= limit.lane(lane)) && worst.is_none_or(|w| value > w.value) {
-                    *worst = Some(Defect { row: r, value });
-                }
-            }
+            let limit = (self.most[v] * LOCKED).larger(field.scale * DEFECT_FLOOR);
+            Defect::enter(&mut self.worst[v], r, sum, limit);
         }
     }
 }
 
 #[inline(always)]
-fn enter<T: Real>(sum: &mut T, most: &mut T, term: T) {
+fn enter(sum: &mut f64, most: &mut f64, term: f64) {
     *sum += term;
     *most = most.larger(term.abs());
 }

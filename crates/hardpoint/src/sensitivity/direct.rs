@@ -4,10 +4,10 @@ use crate::law::Law;
 use crate::model::{DriverId, Field, Model};
 use crate::motion::kinematics::{State, carry, level, sum_couplers};
 use crate::motion::stepper::LOCKED;
-use crate::space::{LANES, Real, Twist};
+use crate::space::{Real, Twist};
 use crate::topology::{Source, Step, Topology};
 
-/// Design velocities laid out for the plan, those of one variable or of one per lane: body-fixed marker twists by link and
+/// Design velocities of one variable laid out for the plan: body-fixed marker twists by link and
 /// by closure.
 #[derive(Clone, Debug)]
 pub(crate) struct FieldParts<T> {
@@ -127,7 +127,7 @@ impl<T: Real> FieldParts<T> {
             let Some(rates) = field.kept_rate(closure.joint) else { continue };
             for (k, row) in closure.rows.iter().enumerate() {
                 let rate = rates.by(*row);
-                if rate.abs().largest() > 0.0 {
+                if rate.abs().decisive() > 0.0 {
                     kept.push((closure.first_row + k, rate));
                 }
             }
@@ -165,25 +165,21 @@ impl<T: Real> FieldParts<T> {
     /// How fast the value of a driver with this law changes at time t.
     pub fn law_speed(&self, driver: DriverId, law: &Law, t: f64) -> f64 {
         let of_driver = self.laws.iter().filter(|(d, ..)| *d == driver);
-        of_driver.map(|(_, parameter, rate)| rate.lane(0) * law.derivative(*parameter, t).value()).sum()
+        of_driver.map(|(_, parameter, rate)| rate.value() * law.derivative(*parameter, t).value()).sum()
     }
 
-    /// Sets what changing laws do, at one time per lane; `law` gives a driver's law in a lane.
-    pub fn set_times<'l>(&mut self, law: impl Fn(DriverId, usize) -> &'l Law, times: &[f64; LANES]) {
+    /// Sets what changing laws do at time t; `law` gives a driver's law.
+    pub fn set_time<'l>(&mut self, law: impl Fn(DriverId) -> &'l Law, t: f64) {
         for (driver, rates) in &mut self.law_rates {
-            let mut of_lanes = [[0.0; 3]; LANES];
+            let mut sums = [0.0; 3];
             for (_, parameter, rate) in self.laws.iter().filter(|(d, ..)| d == driver) {
-                for (k, out) in of_lanes[..T::LANES].iter_mut().enumerate() {
-                    let rate = rate.lane(k);
-                    if rate != 0.0 {
-                        let derivatives = law(*driver, k).derivative(*parameter, times[k]).derivatives();
-                        out.iter_mut().zip(derivatives).for_each(|(out, d)| *out += rate * d);
-                    }
+                let rate = rate.value();
+                if rate != 0.0 {
+                    let derivatives = law(*driver).derivative(*parameter, t).derivatives();
+                    sums.iter_mut().zip(derivatives).for_each(|(sum, d)| *sum += rate * d);
                 }
             }
-            for order in 0..3 {
-                rates[order] = self.scale.like_lanes(|k| of_lanes[k][order]);
-            }
+            *rates = sums.map(|sum| self.scale.like(sum));
             for (_, rate) in self.shifts.iter().filter(|(d, _)| d == driver) {
                 rates[0] += *rate;
             }
@@ -233,6 +229,18 @@ pub(crate) struct Defect {
     pub value: f64,
 }
 
+impl Defect {
+    /// Enters that of a row where it is worse than those of others, and than what may be round-off.
+    #[inline(always)]
+    pub(super) fn enter<T: Real>(worst: &mut Option<Self>, row: usize, sum: T, limit: T) {
+        let (value, limit) = (sum.value(), limit.value());
+        // Written so that NaN is a defect.
+        if !(value <= limit) && worst.is_none_or(|w| value > w.value) {
+            *worst = Some(Self { row, value });
+        }
+    }
+}
+
 /// A defect below this part of the field's own speed is zero, even if nothing else stands in the row.
 pub(super) const DEFECT_FLOOR: f64 = 1e-9;
 
@@ -262,7 +270,6 @@ impl<T: Real> Direct<T> {
         self.solve_orders(topology, state, field, 1);
     }
 
-    #[inline(always)]
     fn solve_orders(
         &mut self,
         topology: &Topology,
@@ -279,19 +286,13 @@ impl<T: Real> Direct<T> {
             self.moved.extend_from_slice(&field.reach.bodies);
         }
         self.laws_change |= !field.law_rates.is_empty();
-        witness.within(
-            #[inline(always)]
-            || {
-                self.set_field(topology, state, field);
-                for order in 0..orders {
-                    self.solve_order(topology, state, field, order);
-                }
-            },
-        );
+        self.set_field(topology, state, field);
+        for order in 0..orders {
+            self.solve_order(topology, state, field, order);
+        }
     }
 
     /// The design twists of every marker of the field.
-    #[inline(always)]
     fn set_field(&mut self, topology: &Topology, state: &State<T>, field: &FieldParts<T>) {
         let none = Twist::zero(state.witness);
         let in_blocks = field.reach.blocks.iter().flat_map(|&b| topology.blocks[b].links.clone());
@@ -313,7 +314,6 @@ impl<T: Real> Direct<T> {
     }
 
     /// `docs/theory.md` (11), (12) or (13).
-    #[inline(always)]
     fn solve_order(
         &mut self,
         topology: &Topology,
@@ -405,29 +405,24 @@ impl<T: Real> Direct<T> {
         }
     }
 
-    /// Per lane, the left-out row that fails most under its change, if any does by more than round-off.
-    ///
-    /// Speaks of the variables that were solved last.
-    pub fn worst_defects(
+    /// The left-out row that fails most under the change that was solved last, if any does by more than round-off.
+    pub fn worst_defect(
         &self,
         topology: &Topology,
         state: &State<T>,
         field: &FieldParts<T>,
-        worst: &mut [Option<Defect>; LANES],
-    ) {
-        state.witness.within(
-            #[inline(always)]
-            || {
-                for &c in &field.reach.closures {
-                    let closure = &topology.closures[c];
-                    for r in closure.first_row..closure.first_row + closure.rows.len() {
-                        if !topology.rows[r].selected && !topology.rows[r].is_term {
-                            self.defect(topology, state, field, r, worst);
-                        }
-                    }
+    ) -> Option<Defect> {
+        let mut worst = None;
+        for &c in &field.reach.closures {
+            let closure = &topology.closures[c];
+            for r in closure.first_row..closure.first_row + closure.rows.len() {
+                if !topology.rows[r].selected && !topology.rows[r].is_term {
+                    let (sum, limit) = self.judged_defect(topology, state, field, r);
+                    Defect::enter(&mut worst, r, sum, limit);
                 }
-            },
-        );
+            }
+        }
+        worst
     }
 
     /// The left-out rows under the change that was solved last: `out(row, defect, limit)`, the size of the defect and what of it may
@@ -469,7 +464,6 @@ impl<T: Real> Direct<T> {
     }
 
     /// By how much row r fails, and the largest of the terms that must cancel.
-    #[inline(always)]
     fn row_defect(&self, topology: &Topology, state: &State<T>, field: &FieldParts<T>, r: usize) -> (T, T) {
         let zero = state.witness.zero();
         let (mut sum, mut most) = (zero, zero);
@@ -494,7 +488,6 @@ impl<T: Real> Direct<T> {
     }
 
     /// The size of the defect of row r, and what of it may be round-off.
-    #[inline(always)]
     fn judged_defect(
         &self,
         topology: &Topology,
@@ -507,27 +500,5 @@ impl<T: Real> Direct<T> {
         // What typed coordinates may be off by in the motion, they may be off by in the design's terms.
         let limit = most * zero.like(LOCKED);
         (sum.abs(), limit.larger(field.scale * zero.like(DEFECT_FLOOR)))
-    }
-
-    /// Enters row r where it fails most.
-    #[inline(always)]
-    fn defect(
-        &self,
-        topology: &Topology,
-        state: &State<T>,
-        field: &FieldParts<T>,
-        r: usize,
-        worst: &mut [Option<Defect>; LANES],
-    ) {
-        let (sum, limit) = self.judged_defect(topology, state, field, r);
-        if (sum - limit).largest() <= 0.0 {
-            return;
-        }
-        for (lane, worst) in worst[..T::LANES].iter_mut().enumerate() {
-            let value = sum.lane(lane);
-            if !(value <= limit.lane(lane)) && worst.is_none_or(|w| value > w.value) {
-                *worst = Some(Defect { row: r, value });
-            }
-        }
     }
 }

@@ -8,7 +8,7 @@ use crate::law::Law;
 use crate::model::{DriverId, Effects, Field, Model};
 use crate::motion::kinematics::{State, carry, level, sum_couplers};
 use crate::motion::stepper::Stepper;
-use crate::number::{Dual, LANES, Real};
+use crate::number::{Dual, Real};
 use crate::space::{Mat3, Pose, Twist, Vec3};
 use crate::topology::{Source, Topology};
 
@@ -53,31 +53,31 @@ pub struct BodyCurvature {
 
 /// What one direction does at one position, to first order.
 #[derive(Clone, Debug)]
-struct First<T> {
-    field: FieldParts<T>,
+struct First {
+    field: FieldParts<f64>,
     /// Design twists of the bodies.
-    w: Vec<Twist<T>>,
+    w: Vec<Twist>,
     /// Speeds of the coordinates.
-    s: Vec<T>,
+    s: Vec<f64>,
     /// Per link, the design twists of its markers, the parent's first; per closure, those of markers i and j.
-    links: Vec<[Twist<T>; 2]>,
-    closures: Vec<[Twist<T>; 2]>,
+    links: Vec<[Twist; 2]>,
+    closures: Vec<[Twist; 2]>,
 }
 
-impl<T: Real> First<T> {
-    fn new(model: &Model, topology: &Topology, field: FieldParts<T>, witness: T) -> Self {
+impl First {
+    fn new(model: &Model, topology: &Topology, field: FieldParts<f64>, witness: f64) -> Self {
         let none = Twist::zero(witness);
         Self {
             field,
             w: vec![none; model.bodies.len()],
-            s: vec![witness.zero(); topology.coordinates.len()],
+            s: vec![0.0; topology.coordinates.len()],
             links: vec![[none; 2]; topology.links.len()],
             closures: vec![[none; 2]; topology.closures.len()],
         }
     }
 
     /// Takes over what was just solved. What the direction does not reach stays zero.
-    fn keep(&mut self, direct: &Direct<T>, topology: &Topology, state: &State<T>) {
+    fn keep(&mut self, direct: &Direct<f64>, topology: &Topology, state: &State<f64>) {
         let reach = &self.field.reach;
         reach.bodies.iter().for_each(|&b| self.w[b] = direct.w[0][b]);
         let links = reach.blocks.iter().flat_map(|&b| topology.blocks[b].links.clone());
@@ -94,8 +94,7 @@ impl<T: Real> First<T> {
     }
 
     /// The design twists of the markers of a closure.
-    #[inline(always)]
-    fn ends(&self, topology: &Topology, c: usize) -> [Twist<T>; 2] {
+    fn ends(&self, topology: &Topology, c: usize) -> [Twist; 2] {
         let ([i, j], [z_i, z_j]) = (topology.closures[c].bodies, self.closures[c]);
         [self.w[i.0] + z_i, self.w[j.0] + z_j]
     }
@@ -103,18 +102,18 @@ impl<T: Real> First<T> {
 
 /// Two directions, and how the design changes along the first while it goes along the second.
 #[derive(Clone, Debug)]
-struct Pair<T> {
+struct Pair {
     of: [usize; 2],
     field: FieldParts<Dual>,
     /// Per marker that the field moves at a link, then at a closure: its body-fixed twist, and the derivative of that.
-    links: Vec<[Twist<T>; 2]>,
-    closures: Vec<[Twist<T>; 2]>,
+    links: Vec<[Twist; 2]>,
+    closures: Vec<[Twist; 2]>,
     /// By driver whose law changes along the first direction: its laws a little along the second, and back.
     laws: Vec<(DriverId, [Law; 2])>,
     /// What that makes of the driver's value, at the times set last.
-    law_rates: Vec<(DriverId, T)>,
+    law_rates: Vec<(DriverId, f64)>,
     /// Derivatives along the second direction of the design twists along the first.
-    w: Vec<Twist<T>>,
+    w: Vec<Twist>,
 }
 
 /// Laws know their derivatives by a parameter exactly; second derivatives are differences of these over this part of a
@@ -122,16 +121,16 @@ struct Pair<T> {
 const LAW_STEP: f64 = 1e-4;
 
 /// Second derivatives by pairs of directions.
-pub(crate) struct Seconds<T> {
-    firsts: Vec<First<T>>,
-    pairs: Vec<Pair<T>>,
-    direct: Direct<T>,
-    s: Vec<T>,
-    bias: Vec<Twist<T>>,
-    row_rhs: Vec<T>,
+pub(crate) struct Seconds {
+    firsts: Vec<First>,
+    pairs: Vec<Pair>,
+    direct: Direct<f64>,
+    s: Vec<f64>,
+    bias: Vec<Twist>,
+    row_rhs: Vec<f64>,
 }
 
-impl<T: Real> Seconds<T> {
+impl Seconds {
     /// For these pairs of directions at the design with these values.
     pub fn new(
         effects: &Effects<'_>,
@@ -139,12 +138,17 @@ impl<T: Real> Seconds<T> {
         values: &[f64],
         directions: &[Way],
         pairs: &[[usize; 2]],
-        witness: T,
+        witness: f64,
     ) -> Self {
         let model = effects.model;
         let firsts = directions.iter().map(|d| {
             let field = d.field(effects, values, 0.0);
-            First::new(model, topology, FieldParts::new(topology, &field.spread(witness), witness), witness)
+            First::new(
+                model,
+                topology,
+                FieldParts::new(topology, &field.with_laws_in_order(), witness),
+                witness,
+            )
         });
         let pair = |&[u, w]: &[usize; 2]| {
             let speeds = directions[w].speeds().iter().copied().chain(std::iter::repeat(0.0));
@@ -153,9 +157,8 @@ impl<T: Real> Seconds<T> {
             let field = directions[u].field(effects, &moving, zero);
             let field = FieldParts::new(topology, &field, zero);
             let twists = |of: &[Moving<Dual>]| {
-                let part = |e: Twist<Dual>, part: fn(Dual) -> f64| {
-                    Twist { w: e.w.map(part), v: e.v.map(part) }.spread(witness)
-                };
+                let part =
+                    |e: Twist<Dual>, part: fn(Dual) -> f64| Twist { w: e.w.map(part), v: e.v.map(part) };
                 of.iter().map(|m| [part(m.e, |x| x.v), part(m.e, |x| x.d)]).collect()
             };
             let laws = [LAW_STEP, -LAW_STEP].map(|h| {
@@ -169,7 +172,7 @@ impl<T: Real> Seconds<T> {
                 links: twists(&field.links),
                 closures: twists(&field.closures),
                 laws: drivers.iter().map(of_driver).collect(),
-                law_rates: drivers.iter().map(|d| (*d, witness.zero())).collect(),
+                law_rates: drivers.iter().map(|d| (*d, 0.0)).collect(),
                 field,
                 w: vec![Twist::zero(witness); model.bodies.len()],
             }
@@ -178,28 +181,25 @@ impl<T: Real> Seconds<T> {
             firsts: firsts.collect(),
             pairs: pairs.iter().map(pair).collect(),
             direct: Direct::new(model, topology, witness),
-            s: vec![witness.zero(); topology.coordinates.len()],
+            s: vec![0.0; topology.coordinates.len()],
             bias: vec![Twist::zero(witness); topology.links.len()],
-            row_rhs: vec![witness.zero(); topology.rows.len()],
+            row_rhs: vec![0.0; topology.rows.len()],
         }
     }
 
-    /// Solves all pairs where a stepper stands, at one time per lane.
-    pub fn solve(&mut self, stepper: &mut Stepper<'_, T>, times: &[f64; LANES]) {
+    /// Solves all pairs where a stepper stands, at time t.
+    pub fn solve(&mut self, stepper: &mut Stepper<'_>, t: f64) {
         let (topology, state, parts) = (&stepper.topology, &mut stepper.state, &stepper.parts);
         for first in &mut self.firsts {
-            first.field.set_times(|d, lane| parts.law_of(d.0, lane), times);
+            first.field.set_time(|d| parts.law_of(d.0), t);
             self.direct.solve_position(topology, state, &first.field);
             first.keep(&self.direct, topology, state);
         }
         for pair in &mut self.pairs {
-            pair.set_times(times);
+            pair.set_time(t);
             let [u, w] = pair.of.map(|k| &self.firsts[k]);
             let scratch = (&mut self.s, &mut self.bias, &mut self.row_rhs);
-            state.witness.within(
-                #[inline(always)]
-                || solve_pair(topology, state, pair, u, w, scratch),
-            );
+            solve_pair(topology, state, pair, u, w, scratch);
         }
     }
 
@@ -208,31 +208,25 @@ impl<T: Real> Seconds<T> {
         self.pairs.len()
     }
 
-    /// A body's pose in one lane, and its derivatives along the directions of pair p: `v.d` along the second, `d.v` along
+    /// A body's pose, and its derivatives along the directions of pair p: `v.d` along the second, `d.v` along
     /// the first, `d.d` along both.
-    pub fn pose(&self, state: &State<T>, p: usize, body: usize, lane: usize) -> Pose<Dual<Dual>> {
+    pub fn pose(&self, state: &State<f64>, p: usize, body: usize) -> Pose<Dual<Dual>> {
         let pair = &self.pairs[p];
-        let [u, w] = pair.of.map(|k| self.firsts[k].w[body].lane(lane));
-        with_twists(state.pose[body].lane(lane), u, w, pair.w[body].lane(lane))
+        let [u, w] = pair.of.map(|k| self.firsts[k].w[body]);
+        with_twists(state.pose[body], u, w, pair.w[body])
     }
 
     /// The same for one direction alone: `d.v` along it, and nothing along a second.
-    pub fn pose_along(
-        &self,
-        state: &State<T>,
-        direction: usize,
-        body: usize,
-        lane: usize,
-    ) -> Pose<Dual<Dual>> {
-        let u = self.firsts[direction].w[body].lane(lane);
-        with_twists(state.pose[body].lane(lane), u, Twist::ZERO, Twist::ZERO)
+    pub fn pose_along(&self, state: &State<f64>, direction: usize, body: usize) -> Pose<Dual<Dual>> {
+        let u = self.firsts[direction].w[body];
+        with_twists(state.pose[body], u, Twist::ZERO, Twist::ZERO)
     }
 
-    /// Second derivatives of a body's position by pair p, in one lane.
-    pub fn curvature(&self, state: &State<T>, p: usize, body: usize, lane: usize) -> BodyCurvature {
+    /// Second derivatives of a body's position by pair p.
+    pub fn curvature(&self, state: &State<f64>, p: usize, body: usize) -> BodyCurvature {
         let pair = &self.pairs[p];
-        let [u, w] = pair.of.map(|k| self.firsts[k].w[body].lane(lane));
-        let (r, uw) = (state.pose[body].r.lane(lane), pair.w[body].lane(lane));
+        let [u, w] = pair.of.map(|k| self.firsts[k].w[body]);
+        let (r, uw) = (state.pose[body].r, pair.w[body]);
         BodyCurvature { d2r: uw.at(r) + u.w.cross(w.at(r)), ddpi: uw.w }
     }
 }
@@ -259,36 +253,33 @@ fn number([v, u, w, uw]: [Vec3; 4]) -> Vec3<Dual<Dual>> {
     Vec3::new(component(v.x, u.x, w.x, uw.x), component(v.y, u.y, w.y, uw.y), component(v.z, u.z, w.z, uw.z))
 }
 
-impl<T: Real> Pair<T> {
+impl Pair {
     /// Differences of the laws' exact derivatives.
-    fn set_times(&mut self, times: &[f64; LANES]) {
+    fn set_time(&mut self, t: f64) {
         let Self { field, laws, law_rates, .. } = self;
         for ((driver, [ahead, behind]), (_, out)) in laws.iter().zip(law_rates) {
-            *out = out.like_lanes(|lane| {
-                let rate = |law: &Law| field.law_speed(*driver, law, times[lane]);
-                (rate(ahead) - rate(behind)) / (2.0 * LAW_STEP)
-            });
+            let rate = |law: &Law| field.law_speed(*driver, law, t);
+            *out = (rate(ahead) - rate(behind)) / (2.0 * LAW_STEP);
         }
     }
 
-    fn law_rate(&self, driver: DriverId, zero: T) -> T {
+    fn law_rate(&self, driver: DriverId, zero: f64) -> f64 {
         self.law_rates.iter().find(|(d, _)| *d == driver).map_or(zero, |(_, rate)| *rate)
     }
 }
 
 /// `docs/theory.md` (15).
-#[inline(always)]
-fn solve_pair<T: Real>(
+fn solve_pair(
     topology: &Topology,
-    state: &mut State<T>,
-    pair: &mut Pair<T>,
-    u: &First<T>,
-    w: &First<T>,
-    (s, bias, row_rhs): (&mut Vec<T>, &mut Vec<Twist<T>>, &mut Vec<T>),
+    state: &mut State<f64>,
+    pair: &mut Pair,
+    u: &First,
+    w: &First,
+    (s, bias, row_rhs): (&mut Vec<f64>, &mut Vec<Twist>, &mut Vec<f64>),
 ) {
-    let (none, zero) = (Twist::zero(state.witness), state.witness.zero());
+    let (none, zero) = (Twist::zero(state.witness), 0.0);
     // A marker's design twist along u, carried along w by its body, and changed by the design itself.
-    let carried = |state: &State<T>, body: usize, [e, de]: [Twist<T>; 2]| {
+    let carried = |state: &State<f64>, body: usize, [e, de]: [Twist; 2]| {
         let pose = state.pose[body];
         w.w[body].ad(pose.carry(e)) + pose.carry(de)
     };
@@ -342,7 +333,7 @@ fn solve_pair<T: Real>(
         }
     }
     for &(row, rate) in &pair.field.kept {
-        row_rhs[row] += zero.like(rate.d);
+        row_rhs[row] += rate.d;
     }
     reach.blocks.iter().for_each(|&b| sum_couplers(topology, b, row_rhs));
     let (x, out, bias) = (&state.x, &mut pair.w, Some(&bias[..]));

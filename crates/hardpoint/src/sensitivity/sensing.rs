@@ -7,7 +7,7 @@ use crate::motion::kinematics::State;
 use crate::motion::stepper::Stepper;
 use crate::motion::tape::{Recorded, Tape};
 use crate::sink::{Block, Sink};
-use crate::space::{LANES, Real, Twist};
+use crate::space::{Real, Twist};
 use crate::topology::Topology;
 
 use super::direct::{Defect, Direct, FieldParts};
@@ -51,12 +51,12 @@ impl Sensing {
     }
 
     /// Output time k, at t, where a stepper stands with velocity and acceleration.
-    pub fn step(&mut self, one: &mut Stepper<'_, f64>, k: usize, t: f64, sink: &mut impl Sink) {
+    pub fn step(&mut self, one: &mut Stepper<'_>, k: usize, t: f64, sink: &mut impl Sink) {
         let Self { fields, direct, wanted, resisting, .. } = self;
         let (topology, state, parts) = (&one.topology, &mut one.state, &one.parts);
         state.finish_rates(topology);
         for (v, field) in fields.iter_mut().enumerate() {
-            field.set_times(|d: DriverId, _| parts.law_of(d.0, 0), &[t; LANES]);
+            field.set_time(|d: DriverId| parts.law_of(d.0), t);
             direct.solve(topology, state, field);
             for &body in field.reach.bodies.iter().filter(|b| wanted[**b]) {
                 let derivatives = {
@@ -65,9 +65,7 @@ impl Sensing {
                 };
                 sink.sensitivity(k, VariableId(v), BodyId(body), &derivatives);
             }
-            let mut defects = [None; LANES];
-            direct.worst_defects(topology, state, field, &mut defects);
-            if let Some(defect) = defects[0] {
+            if let Some(defect) = direct.worst_defect(topology, state, field) {
                 note(&mut resisting[v], topology, defect, t);
             }
         }

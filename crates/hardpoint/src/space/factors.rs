@@ -7,7 +7,7 @@ use crate::number::{Function, Real};
 /// Blocks with more unknowns than this are factored by [`SparseLu`].
 ///
 /// Measured on trusses with four entries a row (`bench`, `truss`): sparse steps are as fast as dense ones at about
-/// 35 unknowns, twice as fast at 60, and the fuller the rows, the later. Lanes gain from dense factors for longer.
+/// 35 unknowns, twice as fast at 60, and the fuller the rows, the later.
 pub(crate) const LARGEST_DENSE: usize = 40;
 
 /// LU factors of one block's Jacobian, kept for every right-hand side of a step.
@@ -58,25 +58,6 @@ impl<T: Real> Factors<T> {
         match self {
             Self::Dense(_) => now / before,
             Self::Sparse(_) => (now - before).map(Function::Exp),
-        }
-    }
-
-    /// The same for determinants of one lane.
-    #[inline(always)]
-    pub fn plain_ratio(&self, now: f64, before: f64) -> f64 {
-        match self {
-            Self::Dense(_) => now / before,
-            Self::Sparse(_) => (now - before).exp(),
-        }
-    }
-
-    /// Takes over the factors of a scalar system, the same in every lane.
-    #[inline(always)]
-    pub fn spread(&mut self, from: &Factors<f64>, witness: T) {
-        match (self, from) {
-            (Self::Dense(to), Factors::Dense(from)) => to.spread(from, witness),
-            (Self::Sparse(to), Factors::Sparse(from)) => to.spread(from, witness),
-            _ => unreachable!("the size of a block decides, and never changes"),
         }
     }
 

@@ -15,7 +15,7 @@ impl Mat3<f64> {
     /// No rotation.
     pub const IDENTITY: Self = Self { cols: Vec3::AXES };
 
-    /// The same rotation in every lane of `witness`.
+    /// The same rotation in numbers like `witness`.
     #[inline(always)]
     pub fn spread<T: Real>(self, witness: T) -> Mat3<T> {
         let [f, g, h] = self.cols;
@@ -95,11 +95,11 @@ impl<T: Real> Mat3<T> {
         h.times_plus(v.z, g.times_plus(v.y, f.times_plus(v.x, addend)))
     }
 
-    /// The rotation of lane `k`.
+    /// The rotation in plain values.
     #[inline(always)]
-    pub fn lane(self, k: usize) -> Mat3<f64> {
+    pub fn value(self) -> Mat3<f64> {
         let [f, g, h] = &self.cols;
-        Mat3 { cols: [f.lane(k), g.lane(k), h.lane(k)] }
+        Mat3 { cols: [f.value(), g.value(), h.value()] }
     }
 }
 
@@ -116,7 +116,6 @@ impl<T: Real> Mul for Mat3<T> {
     type Output = Self;
     #[inline(always)]
     fn mul(self, o: Self) -> Self {
-        // Written out: `map` would compile the products outside the lanes' instruction set.
         let [f, g, h] = o.cols;
         Self { cols: [self * f, self * g, self * h] }
     }

@@ -7,8 +7,7 @@ pub(crate) const MOST_GROWTH: f64 = 4.0;
 
 /// LU factors of one block's Jacobian, kept for every right-hand side of a step.
 ///
-/// The order of the pivots is chosen once and watched: from one step to the next it hardly ever changes. It goes by the
-/// smallest lane of the candidates, so that one order serves all lanes.
+/// The order of the pivots is chosen once and watched: from one step to the next it hardly ever changes.
 #[derive(Clone, Debug)]
 pub(crate) struct Elimination<T> {
     n: usize,
@@ -28,13 +27,13 @@ pub(crate) struct Elimination<T> {
 /// What a factorisation found.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Factored<T> {
-    /// Smallest pivot over the largest, over all lanes; 0 where singular or not finite.
+    /// Smallest pivot over the largest; 0 where singular or not finite.
     pub pivot_ratio: f64,
-    /// Whether the determinant is positive (lane 0 speaks; lanes that disagree make the ratio 0).
+    /// Whether the determinant is positive.
     pub positive: bool,
     /// The size of the determinant; of a sparse matrix its logarithm.
     pub determinant: T,
-    /// What that goes by, lane by lane; zero of a sparse matrix.
+    /// What that goes by; zero of a sparse matrix.
     pub watched: Watched<T>,
 }
 
@@ -56,15 +55,14 @@ impl<T: Real> Watched<T> {
         Self { product: zero, most: zero, least: zero, growth: zero }
     }
 
-    /// Smallest pivot over the largest, over all lanes; 0 where lanes differ in the sign of their determinants, which puts them
-    /// on different branches, or where any is not finite. And that sign.
+    /// Smallest pivot over the largest, 0 where any is not finite; and whether the product of the pivots is positive.
     #[inline(always)]
     pub fn verdict(&self) -> (f64, bool) {
-        let (low, high) = (self.product.smallest(), self.product.largest());
+        let product = self.product.decisive();
         // NaN, as of a pivot of zero, is no sign either.
-        let regular = low > 0.0 || high < 0.0;
-        let ratio = if regular { 1.0 / (self.most.largest() * self.least.largest()) } else { 0.0 };
-        (ratio, low > 0.0)
+        let regular = product.abs() > 0.0;
+        let ratio = if regular { 1.0 / (self.most.decisive() * self.least.decisive()) } else { 0.0 };
+        (ratio, product > 0.0)
     }
 }
 
@@ -103,13 +101,12 @@ impl<T: Real> Elimination<T> {
         }
         self.choose_order();
         let (found, growth) = self.eliminate();
-        // Lanes that want different orders would look for a better one in vain at every step.
+        // Where no order serves better, one would be looked for in vain at every step.
         self.most_growth = f64::max(MOST_GROWTH, 2.0 * growth);
         found
     }
 
     /// Eliminates in the present order; returns the largest factor, too.
-    #[inline(always)]
     fn eliminate(&mut self) -> (Factored<T>, f64) {
         let n = self.n;
         let (rows, a) = (&self.rows[..n * n], &mut self.a[..n * n]);
@@ -139,21 +136,12 @@ impl<T: Real> Elimination<T> {
         let watched = Watched { product: determinant, most, least, growth };
         let (pivot_ratio, positive) = watched.verdict();
         let positive = positive == self.even;
-        (Factored { pivot_ratio, positive, determinant: determinant.abs(), watched }, growth.largest())
+        (Factored { pivot_ratio, positive, determinant: determinant.abs(), watched }, growth.decisive())
     }
 
     /// Chooses the order of the pivots by their sizes.
     #[inline(never)]
     fn choose_order(&mut self) {
-        let witness = self.a[0];
-        witness.within(
-            #[inline(always)]
-            || self.choosing_order(),
-        );
-    }
-
-    #[inline(always)]
-    fn choosing_order(&mut self) {
         let n = self.n;
         let (a, order) = (&mut self.a[..n * n], &mut self.order[..n]);
         a.copy_from_slice(&self.rows);
@@ -162,9 +150,9 @@ impl<T: Real> Elimination<T> {
             *o = r;
         }
         for k in 0..n {
-            let (mut best, mut size) = (k, a[k * n + k].abs().smallest());
+            let (mut best, mut size) = (k, a[k * n + k].abs().decisive());
             for r in k + 1..n {
-                let s = a[r * n + k].abs().smallest();
+                let s = a[r * n + k].abs().decisive();
                 if s > size {
                     (best, size) = (r, s);
                 }
@@ -185,15 +173,6 @@ impl<T: Real> Elimination<T> {
                 }
             }
         }
-    }
-
-    /// Takes over the factors of a scalar system, the same in every lane.
-    pub fn spread(&mut self, from: &Elimination<f64>, witness: T) {
-        for (to, x) in self.a.iter_mut().zip(&from.a) {
-            *to = witness.like(*x);
-        }
-        self.order.copy_from_slice(&from.order);
-        (self.even, self.most_growth) = (from.even, from.most_growth);
     }
 
     /// Replaces the right-hand side by the solution.

@@ -1,7 +1,6 @@
 //! Points, rotations, poses, twists and wrenches, generic over the number.
 //!
-//! Everything here is written once over [`Real`] and runs with one `f64` or with eight designs (or
-//! times) at a time in SIMD lanes. A [`Twist`] is what moves, a [`Wrench`] is what resists; their
+//! Everything here is written once over [`Real`]. A [`Twist`] is what moves, a [`Wrench`] is what resists; their
 //! product is the rate at which a constraint is violated (`docs/theory.md`, section 1).
 
 mod euler;
@@ -25,5 +24,4 @@ pub use twist::{Twist, Wrench};
 pub use vec3::Vec3;
 
 pub use crate::number::Real;
-pub(crate) use crate::number::{LANES, of_lanes};
 pub(crate) use rank::FullPivot;

@@ -16,7 +16,7 @@ impl Pose<f64> {
     /// The frame itself.
     pub const IDENTITY: Self = Self { rot: Mat3::IDENTITY, r: Vec3::ZERO };
 
-    /// The same pose in every lane of `witness`.
+    /// The same pose in numbers like `witness`.
     #[inline(always)]
     pub fn spread<T: Real>(self, witness: T) -> Pose<T> {
         Pose { rot: self.rot.spread(witness), r: self.r.spread(witness) }
@@ -56,16 +56,10 @@ impl<T: Real> Pose<T> {
         Wrench { m: self.rot.transpose_mul(l.m - self.r.cross(l.f)), f: self.rot.transpose_mul(l.f) }
     }
 
-    /// The poses of all lanes, side by side.
-    pub fn gather(witness: T, lane: impl Fn(usize) -> Pose) -> Self {
-        let column = |c: usize| Vec3::gather(witness, |k| lane(k).rot.cols[c]);
-        Self { rot: Mat3 { cols: [0, 1, 2].map(column) }, r: Vec3::gather(witness, |k| lane(k).r) }
-    }
-
-    /// The pose of lane `k`.
+    /// The pose in plain values.
     #[inline(always)]
-    pub fn lane(self, k: usize) -> Pose<f64> {
-        Pose { rot: self.rot.lane(k), r: self.r.lane(k) }
+    pub fn value(self) -> Pose<f64> {
+        Pose { rot: self.rot.value(), r: self.r.value() }
     }
 }
 

@@ -16,7 +16,7 @@ impl Quat<f64> {
     /// No rotation.
     pub const IDENTITY: Self = Self { w: 1.0, v: Vec3::ZERO };
 
-    /// The same rotation in every lane of `witness`.
+    /// The same rotation in numbers like `witness`.
     #[inline(always)]
     pub fn spread<T: Real>(self, witness: T) -> Quat<T> {
         Quat { w: witness.like(self.w), v: self.v.spread(witness) }
@@ -65,10 +65,10 @@ impl<T: Real> Quat<T> {
         Self { w, v }.normalised()
     }
 
-    /// The rotation of lane `k`.
+    /// The rotation in plain values.
     #[inline(always)]
-    pub fn lane(self, k: usize) -> Quat<f64> {
-        Quat { w: self.w.lane(k), v: self.v.lane(k) }
+    pub fn value(self) -> Quat<f64> {
+        Quat { w: self.w.value(), v: self.v.value() }
     }
 
     /// The same rotation, of unit length.

@@ -1,4 +1,4 @@
-//! Sparse factors of a large block, one numeric factorisation per lane, by faer.
+//! Sparse factors of a large block, by faer.
 
 use faer::dyn_stack::{MemBuffer, MemStack, StackReq};
 use faer::perm::PermRef;
@@ -12,7 +12,7 @@ use faer::sparse::{SparseColMatRef, SymbolicSparseColMat};
 use faer::{Conj, MatMut, Par};
 
 use super::matrix::{Factored, Watched};
-use crate::number::{LANES, Real};
+use crate::number::Real;
 
 /// LU factors of a sparse square matrix whose pattern does not change.
 ///
@@ -21,34 +21,26 @@ use crate::number::{LANES, Real};
 /// first, factoring and solving allocate nothing unless other pivots bring more fill.
 #[derive(Clone, Debug)]
 pub(crate) struct SparseLu<T> {
+    witness: T,
     /// Of the transpose: its columns are the rows of the matrix.
     pattern: SymbolicSparseColMat<usize>,
     /// Row after row, in the order of the pattern.
-    values: Vec<T>,
+    values: Vec<f64>,
     /// Row after row, in the order in which they are filled: where an entry stands in `values`.
     place: Vec<usize>,
     /// Order of elimination, and its inverse.
     order: [Vec<usize>; 2],
     /// Whether that order is an odd permutation.
     odd: bool,
-    lanes: Vec<Lane>,
-    /// Whether all lanes have the factors of the first.
-    shared: bool,
-    /// The values of one lane, and right-hand sides of all lanes.
-    entries: Vec<f64>,
+    lu: SimplicialLu<usize, f64>,
+    pivots: [Vec<usize>; 2],
     rhs: Vec<f64>,
     /// Scratch of [`is_odd`].
     seen: Vec<bool>,
     memory: Memory,
 }
 
-#[derive(Clone, Debug, Default)]
-struct Lane {
-    lu: SimplicialLu<usize, f64>,
-    pivots: [Vec<usize>; 2],
-}
-
-/// One of faer's two ways to solve with the factors of a lane.
+/// One of faer's two ways to solve with the factors.
 type Solve = fn(
     &SimplicialLu<usize, f64>,
     PermRef<'_, usize>,
@@ -103,21 +95,20 @@ impl<T: Real> SparseLu<T> {
         let order = [forward.to_vec(), inverse.to_vec()];
         let entries = pattern.row_idx().len();
         let need = factorize_simplicial_numeric_lu_scratch::<usize, f64>(n, n)
-            .or(solve_transpose_in_place_scratch::<usize, f64>(n, T::LANES, Par::Seq))
-            .or(solve_in_place_scratch::<usize, f64>(n, T::LANES, Par::Seq));
-        let lane = Lane { lu: SimplicialLu::new(), pivots: [vec![0; n], vec![0; n]] };
+            .or(solve_transpose_in_place_scratch::<usize, f64>(n, 1, Par::Seq))
+            .or(solve_in_place_scratch::<usize, f64>(n, 1, Par::Seq));
         Self {
             odd: is_odd(&order[0], &mut vec![false; n]),
             seen: vec![false; n],
-            values: vec![witness.zero(); entries],
-            lanes: vec![lane; T::LANES],
-            shared: false,
-            entries: vec![0.0; entries],
-            rhs: vec![0.0; n * T::LANES],
+            values: vec![0.0; entries],
+            lu: SimplicialLu::new(),
+            pivots: [vec![0; n], vec![0; n]],
+            rhs: vec![0.0; n],
             memory: Memory { need, buffer: MemBuffer::new(need) },
             pattern,
             place,
             order,
+            witness,
         }
     }
 
@@ -130,67 +121,31 @@ impl<T: Real> SparseLu<T> {
     pub fn set_row(&mut self, r: usize, entries: impl Iterator<Item = T>) {
         let starts = self.pattern.col_ptr();
         for (&at, x) in self.place[starts[r]..starts[r + 1]].iter().zip(entries) {
-            self.values[at] = x;
+            self.values[at] = x.value();
         }
     }
 
-    /// Factors what the rows were filled with, each lane on its own.
+    /// Factors what the rows were filled with.
     #[inline(never)]
     pub fn factor(&mut self) -> Factored<T> {
-        self.shared = false;
-        let zero = self.values[0].zero();
-        let watched = Watched::zero(zero);
-        let mut all = Factored { pivot_ratio: 1.0, positive: true, determinant: zero, watched };
-        let mut determinants = [0.0; LANES];
-        for k in 0..T::LANES {
-            for (entry, x) in self.entries.iter_mut().zip(&self.values) {
-                *entry = x.lane(k);
-            }
-            let found = self.factor_lane(k);
-            determinants[k] = found.determinant;
-            if k == 0 {
-                all.positive = found.positive;
-            }
-            // Written so that a NaN ratio stays.
-            if !(found.pivot_ratio >= all.pivot_ratio) {
-                all.pivot_ratio = found.pivot_ratio;
-            }
-            if found.positive != all.positive {
-                all.pivot_ratio = 0.0;
-            }
-        }
-        all.determinant = self.values[0].like_lanes(|k| determinants[k]);
-        all
-    }
-
-    /// Takes over a scalar matrix and factors it once for all lanes.
-    pub fn spread(&mut self, from: &SparseLu<f64>, witness: T) {
-        if self.pattern.row_idx() != from.pattern.row_idx()
-            || self.pattern.col_ptr() != from.pattern.col_ptr()
-        {
-            let rows: Vec<Vec<usize>> =
-                (0..from.n()).map(|r| from.pattern.row_idx_of_col_raw(r).to_vec()).collect();
-            *self = Self::new(&rows, witness);
-        }
-        self.entries.copy_from_slice(&from.values);
-        self.factor_lane(0);
-        self.shared = true;
-    }
-
-    /// Factors what stands in `entries`, for lane k.
-    fn factor_lane(&mut self, k: usize) -> Factored<f64> {
-        let (n, watched) = (self.n(), Watched::zero(0.0));
-        let Lane { lu, pivots: [forward, inverse] } = &mut self.lanes[k];
+        let (n, witness) = (self.n(), self.witness);
+        let found = |pivot_ratio, positive, determinant: f64| Factored {
+            pivot_ratio,
+            positive,
+            determinant: witness.like(determinant),
+            watched: Watched::zero(witness),
+        };
+        let Self { lu, pivots: [forward, inverse], .. } = self;
         let factored = factorize_simplicial_numeric_lu(
             forward,
             inverse,
             lu,
-            SparseColMatRef::new(self.pattern.as_ref(), &self.entries),
+            SparseColMatRef::new(self.pattern.as_ref(), &self.values),
             PermRef::new_checked(&self.order[0], &self.order[1], n),
             MemStack::new(&mut self.memory.buffer),
         );
         if factored.is_err() {
-            return Factored { pivot_ratio: 0.0, positive: true, determinant: 0.0, watched };
+            return found(0.0, true, 0.0);
         }
         // The determinant is that of U, up to the signs of the two permutations.
         let (mut least, mut most) = (f64::INFINITY, 0.0_f64);
@@ -202,7 +157,7 @@ impl<T: Real> SparseLu<T> {
             let size = pivot.abs();
             // Written so that a NaN pivot makes the ratio zero, never a good number.
             if !(size > 0.0) {
-                return Factored { pivot_ratio: 0.0, positive, determinant: 0.0, watched };
+                return found(0.0, positive, 0.0);
             }
             // The product of thousands of pivots leaves the range of numbers.
             product *= size;
@@ -213,8 +168,7 @@ impl<T: Real> SparseLu<T> {
             most = most.max(size);
             positive ^= *pivot < 0.0;
         }
-        let determinant = logarithm + product.ln();
-        Factored { pivot_ratio: if n == 0 { 1.0 } else { least / most }, positive, determinant, watched }
+        found(if n == 0 { 1.0 } else { least / most }, positive, logarithm + product.ln())
     }
 
     /// Replaces the right-hand side by the solution.
@@ -229,30 +183,23 @@ impl<T: Real> SparseLu<T> {
         self.solve_with(b, SimplicialLu::solve_in_place_with_conj);
     }
 
-    #[inline(always)]
     fn solve_with(&mut self, b: &mut [T], solve: Solve) {
         let n = self.n();
-        for (r, x) in b[..n].iter().enumerate() {
-            for k in 0..T::LANES {
-                self.rhs[k * n + r] = x.lane(k);
-            }
+        for (to, x) in self.rhs.iter_mut().zip(&b[..n]) {
+            *to = x.value();
         }
-        let order = PermRef::new_checked(&self.order[0], &self.order[1], n);
-        let group = if self.shared { T::LANES } else { 1 };
-        for (k, rhs) in self.rhs.chunks_exact_mut(group * n).enumerate() {
-            let Lane { lu, pivots: [forward, inverse] } = &self.lanes[k];
-            solve(
-                lu,
-                PermRef::new_checked(forward, inverse, n),
-                order,
-                Conj::No,
-                MatMut::from_column_major_slice_mut(rhs, n, group),
-                Par::Seq,
-                MemStack::new(&mut self.memory.buffer),
-            );
-        }
-        for (r, x) in b[..n].iter_mut().enumerate() {
-            *x = x.like_lanes(|k| self.rhs[k * n + r]);
+        let [forward, inverse] = &self.pivots;
+        solve(
+            &self.lu,
+            PermRef::new_checked(forward, inverse, n),
+            PermRef::new_checked(&self.order[0], &self.order[1], n),
+            Conj::No,
+            MatMut::from_column_major_slice_mut(&mut self.rhs, n, 1),
+            Par::Seq,
+            MemStack::new(&mut self.memory.buffer),
+        );
+        for (x, found) in b[..n].iter_mut().zip(&self.rhs) {
+            *x = x.like(*found);
         }
     }
 }

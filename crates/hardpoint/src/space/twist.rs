@@ -26,7 +26,7 @@ impl Twist<f64> {
     /// No motion.
     pub const ZERO: Self = Self { w: Vec3::ZERO, v: Vec3::ZERO };
 
-    /// The same twist in every lane of `witness`.
+    /// The same twist in numbers like `witness`.
     #[inline(always)]
     pub fn spread<T: Real>(self, witness: T) -> Twist<T> {
         Twist { w: self.w.spread(witness), v: self.v.spread(witness) }
@@ -34,7 +34,7 @@ impl Twist<f64> {
 }
 
 impl<T: Real> Twist<T> {
-    /// No motion, in the lanes of `witness`.
+    /// No motion, in numbers like `witness`.
     #[inline(always)]
     pub fn zero(witness: T) -> Self {
         Self { w: Vec3::zero(witness), v: Vec3::zero(witness) }
@@ -76,21 +76,15 @@ impl<T: Real> Twist<T> {
         Self { w: self.w.times_plus(k, addend.w), v: self.v.times_plus(k, addend.v) }
     }
 
-    /// The twists of all lanes, side by side.
+    /// The twist in plain values.
     #[inline(always)]
-    pub fn gather(witness: T, lane: impl Fn(usize) -> Twist) -> Self {
-        Self { w: Vec3::gather(witness, |k| lane(k).w), v: Vec3::gather(witness, |k| lane(k).v) }
-    }
-
-    /// The twist of lane `k`.
-    #[inline(always)]
-    pub fn lane(self, k: usize) -> Twist<f64> {
-        Twist { w: self.w.lane(k), v: self.v.lane(k) }
+    pub fn value(self) -> Twist<f64> {
+        Twist { w: self.w.value(), v: self.v.value() }
     }
 }
 
 impl Wrench<f64> {
-    /// The same wrench in every lane of `witness`.
+    /// The same wrench in numbers like `witness`.
     #[inline(always)]
     pub fn spread<T: Real>(self, witness: T) -> Wrench<T> {
         Wrench { m: self.m.spread(witness), f: self.f.spread(witness) }
@@ -98,7 +92,7 @@ impl Wrench<f64> {
 }
 
 impl<T: Real> Wrench<T> {
-    /// No wrench, in the lanes of `witness`.
+    /// No wrench, in numbers like `witness`.
     #[inline(always)]
     pub fn zero(witness: T) -> Self {
         Self { m: Vec3::zero(witness), f: Vec3::zero(witness) }

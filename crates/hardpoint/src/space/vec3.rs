@@ -21,7 +21,7 @@ impl Vec3<f64> {
     pub const AXES: [Self; 3] =
         [Self::new(1.0, 0.0, 0.0), Self::new(0.0, 1.0, 0.0), Self::new(0.0, 0.0, 1.0)];
 
-    /// The same vector in every lane of `witness`.
+    /// The same vector in numbers like `witness`.
     #[inline(always)]
     pub fn spread<T: Real>(self, witness: T) -> Vec3<T> {
         Vec3::new(witness.like(self.x), witness.like(self.y), witness.like(self.z))
@@ -74,7 +74,7 @@ impl<T> Vec3<T> {
 }
 
 impl<T: Real> Vec3<T> {
-    /// The null vector, in the lanes of `witness`.
+    /// The null vector, in numbers like `witness`.
     #[inline(always)]
     pub fn zero(witness: T) -> Self {
         let o = witness.zero();
@@ -123,17 +123,10 @@ impl<T: Real> Vec3<T> {
         self.dot(self).sqrt()
     }
 
-    /// The vectors of all lanes, side by side.
+    /// The vector in plain values.
     #[inline(always)]
-    pub fn gather(witness: T, lane: impl Fn(usize) -> Vec3) -> Self {
-        let component = |axis: usize| witness.like_lanes(|k| lane(k)[axis]);
-        Self::new(component(0), component(1), component(2))
-    }
-
-    /// The vector of lane `k`.
-    #[inline(always)]
-    pub fn lane(self, k: usize) -> Vec3<f64> {
-        Vec3::new(self.x.lane(k), self.y.lane(k), self.z.lane(k))
+    pub fn value(self) -> Vec3<f64> {
+        Vec3::new(self.x.value(), self.y.value(), self.z.value())
     }
 }
 

@@ -6,7 +6,7 @@ use crate::model::{Field, Fixed, GROUND, MeasureKind, OutputSource, VariableId};
 use crate::motion::Stop;
 use crate::motion::kinematics::State;
 use crate::motion::stepper::Stepper;
-use crate::number::{Dual, Jet, LANES, Rates, Real, of_lanes};
+use crate::number::{Dual, Jet, Rates, Real};
 use crate::sensitivity::{Adjoint, Admissibility, Load, Resisting, Support, Watch, admissibility};
 use crate::space::{Mat3, Pose, Twist, Vec3, Wrench};
 use crate::topology::Topology;
@@ -156,9 +156,11 @@ impl Analysis<'_> {
         let mut tracing = Tracing::new(self, design, &fields, &result.outputs, 0.0);
         let mut resisting: Vec<Resisting> = vec![(Vec::new(), 0.0); variables];
         let mut walk = Walk::new(self, design, vec![false; model.bodies.len()]);
-        let mut times = model.times.chunks(1);
+        let mut times = model.times.iter();
         result.stop = walk.each(self, |one| {
-            tracing.add(one, times.next().unwrap_or_default(), &mut resisting, &mut result);
+            if let Some(&t) = times.next() {
+                tracing.add(one, t, &mut resisting, &mut result);
+            }
         });
         result.d.truncate(result.times.len() * asked * variables);
         result.admissibility = admissibility(self.opens(), resisting, result.times.len());
@@ -172,40 +174,40 @@ impl Analysis<'_> {
 }
 
 /// What the adjoint way needs besides a stepper.
-struct Tracing<'a, T> {
+struct Tracing<'a> {
     analysis: &'a Analysis<'a>,
-    adjoint: Adjoint<T>,
-    watch: Watch<T>,
-    asked: Vec<Asked<T>>,
+    adjoint: Adjoint,
+    watch: Watch,
+    asked: Vec<Asked>,
     /// Bodies that outputs are measured on.
     bodies: Vec<usize>,
     poses: Vec<Pose<Dual<Rates>>>,
     /// What measures go by; and the same as it goes with each variable that moves some of it.
     fixed: Fixed<Dual<Rates>>,
     moved: Vec<Option<Fixed<Dual<Rates>>>>,
-    gradient: Vec<[T; 3]>,
+    gradient: Vec<[f64; 3]>,
 }
 
 /// An output, and what it depends on.
-struct Asked<T> {
+struct Asked {
     output: Output,
     /// Per body that it depends on: how it goes with the body's twist.
-    loads: Vec<(usize, Load<T>)>,
-    support: Support<T>,
+    loads: Vec<(usize, Load)>,
+    support: Support,
     /// Variables that move what it is measured with within its body.
     variables: Vec<usize>,
     /// Its derivatives by the six unit twists of each of these bodies, then by each of these variables: of value, rate and
-    /// acceleration, lane by lane.
-    derivatives: Vec<[[f64; LANES]; 3]>,
+    /// acceleration.
+    derivatives: Vec<[f64; 3]>,
 }
 
-impl<'a, T: Real> Tracing<'a, T> {
+impl<'a> Tracing<'a> {
     fn new(
         analysis: &'a Analysis<'_>,
         design: &Design,
         fields: &[Field],
         outputs: &[Output],
-        witness: T,
+        witness: f64,
     ) -> Self {
         let (model, effects) = (analysis.model(), analysis.effects());
         let adjoint = Adjoint::new(model, analysis.topology(), fields, witness);
@@ -213,13 +215,13 @@ impl<'a, T: Real> Tracing<'a, T> {
         let depends = dependences(analysis, &design.values, &bodies, outputs);
         let none = [Wrench::zero(witness); 3];
         let asked = outputs.iter().zip(depends).map(|(output, [on, variables])| Asked {
-            derivatives: vec![[[0.0; LANES]; 3]; 6 * on.len() + variables.len()],
+            derivatives: vec![[0.0; 3]; 6 * on.len() + variables.len()],
             output: output.clone(),
             support: adjoint.support(analysis.topology(), &on),
             loads: on.into_iter().map(|b| (b, none)).collect(),
             variables,
         });
-        let asked: Vec<Asked<T>> = asked.collect();
+        let asked: Vec<Asked> = asked.collect();
         let zero = Dual::constant(Jet([0.0; 3]));
         let mut values: Vec<Dual<Rates>> = design.values.iter().map(|v| zero.like(*v)).collect();
         let mut moved: Vec<Option<Fixed<Dual<Rates>>>> = values.iter().map(|_| None).collect();
@@ -233,10 +235,10 @@ impl<'a, T: Real> Tracing<'a, T> {
             });
         }
         Self {
-            watch: Watch::new(model, fields.len(), witness),
+            watch: Watch::new(model, fields.len()),
             poses: vec![Pose::IDENTITY.spread(zero); model.bodies.len()],
             fixed: effects.fixed(&values, zero),
-            gradient: vec![[witness.zero(); 3]; fields.len()],
+            gradient: vec![[0.0; 3]; fields.len()],
             analysis,
             adjoint,
             asked,
@@ -245,89 +247,65 @@ impl<'a, T: Real> Tracing<'a, T> {
         }
     }
 
-    /// Appends what is found at these times, one per lane.
+    /// Appends what is found at time t.
     fn add(
         &mut self,
-        stepper: &mut Stepper<'_, T>,
-        times: &[f64],
+        stepper: &mut Stepper<'_>,
+        t: f64,
         resisting: &mut [Resisting],
         result: &mut Gradients,
     ) {
-        let of_lanes = of_lanes(times);
-        self.adjoint.set_times(stepper, &of_lanes);
+        self.adjoint.set_time(stepper, t);
         let (topology, state) = (&stepper.topology, &mut stepper.state);
         state.finish_rates(topology);
-        let (first, asked) = (result.times.len(), self.asked.len());
-        for lane in 0..times.len() {
-            self.differentiate(state, lane);
+        self.differentiate(state);
+        let first = result.times.len() * self.asked.len();
+        for m in 0..self.asked.len() {
+            self.trace(topology, state, m);
+            let at = (first + m) * result.variables;
+            result.d[at..at + self.gradient.len()].copy_from_slice(&self.gradient);
         }
-        state.witness.within(
-            #[inline(always)]
-            || {
-                for m in 0..asked {
-                    self.trace(topology, state, m);
-                    for (v, gradient) in self.gradient.iter().enumerate() {
-                        let mut of_lane = [[0.0; LANES]; 3];
-                        (0..3).for_each(|n| gradient[n].store(&mut of_lane[n]));
-                        for lane in 0..times.len() {
-                            let at = ((first + lane) * asked + m) * result.variables + v;
-                            result.d[at] = [0, 1, 2].map(|n| of_lane[n][lane]);
-                        }
-                    }
-                }
-            },
-        );
-        self.watch.look(&mut self.adjoint, topology, state, times, resisting);
-        result.times.extend_from_slice(times);
+        self.watch.look(&mut self.adjoint, topology, state, t, resisting);
+        result.times.push(t);
     }
 
     /// The gradient of output m: what its load works on the design, and what variables change in itself.
-    #[inline(always)]
-    fn trace(&mut self, topology: &Topology, state: &mut State<T>, m: usize) {
-        let witness = state.witness;
+    fn trace(&mut self, topology: &Topology, state: &mut State<f64>, m: usize) {
         let Asked { loads, support, variables, derivatives, .. } = &mut self.asked[m];
         let (by_twists, by_variables) = derivatives.split_at(6 * loads.len());
-        let number = |of: &[[f64; LANES]; 3], order: usize| witness.like_lanes(|lane| of[order][lane]);
         for ((_, load), by) in loads.iter_mut().zip(by_twists.chunks_exact(6)) {
             for (order, load) in load.iter_mut().enumerate() {
-                let part = |first: usize| {
-                    let [x, y, z] = [0, 1, 2].map(|k| number(&by[first + k], order));
-                    Vec3::new(x, y, z)
-                };
+                let part = |first: usize| Vec3::from([0, 1, 2].map(|k| by[first + k][order]));
                 *load = Wrench { m: part(0), f: part(3) };
             }
         }
-        self.gradient.fill([witness.zero(); 3]);
+        self.gradient.fill([0.0; 3]);
         self.adjoint.add_work(topology, state, support, loads, 3, &mut self.gradient);
         for (&v, by) in variables.iter().zip(by_variables) {
-            (0..3).for_each(|order| self.gradient[v][order] += number(by, order));
+            (0..3).for_each(|order| self.gradient[v][order] += by[order]);
         }
     }
 
-    /// How all outputs go with the design twists of bodies in one lane: their derivatives by the six unit twists of each, which
-    /// stand still in the world, so that their rates are those of the load; and by variables that move what they are measured
-    /// with. Measures run on scalars, in lanes they would be compiled for every CPU.
-    fn differentiate(&mut self, state: &State<T>, lane: usize) {
+    /// How all outputs go with the design twists of bodies: their derivatives by the six unit twists of each, which stand still in the
+    /// world, so that their rates are those of the load; and by variables that move what they are measured with.
+    fn differentiate(&mut self, state: &State<f64>) {
         let Self { analysis, asked, poses, fixed, moved, bodies, .. } = self;
         let model = analysis.model();
         for &b in bodies.iter() {
-            poses[b] = still(pose_with_rates(state, b, lane));
+            poses[b] = still(pose_with_rates(state, b));
         }
-        let note = |to: &mut [[f64; LANES]; 3], Jet(d): Rates| {
-            to.iter_mut().zip(d).for_each(|(to, d)| to[lane] = d);
-        };
         for Asked { output, loads, variables, derivatives, .. } in asked {
             let (by_twists, by_variables) = derivatives.split_at_mut(6 * loads.len());
             for ((b, _), by) in loads.iter().zip(by_twists.chunks_exact_mut(6)) {
                 for (unit, to) in by.iter_mut().enumerate() {
                     move_along(&mut poses[*b], unit);
-                    note(to, Moment::new(model, fixed, poses).output(output.source).d);
+                    *to = Moment::new(model, fixed, poses).output(output.source).d.0;
                 }
                 stop(&mut poses[*b]);
             }
             for (&v, to) in variables.iter().zip(by_variables) {
                 let fixed = moved[v].as_ref().expect("laid out for every variable of an output");
-                note(to, Moment::new(model, fixed, poses).output(output.source).d);
+                *to = Moment::new(model, fixed, poses).output(output.source).d.0;
             }
         }
     }
@@ -372,9 +350,9 @@ fn dependences(
     found
 }
 
-/// A body's pose in one lane, with its first two time derivatives.
-fn pose_with_rates<T: Real>(state: &State<T>, b: usize, lane: usize) -> Pose<Rates> {
-    let (pose, v, a) = (state.pose[b].lane(lane), state.v[b].lane(lane), state.a[b].lane(lane));
+/// A body's pose, with its first two time derivatives.
+fn pose_with_rates(state: &State<f64>, b: usize) -> Pose<Rates> {
+    let (pose, v, a) = (state.pose[b], state.v[b], state.a[b]);
     let rates = |x: Vec3, first: Vec3, second: Vec3| {
         let component = |k: usize| Jet([x[k], first[k], second[k]]);
         Vec3::new(component(0), component(1), component(2))

@@ -2,9 +2,7 @@
 
 use crate::analysis::{Analysis, Design, Walk};
 use crate::motion::jerk::Jerk;
-use crate::motion::stepper::Stepper;
 use crate::motion::{BodyJerk, Stop};
-use crate::space::{Real, of_lanes};
 
 /// Third time derivatives of all bodies over a motion.
 #[derive(Clone, Debug, Default)]
@@ -47,24 +45,18 @@ impl Analysis<'_> {
         let mut jerk = Jerk::new(model, self.topology(), 0.0);
         let mut walk = Walk::new(self, design, vec![false; model.bodies.len()]);
         let mut result = Jerks { bodies: model.bodies.len(), ..Jerks::default() };
-        let mut times = model.times.chunks(1);
+        let mut times = model.times.iter();
         result.stop = walk.each(self, |one| {
             if result.times.len() >= rows {
                 each(&result);
                 result.times.clear();
                 result.states.clear();
             }
-            add(&mut jerk, one, times.next().unwrap_or_default(), &mut result);
+            let Some(&t) = times.next() else { return };
+            jerk.solve(one, t);
+            result.times.push(t);
+            result.states.extend((0..result.bodies).map(|b| jerk.of_body(one, b)));
         });
         result
-    }
-}
-
-/// Appends what is found at these times, one per lane.
-fn add<T: Real>(jerk: &mut Jerk<T>, stepper: &mut Stepper<'_, T>, times: &[f64], result: &mut Jerks) {
-    jerk.solve(stepper, &of_lanes(times));
-    for (lane, &t) in times.iter().enumerate() {
-        result.times.push(t);
-        result.states.extend((0..result.bodies).map(|b| jerk.of_body(stepper, b, lane)));
     }
 }

@@ -136,7 +136,7 @@ impl<T: Real> Curve<'_, T> {
 
     /// The times inside interval k where the curve turns.
     fn turns(&self, k: usize) -> Vec<f64> {
-        let c = self.coefficients(k).map(|c| c.lane(0));
+        let c = self.coefficients(k).map(|c| c.value());
         let rate = [c[1], 2.0 * c[2], 3.0 * c[3], 4.0 * c[4], 5.0 * c[5]];
         let (from, h) = (self.times[k], self.times[k + 1] - self.times[k]);
         roots(&rate).into_iter().map(|s| from + s * h).collect()
@@ -144,13 +144,13 @@ impl<T: Real> Curve<'_, T> {
 
     /// A time of interval k without its round-off.
     fn within(&self, k: usize, t: T) -> f64 {
-        let (t, [low, high]) = (t.lane(0), [self.times[k], self.times[k + 1]]);
+        let (t, [low, high]) = (t.value(), [self.times[k], self.times[k + 1]]);
         let end = if t - low < high - t { low } else { high };
         if (t - end).abs() < THERE * (high - low) { end } else { t.clamp(low, high) }
     }
 
     fn number(&self, k: usize, t: f64) -> f64 {
-        self.at(k, self.values[k][0].like(t))[0].lane(0)
+        self.at(k, self.values[k][0].like(t))[0].value()
     }
 }
 
@@ -357,8 +357,8 @@ fn reach<T: Real>(y: &Curve<'_, T>, x: &Option<Curve<'_, T>>, at: f64) -> Option
         let k = (0..=last).find(|&k| times[k] <= at && at <= times[k + 1])?;
         return Some((k, witness.like(at)));
     };
-    let miss = |k: usize| x.values[k][0].lane(0) - at;
-    let span = x.values.iter().map(|x| (x[0].lane(0) - at).abs()).fold(0.0, f64::max);
+    let miss = |k: usize| x.values[k][0].value() - at;
+    let span = x.values.iter().map(|x| (x[0].value() - at).abs()).fold(0.0, f64::max);
     let there = |k: usize| miss(k).abs() <= THERE * span;
     let k = (0..=last).find(|&k| there(k) || there(k + 1) || miss(k) * miss(k + 1) <= 0.0)?;
     let [mut low, mut high] = match [there(k), there(k + 1)] {
@@ -398,15 +398,15 @@ fn extreme<T: Real>(
     let along = |k: usize, t: f64| along(x, k, t);
     let mut best: Option<(T, f64)> = None;
     let mut offer = |value: T, t: f64| {
-        let better = best.is_none_or(|(most, _)| sign * value.lane(0) > sign * most.lane(0));
-        if value.lane(0).is_finite() && better {
+        let better = best.is_none_or(|(most, _)| sign * value.value() > sign * most.value());
+        if value.value().is_finite() && better {
             best = Some((value, t));
         }
     };
     let last = y.values.len() - 1;
     for k in 0..=last {
         let t = y.times[k];
-        if inside(x.as_ref().map_or(t, |x| x.values[k][0].lane(0))) {
+        if inside(x.as_ref().map_or(t, |x| x.values[k][0].value())) {
             offer(y.values[k][0], t);
         }
         if k == last || y.orders == 1 {
@@ -421,7 +421,7 @@ fn extreme<T: Real>(
     // Where the window cuts the curve, its end stays and the time moves.
     for end in metric.window.into_iter().flatten() {
         if let Some((k, t)) = reach(y, x, end) {
-            offer(y.at(k, t)[0], t.lane(0));
+            offer(y.at(k, t)[0], t.value());
         }
     }
     best
@@ -438,7 +438,7 @@ fn mean<T: Real>(
     let witness = y.values[0][0];
     let at = |k: usize| x.as_ref().map_or(witness.like(y.times[k]), |x| x.values[k][0]);
     let counts = |k: usize| {
-        let x = at(k).lane(0);
+        let x = at(k).value();
         metric.window.is_none_or(|[low, high]| low <= x && x <= high)
     };
     let value = |k: usize| of(at(k), y.values[k][0]);
@@ -450,7 +450,7 @@ fn mean<T: Real>(
             way += step;
         }
     }
-    (way.lane(0) > 0.0).then(|| sum / way)
+    (way.value() > 0.0).then(|| sum / way)
 }
 
 /// The target at an abscissa.
@@ -459,7 +459,7 @@ fn on_target<T: Real>(target: &[[f64; 2]], at: T) -> T {
         [] => at.zero(),
         [[_, only]] => at.like(*only),
         _ => {
-            let k = target[1..target.len() - 1].iter().take_while(|p| p[0] < at.lane(0)).count();
+            let k = target[1..target.len() - 1].iter().take_while(|p| p[0] < at.value()).count();
             let ([x0, y0], [x1, y1]) = (target[k], target[k + 1]);
             at.like(y0) + (at - at.like(x0)) * at.like((y1 - y0) / (x1 - x0))
         }

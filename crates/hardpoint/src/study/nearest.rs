@@ -6,7 +6,7 @@ use faer::linalg::solvers::Solve;
 use crate::analysis::{Analysis, Walk};
 use crate::model::{Change, End, Model, VariableId};
 use crate::sensitivity::{Direct, FieldParts, conditions_at_design};
-use crate::space::{FullPivot, LANES, Vec3};
+use crate::space::{FullPivot, Vec3};
 
 use super::difference::natural_step;
 
@@ -136,7 +136,7 @@ fn conditions(analysis: &Analysis<'_>, scales: &[f64]) -> Vec<Vec<f64>> {
                 let first = rows.len();
                 let mut numbers = Vec::new();
                 for (v, field) in parts.iter_mut().enumerate() {
-                    field.set_times(|d, lane| stepper.parts.law_of(d.0, lane), &[model.times[done]; LANES]);
+                    field.set_time(|d| stepper.parts.law_of(d.0), model.times[done]);
                     direct.solve_position(&stepper.topology, &mut stepper.state, field);
                     direct.defects(&stepper.topology, &stepper.state, field, |r, value| {
                         let at = numbers.iter().position(|n| *n == r).unwrap_or_else(|| {

@@ -5,7 +5,7 @@ use crate::measure::{Moment, Output, bodies_asked_for, outputs};
 use crate::model::{BodyId, Fixed, GROUND};
 use crate::motion::Stop;
 use crate::motion::stepper::Stepper;
-use crate::number::{Dual, Real, of_lanes};
+use crate::number::Dual;
 use crate::sensitivity::{BodyCurvature, Seconds, Way};
 use crate::space::Pose;
 
@@ -71,29 +71,33 @@ impl Analysis<'_> {
             ..SecondDerivatives::default()
         };
         let mut bends = Bends::new(self, &design, &directions, pairs, 0.0);
-        let mut times = model.times.chunks(1);
-        result.stop = walk.each(self, |one| bends.add(one, times.next().unwrap_or_default(), &mut result));
+        let mut times = model.times.iter();
+        result.stop = walk.each(self, |one| {
+            if let Some(&t) = times.next() {
+                bends.add(one, t, &mut result);
+            }
+        });
         result
     }
 }
 
 /// What second derivatives need besides a stepper.
-struct Bends<'a, T> {
+struct Bends<'a> {
     analysis: &'a Analysis<'a>,
-    seconds: Seconds<T>,
+    seconds: Seconds,
     /// Per pair, what measures go by.
     fixed: Vec<Fixed<Dual<Dual>>>,
     asked_for: Vec<usize>,
     poses: Vec<Pose<Dual<Dual>>>,
 }
 
-impl<'a, T: Real> Bends<'a, T> {
+impl<'a> Bends<'a> {
     fn new(
         analysis: &'a Analysis<'_>,
         design: &Design,
         directions: &[Vec<f64>],
         pairs: &[[usize; 2]],
-        witness: T,
+        witness: f64,
     ) -> Self {
         let (model, effects) = (analysis.model(), analysis.effects());
         let zero = Dual::constant(Dual::constant(0.0));
@@ -115,25 +119,22 @@ impl<'a, T: Real> Bends<'a, T> {
         }
     }
 
-    /// Appends what is found at these times, one per lane.
-    fn add(&mut self, stepper: &mut Stepper<'_, T>, times: &[f64], result: &mut SecondDerivatives) {
-        let of_lanes = of_lanes(times);
-        self.seconds.solve(stepper, &of_lanes);
+    /// Appends what is found at time t.
+    fn add(&mut self, stepper: &mut Stepper<'_>, t: f64, result: &mut SecondDerivatives) {
+        self.seconds.solve(stepper, t);
         let (model, state) = (self.analysis.model(), &stepper.state);
-        for (lane, &t) in times.iter().enumerate() {
-            result.times.push(t);
-            for p in 0..self.seconds.len() {
-                for &b in &self.asked_for {
-                    self.poses[b] = self.seconds.pose(state, p, b, lane);
-                }
-                let moment = Moment::new(model, &self.fixed[p], &self.poses);
-                moment.all(|x| {
-                    result.values.push(x.d.d);
-                    result.firsts.push(x.v.d);
-                });
-                let body = |b: usize| self.seconds.curvature(state, p, b, lane);
-                result.curvatures.extend((0..result.bodies).map(body));
+        result.times.push(t);
+        for p in 0..self.seconds.len() {
+            for &b in &self.asked_for {
+                self.poses[b] = self.seconds.pose(state, p, b);
             }
+            let moment = Moment::new(model, &self.fixed[p], &self.poses);
+            moment.all(|x| {
+                result.values.push(x.d.d);
+                result.firsts.push(x.v.d);
+            });
+            let body = |b: usize| self.seconds.curvature(state, p, b);
+            result.curvatures.extend((0..result.bodies).map(body));
         }
     }
 }
