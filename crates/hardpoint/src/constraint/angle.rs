@@ -95,6 +95,7 @@ pub(super) fn heading_wrench<T: Real>(ends: &Ends<T>) -> Wrench<T> {
     Wrench::moment(axis(&ends.j.rot, 0).cross(g) * (s.like(1.0) / (s * s + c * c)))
 }
 
+#[inline(always)]
 pub(super) fn heading_wrench_rates<T: Real>(ends: &Ends<T>, rates: &EndRates<T>) -> [Wrench<T>; 2] {
     let [x_i, y_i] = [0, 1].map(|k| direction_rates(axis(&ends.i.rot, k), rates.v_i, rates.a_i));
     let x_j = direction_rates(axis(&ends.j.rot, 0), rates.v_j, rates.a_j);

@@ -178,6 +178,7 @@ impl Forecast {
 
     /// Divided differences over the newest positions; returns how many conditions they are. Far ahead, `h` beyond
     /// the newest, only that one counts.
+    #[inline(always)]
     fn divide(&mut self, h: f64) -> usize {
         let n = ORDERS * self.counting(h);
         let time = |k: usize| self.times[k / ORDERS];

@@ -303,6 +303,7 @@ impl<T: Real> State<T> {
     }
 
     /// Residuals, wrenches and factors of block b where it stands.
+    #[inline(always)]
     pub(super) fn linearise(&mut self, topology: &Topology, parts: &Parts<T>, drivers: &[[T; 3]], b: usize) {
         let block: &Block = &topology.blocks[b];
         for &c in &block.closures {
@@ -322,10 +323,10 @@ impl<T: Real> State<T> {
             self.l[r] = wrench;
             if place.terms.is_empty() {
                 let x = &self.x;
-                let entries = closure
-                    .entries
-                    .iter()
-                    .map(|&(column, coordinate, side)| (column, wrench.on(x[coordinate]) * zero.like(side)));
+                let entries = closure.entries.iter().map(
+                    #[inline(always)]
+                    |&(column, coordinate, side)| (column, wrench.on(x[coordinate]) * zero.like(side)),
+                );
                 self.factors[b].set_row(k, entries, zero);
             } else {
                 self.enter_coupler(topology, b, k, r);
@@ -371,6 +372,7 @@ impl<T: Real> State<T> {
         Ok(())
     }
 
+    #[inline(always)]
     fn newton(
         &mut self,
         topology: &Topology,
@@ -443,6 +445,7 @@ impl<T: Real> State<T> {
     }
 
     /// Velocity and acceleration of the bodies that drivers alone place.
+    #[inline(always)]
     fn rates_of_driven(&mut self, topology: &Topology) {
         let links = topology.driven_links();
         carry(topology, links.clone(), &self.x, None, &self.qd, &mut self.v, |_| true);
@@ -453,6 +456,7 @@ impl<T: Real> State<T> {
 
     /// Velocity and acceleration of the bodies of block b, with the factors that its position left (`docs/theory.md`
     /// (9), (10)).
+    #[inline(always)]
     fn rates_of_block(&mut self, topology: &Topology, parts: &Parts<T>, drivers: &[[T; 3]], b: usize) {
         let (block, witness, s) = (&topology.blocks[b], self.witness, self);
         for &c in &block.closures {
@@ -592,6 +596,7 @@ impl<T: Real> State<T> {
     }
 
     /// Constraint row r of the Jacobian, by column of its block, lengths in sizes.
+    #[inline(always)]
     pub fn scaled_row(&self, topology: &Topology, r: usize, out: &mut [T]) {
         let scale = 1.0 / topology.rows[r].unit;
         let zero = self.witness.zero();
@@ -617,6 +622,7 @@ impl<T: Real> State<T> {
     }
 
     /// First or second time derivative of the unit twists, each carried by the frame before its freedom.
+    #[inline(always)]
     fn rates_of_twists(&mut self, topology: &Topology, links: std::ops::Range<usize>, order: usize) {
         for link in &topology.links[links] {
             if link.keeps_its_twist() {
@@ -647,6 +653,7 @@ impl<T: Real> State<T> {
     }
 
     /// First time derivative of the wrenches that the motion needs; or all of what sensitivities need besides.
+    #[inline(always)]
     fn rates_of_wrenches(&mut self, topology: &Topology, c: usize, order: usize) {
         let closure = &topology.closures[c];
         {

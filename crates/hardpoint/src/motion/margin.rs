@@ -71,6 +71,7 @@ impl<T: Real> Margins<T> {
 
     /// 1 / |J^-1|, the inverse column by column; where constraints are redundant 1 / |J^+| of all of them, so that the margin does
     /// not depend on which of them the block is solved with.
+    #[inline(always)]
     fn of_block(&mut self, topology: &Topology, state: &State<T>, b: usize, limit: &mut impl FnMut(T)) -> T {
         let squared = state.witness.like(SQUARED);
         if self.redundant[b] {
@@ -106,6 +107,7 @@ impl<T: Real> Margins<T> {
     }
 
     /// 1 / |J^+| over all rows of a block, `J^+ = (J^T J)^-1 J^T` column by column; 0 where round-off may have a part in it.
+    #[inline(always)]
     fn of_all_rows(
         &mut self,
         topology: &Topology,
@@ -143,6 +145,7 @@ impl<T: Real> Margins<T> {
 }
 
 /// Factors, and gives the pivot ratio; the order of the pivots must go on to serve.
+#[inline(always)]
 fn judged<T: Real>(factors: &mut Elimination<T>, limit: &mut impl FnMut(T)) -> f64 {
     let found = factors.factor();
     let growth = found.watched.growth;
@@ -165,6 +168,7 @@ impl Margin {
 const SQUARED: f64 = 1e-6;
 
 /// Constraint row r of the Jacobian, by column of its block, as a part of the most that it could resist.
+#[inline(always)]
 fn relative_row<T: Real>(topology: &Topology, state: &State<T>, r: usize, row: &mut [T]) {
     let scale = 1.0 / topology.rows[r].unit;
     let zero = state.witness.zero();
@@ -191,6 +195,7 @@ fn wrench<T: Real>(topology: &Topology, state: &State<T>, k: usize) -> Wrench<T>
 }
 
 /// The most that constraint row r could resist in any coordinate of its loop, scaled like its row of the Jacobian.
+#[inline(always)]
 fn most_resistance<T: Real>(topology: &Topology, state: &State<T>, r: usize) -> T {
     let scale = 1.0 / topology.rows[r].unit;
     let mut most = state.witness.like(f64::MIN_POSITIVE);

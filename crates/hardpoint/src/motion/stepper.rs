@@ -316,6 +316,7 @@ impl<'m> Stepper<'m> {
 
     /// Whether the laws do nothing between here and the output time t that its two ends would not show, and no singular position is
     /// known to be near. The drivers are at t already.
+    #[inline(always)]
     pub(super) fn is_clear(&mut self, t: f64, h: f64) -> bool {
         for d in 0..self.drivers.len() {
             let unit = self.driver_units[d];
@@ -338,6 +339,7 @@ impl<'m> Stepper<'m> {
 
     /// By what part each determinant has changed since the saved position, a step h before; returns whether that is little, and
     /// about as much as over the step before.
+    #[inline(always)]
     fn note_changes(&mut self, h: f64) -> bool {
         const MIDDLE: f64 = 0.5 * (MILD[0] + MILD[1]);
         const REACH: f64 = 0.5 * (MILD[1] - MILD[0]);
@@ -359,6 +361,7 @@ impl<'m> Stepper<'m> {
     }
 
     /// Sets the drivers for the path at t.
+    #[inline(always)]
     pub(super) fn drive(&mut self, path: Path, t: f64) -> Result<(), Refusal> {
         self.state.gap_left = if path == Path::Assembly { [1.0 - t, -1.0] } else { [0.0; 2] };
         for k in 0..self.drivers.len() {
@@ -424,6 +427,7 @@ impl<'m> Stepper<'m> {
 
     /// Foresees the position a step h beyond the saved one, from where the mechanism has been; returns how far the largest move
     /// goes (rad, or sizes), to second order.
+    #[inline(always)]
     fn foresee_at(&mut self, h: f64) -> f64 {
         let t = self.time + h;
         self.state.contacts.copy_from_slice(&self.saved.contacts);
@@ -447,6 +451,7 @@ impl<'m> Stepper<'m> {
     }
 
     /// The largest move (rad, or sizes) over a step h, by speed and acceleration.
+    #[inline(always)]
     fn expected_move(&self, h: f64) -> f64 {
         let (saved, half) = (&self.saved, 0.5 * h);
         let mut most = 0.0;
@@ -460,6 +465,7 @@ impl<'m> Stepper<'m> {
     }
 
     /// About what the coordinates of couplers are, a step h beyond the saved position.
+    #[inline(always)]
     pub(super) fn expect_turns(&mut self, h: f64) {
         let half = 0.5 * h;
         for &r in &self.topology.coupled_rows {
@@ -471,6 +477,7 @@ impl<'m> Stepper<'m> {
     }
 
     /// Speed of the fastest driver (rad, or sizes, per unit of the path's parameter), now or before.
+    #[inline(always)]
     pub(super) fn driver_speed(&self) -> f64 {
         self.driver_units
             .iter()
@@ -479,6 +486,7 @@ impl<'m> Stepper<'m> {
     }
 
     /// The block of a coupler that counts an angle whose turn the prediction does not tell for sure.
+    #[inline(always)]
     pub(super) fn uncertain_turn(&self) -> Option<usize> {
         let s = &self.state;
         let uncertain = |k: usize| {

@@ -140,6 +140,7 @@ impl<T: Real> Real for Dual<T> {
         let v = self.v.larger(o.v);
         Self { v, d: self.d.select(o.d, v.value() == self.v.value()) }
     }
+    #[inline(always)]
     fn select(self, other: Self, first: bool) -> Self {
         Self { v: self.v.select(other.v, first), d: self.d.select(other.d, first) }
     }

@@ -270,6 +270,7 @@ impl<T: Real> Direct<T> {
         self.solve_orders(topology, state, field, 1);
     }
 
+    #[inline(always)]
     fn solve_orders(
         &mut self,
         topology: &Topology,
@@ -293,6 +294,7 @@ impl<T: Real> Direct<T> {
     }
 
     /// The design twists of every marker of the field.
+    #[inline(always)]
     fn set_field(&mut self, topology: &Topology, state: &State<T>, field: &FieldParts<T>) {
         let none = Twist::zero(state.witness);
         let in_blocks = field.reach.blocks.iter().flat_map(|&b| topology.blocks[b].links.clone());
@@ -314,6 +316,7 @@ impl<T: Real> Direct<T> {
     }
 
     /// `docs/theory.md` (11), (12) or (13).
+    #[inline(always)]
     fn solve_order(
         &mut self,
         topology: &Topology,
@@ -464,6 +467,7 @@ impl<T: Real> Direct<T> {
     }
 
     /// By how much row r fails, and the largest of the terms that must cancel.
+    #[inline(always)]
     fn row_defect(&self, topology: &Topology, state: &State<T>, field: &FieldParts<T>, r: usize) -> (T, T) {
         let zero = state.witness.zero();
         let (mut sum, mut most) = (zero, zero);
@@ -488,6 +492,7 @@ impl<T: Real> Direct<T> {
     }
 
     /// The size of the defect of row r, and what of it may be round-off.
+    #[inline(always)]
     fn judged_defect(
         &self,
         topology: &Topology,

@@ -107,6 +107,7 @@ impl<T: Real> Elimination<T> {
     }
 
     /// Eliminates in the present order; returns the largest factor, too.
+    #[inline(always)]
     fn eliminate(&mut self) -> (Factored<T>, f64) {
         let n = self.n;
         let (rows, a) = (&self.rows[..n * n], &mut self.a[..n * n]);
