@@ -5,7 +5,7 @@ use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, OnceLock};
 
-use hardpoint_tape::Number;
+use hardpoint_tape::{LANES, Number};
 
 use crate::blocks::turned;
 use crate::law::Law;
@@ -25,7 +25,6 @@ use crate::sensitivity::{
 };
 use crate::sink::{Block, Sink, Store};
 use crate::topology::{Formulation, Topology, TopologyFault};
-use hardpoint_tape::LANES;
 
 /// A model with its plan of solution, ready to be run as often as needed.
 ///
@@ -317,6 +316,7 @@ impl<'m> Analysis<'m> {
         motion.times.reserve(steps);
         motion.margins.clear();
         motion.assembly = None;
+        motion.solved_by = None;
         motion.passed.clear();
         motion.beyond = None;
     }
@@ -483,7 +483,7 @@ impl<'m> Analysis<'m> {
         }
         let mut coordinates = vec![[[0.0; LANES]; LANES]; self.topology.coordinates.len()];
         let mut now = vec![[0.0; LANES]; coordinates.len()];
-        let last = self.model.times.len() - 1;
+        let last = self.model.times.len().saturating_sub(1);
         let solved = beside.as_mut().filter(|_| designs.len() > 1).and_then(|beside| {
             let values: Vec<Vec<f64>> = designs.iter().map(|d| self.model.whole(d)).collect();
             beside.run(&values, |k, found| {
