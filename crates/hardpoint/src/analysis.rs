@@ -20,8 +20,8 @@ use crate::motion::tape::{Programs, Purpose, Recorded, StepProgram, Tape};
 use crate::motion::{BodyState, Effort, Execution, Motion, SolvedBy, Stop, StopKind};
 use crate::number::record as recording;
 use crate::sensitivity::{
-    Admissibility, BodySensitivity, JointDefect, Resisting, Sensing, Sensitivities, admissibility,
-    admissibility_at_design, along, note_defects, record_derivatives,
+    Admissibility, JointDefect, Resisting, Sensing, Sensitivities, admissibility, admissibility_at_design,
+    along, note_defects, record_derivatives,
 };
 use crate::sink::{Block, Sink, Store};
 use crate::topology::{Formulation, Topology, TopologyFault};
@@ -161,12 +161,16 @@ impl<'m> Analysis<'m> {
 
     /// How the even steps of the nominal design's motion are solved.
     pub fn solved_by(&self) -> SolvedBy {
-        let by_driver = self.measures && (0..self.model.measures.len()).any(|k| self.model.goes_by_driver(k));
         let hindrance = StepProgram::hindrance(&self.topology);
-        match hindrance.or(by_driver.then_some("measures go by a driver that moves alone")) {
+        match hindrance.or(self.goes_by_driver().then_some("measures go by a driver that moves alone")) {
             Some(why) => SolvedBy::Kernel(why.into()),
-            None => self.programs.solve(self.model.times.len()),
+            None => self.programs.solved_by(self.model.times.len()),
         }
+    }
+
+    /// Whether measures that are asked for go by a driver that moves alone, and need more of a step than programs hand out.
+    fn goes_by_driver(&self) -> bool {
+        self.measures && (0..self.model.measures.len()).any(|k| self.model.goes_by_driver(k))
     }
 
     /// The plan.
@@ -458,10 +462,9 @@ impl<'m> Analysis<'m> {
 
     /// What solves so many designs side by side, where that pays and can be done.
     pub(crate) fn side_by_side(&self, designs: usize, sensitivities: bool) -> Option<SideBySide<'_>> {
-        // What goes by a driver asks for more than bodies; so does the course of a law that is another in every design.
-        let by_driver = (0..self.model.measures.len()).any(|k| self.model.goes_by_driver(k));
-        let laws_change = self.effects.laws_change();
-        if designs < 2 || !self.programs.pay(designs * self.model.times.len()) || by_driver || laws_change {
+        let pays = designs > 1 && self.programs.pay(designs * self.model.times.len());
+        // All designs must have the same laws.
+        if !pays || self.goes_by_driver() || self.effects.laws_change() {
             return None;
         }
         let program = move |corrections| {
@@ -542,16 +545,7 @@ impl<'m> Analysis<'m> {
             let times = [self.model.times[k]; LANES];
             note_defects(found.tape, &self.topology, &times[..designs.len()], (&mut resisting, variables));
             let block = Block { states: found.states(k), derivatives: found.derivatives };
-            for body in (1..wanted.len()).filter(|b| wanted[*b]) {
-                for (lane, sink) in sinks.iter_mut().enumerate() {
-                    sink.state(k, BodyId(body), &block.state(body, lane));
-                }
-            }
-            for ((variable, body), lanes) in moved.iter().zip(block.each_derivative()) {
-                for (lane, sink) in sinks.iter_mut().enumerate().filter(|_| wanted[body.0]) {
-                    sink.sensitivity(k, *variable, *body, &BodySensitivity::of_lane(lanes, lane));
-                }
-            }
+            block.hand_over(&wanted, moved.iter().copied(), sinks, designs.len(), |lane| (lane, k));
         })?;
         Some((effort, resisting))
     }
@@ -670,14 +664,9 @@ impl<'a> Walk<'a> {
             } else {
                 let tape = self.abreast.solved();
                 if let Some(block) = self.abreast.own_results() {
-                    for body in (1..self.wanted.len()).filter(|b| self.wanted[*b]) {
-                        for lane in 0..count {
-                            sink.state(k + lane, BodyId(body), &block.state(body, lane));
-                        }
-                    }
-                    if let Some(sensing) = &self.sensing {
-                        sensing.take(&block, k, count, sink);
-                    }
+                    let moved = self.sensing.iter().flat_map(Sensing::moved);
+                    let sinks = std::slice::from_mut(sink);
+                    block.hand_over(&self.wanted, moved, sinks, count, |lane| (0, k + lane));
                 }
                 if let Some(sensing) = &mut self.sensing {
                     sensing.note(tape, &self.one.topology, &times[k..k + count]);

@@ -47,16 +47,31 @@ pub(crate) struct Block<'b> {
 }
 
 impl Block<'_> {
-    /// The state of a body but ground in one lane.
+    /// Gives the results of wanted bodies, lane by lane, to one of the sinks each, as those of an output time: `of(lane)` says which
+    /// sink, and which time. `moved` says which variable moves which body, in the order of the derivatives.
     #[inline(always)]
-    pub(crate) fn state(&self, body: usize, lane: usize) -> BodyState {
-        BodyState::from(|n| self.states[BodyState::NUMBERS * (body - 1) + n][lane])
-    }
-
-    /// The derivatives of one body by one variable after the other.
-    #[inline(always)]
-    pub(crate) fn each_derivative(&self) -> impl Iterator<Item = &[[f64; 8]; BodySensitivity::NUMBERS]> {
-        self.derivatives.as_chunks().0.iter()
+    pub(crate) fn hand_over<S: Sink>(
+        &self,
+        wanted: &[bool],
+        moved: impl Iterator<Item = (VariableId, BodyId)>,
+        sinks: &mut [S],
+        lanes: usize,
+        of: impl Fn(usize) -> (usize, usize),
+    ) {
+        let states = self.states.as_chunks::<{ BodyState::NUMBERS }>().0;
+        for (numbers, body) in states.iter().zip(1..).filter(|(_, body)| wanted[*body]) {
+            for lane in 0..lanes {
+                let (sink, k) = of(lane);
+                sinks[sink].state(k, BodyId(body), &BodyState::from(|n| numbers[n][lane]));
+            }
+        }
+        let derivatives = self.derivatives.as_chunks::<{ BodySensitivity::NUMBERS }>().0;
+        for (numbers, (variable, body)) in derivatives.iter().zip(moved).filter(|(_, m)| wanted[m.1.0]) {
+            for lane in 0..lanes {
+                let (sink, k) = of(lane);
+                sinks[sink].sensitivity(k, variable, body, &BodySensitivity::from(|n| numbers[n][lane]));
+            }
+        }
     }
 }
 

@@ -10,13 +10,12 @@ use hardpoint_tape::{LANES, Lanes};
 
 use crate::blocks::{Line, lanes_of};
 use crate::sink::Block;
-use crate::space::Real;
 use crate::topology::Source;
 
 use super::forecast::{Forecast, NODES, ORDERS, Weights};
 use super::kinematics::{QUADRATIC, Residuals};
 use super::margin::Margin;
-use super::stepper::{Ahead, EVEN, LONGEST, MILD, MILD_CHANGE, RESTS, Saved, Stepper, smooth};
+use super::stepper::{Ahead, EVEN, LONGEST, MILD, MILD_CHANGE, RESTS, Saved, Stepper};
 use super::tape::{MOST_CORRECTIONS, Room, Runnable, StepProgram, Tape};
 use super::walk::PART_OF_WAY;
 
@@ -41,7 +40,7 @@ pub(crate) struct Abreast<'p> {
     tape: Option<Tape>,
     laws: Laws,
     weights: Weights,
-    /// Positions that are known and stand in the tape, by their slots.
+    /// One of before, until it is known how good it was.
     forecast: Option<Forecast>,
     /// Steps to walk before the next try, and how long the next pause is.
     wait: usize,
@@ -210,7 +209,9 @@ impl<'p> Abreast<'p> {
         let residuals =
             tape.solve((&one.branch, &one.try_others), FORESEEN, &mut self.ratios, results).ok()?;
         let change_step = determinants_are_even(tape, one, &times, last);
-        let fits = change_step.is_some() && speeds_are_smooth(tape, one, &ahead);
+        let before = |_, c: usize, _| [one.saved.qd[c], one.saved.qdd[c]];
+        let fits = change_step.is_some()
+            && tape.speeds_are_smooth(&one.topology, before, &ahead, one.fastest_driver);
         match change_step.filter(|_| fits) {
             Some(step) => {
                 one.continue_from(tape, &times, last, (residuals, &self.ratios), step);
@@ -317,23 +318,6 @@ fn determinants_are_even(tape: &Tape, one: &mut Stepper<'_>, times: &Lanes, last
     Some(step)
 }
 
-/// Whether the speeds at all times are those of the same branch as where the stepper stands.
-#[inline(always)]
-fn speeds_are_smooth(tape: &Tape, one: &Stepper<'_>, ahead: &Lanes) -> bool {
-    let (mut fastest, mut difference) = ([0.0; LANES], [0.0; LANES]);
-    for (c, [speeds, _]) in tape.unknowns() {
-        let (qd, qdd, per_unit) = (one.saved.qd[c], one.saved.qdd[c], one.topology.coordinates[c].per_unit);
-        for lane in 0..LANES {
-            let speed = f64::max(speeds[lane].abs(), qd.abs());
-            let apart = (speeds[lane] - (qd + qdd * ahead[lane])).abs();
-            fastest[lane] = Real::larger(fastest[lane], speed * per_unit);
-            difference[lane] = Real::larger(difference[lane], apart * per_unit);
-        }
-    }
-    let most = |x: &Lanes| x.iter().copied().fold(0.0, Real::larger);
-    smooth(most(&difference), most(&fastest), one.fastest_driver)
-}
-
 impl Stepper<'_> {
     /// Stands where a tape has come to in lane `last`, having passed all before it.
     #[inline(always)]
@@ -368,11 +352,7 @@ impl Stepper<'_> {
         effort.by_program += last + 1;
         effort.iterations = self.state.iterations;
         effort.worst_residual = effort.worst_residual.max(residuals.largest);
-        for &ratio in ratios {
-            if ratio < effort.least_pivot_ratio {
-                (effort.least_pivot_ratio, effort.least_pivot_time) = (ratio, self.time);
-            }
-        }
+        effort.note_pivots(ratios.iter().copied(), self.time);
     }
 
     /// Saves the position and the rates that a tape has found in one lane.

@@ -7,13 +7,12 @@ use hardpoint_tape::{LANES, Lanes};
 
 use crate::blocks::{Line, lanes_of};
 use crate::model::{BodyId, VariableId};
-use crate::space::Real;
 
 use super::Effort;
 use super::abreast::ProgramOf;
 use super::forecast::{NODES, ORDERS, Weights};
 use super::kinematics::QUADRATIC;
-use super::stepper::{Ahead, MILD, MILD_CHANGE, Stepper, TRUST_FLOOR, smooth};
+use super::stepper::{Ahead, MILD, MILD_CHANGE, Stepper, TRUST_FLOOR};
 use super::tape::{MOST_CORRECTIONS, Tape};
 use super::walk::Path;
 
@@ -144,11 +143,7 @@ impl<'m> SideBySide<'m> {
             effort.steps += 1;
             effort.by_program += 1;
             effort.iterations += self.tape().passes();
-            for &ratio in &self.ratios {
-                if ratio < effort.least_pivot_ratio {
-                    (effort.least_pivot_ratio, effort.least_pivot_time) = (ratio, t);
-                }
-            }
+            effort.note_pivots(self.ratios.iter().copied(), t);
         }
         Some(effort)
     }
@@ -182,7 +177,10 @@ impl<'m> SideBySide<'m> {
         let least = if self.count < NODES { MOST_CORRECTIONS } else { 1 + poor };
         (least..=MOST_CORRECTIONS)
             .find(|corrections| self.solve(*corrections, k, &ahead, effort).is_some())?;
-        if !self.speeds_are_smooth(k) || !self.determinants_are_even(k) {
+        let before = |n: usize, _, lane: usize| self.rates[n].map(|lanes| lanes[lane]);
+        let topology = &self.nominal.topology;
+        let smooth = self.tape().speeds_are_smooth(topology, before, &ahead, self.course[k].fastest);
+        if !smooth || !self.determinants_are_even(k) {
             return None;
         }
         self.save(t);
@@ -215,22 +213,6 @@ impl<'m> SideBySide<'m> {
         effort.worst_residual = effort.worst_residual.max(residuals.largest);
         (self.by, self.corrected) = (corrections - 1, tape.first_correction());
         Some(())
-    }
-
-    /// Whether the speeds at output time k are those of the same branch as at the one before.
-    fn speeds_are_smooth(&self, k: usize) -> bool {
-        let Drive { h, fastest: fastest_driver } = self.course[k];
-        let (mut fastest, mut difference) = (0.0, 0.0);
-        for ((c, [speeds, _]), [before, acceleration]) in self.tape().unknowns().zip(&self.rates) {
-            let per_unit = self.nominal.topology.coordinates[c].per_unit;
-            for lane in 0..LANES {
-                let speed = f64::max(speeds[lane].abs(), before[lane].abs());
-                let apart = (speeds[lane] - (before[lane] + acceleration[lane] * h)).abs();
-                fastest = Real::larger(fastest, speed * per_unit);
-                difference = Real::larger(difference, apart * per_unit);
-            }
-        }
-        smooth(difference, fastest, fastest_driver)
     }
 
     /// Whether every determinant has changed by little up to output time k, and about as much as over the step before.
@@ -282,10 +264,7 @@ fn course(nominal: &mut Stepper<'_>) -> (Vec<Drive>, Vec<[f64; ORDERS]>) {
         }
         nominal.fastest_driver = nominal.driver_speed();
         if k > 0 {
-            for d in 0..nominal.drivers.len() {
-                let moved = nominal.drivers[d][0] - nominal.saved.drivers[d][0];
-                nominal.moves[d] = moved.abs() / nominal.driver_units[d];
-            }
+            nominal.note_moves();
             nominal.ahead = Ahead::Even;
         }
         nominal.saved.drivers.copy_from_slice(&nominal.drivers);

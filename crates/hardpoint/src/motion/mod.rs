@@ -210,6 +210,18 @@ pub struct Effort {
     pub least_pivot_time: f64,
 }
 
+impl Effort {
+    /// Keeps the smallest of these pivot ratios in mind, if it is the smallest so far.
+    #[inline(always)]
+    pub(crate) fn note_pivots(&mut self, ratios: impl Iterator<Item = f64>, t: f64) {
+        for ratio in ratios {
+            if ratio < self.least_pivot_ratio {
+                (self.least_pivot_ratio, self.least_pivot_time) = (ratio, t);
+            }
+        }
+    }
+}
+
 impl Motion {
     /// The least margin of the motion, and the output time that has it.
     pub fn least_margin(&self) -> Option<(usize, Margin)> {

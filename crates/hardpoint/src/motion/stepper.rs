@@ -276,11 +276,7 @@ impl<'m> Stepper<'m> {
         self.effort.steps += 1;
         self.effort.iterations = self.state.iterations;
         self.effort.worst_residual = self.effort.worst_residual.max(self.residuals.largest);
-        for &(ratio, _) in &self.state.pivots {
-            if ratio < self.effort.least_pivot_ratio {
-                (self.effort.least_pivot_ratio, self.effort.least_pivot_time) = (ratio, self.time);
-            }
-        }
+        self.effort.note_pivots(self.state.pivots.iter().map(|p| p.0), self.time);
     }
 
     /// Goes on to the output time t in one step, if the way there is known to be even; returns whether it did.
@@ -306,12 +302,18 @@ impl<'m> Stepper<'m> {
         if self.ahead == Ahead::Even && !even {
             return false;
         }
-        for (d, moved) in self.moves.iter_mut().enumerate() {
-            *moved = (self.drivers[d][0] - self.saved.drivers[d][0]).abs() / self.driver_units[d];
-        }
+        self.note_moves();
         self.save(t, h);
         self.ahead = if even { Ahead::Even } else { Ahead::Unknown };
         true
+    }
+
+    /// How far each driver has moved from the saved position.
+    #[inline(always)]
+    pub(super) fn note_moves(&mut self) {
+        for (d, moved) in self.moves.iter_mut().enumerate() {
+            *moved = (self.drivers[d][0] - self.saved.drivers[d][0]).abs() / self.driver_units[d];
+        }
     }
 
     /// Whether the laws do nothing between here and the output time t that its two ends would not show, and no singular position is

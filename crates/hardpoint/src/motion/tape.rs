@@ -11,9 +11,9 @@
 
 use std::collections::BTreeMap;
 use std::fmt;
-use std::sync::{Arc, Mutex};
+use std::sync::{Arc, Mutex, OnceLock};
 
-use hardpoint_code::{Code, PARTS, Scratch, Width};
+use hardpoint_code::{Code, PARTS, Scratch, Unsupported, Width};
 use hardpoint_tape::{Interpreter, LANES, Lanes, Number, Options, Program, record};
 
 use crate::blocks::{Line, lanes_of};
@@ -29,7 +29,7 @@ use super::forecast::{Channel, NODES, ORDERS};
 use super::kinematics::{CORRECTIONS, QUADRATIC, ROUND_OFF, Residuals, State};
 use super::margin::Margins;
 use super::parts::Parts;
-use super::stepper::{LOCKED, Saved, Stepper};
+use super::stepper::{LOCKED, Saved, Stepper, smooth};
 
 /// Newton's first correction while recording, in units of each coordinate, for programs with one correction, two and three: the last
 /// of them leaves round-off.
@@ -172,9 +172,9 @@ impl BlockProgram {
 
 /// An unknown coordinate, one of a ball's three included, and where its speed is among the outputs; its acceleration comes next.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Unknown {
-    pub coordinate: usize,
-    pub speed: usize,
+struct Unknown {
+    coordinate: usize,
+    speed: usize,
 }
 
 /// Where the inputs of a program begin: weights, then positions of every channel, the newest first, drivers, variables of the
@@ -272,7 +272,7 @@ impl StepProgram {
                 fits = false;
                 return out;
             };
-            limits.extend(more.limits);
+            limits.extend(more.limits.into_iter().chain(recording::limits()));
             (moved, defects) = (more.moved, more.defects);
             let limits_at = out.len();
             let margins_at = limits_at + limits.len();
@@ -369,7 +369,8 @@ fn foresee(topology: &Topology, channels: &[Channel], at: &Saved, offset: f64, s
     }
 }
 
-/// Recording pays from so many steps on: it costs less than a millisecond or two beside them, and later runs have it for nothing.
+/// Recording pays from so many steps on: it costs about as much as a few hundred of the kernel's, once, and later runs have it for
+/// nothing.
 const PAYS: usize = 100;
 /// After so many groups of steps, a program that was refused in more than a quarter of them is given up.
 const TRIAL: usize = 8;
@@ -429,24 +430,28 @@ pub(crate) struct Programs {
     execution: Execution,
     steps: Mutex<BTreeMap<Purpose, Option<Arc<StepProgram>>>>,
     laws: Mutex<Option<Option<Arc<Runnable>>>>,
+    /// The registers of machine code, or why there is none.
+    machine: OnceLock<Result<Width, Unsupported>>,
 }
 
 impl Programs {
     /// None as yet.
     pub fn new(execution: Execution) -> Self {
-        Self { execution, steps: Mutex::default(), laws: Mutex::default() }
+        Self { execution, steps: Mutex::default(), laws: Mutex::default(), machine: OnceLock::new() }
     }
 
     /// How so many steps are solved, if they can be recorded.
-    pub fn solve(&self, steps: usize) -> SolvedBy {
+    pub fn solved_by(&self, steps: usize) -> SolvedBy {
         let asked = || "it was asked for".to_owned();
-        // What can be made of nothing can be made of all.
-        match (self.execution, Code::new(&Program::default())) {
-            (Execution::Kernel, _) => SolvedBy::Kernel(asked()),
+        match self.execution {
+            Execution::Kernel => SolvedBy::Kernel(asked()),
             _ if !self.pay(steps) => SolvedBy::Kernel(format!("recording pays from {PAYS} output times on")),
-            (Execution::Interpreted, _) => SolvedBy::Interpreter(asked()),
-            (_, Ok(code)) => SolvedBy::Code(code.width()),
-            (_, Err(why)) => SolvedBy::Interpreter(why.to_string()),
+            Execution::Interpreted => SolvedBy::Interpreter(asked()),
+            // What can be made of nothing can be made of all.
+            _ => match self.machine.get_or_init(|| Code::new(&Program::default()).map(|code| code.width())) {
+                Ok(width) => SolvedBy::Code(*width),
+                Err(why) => SolvedBy::Interpreter(why.to_string()),
+            },
         }
     }
 
@@ -581,7 +586,7 @@ impl Tape {
         &self.inputs[self.program.inputs.drivers + ORDERS * d + order].0
     }
 
-    /// Solves the steps that were given, and judges each in the lanes up to `last`: `branch` says which sign of each determinant is
+    /// Solves the steps that were given, and judges each: `branch` says which sign of each determinant is
     /// expected, and `least` which pivot ratio at the least; `trust` bounds the first correction (rad, or sizes). Gives the largest
     /// residuals; the smallest pivot ratio of each block goes to `ratios`, the numbers of all bodies but ground and their derivatives
     /// to the two lists, where they mean nothing if the steps are refused.
@@ -626,7 +631,7 @@ impl Tape {
         Ok(residuals)
     }
 
-    /// Calls that refused, which seemed solved.
+    /// Counts the steps that were just solved as refused: what came after them did not fit.
     pub fn refuse(&mut self) {
         self.refused += 1;
     }
@@ -670,6 +675,30 @@ impl Tape {
     pub fn unknowns(&self) -> impl Iterator<Item = (usize, [&Lanes; 2])> {
         let at = |k: usize| &self.outputs[k].0;
         self.program.unknowns.iter().map(move |u| (u.coordinate, [at(u.speed), at(u.speed + 1)]))
+    }
+
+    /// Whether the speeds are those of the same branch as so long before, where the n-th unknown, coordinate c, had in a lane the speed
+    /// and acceleration `before(n, c, lane)`.
+    #[inline(always)]
+    pub fn speeds_are_smooth(
+        &self,
+        topology: &Topology,
+        before: impl Fn(usize, usize, usize) -> [f64; 2],
+        ahead: &Lanes,
+        fastest_driver: f64,
+    ) -> bool {
+        let (mut fastest, mut difference) = ([0.0; LANES], [0.0; LANES]);
+        for (n, (c, [speeds, _])) in self.unknowns().enumerate() {
+            let per_unit = topology.coordinates[c].per_unit;
+            for lane in 0..LANES {
+                let [speed, acceleration] = before(n, c, lane);
+                let apart = (speeds[lane] - (speed + acceleration * ahead[lane])).abs();
+                let faster = f64::max(speeds[lane].abs(), speed.abs());
+                fastest[lane] = Real::larger(fastest[lane], faster * per_unit);
+                difference[lane] = Real::larger(difference[lane], apart * per_unit);
+            }
+        }
+        smooth(largest(&difference), largest(&fastest), fastest_driver)
     }
 
     /// The margins of the blocks, if they are worked out.

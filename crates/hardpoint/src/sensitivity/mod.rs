@@ -52,7 +52,7 @@ impl BodySensitivity {
 
     /// From them, in the order of the fields.
     #[inline(always)]
-    fn from(number: impl Fn(usize) -> f64) -> Self {
+    pub(crate) fn from(number: impl Fn(usize) -> f64) -> Self {
         let vector = |k: usize| Vec3::new(number(3 * k), number(3 * k + 1), number(3 * k + 2));
         Self {
             dr: vector(0),
@@ -62,12 +62,6 @@ impl BodySensitivity {
             da: vector(4),
             dalpha: vector(5),
         }
-    }
-
-    /// In one of eight lanes.
-    #[inline(always)]
-    pub(crate) fn of_lane(lanes: &[[f64; 8]; Self::NUMBERS], lane: usize) -> Self {
-        Self::from(|n| lanes[n][lane])
     }
 
     /// All of them, in the order of the fields.

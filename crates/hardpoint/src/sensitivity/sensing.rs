@@ -6,7 +6,7 @@ use crate::model::{BodyId, DriverId, Field, Model, VariableId};
 use crate::motion::kinematics::State;
 use crate::motion::stepper::Stepper;
 use crate::motion::tape::{Recorded, Tape};
-use crate::sink::{Block, Sink};
+use crate::sink::Sink;
 use crate::space::{Real, Twist};
 use crate::topology::Topology;
 
@@ -67,15 +67,6 @@ impl Sensing {
             }
             if let Some(defect) = direct.worst_defect(topology, state, field) {
                 note(&mut resisting[v], topology, defect, t);
-            }
-        }
-    }
-
-    /// Output times k and on, as many as `count`, as a program has found them.
-    pub fn take(&self, block: &Block<'_>, k: usize, count: usize, sink: &mut impl Sink) {
-        for ((variable, body), lanes) in self.moved().zip(block.each_derivative()) {
-            for lane in (0..count).filter(|_| self.wanted[body.0]) {
-                sink.sensitivity(k + lane, variable, body, &BodySensitivity::of_lane(lanes, lane));
             }
         }
     }
