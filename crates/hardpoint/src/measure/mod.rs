@@ -16,7 +16,7 @@ use wheel::{WheelAt, camber, toe};
 use crate::constraint::Row;
 use crate::law::Law;
 use crate::model::{
-    AngleKind, AxleMeasure, BodyId, Dimension, DriverId, Effects, Fixed, JointId, Known, MeasureKind, Model,
+    AxleMeasure, BodyId, Dimension, DriverId, Effects, Fixed, JointId, Known, MeasureKind, Model,
     OutputSource, PointId, Ray, Side, VariableId, WheelId,
 };
 use crate::motion::{Motion, Passed};
@@ -148,7 +148,7 @@ pub(crate) fn evaluate(
     let fixed = effects.fixed(&lifted, zero);
     let mut poses = vec![Pose::IDENTITY.spread(zero); model.bodies.len()];
     // Formulas are over angles that are counted through turns.
-    let counts = model.measures.iter().any(|m| matches!(m.kind, MeasureKind::Combination(_)));
+    let counts = model.measures.iter().any(|m| matches!(m.kind, MeasureKind::Combination { .. }));
     let mut counted: Vec<f64> = Vec::new();
     let mut given: Vec<Rates> = Vec::new();
     for k in 0..motion.len() {
@@ -173,7 +173,7 @@ pub(crate) fn evaluate(
             let whole = |(m, x): (usize, &[f64; 3])| x[0] - raw[m][0];
             counted.extend(measured.values[first..].iter().enumerate().map(whole).take(model.measures.len()));
             for (m, measure) in model.measures.iter().enumerate() {
-                if matches!(measure.kind, MeasureKind::Combination(_)) {
+                if matches!(measure.kind, MeasureKind::Combination { .. }) {
                     let moment = Moment { whole_turns: &counted[now..], ..moment };
                     measured.values[first + m] = moment.measure(m).0.map(finite);
                 }
@@ -265,9 +265,9 @@ pub(crate) fn watched(model: &Model, topology: &Topology) -> Vec<bool> {
         if let MeasureKind::Coordinate { joint, .. } = model.measures[m].kind {
             model.joints[joint.0].bodies.iter().for_each(|b| watched[b.0] = true);
         }
-        if let MeasureKind::Angle { between, .. } = &model.measures[m].kind {
+        if let MeasureKind::Angle { from, to, .. } = &model.measures[m].kind {
             for point in
-                between.iter().filter_map(|ray| if let Ray::Between(p) = ray { Some(p) } else { None })
+                [from, to].iter().filter_map(|ray| if let Ray::Between(p) = ray { Some(p) } else { None })
             {
                 point.iter().for_each(|p| watched[model.points[p.0].body.0] = true);
             }
@@ -302,7 +302,7 @@ fn turns(model: &Model, topology: &Topology, outputs: &[Output]) -> Vec<Option<T
             MeasureKind::Coordinate { joint, coordinate } => {
                 (output.dimension == Dimension::ANGLE).then(|| of_joint(joint, coordinate))
             }
-            MeasureKind::Angle { kind: AngleKind::About(_), .. } => Some(Turns::Path(None)),
+            MeasureKind::Angle { about: Some(_), .. } => Some(Turns::Path(None)),
             _ => None,
         }
     };
@@ -457,14 +457,25 @@ impl<'a, T: Real> Moment<'a, T> {
                 let p = self.point(*point);
                 along.spread(p.x).dot(p)
             }
-            MeasureKind::Angle { between, kind } => {
-                let within = self.angle(k, between, *kind);
+            MeasureKind::Angle { from, to, about } => {
+                let [a, b] = self.rays(k, [from, to]);
+                let (across, along) = (a.cross(b), a.dot(b));
+                let within = match about {
+                    None => across.norm().atan2(along),
+                    Some(n) => {
+                        let n = n.spread(along);
+                        n.dot(across).atan2(along - n.dot(a) * n.dot(b))
+                    }
+                };
                 self.whole_turns.get(k).map_or(within, |turns| within + within.like(*turns))
             }
-            MeasureKind::Velocity { point, along, order } => {
-                let velocity = self.point(*point).map(T::rate);
-                let v = if *order == 1 { velocity } else { velocity.map(T::rate) };
-                along.map_or_else(|| v.norm(), |along| along.spread(v.x).dot(v))
+            MeasureKind::TransmissionAngle { from, to } => {
+                let [a, b] = self.rays(k, [from, to]);
+                a.cross(b).norm().atan2(a.dot(b).abs())
+            }
+            MeasureKind::Velocity { point, along } => component(self.point(*point).map(T::rate), *along),
+            MeasureKind::Acceleration { point, along } => {
+                component(self.point(*point).map(T::rate).map(T::rate), *along)
             }
             MeasureKind::Curvature { point, about } => {
                 let v = self.point(*point).map(T::rate);
@@ -475,7 +486,7 @@ impl<'a, T: Real> Moment<'a, T> {
                 turn / (way.select(unknown(), way.value() > far.value()) * speed)
             }
             MeasureKind::Rate { of } => self.output(*of).rate(),
-            MeasureKind::Combination(formula) => formula.at(unknown(), |source| self.output(source)),
+            MeasureKind::Combination { expression } => expression.at(unknown(), |source| self.output(source)),
             MeasureKind::Toe { body, .. } => {
                 let e = self.direction(k, 0, *body);
                 toe(e, e.x.like(Side::Left.sign()))
@@ -490,21 +501,12 @@ impl<'a, T: Real> Moment<'a, T> {
         }
     }
 
-    fn angle(&self, k: usize, between: &[Ray; 2], kind: AngleKind) -> T {
-        let ray = |end: usize| match between[end] {
+    /// The directions of an angle, of any length.
+    fn rays(&self, k: usize, rays: [&Ray; 2]) -> [Vec3<T>; 2] {
+        [0, 1].map(|end| match *rays[end] {
             Ray::Between([from, to]) => self.point(to) - self.point(from),
             Ray::Fixed { body, .. } => self.direction(k, end, body),
-        };
-        let (a, b) = (ray(0), ray(1));
-        let (across, along) = (a.cross(b), a.dot(b));
-        match kind {
-            AngleKind::Between => across.norm().atan2(along),
-            AngleKind::Lines => across.norm().atan2(along.abs()),
-            AngleKind::About(n) => {
-                let n = n.spread(along);
-                n.dot(across).atan2(along - n.dot(a) * n.dot(b))
-            }
-        }
+        })
     }
 
     /// Formulas and signs: `docs/measures.md`.
@@ -577,6 +579,11 @@ impl<'a, T: Real> Moment<'a, T> {
             _ => (origin(1) - origin(0)).norm(),
         }
     }
+}
+
+/// The component of a vector along a unit vector, or its magnitude.
+fn component<T: Real>(v: Vec3<T>, along: Option<Vec3>) -> T {
+    along.map_or_else(|| v.norm(), |along| along.spread(v.x).dot(v))
 }
 
 /// A point that came from rest, at its acceleration, within this part of the mechanism's size rests: its speed is round-off,
