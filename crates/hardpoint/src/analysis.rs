@@ -1,7 +1,7 @@
 //! The whole walk for one model: plan, motion, sensitivities, measures.
 
 use std::num::NonZero;
-use std::ops::ControlFlow;
+use std::ops::{ControlFlow, Range};
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, OnceLock};
 
@@ -543,9 +543,9 @@ impl<'m> Analysis<'m> {
         let mut resisting = vec![(Vec::new(), 0.0); LANES * variables];
         let effort = beside.run(&values, |k, found| {
             let times = [self.model.times[k]; LANES];
-            note_defects(found.tape, &self.topology, &times[..designs.len()], (&mut resisting, variables));
+            note_defects(found.tape, &self.topology, (&times[..designs.len()], 0), (&mut resisting, variables));
             let block = Block { states: found.states(k), derivatives: found.derivatives };
-            block.hand_over(&wanted, moved.iter().copied(), sinks, designs.len(), |lane| (lane, k));
+            block.hand_over(&wanted, moved.iter().copied(), sinks, 0..designs.len(), |lane| (lane, k));
         })?;
         Some((effort, resisting))
     }
@@ -563,10 +563,10 @@ pub(crate) struct Walk<'a> {
     pub done: usize,
 }
 
-/// What has just been solved: one output time, or several by a program.
+/// What has just been solved: one output time, or several by a program, in these of its lanes.
 pub(crate) enum Solved<'w, 'a> {
     One(&'w mut Stepper<'a>),
-    Abreast(&'w Tape),
+    Abreast(&'w Tape, Range<usize>),
 }
 
 impl<'a> Walk<'a> {
@@ -633,7 +633,7 @@ impl<'a> Walk<'a> {
             let k = self.done;
             let at_once = match k {
                 0 => 0,
-                _ => self.abreast.advance(&mut self.one, k, &times[k..], || sink.room(k)),
+                _ => self.abreast.advance(&mut self.one, k, times, || sink.room(k)),
             };
             if at_once == 0 {
                 let step = if k == 0 { self.one.start(times[k]) } else { self.one.advance(times[k]) };
@@ -662,16 +662,17 @@ impl<'a> Walk<'a> {
                 }
                 then(sink, Solved::One(one), 1, self.sensing.as_ref());
             } else {
-                let tape = self.abreast.solved();
+                let (tape, first) = (self.abreast.solved(), k % LANES);
+                let lanes = first..first + count;
                 if let Some(block) = self.abreast.own_results() {
                     let moved = self.sensing.iter().flat_map(Sensing::moved);
                     let sinks = std::slice::from_mut(sink);
-                    block.hand_over(&self.wanted, moved, sinks, count, |lane| (0, k + lane));
+                    block.hand_over(&self.wanted, moved, sinks, lanes.clone(), |lane| (0, k + lane - lanes.start));
                 }
                 if let Some(sensing) = &mut self.sensing {
-                    sensing.note(tape, &self.one.topology, &times[k..k + count]);
+                    sensing.note(tape, &self.one.topology, &times[k..k + count], first);
                 }
-                then(sink, Solved::Abreast(tape), count, self.sensing.as_ref());
+                then(sink, Solved::Abreast(tape, lanes), count, self.sensing.as_ref());
             }
             self.done += count;
         }

@@ -158,11 +158,6 @@ impl Forecast {
         (self.times.map(|t| t - self.times[0]), self.counting(h))
     }
 
-    /// How long a time is behind the newest position.
-    pub fn ahead_of(&self, t: f64) -> f64 {
-        t - self.times[0]
-    }
-
     /// What is known of a channel, position by position, the newest first.
     #[inline(always)]
     pub fn known_of(&self, channel: usize) -> [[f64; ORDERS]; NODES] {
