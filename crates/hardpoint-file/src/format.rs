@@ -1,7 +1,10 @@
 //! The format as data: which tables a model file has, which keys these have, and what stands there.
 //!
 //! Every table is declared once, beside the code that reads it. From the declarations come the keys that the reader knows, its
-//! defaults and examples, the JSON Schema (`schema.rs`), and the tables of `docs/file-format.md` (`tests/it/docs.rs`).
+//! defaults and examples, the JSON Schema (`schema.rs`), and the tables of `docs/file-format.md` (`format/docs.rs`).
+
+#[cfg(test)]
+mod docs;
 
 use hardpoint::joint::Quantity;
 
@@ -26,26 +29,32 @@ pub(crate) enum Need {
     Else(&'static str),
 }
 
-/// A key that must be there.
-pub(crate) const fn must(key: &'static str, shape: Shape, example: &'static str, doc: &'static str) -> Key {
-    Key { key, shape, need: Need::Required, example, doc }
+/// Keys as they are declared: what each means, whether it must be there, its name, what may stand there, and an example.
+macro_rules! keys {
+    (@ must) => { $crate::format::Need::Required };
+    (@ may) => { $crate::format::Need::Optional };
+    (@ or $default:literal) => { $crate::format::Need::Else($default) };
+    ($($(#[doc = $doc:literal])+ $need:ident $(($default:literal))? $key:literal: $shape:expr, $example:literal;)*) => {
+        &[$($crate::format::Key {
+            key: $key,
+            shape: $shape,
+            need: $crate::format::keys!(@ $need $($default)?),
+            example: $example,
+            doc: concat!($($doc),+).trim_ascii(),
+        }),*]
+    };
 }
 
-/// A key that may be left out.
-pub(crate) const fn may(key: &'static str, shape: Shape, example: &'static str, doc: &'static str) -> Key {
-    Key { key, shape, need: Need::Optional, example, doc }
+/// A table as it is declared: what it is, its name, and its keys.
+macro_rules! table {
+    ($(#[doc = $doc:literal])+ $name:literal, $keys:ident) => {
+        $crate::format::Table::new($name, concat!($($doc),+).trim_ascii(), $keys)
+    };
+    ($(#[doc = $doc:literal])+ $name:literal: $($keys:tt)*) => {
+        $crate::format::Table::new($name, concat!($($doc),+).trim_ascii(), $crate::format::keys! { $($keys)* })
+    };
 }
-
-/// A key that may be left out, and what holds then.
-pub(crate) const fn or(
-    key: &'static str,
-    shape: Shape,
-    default: &'static str,
-    example: &'static str,
-    doc: &'static str,
-) -> Key {
-    Key { key, shape, need: Need::Else(default), example, doc }
-}
+pub(crate) use {keys, table};
 
 /// A table with keys of its own.
 #[derive(Clone, Copy)]
@@ -71,7 +80,7 @@ impl Table {
 
     /// With the `type` that says that it is this table.
     pub fn typed_keys(&'static self) -> impl Iterator<Item = &'static Key> {
-        std::iter::once(&TYPE).chain(self.instead).chain(self.keys())
+        TYPE.iter().chain(self.instead).chain(self.keys())
     }
 }
 
@@ -85,7 +94,10 @@ pub(crate) struct Kinds {
 }
 
 /// The key that says which kind a table is.
-const TYPE: Key = must("type", Shape::Text, "...", "Which kind it is.");
+const TYPE: &[Key] = keys! {
+    /// Which kind it is.
+    must "type": Shape::Text, "...";
+};
 
 impl Kinds {
     /// The keys of all kinds, each once.
@@ -140,9 +152,7 @@ impl Shape {
     pub fn noun(self) -> String {
         match self {
             Self::Name(one) => format!("the name of {one}"),
-            Self::List(Self::Name(one), [2, 2]) => {
-                format!("the names of two {}s", one.split_once(' ').map_or("", |(_, noun)| noun))
-            }
+            Self::List(Self::Name(one), [2, 2]) => format!("the names of two {}", several(one)),
             Self::Known(noun, _) => noun.to_owned(),
             Self::Any(_, _, [one]) => one.noun(),
             Self::Words(_) => {
@@ -170,6 +180,12 @@ impl Shape {
     pub const fn some(of: &'static Shape) -> Self {
         Self::List(of, [1, usize::MAX])
     }
+}
+
+/// More than one of them: `a body`, `bodies`.
+fn several(one: &str) -> String {
+    let noun = one.split_once(' ').map_or(one, |(_, noun)| noun);
+    noun.strip_suffix('y').map_or_else(|| format!("{noun}s"), |stem| format!("{stem}ies"))
 }
 
 pub(crate) const NUMBER: Shape = Shape::Number(Quantity::Number);

@@ -22,115 +22,60 @@ use hardpoint::space::{Pose, Quat, Vec3, rotation_from_euler_313};
 use toml::de::{DeTable, DeValue};
 
 use crate::diagnostic::{closest, shown};
-use crate::format::{self, ANGLE, Key, Kinds, LENGTH, NUMBER, Need, Shape, Table, may, must, or};
+use crate::format::{self, ANGLE, Key, Kinds, LENGTH, NUMBER, Need, Shape, Table, table};
 use crate::places::{EntryPlace, Places};
 use crate::tree::{Field, Fields, LINE, MOST_ENTRIES, PLACE, Reader, Subject, Value, above_tables, quoted};
 use crate::units::{AngleUnit, LengthUnit};
 
 /// The file as a whole.
-pub(crate) const MODEL: Table = Table::new(
-    "Hardpoint model",
-    "A mechanism for Hardpoint.",
-    &[
-        must("name", Shape::Text, "\"four-bar\"", "The mechanism's name, for headings."),
-        may("description", Shape::Text, "\"...\"", "What it is and where its numbers come from."),
-        must(
-            "units",
-            Shape::Table(&UNITS),
-            "{ length = \"mm\", angle = \"deg\" }",
-            "The units of all numbers in this file. Time is always in seconds.",
-        ),
-        may(
-            "parameters",
-            Shape::Entries(&parameters::PARAMETER),
-            "{ hub = { value = 60, unit = \"length\" } }",
-            "Named numbers, which expressions in quotes may use wherever a number stands. Each is a design variable, unless \
-             it says otherwise or is itself given by an expression.",
-        ),
-        may(
-            "hardpoints",
-            Shape::Entries(&Shape::exactly(3, &LENGTH)),
-            "{ A = [0, 0, 0] }",
-            "Named points of the design configuration: `name = [x, y, z]`, global, in the length unit. Expressions may use \
-             coordinates of others, like `\"-left.y\"`.",
-        ),
-        must(
-            "bodies",
-            Shape::Entries(&Shape::Table(&BODY)),
-            "{ crank = {} }",
-            "Rigid bodies. `ground` is always there and is not declared.",
-        ),
-        may("joints", Shape::Entries(&Shape::Table(&JOINT)), "{}", "Joints between two bodies."),
-        may(
-            "couplers",
-            Shape::Entries(&Shape::Kinds(&couplers::COUPLER)),
-            "{}",
-            "Gears, racks, belts and other linear relations between joint coordinates.",
-        ),
-        may(
-            "drivers",
-            Shape::Entries(&Shape::Kinds(&drivers::DRIVER)),
-            "{}",
-            "Prescribed motions: of joint coordinates, points, distances and orientations.",
-        ),
-        may(
-            "design",
-            Shape::Entries(&Shape::Kinds(&design::VARIABLE)),
-            "{}",
-            "Design variables: what may change in the design, and how everything else follows.",
-        ),
-        may("points", Shape::Entries(&Shape::Table(&results::POINT)), "{}", "Points of bodies to follow."),
-        may(
-            "vehicle",
-            Shape::Table(&wheels::VEHICLE),
-            "{ wheelbase = 2600 }",
-            "What is known of the vehicle, for anti-dive and Ackermann.",
-        ),
-        may(
-            "wheels",
-            Shape::Entries(&Shape::Table(&wheels::WHEEL)),
-            "{}",
-            "Road wheels, for what is measured at them.",
-        ),
-        may(
-            "axles",
-            Shape::Entries(&Shape::Table(&wheels::AXLE)),
-            "{}",
-            "Pairs of wheels, for what is measured at both.",
-        ),
-        may(
-            "measures",
-            Shape::Entries(&results::MEASURE),
-            "{}",
-            "Numbers to compute from the motion, with their sensitivities.",
-        ),
-        may(
-            "metrics",
-            Shape::Entries(&Shape::Table(&results::METRIC)),
-            "{}",
-            "Numbers that sum measures up over the motion, with their sensitivities.",
-        ),
-        must("time", Shape::Kinds(&results::TIME), "{ end = 1.0, steps = 100 }", "The output times."),
-    ],
-);
-const UNITS: Table = Table::new(
-    "Units",
-    "The units of all numbers in the file.",
-    &[
-        must(
-            "length",
-            Shape::Known("the symbol of a unit", LengthUnit::words),
-            "\"mm\"",
-            "Unit of every length.",
-        ),
-        must(
-            "angle",
-            Shape::Known("the symbol of a unit", AngleUnit::words),
-            "\"deg\"",
-            "Unit of every angle.",
-        ),
-    ],
-);
+pub(crate) const MODEL: Table = table! {
+    /// A mechanism for Hardpoint.
+    "Hardpoint model":
+    /// The mechanism's name, for headings.
+    must "name": Shape::Text, "\"four-bar\"";
+    /// What it is and where its numbers come from.
+    may "description": Shape::Text, "\"...\"";
+    /// The units of all numbers in this file. Time is always in seconds.
+    must "units": Shape::Table(&UNITS), "{ length = \"mm\", angle = \"deg\" }";
+    /// Named numbers, which expressions in quotes may use wherever a number stands. Each is a design variable, unless it says
+    /// otherwise or is itself given by an expression.
+    may "parameters": Shape::Entries(&parameters::PARAMETER), "{ hub = { value = 60, unit = \"length\" } }";
+    /// Named points of the design configuration: `name = [x, y, z]`, global, in the length unit. Expressions may use
+    /// coordinates of others, like `"-left.y"`.
+    may "hardpoints": Shape::Entries(&Shape::exactly(3, &LENGTH)), "{ A = [0, 0, 0] }";
+    /// Rigid bodies. `ground` is always there and is not declared.
+    must "bodies": Shape::Entries(&Shape::Table(&BODY)), "{ crank = {} }";
+    /// Joints between two bodies.
+    may "joints": Shape::Entries(&Shape::Table(&JOINT)), "{}";
+    /// Gears, racks, belts and other linear relations between joint coordinates.
+    may "couplers": Shape::Entries(&Shape::Kinds(&couplers::COUPLER)), "{}";
+    /// Prescribed motions: of joint coordinates, points, distances and orientations.
+    may "drivers": Shape::Entries(&Shape::Kinds(&drivers::DRIVER)), "{}";
+    /// Design variables: what may change in the design, and how everything else follows.
+    may "design": Shape::Entries(&Shape::Kinds(&design::VARIABLE)), "{}";
+    /// Points of bodies to follow.
+    may "points": Shape::Entries(&Shape::Table(&results::POINT)), "{}";
+    /// What is known of the vehicle, for anti-dive and Ackermann.
+    may "vehicle": Shape::Table(&wheels::VEHICLE), "{ wheelbase = 2600 }";
+    /// Road wheels, for what is measured at them.
+    may "wheels": Shape::Entries(&Shape::Table(&wheels::WHEEL)), "{}";
+    /// Pairs of wheels, for what is measured at both.
+    may "axles": Shape::Entries(&Shape::Table(&wheels::AXLE)), "{}";
+    /// Numbers to compute from the motion, with their sensitivities.
+    may "measures": Shape::Entries(&results::MEASURE), "{}";
+    /// Numbers that sum measures up over the motion, with their sensitivities.
+    may "metrics": Shape::Entries(&Shape::Table(&results::METRIC)), "{}";
+    /// The output times.
+    must "time": Shape::Kinds(&results::TIME), "{ end = 1.0, steps = 100 }";
+};
+const UNITS: Table = table! {
+    /// The units of all numbers in the file.
+    "Units":
+    /// Unit of every length.
+    must "length": Shape::Known("the symbol of a unit", LengthUnit::words), "\"mm\"";
+    /// Unit of every angle.
+    must "angle": Shape::Known("the symbol of a unit", AngleUnit::words), "\"deg\"";
+};
 /// What people write for a unit's symbol.
 const UNIT_WORDS: [(&str, &str); 12] = [
     ("millimetre", "mm"),
@@ -146,119 +91,72 @@ const UNIT_WORDS: [(&str, &str); 12] = [
     ("radian", "rad"),
     ("radians", "rad"),
 ];
-const BODY: Table = Table::new(
-    "Body",
-    "A body; `{}` is enough.",
-    &[may(
-        "frame",
-        Shape::Kinds(&FRAME),
-        "{ position = [0, 0, 0] }",
-        "Its reference frame in the design configuration. Default: origin at the mean of the body's joint places, axes \
-         parallel to the global ones. Only results expressed in the frame depend on it.",
-    )],
-);
+const BODY: Table = table! {
+    /// A body; `{}` is enough.
+    "Body":
+    /// Its reference frame in the design configuration. Default: origin at the mean of the body's joint places, axes parallel
+    /// to the global ones. Only results expressed in the frame depend on it.
+    may "frame": Shape::Kinds(&FRAME), "{ position = [0, 0, 0] }";
+};
 const FRAME: Kinds = Kinds {
     name: "Frame",
     doc: "A reference frame.",
     typed: false,
     tables: || vec![&FRAME_BY_POSITION, &FRAME_BY_POINTS],
 };
-const FRAME_BY_POSITION: Table = Table::new(
-    "Pose",
-    "By position and orientation.",
-    &[
-        must("position", PLACE, "[0, 0, 0]", "Origin: coordinates or a hardpoint's name."),
-        may("euler", Shape::exactly(3, &ANGLE), "[0, 0, 0]", "3-1-3 Euler angles, in the angle unit."),
-        may(
-            "quaternion",
-            Shape::exactly(4, &NUMBER),
-            "[1, 0, 0, 0]",
-            "Quaternion `[w, x, y, z]`, of any length, instead of `euler`.",
-        ),
-    ],
-);
-const FRAME_BY_POINTS: Table = Table::new(
-    "FramePoints",
-    "By three points.",
-    &[
-        must("origin", PLACE, "\"A\"", "The origin."),
-        must("x", PLACE, "\"B\"", "A point on the x axis."),
-        must("xy", PLACE, "\"C\"", "A point in the xy plane, on the side of +y."),
-    ],
-);
-const JOINT: Table = Table::new(
-    "Joint",
-    "A joint between bodies i and j.",
-    &[
-        must("type", JOINT_TYPE, "\"revolute\"", "The joint type."),
-        must(
-            "bodies",
-            Shape::exactly(2, &format::BODY),
-            "[\"ground\", \"crank\"]",
-            "Names of bodies i and j. Coordinates are those of j relative to i.",
-        ),
-        may(
-            "at",
-            Shape::Any("Places", "", &[PLACE, Shape::exactly(2, &PLACE)]),
-            "\"A\"",
-            "Where it is: a hardpoint's name or coordinates; or a list of two, one on each body: for rods and legs, and for \
-             other joints that are drawn apart and have to be assembled. May be left out where the axis goes through hardpoints \
-             (then it is the first of them), and where only directions matter.",
-        ),
-        may("axis", LINE, "\"z\"", "The axis, in the design configuration."),
-        may(
-            "axis2",
-            LINE,
-            "\"x\"",
-            "The second axis: square to the first, or the axis on body j, as the joint type has it.",
-        ),
-        may(
-            "length",
-            LENGTH,
-            "250",
-            "Length of a rod, in the length unit. Default: the distance between its places. Where it differs from that, the \
-             mechanism is assembled to it.",
-        ),
-        may(
-            "lead",
-            LENGTH,
-            "5",
-            "Advance of a screw per turn, in the length unit; negative for a left-hand thread.",
-        ),
-        may(
-            "curve",
-            Shape::Table(&CURVE),
-            "{ points = [\"A\", \"B\", \"C\"] }",
-            "The curve on body i that a point of body j follows, for the joint type `point_on_curve`.",
-        ),
-        or(
-            "cut",
-            Shape::Flag,
-            "false",
-            "true",
-            "Whether loops should be cut at this joint. Results do not depend on it.",
-        ),
-    ],
-);
-const CURVE: Table = Table::new(
-    "Curve",
-    "A smooth curve through points in the design configuration, in the plane square to the joint's axis.",
-    &[
-        must(
-            "points",
-            Shape::list(&PLACE),
-            "[\"A\", \"B\", \"C\"]",
-            "Its points in order: hardpoints' names or coordinates.",
-        ),
-        or(
-            "closed",
-            Shape::Flag,
-            "false",
-            "true",
-            "Whether it returns to its first point, as the curve of a cam does; that point is not repeated.",
-        ),
-    ],
-);
+const FRAME_BY_POSITION: Table = table! {
+    /// By position and orientation.
+    "Pose":
+    /// Origin: coordinates or a hardpoint's name.
+    must "position": PLACE, "[0, 0, 0]";
+    /// 3-1-3 Euler angles, in the angle unit: turn about z, then the new x, then the new z. Default: zero.
+    may "euler": Shape::exactly(3, &ANGLE), "[0, 0, 0]";
+    /// Quaternion `[w, x, y, z]`, of any length, instead of `euler`.
+    may "quaternion": Shape::exactly(4, &NUMBER), "[1, 0, 0, 0]";
+};
+const FRAME_BY_POINTS: Table = table! {
+    /// By three points.
+    "FramePoints":
+    /// The origin.
+    must "origin": PLACE, "\"A\"";
+    /// A point on the x axis.
+    must "x": PLACE, "\"B\"";
+    /// A point in the xy plane, on the side of +y.
+    must "xy": PLACE, "\"C\"";
+};
+const JOINT: Table = table! {
+    /// A joint between bodies i and j.
+    "Joint":
+    /// The joint type, or one of its other names.
+    must "type": JOINT_TYPE, "\"revolute\"";
+    /// Names of bodies i and j. Coordinates are those of j relative to i.
+    must "bodies": Shape::exactly(2, &format::BODY), "[\"ground\", \"crank\"]";
+    /// Where it is: a hardpoint's name or coordinates; or a list of two, one on each body: for rods and legs, and for other
+    /// joints that are drawn apart and have to be assembled. May be left out where the axis goes through hardpoints (then it is
+    /// the first of them), and where only directions matter.
+    may "at": Shape::Any("Places", "", &[PLACE, Shape::exactly(2, &PLACE)]), "\"A\"";
+    /// The axis, in the design configuration; where the joint type has one it must be given.
+    may "axis": LINE, "\"z\"";
+    /// The second axis: square to the first, or the axis on body j, as the joint type has it.
+    may "axis2": LINE, "\"x\"";
+    /// Length of a rod or leg, or distance of a point from its curve, in the length unit. Default: as drawn. Where it differs from
+    /// that, the mechanism is assembled to it.
+    may "length": LENGTH, "250";
+    /// Advance of a screw per turn, in the length unit; negative for a left-hand thread. A `screw` needs it, others have none.
+    may "lead": LENGTH, "5";
+    /// The curve on body i that a point of body j follows, for the joint type `point_on_curve`.
+    may "curve": Shape::Table(&CURVE), "{ points = [\"A\", \"B\", \"C\"] }";
+    /// Whether loops should be cut at this joint rather than elsewhere. It changes the effort, not the results.
+    or("false") "cut": Shape::Flag, "true";
+};
+const CURVE: Table = table! {
+    /// A smooth curve through points in the design configuration, in the plane square to the joint's axis.
+    "Curve":
+    /// Its points in order: hardpoints' names or coordinates.
+    must "points": Shape::list(&PLACE), "[\"A\", \"B\", \"C\"]";
+    /// Whether it returns to its first point, as the curve of a cam does; that point is not repeated.
+    or("false") "closed": Shape::Flag, "true";
+};
 const JOINT_TYPE: Shape =
     Shape::Any("JointType", "", &[Shape::Known("the name of a joint type", joint_types)]);
 /// A coordinate of a joint, by name.
@@ -295,6 +193,33 @@ fn coordinates() -> Vec<(&'static str, String)> {
     names
 }
 
+/// The tables that `docs/file-format.md` shows, by their names there.
+#[cfg(test)]
+pub(crate) fn tables() -> [(&'static str, Shape); 20] {
+    [
+        ("parameters", Shape::Table(&parameters::PARAMETER_TABLE)),
+        ("frames", Shape::Kinds(&FRAME)),
+        ("joints", Shape::Table(&JOINT)),
+        ("curves", Shape::Table(&CURVE)),
+        ("couplers", Shape::Kinds(&couplers::COUPLER)),
+        ("terms", Shape::Table(&couplers::TERM)),
+        ("drivers", Shape::Kinds(&drivers::DRIVER)),
+        ("laws", Shape::Kinds(&law::LAW_TABLE)),
+        ("pieces", Shape::Table(&law::PIECE)),
+        ("design variables", Shape::Kinds(&design::VARIABLE)),
+        ("shape fields", Shape::Kinds(&design::SHAPE_FIELD)),
+        ("fields", Shape::Table(&design::FIELD)),
+        ("markers", Shape::Table(&design::MARKER)),
+        ("points", Shape::Table(&results::POINT)),
+        ("the vehicle", Shape::Table(&wheels::VEHICLE)),
+        ("wheels", Shape::Table(&wheels::WHEEL)),
+        ("axles", Shape::Table(&wheels::AXLE)),
+        ("measures", Shape::Kinds(&results::OWN_MEASURE)),
+        ("metrics", Shape::Table(&results::METRIC)),
+        ("time", Shape::Kinds(&results::TIME)),
+    ]
+}
+
 /// What a file says, as far as it could be read.
 #[derive(Default)]
 pub(crate) struct Raw {
@@ -321,9 +246,8 @@ impl Reader<'_> {
         let mut raw = Raw::default();
         let fields = self.fields("the model", 0..0, table, MODEL.keys());
         let place = EntryPlace::of(&fields);
-        for f in fields.iter() {
-            let readable = f.value.get_ref().as_table().is_some_and(|t| t.len() <= MOST_ENTRIES);
-            if !readable {
+        for f in fields.iter().filter(|f| !matches!(fields.key(f.key).shape, Shape::Text)) {
+            if f.value.get_ref().as_table().is_none_or(|t| t.len() > MOST_ENTRIES) {
                 self.unread.push(f.key);
             }
         }
@@ -494,7 +418,9 @@ impl Reader<'_> {
         let led = kinds.iter().find(|k| has(&k.0.keys[0]));
         let Some(kind) = led.or_else(|| kinds.iter().find(|k| k.0.keys.iter().any(has))) else {
             let message = format!("{} does not say {says}", fields.what);
-            self.report("HP0104", fields.at.clone(), message).help = Some(ways(kinds));
+            let ways: Vec<String> = kinds.iter().map(|k| way(&k.0)).collect();
+            self.report("HP0104", fields.at.clone(), message).help =
+                Some(format!("give one of {}", ways.join(", ")));
             return None;
         };
         let by = kind.0.keys.iter().find(|k| has(k)).expect("just found").key;
@@ -508,7 +434,7 @@ impl Reader<'_> {
                 };
                 self.out_of_place(fields, key.key, why);
                 if let Some(d) = self.found.last_mut() {
-                    d.help = Some(ways(kinds));
+                    d.help = Some(format!("give {} or {}", way(&kind.0), way(table)));
                 }
             }
         }
@@ -649,7 +575,7 @@ impl Reader<'_> {
     fn hardpoint_position(&mut self, name: &str, f: Field<'_>, raw: &Raw) -> Option<Vec3> {
         let hardpoints = &raw.draft.hardpoints;
         let found = raw.hardpoint_numbers.get(name).map(|k| &hardpoints[*k]);
-        if found.is_none() {
+        if found.is_none() && !raw.draft.unread.has(Section::Model, 0, "hardpoints") {
             // Past the problems that anybody reads, and among more names than that, a guess would only cost time.
             let names = hardpoints.iter().map(|h| h.name.as_str());
             let guess = self.found.len() < 50 && hardpoints.len() <= 5000;
@@ -772,15 +698,12 @@ impl Reader<'_> {
     }
 }
 
-/// How a table may be given, by the keys that lead its kinds: for help.
-fn ways<T>(kinds: &'static [(Table, T)]) -> String {
-    let way = |(table, _): &(Table, T)| {
-        let needed = table.keys.iter().filter(|k| k.need == Need::Required);
-        let needed: Vec<String> = needed.map(|k| format!("`{} = {}`", k.key, k.example)).collect();
-        let what = table.doc.split([',', ';', ':', '.']).next().unwrap_or_default();
-        format!("{} ({}{})", needed.join(" with "), what[..1].to_lowercase(), &what[1..])
-    };
-    format!("give one of {}", kinds.iter().map(way).collect::<Vec<_>>().join(", "))
+/// How a table of this kind is given: for help.
+fn way(table: &Table) -> String {
+    let needed = table.keys.iter().filter(|k| k.need == Need::Required);
+    let needed: Vec<String> = needed.map(|k| format!("`{} = {}`", k.key, k.example)).collect();
+    let what = table.doc.split([',', ';', ':', '.']).next().unwrap_or_default();
+    format!("{} ({}{})", needed.join(" with "), what[..1].to_lowercase(), &what[1..])
 }
 
 static EMPTY: std::sync::OnceLock<DeTable<'static>> = std::sync::OnceLock::new();

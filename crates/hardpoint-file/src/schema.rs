@@ -69,6 +69,7 @@ impl Definitions {
                 })
             }),
             Shape::Plain(_) => json!({ "type": "number" }),
+            Shape::Count(u32::MAX) => json!({ "type": "integer", "minimum": 1 }),
             Shape::Count(most) => json!({ "type": "integer", "minimum": 1, "maximum": most }),
             Shape::Flag => json!({ "type": "boolean" }),
             Shape::Words(words) => one_of(words.iter().map(|(word, doc)| (*word, (*doc).to_owned()))),

@@ -13,7 +13,7 @@ use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
 use crate::diagnostic::{Diagnostic, Severity, Source, closest, shown};
-use crate::format::{HARDPOINT, Key, LENGTH, NUMBER, Need, Shape, THREE_NUMBERS, Table, must};
+use crate::format::{HARDPOINT, Key, LENGTH, NUMBER, Need, Shape, THREE_NUMBERS, Table, table};
 use crate::units::Units;
 
 pub(crate) type Value<'a> = Spanned<DeValue<'a>>;
@@ -70,23 +70,24 @@ impl<'a> Fields<'a> {
 }
 
 /// From one hardpoint to another.
-const THROUGH: Table = Table::new(
-    "Through",
-    "From the first hardpoint to the second. It follows them when the design moves them.",
-    &[must("through", Shape::exactly(2, &HARDPOINT), "[\"A\", \"B\"]", "Names of two hardpoints.")],
-);
+const THROUGH: Table = table! {
+    /// From the first hardpoint to the second. It follows them when the design moves them.
+    "Through":
+    /// Names of two hardpoints.
+    must "through": Shape::exactly(2, &HARDPOINT), "[\"A\", \"B\"]";
+};
 pub(crate) const AXES: Shape = Shape::Any(
     "Axis",
     "A global axis.",
     &[Shape::Words(&[("x", ""), ("y", ""), ("z", ""), ("-x", ""), ("-y", ""), ("-z", "")])],
 );
 pub(crate) const DIRECTION: Shape = Shape::Any(
-    "Direction",
+    "FixedDirection",
     "A fixed direction: a global axis or a vector of any length.",
     &[AXES, THREE_NUMBERS],
 );
 pub(crate) const LINE: Shape = Shape::Any(
-    "Line",
+    "Direction",
     "A direction: a global axis, a vector of any length, or through two hardpoints.",
     &[AXES, THREE_NUMBERS, Shape::Table(&THROUGH)],
 );

@@ -4,7 +4,7 @@ use hardpoint::joint::Quantity;
 use hardpoint::model::{CouplerDraft, CouplerKindDraft, Section, TermDraft};
 
 use super::{COORDINATE, Raw, coordinate_quantity};
-use crate::format::{JOINT, Key, Kinds, LENGTH, NUMBER, Shape, TWO_NUMBERS, Table, may, must, or};
+use crate::format::{JOINT, Key, Kinds, LENGTH, NUMBER, Shape, TWO_NUMBERS, Table, keys, table};
 use crate::places::EntryPlace;
 use crate::tree::{Fields, Reader};
 
@@ -19,86 +19,85 @@ type Read = fn(&mut Reader<'_>, &Fields<'_>, &Raw, &mut EntryPlace) -> Option<Co
 
 static TYPES: [(Table, Read); 6] = [
     (
-        Table::new(
-            "gear",
-            "Two gears: `teeth[0] angle[0] + teeth[1] angle[1] = 0`, or minus for an internal gear.",
-            GEARS,
-        ),
+        table! {
+            /// Two gears: `teeth[0] angle[0] + teeth[1] angle[1] = 0`, or minus for an internal gear.
+            "gear", GEARS
+        },
         |r, fields, _, _| r.gears(fields),
     ),
-    (Table::new("bevel", "Two bevel gears, with the same relation as `gear`.", GEARS), |r, fields, _, _| {
-        r.gears(fields)
-    }),
     (
-        Table::new("rack", "A rack and its pinion: `displacement = radius x angle`.", RACK),
+        table! {
+            /// Two bevel gears, with the same relation as `gear`.
+            "bevel", GEARS
+        },
+        |r, fields, _, _| r.gears(fields),
+    ),
+    (
+        table! {
+            /// A rack and its pinion: `displacement = radius x angle`.
+            "rack", RACK
+        },
         |r, fields, _, place| r.rack(fields, place),
     ),
-    (Table::new("rack_and_pinion", "Another name of `rack`.", RACK), |r, fields, _, place| {
-        r.rack(fields, place)
-    }),
     (
-        Table::new(
-            "belt",
-            "A belt or chain: `radii[0] angle[0] = radii[1] angle[1]`, or minus for a crossed one.",
-            BELT,
-        ),
+        table! {
+            /// Another name of `rack`.
+            "rack_and_pinion", RACK
+        },
+        |r, fields, _, place| r.rack(fields, place),
+    ),
+    (
+        table! {
+            /// A belt or chain: `radii[0] angle[0] = radii[1] angle[1]`, or minus for a crossed one.
+            "belt", BELT
+        },
         |r, fields, _, _| r.belt(fields),
     ),
     (
-        Table::new(
-            "linear",
-            "Any linear relation: the sum of `coefficient x coordinate` is zero.",
-            &[must(
-                "terms",
-                Shape::list(&Shape::Table(&TERM)),
-                "[{ joint = \"J1\", coefficient = 2 }, { joint = \"J2\", coefficient = -1 }]",
-                "Two terms or more.",
-            )],
-        ),
+        table! {
+            /// Any linear relation: the sum of `coefficient x coordinate` is zero.
+            "linear":
+            /// Two terms or more.
+            must "terms": Shape::list(&Shape::Table(&TERM)), "[{ joint = \"J1\", coefficient = 2 }, { joint = \"J2\", coefficient = -1 }]";
+        },
         |r, fields, raw, _| r.linear(fields, raw),
     ),
 ];
-const GEARS: &[Key] = &[
-    must("joints", TWO_JOINTS, "[\"J1\", \"J2\"]", "Names of the two joints that carry the gears."),
-    must("teeth", TWO_NUMBERS, "[20, 40]", "Numbers of teeth, or any two numbers in their ratio."),
-    or(
-        "internal",
-        Shape::Flag,
-        "false",
-        "true",
-        "Whether one of them is an internal gear, so that both turn the same way.",
-    ),
-];
-const RACK: &[Key] = &[
-    must("rack", JOINT, "\"slide\"", "Name of the joint on which the rack slides."),
-    must("pinion", JOINT, "\"hinge\"", "Name of the joint on which the pinion turns."),
-    must(
-        "radius",
-        LENGTH,
-        "12.5",
-        "Pitch radius, in the length unit; negative where the rack passes the pinion's other side.",
-    ),
-];
-const BELT: &[Key] = &[
-    must("joints", TWO_JOINTS, "[\"J1\", \"J2\"]", "Names of the two joints that carry the pulleys."),
-    must("radii", Shape::exactly(2, &LENGTH), "[20, 40]", "Radii of the pulleys, in the length unit."),
-    or("crossed", Shape::Flag, "false", "true", "Whether the belt crosses between them."),
-];
+const GEARS: &[Key] = keys! {
+    /// Names of the two joints that carry the gears; each has an `angle`.
+    must "joints": TWO_JOINTS, "[\"J1\", \"J2\"]";
+    /// Numbers of teeth, or any two numbers in their ratio.
+    must "teeth": TWO_NUMBERS, "[20, 40]";
+    /// Whether one of them is an internal gear, so that both turn the same way.
+    or("false") "internal": Shape::Flag, "true";
+};
+const RACK: &[Key] = keys! {
+    /// Name of the joint on which the rack slides; it has a `displacement`.
+    must "rack": JOINT, "\"slide\"";
+    /// Name of the joint on which the pinion turns; it has an `angle`.
+    must "pinion": JOINT, "\"hinge\"";
+    /// Pitch radius, in the length unit; negative where the rack passes the pinion's other side.
+    must "radius": LENGTH, "12.5";
+};
+const BELT: &[Key] = keys! {
+    /// Names of the two joints that carry the pulleys; each has an `angle`.
+    must "joints": TWO_JOINTS, "[\"J1\", \"J2\"]";
+    /// Radii of the pulleys, in the length unit.
+    must "radii": Shape::exactly(2, &LENGTH), "[20, 40]";
+    /// Whether the belt crosses between them.
+    or("false") "crossed": Shape::Flag, "true";
+};
 const TWO_JOINTS: Shape = Shape::exactly(2, &JOINT);
-const TERM: Table = Table::new(
-    "Term",
-    "A joint coordinate times a number.",
-    &[
-        must("joint", JOINT, "\"J1\"", "The joint's name."),
-        may(
-            "coordinate",
-            COORDINATE,
-            "\"angle\"",
-            "Which of its coordinates; may be left out where it has only one.",
-        ),
-        must("coefficient", NUMBER, "2", "The factor, per unit of the coordinate in this file."),
-    ],
-);
+pub(super) const TERM: Table = table! {
+    /// A joint coordinate times a number.
+    "Term":
+    /// The joint's name.
+    must "joint": JOINT, "\"J1\"";
+    /// Which of its coordinates; may be left out where it has only one.
+    may "coordinate": COORDINATE, "\"angle\"";
+    /// The factor, per unit of the coordinate in this file.
+    must "coefficient": NUMBER, "2";
+};
 
 impl Reader<'_> {
     pub(super) fn couplers(&mut self, model: &Fields<'_>, raw: &mut Raw) {

@@ -9,8 +9,7 @@ use hardpoint::space::Vec3;
 
 use super::Raw;
 use crate::format::{
-    ANGLE, BODY, DRIVER, HARDPOINT, JOINT, Key, Kinds, LENGTH, NUMBER, Shape, TWO_NUMBERS, Table, may, must,
-    or,
+    ANGLE, BODY, DRIVER, HARDPOINT, JOINT, Key, Kinds, LENGTH, NUMBER, Shape, TWO_NUMBERS, Table, keys, table,
 };
 use crate::places::EntryPlace;
 use crate::tree::{AXES, DIRECTION, Fields, LINE, Reader, axis_named};
@@ -26,53 +25,37 @@ type Read = fn(&mut Reader<'_>, &Fields<'_>, &str, &Raw, &mut EntryPlace) -> Opt
 /// The changes of a variable, or of several, by name.
 type Changes = Vec<(String, Vec<ChangeDraft>)>;
 
+/// A kind of design variable: with what every kind has.
+macro_rules! variable {
+    ($($table:tt)*) => { Table { shared: RANGE, ..table! { $($table)* } } };
+}
+
 static KINDS: [(Table, Read); 7] = [
     (
-        variable(
-            "Move",
-            "Hardpoints move; all joints, axes and points on them follow. A length.",
-            &[
-                must(
-                    "move",
-                    HARDPOINTS,
-                    "\"A\"",
-                    "A hardpoint's name, or a list of names that move together.",
-                ),
-                must(
-                    "along",
-                    Shape::Any(
-                        "Along",
-                        "",
-                        &[AXES, Shape::Any("AllAxes", "", &[Shape::Words(&[("xyz", "")])]), THREE],
-                    ),
-                    "\"z\"",
-                    "The direction; `\"xyz\"` makes three variables, NAME_x, NAME_y and NAME_z.",
-                ),
-                may(
-                    "mirror",
-                    Shape::Words(&[("x", ""), ("y", ""), ("z", "")]),
-                    "\"y\"",
-                    "The global axis square to a mirror through the origin, behind which `mirrored` hardpoints move.",
-                ),
-                may(
-                    "mirrored",
-                    HARDPOINTS,
-                    "\"A_right\"",
-                    "A hardpoint's name, or a list of names, that move as the mirror image of `move`.",
-                ),
-            ],
-        ),
+        variable! {
+            /// Hardpoints move; all joints, axes and points on them follow. A length.
+            "Move":
+            /// A hardpoint's name, or a list of names that move together.
+            must "move": HARDPOINTS, "\"A\"";
+            /// The direction; `"xyz"` makes three variables, NAME_x, NAME_y and NAME_z.
+            must "along": Shape::Any("Along", "", &[AXES, Shape::Any("AllAxes", "", &[Shape::Words(&[("xyz", "")])]), THREE]), "\"z\"";
+            /// The global axis square to a mirror through the origin, behind which `mirrored` hardpoints move: `"y"` between left and
+            /// right.
+            may "mirror": Shape::Words(&[("x", ""), ("y", ""), ("z", "")]), "\"y\"";
+            /// A hardpoint's name, or a list of names, that move as the mirror image of `move`.
+            may "mirrored": HARDPOINTS, "\"A_right\"";
+        },
         |r, fields, name, _, place| r.moves(fields, name, place),
     ),
     (
-        variable(
-            "Tilt",
-            "Both markers of a joint turn about a direction through their place. An angle.",
-            &[
-                must("tilt", JOINT, "\"J1\"", "The joint's name."),
-                must("about", LINE, "\"x\"", "The direction to turn about."),
-            ],
-        ),
+        variable! {
+            /// Both markers of a joint turn about a direction through their place. An angle.
+            "Tilt":
+            /// The joint's name.
+            must "tilt": JOINT, "\"J1\"";
+            /// The direction to turn about.
+            must "about": LINE, "\"x\"";
+        },
         |r, fields, name, _, place| {
             place.changes(fields, "tilt");
             let joint = r.name_of(fields, "tilt");
@@ -81,51 +64,38 @@ static KINDS: [(Table, Read); 7] = [
         },
     ),
     (
-        variable(
-            "Fields",
-            "Design velocities V and U of single markers, under one parameter. A plain number.",
-            &[must(
-                "fields",
-                Shape::list(&Shape::Table(&FIELD)),
-                "[{ joint = \"J1\", body = \"crank\", V = [1, 0, 0] }]",
-                "The markers.",
-            )],
-        ),
+        variable! {
+            /// Design velocities V and U of single markers, under one parameter. A plain number.
+            "Fields":
+            /// The markers.
+            must "fields": Shape::list(&Shape::Table(&FIELD)), "[{ joint = \"J1\", body = \"crank\", V = [1, 0, 0] }]";
+        },
         |r, fields, name, _, place| {
             place.changes(fields, "fields");
             Some(vec![(name.to_owned(), r.velocity_fields(fields)?)])
         },
     ),
     (
-        variable(
-            "Markers",
-            "Markers of joints move and turn by themselves; hardpoints stay.",
-            &[must(
-                "markers",
-                Shape::list(&Shape::Table(&MARKER)),
-                "[{ joint = \"J1\", on = \"j\", move = [0, 0, 1] }]",
-                "The markers.",
-            )],
-        ),
+        variable! {
+            /// Markers of joints move and turn by themselves; hardpoints stay.
+            "Markers":
+            /// The markers.
+            must "markers": Shape::list(&Shape::Table(&MARKER)), "[{ joint = \"J1\", on = \"j\", move = [0, 0, 1] }]";
+        },
         |r, fields, name, _, place| {
             place.changes(fields, "markers");
             Some(vec![(name.to_owned(), r.markers(fields)?)])
         },
     ),
     (
-        variable(
-            "Shape",
-            "Whole bodies change their shape, and everything on them follows.",
-            &[
-                must("shape", BODIES, "\"lca\"", "A body's name, or a list of names."),
-                must(
-                    "field",
-                    Shape::Kinds(&SHAPE_FIELD),
-                    "{ scale = \"A\", along = \"x\" }",
-                    "How their points move.",
-                ),
-            ],
-        ),
+        variable! {
+            /// Whole bodies change their shape, and everything on them follows. The unit is that of the `field`.
+            "Shape":
+            /// A body's name, or a list of names.
+            must "shape": BODIES, "\"lca\"";
+            /// How their points move.
+            must "field": Shape::Kinds(&SHAPE_FIELD), "{ scale = \"A\", along = \"x\" }";
+        },
         |r, fields, name, _, place| {
             place.changes(fields, "shape");
             let bodies = r.several(fields, "shape", &mut Vec::new());
@@ -141,30 +111,26 @@ static KINDS: [(Table, Read); 7] = [
         },
     ),
     (
-        variable(
-            "RodLength",
-            "The `length` that a rod is given grows. A length.",
-            &[must("length", JOINT, "\"rod\"", "The rod's name.")],
-        ),
+        variable! {
+            /// The `length` that a rod is given grows. A length.
+            "RodLength":
+            /// The rod's name.
+            must "length": JOINT, "\"rod\"";
+        },
         |r, fields, name, _, place| {
             place.changes(fields, "length");
             one(name, ChangeDraft::Length { joint: r.name_of(fields, "length")?, rate: 1.0 })
         },
     ),
     (
-        variable(
-            "LawParameter",
-            "A parameter of a driver's law grows; the variable has the parameter's unit.",
-            &[
-                must("driver", DRIVER, "\"turn\"", "The driver's name."),
-                must(
-                    "parameter",
-                    Shape::Name("a parameter"),
-                    "\"amplitude\"",
-                    "The parameter's name, such as `amplitude`, `c1`, `f[3]` or `piece[0].speed`.",
-                ),
-            ],
-        ),
+        variable! {
+            /// A parameter of a driver's law grows; the variable has the parameter's unit.
+            "LawParameter":
+            /// The driver's name.
+            must "driver": DRIVER, "\"turn\"";
+            /// The parameter's name, such as `amplitude`, `c1`, `f[3]` or `piece[0].speed`.
+            must "parameter": Shape::Name("a parameter"), "\"amplitude\"";
+        },
         |r, fields, name, raw, place| {
             place.changes(fields, "driver");
             one(name, r.law_parameter(fields, raw)?)
@@ -172,68 +138,46 @@ static KINDS: [(Table, Read); 7] = [
     ),
 ];
 
-/// A kind of design variable: with what every kind has.
-const fn variable(name: &'static str, doc: &'static str, keys: &'static [Key]) -> Table {
-    Table { shared: RANGE, ..Table::new(name, doc, keys) }
-}
-const RANGE: &[Key] = &[
-    or(
-        "fixed_length",
-        Shape::Flag,
-        "false",
-        "true",
-        "Whether rods and legs keep their lengths while it moves their ends.",
-    ),
-    may(
-        "bounds",
-        TWO_NUMBERS,
-        "[-5, 5]",
-        "The lowest and the highest value that it may have; it is 0 in the file.",
-    ),
-    may("typical", NUMBER, "2", "How large a change of it is usual."),
-    may("tolerance", NUMBER, "0.1", "By how much it may be off when it is made, either way."),
-];
+const RANGE: &[Key] = keys! {
+    /// Whether rods and legs keep their lengths while it moves their ends, so that the mechanism is assembled anew; else they are
+    /// made anew to fit the design configuration.
+    or("false") "fixed_length": Shape::Flag, "true";
+    /// The lowest and the highest value that it may have, in the variable's unit; it is 0 in the file.
+    may "bounds": TWO_NUMBERS, "[-5, 5]";
+    /// How large a change of it is usual, in the variable's unit: what variables are compared by.
+    may "typical": NUMBER, "2";
+    /// By how much it may be off when it is made, either way, in the variable's unit; `whatif` ranks by it too.
+    may "tolerance": NUMBER, "0.1";
+};
 const HARDPOINTS: Shape = Shape::Any("Names", "", &[HARDPOINT, Shape::list(&HARDPOINT)]);
 const BODIES: Shape = Shape::Any("Names", "", &[BODY, Shape::list(&BODY)]);
 const THREE: Shape = Shape::exactly(3, &NUMBER);
-const FIELD: Table = Table::new(
-    "Field",
-    "The design velocity of one joint's marker on one body, in that body's frame.",
-    &[
-        must("joint", JOINT, "\"J1\"", "The joint's name."),
-        must("body", BODY, "\"crank\"", "The body whose marker it is."),
-        may(
-            "V",
-            Shape::exactly(3, &LENGTH),
-            "[1, 0, 0]",
-            "Location velocity, length unit per unit of the parameter. Default: zero.",
-        ),
-        may(
-            "U",
-            Shape::exactly(3, &ANGLE),
-            "[0, 0, 0]",
-            "Rates of the marker's 3-1-3 Euler angles, angle unit per unit of the parameter. Default: zero.",
-        ),
-    ],
-);
-const MARKER: Table = Table::new(
-    "Marker",
-    "A global velocity of a joint's markers.",
-    &[
-        must("joint", JOINT, "\"J1\"", "The joint's name."),
-        or(
-            "on",
-            Shape::Words(&[("i", ""), ("j", ""), ("both", "")]),
-            "\"both\"",
-            "\"j\"",
-            "The marker on body i, on body j, or both. Default: both.",
-        ),
-        may("move", THREE, "[0, 0, 1]", "Displacement per unit of the variable. Default: zero."),
-        may("turn", THREE, "[0, 0, 0]", "Rotation vector per unit of the variable. Default: zero."),
-    ],
-);
+pub(super) const FIELD: Table = table! {
+    /// The design velocity of one joint's marker on one body, in that body's frame.
+    "Field":
+    /// The joint's name.
+    must "joint": JOINT, "\"J1\"";
+    /// The body whose marker it is.
+    must "body": BODY, "\"crank\"";
+    /// Location velocity, length unit per unit of the parameter. Default: zero.
+    may "V": Shape::exactly(3, &LENGTH), "[1, 0, 0]";
+    /// Rates of the marker's 3-1-3 Euler angles, angle unit per unit of the parameter. Default: zero.
+    may "U": Shape::exactly(3, &ANGLE), "[0, 0, 0]";
+};
+pub(super) const MARKER: Table = table! {
+    /// A global velocity of a joint's markers.
+    "Marker":
+    /// The joint's name.
+    must "joint": JOINT, "\"J1\"";
+    /// The marker on body i, on body j, or both.
+    or("\"both\"") "on": Shape::Words(&[("i", ""), ("j", ""), ("both", "")]), "\"j\"";
+    /// Global displacement per unit of the variable. Default: zero.
+    may "move": THREE, "[0, 0, 1]";
+    /// Global rotation vector per unit of the variable, about the marker's place. Default: zero.
+    may "turn": THREE, "[0, 0, 0]";
+};
 
-const SHAPE_FIELD: Kinds = Kinds {
+pub(super) const SHAPE_FIELD: Kinds = Kinds {
     name: "ShapeField",
     doc: "How the points of a body move.",
     typed: false,
@@ -243,22 +187,23 @@ type ReadField = fn(&mut Reader<'_>, &Fields<'_>, &mut EntryPlace) -> Option<Sha
 
 static FIELDS: [(Table, ReadField); 5] = [
     (
-        Table::new(
-            "Translate",
-            "All the same way. A length.",
-            &[must("translate", DIRECTION, "\"z\"", "The direction, of any length.")],
-        ),
+        table! {
+            /// All the same way. A length.
+            "Translate":
+            /// The direction, of any length.
+            must "translate": DIRECTION, "\"z\"";
+        },
         |r, fields, _| r.vector_of(fields, "translate").map(ShapeDraft::Translate),
     ),
     (
-        Table::new(
-            "Rotate",
-            "About a line. An angle.",
-            &[
-                must("rotate", LINE, "\"z\"", "The line's direction."),
-                must("at", HARDPOINT, "\"A\"", "A hardpoint on it."),
-            ],
-        ),
+        table! {
+            /// About a line. An angle.
+            "Rotate":
+            /// The line's direction.
+            must "rotate": LINE, "\"z\"";
+            /// A hardpoint on it.
+            must "at": HARDPOINT, "\"A\"";
+        },
         |r, fields, place| {
             let about = r.line_of(fields, "rotate", place);
             let at = r.name_of(fields, "at");
@@ -266,14 +211,14 @@ static FIELDS: [(Table, ReadField); 5] = [
         },
     ),
     (
-        Table::new(
-            "Scale",
-            "Away from a point. A plain number, 1 being twice the size.",
-            &[
-                must("scale", HARDPOINT, "\"A\"", "The hardpoint that stays."),
-                may("along", LINE, "\"x\"", "The only direction that grows. Default: all do."),
-            ],
-        ),
+        table! {
+            /// Away from a point. A plain number, 1 being twice the size.
+            "Scale":
+            /// The hardpoint that stays.
+            must "scale": HARDPOINT, "\"A\"";
+            /// The only direction that grows. Default: all do.
+            may "along": LINE, "\"x\"";
+        },
         |r, fields, place| {
             let from = r.name_of(fields, "scale");
             let along = r.line_of(fields, "along", place);
@@ -282,24 +227,14 @@ static FIELDS: [(Table, ReadField); 5] = [
         },
     ),
     (
-        Table::new(
-            "Bend",
-            "Like a beam. The length by which its free end goes aside.",
-            &[
-                must(
-                    "bend",
-                    Shape::exactly(2, &HARDPOINT),
-                    "[\"A\", \"B\"]",
-                    "The hardpoint where it is held, and the one where it is pushed.",
-                ),
-                must(
-                    "towards",
-                    DIRECTION,
-                    "\"z\"",
-                    "In which direction, of any length; only what is square to the beam counts.",
-                ),
-            ],
-        ),
+        table! {
+            /// Like a beam. The length by which its free end goes aside.
+            "Bend":
+            /// The hardpoint where it is held, and the one where it is pushed.
+            must "bend": Shape::exactly(2, &HARDPOINT), "[\"A\", \"B\"]";
+            /// In which direction, of any length; only what is square to the beam counts.
+            must "towards": DIRECTION, "\"z\"";
+        },
         |r, fields, _| {
             let ends = r.names_of::<2>(fields, "bend");
             let towards = r.vector_of(fields, "towards");
@@ -308,16 +243,12 @@ static FIELDS: [(Table, ReadField); 5] = [
         },
     ),
     (
-        Table::new(
-            "ThroughPoints",
-            "As some hardpoints move, and smoothly between them. A length.",
-            &[must(
-                "through",
-                Shape::list(&Shape::Table(&THROUGH)),
-                "[{ at = \"A\", move = [0, 0, 1] }]",
-                "The hardpoints.",
-            )],
-        ),
+        table! {
+            /// As some hardpoints move, and smoothly between them. A length.
+            "ThroughPoints":
+            /// The hardpoints.
+            must "through": Shape::list(&Shape::Table(&THROUGH)), "[{ at = \"A\", move = [0, 0, 1] }]";
+        },
         |r, fields, _| {
             let moves: Vec<_> = r
                 .tables(fields, "through", &THROUGH)?
@@ -332,19 +263,14 @@ static FIELDS: [(Table, ReadField); 5] = [
         },
     ),
 ];
-const THROUGH: Table = Table::new(
-    "ThroughPoint",
-    "How a hardpoint moves.",
-    &[
-        must("at", HARDPOINT, "\"A\"", "Its name."),
-        may(
-            "move",
-            Shape::exactly(3, &Shape::Plain(Quantity::Number)),
-            "[0, 0, 1]",
-            "How far, per unit of the variable; it stays where this is left out.",
-        ),
-    ],
-);
+const THROUGH: Table = table! {
+    /// How a hardpoint moves.
+    "ThroughPoint":
+    /// Its name.
+    must "at": HARDPOINT, "\"A\"";
+    /// How far, per unit of the variable; it stays where this is left out.
+    may "move": Shape::exactly(3, &Shape::Plain(Quantity::Number)), "[0, 0, 1]";
+};
 
 /// The one change of a variable.
 fn one(name: &str, change: ChangeDraft) -> Option<Changes> {

@@ -5,7 +5,7 @@ use hardpoint::law::Law;
 use hardpoint::model::{DrivenDraft, DriverDraft, FormulaDraft, FormulaOf, Section};
 
 use super::{COORDINATE, Raw, coordinate_quantity, law};
-use crate::format::{BODY, JOINT, Key, Kinds, Table, may, must};
+use crate::format::{BODY, JOINT, Kinds, Table, keys, table};
 use crate::places::EntryPlace;
 use crate::read::results::POINT_REF;
 use crate::tree::{Fields, LINE, Reader};
@@ -21,22 +21,18 @@ type Read = fn(&mut Reader<'_>, &Fields<'_>, &mut EntryPlace) -> Option<DrivenDr
 static FORMS: [(Table, Read); 4] = [
     (
         Table {
-            shared: &[of(
-                "The coordinate over time, in the file's unit of it, counted from the design configuration.",
-            )],
-            ..Table::new(
-                "DrivenCoordinate",
-                "A joint's coordinate.",
-                &[
-                    must("joint", JOINT, "\"J1\"", "The joint's name."),
-                    may(
-                        "coordinate",
-                        COORDINATE,
-                        "\"angle\"",
-                        "Which of its coordinates; may be left out where it has only one.",
-                    ),
-                ],
-            )
+            shared: keys! {
+                /// The coordinate over time, in the file's unit of it, counted from the design configuration.
+                must "law": law::LAW, "\"30*sin(2*pi*t)\"";
+            },
+            ..table! {
+                /// A joint's coordinate.
+                "DrivenCoordinate":
+                /// The joint's name; not a rod, whose length is constant.
+                must "joint": JOINT, "\"J1\"";
+                /// Which of its coordinates; may be left out where it has only one.
+                may "coordinate": COORDINATE, "\"angle\"";
+            }
         },
         |r, fields, _| {
             let joint = r.name_of(fields, "joint");
@@ -46,15 +42,18 @@ static FORMS: [(Table, Read); 4] = [
     ),
     (
         Table {
-            shared: &[of("The way over time, in the length unit, counted from the design configuration.")],
-            ..Table::new(
-                "DrivenPosition",
-                "The way of a point along a global direction, like wheel travel.",
-                &[
-                    must("point", POINT_REF, "\"P\"", "The point."),
-                    must("along", LINE, "\"z\"", "The direction."),
-                ],
-            )
+            shared: keys! {
+                /// The way over time, in the length unit, counted from the design configuration.
+                must "law": law::LAW, "\"30*sin(2*pi*t)\"";
+            },
+            ..table! {
+                /// The way of a point along a global direction, like wheel travel.
+                "DrivenPosition":
+                /// The point.
+                must "point": POINT_REF, "\"P\"";
+                /// The direction, fixed in space.
+                must "along": LINE, "\"z\"";
+            }
         },
         |r, fields, place| {
             let point = r.point_of(fields, "point");
@@ -64,17 +63,18 @@ static FORMS: [(Table, Read); 4] = [
     ),
     (
         Table {
-            shared: &[of(
-                "The change of their distance over time, in the length unit, counted from the design configuration.",
-            )],
-            ..Table::new(
-                "DrivenDistance",
-                "The change of the distance between two points, like the stroke of an actuator.",
-                &[
-                    must("from", POINT_REF, "\"P\"", "From this point."),
-                    must("to", POINT_REF, "\"Q\"", "To this one."),
-                ],
-            )
+            shared: keys! {
+                /// The change of their distance over time, in the length unit, counted from the design configuration.
+                must "law": law::LAW, "\"30*sin(2*pi*t)\"";
+            },
+            ..table! {
+                /// The change of the distance between two points, like the stroke of an actuator.
+                "DrivenDistance":
+                /// From this point.
+                must "from": POINT_REF, "\"P\"";
+                /// To this one.
+                must "to": POINT_REF, "\"Q\"";
+            }
         },
         |r, fields, _| {
             let [from, to] = ["from", "to"].map(|key| r.point_of(fields, key));
@@ -83,21 +83,20 @@ static FORMS: [(Table, Read); 4] = [
     ),
     (
         Table {
-            shared: &[of("The angle over time, in the angle unit, counted from the design configuration.")],
-            ..Table::new(
-                "DrivenOrientation",
-                "The angle by which a body has turned, seen along a direction.",
-                &[
-                    must("body", BODY, "\"crank\"", "The body's name."),
-                    must("about", LINE, "\"z\"", "The direction, fixed in the body `relative_to`."),
-                    may(
-                        "relative_to",
-                        BODY,
-                        "\"ground\"",
-                        "The body that carries the direction. Default: `ground`.",
-                    ),
-                ],
-            )
+            shared: keys! {
+                /// The angle over time, in the angle unit, counted from the design configuration.
+                must "law": law::LAW, "\"30*sin(2*pi*t)\"";
+            },
+            ..table! {
+                /// The angle by which a body has turned, seen along a direction.
+                "DrivenOrientation":
+                /// The body's name.
+                must "body": BODY, "\"crank\"";
+                /// The direction, fixed in the body `relative_to`.
+                must "about": LINE, "\"z\"";
+                /// The body that carries the direction. Default: `ground`.
+                may "relative_to": BODY, "\"ground\"";
+            }
         },
         |r, fields, place| {
             let body = r.name_of(fields, "body");
@@ -107,11 +106,6 @@ static FORMS: [(Table, Read); 4] = [
         },
     ),
 ];
-
-/// The law of a driver.
-const fn of(doc: &'static str) -> Key {
-    must("law", law::LAW, "\"30*sin(2*pi*t)\"", doc)
-}
 
 impl Reader<'_> {
     pub(super) fn drivers(&mut self, model: &Fields<'_>, raw: &mut Raw) {

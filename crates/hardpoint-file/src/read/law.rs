@@ -9,7 +9,7 @@ use hardpoint::law::{
 use toml::de::{DeTable, DeValue};
 
 use crate::diagnostic::{Severity, closest, shown};
-use crate::format::{ANGLE, Kinds, NUMBER, Shape, TWO_NUMBERS, Table, may, must, or};
+use crate::format::{ANGLE, Kinds, NUMBER, Shape, TWO_NUMBERS, Table, table};
 use crate::read::data;
 use crate::tree::{Field, Fields, MOST_ENTRIES, Reader, Subject, Value};
 use crate::units::AngleUnit;
@@ -31,16 +31,18 @@ type Read = fn(&mut Reader<'_>, &str, &Fields<'_>) -> Option<Law>;
 
 static TYPES: [(Table, Read); 7] = [
     (
-        Table::new(
-            "harmonic",
-            "`offset + amplitude sin(2 pi frequency t + phase)`.",
-            &[
-                must("amplitude", NUMBER, "25", "In the driver's unit."),
-                must("frequency", NUMBER, "1.5", "In Hz."),
-                or("phase", ANGLE, "0.0", "90", "In the angle unit."),
-                or("offset", NUMBER, "0.0", "10", "The mean, in the driver's unit."),
-            ],
-        ),
+        table! {
+            /// `offset + amplitude sin(2 pi frequency t + phase)`.
+            "harmonic":
+            /// In the driver's unit.
+            must "amplitude": NUMBER, "25";
+            /// In Hz.
+            must "frequency": NUMBER, "1.5";
+            /// In the angle unit.
+            or("0.0") "phase": ANGLE, "90";
+            /// The mean, in the driver's unit.
+            or("0.0") "offset": NUMBER, "10";
+        },
         |r, _, fields| {
             let numbers = r.numbers_of(fields, ["amplitude", "frequency", "phase", "offset"]);
             let [amplitude, frequency, phase, offset] = numbers?;
@@ -49,183 +51,109 @@ static TYPES: [(Table, Read); 7] = [
         },
     ),
     (
-        Table::new(
-            "constant_speed",
-            "`offset + speed t`.",
-            &[
-                must("speed", NUMBER, "10", "In the driver's unit per s."),
-                or("offset", NUMBER, "0.0", "5", "At t = 0, in the driver's unit."),
-            ],
-        ),
+        table! {
+            /// `offset + speed t`.
+            "constant_speed":
+            /// In the driver's unit per s.
+            must "speed": NUMBER, "10";
+            /// At t = 0, in the driver's unit.
+            or("0.0") "offset": NUMBER, "5";
+        },
         |r, _, fields| {
             let [speed, offset] = r.numbers_of(fields, ["speed", "offset"])?;
             r.made(fields, fields.at.clone(), Law::constant_speed(ConstantSpeed { speed, offset }))
         },
     ),
     (
-        Table::new(
-            "polynomial",
-            "`c0 + c1 t + c2 t^2 + ...`.",
-            &[must(
-                "coefficients",
-                Shape::some(&NUMBER),
-                "[0, 1, 2]",
-                "c0, c1, c2, ..., in the driver's unit per s to the power of the number.",
-            )],
-        ),
+        table! {
+            /// `c0 + c1 t + c2 t^2 + ...`.
+            "polynomial":
+            /// c0, c1, c2, ..., in the driver's unit per s to the power of the number.
+            must "coefficients": Shape::some(&NUMBER), "[0, 1, 2]";
+        },
         |r, _, fields| r.polynomial(fields),
     ),
     (
-        Table::new(
-            "smooth_step",
-            "From one value smoothly to another, and at rest before and after.",
-            &[
-                or("from", NUMBER, "0.0", "0", "The value before, in the driver's unit. Default: 0."),
-                must("to", NUMBER, "40", "The value after, in the driver's unit."),
-                must("start", NUMBER, "0.5", "When it begins, in s."),
-                must("end", NUMBER, "1.5", "When it ends, in s."),
-                or(
-                    "degree",
-                    Shape::OneOf(&[3, 5, 7]),
-                    "5",
-                    "5",
-                    "3 (the acceleration jumps at both ends), 5 (the jerk does) or 7 (neither). Default: 5.",
-                ),
-            ],
-        ),
+        table! {
+            /// From one value smoothly to another, and at rest before and after.
+            "smooth_step":
+            /// The value before, in the driver's unit.
+            or("0.0") "from": NUMBER, "0";
+            /// The value after, in the driver's unit.
+            must "to": NUMBER, "40";
+            /// When it begins, in s.
+            must "start": NUMBER, "0.5";
+            /// When it ends, in s.
+            must "end": NUMBER, "1.5";
+            /// 3 (the acceleration jumps at both ends), 5 (the jerk does) or 7 (neither).
+            or("5") "degree": Shape::OneOf(&[3, 5, 7]), "5";
+        },
         |r, _, fields| r.smooth_step(fields),
     ),
     (
-        Table::new(
-            "table",
-            "A spline through points, given here or in a CSV file.",
-            &[
-                may(
-                    "points",
-                    Shape::list(&TWO_NUMBERS),
-                    "[[0, 0], [1, 5], [2, 0]]",
-                    "Pairs of time in s and value in the driver's unit, in the order of time. Either these or `file`.",
-                ),
-                may(
-                    "file",
-                    Shape::Text,
-                    "\"travel.csv\"",
-                    "A CSV file in the model's folder or below it: times in s and values in the driver's unit.",
-                ),
-                may(
-                    "columns",
-                    Shape::exactly(2, &COLUMN),
-                    "[1, 2]",
-                    "The file's columns of time and value, by name or by number from 1. Default: the first two.",
-                ),
-                or(
-                    "spline",
-                    Shape::Words(&[
-                        ("cubic", "The acceleration is continuous."),
-                        ("quintic", "The jerk is continuous too."),
-                    ]),
-                    "\"cubic\"",
-                    "\"cubic\"",
-                    "The degree of the spline. Default: `cubic`.",
-                ),
-                or(
-                    "ends",
-                    Shape::Words(&[
-                        (
-                            "clamped",
-                            "With the speeds (and, of a quintic, accelerations) that are given; zero where they are not: from \
-                             rest to rest.",
-                        ),
-                        ("natural", "The curve ends as a thin beam does."),
-                        ("periodic", "The last point is the first again, and the curve repeats for ever."),
-                    ]),
-                    "\"clamped\"",
-                    "\"clamped\"",
-                    "What is known at the first and last point. Default: `clamped`.",
-                ),
-                or(
-                    "start_speed",
-                    NUMBER,
-                    "0.0",
-                    "0",
-                    "Speed at the first point, where the ends are clamped, in the driver's unit per s.",
-                ),
-                or(
-                    "end_speed",
-                    NUMBER,
-                    "0.0",
-                    "0",
-                    "Speed at the last point, where the ends are clamped, in the driver's unit per s.",
-                ),
-                or(
-                    "start_acceleration",
-                    NUMBER,
-                    "0.0",
-                    "0",
-                    "Acceleration at the first point, of a quintic with clamped ends, in the driver's unit per s^2.",
-                ),
-                or(
-                    "end_acceleration",
-                    NUMBER,
-                    "0.0",
-                    "0",
-                    "Acceleration at the last point, of a quintic with clamped ends, in the driver's unit per s^2.",
-                ),
-            ],
-        ),
+        table! {
+            /// A spline through points, given here or in a CSV file.
+            "table":
+            /// Pairs of time in s and value in the driver's unit, in the order of time. Either these or `file`.
+            may "points": Shape::list(&TWO_NUMBERS), "[[0, 0], [1, 5], [2, 0]]";
+            /// A CSV file in the model's folder or below it: times in s and values in the driver's unit.
+            may "file": Shape::Text, "\"travel.csv\"";
+            /// The file's columns of time and value, by name or by number from 1. Default: the first two.
+            may "columns": Shape::exactly(2, &COLUMN), "[1, 2]";
+            /// The degree of the spline.
+            or("\"cubic\"") "spline": Shape::Words(&[("cubic", "The acceleration is continuous."), ("quintic", "The jerk is continuous too.")]), "\"cubic\"";
+            /// What is known at the first and last point.
+            or("\"clamped\"") "ends": ENDS, "\"clamped\"";
+            /// Speed at the first point, where the ends are clamped, in the driver's unit per s.
+            or("0.0") "start_speed": NUMBER, "0";
+            /// Speed at the last point, where the ends are clamped, in the driver's unit per s.
+            or("0.0") "end_speed": NUMBER, "0";
+            /// Acceleration at the first point, of a quintic with clamped ends, in the driver's unit per s^2.
+            or("0.0") "start_acceleration": NUMBER, "0";
+            /// Acceleration at the last point, of a quintic with clamped ends, in the driver's unit per s^2.
+            or("0.0") "end_acceleration": NUMBER, "0";
+        },
         |r, _, fields| r.table_law(fields),
     ),
     (
-        Table::new(
-            "sequence",
-            "Laws one after the other, from t = 0 on.",
-            &[must(
-                "pieces",
-                Shape::List(&Shape::Table(&PIECE), [1, MOST_PIECES]),
-                "[{ duration = 1, law = \"10*t\" }, { law = 0 }]",
-                "The pieces, in order.",
-            )],
-        ),
+        table! {
+            /// Laws one after the other, from t = 0 on.
+            "sequence":
+            /// The pieces, in order.
+            must "pieces": Shape::List(&Shape::Table(&PIECE), [1, MOST_PIECES]), "[{ duration = 1, law = \"10*t\" }, { law = 0 }]";
+        },
         |r, of, fields| r.sequence(of, fields),
     ),
     (
-        Table::new(
-            "expression",
-            "An expression with named parameters.",
-            &[
-                must("law", Shape::Text, "\"a*sin(w*t)\"", "The expression, in `t` and the parameters."),
-                or(
-                    "parameters",
-                    Shape::Entries(&NUMBER),
-                    "{}",
-                    "{ a = 25, w = 6.28 }",
-                    "Names and values of the parameters.",
-                ),
-            ],
-        ),
+        table! {
+            /// An expression with named parameters.
+            "expression":
+            /// The expression, in `t` and the parameters.
+            must "law": Shape::Text, "\"a*sin(w*t)\"";
+            /// Names and values of the parameters.
+            or("{}") "parameters": Shape::Entries(&NUMBER), "{ a = 25, w = 6.28 }";
+        },
         |r, of, fields| r.expression_with_parameters(of, fields),
     ),
 ];
-const PIECE: Table = Table::new(
-    "Piece",
-    "A piece of a sequence.",
-    &[
-        may(
-            "duration",
-            NUMBER,
-            "1",
-            "How long it lasts, in s. The last piece may leave it out, and then has no end.",
-        ),
-        must("law", LAW, "\"10*t\"", "Its law; `t` counts from the start of the piece."),
-        or(
-            "continued",
-            Shape::Flag,
-            "true",
-            "true",
-            "Whether its values count from where the piece before ended. Default: true.",
-        ),
-    ],
-);
+const ENDS: Shape = Shape::Words(&[
+    (
+        "clamped",
+        "With the speeds (and, of a quintic, accelerations) that are given; zero where they are not: from rest to rest.",
+    ),
+    ("natural", "The curve ends as a thin beam does."),
+    ("periodic", "The last point is the first again, and the curve repeats for ever."),
+]);
+pub(super) const PIECE: Table = table! {
+    /// A piece of a sequence.
+    "Piece":
+    /// How long it lasts, in s. The last piece may leave it out, and then has no end.
+    may "duration": NUMBER, "1";
+    /// Its law; `t` counts from the start of the piece.
+    must "law": LAW, "\"10*t\"";
+    /// Whether its values count from where the piece before ended.
+    or("true") "continued": Shape::Flag, "true";
+};
 const COLUMN: Shape = Shape::Any(
     "Column",
     "A column's name, or its number from 1.",

@@ -8,7 +8,7 @@ use toml::de::DeValue;
 
 use super::Raw;
 use crate::diagnostic::shown;
-use crate::format::{NUMBER, Shape, TWO_NUMBERS, Table, may, must, or};
+use crate::format::{NUMBER, Shape, TWO_NUMBERS, Table, table};
 use crate::places::EntryPlace;
 use crate::tree::{Fields, Reader, Subject, Value};
 
@@ -17,33 +17,27 @@ pub(crate) const PARAMETER: Shape = Shape::Any(
     "A plain number, or a table with its value and more.",
     &[NUMBER, Shape::Table(&PARAMETER_TABLE)],
 );
-const PARAMETER_TABLE: Table = Table::new(
-    "ParameterTable",
-    "A named number.",
-    &[
-        must("value", NUMBER, "60", "Its value; an expression makes it follow others."),
-        or(
-            "unit",
-            Shape::Words(&[
-                ("length", "In the file's unit of length."),
-                ("angle", "In the file's unit of angle; in expressions in rad."),
-                ("number", "A plain number."),
-            ]),
-            "\"number\"",
-            "\"length\"",
-            "What it measures, and so its unit. Default: a plain number.",
-        ),
-        may(
-            "bounds",
-            TWO_NUMBERS,
-            "[50, 70]",
-            "The lowest and the highest value that it may have in other designs.",
-        ),
-        may("typical", NUMBER, "2", "How large a change of it is usual."),
-        may("tolerance", NUMBER, "0.1", "By how much it may be off when it is made, either way."),
-        or("design", Shape::Flag, "true", "false", "Whether it is a design variable. Default: true."),
-    ],
-);
+pub(super) const PARAMETER_TABLE: Table = table! {
+    /// A named number.
+    "ParameterTable":
+    /// Its value; an expression makes it follow others.
+    must "value": NUMBER, "60";
+    /// What it measures, and so its unit.
+    or("\"number\"") "unit": UNIT, "\"length\"";
+    /// The lowest and the highest value that it may have in other designs.
+    may "bounds": TWO_NUMBERS, "[50, 70]";
+    /// How large a change of it is usual: what variables are compared by.
+    may "typical": NUMBER, "2";
+    /// By how much it may be off when it is made, either way.
+    may "tolerance": NUMBER, "0.1";
+    /// Whether it is a design variable.
+    or("true") "design": Shape::Flag, "false";
+};
+const UNIT: Shape = Shape::Words(&[
+    ("length", "In the file's unit of length."),
+    ("angle", "In the file's unit of angle; in expressions in rad."),
+    ("number", "A plain number."),
+]);
 const UNITS: [Quantity; 3] = [Quantity::Length, Quantity::Angle, Quantity::Number];
 
 impl Reader<'_> {

@@ -10,27 +10,22 @@ use hardpoint::space::Vec3;
 
 use super::{COORDINATE, Raw};
 use crate::format::{
-    BODY, DRIVER, JOINT, Key, Kinds, NUMBER, Need, OUTPUT, Shape, TWO_NUMBERS, Table, may, must, or,
+    BODY, DRIVER, JOINT, Key, Kinds, NUMBER, Need, OUTPUT, Shape, TWO_NUMBERS, Table, keys, table,
 };
 use crate::places::EntryPlace;
 use crate::tree::{DIRECTION, Field, Fields, LINE, PLACE, Reader, Subject, Value};
 
 /// More output times than this are surely a slip.
 const MOST_TIMES: u32 = 1_000_000;
-pub(crate) const POINT: Table = Table::new(
-    "Point",
-    "A point of a body.",
-    &[
-        must("body", BODY, "\"crank\"", "The body's name."),
-        must(
-            "at",
-            PLACE,
-            "\"A\"",
-            "Where it is in the design configuration: a hardpoint's name (and it follows the hardpoint when the design moves \
-             that), or coordinates.",
-        ),
-    ],
-);
+pub(crate) const POINT: Table = table! {
+    /// A point of a body.
+    "Point":
+    /// The body's name.
+    must "body": BODY, "\"crank\"";
+    /// Where it is in the design configuration: a hardpoint's name (and it follows the hardpoint when the design moves that),
+    /// or coordinates.
+    must "at": PLACE, "\"A\"";
+};
 pub(crate) const POINT_REF: Shape = Shape::Any(
     "PointRef",
     "A point: by name, or a place on a body.",
@@ -42,60 +37,51 @@ pub(crate) const TIME: Kinds = Kinds {
     typed: false,
     tables: || vec![&STEPS, &TIMES],
 };
-const STEPS: Table = Table::new(
-    "Steps",
-    "Evenly spaced.",
-    &[
-        or("start", NUMBER, "0.0", "0", "The first output time. Default: 0."),
-        must("end", NUMBER, "1.0", "The last output time."),
-        must("steps", Shape::Count(MOST_TIMES), "100", "How many intervals: there is one output time more."),
-    ],
-);
-const TIMES: Table = Table::new(
-    "Times",
-    "One by one.",
-    &[must("at", Shape::some(&NUMBER), "[0, 0.5, 1]", "The output times, increasing.")],
-);
+const STEPS: Table = table! {
+    /// Evenly spaced.
+    "Steps":
+    /// The first output time.
+    or("0.0") "start": NUMBER, "0";
+    /// The last output time.
+    must "end": NUMBER, "1.0";
+    /// How many intervals: there is one output time more.
+    must "steps": Shape::Count(MOST_TIMES), "100";
+};
+const TIMES: Table = table! {
+    /// One by one.
+    "Times":
+    /// The output times, increasing.
+    must "at": Shape::some(&NUMBER), "[0, 0.5, 1]";
+};
 const RAY: Shape = Shape::Any(
     "Ray",
     "A direction that an angle is measured from or to.",
     &[Shape::exactly(2, &POINT_REF), Shape::Table(&FIXED_RAY), DIRECTION],
 );
-const FIXED_RAY: Table = Table::new(
-    "FixedRay",
-    "A direction that is fixed in a body.",
-    &[
-        must("body", BODY, "\"rocker\"", "The body's name."),
-        must("axis", LINE, "\"x\"", "Where it points in the design configuration."),
-    ],
-);
-pub(crate) const METRIC: Table = Table::new(
-    "Metric",
-    "One number for a whole curve.",
-    &[
-        must("of", OUTPUT, "\"toe\"", "The name of the measure, or `POINT.x`."),
-        must("take", TAKE, "\"max\"", "What to take of its curve."),
-        may(
-            "over",
-            OUTPUT,
-            "\"wheel_travel\"",
-            "The abscissa: the name of a measure, or `POINT.x`. Default: time.",
-        ),
-        may("at", NUMBER, "0", "For a value or slope: where, in the unit of the abscissa."),
-        may(
-            "window",
-            TWO_NUMBERS,
-            "[-20, 20]",
-            "The part of the curve that counts, from where to where its abscissa goes. Default: all of it.",
-        ),
-        may(
-            "target",
-            Shape::list(&TWO_NUMBERS),
-            "[[-50, 0.1], [50, -0.1]]",
-            "For `rms`: points `[abscissa, value]` of the curve to compare with, straight lines between them. Default: zero.",
-        ),
-    ],
-);
+const FIXED_RAY: Table = table! {
+    /// A direction that is fixed in a body.
+    "FixedRay":
+    /// The body's name.
+    must "body": BODY, "\"rocker\"";
+    /// Where it points in the design configuration.
+    must "axis": LINE, "\"x\"";
+};
+pub(crate) const METRIC: Table = table! {
+    /// One number for a whole curve.
+    "Metric":
+    /// The name of the measure, or `POINT.x`.
+    must "of": OUTPUT, "\"toe\"";
+    /// What to take of its curve.
+    must "take": TAKE, "\"max\"";
+    /// The abscissa: the name of a measure, or `POINT.x`. Default: time.
+    may "over": OUTPUT, "\"wheel_travel\"";
+    /// For a value or slope: where, in the unit of the abscissa.
+    may "at": NUMBER, "0";
+    /// The part of the curve that counts, from where to where its abscissa goes. Default: all of it.
+    may "window": TWO_NUMBERS, "[-20, 20]";
+    /// For `rms`: points `[abscissa, value]` of the curve to compare with, straight lines between them. Default: zero.
+    may "target": Shape::list(&TWO_NUMBERS), "[[-50, 0.1], [50, -0.1]]";
+};
 const TAKE: Shape = Shape::Any(
     "Take",
     "What a metric takes.",
@@ -114,24 +100,38 @@ pub(crate) const MEASURE: Shape = Shape::Any(
     "A measure.",
     &[Shape::Kinds(&OWN_MEASURE), Shape::Table(&OF_WHEEL), Shape::Table(&OF_AXLE)],
 );
-const OWN_MEASURE: Kinds = Kinds {
+pub(super) const OWN_MEASURE: Kinds = Kinds {
     name: "OwnMeasure",
     doc: "A measure of anything else.",
     typed: true,
     tables: || MEASURES.iter().filter_map(|(table, kind)| kind.own().map(|_| table)).collect(),
 };
-const OF_WHEEL: Table = Table::new(
-    "MeasureOfWheel",
-    "A measure of a wheel.",
-    &[must("type", WHEEL_MEASURE, "\"caster\"", "What to measure."), WHEEL],
-);
-const OF_AXLE: Table = Table::new(
-    "MeasureOfAxle",
-    "A measure of an axle.",
-    &[must("type", AXLE_MEASURE, "\"track\"", "What to measure."), AXLE],
-);
-const WHEEL: Key = must("wheel", Shape::Name("a wheel"), "\"front_left\"", "The wheel's name.");
-const AXLE: Key = must("axle", Shape::Name("an axle"), "\"front\"", "The axle's name.");
+const OF_WHEEL: Table = Table {
+    shared: WHEEL,
+    ..table! {
+        /// A measure of a wheel.
+        "MeasureOfWheel":
+        /// What to measure.
+        must "type": WHEEL_MEASURE, "\"caster\"";
+    }
+};
+const OF_AXLE: Table = Table {
+    shared: AXLE,
+    ..table! {
+        /// A measure of an axle.
+        "MeasureOfAxle":
+        /// What to measure.
+        must "type": AXLE_MEASURE, "\"track\"";
+    }
+};
+const WHEEL: &[Key] = keys! {
+    /// The wheel's name.
+    must "wheel": Shape::Name("a wheel"), "\"front_left\"";
+};
+const AXLE: &[Key] = keys! {
+    /// The axle's name.
+    must "axle": Shape::Name("an axle"), "\"front\"";
+};
 pub(super) const WHEEL_MEASURE: Shape = Shape::Any(
     "WheelMeasure",
     "",
@@ -175,17 +175,17 @@ static MEASURES: LazyLock<Vec<(Table, MeasureOf)>> = LazyLock::new(|| {
         let keys: Vec<Key> = own.fields.iter().map(key).collect();
         let table = Table::new(own.name, own.summary, keys.leak());
         match WheelMeasure::named(own.name) {
-            Some(what) => (Table { instead: &[WHEEL], ..table }, MeasureOf::Either(own, what)),
+            Some(what) => (Table { instead: WHEEL, ..table }, MeasureOf::Either(own, what)),
             None => (table, MeasureOf::Own(own)),
         }
     });
     let has_own = |name: &str| MeasureType::ALL.iter().any(|own| own.name == name);
     let of_wheels = WheelMeasure::ALL.iter().filter(|what| !has_own(what.name()));
     let of_wheels =
-        of_wheels.map(|what| (Table::new(what.name(), what.summary(), &[WHEEL]), MeasureOf::Wheel(*what)));
+        of_wheels.map(|what| (Table::new(what.name(), what.summary(), WHEEL), MeasureOf::Wheel(*what)));
     let of_axles = AxleMeasure::ALL
         .iter()
-        .map(|what| (Table::new(what.name(), what.summary(), &[AXLE]), MeasureOf::Axle(*what)));
+        .map(|what| (Table::new(what.name(), what.summary(), AXLE), MeasureOf::Axle(*what)));
     own.chain(of_wheels).chain(of_axles).collect()
 });
 

@@ -9,119 +9,61 @@ use hardpoint::space::Vec3;
 use super::Raw;
 use super::results::{AXLE_MEASURE, POINT_REF, WHEEL_MEASURE};
 use crate::diagnostic::Severity;
-use crate::format::{ANGLE, BODY, DRIVER, LENGTH, NUMBER, Shape, Table, may, must};
+use crate::format::{ANGLE, BODY, DRIVER, LENGTH, NUMBER, Shape, Table, table};
 use crate::places::EntryPlace;
 use crate::tree::{Field, Fields, LINE, PLACE, Reader};
 
-pub(crate) const WHEEL: Table = Table::new(
-    "Wheel",
-    "A road wheel. Axes are x forward, y left, z up.",
-    &[
-        must("body", BODY, "\"knuckle\"", "The body that it turns on: the knuckle."),
-        must(
-            "centre",
-            PLACE,
-            "\"wheel_centre\"",
-            "Its centre in the design configuration: a hardpoint's name (and it follows the hardpoint when the design moves \
-             that), or coordinates.",
-        ),
-        may(
-            "spin_axis",
-            LINE,
-            "[0, 1, 0]",
-            "Its spin axis in the design configuration, pointing outboard. Or give `toe` and `camber`.",
-        ),
-        may(
-            "toe",
-            ANGLE,
-            "0.1",
-            "Toe in the design configuration, instead of a spin axis; positive for toe-in, in the angle unit.",
-        ),
-        may(
-            "camber",
-            ANGLE,
-            "-1",
-            "Camber in the design configuration, instead of a spin axis; positive where the wheel's top leans outboard, in \
-             the angle unit.",
-        ),
-        must(
-            "radius",
-            LENGTH,
-            "310",
-            "From the centre to the ground in the wheel's plane: the loaded or rolling radius, in the length unit.",
-        ),
-        may(
-            "side",
-            Shape::Words(&[("left", ""), ("right", "")]),
-            "\"left\"",
-            "On which side of the vehicle it is. Default: left where the y of its centre is positive, else right.",
-        ),
-        may(
-            "kingpin",
-            Shape::exactly(2, &POINT_REF),
-            "[\"lower_ball\", { body = \"ground\", at = \"strut_top\" }]",
-            "A lower and an upper point of the axis that it steers about; they may be on different bodies.",
-        ),
-        may(
-            "bump",
-            DRIVER,
-            "\"jounce\"",
-            "The driver that moves it up and down, for roll centres, bump steer and the like. Default: the only driver.",
-        ),
-        may(
-            "end",
-            Shape::Words(&[("front", ""), ("rear", "")]),
-            "\"front\"",
-            "At which end of the vehicle it is, for anti-dive and the like.",
-        ),
-        may(
-            "measures",
-            Shape::Any("WheelMeasures", "", &[ALL, Shape::list(&WHEEL_MEASURE)]),
-            "[\"toe\", \"camber\"]",
-            "What to measure, as NAME.toe and so on: `\"all\"` that is possible, or a list.",
-        ),
-    ],
-);
+pub(crate) const WHEEL: Table = table! {
+    /// A road wheel. Axes are x forward, y left, z up.
+    "Wheel":
+    /// The body that it turns on: the knuckle.
+    must "body": BODY, "\"knuckle\"";
+    /// Its centre in the design configuration: a hardpoint's name (and it follows the hardpoint when the design moves that), or
+    /// coordinates.
+    must "centre": PLACE, "\"wheel_centre\"";
+    /// Its spin axis in the design configuration, pointing outboard. Or give `toe` and `camber`.
+    may "spin_axis": LINE, "[0, 1, 0]";
+    /// Toe in the design configuration, instead of a spin axis; positive for toe-in, in the angle unit.
+    may "toe": ANGLE, "0.1";
+    /// Camber in the design configuration, instead of a spin axis; positive where the wheel's top leans outboard, in the angle
+    /// unit.
+    may "camber": ANGLE, "-1";
+    /// From the centre to the ground in the wheel's plane: the loaded or rolling radius, in the length unit.
+    must "radius": LENGTH, "310";
+    /// On which side of the vehicle it is. Default: left where the y of its centre is positive, else right.
+    may "side": Shape::Words(&[("left", ""), ("right", "")]), "\"left\"";
+    /// A lower and an upper point of the axis that it steers about; they may be on different bodies.
+    may "kingpin": Shape::exactly(2, &POINT_REF), "[\"lower_ball\", { body = \"ground\", at = \"strut_top\" }]";
+    /// The driver that moves it up and down, for roll centres, bump steer and the like. Default: the only driver.
+    may "bump": DRIVER, "\"jounce\"";
+    /// At which end of the vehicle it is, for anti-dive and the like.
+    may "end": Shape::Words(&[("front", ""), ("rear", "")]), "\"front\"";
+    /// What to measure, as NAME.toe and so on: `"all"` that is possible, or a list.
+    may "measures": Shape::Any("WheelMeasures", "", &[ALL, Shape::list(&WHEEL_MEASURE)]), "[\"toe\", \"camber\"]";
+};
 const ALL: Shape = Shape::Any("AllMeasures", "", &[Shape::Words(&[("all", "")])]);
-pub(crate) const VEHICLE: Table = Table::new(
-    "Vehicle",
-    "What is known of the vehicle besides its suspension.",
-    &[
-        may("wheelbase", LENGTH, "2600", "Distance of the axles, in the length unit."),
-        may(
-            "centre_of_gravity",
-            LENGTH,
-            "550",
-            "Height of the centre of gravity above the ground, in the length unit.",
-        ),
-        may(
-            "front_brake_share",
-            NUMBER,
-            "0.65",
-            "Part of the braking force that the front wheels take, 0 to 1.",
-        ),
-        may(
-            "front_drive_share",
-            NUMBER,
-            "0",
-            "Part of the driving force that the front wheels give, 0 to 1.",
-        ),
-    ],
-);
-pub(crate) const AXLE: Table = Table::new(
-    "Axle",
-    "Two wheels side by side.",
-    &[
-        must("left", Shape::Name("a wheel"), "\"front_left\"", "The name of the left wheel."),
-        must("right", Shape::Name("a wheel"), "\"front_right\"", "The name of the right wheel."),
-        may(
-            "measures",
-            Shape::Any("AxleMeasures", "", &[ALL, Shape::list(&AXLE_MEASURE)]),
-            "[\"track\", \"ackermann\"]",
-            "What to measure, as NAME.track and so on: `\"all\"` that is possible, or a list.",
-        ),
-    ],
-);
+pub(crate) const VEHICLE: Table = table! {
+    /// What is known of the vehicle besides its suspension.
+    "Vehicle":
+    /// Distance of the axles, in the length unit.
+    may "wheelbase": LENGTH, "2600";
+    /// Height of the centre of gravity above the ground, in the length unit.
+    may "centre_of_gravity": LENGTH, "550";
+    /// Part of the braking force that the front wheels take, 0 to 1.
+    may "front_brake_share": NUMBER, "0.65";
+    /// Part of the driving force that the front wheels give, 0 to 1.
+    may "front_drive_share": NUMBER, "0";
+};
+pub(crate) const AXLE: Table = table! {
+    /// Two wheels side by side.
+    "Axle":
+    /// The name of the left wheel.
+    must "left": Shape::Name("a wheel"), "\"front_left\"";
+    /// The name of the right wheel.
+    must "right": Shape::Name("a wheel"), "\"front_right\"";
+    /// What to measure, as NAME.track and so on: `"all"` that is possible, or a list.
+    may "measures": Shape::Any("AxleMeasures", "", &[ALL, Shape::list(&AXLE_MEASURE)]), "[\"track\", \"ackermann\"]";
+};
 const SIDES: [Side; 2] = [Side::Left, Side::Right];
 const ENDS: [VehicleEnd; 2] = [VehicleEnd::Front, VehicleEnd::Rear];
 

@@ -306,6 +306,18 @@ pub enum Change {
     },
 }
 
+impl Change {
+    /// The joint that it changes by itself.
+    pub(crate) fn joint(&self) -> Option<JointId> {
+        match self {
+            Self::Marker { joint, .. } | Self::Field { joint, .. } | Self::Length { joint, .. } => {
+                Some(*joint)
+            }
+            Self::Move { .. } | Self::Parameter { .. } | Self::Law { .. } => None,
+        }
+    }
+}
+
 /// A point fixed in a body.
 #[derive(Clone, Debug, PartialEq)]
 pub struct BodyPoint {

@@ -130,7 +130,8 @@ impl<'p> Abreast<'p> {
             Some(_) => return true,
             None => 1,
         };
-        let program = self.programs.as_ref().filter(|_| corrections <= MOST_CORRECTIONS && one.selections == 0);
+        let program =
+            self.programs.as_ref().filter(|_| corrections <= MOST_CORRECTIONS && one.selections == 0);
         let tape = program.and_then(|program| program(corrections)).map(Tape::new);
         self.tape = tape.filter(|tape| tape.is_on(&one.branch));
         match &mut self.tape {
