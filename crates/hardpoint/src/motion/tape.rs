@@ -109,6 +109,12 @@ impl Runnable {
     pub fn outputs(&self) -> usize {
         self.program.outputs.len()
     }
+
+    /// How many in every part.
+    pub fn sizes(&self) -> [usize; PARTS] {
+        let [first, second] = self.ends;
+        [first, second - first, self.outputs() - second]
+    }
 }
 
 /// What a program works in.
@@ -566,8 +572,8 @@ impl Programs {
         steps.entry(purpose).or_insert_with(|| record(self.execution).map(Arc::new)).clone()
     }
 
-    /// The drivers' laws of the nominal design at eight times: value, speed and acceleration of each driver, and then what must not
-    /// be positive. None where a law is no plain formula.
+    /// The drivers' laws of the nominal design at eight times: in one part value, speed and acceleration of each driver, in the next what
+    /// must not be positive. None where a law is no plain formula.
     pub fn laws(&self, model: &Model) -> Option<Arc<Runnable>> {
         let mut laws = self.laws.lock().expect("no one panics while recording");
         laws.get_or_insert_with(|| {
@@ -581,7 +587,8 @@ impl Programs {
             let fits = recording::is_arithmetic();
             let program = recorded.program(Options::default()).0;
             let all = program.outputs.len();
-            fits.then(|| Arc::new(Runnable::new(program, [all; PARTS - 1], self.execution)))
+            let laws = ORDERS * model.drivers.len();
+            fits.then(|| Arc::new(Runnable::new(program, [laws, all], self.execution)))
         })
         .clone()
     }
@@ -686,12 +693,16 @@ impl Tape {
         self.program.purpose
     }
 
-    /// Foresees times so far ahead of the newest position by these weights: by position, the newest first, and order of its derivative.
+    /// Foresees times so far ahead of the newest position by these weights: by position, the newest first, and order of its derivative;
+    /// they may be the ones of last time.
     #[inline(always)]
-    pub fn look_ahead(&mut self, weights: &[Lanes; CONDITIONS], ahead: &Lanes) {
+    pub fn look_ahead(&mut self, weights: &[Lanes; CONDITIONS], are_new: bool, ahead: &Lanes) {
         let at = self.program.inputs.ahead;
         let inputs = lanes_of(&mut self.inputs);
-        inputs[..CONDITIONS].copy_from_slice(weights);
+        // Runs after the first went by others.
+        if are_new || self.runs != 1 {
+            inputs[..CONDITIONS].copy_from_slice(weights);
+        }
         inputs[at] = *ahead;
     }
 
@@ -854,13 +865,13 @@ impl Tape {
 
 /// Whether no lane is larger; NaN is.
 #[inline(always)]
-fn all_within(lanes: &Lanes, limit: f64) -> bool {
+pub(super) fn all_within(lanes: &Lanes, limit: f64) -> bool {
     lanes.iter().fold(true, |all, x| all & (*x <= limit))
 }
 
 /// The largest lane, of numbers.
 #[inline(always)]
-fn largest(lanes: &Lanes) -> f64 {
+pub(super) fn largest(lanes: &Lanes) -> f64 {
     let larger = |a: f64, b: f64| if a > b { a } else { b };
     let [a, b, c, d, e, f, g, h] = *lanes;
     larger(larger(larger(a, e), larger(b, f)), larger(larger(c, g), larger(d, h)))
