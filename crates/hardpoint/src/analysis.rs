@@ -184,7 +184,7 @@ impl<'m> Analysis<'m> {
     /// Per variable, the joints that it opens in the nominal design.
     pub(crate) fn opens(&self) -> &[Vec<JointDefect>] {
         self.opens.get_or_init(|| {
-            let nominal = self.effects.fields(&self.model.whole(&[]), 0.0);
+            let nominal = self.effects.fields(&self.model.whole(&[]));
             nominal.iter().map(|field| admissibility_at_design(self.model, field)).collect()
         })
     }
@@ -240,9 +240,9 @@ impl<'m> Analysis<'m> {
     pub(crate) fn design(&self, design: &[f64], sensitivities: bool) -> Design {
         let values = self.model.whole(design);
         Design {
-            geometry: self.effects.geometry(&values, 0.0),
+            geometry: self.effects.geometry(&values),
             laws: self.effects.laws(&values),
-            fields: if sensitivities { self.effects.fields(&values, 0.0) } else { Vec::new() },
+            fields: if sensitivities { self.effects.fields(&values) } else { Vec::new() },
             opens: if sensitivities { self.opens().to_vec() } else { Vec::new() },
             of_many: 1,
             values,
@@ -254,7 +254,7 @@ impl<'m> Analysis<'m> {
     pub fn admissibility_of(&self, change: &[f64]) -> Admissibility {
         let mut design = self.design(&[], false);
         let along = along(&self.model.whole(change));
-        let field = self.effects.field_along(&along, &design.values, 0.0);
+        let field = self.effects.field_along(&along, &design.values);
         design.opens = vec![admissibility_at_design(self.model, &field)];
         design.fields = vec![field];
         let mut walk = Walk::new(self, &design, vec![false; self.model.bodies.len()]);
@@ -443,7 +443,7 @@ impl<'m> Analysis<'m> {
                 if !purpose.sensitivities {
                     return Some(Recorded::default());
                 }
-                let fields = recording::strictly(|| self.effects.fields(values, state.witness));
+                let fields = recording::strictly(|| self.effects.fields(values));
                 record_derivatives(self.model, &fields, plan, state)
             };
             StepProgram::record(&one, &self.effects, purpose, besides, execution)
@@ -453,8 +453,8 @@ impl<'m> Analysis<'m> {
     /// The nominal design where its motion begins.
     fn started(&self) -> Option<Stepper<'m>> {
         let Design { geometry, laws, .. } = self.design(&[], false);
-        let parts = Parts::same(self.model, &self.topology, &geometry, &laws, 0.0);
-        let mut one = Stepper::new(self.model, &self.topology, parts, 0.0);
+        let parts = Parts::same(self.model, &self.topology, &geometry, &laws);
+        let mut one = Stepper::new(self.model, &self.topology, parts);
         one.start(*self.model.times.first()?).ok()?;
         Some(one)
     }
@@ -551,7 +551,7 @@ impl<'a> Walk<'a> {
         let (model, topology) = (analysis.model, &analysis.topology);
         let Design { geometry, laws, fields, .. } = design;
         Self {
-            one: Stepper::new(model, topology, Parts::same(model, topology, geometry, laws, 0.0), 0.0),
+            one: Stepper::new(model, topology, Parts::same(model, topology, geometry, laws)),
             abreast: Abreast::new(None, &[], None),
             sensing: (!fields.is_empty()).then(|| Sensing::new(model, topology, fields, wanted.clone())),
             wanted,

@@ -143,10 +143,9 @@ pub(crate) fn evaluate(
     let turns = turns(model, topology, &outputs);
     let bodies = bodies_asked_for(model);
 
-    let zero = Jet([0.0; 3]);
-    let lifted: Vec<Rates> = values.iter().map(|v| zero.like(*v)).collect();
-    let fixed = effects.fixed(&lifted, zero);
-    let mut poses = vec![Pose::IDENTITY.spread(zero); model.bodies.len()];
+    let lifted: Vec<Rates> = values.iter().map(|v| Rates::constant(*v)).collect();
+    let fixed = effects.fixed(&lifted);
+    let mut poses = vec![Pose::IDENTITY.spread(); model.bodies.len()];
     // Formulas are over angles that are counted through turns.
     let counts = model.measures.iter().any(|m| matches!(m.kind, MeasureKind::Combination(_)));
     let mut counted: Vec<f64> = Vec::new();
@@ -211,15 +210,15 @@ pub(crate) fn derivatives(
     more: &More<'_>,
 ) -> Vec<[f64; 3]> {
     let &At { model, effects, values, .. } = design;
-    let (bodies, zero) = (bodies_asked_for(model), Jet([0.0; 3]));
+    let bodies = bodies_asked_for(model);
     let (steps, variables, columns) = (motion.len(), sensitivities.variables, outputs.len());
     let mut found = vec![[f64::NAN; 3]; steps * variables * columns];
-    let mut poses = vec![Pose::IDENTITY.spread(Dual::constant(zero)); model.bodies.len()];
-    let mut lifted: Vec<Dual<Rates>> = values.iter().map(|v| Dual::constant(zero.like(*v))).collect();
+    let mut poses = vec![Pose::IDENTITY.spread(); model.bodies.len()];
+    let mut lifted: Vec<Dual<Rates>> = values.iter().map(|v| Dual::constant(Rates::constant(*v))).collect();
     let mut given: Vec<Dual<Rates>> = Vec::new();
     for b in 0..variables {
         lifted[b] = Dual::variable(lifted[b].v);
-        let fixed = effects.fixed(&lifted, Dual::constant(zero));
+        let fixed = effects.fixed(&lifted);
         lifted[b] = Dual::constant(lifted[b].v);
         for k in 0..steps {
             let Some(d) = sensitivities.at(k, b) else { break };
@@ -443,42 +442,42 @@ impl<'a, T: Real> Moment<'a, T> {
 
     /// Formulas and signs: `docs/measures.md`.
     fn measure(&self, k: usize) -> T {
-        let unknown = || self.poses[0].r.x.like(f64::NAN);
+        let unknown = || T::constant(f64::NAN);
         if self.model.goes_by_driver(k) {
             return self.slopes.get(k).copied().unwrap_or_else(unknown);
         }
         match &self.model.measures[k].kind {
             MeasureKind::Coordinate { joint, coordinate } => {
                 let wrapped = self.coordinate(k, *joint, *coordinate);
-                self.whole_turns.get(k).map_or(wrapped, |turns| wrapped + wrapped.like(*turns))
+                self.whole_turns.get(k).map_or(wrapped, |turns| wrapped + T::constant(*turns))
             }
             MeasureKind::Distance { from, to } => (self.point(*to) - self.point(*from)).norm(),
             MeasureKind::Coordinates { point, along } => {
                 let p = self.point(*point);
-                along.spread(p.x).dot(p)
+                along.spread().dot(p)
             }
             MeasureKind::Angle { between, kind } => {
                 let within = self.angle(k, between, *kind);
-                self.whole_turns.get(k).map_or(within, |turns| within + within.like(*turns))
+                self.whole_turns.get(k).map_or(within, |turns| within + T::constant(*turns))
             }
             MeasureKind::Velocity { point, along, order } => {
                 let velocity = self.point(*point).map(T::rate);
                 let v = if *order == 1 { velocity } else { velocity.map(T::rate) };
-                along.map_or_else(|| v.norm(), |along| along.spread(v.x).dot(v))
+                along.map_or_else(|| v.norm(), |along| along.spread().dot(v))
             }
             MeasureKind::Curvature { point, about } => {
                 let v = self.point(*point).map(T::rate);
                 let a = v.map(T::rate);
                 let (turn, speed) = (v.cross(a), v.norm());
-                let turn = about.map_or_else(|| turn.norm(), |about| about.spread(speed).dot(turn));
-                let (way, far) = (speed * speed, a.norm() * speed.like(RESTS * self.model.size()));
+                let turn = about.map_or_else(|| turn.norm(), |about| about.spread().dot(turn));
+                let (way, far) = (speed * speed, a.norm() * T::constant(RESTS * self.model.size()));
                 turn / (way.select(unknown(), way.value() > far.value()) * speed)
             }
             MeasureKind::Rate { of } => self.output(*of).rate(),
-            MeasureKind::Combination(formula) => formula.at(unknown(), |source| self.output(source)),
+            MeasureKind::Combination(formula) => formula.at(|source| self.output(source)),
             MeasureKind::Toe { body, .. } => {
                 let e = self.direction(k, 0, *body);
-                toe(e, e.x.like(Side::Left.sign()))
+                toe(e, T::constant(Side::Left.sign()))
             }
             MeasureKind::Camber { body, .. } => camber(self.direction(k, 0, *body)),
             MeasureKind::Wheel { wheel, what } => {
@@ -501,7 +500,7 @@ impl<'a, T: Real> Moment<'a, T> {
             AngleKind::Between => across.norm().atan2(along),
             AngleKind::Lines => across.norm().atan2(along.abs()),
             AngleKind::About(n) => {
-                let n = n.spread(along);
+                let n = n.spread();
                 n.dot(across).atan2(along - n.dot(a) * n.dot(b))
             }
         }
@@ -513,7 +512,7 @@ impl<'a, T: Real> Moment<'a, T> {
         let toe = |wheel: &WheelAt<T>| toe(wheel.spin_axis, wheel.side);
         // Headings to the left: toe-in of a right wheel is one, of a left wheel the opposite.
         let headings = || [-toe(&left), toe(&right)];
-        let wheelbase = || left.side.like(self.model.vehicle.wheelbase.unwrap_or(f64::NAN));
+        let wheelbase = || T::constant(self.model.vehicle.wheelbase.unwrap_or(f64::NAN));
         let track = left.contact().y - right.contact().y;
         match what {
             AxleMeasure::Track => track,
@@ -531,7 +530,7 @@ impl<'a, T: Real> Moment<'a, T> {
                 // The outer wheel steers less.
                 wheelbase() / steering(-(-least[0]).larger(-least[1]), headings())
             }
-            AxleMeasure::RollCentreY | AxleMeasure::RollCentreHeight => track.like(f64::NAN),
+            AxleMeasure::RollCentreY | AxleMeasure::RollCentreHeight => T::constant(f64::NAN),
         }
     }
 
@@ -542,8 +541,7 @@ impl<'a, T: Real> Moment<'a, T> {
 
     /// The same in the design configuration.
     fn wheel_as_drawn(&self, k: usize, d: usize, wheel: WheelId) -> WheelAt<T> {
-        let witness = self.poses[0].r.x;
-        self.wheel_at(k, d, wheel, |b| self.model.bodies[b.0].frame.spread(witness))
+        self.wheel_at(k, d, wheel, |b| self.model.bodies[b.0].frame.spread())
     }
 
     fn wheel_at(&self, k: usize, d: usize, wheel: WheelId, pose: impl Fn(BodyId) -> Pose<T>) -> WheelAt<T> {
@@ -553,8 +551,8 @@ impl<'a, T: Real> Moment<'a, T> {
         WheelAt {
             centre,
             spin_axis: pose(wheel.body).rot * self.fixed.directions[k][d].expect("a wheel has a spin axis"),
-            radius: centre.x.like(wheel.radius),
-            side: centre.x.like(wheel.side.sign()),
+            radius: T::constant(wheel.radius),
+            side: T::constant(wheel.side.sign()),
             kingpin: wheel.kingpin.map(|points| points.map(point)),
         }
     }
@@ -589,7 +587,7 @@ const STRAIGHT: f64 = 1e-4;
 
 /// A number for division; NaN where one of the headings is straight ahead.
 fn steering<T: Real>(x: T, [l, r]: [T; 2]) -> T {
-    x.select(x.like(f64::NAN), l.value().abs().min(r.value().abs()) >= STRAIGHT)
+    x.select(T::constant(f64::NAN), l.value().abs().min(r.value().abs()) >= STRAIGHT)
 }
 
 /// The heading of the right wheel that turns about the same point of the other axle's line as the left one with heading l:

@@ -78,7 +78,7 @@ impl Channel {
         self.save(x, &mut state.q, &mut state.balls);
         if let Self::Ball(first, 3) = self {
             state.balls[first] = state.balls[first].normalised();
-            state.q[first..first + 3].fill(x.zero());
+            state.q[first..first + 3].fill(T::zero());
         }
     }
 

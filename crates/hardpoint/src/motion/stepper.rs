@@ -180,9 +180,9 @@ pub(super) enum Refusal {
 }
 
 impl<'m> Stepper<'m> {
-    pub fn new(model: &'m Model, topology: &Topology, parts: Parts<f64>, witness: f64) -> Self {
-        let mut state = State::new(model, topology, witness);
-        state.contacts = parts.curves.iter().map(|c| Contact::at(c, witness, c.start())).collect();
+    pub fn new(model: &'m Model, topology: &Topology, parts: Parts<f64>) -> Self {
+        let mut state = State::new(model, topology);
+        state.contacts = parts.curves.iter().map(|c| Contact::at(c, c.start())).collect();
         let saved = Saved {
             q: state.q.clone(),
             qd: state.qd.clone(),
@@ -589,7 +589,7 @@ impl<'m> Stepper<'m> {
     /// Room for the factors of a block that is solved with other rows from now on: they have entries in other places.
     pub(super) fn renew_factors(&mut self, b: usize) {
         let block = &self.topology.blocks[b];
-        self.state.factors[b] = factors_of(&self.topology, block, LARGEST_DENSE, self.state.witness);
+        self.state.factors[b] = factors_of(&self.topology, block, LARGEST_DENSE);
     }
 
     /// Values of the tree coordinates; 0 for those of balls.
@@ -672,10 +672,9 @@ mod tests {
     /// The states of all bodies at the last output time, with blocks up to this size factored densely.
     fn last(model: &Model, topology: &Topology, largest_dense: usize) -> (State<f64>, Vec<bool>) {
         let (design, laws) = (model.geometry(&[]), model.laws(&[]));
-        let mut stepper =
-            Stepper::new(model, topology, Parts::same(model, topology, &design, &laws, 0.0), 0.0);
+        let mut stepper = Stepper::new(model, topology, Parts::same(model, topology, &design, &laws));
         let blocks = topology.blocks.iter();
-        stepper.state.factors = blocks.map(|b| factors_of(topology, b, largest_dense, 0.0)).collect();
+        stepper.state.factors = blocks.map(|b| factors_of(topology, b, largest_dense)).collect();
         stepper.start(model.times[0]).unwrap();
         model.times[1..].iter().for_each(|t| stepper.advance(*t).unwrap());
         let signs = stepper.state.pivots.iter().map(|p| p.1).collect();

@@ -274,8 +274,7 @@ impl StepProgram {
         let (mut fits, mut blocks) = (false, Vec::new());
         recording::begin();
         let recorded = record(|| {
-            let zero = Number::constant(0.0);
-            let mut state = State::new(model, topology, zero);
+            let mut state = State::new(model, topology);
             let offset = OFFSET[purpose.corrections - 1];
             let known = foresee(topology, &channels, &one.saved, offset, &mut state);
             let drivers: Vec<[Number; 3]> = one.saved.drivers.iter().map(|f| f.map(Number::input)).collect();
@@ -283,8 +282,8 @@ impl StepProgram {
             let nominal = model.whole(&[]).into_iter();
             let number = if purpose.any_design { Number::input } else { Number::constant };
             let values: Vec<Number> = nominal.map(number).collect();
-            let geometry = recording::strictly(|| effects.geometry(&values, zero));
-            let parts = Parts::of(model, topology, &geometry, zero);
+            let geometry = recording::strictly(|| effects.geometry(&values));
+            let parts = Parts::of(model, topology, &geometry);
             fits = state.solve(topology, &parts, &drivers, f64::INFINITY).is_ok();
             let recorded = (0..topology.blocks.len()).map_while(|b| BlockProgram::of(&state, b));
             blocks = recorded.collect::<Vec<_>>();
@@ -293,7 +292,7 @@ impl StepProgram {
             let mut out = moves(topology, &channels, &state);
             let bodies = BodyState::all(&state);
             let (margins, mut limits) = match purpose.margins {
-                true => Margins::new(topology, zero).record(topology, &state),
+                true => Margins::new(topology).record(topology, &state),
                 false => Default::default(),
             };
             let Some(more) = besides(topology, &mut state, &values) else {

@@ -31,8 +31,8 @@ impl Sensing {
     /// Prepares the sensitivities of the wanted bodies by the variables with these fields.
     pub fn new(model: &Model, topology: &Topology, fields: &[Field], wanted: Vec<bool>) -> Self {
         Self {
-            fields: fields.iter().map(|f| FieldParts::new(topology, f, 0.0)).collect(),
-            direct: Direct::new(model, topology, 0.0),
+            fields: fields.iter().map(|f| FieldParts::new(topology, f)).collect(),
+            direct: Direct::new(model, topology),
             bodies: model.bodies.len(),
             wanted,
             resisting: vec![(Vec::new(), 0.0); fields.len()],
@@ -132,7 +132,7 @@ fn components<T: Real>(
     let (r, v, a) = (state.pose[body].r, state.v[body], state.a[body]);
     let velocity = v.at(r);
     let acceleration = v.w.cross_plus(velocity, a.at(r));
-    let two = r.x.like(2.0);
+    let two = T::constant(2.0);
     let (p, q) = (w0.at(r), w0.w);
     let u = w0.w.cross_plus(velocity, w1.at(r));
     let o = w0.w.cross_plus(v.w, w1.w);
@@ -149,14 +149,14 @@ pub(crate) fn record_derivatives(
     topology: &Topology,
     state: &mut State<Number>,
 ) -> Option<Recorded> {
-    let (witness, mut recorded, mut defects) = (state.witness, Recorded::default(), Vec::new());
+    let (mut recorded, mut defects) = (Recorded::default(), Vec::new());
     if fields.is_empty() {
         return Some(recorded);
     }
     state.finish_rates(topology);
-    let mut direct = Direct::new(model, topology, witness);
+    let mut direct = Direct::new(model, topology);
     for (v, field) in fields.iter().enumerate() {
-        let mut field = FieldParts::new(topology, field, witness);
+        let mut field = FieldParts::new(topology, field);
         if !field.is_constant() {
             return None;
         }

@@ -6,7 +6,7 @@ use crate::model::{Field, Fixed, GROUND, MeasureKind, OutputSource, VariableId};
 use crate::motion::Stop;
 use crate::motion::kinematics::State;
 use crate::motion::stepper::Stepper;
-use crate::number::{Dual, Jet, Rates, Real};
+use crate::number::{Dual, Jet, Rates};
 use crate::sensitivity::{Adjoint, Admissibility, Load, Resisting, Support, Watch, admissibility};
 use crate::space::{Mat3, Pose, Twist, Vec3, Wrench};
 use crate::topology::Topology;
@@ -145,7 +145,7 @@ impl Analysis<'_> {
     fn gradients_adjoint(&self, design: &Design, outputs: Vec<Output>) -> Gradients {
         let model = self.model();
         let (variables, asked) = (model.variables.len(), outputs.len());
-        let fields = self.effects().fields(&design.values, 0.0);
+        let fields = self.effects().fields(&design.values);
         let mut result = Gradients {
             d: vec![[f64::NAN; 3]; model.times.len() * asked * variables],
             method: Method::Adjoint,
@@ -153,7 +153,7 @@ impl Analysis<'_> {
             outputs,
             ..Gradients::default()
         };
-        let mut tracing = Tracing::new(self, design, &fields, &result.outputs, 0.0);
+        let mut tracing = Tracing::new(self, design, &fields, &result.outputs);
         let mut resisting: Vec<Resisting> = vec![(Vec::new(), 0.0); variables];
         let mut walk = Walk::new(self, design, vec![false; model.bodies.len()]);
         let mut times = model.times.iter();
@@ -202,18 +202,12 @@ struct Asked {
 }
 
 impl<'a> Tracing<'a> {
-    fn new(
-        analysis: &'a Analysis<'_>,
-        design: &Design,
-        fields: &[Field],
-        outputs: &[Output],
-        witness: f64,
-    ) -> Self {
+    fn new(analysis: &'a Analysis<'_>, design: &Design, fields: &[Field], outputs: &[Output]) -> Self {
         let (model, effects) = (analysis.model(), analysis.effects());
-        let adjoint = Adjoint::new(model, analysis.topology(), fields, witness);
+        let adjoint = Adjoint::new(model, analysis.topology(), fields);
         let bodies: Vec<usize> = bodies_asked_for(model).into_iter().filter(|b| *b != GROUND.0).collect();
         let depends = dependences(analysis, &design.values, &bodies, outputs);
-        let none = [Wrench::zero(witness); 3];
+        let none = [Wrench::zero(); 3];
         let asked = outputs.iter().zip(depends).map(|(output, [on, variables])| Asked {
             derivatives: vec![[0.0; 3]; 6 * on.len() + variables.len()],
             output: output.clone(),
@@ -222,22 +216,22 @@ impl<'a> Tracing<'a> {
             variables,
         });
         let asked: Vec<Asked> = asked.collect();
-        let zero = Dual::constant(Jet([0.0; 3]));
-        let mut values: Vec<Dual<Rates>> = design.values.iter().map(|v| zero.like(*v)).collect();
+        let mut values: Vec<Dual<Rates>> =
+            design.values.iter().map(|v| Dual::constant(Rates::constant(*v))).collect();
         let mut moved: Vec<Option<Fixed<Dual<Rates>>>> = values.iter().map(|_| None).collect();
         for &v in asked.iter().flat_map(|a| &a.variables) {
             moved[v].get_or_insert_with(|| {
                 let value = values[v];
                 values[v] = Dual::variable(value.v);
-                let fixed = effects.fixed(&values, zero);
+                let fixed = effects.fixed(&values);
                 values[v] = value;
                 fixed
             });
         }
         Self {
             watch: Watch::new(model, fields.len()),
-            poses: vec![Pose::IDENTITY.spread(zero); model.bodies.len()],
-            fixed: effects.fixed(&values, zero),
+            poses: vec![Pose::IDENTITY.spread(); model.bodies.len()],
+            fixed: effects.fixed(&values),
             gradient: vec![[0.0; 3]; fields.len()],
             analysis,
             adjoint,
@@ -322,10 +316,9 @@ fn dependences(
     outputs: &[Output],
 ) -> Vec<[Vec<usize>; 2]> {
     let (model, effects) = (analysis.model(), analysis.effects());
-    let zero = Dual::constant(0.0);
     let unknown = |x: Dual| Dual { v: x.v, d: f64::NAN };
     let mut values: Vec<Dual> = values.iter().map(|v| Dual::constant(*v)).collect();
-    let mut poses: Vec<Pose<Dual>> = model.bodies.iter().map(|b| b.frame.spread(zero)).collect();
+    let mut poses: Vec<Pose<Dual>> = model.bodies.iter().map(|b| b.frame.spread()).collect();
     let depend = |fixed: &Fixed<Dual>, poses: &[Pose<Dual>]| -> Vec<bool> {
         outputs.iter().map(|o| Moment::new(model, fixed, poses).output(o.source).d.is_nan()).collect()
     };
@@ -334,7 +327,7 @@ fn dependences(
         let depending = found.iter_mut().zip(depends).filter(|(_, depends)| *depends);
         depending.for_each(|(found, _)| found[which].push(what));
     };
-    let fixed = effects.fixed(&values, zero);
+    let fixed = effects.fixed(&values);
     for &b in bodies {
         let pose = poses[b];
         poses[b] = Pose { rot: Mat3 { cols: pose.rot.cols.map(|c| c.map(unknown)) }, r: pose.r.map(unknown) };
@@ -344,7 +337,7 @@ fn dependences(
     for v in 0..values.len() {
         let value = values[v];
         values[v] = unknown(value);
-        note(1, v, depend(&effects.fixed(&values, zero), &poses));
+        note(1, v, depend(&effects.fixed(&values), &poses));
         values[v] = value;
     }
     found
@@ -374,8 +367,8 @@ fn still(pose: Pose<Rates>) -> Pose<Dual<Rates>> {
 
 /// Lets a pose go with a unit twist of the world: a turn about x, y or z, then a slide.
 fn move_along(pose: &mut Pose<Dual<Rates>>, unit: usize) {
-    let axis = Vec3::AXES[unit % 3].spread(pose.r.x.v);
-    let twist = if unit < 3 { Twist::turn(axis, Vec3::zero(axis.x)) } else { Twist::slide(axis) };
+    let axis = Vec3::AXES[unit % 3].spread();
+    let twist = if unit < 3 { Twist::turn(axis, Vec3::zero()) } else { Twist::slide(axis) };
     for c in &mut pose.rot.cols {
         let rate = twist.w.cross(c.map(|x| x.v));
         set(c, rate);
@@ -386,7 +379,7 @@ fn move_along(pose: &mut Pose<Dual<Rates>>, unit: usize) {
 
 /// Lets it go with nothing again.
 fn stop(pose: &mut Pose<Dual<Rates>>) {
-    let nothing = Vec3::zero(pose.r.x.v);
+    let nothing = Vec3::zero();
     pose.rot.cols.iter_mut().for_each(|c| set(c, nothing));
     set(&mut pose.r, nothing);
 }
