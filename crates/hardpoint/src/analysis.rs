@@ -520,7 +520,12 @@ impl<'m> Analysis<'m> {
         let mut resisting = vec![(Vec::new(), 0.0); LANES * variables];
         let effort = beside.run(&values, |k, found| {
             let times = [self.model.times[k]; LANES];
-            note_defects(found.tape, &self.topology, (&times[..designs.len()], 0), (&mut resisting, variables));
+            note_defects(
+                found.tape,
+                &self.topology,
+                (&times[..designs.len()], 0),
+                (&mut resisting, variables),
+            );
             found.block.hand_over(&wanted, moved.iter().copied(), sinks, 0..designs.len(), |lane| (lane, k));
         })?;
         Some((effort, resisting))
@@ -643,7 +648,9 @@ impl<'a> Walk<'a> {
                 if let Some(block) = self.abreast.own_results() {
                     let moved = self.sensing.iter().flat_map(Sensing::moved);
                     let sinks = std::slice::from_mut(sink);
-                    block.hand_over(&self.wanted, moved, sinks, lanes.clone(), |lane| (0, k + lane - lanes.start));
+                    block.hand_over(&self.wanted, moved, sinks, lanes.clone(), |lane| {
+                        (0, k + lane - lanes.start)
+                    });
                 }
                 if let Some(sensing) = &mut self.sensing {
                     sensing.note(tape, &self.one.topology, &times[k..k + count], first);

@@ -163,9 +163,13 @@ mod tests {
         kept.set(15, 0, [1.0]);
         assert_eq!((kept.row(15).get(0), kept.block_mut(0).as_ptr()), (1.0, memory));
         // Two numbers of eight designs at three output times.
-        let lines = (0..6).map(|n| Line(std::array::from_fn(|lane| number(n / 2, n % 2) + lane as f64 / 8.0)));
+        let lines =
+            (0..6).map(|n| Line(std::array::from_fn(|lane| number(n / 2, n % 2) + lane as f64 / 8.0)));
         let mut design = Blocks::of_design(Arc::new(lines.collect()), 2, 3);
-        assert_eq!(design.row(2).all().collect::<Vec<_>>(), [0.0, 1.0].map(|c| number(2, c as usize) + 0.375));
+        assert_eq!(
+            design.row(2).all().collect::<Vec<_>>(),
+            [0.0, 1.0].map(|c| number(2, c as usize) + 0.375)
+        );
         kept.shape(2, 1);
         kept.copy(0, &design, 1);
         assert_eq!(kept.row(0).get(1), number(1, 1) + 0.375);

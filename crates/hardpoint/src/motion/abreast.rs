@@ -88,7 +88,7 @@ impl<'p> Abreast<'p> {
 
     /// Output time k comes next: moves on from where the stepper stands to as many of the next output times as can be solved at once;
     /// returns how many, 0 where they are to be walked. Output times 8n to 8n + 7 lie side by side, so that these end with such a
-    /// group; those of it that are before k are solved once more, the same. Results go to the room that there is, or are kept here.
+    /// group; those of it that are before k are solved once more, for nothing. Results go to the room that there is, or are kept here.
     #[inline]
     pub fn advance<'r>(
         &mut self,
@@ -130,7 +130,8 @@ impl<'p> Abreast<'p> {
             Some(_) => return true,
             None => 1,
         };
-        let program = self.programs.as_ref().filter(|_| corrections <= MOST_CORRECTIONS && one.selections == 0);
+        let program =
+            self.programs.as_ref().filter(|_| corrections <= MOST_CORRECTIONS && one.selections == 0);
         let tape = program.and_then(|program| program(corrections)).map(Tape::new);
         self.tape = tape.filter(|tape| tape.is_on(&one.branch));
         match &mut self.tape {
@@ -164,7 +165,8 @@ impl<'p> Abreast<'p> {
                 *to = [*x; LANES];
             }
         }
-        let room = room.filter(|room| room.each_ref().map(|part| part.len()) == tape.sizes());
+        // What was found before stays, whatever these come to.
+        let room = room.filter(|room| first == 0 && room.each_ref().map(|part| part.len()) == tape.sizes());
         self.is_own = room.is_none();
         let results = room.unwrap_or_else(|| {
             for (own, size) in self.own.iter_mut().zip(tape.sizes()) {
@@ -245,7 +247,8 @@ fn laws_are_even(tape: &Tape, one: &mut Stepper<'_>, times: &Lanes, [first, last
         if !(travel <= most) {
             return false;
         }
-        (one.moves_ahead[d], one.travel[d]) = (moves, travel * unit);
+        // What was examined must be clear as far as the last of these times.
+        (one.moves_ahead[d], one.travel[d]) = (moves, travel * unit * ((to - from) / longest));
     }
     one.ahead == Ahead::Even || one.around.part_of_way(&one.travel) <= PART_OF_WAY
 }

@@ -12,13 +12,13 @@ use crate::blocks::{Blocks, Line, lanes_of};
 use crate::model::{BodyId, VariableId};
 use crate::sink::Block;
 
-use super::{Effort, Motion};
 use super::abreast::ProgramOf;
 use super::forecast::{NODES, ORDERS, Weights};
 use super::kinematics::QUADRATIC;
 use super::stepper::{Ahead, MILD, MILD_CHANGE, Stepper, TRUST_FLOOR};
 use super::tape::{MOST_CORRECTIONS, Solved, Tape};
 use super::walk::Path;
+use super::{Effort, Motion};
 
 /// A forecast that was so good at the last step will be good enough for one correction at the next one.
 const GOOD: f64 = 0.1 * QUADRATIC;
