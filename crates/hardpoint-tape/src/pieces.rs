@@ -42,7 +42,9 @@ pub struct Piece {
     pub shape: usize,
     /// What its inputs are: inputs of the whole program, or values, by their number among those that are kept.
     pub inputs: Vec<Operand>,
-    /// Its uniforms.
+    /// Which uniforms of the whole program are its first ones.
+    pub given: Vec<u32>,
+    /// Its other uniforms.
     pub uniforms: Vec<f64>,
     /// Which of the numbers that are kept are its own.
     pub kept: Range<usize>,
@@ -53,14 +55,15 @@ pub struct Piece {
 }
 
 impl Program {
-    /// Takes the program apart, `piece_of` saying which piece an input belongs to; outputs are in areas that end where `ends` says.
+    /// Takes the program apart, `piece_of` saying which piece an input or uniform belongs to; outputs are in areas that end where `ends`
+    /// says.
     ///
-    /// None where a piece would have outputs of the second or third area that do not follow each other. Programs with uniforms are not
-    /// taken apart.
-    pub fn in_pieces(&self, piece_of: impl Fn(u32) -> usize, ends: [usize; AREAS - 1]) -> Option<Pieces> {
-        if self.uniforms > 0 {
-            return None;
-        }
+    /// None where a piece would have outputs of the second or third area that do not follow each other.
+    pub fn in_pieces(
+        &self,
+        piece_of: impl Fn(Operand) -> usize,
+        ends: [usize; AREAS - 1],
+    ) -> Option<Pieces> {
         let cut = Cut::of(self, piece_of, ends);
         let mut whole = Pieces { shapes: Vec::new(), pieces: Vec::new(), kept: 0 };
         // Constants of every piece, by the number that they have in its shape.
@@ -95,16 +98,22 @@ impl Pieces {
     ///
     /// # Panics
     ///
-    /// If there are fewer inputs or outputs than the whole has.
+    /// If there are fewer inputs, uniforms or outputs than the whole has.
     #[inline(always)]
     pub fn run(
         &self,
         room: &mut PiecesRoom,
         inputs: &[Lanes],
+        uniforms: &[f64],
         [first, second, third]: [&mut [Lanes]; AREAS],
         mut run: impl FnMut(usize, &[Lanes], &[f64], [&mut [Lanes]; AREAS]),
     ) {
         room.kept.resize(self.kept, Line::default());
+        if room.uniforms.is_empty() {
+            let of = |piece: &Piece| [vec![0.0; piece.given.len()], piece.uniforms.clone()].concat();
+            room.uniforms = self.pieces.iter().flat_map(of).collect();
+        }
+        let mut left = &mut room.uniforms[..];
         for piece in &self.pieces {
             room.read.resize(piece.inputs.len(), Line::default());
             for (to, from) in room.read.iter_mut().zip(&piece.inputs) {
@@ -116,11 +125,16 @@ impl Pieces {
                     }
                 }
             }
+            let (own, others) = left.split_at_mut(piece.given.len() + piece.uniforms.len());
+            left = others;
+            for (to, from) in own.iter_mut().zip(&piece.given) {
+                *to = uniforms[*from as usize];
+            }
             let kept = &mut room.kept[piece.kept.clone()];
             let areas = [&mut second[piece.areas[0].clone()], &mut third[piece.areas[1].clone()]];
             let [second, third] = areas;
             let parts = [bytemuck::cast_slice_mut(kept), second, third];
-            run(piece.shape, bytemuck::cast_slice(&room.read), &piece.uniforms, parts);
+            run(piece.shape, bytemuck::cast_slice(&room.read), own, parts);
             let own = &room.kept[piece.kept.end - piece.outputs.len()..];
             for (k, found) in piece.outputs.iter().zip(own) {
                 first[*k as usize] = found.0;
@@ -129,11 +143,13 @@ impl Pieces {
     }
 }
 
-/// What pieces are run in.
+/// What the pieces of a program are run in; of one program only.
 #[derive(Clone, Debug, Default)]
 pub struct PiecesRoom {
     kept: Vec<Line>,
     read: Vec<Line>,
+    /// Of all pieces, one after the other.
+    uniforms: Vec<f64>,
 }
 
 /// The lanes of one number, within one line of memory.
@@ -159,14 +175,14 @@ struct Members {
 }
 
 impl Cut {
-    fn of(program: &Program, piece_of: impl Fn(u32) -> usize, ends: [usize; AREAS - 1]) -> Self {
+    fn of(program: &Program, piece_of: impl Fn(Operand) -> usize, ends: [usize; AREAS - 1]) -> Self {
         let mut piece_of_instruction = Vec::with_capacity(program.instructions.len());
         let mut is_read = vec![false; program.instructions.len()];
         for instruction in &program.instructions {
             let pieces = instruction.operands().map(|operand| match operand {
                 Operand::Value(v) => piece_of_instruction[v as usize],
-                Operand::Input(k) => piece_of(k),
-                Operand::Uniform(_) | Operand::Constant(_) => 0,
+                Operand::Constant(_) => 0,
+                given => piece_of(given),
             });
             piece_of_instruction.push(pieces.max().unwrap_or(0));
         }
@@ -207,6 +223,7 @@ struct Form {
     instructions: Vec<Instruction>,
     outputs: Vec<Operand>,
     inputs: usize,
+    given: usize,
     constants: usize,
     ends: [usize; AREAS - 1],
 }
@@ -219,6 +236,7 @@ struct Names<'a> {
     own: HashMap<u32, u32>,
     leaves: HashMap<Operand, u32>,
     inputs: Vec<Operand>,
+    given: Vec<u32>,
     constants: Vec<f64>,
 }
 
@@ -236,6 +254,14 @@ impl Names<'_> {
                 self.constants.push(self.program.constants[c as usize]);
             }
             return Operand::Constant(number);
+        }
+        if let Operand::Uniform(u) = operand {
+            let next = self.given.len() as u32;
+            let number = *self.leaves.entry(operand).or_insert(next);
+            if number == next {
+                self.given.push(u);
+            }
+            return Operand::Uniform(number);
         }
         let next = self.inputs.len() as u32;
         let number = *self.leaves.entry(operand).or_insert(next);
@@ -268,6 +294,7 @@ impl Members {
             own: HashMap::with_capacity(self.instructions.len()),
             leaves: HashMap::new(),
             inputs: Vec::new(),
+            given: Vec::new(),
             constants: Vec::new(),
         };
         let mut instructions = Vec::with_capacity(self.instructions.len());
@@ -279,7 +306,7 @@ impl Members {
         let given = self.outputs.iter().flatten().map(|k| program.outputs[*k as usize]);
         let outputs = read.iter().map(|k| Operand::Value(*k)).chain(given);
         let outputs: Vec<Operand> = outputs.map(|operand| names.of(operand)).collect();
-        let Names { inputs, constants, .. } = names;
+        let Names { inputs, given, constants, .. } = names;
 
         let [first, second, third] = &self.outputs;
         let mut areas = [0..0, 0..0];
@@ -299,12 +326,14 @@ impl Members {
             instructions,
             outputs,
             inputs: inputs.len(),
+            given: given.len(),
             constants: constants.len(),
             ends: [all, all + second.len()],
         };
         let piece = Piece {
             shape: 0,
             inputs,
+            given,
             uniforms: Vec::new(),
             kept: kept..kept + all,
             outputs: first.clone(),
@@ -318,7 +347,8 @@ impl Form {
     /// The program of these pieces; constants in which they differ become their uniforms.
     fn shape(self, same: &[usize], constants: &[Vec<f64>], pieces: &mut [Piece]) -> Shape {
         let of = |k: usize, n: usize| constants[k][n].to_bits();
-        let mut program = Program { inputs: self.inputs, ..Program::default() };
+        let mut program =
+            Program { inputs: self.inputs, uniforms: self.given, ..Program::default() };
         let mut places = Vec::with_capacity(self.constants);
         for n in 0..self.constants {
             if same.iter().all(|k| of(*k, n) == of(same[0], n)) {
