@@ -53,7 +53,7 @@ fn pieces_of_random_formulas_give_the_bits_of_the_whole() {
             Operand::Input(k) | Operand::Uniform(k) => belongs[k as usize],
             _ => panic!("{operand:?} belongs to no piece"),
         };
-        let Some(pieces) = program.in_pieces(piece_of, ends) else { continue };
+        let pieces = program.in_pieces(piece_of, ends);
         compared += 1;
         several += usize::from(pieces.shapes.len() > 1);
         let inputs = numbers(&mut random, formula.inputs);
@@ -91,7 +91,7 @@ fn of_input(operand: Operand) -> usize {
 fn links_of_a_chain_share_their_code() {
     let links = 50;
     let (program, _) = chain(links).program(Options::default());
-    let pieces = program.in_pieces(of_input, [1, 1 + 3 * links]).expect("places follow each other");
+    let pieces = program.in_pieces(of_input, [1, 1 + 3 * links]);
     // The first has nothing before it, and the last is read by none.
     assert!(pieces.shapes.len() <= 4, "{}", pieces.shapes.len());
     assert_eq!(pieces.pieces.len(), links);
@@ -103,12 +103,19 @@ fn links_of_a_chain_share_their_code() {
 }
 
 #[test]
-fn outputs_that_lie_apart_are_left_in_one_program() {
+fn outputs_go_to_their_place_at_once_where_they_follow_each_other() {
     let recording = record(|| {
         let [a, b] = [Number::input(1.0), Number::input(2.0)];
         [a * a, b * b, a + a]
     });
     let (program, _) = recording.program(Options::default());
-    assert!(program.in_pieces(of_input, [3, 3]).is_some(), "in the first area they may");
-    assert_eq!(program.in_pieces(of_input, [0, 3]), None);
+    let inputs = [[3.0; 8], [4.0; 8]];
+    for (ends, written) in [([3, 3], [0, 0]), ([0, 3], [0, 1]), ([1, 3], [1, 1]), ([0, 1], [2, 1])] {
+        let pieces = program.in_pieces(of_input, ends);
+        let at_once =
+            |piece: &hardpoint_tape::Piece| piece.areas.iter().map(|area| area.len()).sum::<usize>();
+        assert_eq!(pieces.pieces.iter().map(at_once).collect::<Vec<_>>(), written, "{ends:?}");
+        let found = in_pieces(&pieces, &inputs, &[], [ends[0], ends[1] - ends[0], 3 - ends[1]]);
+        assert_eq!(found, whole(&program, &inputs, &[]));
+    }
 }

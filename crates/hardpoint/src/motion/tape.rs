@@ -166,7 +166,7 @@ impl Runnable {
     ) -> Self {
         let (inputs, long) = (program.inputs, program.instructions.len());
         let sizes = [first, second - first, program.outputs.len() - second];
-        let pieces = (long > LONG).then(|| program.in_pieces(piece_of, ends)).flatten();
+        let pieces = (long > LONG).then(|| program.in_pieces(piece_of, ends));
         let form = match pieces.filter(|pieces| SHORTER * pieces.instructions() <= long) {
             Some(pieces) => {
                 let executable =
