@@ -50,6 +50,13 @@ impl Blocks {
         lanes_of(&mut self.lines[first..first + self.width])
     }
 
+    /// The same, to be read.
+    #[inline(always)]
+    pub fn block(&self, k: usize) -> &[Lanes] {
+        let first = k / LANES * self.width;
+        bytemuck::cast_slice(&self.lines[first..first + self.width])
+    }
+
     /// Writes some numbers of output time k, from this one on.
     #[inline(always)]
     pub fn set(&mut self, k: usize, first: usize, numbers: impl IntoIterator<Item = f64>) {

@@ -95,10 +95,15 @@ pub(crate) struct Runnable {
 
 impl Runnable {
     /// Its outputs in parts that end there.
-    fn new(program: Program, ends: [usize; PARTS - 1], execution: Execution) -> Self {
+    pub fn new(program: Program, ends: [usize; PARTS - 1], execution: Execution) -> Self {
         let code =
             if execution == Execution::Interpreted { None } else { Code::in_parts(&program, ends).ok() };
         Self { program, ends, code }
+    }
+
+    /// How many numbers it is given.
+    pub fn inputs(&self) -> usize {
+        self.program.inputs
     }
 
     /// How many numbers it gives.
@@ -438,6 +443,11 @@ impl Programs {
     /// None as yet.
     pub fn new(execution: Execution) -> Self {
         Self { execution, steps: Mutex::default(), laws: Mutex::default(), machine: OnceLock::new() }
+    }
+
+    /// What they are run by.
+    pub fn execution(&self) -> Execution {
+        self.execution
     }
 
     /// How so many steps are solved, if they can be recorded.

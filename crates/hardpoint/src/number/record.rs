@@ -68,6 +68,16 @@ impl Real for Number {
     fn round(self) -> Self {
         Number::round(self)
     }
+    fn sign_or(self, next: Self) -> Self {
+        match self.known() {
+            Some(x) if x == 0.0 => next,
+            _ => self.abs() / self,
+        }
+    }
+    fn exceeds(self, o: Self) -> bool {
+        LIMITS.with_borrow_mut(|limits| limits.push(o - self));
+        true
+    }
     fn select(self, other: Self, first: bool) -> Self {
         LOOKED_AT.set(true);
         if first { self } else { other }
