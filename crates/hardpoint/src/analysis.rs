@@ -1,7 +1,7 @@
 //! The whole walk for one model: plan, motion, sensitivities, measures.
 
 use std::num::NonZero;
-use std::ops::ControlFlow;
+use std::ops::{ControlFlow, Range};
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, OnceLock};
 
@@ -188,7 +188,7 @@ impl<'m> Analysis<'m> {
     /// Per variable, the joints that it opens in the nominal design.
     pub(crate) fn opens(&self) -> &[Vec<JointDefect>] {
         self.opens.get_or_init(|| {
-            let nominal = self.effects.fields(&self.model.whole(&[]), 0.0);
+            let nominal = self.effects.fields(&self.model.whole(&[]));
             nominal.iter().map(|field| admissibility_at_design(self.model, field)).collect()
         })
     }
@@ -244,9 +244,9 @@ impl<'m> Analysis<'m> {
     pub(crate) fn design(&self, design: &[f64], sensitivities: bool) -> Design {
         let values = self.model.whole(design);
         Design {
-            geometry: self.effects.geometry(&values, 0.0),
+            geometry: self.effects.geometry(&values),
             laws: self.effects.laws(&values),
-            fields: if sensitivities { self.effects.fields(&values, 0.0) } else { Vec::new() },
+            fields: if sensitivities { self.effects.fields(&values) } else { Vec::new() },
             opens: if sensitivities { self.opens().to_vec() } else { Vec::new() },
             of_many: 1,
             values,
@@ -258,7 +258,7 @@ impl<'m> Analysis<'m> {
     pub fn admissibility_of(&self, change: &[f64]) -> Admissibility {
         let mut design = self.design(&[], false);
         let along = along(&self.model.whole(change));
-        let field = self.effects.field_along(&along, &design.values, 0.0);
+        let field = self.effects.field_along(&along, &design.values);
         design.opens = vec![admissibility_at_design(self.model, &field)];
         design.fields = vec![field];
         let mut walk = Walk::new(self, &design, vec![false; self.model.bodies.len()]);
@@ -453,7 +453,7 @@ impl<'m> Analysis<'m> {
                 if !purpose.sensitivities {
                     return Some(Recorded::default());
                 }
-                let fields = recording::strictly(|| self.effects.fields(values, state.witness));
+                let fields = recording::strictly(|| self.effects.fields(values));
                 record_derivatives(self.model, &fields, plan, state)
             };
             StepProgram::record(&one, &self.effects, purpose, besides, execution)
@@ -463,8 +463,8 @@ impl<'m> Analysis<'m> {
     /// The nominal design where its motion begins.
     fn started(&self) -> Option<Stepper<'m>> {
         let Design { geometry, laws, .. } = self.design(&[], false);
-        let parts = Parts::same(self.model, &self.topology, &geometry, &laws, 0.0);
-        let mut one = Stepper::new(self.model, &self.topology, parts, 0.0);
+        let parts = Parts::same(self.model, &self.topology, &geometry, &laws);
+        let mut one = Stepper::new(self.model, &self.topology, parts);
         one.start(*self.model.times.first()?).ok()?;
         Some(one)
     }
@@ -550,9 +550,14 @@ impl<'m> Analysis<'m> {
         let mut resisting = vec![(Vec::new(), 0.0); LANES * variables];
         let effort = beside.run(&values, |k, found| {
             let times = [self.model.times[k]; LANES];
-            note_defects(found.tape, &self.topology, &times[..designs.len()], (&mut resisting, variables));
+            note_defects(
+                found.tape,
+                &self.topology,
+                (&times[..designs.len()], 0),
+                (&mut resisting, variables),
+            );
             let block = Block { states: found.states(k), derivatives: found.derivatives };
-            block.hand_over(&wanted, moved.iter().copied(), sinks, designs.len(), |lane| (lane, k));
+            block.hand_over(&wanted, moved.iter().copied(), sinks, 0..designs.len(), |lane| (lane, k));
         })?;
         Some((effort, resisting))
     }
@@ -570,10 +575,10 @@ pub(crate) struct Walk<'a> {
     pub done: usize,
 }
 
-/// What has just been solved: one output time, or several by a program.
+/// What has just been solved: one output time, or several by a program, in these of its lanes.
 pub(crate) enum Solved<'w, 'a> {
     One(&'w mut Stepper<'a>),
-    Abreast(&'w Tape),
+    Abreast(&'w Tape, Range<usize>),
 }
 
 impl<'a> Walk<'a> {
@@ -582,7 +587,7 @@ impl<'a> Walk<'a> {
         let (model, topology) = (analysis.model, &analysis.topology);
         let Design { geometry, laws, fields, .. } = design;
         Self {
-            one: Stepper::new(model, topology, Parts::same(model, topology, geometry, laws, 0.0), 0.0),
+            one: Stepper::new(model, topology, Parts::same(model, topology, geometry, laws)),
             abreast: Abreast::new(None, &[], None),
             sensing: (!fields.is_empty()).then(|| Sensing::new(model, topology, fields, wanted.clone())),
             wanted,
@@ -640,7 +645,7 @@ impl<'a> Walk<'a> {
             let k = self.done;
             let at_once = match k {
                 0 => 0,
-                _ => self.abreast.advance(&mut self.one, k, &times[k..], || sink.room(k)),
+                _ => self.abreast.advance(&mut self.one, k, times, || sink.room(k)),
             };
             if at_once == 0 {
                 let step = if k == 0 { self.one.start(times[k]) } else { self.one.advance(times[k]) };
@@ -669,16 +674,19 @@ impl<'a> Walk<'a> {
                 }
                 then(sink, Solved::One(one), 1, self.sensing.as_ref());
             } else {
-                let tape = self.abreast.solved();
+                let (tape, first) = (self.abreast.solved(), k % LANES);
+                let lanes = first..first + count;
                 if let Some(block) = self.abreast.own_results() {
                     let moved = self.sensing.iter().flat_map(Sensing::moved);
                     let sinks = std::slice::from_mut(sink);
-                    block.hand_over(&self.wanted, moved, sinks, count, |lane| (0, k + lane));
+                    block.hand_over(&self.wanted, moved, sinks, lanes.clone(), |lane| {
+                        (0, k + lane - lanes.start)
+                    });
                 }
                 if let Some(sensing) = &mut self.sensing {
-                    sensing.note(tape, &self.one.topology, &times[k..k + count]);
+                    sensing.note(tape, &self.one.topology, &times[k..k + count], first);
                 }
-                then(sink, Solved::Abreast(tape), count, self.sensing.as_ref());
+                then(sink, Solved::Abreast(tape, lanes), count, self.sensing.as_ref());
             }
             self.done += count;
         }

@@ -85,7 +85,7 @@ impl Analysis<'_> {
     ) -> usize {
         let (model, topology, measures) = (self.model(), self.topology(), self.measures);
         let sensitive = design.has_fields();
-        let slopes = || Slopes::new(self.effects(), topology, &design.values, sensitive, 0.0);
+        let slopes = || Slopes::new(self.effects(), topology, &design.values, sensitive);
         let mut slopes = measures.then(slopes).flatten();
         let wanted = vec![true; model.bodies.len()];
         // What goes by a driver asks for more than bodies.
@@ -111,7 +111,7 @@ impl Analysis<'_> {
             before: None,
         };
         self.make_room(&mut window.motion, rows);
-        let mut margins = Margins::new(topology, 0.0);
+        let mut margins = Margins::new(topology);
         let stop = walk.all(self, &mut window, progress, |window, solved, count, sensing| {
             let times = &model.times[window.done..window.done + count];
             let k = window.done - window.first;
@@ -127,10 +127,10 @@ impl Analysis<'_> {
                         window.motion.margins.push(margins.at(&one.topology, &one.state));
                     }
                 }
-                Solved::Abreast(tape) => {
+                Solved::Abreast(tape, lanes) => {
                     tape.coordinates(topology, window.motion.coordinates.block_mut(k));
                     if measures {
-                        window.motion.margins.extend((0..count).map(|lane| tape.margin(lane)));
+                        window.motion.margins.extend(lanes.map(|lane| tape.margin(lane)));
                     }
                 }
             }

@@ -31,7 +31,7 @@ fn sine_of_difference<T: Real>([s, c]: [T; 2], target: T) -> T {
 fn unwrapped<T: Real>([s, c]: [T; 2], near: T) -> T {
     const TURN: f64 = 2.0 * std::f64::consts::PI;
     let angle = s.value().atan2(c.value());
-    near.like(angle + TURN * ((near.value() - angle) / TURN).round())
+    T::constant(angle + TURN * ((near.value() - angle) / TURN).round())
 }
 
 /// The angle about z_i nearest to `near`.
@@ -92,14 +92,14 @@ pub(super) fn heading_residual<T: Real>(ends: &Ends<T>, target: T) -> T {
 pub(super) fn heading_wrench<T: Real>(ends: &Ends<T>) -> Wrench<T> {
     let [s, c] = about_z_i(ends);
     let g = axis(&ends.i.rot, 1) * c - axis(&ends.i.rot, 0) * s;
-    Wrench::moment(axis(&ends.j.rot, 0).cross(g) * (s.like(1.0) / (s * s + c * c)))
+    Wrench::moment(axis(&ends.j.rot, 0).cross(g) * (T::one() / (s * s + c * c)))
 }
 
 #[inline(always)]
 pub(super) fn heading_wrench_rates<T: Real>(ends: &Ends<T>, rates: &EndRates<T>) -> [Wrench<T>; 2] {
     let [x_i, y_i] = [0, 1].map(|k| direction_rates(axis(&ends.i.rot, k), rates.v_i, rates.a_i));
     let x_j = direction_rates(axis(&ends.j.rot, 0), rates.v_j, rates.a_j);
-    let two = x_j[0].x.like(2.0);
+    let two = T::constant(2.0);
     let dot = |a: [Vec3<T>; 3], b: [Vec3<T>; 3]| {
         [
             a[0].dot(b[0]),
@@ -119,7 +119,7 @@ pub(super) fn heading_wrench_rates<T: Real>(ends: &Ends<T>, rates: &EndRates<T>)
     let n0 = s[0] * s[0] + c[0] * c[0];
     let n1 = two * (s[0] * s[1] + c[0] * c[1]);
     let n2 = two * (s[0] * s[2] + s[1] * s[1] + c[0] * c[2] + c[1] * c[1]);
-    let inverse = two.like(1.0) / n0;
+    let inverse = T::one() / n0;
     let inverse_1 = -n1 * inverse * inverse;
     let inverse_2 = (two * n1 * n1 * inverse - n2) * inverse * inverse;
     let [_, d1, d2] = times([inverse, inverse_1, inverse_2], moment);

@@ -9,7 +9,7 @@ use crate::space::{Real, Wrench};
 /// `y_i . x_j - x_i . y_j`.
 #[inline(always)]
 pub(super) fn residual<T: Real>(ends: &Ends<T>, target: T) -> T {
-    dot1::residual(1, 0, ends, target) - dot1::residual(0, 1, ends, target.zero())
+    dot1::residual(1, 0, ends, target) - dot1::residual(0, 1, ends, T::zero())
 }
 
 #[inline(always)]

@@ -12,7 +12,7 @@ pub(super) fn residual<T: Real>(ends: &Ends<T>, target: T) -> T {
 #[inline(always)]
 pub(super) fn wrench<T: Real>(ends: &Ends<T>) -> Wrench<T> {
     let d = ends.j.r - ends.i.r;
-    Wrench::force(d * (d.x.like(1.0) / d.norm()), ends.j.r)
+    Wrench::force(d * (T::one() / d.norm()), ends.j.r)
 }
 
 #[inline(always)]
@@ -20,7 +20,7 @@ pub(super) fn wrench_rates<T: Real>(ends: &Ends<T>, rates: &EndRates<T>) -> [Wre
     let p_i = point_rates(ends.i.r, rates.v_i, rates.a_i);
     let p_j = point_rates(ends.j.r, rates.v_j, rates.a_j);
     let d = [p_j[0] - p_i[0], p_j[1] - p_i[1], p_j[2] - p_i[2]];
-    let inverse = d[0].x.like(1.0) / d[0].norm();
+    let inverse = T::one() / d[0].norm();
     // u = d / L;  u. = (d. - u L.) / L;  u.. = (d.. - 2 u. L. - u L..) / L
     let u0 = d[0] * inverse;
     let l1 = u0.dot(d[1]);

@@ -90,7 +90,7 @@ impl Row {
         match self {
             Self::Angle | Self::Heading => angle::value(ends, near),
             Self::AngleOnJ => angle::value_on_j(ends, near),
-            _ => self.residual(ends, near.zero()),
+            _ => self.residual(ends, T::zero()),
         }
     }
 }
@@ -245,7 +245,7 @@ fn point_rates<T: Real>(p: Vec3<T>, v: Twist<T>, a: Twist<T>) -> [Vec3<T>; 3] {
 /// First and second derivative of the vector product of two vectors with known derivatives.
 #[inline(always)]
 fn cross_rates<T: Real>(a: [Vec3<T>; 3], b: [Vec3<T>; 3]) -> [Vec3<T>; 2] {
-    let two = a[0].x.like(2.0);
+    let two = T::constant(2.0);
     [a[1].cross(b[0]) + a[0].cross(b[1]), a[2].cross(b[0]) + a[1].cross(b[1]) * two + a[0].cross(b[2])]
 }
 

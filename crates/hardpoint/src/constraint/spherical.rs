@@ -12,7 +12,7 @@ pub(super) fn residual<T: Real>(k: usize, ends: &Ends<T>) -> T {
 /// The force e_k through the common point.
 #[inline(always)]
 pub(super) fn wrench<T: Real>(k: usize, ends: &Ends<T>) -> Wrench<T> {
-    Wrench { m: across(ends.j.r, k), f: Vec3::AXES[k].spread(ends.j.r.x) }
+    Wrench { m: across(ends.j.r, k), f: Vec3::AXES[k].spread() }
 }
 
 #[inline(always)]
@@ -43,7 +43,7 @@ pub(super) fn wrench_rates_on_base<T: Real>(k: usize, ends: &Ends<T>, rates: &En
 /// `p x e_k`.
 #[inline(always)]
 fn across<T: Real>(p: Vec3<T>, k: usize) -> Vec3<T> {
-    let zero = p.x.zero();
+    let zero = T::zero();
     match k {
         0 => Vec3::new(zero, p.z, -p.y),
         1 => Vec3::new(-p.z, zero, p.x),

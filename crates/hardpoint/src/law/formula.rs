@@ -46,7 +46,7 @@ impl Shape for Formula {
     #[inline(always)]
     fn at<T: Real, const N: usize>(&self, time: Jet<T, N>, seed: Option<Seed<T>>) -> Jet<T, N> {
         let program = if seed.is_some() { &self.symbolic } else { &self.program };
-        program.at(time, |index| Jet::constant(seeded(time.value(), self.values[index], index, seed)))
+        program.at(time, |index| Jet::constant(seeded(self.values[index], index, seed)))
     }
 
     fn over(&self, from: f64, to: f64) -> Stretch {

@@ -439,7 +439,7 @@ impl Law {
     fn evaluate<T: Real, const N: usize>(&self, time: Jet<T, N>, seed: Option<Seed<T>>) -> Jet<T, N> {
         let as_written =
             seed.map(|seed| match self.kind.parameter_kind(seed.parameter).is_in_driver_unit() {
-                true => Seed { size: seed.size / seed.size.like(self.factor), ..seed },
+                true => Seed { size: seed.size / T::constant(self.factor), ..seed },
                 false => seed,
             });
         self.kind.at(time, as_written) * self.factor

@@ -50,9 +50,9 @@ pub(super) struct Seed<T> {
 
 /// The number `value` of the parameter with this index, which carries a derivative if it is the one that is varied.
 #[inline(always)]
-pub(super) fn seeded<T: Real>(like: T, value: f64, parameter: usize, seed: Option<Seed<T>>) -> T {
+pub(super) fn seeded<T: Real>(value: f64, parameter: usize, seed: Option<Seed<T>>) -> T {
     match seed {
         Some(seed) if seed.parameter == parameter => seed.size + value,
-        _ => like.like(value),
+        _ => T::constant(value),
     }
 }

@@ -30,7 +30,7 @@ impl Polynomial {
 impl Shape for Polynomial {
     #[inline(always)]
     fn at<T: Real, const N: usize>(&self, time: Jet<T, N>, seed: Option<Seed<T>>) -> Jet<T, N> {
-        sum_of_powers(time, self.coefficients.len(), |k| seeded(time.value(), self.coefficients[k], k, seed))
+        sum_of_powers(time, self.coefficients.len(), |k| seeded(self.coefficients[k], k, seed))
     }
 
     fn over(&self, from: f64, to: f64) -> Stretch {
@@ -67,7 +67,7 @@ pub(super) fn sum_of_powers<T: Real, const N: usize>(
 ) -> Jet<T, N> {
     // f <- f x + c, differentiated by x: d <- d x + f, dd <- dd x + 2 d, ddd <- ddd x + 3 dd
     let x = of.value();
-    let [mut f, mut d, mut dd, mut ddd] = [x.zero(); 4];
+    let [mut f, mut d, mut dd, mut ddd] = [T::zero(); 4];
     for k in (0..terms).rev() {
         ddd = ddd * x + dd * 3.0;
         dd = dd * x + d * 2.0;

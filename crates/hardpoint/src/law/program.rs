@@ -270,7 +270,7 @@ fn run<V: Term>(
         let operands = &stack[len..len + operation.operands()];
         watch(operation, operands);
         stack[len] = match operation {
-            Operation::Constant(value) => time.constant(value),
+            Operation::Constant(value) => V::number(value),
             Operation::Parameter(index) => parameter(index),
             Operation::Time => time,
             _ => operation.of(operands),

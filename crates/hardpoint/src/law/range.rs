@@ -234,7 +234,7 @@ impl Stretch {
 }
 
 impl Term for Stretch {
-    fn constant(self, x: f64) -> Self {
+    fn number(x: f64) -> Self {
         Self::constant(x)
     }
 

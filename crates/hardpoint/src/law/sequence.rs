@@ -98,16 +98,16 @@ impl Sequence {
     /// Works out where every piece starts.
     fn lay_out(&mut self) {
         let places: Vec<(f64, f64)> =
-            (0..=self.pieces.len()).map(|k| self.place::<f64, 4>(k, None, 0.0)).collect();
+            (0..=self.pieces.len()).map(|k| self.place::<f64, 4>(k, None)).collect();
         (self.starts, self.offsets) = places.into_iter().unzip();
     }
 
     /// When the piece k starts and what is added to its law. One beyond the last: when that ends.
-    fn place<T: Real, const N: usize>(&self, k: usize, seed: Option<Seed<T>>, like: T) -> (T, T) {
-        let zero = like.zero();
+    fn place<T: Real, const N: usize>(&self, k: usize, seed: Option<Seed<T>>) -> (T, T) {
+        let zero = T::zero();
         let (mut start, mut offset) = (zero, zero);
         for j in 0..k {
-            let duration = self.duration(j, seed, like);
+            let duration = self.duration(j, seed);
             let at_end: Jet<T, N> = backwards(duration);
             let end = self.pieces[j].law.evaluate(at_end, self.seed_in(j, seed)).value();
             start += duration;
@@ -137,10 +137,10 @@ impl Sequence {
         Some(begun.saturating_sub(1))
     }
 
-    fn duration<T: Real>(&self, k: usize, seed: Option<Seed<T>>, like: T) -> T {
+    fn duration<T: Real>(&self, k: usize, seed: Option<Seed<T>>) -> T {
         match self.pieces[k].duration {
-            Some(duration) => seeded(like, duration, self.first_parameters[k], seed),
-            None => like.like(f64::INFINITY),
+            Some(duration) => seeded(duration, self.first_parameters[k], seed),
+            None => T::constant(f64::INFINITY),
         }
     }
 
@@ -166,11 +166,11 @@ impl Shape for Sequence {
     fn at<T: Real, const N: usize>(&self, time: Jet<T, N>, seed: Option<Seed<T>>) -> Jet<T, N> {
         let like = time.value();
         let Some(k) = self.piece_at(like.value(), time.d().value() < 0.0) else {
-            return Jet::undefined(like);
+            return Jet::undefined();
         };
         let (start, offset) = match seed {
-            None => (like.like(self.starts[k]), like.like(self.offsets[k])),
-            Some(_) => self.place::<T, N>(k, seed, like),
+            None => (T::constant(self.starts[k]), T::constant(self.offsets[k])),
+            Some(_) => self.place::<T, N>(k, seed),
         };
         self.pieces[k].law.evaluate(time.plus(-start), self.seed_in(k, seed)).plus(offset)
     }

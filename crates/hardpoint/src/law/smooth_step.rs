@@ -63,18 +63,18 @@ impl SmoothStep {
             5 => (3, &[10.0, -15.0, 6.0]),
             _ => (4, &[35.0, -84.0, 70.0, -20.0]),
         };
-        u.powi(lowest) * sum_of_powers(u, coefficients.len(), |k| u.value().like(coefficients[k]))
+        u.powi(lowest) * sum_of_powers(u, coefficients.len(), |k| T::constant(coefficients[k]))
     }
 }
 
 impl Shape for SmoothStep {
     #[inline(always)]
     fn at<T: Real, const N: usize>(&self, time: Jet<T, N>, seed: Option<Seed<T>>) -> Jet<T, N> {
-        let number = |value: f64, parameter: usize| seeded(time.value(), value, parameter, seed);
+        let number = |value: f64, parameter: usize| seeded(value, parameter, seed);
         let [from, to] = [number(self.from, 0), number(self.to, 1)];
         let [start, end] = [number(self.start, 2), number(self.end, 3)];
         if !(self.start < self.end) {
-            return Jet::undefined(from);
+            return Jet::undefined();
         }
         // What is not a number is neither before nor after, so that the polynomial hands it on.
         let (t, is_backwards) = (time.value().value(), time.d().value() < 0.0);
@@ -84,7 +84,7 @@ impl Shape for SmoothStep {
         if t > self.end || t == self.end && !is_backwards {
             return Jet::constant(to);
         }
-        let u = time.plus(-start).times(end.like(1.0) / (end - start));
+        let u = time.plus(-start).times(T::one() / (end - start));
         self.rise(u).times(to - from).plus(from)
     }
 

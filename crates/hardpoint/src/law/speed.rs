@@ -28,7 +28,7 @@ impl ConstantSpeed {
 impl Shape for ConstantSpeed {
     #[inline(always)]
     fn at<T: Real, const N: usize>(&self, time: Jet<T, N>, seed: Option<Seed<T>>) -> Jet<T, N> {
-        let number = |value: f64, parameter: usize| seeded(time.value(), value, parameter, seed);
+        let number = |value: f64, parameter: usize| seeded(value, parameter, seed);
         time.times(number(self.speed, 0)).plus(number(self.offset, 1))
     }
 

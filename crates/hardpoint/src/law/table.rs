@@ -142,7 +142,7 @@ impl Spline {
     /// The curve of one segment, at the time since it began.
     #[inline(always)]
     fn curve<T: Real, const N: usize>(&self, segment: &Segment, since: Jet<T, N>) -> Jet<T, N> {
-        sum_of_powers(since, self.order(), |power| since.value().like(segment[power]))
+        sum_of_powers(since, self.order(), |power| T::constant(segment[power]))
     }
 
     /// The whole periods before time `t`, in s.
@@ -231,8 +231,7 @@ impl Shape for Spline {
         let before = self.periods_before(now, is_backwards);
         let k = self.reaches(now - before).then(|| self.segment_at(now - before, is_backwards));
         // The time since the segment began.
-        let like = time.value();
-        let since = time.plus(-like.like(before)).plus(-like.like(k.map_or(0.0, |k| self.times[k])));
+        let since = time.plus(-T::constant(before)).plus(-T::constant(k.map_or(0.0, |k| self.times[k])));
         let of = |all: &[Segment]| self.curve(k.map_or(&UNDEFINED, |k| &all[k]), since);
         let f = of(&self.segments);
         match seed {

@@ -12,7 +12,7 @@ pub(super) trait Term:
     Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Div<Output = Self> + Neg<Output = Self>
 {
     /// The number `x`, at all times.
-    fn constant(self, x: f64) -> Self;
+    fn number(x: f64) -> Self;
     /// A function of one argument.
     fn function(self, function: Function) -> Self;
     /// The power with a whole exponent.
@@ -40,8 +40,8 @@ pub(super) trait Term:
 /// Of two sides, that which is active just after the instant.
 impl<T: Real> Term for T {
     #[inline(always)]
-    fn constant(self, x: f64) -> Self {
-        self.like(x)
+    fn number(x: f64) -> Self {
+        T::constant(x)
     }
 
     #[inline(always)]
@@ -94,7 +94,7 @@ impl<T: Real> Term for T {
         } else {
             // h0 + (h1 - h0) (3 u² - 2 u³)
             let u = (self - x0) / (x1 - x0);
-            h0 + (h1 - h0) * (u * u * (self.like(3.0) - u * 2.0))
+            h0 + (h1 - h0) * (u * u * (T::constant(3.0) - u * 2.0))
         };
         step.select(undefined(self), x0.value() < x1.value())
     }
@@ -113,7 +113,7 @@ impl<T: Real> Term for T {
 /// What has no value, and no derivative either.
 #[inline(always)]
 fn undefined<T: Real>(like: T) -> T {
-    like.like(f64::NAN) * like
+    T::constant(f64::NAN) * like
 }
 
 /// Whether `x` is at least as far on a side as `o` is; or, of two that do not compare, the one without a value.

@@ -74,6 +74,7 @@ pub struct Measured {
     places: Vec<Option<usize>>,
     /// Variables that there are no derivatives by.
     unknown: Vec<bool>,
+    by_formula: usize,
 }
 
 impl Measured {
@@ -115,12 +116,25 @@ impl Measured {
         self.len() == 0
     }
 
+    /// Of all outputs at all output times, how many no program has evaluated, but the formulas one by one: round-off apart, the numbers
+    /// are the same.
+    pub fn by_formula(&self) -> usize {
+        self.by_formula
+    }
+
     /// Room for these outputs at so many times, in the memory that there is; `layout` says where the derivatives stand, and how many
     /// numbers they are.
-    fn shape(&mut self, outputs: Vec<Output>, variables: usize, layout: (Vec<Option<usize>>, usize), steps: usize) {
+    fn shape(
+        &mut self,
+        outputs: Vec<Output>,
+        variables: usize,
+        layout: (Vec<Option<usize>>, usize),
+        steps: usize,
+    ) {
         self.values.shape(3 * outputs.len(), steps);
         self.d.shape(layout.1, steps);
         (self.outputs, self.variables, self.places, self.steps) = (outputs, variables, layout.0, steps);
+        self.by_formula = 0;
         self.unknown.clear();
         self.unknown.resize(variables, false);
     }
@@ -142,7 +156,8 @@ impl Measured {
         let columns: Vec<usize> = (0..from.outputs.len()).filter(wanted).collect();
         if self.outputs.is_empty() {
             let mut width = 0;
-            let pairs = (0..from.variables).flat_map(|b| columns.iter().map(move |m| b * from.outputs.len() + m));
+            let pairs =
+                (0..from.variables).flat_map(|b| columns.iter().map(move |m| b * from.outputs.len() + m));
             let place = |pair: usize| {
                 from.places[pair].map(|_| {
                     width += 3;
@@ -231,14 +246,15 @@ pub(crate) fn evaluate(
     let variables = sensitivities.variables;
     let layout = program.map_or_else(|| dense(outputs.len(), variables), Program::layout);
     measured.shape(outputs, variables, layout, motion.len());
-    let cannot_follow = |b: &usize| matches!(sensitivities.admissibility[*b], Admissibility::CannotFollow { .. });
+    let cannot_follow =
+        |b: &usize| matches!(sensitivities.admissibility[*b], Admissibility::CannotFollow { .. });
     measured.forget((0..variables).filter(cannot_follow));
     let mut run = program.map(|program| Run::new(program, values));
     let turns = turns(model, topology, &measured.outputs);
     let bodies = bodies_asked_for(model);
 
-    let fixed = effects.fixed(values, 0.0).map(Jet::constant);
-    let mut poses = vec![Pose::IDENTITY.spread(Jet([0.0; 3])); model.bodies.len()];
+    let fixed = effects.fixed(values).map(Jet::constant);
+    let mut poses = vec![Pose::IDENTITY.spread(); model.bodies.len()];
     // Formulas are over angles that are counted through turns.
     let is_formula = |m: usize| {
         let kind = model.measures.get(m).map(|m| &m.kind);
@@ -309,6 +325,7 @@ pub(crate) fn evaluate(
                 break;
             }
         }
+        measured.by_formula += times.len() * (left.len() - begins);
         if let Some(run) = &mut run {
             run.turns().for_each(|(_, lanes)| *lanes = [lanes[LANES - 1]; LANES]);
         }
@@ -352,13 +369,12 @@ pub(crate) fn derivatives(
 ) {
     let &At { model, effects, values, .. } = design;
     let bodies = bodies_asked_for(model);
-    let zero = Dual::constant(Jet([0.0; 3]));
-    let mut poses = vec![Pose::IDENTITY.spread(zero); model.bodies.len()];
+    let mut poses = vec![Pose::IDENTITY.spread(); model.bodies.len()];
     let mut values: Vec<Dual> = values.iter().map(|v| Dual::constant(*v)).collect();
     let (mut given, mut whole_turns): (Vec<Dual<Rates>>, Vec<Dual<Rates>>) = (Vec::new(), Vec::new());
     for b in (0..sensitivities.variables).filter(|_| !listed.is_empty()) {
         values[b] = Dual::variable(values[b].v);
-        let fixed = effects.fixed(&values, Dual::constant(0.0));
+        let fixed = effects.fixed(&values);
         let fixed = fixed.map(|x| Dual { v: Jet::constant(x.v), d: Jet::constant(x.d) });
         values[b] = Dual::constant(values[b].v);
         for listed in listed.chunk_by(|a, b| a.0 == b.0) {
@@ -372,9 +388,17 @@ pub(crate) fn derivatives(
                 given.extend(both.map(|(x, d)| Dual { v: only(*x), d: only(*d) }));
                 let turns = more.whole_turns.get(k * model.measures.len()..).unwrap_or_default();
                 whole_turns.clear();
-                whole_turns.extend(turns.iter().take(model.measures.len()).map(|turns| zero.like(*turns)));
-                let moment =
-                    Moment { slopes: &given, whole_turns: &whole_turns, ..Moment::new(model, &fixed, &poses) };
+                whole_turns.extend(
+                    turns
+                        .iter()
+                        .take(model.measures.len())
+                        .map(|turns| Dual::constant(Rates::constant(*turns))),
+                );
+                let moment = Moment {
+                    slopes: &given,
+                    whole_turns: &whole_turns,
+                    ..Moment::new(model, &fixed, &poses)
+                };
                 for &(_, m) in listed {
                     out(k, b, m, moment.output(outputs[m].source).d.0);
                 }
@@ -595,7 +619,7 @@ impl<'a, T: Real> Moment<'a, T> {
 
     /// Formulas and signs: `docs/measures.md`.
     fn measure(&self, k: usize) -> T {
-        let unknown = || self.poses[0].r.x.like(f64::NAN);
+        let unknown = || T::constant(f64::NAN);
         if self.model.goes_by_driver(k) {
             return self.slopes.get(k).copied().unwrap_or_else(unknown);
         }
@@ -607,7 +631,7 @@ impl<'a, T: Real> Moment<'a, T> {
             MeasureKind::Distance { from, to } => (self.point(*to) - self.point(*from)).norm(),
             MeasureKind::Coordinates { point, along } => {
                 let p = self.point(*point);
-                along.spread(p.x).dot(p)
+                along.spread().dot(p)
             }
             MeasureKind::Angle { between, kind } => {
                 let within = self.angle(k, between, *kind);
@@ -616,22 +640,22 @@ impl<'a, T: Real> Moment<'a, T> {
             MeasureKind::Velocity { point, along, order } => {
                 let velocity = self.point(*point).map(T::rate);
                 let v = if *order == 1 { velocity } else { velocity.map(T::rate) };
-                along.map_or_else(|| v.norm(), |along| along.spread(v.x).dot(v))
+                along.map_or_else(|| v.norm(), |along| along.spread().dot(v))
             }
             MeasureKind::Curvature { point, about } => {
                 let v = self.point(*point).map(T::rate);
                 let a = v.map(T::rate);
                 let (turn, speed) = (v.cross(a), v.norm());
-                let turn = about.map_or_else(|| turn.norm(), |about| about.spread(speed).dot(turn));
-                let (way, far) = (speed * speed, a.norm() * speed.like(RESTS * self.model.size()));
+                let turn = about.map_or_else(|| turn.norm(), |about| about.spread().dot(turn));
+                let (way, far) = (speed * speed, a.norm() * T::constant(RESTS * self.model.size()));
                 let way = if way.exceeds(far) { way } else { unknown() };
                 turn / (way * speed)
             }
             MeasureKind::Rate { of } => self.output(*of).rate(),
-            MeasureKind::Combination(formula) => formula.at(unknown(), |source| self.output(source)),
+            MeasureKind::Combination(formula) => formula.at(|source| self.output(source)),
             MeasureKind::Toe { body, .. } => {
                 let e = self.direction(k, 0, *body);
-                toe(e, e.x.like(Side::Left.sign()))
+                toe(e, T::constant(Side::Left.sign()))
             }
             MeasureKind::Camber { body, .. } => camber(self.direction(k, 0, *body)),
             MeasureKind::Wheel { wheel, what } => {
@@ -654,7 +678,7 @@ impl<'a, T: Real> Moment<'a, T> {
             AngleKind::Between => across.norm().atan2(along),
             AngleKind::Lines => across.norm().atan2(along.abs()),
             AngleKind::About(n) => {
-                let n = n.spread(along);
+                let n = n.spread();
                 n.dot(across).atan2(along - n.dot(a) * n.dot(b))
             }
         }
@@ -666,7 +690,7 @@ impl<'a, T: Real> Moment<'a, T> {
         let toe = |wheel: &WheelAt<T>| toe(wheel.spin_axis, wheel.side);
         // Headings to the left: toe-in of a right wheel is one, of a left wheel the opposite.
         let headings = || [-toe(&left), toe(&right)];
-        let wheelbase = || left.side.like(self.model.vehicle.wheelbase.unwrap_or(f64::NAN));
+        let wheelbase = || T::constant(self.model.vehicle.wheelbase.unwrap_or(f64::NAN));
         let track = left.contact().y - right.contact().y;
         match what {
             AxleMeasure::Track => track,
@@ -684,7 +708,7 @@ impl<'a, T: Real> Moment<'a, T> {
                 // The outer wheel steers less.
                 wheelbase() / steering(-(-least[0]).larger(-least[1]), headings())
             }
-            AxleMeasure::RollCentreY | AxleMeasure::RollCentreHeight => track.like(f64::NAN),
+            AxleMeasure::RollCentreY | AxleMeasure::RollCentreHeight => T::constant(f64::NAN),
         }
     }
 
@@ -695,8 +719,7 @@ impl<'a, T: Real> Moment<'a, T> {
 
     /// The same in the design configuration.
     fn wheel_as_drawn(&self, k: usize, d: usize, wheel: WheelId) -> WheelAt<T> {
-        let witness = self.poses[0].r.x;
-        self.wheel_at(k, d, wheel, |b| self.model.bodies[b.0].frame.spread(witness))
+        self.wheel_at(k, d, wheel, |b| self.model.bodies[b.0].frame.spread())
     }
 
     fn wheel_at(&self, k: usize, d: usize, wheel: WheelId, pose: impl Fn(BodyId) -> Pose<T>) -> WheelAt<T> {
@@ -706,8 +729,8 @@ impl<'a, T: Real> Moment<'a, T> {
         WheelAt {
             centre,
             spin_axis: pose(wheel.body).rot * self.fixed.directions[k][d].expect("a wheel has a spin axis"),
-            radius: centre.x.like(wheel.radius),
-            side: centre.x.like(wheel.side.sign()),
+            radius: T::constant(wheel.radius),
+            side: T::constant(wheel.side.sign()),
             kingpin: wheel.kingpin.map(|points| points.map(point)),
         }
     }
@@ -742,8 +765,8 @@ const STRAIGHT: f64 = 1e-4;
 
 /// A number for division; NaN where one of the headings is straight ahead.
 fn steering<T: Real>(x: T, headings: [T; 2]) -> T {
-    let steers = headings.into_iter().all(|heading| heading.abs().exceeds(x.like(STRAIGHT)));
-    if steers { x } else { x.like(f64::NAN) }
+    let steers = headings.into_iter().all(|heading| heading.abs().exceeds(T::constant(STRAIGHT)));
+    if steers { x } else { T::constant(f64::NAN) }
 }
 
 /// The heading of the right wheel that turns about the same point of the other axle's line as the left one with heading l:

@@ -110,8 +110,8 @@ impl Program {
                 Number::input(x)
             };
             let zero = Number::constant(0.0);
-            let mut poses = vec![Pose::IDENTITY.spread(Jet::constant(zero)); model.bodies.len()];
-            let mut turns = vec![[Vec3::zero(zero); 2]; model.bodies.len()];
+            let mut poses = vec![Pose::IDENTITY.spread(); model.bodies.len()];
+            let mut turns = vec![[Vec3::zero(); 2]; model.bodies.len()];
             for &b in &bodies {
                 let numbers: Vec<Number> =
                     BodyState::at_design(model, BodyId(b)).numbers().map(&mut input).collect();
@@ -137,7 +137,8 @@ impl Program {
             let [mut guards, mut numbers, mut by_variables] = [const { Vec::new() }; 3];
             for (m, (output, depends)) in outputs.iter().zip(&depends).enumerate() {
                 let given = recorder.output(output, depends);
-                let found = given.iter().flat_map(|g| [g.values].into_iter().chain(g.derivatives.iter().copied()));
+                let found =
+                    given.iter().flat_map(|g| [g.values].into_iter().chain(g.derivatives.iter().copied()));
                 let check = found.flatten().filter(|x| !x.known().is_some_and(f64::is_nan));
                 let check = check.fold(zero, |sum, x| x.times_plus(nothing, sum));
                 let limits = given.iter().flat_map(|g| &g.limits).chain(&of_design);
@@ -204,7 +205,10 @@ fn vector(numbers: &[Number]) -> Vec3<Number> {
 
 /// How a body goes each way, with the first two time derivatives of that, from its sensitivity; it turns with this velocity and
 /// acceleration.
-fn ways_of([dr, dpi, dv, domega, da, dalpha]: [Vec3<Number>; 6], [omega, alpha]: [Vec3<Number>; 2]) -> [[Number; 3]; WAYS] {
+fn ways_of(
+    [dr, dpi, dv, domega, da, dalpha]: [Vec3<Number>; 6],
+    [omega, alpha]: [Vec3<Number>; 2],
+) -> [[Number; 3]; WAYS] {
     // Those of the rotation vector: domega is the rate of dpi and dpi x omega.
     let first = omega.cross_plus(dpi, domega);
     let second = omega.cross_plus(first, alpha.cross_plus(dpi, dalpha));
@@ -215,8 +219,8 @@ fn ways_of([dr, dpi, dv, domega, da, dalpha]: [Vec3<Number>; 6], [omega, alpha]:
 
 /// A pose that goes one way, and how much of the way that is.
 fn gone(pose: Pose<Recorded>, way: usize, amount: Recorded) -> Pose<Dual<Recorded>> {
-    let axis = Vec3::AXES[way % 3].map(|x| amount.times(amount.0[0].like(x)));
-    let still = Vec3::zero(axis.x);
+    let axis = Vec3::AXES[way % 3].map(|x| amount.times(Number::constant(x)));
+    let still = Vec3::zero();
     let d = if way < 3 {
         Pose { rot: Mat3 { cols: [still; 3] }, r: axis }
     } else {
@@ -235,13 +239,12 @@ struct Geometry {
 
 impl Geometry {
     fn of(effects: &Effects<'_>, values: &[Number], variables: usize, depends: &[[Vec<usize>; 2]]) -> Self {
-        let zero = Number::constant(0.0);
-        let still = recording::strictly(|| effects.fixed(values, zero));
+        let still = recording::strictly(|| effects.fixed(values));
         let moved = |v: usize| {
             depends.iter().any(|[_, moving]| moving.contains(&v)).then(|| {
                 let mut duals: Vec<Dual<Number>> = values.iter().map(|x| Dual::constant(*x)).collect();
                 duals[v] = Dual::variable(values[v]);
-                let fixed = recording::strictly(|| effects.fixed(&duals, Dual::constant(zero)));
+                let fixed = recording::strictly(|| effects.fixed(&duals));
                 fixed.map(|x| Dual { v: Jet::constant(x.v), d: Jet::constant(x.d) })
             })
         };
@@ -290,14 +293,14 @@ impl Recorder<'_> {
         let stays = |p: &Pose<Recorded>| Pose { rot: Mat3 { cols: p.rot.cols.map(still) }, r: still(p.r) };
         let mut poses: Vec<_> = self.poses.iter().map(stays).collect();
         let mut values = at(&self.geometry.still, &poses).v.0;
-        let zero = values[0].zero();
+        let zero = Number::constant(0.0);
         let mut derivatives = vec![[zero; 3]; self.asked.variables];
         for &b in bodies.iter().filter(|_| self.asked.variables > 0) {
             // How value, rate and acceleration go with each way, its rate and its acceleration.
             let slopes: [[[Number; 3]; 3]; WAYS] = std::array::from_fn(|way| {
                 let mut along = |level: usize| {
                     let mut amount = Jet::constant(zero);
-                    amount.0[level] = zero.like(1.0);
+                    amount.0[level] = Number::constant(1.0);
                     poses[b] = gone(self.poses[b], way, amount);
                     at(&self.geometry.still, &poses).d.0
                 };
@@ -310,7 +313,8 @@ impl Recorder<'_> {
                 }
             });
             poses[b] = stays(&self.poses[b]);
-            for (&(v, _), ways) in self.asked.moved.iter().zip(&self.ways).filter(|((_, body), _)| *body == b) {
+            for (&(v, _), ways) in self.asked.moved.iter().zip(&self.ways).filter(|((_, body), _)| *body == b)
+            {
                 for (slopes, way) in slopes.iter().zip(ways) {
                     for (slopes, way) in slopes.iter().zip(way) {
                         for order in 0..orders {
@@ -327,7 +331,7 @@ impl Recorder<'_> {
             (0..3).for_each(|order| derivatives[v][order] += d[order]);
         }
         for numbers in derivatives.iter_mut().chain([&mut values]) {
-            numbers[orders..].fill(zero.like(f64::NAN));
+            numbers[orders..].fill(Number::constant(f64::NAN));
         }
         recording::is_arithmetic().then(|| Given { values, derivatives, limits: recording::limits() })
     }
@@ -339,7 +343,9 @@ fn goes_by_driver(model: &Model, output: OutputSource) -> bool {
     model.goes_by_driver(m)
         || match &model.measures[m].kind {
             MeasureKind::Rate { of } => goes_by_driver(model, *of),
-            MeasureKind::Combination(formula) => formula.sources().any(|source| goes_by_driver(model, source)),
+            MeasureKind::Combination(formula) => {
+                formula.sources().any(|source| goes_by_driver(model, source))
+            }
             _ => false,
         }
 }
@@ -355,12 +361,11 @@ pub(crate) fn dependences(
     outputs: &[Output],
 ) -> Vec<[Vec<usize>; 2]> {
     let model = effects.model;
-    let zero: Dual<Rates> = Dual::constant(Jet([0.0; 3]));
     let unknown = |x: Dual<Rates>| Dual { v: x.v, d: Jet([f64::NAN; 3]) };
     let mut values: Vec<Dual> = values.iter().map(|v| Dual::constant(*v)).collect();
-    let mut poses: Vec<Pose<Dual<Rates>>> = model.bodies.iter().map(|b| b.frame.spread(zero)).collect();
+    let mut poses: Vec<Pose<Dual<Rates>>> = model.bodies.iter().map(|b| b.frame.spread()).collect();
     let fixed = |values: &[Dual]| {
-        let fixed = effects.fixed(values, Dual::constant(0.0));
+        let fixed = effects.fixed(values);
         fixed.map(|x| Dual { v: Jet::constant(x.v), d: Jet::constant(x.d) })
     };
     let depend = |fixed: &Fixed<Dual<Rates>>, poses: &[Pose<Dual<Rates>>]| -> Vec<bool> {

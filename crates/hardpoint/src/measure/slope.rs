@@ -64,7 +64,6 @@ impl<'a> Slopes<'a> {
         topology: &Topology,
         values: &[f64],
         sensitivities: bool,
-        witness: f64,
     ) -> Option<Self> {
         let model = effects.model;
         let mut drivers: Vec<DriverId> =
@@ -83,18 +82,17 @@ impl<'a> Slopes<'a> {
             .flat_map(|v| (0..drivers.len()).map(move |d| (d, v)))
             .map(|(d, v)| [d, drivers.len() + v])
             .collect();
-        let zero = Dual::constant(Dual::constant(0.0));
         let fixed = |by: usize| {
             let value = |k: usize| Dual::constant(Dual { v: values[k], d: f64::from(u8::from(k == by)) });
             let values: Vec<_> = (0..values.len()).map(value).collect();
-            effects.fixed(&values, zero)
+            effects.fixed(&values)
         };
         Some(Self {
             model,
-            seconds: Seconds::new(effects, topology, values, &ways, &pairs, witness),
+            seconds: Seconds::new(effects, topology, values, &ways, &pairs),
             fixed: (0..variables).chain([usize::MAX]).map(fixed).collect(),
             asked_for: bodies_asked_for(model).into_iter().filter(|b| *b != GROUND.0).collect(),
-            poses: vec![vec![Pose::IDENTITY.spread(zero); model.bodies.len()]; drivers.len()],
+            poses: vec![vec![Pose::IDENTITY.spread(); model.bodies.len()]; drivers.len()],
             variables,
             drivers,
         })
@@ -153,7 +151,7 @@ struct Alone<'m, T> {
 impl<T: Real> Alone<'_, T> {
     /// The value of a measure that goes by a driver; NaN of all others.
     fn measure(&self, model: &Model, k: usize) -> T {
-        let unknown = self.moments[0].poses[GROUND.0].r.x.v.like(f64::NAN);
+        let unknown = T::constant(f64::NAN);
         let Some(drivers) = driver_of(model, k) else { return unknown };
         let [first, second] = drivers.map(|d| {
             &self.moments[self.drivers.binary_search(&d).expect("the drivers of all measures are here")]

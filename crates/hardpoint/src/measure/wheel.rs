@@ -79,14 +79,14 @@ impl<T: Real> WheelAt<T> {
             | WheelMeasure::AntiDive
             | WheelMeasure::AntiLift
             | WheelMeasure::AntiSquat
-            | WheelMeasure::AntiRise => self.radius.like(f64::NAN),
+            | WheelMeasure::AntiRise => T::constant(f64::NAN),
         }
     }
 
     /// Outboard along the ground: the horizontal part of the spin axis, of unit length.
     fn outboard(&self) -> Vec3<T> {
-        let Vec3 { x, y, z } = self.spin_axis;
-        Vec3::new(x, y, z.zero()) * (z.like(1.0) / (x * x + y * y).sqrt())
+        let Vec3 { x, y, .. } = self.spin_axis;
+        Vec3::new(x, y, T::zero()) * (T::one() / (x * x + y * y).sqrt())
     }
 
     /// Forward along the ground: where the wheel's plane and the ground meet.
@@ -98,7 +98,7 @@ impl<T: Real> WheelAt<T> {
     /// `C - R u`, with u the upward direction in the wheel's plane, `(z - (z.e) e) / abs(..)`.
     pub fn contact(&self) -> Vec3<T> {
         let e = self.spin_axis;
-        let up = Vec3::AXES[2].spread(self.radius) - e * e.z;
+        let up = Vec3::AXES[2].spread() - e * e.z;
         self.centre - up * (self.radius / up.norm())
     }
 
@@ -159,11 +159,11 @@ impl<T: Real> Carried<T> {
             WheelMeasure::InstantAxisX => w.x.abs() / w.norm(),
             WheelMeasure::InstantAxisY => w.y * w.x / (w.x.abs() * w.norm()),
             WheelMeasure::InstantAxisZ => w.z * w.x / (w.x.abs() * w.norm()),
-            WheelMeasure::AntiDive => v.x / v.z * support(what, vehicle, side),
-            WheelMeasure::AntiLift => -(v.x / v.z) * support(what, vehicle, side),
-            WheelMeasure::AntiSquat => -(wheel.centre.x.d / rise) * support(what, vehicle, side),
-            WheelMeasure::AntiRise => wheel.centre.x.d / rise * support(what, vehicle, side),
-            _ => side.like(f64::NAN),
+            WheelMeasure::AntiDive => v.x / v.z * support::<T>(what, vehicle),
+            WheelMeasure::AntiLift => -(v.x / v.z) * support::<T>(what, vehicle),
+            WheelMeasure::AntiSquat => -(wheel.centre.x.d / rise) * support::<T>(what, vehicle),
+            WheelMeasure::AntiRise => wheel.centre.x.d / rise * support::<T>(what, vehicle),
+            _ => T::constant(f64::NAN),
         }
     }
 }
@@ -175,7 +175,7 @@ const AT_INFINITY: f64 = 1e-2;
 /// A component of a turn, for division; NaN where an instant centre seen along it is at infinity.
 fn seen<T: Real>(component: T, turn: Vec3<T>) -> T {
     if component.value().abs() < AT_INFINITY * turn.norm().value() {
-        component.like(f64::NAN)
+        T::constant(f64::NAN)
     } else {
         component
     }
@@ -183,7 +183,7 @@ fn seen<T: Real>(component: T, turn: Vec3<T>) -> T {
 
 /// What a wheel's rise per way rearward counts for: its end's share of the force, times wheelbase by height of the centre of
 /// gravity.
-fn support<T: Real>(what: WheelMeasure, vehicle: &Vehicle, witness: T) -> T {
+fn support<T: Real>(what: WheelMeasure, vehicle: &Vehicle) -> T {
     let (front, end) = match what.needs() {
         WheelNeed::Braking(end) => (vehicle.front_brake_share, end),
         WheelNeed::Driving(end) => (vehicle.front_drive_share, end),
@@ -191,7 +191,7 @@ fn support<T: Real>(what: WheelMeasure, vehicle: &Vehicle, witness: T) -> T {
     };
     let share = front.map(|front| if end == VehicleEnd::Front { front } else { 1.0 - front });
     let known = share.zip(vehicle.wheelbase).zip(vehicle.centre_of_gravity);
-    witness.like(known.map_or(f64::NAN, |((share, wheelbase), height)| share * wheelbase / height))
+    T::constant(known.map_or(f64::NAN, |((share, wheelbase), height)| share * wheelbase / height))
 }
 
 /// Global y of an axle's roll centre, and its height above the ground midway: where the lines meet that pass in front view
@@ -204,6 +204,6 @@ pub(super) fn axle_roll_centre<T: Real>(wheels: [Carried<T>; 2]) -> (T, T) {
     });
     let cross = |a: [T; 2], b: [T; 2]| a[0] * b[1] - a[1] * b[0];
     let way = cross([q[0] - p[0], q[1] - p[1]], b) / cross(a, b);
-    let ground = (p[1] + q[1]) * way.like(0.5);
+    let ground = (p[1] + q[1]) * T::constant(0.5);
     (p[0] + way * a[0], p[1] + way * a[1] - ground)
 }

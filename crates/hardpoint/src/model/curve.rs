@@ -34,23 +34,23 @@ pub(crate) struct Contact<T = f64> {
 
 impl<T: Real> Contact<T> {
     /// The curve's place u.
-    pub fn at(curve: &Curve, witness: T, u: T) -> Self {
-        let vector = |[x, y]: [f64; 2]| Vec3::new(x, y, 0.0).spread(witness);
+    pub fn at(curve: &Curve, u: T) -> Self {
+        let vector = |[x, y]: [f64; 2]| Vec3::new(x, y, 0.0).spread();
         Self { u, c: curve.at(u.value()).map(vector) }
     }
 
     /// The place next to p.
     pub fn nearest(curve: &Curve, p: Vec3<T>, near: T) -> Self {
-        let u = near.like(curve.nearest([p.x.value(), p.y.value()], near.value()));
-        Self::at(curve, near, u)
+        let u = T::constant(curve.nearest([p.x.value(), p.y.value()], near.value()));
+        Self::at(curve, u)
     }
 
     /// The frame that walks along: x along the curve, y to its left.
     #[inline(always)]
     pub fn frame(&self) -> Pose<T> {
         let d = self.c[1];
-        let x = d * (d.x.like(1.0) / d.norm());
-        let z = Vec3::new(d.x.zero(), d.x.zero(), d.x.like(1.0));
+        let x = d * (T::one() / d.norm());
+        let z = Vec3::new(T::zero(), T::zero(), T::one());
         Pose { rot: Mat3 { cols: [x, z.cross(x), z] }, r: self.c[0] }
     }
 
@@ -59,7 +59,7 @@ impl<T: Real> Contact<T> {
     #[inline(always)]
     pub fn turning(&self, p: [Vec3<T>; 3]) -> [T; 2] {
         let [c, d, dd, ddd] = self.c;
-        let two = d.x.like(2.0);
+        let two = T::constant(2.0);
         let e = p[0] - c;
         // (p. - C' u.) . C' + (p - C) . C'' u. = 0, and its derivative.
         let g = d.dot(d) - e.dot(dd);
@@ -146,14 +146,14 @@ impl Curve {
     /// With its first and second derivatives where p has some: next to the nearest point, n away from it, the distance is
     /// `n - k t^2 / (2 (1 - k n))`, t along the curve and k its curvature.
     pub(super) fn distance<T: Real>(&self, p: Vec3<T>) -> T {
-        let start = p.x.like(self.start);
+        let start = T::constant(self.start);
         let contact = Contact::nearest(self, p, start);
         let (frame, e) = (contact.frame(), p - contact.c[0]);
         let (t, n) = (frame.rot.cols[0].dot(e), frame.rot.cols[1].dot(e));
         let [_, d, dd, _] = contact.c;
         let k = (d.x * dd.y - d.y * dd.x) / (d.dot(d) * d.norm());
-        let flat = k / (k.like(1.0) - k * n);
-        n - k.like(0.5) * flat * t * t
+        let flat = k / (T::one() - k * n);
+        n - T::constant(0.5) * flat * t * t
     }
 }
 
@@ -180,7 +180,7 @@ mod tests {
             // The unit circle's distance is 2 - |p| on its left, with the derivatives of that.
             let moving = |direction: Vec3| {
                 let by = Dual { v: Dual::variable(0.0), d: Dual::constant(1.0) };
-                at.distance(p.spread(by) + direction.spread(by) * by)
+                at.distance(p.spread() + direction.spread() * by)
             };
             let (out, along) = (p * (1.0 / 3.0), Vec3::new(-p.y, p.x, 0.0) * (1.0 / 3.0));
             let (out, along) = (Vec3::new(out.x, out.y, 0.0), along);

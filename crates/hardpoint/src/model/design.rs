@@ -64,7 +64,7 @@ impl<T: Real> Kept<T> {
             Row::Offset => self.offset,
             Row::Cosine => self.cosine,
             Row::Contact => self.contact,
-            _ => self.distance.zero(),
+            _ => T::zero(),
         }
     }
 
@@ -232,9 +232,9 @@ impl<'m> Effects<'m> {
     }
 
     /// The geometry of the designs whose values these are, variable by variable.
-    pub fn geometry<T: Real>(&self, values: &[T], witness: T) -> Geometry<T> {
+    pub fn geometry<T: Real>(&self, values: &[T]) -> Geometry<T> {
         let model = self.model;
-        let design = Design::new(self, values.to_vec(), witness);
+        let design = Design::new(self, values.to_vec());
         Geometry {
             markers: (0..model.joints.len()).map(|j| [0, 1].map(|e| design.marker(j, e))).collect(),
             kept: (0..model.joints.len()).map(|j| design.kept(j)).collect(),
@@ -243,8 +243,8 @@ impl<'m> Effects<'m> {
     }
 
     /// What the measures of these designs go by.
-    pub fn fixed<T: Real>(&self, values: &[T], witness: T) -> Fixed<T> {
-        let (model, design) = (self.model, Design::new(self, values.to_vec(), witness));
+    pub fn fixed<T: Real>(&self, values: &[T]) -> Fixed<T> {
+        let (model, design) = (self.model, Design::new(self, values.to_vec()));
         let markers = |m: &Measure| match m.kind {
             MeasureKind::Coordinate { joint, .. } => Some([0, 1].map(|e| design.marker(joint.0, e))),
             _ => None,
@@ -257,19 +257,19 @@ impl<'m> Effects<'m> {
     }
 
     /// How one variable changes the designs whose values these are.
-    pub fn field<T: Real>(&self, variable: VariableId, values: &[T], witness: T) -> Field<T> {
-        self.field_along(&[(variable, 1.0)], values, witness)
+    pub fn field<T: Real>(&self, variable: VariableId, values: &[T]) -> Field<T> {
+        self.field_along(&[(variable, 1.0)], values)
     }
 
     /// How the designs whose values these are change along a direction, some variables at once.
     ///
     /// Paper Eqs. 3.1 to 3.10 and 5.5; `docs/theory.md` (8).
-    pub fn field_along<T: Real>(&self, along: &[(VariableId, f64)], values: &[T], witness: T) -> Field<T> {
+    pub fn field_along<T: Real>(&self, along: &[(VariableId, f64)], values: &[T]) -> Field<T> {
         let mut duals: Vec<Dual<T>> = values.iter().map(|v| Dual::constant(*v)).collect();
         for &(variable, rate) in along {
-            duals[variable.0].d = witness.like(rate);
+            duals[variable.0].d = T::constant(rate);
         }
-        let design = Design::new(self, duals, Dual::constant(witness));
+        let design = Design::new(self, duals);
         let touched = self.touched(along);
         let mut field = Field { laws: self.law_rates(&touched, &design), ..Field::default() };
         for j in touched.joints {
@@ -334,9 +334,8 @@ impl<'m> Effects<'m> {
         touched: &Touched,
         design: &Design<'_, Dual<T>>,
     ) -> Vec<(DriverId, usize, T)> {
-        let witness = design.witness.v;
         let mut rates: Vec<_> =
-            touched.laws.iter().map(|(d, p, rate)| (*d, *p, witness.like(*rate))).collect();
+            touched.laws.iter().map(|(d, p, rate)| (*d, *p, T::constant(*rate))).collect();
         for &k in &touched.law_formulas {
             if let Target::Law(driver, parameter) = self.model.formulas[k].of {
                 let rate = design.values.formulas[k].d;
@@ -354,7 +353,7 @@ impl<'m> Effects<'m> {
         let model = self.model;
         let mut laws: Vec<Law> = model.drivers.iter().map(|d| d.law.clone()).collect();
         if model.formulas.iter().any(|f| matches!(f.of, Target::Law(..))) {
-            let results = Design::new(self, values.to_vec(), 0.0).values.formulas;
+            let results = Design::new(self, values.to_vec()).values.formulas;
             // Without results, no formula follows what is not at 0.
             for (formula, result) in model.formulas.iter().zip(results) {
                 if let Target::Law(driver, parameter) = formula.of {
@@ -375,8 +374,8 @@ impl<'m> Effects<'m> {
     }
 
     /// How every variable changes the designs whose values these are.
-    pub fn fields<T: Real>(&self, values: &[T], witness: T) -> Vec<Field<T>> {
-        (0..values.len()).map(|k| self.field(VariableId(k), values, witness)).collect()
+    pub fn fields<T: Real>(&self, values: &[T]) -> Vec<Field<T>> {
+        (0..values.len()).map(|k| self.field(VariableId(k), values)).collect()
     }
 }
 
@@ -402,7 +401,6 @@ struct Design<'e, T> {
     for_lengths: Values<T>,
     /// Per variable, whether it makes any difference.
     counts: Vec<bool>,
-    witness: T,
 }
 
 /// Values of the variables, and what formulas make of them; none where no formula follows a variable that counts.
@@ -414,15 +412,14 @@ struct Values<T> {
 
 impl<'e, T: Real> Design<'e, T> {
     /// Variables at 0 are left out, unless it is differentiated by them.
-    fn new(effects: &'e Effects<'_>, values: Vec<T>, witness: T) -> Self {
+    fn new(effects: &'e Effects<'_>, values: Vec<T>) -> Self {
         let variables = &effects.model.variables;
         let counts = values.iter().map(|v| !v.vanishes()).collect();
-        let follows =
-            |(value, v): (&T, &DesignVariable)| if v.fixed_length { witness.zero() } else { *value };
+        let follows = |(value, v): (&T, &DesignVariable)| if v.fixed_length { T::zero() } else { *value };
         let for_lengths = values.iter().zip(variables).map(follows).collect();
         let plain = |variables| Values { variables, formulas: Vec::new() };
         let (values, for_lengths) = (plain(values), plain(for_lengths));
-        let mut design = Self { effects, values, for_lengths, counts, witness };
+        let mut design = Self { effects, values, for_lengths, counts };
         if let Some(f) = &effects.formulas
             && f.is_used.iter().zip(&design.counts).any(|(is_used, counts)| *is_used && *counts)
         {
@@ -440,7 +437,7 @@ impl<'e, T: Real> Design<'e, T> {
         let model = self.effects.model;
         let mut results: Vec<T> = Vec::with_capacity(model.formulas.len());
         for formula in &model.formulas {
-            let result = formula.at(self.witness, |source| {
+            let result = formula.at(|source| {
                 let (given, rates) = match source {
                     Source::Parameter(p) => {
                         (formulas.of_parameter[p.0], self.rates(&formulas.rates[p.0], |r| *r))
@@ -450,10 +447,10 @@ impl<'e, T: Real> Design<'e, T> {
                         self.rates(&self.effects.moves[h.0], move |v| v[axis]),
                     ),
                 };
-                let given = given.map_or_else(|| self.witness.like(model.nominal(source)), |k| results[k]);
+                let given = given.map_or_else(|| T::constant(model.nominal(source)), |k| results[k]);
                 rates
                     .into_iter()
-                    .fold(given, |sum, (k, rate)| self.witness.like(rate).times_plus(variables[k], sum))
+                    .fold(given, |sum, (k, rate)| T::constant(rate).times_plus(variables[k], sum))
             });
             results.push(result);
         }
@@ -467,13 +464,13 @@ impl<'e, T: Real> Design<'e, T> {
 
     /// Global position of a hardpoint.
     fn place(&self, h: HardpointId, values: &Values<T>) -> Vec3<T> {
-        let mut place = self.effects.model.position(h).spread(self.witness);
+        let mut place = self.effects.model.position(h).spread();
         if let (Some(f), false) = (&self.effects.formulas, values.formulas.is_empty()) {
             let given = |axis: usize| f.of_hardpoint[h.0][axis].map_or(place[axis], |k| values.formulas[k]);
             place = Vec3::new(given(0), given(1), given(2));
         }
         for &(k, velocity) in self.effects.moves[h.0].iter().filter(|(k, _)| self.counts[*k]) {
-            place = velocity.spread(self.witness).times_plus(values.variables[k], place);
+            place = velocity.spread().times_plus(values.variables[k], place);
         }
         place
     }
@@ -481,17 +478,17 @@ impl<'e, T: Real> Design<'e, T> {
     /// The unit vector of a direction.
     fn direction(&self, d: Direction, values: &Values<T>) -> Vec3<T> {
         match d {
-            Direction::Along(u) => u.spread(self.witness),
+            Direction::Along(u) => u.spread(),
             Direction::Through(a, b) => {
                 let d = self.place(b, values) - self.place(a, values);
-                d * (self.witness.like(1.0) / d.norm())
+                d * (T::one() / d.norm())
             }
         }
     }
 
     /// A body's frame, which the design leaves where it is.
     fn frame(&self, body: BodyId) -> Pose<T> {
-        self.effects.model.bodies[body.0].frame.spread(self.witness)
+        self.effects.model.bodies[body.0].frame.spread()
     }
 
     /// Marker e of joint j in its body's frame.
@@ -502,24 +499,24 @@ impl<'e, T: Real> Design<'e, T> {
 
     /// Marker e of joint j in the design configuration.
     fn marker_in_world(&self, j: usize, e: usize, values: &Values<T>) -> Pose<T> {
-        let (joint, witness) = (&self.effects.model.joints[j], self.witness);
+        let joint = &self.effects.model.joints[j];
         let mut rot = self.followed_frame(joint, e, values);
         let mut r = self.place(joint.at[e], values);
         for &(k, change) in self.effects.changes[j].iter().filter(|(k, _)| self.counts[*k]) {
             let b = values.variables[k];
             match change {
                 Change::Marker { end, position, rotation, .. } if end.covers(e) => {
-                    r = position.spread(witness).times_plus(b, r);
+                    r = position.spread().times_plus(b, r);
                     if let Some(axis) = rotation.unit() {
-                        rot = Mat3::about(axis, b * witness.like(rotation.norm())) * rot;
+                        rot = Mat3::about(axis, b * T::constant(rotation.norm())) * rot;
                     }
                 }
                 Change::Field { end, v, u, .. } if *end == e => {
                     let body = self.frame(joint.bodies[e]).rot;
-                    r += body * v.spread(witness) * b;
+                    r += body * v.spread() * b;
                     let (theta, c) = self.effects.model.euler_of(joint, e);
-                    let turned = [0, 1, 2].map(|n| witness.like(u[n]).times_plus(b, witness.like(theta[n])));
-                    let turned = rotation_from_euler_313(turned) * c.transpose().spread(witness);
+                    let turned = [0, 1, 2].map(|n| T::constant(u[n]).times_plus(b, T::constant(theta[n])));
+                    let turned = rotation_from_euler_313(turned) * c.transpose().spread();
                     rot = body * turned * body.transpose() * rot;
                 }
                 _ => {}
@@ -532,7 +529,7 @@ impl<'e, T: Real> Design<'e, T> {
     ///
     /// z turns by the smallest rotation to its new direction; x then turns about z with `axis2`.
     fn followed_frame(&self, joint: &Joint, e: usize, values: &Values<T>) -> Mat3<T> {
-        let mut rot = joint.frames[e].spread(self.witness);
+        let mut rot = joint.frames[e].spread();
         let [axis, axis2] = joint.axes_of_marker(e);
         if let Some(axis @ Direction::Through(..)) = axis {
             rot = Mat3::between(rot.cols[2], self.direction(axis, values)) * rot;
@@ -542,7 +539,7 @@ impl<'e, T: Real> Design<'e, T> {
             let across = d - z * z.dot(d);
             let length = across.norm();
             if length.decisive() > ALONG {
-                let x = across * (self.witness.like(1.0) / length);
+                let x = across * (T::one() / length);
                 rot = Mat3 { cols: [x, z.cross(x), z] };
             }
         }
@@ -551,16 +548,16 @@ impl<'e, T: Real> Design<'e, T> {
 
     /// What joint j keeps.
     fn kept(&self, j: usize) -> Kept<T> {
-        let (joint, zero) = (&self.effects.model.joints[j], self.witness.zero());
+        let (joint, zero) = (&self.effects.model.joints[j], T::zero());
         let [m_i, m_j] = [0, 1].map(|e| self.marker_in_world(j, e, &self.for_lengths));
         let (d, z_i, z_j) = (m_j.r - m_i.r, m_i.rot.cols[2], m_j.rot.cols[2]);
         let given = joint.length.map(|length| {
             let formula = self.effects.formulas.as_ref().and_then(|f| f.of_length[j]);
             let given = formula.and_then(|k| self.values.formulas.get(k)).copied();
-            let mut given = given.unwrap_or_else(|| self.witness.like(length));
+            let mut given = given.unwrap_or_else(|| T::constant(length));
             for &(k, change) in self.effects.changes[j].iter().filter(|(k, _)| self.counts[*k]) {
                 if let Change::Length { rate, .. } = change {
-                    given = self.values.variables[k].times_plus(self.witness.like(*rate), given);
+                    given = self.values.variables[k].times_plus(T::constant(*rate), given);
                 }
             }
             given
@@ -574,7 +571,7 @@ impl<'e, T: Real> Design<'e, T> {
             given.unwrap_or_else(|| if keeps() && d.dot(d).decisive() > 0.0 { d.norm() } else { zero });
         let contact = joint.curve.as_ref().map_or(zero, |curve| {
             let drawn = curve.distance(m_i.rot.transpose_mul(d));
-            let sign = || self.witness.like(f64::signum(drawn.value()));
+            let sign = || T::constant(f64::signum(drawn.value()));
             given.map_or(drawn, |length| length.abs() * sign())
         });
         Kept { distance, offset: z_i.dot(d), cosine: z_i.dot(z_j), contact }
@@ -603,17 +600,17 @@ impl Model {
     ///
     /// Body frames stay where they are in the design configuration; markers move on their bodies.
     pub fn geometry(&self, design: &[f64]) -> Geometry {
-        Effects::of(self).geometry(&self.whole(design), 0.0)
+        Effects::of(self).geometry(&self.whole(design))
     }
 
     /// The first-order change of the nominal design per unit of one variable.
     pub fn field(&self, variable: VariableId) -> Field {
-        Effects::of(self).field(variable, &self.whole(&[]), 0.0)
+        Effects::of(self).field(variable, &self.whole(&[]))
     }
 
     /// The first-order changes of a design per unit of each variable.
     pub fn fields(&self, design: &[f64]) -> Vec<Field> {
-        Effects::of(self).fields(&self.whole(design), 0.0)
+        Effects::of(self).fields(&self.whole(design))
     }
 
     /// The variables whose change changes nothing that the motion or its results depend on.
@@ -734,7 +731,7 @@ mod tests {
         let effects = Effects::of(&model);
         for b in [0.0, 0.4] {
             let value = Dual { v: Dual::variable(b), d: Dual::constant(1.0) };
-            let rod = effects.geometry(&[value], Dual::constant(Dual::constant(0.0)));
+            let rod = effects.geometry(&[value]);
             let place = rod.markers[2][0].r;
             let (s, c) = (0.8_f64 + b).sin_cos();
             for (found, expected) in [

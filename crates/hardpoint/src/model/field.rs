@@ -56,8 +56,8 @@ impl<T: Copy> Field<T> {
 
 impl<T: Real> Field<T> {
     /// That of a driver which moves by itself: its value shifts by one unit per unit.
-    pub(crate) fn of_driver(driver: DriverId, witness: T) -> Self {
-        Self { shifts: vec![(driver, witness.like(1.0))], ..Self::default() }
+    pub(crate) fn of_driver(driver: DriverId) -> Self {
+        Self { shifts: vec![(driver, T::one())], ..Self::default() }
     }
 }
 

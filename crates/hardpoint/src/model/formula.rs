@@ -63,12 +63,12 @@ impl Formula {
     }
 
     /// Its result in SI for these sources in SI, over any scalar.
-    pub(super) fn at<T: Real>(&self, witness: T, source: impl Fn(Source) -> T) -> T {
+    pub(super) fn at<T: Real>(&self, source: impl Fn(Source) -> T) -> T {
         let number = |k: usize| {
             let (from, per_unit) = self.inputs[k];
-            source(from) * witness.like(per_unit)
+            source(from) * T::constant(per_unit)
         };
-        self.expression.over(witness, number) / witness.like(self.per_unit)
+        self.expression.over(number) / T::constant(self.per_unit)
     }
 }
 

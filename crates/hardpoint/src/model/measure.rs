@@ -164,12 +164,12 @@ impl Combination {
     }
 
     /// Its value in SI for these outputs in SI.
-    pub(crate) fn at<T: Real>(&self, witness: T, output: impl Fn(OutputSource) -> T) -> T {
+    pub(crate) fn at<T: Real>(&self, output: impl Fn(OutputSource) -> T) -> T {
         let number = |k: usize| {
             let (from, per_unit) = self.inputs[k];
-            output(from) * witness.like(per_unit)
+            output(from) * T::constant(per_unit)
         };
-        self.expression.over(witness, number) / witness.like(self.per_unit)
+        self.expression.over(number) / T::constant(self.per_unit)
     }
 }
 

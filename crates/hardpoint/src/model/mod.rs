@@ -337,7 +337,7 @@ impl Model {
     pub(crate) fn ends(&self, joint: JointId) -> Ends<f64> {
         let [mut i, j] = [0, 1].map(|e| self.marker(joint, e));
         if let Some(curve) = &self.joints[joint.0].curve {
-            i = i.compose(Contact::at(curve, 0.0, curve.start()).frame());
+            i = i.compose(Contact::at(curve, curve.start()).frame());
         }
         Ends { i, j, axes: Mat3::IDENTITY }
     }

@@ -177,7 +177,7 @@ impl Stepper<'_> {
         let (mut residuals, mut jacobian) = self.scaled_rows(&rows, &unknowns);
         let squares = |r: &[f64]| r.iter().map(|x| x * x).sum::<f64>();
         for _ in 0..MAX_SEARCH {
-            let mut normal = Elimination::new(n, 0.0);
+            let mut normal = Elimination::new(n);
             let mut step = vec![0.0; n];
             for k in 0..n {
                 for c in 0..n {

@@ -13,11 +13,11 @@ use super::abreast::ProgramOf;
 use super::forecast::{NODES, ORDERS, Weights};
 use super::kinematics::QUADRATIC;
 use super::stepper::{Ahead, MILD, MILD_CHANGE, Stepper, TRUST_FLOOR};
-use super::tape::{MOST_CORRECTIONS, Tape};
+use super::tape::{MOST_CORRECTIONS, Solved, Tape};
 use super::walk::Path;
 
-/// A forecast that was so good at the last step will be good enough for one correction at the next one, and for two.
-const GOOD: [f64; 2] = [0.1 * QUADRATIC, 1e-5];
+/// A forecast that was so good at the last step will be good enough for one correction at the next one.
+const GOOD: f64 = 0.1 * QUADRATIC;
 
 /// What the drivers do up to an output time: the same for all designs.
 #[derive(Clone, Debug)]
@@ -37,11 +37,11 @@ pub(crate) struct SideBySide<'m> {
     drivers: Vec<[f64; ORDERS]>,
     /// Where tapes come from.
     programs: ProgramOf<'m>,
-    /// With one correction, two and three; and whether they know the present designs.
+    /// With one correction and two; and whether they know the present designs.
     tapes: [Option<(Tape, bool)>; MOST_CORRECTIONS],
-    /// Which of them has solved the last step, and the largest first correction then.
+    /// Which of them has solved the last step, and by how much the forecast missed then.
     by: usize,
-    corrected: f64,
+    missed: f64,
     designs: Vec<Vec<f64>>,
     weights: Weights,
     /// Per channel: what is known of it.
@@ -49,12 +49,9 @@ pub(crate) struct SideBySide<'m> {
     /// Times of these positions, the newest first, and how many there are.
     times: [f64; NODES],
     count: usize,
-    /// Per unknown coordinate: speed and acceleration at the last step.
-    rates: Vec<[Lanes; 2]>,
     /// Per block: the last determinant, and by what part it changed.
     determinants: Vec<Lanes>,
     changes: Vec<Lanes>,
-    ratios: Vec<f64>,
     /// The numbers of all bodies at the last eight output times, and their derivatives at the last.
     states: [Vec<Line>; LANES],
     derivatives: Vec<Line>,
@@ -84,7 +81,10 @@ impl<'m> SideBySide<'m> {
         }
         let blocks = nominal.topology.blocks.len();
         let first = Tape::new(programs(MOST_CORRECTIONS)?);
-        let (channels, unknowns) = (first.channels().len(), first.unknowns().count());
+        if !first.is_on(&nominal.branch) {
+            return None;
+        }
+        let channels = first.channels().len();
         let [states, derivatives] = first.sizes().map(|size| vec![Line::default(); size]);
         let mut tapes = [const { None }; MOST_CORRECTIONS];
         tapes[MOST_CORRECTIONS - 1] = Some((first, false));
@@ -96,16 +96,14 @@ impl<'m> SideBySide<'m> {
             programs,
             tapes,
             by: MOST_CORRECTIONS - 1,
-            corrected: 0.0,
+            missed: 0.0,
             designs: Vec::new(),
             weights: Weights::default(),
             known: vec![[[0.0; LANES]; NODES * ORDERS]; channels],
             times: [0.0; NODES],
             count: 0,
-            rates: vec![[[0.0; LANES]; 2]; unknowns],
             determinants: vec![[0.0; LANES]; blocks],
             changes: vec![[0.0; LANES]; blocks],
-            ratios: vec![0.0; blocks],
             states: std::array::from_fn(|_| states.clone()),
             derivatives,
         })
@@ -133,23 +131,20 @@ impl<'m> SideBySide<'m> {
         self.designs.extend_from_slice(designs);
         let mut effort = Effort { least_pivot_ratio: f64::INFINITY, ..Effort::default() };
         for (k, &t) in model.times.iter().enumerate() {
-            if k == 0 {
-                self.start(t, &mut effort)?
-            } else {
-                self.step(k, t, &mut effort)?
-            }
+            let solved = if k == 0 { self.start(t)? } else { self.step(k, t)? };
             let (tape, derivatives) = (self.tape(), bytemuck::cast_slice(&self.derivatives));
             each(k, &Found { tape, states: &self.states, derivatives });
             effort.steps += 1;
             effort.by_program += 1;
             effort.iterations += self.tape().passes();
-            effort.note_pivots(self.ratios.iter().copied(), t);
+            effort.worst_residual = effort.worst_residual.max(solved.residuals.largest);
+            effort.note_pivots([solved.pivot_ratio].into_iter(), t);
         }
         Some(effort)
     }
 
     /// All designs at the first output time, from where the nominal one is.
-    fn start(&mut self, t: f64, effort: &mut Effort) -> Option<()> {
+    fn start(&mut self, t: f64) -> Option<Solved> {
         let saved = &self.nominal.saved;
         for n in 0..self.known.len() {
             let x = self.tape().channels()[n].saved(&saved.q, &saved.balls);
@@ -157,7 +152,7 @@ impl<'m> SideBySide<'m> {
             self.known[n][0] = [x; LANES];
         }
         (self.times, self.count) = ([t; NODES], 1);
-        self.solve(MOST_CORRECTIONS, 0, &[0.0; LANES], effort)?;
+        let solved = self.solve(MOST_CORRECTIONS, 0, &[0.0; LANES])?;
         for b in 0..self.determinants.len() {
             let (now, before) = (self.tape().determinant(b), self.nominal.saved.determinants[b]);
             if !now.iter().all(|x| (MILD[0]..=MILD[1]).contains(&(x / before))) {
@@ -167,28 +162,23 @@ impl<'m> SideBySide<'m> {
         }
         self.count = 0;
         self.save(t);
-        Some(())
+        Some(solved)
     }
 
     /// All designs at the next output time, k.
-    fn step(&mut self, k: usize, t: f64, effort: &mut Effort) -> Option<()> {
+    fn step(&mut self, k: usize, t: f64) -> Option<Solved> {
         let ahead = [self.course.get(k)?.h; LANES];
-        let poor = GOOD.iter().filter(|good| !(self.corrected <= **good)).count();
-        let least = if self.count < NODES { MOST_CORRECTIONS } else { 1 + poor };
-        (least..=MOST_CORRECTIONS)
-            .find(|corrections| self.solve(*corrections, k, &ahead, effort).is_some())?;
-        let before = |n: usize, _, lane: usize| self.rates[n].map(|lanes| lanes[lane]);
-        let topology = &self.nominal.topology;
-        let smooth = self.tape().speeds_are_smooth(topology, before, &ahead, self.course[k].fastest);
-        if !smooth || !self.determinants_are_even(k) {
+        let is_good = self.count == NODES && self.missed <= GOOD;
+        let solved = self.solve(if is_good { 1 } else { MOST_CORRECTIONS }, k, &ahead)?;
+        if !self.tape().speeds_are_smooth(self.course[k].fastest) || !self.determinants_are_even(k) {
             return None;
         }
         self.save(t);
-        Some(())
+        Some(solved)
     }
 
     /// Tries the tape with so many corrections at output time k, so long beyond the newest position.
-    fn solve(&mut self, corrections: usize, k: usize, ahead: &Lanes, effort: &mut Effort) -> Option<()> {
+    fn solve(&mut self, corrections: usize, k: usize, ahead: &Lanes) -> Option<Solved> {
         self.weights.set((self.times.map(|t| t - self.times[0]), self.count), ahead);
         let kept = &mut self.tapes[corrections - 1];
         if kept.is_none() {
@@ -199,7 +189,7 @@ impl<'m> SideBySide<'m> {
             tape.set_designs(&self.designs);
         }
         let nominal = &self.nominal;
-        tape.weights_mut().copy_from_slice(&self.weights.of);
+        tape.look_ahead(&self.weights.of, ahead);
         for (channel, known) in self.known.iter().enumerate() {
             tape.known_mut(channel).copy_from_slice(known);
         }
@@ -208,11 +198,9 @@ impl<'m> SideBySide<'m> {
             *to = [*x; LANES];
         }
         let results = [lanes_of(&mut self.states[k % LANES]), lanes_of(&mut self.derivatives)];
-        let judged = (&nominal.branch[..], &nominal.try_others[..]);
-        let residuals = tape.solve(judged, TRUST_FLOOR, &mut self.ratios, results).ok()?;
-        effort.worst_residual = effort.worst_residual.max(residuals.largest);
-        (self.by, self.corrected) = (corrections - 1, tape.first_correction());
-        Some(())
+        let solved = tape.solve(TRUST_FLOOR, results).ok()?;
+        (self.by, self.missed) = (corrections - 1, tape.missed());
+        Some(solved)
     }
 
     /// Whether every determinant has changed by little up to output time k, and about as much as over the step before.
@@ -243,9 +231,6 @@ impl<'m> SideBySide<'m> {
             for (order, to) in known[..ORDERS].iter_mut().enumerate() {
                 *to = *tape.channel_lanes(channel, order);
             }
-        }
-        for (to, (_, [speed, acceleration])) in self.rates.iter_mut().zip(tape.unknowns()) {
-            *to = [*speed, *acceleration];
         }
         self.times.rotate_right(1);
         self.times[0] = t;

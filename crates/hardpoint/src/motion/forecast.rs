@@ -78,7 +78,7 @@ impl Channel {
         self.save(x, &mut state.q, &mut state.balls);
         if let Self::Ball(first, 3) = self {
             state.balls[first] = state.balls[first].normalised();
-            state.q[first..first + 3].fill(x.zero());
+            state.q[first..first + 3].fill(T::zero());
         }
     }
 
@@ -156,11 +156,6 @@ impl Forecast {
     #[inline(always)]
     pub fn nodes(&self, h: f64) -> ([f64; NODES], usize) {
         (self.times.map(|t| t - self.times[0]), self.counting(h))
-    }
-
-    /// How long a time is behind the newest position.
-    pub fn ahead_of(&self, t: f64) -> f64 {
-        t - self.times[0]
     }
 
     /// What is known of a channel, position by position, the newest first.

@@ -28,8 +28,8 @@ pub(crate) struct Jerk {
 }
 
 impl Jerk {
-    pub fn new(model: &Model, topology: &Topology, witness: f64) -> Self {
-        let (none, zero) = (Twist::zero(witness), 0.0);
+    pub fn new(model: &Model, topology: &Topology) -> Self {
+        let (none, zero) = (Twist::zero(), 0.0);
         Self {
             qddd: vec![zero; topology.coordinates.len()],
             b: vec![none; model.bodies.len()],

@@ -23,7 +23,6 @@ const SINGULAR: f64 = 1e-12;
 /// Everything that one step computes.
 #[derive(Clone, Debug)]
 pub(crate) struct State<T> {
-    pub witness: T,
     /// Per coordinate: value (unused for balls), speed and acceleration.
     pub q: Vec<T>,
     pub qd: Vec<T>,
@@ -96,20 +95,19 @@ pub(crate) enum PositionFailure {
 
 impl<T: Real> State<T> {
     /// The design configuration.
-    pub fn new(model: &Model, topology: &Topology, witness: T) -> Self {
-        let (n, o) = (topology.coordinates.len(), witness.zero());
-        let none = Twist::zero(witness);
+    pub fn new(model: &Model, topology: &Topology) -> Self {
+        let (n, o) = (topology.coordinates.len(), T::zero());
+        let none = Twist::zero();
         let no_wrench = Wrench { m: none.w, f: none.v };
-        let frame = Pose::IDENTITY.spread(witness);
+        let frame = Pose::IDENTITY.spread();
         let rows = topology.rows.len();
         let bodies = model.bodies.len();
         let widest = topology.blocks.iter().map(|b| b.unknowns.len()).max().unwrap_or(0);
         Self {
-            witness,
             q: vec![o; n],
             qd: vec![o; n],
             qdd: vec![o; n],
-            balls: vec![Quat::IDENTITY.spread(witness); n],
+            balls: vec![Quat::IDENTITY.spread(); n],
             frame: vec![frame; bodies],
             pose: vec![frame; bodies],
             v: vec![none; bodies],
@@ -121,11 +119,7 @@ impl<T: Real> State<T> {
             ld: vec![no_wrench; rows],
             ldd: Vec::new(),
             ends: vec![Ends { i: frame, j: frame, axes: frame.rot }; topology.closures.len()],
-            factors: topology
-                .blocks
-                .iter()
-                .map(|b| factors_of(topology, b, LARGEST_DENSE, witness))
-                .collect(),
+            factors: topology.blocks.iter().map(|b| factors_of(topology, b, LARGEST_DENSE)).collect(),
             rhs: vec![o; widest],
             bias: vec![none; topology.links.len()],
             row_rhs: vec![o; rows],
@@ -136,7 +130,7 @@ impl<T: Real> State<T> {
             contacts: Vec::new(),
             pivots: vec![(1.0, true); topology.blocks.len()],
             determinants: vec![o; topology.blocks.len()],
-            watched: vec![Watched::zero(witness); topology.blocks.len()],
+            watched: vec![Watched::zero(); topology.blocks.len()],
             corrections: vec![([o; CORRECTIONS], 0); topology.blocks.len()],
             iterations: 0,
         }
@@ -154,7 +148,7 @@ impl<T: Real> State<T> {
                 for c in 0..step.freedom.coordinates() {
                     self.x[step.first + c] = step.twist(c, &frame.rot, frame.r);
                 }
-                let q = self.q[step.first] * self.witness.like(step.sign);
+                let q = self.q[step.first] * T::constant(step.sign);
                 match step.freedom {
                     Freedom::Turn(axis) => {
                         let (sin, cos) = q.sin_cos();
@@ -223,7 +217,7 @@ impl<T: Real> State<T> {
         let i = foot.compose(contact.frame().inverse());
         let relative = rates.v_j.at(j.r) - v.at(j.r);
         let acceleration = |v: Twist<T>, a: Twist<T>| a.at(j.r) + v.w.cross(v.at(j.r));
-        let coriolis = v.w.cross(relative) * relative.x.like(2.0);
+        let coriolis = v.w.cross(relative) * T::constant(2.0);
         let second = acceleration(rates.v_j, rates.a_j) - acceleration(v, a) - coriolis;
         let p = [i.inverse().point(j.r), i.rot.transpose_mul(relative), i.rot.transpose_mul(second)];
         let [turn, turn_rate] = contact.turning(p);
@@ -240,9 +234,9 @@ impl<T: Real> State<T> {
         let place = &topology.rows[r];
         let closure = &topology.closures[place.closure];
         let (row, ends) = (closure.rows[place.index], &self.ends[place.closure]);
-        let gap = self.gap[r] * self.witness.like(self.gap_left[0]);
+        let gap = self.gap[r] * T::constant(self.gap_left[0]);
         if place.terms.is_empty() {
-            let driven = closure.driver.map_or(self.witness.zero(), |d| drivers[d.0][0]);
+            let driven = closure.driver.map_or(T::zero(), |d| drivers[d.0][0]);
             row.residual(ends, parts.kept[r] + driven) - gap
         } else {
             self.coupled(topology, parts, r) - gap
@@ -268,12 +262,12 @@ impl<T: Real> State<T> {
     /// The sum of a coupler's terms. Kept out of the way of the other rows, which are many.
     #[inline(never)]
     fn coupled(&self, topology: &Topology, parts: &Parts<T>, r: usize) -> T {
-        let mut sum = self.witness.zero();
+        let mut sum = T::zero();
         for (k, factor) in topology.parts_of_row(r) {
             let place = &topology.rows[k];
             let row = topology.closures[place.closure].rows[place.index];
             let value = row.value(&self.ends[place.closure], self.near[k]) - parts.kept[k];
-            sum += value * self.witness.like(factor);
+            sum += value * T::constant(factor);
         }
         sum
     }
@@ -286,11 +280,11 @@ impl<T: Real> State<T> {
             let at = &topology.rows[term];
             self.l[term] = self.wrench_of(topology.closures[at.closure].rows[at.index], at.closure);
         }
-        let (l, x, zero) = (&self.l, &self.x, self.witness.zero());
+        let (l, x, zero) = (&self.l, &self.x, T::zero());
         let entries = place.columns.iter().map(|c| {
             let mut sum = zero;
             for &(term, coordinate, factor) in &c.parts {
-                sum += l[term].on(x[coordinate]) * zero.like(factor);
+                sum += l[term].on(x[coordinate]) * T::constant(factor);
             }
             (c.column, sum)
         });
@@ -313,7 +307,7 @@ impl<T: Real> State<T> {
                 self.place_ends(topology, parts, c);
             }
         }
-        let zero = self.witness.zero();
+        let zero = T::zero();
         for (k, &r) in block.selected.iter().enumerate() {
             let residual = self.residual(topology, parts, drivers, r);
             (self.residual[r], self.rhs[k]) = (residual, -residual);
@@ -325,7 +319,7 @@ impl<T: Real> State<T> {
                 let x = &self.x;
                 let entries = closure.entries.iter().map(
                     #[inline(always)]
-                    |&(column, coordinate, side)| (column, wrench.on(x[coordinate]) * zero.like(side)),
+                    |&(column, coordinate, side)| (column, wrench.on(x[coordinate]) * T::constant(side)),
                 );
                 self.factors[b].set_row(k, entries, zero);
             } else {
@@ -414,9 +408,9 @@ impl<T: Real> State<T> {
     /// Largest component of the correction in `rhs`, lengths in sizes of their loops.
     #[inline(always)]
     fn correction(&self, topology: &Topology, b: usize) -> T {
-        let mut most = self.witness.zero();
+        let mut most = T::zero();
         for (&c, &d) in topology.blocks[b].unknowns.iter().zip(&self.rhs) {
-            most = most.larger((d * d.like(topology.coordinates[c].per_unit)).abs());
+            most = most.larger((d * T::constant(topology.coordinates[c].per_unit)).abs());
         }
         most
     }
@@ -433,7 +427,7 @@ impl<T: Real> State<T> {
     /// Moves the increments that stand in the `q` of balls into their rotations.
     #[inline(always)]
     pub fn turn_balls(&mut self, topology: &Topology, links: std::ops::Range<usize>) {
-        let zero = self.witness.zero();
+        let zero = T::zero();
         for link in &topology.links[links] {
             for step in link.steps.iter().filter(|s| s.freedom == Freedom::Ball) {
                 let k = step.first;
@@ -458,16 +452,16 @@ impl<T: Real> State<T> {
     /// (9), (10)).
     #[inline(always)]
     fn rates_of_block(&mut self, topology: &Topology, parts: &Parts<T>, drivers: &[[T; 3]], b: usize) {
-        let (block, witness, s) = (&topology.blocks[b], self.witness, self);
+        let (block, s) = (&topology.blocks[b], self);
         for &c in &block.closures {
             let closure = &topology.closures[c];
             if closure.solved_by_points && closure.has_axes {
                 s.place_ends(topology, parts, c);
             }
             s.finish_closure(topology, c);
-            let demand = closure.driver.map_or(witness.zero(), |d| drivers[d.0][1]);
+            let demand = closure.driver.map_or(T::zero(), |d| drivers[d.0][1]);
             for r in closure.first_row..closure.first_row + closure.rows.len() {
-                s.row_rhs[r] = demand + s.gap[r] * witness.like(s.gap_left[1]);
+                s.row_rhs[r] = demand + s.gap[r] * T::constant(s.gap_left[1]);
             }
         }
         level(topology, b, &mut s.factors, &s.x, &s.l, None, &s.row_rhs, &mut s.qd, &mut s.v, &mut s.rhs);
@@ -476,7 +470,7 @@ impl<T: Real> State<T> {
         for &c in &block.closures {
             s.rates_of_wrenches(topology, c, 1);
             let closure = &topology.closures[c];
-            let demand = closure.driver.map_or(witness.zero(), |d| drivers[d.0][2]);
+            let demand = closure.driver.map_or(T::zero(), |d| drivers[d.0][2]);
             let [i, j] = closure.bodies;
             let apart = s.v[j.0] - s.v[i.0];
             for r in closure.first_row..closure.first_row + closure.rows.len() {
@@ -517,10 +511,9 @@ impl<T: Real> State<T> {
 
     /// What only sensitivities need: second derivatives of twists and wrenches, and all of the rows left out.
     pub fn finish_rates(&mut self, topology: &Topology) {
-        let witness = self.witness;
         self.finish_wrenches(topology);
-        self.xdd.resize(self.x.len(), Twist::zero(witness));
-        self.ldd.resize(self.l.len(), Wrench::moment(Twist::zero(witness).w));
+        self.xdd.resize(self.x.len(), Twist::zero());
+        self.ldd.resize(self.l.len(), Wrench::moment(Twist::zero().w));
         self.rates_of_twists(topology, 0..topology.links.len(), 2);
         for c in 0..topology.closures.len() {
             self.rates_of_wrenches(topology, c, 2);
@@ -554,7 +547,7 @@ impl<T: Real> State<T> {
 
     /// The same as they are: m or rad, and sizes or rad.
     pub fn largest_residuals(&self, topology: &Topology, parts: &Parts<T>, drivers: &[[T; 3]]) -> [T; 2] {
-        let zero = self.witness.zero();
+        let zero = T::zero();
         let (mut largest, mut scaled) = (zero, zero);
         for (r, place) in topology.rows.iter().enumerate() {
             if place.is_term {
@@ -566,7 +559,7 @@ impl<T: Real> State<T> {
                 self.residual_of(topology, parts, drivers, r).abs()
             };
             largest = largest.larger(residual);
-            scaled = scaled.larger(residual * zero.like(1.0 / place.unit));
+            scaled = scaled.larger(residual * T::constant(1.0 / place.unit));
         }
         [largest, scaled]
     }
@@ -599,12 +592,12 @@ impl<T: Real> State<T> {
     #[inline(always)]
     pub fn scaled_row(&self, topology: &Topology, r: usize, out: &mut [T]) {
         let scale = 1.0 / topology.rows[r].unit;
-        let zero = self.witness.zero();
+        let zero = T::zero();
         out.fill(zero);
         for (k, factor) in topology.parts_of_row(r) {
             for &(column, c, side) in &topology.closures[topology.rows[k].closure].entries {
                 let unit = topology.coordinates[c].unit;
-                out[column] += self.l[k].on(self.x[c]) * zero.like(scale * unit * side * factor);
+                out[column] += self.l[k].on(self.x[c]) * T::constant(scale * unit * side * factor);
             }
         }
     }
@@ -612,7 +605,7 @@ impl<T: Real> State<T> {
     /// Sum of twists times speeds over a link's coordinates.
     #[inline(always)]
     pub fn sum_over_link(&self, link: &crate::topology::Link, twists: &[Twist<T>], speeds: &[T]) -> Twist<T> {
-        let mut sum = Twist::zero(self.witness);
+        let mut sum = Twist::zero();
         for step in &link.steps {
             for c in step.first..step.first + step.freedom.coordinates() {
                 sum = twists[c].times_plus(speeds[c], sum);
@@ -684,7 +677,7 @@ pub(crate) fn sum_couplers<T: Real>(topology: &Topology, b: usize, of_rows: &mut
     for &r in &topology.blocks[b].coupled {
         for &(term, factor) in &topology.rows[r].terms {
             let x = of_rows[term];
-            of_rows[r] += x * x.like(factor);
+            of_rows[r] += x * T::constant(factor);
         }
     }
 }
@@ -697,18 +690,13 @@ pub(crate) fn along<T: Real>(topology: &Topology, l: &[Wrench<T>], motion: &[Twi
     let mut sum = l[r].on(motion[j.0] - motion[i.0]);
     for &(term, factor) in &place.terms {
         let [i, j] = topology.closures[topology.rows[term].closure].bodies;
-        sum += l[term].on(motion[j.0] - motion[i.0]) * sum.like(factor);
+        sum += l[term].on(motion[j.0] - motion[i.0]) * T::constant(factor);
     }
     sum
 }
 
 /// Room for the factors of a block with the rows that it is solved with now.
-pub(crate) fn factors_of<T: Real>(
-    topology: &Topology,
-    block: &Block,
-    largest_dense: usize,
-    witness: T,
-) -> Factors<T> {
+pub(crate) fn factors_of<T: Real>(topology: &Topology, block: &Block, largest_dense: usize) -> Factors<T> {
     let columns = |k: usize| {
         let place = &topology.rows[block.selected[k]];
         if place.terms.is_empty() {
@@ -717,7 +705,7 @@ pub(crate) fn factors_of<T: Real>(
             place.columns.iter().map(|c| c.column).collect()
         }
     };
-    Factors::new(block.selected.len(), columns, largest_dense, witness)
+    Factors::new(block.selected.len(), columns, largest_dense)
 }
 
 /// Solves one linear level in block b: the motion `out` of its bodies with

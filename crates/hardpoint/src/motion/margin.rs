@@ -36,7 +36,7 @@ pub(crate) struct Margins<T> {
 }
 
 impl<T: Real> Margins<T> {
-    pub fn new(topology: &Topology, witness: T) -> Self {
+    pub fn new(topology: &Topology) -> Self {
         let widths = topology.blocks.iter().map(|b| b.unknowns.len());
         let dense = |n: usize| if n <= MOST_UNKNOWNS { n } else { 0 };
         let widest = widths.clone().max().unwrap_or(0);
@@ -45,9 +45,9 @@ impl<T: Real> Margins<T> {
         Self {
             rows,
             redundant,
-            blocks: widths.map(|n| Elimination::new(dense(n), witness)).collect(),
-            row: vec![witness.zero(); widest],
-            row_sums: vec![witness.zero(); widest],
+            blocks: widths.map(|n| Elimination::new(dense(n))).collect(),
+            row: vec![T::zero(); widest],
+            row_sums: vec![T::zero(); widest],
         }
     }
 
@@ -55,8 +55,7 @@ impl<T: Real> Margins<T> {
     pub fn at(&mut self, topology: &Topology, state: &State<T>) -> Margin {
         let values = (0..topology.blocks.len()).map(|b| {
             let small = topology.blocks[b].unknowns.len() <= MOST_UNKNOWNS;
-            let value = if small { self.of_block(topology, state, b, &mut |_| ()) } else { state.witness };
-            if small { value.value() } else { state.pivots[b].0 }
+            if small { self.of_block(topology, state, b, &mut |_| ()).value() } else { state.pivots[b].0 }
         });
         Margin::least(values)
     }
@@ -73,7 +72,7 @@ impl<T: Real> Margins<T> {
     /// not depend on which of them the block is solved with.
     #[inline(always)]
     fn of_block(&mut self, topology: &Topology, state: &State<T>, b: usize, limit: &mut impl FnMut(T)) -> T {
-        let squared = state.witness.like(SQUARED);
+        let squared = T::constant(SQUARED);
         if self.redundant[b] {
             let all = self.of_all_rows(topology, state, b, limit);
             if all.decisive() > SQUARED {
@@ -84,7 +83,7 @@ impl<T: Real> Margins<T> {
         }
         let block = &topology.blocks[b];
         let n = block.unknowns.len();
-        let (zero, one) = (state.witness.zero(), state.witness.like(1.0));
+        let (zero, one) = (T::zero(), T::one());
         let factors = &mut self.blocks[b];
         let (row, sums) = (&mut self.row[..n], &mut self.row_sums[..n]);
         for (k, &r) in block.selected.iter().enumerate() {
@@ -117,7 +116,7 @@ impl<T: Real> Margins<T> {
     ) -> T {
         let block = &topology.blocks[b];
         let n = block.unknowns.len();
-        let (zero, one) = (state.witness.zero(), state.witness.like(1.0));
+        let (zero, one) = (T::zero(), T::one());
         let factors = &mut self.blocks[b];
         let (row, sums) = (&mut self.row[..n], &mut self.row_sums[..n]);
         (0..n).for_each(|k| factors.row_mut(k).fill(zero));
@@ -149,7 +148,7 @@ impl<T: Real> Margins<T> {
 fn judged<T: Real>(factors: &mut Elimination<T>, limit: &mut impl FnMut(T)) -> f64 {
     let found = factors.factor();
     let growth = found.watched.growth;
-    limit(growth - growth.like(f64::max(MOST_GROWTH, 2.0 * growth.decisive())));
+    limit(growth - T::constant(f64::max(MOST_GROWTH, 2.0 * growth.decisive())));
     found.pivot_ratio
 }
 
@@ -171,16 +170,16 @@ const SQUARED: f64 = 1e-6;
 #[inline(always)]
 fn relative_row<T: Real>(topology: &Topology, state: &State<T>, r: usize, row: &mut [T]) {
     let scale = 1.0 / topology.rows[r].unit;
-    let zero = state.witness.zero();
+    let zero = T::zero();
     row.fill(zero);
     for (k, factor) in topology.parts_of_row(r) {
         let l = wrench(topology, state, k);
         for &(column, c, side) in &topology.closures[topology.rows[k].closure].entries {
             let unit = topology.coordinates[c].unit;
-            row[column] += l.on(state.x[c]) * zero.like(scale * unit * side * factor);
+            row[column] += l.on(state.x[c]) * T::constant(scale * unit * side * factor);
         }
     }
-    let per_most = zero.like(1.0) / most_resistance(topology, state, r);
+    let per_most = T::one() / most_resistance(topology, state, r);
     row.iter_mut().for_each(|x| *x = *x * per_most);
 }
 
@@ -198,7 +197,7 @@ fn wrench<T: Real>(topology: &Topology, state: &State<T>, k: usize) -> Wrench<T>
 #[inline(always)]
 fn most_resistance<T: Real>(topology: &Topology, state: &State<T>, r: usize) -> T {
     let scale = 1.0 / topology.rows[r].unit;
-    let mut most = state.witness.like(f64::MIN_POSITIVE);
+    let mut most = T::constant(f64::MIN_POSITIVE);
     for (k, factor) in topology.parts_of_row(r) {
         let at = &topology.rows[k];
         let closure = &topology.closures[at.closure];
@@ -210,10 +209,10 @@ fn most_resistance<T: Real>(topology: &Topology, state: &State<T>, r: usize) -> 
             let point = if at_i { i.r } else { j.r };
             for step in &topology.links[link].steps {
                 let resistance = match step.freedom {
-                    Freedom::Slide(_) => l.f.norm() * most.like(topology.coordinates[step.first].unit),
+                    Freedom::Slide(_) => l.f.norm() * T::constant(topology.coordinates[step.first].unit),
                     Freedom::Turn(_) | Freedom::Ball => most_moment(&l, point, &state.x[step.first]),
                 };
-                most = most.larger(resistance * most.like(scale * factor.abs()));
+                most = most.larger(resistance * T::constant(scale * factor.abs()));
             }
         }
     }

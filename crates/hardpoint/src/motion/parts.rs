@@ -26,10 +26,10 @@ pub(crate) struct Parts<T> {
 
 impl<T: Real> Parts<T> {
     /// Those of a design, without laws.
-    pub fn of(model: &Model, topology: &Topology, design: &Geometry<T>, witness: T) -> Self {
+    pub fn of(model: &Model, topology: &Topology, design: &Geometry<T>) -> Self {
         let marker = |joint: usize, end: usize| design.markers[joint][end];
         // Per body, its frame as seen from the marker that places it.
-        let mut seen = vec![Pose::IDENTITY.spread(witness); model.bodies.len()];
+        let mut seen = vec![Pose::IDENTITY.spread(); model.bodies.len()];
         for link in &topology.links {
             if let Some(j) = link.joint {
                 // The freedoms end in a frame that is parallel to their first one in the design configuration;
@@ -38,7 +38,7 @@ impl<T: Real> Parts<T> {
                 let (parent, child) = (frames[link.parent_end], frames[1 - link.parent_end]);
                 let mut m = marker(j.0, 1 - link.parent_end);
                 if parent != child {
-                    m.rot = m.rot * (child.transpose() * parent).spread(witness);
+                    m.rot = m.rot * (child.transpose() * parent).spread();
                 }
                 seen[link.child.0] = m.inverse();
             }
@@ -53,7 +53,7 @@ impl<T: Real> Parts<T> {
                 .iter()
                 .map(|l| match l.joint {
                     Some(j) => on(l.parent, marker(j.0, l.parent_end)),
-                    None => model.bodies[l.child.0].frame.spread(witness),
+                    None => model.bodies[l.child.0].frame.spread(),
                 })
                 .collect(),
             child_from_marker: topology.links.iter().map(|l| seen[l.child.0]).collect(),
@@ -67,8 +67,8 @@ impl<T: Real> Parts<T> {
 
 impl Parts<f64> {
     /// Those of a design, with the laws of its drivers.
-    pub fn same(model: &Model, topology: &Topology, design: &Geometry, laws: &[Law], witness: f64) -> Self {
-        Self { laws: laws.to_vec(), ..Self::of(model, topology, design, witness) }
+    pub fn same(model: &Model, topology: &Topology, design: &Geometry, laws: &[Law]) -> Self {
+        Self { laws: laws.to_vec(), ..Self::of(model, topology, design) }
     }
 
     /// The law of driver d.

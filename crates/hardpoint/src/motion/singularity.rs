@@ -313,10 +313,9 @@ impl Prober {
 
     /// `max(|c1| / |c0|, sqrt(|c2| / |c0|))` over the block's unknowns, lengths in sizes of their loops.
     fn nearness(&self, topology: &Topology, b: usize) -> f64 {
-        let zero = self.c[0][topology.blocks[b].unknowns[0]].zero();
         let norm = |c: &[f64]| {
             let unknowns = topology.blocks[b].unknowns.iter();
-            unknowns.fold(zero, |most, &k| most.larger((c[k] * topology.coordinates[k].per_unit).abs()))
+            unknowns.fold(0.0, |most: f64, &k| most.larger((c[k] * topology.coordinates[k].per_unit).abs()))
         };
         let [c0, c1, c2] = [&self.c[0], &self.c[1], &self.c[2]].map(|c| norm(c));
         (c1 / c0).larger((c2 * 0.5 / c0).sqrt())

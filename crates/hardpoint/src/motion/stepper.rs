@@ -10,7 +10,7 @@ use crate::space::{FullPivot, LARGEST_DENSE, Quat, Real};
 use crate::topology::{Source, Topology};
 
 use super::assembly::Assembly;
-use super::forecast::{Channel, Forecast};
+use super::forecast::Forecast;
 use super::kinematics::{PositionFailure, Residuals, State, factors_of};
 use super::parts::Parts;
 use super::singularity::{Prober, Surroundings};
@@ -180,9 +180,9 @@ pub(super) enum Refusal {
 }
 
 impl<'m> Stepper<'m> {
-    pub fn new(model: &'m Model, topology: &Topology, parts: Parts<f64>, witness: f64) -> Self {
-        let mut state = State::new(model, topology, witness);
-        state.contacts = parts.curves.iter().map(|c| Contact::at(c, witness, c.start())).collect();
+    pub fn new(model: &'m Model, topology: &Topology, parts: Parts<f64>) -> Self {
+        let mut state = State::new(model, topology);
+        state.contacts = parts.curves.iter().map(|c| Contact::at(c, c.start())).collect();
         let saved = Saved {
             q: state.q.clone(),
             qd: state.qd.clone(),
@@ -438,20 +438,6 @@ impl<'m> Stepper<'m> {
         self.expected_move(h)
     }
 
-    /// By how much another forecast would have missed where the mechanism stands, rad or sizes; of balls by components.
-    pub(super) fn forecast_error(&mut self, forecast: &mut Forecast) -> f64 {
-        let (channels, mut state) = (Channel::all(&self.topology), self.state.clone());
-        forecast.set(&mut state, self.time, 0.0);
-        channels.into_iter().fold(0.0, |most, channel| {
-            let per_unit = match channel {
-                Channel::Coordinate(c) => self.topology.coordinates[c].per_unit,
-                Channel::Ball(..) => 1.0,
-            };
-            let [was, is] = [&state, &self.state].map(|s| channel.of(s)[0]);
-            f64::max(most, per_unit * (was - is).abs())
-        })
-    }
-
     /// The largest move (rad, or sizes) over a step h, by speed and acceleration.
     #[inline(always)]
     fn expected_move(&self, h: f64) -> f64 {
@@ -603,7 +589,7 @@ impl<'m> Stepper<'m> {
     /// Room for the factors of a block that is solved with other rows from now on: they have entries in other places.
     pub(super) fn renew_factors(&mut self, b: usize) {
         let block = &self.topology.blocks[b];
-        self.state.factors[b] = factors_of(&self.topology, block, LARGEST_DENSE, self.state.witness);
+        self.state.factors[b] = factors_of(&self.topology, block, LARGEST_DENSE);
     }
 
     /// Values of the tree coordinates; 0 for those of balls.
@@ -686,10 +672,9 @@ mod tests {
     /// The states of all bodies at the last output time, with blocks up to this size factored densely.
     fn last(model: &Model, topology: &Topology, largest_dense: usize) -> (State<f64>, Vec<bool>) {
         let (design, laws) = (model.geometry(&[]), model.laws(&[]));
-        let mut stepper =
-            Stepper::new(model, topology, Parts::same(model, topology, &design, &laws, 0.0), 0.0);
+        let mut stepper = Stepper::new(model, topology, Parts::same(model, topology, &design, &laws));
         let blocks = topology.blocks.iter();
-        stepper.state.factors = blocks.map(|b| factors_of(topology, b, largest_dense, 0.0)).collect();
+        stepper.state.factors = blocks.map(|b| factors_of(topology, b, largest_dense)).collect();
         stepper.start(model.times[0]).unwrap();
         model.times[1..].iter().for_each(|t| stepper.advance(*t).unwrap());
         let signs = stepper.state.pivots.iter().map(|p| p.1).collect();

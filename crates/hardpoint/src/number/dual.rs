@@ -19,20 +19,20 @@ impl<T: Real> Dual<T> {
     /// What the derivative is taken by, at this value.
     #[inline(always)]
     pub fn variable(v: T) -> Self {
-        Self { v, d: v.like(1.0) }
+        Self { v, d: T::one() }
     }
 
     /// What does not depend on it.
     #[inline(always)]
     pub fn constant(v: T) -> Self {
-        Self { v, d: v.zero() }
+        Self { v, d: T::zero() }
     }
 
     /// A function's value `v` with the derivative that it makes of this number's. What does not depend on the variable does
     /// not, also where the function has a vertical tangent.
     #[inline(always)]
     fn or_constant(self, v: T, d: impl FnOnce(T) -> T) -> Self {
-        Self { v, d: if self.d.vanishes() { v.zero() } else { d(self.d) } }
+        Self { v, d: if self.d.vanishes() { T::zero() } else { d(self.d) } }
     }
 }
 
@@ -110,8 +110,8 @@ impl<T: Real> SubAssign for Dual<T> {
 /// Whatever only looks at a number sees the value.
 impl<T: Real> Real for Dual<T> {
     #[inline(always)]
-    fn like(self, x: f64) -> Self {
-        Self::constant(self.v.like(x))
+    fn constant(x: f64) -> Self {
+        Self::constant(T::constant(x))
     }
     #[inline(always)]
     fn value(self) -> f64 {
@@ -168,7 +168,7 @@ impl<T: Real> Real for Dual<T> {
     }
     fn pow(self, exponent: Self) -> Self {
         // d xᵖ = p x^(p-1) dx + xᵖ ln x dp; what vanishes wins over what is infinite.
-        let (x, p, zero) = (self.v, exponent.v, self.v.zero());
+        let (x, p, zero) = (self.v, exponent.v, T::zero());
         let power = x.pow(p);
         let by_base = self.or_constant(power, |d| d * zero.select(p * x.pow(p + -1.0), p.is_zero()));
         let by_exponent =
@@ -219,7 +219,7 @@ mod tests {
     fn derivatives_of_either_order_match_the_closed_form() {
         let f = |x: Dual<Dual>| {
             let (s, c) = x.sin_cos();
-            (s * s + x.like(2.0)).sqrt() / (c + x * x)
+            (s * s + 2.0).sqrt() / (c + x * x)
         };
         let x = 0.7;
         let y = f(Dual { v: Dual::variable(x), d: Dual::constant(1.0) });
@@ -245,9 +245,9 @@ mod tests {
             ("exp", |x| x.map(Function::Exp), f64::exp),
             ("ln", |x| x.map(Function::Ln), f64::ln),
             ("powf", |x| x.powf(2.7), |x| x.powf(2.7)),
-            ("atan2", |x| x.atan2(x * x + x.like(0.5)), |x| x.atan2(x * x + 0.5)),
+            ("atan2", |x| x.atan2(x * x + 0.5), |x| x.atan2(x * x + 0.5)),
             ("larger", |x| (x * x * x).larger(x * x), |x| (x * x * x).max(x * x)),
-            ("select", |x| (x * x).select(x.like(f64::NAN), true), |x| x * x),
+            ("select", |x| (x * x).select(Real::constant(f64::NAN), true), |x| x * x),
         ];
         for (name, f, at) in cases {
             for x in [0.2, 0.7] {

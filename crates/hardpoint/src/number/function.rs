@@ -67,7 +67,7 @@ functions! { |x, y|
     };
     /// Arc tangent, rad in [-pi/2, pi/2].
     Atan "atan", f64::atan, {
-        let d = x.like(1.0) / (x * x + 1.0);
+        let d = T::one() / (x * x + 1.0);
         [d, x * d * d * -2.0, (x * x * 6.0 + -2.0) * d * d * d]
     };
     /// Hyperbolic sine.
@@ -84,7 +84,7 @@ functions! { |x, y|
     Tanh "tanh", f64::tanh, {
         // Not 1 - tanh², which loses all digits where tanh is close to 1.
         let cosh = x.map(Self::Cosh);
-        let d = x.like(1.0) / (cosh * cosh);
+        let d = T::one() / (cosh * cosh);
         let dd = y * d * -2.0;
         [d, dd, (d * d + y * dd) * -2.0]
     };
@@ -100,18 +100,18 @@ functions! { |x, y|
     };
     /// Square root.
     Sqrt "sqrt", f64::sqrt, {
-        let (d, inverse) = (y.like(0.5) / y, x.like(1.0) / x);
+        let (d, inverse) = (T::constant(0.5) / y, T::one() / x);
         [d, d * inverse * -0.5, d * inverse * inverse * 0.75]
     };
     /// Magnitude.
-    Abs "abs", f64::abs, [x.sign(), x.zero(), x.zero()];
+    Abs "abs", f64::abs, [x.sign(), T::zero(), T::zero()];
 }
 
 /// The derivatives of the arc sine: s, x s³, (1 + 2 x²) s⁵ with s = 1/√(1 - x²).
 #[inline(always)]
 fn of_asin<T: Real>(x: T) -> [T; 3] {
     // Factored, because 1 - x² loses digits where |x| is close to 1.
-    let s2 = x.like(1.0) / ((-x + 1.0) * (x + 1.0));
+    let s2 = T::one() / ((-x + 1.0) * (x + 1.0));
     let s = s2.sqrt();
     [s, x * s * s2, (x * x * 2.0 + 1.0) * s * s2 * s2]
 }
@@ -119,6 +119,6 @@ fn of_asin<T: Real>(x: T) -> [T; 3] {
 /// The derivatives of the natural logarithm.
 #[inline(always)]
 fn of_ln<T: Real>(x: T) -> [T; 3] {
-    let inverse = x.like(1.0) / x;
+    let inverse = T::one() / x;
     [inverse, -inverse * inverse, inverse * inverse * inverse * 2.0]
 }

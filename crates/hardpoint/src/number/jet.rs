@@ -32,7 +32,7 @@ impl<T: Real, const N: usize> Jet<T, N> {
     /// The quantity that is `value` at all times.
     #[inline(always)]
     pub fn constant(value: T) -> Self {
-        let mut f = [value.zero(); N];
+        let mut f = [T::zero(); N];
         f[0] = value;
         Self(f)
     }
@@ -42,7 +42,7 @@ impl<T: Real, const N: usize> Jet<T, N> {
     pub fn time(t: T) -> Self {
         let mut time = Self::constant(t);
         if N > 1 {
-            time.0[1] = t.like(1.0);
+            time.0[1] = T::one();
         }
         time
     }
@@ -84,8 +84,8 @@ impl<T: Real, const N: usize> Jet<T, N> {
 
     /// What has no value.
     #[inline(always)]
-    pub(crate) fn undefined(like: T) -> Self {
-        Self([like.like(f64::NAN); N])
+    pub(crate) fn undefined() -> Self {
+        Self([T::constant(f64::NAN); N])
     }
 
     /// This quantity times one that is the same at all times.
@@ -137,7 +137,7 @@ impl<T: Real, const N: usize> Jet<T, N> {
     fn power(self, exponent: T) -> Self {
         // g⁽ᵏ⁾ = p (p - 1) ... (p - k + 1) x^(p - k). A vanishing coefficient wins over an infinite power: the
         // third derivative of x² is zero at x = 0 also.
-        let (x, zero) = (self.0[0], exponent.zero());
+        let (x, zero) = (self.0[0], T::zero());
         let mut g = [x.pow(exponent), zero, zero, zero];
         let mut coefficient = exponent;
         for (k, g) in g.iter_mut().enumerate().take(N).skip(1) {
@@ -292,8 +292,8 @@ impl<T: Real, const N: usize> SubAssign for Jet<T, N> {
 /// Whatever only looks at a number sees the value.
 impl<T: Real, const N: usize> Real for Jet<T, N> {
     #[inline(always)]
-    fn like(self, x: f64) -> Self {
-        Self::constant(self.0[0].like(x))
+    fn constant(x: f64) -> Self {
+        Self::constant(T::constant(x))
     }
     #[inline(always)]
     fn value(self) -> f64 {
@@ -371,7 +371,7 @@ impl<T: Real, const N: usize> Real for Jet<T, N> {
     fn powi(self, exponent: i32) -> Self {
         // As in `power`, a vanishing coefficient wins over an infinite power.
         let x = self.0[0];
-        let mut g = [x.powi(exponent), x.zero(), x.zero(), x.zero()];
+        let mut g = [x.powi(exponent), T::zero(), T::zero(), T::zero()];
         let mut coefficient = f64::from(exponent);
         for k in 1..N as i32 {
             if coefficient != 0.0 {
@@ -385,7 +385,7 @@ impl<T: Real, const N: usize> Real for Jet<T, N> {
     fn hypot(self, o: Self) -> Self {
         // Scaled, so that no square overflows.
         let length = self.0[0].hypot(o.0[0]);
-        let scale = length.like(1.0) / length;
+        let scale = T::one() / length;
         let (x, y) = (self.times(scale), o.times(scale));
         let mut hypot = (x * x + y * y).sqrt().times(length);
         hypot.0[0] = length;
@@ -400,7 +400,7 @@ impl<T: Real, const N: usize> Real for Jet<T, N> {
     }
     #[inline(always)]
     fn rate(self) -> Self {
-        let mut rate = Self::undefined(self.0[0]);
+        let mut rate = Self::undefined();
         for n in 1..N {
             rate.0[n - 1] = self.0[n];
         }
@@ -420,7 +420,7 @@ impl<T: Real, const N: usize> Real for Jet<T, N> {
         // l' = w', l'' = w'' - w'², l''' = w''' - 3 w' w'' + 2 w'³. Scaled, so that no square overflows.
         let mut angle = self.0;
         angle[0] = self.0[0].atan2(x.0[0]);
-        let scale = self.0[0].like(1.0) / self.0[0].hypot(x.0[0]);
+        let scale = T::one() / self.0[0].hypot(x.0[0]);
         let (y, x) = (self.times(scale).0, x.times(scale).0);
         let square = x[0] * x[0] + y[0] * y[0];
         let real = |n: usize| (x[n] * x[0] + y[n] * y[0]) / square;

@@ -8,7 +8,7 @@ use super::Function;
 
 /// A number, with whatever it carries besides: derivatives, or how it came about.
 ///
-/// Constants are made from a value at hand: `x.like(2.0)`.
+/// Plain numbers enter as constants: `T::constant(2.0)`.
 pub trait Real:
     Copy
     + Debug
@@ -26,7 +26,19 @@ pub trait Real:
     + SubAssign
 {
     /// The constant `x`.
-    fn like(self, x: f64) -> Self;
+    fn constant(x: f64) -> Self;
+
+    /// Zero.
+    #[inline(always)]
+    fn zero() -> Self {
+        Self::constant(0.0)
+    }
+
+    /// One.
+    #[inline(always)]
+    fn one() -> Self {
+        Self::constant(1.0)
+    }
 
     /// The plain value. What is recorded is no arithmetic then: a program would take what is made of it for a constant. What a
     /// number has for a `value` of its own is another thing.
@@ -56,7 +68,7 @@ pub trait Real:
     /// 1 or -1, as its sign is just after the instant; of what stays zero 1.
     #[inline(always)]
     fn sign(self) -> Self {
-        self.sign_or(self.like(1.0))
+        self.sign_or(Self::constant(1.0))
     }
 
     /// Whether its value is above another one. A recording takes that for granted, and a limit for where it is run.
@@ -87,19 +99,19 @@ pub trait Real:
     /// This value to a power.
     #[inline(always)]
     fn pow(self, exponent: Self) -> Self {
-        self.like(self.value().powf(exponent.value()))
+        Self::constant(self.value().powf(exponent.value()))
     }
 
     /// This value to a fixed power.
     #[inline(always)]
     fn powf(self, exponent: f64) -> Self {
-        self.pow(self.like(exponent))
+        self.pow(Self::constant(exponent))
     }
 
     /// This value to a whole power, by repeated squaring, in the order in which `f64::powi` multiplies.
     #[inline(always)]
     fn powi(self, exponent: i32) -> Self {
-        let mut power = self.like(1.0);
+        let mut power = Self::one();
         let (mut square, mut left) = (self, exponent.unsigned_abs());
         loop {
             if left & 1 == 1 {
@@ -111,23 +123,17 @@ pub trait Real:
             }
             square = square * square;
         }
-        if exponent < 0 { self.like(1.0) / power } else { power }
+        if exponent < 0 { Self::one() / power } else { power }
     }
 
     /// The length of the vector (self, o).
     #[inline(always)]
     fn hypot(self, o: Self) -> Self {
-        self.like(self.value().hypot(o.value()))
+        Self::constant(self.value().hypot(o.value()))
     }
 
     /// The larger of two; NaN if either is NaN.
     fn larger(self, o: Self) -> Self;
-
-    /// Zero.
-    #[inline(always)]
-    fn zero(self) -> Self {
-        self.like(0.0)
-    }
 
     /// Whether it is known to be zero, derivatives that it may carry included.
     #[inline(always)]
@@ -138,7 +144,7 @@ pub trait Real:
     /// Time derivative, of numbers that carry it; NaN of all others, and where they carry it no further.
     #[inline(always)]
     fn rate(self) -> Self {
-        self.like(f64::NAN)
+        Self::constant(f64::NAN)
     }
 
     /// Inverse sine, rad.
@@ -150,7 +156,7 @@ pub trait Real:
     /// Angle of the point (x, self) from the x axis, rad in (-pi, pi].
     #[inline(always)]
     fn atan2(self, x: Self) -> Self {
-        self.like(self.value().atan2(x.value()))
+        Self::constant(self.value().atan2(x.value()))
     }
 
     /// Sine and cosine of an angle of any size; of a plain number as the standard library has them.
@@ -166,7 +172,7 @@ pub trait Real:
         const PIO2_1: f64 = 1.570_796_326_734_125_6;
         const PIO2_2: f64 = 6.077_100_506_303_966e-11;
         const PIO2_3: f64 = 2.022_266_248_795_950_6e-21;
-        let c = |x: f64| self.like(x);
+        let c = Self::constant;
         let n = (self * c(std::f64::consts::FRAC_2_PI)).round();
         let r = ((self - n * c(PIO2_1)) - n * c(PIO2_2)) - n * c(PIO2_3);
         let z = r * r;
@@ -194,7 +200,7 @@ pub(super) const LARGEST_ANGLE: f64 = 1e5 * std::f64::consts::TAU;
 
 impl Real for f64 {
     #[inline(always)]
-    fn like(self, x: f64) -> Self {
+    fn constant(x: f64) -> Self {
         x
     }
     #[inline(always)]

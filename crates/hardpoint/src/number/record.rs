@@ -42,7 +42,7 @@ pub(crate) fn is_arithmetic() -> bool {
 
 /// Decisions go by the values of the run that is recorded.
 impl Real for Number {
-    fn like(self, x: f64) -> Self {
+    fn constant(x: f64) -> Self {
         Number::constant(x)
     }
     fn value(self) -> f64 {

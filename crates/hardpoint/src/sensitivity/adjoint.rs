@@ -154,10 +154,10 @@ pub(crate) struct Adjoint {
 
 impl Adjoint {
     /// By the variables with these fields.
-    pub fn new(model: &Model, topology: &Topology, fields: &[Field], witness: f64) -> Self {
-        let none = Wrench::zero(witness);
+    pub fn new(model: &Model, topology: &Topology, fields: &[Field]) -> Self {
+        let none = Wrench::zero();
         let three = |n: usize| std::array::from_fn(|_| vec![none; n]);
-        let parts = |f: &Field| FieldParts::new(topology, &f.clone().with_laws_in_order(), witness);
+        let parts = |f: &Field| FieldParts::new(topology, &f.clone().with_laws_in_order());
         Self {
             fields: fields.iter().map(parts).collect(),
             load: three(model.bodies.len()),
@@ -192,7 +192,7 @@ impl Adjoint {
         gradient: &mut [[f64; 3]],
     ) {
         for n in 0..orders {
-            support.bodies.iter().for_each(|&b| self.load[n][b] = Wrench::zero(state.witness));
+            support.bodies.iter().for_each(|&b| self.load[n][b] = Wrench::zero());
             loads.iter().for_each(|(b, load)| self.load[n][*b] += load[n]);
             self.transmit(topology, state, support, n);
         }
@@ -203,7 +203,7 @@ impl Adjoint {
     /// What links, closures and rows transmit, to order n: `docs/theory.md` (18).
     fn transmit(&mut self, topology: &Topology, state: &mut State<f64>, support: &Support, n: usize) {
         let Self { load, links, closures, rows, below, .. } = self;
-        let (zero, none) = (0.0, Wrench::zero(state.witness));
+        let (zero, none) = (0.0, Wrench::zero());
         let (x, l) = ([&state.x, &state.xd, &state.xdd], [&state.l, &state.ld, &state.ldd]);
         let load = &mut load[n];
         for &b in &support.blocks {
@@ -388,7 +388,7 @@ impl Watch {
 
     /// Enters row r where it fails most.
     fn row(&mut self, adjoint: &mut Adjoint, topology: &Topology, state: &mut State<f64>, r: usize) {
-        let (zero, none) = (0.0, Wrench::zero(state.witness));
+        let (zero, none) = (0.0, Wrench::zero());
         self.sum.fill(zero);
         self.most.fill(zero);
         for (k, factor) in topology.parts_of_row(r) {

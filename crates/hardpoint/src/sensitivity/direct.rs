@@ -107,7 +107,7 @@ impl<T: Real> Moving<T> {
 }
 
 impl<T: Real> FieldParts<T> {
-    pub fn new(topology: &Topology, field: &Field<T>, witness: T) -> Self {
+    pub fn new(topology: &Topology, field: &Field<T>) -> Self {
         let (mut links, mut closures, mut kept) = (Vec::new(), Vec::new(), Vec::new());
         for (at, link) in topology.links.iter().enumerate() {
             let Some(joint) = link.joint else { continue };
@@ -137,12 +137,12 @@ impl<T: Real> FieldParts<T> {
         let kept_rates = field.kept.iter().map(|(_, k)| k.size());
         let laws = field.laws.iter().map(|(.., rate)| rate.abs());
         let shifts = field.shifts.iter().map(|(_, rate)| rate.abs());
-        let scale = markers.chain(kept_rates).chain(laws).chain(shifts).fold(witness.zero(), T::larger);
+        let scale = markers.chain(kept_rates).chain(laws).chain(shifts).fold(T::zero(), T::larger);
         let mut drivers: Vec<DriverId> = field.laws.iter().map(|(d, ..)| *d).collect();
         drivers.extend(field.shifts.iter().map(|(d, _)| *d));
         drivers.sort_unstable();
         drivers.dedup();
-        let law_rates = drivers.iter().map(|&d| (d, [witness.zero(); 3])).collect();
+        let law_rates = drivers.iter().map(|&d| (d, [T::zero(); 3])).collect();
         let of = |moving: &[Moving<T>]| moving.iter().map(|m| m.at).collect::<Vec<_>>();
         let mut changed = of(&closures);
         changed.extend(kept.iter().map(|&(row, _)| topology.rows[row].closure));
@@ -179,7 +179,7 @@ impl<T: Real> FieldParts<T> {
                     sums.iter_mut().zip(derivatives).for_each(|(sum, d)| *sum += rate * d);
                 }
             }
-            *rates = sums.map(|sum| self.scale.like(sum));
+            *rates = sums.map(|sum| T::constant(sum));
             for (_, rate) in self.shifts.iter().filter(|(d, _)| d == driver) {
                 rates[0] += *rate;
             }
@@ -190,7 +190,7 @@ impl<T: Real> FieldParts<T> {
     pub fn set_shifts(&mut self) {
         for (driver, rates) in &mut self.law_rates {
             let of_driver = self.shifts.iter().filter(|(d, _)| d == driver);
-            rates[0] = of_driver.fold(self.scale.zero(), |sum, (_, rate)| sum + *rate);
+            rates[0] = of_driver.fold(T::zero(), |sum, (_, rate)| sum + *rate);
         }
     }
 
@@ -198,7 +198,7 @@ impl<T: Real> FieldParts<T> {
     #[inline(always)]
     pub(super) fn law_rate(&self, driver: DriverId, order: usize) -> T {
         let of_driver = self.law_rates.iter().find(|(d, _)| *d == driver);
-        of_driver.map_or(self.scale.zero(), |(_, rates)| rates[order])
+        of_driver.map_or(T::zero(), |(_, rates)| rates[order])
     }
 }
 
@@ -245,16 +245,16 @@ impl Defect {
 pub(super) const DEFECT_FLOOR: f64 = 1e-9;
 
 impl<T: Real> Direct<T> {
-    pub fn new(model: &Model, topology: &Topology, witness: T) -> Self {
-        let none = Twist::zero(witness);
+    pub fn new(model: &Model, topology: &Topology) -> Self {
+        let none = Twist::zero();
         let three = |n: usize| std::array::from_fn(|_| vec![none; n]);
         Self {
-            s: std::array::from_fn(|_| vec![witness.zero(); topology.coordinates.len()]),
+            s: std::array::from_fn(|_| vec![T::zero(); topology.coordinates.len()]),
             w: three(model.bodies.len()),
             apart: three(topology.closures.len()),
             z: Vec::with_capacity(2 * topology.closures.len()),
             bias: three(topology.links.len()),
-            row_rhs: vec![witness.zero(); topology.rows.len()],
+            row_rhs: vec![T::zero(); topology.rows.len()],
             laws_change: false,
             moved: Vec::with_capacity(model.bodies.len()),
         }
@@ -278,10 +278,9 @@ impl<T: Real> Direct<T> {
         field: &FieldParts<T>,
         orders: usize,
     ) {
-        let witness = state.witness;
         if self.moved != field.reach.bodies {
             for w in &mut self.w {
-                self.moved.iter().for_each(|&b| w[b] = Twist::zero(witness));
+                self.moved.iter().for_each(|&b| w[b] = Twist::zero());
             }
             self.moved.clear();
             self.moved.extend_from_slice(&field.reach.bodies);
@@ -296,7 +295,7 @@ impl<T: Real> Direct<T> {
     /// The design twists of every marker of the field.
     #[inline(always)]
     fn set_field(&mut self, topology: &Topology, state: &State<T>, field: &FieldParts<T>) {
-        let none = Twist::zero(state.witness);
+        let none = Twist::zero();
         let in_blocks = field.reach.blocks.iter().flat_map(|&b| topology.blocks[b].links.clone());
         for k in field.reach.driven_links.iter().copied().chain(in_blocks) {
             for order in 0..3 {
@@ -324,7 +323,7 @@ impl<T: Real> Direct<T> {
         field: &FieldParts<T>,
         order: usize,
     ) {
-        let (two, reach) = (state.witness.like(2.0), &field.reach);
+        let (two, reach) = (T::constant(2.0), &field.reach);
         if order > 0 {
             let laws_change = self.laws_change;
             let counts = |step: &&Step| !step.is_driven || laws_change;
@@ -353,7 +352,7 @@ impl<T: Real> Direct<T> {
             for r in closure.first_row..closure.first_row + closure.rows.len() {
                 if topology.rows[r].drives() {
                     self.row_rhs[r] = match order {
-                        0 => two.zero(),
+                        0 => T::zero(),
                         1 => -state.ld[r].on(self.apart[0][c]),
                         _ => -(state.ldd[r].on(self.apart[0][c]) + state.ld[r].on(self.apart[1][c]) * two),
                     };
@@ -469,12 +468,12 @@ impl<T: Real> Direct<T> {
     /// By how much row r fails, and the largest of the terms that must cancel.
     #[inline(always)]
     fn row_defect(&self, topology: &Topology, state: &State<T>, field: &FieldParts<T>, r: usize) -> (T, T) {
-        let zero = state.witness.zero();
+        let zero = T::zero();
         let (mut sum, mut most) = (zero, zero);
         for (k, factor) in topology.parts_of_row(r) {
             let closure = topology.rows[k].closure;
             let [i, j] = topology.closures[closure].bodies;
-            let (l, w, factor) = (state.l[k], &self.w[0], zero.like(factor));
+            let (l, w, factor) = (state.l[k], &self.w[0], T::constant(factor));
             let mut add = |term: T| {
                 sum += term * factor;
                 most = most.larger((term * factor).abs());
@@ -500,10 +499,9 @@ impl<T: Real> Direct<T> {
         field: &FieldParts<T>,
         r: usize,
     ) -> (T, T) {
-        let zero = state.witness.zero();
         let (sum, most) = self.row_defect(topology, state, field, r);
         // What typed coordinates may be off by in the motion, they may be off by in the design's terms.
-        let limit = most * zero.like(LOCKED);
-        (sum.abs(), limit.larger(field.scale * zero.like(DEFECT_FLOOR)))
+        let limit = most * T::constant(LOCKED);
+        (sum.abs(), limit.larger(field.scale * T::constant(DEFECT_FLOOR)))
     }
 }

@@ -33,10 +33,10 @@ impl Way {
     }
 
     /// What it changes at the designs with these values.
-    fn field<T: Real>(&self, effects: &Effects<'_>, values: &[T], witness: T) -> Field<T> {
+    fn field<T: Real>(&self, effects: &Effects<'_>, values: &[T]) -> Field<T> {
         match self {
-            Self::Design(speeds) => effects.field_along(&along(speeds), values, witness),
-            Self::Driver(driver) => Field::of_driver(*driver, witness),
+            Self::Design(speeds) => effects.field_along(&along(speeds), values),
+            Self::Driver(driver) => Field::of_driver(*driver),
         }
     }
 }
@@ -65,8 +65,8 @@ struct First {
 }
 
 impl First {
-    fn new(model: &Model, topology: &Topology, field: FieldParts<f64>, witness: f64) -> Self {
-        let none = Twist::zero(witness);
+    fn new(model: &Model, topology: &Topology, field: FieldParts<f64>) -> Self {
+        let none = Twist::zero();
         Self {
             field,
             w: vec![none; model.bodies.len()],
@@ -138,24 +138,17 @@ impl Seconds {
         values: &[f64],
         directions: &[Way],
         pairs: &[[usize; 2]],
-        witness: f64,
     ) -> Self {
         let model = effects.model;
         let firsts = directions.iter().map(|d| {
-            let field = d.field(effects, values, 0.0);
-            First::new(
-                model,
-                topology,
-                FieldParts::new(topology, &field.with_laws_in_order(), witness),
-                witness,
-            )
+            let field = d.field(effects, values);
+            First::new(model, topology, FieldParts::new(topology, &field.with_laws_in_order()))
         });
         let pair = |&[u, w]: &[usize; 2]| {
             let speeds = directions[w].speeds().iter().copied().chain(std::iter::repeat(0.0));
             let moving: Vec<Dual> = values.iter().zip(speeds).map(|(v, d)| Dual { v: *v, d }).collect();
-            let zero = Dual::constant(0.0);
-            let field = directions[u].field(effects, &moving, zero);
-            let field = FieldParts::new(topology, &field, zero);
+            let field = directions[u].field(effects, &moving);
+            let field = FieldParts::new(topology, &field);
             let twists = |of: &[Moving<Dual>]| {
                 let part =
                     |e: Twist<Dual>, part: fn(Dual) -> f64| Twist { w: e.w.map(part), v: e.v.map(part) };
@@ -174,15 +167,15 @@ impl Seconds {
                 laws: drivers.iter().map(of_driver).collect(),
                 law_rates: drivers.iter().map(|d| (*d, 0.0)).collect(),
                 field,
-                w: vec![Twist::zero(witness); model.bodies.len()],
+                w: vec![Twist::zero(); model.bodies.len()],
             }
         };
         Self {
             firsts: firsts.collect(),
             pairs: pairs.iter().map(pair).collect(),
-            direct: Direct::new(model, topology, witness),
+            direct: Direct::new(model, topology),
             s: vec![0.0; topology.coordinates.len()],
-            bias: vec![Twist::zero(witness); topology.links.len()],
+            bias: vec![Twist::zero(); topology.links.len()],
             row_rhs: vec![0.0; topology.rows.len()],
         }
     }
@@ -277,7 +270,7 @@ fn solve_pair(
     w: &First,
     (s, bias, row_rhs): (&mut Vec<f64>, &mut Vec<Twist>, &mut Vec<f64>),
 ) {
-    let (none, zero) = (Twist::zero(state.witness), 0.0);
+    let (none, zero) = (Twist::zero(), 0.0);
     // A marker's design twist along u, carried along w by its body, and changed by the design itself.
     let carried = |state: &State<f64>, body: usize, [e, de]: [Twist; 2]| {
         let pose = state.pose[body];

@@ -31,8 +31,8 @@ impl Sensing {
     /// Prepares the sensitivities of the wanted bodies by the variables with these fields.
     pub fn new(model: &Model, topology: &Topology, fields: &[Field], wanted: Vec<bool>) -> Self {
         Self {
-            fields: fields.iter().map(|f| FieldParts::new(topology, f, 0.0)).collect(),
-            direct: Direct::new(model, topology, 0.0),
+            fields: fields.iter().map(|f| FieldParts::new(topology, f)).collect(),
+            direct: Direct::new(model, topology),
             bodies: model.bodies.len(),
             wanted,
             resisting: vec![(Vec::new(), 0.0); fields.len()],
@@ -71,9 +71,9 @@ impl Sensing {
         }
     }
 
-    /// Notes what resists at these output times, as a program has found them.
-    pub fn note(&mut self, tape: &Tape, topology: &Topology, times: &[f64]) {
-        note_defects(tape, topology, times, (&mut self.resisting, 0));
+    /// Notes what resists at these output times, as a program has found them from this lane on.
+    pub fn note(&mut self, tape: &Tape, topology: &Topology, times: &[f64], first: usize) {
+        note_defects(tape, topology, (times, first), (&mut self.resisting, 0));
     }
 
     /// What so many steps say of every variable's admissibility, given the joints that each opens in the design.
@@ -132,7 +132,7 @@ fn components<T: Real>(
     let (r, v, a) = (state.pose[body].r, state.v[body], state.a[body]);
     let velocity = v.at(r);
     let acceleration = v.w.cross_plus(velocity, a.at(r));
-    let two = r.x.like(2.0);
+    let two = T::constant(2.0);
     let (p, q) = (w0.at(r), w0.w);
     let u = w0.w.cross_plus(velocity, w1.at(r));
     let o = w0.w.cross_plus(v.w, w1.w);
@@ -149,14 +149,14 @@ pub(crate) fn record_derivatives(
     topology: &Topology,
     state: &mut State<Number>,
 ) -> Option<Recorded> {
-    let (witness, mut recorded, mut defects) = (state.witness, Recorded::default(), Vec::new());
+    let (mut recorded, mut defects) = (Recorded::default(), Vec::new());
     if fields.is_empty() {
         return Some(recorded);
     }
     state.finish_rates(topology);
-    let mut direct = Direct::new(model, topology, witness);
+    let mut direct = Direct::new(model, topology);
     for (v, field) in fields.iter().enumerate() {
-        let mut field = FieldParts::new(topology, field, witness);
+        let mut field = FieldParts::new(topology, field);
         if !field.is_constant() {
             return None;
         }
@@ -175,20 +175,21 @@ pub(crate) fn record_derivatives(
     Some(recorded)
 }
 
-/// Notes what resists where a tape has come to, at these times in its lanes; what is kept in mind of one lane's variables begins
-/// `apart` after that of the lane before: 0 where all are times of one design.
+/// Notes what resists where a tape has come to, at these times in its lanes from `first` on; what is kept in mind of one lane's
+/// variables begins `apart` after that of the lane before: 0 where all are times of one design.
 pub(crate) fn note_defects(
     tape: &Tape,
     topology: &Topology,
-    times: &[f64],
+    (times, first): (&[f64], usize),
     (resisting, apart): (&mut [Resisting], usize),
 ) {
     // Written so that NaN resists.
     let fails = |[defect, limit]: &[Lanes; 2], lane: usize| !(defect[lane] <= limit[lane]);
-    if tape.defects().all(|(_, _, found)| (0..times.len()).all(|lane| !fails(found, lane))) {
+    if tape.defects().all(|(_, _, found)| (0..times.len()).all(|n| !fails(found, first + n))) {
         return;
     }
-    for (lane, &t) in times.iter().enumerate() {
+    for (n, &t) in times.iter().enumerate() {
+        let lane = first + n;
         let failing = tape.defects().filter(|(_, _, found)| fails(found, lane));
         let mut failing = failing
             .map(|(variable, row, found)| (variable, Defect { row, value: found[0][lane] }))
@@ -199,7 +200,7 @@ pub(crate) fn note_defects(
                     worst = other;
                 }
             }
-            note(&mut resisting[apart * lane + variable.0], topology, worst, t);
+            note(&mut resisting[apart * n + variable.0], topology, worst, t);
         }
     }
 }

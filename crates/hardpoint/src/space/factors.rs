@@ -19,12 +19,12 @@ pub(crate) enum Factors<T> {
 
 impl<T: Real> Factors<T> {
     /// Of the n x n matrix whose row k may have entries in the columns `row(k)`.
-    pub fn new(n: usize, row: impl Fn(usize) -> Vec<usize>, largest_dense: usize, witness: T) -> Self {
+    pub fn new(n: usize, row: impl Fn(usize) -> Vec<usize>, largest_dense: usize) -> Self {
         if n <= largest_dense {
-            return Self::Dense(Elimination::new(n, witness));
+            return Self::Dense(Elimination::new(n));
         }
         let rows: Vec<Vec<usize>> = (0..n).map(row).collect();
-        Self::Sparse(Box::new(SparseLu::new(&rows, witness)))
+        Self::Sparse(Box::new(SparseLu::new(&rows)))
     }
 
     /// Fills row k with entries at columns, in the order of the columns given to [`Factors::new`].

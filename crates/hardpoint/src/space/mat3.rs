@@ -15,11 +15,11 @@ impl Mat3<f64> {
     /// No rotation.
     pub const IDENTITY: Self = Self { cols: Vec3::AXES };
 
-    /// The same rotation in numbers like `witness`.
+    /// The same rotation in any numbers.
     #[inline(always)]
-    pub fn spread<T: Real>(self, witness: T) -> Mat3<T> {
+    pub fn spread<T: Real>(self) -> Mat3<T> {
         let [f, g, h] = self.cols;
-        Mat3 { cols: [f.spread(witness), g.spread(witness), h.spread(witness)] }
+        Mat3 { cols: [f.spread(), g.spread(), h.spread()] }
     }
 
     /// The rotation by the rotation vector `v` (angle = length, in rad; axis = direction).
@@ -45,10 +45,10 @@ impl<T: Real> Mat3<T> {
     /// The rotation by an angle in rad about a unit vector.
     pub fn about(axis: Vec3, angle: T) -> Self {
         let (s, c) = angle.sin_cos();
-        let one = angle.like(1.0);
+        let one = T::one();
         let turn = |e: Vec3| {
-            let along = (axis * axis.dot(e)).spread(angle);
-            e.spread(angle) * c + axis.cross(e).spread(angle) * s + along * (one - c)
+            let along = (axis * axis.dot(e)).spread();
+            e.spread() * c + axis.cross(e).spread() * s + along * (one - c)
         };
         Self { cols: Vec3::AXES.map(turn) }
     }
@@ -56,11 +56,11 @@ impl<T: Real> Mat3<T> {
     /// The smallest rotation that carries unit vector `a` into unit vector `b` (not opposite to it).
     pub fn between(a: Vec3<T>, b: Vec3<T>) -> Self {
         let v = a.cross(b);
-        let one = v.x.like(1.0);
+        let one = T::one();
         let k = one / (one + a.dot(b));
         let turn = |e: Vec3| {
-            let turned = v.cross(e.spread(one));
-            e.spread(one) + turned + v.cross(turned) * k
+            let turned = v.cross(e.spread());
+            e.spread() + turned + v.cross(turned) * k
         };
         Self { cols: Vec3::AXES.map(turn) }
     }

@@ -11,7 +11,6 @@ pub(crate) const MOST_GROWTH: f64 = 4.0;
 #[derive(Clone, Debug)]
 pub(crate) struct Elimination<T> {
     n: usize,
-    witness: T,
     /// Row-major n x n: the matrix.
     rows: Vec<T>,
     /// Its factors, rows in the order of the pivots, diagonal inverted.
@@ -50,8 +49,8 @@ pub(crate) struct Watched<T> {
 }
 
 impl<T: Real> Watched<T> {
-    pub fn zero(witness: T) -> Self {
-        let zero = witness.zero();
+    pub fn zero() -> Self {
+        let zero = T::zero();
         Self { product: zero, most: zero, least: zero, growth: zero }
     }
 
@@ -67,17 +66,16 @@ impl<T: Real> Watched<T> {
 }
 
 impl<T: Real> Elimination<T> {
-    pub fn new(n: usize, witness: T) -> Self {
-        let matrix = vec![witness.zero(); n * n];
+    pub fn new(n: usize) -> Self {
+        let matrix = vec![T::zero(); n * n];
         Self {
             n,
-            witness,
             rows: matrix.clone(),
             a: matrix,
             order: (0..n).collect(),
             even: true,
             most_growth: MOST_GROWTH,
-            scratch: vec![witness.zero(); n],
+            scratch: vec![T::zero(); n],
         }
     }
 
@@ -90,7 +88,7 @@ impl<T: Real> Elimination<T> {
     #[inline(always)]
     pub fn factor(&mut self) -> Factored<T> {
         if self.n == 0 {
-            let one = self.witness.like(1.0);
+            let one = T::one();
             let watched = Watched { product: one, most: one, least: one, growth: one };
             return Factored { pivot_ratio: 1.0, positive: true, determinant: one, watched };
         }
@@ -114,8 +112,7 @@ impl<T: Real> Elimination<T> {
         for (to, &from) in a.chunks_exact_mut(n).zip(&self.order) {
             to.copy_from_slice(&rows[from * n..(from + 1) * n]);
         }
-        let first = a[0];
-        let (zero, one) = (first.zero(), first.like(1.0));
+        let (zero, one) = (T::zero(), T::one());
         // The largest of the pivots and of their inverses, the product of the pivots, the largest factor.
         let (mut most, mut least, mut determinant, mut growth) = (zero, zero, one, zero);
         for k in 0..n {
@@ -165,7 +162,7 @@ impl<T: Real> Elimination<T> {
                 }
                 self.even = !self.even;
             }
-            let inverse = a[k * n + k].like(1.0) / a[k * n + k];
+            let inverse = T::one() / a[k * n + k];
             for r in k + 1..n {
                 let m = a[r * n + k] * inverse;
                 for c in k + 1..n {
@@ -233,7 +230,7 @@ mod tests {
     fn factors_solve_the_system_they_were_made_from() {
         let a = [[0.0, 2.0, -1.0], [1.0, 0.5, 3.0], [4.0, -1.0, 0.2]];
         let x = [1.5, -2.0, 0.25];
-        let mut lu = Elimination::new(3, 0.0);
+        let mut lu = Elimination::new(3);
         for r in 0..3 {
             lu.row_mut(r).copy_from_slice(&a[r]);
         }

@@ -16,10 +16,10 @@ impl Pose<f64> {
     /// The frame itself.
     pub const IDENTITY: Self = Self { rot: Mat3::IDENTITY, r: Vec3::ZERO };
 
-    /// The same pose in numbers like `witness`.
+    /// The same pose in any numbers.
     #[inline(always)]
-    pub fn spread<T: Real>(self, witness: T) -> Pose<T> {
-        Pose { rot: self.rot.spread(witness), r: self.r.spread(witness) }
+    pub fn spread<T: Real>(self) -> Pose<T> {
+        Pose { rot: self.rot.spread(), r: self.r.spread() }
     }
 }
 
@@ -70,7 +70,7 @@ impl<T: Real> Pose<Dual<T>> {
             Pose { rot: Mat3 { cols: self.rot.cols.map(|c| c.map(|x| x.v)) }, r: self.r.map(|x| x.v) };
         // The rate of every unit vector c is w x c: w is half the sum of c x c'.
         let turn = |k: usize| value.rot.cols[k].cross(self.rot.cols[k].map(|x| x.d));
-        let w = (turn(0) + turn(1) + turn(2)) * value.r.x.like(0.5);
+        let w = (turn(0) + turn(1) + turn(2)) * T::constant(0.5);
         (value, Twist { w, v: self.r.map(|x| x.d) - w.cross(value.r) })
     }
 }
@@ -84,7 +84,7 @@ mod tests {
         let axis = Vec3::new(0.6, 0.0, 0.8);
         let b = Dual::variable(0.3);
         let rot = Mat3::about(axis, b);
-        let r = rot * Vec3::new(1.0, 2.0, 3.0).spread(b);
+        let r = rot * Vec3::new(1.0, 2.0, 3.0).spread();
         let (pose, twist) = Pose { rot, r }.split();
         assert!((twist.w - axis).norm() < 1e-15, "{twist:?}");
         assert!(twist.v.norm() < 1e-14, "a turn about the origin leaves it there: {twist:?}");

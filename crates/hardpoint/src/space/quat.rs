@@ -16,10 +16,10 @@ impl Quat<f64> {
     /// No rotation.
     pub const IDENTITY: Self = Self { w: 1.0, v: Vec3::ZERO };
 
-    /// The same rotation in numbers like `witness`.
+    /// The same rotation in any numbers.
     #[inline(always)]
-    pub fn spread<T: Real>(self, witness: T) -> Quat<T> {
-        Quat { w: witness.like(self.w), v: self.v.spread(witness) }
+    pub fn spread<T: Real>(self) -> Quat<T> {
+        Quat { w: T::constant(self.w), v: self.v.spread() }
     }
 
     /// The quaternion `[w, x, y, z]`, normalised; `None` where it is null or not finite.
@@ -59,7 +59,7 @@ impl<T: Real> Quat<T> {
     /// Newton update (only the fixed point matters) and for a second-order predictor.
     #[inline(always)]
     pub fn nudged(self, d: Vec3<T>) -> Self {
-        let h = d * self.w.like(0.5);
+        let h = d * T::constant(0.5);
         let w = self.w - h.dot(self.v);
         let v = self.v + h * self.w + h.cross(self.v);
         Self { w, v }.normalised()
@@ -74,14 +74,14 @@ impl<T: Real> Quat<T> {
     /// The same rotation, of unit length.
     #[inline(always)]
     pub fn normalised(self) -> Self {
-        let k = self.w.like(1.0) / (self.w * self.w + self.v.dot(self.v)).sqrt();
+        let k = T::one() / (self.w * self.w + self.v.dot(self.v)).sqrt();
         Self { w: self.w * k, v: self.v * k }
     }
 
     /// Rate of change where the frame turns with `w` about the *fixed* axes: `(0, w) q / 2`.
     #[inline(always)]
     pub(crate) fn rate(self, w: Vec3<T>) -> Self {
-        let h = w * self.w.like(0.5);
+        let h = w * T::constant(0.5);
         Self { w: -h.dot(self.v), v: h * self.w + h.cross(self.v) }
     }
 
@@ -100,8 +100,8 @@ impl<T: Real> Quat<T> {
     /// The rotation matrix.
     #[inline(always)]
     pub fn rotation(self) -> Mat3<T> {
-        let two = self.w.like(2.0);
-        let one = self.w.like(1.0);
+        let two = T::constant(2.0);
+        let one = T::one();
         let (w, x, y, z) = (self.w, self.v.x, self.v.y, self.v.z);
         Mat3 {
             cols: [

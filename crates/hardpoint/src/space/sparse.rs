@@ -1,5 +1,7 @@
 //! Sparse factors of a large block, by faer.
 
+use std::marker::PhantomData;
+
 use faer::dyn_stack::{MemBuffer, MemStack, StackReq};
 use faer::perm::PermRef;
 use faer::sparse::linalg::SupernodalThreshold;
@@ -21,7 +23,7 @@ use crate::number::Real;
 /// first, factoring and solving allocate nothing unless other pivots bring more fill.
 #[derive(Clone, Debug)]
 pub(crate) struct SparseLu<T> {
-    witness: T,
+    numbers: PhantomData<T>,
     /// Of the transpose: its columns are the rows of the matrix.
     pattern: SymbolicSparseColMat<usize>,
     /// Row after row, in the order of the pattern.
@@ -71,7 +73,7 @@ impl std::fmt::Debug for Memory {
 
 impl<T: Real> SparseLu<T> {
     /// Factors of the n x n matrix that may have entries in these columns of its rows.
-    pub fn new(rows: &[Vec<usize>], witness: T) -> Self {
+    pub fn new(rows: &[Vec<usize>]) -> Self {
         let n = rows.len();
         // faer 0.24 orders unsorted patterns wrongly (it panics), so entries get their sorted places here.
         let (mut starts, mut columns, mut place) = (vec![0], Vec::new(), Vec::new());
@@ -98,6 +100,7 @@ impl<T: Real> SparseLu<T> {
             .or(solve_transpose_in_place_scratch::<usize, f64>(n, 1, Par::Seq))
             .or(solve_in_place_scratch::<usize, f64>(n, 1, Par::Seq));
         Self {
+            numbers: PhantomData,
             odd: is_odd(&order[0], &mut vec![false; n]),
             seen: vec![false; n],
             values: vec![0.0; entries],
@@ -108,7 +111,6 @@ impl<T: Real> SparseLu<T> {
             pattern,
             place,
             order,
-            witness,
         }
     }
 
@@ -128,12 +130,12 @@ impl<T: Real> SparseLu<T> {
     /// Factors what the rows were filled with.
     #[inline(never)]
     pub fn factor(&mut self) -> Factored<T> {
-        let (n, witness) = (self.n(), self.witness);
+        let n = self.n();
         let found = |pivot_ratio, positive, determinant: f64| Factored {
             pivot_ratio,
             positive,
-            determinant: witness.like(determinant),
-            watched: Watched::zero(witness),
+            determinant: T::constant(determinant),
+            watched: Watched::zero(),
         };
         let Self { lu, pivots: [forward, inverse], .. } = self;
         let factored = factorize_simplicial_numeric_lu(
@@ -199,7 +201,7 @@ impl<T: Real> SparseLu<T> {
             MemStack::new(&mut self.memory.buffer),
         );
         for (x, found) in b[..n].iter_mut().zip(&self.rhs) {
-            *x = x.like(*found);
+            *x = T::constant(*found);
         }
     }
 }
@@ -241,7 +243,7 @@ mod tests {
             let columns: Vec<Vec<usize>> =
                 (0..n).map(|r| row(r, n, 0.0).into_iter().map(|(c, _)| c).collect()).collect();
             for seed in [0.0, 1.0, 5.0] {
-                let (mut sparse, mut dense) = (SparseLu::new(&columns, 0.0), Elimination::new(n, 0.0));
+                let (mut sparse, mut dense) = (SparseLu::new(&columns), Elimination::new(n));
                 for r in 0..n {
                     sparse.set_row(r, row(r, n, seed).into_iter().map(|e| e.1));
                     row(r, n, seed).into_iter().for_each(|(c, x)| dense.row_mut(r)[c] = x);
@@ -267,7 +269,7 @@ mod tests {
     #[test]
     fn singular_and_not_finite_matrices_are_found_out() {
         let columns = vec![vec![0, 1], vec![0, 1]];
-        let mut lu = SparseLu::new(&columns, 0.0);
+        let mut lu = SparseLu::new(&columns);
         for (values, good) in
             [([1.0, 2.0, 2.0, 4.0], false), ([1.0, 2.0, 2.0, 5.0], true), ([f64::NAN; 4], false)]
         {

@@ -26,18 +26,18 @@ impl Twist<f64> {
     /// No motion.
     pub const ZERO: Self = Self { w: Vec3::ZERO, v: Vec3::ZERO };
 
-    /// The same twist in numbers like `witness`.
+    /// The same twist in any numbers.
     #[inline(always)]
-    pub fn spread<T: Real>(self, witness: T) -> Twist<T> {
-        Twist { w: self.w.spread(witness), v: self.v.spread(witness) }
+    pub fn spread<T: Real>(self) -> Twist<T> {
+        Twist { w: self.w.spread(), v: self.v.spread() }
     }
 }
 
 impl<T: Real> Twist<T> {
-    /// No motion, in numbers like `witness`.
+    /// No motion.
     #[inline(always)]
-    pub fn zero(witness: T) -> Self {
-        Self { w: Vec3::zero(witness), v: Vec3::zero(witness) }
+    pub fn zero() -> Self {
+        Self { w: Vec3::zero(), v: Vec3::zero() }
     }
 
     /// The turn at unit rate about the line through `point` along `axis`.
@@ -49,7 +49,7 @@ impl<T: Real> Twist<T> {
     /// The slide at unit rate along `axis`.
     #[inline(always)]
     pub fn slide(axis: Vec3<T>) -> Self {
-        Self { w: Vec3::zero(axis.x), v: axis }
+        Self { w: Vec3::zero(), v: axis }
     }
 
     /// Rate of a twist fixed in a body that moves with `self`: `ad(self) o` (`docs/theory.md` (3)).
@@ -84,18 +84,18 @@ impl<T: Real> Twist<T> {
 }
 
 impl Wrench<f64> {
-    /// The same wrench in numbers like `witness`.
+    /// The same wrench in any numbers.
     #[inline(always)]
-    pub fn spread<T: Real>(self, witness: T) -> Wrench<T> {
-        Wrench { m: self.m.spread(witness), f: self.f.spread(witness) }
+    pub fn spread<T: Real>(self) -> Wrench<T> {
+        Wrench { m: self.m.spread(), f: self.f.spread() }
     }
 }
 
 impl<T: Real> Wrench<T> {
-    /// No wrench, in numbers like `witness`.
+    /// No wrench.
     #[inline(always)]
-    pub fn zero(witness: T) -> Self {
-        Self { m: Vec3::zero(witness), f: Vec3::zero(witness) }
+    pub fn zero() -> Self {
+        Self { m: Vec3::zero(), f: Vec3::zero() }
     }
 
     /// `self * k + addend`.
@@ -113,7 +113,7 @@ impl<T: Real> Wrench<T> {
     /// The pure moment `m`.
     #[inline(always)]
     pub fn moment(m: Vec3<T>) -> Self {
-        Self { m, f: Vec3::zero(m.x) }
+        Self { m, f: Vec3::zero() }
     }
 
     /// Power on a motion: `m . w + f . v`.

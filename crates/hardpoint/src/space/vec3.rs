@@ -21,10 +21,10 @@ impl Vec3<f64> {
     pub const AXES: [Self; 3] =
         [Self::new(1.0, 0.0, 0.0), Self::new(0.0, 1.0, 0.0), Self::new(0.0, 0.0, 1.0)];
 
-    /// The same vector in numbers like `witness`.
+    /// The same vector in any numbers.
     #[inline(always)]
-    pub fn spread<T: Real>(self, witness: T) -> Vec3<T> {
-        Vec3::new(witness.like(self.x), witness.like(self.y), witness.like(self.z))
+    pub fn spread<T: Real>(self) -> Vec3<T> {
+        Vec3::new(T::constant(self.x), T::constant(self.y), T::constant(self.z))
     }
 
     /// Components as an array.
@@ -74,10 +74,10 @@ impl<T> Vec3<T> {
 }
 
 impl<T: Real> Vec3<T> {
-    /// The null vector, in numbers like `witness`.
+    /// The null vector.
     #[inline(always)]
-    pub fn zero(witness: T) -> Self {
-        let o = witness.zero();
+    pub fn zero() -> Self {
+        let o = T::zero();
         Self::new(o, o, o)
     }
 

@@ -5,12 +5,12 @@ use crate::measure::{self, Moment, More, Output, SlopeValues, bodies_asked_for, 
 use crate::model::{Field, Fixed, GROUND, MeasureKind, OutputSource, VariableId};
 use crate::motion::Stop;
 use crate::motion::kinematics::State;
-use hardpoint_tape::LANES;
 use crate::motion::stepper::Stepper;
-use crate::number::{Dual, Jet, Rates, Real};
+use crate::number::{Dual, Jet, Rates};
 use crate::sensitivity::{Adjoint, Admissibility, Load, Resisting, Support, Watch, admissibility};
 use crate::space::{Mat3, Pose, Twist, Vec3, Wrench};
 use crate::topology::Topology;
+use hardpoint_tape::LANES;
 
 /// What an output costs the adjoint way, in solutions for one variable the direct way: its load takes some evaluations of the
 /// measure besides the three solutions. 1 to 3 in small mechanisms, less in large ones (`docs/performance.md`).
@@ -148,7 +148,7 @@ impl Analysis<'_> {
     fn gradients_adjoint(&self, design: &Design, outputs: Vec<Output>) -> Gradients {
         let model = self.model();
         let (variables, asked) = (model.variables.len(), outputs.len());
-        let fields = self.effects().fields(&design.values, 0.0);
+        let fields = self.effects().fields(&design.values);
         let mut result = Gradients {
             d: vec![[f64::NAN; 3]; model.times.len() * asked * variables],
             method: Method::Adjoint,
@@ -156,7 +156,7 @@ impl Analysis<'_> {
             outputs,
             ..Gradients::default()
         };
-        let mut tracing = Tracing::new(self, design, &fields, &result.outputs, 0.0);
+        let mut tracing = Tracing::new(self, design, &fields, &result.outputs);
         let mut resisting: Vec<Resisting> = vec![(Vec::new(), 0.0); variables];
         let mut walk = Walk::new(self, design, vec![false; model.bodies.len()]);
         let mut times = model.times.iter();
@@ -205,18 +205,12 @@ struct Asked {
 }
 
 impl<'a> Tracing<'a> {
-    fn new(
-        analysis: &'a Analysis<'_>,
-        design: &Design,
-        fields: &[Field],
-        outputs: &[Output],
-        witness: f64,
-    ) -> Self {
+    fn new(analysis: &'a Analysis<'_>, design: &Design, fields: &[Field], outputs: &[Output]) -> Self {
         let (model, effects) = (analysis.model(), analysis.effects());
-        let adjoint = Adjoint::new(model, analysis.topology(), fields, witness);
+        let adjoint = Adjoint::new(model, analysis.topology(), fields);
         let bodies: Vec<usize> = bodies_asked_for(model).into_iter().filter(|b| *b != GROUND.0).collect();
         let depends = dependences(effects, &design.values, &bodies, outputs);
-        let none = [Wrench::zero(witness); 3];
+        let none = [Wrench::zero(); 3];
         let asked = outputs.iter().zip(depends).map(|(output, [on, variables])| Asked {
             derivatives: vec![[0.0; 3]; 6 * on.len() + variables.len()],
             output: output.clone(),
@@ -225,22 +219,22 @@ impl<'a> Tracing<'a> {
             variables,
         });
         let asked: Vec<Asked> = asked.collect();
-        let zero = Dual::constant(Jet([0.0; 3]));
-        let mut values: Vec<Dual<Rates>> = design.values.iter().map(|v| zero.like(*v)).collect();
+        let mut values: Vec<Dual<Rates>> =
+            design.values.iter().map(|v| Dual::constant(Rates::constant(*v))).collect();
         let mut moved: Vec<Option<Fixed<Dual<Rates>>>> = values.iter().map(|_| None).collect();
         for &v in asked.iter().flat_map(|a| &a.variables) {
             moved[v].get_or_insert_with(|| {
                 let value = values[v];
                 values[v] = Dual::variable(value.v);
-                let fixed = effects.fixed(&values, zero);
+                let fixed = effects.fixed(&values);
                 values[v] = value;
                 fixed
             });
         }
         Self {
             watch: Watch::new(model, fields.len()),
-            poses: vec![Pose::IDENTITY.spread(zero); model.bodies.len()],
-            fixed: effects.fixed(&values, zero),
+            poses: vec![Pose::IDENTITY.spread(); model.bodies.len()],
+            fixed: effects.fixed(&values),
             gradient: vec![[0.0; 3]; fields.len()],
             analysis,
             adjoint,
@@ -338,8 +332,8 @@ fn still(pose: Pose<Rates>) -> Pose<Dual<Rates>> {
 
 /// Lets a pose go with a unit twist of the world: a turn about x, y or z, then a slide.
 fn move_along(pose: &mut Pose<Dual<Rates>>, unit: usize) {
-    let axis = Vec3::AXES[unit % 3].spread(pose.r.x.v);
-    let twist = if unit < 3 { Twist::turn(axis, Vec3::zero(axis.x)) } else { Twist::slide(axis) };
+    let axis = Vec3::AXES[unit % 3].spread();
+    let twist = if unit < 3 { Twist::turn(axis, Vec3::zero()) } else { Twist::slide(axis) };
     for c in &mut pose.rot.cols {
         let rate = twist.w.cross(c.map(|x| x.v));
         set(c, rate);
@@ -350,7 +344,7 @@ fn move_along(pose: &mut Pose<Dual<Rates>>, unit: usize) {
 
 /// Lets it go with nothing again.
 fn stop(pose: &mut Pose<Dual<Rates>>) {
-    let nothing = Vec3::zero(pose.r.x.v);
+    let nothing = Vec3::zero();
     pose.rot.cols.iter_mut().for_each(|c| set(c, nothing));
     set(&mut pose.r, nothing);
 }

@@ -42,7 +42,7 @@ impl Analysis<'_> {
 
     fn jerks_in(&self, design: &Design, rows: usize, each: &mut dyn FnMut(&Jerks)) -> Jerks {
         let model = self.model();
-        let mut jerk = Jerk::new(model, self.topology(), 0.0);
+        let mut jerk = Jerk::new(model, self.topology());
         let mut walk = Walk::new(self, design, vec![false; model.bodies.len()]);
         let mut result = Jerks { bodies: model.bodies.len(), ..Jerks::default() };
         let mut times = model.times.iter();

@@ -99,39 +99,38 @@ impl<T: Real> Curve<'_, T> {
     /// The polynomial of interval k with the values, rates and accelerations that are known at its ends: its coefficients in the
     /// part of the interval that has passed.
     fn coefficients(&self, k: usize) -> [T; 6] {
-        let ([a, b], like) = ([&self.values[k], &self.values[k + 1]], |x: f64| self.values[k][0].like(x));
-        let (h, zero) = (self.times[k + 1] - self.times[k], like(0.0));
+        let ([a, b], c) = ([&self.values[k], &self.values[k + 1]], T::constant);
+        let (h, zero) = (self.times[k + 1] - self.times[k], c(0.0));
         // Newton's form on [0, 0, 0, 1, 1, 1], or with fewer ends of each.
-        let [a0, a1, a2] = [a[0], a[1] * like(h), a[2] * like(0.5 * h * h)];
-        let [b0, b1, b2] = [b[0], b[1] * like(h), b[2] * like(0.5 * h * h)];
+        let [a0, a1, a2] = [a[0], a[1] * c(h), a[2] * c(0.5 * h * h)];
+        let [b0, b1, b2] = [b[0], b[1] * c(h), b[2] * c(0.5 * h * h)];
         match self.orders {
             1 => [a0, b0 - a0, zero, zero, zero, zero],
             2 => {
                 let rise = b0 - a0;
-                [a0, a1, like(3.0) * rise - like(2.0) * a1 - b1, a1 + b1 - like(2.0) * rise, zero, zero]
+                [a0, a1, c(3.0) * rise - c(2.0) * a1 - b1, a1 + b1 - c(2.0) * rise, zero, zero]
             }
             _ => {
                 // What is left of value, rate and half the acceleration at s = 1.
                 let p = b0 - a0 - a1 - a2;
-                let q = b1 - a1 - like(2.0) * a2;
+                let q = b1 - a1 - c(2.0) * a2;
                 let r = b2 - a2;
-                let c3 = like(10.0) * p - like(4.0) * q + r;
-                let c4 = like(-15.0) * p + like(7.0) * q - like(2.0) * r;
-                [a0, a1, a2, c3, c4, like(6.0) * p - like(3.0) * q + r]
+                let c3 = c(10.0) * p - c(4.0) * q + r;
+                let c4 = c(-15.0) * p + c(7.0) * q - c(2.0) * r;
+                [a0, a1, a2, c3, c4, c(6.0) * p - c(3.0) * q + r]
             }
         }
     }
 
     /// Value and rate at a time of interval k.
     fn at(&self, k: usize, t: T) -> [T; 2] {
-        let like = |x: f64| t.like(x);
+        let c = T::constant;
         let h = self.times[k + 1] - self.times[k];
-        let s = (t - like(self.times[k])) / like(h);
+        let s = (t - c(self.times[k])) / c(h);
         let [c0, c1, c2, c3, c4, c5] = self.coefficients(k);
         let value = c0 + s * (c1 + s * (c2 + s * (c3 + s * (c4 + s * c5))));
-        let slope =
-            c1 + s * (like(2.0) * c2 + s * (like(3.0) * c3 + s * (like(4.0) * c4 + s * like(5.0) * c5)));
-        [value, slope / like(h)]
+        let slope = c1 + s * (c(2.0) * c2 + s * (c(3.0) * c3 + s * (c(4.0) * c4 + s * c(5.0) * c5)));
+        [value, slope / c(h)]
     }
 
     /// The times inside interval k where the curve turns.
@@ -150,7 +149,7 @@ impl<T: Real> Curve<'_, T> {
     }
 
     fn number(&self, k: usize, t: f64) -> f64 {
-        self.at(k, self.values[k][0].like(t))[0].value()
+        self.at(k, T::constant(t))[0].value()
     }
 }
 
@@ -330,7 +329,7 @@ fn take<T: Real>(metric: &Metric, y: &Curve<'_, T>, x: &Option<Curve<'_, T>>) ->
         }
         Take::Slope(at) => {
             let (k, t) = reach(y, x, *at)?;
-            let by = x.as_ref().map_or(t.like(1.0), |x| x.at(k, t)[1]);
+            let by = x.as_ref().map_or(T::one(), |x| x.at(k, t)[1]);
             Some((y.at(k, t)[1] / by, Some(y.within(k, t))))
         }
         Take::Mean => mean(metric, y, x, |_, value| value).map(|value| (value, None)),
@@ -351,11 +350,10 @@ const THERE: f64 = 1e-9;
 /// The interval where the abscissa first is `at`, and the time of that, which moves with the design.
 fn reach<T: Real>(y: &Curve<'_, T>, x: &Option<Curve<'_, T>>, at: f64) -> Option<(usize, T)> {
     let times = y.times;
-    let witness = y.values[0][0];
     let last = y.values.len().checked_sub(2)?;
     let Some(x) = x else {
         let k = (0..=last).find(|&k| times[k] <= at && at <= times[k + 1])?;
-        return Some((k, witness.like(at)));
+        return Some((k, T::constant(at)));
     };
     let miss = |k: usize| x.values[k][0].value() - at;
     let span = x.values.iter().map(|x| (x[0].value() - at).abs()).fold(0.0, f64::max);
@@ -372,9 +370,9 @@ fn reach<T: Real>(y: &Curve<'_, T>, x: &Option<Curve<'_, T>>, at: f64) -> Option
         if (x.number(k, middle) < at) == rising { low = middle } else { high = middle }
     }
     // One step of Newton's method more gives the derivative of the time.
-    let t = witness.like(0.5 * (low + high));
+    let t = T::constant(0.5 * (low + high));
     let [value, rate] = x.at(k, t);
-    Some((k, t - (value - witness.like(at)) / rate))
+    Some((k, t - (value - T::constant(at)) / rate))
 }
 
 /// Whether this part of the curve counts.
@@ -414,7 +412,7 @@ fn extreme<T: Real>(
         }
         for turn in y.turns(k) {
             if inside(along(k, turn)) {
-                offer(y.at(k, y.values[k][0].like(turn))[0], turn);
+                offer(y.at(k, T::constant(turn))[0], turn);
             }
         }
     }
@@ -435,18 +433,17 @@ fn mean<T: Real>(
     x: &Option<Curve<'_, T>>,
     of: impl Fn(T, T) -> T,
 ) -> Option<T> {
-    let witness = y.values[0][0];
-    let at = |k: usize| x.as_ref().map_or(witness.like(y.times[k]), |x| x.values[k][0]);
+    let at = |k: usize| x.as_ref().map_or(T::constant(y.times[k]), |x| x.values[k][0]);
     let counts = |k: usize| {
         let x = at(k).value();
         metric.window.is_none_or(|[low, high]| low <= x && x <= high)
     };
     let value = |k: usize| of(at(k), y.values[k][0]);
-    let (mut sum, mut way) = (witness.zero(), witness.zero());
+    let (mut sum, mut way) = (T::zero(), T::zero());
     for k in 1..y.values.len() {
         if counts(k - 1) && counts(k) {
             let step = (at(k) - at(k - 1)).abs();
-            sum += (value(k - 1) + value(k)) * step * witness.like(0.5);
+            sum += (value(k - 1) + value(k)) * step * T::constant(0.5);
             way += step;
         }
     }
@@ -456,12 +453,12 @@ fn mean<T: Real>(
 /// The target at an abscissa.
 fn on_target<T: Real>(target: &[[f64; 2]], at: T) -> T {
     match target {
-        [] => at.zero(),
-        [[_, only]] => at.like(*only),
+        [] => T::zero(),
+        [[_, only]] => T::constant(*only),
         _ => {
             let k = target[1..target.len() - 1].iter().take_while(|p| p[0] < at.value()).count();
             let ([x0, y0], [x1, y1]) = (target[k], target[k + 1]);
-            at.like(y0) + (at - at.like(x0)) * at.like((y1 - y0) / (x1 - x0))
+            T::constant(y0) + (at - T::constant(x0)) * T::constant((y1 - y0) / (x1 - x0))
         }
     }
 }

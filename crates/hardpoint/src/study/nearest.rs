@@ -126,8 +126,8 @@ fn conditions(analysis: &Analysis<'_>, scales: &[f64]) -> Vec<Vec<f64>> {
     let mut done = 0;
     let every = model.times.len().div_ceil(TIMES).max(1);
     let topology = analysis.topology();
-    let mut direct = Direct::new(model, topology, 0.0);
-    let mut parts: Vec<_> = fields.iter().map(|f| FieldParts::new(topology, f, 0.0)).collect();
+    let mut direct = Direct::new(model, topology);
+    let mut parts: Vec<_> = fields.iter().map(|f| FieldParts::new(topology, f)).collect();
     if topology.redundant().next().is_some() {
         // A motion that ends early asks for less.
         let _ = walk.each(analysis, |stepper| {

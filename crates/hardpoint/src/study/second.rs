@@ -70,7 +70,7 @@ impl Analysis<'_> {
             bodies: model.bodies.len(),
             ..SecondDerivatives::default()
         };
-        let mut bends = Bends::new(self, &design, &directions, pairs, 0.0);
+        let mut bends = Bends::new(self, &design, &directions, pairs);
         let mut times = model.times.iter();
         result.stop = walk.each(self, |one| {
             if let Some(&t) = times.next() {
@@ -97,10 +97,8 @@ impl<'a> Bends<'a> {
         design: &Design,
         directions: &[Vec<f64>],
         pairs: &[[usize; 2]],
-        witness: f64,
     ) -> Self {
         let (model, effects) = (analysis.model(), analysis.effects());
-        let zero = Dual::constant(Dual::constant(0.0));
         let ways: Vec<Way> = directions.iter().map(|d| Way::Design(d.clone())).collect();
         let fixed = |&[u, w]: &[usize; 2]| {
             let value = |k: usize| Dual {
@@ -108,14 +106,14 @@ impl<'a> Bends<'a> {
                 d: Dual::constant(directions[u][k]),
             };
             let values: Vec<_> = (0..model.variables.len()).map(value).collect();
-            effects.fixed(&values, zero)
+            effects.fixed(&values)
         };
         Self {
             analysis,
-            seconds: Seconds::new(effects, analysis.topology(), &design.values, &ways, pairs, witness),
+            seconds: Seconds::new(effects, analysis.topology(), &design.values, &ways, pairs),
             fixed: pairs.iter().map(fixed).collect(),
             asked_for: bodies_asked_for(model).into_iter().filter(|b| *b != GROUND.0).collect(),
-            poses: vec![Pose::IDENTITY.spread(zero); model.bodies.len()],
+            poses: vec![Pose::IDENTITY.spread(); model.bodies.len()],
         }
     }
 

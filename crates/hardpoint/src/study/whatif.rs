@@ -60,7 +60,7 @@ pub fn what_if(analysis: &Analysis<'_>, today: Solution, change: &[f64]) -> What
         Admissibility::CannotFollow { .. } => variables.collect(),
         _ => Vec::new(),
     };
-    let field = analysis.effects().field_along(&crate::sensitivity::along(&change), &model.whole(&[]), 0.0);
+    let field = analysis.effects().field_along(&crate::sensitivity::along(&change), &model.whole(&[]));
     let part = |(v, by): (usize, &f64)| by.abs() / natural_step(model, VariableId(v));
     WhatIf {
         part: change.iter().enumerate().map(part).fold(0.0, f64::max),

@@ -24,7 +24,7 @@ pub(super) fn examine(model: &Model, topology: &mut Topology) -> Result<(), Topo
     for (b, block) in topology.blocks.iter().enumerate() {
         let row = |k: usize| columns_in_block(topology, &jacobian[block.selected[k]], b);
         let columns = |k: usize| row(k).map(|(column, _)| column).collect();
-        let mut factors = Factors::new(block.unknowns.len(), columns, LARGEST_DENSE, 0.0);
+        let mut factors = Factors::new(block.unknowns.len(), columns, LARGEST_DENSE);
         for k in 0..block.selected.len() {
             factors.set_row(k, row(k), 0.0);
         }

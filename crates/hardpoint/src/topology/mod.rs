@@ -350,8 +350,8 @@ impl Step {
         r: crate::space::Vec3<T>,
     ) -> Twist<T> {
         match self.freedom {
-            Freedom::Turn(axis) => Twist::turn(rot.cols[axis] * r.x.like(self.sign), r),
-            Freedom::Slide(axis) => Twist::slide(rot.cols[axis] * r.x.like(self.sign)),
+            Freedom::Turn(axis) => Twist::turn(rot.cols[axis] * T::constant(self.sign), r),
+            Freedom::Slide(axis) => Twist::slide(rot.cols[axis] * T::constant(self.sign)),
             Freedom::Ball => Twist::turn(rot.cols[k], r),
         }
     }

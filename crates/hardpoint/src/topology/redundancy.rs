@@ -54,7 +54,7 @@ impl Topology {
             }
             // J^T c = left
             let transposed = factors[b].get_or_insert_with(|| {
-                let mut transposed = Elimination::new(n, 0.0);
+                let mut transposed = Elimination::new(n);
                 for k in 0..n {
                     transposed.row_mut(k).fill(0.0);
                 }

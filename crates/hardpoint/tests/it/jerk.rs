@@ -96,7 +96,7 @@ fn a_crank_and_a_four_bar_have_the_jerks_of_their_closed_forms() {
     // Of the crank's angle, and of the rocker's: the angle of D to B, less that at D in the triangle B C D.
     let closed = |t: f64| -> [f64; 2] {
         let t = time(t);
-        let k = |x: f64| t.like(x);
+        let k = <Jet<Dual, 3> as Real>::constant;
         let crank_angle = k(2.0) * t + k(0.5) * (k(3.0) * t).sin_cos().0;
         let (sin, cos) = (crank_angle + k(drawn)).sin_cos();
         let (x, y) = (k(crank) * cos - k(d[0]), k(crank) * sin - k(d[1]));

@@ -176,7 +176,7 @@ impl<'a> Check<'a> {
             self.spoil(w.formula.of);
             return None;
         }
-        let value = w.formula.at(0.0, |s| self.model.nominal(s));
+        let value = w.formula.at(|s| self.model.nominal(s));
         if !value.is_finite() {
             let message = format!("the expression for `{}` has no finite value", w.name);
             let numbers = w.formula.inputs.iter().zip(w.formula.expression.names());
@@ -298,7 +298,7 @@ impl<'a> Check<'a> {
             formula.inputs.retain(|(s, _)| varying.contains(s));
             // One derivative along all inputs at once is finite only if all are.
             let along = |s: Source| Dual { v: model.nominal(s), d: 1.0 };
-            let slope = formula.at(Dual::constant(0.0), along).d;
+            let slope = formula.at(along).d;
             if !slope.is_finite() {
                 let message = format!("the expression for `{name}` has no derivative in the nominal design");
                 let names: Vec<_> = formula.expression.names().iter().map(|n| format!("`{n}`")).collect();
