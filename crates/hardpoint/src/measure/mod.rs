@@ -317,7 +317,8 @@ pub(crate) fn evaluate(
                 for (lane, to) in lanes.iter_mut().enumerate() {
                     let k = usize::min(first + lane, times.end - 1);
                     let now = counted[k * model.measures.len() + m];
-                    differ |= now != *to;
+                    // Bit by bit, so that what is no number is the same again.
+                    differ |= now.to_bits() != to.to_bits();
                     *to = now;
                 }
             }

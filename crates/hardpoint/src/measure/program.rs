@@ -21,7 +21,7 @@ use crate::model::{BodyId, Effects, Fixed, GROUND, MeasureKind, Model, OutputSou
 use crate::motion::tape::{Execution, Room, Runnable};
 use crate::motion::{BodyState, Motion};
 use crate::number::record as recording;
-use crate::number::{Dual, Jet, Rates, Real};
+use crate::number::{Dual, Jet, Rates};
 use crate::sensitivity::{BodySensitivity, Sensitivities};
 use crate::space::{Mat3, Pose, Vec3};
 

@@ -69,10 +69,9 @@ impl Real for Number {
         Number::round(self)
     }
     fn sign_or(self, next: Self) -> Self {
-        match self.known() {
-            Some(x) if x == 0.0 => next,
-            _ => self.abs() / self,
-        }
+        // What is zero by chance has either sign.
+        let is_zero = self.decisive() == 0.0;
+        if is_zero && self.known().is_some() { next } else { self.abs() / self }
     }
     fn exceeds(self, o: Self) -> bool {
         LIMITS.with_borrow_mut(|limits| limits.push(o - self));
