@@ -240,8 +240,10 @@ fn turns_and_poles_are_the_same_by_a_program() {
         measures.angle = { type = "coordinate", joint = "pivot" }
         measures.square = { type = "expression", expression = "angle^2 + A.x" }
         measures.spiral = { type = "expression", expression = "sin(square/10) + angle" }
-        measures.off = { type = "distance", from = { body = "ground", at = [1, 0, 0] }, to = "A" }
-        measures.less = { type = "expression", expression = "min(off, 1) + abs(A.y)" }
+        measures.off = { type = "distance", from = { body = "ground", at = [0, 1, 0] }, to = "A" }
+        measures.less = { type = "expression", expression = "min(off, 1)" }
+        measures.aside = { type = "expression", expression = "abs(A.y)" }
+        measures.pole = { type = "expression", expression = "1/A.y" }
         measures.rest = { type = "curvature", point = "A" }
         measures.pace = { type = "velocity", point = "A" }
         measures.lines = { type = "transmission_angle", from = { body = "crank", axis = [0, 1, 0] }, to = [1, 0, 0] }
@@ -251,8 +253,9 @@ fn turns_and_poles_are_the_same_by_a_program() {
     let [by_formula, all] = on_every_path("crank", &model, 1e-9);
     let solution = Analysis::new(&model).unwrap().run();
     let value = |name: &str, k| solution.measured.value(k, solution.measured.index(name).unwrap());
-    // The pin begins where its distance is measured from; later it has made more than one turn.
-    assert!(value("off", 0)[0] == 0.0 && value("off", 0)[2].is_nan(), "{:?}", value("off", 0));
+    // The pin begins on the x axis, where aside of it has two sides; later it has made more than one turn.
+    assert!(value("pole", 0)[0].is_nan() && value("pole", 1)[0].is_finite());
+    assert!(value("aside", 0)[1] > 6.0, "{:?}", value("aside", 0));
     let turns = (0..=1000).map(|k| value("angle", k)[0]).fold(0.0, f64::max) / std::f64::consts::TAU;
     assert!(turns > 1.5, "{turns}");
     for k in 0..=1000 {

@@ -405,7 +405,7 @@ impl<'p> Run<'p> {
     /// On the design with these values.
     pub fn new(program: &'p Program, values: &[f64]) -> Self {
         let mut inputs = vec![Line::default(); program.step.inputs()];
-        let (given, found) = inputs.split_at_mut(program.step.inputs() - program.design.outputs());
+        let (given, found) = inputs.split_at_mut(program.step.inputs() - program.design.sizes()[0]);
         given[program.design_at..].iter_mut().zip(values).for_each(|(line, x)| line.0 = [*x; LANES]);
         let given = &lanes_of(given)[..program.design.inputs()];
         Room::default().run(&program.design, given, [lanes_of(found), &mut [], &mut []]);
@@ -417,14 +417,14 @@ impl<'p> Run<'p> {
     /// were [given](Self::turns).
     pub fn at(&mut self, k: usize, motion: &Motion, sensitivities: &Sensitivities, measured: &mut Measured) {
         let Program { step, bodies, moved, .. } = self.program;
-        let states = motion.states.block(k);
-        let mut to = 0;
-        let mut put = |numbers: &[[f64; LANES]]| {
-            lanes_of(&mut self.inputs)[to..to + numbers.len()].copy_from_slice(numbers);
-            to += numbers.len();
-        };
-        bodies.iter().for_each(|b| put(&states[BodyState::NUMBERS * (b - 1)..][..BodyState::NUMBERS]));
-        moved.iter().for_each(|&(v, b)| put(sensitivities.lanes(k, v, b)));
+        let (of_bodies, rest) =
+            lanes_of(&mut self.inputs).split_at_mut(BodyState::NUMBERS * self.program.bodies.len());
+        for (b, to) in bodies.iter().zip(of_bodies.chunks_exact_mut(BodyState::NUMBERS)) {
+            motion.states.gather(k, BodyState::NUMBERS * (b - 1), to);
+        }
+        for (&(v, b), to) in moved.iter().zip(rest.chunks_exact_mut(BodySensitivity::NUMBERS)) {
+            sensitivities.gather(k, v, b, to);
+        }
         let guards = lanes_of(&mut self.guards);
         let results = [guards, measured.values.block_mut(k), measured.d.block_mut(k)];
         self.room.run(step, bytemuck::cast_slice(&self.inputs), results);
