@@ -11,8 +11,9 @@ const ROUND_OFF: f64 = 1e-10;
 /// Accelerations of measures divide by speeds, and their derivatives once more.
 const MEASURED: f64 = 1e-8;
 
-/// The same where the motion is the kernel's on every path, so that only the measures themselves differ by round-off.
-const OF_ONE_MOTION: f64 = 1e-11;
+/// The same where the motion is the kernel's on every path, so that only the measures themselves differ by round-off: an acceleration
+/// that is none is a difference of squares of speeds.
+const OF_ONE_MOTION: f64 = 1e-10;
 
 /// Mechanisms that no program is recorded of: their couplers count angles by the turn that is expected, or a point follows a curve.
 const BY_THE_KERNEL: [&str; 2] = ["cam", "gear_train"];
