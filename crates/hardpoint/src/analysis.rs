@@ -66,6 +66,8 @@ pub struct Analysis<'m> {
     opens: OnceLock<Vec<Vec<JointDefect>>>,
     /// Steps as straight-line programs, recorded when they pay.
     programs: Arc<Programs>,
+    /// The same of measures.
+    formulas: Arc<measure::Programs>,
 }
 
 /// One design, ready to be analysed.
@@ -145,6 +147,7 @@ impl<'m> Analysis<'m> {
             measures: true,
             opens: OnceLock::new(),
             programs,
+            formulas: Arc::default(),
         })
     }
 
@@ -155,7 +158,7 @@ impl<'m> Analysis<'m> {
 
     /// The same analysis, its steps solved in this way.
     pub fn executed(self, execution: Execution) -> Self {
-        Self { programs: Arc::new(Programs::new(execution)), ..self }
+        Self { programs: Arc::new(Programs::new(execution)), formulas: Arc::default(), ..self }
     }
 
     /// How the even steps of the nominal design's motion are solved.
@@ -332,13 +335,19 @@ impl<'m> Analysis<'m> {
         before: Option<&Before>,
         solution: &mut Solution,
     ) {
-        solution.measured = Measured::default();
-        if self.measures {
-            let Design { values, laws, .. } = design;
-            let at = measure::At { model: self.model, effects: &self.effects, values, laws };
-            let Solution { motion, sensitivities, measured, .. } = solution;
-            *measured = measure::evaluate(&at, &self.topology, motion, sensitivities, slopes, before);
+        let Solution { motion, sensitivities, measured, .. } = solution;
+        if !self.measures {
+            *measured = Measured::default();
+            return;
         }
+        let Design { values, laws, of_many, .. } = design;
+        let at = measure::At { model: self.model, effects: &self.effects, values, laws };
+        let program = self.programs.pay(self.model.times.len() * of_many).then(|| {
+            let asked = measure::Asked::of(self.model, values, sensitivities);
+            self.formulas.get(asked, &self.effects, self.programs.execution())
+        });
+        let (program, solved) = (program.flatten(), (&*motion, &*sensitivities));
+        measure::evaluate(&at, &self.topology, solved, slopes, before, program.as_deref(), measured);
     }
 
     /// Motions of many changed designs, in the order given.
@@ -501,10 +510,8 @@ impl<'m> Analysis<'m> {
             solution.motion.effort = effort;
             solution.sensitivities = Sensitivities::default();
             solution.stop = None;
-            solution.measured = Measured::default();
-            if self.measures {
-                self.measure(&self.design(design, false), &SlopeValues::default(), None, solution);
-            }
+            let design = Design { of_many, ..self.design(design, false) };
+            self.measure(&design, &SlopeValues::default(), None, solution);
         }
     }
 

@@ -89,6 +89,23 @@ impl Blocks {
         lanes_of(&mut lines[first..first + width])
     }
 
+    /// Copies some numbers, from this one on, of the eight output times that k is one of; of those that there are.
+    #[inline(always)]
+    pub fn gather(&self, k: usize, first: usize, to: &mut [Lanes]) {
+        let from = |line: usize| line * self.width + first;
+        match &self.place {
+            Place::Times(lines) => {
+                to.copy_from_slice(bytemuck::cast_slice(&lines[from(k / LANES)..][..to.len()]));
+            }
+            Place::Designs { lines, lane } => {
+                for time in 0..LANES {
+                    let there = lines.get(from(k / LANES * LANES + time)..).unwrap_or_default();
+                    to.iter_mut().zip(there).for_each(|(to, line)| to[time] = line.0[*lane]);
+                }
+            }
+        }
+    }
+
     /// Writes some numbers of output time k, from this one on.
     #[inline(always)]
     pub fn set(&mut self, k: usize, first: usize, numbers: impl IntoIterator<Item = f64>) {

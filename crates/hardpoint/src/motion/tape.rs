@@ -153,7 +153,7 @@ impl Executable {
 
 impl Runnable {
     /// Its outputs in parts that end there.
-    fn new(program: Program, ends: [usize; PARTS - 1], execution: Execution) -> Self {
+    pub fn new(program: Program, ends: [usize; PARTS - 1], execution: Execution) -> Self {
         Self::in_pieces(program, ends, execution, |_| 0)
     }
 
@@ -177,6 +177,11 @@ impl Runnable {
             None => Form::Whole(Executable::new(program, ends, execution)),
         };
         Self { inputs, sizes, form }
+    }
+
+    /// How many numbers it is given.
+    pub fn inputs(&self) -> usize {
+        self.inputs
     }
 
     /// How many numbers it gives, in every part.
@@ -644,6 +649,11 @@ impl Programs {
     /// None as yet.
     pub fn new(execution: Execution) -> Self {
         Self { execution, steps: Mutex::default(), laws: Mutex::default(), machine: OnceLock::new() }
+    }
+
+    /// What they are run by.
+    pub fn execution(&self) -> Execution {
+        self.execution
     }
 
     /// How so many steps are solved, if they can be recorded.
