@@ -179,7 +179,7 @@ pub fn timed(once: bool, mut f: impl FnMut()) -> Duration {
     f(); // not counted: cold caches
     let mut times = Vec::new();
     let started = cpu_time();
-    while times.is_empty() || !once && times.len() < 41 {
+    while times.is_empty() || !once && times.len() < 4000 {
         if times.len() >= 5 && cpu_time() - started > Duration::from_secs(2) {
             break;
         }

@@ -1,5 +1,7 @@
 //! Where results go: into a [`Solution`](crate::Solution), or wherever a caller wants them.
 
+use std::ops::Range;
+
 use crate::model::{BodyId, VariableId};
 use crate::motion::{BodyState, Motion};
 use crate::sensitivity::{BodySensitivity, Sensitivities};
@@ -55,19 +57,19 @@ impl Block<'_> {
         wanted: &[bool],
         moved: impl Iterator<Item = (VariableId, BodyId)>,
         sinks: &mut [S],
-        lanes: usize,
+        lanes: Range<usize>,
         of: impl Fn(usize) -> (usize, usize),
     ) {
         let states = self.states.as_chunks::<{ BodyState::NUMBERS }>().0;
         for (numbers, body) in states.iter().zip(1..).filter(|(_, body)| wanted[*body]) {
-            for lane in 0..lanes {
+            for lane in lanes.clone() {
                 let (sink, k) = of(lane);
                 sinks[sink].state(k, BodyId(body), &BodyState::from(|n| numbers[n][lane]));
             }
         }
         let derivatives = self.derivatives.as_chunks::<{ BodySensitivity::NUMBERS }>().0;
         for (numbers, (variable, body)) in derivatives.iter().zip(moved).filter(|(_, m)| wanted[m.1.0]) {
-            for lane in 0..lanes {
+            for lane in lanes.clone() {
                 let (sink, k) = of(lane);
                 sinks[sink].sensitivity(k, variable, body, &BodySensitivity::from(|n| numbers[n][lane]));
             }

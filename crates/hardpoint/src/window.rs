@@ -127,10 +127,10 @@ impl Analysis<'_> {
                         window.motion.margins.push(margins.at(&one.topology, &one.state));
                     }
                 }
-                Solved::Abreast(tape) => {
+                Solved::Abreast(tape, lanes) => {
                     tape.coordinates(topology, window.motion.coordinates.block_mut(k));
                     if measures {
-                        window.motion.margins.extend((0..count).map(|lane| tape.margin(lane)));
+                        window.motion.margins.extend(lanes.map(|lane| tape.margin(lane)));
                     }
                 }
             }

@@ -12,14 +12,13 @@ use crate::blocks::{Line, lanes_of};
 use crate::sink::Block;
 use crate::topology::Source;
 
-use super::forecast::{Forecast, NODES, ORDERS, Weights};
-use super::kinematics::{QUADRATIC, Residuals};
+use super::forecast::{NODES, ORDERS, Weights};
 use super::margin::Margin;
-use super::stepper::{Ahead, EVEN, LONGEST, MILD, MILD_CHANGE, RESTS, Saved, Stepper};
-use super::tape::{MOST_CORRECTIONS, Room, Runnable, StepProgram, Tape};
+use super::stepper::{Ahead, EVEN, LONGEST, MILD, MILD_CHANGE, RESTS, Saved, Stepper, TRUST_FLOOR};
+use super::tape::{MOST_CORRECTIONS, Room, Runnable, Solved, StepProgram, Tape, all_within, largest};
 use super::walk::PART_OF_WAY;
 
-/// The first correction (rad, or sizes) must be within this: a forecast that fails by more is none.
+/// The first correction (rad, or sizes) must be within this: a forecast by all positions that fails by more is none.
 const FORESEEN: f64 = 1e-3;
 /// After a failure so many steps are walked one by one, at the least and at the most.
 const PAUSE: [usize; 2] = [LANES, 64];
@@ -40,12 +39,9 @@ pub(crate) struct Abreast<'p> {
     tape: Option<Tape>,
     laws: Laws,
     weights: Weights,
-    /// One of before, until it is known how good it was.
-    forecast: Option<Forecast>,
     /// Steps to walk before the next try, and how long the next pause is.
     wait: usize,
     pause: usize,
-    ratios: Vec<f64>,
     /// Results, where nobody gives room for them; and whether they are here.
     own: [Vec<Line>; 2],
     is_own: bool,
@@ -55,24 +51,22 @@ pub(crate) struct Abreast<'p> {
 struct Laws {
     program: Option<Arc<Runnable>>,
     room: Room,
-    outputs: Vec<Line>,
+    limits: Vec<Line>,
 }
 
 impl<'p> Abreast<'p> {
     /// By these programs, for a design with these values; `laws` are those of its drivers, if there is a program for them.
     pub fn new(programs: Option<ProgramOf<'p>>, design: &[f64], laws: Option<Arc<Runnable>>) -> Self {
-        let outputs = vec![Line::default(); laws.as_ref().map_or(0, |laws| laws.outputs())];
-        let laws = Laws { program: laws, room: Room::default(), outputs };
+        let limits = vec![Line::default(); laws.as_ref().map_or(0, |laws| laws.sizes()[1])];
+        let laws = Laws { program: laws, room: Room::default(), limits };
         Self {
             programs,
             design: design.to_vec(),
             tape: None,
             laws,
             weights: Weights::default(),
-            forecast: None,
             wait: 0,
             pause: PAUSE[0],
-            ratios: Vec::new(),
             own: [Vec::new(), Vec::new()],
             is_own: false,
         }
@@ -93,34 +87,31 @@ impl<'p> Abreast<'p> {
     }
 
     /// Output time k comes next: moves on from where the stepper stands to as many of the next output times as can be solved at once;
-    /// returns how many, 0 where they are to be walked. Results go to the room that
-    /// there is, or are kept here.
+    /// returns how many, 0 where they are to be walked. Output times 8n to 8n + 7 lie side by side, so that these end with such a
+    /// group; those of it that are before k are solved once more, for nothing. Results go to the room that there is, or are kept here.
     #[inline]
     pub fn advance<'r>(
         &mut self,
         one: &mut Stepper<'_>,
         k: usize,
-        next: &[f64],
+        times: &[f64],
         room: impl FnOnce() -> Option<[&'r mut [Lanes]; 2]>,
     ) -> usize {
-        // Results of output times 8n to 8n + 7 lie side by side.
-        let count = usize::min(next.len(), LANES);
-        if self.programs.is_none()
-            || !k.is_multiple_of(LANES)
-            || count < FEWEST
-            || one.ahead == Ahead::Unknown
-        {
-            self.look_ahead(one);
+        let (first, group) = (k % LANES, k - k % LANES);
+        let last = usize::min(times.len() - group, LANES) - 1;
+        let count = last + 1 - first;
+        if self.programs.is_none() || count < FEWEST || one.ahead == Ahead::Unknown {
             return 0;
         }
         if self.wait > 0 {
-            self.wait = self.wait.saturating_sub(LANES);
+            self.wait -= 1;
             return 0;
         }
-        if one.forecast.known() < NODES || !self.choose_tape(one) {
+        if one.forecast.known() == 0 || !self.choose_tape(one) {
             return 0;
         }
-        if self.try_to(one, &next[..count], room()).is_some() {
+        let times: Lanes = std::array::from_fn(|lane| times[group + usize::min(lane, last)]);
+        if self.try_to(one, &times, [first, last], room()).is_some() {
             self.pause = PAUSE[0];
             return count;
         }
@@ -129,76 +120,53 @@ impl<'p> Abreast<'p> {
         0
     }
 
-    /// Keeps a forecast, to see later how good it was.
-    fn look_ahead(&mut self, one: &Stepper<'_>) {
-        if self.programs.is_some()
-            && self.tape.is_none()
-            && self.forecast.is_none()
-            && one.forecast.known() == NODES
-        {
-            self.forecast = Some(one.forecast.clone());
-        }
-    }
-
     /// Makes a tape where there is none, and another or none where it does not fit; returns whether there is one.
-    fn choose_tape(&mut self, one: &mut Stepper<'_>) -> bool {
-        let before = match &self.tape {
-            Some(tape) if !tape.is_of_no_use() && one.selections == 0 => return true,
-            tape => tape.as_ref().map(|t| t.purpose().corrections),
+    fn choose_tape(&mut self, one: &Stepper<'_>) -> bool {
+        let corrections = match &self.tape {
+            Some(tape) if tape.is_of_no_use() || one.selections > 0 => usize::MAX,
+            Some(tape) if tape.is_too_short() && tape.purpose().corrections < MOST_CORRECTIONS => {
+                tape.purpose().corrections + 1
+            }
+            Some(_) => return true,
+            None => 1,
         };
-        let corrections = before.map_or_else(|| self.corrections(one), |before| before + 1);
         let program =
             self.programs.as_ref().filter(|_| corrections <= MOST_CORRECTIONS && one.selections == 0);
-        self.tape = program.and_then(|program| program(corrections)).map(Tape::new);
+        let tape = program.and_then(|program| program(corrections)).map(Tape::new);
+        self.tape = tape.filter(|tape| tape.is_on(&one.branch));
         match &mut self.tape {
-            Some(tape) => {
-                tape.set_designs(std::slice::from_ref(&self.design));
-                self.ratios.resize(one.topology.blocks.len(), 0.0);
-                self.weights = Weights::default();
-            }
+            Some(tape) => tape.set_designs(std::slice::from_ref(&self.design)),
             None => self.programs = None,
         }
         self.tape.is_some()
     }
 
-    /// How many corrections eight output times at once will need, by how good a forecast has been.
-    fn corrections(&self, one: &mut Stepper<'_>) -> usize {
-        let Some(before) = &self.forecast else { return 1 };
-        // Positions are then four steps apart, and the farthest output time is eight steps ahead.
-        let far = [8.0, 12.0, 16.0_f64].map(|x| x.powi(3)).iter().product::<f64>();
-        let (nodes, count) = before.nodes(0.0);
-        let step = -nodes[1];
-        let ahead = before.ahead_of(one.time);
-        if !(count == NODES && step > 0.0 && ahead > 0.0) {
-            return 1;
-        }
-        let near = nodes.map(|node| ((ahead - node) / step).powi(3)).iter().product::<f64>();
-        let error = one.forecast_error(&mut before.clone());
-        if error * (far / near) <= QUADRATIC { 1 } else { 2 }
-    }
-
+    /// Tries these output times, of which those from lane `first` to lane `last` are new.
     #[inline(always)]
-    fn try_to(&mut self, one: &mut Stepper<'_>, next: &[f64], room: Option<[&mut [Lanes]; 2]>) -> Option<()> {
-        let last = next.len() - 1;
-        let times: Lanes = std::array::from_fn(|k| next[k.min(last)]);
+    fn try_to(
+        &mut self,
+        one: &mut Stepper<'_>,
+        times: &Lanes,
+        [first, last]: [usize; 2],
+        room: Option<[&mut [Lanes]; 2]>,
+    ) -> Option<()> {
         let tape = self.tape.as_mut()?;
-        self.laws.at(one, &times, tape.drivers_mut())?;
-        if !laws_are_even(tape, one, &times, last) {
+        self.laws.at(one, times, tape.drivers_mut())?;
+        if !laws_are_even(tape, one, times, [first, last]) {
             return None;
         }
         one.fastest_driver = fastest_driver(tape, one);
         let ahead = times.map(|t| t - one.time);
-        let nodes = one.forecast.nodes(ahead[last]);
-        if self.weights.set(nodes, &ahead) {
-            tape.weights_mut().copy_from_slice(&self.weights.of);
-        }
+        let are_new = self.weights.set(one.forecast.nodes(ahead[last]), &ahead);
+        tape.look_ahead(&self.weights.of, are_new, &ahead);
         for channel in 0..tape.channels().len() {
             let known = one.forecast.known_of(channel);
             for (to, x) in tape.known_mut(channel).iter_mut().zip(known.as_flattened()) {
                 *to = [*x; LANES];
             }
         }
-        let room = room.filter(|room| room.each_ref().map(|part| part.len()) == tape.sizes());
+        // What was found before stays, whatever these come to.
+        let room = room.filter(|room| first == 0 && room.each_ref().map(|part| part.len()) == tape.sizes());
         self.is_own = room.is_none();
         let results = room.unwrap_or_else(|| {
             for (own, size) in self.own.iter_mut().zip(tape.sizes()) {
@@ -206,15 +174,13 @@ impl<'p> Abreast<'p> {
             }
             self.own.each_mut().map(|own| lanes_of(own))
         });
-        let residuals =
-            tape.solve((&one.branch, &one.try_others), FORESEEN, &mut self.ratios, results).ok()?;
-        let change_step = determinants_are_even(tape, one, &times, last);
-        let before = |_, c: usize, _| [one.saved.qd[c], one.saved.qdd[c]];
-        let fits = change_step.is_some()
-            && tape.speeds_are_smooth(&one.topology, before, &ahead, one.fastest_driver);
-        match change_step.filter(|_| fits) {
+        // As a motion begins, less is known of it.
+        let trust = if one.forecast.known() < NODES { TRUST_FLOOR } else { FORESEEN };
+        let solved = tape.solve(trust, results).ok()?;
+        let change_step = determinants_are_even(tape, one, times, [first, last]);
+        match change_step.filter(|_| tape.speeds_are_smooth(one.fastest_driver)) {
             Some(step) => {
-                one.continue_from(tape, &times, last, (residuals, &self.ratios), step);
+                one.continue_from(tape, times, [first, last], solved, step);
                 Some(())
             }
             None => {
@@ -231,11 +197,9 @@ impl Laws {
     fn at(&mut self, one: &Stepper<'_>, times: &Lanes, drivers: &mut [Lanes]) -> Option<()> {
         let mut by_program = false;
         if let Some(program) = &self.program {
-            let found = lanes_of(&mut self.outputs);
-            self.room.run(program, std::slice::from_ref(times), [found, &mut [], &mut []]);
-            let (found, limits) = found.split_at(drivers.len());
-            by_program = limits.iter().all(|l| l.iter().all(|x| *x <= 0.0));
-            drivers.copy_from_slice(found);
+            let limits = lanes_of(&mut self.limits);
+            self.room.run(program, std::slice::from_ref(times), [&mut *drivers, &mut *limits, &mut []]);
+            by_program = limits.iter().all(|limit| all_within(limit, 0.0));
         }
         if !by_program {
             for (d, driver) in drivers.chunks_exact_mut(ORDERS).enumerate() {
@@ -246,7 +210,7 @@ impl Laws {
                 }
             }
         }
-        let finite = drivers.iter().all(|x| x.iter().all(|x| x.is_finite()));
+        let finite = drivers.iter().all(|x| all_within(&x.map(f64::abs), f64::MAX));
         finite.then_some(())
     }
 }
@@ -256,7 +220,7 @@ impl Laws {
 fn fastest_driver(tape: &Tape, one: &Stepper<'_>) -> f64 {
     let mut fastest = one.fastest_driver;
     for (d, unit) in one.driver_units.iter().enumerate() {
-        fastest = tape.driver(d, 1).iter().fold(fastest, |most, x| most.max(x.abs() / unit));
+        fastest = fastest.max(largest(&tape.driver(d, 1).map(f64::abs)) / unit);
     }
     fastest
 }
@@ -264,14 +228,15 @@ fn fastest_driver(tape: &Tape, one: &Stepper<'_>) -> f64 {
 /// Whether no law does anything between the output times that these would not show; and, where no step tells yet, no singular
 /// position is known to be near. Notes how far the drivers go from one output time to the next.
 #[inline(always)]
-fn laws_are_even(tape: &Tape, one: &mut Stepper<'_>, times: &Lanes, last: usize) -> bool {
-    let mut longest = times[0] - one.time;
-    (1..=last).for_each(|k| longest = longest.max(times[k] - times[k - 1]));
+fn laws_are_even(tape: &Tape, one: &mut Stepper<'_>, times: &Lanes, [first, last]: [usize; 2]) -> bool {
+    let mut longest = times[first] - one.time;
+    (first + 1..=last).for_each(|k| longest = longest.max(times[k] - times[k - 1]));
     for d in 0..one.drivers.len() {
         let unit = one.driver_units[d];
         let (mut before, mut moves) = (one.saved.drivers[d][0], 0.0_f64);
-        for &value in &tape.driver(d, 0)[..=last] {
-            moves = moves.max((value - before).abs());
+        for &value in &tape.driver(d, 0)[first..=last] {
+            let moved = (value - before).abs();
+            moves = if moved > moves { moved } else { moves };
             before = value;
         }
         moves /= unit;
@@ -282,7 +247,8 @@ fn laws_are_even(tape: &Tape, one: &mut Stepper<'_>, times: &Lanes, last: usize)
         if !(travel <= most) {
             return false;
         }
-        (one.moves_ahead[d], one.travel[d]) = (moves, travel * unit);
+        // What was examined must be clear as far as the last of these times.
+        (one.moves_ahead[d], one.travel[d]) = (moves, travel * unit * ((to - from) / longest));
     }
     one.ahead == Ahead::Even || one.around.part_of_way(&one.travel) <= PART_OF_WAY
 }
@@ -290,54 +256,60 @@ fn laws_are_even(tape: &Tape, one: &mut Stepper<'_>, times: &Lanes, last: usize)
 /// Whether every determinant changes by little from one output time to the next, and about as much as over the step before. Notes
 /// the last of these changes, and gives the length of its step.
 #[inline(always)]
-fn determinants_are_even(tape: &Tape, one: &mut Stepper<'_>, times: &Lanes, last: usize) -> Option<f64> {
+fn determinants_are_even(
+    tape: &Tape,
+    one: &mut Stepper<'_>,
+    times: &Lanes,
+    [first, last]: [usize; 2],
+) -> Option<f64> {
     // How long every step is beside the one before it; the first beside the last of the stepper's.
     let (mut beside, mut step) = ([1.0; LANES], one.change_step);
-    for k in 0..=last {
-        let next = if k == 0 { times[0] - one.time } else { times[k] - times[k - 1] };
+    for k in first..=last {
+        let next = if k == first { times[k] - one.time } else { times[k] - times[k - 1] };
         (beside[k], step) = (next / step, next);
     }
+    // The first step of all has none before it.
+    let compared = if one.ahead == Ahead::Even { first } else { first + 1 };
     for b in 0..one.changes.len() {
         let determinants = tape.determinant(b);
-        let (mut even, mut change, mut before) = (true, [0.0; LANES + 1], one.saved.determinants[b]);
-        for k in 0..=last {
+        let (mut even, mut before) = (true, one.saved.determinants[b]);
+        let mut change = one.changes[b];
+        for k in first..=last {
             let ratio = determinants[k] / before;
+            let changed = ratio - 1.0;
             // Written so that NaN is not even.
             even &= (MILD[0]..=MILD[1]).contains(&ratio);
-            (change[k + 1], before) = (ratio - 1.0, determinants[k]);
-        }
-        change[0] = if one.ahead == Ahead::Even { one.changes[b] } else { change[1] / beside[0] };
-        for k in 0..=last {
-            even &= (change[k + 1] - change[k] * beside[k]).abs() <= MILD_CHANGE;
+            even &= k < compared || (changed - change * beside[k]).abs() <= MILD_CHANGE;
+            (change, before) = (changed, determinants[k]);
         }
         if !even {
             return None;
         }
-        one.changes_ahead[b] = change[last + 1];
+        one.changes_ahead[b] = change;
     }
     Some(step)
 }
 
 impl Stepper<'_> {
-    /// Stands where a tape has come to in lane `last`, having passed all before it.
+    /// Stands where a tape has come to in lane `last`, having passed all before it from lane `first` on.
     #[inline(always)]
     fn continue_from(
         &mut self,
         tape: &Tape,
         times: &Lanes,
-        last: usize,
-        (residuals, ratios): (Residuals, &[f64]),
+        [first, last]: [usize; 2],
+        Solved { residuals, pivot_ratio }: Solved,
         change_step: f64,
     ) {
         // The forecast goes by the middle and the end of the way.
-        for lane in [last / 2, last] {
+        for lane in [usize::midpoint(first, last), last] {
             let channels = 0..tape.channels().len();
             self.forecast.learn_values(times[lane], channels.map(|c| tape.channel(c, lane)));
         }
         self.stand_in(tape, last);
         let saved = &mut self.saved;
-        for (b, ratio) in ratios.iter().enumerate() {
-            saved.pivots[b] = (*ratio, self.branch[b].0);
+        for (b, pivots) in saved.pivots.iter_mut().enumerate() {
+            *pivots = (tape.pivot_ratio(b, last), self.branch[b].0);
             saved.determinants[b] = tape.determinant(b)[last];
         }
         saved.residual = residuals.scaled;
@@ -347,12 +319,13 @@ impl Stepper<'_> {
         self.ahead = Ahead::Even;
         self.time = times[last];
         let effort = &mut self.effort;
-        self.state.iterations += tape.passes() * (last + 1);
-        effort.steps += last + 1;
-        effort.by_program += last + 1;
+        let count = last + 1 - first;
+        self.state.iterations += tape.passes() * count;
+        effort.steps += count;
+        effort.by_program += count;
         effort.iterations = self.state.iterations;
         effort.worst_residual = effort.worst_residual.max(residuals.largest);
-        effort.note_pivots(ratios.iter().copied(), self.time);
+        effort.note_pivots([pivot_ratio].into_iter(), self.time);
     }
 
     /// Saves the position and the rates that a tape has found in one lane.

@@ -3,21 +3,25 @@
 //! They start from where the nominal design does, and every check of a single design's step is made in every lane. Where one
 //! fails, nobody knows which design goes another way: each is then solved alone.
 
+use std::ops::Range;
+use std::sync::Arc;
+
 use hardpoint_tape::{LANES, Lanes};
 
-use crate::blocks::{Line, lanes_of};
+use crate::blocks::{Blocks, Line, lanes_of};
 use crate::model::{BodyId, VariableId};
+use crate::sink::Block;
 
-use super::Effort;
 use super::abreast::ProgramOf;
 use super::forecast::{NODES, ORDERS, Weights};
 use super::kinematics::QUADRATIC;
 use super::stepper::{Ahead, MILD, MILD_CHANGE, Stepper, TRUST_FLOOR};
-use super::tape::{MOST_CORRECTIONS, Tape};
+use super::tape::{MOST_CORRECTIONS, Solved, Tape};
 use super::walk::Path;
+use super::{Effort, Motion};
 
-/// A forecast that was so good at the last step will be good enough for one correction at the next one, and for two.
-const GOOD: [f64; 2] = [0.1 * QUADRATIC, 1e-5];
+/// A forecast that was so good at the last step will be good enough for one correction at the next one.
+const GOOD: f64 = 0.1 * QUADRATIC;
 
 /// What the drivers do up to an output time: the same for all designs.
 #[derive(Clone, Debug)]
@@ -37,11 +41,11 @@ pub(crate) struct SideBySide<'m> {
     drivers: Vec<[f64; ORDERS]>,
     /// Where tapes come from.
     programs: ProgramOf<'m>,
-    /// With one correction, two and three; and whether they know the present designs.
+    /// With one correction and two; and whether they know the present designs.
     tapes: [Option<(Tape, bool)>; MOST_CORRECTIONS],
-    /// Which of them has solved the last step, and the largest first correction then.
+    /// Which of them has solved the last step, and by how much the forecast missed then.
     by: usize,
-    corrected: f64,
+    missed: f64,
     designs: Vec<Vec<f64>>,
     weights: Weights,
     /// Per channel: what is known of it.
@@ -49,43 +53,38 @@ pub(crate) struct SideBySide<'m> {
     /// Times of these positions, the newest first, and how many there are.
     times: [f64; NODES],
     count: usize,
-    /// Per unknown coordinate: speed and acceleration at the last step.
-    rates: Vec<[Lanes; 2]>,
     /// Per block: the last determinant, and by what part it changed.
     determinants: Vec<Lanes>,
     changes: Vec<Lanes>,
-    ratios: Vec<f64>,
-    /// The numbers of all bodies at the last eight output times, and their derivatives at the last.
-    states: [Vec<Line>; LANES],
+    /// Numbers of all bodies, and the coordinates of the tree, output time after output time, or of the last one; the bodies' derivatives
+    /// at the last.
+    states: Arc<Vec<Line>>,
+    coordinates: Arc<Vec<Line>>,
     derivatives: Vec<Line>,
+    keeps: bool,
 }
 
 /// What was found at an output time.
 pub(crate) struct Found<'f> {
     pub tape: &'f Tape,
-    states: &'f [Vec<Line>; LANES],
-    pub derivatives: &'f [Lanes],
-}
-
-impl<'f> Found<'f> {
-    /// The numbers of all bodies but ground at output time k, this one or one of the seven before.
-    #[inline(always)]
-    pub fn states(&self, k: usize) -> &'f [Lanes] {
-        bytemuck::cast_slice(&self.states[k % LANES])
-    }
+    /// The numbers of all bodies but ground, and their derivatives.
+    pub block: Block<'f>,
 }
 
 impl<'m> SideBySide<'m> {
     /// By these programs. None where there is none, and where the nominal design is not as drawn at its first output time, where
-    /// `nominal` stands: designs could have gone other ways till there.
-    pub fn new(mut nominal: Stepper<'m>, programs: ProgramOf<'m>) -> Option<Self> {
+    /// `nominal` stands: designs could have gone other ways till there. `keeps` says whether the results of all output times are kept.
+    pub fn new(mut nominal: Stepper<'m>, programs: ProgramOf<'m>, keeps: bool) -> Option<Self> {
         if nominal.saved.drivers.iter().any(|f| f[0] != 0.0) {
             return None;
         }
         let blocks = nominal.topology.blocks.len();
         let first = Tape::new(programs(MOST_CORRECTIONS)?);
-        let (channels, unknowns) = (first.channels().len(), first.unknowns().count());
-        let [states, derivatives] = first.sizes().map(|size| vec![Line::default(); size]);
+        if !first.is_on(&nominal.branch) {
+            return None;
+        }
+        let channels = first.channels().len();
+        let derivatives = vec![Line::default(); first.sizes()[1]];
         let mut tapes = [const { None }; MOST_CORRECTIONS];
         tapes[MOST_CORRECTIONS - 1] = Some((first, false));
         let (course, drivers) = course(&mut nominal);
@@ -96,19 +95,26 @@ impl<'m> SideBySide<'m> {
             programs,
             tapes,
             by: MOST_CORRECTIONS - 1,
-            corrected: 0.0,
+            missed: 0.0,
             designs: Vec::new(),
             weights: Weights::default(),
             known: vec![[[0.0; LANES]; NODES * ORDERS]; channels],
             times: [0.0; NODES],
             count: 0,
-            rates: vec![[[0.0; LANES]; 2]; unknowns],
             determinants: vec![[0.0; LANES]; blocks],
             changes: vec![[0.0; LANES]; blocks],
-            ratios: vec![0.0; blocks],
-            states: std::array::from_fn(|_| states.clone()),
+            states: Arc::default(),
+            coordinates: Arc::default(),
             derivatives,
+            keeps,
         })
+    }
+
+    /// Gives one of the designs that were solved its results.
+    pub fn hand_over(&self, lane: usize, motion: &mut Motion) {
+        let of_design = |lines: &Arc<Vec<Line>>, width| Blocks::of_design(Arc::clone(lines), width, lane);
+        motion.states = of_design(&self.states, self.tape().sizes()[0]);
+        motion.coordinates = of_design(&self.coordinates, self.nominal.topology.coordinates.len());
     }
 
     /// What has solved the last step.
@@ -131,25 +137,44 @@ impl<'m> SideBySide<'m> {
         }
         self.designs.clear();
         self.designs.extend_from_slice(designs);
+        let steps = if self.keeps { model.times.len() } else { 1 };
+        let widths = [self.tape().sizes()[0], self.nominal.topology.coordinates.len()];
+        for (lines, width) in [&mut self.states, &mut self.coordinates].into_iter().zip(widths) {
+            // Who still reads the results of former designs keeps them.
+            if Arc::get_mut(lines).is_none_or(|lines| lines.len() != width * steps) {
+                *lines = Arc::new(vec![Line::default(); width * steps]);
+            }
+        }
         let mut effort = Effort { least_pivot_ratio: f64::INFINITY, ..Effort::default() };
         for (k, &t) in model.times.iter().enumerate() {
-            if k == 0 {
-                self.start(t, &mut effort)?
-            } else {
-                self.step(k, t, &mut effort)?
+            let solved = if k == 0 { self.start(t)? } else { self.step(k, t)? };
+            if self.keeps {
+                let at = widths[1] * k..widths[1] * (k + 1);
+                let Some((tape, _)) = &self.tapes[self.by] else { return None };
+                let room = &mut Arc::get_mut(&mut self.coordinates)?[at];
+                tape.coordinates(&self.nominal.topology, lanes_of(room));
             }
-            let (tape, derivatives) = (self.tape(), bytemuck::cast_slice(&self.derivatives));
-            each(k, &Found { tape, states: &self.states, derivatives });
+            let states = &self.states[self.states_at(k)];
+            let [states, derivatives] = [states, &self.derivatives].map(|lines| bytemuck::cast_slice(lines));
+            each(k, &Found { tape: self.tape(), block: Block { states, derivatives } });
             effort.steps += 1;
             effort.by_program += 1;
             effort.iterations += self.tape().passes();
-            effort.note_pivots(self.ratios.iter().copied(), t);
+            effort.worst_residual = effort.worst_residual.max(solved.residuals.largest);
+            effort.note_pivots([solved.pivot_ratio].into_iter(), t);
         }
         Some(effort)
     }
 
+    /// Where the numbers of all bodies at output time k stand.
+    fn states_at(&self, k: usize) -> Range<usize> {
+        let width = self.tape().sizes()[0];
+        let first = if self.keeps { width * k } else { 0 };
+        first..first + width
+    }
+
     /// All designs at the first output time, from where the nominal one is.
-    fn start(&mut self, t: f64, effort: &mut Effort) -> Option<()> {
+    fn start(&mut self, t: f64) -> Option<Solved> {
         let saved = &self.nominal.saved;
         for n in 0..self.known.len() {
             let x = self.tape().channels()[n].saved(&saved.q, &saved.balls);
@@ -157,7 +182,7 @@ impl<'m> SideBySide<'m> {
             self.known[n][0] = [x; LANES];
         }
         (self.times, self.count) = ([t; NODES], 1);
-        self.solve(MOST_CORRECTIONS, 0, &[0.0; LANES], effort)?;
+        let solved = self.solve(MOST_CORRECTIONS, 0, &[0.0; LANES])?;
         for b in 0..self.determinants.len() {
             let (now, before) = (self.tape().determinant(b), self.nominal.saved.determinants[b]);
             if !now.iter().all(|x| (MILD[0]..=MILD[1]).contains(&(x / before))) {
@@ -167,29 +192,25 @@ impl<'m> SideBySide<'m> {
         }
         self.count = 0;
         self.save(t);
-        Some(())
+        Some(solved)
     }
 
     /// All designs at the next output time, k.
-    fn step(&mut self, k: usize, t: f64, effort: &mut Effort) -> Option<()> {
+    fn step(&mut self, k: usize, t: f64) -> Option<Solved> {
         let ahead = [self.course.get(k)?.h; LANES];
-        let poor = GOOD.iter().filter(|good| !(self.corrected <= **good)).count();
-        let least = if self.count < NODES { MOST_CORRECTIONS } else { 1 + poor };
-        (least..=MOST_CORRECTIONS)
-            .find(|corrections| self.solve(*corrections, k, &ahead, effort).is_some())?;
-        let before = |n: usize, _, lane: usize| self.rates[n].map(|lanes| lanes[lane]);
-        let topology = &self.nominal.topology;
-        let smooth = self.tape().speeds_are_smooth(topology, before, &ahead, self.course[k].fastest);
-        if !smooth || !self.determinants_are_even(k) {
+        let is_good = self.count == NODES && self.missed <= GOOD;
+        let solved = self.solve(if is_good { 1 } else { MOST_CORRECTIONS }, k, &ahead)?;
+        if !self.tape().speeds_are_smooth(self.course[k].fastest) || !self.determinants_are_even(k) {
             return None;
         }
         self.save(t);
-        Some(())
+        Some(solved)
     }
 
     /// Tries the tape with so many corrections at output time k, so long beyond the newest position.
-    fn solve(&mut self, corrections: usize, k: usize, ahead: &Lanes, effort: &mut Effort) -> Option<()> {
+    fn solve(&mut self, corrections: usize, k: usize, ahead: &Lanes) -> Option<Solved> {
         self.weights.set((self.times.map(|t| t - self.times[0]), self.count), ahead);
+        let states_at = self.states_at(k);
         let kept = &mut self.tapes[corrections - 1];
         if kept.is_none() {
             *kept = Some((Tape::new((self.programs)(corrections)?), false));
@@ -199,7 +220,7 @@ impl<'m> SideBySide<'m> {
             tape.set_designs(&self.designs);
         }
         let nominal = &self.nominal;
-        tape.weights_mut().copy_from_slice(&self.weights.of);
+        tape.look_ahead(&self.weights.of, true, ahead);
         for (channel, known) in self.known.iter().enumerate() {
             tape.known_mut(channel).copy_from_slice(known);
         }
@@ -207,12 +228,11 @@ impl<'m> SideBySide<'m> {
         for (to, x) in tape.drivers_mut().iter_mut().zip(self.drivers[k * drivers..].as_flattened()) {
             *to = [*x; LANES];
         }
-        let results = [lanes_of(&mut self.states[k % LANES]), lanes_of(&mut self.derivatives)];
-        let judged = (&nominal.branch[..], &nominal.try_others[..]);
-        let residuals = tape.solve(judged, TRUST_FLOOR, &mut self.ratios, results).ok()?;
-        effort.worst_residual = effort.worst_residual.max(residuals.largest);
-        (self.by, self.corrected) = (corrections - 1, tape.first_correction());
-        Some(())
+        let states = &mut Arc::get_mut(&mut self.states)?[states_at];
+        let results = [lanes_of(states), lanes_of(&mut self.derivatives)];
+        let solved = tape.solve(TRUST_FLOOR, results).ok()?;
+        (self.by, self.missed) = (corrections - 1, tape.missed());
+        Some(solved)
     }
 
     /// Whether every determinant has changed by little up to output time k, and about as much as over the step before.
@@ -243,9 +263,6 @@ impl<'m> SideBySide<'m> {
             for (order, to) in known[..ORDERS].iter_mut().enumerate() {
                 *to = *tape.channel_lanes(channel, order);
             }
-        }
-        for (to, (_, [speed, acceleration])) in self.rates.iter_mut().zip(tape.unknowns()) {
-            *to = [*speed, *acceleration];
         }
         self.times.rotate_right(1);
         self.times[0] = t;

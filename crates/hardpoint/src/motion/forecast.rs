@@ -146,8 +146,10 @@ impl Forecast {
 
     #[inline(always)]
     fn remember(&mut self, t: f64) {
-        self.values.rotate_right(1);
-        self.times.rotate_right(1);
+        for n in (1..NODES).rev() {
+            self.values.swap(n - 1, n);
+            self.times[n] = self.times[n - 1];
+        }
         self.times[0] = t;
         self.count = usize::min(self.count + 1, NODES);
     }
@@ -156,11 +158,6 @@ impl Forecast {
     #[inline(always)]
     pub fn nodes(&self, h: f64) -> ([f64; NODES], usize) {
         (self.times.map(|t| t - self.times[0]), self.counting(h))
-    }
-
-    /// How long a time is behind the newest position.
-    pub fn ahead_of(&self, t: f64) -> f64 {
-        t - self.times[0]
     }
 
     /// What is known of a channel, position by position, the newest first.

@@ -10,7 +10,7 @@ use crate::space::{FullPivot, LARGEST_DENSE, Quat, Real};
 use crate::topology::{Source, Topology};
 
 use super::assembly::Assembly;
-use super::forecast::{Channel, Forecast};
+use super::forecast::Forecast;
 use super::kinematics::{PositionFailure, Residuals, State, factors_of};
 use super::parts::Parts;
 use super::singularity::{Prober, Surroundings};
@@ -436,20 +436,6 @@ impl<'m> Stepper<'m> {
         self.forecast.set(&mut self.state, t, h);
         self.expect_turns(h);
         self.expected_move(h)
-    }
-
-    /// By how much another forecast would have missed where the mechanism stands, rad or sizes; of balls by components.
-    pub(super) fn forecast_error(&mut self, forecast: &mut Forecast) -> f64 {
-        let (channels, mut state) = (Channel::all(&self.topology), self.state.clone());
-        forecast.set(&mut state, self.time, 0.0);
-        channels.into_iter().fold(0.0, |most, channel| {
-            let per_unit = match channel {
-                Channel::Coordinate(c) => self.topology.coordinates[c].per_unit,
-                Channel::Ball(..) => 1.0,
-            };
-            let [was, is] = [&state, &self.state].map(|s| channel.of(s)[0]);
-            f64::max(most, per_unit * (was - is).abs())
-        })
     }
 
     /// The largest move (rad, or sizes) over a step h, by speed and acceleration.

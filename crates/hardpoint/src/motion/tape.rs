@@ -14,14 +14,16 @@ use std::fmt;
 use std::sync::{Arc, Mutex, OnceLock};
 
 use hardpoint_code::{Code, PARTS, Scratch, Unsupported, Width};
-use hardpoint_tape::{Interpreter, LANES, Lanes, Number, Options, Program, record};
+use hardpoint_tape::{
+    Interpreter, LANES, Lanes, Number, Options, Pieces, PiecesRoom, Program, Shape, record,
+};
 
 use crate::blocks::{Line, lanes_of};
 use crate::joint::Freedom;
 use crate::law::Law;
 use crate::model::{BodyId, Effects, Model, VariableId};
 use crate::number::record as recording;
-use crate::space::{LARGEST_DENSE, MOST_GROWTH, Real, Vec3};
+use crate::space::{LARGEST_DENSE, MOST_GROWTH, Vec3};
 use crate::topology::{Source, Topology};
 
 use super::BodyState;
@@ -31,11 +33,19 @@ use super::margin::Margins;
 use super::parts::Parts;
 use super::stepper::{LOCKED, Saved, Stepper, smooth};
 
-/// Newton's first correction while recording, in units of each coordinate, for programs with one correction, two and three: the last
+/// Newton's first correction while recording, in units of each coordinate, for programs with one correction and with two: the last
 /// of them leaves round-off.
-const OFFSET: [f64; MOST_CORRECTIONS] = [1e-9, 1e-5, 1e-3];
-/// Steps that need more corrections are left to the kernel.
-pub(super) const MOST_CORRECTIONS: usize = 3;
+const OFFSET: [f64; MOST_CORRECTIONS] = [1e-9, 1e-5];
+/// What needs more corrections is solved by running a program again from where it came to.
+pub(super) const MOST_CORRECTIONS: usize = 2;
+/// What is not solved after so many runs is left to the kernel.
+const MOST_RUNS: usize = 4;
+/// From one run to the next the first correction must become smaller by this factor, as Newton's corrections must.
+const CONTRACTS: f64 = 0.5;
+/// A program of so many instructions does not stay in the fast memory of a core: where its pieces are alike, they share their code ...
+const LONG: usize = 10_000;
+/// ... if that makes it shorter by this factor.
+const SHORTER: usize = 2;
 /// Mechanisms with more links than this are not recorded: the program would no longer stay in the fast memory of a core.
 const MOST_LINKS: usize = 4000;
 /// What a channel is foreseen by.
@@ -46,7 +56,7 @@ const CONDITIONS: usize = NODES * ORDERS;
 pub(crate) struct Purpose {
     /// Whether the design is an input; else it is the nominal one.
     pub any_design: bool,
-    /// Newton's corrections: one, two or three.
+    /// Newton's corrections in one run: one or two.
     pub corrections: usize,
     /// Whether it works out the derivatives of all bodies by all variables.
     pub sensitivities: bool,
@@ -85,25 +95,91 @@ pub(crate) struct StepProgram {
     defects: Vec<(VariableId, usize)>,
 }
 
-/// A program, as machine code where there is any.
+/// A program, as machine code where there is any; a long one in pieces that share their code.
 #[derive(Debug)]
 pub(crate) struct Runnable {
+    inputs: usize,
+    sizes: [usize; PARTS],
+    form: Form,
+}
+
+#[derive(Debug)]
+enum Form {
+    Whole(Executable),
+    Pieces(Pieces, Vec<Executable>),
+}
+
+/// A program that is run as it is, with outputs in parts.
+#[derive(Debug)]
+struct Executable {
     program: Program,
-    ends: [usize; PARTS - 1],
     code: Option<Code>,
+}
+
+impl Executable {
+    fn new(program: Program, ends: [usize; PARTS - 1], execution: Execution) -> Self {
+        let code =
+            if execution == Execution::Interpreted { None } else { Code::in_parts(&program, ends).ok() };
+        Self { program, code }
+    }
+
+    #[inline(always)]
+    fn run(
+        &self,
+        (scratch, interpreter): (&mut Scratch, &mut Option<Interpreter>),
+        found: &mut Vec<Lanes>,
+        inputs: &[Lanes],
+        uniforms: &[f64],
+        outputs: [&mut [Lanes]; PARTS],
+    ) {
+        match &self.code {
+            Some(code) => code.run_in_parts(scratch, inputs, uniforms, outputs),
+            None => {
+                let interpreter = interpreter.get_or_insert_with(|| Interpreter::new(&self.program));
+                found.resize(self.program.outputs.len(), [0.0; LANES]);
+                interpreter.run(inputs, uniforms, found);
+                let mut rest = &found[..];
+                for to in outputs {
+                    let (part, others) = rest.split_at(to.len());
+                    to.copy_from_slice(part);
+                    rest = others;
+                }
+            }
+        }
+    }
 }
 
 impl Runnable {
     /// Its outputs in parts that end there.
     fn new(program: Program, ends: [usize; PARTS - 1], execution: Execution) -> Self {
-        let code =
-            if execution == Execution::Interpreted { None } else { Code::in_parts(&program, ends).ok() };
-        Self { program, ends, code }
+        Self::in_pieces(program, ends, execution, |_| 0)
     }
 
-    /// How many numbers it gives.
-    pub fn outputs(&self) -> usize {
-        self.program.outputs.len()
+    /// The same; `piece_of` says which piece of a long program an input belongs to.
+    fn in_pieces(
+        program: Program,
+        ends @ [first, second]: [usize; PARTS - 1],
+        execution: Execution,
+        piece_of: impl Fn(u32) -> usize,
+    ) -> Self {
+        let (inputs, long) = (program.inputs, program.instructions.len());
+        let sizes = [first, second - first, program.outputs.len() - second];
+        let pieces = (long > LONG).then(|| program.in_pieces(piece_of, ends)).flatten();
+        let form = match pieces.filter(|pieces| SHORTER * pieces.instructions() <= long) {
+            Some(pieces) => {
+                let executable =
+                    |shape: &Shape| Executable::new(shape.program.clone(), shape.ends, execution);
+                let shapes = pieces.shapes.iter().map(executable).collect();
+                Form::Pieces(pieces, shapes)
+            }
+            None => Form::Whole(Executable::new(program, ends, execution)),
+        };
+        Self { inputs, sizes, form }
+    }
+
+    /// How many numbers it gives, in every part.
+    pub fn sizes(&self) -> [usize; PARTS] {
+        self.sizes
     }
 }
 
@@ -111,25 +187,28 @@ impl Runnable {
 #[derive(Debug, Default)]
 pub(crate) struct Room {
     scratch: Scratch,
-    interpreter: Option<Interpreter>,
-    /// What that gives.
+    /// One for every program.
+    interpreters: Vec<Option<Interpreter>>,
+    /// What they give.
     outputs: Vec<Lanes>,
+    pieces: PiecesRoom,
 }
 
 impl Room {
     #[inline(always)]
     pub fn run(&mut self, runnable: &Runnable, inputs: &[Lanes], outputs: [&mut [Lanes]; PARTS]) {
-        match &runnable.code {
-            Some(code) => code.run_in_parts(&mut self.scratch, inputs, &[], outputs),
-            None => {
-                let interpreter = self.interpreter.get_or_insert_with(|| Interpreter::new(&runnable.program));
-                self.outputs.resize(runnable.outputs(), [0.0; LANES]);
-                interpreter.run(inputs, &[], &mut self.outputs);
-                let [first, second] = runnable.ends;
-                let parts = [0..first, first..second, second..self.outputs.len()];
-                for (to, part) in outputs.into_iter().zip(parts) {
-                    to.copy_from_slice(&self.outputs[part]);
-                }
+        let Self { scratch, interpreters, outputs: found, pieces: room } = self;
+        match &runnable.form {
+            Form::Whole(executable) => {
+                interpreters.resize(1, None);
+                executable.run((scratch, &mut interpreters[0]), found, inputs, &[], outputs);
+            }
+            Form::Pieces(pieces, shapes) => {
+                interpreters.resize(shapes.len(), None);
+                pieces.run(room, inputs, outputs, |shape, inputs, uniforms, outputs| {
+                    let with = (&mut *scratch, &mut interpreters[shape]);
+                    shapes[shape].run(with, found, inputs, uniforms, outputs);
+                });
             }
         }
     }
@@ -140,7 +219,8 @@ impl Room {
 struct BlockProgram {
     /// The largest factor in the order of the pivots.
     growth: f64,
-    /// Whether a positive product of the pivots is a positive determinant.
+    /// Whether the determinant is positive, and whether it is where the product of the pivots is.
+    positive: bool,
     is_even: bool,
     /// Newton's passes.
     passes: usize,
@@ -162,6 +242,7 @@ impl BlockProgram {
         let positive = watched.product.value() > 0.0;
         (last < CORRECTIONS).then_some(Self {
             growth: watched.growth.value(),
+            positive: state.pivots[b].1,
             is_even: state.pivots[b].1 == positive,
             passes: *passes,
             last,
@@ -177,11 +258,12 @@ struct Unknown {
     speed: usize,
 }
 
-/// Where the inputs of a program begin: weights, then positions of every channel, the newest first, drivers, variables of the
-/// design, and what depends on them alone.
+/// Where the inputs of a program begin: weights, then positions of every channel, the newest first, drivers, how far ahead of the
+/// newest position it is, variables of the design, and what depends on them alone.
 #[derive(Clone, Copy, Debug)]
 struct Inputs {
     drivers: usize,
+    ahead: usize,
     design: usize,
     of_design: usize,
 }
@@ -189,8 +271,9 @@ struct Inputs {
 impl Inputs {
     fn of(channels: &[Channel], drivers: usize, variables: usize) -> Self {
         let drivers_at = CONDITIONS * (1 + channels.len());
-        let design = drivers_at + ORDERS * drivers;
-        Self { drivers: drivers_at, design, of_design: design + variables }
+        let ahead = drivers_at + ORDERS * drivers;
+        let design = ahead + 1;
+        Self { drivers: drivers_at, ahead, design, of_design: design + variables }
     }
 }
 
@@ -198,17 +281,35 @@ impl Inputs {
 /// and then these.
 #[derive(Clone, Copy, Debug)]
 struct Outputs {
+    judged: usize,
     blocks: usize,
-    residuals: usize,
-    limits: usize,
     margins: usize,
     defects: usize,
     states: usize,
     derivatives: usize,
 }
 
-/// Per block: product, most, least and growth of its factors; the first correction, and the last.
-const PER_BLOCK: usize = 6;
+/// What a run is judged by, in this order.
+#[derive(Clone, Copy, Debug)]
+enum Judged {
+    /// Positive where the pivots, or what was decided while recording, do not fit.
+    Unfit,
+    /// The largest first correction of all blocks, rad or sizes.
+    First,
+    /// By how much the last correction is more than round-off; positive where another run is needed.
+    Last,
+    /// The largest residual, and the largest in sizes of loops.
+    Residual,
+    ScaledResidual,
+    /// The largest pivot of a block over its smallest, of all blocks.
+    Pivots,
+    /// By how much speeds differ at most from those foreseen by the newest position, and the largest of all speeds; rad, or sizes.
+    Apart,
+    Fastest,
+}
+
+/// Per block: the product of its pivots, and the largest over the smallest.
+const PER_BLOCK: usize = 2;
 
 impl StepProgram {
     /// Why the steps of a plan are not recorded, if they are not.
@@ -243,8 +344,10 @@ impl StepProgram {
         recording::begin();
         let recorded = record(|| {
             let mut state = State::new(model, topology);
-            foresee(topology, &channels, &one.saved, OFFSET[purpose.corrections - 1], &mut state);
+            let offset = OFFSET[purpose.corrections - 1];
+            let known = foresee(topology, &channels, &one.saved, offset, &mut state);
             let drivers: Vec<[Number; 3]> = one.saved.drivers.iter().map(|f| f.map(Number::input)).collect();
+            let ahead = Number::input(0.0);
             let nominal = model.whole(&[]).into_iter();
             let number = if purpose.any_design { Number::input } else { Number::constant };
             let values: Vec<Number> = nominal.map(number).collect();
@@ -256,12 +359,6 @@ impl StepProgram {
             fits &= blocks.len() == topology.blocks.len();
 
             let mut out = moves(topology, &channels, &state);
-            let blocks_at = out.len();
-            for ((w, (corrections, _)), block) in state.watched.iter().zip(&state.corrections).zip(&blocks) {
-                out.extend([w.product, w.most, w.least, w.growth, corrections[0], corrections[block.last]]);
-            }
-            let residuals = out.len();
-            out.extend(state.largest_residuals(topology, &parts, &drivers));
             let bodies = BodyState::all(&state);
             let (margins, mut limits) = match purpose.margins {
                 true => Margins::new(topology).record(topology, &state),
@@ -273,20 +370,30 @@ impl StepProgram {
             };
             limits.extend(more.limits.into_iter().chain(recording::limits()));
             (moved, defects) = (more.moved, more.defects);
-            let limits_at = out.len();
-            let margins_at = limits_at + limits.len();
+            let judged = out.len();
+            let residuals = state.largest_residuals(topology, &parts, &drivers);
+            let speeds = speeds(topology, &channels, &known, ahead, &state);
+            out.extend(self::judged(one, &state, &blocks, limits));
+            out.extend(residuals);
+            out.push(match state.watched.is_empty() {
+                true => Number::constant(1.0),
+                false => largest_of(state.watched.iter().map(|w| w.most * w.least)),
+            });
+            out.extend(speeds);
+            let blocks_at = out.len();
+            out.extend(state.watched.iter().flat_map(|w| [w.product, w.most * w.least]));
+            let margins_at = out.len();
             let defects_at = margins_at + margins.len();
             let states = defects_at + more.judged.len();
             places = Some(Outputs {
+                judged,
                 blocks: blocks_at,
-                residuals,
-                limits: limits_at,
                 margins: margins_at,
                 defects: defects_at,
                 states,
                 derivatives: states + bodies.len(),
             });
-            out.extend([limits, margins, more.judged, bodies, more.results].concat());
+            out.extend([margins, more.judged, bodies, more.results].concat());
             out
         });
         let outputs = places.filter(|_| fits && recording::is_arithmetic())?;
@@ -296,7 +403,11 @@ impl StepProgram {
         let (design, step) = program.staged(|input| input as usize >= inputs.design);
         let all = design.outputs.len();
         let design = Runnable::new(design, [all; PARTS - 1], execution);
-        let step = Runnable::new(step, [outputs.states, outputs.derivatives], execution);
+        let ends = [outputs.states, outputs.derivatives];
+        let pieces = pieces(topology, &channels);
+        let step = Runnable::in_pieces(step, ends, execution, |input| {
+            pieces.get((input as usize / CONDITIONS).wrapping_sub(1)).copied().unwrap_or(0)
+        });
         Some(Self {
             purpose,
             design,
@@ -316,6 +427,18 @@ impl StepProgram {
     pub fn moved(&self) -> &[(VariableId, BodyId)] {
         &self.moved
     }
+}
+
+/// Which piece of a program a channel belongs to: one for every block.
+fn pieces(topology: &Topology, channels: &[Channel]) -> Vec<usize> {
+    let mut piece_of = vec![0; topology.coordinates.len()];
+    for (b, block) in topology.blocks.iter().enumerate() {
+        block.unknowns.iter().for_each(|c| piece_of[*c] = b + 1);
+    }
+    let coordinate = |channel: &Channel| match *channel {
+        Channel::Coordinate(c) | Channel::Ball(c, _) => c,
+    };
+    channels.iter().map(|channel| piece_of[coordinate(channel)]).collect()
 }
 
 /// All unknowns, balls' included.
@@ -352,11 +475,69 @@ fn moves(topology: &Topology, channels: &[Channel], state: &State<Number>) -> Ve
     out
 }
 
-/// Makes inputs of what foresees the state, `offset` beside where `at` is.
-fn foresee(topology: &Topology, channels: &[Channel], at: &Saved, offset: f64, state: &mut State<Number>) {
+/// What the steps are judged by, up to [`Judged::Last`], in blocks that are recorded so; none of the limits may be positive.
+fn judged(
+    one: &Stepper<'_>,
+    state: &State<Number>,
+    blocks: &[BlockProgram],
+    limits: Vec<Number>,
+) -> [Number; 3] {
+    let (mut unfit, mut first, mut last) = (limits, Vec::new(), Vec::new());
+    for (b, block) in blocks.iter().enumerate() {
+        let (w, (corrections, _)) = (&state.watched[b], &state.corrections[b]);
+        // The determinant keeps its sign, ...
+        let side = if block.positive == block.is_even { -1.0 } else { 1.0 };
+        unfit.push(w.product * side);
+        // ... the order of the pivots serves, ...
+        unfit.push(w.growth + -f64::max(MOST_GROWTH, 2.0 * block.growth));
+        // ... and no other rows are better: 1 / (most least) is the pivot ratio.
+        unfit.push(w.most * w.least * one.try_others[b] + -1.0);
+        first.push(corrections[0]);
+        last.push(corrections[block.last] + -block.limit);
+    }
+    [unfit, first, last].map(|x| largest_of(x.into_iter()))
+}
+
+/// The largest of these; NaN where one is, and of none at all the least number.
+fn largest_of(numbers: impl Iterator<Item = Number>) -> Number {
+    numbers.reduce(Number::larger).unwrap_or_else(|| Number::constant(f64::MIN))
+}
+
+/// By how much the speeds differ at most from those that speed and acceleration at the newest position foresee, so long ahead; and the
+/// fastest of both. In rad, or sizes; a ball's are twice those of its quaternion.
+fn speeds(
+    topology: &Topology,
+    channels: &[Channel],
+    known: &[[Number; CONDITIONS]],
+    ahead: Number,
+    state: &State<Number>,
+) -> [Number; 2] {
+    let (mut apart, mut fastest) = (Vec::new(), Vec::new());
+    for (channel, known) in channels.iter().zip(known) {
+        let per_unit = match *channel {
+            Channel::Coordinate(c) => topology.coordinates[c].per_unit,
+            Channel::Ball(..) => 2.0,
+        };
+        let [_, speed, _] = channel.of(state);
+        let [_, before, acceleration] = [known[0], known[1], known[2]];
+        let foreseen = acceleration.times_plus(ahead, before);
+        apart.push((speed - foreseen).abs() * per_unit);
+        fastest.push(speed.abs().larger(before.abs()) * per_unit);
+    }
+    [apart, fastest].map(|x| largest_of(x.into_iter()))
+}
+
+/// Makes inputs of what foresees the state, `offset` beside where `at` is; returns what is known of every channel.
+fn foresee(
+    topology: &Topology,
+    channels: &[Channel],
+    at: &Saved,
+    offset: f64,
+    state: &mut State<Number>,
+) -> Vec<[Number; CONDITIONS]> {
     let first = |n: usize, x: f64| Number::input(if n == 0 { x } else { 0.0 });
     let weights: [Number; CONDITIONS] = std::array::from_fn(|n| first(n, 1.0));
-    for channel in channels {
+    let one = |channel: &Channel| {
         let beside = match *channel {
             Channel::Coordinate(c) => at.q[c] + offset * topology.coordinates[c].unit,
             Channel::Ball(c, k) => at.balls[c].nudged(Vec3::new(offset, offset, offset)).component(k),
@@ -365,7 +546,9 @@ fn foresee(topology: &Topology, channels: &[Channel], at: &Saved, offset: f64, s
         // What counts least comes first.
         let terms = weights.into_iter().zip(known).rev();
         channel.put(terms.fold(Number::constant(0.0), |sum, (w, x)| w.times_plus(x, sum)), state);
-    }
+        known
+    };
+    channels.iter().map(one).collect()
 }
 
 /// Recording pays from so many steps on: it costs about as much as a few hundred of the kernel's, once, and later runs have it for
@@ -473,8 +656,8 @@ impl Programs {
         steps.entry(purpose).or_insert_with(|| record(self.execution).map(Arc::new)).clone()
     }
 
-    /// The drivers' laws of the nominal design at eight times: value, speed and acceleration of each driver, and then what must not
-    /// be positive. None where a law is no plain formula.
+    /// The drivers' laws of the nominal design at eight times: in one part value, speed and acceleration of each driver, in the next what
+    /// must not be positive. None where a law is no plain formula.
     pub fn laws(&self, model: &Model) -> Option<Arc<Runnable>> {
         let mut laws = self.laws.lock().expect("no one panics while recording");
         laws.get_or_insert_with(|| {
@@ -488,7 +671,8 @@ impl Programs {
             let fits = recording::is_arithmetic();
             let program = recorded.program(Options::default()).0;
             let all = program.outputs.len();
-            fits.then(|| Arc::new(Runnable::new(program, [all; PARTS - 1], self.execution)))
+            let laws = ORDERS * model.drivers.len();
+            fits.then(|| Arc::new(Runnable::new(program, [laws, all], self.execution)))
         })
         .clone()
     }
@@ -504,17 +688,39 @@ pub(crate) struct Tape {
     room: Room,
     inputs: Vec<Line>,
     outputs: Vec<Line>,
-    /// Groups of steps that were tried, and those that were refused.
+    /// Groups of steps that were tried, those that were refused, and those that took more than one run.
     tried: usize,
     refused: usize,
+    repeated: usize,
+    /// Of the last one: its runs, and the largest first correction of the first run, rad or sizes.
+    runs: usize,
+    missed: f64,
+}
+
+/// How well steps were solved.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Solved {
+    pub residuals: Residuals,
+    /// The smallest pivot ratio of all blocks.
+    pub pivot_ratio: f64,
 }
 
 impl Tape {
     pub fn new(program: Arc<StepProgram>) -> Self {
-        let inputs = program.inputs.of_design + program.design.outputs();
-        let inputs = vec![Line::default(); usize::max(inputs, program.step.program.inputs)];
+        let inputs = program.inputs.of_design + program.design.sizes()[0];
+        let inputs = vec![Line::default(); usize::max(inputs, program.step.inputs)];
         let outputs = vec![Line::default(); program.outputs.states];
-        Self { room: Room::default(), inputs, outputs, program, tried: 0, refused: 0 }
+        Self {
+            room: Room::default(),
+            inputs,
+            outputs,
+            program,
+            tried: 0,
+            refused: 0,
+            repeated: 0,
+            runs: 0,
+            missed: 0.0,
+        }
     }
 
     /// Takes the designs whose values these are, one per lane; the last one in lanes beyond.
@@ -525,14 +731,23 @@ impl Tape {
             self.inputs[inputs.design + v] = Line(std::array::from_fn(of_lane));
         }
         let (given, found) = self.inputs.split_at_mut(inputs.of_design);
-        let (given, found) =
-            (&lanes_of(given)[..design.program.inputs], &mut lanes_of(found)[..design.outputs()]);
+        let (given, found) = (&lanes_of(given)[..design.inputs], &mut lanes_of(found)[..design.sizes()[0]]);
         Room::default().run(design, given, [found, &mut [], &mut []]);
     }
 
     /// Whether it is refused so often that the kernel alone is faster.
     pub fn is_of_no_use(&self) -> bool {
         self.tried >= TRIAL && 4 * self.refused > self.tried
+    }
+
+    /// Whether so many steps take more than one run that a program with more corrections would be faster.
+    pub fn is_too_short(&self) -> bool {
+        self.tried >= TRIAL && 4 * self.repeated > self.tried
+    }
+
+    /// Whether its determinants have the signs of these branches.
+    pub fn is_on(&self, branch: &[(bool, f64)]) -> bool {
+        self.program.blocks.iter().zip(branch).all(|(block, (positive, _))| block.positive == *positive)
     }
 
     /// Which variable moves which body, in the order of their derivatives.
@@ -561,9 +776,17 @@ impl Tape {
         self.program.purpose
     }
 
-    /// What every position counts for: by position, the newest first, and order of its derivative.
-    pub fn weights_mut(&mut self) -> &mut [Lanes] {
-        &mut lanes_of(&mut self.inputs)[..CONDITIONS]
+    /// Foresees times so far ahead of the newest position by these weights: by position, the newest first, and order of its derivative;
+    /// they may be the ones of last time.
+    #[inline(always)]
+    pub fn look_ahead(&mut self, weights: &[Lanes; CONDITIONS], are_new: bool, ahead: &Lanes) {
+        let at = self.program.inputs.ahead;
+        let inputs = lanes_of(&mut self.inputs);
+        // Runs after the first went by others.
+        if are_new || self.runs != 1 {
+            inputs[..CONDITIONS].copy_from_slice(weights);
+        }
+        inputs[at] = *ahead;
     }
 
     /// What is known of a channel, ordered like the weights.
@@ -575,8 +798,8 @@ impl Tape {
     /// Value, speed and acceleration of every driver.
     #[inline(always)]
     pub fn drivers_mut(&mut self) -> &mut [Lanes] {
-        let Inputs { drivers, design, .. } = self.program.inputs;
-        &mut lanes_of(&mut self.inputs)[drivers..design]
+        let Inputs { drivers, ahead, .. } = self.program.inputs;
+        &mut lanes_of(&mut self.inputs)[drivers..ahead]
     }
 
     /// The same, read.
@@ -585,49 +808,66 @@ impl Tape {
         &self.inputs[self.program.inputs.drivers + ORDERS * d + order].0
     }
 
-    /// Solves the steps that were given, and judges each: `branch` says which sign of each determinant is
-    /// expected, and `least` which pivot ratio at the least; `trust` bounds the first correction (rad, or sizes). Gives the largest
-    /// residuals; the smallest pivot ratio of each block goes to `ratios`, the numbers of all bodies but ground and their derivatives
-    /// to the two lists, where they mean nothing if the steps are refused.
+    /// Solves the steps that were given, and judges each; `trust` bounds the first correction (rad, or sizes). The numbers of all
+    /// bodies but ground and their derivatives go to the two lists, where they mean nothing if the steps are refused.
     #[inline(always)]
     pub fn solve(
         &mut self,
-        (branch, least): (&[(bool, f64)], &[f64]),
-        trust: f64,
-        ratios: &mut [f64],
+        mut trust: f64,
         [states, derivatives]: [&mut [Lanes]; 2],
-    ) -> Result<Residuals, Refused> {
+    ) -> Result<Solved, Refused> {
         self.tried += 1;
         self.refused += 1;
-        let program = &*self.program;
-        let outputs = [lanes_of(&mut self.outputs), states, derivatives];
-        self.room.run(&program.step, bytemuck::cast_slice(&self.inputs), outputs);
-        let at = |k: usize| &self.outputs[k].0;
-        // All comparisons are written so that NaN is refused.
-        for (b, recorded) in program.blocks.iter().enumerate() {
-            let k = program.outputs.blocks + PER_BLOCK * b;
-            let grown = f64::max(MOST_GROWTH, 2.0 * recorded.growth);
-            let sign = if recorded.is_even == branch[b].0 { 1.0 } else { -1.0 };
-            let mut fits = true;
-            for lane in 0..LANES {
-                fits &= at(k)[lane] * sign > 0.0
-                    && at(k + 3)[lane] <= grown
-                    && at(k + 4)[lane] <= trust
-                    && at(k + 5)[lane] <= recorded.limit;
-            }
-            ratios[b] = 1.0 / (largest(at(k + 1)) * largest(at(k + 2)));
-            if !(fits && ratios[b] > 0.0 && ratios[b] >= least[b]) {
+        self.runs = 0;
+        loop {
+            let outputs = [lanes_of(&mut self.outputs), &mut *states, &mut *derivatives];
+            self.room.run(&self.program.step, bytemuck::cast_slice(&self.inputs), outputs);
+            self.runs += 1;
+            // All comparisons are written so that NaN is refused.
+            if !all_within(self.judged(Judged::First), trust) {
                 return Err(Refused);
             }
+            if self.runs == 1 {
+                self.missed = largest(self.judged(Judged::First));
+            }
+            if all_within(self.judged(Judged::Last), 0.0) {
+                break;
+            }
+            if self.runs == MOST_RUNS {
+                return Err(Refused);
+            }
+            trust = CONTRACTS * largest(self.judged(Judged::First));
+            self.go_on_from_here();
         }
-        let residuals = program.outputs.residuals;
-        let residuals = Residuals { largest: largest(at(residuals)), scaled: largest(at(residuals + 1)) };
-        let limits = &self.outputs[program.outputs.limits..program.outputs.margins];
-        if !(residuals.scaled <= LOCKED && limits.iter().all(|l| l.0.iter().all(|x| *x <= 0.0))) {
+        let pivot_ratio = 1.0 / largest(self.judged(Judged::Pivots));
+        let fits = all_within(self.judged(Judged::Unfit), 0.0)
+            && all_within(self.judged(Judged::ScaledResidual), LOCKED)
+            && pivot_ratio > 0.0;
+        if !fits {
             return Err(Refused);
         }
         self.refused -= 1;
-        Ok(residuals)
+        self.repeated += usize::from(self.runs > 1);
+        let residuals = [Judged::Residual, Judged::ScaledResidual].map(|which| largest(self.judged(which)));
+        Ok(Solved { residuals: Residuals { largest: residuals[0], scaled: residuals[1] }, pivot_ratio })
+    }
+
+    /// Foresees the positions that were just found.
+    #[cold]
+    fn go_on_from_here(&mut self) {
+        let (inputs, n) = (lanes_of(&mut self.inputs), self.program.channels.len());
+        inputs[..CONDITIONS].fill([0.0; LANES]);
+        inputs[0] = [1.0; LANES];
+        for (known, found) in
+            inputs[CONDITIONS..].chunks_mut(CONDITIONS).zip(self.outputs.chunks(ORDERS)).take(n)
+        {
+            known[0] = found[0].0;
+        }
+    }
+
+    #[inline(always)]
+    fn judged(&self, which: Judged) -> &Lanes {
+        &self.outputs[self.program.outputs.judged + which as usize].0
     }
 
     /// Counts the steps that were just solved as refused: what came after them did not fit.
@@ -635,16 +875,19 @@ impl Tape {
         self.refused += 1;
     }
 
-    /// The largest first correction of all blocks, rad or sizes.
-    #[inline(always)]
-    pub fn first_correction(&self) -> f64 {
-        let at = |b: usize| &self.outputs[self.program.outputs.blocks + PER_BLOCK * b + 4].0;
-        (0..self.program.blocks.len()).map(|b| largest(at(b))).fold(0.0, f64::max)
+    /// By how much the forecast missed at most, rad or sizes: the largest first correction of all blocks.
+    pub fn missed(&self) -> f64 {
+        self.missed
     }
 
     /// Newton's passes in all blocks.
     pub fn passes(&self) -> usize {
-        self.program.blocks.iter().map(|b| b.passes).sum()
+        self.runs * self.program.blocks.iter().map(|b| b.passes).sum::<usize>()
+    }
+
+    /// The pivot ratio of a block in one lane.
+    pub fn pivot_ratio(&self, b: usize, lane: usize) -> f64 {
+        1.0 / self.outputs[self.program.outputs.blocks + PER_BLOCK * b + 1].0[lane]
     }
 
     /// The determinant of a block, without its sign.
@@ -676,28 +919,12 @@ impl Tape {
         self.program.unknowns.iter().map(move |u| (u.coordinate, [at(u.speed), at(u.speed + 1)]))
     }
 
-    /// Whether the speeds are those of the same branch as so long before, where the n-th unknown, coordinate c, had in a lane the speed
-    /// and acceleration `before(n, c, lane)`.
+    /// Whether the speeds are those of the same branch as at the newest position, with so fast a driver.
     #[inline(always)]
-    pub fn speeds_are_smooth(
-        &self,
-        topology: &Topology,
-        before: impl Fn(usize, usize, usize) -> [f64; 2],
-        ahead: &Lanes,
-        fastest_driver: f64,
-    ) -> bool {
-        let (mut fastest, mut difference) = ([0.0; LANES], [0.0; LANES]);
-        for (n, (c, [speeds, _])) in self.unknowns().enumerate() {
-            let per_unit = topology.coordinates[c].per_unit;
-            for lane in 0..LANES {
-                let [speed, acceleration] = before(n, c, lane);
-                let apart = (speeds[lane] - (speed + acceleration * ahead[lane])).abs();
-                let faster = f64::max(speeds[lane].abs(), speed.abs());
-                fastest[lane] = Real::larger(fastest[lane], faster * per_unit);
-                difference[lane] = Real::larger(difference[lane], apart * per_unit);
-            }
-        }
-        smooth(largest(&difference), largest(&fastest), fastest_driver)
+    pub fn speeds_are_smooth(&self, fastest_driver: f64) -> bool {
+        let [apart, fastest] = [Judged::Apart, Judged::Fastest].map(|which| self.judged(which));
+        // NaN of any lane is refused.
+        all_within(apart, f64::MAX) && smooth(largest(apart), largest(fastest), fastest_driver)
     }
 
     /// The margins of the blocks, if they are worked out.
@@ -708,7 +935,7 @@ impl Tape {
     /// How many numbers all bodies but ground have, and how many their derivatives.
     pub fn sizes(&self) -> [usize; 2] {
         let Outputs { states, derivatives, .. } = self.program.outputs;
-        [derivatives - states, self.program.step.outputs() - derivatives]
+        [derivatives - states, self.program.step.sizes()[2]]
     }
 
     /// Which variable fails which row, by how much, and what of it may be round-off; variable by variable.
@@ -719,8 +946,16 @@ impl Tape {
     }
 }
 
-/// The largest lane; NaN if any is NaN.
+/// Whether no lane is larger; NaN is.
 #[inline(always)]
-fn largest(lanes: &Lanes) -> f64 {
-    lanes.iter().fold(f64::NEG_INFINITY, |most, x| Real::larger(most, *x))
+pub(super) fn all_within(lanes: &Lanes, limit: f64) -> bool {
+    lanes.iter().fold(true, |all, x| all & (*x <= limit))
+}
+
+/// The largest lane, of numbers.
+#[inline(always)]
+pub(super) fn largest(lanes: &Lanes) -> f64 {
+    let larger = |a: f64, b: f64| if a > b { a } else { b };
+    let [a, b, c, d, e, f, g, h] = *lanes;
+    larger(larger(larger(a, e), larger(b, f)), larger(larger(c, g), larger(d, h)))
 }

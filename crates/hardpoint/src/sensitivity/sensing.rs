@@ -71,9 +71,9 @@ impl Sensing {
         }
     }
 
-    /// Notes what resists at these output times, as a program has found them.
-    pub fn note(&mut self, tape: &Tape, topology: &Topology, times: &[f64]) {
-        note_defects(tape, topology, times, (&mut self.resisting, 0));
+    /// Notes what resists at these output times, as a program has found them from this lane on.
+    pub fn note(&mut self, tape: &Tape, topology: &Topology, times: &[f64], first: usize) {
+        note_defects(tape, topology, (times, first), (&mut self.resisting, 0));
     }
 
     /// What so many steps say of every variable's admissibility, given the joints that each opens in the design.
@@ -175,20 +175,21 @@ pub(crate) fn record_derivatives(
     Some(recorded)
 }
 
-/// Notes what resists where a tape has come to, at these times in its lanes; what is kept in mind of one lane's variables begins
-/// `apart` after that of the lane before: 0 where all are times of one design.
+/// Notes what resists where a tape has come to, at these times in its lanes from `first` on; what is kept in mind of one lane's
+/// variables begins `apart` after that of the lane before: 0 where all are times of one design.
 pub(crate) fn note_defects(
     tape: &Tape,
     topology: &Topology,
-    times: &[f64],
+    (times, first): (&[f64], usize),
     (resisting, apart): (&mut [Resisting], usize),
 ) {
     // Written so that NaN resists.
     let fails = |[defect, limit]: &[Lanes; 2], lane: usize| !(defect[lane] <= limit[lane]);
-    if tape.defects().all(|(_, _, found)| (0..times.len()).all(|lane| !fails(found, lane))) {
+    if tape.defects().all(|(_, _, found)| (0..times.len()).all(|n| !fails(found, first + n))) {
         return;
     }
-    for (lane, &t) in times.iter().enumerate() {
+    for (n, &t) in times.iter().enumerate() {
+        let lane = first + n;
         let failing = tape.defects().filter(|(_, _, found)| fails(found, lane));
         let mut failing = failing
             .map(|(variable, row, found)| (variable, Defect { row, value: found[0][lane] }))
@@ -199,7 +200,7 @@ pub(crate) fn note_defects(
                     worst = other;
                 }
             }
-            note(&mut resisting[apart * lane + variable.0], topology, worst, t);
+            note(&mut resisting[apart * n + variable.0], topology, worst, t);
         }
     }
 }
