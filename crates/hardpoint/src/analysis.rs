@@ -7,7 +7,6 @@ use std::sync::{Arc, OnceLock};
 
 use hardpoint_tape::{LANES, Number};
 
-use crate::blocks::turned;
 use crate::law::Law;
 use crate::measure::{self, Before, Measured, SlopeValues};
 use crate::model::{BodyId, Effects, Field, Geometry, Model};
@@ -23,7 +22,7 @@ use crate::sensitivity::{
     Admissibility, JointDefect, Resisting, Sensing, Sensitivities, admissibility, admissibility_at_design,
     along, note_defects, record_derivatives,
 };
-use crate::sink::{Block, Sink, Store};
+use crate::sink::{Sink, Store};
 use crate::topology::{Formulation, Topology, TopologyFault};
 
 /// A model with its plan of solution, ready to be run as often as needed.
@@ -470,7 +469,7 @@ impl<'m> Analysis<'m> {
         let program = move |corrections| {
             self.program(Purpose { any_design: true, corrections, sensitivities, margins: false })
         };
-        SideBySide::new(self.started()?, Box::new(program))
+        SideBySide::new(self.started()?, Box::new(program), !sensitivities)
     }
 
     /// Motions of up to as many designs as there are lanes, side by side.
@@ -482,35 +481,13 @@ impl<'m> Analysis<'m> {
         solutions: &mut [Solution],
     ) {
         for Solution { motion, .. } in solutions.iter_mut() {
-            self.make_room(motion, self.model.times.len());
+            self.make_room(motion, 0);
         }
-        let mut coordinates = vec![[[0.0; LANES]; LANES]; self.topology.coordinates.len()];
-        let mut now = vec![[0.0; LANES]; coordinates.len()];
-        let last = self.model.times.len().saturating_sub(1);
         let solved = beside.as_mut().filter(|_| designs.len() > 1).and_then(|beside| {
             let values: Vec<Vec<f64>> = designs.iter().map(|d| self.model.whole(d)).collect();
-            beside.run(&values, |k, found| {
-                found.tape.coordinates(&self.topology, &mut now);
-                for (q, now) in coordinates.iter_mut().zip(&now) {
-                    (0..LANES).for_each(|lane| q[lane][k % LANES] = now[lane]);
-                }
-                if k % LANES < LANES - 1 && k < last {
-                    return;
-                }
-                let mut rooms = solutions.iter_mut().map(|s| s.motion.states.block_mut(k));
-                let mut rooms: [_; LANES] = std::array::from_fn(|_| rooms.next().unwrap_or_default());
-                turned(std::array::from_fn(|lane| found.states(lane)), |column, designs| {
-                    for (room, lanes) in rooms.iter_mut().zip(designs) {
-                        if let Some(to) = room.get_mut(column) {
-                            *to = *lanes;
-                        }
-                    }
-                });
-                for (lane, Solution { motion, .. }) in solutions.iter_mut().enumerate() {
-                    let room = motion.coordinates.block_mut(k).iter_mut();
-                    room.zip(&coordinates).for_each(|(to, q)| *to = q[lane]);
-                }
-            })
+            let effort = beside.run(&values, |_, _| ())?;
+            solutions.iter_mut().enumerate().for_each(|(lane, s)| beside.hand_over(lane, &mut s.motion));
+            Some(effort)
         });
         for (design, solution) in designs.iter().zip(solutions) {
             let Some(effort) = solved else {
@@ -543,9 +520,13 @@ impl<'m> Analysis<'m> {
         let mut resisting = vec![(Vec::new(), 0.0); LANES * variables];
         let effort = beside.run(&values, |k, found| {
             let times = [self.model.times[k]; LANES];
-            note_defects(found.tape, &self.topology, (&times[..designs.len()], 0), (&mut resisting, variables));
-            let block = Block { states: found.states(k), derivatives: found.derivatives };
-            block.hand_over(&wanted, moved.iter().copied(), sinks, 0..designs.len(), |lane| (lane, k));
+            note_defects(
+                found.tape,
+                &self.topology,
+                (&times[..designs.len()], 0),
+                (&mut resisting, variables),
+            );
+            found.block.hand_over(&wanted, moved.iter().copied(), sinks, 0..designs.len(), |lane| (lane, k));
         })?;
         Some((effort, resisting))
     }
@@ -667,7 +648,9 @@ impl<'a> Walk<'a> {
                 if let Some(block) = self.abreast.own_results() {
                     let moved = self.sensing.iter().flat_map(Sensing::moved);
                     let sinks = std::slice::from_mut(sink);
-                    block.hand_over(&self.wanted, moved, sinks, lanes.clone(), |lane| (0, k + lane - lanes.start));
+                    block.hand_over(&self.wanted, moved, sinks, lanes.clone(), |lane| {
+                        (0, k + lane - lanes.start)
+                    });
                 }
                 if let Some(sensing) = &mut self.sensing {
                     sensing.note(tape, &self.one.topology, &times[k..k + count], first);

@@ -147,8 +147,10 @@ impl Forecast {
 
     #[inline(always)]
     fn remember(&mut self, t: f64) {
-        self.values.rotate_right(1);
-        self.times.rotate_right(1);
+        for n in (1..NODES).rev() {
+            self.values.swap(n - 1, n);
+            self.times[n] = self.times[n - 1];
+        }
         self.times[0] = t;
         self.count = usize::min(self.count + 1, NODES);
     }

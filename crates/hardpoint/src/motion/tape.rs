@@ -14,7 +14,9 @@ use std::fmt;
 use std::sync::{Arc, Mutex, OnceLock};
 
 use hardpoint_code::{Code, PARTS, Scratch, Unsupported, Width};
-use hardpoint_tape::{Interpreter, LANES, Lanes, Number, Options, Program, record};
+use hardpoint_tape::{
+    Interpreter, LANES, Lanes, Number, Options, Pieces, PiecesRoom, Program, Shape, record,
+};
 
 use crate::blocks::{Line, lanes_of};
 use crate::joint::Freedom;
@@ -40,6 +42,10 @@ pub(super) const MOST_CORRECTIONS: usize = 2;
 const MOST_RUNS: usize = 4;
 /// From one run to the next the first correction must become smaller by this factor, as Newton's corrections must.
 const CONTRACTS: f64 = 0.5;
+/// A program of so many instructions does not stay in the fast memory of a core: where its pieces are alike, they share their code ...
+const LONG: usize = 10_000;
+/// ... if that makes it shorter by this factor.
+const SHORTER: usize = 2;
 /// Mechanisms with more links than this are not recorded: the program would no longer stay in the fast memory of a core.
 const MOST_LINKS: usize = 4000;
 /// What a channel is foreseen by.
@@ -89,25 +95,91 @@ pub(crate) struct StepProgram {
     defects: Vec<(VariableId, usize)>,
 }
 
-/// A program, as machine code where there is any.
+/// A program, as machine code where there is any; a long one in pieces that share their code.
 #[derive(Debug)]
 pub(crate) struct Runnable {
+    inputs: usize,
+    sizes: [usize; PARTS],
+    form: Form,
+}
+
+#[derive(Debug)]
+enum Form {
+    Whole(Executable),
+    Pieces(Pieces, Vec<Executable>),
+}
+
+/// A program that is run as it is, with outputs in parts.
+#[derive(Debug)]
+struct Executable {
     program: Program,
-    ends: [usize; PARTS - 1],
     code: Option<Code>,
+}
+
+impl Executable {
+    fn new(program: Program, ends: [usize; PARTS - 1], execution: Execution) -> Self {
+        let code =
+            if execution == Execution::Interpreted { None } else { Code::in_parts(&program, ends).ok() };
+        Self { program, code }
+    }
+
+    #[inline(always)]
+    fn run(
+        &self,
+        (scratch, interpreter): (&mut Scratch, &mut Option<Interpreter>),
+        found: &mut Vec<Lanes>,
+        inputs: &[Lanes],
+        uniforms: &[f64],
+        outputs: [&mut [Lanes]; PARTS],
+    ) {
+        match &self.code {
+            Some(code) => code.run_in_parts(scratch, inputs, uniforms, outputs),
+            None => {
+                let interpreter = interpreter.get_or_insert_with(|| Interpreter::new(&self.program));
+                found.resize(self.program.outputs.len(), [0.0; LANES]);
+                interpreter.run(inputs, uniforms, found);
+                let mut rest = &found[..];
+                for to in outputs {
+                    let (part, others) = rest.split_at(to.len());
+                    to.copy_from_slice(part);
+                    rest = others;
+                }
+            }
+        }
+    }
 }
 
 impl Runnable {
     /// Its outputs in parts that end there.
     fn new(program: Program, ends: [usize; PARTS - 1], execution: Execution) -> Self {
-        let code =
-            if execution == Execution::Interpreted { None } else { Code::in_parts(&program, ends).ok() };
-        Self { program, ends, code }
+        Self::in_pieces(program, ends, execution, |_| 0)
     }
 
-    /// How many numbers it gives.
-    pub fn outputs(&self) -> usize {
-        self.program.outputs.len()
+    /// The same; `piece_of` says which piece of a long program an input belongs to.
+    fn in_pieces(
+        program: Program,
+        ends @ [first, second]: [usize; PARTS - 1],
+        execution: Execution,
+        piece_of: impl Fn(u32) -> usize,
+    ) -> Self {
+        let (inputs, long) = (program.inputs, program.instructions.len());
+        let sizes = [first, second - first, program.outputs.len() - second];
+        let pieces = (long > LONG).then(|| program.in_pieces(piece_of, ends)).flatten();
+        let form = match pieces.filter(|pieces| SHORTER * pieces.instructions() <= long) {
+            Some(pieces) => {
+                let executable =
+                    |shape: &Shape| Executable::new(shape.program.clone(), shape.ends, execution);
+                let shapes = pieces.shapes.iter().map(executable).collect();
+                Form::Pieces(pieces, shapes)
+            }
+            None => Form::Whole(Executable::new(program, ends, execution)),
+        };
+        Self { inputs, sizes, form }
+    }
+
+    /// How many numbers it gives, in every part.
+    pub fn sizes(&self) -> [usize; PARTS] {
+        self.sizes
     }
 }
 
@@ -115,25 +187,28 @@ impl Runnable {
 #[derive(Debug, Default)]
 pub(crate) struct Room {
     scratch: Scratch,
-    interpreter: Option<Interpreter>,
-    /// What that gives.
+    /// One for every program.
+    interpreters: Vec<Option<Interpreter>>,
+    /// What they give.
     outputs: Vec<Lanes>,
+    pieces: PiecesRoom,
 }
 
 impl Room {
     #[inline(always)]
     pub fn run(&mut self, runnable: &Runnable, inputs: &[Lanes], outputs: [&mut [Lanes]; PARTS]) {
-        match &runnable.code {
-            Some(code) => code.run_in_parts(&mut self.scratch, inputs, &[], outputs),
-            None => {
-                let interpreter = self.interpreter.get_or_insert_with(|| Interpreter::new(&runnable.program));
-                self.outputs.resize(runnable.outputs(), [0.0; LANES]);
-                interpreter.run(inputs, &[], &mut self.outputs);
-                let [first, second] = runnable.ends;
-                let parts = [0..first, first..second, second..self.outputs.len()];
-                for (to, part) in outputs.into_iter().zip(parts) {
-                    to.copy_from_slice(&self.outputs[part]);
-                }
+        let Self { scratch, interpreters, outputs: found, pieces: room } = self;
+        match &runnable.form {
+            Form::Whole(executable) => {
+                interpreters.resize(1, None);
+                executable.run((scratch, &mut interpreters[0]), found, inputs, &[], outputs);
+            }
+            Form::Pieces(pieces, shapes) => {
+                interpreters.resize(shapes.len(), None);
+                pieces.run(room, inputs, outputs, |shape, inputs, uniforms, outputs| {
+                    let with = (&mut *scratch, &mut interpreters[shape]);
+                    shapes[shape].run(with, found, inputs, uniforms, outputs);
+                });
             }
         }
     }
@@ -328,7 +403,11 @@ impl StepProgram {
         let (design, step) = program.staged(|input| input as usize >= inputs.design);
         let all = design.outputs.len();
         let design = Runnable::new(design, [all; PARTS - 1], execution);
-        let step = Runnable::new(step, [outputs.states, outputs.derivatives], execution);
+        let ends = [outputs.states, outputs.derivatives];
+        let pieces = pieces(topology, &channels);
+        let step = Runnable::in_pieces(step, ends, execution, |input| {
+            pieces.get((input as usize / CONDITIONS).wrapping_sub(1)).copied().unwrap_or(0)
+        });
         Some(Self {
             purpose,
             design,
@@ -348,6 +427,18 @@ impl StepProgram {
     pub fn moved(&self) -> &[(VariableId, BodyId)] {
         &self.moved
     }
+}
+
+/// Which piece of a program a channel belongs to: one for every block.
+fn pieces(topology: &Topology, channels: &[Channel]) -> Vec<usize> {
+    let mut piece_of = vec![0; topology.coordinates.len()];
+    for (b, block) in topology.blocks.iter().enumerate() {
+        block.unknowns.iter().for_each(|c| piece_of[*c] = b + 1);
+    }
+    let coordinate = |channel: &Channel| match *channel {
+        Channel::Coordinate(c) | Channel::Ball(c, _) => c,
+    };
+    channels.iter().map(|channel| piece_of[coordinate(channel)]).collect()
 }
 
 /// All unknowns, balls' included.
@@ -565,8 +656,8 @@ impl Programs {
         steps.entry(purpose).or_insert_with(|| record(self.execution).map(Arc::new)).clone()
     }
 
-    /// The drivers' laws of the nominal design at eight times: value, speed and acceleration of each driver, and then what must not
-    /// be positive. None where a law is no plain formula.
+    /// The drivers' laws of the nominal design at eight times: in one part value, speed and acceleration of each driver, in the next what
+    /// must not be positive. None where a law is no plain formula.
     pub fn laws(&self, model: &Model) -> Option<Arc<Runnable>> {
         let mut laws = self.laws.lock().expect("no one panics while recording");
         laws.get_or_insert_with(|| {
@@ -580,7 +671,8 @@ impl Programs {
             let fits = recording::is_arithmetic();
             let program = recorded.program(Options::default()).0;
             let all = program.outputs.len();
-            fits.then(|| Arc::new(Runnable::new(program, [all; PARTS - 1], self.execution)))
+            let laws = ORDERS * model.drivers.len();
+            fits.then(|| Arc::new(Runnable::new(program, [laws, all], self.execution)))
         })
         .clone()
     }
@@ -615,8 +707,8 @@ pub(crate) struct Solved {
 
 impl Tape {
     pub fn new(program: Arc<StepProgram>) -> Self {
-        let inputs = program.inputs.of_design + program.design.outputs();
-        let inputs = vec![Line::default(); usize::max(inputs, program.step.program.inputs)];
+        let inputs = program.inputs.of_design + program.design.sizes()[0];
+        let inputs = vec![Line::default(); usize::max(inputs, program.step.inputs)];
         let outputs = vec![Line::default(); program.outputs.states];
         Self {
             room: Room::default(),
@@ -639,8 +731,7 @@ impl Tape {
             self.inputs[inputs.design + v] = Line(std::array::from_fn(of_lane));
         }
         let (given, found) = self.inputs.split_at_mut(inputs.of_design);
-        let (given, found) =
-            (&lanes_of(given)[..design.program.inputs], &mut lanes_of(found)[..design.outputs()]);
+        let (given, found) = (&lanes_of(given)[..design.inputs], &mut lanes_of(found)[..design.sizes()[0]]);
         Room::default().run(design, given, [found, &mut [], &mut []]);
     }
 
@@ -685,12 +776,16 @@ impl Tape {
         self.program.purpose
     }
 
-    /// Foresees times so far ahead of the newest position by these weights: by position, the newest first, and order of its derivative.
+    /// Foresees times so far ahead of the newest position by these weights: by position, the newest first, and order of its derivative;
+    /// they may be the ones of last time.
     #[inline(always)]
-    pub fn look_ahead(&mut self, weights: &[Lanes; CONDITIONS], ahead: &Lanes) {
+    pub fn look_ahead(&mut self, weights: &[Lanes; CONDITIONS], are_new: bool, ahead: &Lanes) {
         let at = self.program.inputs.ahead;
         let inputs = lanes_of(&mut self.inputs);
-        inputs[..CONDITIONS].copy_from_slice(weights);
+        // Runs after the first went by others.
+        if are_new || self.runs != 1 {
+            inputs[..CONDITIONS].copy_from_slice(weights);
+        }
         inputs[at] = *ahead;
     }
 
@@ -840,7 +935,7 @@ impl Tape {
     /// How many numbers all bodies but ground have, and how many their derivatives.
     pub fn sizes(&self) -> [usize; 2] {
         let Outputs { states, derivatives, .. } = self.program.outputs;
-        [derivatives - states, self.program.step.outputs() - derivatives]
+        [derivatives - states, self.program.step.sizes()[2]]
     }
 
     /// Which variable fails which row, by how much, and what of it may be round-off; variable by variable.
@@ -853,13 +948,13 @@ impl Tape {
 
 /// Whether no lane is larger; NaN is.
 #[inline(always)]
-fn all_within(lanes: &Lanes, limit: f64) -> bool {
+pub(super) fn all_within(lanes: &Lanes, limit: f64) -> bool {
     lanes.iter().fold(true, |all, x| all & (*x <= limit))
 }
 
 /// The largest lane, of numbers.
 #[inline(always)]
-fn largest(lanes: &Lanes) -> f64 {
+pub(super) fn largest(lanes: &Lanes) -> f64 {
     let larger = |a: f64, b: f64| if a > b { a } else { b };
     let [a, b, c, d, e, f, g, h] = *lanes;
     larger(larger(larger(a, e), larger(b, f)), larger(larger(c, g), larger(d, h)))

@@ -1,0 +1,105 @@
+//! A program in pieces computes what it does in one, and what is alike is one program.
+
+use hardpoint_tape::{
+    AREAS, Interpreter, Lanes, Number, Operand, Options, Pieces, PiecesRoom, Program, Recording, record,
+};
+
+use crate::random::{Formula, Random};
+
+/// What the whole program gives for these lanes.
+fn whole(program: &Program, inputs: &[Lanes]) -> Vec<Lanes> {
+    let mut outputs = vec![[0.0; 8]; program.outputs.len()];
+    Interpreter::new(program).run(inputs, &[], &mut outputs);
+    outputs
+}
+
+/// What its pieces give.
+fn in_pieces(pieces: &Pieces, inputs: &[Lanes], sizes: [usize; AREAS]) -> Vec<Lanes> {
+    let mut interpreters: Vec<Interpreter> =
+        pieces.shapes.iter().map(|shape| Interpreter::new(&shape.program)).collect();
+    let mut areas = sizes.map(|size| vec![[f64::NAN; 8]; size]);
+    let [first, second, third] = &mut areas;
+    let mut room = PiecesRoom::default();
+    pieces.run(&mut room, inputs, [first, second, third], |shape, inputs, uniforms, outputs| {
+        let mut found = vec![[0.0; 8]; pieces.shapes[shape].program.outputs.len()];
+        interpreters[shape].run(inputs, uniforms, &mut found);
+        let mut found = found.into_iter();
+        outputs.into_iter().flatten().for_each(|to| *to = found.next().expect("as many as there are"));
+        assert_eq!(found.next(), None);
+    });
+    areas.concat()
+}
+
+fn bits(lanes: &[Lanes]) -> Vec<Option<u64>> {
+    lanes.iter().flatten().map(|x| (!x.is_nan()).then_some(x.to_bits())).collect()
+}
+
+fn numbers(random: &mut Random, many: usize) -> Vec<Lanes> {
+    (0..many).map(|_| std::array::from_fn(|_| random.number())).collect()
+}
+
+#[test]
+fn pieces_of_random_formulas_give_the_bits_of_the_whole() {
+    let (mut compared, mut several) = (0, 0);
+    for seed in 0..2000 {
+        let formula = Formula::random(seed);
+        if formula.uniforms > 0 {
+            continue;
+        }
+        let mut random = Random(!seed);
+        let (program, _) = formula.record(&mut random).program(Options::default());
+        let many = program.outputs.len();
+        let mut ends = [random.below(many + 1), random.below(many + 1)];
+        ends.sort_unstable();
+        let belongs: Vec<usize> = (0..5).map(|_| random.below(4)).collect();
+        let Some(pieces) = program.in_pieces(|k| belongs[k as usize], ends) else { continue };
+        compared += 1;
+        several += usize::from(pieces.shapes.len() > 1);
+        let inputs = numbers(&mut random, formula.inputs);
+        let sizes = [ends[0], ends[1] - ends[0], many - ends[1]];
+        assert_eq!(bits(&in_pieces(&pieces, &inputs, sizes)), bits(&whole(&program, &inputs)), "seed {seed}");
+    }
+    assert!(compared > 300 && several > 100, "{compared} {several}: nothing was tested");
+}
+
+/// A chain: each link turns by an angle of its own, and has a length of its own.
+fn chain(links: usize) -> Recording {
+    record(|| {
+        let (mut places, mut x, mut y) = (Vec::new(), Number::constant(0.0), Number::constant(0.0));
+        let mut largest = Number::constant(0.0);
+        for k in 0..links {
+            let (angle, length) = (Number::input(0.1), Number::constant(1.0 + k as f64));
+            let turned = angle * angle * Number::constant(0.5) + Number::constant(1.0);
+            (x, y) = (x + turned * length, y + angle * length);
+            largest = largest.larger(x.abs());
+            places.extend([x, y, Number::constant(0.0)]);
+        }
+        [vec![largest], places].concat()
+    })
+}
+
+#[test]
+fn links_of_a_chain_share_their_code() {
+    let links = 50;
+    let (program, _) = chain(links).program(Options::default());
+    let pieces = program.in_pieces(|k| k as usize, [1, 1 + 3 * links]).expect("places follow each other");
+    // The first has nothing before it, and the last is read by none.
+    assert!(pieces.shapes.len() <= 4, "{}", pieces.shapes.len());
+    assert_eq!(pieces.pieces.len(), links);
+    assert!(10 * pieces.instructions() < program.instructions.len());
+    assert!(pieces.pieces.iter().flat_map(|p| &p.inputs).all(|i| !matches!(i, Operand::Constant(_))));
+    let inputs = numbers(&mut Random(7), links);
+    let found = in_pieces(&pieces, &inputs, [1, 3 * links, 0]);
+    assert_eq!(bits(&found), bits(&whole(&program, &inputs)));
+}
+
+#[test]
+fn outputs_that_lie_apart_are_left_in_one_program() {
+    let recording = record(|| {
+        let [a, b] = [Number::input(1.0), Number::input(2.0)];
+        [a * a, b * b, a + a]
+    });
+    let (program, _) = recording.program(Options::default());
+    assert!(program.in_pieces(|k| k as usize, [3, 3]).is_some(), "in the first area they may");
+    assert_eq!(program.in_pieces(|k| k as usize, [0, 3]), None);
+}
