@@ -496,7 +496,7 @@ fn balls(topology: &Topology) -> impl Iterator<Item = usize> {
 fn moves(topology: &Topology, channels: &[Channel], state: &State<Number>) -> Vec<Number> {
     let mut out: Vec<Number> = channels.iter().flat_map(|c| c.of(state)).collect();
     for c in balls(topology).flat_map(|first| first..first + 3) {
-        out.extend([state.qd[c], state.qdd[c]]);
+        out.extend([state.motion.speeds[0][c], state.motion.speeds[1][c]]);
     }
     out
 }
