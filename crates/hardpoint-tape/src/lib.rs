@@ -30,6 +30,7 @@
 //! | run the kernel with numbers that record | [`record`], [`Number`] |
 //! | fold, find what is common, leave out what nobody reads, fuse, put in order | [`Recording::program`] |
 //! | split off what depends on uniforms alone, or on the first inputs alone | [`Program::hoisted`], [`Program::staged`] |
+//! | take a long one apart into pieces that share their code | [`Program::in_pieces`] |
 //! | run, in lanes or as scalars | [`Interpreter`], [`Program::evaluate`] |
 //!
 //! # What it does not do
@@ -42,6 +43,7 @@ mod counts;
 mod graph;
 mod interpreter;
 mod number;
+mod pieces;
 pub mod program;
 mod stage;
 
@@ -49,4 +51,5 @@ pub use counts::{Counts, Kinds};
 pub use graph::Options;
 pub use interpreter::{Interpreter, WIDE};
 pub use number::{Number, Recording, record};
+pub use pieces::{AREAS, Piece, Pieces, PiecesRoom, Shape};
 pub use program::{Call, Instruction, LANES, Lanes, Operand, Program, fuses};

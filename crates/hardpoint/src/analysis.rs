@@ -7,7 +7,6 @@ use std::sync::{Arc, OnceLock};
 
 use hardpoint_tape::{LANES, Number};
 
-use crate::blocks::turned;
 use crate::law::Law;
 use crate::measure::{self, Before, Measured, SlopeValues};
 use crate::model::{BodyId, Effects, Field, Geometry, Model};
@@ -23,7 +22,7 @@ use crate::sensitivity::{
     Admissibility, JointDefect, Resisting, Sensing, Sensitivities, admissibility, admissibility_at_design,
     along, note_defects, record_derivatives,
 };
-use crate::sink::{Block, Sink, Store};
+use crate::sink::{Sink, Store};
 use crate::topology::{Formulation, Topology, TopologyFault};
 
 /// A model with its plan of solution, ready to be run as often as needed.
@@ -67,6 +66,8 @@ pub struct Analysis<'m> {
     opens: OnceLock<Vec<Vec<JointDefect>>>,
     /// Steps as straight-line programs, recorded when they pay.
     programs: Arc<Programs>,
+    /// The same of measures.
+    formulas: Arc<measure::Programs>,
 }
 
 /// One design, ready to be analysed.
@@ -146,6 +147,7 @@ impl<'m> Analysis<'m> {
             measures: true,
             opens: OnceLock::new(),
             programs,
+            formulas: Arc::default(),
         })
     }
 
@@ -156,7 +158,7 @@ impl<'m> Analysis<'m> {
 
     /// The same analysis, its steps solved in this way.
     pub fn executed(self, execution: Execution) -> Self {
-        Self { programs: Arc::new(Programs::new(execution)), ..self }
+        Self { programs: Arc::new(Programs::new(execution)), formulas: Arc::default(), ..self }
     }
 
     /// How the even steps of the nominal design's motion are solved.
@@ -333,13 +335,19 @@ impl<'m> Analysis<'m> {
         before: Option<&Before>,
         solution: &mut Solution,
     ) {
-        solution.measured = Measured::default();
-        if self.measures {
-            let Design { values, laws, .. } = design;
-            let at = measure::At { model: self.model, effects: &self.effects, values, laws };
-            let Solution { motion, sensitivities, measured, .. } = solution;
-            *measured = measure::evaluate(&at, &self.topology, motion, sensitivities, slopes, before);
+        let Solution { motion, sensitivities, measured, .. } = solution;
+        if !self.measures {
+            *measured = Measured::default();
+            return;
         }
+        let Design { values, laws, of_many, .. } = design;
+        let at = measure::At { model: self.model, effects: &self.effects, values, laws };
+        let program = self.programs.pay(self.model.times.len() * of_many).then(|| {
+            let asked = measure::Asked::of(self.model, values, sensitivities);
+            self.formulas.get(asked, &self.effects, self.programs.execution())
+        });
+        let (program, solved) = (program.flatten(), (&*motion, &*sensitivities));
+        measure::evaluate(&at, &self.topology, solved, slopes, before, program.as_deref(), measured);
     }
 
     /// Motions of many changed designs, in the order given.
@@ -468,9 +476,11 @@ impl<'m> Analysis<'m> {
             return None;
         }
         let program = move |corrections| {
-            self.program(Purpose { any_design: true, corrections, sensitivities, margins: false })
+            let purpose =
+                Purpose { times: false, any_design: true, corrections, sensitivities, margins: false };
+            self.program(purpose)
         };
-        SideBySide::new(self.started()?, Box::new(program))
+        SideBySide::new(self.started()?, Box::new(program), !sensitivities)
     }
 
     /// Motions of up to as many designs as there are lanes, side by side.
@@ -482,35 +492,13 @@ impl<'m> Analysis<'m> {
         solutions: &mut [Solution],
     ) {
         for Solution { motion, .. } in solutions.iter_mut() {
-            self.make_room(motion, self.model.times.len());
+            self.make_room(motion, 0);
         }
-        let mut coordinates = vec![[[0.0; LANES]; LANES]; self.topology.coordinates.len()];
-        let mut now = vec![[0.0; LANES]; coordinates.len()];
-        let last = self.model.times.len().saturating_sub(1);
         let solved = beside.as_mut().filter(|_| designs.len() > 1).and_then(|beside| {
             let values: Vec<Vec<f64>> = designs.iter().map(|d| self.model.whole(d)).collect();
-            beside.run(&values, |k, found| {
-                found.tape.coordinates(&self.topology, &mut now);
-                for (q, now) in coordinates.iter_mut().zip(&now) {
-                    (0..LANES).for_each(|lane| q[lane][k % LANES] = now[lane]);
-                }
-                if k % LANES < LANES - 1 && k < last {
-                    return;
-                }
-                let mut rooms = solutions.iter_mut().map(|s| s.motion.states.block_mut(k));
-                let mut rooms: [_; LANES] = std::array::from_fn(|_| rooms.next().unwrap_or_default());
-                turned(std::array::from_fn(|lane| found.states(lane)), |column, designs| {
-                    for (room, lanes) in rooms.iter_mut().zip(designs) {
-                        if let Some(to) = room.get_mut(column) {
-                            *to = *lanes;
-                        }
-                    }
-                });
-                for (lane, Solution { motion, .. }) in solutions.iter_mut().enumerate() {
-                    let room = motion.coordinates.block_mut(k).iter_mut();
-                    room.zip(&coordinates).for_each(|(to, q)| *to = q[lane]);
-                }
-            })
+            let effort = beside.run(&values, |_, _| ())?;
+            solutions.iter_mut().enumerate().for_each(|(lane, s)| beside.hand_over(lane, &mut s.motion));
+            Some(effort)
         });
         for (design, solution) in designs.iter().zip(solutions) {
             let Some(effort) = solved else {
@@ -522,10 +510,8 @@ impl<'m> Analysis<'m> {
             solution.motion.effort = effort;
             solution.sensitivities = Sensitivities::default();
             solution.stop = None;
-            solution.measured = Measured::default();
-            if self.measures {
-                self.measure(&self.design(design, false), &SlopeValues::default(), None, solution);
-            }
+            let design = Design { of_many, ..self.design(design, false) };
+            self.measure(&design, &SlopeValues::default(), None, solution);
         }
     }
 
@@ -549,8 +535,7 @@ impl<'m> Analysis<'m> {
                 (&times[..designs.len()], 0),
                 (&mut resisting, variables),
             );
-            let block = Block { states: found.states(k), derivatives: found.derivatives };
-            block.hand_over(&wanted, moved.iter().copied(), sinks, 0..designs.len(), |lane| (lane, k));
+            found.block.hand_over(&wanted, moved.iter().copied(), sinks, 0..designs.len(), |lane| (lane, k));
         })?;
         Some((effort, resisting))
     }
@@ -601,7 +586,7 @@ impl<'a> Walk<'a> {
                 (walk.sensing.is_some(), design.values.iter().any(|v| *v != 0.0));
             let moved: Vec<_> = walk.sensing.iter().flat_map(Sensing::moved).collect();
             let program = move |corrections| {
-                let purpose = Purpose { any_design, corrections, sensitivities, margins };
+                let purpose = Purpose { times: true, any_design, corrections, sensitivities, margins };
                 analysis.program(purpose).filter(|program| program.moved() == moved)
             };
             let nominal = analysis.model.drivers.iter().zip(&design.laws).all(|(d, law)| d.law == *law);

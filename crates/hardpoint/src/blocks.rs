@@ -1,5 +1,7 @@
 //! Results in one stream: eight output times side by side, number by number, in the order in which they are found.
 
+use std::sync::Arc;
+
 use bytemuck::{Pod, Zeroable};
 use hardpoint_tape::{LANES, Lanes};
 
@@ -14,40 +16,94 @@ pub(crate) fn lanes_of(lines: &mut [Line]) -> &mut [Lanes] {
     bytemuck::cast_slice_mut(lines)
 }
 
-/// So many numbers per output time. Output times 8n to 8n + 7 stand side by side, the first numbers of all eight first.
+/// So many numbers per output time.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Blocks {
     width: usize,
-    lines: Vec<Line>,
+    place: Place,
+}
+
+/// Where the numbers are.
+#[derive(Clone, Debug)]
+enum Place {
+    /// Output times 8n to 8n + 7 stand side by side, the first numbers of all eight first.
+    Times(Vec<Line>),
+    /// Designs stand side by side, output time after output time; this is one of them.
+    Designs { lines: Arc<Vec<Line>>, lane: usize },
+}
+
+impl Default for Place {
+    fn default() -> Self {
+        Self::Times(Vec::new())
+    }
 }
 
 impl Blocks {
+    /// Those of one of the designs that stand side by side, so many numbers per output time.
+    pub fn of_design(lines: Arc<Vec<Line>>, width: usize, lane: usize) -> Self {
+        Self { width, place: Place::Designs { lines, lane } }
+    }
+
     /// Room for so many numbers at each of so many output times, in the memory that there is; what stands in it means nothing, but zeros
     /// where nothing was written since it had another width.
     pub fn shape(&mut self, width: usize, steps: usize) {
         if self.width != width {
-            self.lines.clear();
+            self.place = Place::default();
             self.width = width;
         }
-        let lines = width * steps.div_ceil(LANES);
-        self.lines.reserve_exact(lines.saturating_sub(self.lines.len()));
+        let lines = self.times_mut();
+        let wanted = width * steps.div_ceil(LANES);
+        lines.reserve_exact(wanted.saturating_sub(lines.len()));
+    }
+
+    /// The lines of output times side by side; none where designs were.
+    #[inline(always)]
+    fn times_mut(&mut self) -> &mut Vec<Line> {
+        if let Place::Designs { .. } = self.place {
+            self.place = Place::default();
+        }
+        match &mut self.place {
+            Place::Times(lines) => lines,
+            Place::Designs { .. } => unreachable!("replaced above"),
+        }
     }
 
     /// The numbers at output time k.
     #[inline(always)]
     pub fn row(&self, k: usize) -> Row<'_> {
-        let first = k / LANES * self.width;
-        Row { lines: &self.lines[first..first + self.width], lane: k % LANES }
+        let (lines, line, lane) = match &self.place {
+            Place::Times(lines) => (&lines[..], k / LANES, k % LANES),
+            Place::Designs { lines, lane } => (&lines[..], k, *lane),
+        };
+        Row { lines: &lines[line * self.width..][..self.width], lane }
     }
 
     /// Of the eight output times that k is one of.
     #[inline(always)]
     pub fn block_mut(&mut self, k: usize) -> &mut [Lanes] {
-        let first = k / LANES * self.width;
-        if self.lines.len() < first + self.width {
-            self.lines.resize(first + self.width, Line::default());
+        let (width, first) = (self.width, k / LANES * self.width);
+        let lines = self.times_mut();
+        if lines.len() < first + width {
+            lines.resize(first + width, Line::default());
         }
-        lanes_of(&mut self.lines[first..first + self.width])
+        lanes_of(&mut lines[first..first + width])
+    }
+
+    /// Copies some numbers, from this one on, of the eight output times that k is one of; of those that there are.
+    #[inline(always)]
+    pub fn gather(&self, k: usize, first: usize, to: &mut [Lanes]) {
+        let from = |line: usize| line * self.width + first;
+        match &self.place {
+            Place::Times(lines) => {
+                to.copy_from_slice(bytemuck::cast_slice(&lines[from(k / LANES)..][..to.len()]));
+            }
+            Place::Designs { lines, lane } => {
+                for time in 0..LANES {
+                    let there = lines.get(from(k / LANES * LANES + time)..).unwrap_or_default();
+                    to.iter_mut().zip(there).for_each(|(to, line)| to[time] = line.0[*lane]);
+                }
+            }
+        }
     }
 
     /// Writes some numbers of output time k, from this one on.
@@ -93,31 +149,6 @@ impl<'b> Row<'b> {
     }
 }
 
-/// Turns what lies side by side by design, output time by output time, into what lies side by side by output time: number by
-/// number, those of eight designs.
-#[inline(always)]
-pub(crate) fn turned(times: [&[Lanes]; LANES], mut out: impl FnMut(usize, &[Lanes; LANES])) {
-    let width = times.iter().map(|lanes| lanes.len()).min().unwrap_or(0);
-    let times = times.map(|lanes| &lanes[..width]);
-    for column in 0..width {
-        out(column, &transposed(times.map(|lanes| &lanes[column])));
-    }
-}
-
-/// By blocks of two by two, which a register of two numbers turns.
-#[inline(always)]
-fn transposed(rows: [&Lanes; LANES]) -> [Lanes; LANES] {
-    let mut columns = [[0.0; LANES]; LANES];
-    for i in (0..LANES).step_by(2) {
-        for j in (0..LANES).step_by(2) {
-            let [[a, b], [c, d]] = [[rows[i][j], rows[i][j + 1]], [rows[i + 1][j], rows[i + 1][j + 1]]];
-            ([columns[j][i], columns[j][i + 1]], [columns[j + 1][i], columns[j + 1][i + 1]]) =
-                ([a, c], [b, d]);
-        }
-    }
-    columns
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -144,9 +175,23 @@ mod tests {
         kept.thin(11);
         assert!((0..6).all(|k| kept.row(k).get(4) == number(2 * k + 9, 4)));
         // Memory is used again.
-        let memory = kept.lines.as_ptr();
+        let memory = kept.block_mut(0).as_ptr();
         kept.shape(5, 16);
         kept.set(15, 0, [1.0]);
-        assert_eq!((kept.row(15).get(0), kept.lines.as_ptr()), (1.0, memory));
+        assert_eq!((kept.row(15).get(0), kept.block_mut(0).as_ptr()), (1.0, memory));
+        // Two numbers of eight designs at three output times.
+        let lines =
+            (0..6).map(|n| Line(std::array::from_fn(|lane| number(n / 2, n % 2) + lane as f64 / 8.0)));
+        let mut design = Blocks::of_design(Arc::new(lines.collect()), 2, 3);
+        assert_eq!(
+            design.row(2).all().collect::<Vec<_>>(),
+            [0.0, 1.0].map(|c| number(2, c as usize) + 0.375)
+        );
+        kept.shape(2, 1);
+        kept.copy(0, &design, 1);
+        assert_eq!(kept.row(0).get(1), number(1, 1) + 0.375);
+        design.shape(2, 8);
+        design.set(5, 0, [7.0]);
+        assert_eq!(design.row(5).get(0), 7.0);
     }
 }

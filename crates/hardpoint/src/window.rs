@@ -6,7 +6,7 @@
 use std::ops::ControlFlow;
 
 use crate::analysis::{Analysis, Design, Progress, Solution, Solved, Walk};
-use crate::measure::{self, Before, Measured, SlopeValues, Slopes};
+use crate::measure::{self, Before, SlopeValues, Slopes};
 use crate::model::{BodyId, Model, OutputSource, VariableId};
 use crate::motion::margin::Margins;
 use crate::motion::{BodyState, Motion};
@@ -269,8 +269,7 @@ impl Kept {
         self.solution.stop = whole.stop.clone();
         let cannot =
             |v: &usize| matches!(whole.sensitivities.admissibility[*v], Admissibility::CannotFollow { .. });
-        let unknown: Vec<usize> = (0..whole.sensitivities.variables).filter(cannot).collect();
-        self.solution.measured.forget(&unknown);
+        self.solution.measured.forget((0..whole.sensitivities.variables).filter(cannot));
         self.solution
     }
 
@@ -300,7 +299,7 @@ impl Kept {
         motion.states.thin(rows);
         motion.coordinates.thin(rows);
         sensitivities.derivatives.thin(rows);
-        measured.thin(rows);
+        measured.thin();
     }
 }
 
@@ -311,37 +310,4 @@ pub(crate) fn thin<X: Copy>(list: &mut Vec<X>, rows: usize) {
         list.copy_within(row * n..(row + 1) * n, row / 2 * n);
     }
     list.truncate(rows.div_ceil(2) * n);
-}
-
-impl Measured {
-    /// Appends output time k of another one, all outputs or those named.
-    fn take_over(&mut self, from: &Self, k: usize, outputs: Option<&[OutputSource]>) {
-        let wanted = |m: &usize| outputs.is_none_or(|list| list.contains(&from.outputs[*m].source));
-        let columns: Vec<usize> = (0..from.outputs.len()).filter(wanted).collect();
-        if self.outputs.is_empty() {
-            self.outputs = columns.iter().map(|m| from.outputs[*m].clone()).collect();
-        }
-        self.variables = from.variables;
-        self.values.extend(columns.iter().map(|m| from.value(k, *m)));
-        for b in 0..from.variables {
-            self.d.extend(columns.iter().map(|m| from.d(k, VariableId(b), *m)));
-        }
-    }
-
-    fn thin(&mut self, rows: usize) {
-        thin(&mut self.values, rows);
-        thin(&mut self.d, rows);
-    }
-
-    /// There are no derivatives by these variables.
-    fn forget(&mut self, variables: &[usize]) {
-        let (outputs, row) = (self.outputs.len(), self.outputs.len() * self.variables);
-        if row > 0 {
-            for d in self.d.chunks_mut(row) {
-                for v in variables {
-                    d[v * outputs..(v + 1) * outputs].fill([f64::NAN; 3]);
-                }
-            }
-        }
-    }
 }

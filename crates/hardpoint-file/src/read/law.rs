@@ -3,9 +3,7 @@
 use std::ops::Range;
 
 use hardpoint::joint::Quantity;
-use hardpoint::law::{
-    self, ConstantSpeed, EndRates, Ends, Expression, Harmonic, Law, LawError, Piece, SmoothStep, SplineDegree,
-};
+use hardpoint::law::{self, EndRates, Ends, Expression, Law, LawError, SplineDegree};
 use toml::de::{DeTable, DeValue};
 
 use crate::diagnostic::{Severity, closest, shown};
@@ -46,7 +44,7 @@ static TYPES: [(Table, Read); 7] = [
         |r, _, fields| {
             let numbers = r.numbers_of(fields, ["amplitude", "frequency", "phase", "offset"]);
             let [amplitude, frequency, phase, offset] = numbers?;
-            let law = Law::harmonic(Harmonic { amplitude, frequency, phase, offset });
+            let law = Law::harmonic(law::Harmonic { amplitude, frequency, phase, offset });
             r.made(fields, fields.at.clone(), law)
         },
     ),
@@ -61,7 +59,7 @@ static TYPES: [(Table, Read); 7] = [
         },
         |r, _, fields| {
             let [speed, offset] = r.numbers_of(fields, ["speed", "offset"])?;
-            r.made(fields, fields.at.clone(), Law::constant_speed(ConstantSpeed { speed, offset }))
+            r.made(fields, fields.at.clone(), Law::constant_speed(law::ConstantSpeed { speed, offset }))
         },
     ),
     (
@@ -305,7 +303,7 @@ impl Reader<'_> {
             );
             return None;
         }
-        self.made(fields, at, Law::smooth_step(SmoothStep { from, to, start, end, degree }))
+        self.made(fields, at, Law::smooth_step(law::SmoothStep { from, to, start, end, degree }))
     }
 
     fn sequence(&mut self, of: &str, fields: &Fields<'_>) -> Option<Law> {
@@ -346,7 +344,7 @@ impl Reader<'_> {
             }
             let continued = self.flag_of(&piece, "continued");
             if let (Some(duration), Some(law), Some(continued)) = (duration, law, continued) {
-                pieces.push(Piece { duration, law, continued });
+                pieces.push(law::Piece { duration, law, continued });
             }
         }
         if pieces.len() < count {

@@ -19,7 +19,7 @@ use crate::tree::{DIRECTION, Field, Fields, LINE, PLACE, Reader, Subject, Value}
 const MOST_TIMES: u32 = 1_000_000;
 pub(crate) const POINT: Table = table! {
     /// A point of a body.
-    "Point":
+    "BodyPoint":
     /// The body's name.
     must "body": BODY, "\"crank\"";
     /// Where it is in the design configuration: a hardpoint's name (and it follows the hardpoint when the design moves that),
@@ -27,7 +27,7 @@ pub(crate) const POINT: Table = table! {
     must "at": PLACE, "\"A\"";
 };
 pub(crate) const POINT_REF: Shape = Shape::Any(
-    "PointRef",
+    "Point",
     "A point: by name, or a place on a body.",
     &[Shape::Name("a point"), Shape::Table(&POINT)],
 );

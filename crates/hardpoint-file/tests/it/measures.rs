@@ -4,6 +4,8 @@
 use std::ops::ControlFlow;
 use std::path::Path;
 
+use hardpoint::model::{Model, VariableId};
+use hardpoint::motion::Execution;
 use hardpoint::study::{VerifyOptions, verify};
 use hardpoint::{Analysis, Solution};
 use hardpoint_file::{ModelFile, parse};
@@ -162,10 +164,128 @@ fn a_crank_pin_runs_on_a_circle() {
     let value = |name: &str, k| solution.measured.value(k, solution.measured.index(name).unwrap())[0];
     for (k, left) in [(0, 12.5), (1, 12.5), (3, -12.5)] {
         assert!((value("k", k) - 12.5).abs() < 1e-9 && (value("left", k) - left).abs() < 1e-9, "{k}");
-        let d =
-            solution.measured.d(k, hardpoint::model::VariableId(0), solution.measured.index("k").unwrap())[0];
+        let d = solution.measured.d(k, VariableId(0), solution.measured.index("k").unwrap())[0];
         assert!((d + 12.5 * 12.5).abs() < 1e-6, "{d}");
     }
-    // Where it turns back it rests: its path has no curvature there, and none is made up.
+    // Where it turns back it rests: its path has no curvature there, and none is made up, on any path.
     assert!(value("k", 2).is_nan() && value("left", 2).is_nan());
+    on_every_path("crank", &parse(text, "crank.toml").unwrap().model, 1e-9);
+}
+
+/// Holds the measures of two solutions against each other: the same numbers are none, and the others differ by less than this part of
+/// the largest of their kind.
+fn assert_same(name: &str, a: &Solution, b: &Solution, limit: f64) {
+    let (a, b) = (&a.measured, &b.measured);
+    assert_eq!((a.len(), a.outputs.len(), a.variables), (b.len(), b.outputs.len(), b.variables), "{name}");
+    for m in 0..a.outputs.len() {
+        for by in (0..=a.variables).map(|v| (v < a.variables).then_some(VariableId(v))) {
+            let at = |s: &hardpoint::measure::Measured, k: usize| by.map_or(s.value(k, m), |v| s.d(k, v, m));
+            for order in 0..3 {
+                let pairs = || (0..a.len()).map(|k| [at(a, k)[order], at(b, k)[order]]);
+                let largest = pairs().fold(1e-3, |most: f64, [_, y]| most.max(y.abs()));
+                for (k, [x, y]) in pairs().enumerate() {
+                    let agrees = x.is_nan() && y.is_nan() || (x - y).abs() <= limit * largest;
+                    let output = &a.outputs[m].name;
+                    assert!(agrees, "{name}: {output}, order {order} by {by:?} at {k}: {x} {y}");
+                }
+            }
+        }
+    }
+}
+
+/// The same on every path; gives how many outputs at how many times the formulas were asked for one by one where code ran, and how
+/// many there are.
+fn on_every_path(name: &str, model: &Model, limit: f64) -> [usize; 2] {
+    let solve = |execution| Analysis::new(model).unwrap().executed(execution).run();
+    let right = solve(Execution::Kernel);
+    let all = right.measured.len() * right.measured.outputs.len();
+    assert_eq!(right.measured.by_formula(), all, "{name}");
+    let [tape, code] = [Execution::Interpreted, Execution::Compiled].map(solve);
+    assert_same(name, &tape, &right, limit);
+    assert_same(name, &code, &right, limit);
+    assert_eq!(tape.measured.by_formula(), code.measured.by_formula(), "{name}");
+    [code.measured.by_formula(), all]
+}
+
+#[test]
+fn every_kind_is_the_same_by_a_program() {
+    for model in &MODELS {
+        let mut file = with_measures(model);
+        let last = *file.model.times.last().unwrap();
+        file.model.times = (0..=211).map(|k| last * f64::from(k) / 211.0).collect();
+        let [by_formula, all] = on_every_path(model.0, &file.model, 1e-9);
+        // What goes by a driver that moves alone is left to the formulas.
+        let slopes = file.model.measures.iter().filter(|m| m.name.starts_with("bump")).count();
+        println!("{}: {by_formula} of {all}, {slopes}", model.0);
+        assert!(by_formula * file.model.measures.len() <= all * file.model.measures.len() / 2, "{}", model.0);
+    }
+}
+
+const CRANK: &str = r#"
+    name = "crank"
+    units = { length = "m", angle = "rad" }
+    hardpoints = { O = [0, 0, 0], A = [1, 0, 0] }
+    bodies = { crank = {} }
+    joints.pivot = { type = "revolute", bodies = ["ground", "crank"], at = "O", axis = "z" }
+    points.A = { body = "crank", at = "A" }
+"#;
+
+/// Formulas over angles go by their whole turns, and where there is no number, there is none on any path.
+#[test]
+fn turns_and_poles_are_the_same_by_a_program() {
+    let text = CRANK.to_owned()
+        + r#"
+        drivers.motor = { joint = "pivot", law = "0.3*t + 6*sin(t)" }
+        design.A_x = { move = "A", along = "x" }
+        design.O_y = { move = "O", along = "y" }
+        measures.angle = { type = "coordinate", joint = "pivot" }
+        measures.square = { type = "expression", expression = "angle^2 + A.x" }
+        measures.spiral = { type = "expression", expression = "sin(square/10) + angle" }
+        measures.off = { type = "distance", from = { body = "ground", at = [0, 1, 0] }, to = "A" }
+        measures.less = { type = "expression", expression = "min(off, 1)" }
+        measures.aside = { type = "expression", expression = "abs(A.y)" }
+        measures.pole = { type = "expression", expression = "1/A.y" }
+        measures.pace = { type = "velocity", point = "A" }
+        measures.lines = { type = "transmission_angle", from = { body = "crank", axis = [0, 1, 0] }, to = [1, 0, 0] }
+        time = { end = 20, steps = 1000 }
+    "#;
+    let model = parse(&text, "crank.toml").unwrap_or_else(|e| panic!("{e}")).model;
+    let [by_formula, all] = on_every_path("crank", &model, 1e-9);
+    let solution = Analysis::new(&model).unwrap().run();
+    let value = |name: &str, k| solution.measured.value(k, solution.measured.index(name).unwrap());
+    // The pin begins on the x axis, where aside of it has two sides; later it has made more than one turn.
+    assert!(value("pole", 0)[0].is_nan() && value("pole", 1)[0].is_finite());
+    assert!(value("aside", 0)[1] > 6.0, "{:?}", value("aside", 0));
+    let turns = (0..=1000).map(|k| value("angle", k)[0]).fold(0.0, f64::max) / std::f64::consts::TAU;
+    assert!(turns > 1.5, "{turns}");
+    for k in 0..=1000 {
+        let angle = value("angle", k)[0];
+        assert!((value("square", k)[0] - angle * angle - angle.cos()).abs() < 1e-9, "{k}");
+    }
+    // min and the poles go by formulas; all else does not.
+    let outputs = solution.measured.outputs.len();
+    let least = all / outputs;
+    assert!((least..2 * least).contains(&by_formula), "{by_formula} of {all}");
+}
+
+/// Variables and outputs without end would make a program without end; none at all make one with nothing to do.
+#[test]
+fn a_program_of_measures_is_bounded() {
+    let crank = |variables: usize, points: usize, times: &str| {
+        let mut text = CRANK.to_owned();
+        text += "drivers.motor = { joint = \"pivot\", law = \"t\" }\n";
+        (0..variables).for_each(|v| text += &format!("design.x{v} = {{ move = \"O\", along = \"x\" }}\n"));
+        (0..points)
+            .for_each(|p| text += &format!("points.p{p} = {{ body = \"crank\", at = [{p}, 1, 0] }}\n"));
+        text += &format!("time = {{ {times} }}\n");
+        parse(&text, "crank.toml").unwrap_or_else(|e| panic!("{e}")).model
+    };
+    for (variables, points) in [(0, 0), (0, 3), (3, 0), (5, 20)] {
+        for times in ["at = [0]", "end = 1, steps = 100", "end = 1, steps = 104"] {
+            let [by_formula, _] = on_every_path("crank", &crank(variables, points, times), 1e-11);
+            assert_eq!(by_formula, 0, "{variables} {points} {times}");
+        }
+    }
+    let [by_formula, all] = on_every_path("long", &crank(140, 49, "end = 1, steps = 100"), 1e-11);
+    assert_eq!(by_formula, all);
 }

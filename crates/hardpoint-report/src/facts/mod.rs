@@ -13,8 +13,7 @@ use hardpoint::Solution;
 use hardpoint::constraint::Row;
 use hardpoint::joint::{self, Quantity};
 use hardpoint::model::{
-    AngleKind, BodyId, Coupler, Direction, Driver, GROUND, HardpointId, Joint, JointId, MeasureKind, Model,
-    OutputSource, PointId, Ray, VariableId,
+    BodyId, Coupler, Direction, Driver, GROUND, HardpointId, Joint, JointId, Model, OutputSource, VariableId,
 };
 use hardpoint::sensitivity::{self, Condition, JointDefect, admissibility_at_design, conditions_at_design};
 use hardpoint::topology::{Closure, CutReason, Formulation, Role, Topology};

@@ -1,6 +1,7 @@
 //! Programs against the plain arithmetic that they were recorded from.
 
 mod folding;
+mod pieces;
 mod random;
 mod real;
 mod recording;

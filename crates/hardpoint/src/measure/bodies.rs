@@ -1,18 +1,24 @@
 //! Where bodies are, as numbers with derivatives.
 
 use crate::motion::BodyState;
-use crate::number::{Dual, Jet, Rates};
+use crate::number::{Dual, Jet, Rates, Real};
 use crate::sensitivity::BodySensitivity;
 use crate::space::{Mat3, Pose, Vec3};
 
 /// A body's pose with its rates.
 pub(super) fn with_rates(s: &BodyState) -> Pose<Rates> {
-    let column = |e: Vec3| {
-        let e1 = s.omega.cross(e);
-        let e2 = s.alpha.cross(e) + s.omega.cross(e1);
+    let [x, y, z] = s.rotation.cols;
+    moving([s.r, x, y, z, s.v, s.omega, s.a, s.alpha])
+}
+
+/// The same from r, the columns of A, v, omega, a and alpha.
+pub(super) fn moving<T: Real>([r, x, y, z, v, omega, a, alpha]: [Vec3<T>; 8]) -> Pose<Rates<T>> {
+    let column = |e: Vec3<T>| {
+        let e1 = omega.cross(e);
+        let e2 = alpha.cross(e) + omega.cross(e1);
         zip([e, e1, e2])
     };
-    Pose { rot: Mat3 { cols: s.rotation.cols.map(column) }, r: zip([s.r, s.v, s.a]) }
+    Pose { rot: Mat3 { cols: [x, y, z].map(column) }, r: zip([r, v, a]) }
 }
 
 /// The same, with the derivatives of all of it by one design variable.
@@ -29,7 +35,7 @@ pub(super) fn with_sensitivity(s: &BodyState, d: &BodySensitivity) -> Pose<Dual<
     Pose { rot: Mat3 { cols: [column(0), column(1), column(2)] }, r: pair(r, zip([d.dr, d.dv, d.da])) }
 }
 
-fn zip([x, xd, xdd]: [Vec3; 3]) -> Vec3<Rates> {
+fn zip<T: Copy>([x, xd, xdd]: [Vec3<T>; 3]) -> Vec3<Rates<T>> {
     Vec3::new(Jet([x.x, xd.x, xdd.x]), Jet([x.y, xd.y, xdd.y]), Jet([x.z, xd.z, xdd.z]))
 }
 

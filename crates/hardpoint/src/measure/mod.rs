@@ -4,15 +4,20 @@
 //! the product and chain rules where it runs on [`Rates`].
 
 mod bodies;
+mod program;
 mod slope;
 mod wheel;
 
 use std::collections::BTreeMap;
 
 use bodies::{with_rates, with_sensitivity};
+use hardpoint_tape::LANES;
+use program::Run;
+pub(crate) use program::{Asked, Program, Programs, dependences};
 pub(crate) use slope::{SlopeValues, Slopes};
 use wheel::{WheelAt, camber, toe};
 
+use crate::blocks::Blocks;
 use crate::constraint::Row;
 use crate::law::Law;
 use crate::model::{
@@ -21,7 +26,7 @@ use crate::model::{
 };
 use crate::motion::{Motion, Passed};
 use crate::number::{Dual, Jet, Rates, Real};
-use crate::sensitivity::Sensitivities;
+use crate::sensitivity::{Admissibility, Sensitivities};
 use crate::space::{Pose, Vec3};
 use crate::topology::Topology;
 
@@ -59,10 +64,17 @@ pub struct Measured {
     pub outputs: Vec<Output>,
     /// How many design variables there are.
     pub variables: usize,
-    /// `values[k * outputs + m]`: value, rate and acceleration; m or rad, per s, per s^2.
-    pub(crate) values: Vec<[f64; 3]>,
-    /// `d[(k * variables + b) * outputs + m]`: derivatives of those by variable b at fixed t.
-    pub(crate) d: Vec<[f64; 3]>,
+    /// Output times.
+    steps: usize,
+    /// Per output, value, rate and acceleration; m or rad, per s, per s^2.
+    values: Blocks,
+    /// Derivatives of those by the variables at fixed t.
+    d: Blocks,
+    /// `places[b * outputs + m]`: where the derivatives of output m by variable b begin; none where they are all zero.
+    places: Vec<Option<usize>>,
+    /// Variables that there are no derivatives by.
+    unknown: Vec<bool>,
+    by_formula: usize,
 }
 
 impl Measured {
@@ -76,24 +88,114 @@ impl Measured {
     /// Those beyond [`Known::orders`] are NaN, and so is what has no number at that time: the curvature of a path where its
     /// point rests, the instant centre of a body that does not turn.
     pub fn value(&self, k: usize, m: usize) -> [f64; 3] {
-        self.values[k * self.outputs.len() + m]
+        let row = self.values.row(k);
+        std::array::from_fn(|order| finite(row.get(3 * m + order)))
     }
 
     /// Their derivatives by variable b; those of a variable that the mechanism cannot follow are NaN and
     /// mean nothing: ask [`Sensitivities::admissibility`] first.
     pub fn d(&self, k: usize, b: VariableId, m: usize) -> [f64; 3] {
-        self.d[(k * self.variables + b.0) * self.outputs.len() + m]
+        if self.unknown[b.0] {
+            return [f64::NAN; 3];
+        }
+        let Some(place) = self.places[b.0 * self.outputs.len() + m] else {
+            let orders = self.outputs[m].known.orders;
+            return std::array::from_fn(|order| if order < orders { 0.0 } else { f64::NAN });
+        };
+        let row = self.d.row(k);
+        std::array::from_fn(|order| finite(row.get(place + order)))
     }
 
     /// How many output times there are.
     pub fn len(&self) -> usize {
-        if self.outputs.is_empty() { 0 } else { self.values.len() / self.outputs.len() }
+        if self.outputs.is_empty() { 0 } else { self.steps }
     }
 
     /// Whether there is nothing.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
+
+    /// Of all outputs at all output times, how many no program has evaluated, but the formulas one by one: round-off apart, the numbers
+    /// are the same.
+    pub fn by_formula(&self) -> usize {
+        self.by_formula
+    }
+
+    /// Room for these outputs at so many times, in the memory that there is; `layout` says where the derivatives stand, and how many
+    /// numbers they are.
+    fn shape(
+        &mut self,
+        outputs: Vec<Output>,
+        variables: usize,
+        layout: (Vec<Option<usize>>, usize),
+        steps: usize,
+    ) {
+        self.values.shape(3 * outputs.len(), steps);
+        self.d.shape(layout.1, steps);
+        (self.outputs, self.variables, self.places, self.steps) = (outputs, variables, layout.0, steps);
+        self.by_formula = 0;
+        self.unknown.clear();
+        self.unknown.resize(variables, false);
+    }
+
+    fn set(&mut self, k: usize, m: usize, numbers: [f64; 3]) {
+        self.values.set(k, 3 * m, numbers);
+    }
+
+    /// Where it has a place.
+    fn set_d(&mut self, k: usize, b: VariableId, m: usize, numbers: [f64; 3]) {
+        if let Some(place) = self.places[b.0 * self.outputs.len() + m] {
+            self.d.set(k, place, numbers);
+        }
+    }
+
+    /// Appends output time k of another one, all outputs or those named.
+    pub(crate) fn take_over(&mut self, from: &Self, k: usize, outputs: Option<&[OutputSource]>) {
+        let wanted = |m: &usize| outputs.is_none_or(|list| list.contains(&from.outputs[*m].source));
+        let columns: Vec<usize> = (0..from.outputs.len()).filter(wanted).collect();
+        if self.outputs.is_empty() {
+            let mut width = 0;
+            let pairs =
+                (0..from.variables).flat_map(|b| columns.iter().map(move |m| b * from.outputs.len() + m));
+            let place = |pair: usize| {
+                from.places[pair].map(|_| {
+                    width += 3;
+                    width - 3
+                })
+            };
+            let places = pairs.map(place).collect();
+            let outputs = columns.iter().map(|m| from.outputs[*m].clone()).collect();
+            self.shape(outputs, from.variables, (places, width), 0);
+        }
+        let row = self.steps;
+        self.steps += 1;
+        for (m, &column) in columns.iter().enumerate() {
+            self.set(row, m, from.value(k, column));
+            for b in (0..from.variables).map(VariableId) {
+                self.set_d(row, b, m, from.d(k, b, column));
+            }
+        }
+    }
+
+    /// Drops every second output time.
+    pub(crate) fn thin(&mut self) {
+        self.values.thin(self.steps);
+        self.d.thin(self.steps);
+        self.steps = self.steps.div_ceil(2);
+    }
+
+    /// There are no derivatives by these variables.
+    pub(crate) fn forget(&mut self, variables: impl IntoIterator<Item = usize>) {
+        self.unknown.resize(self.variables, false);
+        variables.into_iter().for_each(|v| self.unknown[v] = true);
+    }
+}
+
+/// Derivatives of so many outputs by so many variables, all of them.
+fn dense(outputs: usize, variables: usize) -> (Vec<Option<usize>>, usize) {
+    let all = outputs * variables;
+    ((0..all).map(|n| Some(3 * n)).collect(), 3 * all)
 }
 
 /// The columns that a model's measures and points give.
@@ -128,62 +230,117 @@ pub(crate) struct Before {
     pub values: Vec<[f64; 3]>,
 }
 
-/// Evaluates all outputs over a motion, and their derivatives by the variables that it has sensitivities for.
+/// Evaluates all outputs over a motion, and their derivatives by the variables that it has sensitivities for; by a program, if there
+/// is one, but for what it cannot tell.
 pub(crate) fn evaluate(
     design: &At<'_>,
     topology: &Topology,
-    motion: &Motion,
-    sensitivities: &Sensitivities,
+    (motion, sensitivities): (&Motion, &Sensitivities),
     slopes: &SlopeValues,
     before: Option<&Before>,
-) -> Measured {
+    program: Option<&Program>,
+    measured: &mut Measured,
+) {
     let &At { model, effects, values, laws } = design;
     let outputs = outputs(model);
-    let mut measured = Measured { variables: sensitivities.variables, ..Measured::default() };
-    let turns = turns(model, topology, &outputs);
+    let variables = sensitivities.variables;
+    let layout = program.map_or_else(|| dense(outputs.len(), variables), Program::layout);
+    measured.shape(outputs, variables, layout, motion.len());
+    let cannot_follow =
+        |b: &usize| matches!(sensitivities.admissibility[*b], Admissibility::CannotFollow { .. });
+    measured.forget((0..variables).filter(cannot_follow));
+    let mut run = program.map(|program| Run::new(program, values));
+    let turns = turns(model, topology, &measured.outputs);
     let bodies = bodies_asked_for(model);
 
-    let lifted: Vec<Rates> = values.iter().map(|v| Rates::constant(*v)).collect();
-    let fixed = effects.fixed(&lifted);
+    let fixed = effects.fixed(values).map(Jet::constant);
     let mut poses = vec![Pose::IDENTITY.spread(); model.bodies.len()];
     // Formulas are over angles that are counted through turns.
-    let counts = model.measures.iter().any(|m| matches!(m.kind, MeasureKind::Combination { .. }));
+    let is_formula = |m: usize| {
+        let kind = model.measures.get(m).map(|m| &m.kind);
+        matches!(kind, Some(MeasureKind::Combination { .. }))
+    };
+    let counts = (0..model.measures.len()).any(is_formula);
     let mut counted: Vec<f64> = Vec::new();
-    let mut given: Vec<Rates> = Vec::new();
-    for k in 0..motion.len() {
-        let first = measured.values.len();
-        let states = motion.at(k);
-        bodies.iter().for_each(|&b| poses[b] = with_rates(&states.body(b)));
-        given.clear();
-        given.extend(slopes.at(k).iter().map(|x| only(*x)));
-        let moment = Moment { slopes: &given, ..Moment::new(model, &fixed, &poses) };
-        moment.all(|x| measured.values.push(x.0.map(finite)));
-        let raw = counts.then(|| measured.values[first..].to_vec());
-        let on_the_way = |m: usize, place: &Passed| {
-            let mut poses = poses.clone();
-            place.states.iter().for_each(|(body, state)| poses[body.0] = with_rates(state));
-            let Jet([angle, rate, _]) = Moment::new(model, &fixed, &poses).measure(m);
-            [angle, rate]
-        };
-        let values = &mut measured.values;
-        unwrap_angles(laws, (motion, before), k, &turns, values, first, on_the_way);
-        if let Some(raw) = raw {
-            let now = counted.len();
-            let whole = |(m, x): (usize, &[f64; 3])| x[0] - raw[m][0];
-            counted.extend(measured.values[first..].iter().enumerate().map(whole).take(model.measures.len()));
-            for (m, measure) in model.measures.iter().enumerate() {
-                if matches!(measure.kind, MeasureKind::Combination { .. }) {
-                    let moment = Moment { whole_turns: &counted[now..], ..moment };
-                    measured.values[first + m] = moment.measure(m).0.map(finite);
+    let (mut given, mut whole_turns): (Vec<Rates>, Vec<Rates>) = (Vec::new(), Vec::new());
+    // Blocks of output times, and outputs there, that the formulas themselves are asked for.
+    let mut left: Vec<(usize, usize)> = Vec::new();
+    for first in (0..motion.len()).step_by(LANES) {
+        let times = first..usize::min(first + LANES, motion.len());
+        let begins = left.len();
+        loop {
+            if let Some(run) = &mut run {
+                run.at(first, motion, sensitivities, measured);
+            }
+            left.truncate(begins);
+            counted.truncate(first * model.measures.len());
+            let fits = |m: &usize| run.as_ref().is_some_and(|run| run.fits(*m, times.len()));
+            left.extend((0..turns.len()).filter(|m| !fits(m)).map(|m| (first, m)));
+            for k in times.clone() {
+                let place = |poses: &mut [Pose<Rates>]| {
+                    let states = motion.at(k);
+                    bodies.iter().for_each(|&b| poses[b] = with_rates(&states.body(b)));
+                };
+                if left.len() > begins {
+                    place(&mut poses);
+                }
+                given.clear();
+                given.extend(slopes.at(k).iter().map(|x| only(*x)));
+                let moment = Moment { slopes: &given, ..Moment::new(model, &fixed, &poses) };
+                for &(_, m) in &left[begins..] {
+                    measured.set(k, m, moment.output(measured.outputs[m].source).0);
+                }
+                let on_the_way = |m: usize, passed: &Passed| {
+                    let mut poses = poses.clone();
+                    place(&mut poses);
+                    passed.states.iter().for_each(|(body, state)| poses[body.0] = with_rates(state));
+                    let Jet([angle, rate, _]) = Moment::new(model, &fixed, &poses).measure(m);
+                    [angle, rate]
+                };
+                whole_turns.clear();
+                whole_turns.resize(model.measures.len(), Jet([0.0; 3]));
+                unwrap_angles(laws, (motion, before), k, &turns, measured, on_the_way, |m, whole| {
+                    whole_turns[m].0[0] = whole;
+                });
+                if counts {
+                    counted.extend(whole_turns.iter().map(|turns| turns.0[0]));
+                    let moment = Moment { whole_turns: &whole_turns, ..moment };
+                    for &(_, m) in left[begins..].iter().filter(|(_, m)| is_formula(*m)) {
+                        measured.set(k, m, moment.measure(m).0);
+                    }
                 }
             }
+            // The program went by the turns of the output time before.
+            let Some(run) = &mut run else { break };
+            let mut differ = false;
+            for (m, lanes) in run.turns() {
+                for (lane, to) in lanes.iter_mut().enumerate() {
+                    let k = usize::min(first + lane, times.end - 1);
+                    let now = counted[k * model.measures.len() + m];
+                    // Bit by bit, so that what is no number is the same again.
+                    differ |= now.to_bits() != to.to_bits();
+                    *to = now;
+                }
+            }
+            if !differ {
+                break;
+            }
+        }
+        measured.by_formula += times.len() * (left.len() - begins);
+        if let Some(run) = &mut run {
+            run.turns().for_each(|(_, lanes)| *lanes = [lanes[LANES - 1]; LANES]);
         }
     }
 
     let more = More { slopes, whole_turns: &counted };
-    measured.d = derivatives(design, &outputs, motion, sensitivities, &more);
-    measured.outputs = outputs;
-    measured
+    let asked = std::mem::take(&mut measured.outputs);
+    let outputs = asked.len();
+    derivatives(design, &asked, &left, (motion, sensitivities), &more, |k, b, m, numbers| {
+        if let Some(place) = measured.places[b * outputs + m] {
+            measured.d.set(k, place, numbers);
+        }
+    });
+    measured.outputs = asked;
 }
 
 /// What outputs may ask for besides the motion.
@@ -199,47 +356,60 @@ fn only(x: f64) -> Rates {
     Jet([x, f64::NAN, f64::NAN])
 }
 
-/// Derivatives of some outputs by the variables, `[(k * variables + b) * outputs + m]`.
+/// Derivatives of some outputs by the variables that the mechanism follows: of those that are listed, in the order of blocks of eight
+/// output times that begin there. `out` is given output time, variable, output and the derivatives.
 ///
 /// Variable by variable, so that what is fixed in the bodies is worked out once for each.
 pub(crate) fn derivatives(
     design: &At<'_>,
     outputs: &[Output],
-    motion: &Motion,
-    sensitivities: &Sensitivities,
+    listed: &[(usize, usize)],
+    (motion, sensitivities): (&Motion, &Sensitivities),
     more: &More<'_>,
-) -> Vec<[f64; 3]> {
+    mut out: impl FnMut(usize, usize, usize, [f64; 3]),
+) {
     let &At { model, effects, values, .. } = design;
     let bodies = bodies_asked_for(model);
-    let (steps, variables, columns) = (motion.len(), sensitivities.variables, outputs.len());
-    let mut found = vec![[f64::NAN; 3]; steps * variables * columns];
     let mut poses = vec![Pose::IDENTITY.spread(); model.bodies.len()];
-    let mut lifted: Vec<Dual<Rates>> = values.iter().map(|v| Dual::constant(Rates::constant(*v))).collect();
-    let mut given: Vec<Dual<Rates>> = Vec::new();
-    for b in 0..variables {
-        lifted[b] = Dual::variable(lifted[b].v);
-        let fixed = effects.fixed(&lifted);
-        lifted[b] = Dual::constant(lifted[b].v);
-        for k in 0..steps {
-            let Some(d) = sensitivities.at(k, b) else { break };
-            let states = motion.at(k);
-            bodies.iter().for_each(|&b| poses[b] = with_sensitivity(&states.body(b), &d.body(b)));
-            given.clear();
-            let both = more.slopes.at(k).iter().zip(more.slopes.d(k, b));
-            given.extend(both.map(|(x, d)| Dual { v: only(*x), d: only(*d) }));
-            let whole_turns = more.whole_turns.get(k * model.measures.len()..).unwrap_or_default();
-            let moment = Moment { slopes: &given, whole_turns, ..Moment::new(model, &fixed, &poses) };
-            let first = (k * variables + b) * columns;
-            for (found, output) in found[first..first + columns].iter_mut().zip(outputs) {
-                *found = moment.output(output.source).d.0.map(finite);
+    let mut values: Vec<Dual> = values.iter().map(|v| Dual::constant(*v)).collect();
+    let (mut given, mut whole_turns): (Vec<Dual<Rates>>, Vec<Dual<Rates>>) = (Vec::new(), Vec::new());
+    for b in (0..sensitivities.variables).filter(|_| !listed.is_empty()) {
+        values[b] = Dual::variable(values[b].v);
+        let fixed = effects.fixed(&values);
+        let fixed = fixed.map(|x| Dual { v: Jet::constant(x.v), d: Jet::constant(x.d) });
+        values[b] = Dual::constant(values[b].v);
+        for listed in listed.chunk_by(|a, b| a.0 == b.0) {
+            let first = listed[0].0;
+            for k in first..usize::min(first + LANES, motion.len()) {
+                let Some(d) = sensitivities.at(k, b) else { break };
+                let states = motion.at(k);
+                bodies.iter().for_each(|&b| poses[b] = with_sensitivity(&states.body(b), &d.body(b)));
+                given.clear();
+                let both = more.slopes.at(k).iter().zip(more.slopes.d(k, b));
+                given.extend(both.map(|(x, d)| Dual { v: only(*x), d: only(*d) }));
+                let turns = more.whole_turns.get(k * model.measures.len()..).unwrap_or_default();
+                whole_turns.clear();
+                whole_turns.extend(
+                    turns
+                        .iter()
+                        .take(model.measures.len())
+                        .map(|turns| Dual::constant(Rates::constant(*turns))),
+                );
+                let moment = Moment {
+                    slopes: &given,
+                    whole_turns: &whole_turns,
+                    ..Moment::new(model, &fixed, &poses)
+                };
+                for &(_, m) in listed {
+                    out(k, b, m, moment.output(outputs[m].source).d.0);
+                }
             }
         }
     }
-    found
 }
 
 /// Where a formula has a pole, there is no number.
-fn finite(x: f64) -> f64 {
+pub(crate) fn finite(x: f64) -> f64 {
     if x.is_finite() { x } else { f64::NAN }
 }
 
@@ -295,17 +465,24 @@ fn turns(model: &Model, topology: &Topology, outputs: &[Output]) -> Vec<Option<T
         let step = if link.parent_end == 0 { freedom } else { link.steps.len() - 1 - freedom };
         Turns::Coordinate(link.steps[step].first)
     };
-    let of_output = |output: &Output| {
-        let OutputSource::Measure(index) = output.source else { return None };
-        match model.measures[index].kind {
-            MeasureKind::Coordinate { joint, coordinate } => {
-                (output.dimension == Dimension::ANGLE).then(|| of_joint(joint, coordinate))
-            }
-            MeasureKind::Angle { about: Some(_), .. } => Some(Turns::Path(None)),
-            _ => None,
-        }
+    let of_output = |output: &Output| match output.source {
+        OutputSource::Measure(m) if is_counted(model, output) => match model.measures[m].kind {
+            MeasureKind::Coordinate { joint, coordinate } => Some(of_joint(joint, coordinate)),
+            _ => Some(Turns::Path(None)),
+        },
+        _ => None,
     };
     outputs.iter().map(of_output).collect()
+}
+
+/// Whether an output is an angle that is counted through turns.
+fn is_counted(model: &Model, output: &Output) -> bool {
+    let OutputSource::Measure(m) = output.source else { return false };
+    match model.measures[m].kind {
+        MeasureKind::Coordinate { .. } => output.dimension == Dimension::ANGLE,
+        MeasureKind::Angle { about: Some(_), .. } => true,
+        _ => false,
+    }
 }
 
 /// One turn, rad.
@@ -359,37 +536,38 @@ fn along_the_path<'p>(
     }
 }
 
-/// Counts angles through whole turns.
+/// Counts angles through whole turns, and says of each what these are.
 fn unwrap_angles(
     laws: &[Law],
     (motion, before): (&Motion, Option<&Before>),
     k: usize,
     turns: &[Option<Turns>],
-    values: &mut [[f64; 3]],
-    first: usize,
+    measured: &mut Measured,
     measure: impl Fn(usize, &Passed) -> [f64; 2] + Copy,
+    mut counted: impl FnMut(usize, f64),
 ) {
     for (m, turns_of) in turns.iter().enumerate() {
+        let Some(turns_of) = turns_of else { continue };
+        let [now, rate, acceleration] = measured.value(k, m);
         let near = match turns_of {
-            None => continue,
-            Some(Turns::Driver(d)) => laws[d.0].at(motion.times[k]).value(),
-            Some(Turns::Coordinate(q)) => motion.coordinates.row(k).get(*q),
-            Some(Turns::Path(begins)) => {
+            Turns::Driver(d) => laws[d.0].at(motion.times[k]).value(),
+            Turns::Coordinate(q) => motion.coordinates.row(k).get(*q),
+            Turns::Path(begins) => {
                 let counted = |time: f64, [value, rate, _]: [f64; 3]| Counted { value, rate, time };
                 let last = match (k, before) {
                     (0, None) => None,
                     (0, Some(before)) => Some(counted(before.time, before.values[m])),
-                    _ => Some(counted(motion.times[k - 1], values[first - turns.len() + m])),
+                    _ => Some(counted(motion.times[k - 1], measured.value(k - 1, m))),
                 };
                 let first_passed = motion.passed.partition_point(|(before, _)| *before < k);
                 let passed = motion.passed[first_passed..].iter().take_while(|(before, _)| *before == k);
                 let passed = passed.map(|(_, place)| place);
-                let [now, rate, _] = values[first + m];
                 along_the_path(last, *begins, passed, |p| measure(m, p), [now, rate, motion.times[k]])
             }
         };
-        let value = &mut values[first + m][0];
-        *value = turned(*value, near);
+        let value = turned(now, near);
+        measured.set(k, m, [value, rate, acceleration]);
+        counted(m, value - now);
     }
 }
 
@@ -403,7 +581,7 @@ pub(crate) struct Moment<'a, T> {
     /// Per measure: its value, where it goes by a driver; empty where these are not known.
     slopes: &'a [T],
     /// Per measure: the whole turns, rad, that its angle has made; empty where they are not counted.
-    whole_turns: &'a [f64],
+    whole_turns: &'a [T],
 }
 
 impl<'a, T: Real> Moment<'a, T> {
@@ -449,7 +627,7 @@ impl<'a, T: Real> Moment<'a, T> {
         match &self.model.measures[k].kind {
             MeasureKind::Coordinate { joint, coordinate } => {
                 let wrapped = self.coordinate(k, *joint, *coordinate);
-                self.whole_turns.get(k).map_or(wrapped, |turns| wrapped + T::constant(*turns))
+                self.whole_turns.get(k).map_or(wrapped, |turns| wrapped + *turns)
             }
             MeasureKind::Distance { from, to } => (self.point(*to) - self.point(*from)).norm(),
             MeasureKind::Coordinates { point, along } => {
@@ -466,7 +644,7 @@ impl<'a, T: Real> Moment<'a, T> {
                         n.dot(across).atan2(along - n.dot(a) * n.dot(b))
                     }
                 };
-                self.whole_turns.get(k).map_or(within, |turns| within + T::constant(*turns))
+                self.whole_turns.get(k).map_or(within, |turns| within + *turns)
             }
             MeasureKind::TransmissionAngle { from, to } => {
                 let [a, b] = self.rays(k, [from, to]);
@@ -482,7 +660,8 @@ impl<'a, T: Real> Moment<'a, T> {
                 let (turn, speed) = (v.cross(a), v.norm());
                 let turn = about.map_or_else(|| turn.norm(), |about| about.spread().dot(turn));
                 let (way, far) = (speed * speed, a.norm() * T::constant(RESTS * self.model.size()));
-                turn / (way.select(unknown(), way.value() > far.value()) * speed)
+                let way = if way.exceeds(far) { way } else { unknown() };
+                turn / (way * speed)
             }
             MeasureKind::Rate { of } => self.output(*of).rate(),
             MeasureKind::Combination { expression } => expression.at(|source| self.output(source)),
@@ -593,8 +772,9 @@ const RESTS: f64 = 1e-12;
 const STRAIGHT: f64 = 1e-4;
 
 /// A number for division; NaN where one of the headings is straight ahead.
-fn steering<T: Real>(x: T, [l, r]: [T; 2]) -> T {
-    x.select(T::constant(f64::NAN), l.value().abs().min(r.value().abs()) >= STRAIGHT)
+fn steering<T: Real>(x: T, headings: [T; 2]) -> T {
+    let steers = headings.into_iter().all(|heading| heading.abs().exceeds(T::constant(STRAIGHT)));
+    if steers { x } else { T::constant(f64::NAN) }
 }
 
 /// The heading of the right wheel that turns about the same point of the other axle's line as the left one with heading l:

@@ -31,6 +31,18 @@ pub(crate) struct Fixed<T> {
     pub markers: Vec<Option<[Pose<T>; 2]>>,
 }
 
+impl<T: Copy> Fixed<T> {
+    /// The same, number by number.
+    pub fn map<U>(&self, f: impl Fn(T) -> U + Copy) -> Fixed<U> {
+        let pose = |p: Pose<T>| Pose { rot: Mat3 { cols: p.rot.cols.map(|c| c.map(f)) }, r: p.r.map(f) };
+        Fixed {
+            points: self.points.iter().map(|p| p.map(f)).collect(),
+            directions: self.directions.iter().map(|d| d.map(|d| d.map(|d| d.map(f)))).collect(),
+            markers: self.markers.iter().map(|m| m.map(|m| m.map(pose))).collect(),
+        }
+    }
+}
+
 /// What a joint can keep of its design configuration, or the rate at which a design variable changes it.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Kept<T = f64> {

@@ -15,7 +15,7 @@ use crate::topology::Source;
 use super::forecast::{NODES, ORDERS, Weights};
 use super::margin::Margin;
 use super::stepper::{Ahead, EVEN, LONGEST, MILD, MILD_CHANGE, RESTS, Saved, Stepper, TRUST_FLOOR};
-use super::tape::{MOST_CORRECTIONS, Room, Runnable, Solved, StepProgram, Tape};
+use super::tape::{MOST_CORRECTIONS, Room, Runnable, Solved, StepProgram, Tape, all_within, largest};
 use super::walk::PART_OF_WAY;
 
 /// The first correction (rad, or sizes) must be within this: a forecast by all positions that fails by more is none.
@@ -51,14 +51,14 @@ pub(crate) struct Abreast<'p> {
 struct Laws {
     program: Option<Arc<Runnable>>,
     room: Room,
-    outputs: Vec<Line>,
+    limits: Vec<Line>,
 }
 
 impl<'p> Abreast<'p> {
     /// By these programs, for a design with these values; `laws` are those of its drivers, if there is a program for them.
     pub fn new(programs: Option<ProgramOf<'p>>, design: &[f64], laws: Option<Arc<Runnable>>) -> Self {
-        let outputs = vec![Line::default(); laws.as_ref().map_or(0, |laws| laws.outputs())];
-        let laws = Laws { program: laws, room: Room::default(), outputs };
+        let limits = vec![Line::default(); laws.as_ref().map_or(0, |laws| laws.sizes()[1])];
+        let laws = Laws { program: laws, room: Room::default(), limits };
         Self {
             programs,
             design: design.to_vec(),
@@ -88,7 +88,7 @@ impl<'p> Abreast<'p> {
 
     /// Output time k comes next: moves on from where the stepper stands to as many of the next output times as can be solved at once;
     /// returns how many, 0 where they are to be walked. Output times 8n to 8n + 7 lie side by side, so that these end with such a
-    /// group; those of it that are before k are solved once more, the same. Results go to the room that there is, or are kept here.
+    /// group; those of it that are before k are solved once more, for nothing. Results go to the room that there is, or are kept here.
     #[inline]
     pub fn advance<'r>(
         &mut self,
@@ -157,15 +157,13 @@ impl<'p> Abreast<'p> {
         }
         one.fastest_driver = fastest_driver(tape, one);
         let ahead = times.map(|t| t - one.time);
-        self.weights.set(one.forecast.nodes(ahead[last]), &ahead);
-        tape.look_ahead(&self.weights.of, &ahead);
-        for channel in 0..tape.channels().len() {
-            let known = one.forecast.known_of(channel);
-            for (to, x) in tape.known_mut(channel).iter_mut().zip(known.as_flattened()) {
-                *to = [*x; LANES];
-            }
+        let are_new = self.weights.set(one.forecast.nodes(ahead[last]), &ahead);
+        tape.look_ahead(&self.weights.of, are_new, &ahead);
+        for (channel, known) in tape.known_of_times_mut().iter_mut().enumerate() {
+            known.copy_from_slice(one.forecast.known_of(channel).as_flattened());
         }
-        let room = room.filter(|room| room.each_ref().map(|part| part.len()) == tape.sizes());
+        // What was found before stays, whatever these come to.
+        let room = room.filter(|room| first == 0 && room.each_ref().map(|part| part.len()) == tape.sizes());
         self.is_own = room.is_none();
         let results = room.unwrap_or_else(|| {
             for (own, size) in self.own.iter_mut().zip(tape.sizes()) {
@@ -196,11 +194,9 @@ impl Laws {
     fn at(&mut self, one: &Stepper<'_>, times: &Lanes, drivers: &mut [Lanes]) -> Option<()> {
         let mut by_program = false;
         if let Some(program) = &self.program {
-            let found = lanes_of(&mut self.outputs);
-            self.room.run(program, std::slice::from_ref(times), [found, &mut [], &mut []]);
-            let (found, limits) = found.split_at(drivers.len());
-            by_program = limits.iter().all(|l| l.iter().all(|x| *x <= 0.0));
-            drivers.copy_from_slice(found);
+            let limits = lanes_of(&mut self.limits);
+            self.room.run(program, std::slice::from_ref(times), &[], [&mut *drivers, &mut *limits, &mut []]);
+            by_program = limits.iter().all(|limit| all_within(limit, 0.0));
         }
         if !by_program {
             for (d, driver) in drivers.chunks_exact_mut(ORDERS).enumerate() {
@@ -211,7 +207,7 @@ impl Laws {
                 }
             }
         }
-        let finite = drivers.iter().all(|x| x.iter().all(|x| x.is_finite()));
+        let finite = drivers.iter().all(|x| all_within(&x.map(f64::abs), f64::MAX));
         finite.then_some(())
     }
 }
@@ -221,7 +217,7 @@ impl Laws {
 fn fastest_driver(tape: &Tape, one: &Stepper<'_>) -> f64 {
     let mut fastest = one.fastest_driver;
     for (d, unit) in one.driver_units.iter().enumerate() {
-        fastest = tape.driver(d, 1).iter().fold(fastest, |most, x| most.max(x.abs() / unit));
+        fastest = fastest.max(largest(&tape.driver(d, 1).map(f64::abs)) / unit);
     }
     fastest
 }
@@ -236,7 +232,8 @@ fn laws_are_even(tape: &Tape, one: &mut Stepper<'_>, times: &Lanes, [first, last
         let unit = one.driver_units[d];
         let (mut before, mut moves) = (one.saved.drivers[d][0], 0.0_f64);
         for &value in &tape.driver(d, 0)[first..=last] {
-            moves = moves.max((value - before).abs());
+            let moved = (value - before).abs();
+            moves = if moved > moves { moved } else { moves };
             before = value;
         }
         moves /= unit;
@@ -247,7 +244,8 @@ fn laws_are_even(tape: &Tape, one: &mut Stepper<'_>, times: &Lanes, [first, last
         if !(travel <= most) {
             return false;
         }
-        (one.moves_ahead[d], one.travel[d]) = (moves, travel * unit);
+        // What was examined must be clear as far as the last of these times.
+        (one.moves_ahead[d], one.travel[d]) = (moves, travel * unit * ((to - from) / longest));
     }
     one.ahead == Ahead::Even || one.around.part_of_way(&one.travel) <= PART_OF_WAY
 }

@@ -3,18 +3,22 @@
 //! They start from where the nominal design does, and every check of a single design's step is made in every lane. Where one
 //! fails, nobody knows which design goes another way: each is then solved alone.
 
+use std::ops::Range;
+use std::sync::Arc;
+
 use hardpoint_tape::{LANES, Lanes};
 
-use crate::blocks::{Line, lanes_of};
+use crate::blocks::{Blocks, Line, lanes_of};
 use crate::model::{BodyId, VariableId};
+use crate::sink::Block;
 
-use super::Effort;
 use super::abreast::ProgramOf;
 use super::forecast::{NODES, ORDERS, Weights};
 use super::kinematics::QUADRATIC;
 use super::stepper::{Ahead, MILD, MILD_CHANGE, Stepper, TRUST_FLOOR};
 use super::tape::{MOST_CORRECTIONS, Solved, Tape};
 use super::walk::Path;
+use super::{Effort, Motion};
 
 /// A forecast that was so good at the last step will be good enough for one correction at the next one.
 const GOOD: f64 = 0.1 * QUADRATIC;
@@ -52,30 +56,25 @@ pub(crate) struct SideBySide<'m> {
     /// Per block: the last determinant, and by what part it changed.
     determinants: Vec<Lanes>,
     changes: Vec<Lanes>,
-    /// The numbers of all bodies at the last eight output times, and their derivatives at the last.
-    states: [Vec<Line>; LANES],
+    /// Numbers of all bodies, and the coordinates of the tree, output time after output time, or of the last one; the bodies' derivatives
+    /// at the last.
+    states: Arc<Vec<Line>>,
+    coordinates: Arc<Vec<Line>>,
     derivatives: Vec<Line>,
+    keeps: bool,
 }
 
 /// What was found at an output time.
 pub(crate) struct Found<'f> {
     pub tape: &'f Tape,
-    states: &'f [Vec<Line>; LANES],
-    pub derivatives: &'f [Lanes],
-}
-
-impl<'f> Found<'f> {
-    /// The numbers of all bodies but ground at output time k, this one or one of the seven before.
-    #[inline(always)]
-    pub fn states(&self, k: usize) -> &'f [Lanes] {
-        bytemuck::cast_slice(&self.states[k % LANES])
-    }
+    /// The numbers of all bodies but ground, and their derivatives.
+    pub block: Block<'f>,
 }
 
 impl<'m> SideBySide<'m> {
     /// By these programs. None where there is none, and where the nominal design is not as drawn at its first output time, where
-    /// `nominal` stands: designs could have gone other ways till there.
-    pub fn new(mut nominal: Stepper<'m>, programs: ProgramOf<'m>) -> Option<Self> {
+    /// `nominal` stands: designs could have gone other ways till there. `keeps` says whether the results of all output times are kept.
+    pub fn new(mut nominal: Stepper<'m>, programs: ProgramOf<'m>, keeps: bool) -> Option<Self> {
         if nominal.saved.drivers.iter().any(|f| f[0] != 0.0) {
             return None;
         }
@@ -85,7 +84,7 @@ impl<'m> SideBySide<'m> {
             return None;
         }
         let channels = first.channels().len();
-        let [states, derivatives] = first.sizes().map(|size| vec![Line::default(); size]);
+        let derivatives = vec![Line::default(); first.sizes()[1]];
         let mut tapes = [const { None }; MOST_CORRECTIONS];
         tapes[MOST_CORRECTIONS - 1] = Some((first, false));
         let (course, drivers) = course(&mut nominal);
@@ -104,9 +103,18 @@ impl<'m> SideBySide<'m> {
             count: 0,
             determinants: vec![[0.0; LANES]; blocks],
             changes: vec![[0.0; LANES]; blocks],
-            states: std::array::from_fn(|_| states.clone()),
+            states: Arc::default(),
+            coordinates: Arc::default(),
             derivatives,
+            keeps,
         })
+    }
+
+    /// Gives one of the designs that were solved its results.
+    pub fn hand_over(&self, lane: usize, motion: &mut Motion) {
+        let of_design = |lines: &Arc<Vec<Line>>, width| Blocks::of_design(Arc::clone(lines), width, lane);
+        motion.states = of_design(&self.states, self.tape().sizes()[0]);
+        motion.coordinates = of_design(&self.coordinates, self.nominal.topology.coordinates.len());
     }
 
     /// What has solved the last step.
@@ -129,11 +137,26 @@ impl<'m> SideBySide<'m> {
         }
         self.designs.clear();
         self.designs.extend_from_slice(designs);
+        let steps = if self.keeps { model.times.len() } else { 1 };
+        let widths = [self.tape().sizes()[0], self.nominal.topology.coordinates.len()];
+        for (lines, width) in [&mut self.states, &mut self.coordinates].into_iter().zip(widths) {
+            // Who still reads the results of former designs keeps them.
+            if Arc::get_mut(lines).is_none_or(|lines| lines.len() != width * steps) {
+                *lines = Arc::new(vec![Line::default(); width * steps]);
+            }
+        }
         let mut effort = Effort { least_pivot_ratio: f64::INFINITY, ..Effort::default() };
         for (k, &t) in model.times.iter().enumerate() {
             let solved = if k == 0 { self.start(t)? } else { self.step(k, t)? };
-            let (tape, derivatives) = (self.tape(), bytemuck::cast_slice(&self.derivatives));
-            each(k, &Found { tape, states: &self.states, derivatives });
+            if self.keeps {
+                let at = widths[1] * k..widths[1] * (k + 1);
+                let Some((tape, _)) = &self.tapes[self.by] else { return None };
+                let room = &mut Arc::get_mut(&mut self.coordinates)?[at];
+                tape.coordinates(&self.nominal.topology, lanes_of(room));
+            }
+            let states = &self.states[self.states_at(k)];
+            let [states, derivatives] = [states, &self.derivatives].map(|lines| bytemuck::cast_slice(lines));
+            each(k, &Found { tape: self.tape(), block: Block { states, derivatives } });
             effort.steps += 1;
             effort.by_program += 1;
             effort.iterations += self.tape().passes();
@@ -141,6 +164,13 @@ impl<'m> SideBySide<'m> {
             effort.note_pivots([solved.pivot_ratio].into_iter(), t);
         }
         Some(effort)
+    }
+
+    /// Where the numbers of all bodies at output time k stand.
+    fn states_at(&self, k: usize) -> Range<usize> {
+        let width = self.tape().sizes()[0];
+        let first = if self.keeps { width * k } else { 0 };
+        first..first + width
     }
 
     /// All designs at the first output time, from where the nominal one is.
@@ -180,6 +210,7 @@ impl<'m> SideBySide<'m> {
     /// Tries the tape with so many corrections at output time k, so long beyond the newest position.
     fn solve(&mut self, corrections: usize, k: usize, ahead: &Lanes) -> Option<Solved> {
         self.weights.set((self.times.map(|t| t - self.times[0]), self.count), ahead);
+        let states_at = self.states_at(k);
         let kept = &mut self.tapes[corrections - 1];
         if kept.is_none() {
             *kept = Some((Tape::new((self.programs)(corrections)?), false));
@@ -189,7 +220,7 @@ impl<'m> SideBySide<'m> {
             tape.set_designs(&self.designs);
         }
         let nominal = &self.nominal;
-        tape.look_ahead(&self.weights.of, ahead);
+        tape.look_ahead(&self.weights.of, true, ahead);
         for (channel, known) in self.known.iter().enumerate() {
             tape.known_mut(channel).copy_from_slice(known);
         }
@@ -197,7 +228,8 @@ impl<'m> SideBySide<'m> {
         for (to, x) in tape.drivers_mut().iter_mut().zip(self.drivers[k * drivers..].as_flattened()) {
             *to = [*x; LANES];
         }
-        let results = [lanes_of(&mut self.states[k % LANES]), lanes_of(&mut self.derivatives)];
+        let states = &mut Arc::get_mut(&mut self.states)?[states_at];
+        let results = [lanes_of(states), lanes_of(&mut self.derivatives)];
         let solved = tape.solve(TRUST_FLOOR, results).ok()?;
         (self.by, self.missed) = (corrections - 1, tape.missed());
         Some(solved)

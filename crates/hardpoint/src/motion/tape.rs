@@ -14,7 +14,9 @@ use std::fmt;
 use std::sync::{Arc, Mutex, OnceLock};
 
 use hardpoint_code::{Code, PARTS, Scratch, Unsupported, Width};
-use hardpoint_tape::{Interpreter, LANES, Lanes, Number, Options, Program, record};
+use hardpoint_tape::{
+    Interpreter, LANES, Lanes, Number, Operand, Options, Pieces, PiecesRoom, Program, Shape, record,
+};
 
 use crate::blocks::{Line, lanes_of};
 use crate::joint::Freedom;
@@ -40,6 +42,10 @@ pub(super) const MOST_CORRECTIONS: usize = 2;
 const MOST_RUNS: usize = 4;
 /// From one run to the next the first correction must become smaller by this factor, as Newton's corrections must.
 const CONTRACTS: f64 = 0.5;
+/// A program of so many instructions does not stay in the fast memory of a core: where its pieces are alike, they share their code ...
+const LONG: usize = 10_000;
+/// ... if that makes it shorter by this factor.
+const SHORTER: usize = 2;
 /// Mechanisms with more links than this are not recorded: the program would no longer stay in the fast memory of a core.
 const MOST_LINKS: usize = 4000;
 /// What a channel is foreseen by.
@@ -48,6 +54,8 @@ const CONDITIONS: usize = NODES * ORDERS;
 /// What a program is for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) struct Purpose {
+    /// Whether its lanes are output times, of one design; else they are designs, at one output time.
+    pub times: bool,
     /// Whether the design is an input; else it is the nominal one.
     pub any_design: bool,
     /// Newton's corrections in one run: one or two.
@@ -89,25 +97,96 @@ pub(crate) struct StepProgram {
     defects: Vec<(VariableId, usize)>,
 }
 
-/// A program, as machine code where there is any.
+/// A program, as machine code where there is any; a long one in pieces that share their code.
 #[derive(Debug)]
 pub(crate) struct Runnable {
+    inputs: usize,
+    sizes: [usize; PARTS],
+    form: Form,
+}
+
+#[derive(Debug)]
+enum Form {
+    Whole(Executable),
+    Pieces(Pieces, Vec<Executable>),
+}
+
+/// A program that is run as it is, with outputs in parts.
+#[derive(Debug)]
+struct Executable {
     program: Program,
-    ends: [usize; PARTS - 1],
     code: Option<Code>,
+}
+
+impl Executable {
+    fn new(program: Program, ends: [usize; PARTS - 1], execution: Execution) -> Self {
+        let code =
+            if execution == Execution::Interpreted { None } else { Code::in_parts(&program, ends).ok() };
+        Self { program, code }
+    }
+
+    #[inline(always)]
+    fn run(
+        &self,
+        (scratch, interpreter): (&mut Scratch, &mut Option<Interpreter>),
+        found: &mut Vec<Lanes>,
+        inputs: &[Lanes],
+        uniforms: &[f64],
+        outputs: [&mut [Lanes]; PARTS],
+    ) {
+        match &self.code {
+            Some(code) => code.run_in_parts(scratch, inputs, uniforms, outputs),
+            None => {
+                let interpreter = interpreter.get_or_insert_with(|| Interpreter::new(&self.program));
+                found.resize(self.program.outputs.len(), [0.0; LANES]);
+                interpreter.run(inputs, uniforms, found);
+                let mut rest = &found[..];
+                for to in outputs {
+                    let (part, others) = rest.split_at(to.len());
+                    to.copy_from_slice(part);
+                    rest = others;
+                }
+            }
+        }
+    }
 }
 
 impl Runnable {
     /// Its outputs in parts that end there.
-    fn new(program: Program, ends: [usize; PARTS - 1], execution: Execution) -> Self {
-        let code =
-            if execution == Execution::Interpreted { None } else { Code::in_parts(&program, ends).ok() };
-        Self { program, ends, code }
+    pub fn new(program: Program, ends: [usize; PARTS - 1], execution: Execution) -> Self {
+        Self::in_pieces(program, ends, execution, |_| 0)
     }
 
-    /// How many numbers it gives.
-    pub fn outputs(&self) -> usize {
-        self.program.outputs.len()
+    /// The same; `piece_of` says which piece of a long program an input or uniform belongs to.
+    fn in_pieces(
+        program: Program,
+        ends @ [first, second]: [usize; PARTS - 1],
+        execution: Execution,
+        piece_of: impl Fn(Operand) -> usize,
+    ) -> Self {
+        let (inputs, long) = (program.inputs, program.instructions.len());
+        let sizes = [first, second - first, program.outputs.len() - second];
+        let pieces = (long > LONG).then(|| program.in_pieces(piece_of, ends));
+        let form = match pieces.filter(|pieces| SHORTER * pieces.instructions() <= long) {
+            Some(pieces) => {
+                let executable =
+                    |shape: &Shape| Executable::new(shape.program.clone(), shape.ends, execution);
+                let shapes = pieces.shapes.iter().map(executable).collect();
+                Form::Pieces(pieces, shapes)
+            }
+            None => Form::Whole(Executable::new(program, ends, execution)),
+        };
+        Self { inputs, sizes, form }
+    }
+
+    /// How many numbers it is given.
+    pub fn inputs(&self) -> usize {
+        self.inputs
+    }
+
+    /// How many numbers it gives, in every part.
+    pub fn sizes(&self) -> [usize; PARTS] {
+        self.sizes
     }
 }
 
@@ -115,25 +194,34 @@ impl Runnable {
 #[derive(Debug, Default)]
 pub(crate) struct Room {
     scratch: Scratch,
-    interpreter: Option<Interpreter>,
-    /// What that gives.
+    /// One for every program.
+    interpreters: Vec<Option<Interpreter>>,
+    /// What they give.
     outputs: Vec<Lanes>,
+    pieces: PiecesRoom,
 }
 
 impl Room {
     #[inline(always)]
-    pub fn run(&mut self, runnable: &Runnable, inputs: &[Lanes], outputs: [&mut [Lanes]; PARTS]) {
-        match &runnable.code {
-            Some(code) => code.run_in_parts(&mut self.scratch, inputs, &[], outputs),
-            None => {
-                let interpreter = self.interpreter.get_or_insert_with(|| Interpreter::new(&runnable.program));
-                self.outputs.resize(runnable.outputs(), [0.0; LANES]);
-                interpreter.run(inputs, &[], &mut self.outputs);
-                let [first, second] = runnable.ends;
-                let parts = [0..first, first..second, second..self.outputs.len()];
-                for (to, part) in outputs.into_iter().zip(parts) {
-                    to.copy_from_slice(&self.outputs[part]);
-                }
+    pub fn run(
+        &mut self,
+        runnable: &Runnable,
+        inputs: &[Lanes],
+        uniforms: &[f64],
+        outputs: [&mut [Lanes]; PARTS],
+    ) {
+        let Self { scratch, interpreters, outputs: found, pieces: room } = self;
+        match &runnable.form {
+            Form::Whole(executable) => {
+                interpreters.resize(1, None);
+                executable.run((scratch, &mut interpreters[0]), found, inputs, uniforms, outputs);
+            }
+            Form::Pieces(pieces, shapes) => {
+                interpreters.resize(shapes.len(), None);
+                pieces.run(room, inputs, uniforms, outputs, |shape, inputs, uniforms, outputs| {
+                    let with = (&mut *scratch, &mut interpreters[shape]);
+                    shapes[shape].run(with, found, inputs, uniforms, outputs);
+                });
             }
         }
     }
@@ -183,10 +271,14 @@ struct Unknown {
     speed: usize,
 }
 
-/// Where the inputs of a program begin: weights, then positions of every channel, the newest first, drivers, how far ahead of the
-/// newest position it is, variables of the design, and what depends on them alone.
+/// Where the inputs of a program begin: weights, what is known of every channel, drivers, how far ahead of the newest position it is,
+/// variables of the design, and what depends on them alone.
+///
+/// Known are, of designs, the last positions of every channel, the newest first; of output times these are uniforms, and the input is
+/// what is added to the forecast: nothing, or all there is where the position was found by a run before.
 #[derive(Clone, Copy, Debug)]
 struct Inputs {
+    known: usize,
     drivers: usize,
     ahead: usize,
     design: usize,
@@ -194,11 +286,12 @@ struct Inputs {
 }
 
 impl Inputs {
-    fn of(channels: &[Channel], drivers: usize, variables: usize) -> Self {
-        let drivers_at = CONDITIONS * (1 + channels.len());
+    fn of(channels: &[Channel], purpose: Purpose, drivers: usize, variables: usize) -> Self {
+        let known = if purpose.times { 1 } else { CONDITIONS };
+        let drivers_at = CONDITIONS + known * channels.len();
         let ahead = drivers_at + ORDERS * drivers;
         let design = ahead + 1;
-        Self { drivers: drivers_at, ahead, design, of_design: design + variables }
+        Self { known, drivers: drivers_at, ahead, design, of_design: design + variables }
     }
 }
 
@@ -270,7 +363,7 @@ impl StepProgram {
         let recorded = record(|| {
             let mut state = State::new(model, topology);
             let offset = OFFSET[purpose.corrections - 1];
-            let known = foresee(topology, &channels, &one.saved, offset, &mut state);
+            let known = foresee(topology, &channels, &one.saved, (offset, purpose.times), &mut state);
             let drivers: Vec<[Number; 3]> = one.saved.drivers.iter().map(|f| f.map(Number::input)).collect();
             let ahead = Number::input(0.0);
             let nominal = model.whole(&[]).into_iter();
@@ -323,12 +416,24 @@ impl StepProgram {
         });
         let outputs = places.filter(|_| fits && recording::is_arithmetic())?;
         let variables = if purpose.any_design { model.variables.len() } else { 0 };
-        let inputs = Inputs::of(&channels, model.drivers.len(), variables);
+        let inputs = Inputs::of(&channels, purpose, model.drivers.len(), variables);
         let (program, _) = recorded.program(Options::default());
-        let (design, step) = program.staged(|input| input as usize >= inputs.design);
+        let (design, step) = program.staged(|operand| match operand {
+            Operand::Input(k) => k as usize >= inputs.design,
+            _ => false,
+        });
         let all = design.outputs.len();
         let design = Runnable::new(design, [all; PARTS - 1], execution);
-        let step = Runnable::new(step, [outputs.states, outputs.derivatives], execution);
+        let ends = [outputs.states, outputs.derivatives];
+        let pieces = pieces(topology, &channels);
+        let step = Runnable::in_pieces(step, ends, execution, |operand| {
+            let channel = match operand {
+                Operand::Uniform(k) => Some(k as usize / CONDITIONS),
+                Operand::Input(k) => (k as usize).checked_sub(CONDITIONS).map(|k| k / inputs.known),
+                Operand::Value(_) | Operand::Constant(_) => None,
+            };
+            channel.and_then(|channel| pieces.get(channel)).copied().unwrap_or(0)
+        });
         Some(Self {
             purpose,
             design,
@@ -348,6 +453,18 @@ impl StepProgram {
     pub fn moved(&self) -> &[(VariableId, BodyId)] {
         &self.moved
     }
+}
+
+/// Which piece of a program a channel belongs to: one for every block.
+fn pieces(topology: &Topology, channels: &[Channel]) -> Vec<usize> {
+    let mut piece_of = vec![0; topology.coordinates.len()];
+    for (b, block) in topology.blocks.iter().enumerate() {
+        block.unknowns.iter().for_each(|c| piece_of[*c] = b + 1);
+    }
+    let coordinate = |channel: &Channel| match *channel {
+        Channel::Coordinate(c) | Channel::Ball(c, _) => c,
+    };
+    channels.iter().map(|channel| piece_of[coordinate(channel)]).collect()
 }
 
 /// All unknowns, balls' included.
@@ -379,7 +496,7 @@ fn balls(topology: &Topology) -> impl Iterator<Item = usize> {
 fn moves(topology: &Topology, channels: &[Channel], state: &State<Number>) -> Vec<Number> {
     let mut out: Vec<Number> = channels.iter().flat_map(|c| c.of(state)).collect();
     for c in balls(topology).flat_map(|first| first..first + 3) {
-        out.extend([state.qd[c], state.qdd[c]]);
+        out.extend([state.motion.speeds[0][c], state.motion.speeds[1][c]]);
     }
     out
 }
@@ -436,25 +553,28 @@ fn speeds(
     [apart, fastest].map(|x| largest_of(x.into_iter()))
 }
 
-/// Makes inputs of what foresees the state, `offset` beside where `at` is; returns what is known of every channel.
+/// Makes inputs of what foresees the state, `offset` beside where `at` is; returns what is known of every channel, which is the same at
+/// all of several output times.
 fn foresee(
     topology: &Topology,
     channels: &[Channel],
     at: &Saved,
-    offset: f64,
+    (offset, times): (f64, bool),
     state: &mut State<Number>,
 ) -> Vec<[Number; CONDITIONS]> {
-    let first = |n: usize, x: f64| Number::input(if n == 0 { x } else { 0.0 });
-    let weights: [Number; CONDITIONS] = std::array::from_fn(|n| first(n, 1.0));
+    let first = |n: usize, x: f64| if n == 0 { x } else { 0.0 };
+    let weights: [Number; CONDITIONS] = std::array::from_fn(|n| Number::input(first(n, 1.0)));
     let one = |channel: &Channel| {
         let beside = match *channel {
             Channel::Coordinate(c) => at.q[c] + offset * topology.coordinates[c].unit,
             Channel::Ball(c, k) => at.balls[c].nudged(Vec3::new(offset, offset, offset)).component(k),
         };
-        let known: [Number; CONDITIONS] = std::array::from_fn(|n| first(n, beside));
+        let of = if times { Number::uniform } else { Number::input };
+        let known: [Number; CONDITIONS] = std::array::from_fn(|n| of(first(n, beside)));
+        let begin = if times { Number::input(0.0) } else { Number::constant(0.0) };
         // What counts least comes first.
         let terms = weights.into_iter().zip(known).rev();
-        channel.put(terms.fold(Number::constant(0.0), |sum, (w, x)| w.times_plus(x, sum)), state);
+        channel.put(terms.fold(begin, |sum, (w, x)| w.times_plus(x, sum)), state);
         known
     };
     channels.iter().map(one).collect()
@@ -531,6 +651,11 @@ impl Programs {
         Self { execution, steps: Mutex::default(), laws: Mutex::default(), machine: OnceLock::new() }
     }
 
+    /// What they are run by.
+    pub fn execution(&self) -> Execution {
+        self.execution
+    }
+
     /// How so many steps are solved, if they can be recorded.
     pub fn solved_by(&self, steps: usize) -> SolvedBy {
         let asked = || "it was asked for".to_owned();
@@ -565,8 +690,8 @@ impl Programs {
         steps.entry(purpose).or_insert_with(|| record(self.execution).map(Arc::new)).clone()
     }
 
-    /// The drivers' laws of the nominal design at eight times: value, speed and acceleration of each driver, and then what must not
-    /// be positive. None where a law is no plain formula.
+    /// The drivers' laws of the nominal design at eight times: in one part value, speed and acceleration of each driver, in the next what
+    /// must not be positive. None where a law is no plain formula.
     pub fn laws(&self, model: &Model) -> Option<Arc<Runnable>> {
         let mut laws = self.laws.lock().expect("no one panics while recording");
         laws.get_or_insert_with(|| {
@@ -580,7 +705,8 @@ impl Programs {
             let fits = recording::is_arithmetic();
             let program = recorded.program(Options::default()).0;
             let all = program.outputs.len();
-            fits.then(|| Arc::new(Runnable::new(program, [all; PARTS - 1], self.execution)))
+            let laws = ORDERS * model.drivers.len();
+            fits.then(|| Arc::new(Runnable::new(program, [laws, all], self.execution)))
         })
         .clone()
     }
@@ -595,6 +721,8 @@ pub(crate) struct Tape {
     program: Arc<StepProgram>,
     room: Room,
     inputs: Vec<Line>,
+    /// What is known of the channels, where lanes are output times.
+    uniforms: Vec<f64>,
     outputs: Vec<Line>,
     /// Groups of steps that were tried, those that were refused, and those that took more than one run.
     tried: usize,
@@ -615,12 +743,14 @@ pub(crate) struct Solved {
 
 impl Tape {
     pub fn new(program: Arc<StepProgram>) -> Self {
-        let inputs = program.inputs.of_design + program.design.outputs();
-        let inputs = vec![Line::default(); usize::max(inputs, program.step.program.inputs)];
+        let inputs = program.inputs.of_design + program.design.sizes()[0];
+        let inputs = vec![Line::default(); usize::max(inputs, program.step.inputs)];
         let outputs = vec![Line::default(); program.outputs.states];
+        let uniforms = if program.purpose.times { CONDITIONS * program.channels.len() } else { 0 };
         Self {
             room: Room::default(),
             inputs,
+            uniforms: vec![0.0; uniforms],
             outputs,
             program,
             tried: 0,
@@ -639,9 +769,8 @@ impl Tape {
             self.inputs[inputs.design + v] = Line(std::array::from_fn(of_lane));
         }
         let (given, found) = self.inputs.split_at_mut(inputs.of_design);
-        let (given, found) =
-            (&lanes_of(given)[..design.program.inputs], &mut lanes_of(found)[..design.outputs()]);
-        Room::default().run(design, given, [found, &mut [], &mut []]);
+        let (given, found) = (&lanes_of(given)[..design.inputs], &mut lanes_of(found)[..design.sizes()[0]]);
+        Room::default().run(design, given, &[], [found, &mut [], &mut []]);
     }
 
     /// Whether it is refused so often that the kernel alone is faster.
@@ -685,19 +814,32 @@ impl Tape {
         self.program.purpose
     }
 
-    /// Foresees times so far ahead of the newest position by these weights: by position, the newest first, and order of its derivative.
+    /// Foresees times so far ahead of the newest position by these weights: by position, the newest first, and order of its derivative;
+    /// they may be the ones of last time.
     #[inline(always)]
-    pub fn look_ahead(&mut self, weights: &[Lanes; CONDITIONS], ahead: &Lanes) {
+    pub fn look_ahead(&mut self, weights: &[Lanes; CONDITIONS], are_new: bool, ahead: &Lanes) {
         let at = self.program.inputs.ahead;
         let inputs = lanes_of(&mut self.inputs);
-        inputs[..CONDITIONS].copy_from_slice(weights);
+        // Runs after the first went by others.
+        if are_new || self.runs != 1 {
+            inputs[..CONDITIONS].copy_from_slice(weights);
+            if self.program.purpose.times {
+                inputs[CONDITIONS..self.program.inputs.drivers].fill([0.0; LANES]);
+            }
+        }
         inputs[at] = *ahead;
     }
 
-    /// What is known of a channel, ordered like the weights.
+    /// What is known of a channel at one output time, design by design, ordered like the weights.
     #[inline(always)]
     pub fn known_mut(&mut self, channel: usize) -> &mut [Lanes] {
         &mut lanes_of(&mut self.inputs)[CONDITIONS * (1 + channel)..][..CONDITIONS]
+    }
+
+    /// What is known of every channel of one design, each ordered like the weights.
+    #[inline(always)]
+    pub fn known_of_times_mut(&mut self) -> &mut [[f64; CONDITIONS]] {
+        self.uniforms.as_chunks_mut().0
     }
 
     /// Value, speed and acceleration of every driver.
@@ -726,7 +868,8 @@ impl Tape {
         self.runs = 0;
         loop {
             let outputs = [lanes_of(&mut self.outputs), &mut *states, &mut *derivatives];
-            self.room.run(&self.program.step, bytemuck::cast_slice(&self.inputs), outputs);
+            let inputs = bytemuck::cast_slice(&self.inputs);
+            self.room.run(&self.program.step, inputs, &self.uniforms, outputs);
             self.runs += 1;
             // All comparisons are written so that NaN is refused.
             if !all_within(self.judged(Judged::First), trust) {
@@ -760,12 +903,13 @@ impl Tape {
     /// Foresees the positions that were just found.
     #[cold]
     fn go_on_from_here(&mut self) {
-        let (inputs, n) = (lanes_of(&mut self.inputs), self.program.channels.len());
+        let (inputs, known) = (lanes_of(&mut self.inputs), self.program.inputs.known);
         inputs[..CONDITIONS].fill([0.0; LANES]);
-        inputs[0] = [1.0; LANES];
-        for (known, found) in
-            inputs[CONDITIONS..].chunks_mut(CONDITIONS).zip(self.outputs.chunks(ORDERS)).take(n)
-        {
+        if !self.program.purpose.times {
+            inputs[0] = [1.0; LANES];
+        }
+        let channels = inputs[CONDITIONS..self.program.inputs.drivers].chunks_mut(known);
+        for (known, found) in channels.zip(self.outputs.chunks(ORDERS)) {
             known[0] = found[0].0;
         }
     }
@@ -840,7 +984,7 @@ impl Tape {
     /// How many numbers all bodies but ground have, and how many their derivatives.
     pub fn sizes(&self) -> [usize; 2] {
         let Outputs { states, derivatives, .. } = self.program.outputs;
-        [derivatives - states, self.program.step.outputs() - derivatives]
+        [derivatives - states, self.program.step.sizes()[2]]
     }
 
     /// Which variable fails which row, by how much, and what of it may be round-off; variable by variable.
@@ -853,13 +997,13 @@ impl Tape {
 
 /// Whether no lane is larger; NaN is.
 #[inline(always)]
-fn all_within(lanes: &Lanes, limit: f64) -> bool {
+pub(super) fn all_within(lanes: &Lanes, limit: f64) -> bool {
     lanes.iter().fold(true, |all, x| all & (*x <= limit))
 }
 
 /// The largest lane, of numbers.
 #[inline(always)]
-fn largest(lanes: &Lanes) -> f64 {
+pub(super) fn largest(lanes: &Lanes) -> f64 {
     let larger = |a: f64, b: f64| if a > b { a } else { b };
     let [a, b, c, d, e, f, g, h] = *lanes;
     larger(larger(larger(a, e), larger(b, f)), larger(larger(c, g), larger(d, h)))

@@ -128,8 +128,15 @@ impl<T: Real> Real for Dual<T> {
     }
     #[inline(always)]
     fn abs(self) -> Self {
-        let sign = T::constant(f64::signum(self.v.value()));
-        Self { v: self.v.abs(), d: self.d * sign }
+        Self { v: self.v.abs(), d: self.d * self.v.sign() }
+    }
+    #[inline(always)]
+    fn sign_or(self, next: Self) -> Self {
+        Self::constant(self.v.sign_or(next.v))
+    }
+    #[inline(always)]
+    fn exceeds(self, o: Self) -> bool {
+        self.v.exceeds(o.v)
     }
     #[inline(always)]
     fn round(self) -> Self {

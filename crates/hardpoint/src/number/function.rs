@@ -104,7 +104,7 @@ functions! { |x, y|
         [d, d * inverse * -0.5, d * inverse * inverse * 0.75]
     };
     /// Magnitude.
-    Abs "abs", f64::abs, [T::constant(x.value().signum()), T::zero(), T::zero()];
+    Abs "abs", f64::abs, [x.sign(), T::zero(), T::zero()];
 }
 
 /// The derivatives of the arc sine: s, x s³, (1 + 2 x²) s⁵ with s = 1/√(1 - x²).

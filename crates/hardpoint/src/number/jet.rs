@@ -327,8 +327,15 @@ impl<T: Real, const N: usize> Real for Jet<T, N> {
     }
     #[inline(always)]
     fn abs(self) -> Self {
-        let zero = Self::zero();
-        (-self).select(self, self.order(zero) == Some(Ordering::Less))
+        self.times(self.sign().0[0])
+    }
+    #[inline(always)]
+    fn sign_or(self, next: Self) -> Self {
+        Self::constant(self.0.into_iter().rev().fold(next.0[0], |next, x| x.sign_or(next)))
+    }
+    #[inline(always)]
+    fn exceeds(self, o: Self) -> bool {
+        self.0[0].exceeds(o.0[0])
     }
     #[inline(always)]
     fn round(self) -> Self {

@@ -62,6 +62,18 @@ pub trait Real:
     /// Nearest integer.
     fn round(self) -> Self;
 
+    /// 1 or -1, whichever its sign is; `next` where it is zero. A recording has no number there.
+    fn sign_or(self, next: Self) -> Self;
+
+    /// 1 or -1, as its sign is just after the instant; of what stays zero 1.
+    #[inline(always)]
+    fn sign(self) -> Self {
+        self.sign_or(Self::constant(1.0))
+    }
+
+    /// Whether its value is above another one. A recording takes that for granted, and a limit for where it is run.
+    fn exceeds(self, o: Self) -> bool;
+
     /// This value if `first`, else the `other`; what is not taken may be NaN. What is recorded is no arithmetic then.
     fn select(self, other: Self, first: bool) -> Self;
 
@@ -206,6 +218,18 @@ impl Real for f64 {
     #[inline(always)]
     fn abs(self) -> Self {
         f64::abs(self)
+    }
+    #[inline(always)]
+    fn sign_or(self, next: Self) -> Self {
+        match self.partial_cmp(&0.0) {
+            Some(Ordering::Greater) => 1.0,
+            Some(Ordering::Less) => -1.0,
+            _ => next,
+        }
+    }
+    #[inline(always)]
+    fn exceeds(self, o: Self) -> bool {
+        self > o
     }
     #[inline(always)]
     fn larger(self, o: Self) -> Self {

@@ -68,6 +68,15 @@ impl Real for Number {
     fn round(self) -> Self {
         Number::round(self)
     }
+    fn sign_or(self, next: Self) -> Self {
+        // What is zero by chance has either sign.
+        let is_zero = self.decisive() == 0.0;
+        if is_zero && self.known().is_some() { next } else { self.abs() / self }
+    }
+    fn exceeds(self, o: Self) -> bool {
+        LIMITS.with_borrow_mut(|limits| limits.push(o - self));
+        true
+    }
     fn select(self, other: Self, first: bool) -> Self {
         LOOKED_AT.set(true);
         if first { self } else { other }
@@ -111,5 +120,45 @@ impl Real for Number {
     }
     fn larger(self, o: Self) -> Self {
         Number::larger(self, o)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use hardpoint_tape::{Options, record};
+
+    use super::*;
+    use crate::number::Jet;
+
+    #[test]
+    fn signs_are_arithmetic_and_what_exceeds_is_a_limit() {
+        begin();
+        let recorded = record(|| {
+            let [x, rate] = [-2.0, 3.0].map(Number::input);
+            let [size, growing] = Jet([x, rate]).abs().derivatives();
+            assert!(x.exceeds(Number::constant(-5.0)));
+            [vec![size, growing], limits()].concat()
+        });
+        assert!(is_arithmetic());
+        let program = recorded.program(Options::default()).0;
+        let run = |inputs: [f64; 2]| {
+            let mut outputs = [0.0; 3];
+            program.evaluate(&inputs, &[], &mut Vec::new(), &mut outputs);
+            outputs
+        };
+        assert_eq!(run([-2.0, 3.0]), [2.0, -3.0, -3.0]);
+        assert_eq!(run([2.0, 3.0]), [2.0, 3.0, -7.0]);
+        assert_eq!(run([-6.0, 0.0])[2], 1.0);
+        // Zero has two sides, and a program takes neither.
+        assert!(run([0.0, 3.0])[..2].iter().all(|x| x.is_nan()));
+    }
+
+    #[test]
+    fn the_sign_of_what_is_zero_by_chance_is_no_arithmetic() {
+        for (x, fits) in [(0.0, false), (1.0, true)] {
+            begin();
+            record(|| [strictly(|| Number::input(x).sign())]);
+            assert_eq!(is_arithmetic(), fits);
+        }
     }
 }

@@ -17,6 +17,8 @@ pub use second::{BodyCurvature, Way};
 pub(crate) use second::{Seconds, along};
 pub(crate) use sensing::{Resisting, Sensing, admissibility, note_defects, record_derivatives};
 
+use hardpoint_tape::Lanes;
+
 use crate::blocks::{Blocks, Row};
 use crate::model::{BodyId, VariableId};
 use crate::space::Vec3;
@@ -111,6 +113,13 @@ impl Sensitivities {
     /// Whether a variable moves a body at all.
     pub fn moves(&self, variable: VariableId, body: BodyId) -> bool {
         self.places[variable.0 * self.bodies + body.0].is_some()
+    }
+
+    /// Copies those of a body by a variable that moves it, at the eight output times that k is one of, in the order of the fields.
+    #[inline(always)]
+    pub(crate) fn gather(&self, k: usize, variable: usize, body: usize, to: &mut [Lanes]) {
+        let place = self.places[variable * self.bodies + body].expect("the variable moves the body");
+        self.derivatives.gather(k, place, to);
     }
 
     /// Writes the sensitivity of a body by a variable at output time k.

@@ -1,7 +1,7 @@
 //! Gradients of chosen outputs by all design variables, in whichever direction is shorter.
 
 use crate::analysis::{Analysis, Design, Solution, Walk};
-use crate::measure::{self, Moment, More, Output, SlopeValues, bodies_asked_for, outputs};
+use crate::measure::{self, Moment, More, Output, SlopeValues, bodies_asked_for, dependences, outputs};
 use crate::model::{Field, Fixed, GROUND, MeasureKind, OutputSource, VariableId};
 use crate::motion::Stop;
 use crate::motion::kinematics::State;
@@ -10,6 +10,7 @@ use crate::number::{Dual, Jet, Rates};
 use crate::sensitivity::{Adjoint, Admissibility, Load, Resisting, Support, Watch, admissibility};
 use crate::space::{Mat3, Pose, Twist, Vec3, Wrench};
 use crate::topology::Topology;
+use hardpoint_tape::LANES;
 
 /// What an output costs the adjoint way, in solutions for one variable the direct way: its load takes some evaluations of the
 /// measure besides the three solutions. 1 to 3 in small mechanisms, less in large ones (`docs/performance.md`).
@@ -125,12 +126,14 @@ impl Analysis<'_> {
         let Design { values, laws, .. } = &self.design(design, false);
         let at = measure::At { model: self.model(), effects: self.effects(), values, laws };
         let more = More { slopes: &SlopeValues::default(), whole_turns: &[] };
-        let by_variable = measure::derivatives(&at, &outputs, &motion, &sensitivities, &more);
         let (asked, variables) = (outputs.len(), self.model().variables.len());
-        let mut d = Vec::with_capacity(by_variable.len());
-        for step in by_variable.chunks_exact(usize::max(asked * variables, 1)) {
-            (0..asked).for_each(|m| d.extend(step.iter().skip(m).step_by(asked)));
-        }
+        let mut d = vec![[f64::NAN; 3]; motion.len() * asked * variables];
+        let blocks = (0..motion.len()).step_by(LANES);
+        let all: Vec<_> = blocks.flat_map(|k| (0..asked).map(move |m| (k, m))).collect();
+        let solved = (&motion, &sensitivities);
+        measure::derivatives(&at, &outputs, &all, solved, &more, |k, b, m, numbers| {
+            d[(k * asked + m) * variables + b] = numbers.map(measure::finite);
+        });
         Gradients {
             times: motion.times,
             outputs,
@@ -206,7 +209,7 @@ impl<'a> Tracing<'a> {
         let (model, effects) = (analysis.model(), analysis.effects());
         let adjoint = Adjoint::new(model, analysis.topology(), fields);
         let bodies: Vec<usize> = bodies_asked_for(model).into_iter().filter(|b| *b != GROUND.0).collect();
-        let depends = dependences(analysis, &design.values, &bodies, outputs);
+        let depends = dependences(effects, &design.values, &bodies, outputs);
         let none = [Wrench::zero(); 3];
         let asked = outputs.iter().zip(depends).map(|(output, [on, variables])| Asked {
             derivatives: vec![[0.0; 3]; 6 * on.len() + variables.len()],
@@ -305,47 +308,10 @@ impl<'a> Tracing<'a> {
     }
 }
 
-/// Per output, the bodies that it depends on, and the variables that move what it is measured with.
-///
-/// A derivative that is not a number makes one of everything that depends on it. A formula that took the larger of two
-/// numbers would hide it: measures are smooth.
-fn dependences(
-    analysis: &Analysis<'_>,
-    values: &[f64],
-    bodies: &[usize],
-    outputs: &[Output],
-) -> Vec<[Vec<usize>; 2]> {
-    let (model, effects) = (analysis.model(), analysis.effects());
-    let unknown = |x: Dual| Dual { v: x.v, d: f64::NAN };
-    let mut values: Vec<Dual> = values.iter().map(|v| Dual::constant(*v)).collect();
-    let mut poses: Vec<Pose<Dual>> = model.bodies.iter().map(|b| b.frame.spread()).collect();
-    let depend = |fixed: &Fixed<Dual>, poses: &[Pose<Dual>]| -> Vec<bool> {
-        outputs.iter().map(|o| Moment::new(model, fixed, poses).output(o.source).d.is_nan()).collect()
-    };
-    let mut found = vec![[Vec::new(), Vec::new()]; outputs.len()];
-    let mut note = |which: usize, what: usize, depends: Vec<bool>| {
-        let depending = found.iter_mut().zip(depends).filter(|(_, depends)| *depends);
-        depending.for_each(|(found, _)| found[which].push(what));
-    };
-    let fixed = effects.fixed(&values);
-    for &b in bodies {
-        let pose = poses[b];
-        poses[b] = Pose { rot: Mat3 { cols: pose.rot.cols.map(|c| c.map(unknown)) }, r: pose.r.map(unknown) };
-        note(0, b, depend(&fixed, &poses));
-        poses[b] = pose;
-    }
-    for v in 0..values.len() {
-        let value = values[v];
-        values[v] = unknown(value);
-        note(1, v, depend(&effects.fixed(&values), &poses));
-        values[v] = value;
-    }
-    found
-}
-
 /// A body's pose, with its first two time derivatives.
 fn pose_with_rates(state: &State<f64>, b: usize) -> Pose<Rates> {
-    let (pose, v, a) = (state.pose[b], state.v[b], state.a[b]);
+    let [v, a, _] = &state.motion.twists;
+    let (pose, v, a) = (state.pose[b], v[b], a[b]);
     let rates = |x: Vec3, first: Vec3, second: Vec3| {
         let component = |k: usize| Jet([x[k], first[k], second[k]]);
         Vec3::new(component(0), component(1), component(2))

@@ -1,0 +1,448 @@
+//! All outputs at eight output times as a straight-line program: from the results of the motion, where they stand side by side, to
+//! those of the measures.
+//!
+//! The formulas are recorded once, whatever the motion. How an output goes with the six ways in which a body can go, with the first two
+//! time derivatives of that, is recorded once for each body that it depends on; its derivative by a variable is then a sum of
+//! products with how the variable moves these bodies. That is six evaluations for a body instead of one for each variable, and
+//! what a formula is about does not count: a point knows three ways, a direction two or three.
+//!
+//! What formulas decide by values is recorded as a limit. Where one does not hold, or any number is none, the formulas themselves are
+//! asked again ([`Run::fits`]).
+
+use std::collections::BTreeMap;
+use std::sync::{Arc, Mutex};
+
+use hardpoint_tape::{LANES, Number, Operand, Options, record};
+
+use super::bodies::moving;
+use super::{Measured, Moment, Output, bodies_asked_for};
+use crate::blocks::{Line, lanes_of};
+use crate::model::{BodyId, Effects, Fixed, GROUND, MeasureKind, Model, OutputSource, VariableId};
+use crate::motion::tape::{Execution, Room, Runnable};
+use crate::motion::{BodyState, Motion};
+use crate::number::record as recording;
+use crate::number::{Dual, Jet, Rates};
+use crate::sensitivity::{BodySensitivity, Sensitivities};
+use crate::space::{Mat3, Pose, Vec3};
+
+/// Of more sums of products - one for each output, variable, and body that both have to do with - no program is recorded: it would take
+/// more memory than its results.
+const MOST_SUMS: usize = 20_000;
+
+/// Ways in which a body can go: slides along x, y and z, then turns about them.
+const WAYS: usize = 6;
+
+/// A number while it is recorded, with its rates.
+type Recorded = Rates<Number>;
+
+/// What a program is for.
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) struct Asked {
+    /// Whether the design is an input; else it is the nominal one.
+    any_design: bool,
+    /// Derivatives by so many variables.
+    variables: usize,
+    /// Which variable moves which body, of those that outputs are measured on.
+    moved: Vec<(usize, usize)>,
+}
+
+impl Asked {
+    /// By the design with these values and the variables that there are sensitivities for.
+    pub fn of(model: &Model, values: &[f64], sensitivities: &Sensitivities) -> Self {
+        let bodies = moving_bodies(model);
+        let pairs = (0..sensitivities.variables).flat_map(|v| bodies.iter().map(move |b| (v, *b)));
+        Self {
+            any_design: values.iter().any(|v| *v != 0.0),
+            variables: sensitivities.variables,
+            moved: pairs.filter(|(v, b)| sensitivities.moves(VariableId(*v), BodyId(*b))).collect(),
+        }
+    }
+}
+
+/// The programs of a model, each recorded when it is first asked for.
+#[derive(Debug, Default)]
+pub(crate) struct Programs(Mutex<BTreeMap<Asked, Option<Arc<Program>>>>);
+
+impl Programs {
+    /// What is asked for, if it can be recorded.
+    pub fn get(&self, asked: Asked, effects: &Effects<'_>, execution: Execution) -> Option<Arc<Program>> {
+        let mut programs = self.0.lock().expect("no one panics while recording");
+        let program = programs.entry(asked);
+        program.or_insert_with_key(|asked| Program::record(effects, asked, execution).map(Arc::new)).clone()
+    }
+}
+
+/// The program of all outputs.
+#[derive(Debug)]
+pub(crate) struct Program {
+    /// What depends on the design alone, and what does not.
+    design: Runnable,
+    step: Runnable,
+    bodies: Vec<usize>,
+    moved: Vec<(usize, usize)>,
+    /// Measures whose whole turns are asked for.
+    turning: Vec<usize>,
+    /// Where the values of the design begin among the inputs.
+    design_at: usize,
+    outputs: usize,
+    /// By variable and output: where its derivatives begin; none where they are all zero.
+    places: Vec<Option<usize>>,
+    /// How many numbers they are.
+    derivatives: usize,
+}
+
+impl Program {
+    fn record(effects: &Effects<'_>, asked: &Asked, execution: Execution) -> Option<Self> {
+        let model = effects.model;
+        let (outputs, bodies) = (super::outputs(model), moving_bodies(model));
+        let nominal = model.whole(&[]);
+        let depends = dependences(effects, &nominal, &bodies, &outputs);
+        let sums = depends.iter().map(|[on, _]| asked.moved.iter().filter(|(_, b)| on.contains(b)).count());
+        if sums.sum::<usize>() > MOST_SUMS {
+            return None;
+        }
+        let turning = turning(model, &outputs);
+        let (mut places, mut derivatives, mut inputs, mut fits) = (Vec::new(), 0, 0, true);
+        recording::begin();
+        let recorded = record(|| {
+            let mut input = |x: f64| {
+                inputs += 1;
+                Number::input(x)
+            };
+            let zero = Number::constant(0.0);
+            let mut poses = vec![Pose::IDENTITY.spread(); model.bodies.len()];
+            let mut turns = vec![[Vec3::zero(); 2]; model.bodies.len()];
+            for &b in &bodies {
+                let numbers: Vec<Number> =
+                    BodyState::at_design(model, BodyId(b)).numbers().map(&mut input).collect();
+                let vectors = std::array::from_fn(|k| vector(&numbers[3 * k..]));
+                (turns[b], poses[b]) = ([vectors[5], vectors[7]], moving(vectors));
+            }
+            let mut way = |&(_, b): &(usize, usize)| {
+                let numbers: [Number; BodySensitivity::NUMBERS] = std::array::from_fn(|_| input(0.0));
+                ways_of(std::array::from_fn(|k| vector(&numbers[3 * k..])), turns[b])
+            };
+            let ways: Vec<_> = asked.moved.iter().map(&mut way).collect();
+            let mut whole_turns = vec![Dual::constant(Jet::constant(zero)); model.measures.len()];
+            turning.iter().for_each(|&m| whole_turns[m].v.0[0] = input(0.0));
+            // Not folded: what it is added to as a factor is as it was, unless it is no number.
+            let nothing = input(0.0);
+            let number = if asked.any_design { Number::input } else { Number::constant };
+            let values: Vec<Number> = nominal.iter().map(|v| number(*v)).collect();
+            let geometry = Geometry::of(effects, &values, asked.variables, &depends);
+            let of_design = recording::limits();
+            fits = recording::is_arithmetic();
+            let recorder = Recorder { model, geometry, poses, whole_turns, ways, asked };
+            places = vec![None; asked.variables * outputs.len()];
+            let [mut guards, mut numbers, mut by_variables] = [const { Vec::new() }; 3];
+            for (m, (output, depends)) in outputs.iter().zip(&depends).enumerate() {
+                let given = recorder.output(output, depends);
+                let found =
+                    given.iter().flat_map(|g| [g.values].into_iter().chain(g.derivatives.iter().copied()));
+                let check = found.flatten().filter(|x| !x.known().is_some_and(f64::is_nan));
+                let check = check.fold(zero, |sum, x| x.times_plus(nothing, sum));
+                let limits = given.iter().flat_map(|g| &g.limits).chain(&of_design);
+                let guard = limits.fold(check, |most, limit| most.larger(*limit));
+                guards.push(if given.is_some() { guard } else { Number::constant(1.0) });
+                let nan = [Number::constant(f64::NAN); 3];
+                numbers.extend(given.as_ref().map_or(nan, |g| g.values));
+                for v in 0..asked.variables {
+                    let d = given.as_ref().map_or(nan, |g| g.derivatives[v]);
+                    if !d[..output.known.orders].iter().all(|x| x.known() == Some(0.0)) {
+                        places[v * outputs.len() + m] = Some(by_variables.len());
+                        by_variables.extend(d);
+                    }
+                }
+            }
+            derivatives = by_variables.len();
+            [guards, numbers, by_variables].concat()
+        });
+        if !fits {
+            return None;
+        }
+        let (program, _) = recorded.program(Options::default());
+        let design_at = inputs;
+        let (design, step) = program.staged(|operand| match operand {
+            Operand::Input(k) => k as usize >= design_at,
+            _ => false,
+        });
+        let all = design.outputs.len();
+        let design = Runnable::new(design, [all; 2], execution);
+        let step = Runnable::new(step, [outputs.len(), 4 * outputs.len()], execution);
+        let (moved, outputs) = (asked.moved.clone(), outputs.len());
+        Some(Self { design, step, bodies, moved, turning, design_at, outputs, places, derivatives })
+    }
+
+    /// By variable and output, where its derivatives begin, and how many numbers they are in all.
+    pub(super) fn layout(&self) -> (Vec<Option<usize>>, usize) {
+        (self.places.clone(), self.derivatives)
+    }
+}
+
+/// The bodies that outputs are measured on, but ground.
+fn moving_bodies(model: &Model) -> Vec<usize> {
+    bodies_asked_for(model).into_iter().filter(|b| *b != GROUND.0).collect()
+}
+
+/// Measures that formulas may ask for with all their turns.
+fn turning(model: &Model, outputs: &[Output]) -> Vec<usize> {
+    let formulas = model.measures.iter().filter_map(|m| match &m.kind {
+        MeasureKind::Combination { expression } => Some(expression),
+        _ => None,
+    });
+    let mut turning: Vec<usize> = formulas
+        .flat_map(|formula| formula.sources())
+        .filter_map(|source| match source {
+            OutputSource::Measure(m) if super::is_counted(model, &outputs[m]) => Some(m),
+            _ => None,
+        })
+        .collect();
+    turning.sort_unstable();
+    turning.dedup();
+    turning
+}
+
+fn vector(numbers: &[Number]) -> Vec3<Number> {
+    Vec3::new(numbers[0], numbers[1], numbers[2])
+}
+
+/// How a body goes each way, with the first two time derivatives of that, from its sensitivity; it turns with this velocity and
+/// acceleration.
+fn ways_of(
+    [dr, dpi, dv, domega, da, dalpha]: [Vec3<Number>; 6],
+    [omega, alpha]: [Vec3<Number>; 2],
+) -> [[Number; 3]; WAYS] {
+    // Those of the rotation vector: domega is the rate of dpi and dpi x omega.
+    let first = omega.cross_plus(dpi, domega);
+    let second = omega.cross_plus(first, alpha.cross_plus(dpi, dalpha));
+    let way = |[x, y, z]: [Vec3<Number>; 3]| [[x.x, y.x, z.x], [x.y, y.y, z.y], [x.z, y.z, z.z]];
+    let ([a, b, c], [d, e, f]) = (way([dr, dv, da]), way([dpi, first, second]));
+    [a, b, c, d, e, f]
+}
+
+/// A pose that goes one way, and how much of the way that is.
+fn gone(pose: Pose<Recorded>, way: usize, amount: Recorded) -> Pose<Dual<Recorded>> {
+    let axis = Vec3::AXES[way % 3].map(|x| amount.times(Number::constant(x)));
+    let still = Vec3::zero();
+    let d = if way < 3 {
+        Pose { rot: Mat3 { cols: [still; 3] }, r: axis }
+    } else {
+        Pose { rot: Mat3 { cols: pose.rot.cols.map(|c| axis.cross(c)) }, r: still }
+    };
+    let pair = |v: Vec3<Recorded>, d: Vec3<Recorded>| super::bodies::pair(v, d);
+    let cols = std::array::from_fn(|k| pair(pose.rot.cols[k], d.rot.cols[k]));
+    Pose { rot: Mat3 { cols }, r: pair(pose.r, d.r) }
+}
+
+/// What is fixed in the bodies, and the same as it goes with each variable that moves some of it.
+struct Geometry {
+    still: Fixed<Dual<Recorded>>,
+    moved: Vec<Option<Fixed<Dual<Recorded>>>>,
+}
+
+impl Geometry {
+    fn of(effects: &Effects<'_>, values: &[Number], variables: usize, depends: &[[Vec<usize>; 2]]) -> Self {
+        let still = recording::strictly(|| effects.fixed(values));
+        let moved = |v: usize| {
+            depends.iter().any(|[_, moving]| moving.contains(&v)).then(|| {
+                let mut duals: Vec<Dual<Number>> = values.iter().map(|x| Dual::constant(*x)).collect();
+                duals[v] = Dual::variable(values[v]);
+                let fixed = recording::strictly(|| effects.fixed(&duals));
+                fixed.map(|x| Dual { v: Jet::constant(x.v), d: Jet::constant(x.d) })
+            })
+        };
+        Self {
+            still: still.map(|x| Dual::constant(Jet::constant(x))),
+            moved: (0..variables).map(moved).collect(),
+        }
+    }
+}
+
+/// What an output came to.
+struct Given {
+    values: [Number; 3],
+    /// By variable.
+    derivatives: Vec<[Number; 3]>,
+    /// Where any of these is positive, it does not count.
+    limits: Vec<Number>,
+}
+
+/// Records outputs.
+struct Recorder<'a> {
+    model: &'a Model,
+    geometry: Geometry,
+    poses: Vec<Pose<Recorded>>,
+    whole_turns: Vec<Dual<Recorded>>,
+    /// Per variable and body that it moves.
+    ways: Vec<[[Number; 3]; WAYS]>,
+    asked: &'a Asked,
+}
+
+impl Recorder<'_> {
+    /// An output that depends on these bodies and goes by what these variables move within them; none that is no arithmetic.
+    fn output(&self, output: &Output, [bodies, variables]: &[Vec<usize>; 2]) -> Option<Given> {
+        if goes_by_driver(self.model, output.source) {
+            return None;
+        }
+        recording::begin();
+        let orders = output.known.orders;
+        let is_formula = matches!(output.source, OutputSource::Measure(m)
+            if matches!(self.model.measures[m].kind, MeasureKind::Combination { .. }));
+        let whole_turns: &[_] = if is_formula { &self.whole_turns } else { &[] };
+        let at = |fixed: &Fixed<Dual<Recorded>>, poses: &[Pose<Dual<Recorded>>]| {
+            Moment { whole_turns, ..Moment::new(self.model, fixed, poses) }.output(output.source)
+        };
+        let still = |x: Vec3<Recorded>| x.map(Dual::constant);
+        let stays = |p: &Pose<Recorded>| Pose { rot: Mat3 { cols: p.rot.cols.map(still) }, r: still(p.r) };
+        let mut poses: Vec<_> = self.poses.iter().map(stays).collect();
+        let mut values = at(&self.geometry.still, &poses).v.0;
+        let zero = Number::constant(0.0);
+        let mut derivatives = vec![[zero; 3]; self.asked.variables];
+        for &b in bodies.iter().filter(|_| self.asked.variables > 0) {
+            // How value, rate and acceleration go with each way, its rate and its acceleration.
+            let slopes: [[[Number; 3]; 3]; WAYS] = std::array::from_fn(|way| {
+                let mut along = |level: usize| {
+                    let mut amount = Jet::constant(zero);
+                    amount.0[level] = Number::constant(1.0);
+                    poses[b] = gone(self.poses[b], way, amount);
+                    at(&self.geometry.still, &poses).d.0
+                };
+                if output.known.by_position {
+                    // Leibniz' rule, along a way that stands still in the world.
+                    let [g, rate, acceleration] = along(0);
+                    [[g, rate, acceleration], [zero, g, rate * 2.0], [zero, zero, g]]
+                } else {
+                    std::array::from_fn(along)
+                }
+            });
+            poses[b] = stays(&self.poses[b]);
+            for (&(v, _), ways) in self.asked.moved.iter().zip(&self.ways).filter(|((_, body), _)| *body == b)
+            {
+                for (slopes, way) in slopes.iter().zip(ways) {
+                    for (slopes, way) in slopes.iter().zip(way) {
+                        for order in 0..orders {
+                            let sum = &mut derivatives[v][order];
+                            *sum = slopes[order].times_plus(*way, *sum);
+                        }
+                    }
+                }
+            }
+        }
+        for &v in variables.iter().filter(|v| **v < self.asked.variables) {
+            let fixed = self.geometry.moved[v].as_ref().expect("laid out for every variable of an output");
+            let d = at(fixed, &poses).d.0;
+            (0..3).for_each(|order| derivatives[v][order] += d[order]);
+        }
+        for numbers in derivatives.iter_mut().chain([&mut values]) {
+            numbers[orders..].fill(Number::constant(f64::NAN));
+        }
+        recording::is_arithmetic().then(|| Given { values, derivatives, limits: recording::limits() })
+    }
+}
+
+/// Whether an output goes, itself or by what it is made of, by a driver that moves alone.
+fn goes_by_driver(model: &Model, output: OutputSource) -> bool {
+    let OutputSource::Measure(m) = output else { return false };
+    model.goes_by_driver(m)
+        || match &model.measures[m].kind {
+            MeasureKind::Rate { of } => goes_by_driver(model, *of),
+            MeasureKind::Combination { expression: formula } => {
+                formula.sources().any(|source| goes_by_driver(model, source))
+            }
+            _ => false,
+        }
+}
+
+/// Per output, the bodies that it depends on, and the variables that move what it is measured with.
+///
+/// A derivative that is not a number makes one of everything that depends on it. A formula that took the larger of two
+/// numbers would hide it: measures are smooth.
+pub(crate) fn dependences(
+    effects: &Effects<'_>,
+    values: &[f64],
+    bodies: &[usize],
+    outputs: &[Output],
+) -> Vec<[Vec<usize>; 2]> {
+    let model = effects.model;
+    let unknown = |x: Dual<Rates>| Dual { v: x.v, d: Jet([f64::NAN; 3]) };
+    let mut values: Vec<Dual> = values.iter().map(|v| Dual::constant(*v)).collect();
+    let mut poses: Vec<Pose<Dual<Rates>>> = model.bodies.iter().map(|b| b.frame.spread()).collect();
+    let fixed = |values: &[Dual]| {
+        let fixed = effects.fixed(values);
+        fixed.map(|x| Dual { v: Jet::constant(x.v), d: Jet::constant(x.d) })
+    };
+    let depend = |fixed: &Fixed<Dual<Rates>>, poses: &[Pose<Dual<Rates>>]| -> Vec<bool> {
+        let of = |o: &Output| Moment::new(model, fixed, poses).output(o.source).d.0[0].is_nan();
+        outputs.iter().map(of).collect()
+    };
+    let mut found = vec![[Vec::new(), Vec::new()]; outputs.len()];
+    let mut note = |which: usize, what: usize, depends: Vec<bool>| {
+        let depending = found.iter_mut().zip(depends).filter(|(_, depends)| *depends);
+        depending.for_each(|(found, _)| found[which].push(what));
+    };
+    let as_drawn = fixed(&values);
+    for &b in bodies {
+        let pose = poses[b];
+        poses[b] = Pose { rot: Mat3 { cols: pose.rot.cols.map(|c| c.map(unknown)) }, r: pose.r.map(unknown) };
+        note(0, b, depend(&as_drawn, &poses));
+        poses[b] = pose;
+    }
+    for v in 0..values.len() {
+        let value = values[v];
+        values[v].d = f64::NAN;
+        note(1, v, depend(&fixed(&values), &poses));
+        values[v] = value;
+    }
+    found
+}
+
+/// A program at work on one design.
+pub(super) struct Run<'p> {
+    program: &'p Program,
+    room: Room,
+    inputs: Vec<Line>,
+    guards: Vec<Line>,
+}
+
+impl<'p> Run<'p> {
+    /// On the design with these values.
+    pub fn new(program: &'p Program, values: &[f64]) -> Self {
+        let mut inputs = vec![Line::default(); program.step.inputs()];
+        let (given, found) = inputs.split_at_mut(program.step.inputs() - program.design.sizes()[0]);
+        given[program.design_at..].iter_mut().zip(values).for_each(|(line, x)| line.0 = [*x; LANES]);
+        let given = &lanes_of(given)[..program.design.inputs()];
+        Room::default().run(&program.design, given, &[], [lanes_of(found), &mut [], &mut []]);
+        let guards = vec![Line::default(); program.outputs];
+        Self { program, room: Room::default(), inputs, guards }
+    }
+
+    /// Evaluates all outputs at the eight output times that k is one of. The whole turns of measures that are asked for are those that
+    /// were [given](Self::turns).
+    pub fn at(&mut self, k: usize, motion: &Motion, sensitivities: &Sensitivities, measured: &mut Measured) {
+        let Program { step, bodies, moved, .. } = self.program;
+        let (of_bodies, rest) =
+            lanes_of(&mut self.inputs).split_at_mut(BodyState::NUMBERS * self.program.bodies.len());
+        for (b, to) in bodies.iter().zip(of_bodies.chunks_exact_mut(BodyState::NUMBERS)) {
+            motion.states.gather(k, BodyState::NUMBERS * (b - 1), to);
+        }
+        for (&(v, b), to) in moved.iter().zip(rest.chunks_exact_mut(BodySensitivity::NUMBERS)) {
+            sensitivities.gather(k, v, b, to);
+        }
+        let guards = lanes_of(&mut self.guards);
+        let results = [guards, measured.values.block_mut(k), measured.d.block_mut(k)];
+        self.room.run(step, bytemuck::cast_slice(&self.inputs), &[], results);
+    }
+
+    /// Whether an output counts, in that many lanes.
+    pub fn fits(&self, output: usize, lanes: usize) -> bool {
+        // Written so that NaN does not.
+        self.guards[output].0[..lanes].iter().all(|x| *x <= 0.0)
+    }
+
+    /// The whole turns, rad, of these measures, that formulas go by.
+    pub fn turns(&mut self) -> impl Iterator<Item = (usize, &mut [f64; LANES])> {
+        let first = self.program.design_at - 1 - self.program.turning.len();
+        let lines = lanes_of(&mut self.inputs)[first..].iter_mut();
+        self.program.turning.iter().copied().zip(lines)
+    }
+}
