@@ -356,7 +356,10 @@ impl Reader<'_> {
         let first = keys.peek().map_or(String::new(), |k| format!("{} = {}", k.key, k.example));
         let example = format!("for example `{name} = {{ {first} }}`");
         self.wrong(value, &Subject { name: what.clone(), example }, "a table of keys");
-        self.fields(what, at.clone(), EMPTY.get_or_init(DeTable::new), keys)
+        self.unread.push("");
+        let mut fields = self.fields(what, at.clone(), EMPTY.get_or_init(DeTable::new), keys);
+        fields.lost = true;
+        fields
     }
 
     /// Which kind a named entry is, whose `type` says so. Without a known type, nothing more is said of the entry.
@@ -417,6 +420,9 @@ impl Reader<'_> {
         let has = |key: &Key| fields.get(key.key).is_some();
         let led = kinds.iter().find(|k| has(&k.0.keys[0]));
         let Some(kind) = led.or_else(|| kinds.iter().find(|k| k.0.keys.iter().any(has))) else {
+            if fields.lost {
+                return None;
+            }
             let message = format!("{} does not say {says}", fields.what);
             let ways: Vec<String> = kinds.iter().map(|k| way(&k.0)).collect();
             self.report("HP0104", fields.at.clone(), message).help =

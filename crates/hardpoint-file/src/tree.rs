@@ -40,6 +40,8 @@ pub(crate) struct Fields<'a> {
     pub at: Range<usize>,
     keys: Vec<&'static Key>,
     list: Vec<Field<'a>>,
+    /// Whether there is something else in place of the table, so that nothing more is to be said of its keys.
+    pub lost: bool,
 }
 
 impl<'a> Fields<'a> {
@@ -192,7 +194,7 @@ impl Reader<'_> {
         keys: impl IntoIterator<Item = &'static Key>,
     ) -> Fields<'a> {
         let keys: Vec<&'static Key> = keys.into_iter().collect();
-        let mut fields = Fields { what: what.into(), at, keys: keys.clone(), list: Vec::new() };
+        let mut fields = Fields { what: what.into(), at, keys: keys.clone(), list: Vec::new(), lost: false };
         let names = || keys.iter().map(|k| k.key);
         let known = |key: &str| names().find(|k| *k == key);
         for (key, value) in table.iter().take(MOST_ENTRIES) {
@@ -235,7 +237,7 @@ impl Reader<'_> {
     /// HP0104 where it is missing.
     pub fn need<'a>(&mut self, fields: &Fields<'a>, key: &str) -> Option<Field<'a>> {
         let field = fields.get(key);
-        if field.is_none() {
+        if field.is_none() && !fields.lost {
             let example = fields.example(key);
             self.report("HP0104", fields.at.clone(), format!("{} has no `{key}`", fields.what)).help =
                 Some(format!("add it, for example {example}"));

@@ -89,7 +89,6 @@ impl Reader<'_> {
         for entry in self.entries(model, "axles", "axle") {
             let fields = self.entry("axle", &entry, AXLE.keys());
             let [left, right] = ["left", "right"].map(|key| self.name_of(&fields, key));
-            self.push(raw, Section::Axles, EntryPlace::of(&fields));
             let has_wheelbase = raw.draft.vehicle.wheelbase.is_some();
             // A wheel that names no driver takes the only one.
             let alone = raw.draft.drivers.len() == 1;
@@ -112,6 +111,7 @@ impl Reader<'_> {
                 let kind = MeasureKindDraft::Axle { axle: entry.0.clone(), what };
                 raw.draft.measures.push(MeasureDraft { name: format!("{}.{}", entry.0, what.name()), kind });
             }
+            self.push(raw, Section::Axles, EntryPlace::of(&fields));
             let (left, right) = (left.unwrap_or_default(), right.unwrap_or_default());
             raw.draft.axles.push(AxleDraft { name: entry.0, left, right });
         }
@@ -134,8 +134,8 @@ impl Reader<'_> {
             if spin.is_none() {
                 self.unread.push("spin_axis");
             }
-            self.push(raw, Section::Wheels, place);
             self.measures_of(&entry.0, &fields, raw);
+            self.push(raw, Section::Wheels, place);
             raw.draft.wheels.push(WheelDraft {
                 name: entry.0,
                 body,
@@ -163,6 +163,9 @@ impl Reader<'_> {
             return self.line_of(fields, "spin_axis", place).map(WheelSpinDraft::Axis);
         }
         if fields.get("toe").is_none() && fields.get("camber").is_none() {
+            if fields.lost {
+                return None;
+            }
             let message = format!("{} has no `spin_axis`", fields.what);
             self.report("HP0104", fields.at.clone(), message).help = Some(
                 "add it, for example `spin_axis = [0, 1, 0]` for a left wheel, or the angles `toe = 0` and `camber = 0`"
@@ -280,6 +283,7 @@ impl Reader<'_> {
             return possible.iter().map(|m| (*m, f.value.span())).collect();
         }
         let expected = "`\"all\"` or a list of measures' names";
+        let before = self.found.len();
         let mut found = Vec::new();
         for value in self.list(f.value, &subject, expected).into_iter().flatten() {
             let Some(word) = self.name(value, &subject, "the name of a measure") else { continue };
@@ -290,6 +294,9 @@ impl Reader<'_> {
                     self.unknown_word(value.span(), &subject, &word, &names);
                 }
             }
+        }
+        if self.found.len() > before {
+            self.unread.push("measures");
         }
         found
     }

@@ -146,12 +146,24 @@ impl Check<'_> {
             return component;
         }
         let draft = self.draft;
+        if name.rsplit_once('.').is_some_and(|(owner, _)| self.may_measure(owner)) {
+            return None;
+        }
         self.find("measure", name, at, draft.measures.iter().map(|m| m.name.as_str()));
         if !draft.points.is_empty() && self.faults.last().is_some_and(|f| f.help.is_none()) {
             let fault = self.faults.last_mut().expect("just reported");
             fault.help("for a component of a point write `POINT.x`, `POINT.y` or `POINT.z`");
         }
         None
+    }
+
+    /// Whether a wheel or an axle of that name may measure what could not be read.
+    fn may_measure(&self, owner: &str) -> bool {
+        let (draft, unread) = (self.draft, &self.draft.unread);
+        let wheel = draft.wheels.iter().position(|w| w.name == owner).map(|k| (Section::Wheels, k));
+        let axle = draft.axles.iter().position(|a| a.name == owner).map(|k| (Section::Axles, k));
+        let mut owners = wheel.into_iter().chain(axle);
+        owners.any(|(section, k)| unread.any(section, k) || self.vehicle_is_unread())
     }
 
     /// The driver of that name, or the only one there is.

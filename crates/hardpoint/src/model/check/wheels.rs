@@ -83,7 +83,7 @@ impl Check<'_> {
         Some(MeasureKind::Axle { axle, what })
     }
 
-    fn vehicle_is_unread(&self) -> bool {
+    pub(super) fn vehicle_is_unread(&self) -> bool {
         self.draft.unread.any(Section::Vehicle, 0) || self.lost("vehicle")
     }
 
