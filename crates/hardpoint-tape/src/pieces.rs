@@ -42,32 +42,29 @@ pub struct Piece {
     pub shape: usize,
     /// What its inputs are: inputs of the whole program, or values, by their number among those that are kept.
     pub inputs: Vec<Operand>,
-    /// Its uniforms.
+    /// Which uniforms of the whole program are its first ones.
+    pub given: Vec<u32>,
+    /// Its other uniforms.
     pub uniforms: Vec<f64>,
     /// Which of the numbers that are kept are its own.
     pub kept: Range<usize>,
-    /// The last of these are outputs in the first area: which ones.
-    pub outputs: Vec<u32>,
-    /// Which outputs of the second and the third area are its own, counted from where those begin.
+    /// The last of these are outputs: of which area, and which there.
+    pub outputs: Vec<(usize, u32)>,
+    /// Which outputs of the second and the third area are written there by its program.
     pub areas: [Range<usize>; AREAS - 1],
 }
 
 impl Program {
-    /// Takes the program apart, `piece_of` saying which piece an input belongs to; outputs are in areas that end where `ends` says.
-    ///
-    /// None where a piece would have outputs of the second or third area that do not follow each other. Programs with uniforms are not
-    /// taken apart.
-    pub fn in_pieces(&self, piece_of: impl Fn(u32) -> usize, ends: [usize; AREAS - 1]) -> Option<Pieces> {
-        if self.uniforms > 0 {
-            return None;
-        }
+    /// Takes the program apart, `piece_of` saying which piece an input or uniform belongs to; outputs are in areas that end where `ends`
+    /// says. Where the outputs of a piece follow each other in the second and the third area, they are written there at once.
+    pub fn in_pieces(&self, piece_of: impl Fn(Operand) -> usize, ends: [usize; AREAS - 1]) -> Pieces {
         let cut = Cut::of(self, piece_of, ends);
         let mut whole = Pieces { shapes: Vec::new(), pieces: Vec::new(), kept: 0 };
         // Constants of every piece, by the number that they have in its shape.
         let (mut shape_of, mut constants) = (HashMap::new(), Vec::new());
         let mut kept_at = vec![u32::MAX; self.instructions.len()];
         for members in cut.pieces.iter().filter(|members| !members.is_empty()) {
-            let (piece, form, own) = members.canonical(self, &cut, whole.kept, &mut kept_at)?;
+            let (piece, form, own) = members.canonical(self, &cut, whole.kept, &mut kept_at);
             whole.kept = piece.kept.end;
             let shapes = shape_of.len();
             let shape = *shape_of.entry(form).or_insert(shapes);
@@ -80,7 +77,7 @@ impl Program {
                 (0..whole.pieces.len()).filter(|k| whole.pieces[*k].shape == shape).collect();
             whole.shapes[shape] = form.shape(&same, &constants, &mut whole.pieces);
         }
-        Some(whole)
+        whole
     }
 }
 
@@ -95,16 +92,22 @@ impl Pieces {
     ///
     /// # Panics
     ///
-    /// If there are fewer inputs or outputs than the whole has.
+    /// If there are fewer inputs, uniforms or outputs than the whole has.
     #[inline(always)]
     pub fn run(
         &self,
         room: &mut PiecesRoom,
         inputs: &[Lanes],
+        uniforms: &[f64],
         [first, second, third]: [&mut [Lanes]; AREAS],
         mut run: impl FnMut(usize, &[Lanes], &[f64], [&mut [Lanes]; AREAS]),
     ) {
         room.kept.resize(self.kept, Line::default());
+        if room.uniforms.is_empty() {
+            let of = |piece: &Piece| [vec![0.0; piece.given.len()], piece.uniforms.clone()].concat();
+            room.uniforms = self.pieces.iter().flat_map(of).collect();
+        }
+        let mut left = &mut room.uniforms[..];
         for piece in &self.pieces {
             room.read.resize(piece.inputs.len(), Line::default());
             for (to, from) in room.read.iter_mut().zip(&piece.inputs) {
@@ -116,24 +119,30 @@ impl Pieces {
                     }
                 }
             }
+            let (own, others) = left.split_at_mut(piece.given.len() + piece.uniforms.len());
+            left = others;
+            for (to, from) in own.iter_mut().zip(&piece.given) {
+                *to = uniforms[*from as usize];
+            }
             let kept = &mut room.kept[piece.kept.clone()];
-            let areas = [&mut second[piece.areas[0].clone()], &mut third[piece.areas[1].clone()]];
-            let [second, third] = areas;
-            let parts = [bytemuck::cast_slice_mut(kept), second, third];
-            run(piece.shape, bytemuck::cast_slice(&room.read), &piece.uniforms, parts);
+            let [at_second, at_third] = piece.areas.clone();
+            let parts = [bytemuck::cast_slice_mut(kept), &mut second[at_second], &mut third[at_third]];
+            run(piece.shape, bytemuck::cast_slice(&room.read), own, parts);
             let own = &room.kept[piece.kept.end - piece.outputs.len()..];
-            for (k, found) in piece.outputs.iter().zip(own) {
-                first[*k as usize] = found.0;
+            for ((area, k), found) in piece.outputs.iter().zip(own) {
+                [&mut *first, &mut *second, &mut *third][*area][*k as usize] = found.0;
             }
         }
     }
 }
 
-/// What pieces are run in.
+/// What the pieces of a program are run in; of one program only.
 #[derive(Clone, Debug, Default)]
 pub struct PiecesRoom {
     kept: Vec<Line>,
     read: Vec<Line>,
+    /// Of all pieces, one after the other.
+    uniforms: Vec<f64>,
 }
 
 /// The lanes of one number, within one line of memory.
@@ -159,14 +168,14 @@ struct Members {
 }
 
 impl Cut {
-    fn of(program: &Program, piece_of: impl Fn(u32) -> usize, ends: [usize; AREAS - 1]) -> Self {
+    fn of(program: &Program, piece_of: impl Fn(Operand) -> usize, ends: [usize; AREAS - 1]) -> Self {
         let mut piece_of_instruction = Vec::with_capacity(program.instructions.len());
         let mut is_read = vec![false; program.instructions.len()];
         for instruction in &program.instructions {
             let pieces = instruction.operands().map(|operand| match operand {
                 Operand::Value(v) => piece_of_instruction[v as usize],
-                Operand::Input(k) => piece_of(k),
-                Operand::Uniform(_) | Operand::Constant(_) => 0,
+                Operand::Constant(_) => 0,
+                given => piece_of(given),
             });
             piece_of_instruction.push(pieces.max().unwrap_or(0));
         }
@@ -207,6 +216,7 @@ struct Form {
     instructions: Vec<Instruction>,
     outputs: Vec<Operand>,
     inputs: usize,
+    given: usize,
     constants: usize,
     ends: [usize; AREAS - 1],
 }
@@ -219,6 +229,7 @@ struct Names<'a> {
     own: HashMap<u32, u32>,
     leaves: HashMap<Operand, u32>,
     inputs: Vec<Operand>,
+    given: Vec<u32>,
     constants: Vec<f64>,
 }
 
@@ -236,6 +247,14 @@ impl Names<'_> {
                 self.constants.push(self.program.constants[c as usize]);
             }
             return Operand::Constant(number);
+        }
+        if let Operand::Uniform(u) = operand {
+            let next = self.given.len() as u32;
+            let number = *self.leaves.entry(operand).or_insert(next);
+            if number == next {
+                self.given.push(u);
+            }
+            return Operand::Uniform(number);
         }
         let next = self.inputs.len() as u32;
         let number = *self.leaves.entry(operand).or_insert(next);
@@ -261,13 +280,14 @@ impl Members {
         cut: &Cut,
         kept: usize,
         kept_at: &mut [u32],
-    ) -> Option<(Piece, Form, Vec<f64>)> {
+    ) -> (Piece, Form, Vec<f64>) {
         let mut names = Names {
             program,
             kept_at,
             own: HashMap::with_capacity(self.instructions.len()),
             leaves: HashMap::new(),
             inputs: Vec::new(),
+            given: Vec::new(),
             constants: Vec::new(),
         };
         let mut instructions = Vec::with_capacity(self.instructions.len());
@@ -276,41 +296,50 @@ impl Members {
             names.own.insert(*k, number as u32);
         }
         let read: Vec<u32> = self.instructions.iter().copied().filter(|k| cut.is_read[*k as usize]).collect();
-        let given = self.outputs.iter().flatten().map(|k| program.outputs[*k as usize]);
-        let outputs = read.iter().map(|k| Operand::Value(*k)).chain(given);
-        let outputs: Vec<Operand> = outputs.map(|operand| names.of(operand)).collect();
-        let Names { inputs, constants, .. } = names;
-
-        let [first, second, third] = &self.outputs;
+        // Outputs that go to their place at once come last; of the first area none does.
+        let begins = [0, cut.ends[0], cut.ends[1]];
         let mut areas = [0..0, 0..0];
-        for ((area, outputs), begin) in areas.iter_mut().zip([second, third]).zip(cut.ends) {
-            if let [first, .., last] | [first @ last] = outputs[..] {
-                if (last - first) as usize + 1 != outputs.len() {
-                    return None;
+        let (mut copied, mut written) = (Vec::new(), Vec::new());
+        for (area, (outputs, begin)) in self.outputs.iter().zip(begins).enumerate() {
+            let own = outputs.iter().map(|k| k - begin as u32);
+            match outputs[..] {
+                [first, .., last] | [first @ last]
+                    if area > 0 && (last - first) as usize + 1 == outputs.len() =>
+                {
+                    areas[area - 1] = first as usize - begin..last as usize + 1 - begin;
+                    written.extend(outputs);
                 }
-                *area = first as usize - begin..last as usize + 1 - begin;
+                _ => copied.extend(own.map(|k| (area, k))),
             }
         }
+        let copies = copied.iter().map(|(area, k)| k + begins[*area] as u32);
+        let given = copies.chain(written.iter().copied()).map(|k| program.outputs[k as usize]);
+        let outputs = read.iter().map(|k| Operand::Value(*k)).chain(given);
+        let outputs: Vec<Operand> = outputs.map(|operand| names.of(operand)).collect();
+        let Names { inputs, given, constants, .. } = names;
+
         for (line, k) in read.iter().enumerate() {
             kept_at[*k as usize] = (kept + line) as u32;
         }
-        let all = read.len() + first.len();
+        let all = read.len() + copied.len();
         let form = Form {
             instructions,
             outputs,
             inputs: inputs.len(),
+            given: given.len(),
             constants: constants.len(),
-            ends: [all, all + second.len()],
+            ends: [all, all + areas[0].len()],
         };
         let piece = Piece {
             shape: 0,
             inputs,
+            given,
             uniforms: Vec::new(),
             kept: kept..kept + all,
-            outputs: first.clone(),
+            outputs: copied,
             areas,
         };
-        Some((piece, form, constants))
+        (piece, form, constants)
     }
 }
 
@@ -318,7 +347,7 @@ impl Form {
     /// The program of these pieces; constants in which they differ become their uniforms.
     fn shape(self, same: &[usize], constants: &[Vec<f64>], pieces: &mut [Piece]) -> Shape {
         let of = |k: usize, n: usize| constants[k][n].to_bits();
-        let mut program = Program { inputs: self.inputs, ..Program::default() };
+        let mut program = Program { inputs: self.inputs, uniforms: self.given, ..Program::default() };
         let mut places = Vec::with_capacity(self.constants);
         for n in 0..self.constants {
             if same.iter().all(|k| of(*k, n) == of(same[0], n)) {

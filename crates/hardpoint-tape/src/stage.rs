@@ -16,18 +16,14 @@ impl Program {
         (first, rest)
     }
 
-    /// Splits off what depends on constants, uniforms and those inputs alone that `first` says: what stays the same over many runs,
+    /// Splits off what depends on constants and those inputs and uniforms alone that `first` says: what stays the same over many runs,
     /// as the geometry of a design does over its motion.
     ///
     /// The first program has one output for each number that the second asks of it; the second has these as further inputs behind
-    /// its own. Both keep the numbers of inputs and uniforms, the first as far as the last input that it reads.
-    pub fn staged(self, first: impl Fn(u32) -> bool) -> (Self, Self) {
+    /// its own. Both keep the numbers of inputs and uniforms, the first as far as the last that it reads.
+    pub fn staged(self, first: impl Fn(Operand) -> bool) -> (Self, Self) {
         let inputs = self.inputs as u32;
-        let early = |operand| match operand {
-            Operand::Input(k) => first(k),
-            _ => true,
-        };
-        let (first, mut rest) = self.split(early, |k| Operand::Input(inputs + k));
+        let (first, mut rest) = self.split(first, |k| Operand::Input(inputs + k));
         rest.inputs += first.outputs.len();
         (first, rest)
     }
@@ -88,11 +84,13 @@ impl Program {
             rest.program.outputs.push(operand);
         }
         let read = |operand: Operand| match operand {
-            Operand::Input(k) => k as usize + 1,
-            _ => 0,
+            Operand::Input(k) => [k as usize + 1, 0],
+            Operand::Uniform(k) => [0, k as usize + 1],
+            Operand::Value(_) | Operand::Constant(_) => [0, 0],
         };
-        let instructions = &first.program.instructions;
-        first.program.inputs = instructions.iter().flat_map(|i| i.operands()).map(read).max().unwrap_or(0);
+        let reads = first.program.instructions.iter().flat_map(|i| i.operands()).map(read);
+        [first.program.inputs, first.program.uniforms] =
+            reads.fold([0, 0], |[i, u], [input, uniform]| [i.max(input), u.max(uniform)]);
         parts.map(|part| part.program).into()
     }
 }

@@ -476,7 +476,9 @@ impl<'m> Analysis<'m> {
             return None;
         }
         let program = move |corrections| {
-            self.program(Purpose { any_design: true, corrections, sensitivities, margins: false })
+            let purpose =
+                Purpose { times: false, any_design: true, corrections, sensitivities, margins: false };
+            self.program(purpose)
         };
         SideBySide::new(self.started()?, Box::new(program), !sensitivities)
     }
@@ -584,7 +586,7 @@ impl<'a> Walk<'a> {
                 (walk.sensing.is_some(), design.values.iter().any(|v| *v != 0.0));
             let moved: Vec<_> = walk.sensing.iter().flat_map(Sensing::moved).collect();
             let program = move |corrections| {
-                let purpose = Purpose { any_design, corrections, sensitivities, margins };
+                let purpose = Purpose { times: true, any_design, corrections, sensitivities, margins };
                 analysis.program(purpose).filter(|program| program.moved() == moved)
             };
             let nominal = analysis.model.drivers.iter().zip(&design.laws).all(|(d, law)| d.law == *law);

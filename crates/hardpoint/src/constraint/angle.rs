@@ -3,8 +3,8 @@
 //! All are `atan2(s, c)` of two Dot-1 products. As a constraint their residual is `sin(angle - f)`: zero and of unit
 //! slope at the root, and free of branch cuts over any number of turns.
 
-use super::{EndRates, Ends, axis, cross_rates, direction_rates};
-use crate::space::{Real, Vec3, Wrench};
+use super::{EndRates, Ends, axis, direction_rates};
+use crate::space::{Real, Wrench};
 
 /// s and c of the angle about z_i: tan(angle) = (y_i . x_j) / (x_i . x_j).
 #[inline(always)]
@@ -74,12 +74,6 @@ pub(super) fn wrench_on_j<T: Real>(ends: &Ends<T>) -> Wrench<T> {
     Wrench::moment(axis(&ends.j.rot, 0))
 }
 
-#[inline(always)]
-pub(super) fn wrench_rates_on_j<T: Real>(ends: &Ends<T>, rates: &EndRates<T>) -> [Wrench<T>; 2] {
-    let [_, x1, x2] = direction_rates(axis(&ends.j.rot, 0), rates.v_j, rates.a_j);
-    [Wrench::moment(x1), Wrench::moment(x2)]
-}
-
 /// `sin(angle - f)`, the products divided by the length of x_j seen along z_i.
 #[inline(always)]
 pub(super) fn heading_residual<T: Real>(ends: &Ends<T>, target: T) -> T {
@@ -93,35 +87,4 @@ pub(super) fn heading_wrench<T: Real>(ends: &Ends<T>) -> Wrench<T> {
     let [s, c] = about_z_i(ends);
     let g = axis(&ends.i.rot, 1) * c - axis(&ends.i.rot, 0) * s;
     Wrench::moment(axis(&ends.j.rot, 0).cross(g) * (T::one() / (s * s + c * c)))
-}
-
-#[inline(always)]
-pub(super) fn heading_wrench_rates<T: Real>(ends: &Ends<T>, rates: &EndRates<T>) -> [Wrench<T>; 2] {
-    let [x_i, y_i] = [0, 1].map(|k| direction_rates(axis(&ends.i.rot, k), rates.v_i, rates.a_i));
-    let x_j = direction_rates(axis(&ends.j.rot, 0), rates.v_j, rates.a_j);
-    let two = T::constant(2.0);
-    let dot = |a: [Vec3<T>; 3], b: [Vec3<T>; 3]| {
-        [
-            a[0].dot(b[0]),
-            a[1].dot(b[0]) + a[0].dot(b[1]),
-            a[2].dot(b[0]) + two * a[1].dot(b[1]) + a[0].dot(b[2]),
-        ]
-    };
-    let times = |a: [T; 3], b: [Vec3<T>; 3]| {
-        [b[0] * a[0], b[0] * a[1] + b[1] * a[0], b[0] * a[2] + b[1] * (two * a[1]) + b[2] * a[0]]
-    };
-    let minus = |a: [Vec3<T>; 3], b: [Vec3<T>; 3]| [a[0] - b[0], a[1] - b[1], a[2] - b[2]];
-    let (s, c) = (dot(y_i, x_j), dot(x_i, x_j));
-    let g = minus(times(c, y_i), times(s, x_i));
-    let [m1, m2] = cross_rates(x_j, g);
-    let moment = [x_j[0].cross(g[0]), m1, m2];
-    // 1 / n with n = s^2 + c^2.
-    let n0 = s[0] * s[0] + c[0] * c[0];
-    let n1 = two * (s[0] * s[1] + c[0] * c[1]);
-    let n2 = two * (s[0] * s[2] + s[1] * s[1] + c[0] * c[2] + c[1] * c[1]);
-    let inverse = T::one() / n0;
-    let inverse_1 = -n1 * inverse * inverse;
-    let inverse_2 = (two * n1 * n1 * inverse - n2) * inverse * inverse;
-    let [_, d1, d2] = times([inverse, inverse_1, inverse_2], moment);
-    [Wrench::moment(d1), Wrench::moment(d2)]
 }

@@ -3,7 +3,7 @@
 //! A rotation about an axis n by the angle t has `R_21 - R_12 = 2 n_z sin t`, so the two shafts turn alike exactly
 //! where that difference of two Dot-1 products vanishes, whatever the angle between them.
 
-use super::{EndRates, Ends, dot1};
+use super::{Ends, dot1};
 use crate::space::{Real, Wrench};
 
 /// `y_i . x_j - x_i . y_j`.
@@ -15,11 +15,4 @@ pub(super) fn residual<T: Real>(ends: &Ends<T>, target: T) -> T {
 #[inline(always)]
 pub(super) fn wrench<T: Real>(ends: &Ends<T>) -> Wrench<T> {
     dot1::wrench(1, 0, ends) - dot1::wrench(0, 1, ends)
-}
-
-#[inline(always)]
-pub(super) fn wrench_rates<T: Real>(ends: &Ends<T>, rates: &EndRates<T>) -> [Wrench<T>; 2] {
-    let [p1, p2] = dot1::wrench_rates(1, 0, ends, rates);
-    let [m1, m2] = dot1::wrench_rates(0, 1, ends, rates);
-    [p1 - m1, p2 - m2]
 }

@@ -11,6 +11,7 @@ mod dot1;
 mod dot2;
 mod spherical;
 
+use crate::number::{Jet, Rates};
 use crate::space::{Mat3, Pose, Real, Twist, Vec3, Wrench};
 
 /// One elementary constraint equation between two markers. Axes are 0, 1, 2 for x, y, z.
@@ -75,6 +76,24 @@ pub struct EndRates<T> {
     pub a_i: Twist<T>,
     /// dV/dt of body j.
     pub a_j: Twist<T>,
+}
+
+impl<T: Real> Ends<T> {
+    /// The same with the first two time derivatives of the markers.
+    fn moving(&self, rates: &EndRates<T>) -> Ends<Rates<T>> {
+        let vector = |[e, d, dd]: [Vec3<T>; 3]| {
+            Vec3::new(Jet([e.x, d.x, dd.x]), Jet([e.y, d.y, dd.y]), Jet([e.z, d.z, dd.z]))
+        };
+        let marker = |Pose { rot, r }: Pose<T>, v, a| Pose {
+            rot: Mat3 { cols: rot.cols.map(|e| vector(direction_rates(e, v, a))) },
+            r: vector(point_rates(r, v, a)),
+        };
+        Ends {
+            i: marker(self.i, rates.v_i, rates.a_i),
+            j: marker(self.j, rates.v_j, rates.a_j),
+            axes: Mat3 { cols: self.axes.cols.map(|e| e.map(Jet::constant)) },
+        }
+    }
 }
 
 /// A joint coordinate between two markers: its value, for couplers and for what a joint keeps of its design.
@@ -172,14 +191,12 @@ impl Row {
         }
     }
 
+    /// By running the wrench on markers that carry their time derivatives. (The common rows have theirs by hand: that takes fewer
+    /// instructions.)
     #[inline(never)]
     fn rare_wrench_rates<T: Real>(self, ends: &Ends<T>, rates: &EndRates<T>) -> [Wrench<T>; 2] {
-        match self {
-            Self::AngleOnJ => angle::wrench_rates_on_j(ends, rates),
-            Self::Heading => angle::heading_wrench_rates(ends, rates),
-            Self::ConstantVelocity => convel::wrench_rates(ends, rates),
-            _ => unreachable!("a common row"),
-        }
+        let Wrench { m, f } = self.rare_wrench(&ends.moving(rates));
+        [1, 2].map(|n| Wrench { m: m.map(|x| x.0[n]), f: f.map(|x| x.0[n]) })
     }
 
     /// Whether it asks for the markers' axes, rather than for their points only.

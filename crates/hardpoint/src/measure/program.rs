@@ -12,7 +12,7 @@
 use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex};
 
-use hardpoint_tape::{LANES, Number, Options, record};
+use hardpoint_tape::{LANES, Number, Operand, Options, record};
 
 use super::bodies::moving;
 use super::{Measured, Moment, Output, bodies_asked_for};
@@ -162,7 +162,10 @@ impl Program {
         }
         let (program, _) = recorded.program(Options::default());
         let design_at = inputs;
-        let (design, step) = program.staged(|input| input as usize >= design_at);
+        let (design, step) = program.staged(|operand| match operand {
+            Operand::Input(k) => k as usize >= design_at,
+            _ => false,
+        });
         let all = design.outputs.len();
         let design = Runnable::new(design, [all; 2], execution);
         let step = Runnable::new(step, [outputs.len(), 4 * outputs.len()], execution);
@@ -416,7 +419,7 @@ impl<'p> Run<'p> {
         let (given, found) = inputs.split_at_mut(program.step.inputs() - program.design.sizes()[0]);
         given[program.design_at..].iter_mut().zip(values).for_each(|(line, x)| line.0 = [*x; LANES]);
         let given = &lanes_of(given)[..program.design.inputs()];
-        Room::default().run(&program.design, given, [lanes_of(found), &mut [], &mut []]);
+        Room::default().run(&program.design, given, &[], [lanes_of(found), &mut [], &mut []]);
         let guards = vec![Line::default(); program.outputs];
         Self { program, room: Room::default(), inputs, guards }
     }
@@ -435,7 +438,7 @@ impl<'p> Run<'p> {
         }
         let guards = lanes_of(&mut self.guards);
         let results = [guards, measured.values.block_mut(k), measured.d.block_mut(k)];
-        self.room.run(step, bytemuck::cast_slice(&self.inputs), results);
+        self.room.run(step, bytemuck::cast_slice(&self.inputs), &[], results);
     }
 
     /// Whether an output counts, in that many lanes.

@@ -1,9 +1,7 @@
 //! Design velocity fields over the whole of a body: V(s), and the rotation that goes with it, at every point s (paper,
 //! section 3: one parameter tau, many points).
 
-use faer::Mat;
-
-use crate::space::Vec3;
+use crate::space::{Vec3, least_squares};
 
 /// How every point of a body moves per unit of a design variable.
 #[derive(Clone, Debug)]
@@ -83,11 +81,10 @@ impl Interpolation {
             (false, true) => linear(scaled[j], i - n),
             (false, false) => 0.0,
         };
-        let system = Mat::from_fn(n + 4, n + 4, entry);
-        let right = Mat::from_fn(n + 4, 3, |i, axis| if i < n { velocities[i][axis] } else { 0.0 });
+        let along = |axis: usize| velocities.iter().map(|v| v[axis]).chain([0.0; 4]).collect();
         // Of few points, or points in a plane, many linear functions go through: the least of them is taken.
-        let found = system.svd().ok()?.pseudoinverse() * right;
-        let row = |i: usize| Vec3::new(found[(i, 0)], found[(i, 1)], found[(i, 2)]);
+        let found = least_squares([n + 4; 2], entry, &[along(0), along(1), along(2)]);
+        let row = |i: usize| Vec3::new(found[0][i], found[1][i], found[2][i]);
         let this = Self {
             centre,
             scale,

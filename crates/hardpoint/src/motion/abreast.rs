@@ -159,11 +159,8 @@ impl<'p> Abreast<'p> {
         let ahead = times.map(|t| t - one.time);
         let are_new = self.weights.set(one.forecast.nodes(ahead[last]), &ahead);
         tape.look_ahead(&self.weights.of, are_new, &ahead);
-        for channel in 0..tape.channels().len() {
-            let known = one.forecast.known_of(channel);
-            for (to, x) in tape.known_mut(channel).iter_mut().zip(known.as_flattened()) {
-                *to = [*x; LANES];
-            }
+        for (channel, known) in tape.known_of_times_mut().iter_mut().enumerate() {
+            known.copy_from_slice(one.forecast.known_of(channel).as_flattened());
         }
         // What was found before stays, whatever these come to.
         let room = room.filter(|room| first == 0 && room.each_ref().map(|part| part.len()) == tape.sizes());
@@ -198,7 +195,7 @@ impl Laws {
         let mut by_program = false;
         if let Some(program) = &self.program {
             let limits = lanes_of(&mut self.limits);
-            self.room.run(program, std::slice::from_ref(times), [&mut *drivers, &mut *limits, &mut []]);
+            self.room.run(program, std::slice::from_ref(times), &[], [&mut *drivers, &mut *limits, &mut []]);
             by_program = limits.iter().all(|limit| all_within(limit, 0.0));
         }
         if !by_program {

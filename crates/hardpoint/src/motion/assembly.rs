@@ -232,7 +232,7 @@ impl Stepper<'_> {
                         for c in step.first..step.first + step.freedom.coordinates() {
                             let unit = self.topology.coordinates[c].unit;
                             *by_coordinate.entry(c).or_insert(0.0) +=
-                                scale * unit * side * factor * wrench.on(s.x[c]);
+                                scale * unit * side * factor * wrench.on(s.x[0][c]);
                         }
                     }
                 }

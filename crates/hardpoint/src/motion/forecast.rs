@@ -60,13 +60,14 @@ impl Channel {
     /// Where a state stands: value, first and second derivative.
     #[inline(always)]
     pub fn of<T: Real>(self, state: &State<T>) -> [T; ORDERS] {
+        let [speeds, accelerations, _] = &state.motion.speeds;
         match self {
-            Self::Coordinate(c) => [state.q[c], state.qd[c], state.qdd[c]],
+            Self::Coordinate(c) => [state.q[c], speeds[c], accelerations[c]],
             Self::Ball(first, k) => {
                 let of = |x: &[T]| Vec3::new(x[first], x[first + 1], x[first + 2]);
-                let (q, w) = (state.balls[first], of(&state.qd));
+                let (q, w) = (state.balls[first], of(speeds));
                 let rate = q.rate(w);
-                let second = q.rate(of(&state.qdd)).plus(rate.rate(w));
+                let second = q.rate(of(accelerations)).plus(rate.rate(w));
                 [q.component(k), rate.component(k), second.component(k)]
             }
         }

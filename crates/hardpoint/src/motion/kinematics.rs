@@ -1,14 +1,15 @@
 //! One step: position by Newton, then velocity and acceleration from the same factors.
 //!
 //! This is the hot path. It is generic over its scalar, allocates nothing, and walks the lists of
-//! [`Topology`]; the sensitivities use the same [`level`] with the same factors.
+//! [`Topology`]; the sensitivities solve the same equation ([`Flow`]) with the same factors.
 
 use crate::constraint::{EndRates, Ends, Row};
 use crate::joint::Freedom;
-use crate::model::{Contact, GROUND, Model};
+use crate::model::{Contact, DriverId, GROUND, Model};
 use crate::space::{Factors, LARGEST_DENSE, Pose, Quat, Real, Twist, Watched, Wrench};
-use crate::topology::{Block, Source, Step, Topology};
+use crate::topology::{Block, Source, Topology};
 
+use super::level::{Flow, Linear, turn_twists};
 use super::parts::Parts;
 
 /// A correction below this (rad, or sizes) leaves an error of its square, which is round-off.
@@ -23,34 +24,25 @@ const SINGULAR: f64 = 1e-12;
 /// Everything that one step computes.
 #[derive(Clone, Debug)]
 pub(crate) struct State<T> {
-    /// Per coordinate: value (unused for balls), speed and acceleration.
+    /// Per coordinate: value (unused for balls).
     pub q: Vec<T>,
-    pub qd: Vec<T>,
-    pub qdd: Vec<T>,
     /// Per coordinate that begins a ball: its rotation.
     pub balls: Vec<Quat<T>>,
     /// Per body: the marker that places it, in the world.
     pub frame: Vec<Pose<T>>,
-    /// Per body: pose, twist, and time derivative of the twist.
+    /// Per body: pose.
     pub pose: Vec<Pose<T>>,
-    pub v: Vec<Twist<T>>,
-    pub a: Vec<Twist<T>>,
-    /// Per coordinate: world unit twist and its time derivatives.
-    pub x: Vec<Twist<T>>,
-    pub xd: Vec<Twist<T>>,
-    pub xdd: Vec<Twist<T>>,
-    /// Per row: wrench and its time derivatives.
-    pub l: Vec<Wrench<T>>,
-    pub ld: Vec<Wrench<T>>,
-    pub ldd: Vec<Wrench<T>>,
+    /// Of orders 0, 1, 2: speeds of the coordinates and twists V of the bodies, their accelerations, and their jerks.
+    pub motion: Flow<T>,
+    /// Per order and coordinate: world unit twist x, and its first two time derivatives.
+    pub x: [Vec<Twist<T>>; 3],
+    /// Per order and row: wrench l, and its first two time derivatives.
+    pub l: [Vec<Wrench<T>>; 3],
     /// Per closure: its markers in the world.
     pub ends: Vec<Ends<T>>,
     pub factors: Vec<Factors<T>>,
     /// Right-hand side of a block.
     pub rhs: Vec<T>,
-    /// Per link and per row: what a level adds besides the unknowns.
-    pub bias: Vec<Twist<T>>,
-    pub row_rhs: Vec<T>,
     /// Per row: by how much it failed where the Jacobian was formed last.
     pub residual: Vec<T>,
     /// Per row of a coupler's term: about what its coordinate is, to count angles through whole turns.
@@ -97,32 +89,21 @@ impl<T: Real> State<T> {
     /// The design configuration.
     pub fn new(model: &Model, topology: &Topology) -> Self {
         let (n, o) = (topology.coordinates.len(), T::zero());
-        let none = Twist::zero();
-        let no_wrench = Wrench { m: none.w, f: none.v };
         let frame = Pose::IDENTITY.spread();
         let rows = topology.rows.len();
         let bodies = model.bodies.len();
         let widest = topology.blocks.iter().map(|b| b.unknowns.len()).max().unwrap_or(0);
         Self {
             q: vec![o; n],
-            qd: vec![o; n],
-            qdd: vec![o; n],
             balls: vec![Quat::IDENTITY.spread(); n],
             frame: vec![frame; bodies],
             pose: vec![frame; bodies],
-            v: vec![none; bodies],
-            a: vec![none; bodies],
-            x: vec![none; n],
-            xd: vec![none; n],
-            xdd: Vec::new(),
-            l: vec![no_wrench; rows],
-            ld: vec![no_wrench; rows],
-            ldd: Vec::new(),
+            motion: Flow::new(topology, bodies, true),
+            x: std::array::from_fn(|_| vec![Twist::zero(); n]),
+            l: std::array::from_fn(|_| vec![Wrench::zero(); rows]),
             ends: vec![Ends { i: frame, j: frame, axes: frame.rot }; topology.closures.len()],
             factors: topology.blocks.iter().map(|b| factors_of(topology, b, LARGEST_DENSE)).collect(),
             rhs: vec![o; widest],
-            bias: vec![none; topology.links.len()],
-            row_rhs: vec![o; rows],
             residual: vec![o; rows],
             near: vec![o; rows],
             gap: vec![o; rows],
@@ -146,7 +127,7 @@ impl<T: Real> State<T> {
             let mut frame = if on_ground { marker } else { self.frame[link.parent.0].compose(marker) };
             for step in &link.steps {
                 for c in 0..step.freedom.coordinates() {
-                    self.x[step.first + c] = step.twist(c, &frame.rot, frame.r);
+                    self.x[0][step.first + c] = step.twist(c, &frame.rot, frame.r);
                 }
                 let q = self.q[step.first] * T::constant(step.sign);
                 match step.freedom {
@@ -278,9 +259,9 @@ impl<T: Real> State<T> {
         let place = &topology.rows[r];
         for &(term, _) in &place.terms {
             let at = &topology.rows[term];
-            self.l[term] = self.wrench_of(topology.closures[at.closure].rows[at.index], at.closure);
+            self.l[0][term] = self.wrench_of(topology.closures[at.closure].rows[at.index], at.closure);
         }
-        let (l, x, zero) = (&self.l, &self.x, T::zero());
+        let (l, x, zero) = (&self.l[0], &self.x[0], T::zero());
         let entries = place.columns.iter().map(|c| {
             let mut sum = zero;
             for &(term, coordinate, factor) in &c.parts {
@@ -314,9 +295,9 @@ impl<T: Real> State<T> {
             let place = &topology.rows[r];
             let closure = &topology.closures[place.closure];
             let wrench = closure.rows[place.index].wrench(&self.ends[place.closure]);
-            self.l[r] = wrench;
+            self.l[0][r] = wrench;
             if place.terms.is_empty() {
-                let x = &self.x;
+                let x = &self.x[0];
                 let entries = closure.entries.iter().map(
                     #[inline(always)]
                     |&(column, coordinate, side)| (column, wrench.on(x[coordinate]) * T::constant(side)),
@@ -345,7 +326,7 @@ impl<T: Real> State<T> {
     ) -> Result<(), PositionFailure> {
         for (c, coordinate) in topology.coordinates.iter().enumerate() {
             if let Source::Driven(d) = coordinate.source {
-                [self.q[c], self.qd[c], self.qdd[c]] = drivers[d.0];
+                [self.q[c], self.motion.speeds[0][c], self.motion.speeds[1][c]] = drivers[d.0];
             }
         }
         self.place(topology, parts, topology.driven_links());
@@ -442,79 +423,84 @@ impl<T: Real> State<T> {
     #[inline(always)]
     fn rates_of_driven(&mut self, topology: &Topology) {
         let links = topology.driven_links();
-        carry(topology, links.clone(), &self.x, None, &self.qd, &mut self.v, |_| true);
-        self.rates_of_twists(topology, links.clone(), 1);
-        self.biases(topology, links.clone());
-        carry(topology, links, &self.x, Some(&self.bias), &self.qdd, &mut self.a, |_| true);
+        self.motion.follow::<0>(topology, links.clone(), &self.x);
+        self.rates_of_twists::<1>(topology, links.clone());
+        self.motion.follow::<1>(topology, links, &self.x);
     }
 
-    /// Velocity and acceleration of the bodies of block b, with the factors that its position left (`docs/theory.md`
-    /// (9), (10)).
+    /// Velocity and acceleration of the bodies of block b, with the factors that its position left (`docs/theory.md` (9), (10)).
     #[inline(always)]
     fn rates_of_block(&mut self, topology: &Topology, parts: &Parts<T>, drivers: &[[T; 3]], b: usize) {
-        let (block, s) = (&topology.blocks[b], self);
+        let block = &topology.blocks[b];
         for &c in &block.closures {
             let closure = &topology.closures[c];
             if closure.solved_by_points && closure.has_axes {
-                s.place_ends(topology, parts, c);
+                self.place_ends(topology, parts, c);
             }
-            s.finish_closure(topology, c);
-            let demand = closure.driver.map_or(T::zero(), |d| drivers[d.0][1]);
-            for r in closure.first_row..closure.first_row + closure.rows.len() {
-                s.row_rhs[r] = demand + s.gap[r] * T::constant(s.gap_left[1]);
-            }
+            self.finish_closure(topology, c);
         }
-        level(topology, b, &mut s.factors, &s.x, &s.l, None, &s.row_rhs, &mut s.qd, &mut s.v, &mut s.rhs);
-        s.rates_of_twists(topology, block.links.clone(), 1);
-        s.biases(topology, block.links.clone());
+        self.solve_order::<0>(topology, b, |d| drivers[d.0][1]);
+        self.rates_of_twists::<1>(topology, block.links.clone());
         for &c in &block.closures {
-            s.rates_of_wrenches(topology, c, 1);
+            self.rates_of_wrenches(topology, c, 1);
+        }
+        self.solve_order::<1>(topology, b, |d| drivers[d.0][2]);
+    }
+
+    /// Velocity, acceleration or jerk of the bodies of block b: (24) of `docs/theory.md` with U = V, u = q. and z = 0, where f is a
+    /// driver's speed in its row, `demand` its n-th rate; while an assembly closes its gaps, their rates in all others.
+    #[inline(always)]
+    fn solve_order<const N: usize>(&mut self, topology: &Topology, b: usize, demand: impl Fn(DriverId) -> T) {
+        let Self { x, l, factors, rhs, motion, gap, gap_left, .. } = self;
+        for &c in &topology.blocks[b].closures {
             let closure = &topology.closures[c];
-            let demand = closure.driver.map_or(T::zero(), |d| drivers[d.0][2]);
-            let [i, j] = closure.bodies;
-            let apart = s.v[j.0] - s.v[i.0];
-            for r in closure.first_row..closure.first_row + closure.rows.len() {
-                if topology.rows[r].drives() {
-                    s.row_rhs[r] = demand - s.ld[r].on(apart);
-                }
+            motion.ask(topology, c, closure.driver.map_or(T::zero(), &demand));
+            for r in closure.numbers().filter(|_| N == 0) {
+                motion.demand[r] += gap[r] * T::constant(gap_left[1]);
             }
         }
-        sum_couplers(topology, b, &mut s.row_rhs);
-        let bias = Some(&s.bias[..]);
-        level(topology, b, &mut s.factors, &s.x, &s.l, bias, &s.row_rhs, &mut s.qdd, &mut s.a, &mut s.rhs);
+        motion.solve::<N>(topology, b, Linear { x, l, factors, rhs });
     }
 
     /// Velocity and acceleration of all bodies where they stand, and first and second rates of all twists and wrenches, for speeds of
-    /// the drivers other than those that the position was solved with; those of driven coordinates stand in `qd` and `qdd`.
+    /// the drivers other than those that the position was solved with; those of driven coordinates stand in `motion`.
     #[inline(never)]
     pub(super) fn all_rates(&mut self, topology: &Topology, parts: &Parts<T>, drivers: &[[T; 3]]) {
         self.rates_of_driven(topology);
         for b in 0..topology.blocks.len() {
             self.rates_of_block(topology, parts, drivers, b);
         }
-        self.rates_of_twists(topology, 0..topology.links.len(), 2);
+        self.rates_of_twists::<2>(topology, 0..topology.links.len());
         for &c in topology.blocks.iter().flat_map(|b| &b.closures) {
             self.rates_of_wrenches(topology, c, 2);
         }
     }
 
-    /// What the acceleration of these links has besides those of their coordinates.
-    #[inline(always)]
-    fn biases(&mut self, topology: &Topology, links: std::ops::Range<usize>) {
-        for k in links {
-            let link = &topology.links[k];
-            if !link.keeps_its_twist() {
-                self.bias[k] = self.sum_over_link(link, &self.xd, &self.qd);
+    /// Third derivatives of all bodies where they stand with velocity and acceleration, for those of the drivers.
+    pub(super) fn jerk(&mut self, topology: &Topology, demand: impl Fn(DriverId) -> T) {
+        self.finish_rates(topology);
+        for (c, coordinate) in topology.coordinates.iter().enumerate() {
+            if let Source::Driven(d) = coordinate.source {
+                self.motion.speeds[2][c] = demand(d);
             }
         }
+        self.motion.follow::<2>(topology, topology.driven_links(), &self.x);
+        for b in 0..topology.blocks.len() {
+            self.solve_order::<2>(topology, b, &demand);
+        }
+    }
+
+    /// What the equations of this position have in common.
+    #[inline(always)]
+    pub fn linear(&mut self) -> Linear<'_, T> {
+        let Self { x, l, factors, rhs, .. } = self;
+        Linear { x, l, factors, rhs }
     }
 
     /// What only sensitivities need: second derivatives of twists and wrenches, and all of the rows left out.
     pub fn finish_rates(&mut self, topology: &Topology) {
         self.finish_wrenches(topology);
-        self.xdd.resize(self.x.len(), Twist::zero());
-        self.ldd.resize(self.l.len(), Wrench::moment(Twist::zero().w));
-        self.rates_of_twists(topology, 0..topology.links.len(), 2);
+        self.rates_of_twists::<2>(topology, 0..topology.links.len());
         for c in 0..topology.closures.len() {
             self.rates_of_wrenches(topology, c, 2);
         }
@@ -523,7 +509,7 @@ impl<T: Real> State<T> {
     /// Wrenches of the rows that the motion is not solved with.
     pub fn finish_wrenches(&mut self, topology: &Topology) {
         for (r, place) in topology.rows.iter().enumerate().filter(|(_, p)| !p.drives()) {
-            self.l[r] = self.wrench_of(topology.closures[place.closure].rows[place.index], place.closure);
+            self.l[0][r] = self.wrench_of(topology.closures[place.closure].rows[place.index], place.closure);
         }
     }
 
@@ -534,7 +520,7 @@ impl<T: Real> State<T> {
         for (k, row) in closure.rows.iter().enumerate() {
             let place = &topology.rows[closure.first_row + k];
             if place.drives() && !place.selected {
-                self.l[closure.first_row + k] = row.wrench(&self.ends[c]);
+                self.l[0][closure.first_row + k] = row.wrench(&self.ends[c]);
             }
         }
     }
@@ -583,9 +569,9 @@ impl<T: Real> State<T> {
         let place = &topology.rows[r];
         let closure = &topology.closures[place.closure];
         let [i, j] = closure.bodies;
-        let (v, a) = (self.v[j.0] - self.v[i.0], self.a[j.0] - self.a[i.0]);
+        let [v, a] = [0, 1].map(|n| self.motion.twists[n][j.0] - self.motion.twists[n][i.0]);
         let value = closure.rows[place.index].value(&self.ends[place.closure], self.near[r]);
-        [value, self.l[r].on(v), self.l[r].on(a) + self.ld[r].on(v)]
+        [value, self.l[0][r].on(v), self.l[0][r].on(a) + self.l[1][r].on(v)]
     }
 
     /// Constraint row r of the Jacobian, by column of its block, lengths in sizes.
@@ -597,51 +583,18 @@ impl<T: Real> State<T> {
         for (k, factor) in topology.parts_of_row(r) {
             for &(column, c, side) in &topology.closures[topology.rows[k].closure].entries {
                 let unit = topology.coordinates[c].unit;
-                out[column] += self.l[k].on(self.x[c]) * T::constant(scale * unit * side * factor);
+                out[column] += self.l[0][k].on(self.x[0][c]) * T::constant(scale * unit * side * factor);
             }
         }
     }
 
-    /// Sum of twists times speeds over a link's coordinates.
+    /// The n-th time derivatives of the unit twists of these links.
     #[inline(always)]
-    pub fn sum_over_link(&self, link: &crate::topology::Link, twists: &[Twist<T>], speeds: &[T]) -> Twist<T> {
-        let mut sum = Twist::zero();
-        for step in &link.steps {
-            for c in step.first..step.first + step.freedom.coordinates() {
-                sum = twists[c].times_plus(speeds[c], sum);
-            }
-        }
-        sum
-    }
-
-    /// First or second time derivative of the unit twists, each carried by the frame before its freedom.
-    #[inline(always)]
-    fn rates_of_twists(&mut self, topology: &Topology, links: std::ops::Range<usize>, order: usize) {
-        for link in &topology.links[links] {
-            if link.keeps_its_twist() {
-                continue;
-            }
-            let mut v = self.v[link.parent.0];
-            let mut a = self.a[link.parent.0];
-            for (n, step) in link.steps.iter().enumerate() {
-                let range = step.first..step.first + step.freedom.coordinates();
-                for c in range.clone() {
-                    if order == 1 {
-                        self.xd[c] = v.ad(self.x[c]);
-                    } else {
-                        self.xdd[c] = a.ad(self.x[c]) + v.ad(self.xd[c]);
-                    }
-                }
-                if n + 1 == link.steps.len() {
-                    break;
-                }
-                for c in range {
-                    v = self.x[c].times_plus(self.qd[c], v);
-                    if order > 1 {
-                        a = self.x[c].times_plus(self.qdd[c], self.xd[c].times_plus(self.qd[c], a));
-                    }
-                }
-            }
+    fn rates_of_twists<const N: usize>(&mut self, topology: &Topology, links: std::ops::Range<usize>) {
+        let Flow { speeds, twists, .. } = &self.motion;
+        for link in topology.links[links].iter().filter(|link| !link.keeps_its_twist()) {
+            let v: [Twist<T>; N] = std::array::from_fn(|n| twists[n][link.parent.0]);
+            turn_twists(link, v, &mut self.x, speeds);
         }
     }
 
@@ -649,50 +602,20 @@ impl<T: Real> State<T> {
     #[inline(always)]
     fn rates_of_wrenches(&mut self, topology: &Topology, c: usize, order: usize) {
         let closure = &topology.closures[c];
-        {
-            let [i, j] = closure.bodies;
-            let mut rates =
-                EndRates { v_i: self.v[i.0], v_j: self.v[j.0], a_i: self.a[i.0], a_j: self.a[j.0] };
-            if let Some(k) = closure.contact {
-                rates = self.walk(c, k, &rates);
-            }
-            for (k, row) in closure.rows.iter().enumerate() {
-                let r = closure.first_row + k;
-                let drives = topology.rows[r].drives();
-                if order == 1 {
-                    if drives {
-                        [self.ld[r], _] = row.wrench_rates(&self.ends[c], &rates);
-                    }
-                } else {
-                    [self.ld[r], self.ldd[r]] = row.wrench_rates(&self.ends[c], &rates);
-                }
+        let ([v, a, _], [i, j]) = (&self.motion.twists, closure.bodies);
+        let mut rates = EndRates { v_i: v[i.0], v_j: v[j.0], a_i: a[i.0], a_j: a[j.0] };
+        if let Some(k) = closure.contact {
+            rates = self.walk(c, k, &rates);
+        }
+        for (k, row) in closure.rows.iter().enumerate() {
+            let r = closure.first_row + k;
+            if order > 1 {
+                [self.l[1][r], self.l[2][r]] = row.wrench_rates(&self.ends[c], &rates);
+            } else if topology.rows[r].drives() {
+                [self.l[1][r], _] = row.wrench_rates(&self.ends[c], &rates);
             }
         }
     }
-}
-
-/// Adds to the row of every coupler of block b what its further terms have.
-#[inline(always)]
-pub(crate) fn sum_couplers<T: Real>(topology: &Topology, b: usize, of_rows: &mut [T]) {
-    for &r in &topology.blocks[b].coupled {
-        for &(term, factor) in &topology.rows[r].terms {
-            let x = of_rows[term];
-            of_rows[r] += x * T::constant(factor);
-        }
-    }
-}
-
-/// `l_r . (W_j - W_i)`, summed over a coupler's terms.
-#[inline(always)]
-pub(crate) fn along<T: Real>(topology: &Topology, l: &[Wrench<T>], motion: &[Twist<T>], r: usize) -> T {
-    let place = &topology.rows[r];
-    let [i, j] = topology.closures[place.closure].bodies;
-    let mut sum = l[r].on(motion[j.0] - motion[i.0]);
-    for &(term, factor) in &place.terms {
-        let [i, j] = topology.closures[topology.rows[term].closure].bodies;
-        sum += l[term].on(motion[j.0] - motion[i.0]) * T::constant(factor);
-    }
-    sum
 }
 
 /// Room for the factors of a block with the rows that it is solved with now.
@@ -706,67 +629,4 @@ pub(crate) fn factors_of<T: Real>(topology: &Topology, block: &Block, largest_de
         }
     };
     Factors::new(block.selected.len(), columns, largest_dense)
-}
-
-/// Solves one linear level in block b: the motion `out` of its bodies with
-///
-/// ```text
-/// out_child = out_parent + bias_link + sum x_a u_a      for every link,
-/// l_r . (out_j - out_i) = row_rhs_r                     for every selected row,
-/// ```
-///
-/// where `u` holds the driven coordinates' values on entry and the unknown ones on return. Velocity,
-/// acceleration and the three orders of every sensitivity are this, with one set of factors
-/// (`docs/theory.md` (7)).
-#[inline(always)]
-#[expect(clippy::too_many_arguments, reason = "the arrays are borrowed from one state, some of them mutably")]
-pub(crate) fn level<T: Real>(
-    topology: &Topology,
-    b: usize,
-    factors: &mut [Factors<T>],
-    x: &[Twist<T>],
-    l: &[Wrench<T>],
-    bias: Option<&[Twist<T>]>,
-    row_rhs: &[T],
-    u: &mut [T],
-    out: &mut [Twist<T>],
-    rhs: &mut [T],
-) {
-    let block = &topology.blocks[b];
-    // First as if the unknowns were zero: what the rows miss then is theirs to make up.
-    carry(topology, block.links.clone(), x, bias, u, out, |step| step.is_driven);
-    for (k, &r) in block.selected.iter().enumerate() {
-        rhs[k] = row_rhs[r] - along(topology, l, out, r);
-    }
-    factors[b].solve(rhs);
-    for (k, &c) in block.unknowns.iter().enumerate() {
-        u[c] = rhs[k];
-    }
-    carry(topology, block.links.clone(), x, bias, u, out, |_| true);
-}
-
-/// `out_child = out_parent + bias_link + sum x_a u_a` for these links, over the freedoms that count.
-#[inline(always)]
-pub(crate) fn carry<T: Real>(
-    topology: &Topology,
-    links: impl Iterator<Item = usize>,
-    x: &[Twist<T>],
-    bias: Option<&[Twist<T>]>,
-    u: &[T],
-    out: &mut [Twist<T>],
-    counts: impl Fn(&Step) -> bool,
-) {
-    for k in links {
-        let link = &topology.links[k];
-        let mut w = out[link.parent.0];
-        if let Some(bias) = bias {
-            w += bias[k];
-        }
-        for step in link.steps.iter().filter(|s| counts(s)) {
-            for c in step.first..step.first + step.freedom.coordinates() {
-                w = x[c].times_plus(u[c], w);
-            }
-        }
-        out[link.child.0] = w;
-    }
 }

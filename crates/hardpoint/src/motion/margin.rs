@@ -176,7 +176,7 @@ fn relative_row<T: Real>(topology: &Topology, state: &State<T>, r: usize, row: &
         let l = wrench(topology, state, k);
         for &(column, c, side) in &topology.closures[topology.rows[k].closure].entries {
             let unit = topology.coordinates[c].unit;
-            row[column] += l.on(state.x[c]) * T::constant(scale * unit * side * factor);
+            row[column] += l.on(state.x[0][c]) * T::constant(scale * unit * side * factor);
         }
     }
     let per_most = T::one() / most_resistance(topology, state, r);
@@ -188,7 +188,7 @@ fn relative_row<T: Real>(topology: &Topology, state: &State<T>, r: usize, row: &
 fn wrench<T: Real>(topology: &Topology, state: &State<T>, k: usize) -> Wrench<T> {
     let place = &topology.rows[k];
     if place.drives() {
-        return state.l[k];
+        return state.l[0][k];
     }
     state.wrench_of(topology.closures[place.closure].rows[place.index], place.closure)
 }
@@ -210,7 +210,7 @@ fn most_resistance<T: Real>(topology: &Topology, state: &State<T>, r: usize) -> 
             for step in &topology.links[link].steps {
                 let resistance = match step.freedom {
                     Freedom::Slide(_) => l.f.norm() * T::constant(topology.coordinates[step.first].unit),
-                    Freedom::Turn(_) | Freedom::Ball => most_moment(&l, point, &state.x[step.first]),
+                    Freedom::Turn(_) | Freedom::Ball => most_moment(&l, point, &state.x[0][step.first]),
                 };
                 most = most.larger(resistance * T::constant(scale * factor.abs()));
             }

@@ -10,6 +10,7 @@ pub(crate) mod designs;
 mod forecast;
 pub(crate) mod jerk;
 pub(crate) mod kinematics;
+pub(crate) mod level;
 pub(crate) mod margin;
 pub(crate) mod parts;
 mod singularity;
@@ -104,7 +105,8 @@ impl BodyState {
     /// Of body b: r, the columns of A, v, omega, a and alpha, one after the other.
     #[inline(always)]
     fn numbers_of<T: Real>(state: &State<T>, b: usize) -> [T; Self::NUMBERS] {
-        let (pose, v, a) = (&state.pose[b], state.v[b], state.a[b]);
+        let [v, a, _] = &state.motion.twists;
+        let (pose, v, a) = (&state.pose[b], v[b], a[b]);
         let (r, [f, g, h]) = (pose.r, pose.rot.cols);
         let u = v.at(r);
         let n = a.at(r) + v.w.cross(u);

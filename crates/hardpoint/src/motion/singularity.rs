@@ -17,13 +17,12 @@
 use crate::space::{Real, Twist, Wrench};
 use crate::topology::{Source, Topology};
 
-use super::kinematics::{State, level, sum_couplers};
+use super::kinematics::State;
+use super::level::Flow;
 use super::parts::Parts;
 
 /// Loads on the rows. One could miss what is singular; two have not (270 hard cases in the plane and in space).
 const LOADS: usize = 2;
-/// Terms of the series.
-const ORDERS: usize = 3;
 
 /// What is known about the surroundings of a position.
 #[derive(Clone, Debug)]
@@ -55,22 +54,14 @@ pub(super) struct Ahead {
 /// Room to work in.
 #[derive(Clone, Debug)]
 pub(super) struct Prober {
-    /// Rates along a direction, in place of those along the time.
-    qd: Vec<f64>,
-    qdd: Vec<f64>,
-    v: Vec<Twist<f64>>,
-    a: Vec<Twist<f64>>,
-    xd: Vec<Twist<f64>>,
-    xdd: Vec<Twist<f64>>,
-    ld: Vec<Wrench<f64>>,
-    ldd: Vec<Wrench<f64>>,
+    /// The motion along a direction, in place of that along the time, and the rates of all twists and wrenches.
+    motion: Flow<f64>,
+    x: [Vec<Twist<f64>>; 2],
+    l: [Vec<Wrench<f64>>; 2],
     /// Per load and row.
     loads: [Vec<f64>; LOADS],
-    /// The series of the response: coordinates, and the bodies of one block.
-    c: [Vec<f64>; ORDERS],
-    out: [Vec<Twist<f64>>; ORDERS],
-    bias: Vec<Twist<f64>>,
-    row_rhs: Vec<f64>,
+    /// The series of the response, of one block at a time: c0, c1 and 2 c2 of its coordinates.
+    response: Flow<f64>,
     drivers: Vec<[f64; 3]>,
 }
 
@@ -129,9 +120,7 @@ fn part(travel: f64, per_unit: f64) -> f64 {
 
 impl Prober {
     pub fn new(topology: &Topology, bodies: usize, drivers: usize) -> Self {
-        let (zero, none) = (0.0, Twist::ZERO);
         let (coordinates, rows) = (topology.coordinates.len(), topology.rows.len());
-        let wrench = Wrench { m: none.w, f: none.v };
         // Multiples of the golden ratio are spread evenly and never repeat: all loads differ, and none is small.
         let mut numbers = (1..).map(|k| (f64::from(k) * 0.618_033_988_749_895).fract());
         let mut load = || -> Vec<f64> {
@@ -143,34 +132,20 @@ impl Prober {
             topology.rows.iter().map(|place| place.unit).map(of_row).collect()
         };
         Self {
-            qd: vec![zero; coordinates],
-            qdd: vec![zero; coordinates],
-            v: vec![none; bodies],
-            a: vec![none; bodies],
-            xd: vec![none; coordinates],
-            xdd: vec![none; coordinates],
-            ld: vec![wrench; rows],
-            ldd: vec![wrench; rows],
+            motion: Flow::new(topology, bodies, true),
+            x: std::array::from_fn(|_| vec![Twist::ZERO; coordinates]),
+            l: std::array::from_fn(|_| vec![Wrench::zero(); rows]),
             loads: std::array::from_fn(|_| load()),
-            c: std::array::from_fn(|_| vec![zero; coordinates]),
-            out: std::array::from_fn(|_| vec![none; bodies]),
-            bias: vec![none; topology.links.len()],
-            row_rhs: vec![zero; rows],
-            drivers: vec![[zero; 3]; drivers],
+            response: Flow::new(topology, bodies, false),
+            drivers: vec![[0.0; 3]; drivers],
         }
     }
 
     /// Puts the rates along a direction in the place of those along the time, or back.
     fn swap(&mut self, state: &mut State<f64>) {
-        use std::mem::swap;
-        swap(&mut self.qd, &mut state.qd);
-        swap(&mut self.qdd, &mut state.qdd);
-        swap(&mut self.v, &mut state.v);
-        swap(&mut self.a, &mut state.a);
-        swap(&mut self.xd, &mut state.xd);
-        swap(&mut self.xdd, &mut state.xdd);
-        swap(&mut self.ld, &mut state.ld);
-        swap(&mut self.ldd, &mut state.ldd);
+        std::mem::swap(&mut self.motion, &mut state.motion);
+        self.x.swap_with_slice(&mut state.x[1..]);
+        self.l.swap_with_slice(&mut state.l[1..]);
     }
 
     /// Examines the position where a state stands, with its factors, along so many directions. `speed(direction, driver)` is
@@ -194,8 +169,8 @@ impl Prober {
                 *driver = [0.0, speed(direction, d), 0.0];
             }
             self.rates(topology, parts, state);
-            found.slopes[direction].copy_from_slice(&state.qd);
-            found.bends[direction].copy_from_slice(&state.qdd);
+            found.slopes[direction].copy_from_slice(&state.motion.speeds[0]);
+            found.bends[direction].copy_from_slice(&state.motion.speeds[1]);
             for &r in &topology.coupled_rows {
                 for (k, _) in topology.parts_of_row(r) {
                     let [_, speed, rate] = state.coordinate_of_row(topology, k);
@@ -205,7 +180,7 @@ impl Prober {
             let mut fastest = 0.0;
             for (c, coordinate) in topology.coordinates.iter().enumerate() {
                 if matches!(coordinate.source, Source::Unknown { .. }) {
-                    let speed = state.qd[c] * coordinate.per_unit;
+                    let speed = state.motion.speeds[0][c] * coordinate.per_unit;
                     fastest = fastest.larger(speed.abs());
                 }
             }
@@ -255,7 +230,7 @@ impl Prober {
     fn rates(&mut self, topology: &Topology, parts: &Parts<f64>, state: &mut State<f64>) {
         for (c, coordinate) in topology.coordinates.iter().enumerate() {
             if let Source::Driven(d) = coordinate.source {
-                [_, state.qd[c], state.qdd[c]] = self.drivers[d.0];
+                [_, state.motion.speeds[0][c], state.motion.speeds[1][c]] = self.drivers[d.0];
             }
         }
         state.all_rates(topology, parts, &self.drivers);
@@ -265,48 +240,19 @@ impl Prober {
     /// singular position is by it.
     #[inline(never)]
     fn respond(&mut self, topology: &Topology, state: &mut State<f64>, b: usize, load: usize) -> f64 {
-        let block = &topology.blocks[b];
-        let Self { loads, c, out, bias, row_rhs, .. } = self;
-        for order in 0..ORDERS {
-            // bias = sum over m < n of binomial(n, m) x^(n - m) c_m
-            for k in block.links.clone() {
-                let link = &topology.links[k];
-                bias[k] = Twist::ZERO;
-                if order > 0 && !link.keeps_its_twist() {
-                    bias[k] = state.sum_over_link(link, &state.xd, &c[order - 1]);
-                    if order == 2 {
-                        let first = bias[k] * 2.0;
-                        bias[k] = first + state.sum_over_link(link, &state.xdd, &c[0]);
-                    }
-                }
-            }
-            // rhs = r, and then - sum over m < n of binomial(n, m) l^(n - m) . (out_j - out_i)_m
-            for &k in &block.closures {
-                let closure = &topology.closures[k];
-                let [i, j] = closure.bodies.map(|body| body.0);
-                for r in closure.first_row..closure.first_row + closure.rows.len() {
-                    if !topology.rows[r].drives() {
-                        continue;
-                    }
-                    row_rhs[r] = match order {
-                        0 if topology.rows[r].is_term => 0.0,
-                        0 => loads[load][r],
-                        1 => -state.ld[r].on(out[0][j] - out[0][i]),
-                        _ => {
-                            -(state.ldd[r].on(out[0][j] - out[0][i])
-                                + state.ld[r].on(out[1][j] - out[1][i]) * 2.0)
-                        }
-                    };
-                }
-            }
-            sum_couplers(topology, b, row_rhs);
-            let (factors, rhs) = (&mut state.factors, &mut state.rhs);
-            let (u, out) = (&mut c[order], &mut out[order]);
-            level(topology, b, factors, &state.x, &state.l, Some(&bias[..]), row_rhs, u, out, rhs);
+        let (block, response) = (&topology.blocks[b], &mut self.response);
+        // (24) with z = 0 and f = r, which stands still.
+        for r in block.closures.iter().flat_map(|&c| topology.closures[c].numbers()) {
+            response.demand[r] = if topology.rows[r].is_term { 0.0 } else { self.loads[load][r] };
         }
+        response.solve::<0>(topology, b, state.linear());
+        block.closures.iter().for_each(|&c| response.ask(topology, c, 0.0));
+        response.solve::<1>(topology, b, state.linear());
+        block.closures.iter().for_each(|&c| response.ask(topology, c, 0.0));
+        response.solve::<2>(topology, b, state.linear());
         // The next block is examined by itself.
         for k in block.links.clone() {
-            out.iter_mut().for_each(|out| out[topology.links[k].child.0] = Twist::ZERO);
+            response.twists.iter_mut().for_each(|twists| twists[topology.links[k].child.0] = Twist::ZERO);
         }
         self.nearness(topology, b)
     }
@@ -317,17 +263,17 @@ impl Prober {
             let unknowns = topology.blocks[b].unknowns.iter();
             unknowns.fold(0.0, |most: f64, &k| most.larger((c[k] * topology.coordinates[k].per_unit).abs()))
         };
-        let [c0, c1, c2] = [&self.c[0], &self.c[1], &self.c[2]].map(|c| norm(c));
+        let [c0, c1, c2] = self.response.speeds.each_ref().map(|c| norm(c));
         (c1 / c0).larger((c2 * 0.5 / c0).sqrt())
     }
 
     /// Where the response would be infinite. With s ~ (u* - u)^-m it is `s'/s = m / (u* - u)` and `s''/s = m (m + 1) / (u* - u)^2`,
     /// read off the unknown that responds most.
     fn extrapolate(&self, topology: &Topology, b: usize) -> Option<Ahead> {
-        let size = |k: usize| (self.c[0][k] * topology.coordinates[k].per_unit).abs();
+        let size = |k: usize| (self.response.speeds[0][k] * topology.coordinates[k].per_unit).abs();
         let unknowns = topology.blocks[b].unknowns.iter().copied();
         let most = unknowns.max_by(|&j, &k| size(j).total_cmp(&size(k)))?;
-        let [c0, c1, c2] = std::array::from_fn(|order| self.c[order][most]);
+        let [c0, c1, c2] = self.response.speeds.each_ref().map(|c| c[most]);
         let (first, second) = (c1 / c0, c2 / c0);
         let power = first * first / (second - first * first);
         let distance = power / first;

@@ -185,8 +185,8 @@ impl<'m> Stepper<'m> {
         state.contacts = parts.curves.iter().map(|c| Contact::at(c, c.start())).collect();
         let saved = Saved {
             q: state.q.clone(),
-            qd: state.qd.clone(),
-            qdd: state.qdd.clone(),
+            qd: state.motion.speeds[0].clone(),
+            qdd: state.motion.speeds[1].clone(),
             balls: state.balls.clone(),
             pivots: state.pivots.clone(),
             determinants: state.determinants.clone(),
@@ -496,8 +496,8 @@ impl<'m> Stepper<'m> {
         for (c, coordinate) in self.topology.coordinates.iter().enumerate() {
             if let Source::Unknown { .. } = coordinate.source {
                 let predicted = saved.qd[c] + saved.qdd[c] * h;
-                let speed = s.qd[c].abs().larger(saved.qd[c].abs());
-                let apart = (s.qd[c] - predicted).abs();
+                let speed = s.motion.speeds[0][c].abs().larger(saved.qd[c].abs());
+                let apart = (s.motion.speeds[0][c] - predicted).abs();
                 fastest = fastest.larger(speed * coordinate.per_unit);
                 difference = difference.larger(apart * coordinate.per_unit);
             }
@@ -513,8 +513,8 @@ impl<'m> Stepper<'m> {
         }
         self.forecast.learn(t, s);
         saved.q.copy_from_slice(&s.q);
-        saved.qd.copy_from_slice(&s.qd);
-        saved.qdd.copy_from_slice(&s.qdd);
+        saved.qd.copy_from_slice(&s.motion.speeds[0]);
+        saved.qdd.copy_from_slice(&s.motion.speeds[1]);
         saved.balls.copy_from_slice(&s.balls);
         saved.pivots.copy_from_slice(&s.pivots);
         saved.determinants.copy_from_slice(&s.determinants);
@@ -693,7 +693,10 @@ mod tests {
             let apart = |a: Vec3, b: Vec3| (a - b).norm();
             for b in 0..model.bodies.len() {
                 assert!(apart(dense.pose[b].r, sparse.pose[b].r) < 1e-12 * size, "body {b} of {n}");
-                assert!(apart(dense.v[b].v, sparse.v[b].v) < 1e-11 * size, "body {b} of {n}");
+                assert!(
+                    apart(dense.motion.twists[0][b].v, sparse.motion.twists[0][b].v) < 1e-11 * size,
+                    "body {b} of {n}"
+                );
             }
         }
     }

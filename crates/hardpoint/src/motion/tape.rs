@@ -15,7 +15,7 @@ use std::sync::{Arc, Mutex, OnceLock};
 
 use hardpoint_code::{Code, PARTS, Scratch, Unsupported, Width};
 use hardpoint_tape::{
-    Interpreter, LANES, Lanes, Number, Options, Pieces, PiecesRoom, Program, Shape, record,
+    Interpreter, LANES, Lanes, Number, Operand, Options, Pieces, PiecesRoom, Program, Shape, record,
 };
 
 use crate::blocks::{Line, lanes_of};
@@ -54,6 +54,8 @@ const CONDITIONS: usize = NODES * ORDERS;
 /// What a program is for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) struct Purpose {
+    /// Whether its lanes are output times, of one design; else they are designs, at one output time.
+    pub times: bool,
     /// Whether the design is an input; else it is the nominal one.
     pub any_design: bool,
     /// Newton's corrections in one run: one or two.
@@ -155,16 +157,16 @@ impl Runnable {
         Self::in_pieces(program, ends, execution, |_| 0)
     }
 
-    /// The same; `piece_of` says which piece of a long program an input belongs to.
+    /// The same; `piece_of` says which piece of a long program an input or uniform belongs to.
     fn in_pieces(
         program: Program,
         ends @ [first, second]: [usize; PARTS - 1],
         execution: Execution,
-        piece_of: impl Fn(u32) -> usize,
+        piece_of: impl Fn(Operand) -> usize,
     ) -> Self {
         let (inputs, long) = (program.inputs, program.instructions.len());
         let sizes = [first, second - first, program.outputs.len() - second];
-        let pieces = (long > LONG).then(|| program.in_pieces(piece_of, ends)).flatten();
+        let pieces = (long > LONG).then(|| program.in_pieces(piece_of, ends));
         let form = match pieces.filter(|pieces| SHORTER * pieces.instructions() <= long) {
             Some(pieces) => {
                 let executable =
@@ -201,16 +203,22 @@ pub(crate) struct Room {
 
 impl Room {
     #[inline(always)]
-    pub fn run(&mut self, runnable: &Runnable, inputs: &[Lanes], outputs: [&mut [Lanes]; PARTS]) {
+    pub fn run(
+        &mut self,
+        runnable: &Runnable,
+        inputs: &[Lanes],
+        uniforms: &[f64],
+        outputs: [&mut [Lanes]; PARTS],
+    ) {
         let Self { scratch, interpreters, outputs: found, pieces: room } = self;
         match &runnable.form {
             Form::Whole(executable) => {
                 interpreters.resize(1, None);
-                executable.run((scratch, &mut interpreters[0]), found, inputs, &[], outputs);
+                executable.run((scratch, &mut interpreters[0]), found, inputs, uniforms, outputs);
             }
             Form::Pieces(pieces, shapes) => {
                 interpreters.resize(shapes.len(), None);
-                pieces.run(room, inputs, outputs, |shape, inputs, uniforms, outputs| {
+                pieces.run(room, inputs, uniforms, outputs, |shape, inputs, uniforms, outputs| {
                     let with = (&mut *scratch, &mut interpreters[shape]);
                     shapes[shape].run(with, found, inputs, uniforms, outputs);
                 });
@@ -263,10 +271,14 @@ struct Unknown {
     speed: usize,
 }
 
-/// Where the inputs of a program begin: weights, then positions of every channel, the newest first, drivers, how far ahead of the
-/// newest position it is, variables of the design, and what depends on them alone.
+/// Where the inputs of a program begin: weights, what is known of every channel, drivers, how far ahead of the newest position it is,
+/// variables of the design, and what depends on them alone.
+///
+/// Known are, of designs, the last positions of every channel, the newest first; of output times these are uniforms, and the input is
+/// what is added to the forecast: nothing, or all there is where the position was found by a run before.
 #[derive(Clone, Copy, Debug)]
 struct Inputs {
+    known: usize,
     drivers: usize,
     ahead: usize,
     design: usize,
@@ -274,11 +286,12 @@ struct Inputs {
 }
 
 impl Inputs {
-    fn of(channels: &[Channel], drivers: usize, variables: usize) -> Self {
-        let drivers_at = CONDITIONS * (1 + channels.len());
+    fn of(channels: &[Channel], purpose: Purpose, drivers: usize, variables: usize) -> Self {
+        let known = if purpose.times { 1 } else { CONDITIONS };
+        let drivers_at = CONDITIONS + known * channels.len();
         let ahead = drivers_at + ORDERS * drivers;
         let design = ahead + 1;
-        Self { drivers: drivers_at, ahead, design, of_design: design + variables }
+        Self { known, drivers: drivers_at, ahead, design, of_design: design + variables }
     }
 }
 
@@ -350,7 +363,7 @@ impl StepProgram {
         let recorded = record(|| {
             let mut state = State::new(model, topology);
             let offset = OFFSET[purpose.corrections - 1];
-            let known = foresee(topology, &channels, &one.saved, offset, &mut state);
+            let known = foresee(topology, &channels, &one.saved, (offset, purpose.times), &mut state);
             let drivers: Vec<[Number; 3]> = one.saved.drivers.iter().map(|f| f.map(Number::input)).collect();
             let ahead = Number::input(0.0);
             let nominal = model.whole(&[]).into_iter();
@@ -403,15 +416,23 @@ impl StepProgram {
         });
         let outputs = places.filter(|_| fits && recording::is_arithmetic())?;
         let variables = if purpose.any_design { model.variables.len() } else { 0 };
-        let inputs = Inputs::of(&channels, model.drivers.len(), variables);
+        let inputs = Inputs::of(&channels, purpose, model.drivers.len(), variables);
         let (program, _) = recorded.program(Options::default());
-        let (design, step) = program.staged(|input| input as usize >= inputs.design);
+        let (design, step) = program.staged(|operand| match operand {
+            Operand::Input(k) => k as usize >= inputs.design,
+            _ => false,
+        });
         let all = design.outputs.len();
         let design = Runnable::new(design, [all; PARTS - 1], execution);
         let ends = [outputs.states, outputs.derivatives];
         let pieces = pieces(topology, &channels);
-        let step = Runnable::in_pieces(step, ends, execution, |input| {
-            pieces.get((input as usize / CONDITIONS).wrapping_sub(1)).copied().unwrap_or(0)
+        let step = Runnable::in_pieces(step, ends, execution, |operand| {
+            let channel = match operand {
+                Operand::Uniform(k) => Some(k as usize / CONDITIONS),
+                Operand::Input(k) => (k as usize).checked_sub(CONDITIONS).map(|k| k / inputs.known),
+                Operand::Value(_) | Operand::Constant(_) => None,
+            };
+            channel.and_then(|channel| pieces.get(channel)).copied().unwrap_or(0)
         });
         Some(Self {
             purpose,
@@ -475,7 +496,7 @@ fn balls(topology: &Topology) -> impl Iterator<Item = usize> {
 fn moves(topology: &Topology, channels: &[Channel], state: &State<Number>) -> Vec<Number> {
     let mut out: Vec<Number> = channels.iter().flat_map(|c| c.of(state)).collect();
     for c in balls(topology).flat_map(|first| first..first + 3) {
-        out.extend([state.qd[c], state.qdd[c]]);
+        out.extend([state.motion.speeds[0][c], state.motion.speeds[1][c]]);
     }
     out
 }
@@ -532,25 +553,28 @@ fn speeds(
     [apart, fastest].map(|x| largest_of(x.into_iter()))
 }
 
-/// Makes inputs of what foresees the state, `offset` beside where `at` is; returns what is known of every channel.
+/// Makes inputs of what foresees the state, `offset` beside where `at` is; returns what is known of every channel, which is the same at
+/// all of several output times.
 fn foresee(
     topology: &Topology,
     channels: &[Channel],
     at: &Saved,
-    offset: f64,
+    (offset, times): (f64, bool),
     state: &mut State<Number>,
 ) -> Vec<[Number; CONDITIONS]> {
-    let first = |n: usize, x: f64| Number::input(if n == 0 { x } else { 0.0 });
-    let weights: [Number; CONDITIONS] = std::array::from_fn(|n| first(n, 1.0));
+    let first = |n: usize, x: f64| if n == 0 { x } else { 0.0 };
+    let weights: [Number; CONDITIONS] = std::array::from_fn(|n| Number::input(first(n, 1.0)));
     let one = |channel: &Channel| {
         let beside = match *channel {
             Channel::Coordinate(c) => at.q[c] + offset * topology.coordinates[c].unit,
             Channel::Ball(c, k) => at.balls[c].nudged(Vec3::new(offset, offset, offset)).component(k),
         };
-        let known: [Number; CONDITIONS] = std::array::from_fn(|n| first(n, beside));
+        let of = if times { Number::uniform } else { Number::input };
+        let known: [Number; CONDITIONS] = std::array::from_fn(|n| of(first(n, beside)));
+        let begin = if times { Number::input(0.0) } else { Number::constant(0.0) };
         // What counts least comes first.
         let terms = weights.into_iter().zip(known).rev();
-        channel.put(terms.fold(Number::constant(0.0), |sum, (w, x)| w.times_plus(x, sum)), state);
+        channel.put(terms.fold(begin, |sum, (w, x)| w.times_plus(x, sum)), state);
         known
     };
     channels.iter().map(one).collect()
@@ -697,6 +721,8 @@ pub(crate) struct Tape {
     program: Arc<StepProgram>,
     room: Room,
     inputs: Vec<Line>,
+    /// What is known of the channels, where lanes are output times.
+    uniforms: Vec<f64>,
     outputs: Vec<Line>,
     /// Groups of steps that were tried, those that were refused, and those that took more than one run.
     tried: usize,
@@ -720,9 +746,11 @@ impl Tape {
         let inputs = program.inputs.of_design + program.design.sizes()[0];
         let inputs = vec![Line::default(); usize::max(inputs, program.step.inputs)];
         let outputs = vec![Line::default(); program.outputs.states];
+        let uniforms = if program.purpose.times { CONDITIONS * program.channels.len() } else { 0 };
         Self {
             room: Room::default(),
             inputs,
+            uniforms: vec![0.0; uniforms],
             outputs,
             program,
             tried: 0,
@@ -742,7 +770,7 @@ impl Tape {
         }
         let (given, found) = self.inputs.split_at_mut(inputs.of_design);
         let (given, found) = (&lanes_of(given)[..design.inputs], &mut lanes_of(found)[..design.sizes()[0]]);
-        Room::default().run(design, given, [found, &mut [], &mut []]);
+        Room::default().run(design, given, &[], [found, &mut [], &mut []]);
     }
 
     /// Whether it is refused so often that the kernel alone is faster.
@@ -795,14 +823,23 @@ impl Tape {
         // Runs after the first went by others.
         if are_new || self.runs != 1 {
             inputs[..CONDITIONS].copy_from_slice(weights);
+            if self.program.purpose.times {
+                inputs[CONDITIONS..self.program.inputs.drivers].fill([0.0; LANES]);
+            }
         }
         inputs[at] = *ahead;
     }
 
-    /// What is known of a channel, ordered like the weights.
+    /// What is known of a channel at one output time, design by design, ordered like the weights.
     #[inline(always)]
     pub fn known_mut(&mut self, channel: usize) -> &mut [Lanes] {
         &mut lanes_of(&mut self.inputs)[CONDITIONS * (1 + channel)..][..CONDITIONS]
+    }
+
+    /// What is known of every channel of one design, each ordered like the weights.
+    #[inline(always)]
+    pub fn known_of_times_mut(&mut self) -> &mut [[f64; CONDITIONS]] {
+        self.uniforms.as_chunks_mut().0
     }
 
     /// Value, speed and acceleration of every driver.
@@ -831,7 +868,8 @@ impl Tape {
         self.runs = 0;
         loop {
             let outputs = [lanes_of(&mut self.outputs), &mut *states, &mut *derivatives];
-            self.room.run(&self.program.step, bytemuck::cast_slice(&self.inputs), outputs);
+            let inputs = bytemuck::cast_slice(&self.inputs);
+            self.room.run(&self.program.step, inputs, &self.uniforms, outputs);
             self.runs += 1;
             // All comparisons are written so that NaN is refused.
             if !all_within(self.judged(Judged::First), trust) {
@@ -865,12 +903,13 @@ impl Tape {
     /// Foresees the positions that were just found.
     #[cold]
     fn go_on_from_here(&mut self) {
-        let (inputs, n) = (lanes_of(&mut self.inputs), self.program.channels.len());
+        let (inputs, known) = (lanes_of(&mut self.inputs), self.program.inputs.known);
         inputs[..CONDITIONS].fill([0.0; LANES]);
-        inputs[0] = [1.0; LANES];
-        for (known, found) in
-            inputs[CONDITIONS..].chunks_mut(CONDITIONS).zip(self.outputs.chunks(ORDERS)).take(n)
-        {
+        if !self.program.purpose.times {
+            inputs[0] = [1.0; LANES];
+        }
+        let channels = inputs[CONDITIONS..self.program.inputs.drivers].chunks_mut(known);
+        for (known, found) in channels.zip(self.outputs.chunks(ORDERS)) {
             known[0] = found[0].0;
         }
     }

@@ -6,15 +6,13 @@
 
 use crate::model::{DriverId, Field, GROUND, Model};
 use crate::motion::kinematics::State;
+use crate::motion::level::BINOMIAL;
 use crate::motion::stepper::{LOCKED, Stepper};
 use crate::space::{Real, Twist, Wrench};
 use crate::topology::{Source, Topology};
 
 use super::direct::{DEFECT_FLOOR, Defect, FieldParts};
 use super::sensing::{Resisting, note};
-
-/// How often the product of an m-th and an (n - m)-th derivative stands in the n-th of a product.
-const BINOMIAL: [[f64; 3]; 3] = [[1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [1.0, 2.0, 1.0]];
 
 /// A wrench with its first two time derivatives, about the world origin.
 pub(crate) type Load = [Wrench; 3];
@@ -200,11 +198,16 @@ impl Adjoint {
         self.work(topology, state, support, orders, gradient);
     }
 
-    /// What links, closures and rows transmit, to order n: `docs/theory.md` (18).
+    /// What links, closures and rows transmit, to order n: the equation of order n, transposed (`docs/theory.md` (18), (25)),
+    ///
+    /// ```text
+    /// sum_{m=0..n} C(n,m) T_k(m) . x_a(n-m) = 0                     for every unknown coordinate a of link k,
+    /// T_c(n) = - sum_r sum_{m=0..n} C(n,m) mu_r(m) l_r(n-m)         for every closure.
+    /// ```
     fn transmit(&mut self, topology: &Topology, state: &mut State<f64>, support: &Support, n: usize) {
         let Self { load, links, closures, rows, below, .. } = self;
         let (zero, none) = (0.0, Wrench::zero());
-        let (x, l) = ([&state.x, &state.xd, &state.xdd], [&state.l, &state.ld, &state.ldd]);
+        let State { x, l, factors, rhs, .. } = state;
         let load = &mut load[n];
         for &b in &support.blocks {
             let block = &topology.blocks[b];
@@ -212,7 +215,7 @@ impl Adjoint {
             for &c in &block.closures {
                 let closure = &topology.closures[c];
                 let mut known = none;
-                for r in closure.first_row..closure.first_row + closure.rows.len() {
+                for r in closure.numbers() {
                     rows[n][r] = zero;
                     for m in (0..n).filter(|_| topology.rows[r].drives()) {
                         known = l[n - m][r].times_plus(rows[m][r] * -BINOMIAL[n][m], known);
@@ -237,18 +240,18 @@ impl Adjoint {
                 for m in 0..n {
                     works += links[m][k].on(x[n - m][a]) * BINOMIAL[n][m];
                 }
-                state.rhs[column] = works;
+                rhs[column] = works;
             }
-            state.factors[b].solve_transposed(&mut state.rhs);
+            factors[b].solve_transposed(rhs);
             for (k, &r) in block.selected.iter().enumerate() {
                 for (part, factor) in topology.parts_of_row(r) {
-                    rows[n][part] = state.rhs[k] * factor;
+                    rows[n][part] = rhs[k] * factor;
                 }
             }
             for &c in &block.closures {
                 let closure = &topology.closures[c];
                 let mut taken = none;
-                for r in closure.first_row..closure.first_row + closure.rows.len() {
+                for r in closure.numbers() {
                     if topology.rows[r].drives() {
                         taken = l[0][r].times_plus(-rows[n][r], taken);
                     }
@@ -269,8 +272,9 @@ impl Adjoint {
     /// Wrenches on the markers that variables move, seen from their bodies: there the markers' twists stand still, and time
     /// derivatives are those of the components (`docs/theory.md` (20)).
     fn see(&mut self, state: &State<f64>, support: &Support, orders: usize) {
+        let [v, a, _] = &state.motion.twists;
         for place in &support.places {
-            let (pose, v, a) = (&state.pose[place.body], state.v[place.body], state.a[place.body]);
+            let (pose, v, a) = (&state.pose[place.body], v[place.body], a[place.body]);
             let of = |n: usize| match place.joint {
                 Carrier::Link(k) => self.links[n][k],
                 Carrier::Closure(c) => self.closures[n][c],
@@ -311,7 +315,7 @@ impl Adjoint {
                 gradient[v][n] += self.rows[n][row] * rate;
             }
         }
-        let (zero, x) = (0.0, [&state.x, &state.xd, &state.xdd]);
+        let (zero, x) = (0.0, &state.x);
         for &(v, driver, follower) in &support.laws {
             let part = |n: usize| match follower {
                 Follower::Row(r) => self.rows[n][r],
@@ -400,7 +404,7 @@ impl Watch {
                 let support =
                     self.supports[body.0].get_or_insert_with(|| adjoint.support(topology, &[body.0]));
                 self.side.fill([zero; 3]);
-                let load = [(body.0, [state.l[k], none, none])];
+                let load = [(body.0, [state.l[0][k], none, none])];
                 adjoint.add_work(topology, state, support, &load, 1, &mut self.side);
                 for (v, [term, ..]) in self.side.iter().enumerate() {
                     enter(&mut self.sum[v], &mut self.most[v], *term * sign);
@@ -409,7 +413,7 @@ impl Watch {
             for (v, field) in adjoint.fields.iter().enumerate() {
                 let (sum, most) = (&mut self.sum[v], &mut self.most[v]);
                 for m in field.closures.iter().filter(|m| m.at == topology.rows[k].closure) {
-                    let z = state.l[k].on(state.pose[m.body].carry(m.e));
+                    let z = state.l[0][k].on(state.pose[m.body].carry(m.e));
                     enter(sum, most, if m.end == 1 { z * factor } else { z * -factor });
                 }
                 let rate = field.kept.binary_search_by_key(&k, |l| l.0).map_or(zero, |n| field.kept[n].1);

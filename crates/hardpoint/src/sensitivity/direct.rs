@@ -2,10 +2,11 @@
 
 use crate::law::Law;
 use crate::model::{DriverId, Field, Model};
-use crate::motion::kinematics::{State, carry, level, sum_couplers};
+use crate::motion::kinematics::State;
+use crate::motion::level::{Flow, carried};
 use crate::motion::stepper::LOCKED;
 use crate::space::{Real, Twist};
-use crate::topology::{Source, Step, Topology};
+use crate::topology::{Source, Topology};
 
 /// Design velocities of one variable laid out for the plan: body-fixed marker twists by link and
 /// by closure.
@@ -96,13 +97,14 @@ pub(super) struct Moving<T> {
 }
 
 impl<T: Real> Moving<T> {
-    /// z = Ad(X) e, z. = ad(V) z, z.. = ad(A) z + ad(V) z. (`docs/theory.md` (8)).
+    /// `z = Ad(X) e`, carried by its body: `z. = ad(V) z, z.. = ad(A) z + ad(V) z.` (`docs/theory.md` (8)).
     #[inline(always)]
     fn carried(&self, state: &State<T>) -> [Twist<T>; 3] {
-        let (v, a) = (&state.v[self.body], &state.a[self.body]);
+        let [v, a, _] = &state.motion.twists;
+        let (v, a) = (v[self.body], a[self.body]);
         let z0 = state.pose[self.body].carry(self.e);
-        let z1 = v.ad(z0);
-        [z0, z1, a.ad(z0) + v.ad(z1)]
+        let z1 = carried([z0], [v]);
+        [z0, z1, carried([z0, z1], [v, a])]
     }
 }
 
@@ -202,20 +204,12 @@ impl<T: Real> FieldParts<T> {
     }
 }
 
-/// Scratch of the sensitivity levels; nothing is allocated per step.
+/// What the motion does with the design variables, one at a time; nothing is allocated per step.
 pub(crate) struct Direct<T> {
-    /// Per order (0, 1, 2): speeds of the coordinates, S.
-    pub(super) s: [Vec<T>; 3],
-    /// Per order: design twists of the bodies, W.
-    pub w: [Vec<Twist<T>>; 3],
-    /// Per order: `W_Mj - W_Mi` of the closures' markers.
-    apart: [Vec<Twist<T>>; 3],
+    /// Of orders 0, 1, 2: design twists W of the bodies and speeds S of the coordinates, and their time derivatives.
+    pub flow: Flow<T>,
     /// Per marker that the field moves at a closure, per order: how.
     z: Vec<[Twist<T>; 3]>,
-    bias: [Vec<Twist<T>>; 3],
-    row_rhs: Vec<T>,
-    /// Whether some variable has changed a law, so that the driven coordinates' speeds are no longer all zero.
-    laws_change: bool,
     /// The bodies that the variable before moved.
     moved: Vec<usize>,
 }
@@ -246,163 +240,79 @@ pub(super) const DEFECT_FLOOR: f64 = 1e-9;
 
 impl<T: Real> Direct<T> {
     pub fn new(model: &Model, topology: &Topology) -> Self {
-        let none = Twist::zero();
-        let three = |n: usize| std::array::from_fn(|_| vec![none; n]);
         Self {
-            s: std::array::from_fn(|_| vec![T::zero(); topology.coordinates.len()]),
-            w: three(model.bodies.len()),
-            apart: three(topology.closures.len()),
+            flow: Flow::new(topology, model.bodies.len(), false).with_moves(),
             z: Vec::with_capacity(2 * topology.closures.len()),
-            bias: three(topology.links.len()),
-            row_rhs: vec![T::zero(); topology.rows.len()],
-            laws_change: false,
             moved: Vec::with_capacity(model.bodies.len()),
         }
     }
 
     /// W, W. and W.. of all bodies for one variable, where `state` stands with all of its rates.
     pub fn solve(&mut self, topology: &Topology, state: &mut State<T>, field: &FieldParts<T>) {
-        self.solve_orders(topology, state, field, 3);
+        self.set_field(topology, state, field);
+        self.solve_order::<0>(topology, state, field);
+        self.solve_order::<1>(topology, state, field);
+        self.solve_order::<2>(topology, state, field);
     }
 
     /// W alone, where `state` need not know its rates.
     pub fn solve_position(&mut self, topology: &Topology, state: &mut State<T>, field: &FieldParts<T>) {
-        self.solve_orders(topology, state, field, 1);
-    }
-
-    #[inline(always)]
-    fn solve_orders(
-        &mut self,
-        topology: &Topology,
-        state: &mut State<T>,
-        field: &FieldParts<T>,
-        orders: usize,
-    ) {
-        if self.moved != field.reach.bodies {
-            for w in &mut self.w {
-                self.moved.iter().for_each(|&b| w[b] = Twist::zero());
-            }
-            self.moved.clear();
-            self.moved.extend_from_slice(&field.reach.bodies);
-        }
-        self.laws_change |= !field.law_rates.is_empty();
         self.set_field(topology, state, field);
-        for order in 0..orders {
-            self.solve_order(topology, state, field, order);
-        }
+        self.solve_order::<0>(topology, state, field);
     }
 
-    /// The design twists of every marker of the field.
+    /// The design twists of every marker of the field; all that it does not reach stands.
     #[inline(always)]
     fn set_field(&mut self, topology: &Topology, state: &State<T>, field: &FieldParts<T>) {
-        let none = Twist::zero();
+        let (none, Self { flow, z, moved }) = (Twist::zero(), self);
+        if *moved != field.reach.bodies {
+            for twists in &mut flow.twists {
+                moved.iter().for_each(|&b| twists[b] = none);
+            }
+            moved.clear();
+            moved.extend_from_slice(&field.reach.bodies);
+        }
+        flow.drives |= !field.law_rates.is_empty();
         let in_blocks = field.reach.blocks.iter().flat_map(|&b| topology.blocks[b].links.clone());
         for k in field.reach.driven_links.iter().copied().chain(in_blocks) {
-            for order in 0..3 {
-                self.bias[order][k] = none;
-            }
+            flow.moves.iter_mut().for_each(|moves| moves[k] = none);
         }
         for m in &field.links {
-            let z = m.carried(state);
-            for order in 0..3 {
-                self.bias[order][m.at] += if m.end == 0 { z[order] } else { -z[order] };
+            for (n, z) in m.carried(state).into_iter().enumerate() {
+                flow.move_link(n, (m.at, m.end), z);
             }
         }
-        self.z.clear();
-        for m in &field.closures {
-            self.z.push(m.carried(state));
-        }
+        z.clear();
+        z.extend(field.closures.iter().map(|m| m.carried(state)));
     }
 
-    /// `docs/theory.md` (11), (12) or (13).
+    /// (24) of `docs/theory.md` with U = W, u = S, z the design twists of the markers, and f = L': (11), (12) or (13).
     #[inline(always)]
-    fn solve_order(
+    fn solve_order<const N: usize>(
         &mut self,
         topology: &Topology,
         state: &mut State<T>,
         field: &FieldParts<T>,
-        order: usize,
     ) {
-        let (two, reach) = (T::constant(2.0), &field.reach);
-        if order > 0 {
-            let laws_change = self.laws_change;
-            let counts = |step: &&Step| !step.is_driven || laws_change;
-            let in_blocks = reach.blocks.iter().flat_map(|&b| topology.blocks[b].links.clone());
-            for k in reach.driven_links.iter().copied().chain(in_blocks) {
-                let link = &topology.links[k];
-                if link.keeps_its_twist() {
-                    continue;
-                }
-                let mut bias = self.bias[order][k];
-                for step in link.steps.iter().filter(counts) {
-                    for c in step.first..step.first + step.freedom.coordinates() {
-                        if order == 1 {
-                            bias = state.xd[c].times_plus(self.s[0][c], bias);
-                        } else {
-                            bias = state.xd[c].times_plus(self.s[1][c] * two, bias);
-                            bias = state.xdd[c].times_plus(self.s[0][c], bias);
-                        }
-                    }
-                }
-                self.bias[order][k] = bias;
-            }
+        let (reach, Self { flow, z, .. }) = (&field.reach, self);
+        reach.closures.iter().for_each(|&c| flow.ask(topology, c, T::zero()));
+        for (m, z) in field.closures.iter().zip(&*z) {
+            flow.move_end(topology, (m.at, m.end), z[N], &state.l[0]);
         }
-        for &c in &reach.closures {
-            let closure = &topology.closures[c];
-            for r in closure.first_row..closure.first_row + closure.rows.len() {
-                if topology.rows[r].drives() {
-                    self.row_rhs[r] = match order {
-                        0 => T::zero(),
-                        1 => -state.ld[r].on(self.apart[0][c]),
-                        _ => -(state.ldd[r].on(self.apart[0][c]) + state.ld[r].on(self.apart[1][c]) * two),
-                    };
-                }
-            }
+        for &(row, rate) in field.kept.iter().filter(|_| N == 0) {
+            flow.demand[row] += rate;
         }
-        for (m, z) in field.closures.iter().zip(&self.z) {
-            let closure = &topology.closures[m.at];
-            let dz = if m.end == 1 { -z[order] } else { z[order] };
-            for r in closure.first_row..closure.first_row + closure.rows.len() {
-                if topology.rows[r].drives() {
-                    self.row_rhs[r] += state.l[r].on(dz);
-                }
-            }
+        if flow.drives {
+            follow_laws(topology, field, N, flow);
         }
-        if order == 0 {
-            for &(row, rate) in &field.kept {
-                self.row_rhs[row] += rate;
-            }
-        }
-        reach.blocks.iter().for_each(|&b| sum_couplers(topology, b, &mut self.row_rhs));
-        if self.laws_change {
-            self.follow_laws(topology, field, order);
-        }
-        let (x, bias, driven) = (&state.x, Some(&self.bias[order][..]), reach.driven_links.iter().copied());
-        let (s, w) = (&mut self.s[order], &mut self.w[order]);
-        carry(topology, driven, x, bias, s, w, |_| true);
+        flow.follow::<N>(topology, reach.driven_links.iter().copied(), &state.x);
         for &b in &reach.blocks {
-            level(topology, b, &mut state.factors, x, &state.l, bias, &self.row_rhs, s, w, &mut state.rhs);
+            flow.solve::<N>(topology, b, state.linear());
         }
-        let w = &self.w[order];
-        for &c in &reach.closures {
-            let [i, j] = topology.closures[c].bodies;
-            self.apart[order][c] = w[j.0] - w[i.0];
-        }
-        for (m, z) in field.closures.iter().zip(&self.z) {
-            self.apart[order][m.at] += if m.end == 1 { z[order] } else { -z[order] };
-        }
-    }
-
-    /// Driven coordinates, in the tree and across cuts, follow the change of their laws.
-    fn follow_laws(&mut self, topology: &Topology, field: &FieldParts<T>, order: usize) {
-        for (c, coordinate) in topology.coordinates.iter().enumerate() {
-            if let Source::Driven(d) = coordinate.source {
-                self.s[order][c] = field.law_rate(d, order);
-            }
-        }
-        for closure in &topology.closures {
-            if let Some(d) = closure.driver {
-                self.row_rhs[closure.first_row] += field.law_rate(d, order);
+        if let Some(apart) = flow.apart.get_mut(N) {
+            let in_blocks = |m: &Moving<T>| topology.closures[m.at].block.is_some();
+            for (m, z) in field.closures.iter().zip(z).filter(|(m, _)| in_blocks(m)) {
+                apart[m.at] += if m.end == 1 { z[N] } else { -z[N] };
             }
         }
     }
@@ -417,7 +327,7 @@ impl<T: Real> Direct<T> {
         let mut worst = None;
         for &c in &field.reach.closures {
             let closure = &topology.closures[c];
-            for r in closure.first_row..closure.first_row + closure.rows.len() {
+            for r in closure.numbers() {
                 if !topology.rows[r].selected && !topology.rows[r].is_term {
                     let (sum, limit) = self.judged_defect(topology, state, field, r);
                     Defect::enter(&mut worst, r, sum, limit);
@@ -438,7 +348,7 @@ impl<T: Real> Direct<T> {
     ) {
         for &c in &field.reach.closures {
             let closure = &topology.closures[c];
-            for r in closure.first_row..closure.first_row + closure.rows.len() {
+            for r in closure.numbers() {
                 if !topology.rows[r].selected && !topology.rows[r].is_term {
                     let (defect, limit) = self.judged_defect(topology, state, field, r);
                     out(r, defect, limit);
@@ -457,7 +367,7 @@ impl<T: Real> Direct<T> {
     ) {
         for &c in &field.reach.closures {
             let closure = &topology.closures[c];
-            for r in closure.first_row..closure.first_row + closure.rows.len() {
+            for r in closure.numbers() {
                 if !topology.rows[r].selected && !topology.rows[r].is_term {
                     out(r, self.row_defect(topology, state, field, r).0);
                 }
@@ -473,7 +383,7 @@ impl<T: Real> Direct<T> {
         for (k, factor) in topology.parts_of_row(r) {
             let closure = topology.rows[k].closure;
             let [i, j] = topology.closures[closure].bodies;
-            let (l, w, factor) = (state.l[k], &self.w[0], T::constant(factor));
+            let (l, w, factor) = (state.l[0][k], &self.flow.twists[0], T::constant(factor));
             let mut add = |term: T| {
                 sum += term * factor;
                 most = most.larger((term * factor).abs());
@@ -503,5 +413,19 @@ impl<T: Real> Direct<T> {
         // What typed coordinates may be off by in the motion, they may be off by in the design's terms.
         let limit = most * T::constant(LOCKED);
         (sum.abs(), limit.larger(field.scale * T::constant(DEFECT_FLOOR)))
+    }
+}
+
+/// Driven coordinates, in the tree and across cuts, follow the change of their laws.
+fn follow_laws<T: Real>(topology: &Topology, field: &FieldParts<T>, order: usize, flow: &mut Flow<T>) {
+    for (c, coordinate) in topology.coordinates.iter().enumerate() {
+        if let Source::Driven(d) = coordinate.source {
+            flow.speeds[order][c] = field.law_rate(d, order);
+        }
+    }
+    for closure in &topology.closures {
+        if let Some(d) = closure.driver {
+            flow.demand[closure.first_row] += field.law_rate(d, order);
+        }
     }
 }

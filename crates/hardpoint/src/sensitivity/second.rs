@@ -1,15 +1,16 @@
 //! Second design derivatives of positions: one more solution with the factors at hand for every pair of directions.
 //!
 //! The first-order condition of every row, `l . D_u = L_u`, holds in the design that a second direction w leads to as well;
-//! differentiated along w it is a level like all others (`docs/theory.md` (15)).
+//! differentiated along w it is the equation of order 1, w in the place of the time (`docs/theory.md` (15), (24)).
 
 use crate::constraint::EndRates;
 use crate::law::Law;
 use crate::model::{DriverId, Effects, Field, Model};
-use crate::motion::kinematics::{State, carry, level, sum_couplers};
+use crate::motion::kinematics::State;
+use crate::motion::level::turn_twists;
 use crate::motion::stepper::Stepper;
 use crate::number::{Dual, Real};
-use crate::space::{Mat3, Pose, Twist, Vec3};
+use crate::space::{Mat3, Pose, Twist, Vec3, Wrench};
 use crate::topology::{Source, Topology};
 
 use super::direct::{Direct, FieldParts, Moving};
@@ -52,51 +53,52 @@ pub struct BodyCurvature {
 }
 
 /// What one direction does at one position, to first order.
-#[derive(Clone, Debug)]
 struct First {
     field: FieldParts<f64>,
-    /// Design twists of the bodies.
-    w: Vec<Twist>,
-    /// Speeds of the coordinates.
-    s: Vec<f64>,
-    /// Per link, the design twists of its markers, the parent's first; per closure, those of markers i and j.
-    links: Vec<[Twist; 2]>,
+    /// Order 0 is the direction; order 1 is how a pair changes that.
+    direct: Direct<f64>,
+    /// Per link, the design twist of its parent's marker; per closure, those of markers i and j.
+    links: Vec<Twist>,
     closures: Vec<[Twist; 2]>,
 }
 
 impl First {
     fn new(model: &Model, topology: &Topology, field: FieldParts<f64>) -> Self {
-        let none = Twist::zero();
+        let mut direct = Direct::new(model, topology);
+        direct.flow.ground_stands = false;
         Self {
             field,
-            w: vec![none; model.bodies.len()],
-            s: vec![0.0; topology.coordinates.len()],
-            links: vec![[none; 2]; topology.links.len()],
-            closures: vec![[none; 2]; topology.closures.len()],
+            direct,
+            links: vec![Twist::ZERO; topology.links.len()],
+            closures: vec![[Twist::ZERO; 2]; topology.closures.len()],
         }
     }
 
-    /// Takes over what was just solved. What the direction does not reach stays zero.
-    fn keep(&mut self, direct: &Direct<f64>, topology: &Topology, state: &State<f64>) {
-        let reach = &self.field.reach;
-        reach.bodies.iter().for_each(|&b| self.w[b] = direct.w[0][b]);
-        let links = reach.blocks.iter().flat_map(|&b| topology.blocks[b].links.clone());
-        for c in links.chain(reach.driven_links.iter().copied()).flat_map(|k| topology.links[k].coordinates())
-        {
-            self.s[c] = direct.s[0][c];
-        }
-        for m in &self.field.links {
-            self.links[m.at][m.end] = state.pose[m.body].carry(m.e);
+    /// Where a state stands. What the direction does not reach stays zero.
+    fn solve(&mut self, topology: &Topology, state: &mut State<f64>) {
+        self.direct.solve_position(topology, state, &self.field);
+        for m in self.field.links.iter().filter(|m| m.end == 0) {
+            self.links[m.at] = state.pose[m.body].carry(m.e);
         }
         for m in &self.field.closures {
             self.closures[m.at][m.end] = state.pose[m.body].carry(m.e);
         }
     }
 
-    /// The design twists of the markers of a closure.
-    fn ends(&self, topology: &Topology, c: usize) -> [Twist; 2] {
-        let ([i, j], [z_i, z_j]) = (topology.closures[c].bodies, self.closures[c]);
-        [self.w[i.0] + z_i, self.w[j.0] + z_j]
+    /// The design twists of the bodies.
+    fn w(&self) -> &[Twist] {
+        &self.direct.flow.twists[0]
+    }
+
+    /// The twist of the frame that the freedoms of link k start from.
+    fn start(&self, topology: &Topology, k: usize) -> Twist {
+        self.w()[topology.links[k].parent.0] + self.links[k]
+    }
+
+    /// How the markers of a closure go.
+    fn ends(&self, topology: &Topology, c: usize) -> EndRates<f64> {
+        let ([i, j], [z_i, z_j], none) = (topology.closures[c].bodies, self.closures[c], Twist::ZERO);
+        EndRates { v_i: self.w()[i.0] + z_i, v_j: self.w()[j.0] + z_j, a_i: none, a_j: none }
     }
 }
 
@@ -108,6 +110,8 @@ struct Pair {
     /// Per marker that the field moves at a link, then at a closure: its body-fixed twist, and the derivative of that.
     links: Vec<[Twist; 2]>,
     closures: Vec<[Twist; 2]>,
+    /// How these markers' design twists along the first direction change along the second, links first.
+    z: Vec<Twist>,
     /// By driver whose law changes along the first direction: its laws a little along the second, and back.
     laws: Vec<(DriverId, [Law; 2])>,
     /// What that makes of the driver's value, at the times set last.
@@ -124,10 +128,9 @@ const LAW_STEP: f64 = 1e-4;
 pub(crate) struct Seconds {
     firsts: Vec<First>,
     pairs: Vec<Pair>,
-    direct: Direct<f64>,
-    s: Vec<f64>,
-    bias: Vec<Twist>,
-    row_rhs: Vec<f64>,
+    /// Per coordinate and row: the derivatives of unit twists and wrenches along a direction.
+    x: Vec<Twist>,
+    l: Vec<Wrench>,
 }
 
 impl Seconds {
@@ -164,6 +167,7 @@ impl Seconds {
                 of: [u, w],
                 links: twists(&field.links),
                 closures: twists(&field.closures),
+                z: Vec::with_capacity(field.links.len() + field.closures.len()),
                 laws: drivers.iter().map(of_driver).collect(),
                 law_rates: drivers.iter().map(|d| (*d, 0.0)).collect(),
                 field,
@@ -173,10 +177,8 @@ impl Seconds {
         Self {
             firsts: firsts.collect(),
             pairs: pairs.iter().map(pair).collect(),
-            direct: Direct::new(model, topology),
-            s: vec![0.0; topology.coordinates.len()],
-            bias: vec![Twist::zero(); topology.links.len()],
-            row_rhs: vec![0.0; topology.rows.len()],
+            x: vec![Twist::ZERO; topology.coordinates.len()],
+            l: vec![Wrench::zero(); topology.rows.len()],
         }
     }
 
@@ -185,15 +187,17 @@ impl Seconds {
         let (topology, state, parts) = (&stepper.topology, &mut stepper.state, &stepper.parts);
         for first in &mut self.firsts {
             first.field.set_time(|d| parts.law_of(d.0), t);
-            self.direct.solve_position(topology, state, &first.field);
-            first.keep(&self.direct, topology, state);
+            first.solve(topology, state);
         }
+        // Derivatives along a direction, in the place of those along the time.
+        std::mem::swap(&mut self.x, &mut state.x[1]);
+        std::mem::swap(&mut self.l, &mut state.l[1]);
         for pair in &mut self.pairs {
             pair.set_time(t);
-            let [u, w] = pair.of.map(|k| &self.firsts[k]);
-            let scratch = (&mut self.s, &mut self.bias, &mut self.row_rhs);
-            solve_pair(topology, state, pair, u, w, scratch);
+            pair.solve(topology, state, &mut self.firsts);
         }
+        std::mem::swap(&mut self.x, &mut state.x[1]);
+        std::mem::swap(&mut self.l, &mut state.l[1]);
     }
 
     /// How many pairs there are.
@@ -205,20 +209,20 @@ impl Seconds {
     /// the first, `d.d` along both.
     pub fn pose(&self, state: &State<f64>, p: usize, body: usize) -> Pose<Dual<Dual>> {
         let pair = &self.pairs[p];
-        let [u, w] = pair.of.map(|k| self.firsts[k].w[body]);
+        let [u, w] = pair.of.map(|k| self.firsts[k].w()[body]);
         with_twists(state.pose[body], u, w, pair.w[body])
     }
 
     /// The same for one direction alone: `d.v` along it, and nothing along a second.
     pub fn pose_along(&self, state: &State<f64>, direction: usize, body: usize) -> Pose<Dual<Dual>> {
-        let u = self.firsts[direction].w[body];
+        let u = self.firsts[direction].w()[body];
         with_twists(state.pose[body], u, Twist::ZERO, Twist::ZERO)
     }
 
     /// Second derivatives of a body's position by pair p.
     pub fn curvature(&self, state: &State<f64>, p: usize, body: usize) -> BodyCurvature {
         let pair = &self.pairs[p];
-        let [u, w] = pair.of.map(|k| self.firsts[k].w[body]);
+        let [u, w] = pair.of.map(|k| self.firsts[k].w()[body]);
         let (r, uw) = (state.pose[body].r, pair.w[body]);
         BodyCurvature { d2r: uw.at(r) + u.w.cross(w.at(r)), ddpi: uw.w }
     }
@@ -256,82 +260,64 @@ impl Pair {
         }
     }
 
-    fn law_rate(&self, driver: DriverId, zero: f64) -> f64 {
-        self.law_rates.iter().find(|(d, _)| *d == driver).map_or(zero, |(_, rate)| *rate)
+    fn law_rate(&self, driver: DriverId) -> f64 {
+        self.law_rates.iter().find(|(d, _)| *d == driver).map_or(0.0, |(_, rate)| *rate)
     }
-}
 
-/// `docs/theory.md` (15).
-fn solve_pair(
-    topology: &Topology,
-    state: &mut State<f64>,
-    pair: &mut Pair,
-    u: &First,
-    w: &First,
-    (s, bias, row_rhs): (&mut Vec<f64>, &mut Vec<Twist>, &mut Vec<f64>),
-) {
-    let (none, zero) = (Twist::zero(), 0.0);
-    // A marker's design twist along u, carried along w by its body, and changed by the design itself.
-    let carried = |state: &State<f64>, body: usize, [e, de]: [Twist; 2]| {
-        let pose = state.pose[body];
-        w.w[body].ad(pose.carry(e)) + pose.carry(de)
-    };
-    let reach = &pair.field.reach;
-    let in_blocks = reach.blocks.iter().flat_map(|&b| topology.blocks[b].links.clone());
-    for k in reach.driven_links.iter().copied().chain(in_blocks) {
-        let link = &topology.links[k];
-        let mut sum = none;
-        let mut carrier = w.w[link.parent.0] + w.links[k][0];
-        for step in &link.steps {
-            let coordinates = step.first..step.first + step.freedom.coordinates();
-            for c in coordinates.clone() {
-                sum = carrier.ad(state.x[c]).times_plus(u.s[c], sum);
+    /// (24) of `docs/theory.md` with n = 1, but differentiated along w: what u does is known, and changes by `W_uw` and `S_uw` (15).
+    fn solve(&mut self, topology: &Topology, state: &mut State<f64>, firsts: &mut [First]) {
+        let ([u, w], reach) = (self.of, &self.field.reach);
+        let first = &firsts[w];
+        let in_blocks = reach.blocks.iter().flat_map(|&b| topology.blocks[b].links.clone());
+        let links = reach.driven_links.iter().copied().chain(in_blocks);
+        // x^w = ad(W_w + z_w + sum over the freedoms before) x, and l^w for markers that move with D_w
+        for k in links.clone() {
+            let v = [first.start(topology, k)];
+            turn_twists(&topology.links[k], v, &mut state.x, &first.direct.flow.speeds);
+        }
+        for &c in &reach.closures {
+            let (closure, mut rates) = (&topology.closures[c], first.ends(topology, c));
+            if let Some(k) = closure.contact {
+                rates = state.walk(c, k, &rates);
             }
-            for c in coordinates {
-                carrier = state.x[c].times_plus(w.s[c], carrier);
+            for (n, row) in closure.rows.iter().enumerate() {
+                [state.l[1][closure.first_row + n], _] = row.wrench_rates(&state.ends[c], &rates);
+            }
+        }
+        // z_u^w = ad(W_w) z_u + Ad(X) de_u/dw
+        let carried = |body: usize, [e, de]: [Twist; 2]| {
+            let pose = state.pose[body];
+            first.w()[body].ad(pose.carry(e)) + pose.carry(de)
+        };
+        self.z.clear();
+        self.z.extend(self.field.links.iter().zip(&self.links).map(|(m, e)| carried(m.body, *e)));
+        self.z.extend(self.field.closures.iter().zip(&self.closures).map(|(m, e)| carried(m.body, *e)));
+        let (z_links, z_closures) = self.z.split_at(self.links.len());
+        let flow = &mut firsts[u].direct.flow;
+        for k in links {
+            flow.moves[1][k] = Twist::ZERO;
+            for c in topology.links[k].coordinates() {
                 if let Source::Driven(d) = topology.coordinates[c].source {
-                    s[c] = pair.law_rate(d, zero);
+                    flow.speeds[1][c] = self.law_rate(d);
                 }
             }
         }
-        bias[k] = sum;
-    }
-    for (m, e) in pair.field.links.iter().zip(&pair.links) {
-        let z = carried(state, m.body, *e);
-        bias[m.at] += if m.end == 0 { z } else { -z };
-    }
-    for &c in &reach.closures {
-        let closure = &topology.closures[c];
-        let ([u_i, u_j], [w_i, w_j]) = (u.ends(topology, c), w.ends(topology, c));
-        let mut rates = EndRates { v_i: w_i, v_j: w_j, a_i: none, a_j: none };
-        if let Some(k) = closure.contact {
-            rates = state.walk(c, k, &rates);
+        for (m, &z) in self.field.links.iter().zip(z_links) {
+            flow.move_link(1, (m.at, m.end), z);
         }
-        let driven = closure.driver.map_or(zero, |d| pair.law_rate(d, zero));
-        for (n, row) in closure.rows.iter().enumerate() {
-            let r = closure.first_row + n;
-            if topology.rows[r].drives() {
-                let [l_w, _] = row.wrench_rates(&state.ends[c], &rates);
-                row_rhs[r] = driven - l_w.on(u_j - u_i);
-            }
+        for &c in &reach.closures {
+            flow.ask(topology, c, topology.closures[c].driver.map_or(0.0, |d| self.law_rate(d)));
         }
-    }
-    for (m, e) in pair.field.closures.iter().zip(&pair.closures) {
-        let z = carried(state, m.body, *e);
-        let closure = &topology.closures[m.at];
-        for r in closure.first_row..closure.first_row + closure.rows.len() {
-            if topology.rows[r].drives() {
-                row_rhs[r] += state.l[r].on(if m.end == 1 { -z } else { z });
-            }
+        for (m, &z) in self.field.closures.iter().zip(z_closures) {
+            flow.move_end(topology, (m.at, m.end), z, &state.l[0]);
         }
-    }
-    for &(row, rate) in &pair.field.kept {
-        row_rhs[row] += rate.d;
-    }
-    reach.blocks.iter().for_each(|&b| sum_couplers(topology, b, row_rhs));
-    let (x, out, bias) = (&state.x, &mut pair.w, Some(&bias[..]));
-    carry(topology, reach.driven_links.iter().copied(), x, bias, s, out, |_| true);
-    for &b in &reach.blocks {
-        level(topology, b, &mut state.factors, x, &state.l, bias, row_rhs, s, out, &mut state.rhs);
+        for &(row, rate) in &self.field.kept {
+            flow.demand[row] += rate.d;
+        }
+        flow.follow::<1>(topology, reach.driven_links.iter().copied(), &state.x);
+        for &b in &reach.blocks {
+            flow.solve::<1>(topology, b, state.linear());
+        }
+        reach.bodies.iter().for_each(|&b| self.w[b] = flow.twists[1][b]);
     }
 }

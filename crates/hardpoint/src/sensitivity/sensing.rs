@@ -4,10 +4,11 @@ use hardpoint_tape::{Lanes, Number};
 
 use crate::model::{BodyId, DriverId, Field, Model, VariableId};
 use crate::motion::kinematics::State;
+use crate::motion::level::Flow;
 use crate::motion::stepper::Stepper;
 use crate::motion::tape::{Recorded, Tape};
 use crate::sink::Sink;
-use crate::space::{Real, Twist};
+use crate::space::Real;
 use crate::topology::Topology;
 
 use super::direct::{Defect, Direct, FieldParts};
@@ -60,7 +61,7 @@ impl Sensing {
             direct.solve(topology, state, field);
             for &body in field.reach.bodies.iter().filter(|b| wanted[**b]) {
                 let derivatives = {
-                    let numbers = components(&direct.w, state, body);
+                    let numbers = components(&direct.flow, state, body);
                     BodySensitivity::from(|n| numbers[n])
                 };
                 sink.sensitivity(k, VariableId(v), BodyId(body), &derivatives);
@@ -123,13 +124,9 @@ pub(super) fn note(resisting: &mut Resisting, topology: &Topology, defect: Defec
 /// after the other. Those of r and pi are W at r and its turning; all others are plain time derivatives of these
 /// (`docs/theory.md` (14)).
 #[inline(always)]
-fn components<T: Real>(
-    w: &[Vec<Twist<T>>; 3],
-    state: &State<T>,
-    body: usize,
-) -> [T; BodySensitivity::NUMBERS] {
-    let (w0, w1, w2) = (w[0][body], w[1][body], w[2][body]);
-    let (r, v, a) = (state.pose[body].r, state.v[body], state.a[body]);
+fn components<T: Real>(flow: &Flow<T>, state: &State<T>, body: usize) -> [T; BodySensitivity::NUMBERS] {
+    let [w0, w1, w2] = flow.twists.each_ref().map(|w| w[body]);
+    let ([v, a, _], r) = (state.motion.twists.each_ref().map(|v| v[body]), state.pose[body].r);
     let velocity = v.at(r);
     let acceleration = v.w.cross_plus(velocity, a.at(r));
     let two = T::constant(2.0);
@@ -167,7 +164,7 @@ pub(crate) fn record_derivatives(
             defects.extend([defect, limit]);
         });
         for &body in &field.reach.bodies {
-            recorded.results.extend(components(&direct.w, state, body));
+            recorded.results.extend(components(&direct.flow, state, body));
             recorded.moved.push((VariableId(v), BodyId(body)));
         }
     }

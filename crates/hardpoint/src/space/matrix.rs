@@ -32,14 +32,14 @@ pub(crate) struct Factored<T> {
     pub positive: bool,
     /// The size of the determinant; of a sparse matrix its logarithm.
     pub determinant: T,
-    /// What that goes by; zero of a sparse matrix.
+    /// What that goes by.
     pub watched: Watched<T>,
 }
 
 /// What is watched of an elimination in an order that was chosen before.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Watched<T> {
-    /// The product of the pivots.
+    /// The product of the pivots; of a sparse matrix its sign alone.
     pub product: T,
     /// The largest pivot, and the largest inverse of one.
     pub most: T,

@@ -5,6 +5,7 @@
 
 mod euler;
 mod factors;
+mod least_squares;
 mod mat3;
 mod matrix;
 mod pose;
@@ -16,6 +17,7 @@ mod vec3;
 
 pub use euler::{euler_313_from_rotation, euler_rates, rotation_from_euler_313};
 pub(crate) use factors::{Factors, LARGEST_DENSE};
+pub(crate) use least_squares::least_squares;
 pub use mat3::Mat3;
 pub(crate) use matrix::{Elimination, MOST_GROWTH, Watched};
 pub use pose::Pose;

@@ -310,7 +310,8 @@ impl<'a> Tracing<'a> {
 
 /// A body's pose, with its first two time derivatives.
 fn pose_with_rates(state: &State<f64>, b: usize) -> Pose<Rates> {
-    let (pose, v, a) = (state.pose[b], state.v[b], state.a[b]);
+    let [v, a, _] = &state.motion.twists;
+    let (pose, v, a) = (state.pose[b], v[b], a[b]);
     let rates = |x: Vec3, first: Vec3, second: Vec3| {
         let component = |k: usize| Jet([x[k], first[k], second[k]]);
         Vec3::new(component(0), component(1), component(2))

@@ -1,7 +1,6 @@
 //! Jerk over a motion.
 
 use crate::analysis::{Analysis, Design, Walk};
-use crate::motion::jerk::Jerk;
 use crate::motion::{BodyJerk, Stop};
 
 /// Third time derivatives of all bodies over a motion.
@@ -42,7 +41,6 @@ impl Analysis<'_> {
 
     fn jerks_in(&self, design: &Design, rows: usize, each: &mut dyn FnMut(&Jerks)) -> Jerks {
         let model = self.model();
-        let mut jerk = Jerk::new(model, self.topology());
         let mut walk = Walk::new(self, design, vec![false; model.bodies.len()]);
         let mut result = Jerks { bodies: model.bodies.len(), ..Jerks::default() };
         let mut times = model.times.iter();
@@ -53,9 +51,8 @@ impl Analysis<'_> {
                 result.states.clear();
             }
             let Some(&t) = times.next() else { return };
-            jerk.solve(one, t);
             result.times.push(t);
-            result.states.extend((0..result.bodies).map(|b| jerk.of_body(one, b)));
+            result.states.extend(BodyJerk::all(one, t));
         });
         result
     }

@@ -1,12 +1,9 @@
 //! The nearest admissible change: what was asked for, with as much more as keeps the joints closed.
 
-use faer::Mat;
-use faer::linalg::solvers::Solve;
-
 use crate::analysis::{Analysis, Walk};
 use crate::model::{Change, End, Model, VariableId};
 use crate::sensitivity::{Direct, FieldParts, conditions_at_design};
-use crate::space::{FullPivot, Vec3};
+use crate::space::{FullPivot, Vec3, least_squares};
 
 use super::difference::natural_step;
 
@@ -52,14 +49,12 @@ pub fn nearest_admissible(analysis: &Analysis<'_>, change: &[f64]) -> Nearest {
     let a: Vec<&Vec<f64>> = independent.iter().map(|&r| &rows[r]).collect();
     let mut found = asked.clone();
     if !a.is_empty() {
-        // d = x - W A^T (A W A^T)^-1 A x
-        let product =
-            |i: usize, j: usize| (0..weight.len()).map(|v| a[i][v] * weight[v] * a[j][v]).sum::<f64>();
-        let system = Mat::from_fn(a.len(), a.len(), product);
-        let right = Mat::from_fn(a.len(), 1, |i, _| dot(a[i], &asked));
-        let multipliers = system.full_piv_lu().solve(&right);
-        for (v, x) in found.iter_mut().enumerate() {
-            *x -= weight[v] * (0..a.len()).map(|i| a[i][v] * multipliers[(i, 0)]).sum::<f64>();
+        // d = x - B (A B)^+ A x    with W = B B: the least change, measured by W, that the conditions leave
+        let b: Vec<f64> = weight.iter().map(|w| w.sqrt()).collect();
+        let right = a.iter().map(|row| dot(row, &asked)).collect();
+        let least = least_squares([a.len(), b.len()], |i, v| a[i][v] * b[v], &[right]).remove(0);
+        for ((x, b), y) in found.iter_mut().zip(&b).zip(least) {
+            *x -= b * y;
         }
         if !found.iter().all(|x| x.is_finite()) {
             found.clone_from(&asked);

@@ -109,7 +109,7 @@ fn independent_groups(
     let placed_by = last_unknown_links(topology, unknown);
     let mut bases: Vec<Vec<usize>> = Vec::new();
     for closure in topology.closures.iter().filter(|c| !topology.rows[c.first_row].is_term) {
-        let range = closure.first_row..closure.first_row + closure.rows.len();
+        let range = closure.numbers();
         let dense: Vec<Vec<f64>> = jacobian[range.clone()]
             .iter()
             .map(|row| row.iter().filter(|(c, _)| unknown[*c]).map(|(_, x)| *x).collect())

@@ -174,6 +174,14 @@ pub struct Closure {
     pub size: f64,
 }
 
+impl Closure {
+    /// The numbers of its rows in [`Topology::rows`].
+    #[inline(always)]
+    pub fn numbers(&self) -> std::ops::Range<usize> {
+        self.first_row..self.first_row + self.rows.len()
+    }
+}
+
 /// Where a constraint row stands.
 #[derive(Clone, Debug)]
 pub struct RowPlace {

@@ -2,11 +2,15 @@
 
 use hardpoint::Analysis;
 use hardpoint::model::*;
+use hardpoint::motion::Execution;
 use hardpoint::space::Vec3;
 use hardpoint::study::{Scheme, compare_with_difference, finite_differences};
 use hardpoint::topology::Formulation;
 
 use crate::workbench::*;
+
+/// Relative to 1: a position, an orientation, a speed; accelerations divide by squares of times.
+const ROUND_OFF: f64 = 1e-10;
 
 /// N parallelograms side by side: upright unit bars on pivots at (i, 0), unit couplers on top; the first bar
 /// swings by 0.5 sin(2 pi t).
@@ -63,6 +67,39 @@ fn a_chain_of_four_bars_is_solved_loop_by_loop_and_matches_its_closed_form() {
         for i in 0..n {
             let state = solution.motion.at(k).body(2 + n + i);
             assert!(state.omega.norm() < 1e-11 && state.alpha.norm() < 1e-9, "coupler {i} at {t}");
+        }
+    }
+}
+
+#[test]
+fn loops_that_share_their_code_move_as_the_kernel_moves_them() {
+    // Bars of different heights on pivots here and there, in two orders of the bodies; long enough for a program in pieces.
+    let n = 80;
+    let mut draft = chain(n);
+    for joint in &mut draft.joints {
+        let number: usize = joint.name.trim_matches(char::is_alphabetic).parse().unwrap();
+        for place in &mut joint.at {
+            let Place::At(at) = place else { unreachable!() };
+            let next = number + usize::from(joint.name.starts_with("right"));
+            at.x += 0.1 * (next as f64).sin();
+            at.y *= 1.0 + 0.2 * (2.0 * next as f64).cos();
+        }
+    }
+    draft.times = times(1.0, 160);
+    let mut shuffled = draft.clone();
+    shuffled.bodies.sort_by_key(|b| b.name.trim_matches(char::is_alphabetic).parse::<usize>().unwrap());
+    for draft in [draft, shuffled] {
+        let model = Model::from_draft(&draft).unwrap();
+        let run = |execution| Analysis::new(&model).unwrap().bodies_only().executed(execution).run_motion();
+        let right = run(Execution::Kernel);
+        assert!(right.stop.is_none());
+        for execution in [Execution::Interpreted, Execution::Compiled] {
+            let found = run(execution);
+            assert!(found.motion.effort.by_program > 100, "{}", found.motion.effort.by_program);
+            for (a, b) in found.motion.states().zip(right.motion.states()) {
+                assert!(apart(a.r, b.r) < ROUND_OFF && apart(a.v, b.v) < ROUND_OFF);
+                assert!(apart(a.a, b.a) < 100.0 * ROUND_OFF && apart(a.alpha, b.alpha) < 100.0 * ROUND_OFF);
+            }
         }
     }
 }

@@ -1,0 +1,258 @@
+//! The equation of order n: every linear level of a position is this, solved with one set of factors.
+//!
+//! A motion and its rates, and the rates of what a change of the design makes of it, obey the same two lines, differentiated n times
+//! by the time (`docs/theory.md`, section 4, "The equation of order n"):
+//!
+//! ```text
+//! U_c(n) = U_p(n) + z_p(n) - z_c(n) + sum_{m=0..n} C(n,m) sum_a x_a(m) u_a(n-m)          for every link,
+//! sum_{m=0..n} C(n,m) l(m) . (D_j(n-m) - D_i(n-m)) = f(n),     D = U + z                for every row.        (24)
+//! ```
+//!
+//! Wanted are U(n) of the bodies and u(n) of the unknown coordinates; all orders below are known. Its transpose carries loads to
+//! ground (`sensitivity/adjoint.rs`).
+
+use crate::space::{Factors, Real, Twist, Wrench};
+use crate::topology::{Link, Step, Topology};
+
+/// How often the product of an m-th and an (n - m)-th derivative stands in the n-th of a product: `C(n, m)`.
+pub(crate) const BINOMIAL: [[f64; 3]; 3] = [[1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [1.0, 2.0, 1.0]];
+
+/// What the equations of a position have in common, whatever they are solved for.
+pub(crate) struct Linear<'s, T> {
+    /// Per order and coordinate: world unit twists x and their time derivatives.
+    pub x: &'s [Vec<Twist<T>>; 3],
+    /// Per order and row: wrenches l and their time derivatives.
+    pub l: &'s [Vec<Wrench<T>>; 3],
+    /// Per block: its Jacobian's.
+    pub factors: &'s mut [Factors<T>],
+    /// Room for the right-hand side of a block.
+    pub rhs: &'s mut [T],
+}
+
+/// What the equation is solved for, order by order: a motion, or how it changes.
+#[derive(Clone, Debug)]
+pub(crate) struct Flow<T> {
+    /// Per order and coordinate: u. Those of driven coordinates are given.
+    pub speeds: [Vec<T>; 3],
+    /// Per order and body: U.
+    pub twists: [Vec<Twist<T>>; 3],
+    /// Per order and closure, as far as higher orders ask: `D_j - D_i`.
+    pub apart: [Vec<Twist<T>>; 2],
+    /// Per order and link: `z_p - z_c`; empty where no marker moves in its body.
+    pub moves: [Vec<Twist<T>>; 3],
+    /// Per row, of the order to be solved: `f - l . (z_j - z_i)`.
+    pub demand: Vec<T>,
+    /// Whether driven coordinates go with it. Else their speeds are zero, and need not be looked at.
+    pub drives: bool,
+    /// Whether single axes on ground stand: in time they do, along the design they may not.
+    pub ground_stands: bool,
+    /// Per link: what it has besides the speeds of this order.
+    bias: Vec<Twist<T>>,
+}
+
+impl<T: Real> Flow<T> {
+    /// Of so many bodies that stand.
+    pub fn new(topology: &Topology, bodies: usize, drives: bool) -> Self {
+        let none = Twist::zero();
+        Self {
+            speeds: std::array::from_fn(|_| vec![T::zero(); topology.coordinates.len()]),
+            twists: std::array::from_fn(|_| vec![none; bodies]),
+            apart: std::array::from_fn(|_| vec![none; topology.closures.len()]),
+            moves: std::array::from_fn(|_| Vec::new()),
+            demand: vec![T::zero(); topology.rows.len()],
+            drives,
+            ground_stands: true,
+            bias: vec![none; topology.links.len()],
+        }
+    }
+
+    /// The same with room for markers that move in their bodies.
+    pub fn with_moves(mut self) -> Self {
+        self.moves = std::array::from_fn(|_| vec![Twist::zero(); self.bias.len()]);
+        self
+    }
+
+    /// Lets all rows of closure c ask for f.
+    #[inline(always)]
+    pub fn ask(&mut self, topology: &Topology, c: usize, f: T) {
+        self.demand[topology.closures[c].numbers()].fill(f);
+    }
+
+    /// Enters how, at order n, the parent's (0) or the child's (1) marker of link k moves in its body: `z_p - z_c`.
+    #[inline(always)]
+    pub fn move_link(&mut self, n: usize, (k, end): (usize, usize), z: Twist<T>) {
+        self.moves[n][k] += if end == 0 { z } else { -z };
+    }
+
+    /// Enters how marker i (0) or j (1) of closure c moves in its body: what its rows ask for is less `l . (z_j - z_i)`.
+    #[inline(always)]
+    pub fn move_end(&mut self, topology: &Topology, (c, end): (usize, usize), z: Twist<T>, l: &[Wrench<T>]) {
+        let z = if end == 1 { -z } else { z };
+        for r in topology.closures[c].numbers().filter(|&r| topology.rows[r].drives()) {
+            self.demand[r] += l[r].on(z);
+        }
+    }
+
+    /// What these links have of lower orders: `z_p(n) - z_c(n) + sum_{m=1..n} C(n,m) sum_a x_a(m) u_a(n-m)`.
+    #[inline(always)]
+    fn turn_axes<const N: usize>(
+        &mut self,
+        topology: &Topology,
+        links: impl Iterator<Item = usize>,
+        x: &[Vec<Twist<T>>; 3],
+    ) {
+        if N == 0 {
+            return;
+        }
+        for k in links {
+            let link = &topology.links[k];
+            let mut bias = if self.moves[N].is_empty() { Twist::zero() } else { self.moves[N][k] };
+            if !(self.ground_stands && link.keeps_its_twist()) {
+                for step in link.steps.iter().filter(|s| self.drives || !s.is_driven) {
+                    for c in step.first..step.first + step.freedom.coordinates() {
+                        for m in 1..=N {
+                            bias = x[m][c].times_plus(self.speeds[N - m][c] * BINOMIAL[N][m], bias);
+                        }
+                    }
+                }
+            }
+            self.bias[k] = bias;
+        }
+    }
+
+    /// What the rows of block b have left to ask: `f(n) - sum_{m=1..n} C(n,m) l(m) . (D_j(n-m) - D_i(n-m)) - l . (z_j(n) - z_i(n))`,
+    /// summed over the terms of couplers.
+    #[inline(always)]
+    fn turn_wrenches<const N: usize>(&mut self, topology: &Topology, b: usize, l: &[Vec<Wrench<T>>; 3]) {
+        for &c in topology.blocks[b].closures.iter().filter(|_| N > 0) {
+            let closure = &topology.closures[c];
+            for r in closure.numbers() {
+                if topology.rows[r].drives() {
+                    for m in 1..=N {
+                        self.demand[r] -= l[m][r].on(self.apart[N - m][c]) * BINOMIAL[N][m];
+                    }
+                }
+            }
+        }
+        for &r in &topology.blocks[b].coupled {
+            for &(term, factor) in &topology.rows[r].terms {
+                let x = self.demand[term];
+                self.demand[r] += x * T::constant(factor);
+            }
+        }
+    }
+
+    /// `U_c = U_p + bias + sum x_a u_a` for these links, over the freedoms that count.
+    #[inline(always)]
+    fn carry<const N: usize>(
+        &mut self,
+        topology: &Topology,
+        links: impl Iterator<Item = usize>,
+        x: &[Twist<T>],
+        counts: impl Fn(&Step) -> bool,
+    ) {
+        let bias = if N > 0 { &self.bias } else { &self.moves[0] };
+        let (speeds, twists) = (&self.speeds[N], &mut self.twists[N]);
+        for k in links {
+            let link = &topology.links[k];
+            let mut twist = twists[link.parent.0];
+            if let Some(bias) = bias.get(k) {
+                twist += *bias;
+            }
+            for step in link.steps.iter().filter(|s| counts(s)) {
+                for c in step.first..step.first + step.freedom.coordinates() {
+                    twist = x[c].times_plus(speeds[c], twist);
+                }
+            }
+            twists[link.child.0] = twist;
+        }
+    }
+
+    /// Order n of links whose coordinates are all given: (24), first line.
+    #[inline(always)]
+    pub fn follow<const N: usize>(
+        &mut self,
+        topology: &Topology,
+        links: impl Iterator<Item = usize> + Clone,
+        x: &[Vec<Twist<T>>; 3],
+    ) {
+        self.turn_axes::<N>(topology, links.clone(), x);
+        self.carry::<N>(topology, links, &x[0], |_| true);
+    }
+
+    /// Solves the equation of order n in block b: (24), where `demand` and `moves` say what is asked. With the orders below known, what
+    /// is left of it is one linear problem, `J u(n) = rhs`.
+    #[inline(always)]
+    pub fn solve<const N: usize>(&mut self, topology: &Topology, b: usize, linear: Linear<'_, T>) {
+        let (block, Linear { x, l, factors, rhs }) = (&topology.blocks[b], linear);
+        self.turn_axes::<N>(topology, block.links.clone(), x);
+        self.turn_wrenches::<N>(topology, b, l);
+        // First as if the unknowns were zero: what the rows miss then is theirs to make up.
+        self.carry::<N>(topology, block.links.clone(), &x[0], |step| step.is_driven);
+        for (k, &r) in block.selected.iter().enumerate() {
+            rhs[k] = self.demand[r] - along(topology, &l[0], &self.twists[N], r);
+        }
+        factors[b].solve(rhs);
+        for (k, &c) in block.unknowns.iter().enumerate() {
+            self.speeds[N][c] = rhs[k];
+        }
+        self.carry::<N>(topology, block.links.clone(), &x[0], |_| true);
+        if let Some(apart) = self.apart.get_mut(N) {
+            for &c in &block.closures {
+                let [i, j] = topology.closures[c].bodies;
+                apart[c] = self.twists[N][j.0] - self.twists[N][i.0];
+            }
+        }
+    }
+}
+
+/// The n-th rate of a twist that a body carries, from those below and the twist V of the body with its own rates:
+/// `x(n) = sum_{m<n} C(n-1,m) ad(V(m)) x(n-1-m)`, (3) differentiated.
+#[inline(always)]
+pub(crate) fn carried<T: Real, const N: usize>(x: [Twist<T>; N], v: [Twist<T>; N]) -> Twist<T> {
+    let mut rate = v[0].ad(x[N - 1]);
+    for m in 1..N {
+        rate += v[m].ad(x[N - 1 - m]) * T::constant(BINOMIAL[N - 1][m]);
+    }
+    rate
+}
+
+/// The n-th rates of a link's unit twists, each carried by the frame before its freedom; `v` are the twist and its rates of the frame
+/// that the first starts from, and `V(m) + sum_{k=0..m} C(m,k) x(k) u(m-k)` those of the next.
+#[inline(always)]
+pub(crate) fn turn_twists<T: Real, const N: usize>(
+    link: &Link,
+    mut v: [Twist<T>; N],
+    x: &mut [Vec<Twist<T>>; 3],
+    speeds: &[Vec<T>; 3],
+) {
+    for (n, step) in link.steps.iter().enumerate() {
+        let coordinates = step.first..step.first + step.freedom.coordinates();
+        for c in coordinates.clone() {
+            x[N][c] = carried(std::array::from_fn(|m| x[m][c]), v);
+        }
+        if n + 1 == link.steps.len() {
+            break;
+        }
+        for c in coordinates {
+            for m in 0..N {
+                for k in (0..=m).rev() {
+                    v[m] = x[k][c].times_plus(speeds[m - k][c] * BINOMIAL[m][k], v[m]);
+                }
+            }
+        }
+    }
+}
+
+/// `l_r . (U_j - U_i)`, summed over a coupler's terms.
+#[inline(always)]
+fn along<T: Real>(topology: &Topology, l: &[Wrench<T>], motion: &[Twist<T>], r: usize) -> T {
+    let place = &topology.rows[r];
+    let [i, j] = topology.closures[place.closure].bodies;
+    let mut sum = l[r].on(motion[j.0] - motion[i.0]);
+    for &(term, factor) in &place.terms {
+        let [i, j] = topology.closures[topology.rows[term].closure].bodies;
+        sum += l[term].on(motion[j.0] - motion[i.0]) * T::constant(factor);
+    }
+    sum
+}
