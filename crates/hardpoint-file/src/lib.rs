@@ -31,6 +31,7 @@
 //! What is not here: includes, and coordinates of hardpoints in expressions that no change of the design moves.
 
 mod diagnostic;
+mod format;
 mod places;
 mod read;
 mod schema;
@@ -286,8 +287,7 @@ fn parse_in(folder: Option<&Path>, text: &str, file_name: &str) -> Result<ModelF
     let model = match Model::from_draft(&raw.draft) {
         Ok(model) => Some(model),
         Err(faults) => {
-            let own = faults.into_iter().filter(|f| !follows(f, &raw.places));
-            found.extend(own.map(|f| shown_fault(&source, &raw.places, f)));
+            found.extend(faults.into_iter().map(|f| shown_fault(&source, &raw.places, f)));
             None
         }
     };
@@ -348,44 +348,6 @@ fn syntax_errors(source: &Source, errors: &[toml::de::Error]) -> Vec<Diagnostic>
         last.notes.push("the rest of the model is checked when the syntax is right".into());
     }
     list
-}
-
-/// The tables that names are looked up in, and how the core says that a name is not there.
-const LOOKED_UP: [(&str, &str); 7] = [
-    ("parameters", "no parameter named"),
-    ("hardpoints", "no hardpoint named"),
-    ("bodies", "no body named"),
-    ("joints", "no joint named"),
-    ("points", "no point named"),
-    ("wheels", "no wheel named"),
-    ("drivers", "no driver named"),
-];
-
-/// Whether a fault only follows from something that could not be read and is reported already.
-fn follows(fault: &Fault, places: &Places) -> bool {
-    let at = &fault.at;
-    // Of a table that could not be read, nothing can be found.
-    let lost = |table: &str| places.any_unread(Section::Model, &[table]);
-    if fault.code == "HP0203" && lost("bodies")
-        || fault.code == "HP0204" && LOOKED_UP.iter().any(|(t, one)| lost(t) && fault.message.contains(one))
-        || fault.code == "HP0212" && lost("joints")
-    {
-        return true;
-    }
-    let Some(entry) = places.entry(at.section, at.index) else { return false };
-    let of_a_law = at.section == Section::Design && fault.message.contains("parameter");
-    let geometry = matches!(fault.code, "HP0205" | "HP0206" | "HP0209" | "HP0211" | "HP0226" | "HP0231");
-    entry.unread.contains(&at.key)
-        || !entry.unread.is_empty()
-            && matches!(
-                fault.code,
-                "HP0208" | "HP0210" | "HP0217" | "HP0219" | "HP0223" | "HP0226" | "HP0231"
-            )
-        || geometry && places.any_unread(Section::Hardpoints, &[])
-        || fault.code == "HP0212" && places.any_unread(Section::Joints, &["bodies"])
-        || fault.code == "HP0225" && places.any_unread(Section::Joints, &["length"])
-        || fault.code == "HP0232" && places.any_unread(Section::Wheels, &["kingpin"])
-        || of_a_law && places.any_unread(Section::Drivers, &["law", "joint"])
 }
 
 fn shown_fault(source: &Source, places: &Places, fault: Fault) -> Diagnostic {

@@ -11,8 +11,6 @@ use crate::tree::{Fields, Value};
 pub(crate) struct EntryPlace {
     name: Range<usize>,
     keys: Vec<KeyPlace>,
-    /// Keys whose values could not be read: what the core says about them is only a consequence.
-    pub unread: Vec<&'static str>,
 }
 
 /// Where the value of one key stands, and its elements if it is a list.
@@ -25,7 +23,7 @@ struct KeyPlace {
 
 impl EntryPlace {
     pub fn at(name: Range<usize>) -> Self {
-        Self { name, keys: Vec::new(), unread: Vec::new() }
+        Self { name, keys: Vec::new() }
     }
 
     /// The place of a table's name and of all its values and their elements.
@@ -51,8 +49,15 @@ impl EntryPlace {
         }
     }
 
-    pub fn unread(&mut self, key: &'static str) {
-        self.unread.push(key);
+    /// The places of a design variable's changes: those of a value, or of its elements.
+    pub fn changes(&mut self, fields: &Fields<'_>, key: &str) {
+        if let Some(f) = fields.get(key) {
+            let list = f.value.get_ref().as_array();
+            self.items(
+                "changes",
+                list.map_or(vec![f.value.span()], |l| l.iter().map(|v| v.span()).collect()),
+            );
+        }
     }
 
     fn find(&self, key: &str, item: Option<usize>) -> Range<usize> {
@@ -96,17 +101,8 @@ impl Places {
         self.0[k].push(place);
     }
 
-    pub fn entry(&self, section: Section, index: usize) -> Option<&EntryPlace> {
-        self.list(section).get(index)
-    }
-
     /// The range of the text that a locus of the draft means; none for what the file does not have.
     pub fn find(&self, at: &Locus) -> Option<Range<usize>> {
-        Some(self.entry(at.section, at.index)?.find(at.key, at.item))
-    }
-
-    /// Whether any entry of the section, with any of these keys if some are given, could not be read.
-    pub fn any_unread(&self, section: Section, keys: &[&str]) -> bool {
-        self.list(section).iter().any(|p| p.unread.iter().any(|k| keys.is_empty() || keys.contains(k)))
+        Some(self.list(at.section).get(at.index)?.find(at.key, at.item))
     }
 }

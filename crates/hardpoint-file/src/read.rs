@@ -13,6 +13,7 @@ use std::collections::HashMap;
 use std::ops::Range;
 
 use hardpoint::joint::{self, Quantity};
+use hardpoint::law::Law;
 use hardpoint::model::{
     BodyDraft, CurveDraft, Draft, FormulaDraft, FormulaOf, FrameDraft, HardpointDraft, JointDraft, Line,
     Nominal, Place, Section,
@@ -21,30 +22,60 @@ use hardpoint::space::{Pose, Quat, Vec3, rotation_from_euler_313};
 use toml::de::{DeTable, DeValue};
 
 use crate::diagnostic::{closest, shown};
+use crate::format::{self, ANGLE, Key, Kinds, LENGTH, NUMBER, Need, Shape, Table, table};
 use crate::places::{EntryPlace, Places};
-use crate::tree::{Field, Fields, Key, MOST_ENTRIES, Reader, Subject, Value, above_tables, quoted};
+use crate::tree::{Field, Fields, LINE, MOST_ENTRIES, PLACE, Reader, Subject, Value, above_tables, quoted};
 use crate::units::{AngleUnit, LengthUnit};
 
-const MODEL: &[Key] = &[
-    ("name", "\"four-bar\""),
-    ("description", "\"...\""),
-    ("units", "{ length = \"mm\", angle = \"deg\" }"),
-    ("parameters", "{ hub = { value = 60, unit = \"length\" } }"),
-    ("hardpoints", "{ A = [0, 0, 0] }"),
-    ("bodies", "{ crank = {} }"),
-    ("joints", "{}"),
-    ("couplers", "{}"),
-    ("drivers", "{}"),
-    ("design", "{}"),
-    ("points", "{}"),
-    ("vehicle", "{ wheelbase = 2600 }"),
-    ("wheels", "{}"),
-    ("axles", "{}"),
-    ("measures", "{}"),
-    ("metrics", "{}"),
-    ("time", "{ end = 1.0, steps = 100 }"),
-];
-const UNITS: &[Key] = &[("length", "\"mm\""), ("angle", "\"deg\"")];
+/// The file as a whole.
+pub(crate) const MODEL: Table = table! {
+    /// A mechanism for Hardpoint.
+    "Hardpoint model":
+    /// The mechanism's name, for headings.
+    must "name": Shape::Text, "\"four-bar\"";
+    /// What it is and where its numbers come from.
+    may "description": Shape::Text, "\"...\"";
+    /// The units of all numbers in this file. Time is always in seconds.
+    must "units": Shape::Table(&UNITS), "{ length = \"mm\", angle = \"deg\" }";
+    /// Named numbers, which expressions in quotes may use wherever a number stands. Each is a design variable, unless it says
+    /// otherwise or is itself given by an expression.
+    may "parameters": Shape::Entries(&parameters::PARAMETER), "{ hub = { value = 60, unit = \"length\" } }";
+    /// Named points of the design configuration: `name = [x, y, z]`, global, in the length unit. Expressions may use
+    /// coordinates of others, like `"-left.y"`.
+    may "hardpoints": Shape::Entries(&Shape::exactly(3, &LENGTH)), "{ A = [0, 0, 0] }";
+    /// Rigid bodies. `ground` is always there and is not declared.
+    must "bodies": Shape::Entries(&Shape::Table(&BODY)), "{ crank = {} }";
+    /// Joints between two bodies.
+    may "joints": Shape::Entries(&Shape::Table(&JOINT)), "{}";
+    /// Gears, racks, belts and other linear relations between joint coordinates.
+    may "couplers": Shape::Entries(&Shape::Kinds(&couplers::COUPLER)), "{}";
+    /// Prescribed motions: of joint coordinates, points, distances and orientations.
+    may "drivers": Shape::Entries(&Shape::Kinds(&drivers::DRIVER)), "{}";
+    /// Design variables: what may change in the design, and how everything else follows.
+    may "design": Shape::Entries(&Shape::Kinds(&design::VARIABLE)), "{}";
+    /// Points of bodies to follow.
+    may "points": Shape::Entries(&Shape::Table(&results::POINT)), "{}";
+    /// What is known of the vehicle, for anti-dive and Ackermann.
+    may "vehicle": Shape::Table(&wheels::VEHICLE), "{ wheelbase = 2600 }";
+    /// Road wheels, for what is measured at them.
+    may "wheels": Shape::Entries(&Shape::Table(&wheels::WHEEL)), "{}";
+    /// Pairs of wheels, for what is measured at both.
+    may "axles": Shape::Entries(&Shape::Table(&wheels::AXLE)), "{}";
+    /// Numbers to compute from the motion, with their sensitivities.
+    may "measures": Shape::Entries(&results::MEASURE), "{}";
+    /// Numbers that sum measures up over the motion, with their sensitivities.
+    may "metrics": Shape::Entries(&Shape::Table(&results::METRIC)), "{}";
+    /// The output times.
+    must "time": Shape::Kinds(&results::TIME), "{ end = 1.0, steps = 100 }";
+};
+const UNITS: Table = table! {
+    /// The units of all numbers in the file.
+    "Units":
+    /// Unit of every length.
+    must "length": Shape::Known("the symbol of a unit", LengthUnit::words), "\"mm\"";
+    /// Unit of every angle.
+    must "angle": Shape::Known("the symbol of a unit", AngleUnit::words), "\"deg\"";
+};
 /// What people write for a unit's symbol.
 const UNIT_WORDS: [(&str, &str); 12] = [
     ("millimetre", "mm"),
@@ -60,27 +91,134 @@ const UNIT_WORDS: [(&str, &str); 12] = [
     ("radian", "rad"),
     ("radians", "rad"),
 ];
-const BODY: &[Key] = &[("frame", "{ position = [0, 0, 0] }")];
-const FRAME: &[Key] = &[
-    ("position", "[0, 0, 0]"),
-    ("euler", "[0, 0, 0]"),
-    ("quaternion", "[1, 0, 0, 0]"),
-    ("origin", "\"A\""),
-    ("x", "\"B\""),
-    ("xy", "\"C\""),
-];
-const JOINT: &[Key] = &[
-    ("type", "\"revolute\""),
-    ("bodies", "[\"ground\", \"crank\"]"),
-    ("at", "\"A\""),
-    ("axis", "\"z\""),
-    ("axis2", "\"x\""),
-    ("length", "250"),
-    ("lead", "5"),
-    ("curve", "{ points = [\"A\", \"B\", \"C\"] }"),
-    ("cut", "true"),
-];
-const CURVE: &[Key] = &[("points", "[\"A\", \"B\", \"C\"]"), ("closed", "true")];
+const BODY: Table = table! {
+    /// A body; `{}` is enough.
+    "Body":
+    /// Its reference frame in the design configuration. Default: origin at the mean of the body's joint places, axes parallel
+    /// to the global ones. Only results expressed in the frame depend on it.
+    may "frame": Shape::Kinds(&FRAME), "{ position = [0, 0, 0] }";
+};
+const FRAME: Kinds = Kinds {
+    name: "Frame",
+    doc: "A reference frame.",
+    typed: false,
+    tables: || vec![&FRAME_BY_POSITION, &FRAME_BY_POINTS],
+};
+const FRAME_BY_POSITION: Table = table! {
+    /// By position and orientation.
+    "Pose":
+    /// Origin: coordinates or a hardpoint's name.
+    must "position": PLACE, "[0, 0, 0]";
+    /// 3-1-3 Euler angles, in the angle unit: turn about z, then the new x, then the new z. Default: zero.
+    may "euler": Shape::exactly(3, &ANGLE), "[0, 0, 0]";
+    /// Quaternion `[w, x, y, z]`, of any length, instead of `euler`.
+    may "quaternion": Shape::exactly(4, &NUMBER), "[1, 0, 0, 0]";
+};
+const FRAME_BY_POINTS: Table = table! {
+    /// By three points.
+    "FramePoints":
+    /// The origin.
+    must "origin": PLACE, "\"A\"";
+    /// A point on the x axis.
+    must "x": PLACE, "\"B\"";
+    /// A point in the xy plane, on the side of +y.
+    must "xy": PLACE, "\"C\"";
+};
+const JOINT: Table = table! {
+    /// A joint between bodies i and j.
+    "Joint":
+    /// The joint type, or one of its other names.
+    must "type": JOINT_TYPE, "\"revolute\"";
+    /// Names of bodies i and j. Coordinates are those of j relative to i.
+    must "bodies": Shape::exactly(2, &format::BODY), "[\"ground\", \"crank\"]";
+    /// Where it is: a hardpoint's name or coordinates; or a list of two, one on each body: for rods and legs, and for other
+    /// joints that are drawn apart and have to be assembled. May be left out where the axis goes through hardpoints (then it is
+    /// the first of them), and where only directions matter.
+    may "at": Shape::Any("Places", "", &[PLACE, Shape::exactly(2, &PLACE)]), "\"A\"";
+    /// The axis, in the design configuration; where the joint type has one it must be given.
+    may "axis": LINE, "\"z\"";
+    /// The second axis: square to the first, or the axis on body j, as the joint type has it.
+    may "axis2": LINE, "\"x\"";
+    /// Length of a rod or leg, or distance of a point from its curve, in the length unit. Default: as drawn. Where it differs from
+    /// that, the mechanism is assembled to it.
+    may "length": LENGTH, "250";
+    /// Advance of a screw per turn, in the length unit; negative for a left-hand thread. A `screw` needs it, others have none.
+    may "lead": LENGTH, "5";
+    /// The curve on body i that a point of body j follows, for the joint type `point_on_curve`.
+    may "curve": Shape::Table(&CURVE), "{ points = [\"A\", \"B\", \"C\"] }";
+    /// Whether loops should be cut at this joint rather than elsewhere. It changes the effort, not the results.
+    or("false") "cut": Shape::Flag, "true";
+};
+const CURVE: Table = table! {
+    /// A smooth curve through points in the design configuration, in the plane square to the joint's axis.
+    "Curve":
+    /// Its points in order: hardpoints' names or coordinates.
+    must "points": Shape::list(&PLACE), "[\"A\", \"B\", \"C\"]";
+    /// Whether it returns to its first point, as the curve of a cam does; that point is not repeated.
+    or("false") "closed": Shape::Flag, "true";
+};
+const JOINT_TYPE: Shape =
+    Shape::Any("JointType", "", &[Shape::Known("the name of a joint type", joint_types)]);
+/// A coordinate of a joint, by name.
+const COORDINATE: Shape =
+    Shape::Any("Coordinate", "", &[Shape::Known("the name of a coordinate", coordinates)]);
+
+/// The joint types with their other names, and what they are.
+fn joint_types() -> Vec<(&'static str, String)> {
+    let mut names = Vec::new();
+    for t in joint::ALL {
+        let coordinates: Vec<_> = t.coordinates.iter().map(|c| format!("`{}`", c.name)).collect();
+        let coordinates = match coordinates.as_slice() {
+            [] => String::new(),
+            [one] => format!(" Coordinate: {one}."),
+            several => format!(" Coordinates: {}.", several.join(", ")),
+        };
+        let mut summary = t.summary.to_owned();
+        summary[..1].make_ascii_uppercase();
+        let description = format!("{summary}.{coordinates}");
+        names.extend(t.aliases.iter().map(|a| (*a, format!("Another name of `{}`. {description}", t.name))));
+        names.insert(names.len() - t.aliases.len(), (t.name, description));
+    }
+    names
+}
+
+/// The names of all joint coordinates.
+fn coordinates() -> Vec<(&'static str, String)> {
+    let mut names: Vec<(&str, String)> = Vec::new();
+    for c in joint::ALL.iter().flat_map(|t| t.coordinates) {
+        if !names.iter().any(|n| n.0 == c.name) {
+            names.push((c.name, String::new()));
+        }
+    }
+    names
+}
+
+/// The tables that `docs/file-format.md` shows, by their names there.
+#[cfg(test)]
+pub(crate) fn tables() -> [(&'static str, Shape); 20] {
+    [
+        ("parameters", Shape::Table(&parameters::PARAMETER_TABLE)),
+        ("frames", Shape::Kinds(&FRAME)),
+        ("joints", Shape::Table(&JOINT)),
+        ("curves", Shape::Table(&CURVE)),
+        ("couplers", Shape::Kinds(&couplers::COUPLER)),
+        ("terms", Shape::Table(&couplers::TERM)),
+        ("drivers", Shape::Kinds(&drivers::DRIVER)),
+        ("laws", Shape::Kinds(&law::LAW_TABLE)),
+        ("pieces", Shape::Table(&law::PIECE)),
+        ("design variables", Shape::Kinds(&design::VARIABLE)),
+        ("shape fields", Shape::Kinds(&design::SHAPE_FIELD)),
+        ("fields", Shape::Table(&design::FIELD)),
+        ("markers", Shape::Table(&design::MARKER)),
+        ("points", Shape::Table(&results::POINT)),
+        ("the vehicle", Shape::Table(&wheels::VEHICLE)),
+        ("wheels", Shape::Table(&wheels::WHEEL)),
+        ("axles", Shape::Table(&wheels::AXLE)),
+        ("measures", Shape::Kinds(&results::OWN_MEASURE)),
+        ("metrics", Shape::Table(&results::METRIC)),
+        ("time", Shape::Kinds(&results::TIME)),
+    ]
+}
 
 /// What a file says, as far as it could be read.
 #[derive(Default)]
@@ -91,23 +229,29 @@ pub(crate) struct Raw {
     /// Which number a hardpoint and a joint have; of equal names, the first. Only looked up, never walked.
     hardpoint_numbers: HashMap<String, usize>,
     joint_numbers: HashMap<String, usize>,
-    /// Of each driver of the draft, what one unit of its law is in SI, the parameters that are rates in that unit, and
-    /// what it measures.
-    pub driver_rates: Vec<(f64, Vec<String>, Quantity)>,
+    /// What each driver of the draft prescribes.
+    driven: Vec<Quantity>,
+}
+
+impl Raw {
+    /// The law of a driver, and what it prescribes.
+    fn driver(&self, name: &str) -> Option<(&Law, Quantity)> {
+        let k = self.draft.drivers.iter().position(|d| d.name == name)?;
+        Some((&self.draft.drivers[k].law, self.driven[k]))
+    }
 }
 
 impl Reader<'_> {
     pub fn model<'a>(&mut self, table: &'a DeTable<'a>) -> Raw {
         let mut raw = Raw::default();
-        let fields = self.fields("the model", 0..0, table, MODEL);
-        let mut place = EntryPlace::of(&fields);
-        for f in fields.iter() {
-            let readable = f.value.get_ref().as_table().is_some_and(|t| t.len() <= MOST_ENTRIES);
-            if !readable {
-                place.unread(f.key);
+        let fields = self.fields("the model", 0..0, table, MODEL.keys());
+        let place = EntryPlace::of(&fields);
+        for f in fields.iter().filter(|f| !matches!(fields.key(f.key).shape, Shape::Text)) {
+            if f.value.get_ref().as_table().is_none_or(|t| t.len() > MOST_ENTRIES) {
+                self.unread.push(f.key);
             }
         }
-        raw.places.push(Section::Model, place);
+        self.push(&mut raw, Section::Model, place);
         let name = self.need(&fields, "name");
         raw.draft.name = name.and_then(|f| self.text(&fields, f)).unwrap_or_default();
         raw.description = fields.get("description").and_then(|f| self.text(&fields, f));
@@ -152,25 +296,20 @@ impl Reader<'_> {
         let Some(table) = self.table(f.value, &subject, "a table of a length and an angle unit") else {
             return;
         };
-        let fields = self.fields("`units`", f.value.span(), table, UNITS);
-        let mut pick = |key: &str, symbols: &[&str]| -> Option<usize> {
-            let f = self.need(&fields, key)?;
-            let subject = fields.subject(key);
-            let symbol = self.name(f.value, &subject, "the symbol of a unit")?;
-            let k = symbols.iter().position(|s| *s == symbol);
-            if k.is_none() {
-                self.unknown_word(f.value.span(), &subject, &symbol, symbols);
-                let words = UNIT_WORDS.iter().filter(|(_, s)| symbols.contains(s));
-                let meant = closest(&symbol, words.clone().map(|w| w.0));
+        let fields = self.fields("`units`", f.value.span(), table, UNITS.keys());
+        let [length, angle] = ["length", "angle"].map(|key| {
+            let before = self.found.len();
+            let found = self.word_of(&fields, key);
+            let written = fields.get(key).and_then(|f| f.value.get_ref().as_str());
+            if let (Some(written), Some(d)) = (written, self.found.get_mut(before)) {
+                let words =
+                    UNIT_WORDS.iter().filter(|(_, symbol)| fields.key(key).shape.words().contains(symbol));
+                let meant = closest(written, words.clone().map(|w| w.0));
                 let meant = words.clone().find(|w| Some(w.0) == meant);
-                if let (Some((_, meant)), Some(d)) = (meant, self.found.last_mut()) {
-                    d.help = Some(format!("did you mean `{meant}`?"));
-                }
+                d.help = meant.map(|(_, meant)| format!("did you mean `{meant}`?")).or(d.help.take());
             }
-            k
-        };
-        let length = pick("length", &LengthUnit::ALL.map(LengthUnit::symbol));
-        let angle = pick("angle", &AngleUnit::ALL.map(AngleUnit::symbol));
+            found
+        });
         self.units.length = length.map_or(LengthUnit::Metre, |k| LengthUnit::ALL[k]);
         self.units.angle = angle.map_or(AngleUnit::Radian, |k| AngleUnit::ALL[k]);
     }
@@ -206,59 +345,51 @@ impl Reader<'_> {
         &mut self,
         one: &str,
         (name, at, value): &(String, Range<usize>, &'a Value<'a>),
-        keys: &'static [Key],
+        keys: impl IntoIterator<Item = &'static Key>,
     ) -> Fields<'a> {
+        self.unread.clear();
         let what = format!("{one} `{}`", shown(name));
-        match value.get_ref().as_table() {
-            Some(table) => self.fields(what, at.clone(), table, keys),
-            None => {
-                let (key, example) = keys[0];
-                let subject = Subject {
-                    name: what.clone(),
-                    example: format!("for example `{name} = {{ {key} = {example} }}`"),
-                };
-                self.wrong(value, &subject, "a table of keys");
-                self.fields(what, at.clone(), EMPTY.get_or_init(DeTable::new), keys)
-            }
+        let mut keys = keys.into_iter().peekable();
+        if let Some(table) = value.get_ref().as_table() {
+            return self.fields(what, at.clone(), table, keys);
         }
+        let first = keys.peek().map_or(String::new(), |k| format!("{} = {}", k.key, k.example));
+        let example = format!("for example `{name} = {{ {first} }}`");
+        self.wrong(value, &Subject { name: what.clone(), example }, "a table of keys");
+        self.fields(what, at.clone(), EMPTY.get_or_init(DeTable::new), keys)
     }
 
-    /// The type of a named entry whose keys depend on it. Without a known type, nothing more is said of the entry.
-    fn entry_type(
+    /// Which kind a named entry is, whose `type` says so. Without a known type, nothing more is said of the entry.
+    fn entry_type<T>(
         &mut self,
         one: &str,
-        entry: &(String, Range<usize>, &Value<'_>),
-        types: &[&'static str],
-        keys: &'static [Key],
-    ) -> Option<&'static str> {
-        let (name, at, value) = entry;
+        (name, at, value): &(String, Range<usize>, &Value<'_>),
+        kinds: &'static [(Table, T)],
+    ) -> Option<&'static (Table, T)> {
+        let what = format!("{one} `{}`", shown(name));
         match value.get_ref().as_table() {
-            Some(table) => self.type_of(
-                table,
-                &format!("{one} `{}`", shown(name)),
-                at.clone(),
-                &format!("a {one}"),
-                types,
-            ),
+            Some(table) => self.kind_of(table, &what, at.clone(), &format!("a {one}"), kinds),
             None => {
-                self.entry(one, entry, keys);
+                let example = format!("for example `{name} = {{ type = \"{}\" }}`", kinds[0].0.name);
+                self.wrong(value, &Subject { name: what, example }, "a table of keys");
                 None
             }
         }
     }
 
-    /// The `type` of a table: one of some words.
-    fn type_of(
+    /// The kind that the `type` of a table says.
+    fn kind_of<T>(
         &mut self,
         table: &DeTable<'_>,
         what: &str,
         at: Range<usize>,
         one: &str,
-        types: &[&'static str],
-    ) -> Option<&'static str> {
+        kinds: &'static [(Table, T)],
+    ) -> Option<&'static (Table, T)> {
+        let types: Vec<&str> = kinds.iter().map(|k| k.0.name).collect();
         let Some(kind) = table.get("type") else {
             self.report("HP0104", at, format!("{what} has no `type`")).help =
-                Some(format!("add it; possible: {}", quoted(types)));
+                Some(format!("add it; possible: {}", quoted(&types)));
             return None;
         };
         let subject = Subject {
@@ -266,24 +397,84 @@ impl Reader<'_> {
             example: format!("for example `type = \"{}\"`", types[0]),
         };
         let word = kind.get_ref().as_str();
-        let known = types.iter().copied().find(|t| word == Some(*t));
+        let known = kinds.iter().find(|k| word == Some(k.0.name));
         match (word, known) {
-            (Some(word), None) => self.unknown_word(kind.span(), &subject, word, types),
+            (Some(word), None) => self.unknown_word(kind.span(), &subject, word, &types),
             (None, _) => self.wrong(kind, &subject, &format!("the name of {one} type")),
             _ => {}
         }
         known
     }
 
+    /// Which kind the keys of a table mean: that which the first of its own keys leads, or else one that has some of them. Keys
+    /// of others are reported.
+    fn led_by<T>(
+        &mut self,
+        fields: &Fields<'_>,
+        kinds: &'static [(Table, T)],
+        [says, given]: [&str; 2],
+    ) -> Option<&'static (Table, T)> {
+        let has = |key: &Key| fields.get(key.key).is_some();
+        let led = kinds.iter().find(|k| has(&k.0.keys[0]));
+        let Some(kind) = led.or_else(|| kinds.iter().find(|k| k.0.keys.iter().any(has))) else {
+            let message = format!("{} does not say {says}", fields.what);
+            let ways: Vec<String> = kinds.iter().map(|k| way(&k.0)).collect();
+            self.report("HP0104", fields.at.clone(), message).help =
+                Some(format!("give one of {}", ways.join(", ")));
+            return None;
+        };
+        let by = kind.0.keys.iter().find(|k| has(k)).expect("just found").key;
+        for (table, _) in kinds {
+            let lead = &table.keys[0];
+            for key in table.keys.iter().filter(|k| has(k) && !kind.0.keys.iter().any(|own| own.key == k.key))
+            {
+                let why = match has(lead) {
+                    true => format!("{given} by `{by}` already"),
+                    false => format!("`{}` goes with `{}`; {given} by `{by}`", key.key, lead.key),
+                };
+                self.out_of_place(fields, key.key, why);
+                if let Some(d) = self.found.last_mut() {
+                    d.help = Some(format!("give {} or {}", way(&kind.0), way(table)));
+                }
+            }
+        }
+        Some(kind)
+    }
+
+    /// The fields of each inline table in a list.
+    fn tables<'a>(
+        &mut self,
+        fields: &Fields<'a>,
+        key: &'static str,
+        of: &'static Table,
+    ) -> Option<Vec<Fields<'a>>> {
+        self.given(fields, key, |r, f| {
+            let subject = fields.subject(key);
+            let list = r.list(f.value, &subject, "a list of tables")?;
+            let tables: Vec<_> = (1..)
+                .zip(list)
+                .map(|(k, v)| {
+                    let table = r.table(v, &subject, "a list of tables")?;
+                    Some(r.fields(
+                        format!("entry {k} of `{key}` in {}", fields.what),
+                        v.span(),
+                        table,
+                        of.keys(),
+                    ))
+                })
+                .collect();
+            tables.into_iter().collect()
+        })
+    }
+
     fn hardpoints(&mut self, model: &Fields<'_>, raw: &mut Raw) {
-        for (index, (name, at, value)) in
-            self.entries(model, "hardpoints", "hardpoint").into_iter().enumerate()
-        {
+        for (name, at, value) in self.entries(model, "hardpoints", "hardpoint") {
             let subject = Subject {
                 name: format!("hardpoint `{name}`"),
                 example: above_tables(&name)
                     .unwrap_or_else(|| format!("for example `{} = [100.0, 0, -50.5]`", shown(&name))),
             };
+            self.unread.clear();
             let mut place = EntryPlace::at(at);
             place.key("position", value);
             let position = match self.written_place(value, &subject, "three coordinates") {
@@ -296,14 +487,12 @@ impl Reader<'_> {
                     Vec3::ZERO
                 }
                 _ => {
-                    place.unread("position");
-                    // No two of these, and none of the others, should be at the same place.
-                    let k = index as f64;
-                    Vec3::new(0.317 + k, 0.1 + 1.7 * k, 0.7 - 0.9 * k * k)
+                    self.unread.push("position");
+                    Vec3::ZERO
                 }
             };
-            raw.places.push(Section::Hardpoints, place);
-            raw.hardpoint_numbers.entry(name.clone()).or_insert(index);
+            self.push(raw, Section::Hardpoints, place);
+            raw.hardpoint_numbers.entry(name.clone()).or_insert(raw.draft.hardpoints.len());
             raw.draft.hardpoints.push(HardpointDraft { name, position });
         }
     }
@@ -321,17 +510,11 @@ impl Reader<'_> {
 
     fn bodies(&mut self, model: &Fields<'_>, raw: &mut Raw) {
         for entry in self.entries(model, "bodies", "body") {
-            let fields = self.entry("body", &entry, BODY);
+            let fields = self.entry("body", &entry, BODY.keys());
             let mut place = EntryPlace::of(&fields);
-            let frame = match fields.get("frame") {
-                None => FrameDraft::Default,
-                Some(f) => self.frame(&fields, f, &mut place, raw).unwrap_or_else(|| {
-                    place.unread("frame");
-                    FrameDraft::Default
-                }),
-            };
-            raw.places.push(Section::Bodies, place);
-            raw.draft.bodies.push(BodyDraft { name: entry.0, frame });
+            let frame = self.given(&fields, "frame", |r, f| r.frame(&fields, f, &mut place, raw));
+            self.push(raw, Section::Bodies, place);
+            raw.draft.bodies.push(BodyDraft { name: entry.0, frame: frame.unwrap_or_default() });
         }
     }
 
@@ -344,7 +527,7 @@ impl Reader<'_> {
     ) -> Option<FrameDraft> {
         let subject = body.subject("frame");
         let table = self.table(f.value, &subject, "a table with a position or three points")?;
-        let fields = self.fields(format!("the frame of {}", body.what), f.value.span(), table, FRAME);
+        let fields = self.fields(format!("the frame of {}", body.what), f.value.span(), table, FRAME.keys());
         if ["origin", "x", "xy"].iter().any(|k| fields.get(k).is_some()) {
             for key in ["position", "euler", "quaternion"] {
                 self.out_of_place(
@@ -366,15 +549,12 @@ impl Reader<'_> {
             Place::Formula(_) => None,
         });
         let rot = match (fields.get("euler"), fields.get("quaternion")) {
-            (Some(f), other) => {
+            (Some(_), other) => {
                 if other.is_some() {
                     self.out_of_place(&fields, "quaternion", "the orientation is given by `euler` already");
                 }
-                let theta =
-                    self.numbers::<3>(f.value, &fields.subject("euler"), "three Euler angles (3-1-3)");
-                let list = f.value.get_ref().as_array();
-                let angle = |k: usize, x: f64| list.and_then(|l| l.get(k)).map_or(x, |v| self.angle_of(v, x));
-                theta.map(|[a, b, c]| rotation_from_euler_313([angle(0, a), angle(1, b), angle(2, c)]))
+                let angles = self.list_of::<3>(&fields, "euler", "three Euler angles (3-1-3)");
+                angles.map(rotation_from_euler_313)
             }
             (None, Some(f)) => {
                 let subject = fields.subject("quaternion");
@@ -395,7 +575,7 @@ impl Reader<'_> {
     fn hardpoint_position(&mut self, name: &str, f: Field<'_>, raw: &Raw) -> Option<Vec3> {
         let hardpoints = &raw.draft.hardpoints;
         let found = raw.hardpoint_numbers.get(name).map(|k| &hardpoints[*k]);
-        if found.is_none() {
+        if found.is_none() && !raw.draft.unread.has(Section::Model, 0, "hardpoints") {
             // Past the problems that anybody reads, and among more names than that, a guess would only cost time.
             let names = hardpoints.iter().map(|h| h.name.as_str());
             let guess = self.found.len() < 50 && hardpoints.len() <= 5000;
@@ -408,67 +588,23 @@ impl Reader<'_> {
 
     fn joints(&mut self, model: &Fields<'_>, raw: &mut Raw) {
         for entry in self.entries(model, "joints", "joint") {
-            let fields = self.entry("joint", &entry, JOINT);
+            let fields = self.entry("joint", &entry, JOINT.keys());
             let mut place = EntryPlace::of(&fields);
-            let kind = self.named(&fields, "type", "the name of a joint type", &mut place);
-            let bodies = self.need(&fields, "bodies").and_then(|f| {
-                let subject = fields.subject("bodies");
-                let expected = "the names of two bodies";
-                match f.value.get_ref().as_array() {
-                    Some(list) if list.len() == 2 => {
-                        let [i, j] = [0, 1].map(|k| self.name(&list[k], &subject, expected));
-                        Some([i?, j?])
-                    }
-                    _ => {
-                        self.wrong(f.value, &subject, expected);
-                        None
-                    }
-                }
-            });
-            if bodies.is_none() {
-                place.unread("bodies");
-            }
-            let at = match fields.get("at") {
-                None => Vec::new(),
-                Some(f) => self.joint_places(&fields, f, &mut place, raw).unwrap_or_else(|| {
-                    place.unread("at");
-                    Vec::new()
-                }),
-            };
-            let [axis, axis2] = ["axis", "axis2"].map(|key| {
-                let f = fields.get(key)?;
-                let line = self.line_of(&fields, f, &mut place);
-                if line.is_none() {
-                    place.unread(f.key);
-                }
-                line
-            });
-            let length = fields.get("length").and_then(|f| self.rod_length_of(&fields, f, &entry.0, raw));
-            if length.is_none() && fields.get("length").is_some() {
-                place.unread("length");
-            }
-            let lead = fields.get("lead").and_then(|f| {
-                let number = self.number(f.value, &fields.subject(f.key));
-                if number.is_none() {
-                    place.unread(f.key);
-                }
-                number.map(|x| self.units.length.metres(x))
-            });
-            let curve = fields.get("curve").and_then(|f| {
-                let curve = self.curve(&fields, f, &mut place);
-                if curve.is_none() {
-                    place.unread("curve");
-                }
-                curve
-            });
-            let cut = fields.get("cut").and_then(|f| self.boolean(f.value, &fields.subject("cut")));
-            raw.places.push(Section::Joints, place);
+            let kind = self.name_of(&fields, "type");
+            let bodies = self.names_of::<2>(&fields, "bodies");
+            let at = self.given(&fields, "at", |r, f| r.joint_places(&fields, f, &mut place, raw));
+            let [axis, axis2] = ["axis", "axis2"].map(|key| self.line_of(&fields, key, &mut place));
+            let length = self.given(&fields, "length", |r, f| r.rod_length_of(&fields, f, &entry.0, raw));
+            let lead = self.number_of(&fields, "lead");
+            let curve = self.given(&fields, "curve", |r, f| r.curve(&fields, f, &mut place));
+            let cut = self.flag_of(&fields, "cut");
+            self.push(raw, Section::Joints, place);
             raw.joint_numbers.entry(entry.0.clone()).or_insert(raw.draft.joints.len());
             raw.draft.joints.push(JointDraft {
                 name: entry.0,
                 kind: kind.unwrap_or_default(),
                 bodies: bodies.unwrap_or_default(),
-                at,
+                at: at.unwrap_or_default(),
                 axis,
                 axis2,
                 length,
@@ -528,57 +664,46 @@ impl Reader<'_> {
     /// A curve; its points become the items of the key.
     fn curve(&mut self, fields: &Fields<'_>, f: Field<'_>, place: &mut EntryPlace) -> Option<CurveDraft> {
         let table = self.table(f.value, &fields.subject("curve"), "a table with the points of the curve")?;
-        let curve = self.fields(format!("the curve of {}", fields.what), f.value.span(), table, CURVE);
-        let closed = match curve.get("closed") {
-            Some(f) => self.boolean(f.value, &curve.subject("closed")),
-            None => Some(false),
-        };
-        let points = self.need(&curve, "points").and_then(|f| {
+        let curve = self.fields(format!("the curve of {}", fields.what), f.value.span(), table, CURVE.keys());
+        let closed = self.flag_of(&curve, "closed");
+        let points = self.given(&curve, "points", |r, f| {
             let subject = curve.subject("points");
-            let list = self.list(f.value, &subject, "a list of hardpoints' names or coordinates")?;
+            let list = r.list(f.value, &subject, "a list of hardpoints' names or coordinates")?;
             place.items("curve", list.iter().map(|v| v.span()).collect());
-            let points: Vec<_> = list.iter().map(|v| self.place(v, &subject)).collect();
+            let points: Vec<_> = list.iter().map(|v| r.place(v, &subject)).collect();
             points.into_iter().collect::<Option<Vec<_>>>()
         });
         Some(CurveDraft { points: points?, closed: closed? })
     }
 
     /// A direction; the names in `through` become the items of the key.
-    fn line_of(&mut self, fields: &Fields<'_>, f: Field<'_>, place: &mut EntryPlace) -> Option<Line> {
-        let (line, items) = self.line(f.value, &fields.subject(f.key))?;
-        place.items(f.key, items);
-        Some(line)
+    fn line_of(&mut self, fields: &Fields<'_>, key: &str, place: &mut EntryPlace) -> Option<Line> {
+        self.given(fields, key, |r, f| {
+            let (line, items) = r.line(f.value, &fields.subject(f.key))?;
+            place.items(f.key, items);
+            Some(line)
+        })
     }
 
-    /// A required name; noted as unread where it is missing.
-    fn named(
-        &mut self,
-        fields: &Fields<'_>,
-        key: &'static str,
-        expected: &str,
-        place: &mut EntryPlace,
-    ) -> Option<String> {
-        if self.need(fields, key).is_none() {
-            place.unread(key);
-        }
-        self.optional_name(fields, key, expected, place)
+    /// A place; coordinates have no items of their own.
+    fn place_of(&mut self, fields: &Fields<'_>, key: &str) -> Option<Place> {
+        self.given(fields, key, |r, f| r.place(f.value, &fields.subject(f.key)))
     }
 
-    /// A name that may be left out; noted as unread where it is there and no name.
-    fn optional_name(
-        &mut self,
-        fields: &Fields<'_>,
-        key: &'static str,
-        expected: &str,
-        place: &mut EntryPlace,
-    ) -> Option<String> {
-        let f = fields.get(key)?;
-        let name = self.name(f.value, &fields.subject(key), expected);
-        if name.is_none() {
-            place.unread(key);
-        }
-        name
+    /// The next entry of a list of the draft is read: where it stands, and what of it could not be read.
+    fn push(&mut self, raw: &mut Raw, section: Section, place: EntryPlace) {
+        let index = raw.places.list(section).len();
+        self.unread.drain(..).for_each(|key| raw.draft.unread.note(section, index, key));
+        raw.places.push(section, place);
     }
+}
+
+/// How a table of this kind is given: for help.
+fn way(table: &Table) -> String {
+    let needed = table.keys.iter().filter(|k| k.need == Need::Required);
+    let needed: Vec<String> = needed.map(|k| format!("`{} = {}`", k.key, k.example)).collect();
+    let what = table.doc.split([',', ';', ':', '.']).next().unwrap_or_default();
+    format!("{} ({}{})", needed.join(" with "), what[..1].to_lowercase(), &what[1..])
 }
 
 static EMPTY: std::sync::OnceLock<DeTable<'static>> = std::sync::OnceLock::new();

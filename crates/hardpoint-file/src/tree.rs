@@ -5,6 +5,7 @@
 use std::ops::Range;
 use std::path::Path;
 
+use hardpoint::joint::Quantity;
 use hardpoint::law::Expression;
 use hardpoint::model::{Line, Nominal, NotConstant, Place};
 use hardpoint::space::Vec3;
@@ -12,6 +13,7 @@ use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
 use crate::diagnostic::{Diagnostic, Severity, Source, closest, shown};
+use crate::format::{HARDPOINT, Key, LENGTH, NUMBER, Need, Shape, THREE_NUMBERS, Table, table};
 use crate::units::Units;
 
 pub(crate) type Value<'a> = Spanned<DeValue<'a>>;
@@ -20,9 +22,6 @@ pub(crate) type Value<'a> = Spanned<DeValue<'a>>;
 const LONGEST_NAME: usize = 100;
 /// The most entries that a table or list may have. It bounds the time that any text can take.
 pub(crate) const MOST_ENTRIES: usize = 200_000;
-
-/// A key that a table may have, and a value to show where it is missing or wrong.
-pub(crate) type Key = (&'static str, &'static str);
 
 /// One `key = value` of a table.
 #[derive(Clone, Copy)]
@@ -39,7 +38,7 @@ pub(crate) struct Fields<'a> {
     pub what: String,
     /// Where its name stands.
     pub at: Range<usize>,
-    keys: &'static [Key],
+    keys: Vec<&'static Key>,
     list: Vec<Field<'a>>,
 }
 
@@ -52,9 +51,13 @@ impl<'a> Fields<'a> {
         self.list.iter().copied()
     }
 
+    /// What is declared of a key.
+    pub fn key(&self, key: &str) -> &'static Key {
+        self.keys.iter().find(|k| k.key == key).expect("only declared keys are read")
+    }
+
     fn example(&self, key: &str) -> String {
-        let example = self.keys.iter().find(|k| k.0 == key).map_or("...", |k| k.1);
-        format!("`{key} = {example}`")
+        format!("`{key} = {}`", self.key(key).example)
     }
 
     /// How messages name the value of one key.
@@ -65,6 +68,34 @@ impl<'a> Fields<'a> {
         }
     }
 }
+
+/// From one hardpoint to another.
+const THROUGH: Table = table! {
+    /// From the first hardpoint to the second. It follows them when the design moves them.
+    "Through":
+    /// Names of two hardpoints.
+    must "through": Shape::exactly(2, &HARDPOINT), "[\"A\", \"B\"]";
+};
+pub(crate) const AXES: Shape = Shape::Any(
+    "Axis",
+    "A global axis.",
+    &[Shape::Words(&[("x", ""), ("y", ""), ("z", ""), ("-x", ""), ("-y", ""), ("-z", "")])],
+);
+pub(crate) const DIRECTION: Shape = Shape::Any(
+    "FixedDirection",
+    "A fixed direction: a global axis or a vector of any length.",
+    &[AXES, THREE_NUMBERS],
+);
+pub(crate) const LINE: Shape = Shape::Any(
+    "Direction",
+    "A direction: a global axis, a vector of any length, or through two hardpoints.",
+    &[AXES, THREE_NUMBERS, Shape::Table(&THROUGH)],
+);
+pub(crate) const PLACE: Shape = Shape::Any(
+    "Place",
+    "A hardpoint's name, or global coordinates in the design configuration.",
+    &[HARDPOINT, Shape::exactly(3, &LENGTH)],
+);
 
 /// What a value is called in messages, and how to write it.
 pub(crate) struct Subject {
@@ -90,6 +121,8 @@ pub(crate) struct Reader<'s> {
     /// The parameters of the law that is being read which expressions give, and those expressions.
     pub law_formulas: Vec<(String, Expression)>,
     pub found: Vec<Diagnostic>,
+    /// The keys of the entry that is being read that are missing or cannot be read.
+    pub unread: Vec<&'static str>,
     /// What to tell of a model that can be read.
     pub remarks: Vec<Diagnostic>,
 }
@@ -97,8 +130,8 @@ pub(crate) struct Reader<'s> {
 impl<'s> Reader<'s> {
     pub fn new(source: &'s Source, folder: Option<&'s Path>) -> Self {
         let (units, nominal) = (Units::default(), Nominal::default());
-        let (law_formulas, found, remarks) = Default::default();
-        Self { source, folder, units, nominal, law_formulas, found, remarks }
+        let (law_formulas, found, unread, remarks) = Default::default();
+        Self { source, folder, units, nominal, law_formulas, found, unread, remarks }
     }
 }
 
@@ -156,10 +189,11 @@ impl Reader<'_> {
         what: impl Into<String>,
         at: Range<usize>,
         table: &'a DeTable<'a>,
-        keys: &'static [Key],
+        keys: impl IntoIterator<Item = &'static Key>,
     ) -> Fields<'a> {
-        let mut fields = Fields { what: what.into(), at, keys, list: Vec::new() };
-        let names = || keys.iter().map(|k| k.0);
+        let keys: Vec<&'static Key> = keys.into_iter().collect();
+        let mut fields = Fields { what: what.into(), at, keys: keys.clone(), list: Vec::new() };
+        let names = || keys.iter().map(|k| k.key);
         let known = |key: &str| names().find(|k| *k == key);
         for (key, value) in table.iter().take(MOST_ENTRIES) {
             let at = (key.span().start, key.span().end);
@@ -253,10 +287,135 @@ impl Reader<'_> {
         Some(list.iter().collect())
     }
 
-    /// A required number, as it is written.
-    pub fn needed_number(&mut self, fields: &Fields<'_>, key: &str) -> Option<f64> {
-        let f = self.need(fields, key)?;
-        self.number(f.value, &fields.subject(key))
+    /// The value of a key, if there is one. What is missing or cannot be read is noted as unread.
+    pub fn given<'a, T>(
+        &mut self,
+        fields: &Fields<'a>,
+        key: &str,
+        read: impl FnOnce(&mut Self, Field<'a>) -> Option<T>,
+    ) -> Option<T> {
+        let declared = fields.key(key);
+        let value = match fields.get(key) {
+            None if declared.need != Need::Required => return None,
+            None => self.need(fields, key).and(None),
+            Some(f) => read(self, f),
+        };
+        if value.is_none() {
+            self.unread.push(declared.key);
+        }
+        value
+    }
+
+    /// The same, or what is declared for where the key is left out.
+    fn declared<'a, T>(
+        &mut self,
+        fields: &Fields<'a>,
+        key: &str,
+        read: impl FnOnce(&mut Self, Field<'a>, Shape) -> Option<T>,
+        default: impl FnOnce(&'static str) -> Option<T>,
+    ) -> Option<T> {
+        let Key { shape, need, .. } = *fields.key(key);
+        match need {
+            Need::Else(text) if fields.get(key).is_none() => default(text),
+            _ => self.given(fields, key, |r, f| read(r, f, shape)),
+        }
+    }
+
+    /// A number in SI, as far as it is declared to be a length or an angle.
+    pub fn number_of(&mut self, fields: &Fields<'_>, key: &str) -> Option<f64> {
+        self.declared(
+            fields,
+            key,
+            |r, f, shape| r.quantity(f.value, &fields.subject(f.key), shape),
+            |text| text.parse().ok(),
+        )
+    }
+
+    pub fn numbers_of<const N: usize>(&mut self, fields: &Fields<'_>, keys: [&str; N]) -> Option<[f64; N]> {
+        let found = keys.map(|key| self.number_of(fields, key));
+        found.iter().all(Option::is_some).then(|| found.map(Option::unwrap_or_default))
+    }
+
+    /// A number in SI, as far as its shape is that of a length or an angle: an expression gives radians.
+    fn quantity(&mut self, value: &Value<'_>, subject: &Subject, shape: Shape) -> Option<f64> {
+        let x = self.number(value, subject)?;
+        Some(match shape {
+            Shape::Number(Quantity::Angle) if value.get_ref().is_str() => x,
+            Shape::Number(quantity) | Shape::Plain(quantity) => self.units.to_si(quantity, x),
+            _ => x,
+        })
+    }
+
+    /// `true` or `false`.
+    pub fn flag_of(&mut self, fields: &Fields<'_>, key: &str) -> Option<bool> {
+        self.declared(
+            fields,
+            key,
+            |r, f, _| r.boolean(f.value, &fields.subject(f.key)),
+            |text| Some(text == "true"),
+        )
+    }
+
+    /// A name of something.
+    pub fn name_of(&mut self, fields: &Fields<'_>, key: &str) -> Option<String> {
+        self.declared(
+            fields,
+            key,
+            |r, f, shape| r.name(f.value, &fields.subject(f.key), &shape.noun()),
+            |text| serde_json::from_str(text).ok(),
+        )
+    }
+
+    /// A name that may be left out: none then. `None` where it cannot be read.
+    pub fn name_if(&mut self, fields: &Fields<'_>, key: &str) -> Option<Option<String>> {
+        let name = self.name_of(fields, key);
+        (name.is_some() || fields.get(key).is_none()).then_some(name)
+    }
+
+    /// The names in a list of so many.
+    pub fn names_of<const N: usize>(&mut self, fields: &Fields<'_>, key: &str) -> Option<[String; N]> {
+        let (subject, expected) = (fields.subject(key), fields.key(key).shape.noun());
+        self.given(fields, key, |r, f| match f.value.get_ref().as_array() {
+            Some(list) if list.len() == N => {
+                let names: Vec<_> = list.iter().map(|v| r.name(v, &subject, &expected)).collect();
+                names.into_iter().collect::<Option<Vec<_>>>()?.try_into().ok()
+            }
+            _ => {
+                r.wrong(f.value, &subject, &expected);
+                None
+            }
+        })
+    }
+
+    /// Exactly so many numbers, in SI as far as they are declared to be lengths or angles.
+    pub fn list_of<const N: usize>(
+        &mut self,
+        fields: &Fields<'_>,
+        key: &str,
+        expected: &str,
+    ) -> Option<[f64; N]> {
+        let Shape::List(of, _) = fields.key(key).shape else { return None };
+        self.given(fields, key, |r, f| r.quantities(f.value, &fields.subject(key), expected, *of))
+    }
+
+    /// One of the words that the key may be: which.
+    pub fn word_of(&mut self, fields: &Fields<'_>, key: &str) -> Option<usize> {
+        let words = fields.key(key).shape.words();
+        let place = |word: &str| words.iter().position(|w| *w == word);
+        self.declared(
+            fields,
+            key,
+            |r, f, shape| {
+                let subject = fields.subject(f.key);
+                let word = r.name(f.value, &subject, &shape.noun())?;
+                let found = place(&word);
+                if found.is_none() {
+                    r.unknown_word(f.value.span(), &subject, &word, &words);
+                }
+                found
+            },
+            |text| place(text.trim_matches('"')),
+        )
     }
 
     pub fn boolean(&mut self, value: &Value<'_>, subject: &Subject) -> Option<bool> {
@@ -396,32 +555,37 @@ impl Reader<'_> {
         }
     }
 
-    /// Exactly `N` numbers; `expected` says what they are.
+    /// Exactly `N` numbers, as they are written; `expected` says what they are.
     pub fn numbers<const N: usize>(
         &mut self,
         value: &Value<'_>,
         subject: &Subject,
         expected: &str,
     ) -> Option<[f64; N]> {
-        let list = match value.get_ref().as_array() {
-            Some(list) if list.len() == N => list,
-            Some(list) => {
+        self.quantities(value, subject, expected, NUMBER)
+    }
+
+    /// The same in SI, as far as their shape is that of a length or an angle.
+    fn quantities<const N: usize>(
+        &mut self,
+        value: &Value<'_>,
+        subject: &Subject,
+        expected: &str,
+        shape: Shape,
+    ) -> Option<[f64; N]> {
+        let list = value.get_ref().as_array();
+        let Some(list) = list.filter(|list| list.len() == N) else {
+            self.wrong(value, subject, expected);
+            if let (Some(list), Some(d)) = (list, self.found.last_mut()) {
                 let n = list.len();
-                self.wrong(value, subject, expected);
-                if let Some(d) = self.found.last_mut() {
-                    d.label = Some(format!("{n} value{} instead of {N}", if n == 1 { "" } else { "s" }));
-                }
-                return None;
+                d.label = Some(format!("{n} value{} instead of {N}", if n == 1 { "" } else { "s" }));
             }
-            None => {
-                self.wrong(value, subject, expected);
-                return None;
-            }
+            return None;
         };
         let mut numbers = [0.0; N];
         let mut complete = true;
         for (k, v) in list.iter().enumerate() {
-            match self.number(v, &subject.item(k)) {
+            match self.quantity(v, &subject.item(k), shape) {
                 Some(x) => numbers[k] = x,
                 None => complete = false,
             }
@@ -431,8 +595,7 @@ impl Reader<'_> {
 
     /// Global coordinates, in m.
     pub fn coordinates(&mut self, value: &Value<'_>, subject: &Subject, expected: &str) -> Option<Vec3> {
-        let p = self.numbers::<3>(value, subject, expected)?;
-        Some(p.map(|x| self.units.length.metres(x)).into())
+        self.quantities(value, subject, expected, LENGTH).map(Vec3::from)
     }
 
     /// The name of a hardpoint, or coordinates.
@@ -488,25 +651,20 @@ impl Reader<'_> {
         }
     }
 
+    /// The same of a key.
+    pub fn vector_of(&mut self, fields: &Fields<'_>, key: &str) -> Option<Vec3> {
+        self.given(fields, key, |r, f| r.vector(f.value, &fields.subject(f.key)))
+    }
+
     /// A direction, or `{ through = [...] }`; with the places of the two hardpoints' names.
     pub fn line(&mut self, value: &Value<'_>, subject: &Subject) -> Option<(Line, Vec<Range<usize>>)> {
         let Some(table) = value.get_ref().as_table() else {
             return self.vector(value, subject).map(|v| (Line::Along(v), Vec::new()));
         };
-        const KEYS: &[Key] = &[("through", "[\"A\", \"B\"]")];
-        let fields = self.fields(subject.name.clone(), value.span(), table, KEYS);
-        let through = self.need(&fields, "through")?;
-        let subject = fields.subject("through");
-        let names = match through.value.get_ref().as_array() {
-            Some(list) if list.len() == 2 => list,
-            _ => {
-                self.wrong(through.value, &subject, "the names of two hardpoints");
-                return None;
-            }
-        };
-        let [a, b] = [0, 1].map(|k| self.name(&names[k], &subject, "the names of two hardpoints"));
-        let spans = names.iter().map(Spanned::span).collect();
-        Some((Line::Through(a?, b?), spans))
+        let fields = self.fields(subject.name.clone(), value.span(), table, THROUGH.keys());
+        let [a, b] = self.names_of::<2>(&fields, "through")?;
+        let items = fields.get("through").and_then(|f| f.value.get_ref().as_array());
+        Some((Line::Through(a, b), items.into_iter().flatten().map(Spanned::span).collect()))
     }
 }
 

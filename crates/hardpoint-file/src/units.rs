@@ -29,6 +29,11 @@ impl LengthUnit {
     /// All of them.
     pub const ALL: [Self; 4] = [Self::Millimetre, Self::Centimetre, Self::Metre, Self::Inch];
 
+    /// As the format declares them.
+    pub(crate) fn words() -> Vec<(&'static str, String)> {
+        Self::ALL.map(|unit| (unit.symbol(), String::new())).into()
+    }
+
     /// How files and results write it.
     pub const fn symbol(self) -> &'static str {
         match self {
@@ -74,6 +79,11 @@ pub enum AngleUnit {
 impl AngleUnit {
     /// Both of them.
     pub const ALL: [Self; 2] = [Self::Degree, Self::Radian];
+
+    /// As the format declares them.
+    pub(crate) fn words() -> Vec<(&'static str, String)> {
+        Self::ALL.map(|unit| (unit.symbol(), String::new())).into()
+    }
 
     /// How files and results write it.
     pub const fn symbol(self) -> &'static str {

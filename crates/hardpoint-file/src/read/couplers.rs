@@ -3,126 +3,152 @@
 use hardpoint::joint::Quantity;
 use hardpoint::model::{CouplerDraft, CouplerKindDraft, Section, TermDraft};
 
-use super::{Raw, coordinate_quantity};
+use super::{COORDINATE, Raw, coordinate_quantity};
+use crate::format::{JOINT, Key, Kinds, LENGTH, NUMBER, Shape, TWO_NUMBERS, Table, keys, table};
 use crate::places::EntryPlace;
-use crate::tree::{Fields, Key, Reader};
+use crate::tree::{Fields, Reader};
 
-const TYPES: [&str; 6] = ["gear", "bevel", "rack", "rack_and_pinion", "belt", "linear"];
-const GEARS: &[Key] =
-    &[("type", "\"gear\""), ("joints", "[\"J1\", \"J2\"]"), ("teeth", "[20, 40]"), ("internal", "true")];
-const RACK: &[Key] =
-    &[("type", "\"rack\""), ("rack", "\"slide\""), ("pinion", "\"hinge\""), ("radius", "12.5")];
-const BELT: &[Key] =
-    &[("type", "\"belt\""), ("joints", "[\"J1\", \"J2\"]"), ("radii", "[20, 40]"), ("crossed", "true")];
-const LINEAR: &[Key] = &[
-    ("type", "\"linear\""),
-    ("terms", "[{ joint = \"J1\", coefficient = 2 }, { joint = \"J2\", coefficient = -1 }]"),
+pub(crate) const COUPLER: Kinds = Kinds {
+    name: "Coupler",
+    doc: "A coupler: it holds a linear relation between joint coordinates, each counted about or along its own joint's axis, of \
+          body j relative to body i.",
+    typed: true,
+    tables: || TYPES.iter().map(|t| &t.0).collect(),
+};
+type Read = fn(&mut Reader<'_>, &Fields<'_>, &Raw, &mut EntryPlace) -> Option<CouplerKindDraft>;
+
+static TYPES: [(Table, Read); 6] = [
+    (
+        table! {
+            /// Two gears: `teeth[0] angle[0] + teeth[1] angle[1] = 0`, or minus for an internal gear.
+            "gear", GEARS
+        },
+        |r, fields, _, _| r.gears(fields),
+    ),
+    (
+        table! {
+            /// Two bevel gears, with the same relation as `gear`.
+            "bevel", GEARS
+        },
+        |r, fields, _, _| r.gears(fields),
+    ),
+    (
+        table! {
+            /// A rack and its pinion: `displacement = radius x angle`.
+            "rack", RACK
+        },
+        |r, fields, _, place| r.rack(fields, place),
+    ),
+    (
+        table! {
+            /// Another name of `rack`.
+            "rack_and_pinion", RACK
+        },
+        |r, fields, _, place| r.rack(fields, place),
+    ),
+    (
+        table! {
+            /// A belt or chain: `radii[0] angle[0] = radii[1] angle[1]`, or minus for a crossed one.
+            "belt", BELT
+        },
+        |r, fields, _, _| r.belt(fields),
+    ),
+    (
+        table! {
+            /// Any linear relation: the sum of `coefficient x coordinate` is zero.
+            "linear":
+            /// Two terms or more.
+            must "terms": Shape::list(&Shape::Table(&TERM)), "[{ joint = \"J1\", coefficient = 2 }, { joint = \"J2\", coefficient = -1 }]";
+        },
+        |r, fields, raw, _| r.linear(fields, raw),
+    ),
 ];
-const TERM: &[Key] = &[("joint", "\"J1\""), ("coordinate", "\"angle\""), ("coefficient", "2")];
-const COUPLER: &[Key] = &[("type", "\"gear\"")];
+const GEARS: &[Key] = keys! {
+    /// Names of the two joints that carry the gears; each has an `angle`.
+    must "joints": TWO_JOINTS, "[\"J1\", \"J2\"]";
+    /// Numbers of teeth, or any two numbers in their ratio.
+    must "teeth": TWO_NUMBERS, "[20, 40]";
+    /// Whether one of them is an internal gear, so that both turn the same way.
+    or("false") "internal": Shape::Flag, "true";
+};
+const RACK: &[Key] = keys! {
+    /// Name of the joint on which the rack slides; it has a `displacement`.
+    must "rack": JOINT, "\"slide\"";
+    /// Name of the joint on which the pinion turns; it has an `angle`.
+    must "pinion": JOINT, "\"hinge\"";
+    /// Pitch radius, in the length unit; negative where the rack passes the pinion's other side.
+    must "radius": LENGTH, "12.5";
+};
+const BELT: &[Key] = keys! {
+    /// Names of the two joints that carry the pulleys; each has an `angle`.
+    must "joints": TWO_JOINTS, "[\"J1\", \"J2\"]";
+    /// Radii of the pulleys, in the length unit.
+    must "radii": Shape::exactly(2, &LENGTH), "[20, 40]";
+    /// Whether the belt crosses between them.
+    or("false") "crossed": Shape::Flag, "true";
+};
+const TWO_JOINTS: Shape = Shape::exactly(2, &JOINT);
+pub(super) const TERM: Table = table! {
+    /// A joint coordinate times a number.
+    "Term":
+    /// The joint's name.
+    must "joint": JOINT, "\"J1\"";
+    /// Which of its coordinates; may be left out where it has only one.
+    may "coordinate": COORDINATE, "\"angle\"";
+    /// The factor, per unit of the coordinate in this file.
+    must "coefficient": NUMBER, "2";
+};
 
 impl Reader<'_> {
     pub(super) fn couplers(&mut self, model: &Fields<'_>, raw: &mut Raw) {
         for entry in self.entries(model, "couplers", "coupler") {
-            let Some(kind) = self.entry_type("coupler", &entry, &TYPES, COUPLER) else { continue };
-            let keys = match kind {
-                "gear" | "bevel" => GEARS,
-                "rack" | "rack_and_pinion" => RACK,
-                "belt" => BELT,
-                _ => LINEAR,
-            };
-            let fields = self.entry("coupler", &entry, keys);
+            let Some((table, read)) = self.entry_type("coupler", &entry, &TYPES) else { continue };
+            let fields = self.entry("coupler", &entry, table.typed_keys());
             let mut place = EntryPlace::of(&fields);
-            let kind = match kind {
-                "gear" | "bevel" => self.gears(&fields),
-                "rack" | "rack_and_pinion" => self.rack(&fields, &mut place),
-                "belt" => self.belt(&fields),
-                _ => self.linear(&fields, raw),
-            };
-            if let Some(kind) = kind {
-                raw.places.push(Section::Couplers, place);
+            if let Some(kind) = read(self, &fields, raw, &mut place) {
+                self.push(raw, Section::Couplers, place);
                 raw.draft.couplers.push(CouplerDraft { name: entry.0, kind });
             }
         }
     }
 
     fn gears(&mut self, fields: &Fields<'_>) -> Option<CouplerKindDraft> {
-        let joints = self.joint_pair(fields);
-        let teeth = self.pair_of_numbers(fields, "teeth", "two numbers of teeth");
-        let internal = self.flag(fields, "internal");
+        let joints = self.names_of(fields, "joints");
+        let teeth = self.list_of(fields, "teeth", "two numbers of teeth");
+        let internal = self.flag_of(fields, "internal");
         Some(CouplerKindDraft::Gears { joints: joints?, teeth: teeth?, internal: internal? })
     }
 
     fn rack(&mut self, fields: &Fields<'_>, place: &mut EntryPlace) -> Option<CouplerKindDraft> {
-        let [rack, pinion] = ["rack", "pinion"].map(|key| self.required(fields, key, "the name of a joint"));
-        let radius = self.needed_number(fields, "radius").map(|r| self.units.length.metres(r));
+        let [rack, pinion] = ["rack", "pinion"].map(|key| self.name_of(fields, key));
+        let radius = self.number_of(fields, "radius");
         let named = ["rack", "pinion"].iter().filter_map(|key| fields.get(key));
         place.items("joints", named.map(|f| f.value.span()).collect());
         Some(CouplerKindDraft::Rack { rack: rack?, pinion: pinion?, radius: radius? })
     }
 
     fn belt(&mut self, fields: &Fields<'_>) -> Option<CouplerKindDraft> {
-        let joints = self.joint_pair(fields);
-        let radii = self.pair_of_numbers(fields, "radii", "two radii");
-        let radii = radii.map(|r| r.map(|r| self.units.length.metres(r)));
-        let crossed = self.flag(fields, "crossed");
+        let joints = self.names_of(fields, "joints");
+        let radii = self.list_of(fields, "radii", "two radii");
+        let crossed = self.flag_of(fields, "crossed");
         Some(CouplerKindDraft::Belt { joints: joints?, radii: radii?, crossed: crossed? })
     }
 
     /// The file's sum of `coefficient x coordinate` is zero in the file's units; so it must be in SI.
     fn linear(&mut self, fields: &Fields<'_>, raw: &Raw) -> Option<CouplerKindDraft> {
-        let f = self.need(fields, "terms")?;
-        let subject = fields.subject("terms");
-        let list = self.list(f.value, &subject, "a list of tables")?;
-        let terms: Vec<_> = list
-            .into_iter()
-            .enumerate()
-            .map(|(k, v)| {
-                let table = self.table(v, &subject, "a list of tables")?;
-                let what = format!("entry {} of `terms` in {}", k + 1, fields.what);
-                let term = self.fields(what, v.span(), table, TERM);
-                let joint = self.required(&term, "joint", "the name of a joint");
-                let coordinate = match term.get("coordinate") {
-                    Some(f) => {
-                        Some(self.name(f.value, &term.subject("coordinate"), "the name of a coordinate")?)
-                    }
-                    None => None,
-                };
-                let coefficient = self.needed_number(&term, "coefficient");
-                let joint = joint?;
+        let terms = self.tables(fields, "terms", &TERM)?;
+        let terms: Vec<_> = terms
+            .iter()
+            .map(|term| {
+                let joint = self.name_of(term, "joint");
+                let coordinate = self.name_if(term, "coordinate");
+                let coefficient = self.number_of(term, "coefficient");
+                let (joint, coordinate) = (joint?, coordinate?);
                 let quantity = coordinate_quantity(raw, &joint, coordinate.as_deref());
                 let per_si = self.units.of(quantity.unwrap_or(Quantity::Number)).1;
                 Some(TermDraft { joint, coordinate, coefficient: coefficient? * per_si })
             })
             .collect();
         terms.into_iter().collect::<Option<_>>().map(CouplerKindDraft::Linear)
-    }
-
-    fn joint_pair(&mut self, fields: &Fields<'_>) -> Option<[String; 2]> {
-        let f = self.need(fields, "joints")?;
-        let (subject, expected) = (fields.subject("joints"), "the names of two joints");
-        match f.value.get_ref().as_array() {
-            Some(list) if list.len() == 2 => {
-                let [a, b] = [0, 1].map(|k| self.name(&list[k], &subject, expected));
-                Some([a?, b?])
-            }
-            _ => {
-                self.wrong(f.value, &subject, expected);
-                None
-            }
-        }
-    }
-
-    fn pair_of_numbers(&mut self, fields: &Fields<'_>, key: &str, expected: &str) -> Option<[f64; 2]> {
-        let f = self.need(fields, key)?;
-        self.numbers::<2>(f.value, &fields.subject(key), expected)
-    }
-
-    /// `true` or `false`; false where it is left out.
-    fn flag(&mut self, fields: &Fields<'_>, key: &str) -> Option<bool> {
-        match fields.get(key) {
-            Some(f) => self.boolean(f.value, &fields.subject(key)),
-            None => Some(false),
-        }
     }
 }

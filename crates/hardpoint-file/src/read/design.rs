@@ -8,113 +8,300 @@ use hardpoint::model::{ChangeDraft, End, Section, ShapeDraft, VariableDraft};
 use hardpoint::space::Vec3;
 
 use super::Raw;
+use crate::format::{
+    ANGLE, BODY, DRIVER, HARDPOINT, JOINT, Key, Kinds, LENGTH, NUMBER, Shape, TWO_NUMBERS, Table, keys, table,
+};
 use crate::places::EntryPlace;
-use crate::tree::{Fields, Key, Reader, axis_named};
+use crate::tree::{AXES, DIRECTION, Fields, LINE, Reader, axis_named};
 
-const DESIGN: &[Key] = &[
-    ("move", "\"A\""),
-    ("along", "\"z\""),
-    ("mirror", "\"y\""),
-    ("mirrored", "\"A_right\""),
-    ("tilt", "\"J1\""),
-    ("about", "\"x\""),
-    ("fields", "[{ joint = \"J1\", body = \"crank\", V = [1, 0, 0] }]"),
-    ("markers", "[{ joint = \"J1\", on = \"j\", move = [0, 0, 1] }]"),
-    ("shape", "\"lca\""),
-    ("field", "{ scale = \"A\", along = \"x\" }"),
-    ("length", "\"rod\""),
-    ("driver", "\"turn\""),
-    ("parameter", "\"amplitude\""),
-    ("fixed_length", "true"),
-    ("bounds", "[-5, 5]"),
-    ("typical", "2"),
-    ("tolerance", "0.1"),
-];
-const FIELD: &[Key] = &[("joint", "\"J1\""), ("body", "\"crank\""), ("V", "[1, 0, 0]"), ("U", "[0, 0, 0]")];
-const MARKER: &[Key] = &[("joint", "\"J1\""), ("on", "\"j\""), ("move", "[0, 0, 1]"), ("turn", "[0, 0, 0]")];
+pub(crate) const VARIABLE: Kinds = Kinds {
+    name: "Variable",
+    doc: "A design variable, given by exactly one of `move`, `tilt`, `fields`, `markers`, `length`, `driver`.",
+    typed: false,
+    tables: || KINDS.iter().map(|k| &k.0).collect(),
+};
+/// Reads what a variable changes; the text is its name.
+type Read = fn(&mut Reader<'_>, &Fields<'_>, &str, &Raw, &mut EntryPlace) -> Option<Changes>;
+/// The changes of a variable, or of several, by name.
+type Changes = Vec<(String, Vec<ChangeDraft>)>;
 
-const SHAPE: &[Key] = &[
-    ("translate", "\"z\""),
-    ("rotate", "\"z\""),
-    ("at", "\"A\""),
-    ("scale", "\"A\""),
-    ("along", "\"x\""),
-    ("bend", "[\"A\", \"B\"]"),
-    ("towards", "\"z\""),
-    ("through", "[{ at = \"A\", move = [0, 0, 1] }]"),
+/// A kind of design variable: with what every kind has.
+macro_rules! variable {
+    ($($table:tt)*) => { Table { shared: RANGE, ..table! { $($table)* } } };
+}
+
+static KINDS: [(Table, Read); 7] = [
+    (
+        variable! {
+            /// Hardpoints move; all joints, axes and points on them follow. A length.
+            "Move":
+            /// A hardpoint's name, or a list of names that move together.
+            must "move": HARDPOINTS, "\"A\"";
+            /// The direction; `"xyz"` makes three variables, NAME_x, NAME_y and NAME_z.
+            must "along": Shape::Any("Along", "", &[AXES, Shape::Any("AllAxes", "", &[Shape::Words(&[("xyz", "")])]), THREE]), "\"z\"";
+            /// The global axis square to a mirror through the origin, behind which `mirrored` hardpoints move: `"y"` between left and
+            /// right.
+            may "mirror": Shape::Words(&[("x", ""), ("y", ""), ("z", "")]), "\"y\"";
+            /// A hardpoint's name, or a list of names, that move as the mirror image of `move`.
+            may "mirrored": HARDPOINTS, "\"A_right\"";
+        },
+        |r, fields, name, _, place| r.moves(fields, name, place),
+    ),
+    (
+        variable! {
+            /// Both markers of a joint turn about a direction through their place. An angle.
+            "Tilt":
+            /// The joint's name.
+            must "tilt": JOINT, "\"J1\"";
+            /// The direction to turn about.
+            must "about": LINE, "\"x\"";
+        },
+        |r, fields, name, _, place| {
+            place.changes(fields, "tilt");
+            let joint = r.name_of(fields, "tilt");
+            let about = r.line_of(fields, "about", place);
+            one(name, ChangeDraft::Tilt { joint: joint?, about: about? })
+        },
+    ),
+    (
+        variable! {
+            /// Design velocities V and U of single markers, under one parameter. A plain number.
+            "Fields":
+            /// The markers.
+            must "fields": Shape::list(&Shape::Table(&FIELD)), "[{ joint = \"J1\", body = \"crank\", V = [1, 0, 0] }]";
+        },
+        |r, fields, name, _, place| {
+            place.changes(fields, "fields");
+            Some(vec![(name.to_owned(), r.velocity_fields(fields)?)])
+        },
+    ),
+    (
+        variable! {
+            /// Markers of joints move and turn by themselves; hardpoints stay.
+            "Markers":
+            /// The markers.
+            must "markers": Shape::list(&Shape::Table(&MARKER)), "[{ joint = \"J1\", on = \"j\", move = [0, 0, 1] }]";
+        },
+        |r, fields, name, _, place| {
+            place.changes(fields, "markers");
+            Some(vec![(name.to_owned(), r.markers(fields)?)])
+        },
+    ),
+    (
+        variable! {
+            /// Whole bodies change their shape, and everything on them follows. The unit is that of the `field`.
+            "Shape":
+            /// A body's name, or a list of names.
+            must "shape": BODIES, "\"lca\"";
+            /// How their points move.
+            must "field": Shape::Kinds(&SHAPE_FIELD), "{ scale = \"A\", along = \"x\" }";
+        },
+        |r, fields, name, _, place| {
+            place.changes(fields, "shape");
+            let bodies = r.several(fields, "shape", &mut Vec::new());
+            let field = r.given(fields, "field", |r, f| {
+                let table =
+                    r.table(f.value, &fields.subject("field"), "a table that says how points move")?;
+                let what = format!("`field` of {}", fields.what);
+                let field = r.fields(what, f.value.span(), table, SHAPE_FIELD.keys());
+                let (_, read) = r.led_by(&field, &FIELDS, ["how points move", "this field is given"])?;
+                read(r, &field, place)
+            });
+            one(name, ChangeDraft::Shape { bodies: bodies?, field: field? })
+        },
+    ),
+    (
+        variable! {
+            /// The `length` that a rod is given grows. A length.
+            "RodLength":
+            /// The rod's name.
+            must "length": JOINT, "\"rod\"";
+        },
+        |r, fields, name, _, place| {
+            place.changes(fields, "length");
+            one(name, ChangeDraft::Length { joint: r.name_of(fields, "length")?, rate: 1.0 })
+        },
+    ),
+    (
+        variable! {
+            /// A parameter of a driver's law grows; the variable has the parameter's unit.
+            "LawParameter":
+            /// The driver's name.
+            must "driver": DRIVER, "\"turn\"";
+            /// The parameter's name, such as `amplitude`, `c1`, `f[3]` or `piece[0].speed`.
+            must "parameter": Shape::Name("a parameter"), "\"amplitude\"";
+        },
+        |r, fields, name, raw, place| {
+            place.changes(fields, "driver");
+            one(name, r.law_parameter(fields, raw)?)
+        },
+    ),
 ];
-const THROUGH: &[Key] = &[("at", "\"A\""), ("move", "[0, 0, 1]")];
+
+const RANGE: &[Key] = keys! {
+    /// Whether rods and legs keep their lengths while it moves their ends, so that the mechanism is assembled anew; else they are
+    /// made anew to fit the design configuration.
+    or("false") "fixed_length": Shape::Flag, "true";
+    /// The lowest and the highest value that it may have, in the variable's unit; it is 0 in the file.
+    may "bounds": TWO_NUMBERS, "[-5, 5]";
+    /// How large a change of it is usual, in the variable's unit: what variables are compared by.
+    may "typical": NUMBER, "2";
+    /// By how much it may be off when it is made, either way, in the variable's unit; `whatif` ranks by it too.
+    may "tolerance": NUMBER, "0.1";
+};
+const HARDPOINTS: Shape = Shape::Any("Names", "", &[HARDPOINT, Shape::list(&HARDPOINT)]);
+const BODIES: Shape = Shape::Any("Names", "", &[BODY, Shape::list(&BODY)]);
+const THREE: Shape = Shape::exactly(3, &NUMBER);
+pub(super) const FIELD: Table = table! {
+    /// The design velocity of one joint's marker on one body, in that body's frame.
+    "Field":
+    /// The joint's name.
+    must "joint": JOINT, "\"J1\"";
+    /// The body whose marker it is.
+    must "body": BODY, "\"crank\"";
+    /// Location velocity, length unit per unit of the parameter. Default: zero.
+    may "V": Shape::exactly(3, &LENGTH), "[1, 0, 0]";
+    /// Rates of the marker's 3-1-3 Euler angles, angle unit per unit of the parameter. Default: zero.
+    may "U": Shape::exactly(3, &ANGLE), "[0, 0, 0]";
+};
+pub(super) const MARKER: Table = table! {
+    /// A global velocity of a joint's markers.
+    "Marker":
+    /// The joint's name.
+    must "joint": JOINT, "\"J1\"";
+    /// The marker on body i, on body j, or both.
+    or("\"both\"") "on": Shape::Words(&[("i", ""), ("j", ""), ("both", "")]), "\"j\"";
+    /// Global displacement per unit of the variable. Default: zero.
+    may "move": THREE, "[0, 0, 1]";
+    /// Global rotation vector per unit of the variable, about the marker's place. Default: zero.
+    may "turn": THREE, "[0, 0, 0]";
+};
+
+pub(super) const SHAPE_FIELD: Kinds = Kinds {
+    name: "ShapeField",
+    doc: "How the points of a body move.",
+    typed: false,
+    tables: || FIELDS.iter().map(|f| &f.0).collect(),
+};
+type ReadField = fn(&mut Reader<'_>, &Fields<'_>, &mut EntryPlace) -> Option<ShapeDraft>;
+
+static FIELDS: [(Table, ReadField); 5] = [
+    (
+        table! {
+            /// All the same way. A length.
+            "Translate":
+            /// The direction, of any length.
+            must "translate": DIRECTION, "\"z\"";
+        },
+        |r, fields, _| r.vector_of(fields, "translate").map(ShapeDraft::Translate),
+    ),
+    (
+        table! {
+            /// About a line. An angle.
+            "Rotate":
+            /// The line's direction.
+            must "rotate": LINE, "\"z\"";
+            /// A hardpoint on it.
+            must "at": HARDPOINT, "\"A\"";
+        },
+        |r, fields, place| {
+            let about = r.line_of(fields, "rotate", place);
+            let at = r.name_of(fields, "at");
+            Some(ShapeDraft::Rotate { about: about?, at: at? })
+        },
+    ),
+    (
+        table! {
+            /// Away from a point. A plain number, 1 being twice the size.
+            "Scale":
+            /// The hardpoint that stays.
+            must "scale": HARDPOINT, "\"A\"";
+            /// The only direction that grows. Default: all do.
+            may "along": LINE, "\"x\"";
+        },
+        |r, fields, place| {
+            let from = r.name_of(fields, "scale");
+            let along = r.line_of(fields, "along", place);
+            (along.is_some() || fields.get("along").is_none()).then_some(())?;
+            Some(ShapeDraft::Scale { from: from?, along })
+        },
+    ),
+    (
+        table! {
+            /// Like a beam. The length by which its free end goes aside.
+            "Bend":
+            /// The hardpoint where it is held, and the one where it is pushed.
+            must "bend": Shape::exactly(2, &HARDPOINT), "[\"A\", \"B\"]";
+            /// In which direction, of any length; only what is square to the beam counts.
+            must "towards": DIRECTION, "\"z\"";
+        },
+        |r, fields, _| {
+            let ends = r.names_of::<2>(fields, "bend");
+            let towards = r.vector_of(fields, "towards");
+            let [from, to] = ends?;
+            Some(ShapeDraft::Bend { from, to, towards: towards? })
+        },
+    ),
+    (
+        table! {
+            /// As some hardpoints move, and smoothly between them. A length.
+            "ThroughPoints":
+            /// The hardpoints.
+            must "through": Shape::list(&Shape::Table(&THROUGH)), "[{ at = \"A\", move = [0, 0, 1] }]";
+        },
+        |r, fields, _| {
+            let moves: Vec<_> = r
+                .tables(fields, "through", &THROUGH)?
+                .iter()
+                .map(|f| {
+                    let at = r.name_of(f, "at");
+                    let v = r.optional_vector(f, "move");
+                    Some((at?, v?.into()))
+                })
+                .collect();
+            moves.into_iter().collect::<Option<_>>().map(ShapeDraft::Through)
+        },
+    ),
+];
+const THROUGH: Table = table! {
+    /// How a hardpoint moves.
+    "ThroughPoint":
+    /// Its name.
+    must "at": HARDPOINT, "\"A\"";
+    /// How far, per unit of the variable; it stays where this is left out.
+    may "move": Shape::exactly(3, &Shape::Plain(Quantity::Number)), "[0, 0, 1]";
+};
+
+/// The one change of a variable.
+fn one(name: &str, change: ChangeDraft) -> Option<Changes> {
+    Some(vec![(name.to_owned(), vec![change])])
+}
 
 impl Reader<'_> {
     pub(super) fn design(&mut self, model: &Fields<'_>, raw: &mut Raw) {
         for entry in self.entries(model, "design", "design variable") {
-            let fields = self.entry("design variable", &entry, DESIGN);
+            let fields = self.entry("design variable", &entry, VARIABLE.keys());
             let mut place = EntryPlace::of(&fields);
-            let kinds: Vec<_> = ["move", "tilt", "fields", "markers", "shape", "length", "driver"]
-                .into_iter()
-                .filter(|k| fields.get(k).is_some())
-                .collect();
-            let fixed_length = fields.get("fixed_length");
-            let fixed_length =
-                fixed_length.and_then(|f| self.boolean(f.value, &fields.subject("fixed_length")));
-            let (first, rest) = match kinds.split_first() {
-                Some((first, rest)) => (*first, rest),
-                None => {
-                    let message = format!("{} does not say what it changes", fields.what);
-                    self.report("HP0104", fields.at.clone(), message).help = Some(
-                        "give one of `move` (with `along`), `tilt` (with `about`), `fields`, `markers`, `shape` (with \
-                         `field`), `length`, `driver` (with `parameter`); for example `move = \"A\"` and `along = \"z\"`"
-                            .into(),
-                    );
-                    place.unread("name");
-                    ("", &[][..])
-                }
+            let fixed_length = self.flag_of(&fields, "fixed_length");
+            let kind = self.led_by(&fields, &KINDS, ["what it changes", "this variable is given"]);
+            let variables = kind.and_then(|(_, read)| read(self, &fields, &entry.0, raw, &mut place));
+            if variables.is_none() {
+                self.unread.push("name");
+            }
+            let mut variables = variables.unwrap_or_else(|| vec![(entry.0.clone(), Vec::new())]);
+            let mut draft = VariableDraft {
+                changes: std::mem::take(&mut variables[0].1),
+                fixed_length: fixed_length.unwrap_or(false),
+                ..VariableDraft::default()
             };
-            for key in rest {
-                self.out_of_place(&fields, key, format!("this variable is given by `{first}` already"));
-            }
-            if first != "move" {
-                for key in ["along", "mirror", "mirrored"] {
-                    self.out_of_place(&fields, key, format!("`{key}` goes with `move`"));
-                }
-            }
-            if first != "tilt" {
-                self.out_of_place(&fields, "about", "`about` goes with `tilt`");
-            }
-            if first != "shape" {
-                self.out_of_place(&fields, "field", "`field` goes with `shape`");
-            }
-            if first != "driver" {
-                self.out_of_place(&fields, "parameter", "`parameter` goes with `driver`");
-            }
-            let variables = match first {
-                "move" => self.moves(&fields, &entry.0, &mut place),
-                "tilt" => self.tilt(&fields, &mut place).map(|c| vec![(entry.0.clone(), vec![c])]),
-                "fields" => self.velocity_fields(&fields, &mut place).map(|c| vec![(entry.0.clone(), c)]),
-                "markers" => self.markers(&fields, &mut place).map(|c| vec![(entry.0.clone(), c)]),
-                "shape" => self.shape(&fields, &mut place).map(|c| vec![(entry.0.clone(), vec![c])]),
-                "length" => self.rod_length(&fields, &mut place).map(|c| vec![(entry.0.clone(), vec![c])]),
-                "driver" => {
-                    self.law_parameter(&fields, raw, &mut place).map(|c| vec![(entry.0.clone(), vec![c])])
-                }
-                _ => None,
-            };
-            let variables = variables.unwrap_or_else(|| {
-                place.unread("name");
-                vec![(entry.0.clone(), Vec::new())]
-            });
-            let quantity = quantity_of(raw, &variables[0].1);
-            let (bounds, [typical, tolerance]) = self.range(&fields, quantity, &mut place);
+            let quantity = draft.quantity(|_| None, |driver| raw.driver(driver));
+            (draft.bounds, [draft.typical, draft.tolerance]) = self.range(&fields, quantity);
+            variables[0].1.clone_from(&draft.changes);
+            let unread = std::mem::take(&mut self.unread);
             for (name, changes) in variables {
-                raw.places.push(Section::Design, place.clone());
-                raw.draft.design.push(VariableDraft {
-                    name,
-                    changes,
-                    fixed_length: fixed_length.unwrap_or(false),
-                    bounds,
-                    typical,
-                    tolerance,
-                });
+                self.unread.clone_from(&unread);
+                self.push(raw, Section::Design, place.clone());
+                raw.draft.design.push(VariableDraft { name, changes, ..draft.clone() });
             }
         }
     }
@@ -127,23 +314,23 @@ impl Reader<'_> {
         place: &mut EntryPlace,
     ) -> Option<Vec<(String, Vec<ChangeDraft>)>> {
         let mut items = Vec::new();
-        let hardpoints = self.hardpoint_names(fields, "move", &mut items);
+        let hardpoints = self.several(fields, "move", &mut items);
         let mirrored = self.mirrored(fields, &mut items);
         place.items("changes", items);
-        let along = self.need(fields, "along").and_then(|f| match f.value.get_ref().as_str() {
+        let along = self.given(fields, "along", |r, f| match f.value.get_ref().as_str() {
             Some("xyz") => {
                 Some(["x", "y", "z"].map(|a| (format!("{name}_{a}"), axis_named(a))).into_iter().collect())
             }
             Some(word) if axis_named(word).is_none() => {
                 let known = ["x", "y", "z", "-x", "-y", "-z", "xyz"];
-                self.unknown_word(f.value.span(), &fields.subject("along"), word, &known);
+                r.unknown_word(f.value.span(), &fields.subject("along"), word, &known);
                 None
             }
             _ => {
                 let subject = fields.subject("along");
-                let unit = self.vector(f.value, &subject)?.unit();
+                let unit = r.vector(f.value, &subject)?.unit();
                 if unit.is_none() {
-                    self.senseless(f.value.span(), format!("{} has no direction", subject.name)).help =
+                    r.senseless(f.value.span(), format!("{} has no direction", subject.name)).help =
                         Some(subject.example);
                 }
                 Some(vec![(name.to_owned(), Some(unit?))])
@@ -163,23 +350,25 @@ impl Reader<'_> {
         Some(along.into_iter().map(|(name, v)| (name, changes(v))).collect())
     }
 
-    /// The names of one hardpoint or several; where each stands goes to `places`.
-    fn hardpoint_names(
+    /// One name or several; where each stands goes to `places`.
+    fn several(
         &mut self,
         fields: &Fields<'_>,
         key: &str,
         places: &mut Vec<Range<usize>>,
     ) -> Option<Vec<String>> {
-        let f = self.need(fields, key)?;
-        let (subject, expected) = (fields.subject(key), "a hardpoint's name or a list of names");
-        if f.value.get_ref().is_str() {
-            places.push(f.value.span());
-            return self.name(f.value, &subject, expected).map(|n| vec![n]);
-        }
-        let list = self.list(f.value, &subject, expected)?;
-        places.extend(list.iter().map(|v| v.span()));
-        let names: Vec<_> = list.iter().map(|v| self.name(v, &subject, expected)).collect();
-        names.into_iter().collect()
+        let Shape::Any(_, _, [one, _]) = fields.key(key).shape else { return None };
+        let (subject, expected) = (fields.subject(key), format!("{} or a list of names", one.noun()));
+        self.given(fields, key, |r, f| {
+            if f.value.get_ref().is_str() {
+                places.push(f.value.span());
+                return r.name(f.value, &subject, &expected).map(|n| vec![n]);
+            }
+            let list = r.list(f.value, &subject, &expected)?;
+            places.extend(list.iter().map(|v| v.span()));
+            let names: Vec<_> = list.iter().map(|v| r.name(v, &subject, &expected)).collect();
+            names.into_iter().collect()
+        })
     }
 
     /// The normal of the mirror and the hardpoints behind it, if there is one; their places follow the others.
@@ -188,179 +377,56 @@ impl Reader<'_> {
         fields: &Fields<'_>,
         items: &mut Vec<Range<usize>>,
     ) -> Option<Option<(Vec3, Vec<String>)>> {
-        if fields.get("mirror").is_none() && fields.get("mirrored").is_none() {
+        let both = ["mirror", "mirrored"];
+        if both.iter().all(|key| fields.get(key).is_none()) {
             return Some(None);
         }
-        let normal = self.need(fields, "mirror").and_then(|f| {
-            let subject = fields.subject("mirror");
-            let word =
-                self.name(f.value, &subject, "the axis square to the mirror: `\"x\"`, `\"y\"` or `\"z\"`")?;
-            let axis = ["x", "y", "z"].iter().position(|a| *a == word);
-            if axis.is_none() {
-                self.unknown_word(f.value.span(), &subject, &word, &["x", "y", "z"]);
-            }
-            axis.map(|k| Vec3::AXES[k])
-        });
-        let names = self.hardpoint_names(fields, "mirrored", items);
-        Some(Some((normal?, names?)))
-    }
-
-    fn tilt(&mut self, fields: &Fields<'_>, place: &mut EntryPlace) -> Option<ChangeDraft> {
-        let f = fields.get("tilt")?;
-        place.items("changes", vec![f.value.span()]);
-        let joint = self.name(f.value, &fields.subject("tilt"), "the name of a joint");
-        let about = self.need(fields, "about").and_then(|f| self.line_of(fields, f, place));
-        Some(ChangeDraft::Tilt { joint: joint?, about: about? })
-    }
-
-    /// A velocity field over whole bodies.
-    fn shape(&mut self, fields: &Fields<'_>, place: &mut EntryPlace) -> Option<ChangeDraft> {
-        let f = fields.get("shape")?;
-        place.items("changes", vec![f.value.span()]);
-        let (subject, expected) = (fields.subject("shape"), "a body's name or a list of names");
-        let bodies = match f.value.get_ref().as_array() {
-            None => self.name(f.value, &subject, expected).map(|n| vec![n]),
-            Some(list) => list.iter().map(|v| self.name(v, &subject, expected)).collect(),
-        };
-        let f = self.need(fields, "field")?;
-        let table = self.table(f.value, &fields.subject("field"), "a table that says how points move")?;
-        let field = self.fields(format!("`field` of {}", fields.what), f.value.span(), table, SHAPE);
-        let kinds: Vec<&str> = ["translate", "rotate", "scale", "bend", "through"]
-            .into_iter()
-            .filter(|k| field.get(k).is_some())
-            .collect();
-        let &[kind] = kinds.as_slice() else {
-            let message = format!("{} does not say in one way how points move", field.what);
-            self.report("HP0104", field.at.clone(), message).help = Some(
-                "give one of `translate = \"z\"`, `rotate = \"z\"` with `at = \"A\"`, `scale = \"A\"`, `bend = [\"A\", \"B\"]` with \
-                 `towards = \"z\"`, `through = [{ at = \"A\", move = [0, 0, 1] }]`"
-                    .into(),
-            );
-            return None;
-        };
-        for (key, goes_with) in [("at", "rotate"), ("along", "scale"), ("towards", "bend")] {
-            if kind != goes_with {
-                self.out_of_place(&field, key, format!("`{key}` goes with `{goes_with}`"));
-            }
+        for key in both {
+            self.need(fields, key);
         }
-        let field = self.shape_field(kind, &field, place)?;
-        Some(ChangeDraft::Shape { bodies: bodies?, field })
-    }
-
-    fn shape_field(&mut self, kind: &str, fields: &Fields<'_>, place: &mut EntryPlace) -> Option<ShapeDraft> {
-        let f = fields.get(kind)?;
-        let subject = fields.subject(f.key);
-        Some(match kind {
-            "translate" => ShapeDraft::Translate(self.vector(f.value, &subject)?),
-            "rotate" => {
-                let about = self.line_of(fields, f, place);
-                let at = self.required(fields, "at", "a hardpoint's name");
-                ShapeDraft::Rotate { about: about?, at: at? }
-            }
-            "scale" => {
-                let from = self.name(f.value, &subject, "a hardpoint's name");
-                let along = match fields.get("along") {
-                    Some(f) => Some(self.line_of(fields, f, place)?),
-                    None => None,
-                };
-                ShapeDraft::Scale { from: from?, along }
-            }
-            "bend" => {
-                let expected = "a list of two hardpoints' names";
-                let names = self.list(f.value, &subject, expected)?;
-                let names: Vec<_> = names.iter().map(|v| self.name(v, &subject, expected)).collect();
-                let Ok([from, to]) = <[Option<String>; 2]>::try_from(names) else {
-                    self.wrong(f.value, &subject, expected);
-                    return None;
-                };
-                let towards = self.need(fields, "towards");
-                let towards = towards.and_then(|f| self.vector(f.value, &fields.subject("towards")));
-                ShapeDraft::Bend { from: from?, to: to?, towards: towards? }
-            }
-            _ => {
-                let items = self.tables(fields, "through", THROUGH, &mut EntryPlace::of(fields))?;
-                let moves: Vec<_> = items
-                    .iter()
-                    .map(|f| {
-                        let at = self.required(f, "at", "a hardpoint's name");
-                        let v = self.optional_vector(f, "move");
-                        Some((at?, v?.into()))
-                    })
-                    .collect();
-                ShapeDraft::Through(moves.into_iter().collect::<Option<_>>()?)
-            }
-        })
-    }
-
-    fn rod_length(&mut self, fields: &Fields<'_>, place: &mut EntryPlace) -> Option<ChangeDraft> {
-        let f = fields.get("length")?;
-        place.items("changes", vec![f.value.span()]);
-        let joint = self.name(f.value, &fields.subject("length"), "the name of a joint")?;
-        Some(ChangeDraft::Length { joint, rate: 1.0 })
+        let normal = self.word_of(fields, "mirror").map(|k| Vec3::AXES[k]);
+        let names = self.several(fields, "mirrored", items);
+        Some(Some((normal?, names?)))
     }
 
     /// A parameter of a driver's law. The variable is in the file's unit of the parameter: a length or an angle is
     /// converted where the variable is, and a rate of one, which is a plain number to the core, here.
-    fn law_parameter(
-        &mut self,
-        fields: &Fields<'_>,
-        raw: &Raw,
-        place: &mut EntryPlace,
-    ) -> Option<ChangeDraft> {
-        let f = fields.get("driver")?;
-        place.items("changes", vec![f.value.span()]);
-        let driver = self.name(f.value, &fields.subject("driver"), "the name of a driver");
-        let parameter = self.required(fields, "parameter", "the name of a parameter");
+    fn law_parameter(&mut self, fields: &Fields<'_>, raw: &Raw) -> Option<ChangeDraft> {
+        let [driver, parameter] = ["driver", "parameter"].map(|key| self.name_of(fields, key));
         let (driver, parameter) = (driver?, parameter?);
-        let k = raw.draft.drivers.iter().position(|d| d.name == driver);
-        let rate = match k.map(|k| &raw.driver_rates[k]) {
-            Some((per_unit, rates, _)) if rates.contains(&parameter) => *per_unit,
+        let kind = raw.driver(&driver).and_then(|(law, driven)| {
+            let parameter = law.parameters().into_iter().find(|p| p.name == parameter)?;
+            Some((parameter.kind, driven))
+        });
+        let rate = match kind {
+            Some((ParameterKind::ValueRate(_), driven)) => self.units.to_si(driven, 1.0),
             _ => 1.0,
         };
         Some(ChangeDraft::Law { driver, parameter, rate })
     }
 
-    fn velocity_fields(&mut self, fields: &Fields<'_>, place: &mut EntryPlace) -> Option<Vec<ChangeDraft>> {
-        let items = self.tables(fields, "fields", FIELD, place)?;
-        let units = self.units;
-        let changes: Vec<_> = items
+    fn velocity_fields(&mut self, fields: &Fields<'_>) -> Option<Vec<ChangeDraft>> {
+        let changes: Vec<_> = self
+            .tables(fields, "fields", &FIELD)?
             .iter()
             .map(|f| {
-                let joint = self.required(f, "joint", "the name of a joint");
-                let body = self.required(f, "body", "the name of a body");
-                let v = self.optional_vector(f, "V")?;
-                let u = self.optional_vector(f, "U")?;
-                let (v, u) = (v.map(|x| units.length.metres(x)), u.map(|x| units.angle.radians(x)));
-                Some(ChangeDraft::Field { joint: joint?, body: body?, v: v.into(), u: u.into() })
+                let [joint, body] = ["joint", "body"].map(|key| self.name_of(f, key));
+                let [v, u] = ["V", "U"].map(|key| self.optional_vector(f, key));
+                Some(ChangeDraft::Field { joint: joint?, body: body?, v: v?.into(), u: u?.into() })
             })
             .collect();
         changes.into_iter().collect()
     }
 
-    fn markers(&mut self, fields: &Fields<'_>, place: &mut EntryPlace) -> Option<Vec<ChangeDraft>> {
-        let items = self.tables(fields, "markers", MARKER, place)?;
-        let read: Vec<_> = items
+    fn markers(&mut self, fields: &Fields<'_>) -> Option<Vec<ChangeDraft>> {
+        let read: Vec<_> = self
+            .tables(fields, "markers", &MARKER)?
             .iter()
             .map(|f| {
-                let joint = self.required(f, "joint", "the name of a joint");
-                let end = match f.get("on") {
-                    None => Some(End::Both),
-                    Some(on) => {
-                        let subject = f.subject("on");
-                        match self.name(on.value, &subject, "`\"i\"`, `\"j\"` or `\"both\"`")?.as_str() {
-                            "i" => Some(End::I),
-                            "j" => Some(End::J),
-                            "both" => Some(End::Both),
-                            word => {
-                                self.unknown_word(on.value.span(), &subject, word, &["i", "j", "both"]);
-                                None
-                            }
-                        }
-                    }
-                };
-                let position = self.optional_vector(f, "move")?;
-                let rotation = self.optional_vector(f, "turn")?;
-                Some((joint?, end?, position, rotation))
+                let joint = self.name_of(f, "joint");
+                let end = self.word_of(f, "on").map(|k| [End::I, End::J, End::Both][k]);
+                let [position, rotation] = ["move", "turn"].map(|key| self.optional_vector(f, key));
+                Some((joint?, end?, position?, rotation?))
             })
             .collect();
         let read: Vec<_> = read.into_iter().collect::<Option<_>>()?;
@@ -384,75 +450,9 @@ impl Reader<'_> {
         )
     }
 
-    /// A list of inline tables.
-    fn tables<'a>(
-        &mut self,
-        fields: &Fields<'a>,
-        key: &'static str,
-        keys: &'static [Key],
-        place: &mut EntryPlace,
-    ) -> Option<Vec<Fields<'a>>> {
-        let f = fields.get(key)?;
-        let subject = fields.subject(key);
-        let list = self.list(f.value, &subject, "a list of tables")?;
-        place.items("changes", list.iter().map(|v| v.span()).collect());
-        let tables: Vec<_> = list
-            .into_iter()
-            .enumerate()
-            .map(|(k, v)| {
-                let table = self.table(v, &subject, "a list of tables")?;
-                let what = format!("entry {} of `{key}` in {}", k + 1, fields.what);
-                Some(self.fields(what, v.span(), table, keys))
-            })
-            .collect();
-        tables.into_iter().collect()
-    }
-
-    pub(super) fn required(&mut self, fields: &Fields<'_>, key: &str, expected: &str) -> Option<String> {
-        let f = self.need(fields, key)?;
-        self.name(f.value, &fields.subject(key), expected)
-    }
-
-    /// Three numbers as written; zeros where they are left out.
+    /// Three numbers, as far as declared in SI; zeros where they are left out.
     fn optional_vector(&mut self, fields: &Fields<'_>, key: &str) -> Option<[f64; 3]> {
-        match fields.get(key) {
-            None => Some([0.0; 3]),
-            Some(f) => self.numbers::<3>(f.value, &fields.subject(key), "three numbers"),
-        }
+        let numbers = self.list_of::<3>(fields, key, "three numbers");
+        if fields.get(key).is_none() { Some([0.0; 3]) } else { numbers }
     }
-}
-
-/// What a variable measures, as far as that is known; the core says the rest.
-fn quantity_of(raw: &Raw, changes: &[ChangeDraft]) -> Quantity {
-    let of = |change: &ChangeDraft| match change {
-        ChangeDraft::Move { .. } | ChangeDraft::Length { .. } => Quantity::Length,
-        ChangeDraft::Shape { field, .. } => match field {
-            ShapeDraft::Rotate { .. } => Quantity::Angle,
-            ShapeDraft::Scale { .. } => Quantity::Number,
-            _ => Quantity::Length,
-        },
-        ChangeDraft::Tilt { .. } => Quantity::Angle,
-        ChangeDraft::Marker { position, rotation, .. } => {
-            match (*position != Vec3::ZERO, *rotation != Vec3::ZERO) {
-                (_, false) => Quantity::Length,
-                (false, true) => Quantity::Angle,
-                (true, true) => Quantity::Number,
-            }
-        }
-        ChangeDraft::Law { driver, parameter, .. } => {
-            let k = raw.draft.drivers.iter().position(|d| d.name == *driver);
-            let kind = k.and_then(|k| {
-                raw.draft.drivers[k].law.parameters().into_iter().find(|p| p.name == *parameter)
-            });
-            match (kind.map(|p| p.kind), k) {
-                (Some(ParameterKind::Value), Some(k)) => raw.driver_rates[k].2,
-                (Some(ParameterKind::Angle), _) => Quantity::Angle,
-                _ => Quantity::Number,
-            }
-        }
-        ChangeDraft::Field { .. } | ChangeDraft::Parameter { .. } => Quantity::Number,
-    };
-    let mut quantities = changes.iter().map(of);
-    let first = quantities.next().unwrap_or(Quantity::Number);
-    if quantities.all(|q| q == first) { first } else { Quantity::Number }
 }

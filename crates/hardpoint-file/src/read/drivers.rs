@@ -1,66 +1,134 @@
 //! Drivers: what they prescribe, and by which law.
 
 use hardpoint::joint::Quantity;
-use hardpoint::law::{Law, ParameterKind};
+use hardpoint::law::Law;
 use hardpoint::model::{DrivenDraft, DriverDraft, FormulaDraft, FormulaOf, Section};
 
-use super::{Raw, coordinate_quantity};
+use super::{COORDINATE, Raw, coordinate_quantity, law};
+use crate::format::{BODY, JOINT, Kinds, Table, keys, table};
 use crate::places::EntryPlace;
-use crate::tree::{Fields, Key, Reader};
+use crate::read::results::POINT_REF;
+use crate::tree::{Fields, LINE, Reader};
 
-const DRIVER: &[Key] = &[
-    ("joint", "\"J1\""),
-    ("coordinate", "\"angle\""),
-    ("point", "\"P\""),
-    ("along", "\"z\""),
-    ("from", "\"P\""),
-    ("to", "\"Q\""),
-    ("body", "\"crank\""),
-    ("about", "\"z\""),
-    ("relative_to", "\"ground\""),
-    ("law", "\"30*sin(2*pi*t)\""),
+pub(crate) const DRIVER: Kinds = Kinds {
+    name: "Driver",
+    doc: "A driver: what it prescribes, and its law over the time.",
+    typed: false,
+    tables: || FORMS.iter().map(|f| &f.0).collect(),
+};
+type Read = fn(&mut Reader<'_>, &Fields<'_>, &mut EntryPlace) -> Option<DrivenDraft>;
+
+static FORMS: [(Table, Read); 4] = [
+    (
+        Table {
+            shared: keys! {
+                /// The coordinate over time, in the file's unit of it, counted from the design configuration.
+                must "law": law::LAW, "\"30*sin(2*pi*t)\"";
+            },
+            ..table! {
+                /// A joint's coordinate.
+                "DrivenCoordinate":
+                /// The joint's name; not a rod, whose length is constant.
+                must "joint": JOINT, "\"J1\"";
+                /// Which of its coordinates; may be left out where it has only one.
+                may "coordinate": COORDINATE, "\"angle\"";
+            }
+        },
+        |r, fields, _| {
+            let joint = r.name_of(fields, "joint");
+            let coordinate = r.name_of(fields, "coordinate");
+            Some(DrivenDraft::Coordinate { joint: joint?, coordinate })
+        },
+    ),
+    (
+        Table {
+            shared: keys! {
+                /// The way over time, in the length unit, counted from the design configuration.
+                must "law": law::LAW, "\"30*sin(2*pi*t)\"";
+            },
+            ..table! {
+                /// The way of a point along a global direction, like wheel travel.
+                "DrivenPosition":
+                /// The point.
+                must "point": POINT_REF, "\"P\"";
+                /// The direction, fixed in space.
+                must "along": LINE, "\"z\"";
+            }
+        },
+        |r, fields, place| {
+            let point = r.point_of(fields, "point");
+            let along = r.line_of(fields, "along", place);
+            Some(DrivenDraft::Position { point: point?, along: along? })
+        },
+    ),
+    (
+        Table {
+            shared: keys! {
+                /// The change of their distance over time, in the length unit, counted from the design configuration.
+                must "law": law::LAW, "\"30*sin(2*pi*t)\"";
+            },
+            ..table! {
+                /// The change of the distance between two points, like the stroke of an actuator.
+                "DrivenDistance":
+                /// From this point.
+                must "from": POINT_REF, "\"P\"";
+                /// To this one.
+                must "to": POINT_REF, "\"Q\"";
+            }
+        },
+        |r, fields, _| {
+            let [from, to] = ["from", "to"].map(|key| r.point_of(fields, key));
+            Some(DrivenDraft::Distance { from: from?, to: to? })
+        },
+    ),
+    (
+        Table {
+            shared: keys! {
+                /// The angle over time, in the angle unit, counted from the design configuration.
+                must "law": law::LAW, "\"30*sin(2*pi*t)\"";
+            },
+            ..table! {
+                /// The angle by which a body has turned, seen along a direction.
+                "DrivenOrientation":
+                /// The body's name.
+                must "body": BODY, "\"crank\"";
+                /// The direction, fixed in the body `relative_to`.
+                must "about": LINE, "\"z\"";
+                /// The body that carries the direction. Default: `ground`.
+                may "relative_to": BODY, "\"ground\"";
+            }
+        },
+        |r, fields, place| {
+            let body = r.name_of(fields, "body");
+            let about = r.line_of(fields, "about", place);
+            let relative_to = r.name_if(fields, "relative_to");
+            Some(DrivenDraft::Orientation { body: body?, relative_to: relative_to?, about: about? })
+        },
+    ),
 ];
-/// The keys of each form of driver.
-const FORMS: [(&str, &[&str]); 4] = [
-    ("joint", &["joint", "coordinate"]),
-    ("point", &["point", "along"]),
-    ("from", &["from", "to"]),
-    ("body", &["body", "about", "relative_to"]),
-];
-const FORMS_HELP: &str = "give one of `joint` (a coordinate), `point` and `along` (the way of a point), \
-                          `from` and `to` (a distance), `body` and `about` (an angle)";
 
 impl Reader<'_> {
     pub(super) fn drivers(&mut self, model: &Fields<'_>, raw: &mut Raw) {
         for entry in self.entries(model, "drivers", "driver") {
-            let fields = self.entry("driver", &entry, DRIVER);
+            let fields = self.entry("driver", &entry, DRIVER.keys());
             let mut place = EntryPlace::of(&fields);
-            let form = self.form(&fields);
-            let drives = form.and_then(|form| self.driven(form, &fields, &mut place));
-            let law = self.need(&fields, "law").and_then(|f| self.law(&fields, f));
-            if law.is_none() {
-                place.unread("law");
-            }
-            let drives = drives.unwrap_or_else(|| {
-                place.unread("joint");
-                place.unread("coordinate");
-                DrivenDraft::Coordinate { joint: String::new(), coordinate: None }
-            });
+            let says = ["what it prescribes", "what this driver prescribes is given"];
+            let form = self.led_by(&fields, &FORMS, says);
+            let drives = form.and_then(|(_, read)| read(self, &fields, &mut place));
+            let law = self.given(&fields, "law", |r, f| r.law(&fields, f));
+            let drives = drives.unwrap_or(DrivenDraft::Unread);
             let quantity = match &drives {
+                // The core says what is wrong with a joint or coordinate that is not known.
                 DrivenDraft::Coordinate { joint, coordinate } => {
-                    coordinate_quantity(raw, joint, coordinate.as_deref())
+                    coordinate_quantity(raw, joint, coordinate.as_deref()).unwrap_or(Quantity::Number)
                 }
-                DrivenDraft::Position { .. } | DrivenDraft::Distance { .. } => Some(Quantity::Length),
-                DrivenDraft::Orientation { .. } => Some(Quantity::Angle),
+                DrivenDraft::Position { .. } | DrivenDraft::Distance { .. } => Quantity::Length,
+                DrivenDraft::Orientation { .. } => Quantity::Angle,
+                DrivenDraft::Unread => Quantity::Number,
             };
-            // The core says what is wrong with a joint or coordinate that is not known.
-            let quantity = quantity.unwrap_or(Quantity::Number);
-            let per_unit = self.units.to_si(quantity, 1.0);
-            let law = law.unwrap_or_else(|| Law::constant(0.0)).scaled(per_unit);
-            let parameters = law.parameters().into_iter();
-            let rates = parameters.filter(|p| matches!(p.kind, ParameterKind::ValueRate(_))).map(|p| p.name);
-            raw.places.push(Section::Drivers, place);
-            raw.driver_rates.push((per_unit, rates.collect(), quantity));
+            let law = law.unwrap_or_else(|| Law::constant(0.0)).scaled(self.units.to_si(quantity, 1.0));
+            self.push(raw, Section::Drivers, place);
+            raw.driven.push(quantity);
             for (parameter, expression) in self.law_formulas.drain(..) {
                 raw.draft
                     .formulas
@@ -68,64 +136,5 @@ impl Reader<'_> {
             }
             raw.draft.drivers.push(DriverDraft { name: entry.0, drives, law });
         }
-    }
-
-    /// Which form of driver the keys mean; keys of another one are reported.
-    fn form(&mut self, fields: &Fields<'_>) -> Option<&'static str> {
-        let has = |key: &&str| fields.get(key).is_some();
-        let led = FORMS.iter().find(|(lead, _)| has(lead));
-        let Some((form, own)) = led.or_else(|| FORMS.iter().find(|(_, keys)| keys.iter().any(&has))) else {
-            let message = format!("{} does not say what it prescribes", fields.what);
-            self.report("HP0104", fields.at.clone(), message).help =
-                Some(format!("{FORMS_HELP}; for example `joint = \"J1\"`"));
-            return None;
-        };
-        let by = own.iter().find(|k| has(k)).unwrap_or(form);
-        for (lead, keys) in FORMS.iter().filter(|f| f.0 != *form) {
-            for key in keys.iter().filter(|k| has(k)) {
-                let why = match fields.get(lead) {
-                    Some(_) => format!("what this driver prescribes is given by `{by}` already"),
-                    None => {
-                        format!("`{key}` goes with `{lead}`; what this driver prescribes is given by `{by}`")
-                    }
-                };
-                self.out_of_place(fields, key, why);
-                if let Some(d) = self.found.last_mut() {
-                    d.help = Some(FORMS_HELP.into());
-                }
-            }
-        }
-        Some(form)
-    }
-
-    fn driven(&mut self, form: &str, fields: &Fields<'_>, place: &mut EntryPlace) -> Option<DrivenDraft> {
-        Some(match form {
-            "joint" => {
-                let joint = self.named(fields, "joint", "the name of a joint", place);
-                let coordinate = self.optional_name(fields, "coordinate", "the name of a coordinate", place);
-                DrivenDraft::Coordinate { joint: joint?, coordinate }
-            }
-            "point" => {
-                let point = self.need(fields, "point").and_then(|f| self.point_ref(fields, f));
-                let along = self.need(fields, "along").and_then(|f| self.line_of(fields, f, place));
-                DrivenDraft::Position { point: point?, along: along? }
-            }
-            "from" => {
-                let [from, to] =
-                    ["from", "to"].map(|key| self.need(fields, key).and_then(|f| self.point_ref(fields, f)));
-                DrivenDraft::Distance { from: from?, to: to? }
-            }
-            _ => {
-                let body = self.named(fields, "body", "the name of a body", place);
-                let about = self.need(fields, "about").and_then(|f| self.line_of(fields, f, place));
-                let relative_to = match fields.get("relative_to") {
-                    Some(f) => {
-                        Some(self.name(f.value, &fields.subject("relative_to"), "the name of a body")?)
-                    }
-                    None => None,
-                };
-                DrivenDraft::Orientation { body: body?, relative_to, about: about? }
-            }
-        })
     }
 }

@@ -3,51 +3,160 @@
 use std::ops::Range;
 
 use hardpoint::joint::Quantity;
-use hardpoint::law::{
-    ConstantSpeed, EndRates, Ends, Expression, Harmonic, Law, LawError, Piece, SmoothStep, SplineDegree,
-    Table,
-};
+use hardpoint::law::{self, EndRates, Ends, Expression, Law, LawError, SplineDegree};
 use toml::de::{DeTable, DeValue};
 
 use crate::diagnostic::{Severity, closest, shown};
+use crate::format::{ANGLE, Kinds, NUMBER, Shape, TWO_NUMBERS, Table, table};
 use crate::read::data;
-use crate::tree::{Field, Fields, Key, MOST_ENTRIES, Reader, Subject, Value};
+use crate::tree::{Field, Fields, MOST_ENTRIES, Reader, Subject, Value};
 use crate::units::AngleUnit;
 
 /// More pieces than this are a table; a sequence takes time that grows with their square.
 const MOST_PIECES: usize = 500;
 
-const TYPES: [&str; 7] =
-    ["harmonic", "constant_speed", "polynomial", "smooth_step", "table", "sequence", "expression"];
-const HARMONIC: &[Key] =
-    &[("type", "\"harmonic\""), ("amplitude", "25"), ("frequency", "1.5"), ("phase", "90"), ("offset", "10")];
-const CONSTANT_SPEED: &[Key] = &[("type", "\"constant_speed\""), ("speed", "10"), ("offset", "5")];
-const POLYNOMIAL: &[Key] = &[("type", "\"polynomial\""), ("coefficients", "[0, 1, 2]")];
-const SMOOTH_STEP: &[Key] = &[
-    ("type", "\"smooth_step\""),
-    ("from", "0"),
-    ("to", "40"),
-    ("start", "0.5"),
-    ("end", "1.5"),
-    ("degree", "5"),
+/// A law of motion, wherever one may stand.
+pub(crate) const LAW: Shape = Shape::Any(
+    "Law",
+    "A law of motion: an expression in `t` (seconds) such as `30*sin(2*pi*t)`, a number, or a table with a `type`; in the file's \
+     unit of what is driven.",
+    &[Shape::Text, Shape::Plain(Quantity::Number), Shape::Kinds(&LAW_TABLE)],
+);
+pub(crate) const LAW_TABLE: Kinds =
+    Kinds { name: "LawTable", doc: "", typed: true, tables: || TYPES.iter().map(|t| &t.0).collect() };
+/// Reads a law from its fields; the text is what it belongs to.
+type Read = fn(&mut Reader<'_>, &str, &Fields<'_>) -> Option<Law>;
+
+static TYPES: [(Table, Read); 7] = [
+    (
+        table! {
+            /// `offset + amplitude sin(2 pi frequency t + phase)`.
+            "harmonic":
+            /// In the driver's unit.
+            must "amplitude": NUMBER, "25";
+            /// In Hz.
+            must "frequency": NUMBER, "1.5";
+            /// In the angle unit.
+            or("0.0") "phase": ANGLE, "90";
+            /// The mean, in the driver's unit.
+            or("0.0") "offset": NUMBER, "10";
+        },
+        |r, _, fields| {
+            let numbers = r.numbers_of(fields, ["amplitude", "frequency", "phase", "offset"]);
+            let [amplitude, frequency, phase, offset] = numbers?;
+            let law = Law::harmonic(law::Harmonic { amplitude, frequency, phase, offset });
+            r.made(fields, fields.at.clone(), law)
+        },
+    ),
+    (
+        table! {
+            /// `offset + speed t`.
+            "constant_speed":
+            /// In the driver's unit per s.
+            must "speed": NUMBER, "10";
+            /// At t = 0, in the driver's unit.
+            or("0.0") "offset": NUMBER, "5";
+        },
+        |r, _, fields| {
+            let [speed, offset] = r.numbers_of(fields, ["speed", "offset"])?;
+            r.made(fields, fields.at.clone(), Law::constant_speed(law::ConstantSpeed { speed, offset }))
+        },
+    ),
+    (
+        table! {
+            /// `c0 + c1 t + c2 t^2 + ...`.
+            "polynomial":
+            /// c0, c1, c2, ..., in the driver's unit per s to the power of the number.
+            must "coefficients": Shape::some(&NUMBER), "[0, 1, 2]";
+        },
+        |r, _, fields| r.polynomial(fields),
+    ),
+    (
+        table! {
+            /// From one value smoothly to another, and at rest before and after.
+            "smooth_step":
+            /// The value before, in the driver's unit.
+            or("0.0") "from": NUMBER, "0";
+            /// The value after, in the driver's unit.
+            must "to": NUMBER, "40";
+            /// When it begins, in s.
+            must "start": NUMBER, "0.5";
+            /// When it ends, in s.
+            must "end": NUMBER, "1.5";
+            /// 3 (the acceleration jumps at both ends), 5 (the jerk does) or 7 (neither).
+            or("5") "degree": Shape::OneOf(&[3, 5, 7]), "5";
+        },
+        |r, _, fields| r.smooth_step(fields),
+    ),
+    (
+        table! {
+            /// A spline through points, given here or in a CSV file.
+            "table":
+            /// Pairs of time in s and value in the driver's unit, in the order of time. Either these or `file`.
+            may "points": Shape::list(&TWO_NUMBERS), "[[0, 0], [1, 5], [2, 0]]";
+            /// A CSV file in the model's folder or below it: times in s and values in the driver's unit.
+            may "file": Shape::Text, "\"travel.csv\"";
+            /// The file's columns of time and value, by name or by number from 1. Default: the first two.
+            may "columns": Shape::exactly(2, &COLUMN), "[1, 2]";
+            /// The degree of the spline.
+            or("\"cubic\"") "spline": Shape::Words(&[("cubic", "The acceleration is continuous."), ("quintic", "The jerk is continuous too.")]), "\"cubic\"";
+            /// What is known at the first and last point.
+            or("\"clamped\"") "ends": ENDS, "\"clamped\"";
+            /// Speed at the first point, where the ends are clamped, in the driver's unit per s.
+            or("0.0") "start_speed": NUMBER, "0";
+            /// Speed at the last point, where the ends are clamped, in the driver's unit per s.
+            or("0.0") "end_speed": NUMBER, "0";
+            /// Acceleration at the first point, of a quintic with clamped ends, in the driver's unit per s^2.
+            or("0.0") "start_acceleration": NUMBER, "0";
+            /// Acceleration at the last point, of a quintic with clamped ends, in the driver's unit per s^2.
+            or("0.0") "end_acceleration": NUMBER, "0";
+        },
+        |r, _, fields| r.table_law(fields),
+    ),
+    (
+        table! {
+            /// Laws one after the other, from t = 0 on.
+            "sequence":
+            /// The pieces, in order.
+            must "pieces": Shape::List(&Shape::Table(&PIECE), [1, MOST_PIECES]), "[{ duration = 1, law = \"10*t\" }, { law = 0 }]";
+        },
+        |r, of, fields| r.sequence(of, fields),
+    ),
+    (
+        table! {
+            /// An expression with named parameters.
+            "expression":
+            /// The expression, in `t` and the parameters.
+            must "law": Shape::Text, "\"a*sin(w*t)\"";
+            /// Names and values of the parameters.
+            or("{}") "parameters": Shape::Entries(&NUMBER), "{ a = 25, w = 6.28 }";
+        },
+        |r, of, fields| r.expression_with_parameters(of, fields),
+    ),
 ];
-const TABLE: &[Key] = &[
-    ("type", "\"table\""),
-    ("points", "[[0, 0], [1, 5], [2, 0]]"),
-    ("file", "\"travel.csv\""),
-    ("columns", "[1, 2]"),
-    ("spline", "\"cubic\""),
-    ("ends", "\"clamped\""),
-    ("start_speed", "0"),
-    ("end_speed", "0"),
-    ("start_acceleration", "0"),
-    ("end_acceleration", "0"),
-];
-const SEQUENCE: &[Key] =
-    &[("type", "\"sequence\""), ("pieces", "[{ duration = 1, law = \"10*t\" }, { law = 0 }]")];
-const PIECE: &[Key] = &[("duration", "1"), ("law", "\"10*t\""), ("continued", "true")];
-const EXPRESSION: &[Key] =
-    &[("type", "\"expression\""), ("law", "\"a*sin(w*t)\""), ("parameters", "{ a = 25, w = 6.28 }")];
+const ENDS: Shape = Shape::Words(&[
+    (
+        "clamped",
+        "With the speeds (and, of a quintic, accelerations) that are given; zero where they are not: from rest to rest.",
+    ),
+    ("natural", "The curve ends as a thin beam does."),
+    ("periodic", "The last point is the first again, and the curve repeats for ever."),
+]);
+pub(super) const PIECE: Table = table! {
+    /// A piece of a sequence.
+    "Piece":
+    /// How long it lasts, in s. The last piece may leave it out, and then has no end.
+    may "duration": NUMBER, "1";
+    /// Its law; `t` counts from the start of the piece.
+    must "law": LAW, "\"10*t\"";
+    /// Whether its values count from where the piece before ended.
+    or("true") "continued": Shape::Flag, "true";
+};
+const COLUMN: Shape = Shape::Any(
+    "Column",
+    "A column's name, or its number from 1.",
+    &[Shape::Name("a column"), Shape::Count(u32::MAX)],
+);
 const EXPECTED: &str = "an expression in `t` in quotes, a number, or a table with a `type`";
 
 impl Reader<'_> {
@@ -147,30 +256,9 @@ impl Reader<'_> {
         table: &'a DeTable<'a>,
     ) -> Option<Law> {
         let at = value.span();
-        let (kind, keys) = match self.type_of(table, &subject.name, at.clone(), "a law", &TYPES)? {
-            "harmonic" => ("harmonic", HARMONIC),
-            "constant_speed" => ("constant_speed", CONSTANT_SPEED),
-            "polynomial" => ("polynomial", POLYNOMIAL),
-            "smooth_step" => ("smooth_step", SMOOTH_STEP),
-            "table" => ("table", TABLE),
-            "sequence" => ("sequence", SEQUENCE),
-            _ => ("expression", EXPRESSION),
-        };
-        let fields = self.fields(format!("the law of {of}"), at, table, keys);
-        match kind {
-            "harmonic" => self.harmonic(&fields),
-            "constant_speed" => {
-                let speed = self.needed_number(&fields, "speed");
-                let offset = self.number_or(&fields, "offset", 0.0);
-                let law = Law::constant_speed(ConstantSpeed { speed: speed?, offset: offset? });
-                self.made(&fields, fields.at.clone(), law)
-            }
-            "polynomial" => self.polynomial(&fields),
-            "smooth_step" => self.smooth_step(&fields),
-            "table" => self.table_law(&fields),
-            "sequence" => self.sequence(of, &fields),
-            _ => self.expression_with_parameters(of, &fields),
-        }
+        let (declared, read) = self.kind_of(table, &subject.name, at.clone(), "a law", &TYPES)?;
+        let fields = self.fields(format!("the law of {of}"), at, table, declared.typed_keys());
+        read(self, of, &fields)
     }
 
     /// HP0110: numbers that together make no law.
@@ -183,23 +271,6 @@ impl Reader<'_> {
                 None
             }
         }
-    }
-
-    fn number_or(&mut self, fields: &Fields<'_>, key: &str, default: f64) -> Option<f64> {
-        match fields.get(key) {
-            Some(f) => self.number(f.value, &fields.subject(key)),
-            None => Some(default),
-        }
-    }
-
-    fn harmonic(&mut self, fields: &Fields<'_>) -> Option<Law> {
-        let amplitude = self.needed_number(fields, "amplitude");
-        let frequency = self.needed_number(fields, "frequency");
-        let phase = self.number_or(fields, "phase", 0.0);
-        let phase = phase.map(|p| fields.get("phase").map_or(0.0, |f| self.angle_of(f.value, p)));
-        let offset = self.number_or(fields, "offset", 0.0);
-        let law = Harmonic { amplitude: amplitude?, frequency: frequency?, phase: phase?, offset: offset? };
-        self.made(fields, fields.at.clone(), Law::harmonic(law))
     }
 
     fn polynomial(&mut self, fields: &Fields<'_>) -> Option<Law> {
@@ -216,10 +287,8 @@ impl Reader<'_> {
     }
 
     fn smooth_step(&mut self, fields: &Fields<'_>) -> Option<Law> {
-        let from = self.number_or(fields, "from", 0.0);
-        let [to, start, end] = ["to", "start", "end"].map(|key| self.needed_number(fields, key));
-        let degree = self.number_or(fields, "degree", f64::from(SmoothStep::USUAL_DEGREE))?;
-        let (from, to, start, end) = (from?, to?, start?, end?);
+        let numbers = self.numbers_of(fields, ["from", "to", "start", "end", "degree"]);
+        let [from, to, start, end, degree] = numbers?;
         let known = [3.0, 5.0, 7.0].contains(&degree);
         // A degree that is no whole number is none of the three either.
         let degree = if known { degree as u32 } else { 0 };
@@ -234,7 +303,7 @@ impl Reader<'_> {
             );
             return None;
         }
-        self.made(fields, at, Law::smooth_step(SmoothStep { from, to, start, end, degree }))
+        self.made(fields, at, Law::smooth_step(law::SmoothStep { from, to, start, end, degree }))
     }
 
     fn sequence(&mut self, of: &str, fields: &Fields<'_>) -> Option<Law> {
@@ -252,11 +321,12 @@ impl Reader<'_> {
         for (k, v) in list.into_iter().enumerate() {
             let what = format!("piece {k} of the law of {of}");
             let Some(table) = self.table(v, &subject, "a list of tables") else { continue };
-            let piece = self.fields(what.clone(), v.span(), table, PIECE);
+            let piece = self.fields(what.clone(), v.span(), table, PIECE.keys());
             let is_last = k + 1 == count;
             let duration = match (is_last, piece.get("duration")) {
                 (true, None) => Some(None),
-                _ => self.needed_number(&piece, "duration").map(Some),
+                (_, None) => self.need(&piece, "duration").and(None),
+                _ => self.number_of(&piece, "duration").map(Some),
             };
             if let (Some(Some(seconds)), Some(f)) = (duration, piece.get("duration"))
                 && seconds <= 0.0
@@ -272,12 +342,9 @@ impl Reader<'_> {
             for (name, _) in &mut self.law_formulas[before..] {
                 *name = format!("piece[{k}].{name}");
             }
-            let continued = match piece.get("continued") {
-                Some(f) => self.boolean(f.value, &piece.subject("continued")),
-                None => Some(true),
-            };
+            let continued = self.flag_of(&piece, "continued");
             if let (Some(duration), Some(law), Some(continued)) = (duration, law, continued) {
-                pieces.push(Piece { duration, law, continued });
+                pieces.push(law::Piece { duration, law, continued });
             }
         }
         if pieces.len() < count {
@@ -341,9 +408,7 @@ impl Reader<'_> {
     }
 
     fn table_law(&mut self, fields: &Fields<'_>) -> Option<Law> {
-        let degree = self
-            .word_of(fields, "spline", &["cubic", "quintic"])
-            .map(|k| [SplineDegree::Cubic, SplineDegree::Quintic][k]);
+        let degree = self.word_of(fields, "spline").map(|k| [SplineDegree::Cubic, SplineDegree::Quintic][k]);
         let ends = self.ends(fields, degree);
         let points = match (fields.get("points"), fields.get("file")) {
             (Some(f), file) => {
@@ -369,23 +434,11 @@ impl Reader<'_> {
         };
         let (degree, ends, (points, f)) = (degree?, ends?, points?);
         let (times, values) = points.into_iter().map(|[t, x]| (t, x)).unzip();
-        self.made(fields, f.value.span(), Law::table(&Table { times, values, degree, ends }))
-    }
-
-    /// Which of some words a key is; the first where it is left out.
-    fn word_of(&mut self, fields: &Fields<'_>, key: &str, words: &[&str]) -> Option<usize> {
-        let Some(f) = fields.get(key) else { return Some(0) };
-        let subject = fields.subject(key);
-        let word = self.name(f.value, &subject, "a word in quotes")?;
-        let k = words.iter().position(|w| *w == word);
-        if k.is_none() {
-            self.unknown_word(f.value.span(), &subject, &word, words);
-        }
-        k
+        self.made(fields, f.value.span(), Law::table(&law::Table { times, values, degree, ends }))
     }
 
     fn ends(&mut self, fields: &Fields<'_>, degree: Option<SplineDegree>) -> Option<Ends> {
-        let kind = self.word_of(fields, "ends", &["clamped", "natural", "periodic"])?;
+        let kind = self.word_of(fields, "ends")?;
         let keys = ["start_speed", "start_acceleration", "end_speed", "end_acceleration"];
         if kind > 0 {
             for key in keys {
@@ -400,9 +453,9 @@ impl Reader<'_> {
                 self.out_of_place(fields, key, why);
             }
         }
-        let [a, b, c, d] = keys.map(|key| self.number_or(fields, key, 0.0));
-        let (start, end) =
-            (EndRates { speed: a?, acceleration: b? }, EndRates { speed: c?, acceleration: d? });
+        let [start, start_rate, end, end_rate] = self.numbers_of(fields, keys)?;
+        let start = EndRates { speed: start, acceleration: start_rate };
+        let end = EndRates { speed: end, acceleration: end_rate };
         match degree {
             // Said above.
             Some(SplineDegree::Cubic) if start.acceleration != 0.0 || end.acceleration != 0.0 => None,

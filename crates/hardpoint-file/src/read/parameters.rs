@@ -8,19 +8,37 @@ use toml::de::DeValue;
 
 use super::Raw;
 use crate::diagnostic::shown;
+use crate::format::{NUMBER, Shape, TWO_NUMBERS, Table, table};
 use crate::places::EntryPlace;
-use crate::tree::{Fields, Key, Reader, Subject, Value};
+use crate::tree::{Fields, Reader, Subject, Value};
 
-const PARAMETER: &[Key] = &[
-    ("value", "60"),
-    ("unit", "\"length\""),
-    ("bounds", "[50, 70]"),
-    ("typical", "2"),
-    ("tolerance", "0.1"),
-    ("design", "false"),
-];
-const UNITS: [(&str, Quantity); 3] =
-    [("length", Quantity::Length), ("angle", Quantity::Angle), ("number", Quantity::Number)];
+pub(crate) const PARAMETER: Shape = Shape::Any(
+    "Parameter",
+    "A plain number, or a table with its value and more.",
+    &[NUMBER, Shape::Table(&PARAMETER_TABLE)],
+);
+pub(super) const PARAMETER_TABLE: Table = table! {
+    /// A named number.
+    "ParameterTable":
+    /// Its value; an expression makes it follow others.
+    must "value": NUMBER, "60";
+    /// What it measures, and so its unit.
+    or("\"number\"") "unit": UNIT, "\"length\"";
+    /// The lowest and the highest value that it may have in other designs.
+    may "bounds": TWO_NUMBERS, "[50, 70]";
+    /// How large a change of it is usual: what variables are compared by.
+    may "typical": NUMBER, "2";
+    /// By how much it may be off when it is made, either way.
+    may "tolerance": NUMBER, "0.1";
+    /// Whether it is a design variable.
+    or("true") "design": Shape::Flag, "false";
+};
+const UNIT: Shape = Shape::Words(&[
+    ("length", "In the file's unit of length."),
+    ("angle", "In the file's unit of angle; in expressions in rad."),
+    ("number", "A plain number."),
+]);
+const UNITS: [Quantity; 3] = [Quantity::Length, Quantity::Angle, Quantity::Number];
 
 impl Reader<'_> {
     pub(super) fn parameters(&mut self, model: &Fields<'_>, raw: &mut Raw) {
@@ -33,6 +51,7 @@ impl Reader<'_> {
                         name: format!("parameter `{}`", shown(name)),
                         example: format!("for example `{name} = {{ value = 60, unit = \"length\" }}`"),
                     };
+                    self.unread.clear();
                     let mut place = EntryPlace::at(at.clone());
                     place.key("value", value);
                     let parameter = Parameter { name, quantity: Quantity::Number, is_design: true };
@@ -43,18 +62,10 @@ impl Reader<'_> {
     }
 
     fn parameter_table(&mut self, entry: &(String, Range<usize>, &Value<'_>), raw: &mut Raw) {
-        let fields = self.entry("parameter", entry, PARAMETER);
+        let fields = self.entry("parameter", entry, PARAMETER_TABLE.keys());
         let place = EntryPlace::of(&fields);
-        let quantity = fields.get("unit").and_then(|f| {
-            let subject = fields.subject("unit");
-            let word = self.name(f.value, &subject, "`\"length\"`, `\"angle\"` or `\"number\"`")?;
-            let found = UNITS.iter().find(|u| u.0 == word);
-            if found.is_none() {
-                self.unknown_word(f.value.span(), &subject, &word, &UNITS.map(|u| u.0));
-            }
-            found.map(|u| u.1)
-        });
-        let is_design = fields.get("design").and_then(|f| self.boolean(f.value, &fields.subject("design")));
+        let quantity = self.word_of(&fields, "unit").map(|k| UNITS[k]);
+        let is_design = self.flag_of(&fields, "design");
         let value = self.need(&fields, "value").map(|f| (f.value, fields.subject("value")));
         let parameter = Parameter {
             name: &entry.0,
@@ -69,7 +80,7 @@ impl Reader<'_> {
         p: &Parameter<'_>,
         value: Option<(&Value<'_>, Subject)>,
         fields: Option<&Fields<'_>>,
-        mut place: EntryPlace,
+        place: EntryPlace,
         raw: &mut Raw,
     ) {
         let name = p.name.to_owned();
@@ -83,7 +94,7 @@ impl Reader<'_> {
             Some(0.0)
         });
         if number.is_none() {
-            place.unread("value");
+            self.unread.push("value");
         }
         let number = number.unwrap_or(1.0);
         if let (Some(fields), true) = (fields, formula || !p.is_design) {
@@ -98,10 +109,12 @@ impl Reader<'_> {
             keys.iter().for_each(|key| self.out_of_place(fields, key, why));
         } else if p.is_design && !formula {
             let (bounds, [typical, tolerance]) = match fields {
-                Some(fields) => self.range(fields, p.quantity, &mut place),
+                Some(fields) => self.range(fields, p.quantity),
                 None => (None, [None; 2]),
             };
-            raw.places.push(Section::Design, place.clone());
+            let unread = self.unread.clone();
+            self.push(raw, Section::Design, place.clone());
+            self.unread = unread;
             raw.draft.design.push(VariableDraft {
                 name: name.clone(),
                 changes: vec![ChangeDraft::Parameter { parameter: name.clone(), rate: 1.0 }],
@@ -111,18 +124,8 @@ impl Reader<'_> {
                 ..VariableDraft::default()
             });
         }
-        raw.places.push(Section::Parameters, place);
+        self.push(raw, Section::Parameters, place);
         raw.draft.parameters.push(ParameterDraft { name, value: number, quantity: p.quantity });
-    }
-
-    /// A number that may be left out; noted as unread where it is there and none.
-    fn number_in(&mut self, fields: &Fields<'_>, key: &'static str, place: &mut EntryPlace) -> Option<f64> {
-        let f = fields.get(key)?;
-        let number = self.number(f.value, &fields.subject(key));
-        if number.is_none() {
-            place.unread(key);
-        }
-        number
     }
 
     /// The bounds, the typical size and the tolerance of a design variable that measures this, in SI.
@@ -130,27 +133,15 @@ impl Reader<'_> {
         &mut self,
         fields: &Fields<'_>,
         quantity: Quantity,
-        place: &mut EntryPlace,
     ) -> (Option<[f64; 2]>, [Option<f64>; 2]) {
         let units = self.units;
-        let bounds = fields.get("bounds").and_then(|f| {
-            let bounds =
-                self.numbers::<2>(f.value, &fields.subject("bounds"), "the lower and the upper bound");
-            if bounds.is_none() {
-                place.unread("bounds");
-            }
-            bounds.map(|b| b.map(|x| units.to_si(quantity, x)))
-        });
+        let bounds = self.list_of::<2>(fields, "bounds", "the lower and the upper bound");
+        let bounds = bounds.map(|b| b.map(|x| units.to_si(quantity, x)));
         let sizes = ["typical", "tolerance"].map(|key| {
-            let size = self.number_in(fields, key, place);
+            let size = self.number_of(fields, key);
             size.map(|x| units.to_si(quantity, x))
         });
         (bounds, sizes)
-    }
-
-    /// An angle in rad: a number is in the file's unit, an expression gives radians.
-    pub(super) fn angle_of(&self, value: &Value<'_>, x: f64) -> f64 {
-        if value.get_ref().is_str() { x } else { self.units.angle.radians(x) }
     }
 }
 

@@ -1,214 +1,310 @@
 //! What is wanted: points to follow, measures, output times.
 
+use std::sync::LazyLock;
+
 use hardpoint::model::{
-    AngleKindDraft, AxleMeasure, Line, MeasureDraft, MeasureKindDraft, MetricDraft, Place, PointDraft,
-    PointRef, RayDraft, Section, Take, WheelMeasure,
+    AxleMeasure, FieldDraft, FieldKind, Line, MeasureDraft, MeasureField, MeasureKindDraft, MeasureType,
+    MetricDraft, Place, PointDraft, PointRef, RayDraft, Section, Take, WheelMeasure, WheelNeed,
 };
 use hardpoint::space::Vec3;
 
-use super::Raw;
+use super::{COORDINATE, Raw};
+use crate::format::{
+    BODY, DRIVER, JOINT, Key, Kinds, NUMBER, Need, OUTPUT, Shape, TWO_NUMBERS, Table, keys, table,
+};
 use crate::places::EntryPlace;
-use crate::tree::{Field, Fields, Key, Reader, Subject, Value};
+use crate::tree::{DIRECTION, Field, Fields, LINE, PLACE, Reader, Subject, Value};
 
 /// More output times than this are surely a slip.
-const MOST_TIMES: usize = 1_000_000;
-const POINT: &[Key] = &[("body", "\"crank\""), ("at", "\"A\"")];
-const TIME: &[Key] = &[("start", "0"), ("end", "1.0"), ("steps", "100"), ("at", "[0, 0.5, 1]")];
-const COORDINATE: &[Key] = &[("type", "\"coordinate\""), ("joint", "\"J1\""), ("coordinate", "\"angle\"")];
-const DISTANCE: &[Key] = &[("type", "\"distance\""), ("from", "\"P\""), ("to", "\"Q\"")];
-const POSITION: &[Key] = &[("type", "\"position\""), ("point", "\"P\""), ("along", "\"z\"")];
-const ANGLE: &[Key] = &[
-    ("type", "\"angle\""),
-    ("from", "[\"P\", \"Q\"]"),
-    ("to", "{ body = \"rocker\", axis = \"x\" }"),
-    ("about", "\"z\""),
-];
-const TRANSMISSION: &[Key] =
-    &[("type", "\"transmission_angle\""), ("from", "[\"P\", \"Q\"]"), ("to", "[\"Q\", \"R\"]")];
-const RAY: &[Key] = &[("body", "\"rocker\""), ("axis", "\"x\"")];
-const VELOCITY: &[Key] = &[("type", "\"velocity\""), ("point", "\"P\""), ("along", "\"x\"")];
-const CURVATURE: &[Key] = &[("type", "\"curvature\""), ("point", "\"P\""), ("about", "\"z\"")];
-const RATE: &[Key] = &[("type", "\"rate\""), ("of", "\"toe\"")];
-const SLOPE: &[Key] =
-    &[("type", "\"slope\""), ("of", "\"spring\""), ("over", "\"P.z\""), ("driver", "\"bump\"")];
-const EXPRESSION: &[Key] = &[("type", "\"expression\""), ("expression", "\"left.toe + right.toe\"")];
-const AXLE: &[Key] = &[("type", "\"track\""), ("axle", "\"front\"")];
-const WHEEL: &[Key] = &[("type", "\"caster\""), ("wheel", "\"front_left\"")];
-const METRIC: &[Key] = &[
-    ("of", "\"toe\""),
-    ("take", "\"max\""),
-    ("over", "\"wheel_travel\""),
-    ("at", "0"),
-    ("window", "[-20, 20]"),
-    ("target", "[[-50, 0.1], [50, -0.1]]"),
-];
-/// Types of measures but for those of wheels and axles.
-const OWN: [&str; 11] = [
-    "coordinate",
-    "distance",
-    "position",
-    "angle",
-    "transmission_angle",
-    "velocity",
-    "acceleration",
-    "curvature",
-    "rate",
-    "slope",
-    "expression",
-];
-const TOE: &[Key] =
-    &[("type", "\"toe\""), ("wheel", "\"front_left\""), ("body", "\"knuckle\""), ("spin_axis", "[0, 1, 0]")];
-const MEASURE: &[Key] = &[("type", "\"coordinate\"")];
+const MOST_TIMES: u32 = 1_000_000;
+pub(crate) const POINT: Table = table! {
+    /// A point of a body.
+    "BodyPoint":
+    /// The body's name.
+    must "body": BODY, "\"crank\"";
+    /// Where it is in the design configuration: a hardpoint's name (and it follows the hardpoint when the design moves that),
+    /// or coordinates.
+    must "at": PLACE, "\"A\"";
+};
+pub(crate) const POINT_REF: Shape = Shape::Any(
+    "Point",
+    "A point: by name, or a place on a body.",
+    &[Shape::Name("a point"), Shape::Table(&POINT)],
+);
+pub(crate) const TIME: Kinds = Kinds {
+    name: "Time",
+    doc: "The output times, in seconds.",
+    typed: false,
+    tables: || vec![&STEPS, &TIMES],
+};
+const STEPS: Table = table! {
+    /// Evenly spaced.
+    "Steps":
+    /// The first output time.
+    or("0.0") "start": NUMBER, "0";
+    /// The last output time.
+    must "end": NUMBER, "1.0";
+    /// How many intervals: there is one output time more.
+    must "steps": Shape::Count(MOST_TIMES), "100";
+};
+const TIMES: Table = table! {
+    /// One by one.
+    "Times":
+    /// The output times, increasing.
+    must "at": Shape::some(&NUMBER), "[0, 0.5, 1]";
+};
+const RAY: Shape = Shape::Any(
+    "Ray",
+    "A direction that an angle is measured from or to.",
+    &[Shape::exactly(2, &POINT_REF), Shape::Table(&FIXED_RAY), DIRECTION],
+);
+const FIXED_RAY: Table = table! {
+    /// A direction that is fixed in a body.
+    "FixedRay":
+    /// The body's name.
+    must "body": BODY, "\"rocker\"";
+    /// Where it points in the design configuration.
+    must "axis": LINE, "\"x\"";
+};
+pub(crate) const METRIC: Table = table! {
+    /// One number for a whole curve.
+    "Metric":
+    /// The name of the measure, or `POINT.x`.
+    must "of": OUTPUT, "\"toe\"";
+    /// What to take of its curve.
+    must "take": TAKE, "\"max\"";
+    /// The abscissa: the name of a measure, or `POINT.x`. Default: time.
+    may "over": OUTPUT, "\"wheel_travel\"";
+    /// For a value or slope: where, in the unit of the abscissa.
+    may "at": NUMBER, "0";
+    /// The part of the curve that counts, from where to where its abscissa goes. Default: all of it.
+    may "window": TWO_NUMBERS, "[-20, 20]";
+    /// For `rms`: points `[abscissa, value]` of the curve to compare with, straight lines between them. Default: zero.
+    may "target": Shape::list(&TWO_NUMBERS), "[[-50, 0.1], [50, -0.1]]";
+};
+const TAKE: Shape = Shape::Any(
+    "Take",
+    "What a metric takes.",
+    &[Shape::Words(&[
+        ("min", "The least value."),
+        ("max", "The greatest value."),
+        ("range", "The greatest less the least value."),
+        ("mean", "The mean over the output times."),
+        ("rms", "The root of the mean square of what is left beyond the target."),
+        ("value", "The value where the abscissa first is `at`."),
+        ("slope", "The change per change of the abscissa where that first is `at`."),
+    ])],
+);
+pub(crate) const MEASURE: Shape = Shape::Any(
+    "Measure",
+    "A measure.",
+    &[Shape::Kinds(&OWN_MEASURE), Shape::Table(&OF_WHEEL), Shape::Table(&OF_AXLE)],
+);
+pub(super) const OWN_MEASURE: Kinds = Kinds {
+    name: "OwnMeasure",
+    doc: "A measure of anything else.",
+    typed: true,
+    tables: || MEASURES.iter().filter_map(|(table, kind)| kind.own().map(|_| table)).collect(),
+};
+const OF_WHEEL: Table = Table {
+    shared: WHEEL,
+    ..table! {
+        /// A measure of a wheel.
+        "MeasureOfWheel":
+        /// What to measure.
+        must "type": WHEEL_MEASURE, "\"caster\"";
+    }
+};
+const OF_AXLE: Table = Table {
+    shared: AXLE,
+    ..table! {
+        /// A measure of an axle.
+        "MeasureOfAxle":
+        /// What to measure.
+        must "type": AXLE_MEASURE, "\"track\"";
+    }
+};
+const WHEEL: &[Key] = keys! {
+    /// The wheel's name.
+    must "wheel": Shape::Name("a wheel"), "\"front_left\"";
+};
+const AXLE: &[Key] = keys! {
+    /// The axle's name.
+    must "axle": Shape::Name("an axle"), "\"front\"";
+};
+pub(super) const WHEEL_MEASURE: Shape = Shape::Any(
+    "WheelMeasure",
+    "",
+    &[Shape::Known("the name of a measure", || {
+        let needs = |m: &WheelMeasure| match m.needs() {
+            WheelNeed::Nothing => "",
+            WheelNeed::Kingpin => " Needs a kingpin.",
+            WheelNeed::Bump => " Needs `bump`.",
+            WheelNeed::Braking(_) => " Needs `bump`, and the vehicle's `front_brake_share`.",
+            WheelNeed::Driving(_) => " Needs `bump`, and the vehicle's `front_drive_share`.",
+        };
+        WheelMeasure::ALL.iter().map(|m| (m.name(), format!("{}{}", m.summary(), needs(m)))).collect()
+    })],
+);
+pub(super) const AXLE_MEASURE: Shape = Shape::Any(
+    "AxleMeasure",
+    "",
+    &[Shape::Known("the name of a measure", || {
+        AxleMeasure::ALL.iter().map(|m| (m.name(), m.summary().to_owned())).collect()
+    })],
+);
+
+/// What the `type` of a measure may mean: `toe` is of a wheel, or of a body with a spin axis.
+#[derive(Clone, Copy)]
+enum MeasureOf {
+    Own(&'static MeasureType),
+    Wheel(WheelMeasure),
+    Axle(AxleMeasure),
+    Either(&'static MeasureType, WheelMeasure),
+}
+
+impl MeasureOf {
+    fn own(self) -> Option<&'static MeasureType> {
+        if let Self::Own(own) | Self::Either(own, _) = self { Some(own) } else { None }
+    }
+}
+
+/// The types of measures, as the core declares them.
+static MEASURES: LazyLock<Vec<(Table, MeasureOf)>> = LazyLock::new(|| {
+    let own = MeasureType::ALL.iter().map(|own| {
+        let keys: Vec<Key> = own.fields.iter().map(key).collect();
+        let table = Table::new(own.name, own.summary, keys.leak());
+        match WheelMeasure::named(own.name) {
+            Some(what) => (Table { instead: WHEEL, ..table }, MeasureOf::Either(own, what)),
+            None => (table, MeasureOf::Own(own)),
+        }
+    });
+    let has_own = |name: &str| MeasureType::ALL.iter().any(|own| own.name == name);
+    let of_wheels = WheelMeasure::ALL.iter().filter(|what| !has_own(what.name()));
+    let of_wheels =
+        of_wheels.map(|what| (Table::new(what.name(), what.summary(), WHEEL), MeasureOf::Wheel(*what)));
+    let of_axles = AxleMeasure::ALL
+        .iter()
+        .map(|what| (Table::new(what.name(), what.summary(), AXLE), MeasureOf::Axle(*what)));
+    own.chain(of_wheels).chain(of_axles).collect()
+});
+
+/// The key of a measure's field.
+fn key(field: &MeasureField) -> Key {
+    let (shape, example) = match field.kind {
+        FieldKind::Joint => (JOINT, "\"J1\""),
+        FieldKind::Coordinate => (COORDINATE, "\"angle\""),
+        FieldKind::Point => (POINT_REF, "\"P\""),
+        FieldKind::Direction => (DIRECTION, "\"z\""),
+        FieldKind::Line => (LINE, "[0, 1, 0]"),
+        FieldKind::Ray => (RAY, "[\"P\", \"Q\"]"),
+        FieldKind::Output => (OUTPUT, "\"toe\""),
+        FieldKind::Driver => (DRIVER, "\"bump\""),
+        FieldKind::Body => (BODY, "\"knuckle\""),
+        FieldKind::Expression => (Shape::Text, "\"left.toe + right.toe\""),
+    };
+    let need = if field.required { Need::Required } else { Need::Optional };
+    Key { key: field.key, shape, need, example, doc: field.summary }
+}
 
 impl Reader<'_> {
     pub(super) fn points(&mut self, model: &Fields<'_>, raw: &mut Raw) {
         for entry in self.entries(model, "points", "point") {
-            let fields = self.entry("point", &entry, POINT);
+            let fields = self.entry("point", &entry, POINT.keys());
             let mut place = EntryPlace::of(&fields);
-            let body = self.named(&fields, "body", "the name of a body", &mut place).unwrap_or_default();
-            let at = self.need(&fields, "at").and_then(|f| self.place(f.value, &fields.subject("at")));
+            let body = self.name_of(&fields, "body").unwrap_or_default();
+            let at = self.place_of(&fields, "at");
             place.items("at", Vec::new());
-            let at = at.unwrap_or_else(|| {
-                place.unread("at");
-                Place::At(Vec3::ZERO)
-            });
-            raw.places.push(Section::Points, place);
+            let at = at.unwrap_or(Place::At(Vec3::ZERO));
+            self.push(raw, Section::Points, place);
             raw.draft.points.push(PointDraft { name: entry.0, body, at });
         }
     }
 
     pub(super) fn measures(&mut self, model: &Fields<'_>, raw: &mut Raw) {
-        let of_wheels = WheelMeasure::ALL.iter().map(|m| m.name());
-        let of_axles = AxleMeasure::ALL.iter().map(|m| m.name());
-        let types: Vec<_> = OWN.into_iter().chain(of_wheels).chain(of_axles).collect();
         for entry in self.entries(model, "measures", "measure") {
-            let Some(kind) = self.entry_type("measure", &entry, &types, MEASURE) else { continue };
-            let keys = match kind {
-                "coordinate" => COORDINATE,
-                "distance" => DISTANCE,
-                "position" => POSITION,
-                "angle" => ANGLE,
-                "transmission_angle" => TRANSMISSION,
-                "velocity" | "acceleration" => VELOCITY,
-                "curvature" => CURVATURE,
-                "rate" => RATE,
-                "slope" => SLOPE,
-                "expression" => EXPRESSION,
-                "toe" | "camber" => TOE,
-                _ if AxleMeasure::named(kind).is_some() => AXLE,
-                _ => WHEEL,
+            let (place, kind) = match self.entry_type("measure", &entry, &MEASURES) {
+                Some((table, of)) => {
+                    let fields = self.entry("measure", &entry, table.typed_keys());
+                    let mut place = EntryPlace::of(&fields);
+                    let kind = self.measure(*of, &fields, &mut place);
+                    (place, kind)
+                }
+                None => (EntryPlace::at(entry.1.clone()), None),
             };
-            let fields = self.entry("measure", &entry, keys);
-            let mut place = EntryPlace::of(&fields);
-            if let Some(kind) = self.measure(kind, &fields, &mut place) {
-                raw.places.push(Section::Measures, place);
-                raw.draft.measures.push(MeasureDraft { name: entry.0, kind });
+            self.unread.clear();
+            if kind.is_none() {
+                self.unread.push("");
             }
+            self.push(raw, Section::Measures, place);
+            let kind = kind.unwrap_or(MeasureKindDraft::Unread);
+            raw.draft.measures.push(MeasureDraft { name: entry.0, kind });
         }
     }
 
     fn measure(
         &mut self,
-        kind: &str,
+        of: MeasureOf,
         fields: &Fields<'_>,
         place: &mut EntryPlace,
     ) -> Option<MeasureKindDraft> {
-        match kind {
-            "coordinate" => {
-                let joint = self.named(fields, "joint", "the name of a joint", place);
-                let coordinate = self.optional_name(fields, "coordinate", "the name of a coordinate", place);
-                Some(MeasureKindDraft::Coordinate { joint: joint?, coordinate })
-            }
-            "distance" => {
-                let [from, to] =
-                    ["from", "to"].map(|key| self.need(fields, key).and_then(|f| self.point_ref(fields, f)));
-                Some(MeasureKindDraft::Distance { from: from?, to: to? })
-            }
-            "position" => {
-                let point = self.need(fields, "point").and_then(|f| self.point_ref(fields, f));
-                let along =
-                    self.need(fields, "along").and_then(|f| self.vector(f.value, &fields.subject("along")));
-                Some(MeasureKindDraft::Coordinates { point: point?, along: along? })
-            }
-            "angle" | "transmission_angle" => {
-                let [from, to] =
-                    ["from", "to"].map(|key| self.need(fields, key).and_then(|f| self.ray(fields, f, place)));
-                let about = self.vector_if_any(fields, "about")?;
-                let kind = match (kind, about) {
-                    ("angle", Some(about)) => AngleKindDraft::About(about),
-                    ("angle", None) => AngleKindDraft::Between,
-                    _ => AngleKindDraft::Lines,
-                };
-                Some(MeasureKindDraft::Angle { between: [from?, to?], kind })
-            }
-            "velocity" | "acceleration" => {
-                let point = self.need(fields, "point").and_then(|f| self.point_ref(fields, f));
-                let along = self.vector_if_any(fields, "along")?;
-                let order = if kind == "velocity" { 1 } else { 2 };
-                Some(MeasureKindDraft::Velocity { point: point?, along, order })
-            }
-            "curvature" => {
-                let point = self.need(fields, "point").and_then(|f| self.point_ref(fields, f));
-                let about = self.vector_if_any(fields, "about")?;
-                Some(MeasureKindDraft::Curvature { point: point?, about })
-            }
-            "rate" => {
-                let of = self.named(fields, "of", "the name of a measure", place);
-                Some(MeasureKindDraft::Rate { of: of? })
-            }
-            "slope" => {
-                let [of, over] =
-                    ["of", "over"].map(|key| self.named(fields, key, "the name of a measure", place));
-                let driver = self.optional_name(fields, "driver", "the name of a driver", place);
-                Some(MeasureKindDraft::Slope { of: of?, over: over?, driver })
-            }
-            "expression" => {
-                let f = self.need(fields, "expression")?;
-                let subject = fields.subject("expression");
-                if f.value.get_ref().as_str().is_none() {
-                    self.wrong(f.value, &subject, "an expression in quotes");
-                }
-                let expression = self.expression(f.value, &subject)?;
-                Some(MeasureKindDraft::Combination { expression })
-            }
-            _ if AxleMeasure::named(kind).is_some() => {
-                let axle = self.named(fields, "axle", "the name of an axle", place);
-                let what = AxleMeasure::named(kind).expect("just found");
-                Some(MeasureKindDraft::Axle { axle: axle?, what })
-            }
-            "toe" | "camber" if fields.get("body").is_some() || fields.get("spin_axis").is_some() => {
+        match of {
+            MeasureOf::Either(own, _) if own.fields.iter().any(|f| fields.get(f.key).is_some()) => {
                 self.out_of_place(fields, "wheel", "`body` and `spin_axis` say of which wheel already");
-                let body = self.named(fields, "body", "the name of a body", place);
-                let spin_axis = self.need(fields, "spin_axis").and_then(|f| self.line_of(fields, f, place));
-                let (body, spin_axis) = (body?, spin_axis?);
-                Some(match kind {
-                    "toe" => MeasureKindDraft::Toe { body, spin_axis },
-                    _ => MeasureKindDraft::Camber { body, spin_axis },
-                })
+                self.own_measure(own, fields, place)
             }
-            _ => {
-                let wheel = self.named(fields, "wheel", "the name of a wheel", place);
-                let what = WheelMeasure::named(kind).expect("the other types are those of wheels");
-                Some(MeasureKindDraft::Wheel { wheel: wheel?, what })
+            MeasureOf::Own(own) => self.own_measure(own, fields, place),
+            MeasureOf::Wheel(what) | MeasureOf::Either(_, what) => {
+                self.name_of(fields, "wheel").map(|wheel| MeasureKindDraft::Wheel { wheel, what })
+            }
+            MeasureOf::Axle(what) => {
+                self.name_of(fields, "axle").map(|axle| MeasureKindDraft::Axle { axle, what })
             }
         }
     }
 
-    /// A vector that may be left out; `None` where it is there and none.
-    fn vector_if_any(&mut self, fields: &Fields<'_>, key: &str) -> Option<Option<Vec3>> {
-        match fields.get(key) {
-            Some(f) => self.vector(f.value, &fields.subject(key)).map(Some),
-            None => Some(None),
-        }
+    fn own_measure(
+        &mut self,
+        own: &MeasureType,
+        fields: &Fields<'_>,
+        place: &mut EntryPlace,
+    ) -> Option<MeasureKindDraft> {
+        let mut unread = false;
+        let draft = own.draft(|field| {
+            let key = field.key;
+            let value = match field.kind {
+                FieldKind::Joint
+                | FieldKind::Coordinate
+                | FieldKind::Output
+                | FieldKind::Driver
+                | FieldKind::Body => self.name_of(fields, key).map(FieldDraft::Name),
+                FieldKind::Point => self.point_of(fields, key).map(FieldDraft::Point),
+                FieldKind::Direction => self.vector_of(fields, key).map(FieldDraft::Direction),
+                FieldKind::Line => self.line_of(fields, key, place).map(FieldDraft::Line),
+                FieldKind::Ray => {
+                    self.given(fields, key, |r, f| r.ray(fields, f, place)).map(FieldDraft::Ray)
+                }
+                FieldKind::Expression => self.given(fields, key, |r, f| {
+                    let subject = fields.subject(key);
+                    if f.value.get_ref().as_str().is_none() {
+                        r.wrong(f.value, &subject, "an expression in quotes");
+                    }
+                    r.expression(f.value, &subject).map(FieldDraft::Expression)
+                }),
+            };
+            unread |= value.is_none() && fields.get(key).is_some();
+            value
+        });
+        draft.filter(|_| !unread)
     }
 
     /// A direction to measure an angle from or to: `["P", "Q"]`, a global vector, or `{ body = ..., axis = ... }`.
     fn ray(&mut self, fields: &Fields<'_>, f: Field<'_>, place: &mut EntryPlace) -> Option<RayDraft> {
         let subject = fields.subject(f.key);
         if let Some(table) = f.value.get_ref().as_table() {
-            let fields = self.fields(subject.name.clone(), f.value.span(), table, RAY);
-            let body = self.required(&fields, "body", "the name of a body");
-            let axis = self.need(&fields, "axis").and_then(|f| self.line_of(&fields, f, place));
+            let fields = self.fields(subject.name.clone(), f.value.span(), table, FIXED_RAY.keys());
+            let body = self.name_of(&fields, "body");
+            let axis = self.line_of(&fields, "axis", place);
             return Some(RayDraft::Fixed { body: body?, axis: axis? });
         }
         let is_number =
@@ -227,18 +323,17 @@ impl Reader<'_> {
 
     pub(super) fn metrics(&mut self, model: &Fields<'_>, raw: &mut Raw) {
         for entry in self.entries(model, "metrics", "metric") {
-            let fields = self.entry("metric", &entry, METRIC);
-            let mut place = EntryPlace::of(&fields);
-            let of = self.named(&fields, "of", "the name of a measure", &mut place);
-            let over = self.optional_name(&fields, "over", "the name of a measure", &mut place);
+            let fields = self.entry("metric", &entry, METRIC.keys());
+            let place = EntryPlace::of(&fields);
+            let of = self.name_of(&fields, "of");
+            let over = self.name_of(&fields, "over");
             let take = self.take(&fields);
-            let window = fields.get("window").map(|f| {
-                self.numbers::<2>(f.value, &fields.subject("window"), "the lower and the upper end")
-            });
-            if let (Some(of), Some(take), true) = (of, take, window != Some(None)) {
+            let window = self.list_of::<2>(&fields, "window", "the lower and the upper end");
+            if let (Some(of), Some(take), true) =
+                (of, take, window.is_some() || fields.get("window").is_none())
+            {
                 let (per_metre, per_radian) = (self.units.length.per_metre(), self.units.angle.per_radian());
-                let window = window.flatten();
-                raw.places.push(Section::Metrics, place);
+                self.push(raw, Section::Metrics, place);
                 raw.draft.metrics.push(MetricDraft {
                     name: entry.0,
                     of,
@@ -254,9 +349,7 @@ impl Reader<'_> {
 
     /// What a metric takes, in the file's units.
     fn take(&mut self, fields: &Fields<'_>) -> Option<Take> {
-        let f = self.need(fields, "take")?;
-        let subject = fields.subject("take");
-        let word = self.name(f.value, &subject, "what to take of the curve")?;
+        let word = Take::NAMES[self.word_of(fields, "take")?];
         if word != "rms" {
             self.out_of_place(fields, "target", "only `take = \"rms\"` compares with a target");
         }
@@ -264,8 +357,9 @@ impl Reader<'_> {
             self.out_of_place(fields, "at", "only `take = \"value\"` and `\"slope\"` are taken at one place");
         } else {
             self.out_of_place(fields, "window", "it is taken at one place");
+            self.need(fields, "at");
         }
-        Some(match word.as_str() {
+        Some(match word {
             "min" => Take::Least,
             "max" => Take::Greatest,
             "range" => Take::Range,
@@ -274,12 +368,8 @@ impl Reader<'_> {
                 Some(f) => self.pairs(f.value, &fields.subject("target"))?,
                 None => Vec::new(),
             }),
-            "value" => Take::Value(self.needed_number(fields, "at")?),
-            "slope" => Take::Slope(self.needed_number(fields, "at")?),
-            _ => {
-                self.unknown_word(f.value.span(), &subject, &word, &Take::NAMES);
-                return None;
-            }
+            "value" => Take::Value(self.number_of(fields, "at")?),
+            _ => Take::Slope(self.number_of(fields, "at")?),
         })
     }
 
@@ -290,6 +380,11 @@ impl Reader<'_> {
         list.iter().map(|pair| self.numbers::<2>(pair, subject, expected)).collect()
     }
 
+    /// A point that a key names.
+    pub(super) fn point_of(&mut self, fields: &Fields<'_>, key: &str) -> Option<PointRef> {
+        self.given(fields, key, |r, f| r.point_ref(fields, f))
+    }
+
     pub(super) fn point_ref(&mut self, fields: &Fields<'_>, f: Field<'_>) -> Option<PointRef> {
         let subject = fields.subject(f.key);
         let Some(table) = f.value.get_ref().as_table() else {
@@ -297,26 +392,27 @@ impl Reader<'_> {
                 .name(f.value, &subject, "a point's name or `{ body = ..., at = ... }`")
                 .map(PointRef::Named);
         };
-        let fields = self.fields(subject.name.clone(), f.value.span(), table, POINT);
-        let body = self.required(&fields, "body", "the name of a body");
-        let at = self.need(&fields, "at").and_then(|f| self.place(f.value, &fields.subject("at")));
+        let fields = self.fields(subject.name.clone(), f.value.span(), table, POINT.keys());
+        let body = self.name_of(&fields, "body");
+        let at = self.place_of(&fields, "at");
         Some(PointRef::On { body: body?, at: at? })
     }
 
     pub(super) fn time(&mut self, model: &Fields<'_>, raw: &mut Raw) {
         let Some(f) = model.get("time") else { return };
-        let mut place = EntryPlace::at(f.value.span());
+        self.unread.clear();
+        let place = EntryPlace::at(f.value.span());
         let times = self.times(model, f);
         if times.is_none() {
-            place.unread("");
+            self.unread.push("");
         }
         raw.draft.times = times.unwrap_or_default();
-        raw.places.push(Section::Time, place);
+        self.push(raw, Section::Time, place);
     }
 
     fn times(&mut self, model: &Fields<'_>, f: Field<'_>) -> Option<Vec<f64>> {
         let table = self.table(f.value, &model.subject("time"), "a table with `end` and `steps`")?;
-        let fields = self.fields("`time`", f.value.span(), table, TIME);
+        let fields = self.fields("`time`", f.value.span(), table, TIME.keys());
         if let Some(f) = fields.get("at") {
             for key in ["start", "end", "steps"] {
                 self.out_of_place(&fields, key, "the output times are listed in `at` already");
@@ -326,7 +422,7 @@ impl Reader<'_> {
                 self.wrong(f.value, &subject, "a list of times in s");
                 return None;
             };
-            if list.len() > MOST_TIMES {
+            if list.len() > MOST_TIMES as usize {
                 self.senseless(f.value.span(), format!("there are more than {MOST_TIMES} output times"));
                 return None;
             }
@@ -340,18 +436,13 @@ impl Reader<'_> {
             }
             return Some(times);
         }
-        let start = match fields.get("start") {
-            Some(f) => self.number(f.value, &fields.subject("start")),
-            None => Some(0.0),
-        };
-        let end_field = self.need(&fields, "end");
-        let end = end_field.and_then(|f| self.number(f.value, &fields.subject("end")));
-        let steps_field = self.need(&fields, "steps");
-        let steps = steps_field.and_then(|f| {
-            let steps = self.number(f.value, &fields.subject("steps"))?;
-            if !(steps >= 1.0 && steps <= MOST_TIMES as f64 && steps.fract() == 0.0) {
+        let start = self.number_of(&fields, "start");
+        let end = self.number_of(&fields, "end");
+        let steps = self.given(&fields, "steps", |r, f| {
+            let steps = r.number(f.value, &fields.subject("steps"))?;
+            if !(steps >= 1.0 && steps <= f64::from(MOST_TIMES) && steps.fract() == 0.0) {
                 let message = format!("`steps` of `time` cannot be {steps}");
-                self.senseless(f.value.span(), message).help =
+                r.senseless(f.value.span(), message).help =
                     Some(format!("give the number of intervals, a whole number from 1 to {MOST_TIMES}"));
                 return None;
             }
@@ -359,7 +450,7 @@ impl Reader<'_> {
         });
         let (start, end, steps) = (start?, end?, steps?);
         if end <= start {
-            let at = end_field.map_or(fields.at.clone(), |f| f.value.span());
+            let at = fields.get("end").map_or(fields.at.clone(), |f| f.value.span());
             let message = format!("the motion ends at {end} s, before it starts at {start} s");
             self.senseless(at, message).help =
                 Some("give an `end` after `start` (which is 0 if it is left out)".into());

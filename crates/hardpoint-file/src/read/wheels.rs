@@ -7,31 +7,63 @@ use hardpoint::model::{
 use hardpoint::space::Vec3;
 
 use super::Raw;
+use super::results::{AXLE_MEASURE, POINT_REF, WHEEL_MEASURE};
 use crate::diagnostic::Severity;
+use crate::format::{ANGLE, BODY, DRIVER, LENGTH, NUMBER, Shape, Table, table};
 use crate::places::EntryPlace;
-use crate::tree::{Field, Fields, Key, Reader};
+use crate::tree::{Field, Fields, LINE, PLACE, Reader};
 
-const WHEEL: &[Key] = &[
-    ("body", "\"knuckle\""),
-    ("centre", "\"wheel_centre\""),
-    ("spin_axis", "[0, 1, 0]"),
-    ("toe", "0.1"),
-    ("camber", "-1"),
-    ("radius", "310"),
-    ("side", "\"left\""),
-    ("kingpin", "[\"lower_ball\", { body = \"ground\", at = \"strut_top\" }]"),
-    ("bump", "\"jounce\""),
-    ("end", "\"front\""),
-    ("measures", "[\"toe\", \"camber\"]"),
-];
-const VEHICLE: &[Key] = &[
-    ("wheelbase", "2600"),
-    ("centre_of_gravity", "550"),
-    ("front_brake_share", "0.65"),
-    ("front_drive_share", "0"),
-];
-const AXLE: &[Key] =
-    &[("left", "\"front_left\""), ("right", "\"front_right\""), ("measures", "[\"track\", \"ackermann\"]")];
+pub(crate) const WHEEL: Table = table! {
+    /// A road wheel. Axes are x forward, y left, z up.
+    "Wheel":
+    /// The body that it turns on: the knuckle.
+    must "body": BODY, "\"knuckle\"";
+    /// Its centre in the design configuration: a hardpoint's name (and it follows the hardpoint when the design moves that), or
+    /// coordinates.
+    must "centre": PLACE, "\"wheel_centre\"";
+    /// Its spin axis in the design configuration, pointing outboard. Or give `toe` and `camber`.
+    may "spin_axis": LINE, "[0, 1, 0]";
+    /// Toe in the design configuration, instead of a spin axis; positive for toe-in, in the angle unit.
+    may "toe": ANGLE, "0.1";
+    /// Camber in the design configuration, instead of a spin axis; positive where the wheel's top leans outboard, in the angle
+    /// unit.
+    may "camber": ANGLE, "-1";
+    /// From the centre to the ground in the wheel's plane: the loaded or rolling radius, in the length unit.
+    must "radius": LENGTH, "310";
+    /// On which side of the vehicle it is. Default: left where the y of its centre is positive, else right.
+    may "side": Shape::Words(&[("left", ""), ("right", "")]), "\"left\"";
+    /// A lower and an upper point of the axis that it steers about; they may be on different bodies.
+    may "kingpin": Shape::exactly(2, &POINT_REF), "[\"lower_ball\", { body = \"ground\", at = \"strut_top\" }]";
+    /// The driver that moves it up and down, for roll centres, bump steer and the like. Default: the only driver.
+    may "bump": DRIVER, "\"jounce\"";
+    /// At which end of the vehicle it is, for anti-dive and the like.
+    may "end": Shape::Words(&[("front", ""), ("rear", "")]), "\"front\"";
+    /// What to measure, as NAME.toe and so on: `"all"` that is possible, or a list.
+    may "measures": Shape::Any("WheelMeasures", "", &[ALL, Shape::list(&WHEEL_MEASURE)]), "[\"toe\", \"camber\"]";
+};
+const ALL: Shape = Shape::Any("AllMeasures", "", &[Shape::Words(&[("all", "")])]);
+pub(crate) const VEHICLE: Table = table! {
+    /// What is known of the vehicle besides its suspension.
+    "Vehicle":
+    /// Distance of the axles, in the length unit.
+    may "wheelbase": LENGTH, "2600";
+    /// Height of the centre of gravity above the ground, in the length unit.
+    may "centre_of_gravity": LENGTH, "550";
+    /// Part of the braking force that the front wheels take, 0 to 1.
+    may "front_brake_share": NUMBER, "0.65";
+    /// Part of the driving force that the front wheels give, 0 to 1.
+    may "front_drive_share": NUMBER, "0";
+};
+pub(crate) const AXLE: Table = table! {
+    /// Two wheels side by side.
+    "Axle":
+    /// The name of the left wheel.
+    must "left": Shape::Name("a wheel"), "\"front_left\"";
+    /// The name of the right wheel.
+    must "right": Shape::Name("a wheel"), "\"front_right\"";
+    /// What to measure, as NAME.track and so on: `"all"` that is possible, or a list.
+    may "measures": Shape::Any("AxleMeasures", "", &[ALL, Shape::list(&AXLE_MEASURE)]), "[\"track\", \"ackermann\"]";
+};
 const SIDES: [Side; 2] = [Side::Left, Side::Right];
 const ENDS: [VehicleEnd; 2] = [VehicleEnd::Front, VehicleEnd::Rear];
 
@@ -43,27 +75,21 @@ impl Reader<'_> {
         else {
             return;
         };
-        let fields = self.fields("`vehicle`", f.value.span(), table, VEHICLE);
-        raw.places.push(Section::Vehicle, EntryPlace::of(&fields));
-        let mut number = |key: &str| fields.get(key).and_then(|f| self.number(f.value, &fields.subject(key)));
-        let [wheelbase, height, front_brake_share, front_drive_share] =
-            ["wheelbase", "centre_of_gravity", "front_brake_share", "front_drive_share"].map(&mut number);
-        raw.draft.vehicle = Vehicle {
-            wheelbase: wheelbase.map(|x| self.units.length.metres(x)),
-            centre_of_gravity: height.map(|x| self.units.length.metres(x)),
-            front_brake_share,
-            front_drive_share,
-        };
+        self.unread.clear();
+        let fields = self.fields("`vehicle`", f.value.span(), table, VEHICLE.keys());
+        let number = |key: &str| self.number_of(&fields, key);
+        let [wheelbase, centre_of_gravity, front_brake_share, front_drive_share] =
+            ["wheelbase", "centre_of_gravity", "front_brake_share", "front_drive_share"].map(number);
+        self.push(raw, Section::Vehicle, EntryPlace::of(&fields));
+        raw.draft.vehicle = Vehicle { wheelbase, centre_of_gravity, front_brake_share, front_drive_share };
     }
 
     /// Axles, and their measures behind those of the wheels.
     pub(super) fn axles(&mut self, model: &Fields<'_>, raw: &mut Raw) {
         for entry in self.entries(model, "axles", "axle") {
-            let fields = self.entry("axle", &entry, AXLE);
-            let mut place = EntryPlace::of(&fields);
-            let [left, right] =
-                ["left", "right"].map(|key| self.named(&fields, key, "the name of a wheel", &mut place));
-            raw.places.push(Section::Axles, place);
+            let fields = self.entry("axle", &entry, AXLE.keys());
+            let [left, right] = ["left", "right"].map(|key| self.name_of(&fields, key));
+            self.push(raw, Section::Axles, EntryPlace::of(&fields));
             let has_wheelbase = raw.draft.vehicle.wheelbase.is_some();
             // A wheel that names no driver takes the only one.
             let alone = raw.draft.drivers.len() == 1;
@@ -94,31 +120,21 @@ impl Reader<'_> {
     /// Wheels, and their measures behind those of the model.
     pub(super) fn wheels(&mut self, model: &Fields<'_>, raw: &mut Raw) {
         for entry in self.entries(model, "wheels", "wheel") {
-            let fields = self.entry("wheel", &entry, WHEEL);
+            let fields = self.entry("wheel", &entry, WHEEL.keys());
             let mut place = EntryPlace::of(&fields);
-            let body = self.named(&fields, "body", "the name of a body", &mut place).unwrap_or_default();
-            let centre = self.need(&fields, "centre");
-            let centre = centre.and_then(|f| self.place(f.value, &fields.subject("centre")));
+            let body = self.name_of(&fields, "body").unwrap_or_default();
+            let centre = self.place_of(&fields, "centre");
             place.items("centre", Vec::new());
             let spin = self.spin(&fields, &mut place);
-            let radius = self.needed_number(&fields, "radius").map(|r| self.units.length.metres(r));
-            let side = fields.get("side").map(|f| self.one_of(&fields, f, SIDES, Side::name));
-            let end = fields.get("end").map(|f| self.one_of(&fields, f, ENDS, VehicleEnd::name));
-            let bump = self.optional_name(&fields, "bump", "the name of a driver", &mut place);
-            let kingpin = fields.get("kingpin").map(|f| self.kingpin(&fields, f));
-            for (key, lost) in [
-                ("centre", centre.is_none()),
-                ("spin_axis", spin.is_none()),
-                ("radius", radius.is_none()),
-                ("side", side == Some(None)),
-                ("end", end == Some(None)),
-                ("kingpin", kingpin == Some(None)),
-            ] {
-                if lost {
-                    place.unread(key);
-                }
+            let radius = self.number_of(&fields, "radius");
+            let side = self.word_of(&fields, "side").map(|k| SIDES[k]);
+            let end = self.word_of(&fields, "end").map(|k| ENDS[k]);
+            let bump = self.name_of(&fields, "bump");
+            let kingpin = self.given(&fields, "kingpin", |r, f| r.kingpin(&fields, f));
+            if spin.is_none() {
+                self.unread.push("spin_axis");
             }
-            raw.places.push(Section::Wheels, place);
+            self.push(raw, Section::Wheels, place);
             self.measures_of(&entry.0, &fields, raw);
             raw.draft.wheels.push(WheelDraft {
                 name: entry.0,
@@ -126,17 +142,17 @@ impl Reader<'_> {
                 centre: centre.unwrap_or(Place::At(Vec3::ZERO)),
                 spin: spin.unwrap_or(WheelSpinDraft::Axis(Line::Along(Vec3::AXES[1]))),
                 radius: radius.unwrap_or(1.0),
-                side: side.flatten(),
-                kingpin: kingpin.flatten(),
+                side,
+                kingpin,
                 bump,
-                end: end.flatten(),
+                end,
             });
         }
     }
 
     /// A spin axis, or the angles toe and camber.
     fn spin(&mut self, fields: &Fields<'_>, place: &mut EntryPlace) -> Option<WheelSpinDraft> {
-        if let Some(f) = fields.get("spin_axis") {
+        if fields.get("spin_axis").is_some() {
             for key in ["toe", "camber"] {
                 self.out_of_place(
                     fields,
@@ -144,7 +160,7 @@ impl Reader<'_> {
                     "it follows from the `spin_axis`; give either that or the angles",
                 );
             }
-            return self.line_of(fields, f, place).map(WheelSpinDraft::Axis);
+            return self.line_of(fields, "spin_axis", place).map(WheelSpinDraft::Axis);
         }
         if fields.get("toe").is_none() && fields.get("camber").is_none() {
             let message = format!("{} has no `spin_axis`", fields.what);
@@ -154,26 +170,11 @@ impl Reader<'_> {
             );
             return None;
         }
-        let [toe, camber] = ["toe", "camber"]
-            .map(|key| self.needed_number(fields, key).map(|angle| self.units.angle.radians(angle)));
+        let [toe, camber] = ["toe", "camber"].map(|key| {
+            self.need(fields, key);
+            self.number_of(fields, key)
+        });
         Some(WheelSpinDraft::Angles { toe: toe?, camber: camber? })
-    }
-
-    fn one_of<T: Copy>(
-        &mut self,
-        fields: &Fields<'_>,
-        f: Field<'_>,
-        all: [T; 2],
-        name: fn(T) -> &'static str,
-    ) -> Option<T> {
-        let subject = fields.subject(f.key);
-        let names = all.map(name);
-        let word = self.name(f.value, &subject, &format!("`\"{}\"` or `\"{}\"`", names[0], names[1]))?;
-        let found = all.into_iter().find(|x| name(*x) == word);
-        if found.is_none() {
-            self.unknown_word(f.value.span(), &subject, &word, &names);
-        }
-        found
     }
 
     fn kingpin(&mut self, fields: &Fields<'_>, f: Field<'_>) -> Option<[PointRef; 2]> {

@@ -2,6 +2,7 @@
 
 use hardpoint_file::parse;
 use proptest::prelude::*;
+use toml::de::{DeTable, DeValue};
 
 const MODELS: [&str; 7] = [
     include_str!("../../../../models/macpherson.toml"),
@@ -298,4 +299,38 @@ fn large_files_take_no_more_work_than_they_must() {
     survives(&format!("{header}[hardpoints]\n\"{}\" = [0, 0, 0]", "k".repeat(5_000_000)));
     survives(&format!("{header}joints.J = {{ type = \"{}\" }}", "revolute".repeat(500_000)));
     survives(&(0..100_000).map(|k| format!("k{k} = 1\n")).collect::<String>());
+}
+
+/// The ranges of all values in a value; of a table that headers or dotted keys make, only those of what is in it.
+fn ranges_of(text: &str, value: &DeValue<'_>, found: &mut Vec<std::ops::Range<usize>>) {
+    let mut add = |value: &toml::Spanned<DeValue<'_>>| {
+        if !value.get_ref().is_table() || text[value.span()].starts_with('{') {
+            found.push(value.span());
+        }
+        ranges_of(text, value.get_ref(), found);
+    };
+    match value {
+        DeValue::Table(table) => table.iter().for_each(|(_, value)| add(value)),
+        DeValue::Array(list) => list.iter().for_each(add),
+        _ => {}
+    }
+}
+
+/// Where something cannot be read, that is said, and nothing of what would follow from it.
+#[test]
+fn a_value_that_cannot_be_read_is_one_mistake() {
+    let wheels = include_str!("../../../../models/front_axle.toml");
+    let mut tried = 0;
+    for text in MODELS.into_iter().chain([wheels]) {
+        let mut ranges = Vec::new();
+        ranges_of(text, &DeValue::Table(DeTable::parse(text).unwrap().into_inner()), &mut ranges);
+        for range in ranges {
+            // No key takes a date.
+            let broken = format!("{}1979-05-27{}", &text[..range.start], &text[range.end..]);
+            let Err(found) = parse(&broken, "broken.toml") else { panic!("read: {}", &text[range]) };
+            assert!(found.list().len() == 1, "in place of `{}`:\n{found}", &text[range]);
+            tried += 1;
+        }
+    }
+    assert!(tried > 1000, "{tried}");
 }

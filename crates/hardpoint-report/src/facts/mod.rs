@@ -13,8 +13,7 @@ use hardpoint::Solution;
 use hardpoint::constraint::Row;
 use hardpoint::joint::{self, Quantity};
 use hardpoint::model::{
-    AngleKind, BodyId, Coupler, Direction, Driver, GROUND, HardpointId, Joint, JointId, MeasureKind, Model,
-    OutputSource, PointId, Ray, VariableId,
+    BodyId, Coupler, Direction, Driver, GROUND, HardpointId, Joint, JointId, Model, OutputSource, VariableId,
 };
 use hardpoint::sensitivity::{self, Condition, JointDefect, admissibility_at_design, conditions_at_design};
 use hardpoint::topology::{Closure, CutReason, Formulation, Role, Topology};
@@ -621,89 +620,10 @@ fn defect(model: &Model, units: Units, (by, unit): (Quantity, &str), defect: &Jo
 }
 
 fn measures(model: &Model, units: Units) -> Vec<MeasureFact> {
-    let point = |p: PointId| {
-        let p = &model.points[p.0];
-        let place = &model.hardpoints[p.at.0];
-        if !p.unnamed {
-            format!("`{}`", p.name)
-        } else if !place.unnamed {
-            format!("`{}` on `{}`", place.name, model.bodies[p.body.0].name)
-        } else {
-            format!("a point of `{}`", model.bodies[p.body.0].name)
-        }
-    };
-    let axis = |d: &Direction| match d {
-        Direction::Along(u) => format!("spin axis along {}", direction_text(*u)),
-        Direction::Through(a, b) => {
-            let [a, b] = [a, b].map(|h| model.hardpoints[h.0].name.as_str());
-            format!("spin axis from `{a}` to `{b}`")
-        }
-    };
-    let output = |source: &OutputSource| match source {
-        OutputSource::Measure(k) => format!("`{}`", model.measures[*k].name),
-        OutputSource::Point(p, axis) => format!("{}.{}", point(*p), ["x", "y", "z"][*axis]),
-    };
-    let ray = |ray: &Ray| match ray {
-        Ray::Between([a, b]) => format!("the line from {} to {}", point(*a), point(*b)),
-        Ray::Fixed { body, axis } => match axis {
-            Direction::Along(u) => format!("{} of `{}`", direction_text(*u), model.bodies[body.0].name),
-            Direction::Through(a, b) => {
-                let [a, b] = [a, b].map(|h| model.hardpoints[h.0].name.as_str());
-                format!("the line of `{}` from `{a}` to `{b}`", model.bodies[body.0].name)
-            }
-        },
-    };
     let fact = |(k, m): (usize, &hardpoint::model::Measure)| MeasureFact {
         name: m.name.clone(),
         unit: unit(units, model.dimension(OutputSource::Measure(k))),
-        what: match &m.kind {
-            MeasureKind::Coordinate { joint, coordinate } => {
-                let joint = &model.joints[joint.0];
-                format!("{} of joint `{}`", joint.kind.coordinates[*coordinate].name, joint.name)
-            }
-            MeasureKind::Distance { from, to } => format!("distance from {} to {}", point(*from), point(*to)),
-            MeasureKind::Coordinates { point: p, along } => {
-                format!("position of {} along {}", point(*p), direction_text(*along))
-            }
-            MeasureKind::Toe { body, spin_axis } => {
-                format!("toe of `{}`, {}", model.bodies[body.0].name, axis(spin_axis))
-            }
-            MeasureKind::Camber { body, spin_axis } => {
-                format!("camber of `{}`, {}", model.bodies[body.0].name, axis(spin_axis))
-            }
-            MeasureKind::Wheel { wheel, what } => {
-                format!("{} of wheel `{}`", what.name().replace('_', " "), model.wheels[wheel.0].name)
-            }
-            MeasureKind::Axle { axle, what } => {
-                format!("{} of axle `{}`", what.name().replace('_', " "), model.axles[axle.0].name)
-            }
-            MeasureKind::Angle { between: [from, to], kind } => {
-                let (from, to) = (ray(from), ray(to));
-                match kind {
-                    AngleKind::Between => format!("angle between {from} and {to}"),
-                    AngleKind::Lines => {
-                        format!("angle between the lines along {from} and {to}, at most 90 deg")
-                    }
-                    AngleKind::About(n) => format!("angle from {from} to {to} about {}", direction_text(*n)),
-                }
-            }
-            MeasureKind::Velocity { point: p, along, order } => {
-                let what = if *order == 1 { "velocity" } else { "acceleration" };
-                match along {
-                    Some(along) => format!("{what} of {} along {}", point(*p), direction_text(*along)),
-                    None => format!("magnitude of the {what} of {}", point(*p)),
-                }
-            }
-            MeasureKind::Curvature { point: p, .. } => format!("curvature of the path of {}", point(*p)),
-            MeasureKind::Rate { of } => format!("rate of {}", output(of)),
-            MeasureKind::Slope { of, over, driver } => format!(
-                "{} over {} while driver `{}` alone moves",
-                output(of),
-                output(over),
-                model.drivers[driver.0].name
-            ),
-            MeasureKind::Combination(formula) => formula.text().into(),
-        },
+        what: model.describe(m, &direction_text),
     };
     model.measures.iter().enumerate().map(fact).collect()
 }

@@ -1,5 +1,8 @@
 //! What can be wrong with the numbers of a law.
 
+use super::kind::Shape;
+use super::parameter::Parameter;
+
 /// What is wrong with the numbers of a law; for a law's text see [`ExpressionError`](super::ExpressionError).
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{message}")]
@@ -17,15 +20,12 @@ impl LawError {
     }
 }
 
-/// That each of these named numbers is finite.
-pub(super) fn check_finite<'a>(numbers: impl IntoIterator<Item = (&'a str, f64)>) -> Result<(), LawError> {
-    for (name, value) in numbers {
-        if !value.is_finite() {
-            return Err(LawError::new(
-                format!("the {name} of a law must be a finite number, not {value}"),
-                "",
-            ));
+/// That each parameter of a law is finite.
+pub(super) fn check_finite(law: &impl Shape) -> Result<(), LawError> {
+    match law.parameters().into_iter().find(|p| !p.value.is_finite()) {
+        Some(Parameter { name, value, .. }) => {
+            Err(LawError::new(format!("the `{name}` of a law must be a finite number, not {value}"), ""))
         }
+        None => Ok(()),
     }
-    Ok(())
 }

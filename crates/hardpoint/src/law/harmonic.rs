@@ -3,8 +3,9 @@
 use std::f64::consts::TAU;
 use std::fmt;
 
+use super::Law;
 use super::error::{LawError, check_finite};
-use super::kind::{Shape, write_sum};
+use super::kind::{Shape, parameters, write_sum};
 use super::parameter::{Parameter, ParameterKind, Seed, parameter, seeded};
 use super::range::Stretch;
 use super::term::Term;
@@ -25,15 +26,24 @@ pub struct Harmonic {
     pub offset: f64,
 }
 
-impl Harmonic {
-    pub(super) fn check(&self) -> Result<(), LawError> {
-        let Self { amplitude, frequency, phase, offset } = *self;
-        check_finite([
-            ("amplitude", amplitude),
-            ("frequency", frequency),
-            ("phase", phase),
-            ("offset", offset),
-        ])
+impl Law {
+    /// The harmonic law: offset + amplitude sin(2π frequency t + phase).
+    ///
+    /// ```
+    /// use hardpoint::law::{Harmonic, Law};
+    ///
+    /// let law = Law::harmonic(Harmonic { amplitude: 25.0, frequency: 0.5, phase: 0.0, offset: 10.0 })?;
+    /// assert_eq!(law.at(0.5).value(), 35.0); // a quarter of a period
+    /// assert_eq!(law.to_string(), "10 + 25*sin(2*pi*0.5*t)");
+    /// # Ok::<(), hardpoint::law::LawError>(())
+    /// ```
+    ///
+    /// # Errors
+    ///
+    /// When a number is not finite.
+    pub fn harmonic(law: Harmonic) -> Result<Self, LawError> {
+        check_finite(&law)?;
+        Ok(Self::of(law))
     }
 }
 
@@ -52,34 +62,11 @@ impl Shape for Harmonic {
             + of(self.offset)
     }
 
-    fn parameters(&self) -> Vec<Parameter> {
-        vec![
-            parameter("amplitude", self.amplitude, ParameterKind::Value),
-            parameter("frequency", self.frequency, ParameterKind::Frequency),
-            parameter("phase", self.phase, ParameterKind::Angle),
-            parameter("offset", self.offset, ParameterKind::Value),
-        ]
-    }
-
-    fn parameter_count(&self) -> usize {
-        4
-    }
-
-    fn parameter_kind(&self, parameter: usize) -> ParameterKind {
-        match parameter {
-            1 => ParameterKind::Frequency,
-            2 => ParameterKind::Angle,
-            _ => ParameterKind::Value,
-        }
-    }
-
-    fn set(&mut self, parameter: usize, value: f64) {
-        *match parameter {
-            0 => &mut self.amplitude,
-            1 => &mut self.frequency,
-            2 => &mut self.phase,
-            _ => &mut self.offset,
-        } = value;
+    parameters! {
+        amplitude: ParameterKind::Value,
+        frequency: ParameterKind::Frequency,
+        phase: ParameterKind::Angle,
+        offset: ParameterKind::Value,
     }
 }
 

@@ -2,16 +2,9 @@
 
 use std::fmt;
 
-use super::formula::Formula;
-use super::harmonic::Harmonic;
 use super::jumps::Break;
 use super::parameter::{Parameter, ParameterKind, Seed};
-use super::polynomial::Polynomial;
 use super::range::Stretch;
-use super::sequence::Sequence;
-use super::smooth_step::SmoothStep;
-use super::speed::ConstantSpeed;
-use super::table::Spline;
 use crate::number::{Jet, Real};
 
 /// A kind of law.
@@ -42,69 +35,90 @@ pub(super) trait Shape: fmt::Display {
     fn find_breaks(&self, _from: f64, _to: f64, _breaks: &mut Vec<Break>) {}
 }
 
-/// The kinds there are.
-#[derive(Clone, PartialEq)]
-pub(super) enum Kind {
-    Formula(Formula),
-    Harmonic(Harmonic),
-    ConstantSpeed(ConstantSpeed),
-    Polynomial(Polynomial),
-    SmoothStep(SmoothStep),
-    Spline(Spline),
-    Sequence(Sequence),
-}
+macro_rules! kinds {
+    ($($module:ident::$kind:ident),* $(,)?) => {
+        /// The kinds there are.
+        #[derive(Clone, PartialEq)]
+        pub(super) enum Kind {
+            $($kind(super::$module::$kind),)*
+        }
 
-/// The same expression for whichever kind it is.
-macro_rules! for_kind {
-    ($kind:expr, $shape:ident => $body:expr) => {
-        match $kind {
-            Kind::Formula($shape) => $body,
-            Kind::Harmonic($shape) => $body,
-            Kind::ConstantSpeed($shape) => $body,
-            Kind::Polynomial($shape) => $body,
-            Kind::SmoothStep($shape) => $body,
-            Kind::Spline($shape) => $body,
-            Kind::Sequence($shape) => $body,
+        $(impl From<super::$module::$kind> for Kind {
+            fn from(shape: super::$module::$kind) -> Self {
+                Self::$kind(shape)
+            }
+        })*
+
+        impl Shape for Kind {
+            #[inline(always)]
+            fn at<T: Real, const N: usize>(&self, time: Jet<T, N>, seed: Option<Seed<T>>) -> Jet<T, N> {
+                match self { $(Self::$kind(shape) => shape.at(time, seed)),* }
+            }
+
+            fn parameters(&self) -> Vec<Parameter> {
+                match self { $(Self::$kind(shape) => shape.parameters()),* }
+            }
+
+            fn parameter_count(&self) -> usize {
+                match self { $(Self::$kind(shape) => shape.parameter_count()),* }
+            }
+
+            fn parameter_kind(&self, parameter: usize) -> ParameterKind {
+                match self { $(Self::$kind(shape) => shape.parameter_kind(parameter)),* }
+            }
+
+            fn set(&mut self, parameter: usize, value: f64) {
+                match self { $(Self::$kind(shape) => shape.set(parameter, value)),* }
+            }
+
+            fn over(&self, from: f64, to: f64) -> Stretch {
+                match self { $(Self::$kind(shape) => shape.over(from, to)),* }
+            }
+
+            fn find_breaks(&self, from: f64, to: f64, breaks: &mut Vec<Break>) {
+                match self { $(Self::$kind(shape) => shape.find_breaks(from, to, breaks)),* }
+            }
+        }
+
+        impl fmt::Display for Kind {
+            fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                match self { $(Self::$kind(shape) => shape.fmt(f)),* }
+            }
         }
     };
 }
 
-impl Shape for Kind {
-    #[inline(always)]
-    fn at<T: Real, const N: usize>(&self, time: Jet<T, N>, seed: Option<Seed<T>>) -> Jet<T, N> {
-        for_kind!(self, shape => shape.at(time, seed))
-    }
-
-    fn parameters(&self) -> Vec<Parameter> {
-        for_kind!(self, shape => shape.parameters())
-    }
-
-    fn parameter_count(&self) -> usize {
-        for_kind!(self, shape => shape.parameter_count())
-    }
-
-    fn parameter_kind(&self, parameter: usize) -> ParameterKind {
-        for_kind!(self, shape => shape.parameter_kind(parameter))
-    }
-
-    fn set(&mut self, parameter: usize, value: f64) {
-        for_kind!(self, shape => shape.set(parameter, value));
-    }
-
-    fn over(&self, from: f64, to: f64) -> Stretch {
-        for_kind!(self, shape => shape.over(from, to))
-    }
-
-    fn find_breaks(&self, from: f64, to: f64, breaks: &mut Vec<Break>) {
-        for_kind!(self, shape => shape.find_breaks(from, to, breaks));
-    }
+kinds! {
+    formula::Formula,
+    harmonic::Harmonic,
+    speed::ConstantSpeed,
+    polynomial::Polynomial,
+    smooth_step::SmoothStep,
+    table::Spline,
+    sequence::Sequence,
 }
 
-impl fmt::Display for Kind {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        for_kind!(self, shape => shape.fmt(f))
-    }
+/// The parameters of a law that are fields of it: their names, in this order, and what they measure.
+macro_rules! parameters {
+    ($($field:ident: $kind:expr),* $(,)?) => {
+        fn parameters(&self) -> Vec<Parameter> {
+            vec![$(parameter(stringify!($field), self.$field, $kind)),*]
+        }
+
+        fn parameter_count(&self) -> usize {
+            [$($kind),*].len()
+        }
+
+        fn parameter_kind(&self, parameter: usize) -> ParameterKind {
+            [$($kind),*][parameter]
+        }
+
+        fn set(&mut self, parameter: usize, value: f64) {
+            *[$(&mut self.$field),*][parameter] = value;
+        }
+    };
 }
+pub(super) use parameters;
 
 /// A sum as one writes it: signs between the terms, no term that is zero, `0` if none is left.
 pub(super) fn write_sum(f: &mut fmt::Formatter<'_>, terms: &[(f64, &str)]) -> fmt::Result {

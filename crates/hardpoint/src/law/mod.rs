@@ -1,15 +1,8 @@
 //! Laws of motion: what a driver prescribes as a function of the time, with exact time derivatives.
 //!
-//! | kind | made by |
-//! |---|---|
-//! | an expression in `t`, see below | [`Law::parse`]; with named parameters [`Law::parse_with`] |
-//! | a value held for ever | [`Law::constant`] |
-//! | a constant speed | [`Law::constant_speed`] |
-//! | a harmonic | [`Law::harmonic`] |
-//! | a polynomial in `t` | [`Law::polynomial`] |
-//! | a smooth step from one value to another | [`Law::smooth_step`] |
-//! | a spline through points | [`Law::table`] |
-//! | laws one after the other | [`Law::sequence`] |
+//! Each kind of law has a constructor of [`Law`]: an expression in `t` ([`Law::parse`], with named parameters [`Law::parse_with`]),
+//! a value held for ever, a constant speed, a harmonic, a polynomial, a smooth step, a spline through points, laws one after the
+//! other.
 //!
 //! The same language writes other numbers of a model, which know no time: [`Expression`].
 //!
@@ -67,13 +60,10 @@ use kind::{Kind, Shape};
 pub use number::Expression;
 use parameter::Seed;
 pub use parameter::{Parameter, ParameterKind};
-use polynomial::Polynomial;
 pub use range::{Range, Stretch};
 pub use sequence::Piece;
-use sequence::Sequence;
 pub use smooth_step::SmoothStep;
 pub use speed::ConstantSpeed;
-use table::Spline;
 pub use table::{EndRates, Ends, SplineDegree, Table};
 
 use crate::number::{Dual, Jet, Real};
@@ -150,7 +140,7 @@ impl Law {
     /// As [`parse`](Self::parse); and when a parameter has the name of something else, no proper name, no finite value, or
     /// is not used. The place is then all of the text.
     pub fn parse_with(text: &str, parameters: &[(&str, f64)]) -> Result<Self, ExpressionError> {
-        Formula::parse(text, parameters).map(Kind::Formula).map(Self::of)
+        Formula::parse(text, parameters).map(Self::of)
     }
 
     /// The names in the text of a law that stand for parameters: each once, in order.
@@ -164,131 +154,11 @@ impl Law {
 
     /// The law that holds `value` at all times, in the driver's own unit.
     pub fn constant(value: f64) -> Self {
-        Self::of(Kind::Formula(Formula::constant(value)))
+        Self::of(Formula::constant(value))
     }
 
-    /// The law of constant speed: offset + speed t.
-    ///
-    /// ```
-    /// use hardpoint::law::{ConstantSpeed, Law};
-    ///
-    /// let law = Law::constant_speed(ConstantSpeed { speed: 3.0, offset: 1.0 })?;
-    /// assert_eq!(law.at(2.0).value(), 7.0);
-    /// assert_eq!(law.to_string(), "1 + 3*t");
-    /// # Ok::<(), hardpoint::law::LawError>(())
-    /// ```
-    ///
-    /// # Errors
-    ///
-    /// When a number is not finite.
-    pub fn constant_speed(law: ConstantSpeed) -> Result<Self, LawError> {
-        law.check()?;
-        Ok(Self::of(Kind::ConstantSpeed(law)))
-    }
-
-    /// The harmonic law: offset + amplitude sin(2π frequency t + phase).
-    ///
-    /// ```
-    /// use hardpoint::law::{Harmonic, Law};
-    ///
-    /// let law = Law::harmonic(Harmonic { amplitude: 25.0, frequency: 0.5, phase: 0.0, offset: 10.0 })?;
-    /// assert_eq!(law.at(0.5).value(), 35.0); // a quarter of a period
-    /// assert_eq!(law.to_string(), "10 + 25*sin(2*pi*0.5*t)");
-    /// # Ok::<(), hardpoint::law::LawError>(())
-    /// ```
-    ///
-    /// # Errors
-    ///
-    /// When a number is not finite.
-    pub fn harmonic(law: Harmonic) -> Result<Self, LawError> {
-        law.check()?;
-        Ok(Self::of(Kind::Harmonic(law)))
-    }
-
-    /// The polynomial c0 + c1 t + c2 t² + ... The coefficient k is in driver unit per s to the k, and is the parameter `ck`.
-    ///
-    /// ```
-    /// use hardpoint::law::Law;
-    ///
-    /// let law = Law::polynomial(&[5.0, 0.0, 0.25])?;
-    /// assert_eq!(law.at(2.0).derivatives(), [6.0, 1.0, 0.5, 0.0]);
-    /// assert_eq!(law.to_string(), "5 + 0.25*t^2");
-    /// # Ok::<(), hardpoint::law::LawError>(())
-    /// ```
-    ///
-    /// # Errors
-    ///
-    /// When there is no coefficient, or one is not finite.
-    pub fn polynomial(coefficients: &[f64]) -> Result<Self, LawError> {
-        Polynomial::new(coefficients).map(Kind::Polynomial).map(Self::of)
-    }
-
-    /// The law that goes smoothly from one value to another; see [`SmoothStep`].
-    ///
-    /// ```
-    /// use hardpoint::law::{Law, SmoothStep};
-    ///
-    /// let law = Law::smooth_step(SmoothStep { from: 1.0, to: 5.0, start: 0.0, end: 2.0, degree: 5 })?;
-    /// assert_eq!([0.0, 1.0, 7.0].map(|t| law.at(t).value()), [1.0, 3.0, 5.0]);
-    /// assert_eq!(law.at(1.0).d(), 3.75); // 15/8 of the mean speed
-    /// # Ok::<(), hardpoint::law::LawError>(())
-    /// ```
-    ///
-    /// # Errors
-    ///
-    /// When a number is not finite, the step does not end after its start, or the degree is not 3, 5 or 7.
-    pub fn smooth_step(law: SmoothStep) -> Result<Self, LawError> {
-        law.check()?;
-        Ok(Self::of(Kind::SmoothStep(law)))
-    }
-
-    /// The smooth curve through the points of a table.
-    ///
-    /// ```
-    /// use hardpoint::law::{Ends, Law, SplineDegree, Table};
-    ///
-    /// // From rest to rest.
-    /// let (times, values) = (vec![0.0, 1.0, 2.0], vec![0.0, 4.0, 0.0]);
-    /// let law = Law::table(&Table { times, values, degree: SplineDegree::Cubic, ends: Ends::default() })?;
-    /// assert_eq!(law.at(0.5).value(), 2.0); // by symmetry also at rest in the middle
-    /// assert!(law.at(2.5).value().is_nan());
-    /// assert_eq!(law.to_string(), "cubic spline through 3 points");
-    /// # Ok::<(), hardpoint::law::LawError>(())
-    /// ```
-    ///
-    /// # Errors
-    ///
-    /// When there are too few points or not as many values as times, a number is not finite, times do not increase, a
-    /// periodic table does not end with the value it begins with, or an acceleration is given to the end of a cubic.
-    pub fn table(table: &Table) -> Result<Self, LawError> {
-        Spline::new(table).map(Kind::Spline).map(Self::of)
-    }
-
-    /// Laws one after the other, from t = 0 on. Before that, and after the end of a last piece that has one, there is no
-    /// finite value.
-    ///
-    /// ```
-    /// use hardpoint::law::{Law, Piece};
-    ///
-    /// let speed_up = Piece::lasting(2.0, Law::polynomial(&[0.0, 0.0, 1.5])?);
-    /// let keep_going = Piece::open_ended(Law::polynomial(&[0.0, 6.0])?);
-    /// let law = Law::sequence(vec![speed_up, keep_going])?;
-    /// assert_eq!(law.at(1.0).value(), 1.5);
-    /// assert_eq!(law.at(3.0).value(), 12.0); // 6 at the end of the first piece, and 6 more
-    /// assert_eq!(law.to_string(), "1.5*t^2 for 2 s, then 6*t");
-    /// # Ok::<(), hardpoint::law::LawError>(())
-    /// ```
-    ///
-    /// # Errors
-    ///
-    /// When there is no piece, a duration is not a finite number greater than zero, a piece other than the last has none,
-    /// or a piece's law has no finite value at the piece's start or end.
-    pub fn sequence(pieces: Vec<Piece>) -> Result<Self, LawError> {
-        Sequence::new(pieces).map(Kind::Sequence).map(Self::of)
-    }
-
-    fn of(kind: Kind) -> Self {
-        Self { kind, factor: 1.0 }
+    fn of(kind: impl Into<Kind>) -> Self {
+        Self { kind: kind.into(), factor: 1.0 }
     }
 
     /// This law times `factor`, as for a change of unit. The text remains as written.

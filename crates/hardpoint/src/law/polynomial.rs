@@ -2,6 +2,7 @@
 
 use std::fmt;
 
+use super::Law;
 use super::error::{LawError, check_finite};
 use super::kind::{Shape, write_sum};
 use super::parameter::{Parameter, ParameterKind, Seed, parameter, seeded};
@@ -22,8 +23,29 @@ impl Polynomial {
                 "give at least the constant one, c0",
             ));
         }
-        check_finite(coefficients.iter().map(|&value| ("coefficient", value)))?;
-        Ok(Self { coefficients: coefficients.to_vec() })
+        let polynomial = Self { coefficients: coefficients.to_vec() };
+        check_finite(&polynomial)?;
+        Ok(polynomial)
+    }
+}
+
+impl Law {
+    /// The polynomial c0 + c1 t + c2 t² + ... The coefficient k is in driver unit per s to the k, and is the parameter `ck`.
+    ///
+    /// ```
+    /// use hardpoint::law::Law;
+    ///
+    /// let law = Law::polynomial(&[5.0, 0.0, 0.25])?;
+    /// assert_eq!(law.at(2.0).derivatives(), [6.0, 1.0, 0.5, 0.0]);
+    /// assert_eq!(law.to_string(), "5 + 0.25*t^2");
+    /// # Ok::<(), hardpoint::law::LawError>(())
+    /// ```
+    ///
+    /// # Errors
+    ///
+    /// When there is no coefficient, or one is not finite.
+    pub fn polynomial(coefficients: &[f64]) -> Result<Self, LawError> {
+        Polynomial::new(coefficients).map(Self::of)
     }
 }
 
@@ -102,6 +124,6 @@ mod tests {
         assert_eq!(error.to_string(), "a polynomial has no coefficients");
         assert_eq!(error.help.as_deref(), Some("give at least the constant one, c0"));
         let error = Polynomial::new(&[1.0, f64::INFINITY]).unwrap_err();
-        assert_eq!(error.to_string(), "the coefficient of a law must be a finite number, not inf");
+        assert_eq!(error.to_string(), "the `c1` of a law must be a finite number, not inf");
     }
 }

@@ -161,6 +161,31 @@ impl Sequence {
     }
 }
 
+impl Law {
+    /// Laws one after the other, from t = 0 on. Before that, and after the end of a last piece that has one, there is no
+    /// finite value.
+    ///
+    /// ```
+    /// use hardpoint::law::{Law, Piece};
+    ///
+    /// let speed_up = Piece::lasting(2.0, Law::polynomial(&[0.0, 0.0, 1.5])?);
+    /// let keep_going = Piece::open_ended(Law::polynomial(&[0.0, 6.0])?);
+    /// let law = Law::sequence(vec![speed_up, keep_going])?;
+    /// assert_eq!(law.at(1.0).value(), 1.5);
+    /// assert_eq!(law.at(3.0).value(), 12.0); // 6 at the end of the first piece, and 6 more
+    /// assert_eq!(law.to_string(), "1.5*t^2 for 2 s, then 6*t");
+    /// # Ok::<(), hardpoint::law::LawError>(())
+    /// ```
+    ///
+    /// # Errors
+    ///
+    /// When there is no piece, a duration is not a finite number greater than zero, a piece other than the last has none,
+    /// or a piece's law has no finite value at the piece's start or end.
+    pub fn sequence(pieces: Vec<Piece>) -> Result<Self, LawError> {
+        Sequence::new(pieces).map(Self::of)
+    }
+}
+
 impl Shape for Sequence {
     #[inline(always)]
     fn at<T: Real, const N: usize>(&self, time: Jet<T, N>, seed: Option<Seed<T>>) -> Jet<T, N> {

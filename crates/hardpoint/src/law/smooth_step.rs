@@ -2,9 +2,10 @@
 
 use std::fmt;
 
+use super::Law;
 use super::error::{LawError, check_finite};
 use super::jumps::Break;
-use super::kind::Shape;
+use super::kind::{Shape, parameters};
 use super::parameter::{Parameter, ParameterKind, Seed, parameter, seeded};
 use super::polynomial::sum_of_powers;
 use super::range::{Range, Stretch};
@@ -40,8 +41,8 @@ impl SmoothStep {
     pub const USUAL_DEGREE: u32 = 5;
 
     pub(super) fn check(&self) -> Result<(), LawError> {
-        let Self { from, to, start, end, degree } = *self;
-        check_finite([("`from`", from), ("`to`", to), ("`start`", start), ("`end`", end)])?;
+        let Self { start, end, degree, .. } = *self;
+        check_finite(self)?;
         if start >= end {
             let message =
                 format!("a smooth step must start before it ends, but start = {start} s and end = {end} s");
@@ -64,6 +65,27 @@ impl SmoothStep {
             _ => (4, &[35.0, -84.0, 70.0, -20.0]),
         };
         u.powi(lowest) * sum_of_powers(u, coefficients.len(), |k| T::constant(coefficients[k]))
+    }
+}
+
+impl Law {
+    /// The law that goes smoothly from one value to another; see [`SmoothStep`].
+    ///
+    /// ```
+    /// use hardpoint::law::{Law, SmoothStep};
+    ///
+    /// let law = Law::smooth_step(SmoothStep { from: 1.0, to: 5.0, start: 0.0, end: 2.0, degree: 5 })?;
+    /// assert_eq!([0.0, 1.0, 7.0].map(|t| law.at(t).value()), [1.0, 3.0, 5.0]);
+    /// assert_eq!(law.at(1.0).d(), 3.75); // 15/8 of the mean speed
+    /// # Ok::<(), hardpoint::law::LawError>(())
+    /// ```
+    ///
+    /// # Errors
+    ///
+    /// When a number is not finite, the step does not end after its start, or the degree is not 3, 5 or 7.
+    pub fn smooth_step(law: SmoothStep) -> Result<Self, LawError> {
+        law.check()?;
+        Ok(Self::of(law))
     }
 }
 
@@ -97,30 +119,11 @@ impl Shape for SmoothStep {
         Stretch { value: Range::between(start.value(), end.value()), rate }
     }
 
-    fn parameters(&self) -> Vec<Parameter> {
-        vec![
-            parameter("from", self.from, ParameterKind::Value),
-            parameter("to", self.to, ParameterKind::Value),
-            parameter("start", self.start, ParameterKind::Time),
-            parameter("end", self.end, ParameterKind::Time),
-        ]
-    }
-
-    fn parameter_count(&self) -> usize {
-        4
-    }
-
-    fn parameter_kind(&self, parameter: usize) -> ParameterKind {
-        if parameter < 2 { ParameterKind::Value } else { ParameterKind::Time }
-    }
-
-    fn set(&mut self, parameter: usize, value: f64) {
-        *match parameter {
-            0 => &mut self.from,
-            1 => &mut self.to,
-            2 => &mut self.start,
-            _ => &mut self.end,
-        } = value;
+    parameters! {
+        from: ParameterKind::Value,
+        to: ParameterKind::Value,
+        start: ParameterKind::Time,
+        end: ParameterKind::Time,
     }
 
     fn find_breaks(&self, from: f64, to: f64, breaks: &mut Vec<Break>) {

@@ -2,8 +2,9 @@
 
 use std::fmt;
 
+use super::Law;
 use super::error::{LawError, check_finite};
-use super::kind::{Shape, write_sum};
+use super::kind::{Shape, parameters, write_sum};
 use super::parameter::{Parameter, ParameterKind, Seed, parameter, seeded};
 use super::range::{Range, Stretch};
 use crate::number::{Jet, Real};
@@ -19,9 +20,24 @@ pub struct ConstantSpeed {
     pub offset: f64,
 }
 
-impl ConstantSpeed {
-    pub(super) fn check(&self) -> Result<(), LawError> {
-        check_finite([("speed", self.speed), ("offset", self.offset)])
+impl Law {
+    /// The law of constant speed: offset + speed t.
+    ///
+    /// ```
+    /// use hardpoint::law::{ConstantSpeed, Law};
+    ///
+    /// let law = Law::constant_speed(ConstantSpeed { speed: 3.0, offset: 1.0 })?;
+    /// assert_eq!(law.at(2.0).value(), 7.0);
+    /// assert_eq!(law.to_string(), "1 + 3*t");
+    /// # Ok::<(), hardpoint::law::LawError>(())
+    /// ```
+    ///
+    /// # Errors
+    ///
+    /// When a number is not finite.
+    pub fn constant_speed(law: ConstantSpeed) -> Result<Self, LawError> {
+        check_finite(&law)?;
+        Ok(Self::of(law))
     }
 }
 
@@ -37,23 +53,8 @@ impl Shape for ConstantSpeed {
         Stretch { value: Range::between(at(from), at(to)), rate: Range::exactly(self.speed) }
     }
 
-    fn parameters(&self) -> Vec<Parameter> {
-        vec![
-            parameter("speed", self.speed, self.parameter_kind(0)),
-            parameter("offset", self.offset, self.parameter_kind(1)),
-        ]
-    }
-
-    fn parameter_count(&self) -> usize {
-        2
-    }
-
-    fn parameter_kind(&self, parameter: usize) -> ParameterKind {
-        if parameter == 0 { ParameterKind::ValueRate(1) } else { ParameterKind::Value }
-    }
-
-    fn set(&mut self, parameter: usize, value: f64) {
-        *if parameter == 0 { &mut self.speed } else { &mut self.offset } = value;
+    parameters! {
+        speed: ParameterKind::ValueRate(1), offset: ParameterKind::Value
     }
 }
 

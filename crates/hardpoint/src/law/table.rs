@@ -3,6 +3,7 @@
 use std::fmt;
 use std::sync::Arc;
 
+use super::Law;
 use super::error::LawError;
 use super::kind::Shape;
 use super::parameter::{Parameter, ParameterKind, Seed, parameter};
@@ -221,6 +222,30 @@ impl Table {
             }
             _ => Ok(()),
         }
+    }
+}
+
+impl Law {
+    /// The smooth curve through the points of a table.
+    ///
+    /// ```
+    /// use hardpoint::law::{Ends, Law, SplineDegree, Table};
+    ///
+    /// // From rest to rest.
+    /// let (times, values) = (vec![0.0, 1.0, 2.0], vec![0.0, 4.0, 0.0]);
+    /// let law = Law::table(&Table { times, values, degree: SplineDegree::Cubic, ends: Ends::default() })?;
+    /// assert_eq!(law.at(0.5).value(), 2.0); // by symmetry also at rest in the middle
+    /// assert!(law.at(2.5).value().is_nan());
+    /// assert_eq!(law.to_string(), "cubic spline through 3 points");
+    /// # Ok::<(), hardpoint::law::LawError>(())
+    /// ```
+    ///
+    /// # Errors
+    ///
+    /// When there are too few points or not as many values as times, a number is not finite, times do not increase, a
+    /// periodic table does not end with the value it begins with, or an acceleration is given to the end of a cubic.
+    pub fn table(table: &Table) -> Result<Self, LawError> {
+        Spline::new(table).map(Self::of)
     }
 }
 

@@ -21,7 +21,7 @@ use crate::blocks::Blocks;
 use crate::constraint::Row;
 use crate::law::Law;
 use crate::model::{
-    AngleKind, AxleMeasure, BodyId, Dimension, DriverId, Effects, Fixed, JointId, Known, MeasureKind, Model,
+    AxleMeasure, BodyId, Dimension, DriverId, Effects, Fixed, JointId, Known, MeasureKind, Model,
     OutputSource, PointId, Ray, Side, VariableId, WheelId,
 };
 use crate::motion::{Motion, Passed};
@@ -430,9 +430,9 @@ pub(crate) fn watched(model: &Model, topology: &Topology) -> Vec<bool> {
         if let MeasureKind::Coordinate { joint, .. } = model.measures[m].kind {
             model.joints[joint.0].bodies.iter().for_each(|b| watched[b.0] = true);
         }
-        if let MeasureKind::Angle { between, .. } = &model.measures[m].kind {
+        if let MeasureKind::Angle { from, to, .. } = &model.measures[m].kind {
             for point in
-                between.iter().filter_map(|ray| if let Ray::Between(p) = ray { Some(p) } else { None })
+                [from, to].iter().filter_map(|ray| if let Ray::Between(p) = ray { Some(p) } else { None })
             {
                 point.iter().for_each(|p| watched[model.points[p.0].body.0] = true);
             }
@@ -474,7 +474,7 @@ fn turns(model: &Model, topology: &Topology, outputs: &[Output]) -> Vec<Option<T
 /// Whether an output is a formula over others, or the rate of one: what goes by angles with all their turns.
 fn is_formula(model: &Model, output: usize) -> bool {
     match model.measures.get(output).map(|m| &m.kind) {
-        Some(MeasureKind::Combination(_)) => true,
+        Some(MeasureKind::Combination { .. }) => true,
         Some(MeasureKind::Rate { of: OutputSource::Measure(m) }) => is_formula(model, *m),
         _ => false,
     }
@@ -485,7 +485,7 @@ fn is_counted(model: &Model, output: &Output) -> bool {
     let OutputSource::Measure(m) = output.source else { return false };
     match model.measures[m].kind {
         MeasureKind::Coordinate { .. } => output.dimension == Dimension::ANGLE,
-        MeasureKind::Angle { kind: AngleKind::About(_), .. } => true,
+        MeasureKind::Angle { about: Some(_), .. } => true,
         _ => false,
     }
 }
@@ -639,14 +639,25 @@ impl<'a, T: Real> Moment<'a, T> {
                 let p = self.point(*point);
                 along.spread().dot(p)
             }
-            MeasureKind::Angle { between, kind } => {
-                let within = self.angle(k, between, *kind);
+            MeasureKind::Angle { from, to, about } => {
+                let [a, b] = self.rays(k, [from, to]);
+                let (across, along) = (a.cross(b), a.dot(b));
+                let within = match about {
+                    None => across.norm().atan2(along),
+                    Some(n) => {
+                        let n = n.spread();
+                        n.dot(across).atan2(along - n.dot(a) * n.dot(b))
+                    }
+                };
                 self.whole_turns.get(k).map_or(within, |turns| within + *turns)
             }
-            MeasureKind::Velocity { point, along, order } => {
-                let velocity = self.point(*point).map(T::rate);
-                let v = if *order == 1 { velocity } else { velocity.map(T::rate) };
-                along.map_or_else(|| v.norm(), |along| along.spread().dot(v))
+            MeasureKind::TransmissionAngle { from, to } => {
+                let [a, b] = self.rays(k, [from, to]);
+                a.cross(b).norm().atan2(a.dot(b).abs())
+            }
+            MeasureKind::Velocity { point, along } => component(self.point(*point).map(T::rate), *along),
+            MeasureKind::Acceleration { point, along } => {
+                component(self.point(*point).map(T::rate).map(T::rate), *along)
             }
             MeasureKind::Curvature { point, about } => {
                 let v = self.point(*point).map(T::rate);
@@ -658,7 +669,7 @@ impl<'a, T: Real> Moment<'a, T> {
                 turn / (way * speed)
             }
             MeasureKind::Rate { of } => self.output(*of).rate(),
-            MeasureKind::Combination(formula) => formula.at(|source| self.output(source)),
+            MeasureKind::Combination { expression } => expression.at(|source| self.output(source)),
             MeasureKind::Toe { body, .. } => {
                 let e = self.direction(k, 0, *body);
                 toe(e, T::constant(Side::Left.sign()))
@@ -673,21 +684,12 @@ impl<'a, T: Real> Moment<'a, T> {
         }
     }
 
-    fn angle(&self, k: usize, between: &[Ray; 2], kind: AngleKind) -> T {
-        let ray = |end: usize| match between[end] {
+    /// The directions of an angle, of any length.
+    fn rays(&self, k: usize, rays: [&Ray; 2]) -> [Vec3<T>; 2] {
+        [0, 1].map(|end| match *rays[end] {
             Ray::Between([from, to]) => self.point(to) - self.point(from),
             Ray::Fixed { body, .. } => self.direction(k, end, body),
-        };
-        let (a, b) = (ray(0), ray(1));
-        let (across, along) = (a.cross(b), a.dot(b));
-        match kind {
-            AngleKind::Between => across.norm().atan2(along),
-            AngleKind::Lines => across.norm().atan2(along.abs()),
-            AngleKind::About(n) => {
-                let n = n.spread();
-                n.dot(across).atan2(along - n.dot(a) * n.dot(b))
-            }
-        }
+        })
     }
 
     /// Formulas and signs: `docs/measures.md`.
@@ -759,6 +761,11 @@ impl<'a, T: Real> Moment<'a, T> {
             _ => (origin(1) - origin(0)).norm(),
         }
     }
+}
+
+/// The component of a vector along a unit vector, or its magnitude.
+fn component<T: Real>(v: Vec3<T>, along: Option<Vec3>) -> T {
+    along.map_or_else(|| v.norm(), |along| along.spread().dot(v))
 }
 
 /// A point that came from rest, at its acceleration, within this part of the mechanism's size rests: its speed is round-off,

@@ -187,7 +187,7 @@ fn moving_bodies(model: &Model) -> Vec<usize> {
 /// Measures that formulas may ask for with all their turns.
 fn turning(model: &Model, outputs: &[Output]) -> Vec<usize> {
     let formulas = model.measures.iter().filter_map(|m| match &m.kind {
-        MeasureKind::Combination(formula) => Some(formula),
+        MeasureKind::Combination { expression } => Some(expression),
         _ => None,
     });
     let mut turning: Vec<usize> = formulas
@@ -354,7 +354,7 @@ fn goes_by_driver(model: &Model, output: OutputSource) -> bool {
     model.goes_by_driver(m)
         || match &model.measures[m].kind {
             MeasureKind::Rate { of } => goes_by_driver(model, *of),
-            MeasureKind::Combination(formula) => {
+            MeasureKind::Combination { expression: formula } => {
                 formula.sources().any(|source| goes_by_driver(model, source))
             }
             _ => false,

@@ -9,18 +9,18 @@ mod wheels;
 
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 
+pub(super) use measures::MeasureCheck;
+
 use super::fault::did_you_mean;
 use super::*;
 use crate::constraint::Row;
 use crate::joint::{self, CoordinateType, Need};
-use crate::law::{Expression, ParameterKind};
+use crate::law::Expression;
 
 /// How far `axis2` may be from square to `axis`, as a cosine: typed unit vectors are good to this.
 const SQUARE_TOLERANCE: f64 = 1e-6;
 /// Points closer than this part of the mechanism's size are the same point.
 const SAME_POINT: f64 = 1e-9;
-/// What faults say about places of hardpoints.
-const GEOMETRY: [&str; 7] = ["HP0205", "HP0206", "HP0209", "HP0211", "HP0216", "HP0226", "HP0231"];
 /// A fault lists at most this many valid names.
 const LISTED_NAMES: usize = 24;
 /// The first so many faults guess which name was meant ...
@@ -34,7 +34,8 @@ impl Model {
     /// # Errors
     /// Every [`Fault`] of the draft, in its order: unknown or duplicate names, axes that are null or
     /// missing or not square, places that do not fit the joint type, drivers on coordinates that a joint
-    /// does not have, laws that are not finite at an output time, times that do not increase.
+    /// does not have, laws that are not finite at an output time, times that do not increase. No fault, but no model either,
+    /// where something is [`Unread`] and all else is right.
     ///
     /// ```
     /// use hardpoint::model::{Draft, Model};
@@ -60,11 +61,8 @@ impl Model {
         c.variables();
         c.formulas_that_vary();
         c.times();
-        if !c.spoilt.is_empty() {
-            // Where hardpoints are not known, nothing can be said of their places.
-            c.faults.retain(|f| !GEOMETRY.contains(&f.code));
-        }
-        if !c.faults.is_empty() {
+        c.faults.retain(|f| !draft.unread.has(f.at.section, f.at.index, f.at.key));
+        if !c.faults.is_empty() || !draft.unread.is_empty() {
             return Err(c.faults);
         }
         c.model.hold_idle_spins();
@@ -102,7 +100,7 @@ struct Check<'a> {
     curve_points: Vec<HardpointId>,
     /// The formulas that are read so far, each after those whose results it uses.
     written: Vec<formulas::Written>,
-    /// What faulty formulas should give.
+    /// What is not known of parameters and hardpoints: unread, or given by a faulty formula.
     spoilt: BTreeSet<Source>,
     /// The expressions for the length of joints, and for the parameters of drivers' laws, by name.
     length_formulas: HashMap<&'a str, &'a Expression>,
@@ -117,8 +115,24 @@ struct Check<'a> {
     extent: Extent,
 }
 
-/// The box around the hardpoints that joints name; around all if they name none.
-fn extent_of_joints(draft: &Draft, hardpoints: &[Hardpoint]) -> Extent {
+/// The tables that names of a kind stand in.
+const TABLES: [(&str, &str); 10] = [
+    ("parameter", "parameters"),
+    ("hardpoint", "hardpoints"),
+    ("body", "bodies"),
+    ("joint", "joints"),
+    ("driver", "drivers"),
+    ("point", "points"),
+    ("wheel", "wheels"),
+    ("axle", "axles"),
+    ("measure", "measures"),
+    ("vehicle", "vehicle"),
+];
+
+/// The box around the known hardpoints that joints name; around all of these if they name none.
+fn extent_of_joints(draft: &Draft, hardpoints: &[Hardpoint], spoilt: &BTreeSet<Source>) -> Extent {
+    let known = |(k, _): &(usize, &Hardpoint)| is_known(HardpointId(*k), spoilt);
+    let known: Vec<&Hardpoint> = hardpoints.iter().enumerate().filter(known).map(|h| h.1).collect();
     let places = draft.joints.iter().flat_map(|j| &j.at);
     let named: BTreeSet<&str> = places
         .filter_map(|place| match place {
@@ -126,9 +140,14 @@ fn extent_of_joints(draft: &Draft, hardpoints: &[Hardpoint]) -> Extent {
             _ => None,
         })
         .collect();
-    let used = |h: &&Hardpoint| h.unnamed || named.contains(h.name.as_str());
-    let extent = Extent::of(hardpoints.iter().filter(used).map(|h| h.position));
-    if extent.size_or_zero() > 0.0 { extent } else { Extent::of(hardpoints.iter().map(|h| h.position)) }
+    let used = |h: &&&Hardpoint| h.unnamed || named.contains(h.name.as_str());
+    let extent = Extent::of(known.iter().filter(used).map(|h| h.position));
+    if extent.size_or_zero() > 0.0 { extent } else { Extent::of(known.iter().map(|h| h.position)) }
+}
+
+/// Whether the place of a hardpoint is known, given what faulty formulas should give.
+fn is_known(h: HardpointId, spoilt: &BTreeSet<Source>) -> bool {
+    spoilt.is_empty() || (0..3).all(|axis| !spoilt.contains(&Source::Coordinate(h, axis)))
 }
 
 impl<'a> Check<'a> {
@@ -165,7 +184,7 @@ impl<'a> Check<'a> {
             ("point", numbered(draft.points.iter().map(|p| p.name.as_str()))),
             ("measure", numbered(draft.measures.iter().map(|m| m.name.as_str()))),
         ]);
-        let extent = extent_of_joints(draft, &model.hardpoints);
+        let extent = extent_of_joints(draft, &model.hardpoints, &BTreeSet::new());
         let (faults, joint_ids) = (Vec::new(), Vec::new());
         let (mut length_formulas, mut law_formulas) = (HashMap::new(), HashMap::new());
         for f in &draft.formulas {
@@ -248,14 +267,25 @@ impl<'a> Check<'a> {
                 );
             }
         }
-        if d.bodies.is_empty() {
+        if d.bodies.is_empty() && !self.lost("body") {
             let at = Here { section: Section::Bodies, index: 0 }.key("");
             self.fault("HP0203", at, "the model has no bodies")
                 .help("declare at least one body besides `ground`");
         }
     }
 
-    /// Looks a name up among candidates, or says what is there instead.
+    /// Whether a field of an entry could not be read.
+    fn unread(&self, here: Here, field: &str) -> bool {
+        self.draft.unread.has(here.section, here.index, field)
+    }
+
+    /// Whether the table of all these could not be read.
+    fn lost(&self, what: &str) -> bool {
+        let table = TABLES.iter().find(|t| t.0 == what);
+        table.is_some_and(|(_, table)| self.draft.unread.has(Section::Model, 0, table))
+    }
+
+    /// Looks a name up among candidates, or says what is there instead; says nothing where these could not be read.
     fn find<'n>(
         &mut self,
         what: &str,
@@ -268,7 +298,7 @@ impl<'a> Check<'a> {
             Some(numbers) => numbers.get(name).copied(),
             None => candidates.clone().position(|c| c == name),
         };
-        if found.is_some() {
+        if found.is_some() || self.lost(what) {
             return found;
         }
         let count = numbers.map_or_else(|| candidates.clone().count(), HashMap::len);
@@ -326,8 +356,15 @@ impl<'a> Check<'a> {
         }
     }
 
-    fn position(&self, h: HardpointId) -> Vec3 {
-        self.model.hardpoints[h.0].position
+    /// Where a hardpoint is, if that is known.
+    fn position(&self, h: HardpointId) -> Option<Vec3> {
+        is_known(h, &self.spoilt).then(|| self.model.hardpoints[h.0].position)
+    }
+
+    /// How far it is from one hardpoint to another, if that is known; none where they are at the same place.
+    fn apart(&self, a: HardpointId, b: HardpointId) -> Option<Option<Vec3>> {
+        let d = self.position(b)? - self.position(a)?;
+        Some((d.norm() > SAME_POINT * self.extent.size()).then_some(d))
     }
 
     /// A direction, and its unit vector at the design configuration.
@@ -346,12 +383,9 @@ impl<'a> Check<'a> {
                 let a_id = self.hardpoint(a, here.item(key, 0));
                 let b_id = self.hardpoint(b, here.item(key, 1));
                 let (a_id, b_id) = (a_id?, b_id?);
-                let d = self.position(b_id) - self.position(a_id);
-                match d.unit() {
-                    Some(u) if d.norm() > SAME_POINT * self.extent.size() => {
-                        Some((Direction::Through(a_id, b_id), u))
-                    }
-                    _ => {
+                match self.apart(a_id, b_id)?.and_then(Vec3::unit) {
+                    Some(u) => Some((Direction::Through(a_id, b_id), u)),
+                    None => {
                         let message = format!("the {key} of `{owner}` passes through one point only");
                         self.fault("HP0205", here.key(key), message)
                             .note(if a == b {
@@ -400,7 +434,7 @@ impl<'a> Check<'a> {
                             None
                         }
                         Place::Hardpoint(name) => {
-                            self.hardpoint(name, here.item("frame", k)).map(|h| self.position(h))
+                            self.hardpoint(name, here.item("frame", k)).and_then(|h| self.position(h))
                         }
                     };
                     let points = (at(0, origin), at(1, x), at(2, xy));
@@ -438,8 +472,10 @@ impl<'a> Check<'a> {
         }
         let named: BTreeSet<&str> =
             self.draft.joints.iter().flat_map(|j| &j.bodies).map(String::as_str).collect();
+        // A joint that could not be read may hold any body.
+        let all_known = !self.lost("joint") && !self.draft.unread.anywhere(Section::Joints, "bodies");
         for (index, b) in self.draft.bodies.iter().enumerate() {
-            if !named.contains(b.name.as_str()) {
+            if !named.contains(b.name.as_str()) && all_known {
                 let at = Here { section: Section::Bodies, index }.key("name");
                 self.fault("HP0212", at, format!("no joint holds body `{}`", b.name))
                     .help("connect it with a joint, or remove it");
@@ -456,7 +492,7 @@ impl<'a> Check<'a> {
         for (index, p) in draft.points.iter().enumerate() {
             let here = Here { section: Section::Points, index };
             let body = self.body(&p.body, here.key("body"));
-            let at = self.place(&p.at, &p.name, here.key("at"));
+            let at = if self.unread(here, "at") { None } else { self.place(&p.at, &p.name, here.key("at")) };
             // A faulty point keeps its place in the list, so that later names still resolve.
             let (body, at) = body.zip(at).unwrap_or((GROUND, UNPLACED));
             self.model.points.push(BodyPoint { name: p.name.clone(), body, at, unnamed: false });

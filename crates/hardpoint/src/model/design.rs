@@ -201,14 +201,10 @@ impl<'m> Effects<'m> {
         };
         for (k, variable) in model.variables.iter().enumerate() {
             for change in &variable.changes {
-                match change {
-                    Change::Move { hardpoint, velocity } => effects.moves[hardpoint.0].push((k, *velocity)),
-                    Change::Parameter { .. } | Change::Law { .. } => {}
-                    Change::Marker { joint, .. }
-                    | Change::Field { joint, .. }
-                    | Change::Length { joint, .. } => {
-                        effects.changes[joint.0].push((k, change));
-                    }
+                if let Change::Move { hardpoint, velocity } = change {
+                    effects.moves[hardpoint.0].push((k, *velocity));
+                } else if let Some(joint) = change.joint() {
+                    effects.changes[joint.0].push((k, change));
                 }
             }
         }
@@ -295,16 +291,11 @@ impl<'m> Effects<'m> {
         for (variable, by) in along {
             for change in &self.model.variables[variable.0].changes {
                 match change {
-                    Change::Parameter { .. } => {}
                     Change::Move { hardpoint, .. } => touched.hardpoints.push(hardpoint.0),
-                    Change::Marker { joint, .. }
-                    | Change::Field { joint, .. }
-                    | Change::Length { joint, .. } => {
-                        touched.joints.push(joint.0);
-                    }
                     Change::Law { driver, parameter, rate } => {
                         touched.laws.push((*driver, *parameter, by * rate));
                     }
+                    _ => touched.joints.extend(change.joint().map(|j| j.0)),
                 }
             }
             let following = self.formulas.as_ref().map(|f| f.following(self.model, *variable));

@@ -1,10 +1,12 @@
 //! What somebody wrote, before it is checked: names for references, SI units and radians.
 
+use std::collections::BTreeMap;
+
 use crate::joint::Quantity;
-use crate::law::{Expression, Law};
+use crate::law::{Expression, Law, ParameterKind};
 use crate::space::{Pose, Vec3};
 
-use super::{AxleMeasure, End, Side, Take, Vehicle, VehicleEnd, WheelMeasure};
+use super::{End, MeasureKindDraft, Section, Side, Take, Vehicle, VehicleEnd};
 
 /// A mechanism as written. Fill it by hand or from a file; [`super::Model::from_draft`] checks it.
 #[derive(Clone, Debug, Default)]
@@ -41,6 +43,41 @@ pub struct Draft {
     pub metrics: Vec<MetricDraft>,
     /// Output times, s.
     pub times: Vec<f64>,
+    /// What of all this could not be read.
+    pub unread: Unread,
+}
+
+/// What of a draft could not be read from the text that it was made from. Whatever the draft holds in its place counts for nothing: the
+/// check says nothing of it, nor of what would follow from it, and makes no model.
+#[derive(Clone, Debug, Default)]
+pub struct Unread(BTreeMap<(Section, usize), Vec<&'static str>>);
+
+impl Unread {
+    /// Notes that a field of an entry could not be read: by its name in model files, an empty one for the entry as a whole. Of
+    /// [`Section::Model`] the fields are the tables of the file.
+    pub fn note(&mut self, section: Section, index: usize, field: &'static str) {
+        self.0.entry((section, index)).or_default().push(field);
+    }
+
+    /// Whether a field of an entry could not be read.
+    pub fn has(&self, section: Section, index: usize, field: &str) -> bool {
+        self.0.get(&(section, index)).is_some_and(|fields| fields.iter().any(|f| *f == field || f.is_empty()))
+    }
+
+    /// Whether any field of an entry could not be read.
+    pub fn any(&self, section: Section, index: usize) -> bool {
+        self.0.contains_key(&(section, index))
+    }
+
+    /// Whether that field could not be read of any entry of a list.
+    pub(super) fn anywhere(&self, section: Section, field: &str) -> bool {
+        self.0.iter().any(|((s, _), fields)| *s == section && fields.contains(&field))
+    }
+
+    /// Whether there is nothing.
+    pub fn is_empty(&self) -> bool {
+        self.0.is_empty()
+    }
 }
 
 /// A named number.
@@ -230,6 +267,8 @@ pub struct DriverDraft {
 /// What a driver prescribes, counted from the design configuration.
 #[derive(Clone, Debug)]
 pub enum DrivenDraft {
+    /// It could not be read.
+    Unread,
     /// A joint's coordinate.
     Coordinate {
         /// The joint's name.
@@ -350,6 +389,47 @@ pub enum ChangeDraft {
     },
 }
 
+impl VariableDraft {
+    /// What it measures, for what a parameter is and for what a driver prescribes by which law; a plain number where its changes
+    /// measure different things.
+    pub fn quantity<'l>(
+        &self,
+        parameter: impl Fn(&str) -> Option<Quantity>,
+        driver: impl Fn(&str) -> Option<(&'l Law, Quantity)>,
+    ) -> Quantity {
+        let number = Quantity::Number;
+        let of = |change: &ChangeDraft| match change {
+            ChangeDraft::Move { .. } | ChangeDraft::Length { .. } => Quantity::Length,
+            ChangeDraft::Tilt { .. } => Quantity::Angle,
+            ChangeDraft::Shape { field, .. } => match field {
+                ShapeDraft::Rotate { .. } => Quantity::Angle,
+                ShapeDraft::Scale { .. } => Quantity::Number,
+                _ => Quantity::Length,
+            },
+            ChangeDraft::Marker { position, rotation, .. } => {
+                match (position.norm() > 0.0, rotation.norm() > 0.0) {
+                    (_, false) => Quantity::Length,
+                    (false, true) => Quantity::Angle,
+                    (true, true) => Quantity::Number,
+                }
+            }
+            ChangeDraft::Parameter { parameter: name, .. } => parameter(name).unwrap_or(number),
+            ChangeDraft::Law { driver: name, parameter, .. } => {
+                let Some((law, driven)) = driver(name) else { return number };
+                match law.parameters().into_iter().find(|p| p.name == *parameter).map(|p| p.kind) {
+                    Some(ParameterKind::Value) => driven,
+                    Some(ParameterKind::Angle) => Quantity::Angle,
+                    _ => number,
+                }
+            }
+            ChangeDraft::Field { .. } => number,
+        };
+        let mut quantities = self.changes.iter().map(of);
+        let first = quantities.next().unwrap_or(number);
+        if quantities.all(|q| q == first) { first } else { number }
+    }
+}
+
 /// A velocity field over a body: how each of its points moves in the design configuration. Points are names of hardpoints.
 #[derive(Clone, Debug)]
 pub enum ShapeDraft {
@@ -464,102 +544,6 @@ pub struct MeasureDraft {
     pub kind: MeasureKindDraft,
 }
 
-/// What a measure measures; see [`super::MeasureKind`].
-#[derive(Clone, Debug)]
-pub enum MeasureKindDraft {
-    /// A joint's coordinate.
-    Coordinate {
-        /// The joint's name.
-        joint: String,
-        /// The coordinate's name; may be left out where the joint has only one.
-        coordinate: Option<String>,
-    },
-    /// Distance between two points.
-    Distance {
-        /// From this point.
-        from: PointRef,
-        /// To this one.
-        to: PointRef,
-    },
-    /// Angle between two directions.
-    Angle {
-        /// From the first to the second.
-        between: [RayDraft; 2],
-        /// Which angle.
-        kind: AngleKindDraft,
-    },
-    /// Velocity or acceleration of a point.
-    Velocity {
-        /// The point.
-        point: PointRef,
-        /// The direction of the component, of any length; the magnitude where it is left out.
-        along: Option<Vec3>,
-        /// 1 for the velocity, 2 for the acceleration.
-        order: usize,
-    },
-    /// Curvature of a point's path.
-    Curvature {
-        /// The point.
-        point: PointRef,
-        /// The direction, of any length, seen along which a turn to the left is positive.
-        about: Option<Vec3>,
-    },
-    /// Time derivative of another output.
-    Rate {
-        /// The name of a measure, or of a point's component.
-        of: String,
-    },
-    /// How much one output changes per change of another while one driver alone moves.
-    Slope {
-        /// Of this one.
-        of: String,
-        /// Over this one.
-        over: String,
-        /// The driver's name; may be left out where there is only one.
-        driver: Option<String>,
-    },
-    /// A formula over other outputs.
-    Combination {
-        /// Its names are those of measures, or of components of points.
-        expression: Expression,
-    },
-    /// Position of a point along a global direction.
-    Coordinates {
-        /// The point.
-        point: PointRef,
-        /// The direction, of any length.
-        along: Vec3,
-    },
-    /// Toe of a left wheel.
-    Toe {
-        /// The body's name.
-        body: String,
-        /// Spin axis, outboard.
-        spin_axis: Line,
-    },
-    /// Camber of a left wheel.
-    Camber {
-        /// The body's name.
-        body: String,
-        /// Spin axis, outboard.
-        spin_axis: Line,
-    },
-    /// Something about a wheel.
-    Wheel {
-        /// The wheel's name.
-        wheel: String,
-        /// What about it.
-        what: WheelMeasure,
-    },
-    /// Something about both wheels of an axle.
-    Axle {
-        /// The axle's name.
-        axle: String,
-        /// What about it.
-        what: AxleMeasure,
-    },
-}
-
 /// A metric; see [`super::Metric`]. Its numbers are in units of which so many make a metre or a radian, since what they measure
 /// follows from the measures.
 #[derive(Clone, Debug)]
@@ -592,15 +576,4 @@ pub enum RayDraft {
         /// Where it points in the design configuration.
         axis: Line,
     },
-}
-
-/// Which angle two directions make; see [`super::AngleKind`].
-#[derive(Clone, Copy, Debug)]
-pub enum AngleKindDraft {
-    /// Between them.
-    Between,
-    /// Between the lines along them.
-    Lines,
-    /// As seen along a direction of any length.
-    About(Vec3),
 }

@@ -1,5 +1,6 @@
 //! Measures: numbers that follow from the motion.
 
+use super::check::MeasureCheck;
 use super::*;
 use crate::law::Expression;
 use crate::space::Real;
@@ -22,97 +23,423 @@ pub enum OutputSource {
     Point(PointId, usize),
 }
 
-/// What a measure measures. Formulas and signs are in `docs/measures.md`.
-#[derive(Clone, Debug, PartialEq)]
-pub enum MeasureKind {
-    /// A joint's coordinate: angle (unwrapped), displacement, or length (the whole of it).
-    Coordinate {
-        /// Which joint.
-        joint: JointId,
-        /// Which of its type's coordinates.
-        coordinate: usize,
-    },
-    /// Distance between two body points.
-    Distance {
+/// A type of measure as model files name it, but for those of wheels and axles, which are [`WheelMeasure`] and [`AxleMeasure`].
+#[derive(Debug)]
+pub struct MeasureType {
+    /// Its name.
+    pub name: &'static str,
+    /// What it measures, in a sentence.
+    pub summary: &'static str,
+    /// What is to be said of it.
+    pub fields: &'static [MeasureField],
+}
+
+/// A field of a measure.
+#[derive(Debug)]
+pub struct MeasureField {
+    /// Its name in model files.
+    pub key: &'static str,
+    /// What it is.
+    pub kind: FieldKind,
+    /// Whether it must be given.
+    pub required: bool,
+    /// What it means.
+    pub summary: &'static str,
+}
+
+/// What a field of a measure may be.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum FieldKind {
+    /// The name of a joint.
+    Joint,
+    /// The name of a coordinate of that joint.
+    Coordinate,
+    /// A point.
+    Point,
+    /// A global direction.
+    Direction,
+    /// A direction, which may follow hardpoints.
+    Line,
+    /// A direction to measure an angle from or to.
+    Ray,
+    /// The name of a measure, or of a component of a point.
+    Output,
+    /// The name of a driver.
+    Driver,
+    /// The name of a body.
+    Body,
+    /// An expression over outputs.
+    Expression,
+}
+
+/// A field of a measure as written.
+#[derive(Clone, Debug)]
+pub enum FieldDraft {
+    /// A name.
+    Name(String),
+    /// A point.
+    Point(PointRef),
+    /// A global direction, of any length.
+    Direction(Vec3),
+    /// A direction, which may follow hardpoints.
+    Line(Line),
+    /// A direction to measure an angle from or to.
+    Ray(RayDraft),
+    /// An expression.
+    Expression(Expression),
+}
+
+/// What is written as a `Draft` and means this in a model. The fields of a measure are of such types.
+pub(super) trait Field: Sized {
+    type Draft;
+    const KIND: FieldKind;
+    const REQUIRED: bool = true;
+    /// As written, if it is; `None` where it is something else, or missing.
+    fn draft(written: Option<FieldDraft>) -> Option<Self::Draft>;
+    /// What it means; `None`, and a fault, where that is not known.
+    fn resolve(draft: &Self::Draft, key: &'static str, check: &mut MeasureCheck<'_, '_>) -> Option<Self>;
+}
+
+/// Declares the types of measures: their fields, as written and as they mean in a model; their dimension, how much can be known of
+/// them, and how to say what they are. With a formula in `measure/` a type is complete.
+macro_rules! measures {
+    ($(
+        $(#[doc = $doc:literal])* $variant:ident $name:literal {
+            $($(#[doc = $field_doc:literal])* $field:ident: $draft:ty => $type:ty),* $(,)?
+        } |$model:pat_param, $words:pat_param| $dimension:expr, $known:expr, $says:expr;
+    )*) => {
+        /// What a measure measures. Formulas and signs are in `docs/measures.md`.
+        #[derive(Clone, Debug, PartialEq)]
+        pub enum MeasureKind {
+            $($(#[doc = $doc])* $variant { $($(#[doc = $field_doc])* $field: $type,)* },)*
+            /// Something about a wheel.
+            Wheel {
+                /// Which wheel.
+                wheel: WheelId,
+                /// What about it.
+                what: WheelMeasure,
+            },
+            /// Something about both wheels of an axle.
+            Axle {
+                /// Which axle.
+                axle: AxleId,
+                /// What about it.
+                what: AxleMeasure,
+            },
+        }
+
+        /// What a measure measures, as written; see [`MeasureKind`].
+        #[derive(Clone, Debug)]
+        pub enum MeasureKindDraft {
+            /// It could not be read.
+            Unread,
+            $($(#[doc = $doc])* $variant { $($(#[doc = $field_doc])* $field: $draft,)* },)*
+            /// Something about a wheel.
+            Wheel {
+                /// The wheel's name.
+                wheel: String,
+                /// What about it.
+                what: WheelMeasure,
+            },
+            /// Something about both wheels of an axle.
+            Axle {
+                /// The axle's name.
+                axle: String,
+                /// What about it.
+                what: AxleMeasure,
+            },
+        }
+
+        impl MeasureType {
+            /// All of them.
+            pub const ALL: &[Self] = &[$(Self {
+                name: $name,
+                summary: concat!($($doc),*).trim_ascii(),
+                fields: &[$(MeasureField {
+                    key: stringify!($field),
+                    kind: <$type as Field>::KIND,
+                    required: <$type as Field>::REQUIRED,
+                    summary: concat!($($field_doc),*).trim_ascii(),
+                }),*],
+            }),*];
+
+            /// A measure of this type from its fields; `None` where one of them is missing, or not of its kind.
+            pub fn draft(&self, mut field: impl FnMut(&MeasureField) -> Option<FieldDraft>) -> Option<MeasureKindDraft> {
+                let mut fields = self.fields.iter().map(|f| field(f)).collect::<Vec<_>>().into_iter();
+                match self.name {
+                    $($name => Some(MeasureKindDraft::$variant {
+                        $($field: <$type as Field>::draft(fields.next()?)?,)*
+                    }),)*
+                    _ => None,
+                }
+            }
+        }
+
+        impl MeasureKindDraft {
+            /// What it means in a model; of wheels and axles the check says it.
+            pub(super) fn resolve(&self, check: &mut MeasureCheck<'_, '_>) -> Option<MeasureKind> {
+                match self {
+                    $(Self::$variant { $($field),* } => {
+                        $(let $field = <$type as Field>::resolve($field, stringify!($field), check);)*
+                        Some(MeasureKind::$variant { $($field: $field?),* })
+                    })*
+                    Self::Unread => None,
+                    Self::Wheel { wheel, what } => check.wheel(wheel, *what),
+                    Self::Axle { axle, what } => check.axle(axle, *what),
+                }
+            }
+        }
+
+        impl Model {
+            /// What an output's value is.
+            pub fn dimension(&self, output: OutputSource) -> Dimension {
+                let OutputSource::Measure(k) = output else { return Dimension::LENGTH };
+                match &self.measures[k].kind {
+                    $(#[allow(unused_variables, reason = "what a measure is follows from some of its fields")]
+                    MeasureKind::$variant { $($field),* } => { let $model = self; $dimension })*
+                    MeasureKind::Wheel { what, .. } => what.dimension(),
+                    MeasureKind::Axle { what, .. } => what.dimension(),
+                }
+            }
+
+            /// How much can be known of an output: the motion ends at accelerations.
+            pub fn known(&self, output: OutputSource) -> Known {
+                let OutputSource::Measure(k) = output else { return POSITIONS };
+                match &self.measures[k].kind {
+                    $(#[allow(unused_variables, reason = "how much is known follows from some of its fields")]
+                    MeasureKind::$variant { $($field),* } => { let $model = self; $known })*
+                    MeasureKind::Wheel { .. } | MeasureKind::Axle { .. } if self.goes_by_driver(k) => moving(1),
+                    MeasureKind::Wheel { .. } | MeasureKind::Axle { .. } => POSITIONS,
+                }
+            }
+
+            /// What a measure is, in words; `direction` says a global direction.
+            pub fn describe(&self, measure: &Measure, direction: &dyn Fn(Vec3) -> String) -> String {
+                let words = Words { model: self, direction };
+                match &measure.kind {
+                    $(#[allow(unused_variables, reason = "not every field is said")]
+                    MeasureKind::$variant { $($field),* } => { let $words = words; $says })*
+                    MeasureKind::Wheel { wheel, what } => {
+                        format!("{} of wheel `{}`", what.name().replace('_', " "), self.wheels[wheel.0].name)
+                    }
+                    MeasureKind::Axle { axle, what } => {
+                        format!("{} of axle `{}`", what.name().replace('_', " "), self.axles[axle.0].name)
+                    }
+                }
+            }
+        }
+    };
+}
+
+measures! {
+    /// A joint's coordinate, counted from the design configuration; of a rod or leg the whole length.
+    Coordinate "coordinate" {
+        /// The joint's name.
+        joint: String => JointId,
+        /// Which of its coordinates; may be left out where it has only one.
+        coordinate: Option<String> => usize,
+    } |m, Words { model, .. }|
+        m.joints[joint.0].kind.coordinates[*coordinate].quantity.into(),
+        POSITIONS,
+        {
+            let joint = &model.joints[joint.0];
+            format!("{} of joint `{}`", joint.kind.coordinates[*coordinate].name, joint.name)
+        };
+
+    /// Distance between two points.
+    Distance "distance" {
         /// From this point.
-        from: PointId,
+        from: PointRef => PointId,
         /// To this one.
-        to: PointId,
-    },
-    /// Global position of a point along a direction.
-    Coordinates {
-        /// Which point.
-        point: PointId,
-        /// Unit direction, global.
-        along: Vec3,
-    },
-    /// Angle between two directions.
-    Angle {
-        /// From the first to the second.
-        between: [Ray; 2],
-        /// Which angle.
-        kind: AngleKind,
-    },
-    /// Velocity or acceleration of a point.
-    Velocity {
-        /// Which point.
-        point: PointId,
-        /// Unit direction, global, of the component; the magnitude where there is none.
-        along: Option<Vec3>,
-        /// 1 for the velocity, 2 for the acceleration.
-        order: usize,
-    },
+        to: PointRef => PointId,
+    } |_, w| Dimension::LENGTH, POSITIONS, format!("distance from {} to {}", w.point(*from), w.point(*to));
+
+    /// Position of a point along a global direction.
+    Coordinates "position" {
+        /// The point.
+        point: PointRef => PointId,
+        /// The direction, of any length.
+        along: Vec3 => Vec3,
+    } |_, w|
+        Dimension::LENGTH,
+        POSITIONS,
+        format!("position of {} along {}", w.point(*point), (w.direction)(*along));
+
+    /// Angle from one direction to another: between them, 0 to 180 deg, or as seen along `about`.
+    Angle "angle" {
+        /// From this direction.
+        from: RayDraft => Ray,
+        /// To this one.
+        to: RayDraft => Ray,
+        /// The direction, pointing at the viewer, about which the angle is counted, counter-clockwise positive.
+        about: Option<Vec3> => Option<Vec3>,
+    } |_, w|
+        Dimension::ANGLE,
+        POSITIONS,
+        match about {
+            None => format!("angle between {} and {}", w.ray(from), w.ray(to)),
+            Some(n) => format!("angle from {} to {} about {}", w.ray(from), w.ray(to), (w.direction)(*n)),
+        };
+
+    /// Angle between two lines, 0 to 90 deg.
+    TransmissionAngle "transmission_angle" {
+        /// Along this direction.
+        from: RayDraft => Ray,
+        /// And this one.
+        to: RayDraft => Ray,
+    } |_, w|
+        Dimension::ANGLE,
+        POSITIONS,
+        format!("angle between the lines along {} and {}, at most 90 deg", w.ray(from), w.ray(to));
+
+    /// Velocity of a point.
+    Velocity "velocity" {
+        /// The point.
+        point: PointRef => PointId,
+        /// The direction of the component, of any length. Default: the magnitude.
+        along: Option<Vec3> => Option<Vec3>,
+    } |_, w| Dimension::LENGTH.rate(1), moving(2), w.component("velocity", *point, *along);
+
+    /// Acceleration of a point.
+    Acceleration "acceleration" {
+        /// The point.
+        point: PointRef => PointId,
+        /// The direction of the component, of any length. Default: the magnitude.
+        along: Option<Vec3> => Option<Vec3>,
+    } |_, w| Dimension::LENGTH.rate(2), moving(1), w.component("acceleration", *point, *along);
+
     /// Curvature of a point's path.
-    Curvature {
-        /// Which point.
-        point: PointId,
-        /// Unit direction, global, seen along which a turn to the left is positive; without it, all of it is.
-        about: Option<Vec3>,
-    },
-    /// Time derivative of another output.
-    Rate {
-        /// Of which.
-        of: OutputSource,
-    },
-    /// How much one output changes per change of another while one driver alone moves.
-    Slope {
-        /// Of this one ...
-        of: OutputSource,
-        /// ... over this one.
-        over: OutputSource,
-        /// The driver that moves.
-        driver: DriverId,
-    },
-    /// A formula over other outputs.
-    Combination(Combination),
-    /// Toe of a left wheel: `atan2(e_x, e_y)` of the spin axis e.
-    Toe {
+    Curvature "curvature" {
+        /// The point.
+        point: PointRef => PointId,
+        /// The direction, pointing at the viewer, seen along which a turn to the left is positive. Default: all are.
+        about: Option<Vec3> => Option<Vec3>,
+    } |_, w|
+        Dimension::NUMBER.over(Dimension::LENGTH),
+        moving(1),
+        format!("curvature of the path of {}", w.point(*point));
+
+    /// Time derivative of another measure.
+    Rate "rate" {
+        /// The name of the measure, or `POINT.x`.
+        of: String => OutputSource,
+    } |m, w|
+        m.dimension(*of).rate(1),
+        moving(m.known(*of).orders.saturating_sub(1)),
+        format!("rate of {}", w.output(*of));
+
+    /// How much one measure changes per change of another while one driver alone moves, like a motion ratio.
+    Slope "slope" {
+        /// Of this measure, or `POINT.x`.
+        of: String => OutputSource,
+        /// Over this one.
+        over: String => OutputSource,
+        /// The driver that moves. Default: the only one.
+        driver: Option<String> => DriverId,
+    } |m, w| m.dimension(*of).over(m.dimension(*over)), moving(1), {
+        let driver = &w.model.drivers[driver.0].name;
+        format!("{} over {} while driver `{driver}` alone moves", w.output(*of), w.output(*over))
+    };
+
+    /// A formula over other measures.
+    Combination "expression" {
+        /// Like `front_left.toe + front_right.toe`; lengths are in the file's unit, angles in rad.
+        expression: Expression => Combination,
+    } |m, _|
+        expression.dimension,
+        expression.sources().map(|s| m.known(s)).fold(POSITIONS, |all, one| Known {
+            orders: all.orders.min(one.orders),
+            by_position: all.by_position && one.by_position,
+        }),
+        expression.text().into();
+
+    /// Toe of a left wheel, positive for toe-in.
+    Toe "toe" {
         /// The body that the wheel turns on.
-        body: BodyId,
-        /// Spin axis in the design configuration, pointing outboard.
-        spin_axis: Direction,
-    },
-    /// Camber of a left wheel: `-asin(e_z)` of the spin axis e.
-    Camber {
+        body: String => BodyId,
+        /// The wheel's spin axis in the design configuration, pointing outboard.
+        spin_axis: Line => Direction,
+    } |_, w| Dimension::ANGLE, POSITIONS, w.of_axis("toe", *body, spin_axis);
+
+    /// Camber of a left wheel, positive where its top leans outboard.
+    Camber "camber" {
         /// The body that the wheel turns on.
-        body: BodyId,
-        /// Spin axis in the design configuration, pointing outboard.
-        spin_axis: Direction,
-    },
-    /// Something about a wheel.
-    Wheel {
-        /// Which wheel.
-        wheel: WheelId,
-        /// What about it.
-        what: WheelMeasure,
-    },
-    /// Something about both wheels of an axle.
-    Axle {
-        /// Which axle.
-        axle: AxleId,
-        /// What about it.
-        what: AxleMeasure,
-    },
+        body: String => BodyId,
+        /// The wheel's spin axis in the design configuration, pointing outboard.
+        spin_axis: Line => Direction,
+    } |_, w| Dimension::ANGLE, POSITIONS, w.of_axis("camber", *body, spin_axis);
+}
+
+/// All of an output that follows from positions is known.
+const POSITIONS: Known = Known { orders: 3, by_position: true };
+
+/// Of what moves, so many of value, rate and acceleration.
+fn moving(orders: usize) -> Known {
+    Known { orders, by_position: false }
+}
+
+/// What measures go by, in words.
+#[derive(Clone, Copy)]
+struct Words<'a> {
+    model: &'a Model,
+    direction: &'a dyn Fn(Vec3) -> String,
+}
+
+impl Words<'_> {
+    fn point(&self, p: PointId) -> String {
+        let p = &self.model.points[p.0];
+        let place = &self.model.hardpoints[p.at.0];
+        if !p.unnamed {
+            format!("`{}`", p.name)
+        } else if !place.unnamed {
+            format!("`{}` on `{}`", place.name, self.body(p.body))
+        } else {
+            format!("a point of `{}`", self.body(p.body))
+        }
+    }
+
+    fn body(&self, body: BodyId) -> &str {
+        &self.model.bodies[body.0].name
+    }
+
+    fn output(&self, source: OutputSource) -> String {
+        match source {
+            OutputSource::Measure(k) => format!("`{}`", self.model.measures[k].name),
+            OutputSource::Point(p, axis) => format!("{}.{}", self.point(p), ["x", "y", "z"][axis]),
+        }
+    }
+
+    fn ray(&self, ray: &Ray) -> String {
+        match ray {
+            Ray::Between([a, b]) => format!("the line from {} to {}", self.point(*a), self.point(*b)),
+            Ray::Fixed { body, axis: Direction::Along(u) } => {
+                format!("{} of `{}`", (self.direction)(*u), self.body(*body))
+            }
+            Ray::Fixed { body, axis: Direction::Through(a, b) } => {
+                format!("the line of `{}` {}", self.body(*body), self.through([*a, *b]))
+            }
+        }
+    }
+
+    fn through(&self, ends: [HardpointId; 2]) -> String {
+        let [a, b] = ends.map(|h| self.model.hardpoints[h.0].name.as_str());
+        format!("from `{a}` to `{b}`")
+    }
+
+    fn component(&self, what: &str, point: PointId, along: Option<Vec3>) -> String {
+        match along {
+            Some(along) => format!("{what} of {} along {}", self.point(point), (self.direction)(along)),
+            None => format!("magnitude of the {what} of {}", self.point(point)),
+        }
+    }
+
+    fn of_axis(&self, what: &str, body: BodyId, axis: &Direction) -> String {
+        let axis = match axis {
+            Direction::Along(u) => format!("along {}", (self.direction)(*u)),
+            Direction::Through(a, b) => self.through([*a, *b]),
+        };
+        format!("{what} of `{}`, spin axis {axis}", self.body(body))
+    }
 }
 
 /// A direction that an angle is measured from or to.
@@ -127,18 +454,6 @@ pub enum Ray {
         /// Where it points.
         axis: Direction,
     },
-}
-
-/// Which angle two directions make.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum AngleKind {
-    /// Between them, 0 to 180 deg.
-    Between,
-    /// Between the lines along them, 0 to 90 deg: the transmission angle.
-    Lines,
-    /// From the first to the second as seen along this unit direction (global, pointing at the viewer), counter-clockwise
-    /// positive.
-    About(Vec3),
 }
 
 /// A formula over other outputs.
@@ -233,23 +548,6 @@ impl Model {
         }
     }
 
-    /// How much can be known of an output: the motion ends at accelerations.
-    pub fn known(&self, output: OutputSource) -> Known {
-        let moving = |orders: usize| Known { orders, by_position: false };
-        let positions = Known { orders: 3, by_position: true };
-        let OutputSource::Measure(k) = output else { return positions };
-        match &self.measures[k].kind {
-            MeasureKind::Velocity { order, .. } => moving(3 - order),
-            MeasureKind::Curvature { .. } => moving(1),
-            MeasureKind::Rate { of } => moving(self.known(*of).orders.saturating_sub(1)),
-            MeasureKind::Combination(c) => c.sources().map(|s| self.known(s)).fold(positions, |all, one| {
-                Known { orders: all.orders.min(one.orders), by_position: all.by_position && one.by_position }
-            }),
-            _ if self.goes_by_driver(k) => moving(1),
-            _ => positions,
-        }
-    }
-
     /// Whether a measure says what happens while one driver alone moves, rather than in the course of time.
     pub(crate) fn goes_by_driver(&self, measure: usize) -> bool {
         match self.measures[measure].kind {
@@ -257,27 +555,6 @@ impl Model {
             MeasureKind::Wheel { what, .. } => what.needs().goes_by_driver(),
             MeasureKind::Axle { what, .. } => what.goes_by_driver(),
             _ => false,
-        }
-    }
-
-    /// What an output's value is.
-    pub fn dimension(&self, output: OutputSource) -> Dimension {
-        let OutputSource::Measure(k) = output else { return Dimension::LENGTH };
-        match &self.measures[k].kind {
-            MeasureKind::Coordinate { joint, coordinate } => {
-                self.joints[joint.0].kind.coordinates[*coordinate].quantity.into()
-            }
-            MeasureKind::Distance { .. } | MeasureKind::Coordinates { .. } => Dimension::LENGTH,
-            MeasureKind::Toe { .. } | MeasureKind::Camber { .. } | MeasureKind::Angle { .. } => {
-                Dimension::ANGLE
-            }
-            MeasureKind::Velocity { order, .. } => Dimension::LENGTH.rate(*order as i8),
-            MeasureKind::Curvature { .. } => Dimension::NUMBER.over(Dimension::LENGTH),
-            MeasureKind::Rate { of } => self.dimension(*of).rate(1),
-            MeasureKind::Slope { of, over, .. } => self.dimension(*of).over(self.dimension(*over)),
-            MeasureKind::Combination(c) => c.dimension,
-            MeasureKind::Wheel { what, .. } => what.dimension(),
-            MeasureKind::Axle { what, .. } => what.dimension(),
         }
     }
 
@@ -293,10 +570,11 @@ impl Model {
             }
             MeasureKind::Wheel { wheel, .. } => [of_wheel(wheel), None],
             MeasureKind::Axle { axle, .. } => self.axles[axle.0].wheels.map(of_wheel),
-            MeasureKind::Angle { between, .. } => between.map(|ray| match ray {
-                Ray::Fixed { body, axis } => Some((body, axis)),
-                Ray::Between(_) => None,
-            }),
+            MeasureKind::Angle { from, to, .. } | MeasureKind::TransmissionAngle { from, to } => [from, to]
+                .map(|ray| match ray {
+                    Ray::Fixed { body, axis } => Some((body, axis)),
+                    Ray::Between(_) => None,
+                }),
             _ => [None; 2],
         }
     }

@@ -22,16 +22,19 @@ pub use curve::{Curve, CurvePoint};
 pub(crate) use design::{Effects, Fixed};
 pub use design::{Geometry, Kept};
 pub use draft::{
-    AngleKindDraft, AxleDraft, BodyDraft, ChangeDraft, CouplerDraft, CouplerKindDraft, CurveDraft, Draft,
-    DrivenDraft, DriverDraft, FormulaDraft, FormulaOf, FrameDraft, HardpointDraft, JointDraft, Line,
-    MeasureDraft, MeasureKindDraft, MetricDraft, ParameterDraft, Place, PointDraft, PointRef, RayDraft,
-    ShapeDraft, TermDraft, VariableDraft, WheelDraft, WheelSpinDraft,
+    AxleDraft, BodyDraft, ChangeDraft, CouplerDraft, CouplerKindDraft, CurveDraft, Draft, DrivenDraft,
+    DriverDraft, FormulaDraft, FormulaOf, FrameDraft, HardpointDraft, JointDraft, Line, MeasureDraft,
+    MetricDraft, ParameterDraft, Place, PointDraft, PointRef, RayDraft, ShapeDraft, TermDraft, Unread,
+    VariableDraft, WheelDraft, WheelSpinDraft,
 };
 pub use fault::{Fault, Locus, Section, did_you_mean};
 pub use field::{Field, MarkerField};
 pub use formula::{Formula, NamedNumber, Nominal, NotConstant, Source, Target};
 pub use idle::Idle;
-pub use measure::{AngleKind, Combination, Dimension, Known, Measure, MeasureKind, OutputSource, Ray};
+pub use measure::{
+    Combination, Dimension, FieldDraft, FieldKind, Known, Measure, MeasureField, MeasureKind,
+    MeasureKindDraft, MeasureType, OutputSource, Ray,
+};
 pub use metric::{Metric, Take};
 pub use wheel::{Axle, AxleMeasure, Side, Vehicle, VehicleEnd, Wheel, WheelMeasure, WheelNeed};
 
@@ -301,6 +304,18 @@ pub enum Change {
         /// U = d(theta)/d(tau), rad.
         u: Vec3,
     },
+}
+
+impl Change {
+    /// The joint that it changes by itself.
+    pub(crate) fn joint(&self) -> Option<JointId> {
+        match self {
+            Self::Marker { joint, .. } | Self::Field { joint, .. } | Self::Length { joint, .. } => {
+                Some(*joint)
+            }
+            Self::Move { .. } | Self::Parameter { .. } | Self::Law { .. } => None,
+        }
+    }
 }
 
 /// A point fixed in a body.

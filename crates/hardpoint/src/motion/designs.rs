@@ -155,7 +155,7 @@ impl<'m> SideBySide<'m> {
                 tape.coordinates(&self.nominal.topology, lanes_of(room));
             }
             let states = &self.states[self.states_at(k)];
-            let [states, derivatives] = [states, &self.derivatives].map(|lines| bytemuck::cast_slice(lines));
+            let [states, derivatives] = [states, &self.derivatives].map(bytemuck::cast_slice);
             each(k, &Found { tape: self.tape(), block: Block { states, derivatives } });
             effort.steps += 1;
             effort.by_program += 1;

@@ -77,7 +77,7 @@ impl Analysis<'_> {
         let asked: Vec<Output> = outputs_asked.iter().map(|&m| all[m].clone()).collect();
         // What is no smooth function of positions alone has no load.
         let is_plain = |m: &usize| {
-            let formula = |k: usize| matches!(self.model().measures[k].kind, MeasureKind::Combination(_));
+            let formula = |k: usize| matches!(self.model().measures[k].kind, MeasureKind::Combination { .. });
             all[*m].known.by_position && !matches!(all[*m].source, OutputSource::Measure(k) if formula(k))
         };
         if !outputs_asked.iter().all(is_plain) {

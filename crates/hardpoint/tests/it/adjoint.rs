@@ -146,7 +146,7 @@ fn gradients_of_what_is_no_matter_of_positions_are_those_of_a_run() {
     let mut add = |name: &str, kind| draft.measures.push(MeasureDraft { name: name.into(), kind });
     add("height", MeasureKindDraft::Coordinates { point: point(), along });
     add("aside", MeasureKindDraft::Coordinates { point: point(), along: [0.0, 1.0, 0.0].into() });
-    add("speed", MeasureKindDraft::Velocity { point: point(), along: Some(along), order: 1 });
+    add("speed", MeasureKindDraft::Velocity { point: point(), along: Some(along) });
     let driver = Some(draft.drivers[0].name.clone());
     let (of, over) = ("aside".to_owned(), "height".to_owned());
     let mut add = |name: &str, kind| draft.measures.push(MeasureDraft { name: name.into(), kind });

@@ -8,26 +8,28 @@ impl Check<'_> {
         let draft = self.draft;
         for (index, v) in draft.design.iter().enumerate() {
             let here = Here { section: Section::Design, index };
-            if v.changes.is_empty() {
+            if v.changes.is_empty() && !draft.unread.any(Section::Design, index) {
                 let message = format!("design variable `{}` changes nothing", v.name);
                 self.fault("HP0217", here.key("name"), message)
                     .help("say which hardpoint it moves, which joint it tilts, or give a velocity field");
             }
-            let mut quantity: Option<Quantity> = None;
             let mut changes = Vec::new();
             for (k, change) in v.changes.iter().enumerate() {
                 let found = match change {
                     ChangeDraft::Shape { bodies, field } => self.shape(bodies, field, &v.name, here, k),
-                    _ => self.one_change(change, &v.name, here, k).map(|(change, q)| (vec![change], q)),
+                    _ => self.one_change(change, &v.name, here, k).map(|change| vec![change]),
                 };
-                let Some((found, q)) = found else { continue };
-                quantity = Some(if quantity.is_none_or(|before| before == q) { q } else { Quantity::Number });
-                changes.extend(found);
+                changes.extend(found.unwrap_or_default());
             }
+            let parameter = |name: &str| Some(draft.parameters[self.number_of("parameter", name)?].quantity);
+            let quantity = v.quantity(parameter, |driver| {
+                let driver = self.model.drivers.iter().find(|d| d.name == driver)?;
+                Some((&driver.law, self.model.driven(driver).quantity))
+            });
             self.range(v, here);
             self.model.variables.push(DesignVariable {
                 name: v.name.clone(),
-                quantity: quantity.unwrap_or(Quantity::Number),
+                quantity,
                 changes,
                 fixed_length: v.fixed_length,
                 bounds: v.bounds,
@@ -39,7 +41,8 @@ impl Check<'_> {
 
     /// HP0229: bounds between which the model as drawn does not lie, or a typical size that is none.
     fn range(&mut self, v: &VariableDraft, here: Here) {
-        if let Some([low, high]) = v.bounds {
+        // Those of a parameter are counted from its value.
+        if let Some([low, high]) = v.bounds.filter(|_| !self.unread(here, "value")) {
             if !(low < high && low.is_finite() && high.is_finite()) {
                 let message = format!("the bounds of design variable `{}` do not rise", v.name);
                 self.fault("HP0229", here.key("bounds"), message)
@@ -73,11 +76,11 @@ impl Check<'_> {
         owner: &str,
         here: Here,
         k: usize,
-    ) -> Option<(Vec<Change>, Quantity)> {
+    ) -> Option<Vec<Change>> {
         let at = here.item("changes", k);
         let bodies: Vec<_> = bodies.iter().map(|b| self.body(b, at.clone())).collect();
         let field = self.shape_field(field, owner, here);
-        let (bodies, (field, quantity)) = (bodies.into_iter().collect::<Option<Vec<BodyId>>>()?, field?);
+        let (bodies, field) = (bodies.into_iter().collect::<Option<Vec<BodyId>>>()?, field?);
         let (mut moved, mut turned): (BTreeSet<usize>, Vec<JointId>) = Default::default();
         for (j, joint) in self.model.joints.iter().enumerate() {
             if !joint.bodies.iter().any(|b| bodies.contains(b)) {
@@ -95,51 +98,50 @@ impl Check<'_> {
         let size = self.extent.size();
         let mut changes = Vec::new();
         for h in moved {
-            let [velocity, _] = field.at(self.model.hardpoints[h].position);
+            let [velocity, _] = field.at(self.position(HardpointId(h))?);
             if velocity.norm() > SAME_POINT * size.min(1.0) && !self.curve_points.contains(&HardpointId(h)) {
                 changes.push(Change::Move { hardpoint: HardpointId(h), velocity });
             }
         }
         for joint in turned {
             let place = self.model.joints[joint.0].at[0];
-            let [_, rotation] = field.at(self.position(place));
+            let [_, rotation] = field.at(self.position(place)?);
             if rotation.norm() > SAME_POINT {
                 let (end, position) = (End::Both, Vec3::ZERO);
                 changes.push(Change::Marker { joint, end, position, rotation });
             }
         }
-        if changes.is_empty() {
+        if changes.is_empty() && !self.joint_ids.contains(&None) {
             let message = format!("the field of design variable `{owner}` moves nothing on its bodies");
             self.fault("HP0217", at, message).help("no joint or point of them is where the field moves");
             return None;
         }
-        Some((changes, quantity))
+        Some(changes)
     }
 
-    /// A velocity field, and what its variable measures.
-    fn shape_field(&mut self, field: &ShapeDraft, owner: &str, here: Here) -> Option<(ShapeField, Quantity)> {
+    /// A velocity field over whole bodies.
+    fn shape_field(&mut self, field: &ShapeDraft, owner: &str, here: Here) -> Option<ShapeField> {
         let key = || here.key("field");
-        let length = Quantity::Length;
         Some(match field {
             ShapeDraft::Translate(v) => {
                 let (_, along) = self.line(&Line::Along(*v), owner, here, "field")?;
-                (ShapeField::Translate(along), length)
+                ShapeField::Translate(along)
             }
             ShapeDraft::Rotate { about, at } => {
-                let through = self.hardpoint(at, key()).map(|h| self.position(h));
+                let through = self.hardpoint(at, key()).and_then(|h| self.position(h));
                 let (_, axis) = self.line(about, owner, here, "field")?;
-                (ShapeField::Rotate { axis, through: through? }, Quantity::Angle)
+                ShapeField::Rotate { axis, through: through? }
             }
             ShapeDraft::Scale { from, along } => {
-                let from = self.hardpoint(from, key()).map(|h| self.position(h));
+                let from = self.hardpoint(from, key()).and_then(|h| self.position(h));
                 let along = match along {
                     Some(line) => Some(self.line(line, owner, here, "field")?.1),
                     None => None,
                 };
-                (ShapeField::Scale { from: from?, along }, Quantity::Number)
+                ShapeField::Scale { from: from?, along }
             }
             ShapeDraft::Bend { from, to, towards } => {
-                let ends = [from, to].map(|name| self.hardpoint(name, key()).map(|h| self.position(h)));
+                let ends = [from, to].map(|name| self.hardpoint(name, key()).and_then(|h| self.position(h)));
                 let [from, to] = [ends[0]?, ends[1]?];
                 let along =
                     (to - from).unit().filter(|_| (to - from).norm() > SAME_POINT * self.extent.size());
@@ -151,12 +153,12 @@ impl Check<'_> {
                         .help("name two hardpoints that lie apart, and a direction across");
                     return None;
                 };
-                (ShapeField::Bend { from, to, towards }, length)
+                ShapeField::Bend { from, to, towards }
             }
             ShapeDraft::Through(moves) => {
                 let points: Vec<_> = moves
                     .iter()
-                    .map(|(name, _)| self.hardpoint(name, key()).map(|h| self.position(h)))
+                    .map(|(name, _)| self.hardpoint(name, key()).and_then(|h| self.position(h)))
                     .collect();
                 let points: Vec<Vec3> = points.into_iter().collect::<Option<_>>()?;
                 let velocities: Vec<Vec3> = moves.iter().map(|(_, v)| *v).collect();
@@ -170,18 +172,12 @@ impl Check<'_> {
                         .help("give points at different places, and how far each moves per unit");
                     return None;
                 };
-                (ShapeField::Through(found), length)
+                ShapeField::Through(found)
             }
         })
     }
 
-    fn one_change(
-        &mut self,
-        change: &ChangeDraft,
-        owner: &str,
-        here: Here,
-        k: usize,
-    ) -> Option<(Change, Quantity)> {
+    fn one_change(&mut self, change: &ChangeDraft, owner: &str, here: Here, k: usize) -> Option<Change> {
         let at = here.item("changes", k);
         let null = |check: &mut Self| {
             let message = format!("a velocity of design variable `{owner}` is null or not finite");
@@ -205,26 +201,19 @@ impl Check<'_> {
                 if is_null(*velocity, Vec3::ZERO) {
                     null(self);
                 }
-                Some((Change::Move { hardpoint, velocity: *velocity }, Quantity::Length))
+                Some(Change::Move { hardpoint, velocity: *velocity })
             }
             ChangeDraft::Tilt { joint, about } => {
                 let joint = self.joint(joint, at)?;
                 let (_, rotation) = self.line(about, owner, here, "about")?;
-                let change = Change::Marker { joint, end: End::Both, position: Vec3::ZERO, rotation };
-                Some((change, Quantity::Angle))
+                Some(Change::Marker { joint, end: End::Both, position: Vec3::ZERO, rotation })
             }
             ChangeDraft::Marker { joint, end, position, rotation } => {
                 let joint = self.joint(joint, at)?;
                 if is_null(*position, *rotation) {
                     null(self);
                 }
-                let quantity = match (position.norm() > 0.0, rotation.norm() > 0.0) {
-                    (_, false) => Quantity::Length,
-                    (false, true) => Quantity::Angle,
-                    (true, true) => Quantity::Number,
-                };
-                let change = Change::Marker { joint, end: *end, position: *position, rotation: *rotation };
-                Some((change, quantity))
+                Some(Change::Marker { joint, end: *end, position: *position, rotation: *rotation })
             }
             ChangeDraft::Length { joint, rate } => {
                 let joint = self.joint(joint, at.clone())?;
@@ -242,7 +231,7 @@ impl Check<'_> {
                     fault.help(format!("give rod `{name}` a `length`, or move one of its hardpoints"));
                     return None;
                 }
-                Some((Change::Length { joint, rate: *rate }, Quantity::Length))
+                Some(Change::Length { joint, rate: *rate })
             }
             ChangeDraft::Parameter { parameter, rate } => {
                 let names = self.draft.parameters.iter().map(|p| p.name.as_str());
@@ -250,13 +239,15 @@ impl Check<'_> {
                 if !(rate.is_finite() && *rate != 0.0) {
                     null(self);
                 }
-                let quantity = self.model.parameters[parameter.0].quantity;
-                Some((Change::Parameter { parameter, rate: *rate }, quantity))
+                Some(Change::Parameter { parameter, rate: *rate })
             }
             ChangeDraft::Law { driver, parameter, rate } => {
                 let draft = self.draft;
                 let names = draft.drivers.iter().map(|d| d.name.as_str());
                 let k = self.find("driver", driver, at.clone(), names)?;
+                if draft.unread.has(Section::Drivers, k, "law") {
+                    return None;
+                }
                 let parameters = draft.drivers[k].law.parameters();
                 let names = parameters.iter().map(|p| p.name.as_str());
                 let p = self.find(
@@ -270,12 +261,7 @@ impl Check<'_> {
                 }
                 // A faulty driver has been reported.
                 let driver = self.model.drivers.iter().position(|d| d.name == *driver).map(DriverId)?;
-                let quantity = match parameters[p].kind {
-                    ParameterKind::Value => self.model.driven(&self.model.drivers[driver.0]).quantity,
-                    ParameterKind::Angle => Quantity::Angle,
-                    _ => Quantity::Number,
-                };
-                Some((Change::Law { driver, parameter: p, rate: *rate }, quantity))
+                Some(Change::Law { driver, parameter: p, rate: *rate })
             }
             ChangeDraft::Shape { .. } => unreachable!("a shape is many changes"),
             ChangeDraft::Field { joint, body, v, u } => {
@@ -295,7 +281,7 @@ impl Check<'_> {
                     self.fault("HP0218", at, message).note(format!("it connects {names}"));
                     return None;
                 };
-                Some((Change::Field { joint, end, v: *v, u: *u }, Quantity::Number))
+                Some(Change::Field { joint, end, v: *v, u: *u })
             }
         }
     }

@@ -28,8 +28,17 @@ impl<'a> Check<'a> {
                 let message = format!("the value of parameter `{}` is not a finite number", p.name);
                 self.fault("HP0202", at.key("value"), message);
             }
+            if self.unread(at, "value") {
+                self.spoilt.insert(Source::Parameter(ParameterId(index)));
+            }
             let (name, value, quantity) = (p.name.clone(), p.value, p.quantity);
             self.model.parameters.push(NamedNumber { name, value, quantity });
+        }
+        for index in 0..draft.hardpoints.len() {
+            if self.unread(Here { section: Section::Hardpoints, index }, "position") {
+                let coordinates = (0..3).map(|axis| Source::Coordinate(HardpointId(index), axis));
+                self.spoilt.extend(coordinates);
+            }
         }
         let mut written: Vec<Written> = Vec::new();
         for f in &draft.formulas {
@@ -60,10 +69,10 @@ impl<'a> Check<'a> {
             }
         }
         self.order(written);
-        self.extent = extent_of_joints(self.draft, &self.model.hardpoints);
+        self.extent = extent_of_joints(self.draft, &self.model.hardpoints, &self.spoilt);
     }
 
-    fn number_of(&self, what: &str, name: &str) -> Option<usize> {
+    pub(super) fn number_of(&self, what: &str, name: &str) -> Option<usize> {
         self.numbers.get(what).and_then(|numbers| numbers.get(name)).copied()
     }
 
@@ -240,7 +249,7 @@ impl<'a> Check<'a> {
             self.given(Target::Coordinate(h, axis), &coordinates[axis], at.clone(), name)
         });
         given.iter().all(Option::is_some).then(|| {
-            self.extent.include(self.position(h));
+            self.extent.include(self.model.hardpoints[h.0].position);
             h
         })
     }

@@ -10,7 +10,7 @@ impl Check<'_> {
             let before = self.faults.len();
             let joint = self.one_joint(j, Here { section: Section::Joints, index });
             let id = match joint {
-                Some(joint) if self.faults.len() == before => {
+                Some(joint) if self.faults.len() == before && !draft.unread.any(Section::Joints, index) => {
                     self.model.joints.push(joint);
                     Some(JointId(self.model.joints.len() - 1))
                 }
@@ -42,7 +42,8 @@ impl Check<'_> {
                     (Some(line), Need::Required | Need::Optional | Need::OnBodyJ) => {
                         self.line(line, name, here, key)
                     }
-                    (None, Need::Optional) => None,
+                    (None, Need::Optional | Need::Unused) => None,
+                    (None, _) if self.unread(here, key) => None,
                     (None, Need::Required | Need::OnBodyJ) => {
                         let message = format!("joint `{name}` needs `{key}`");
                         self.fault("HP0208", here.key("type"), message)
@@ -58,7 +59,6 @@ impl Check<'_> {
                             .help(format!("remove `{key}` from `{name}`"));
                         None
                     }
-                    (None, Need::Unused) => None,
                 }
             });
         let at = self.joint_places(j, kind, axis.map(|a| a.0), here);
@@ -102,6 +102,9 @@ impl Check<'_> {
         let (name, cut) = (name.clone(), j.cut);
         let at = at?;
         let curve = self.curve(j, kind, at, frames[0], here);
+        if j.axis.is_some() && axis.is_none() || j.axis2.is_some() && axis2.is_none() {
+            return None;
+        }
         Some(Joint { name, kind, bodies, at, axis, axis2, frames, length, curve, cut, unnamed: false })
     }
 
@@ -115,6 +118,9 @@ impl Check<'_> {
         here: Here,
     ) -> Option<Curve> {
         let name = &j.name;
+        if self.unread(here, "curve") {
+            return None;
+        }
         let follows = std::ptr::eq(kind, &joint::POINT_ON_CURVE);
         let draft = match (&j.curve, follows) {
             (None, false) => return None,
@@ -133,8 +139,12 @@ impl Check<'_> {
         let places = draft.points.iter().enumerate();
         let ids: Vec<_> = places.map(|(k, p)| self.place(p, name, here.item("curve", k))).collect();
         let ids: Vec<_> = ids.into_iter().collect::<Option<_>>()?;
-        let m_i = Pose { rot: frame, r: self.position(at[0]) };
-        let local: Vec<Vec3> = ids.iter().map(|h| m_i.inverse().point(self.position(*h))).collect();
+        if j.axis.is_none() {
+            return None;
+        }
+        let m_i = Pose { rot: frame, r: self.position(at[0])? };
+        let local = ids.iter().map(|h| Some(m_i.inverse().point(self.position(*h)?)));
+        let local: Vec<Vec3> = local.collect::<Option<_>>()?;
         let size = self.extent.size();
         let least = if draft.closed { 4 } else { 3 };
         if local.len() < least {
@@ -164,7 +174,7 @@ impl Check<'_> {
             return None;
         }
         let points: Vec<[f64; 2]> = local.iter().map(|p| [p.x, p.y]).collect();
-        let follower = m_i.inverse().point(self.position(at[1]));
+        let follower = m_i.inverse().point(self.position(at[1])?);
         self.curve_points.extend(ids);
         match Curve::through(&points, draft.closed, [follower.x, follower.y]) {
             Ok(curve) if curve.at(curve.start())[0][0].is_finite() => Some(curve),
@@ -200,6 +210,9 @@ impl Check<'_> {
     /// HP0223: a screw without a lead, or a lead without a screw.
     fn lead(&mut self, j: &JointDraft, kind: &'static JointType, here: Here) {
         let is_screw = std::ptr::eq(kind, &joint::SCREW);
+        if self.unread(here, "lead") {
+            return;
+        }
         match j.lead {
             Some(_) if !is_screw => {
                 self.fault("HP0223", here.key("lead"), format!("a {} joint has no `lead`", kind.name))
@@ -229,6 +242,11 @@ impl Check<'_> {
         let name = &j.name;
         if let (true, Some(Direction::Through(a, _))) = (j.at.is_empty() && kind.places == 1, axis) {
             return Some([a, a]);
+        }
+        // Where the places are, or might be, is not known.
+        let by_axis = matches!(j.axis, Some(Line::Through(..))) || self.unread(here, "axis");
+        if self.unread(here, "at") || j.at.is_empty() && kind.places == 1 && by_axis {
+            return None;
         }
         let fits = match kind.places {
             0 => j.at.len() <= 1,
@@ -261,7 +279,7 @@ impl Check<'_> {
             j.at.iter().enumerate().map(|(k, p)| self.place(p, name, here.item("at", k))).collect();
         let (first, last) = (places[0]?, places[places.len() - 1]?);
         let is_rod = kind.coordinates.iter().any(|c| c.row == Row::Distance);
-        if is_rod && (self.position(last) - self.position(first)).norm() <= SAME_POINT * self.extent.size() {
+        if is_rod && self.apart(first, last) == Some(None) {
             self.fault("HP0211", here.key("at"), format!("the two ends of `{name}` are at the same place"))
                 .help("a rod needs two points that lie apart");
         }

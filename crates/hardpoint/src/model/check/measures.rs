@@ -2,6 +2,7 @@
 
 use super::*;
 use crate::law::Expression;
+use crate::model::measure::Field;
 
 impl Check<'_> {
     pub(super) fn measures(&mut self) {
@@ -18,86 +19,21 @@ impl Check<'_> {
     }
 
     fn one_measure(&mut self, m: &MeasureDraft, here: Here) -> Option<MeasureKind> {
-        Some(match &m.kind {
-            MeasureKindDraft::Coordinate { joint, coordinate } => {
-                let joint = self.joint(joint, here.key("joint"))?;
-                let coordinate = self.coordinate(joint, coordinate.as_deref(), here)?;
-                MeasureKind::Coordinate { joint, coordinate }
+        let kind = m.kind.resolve(&mut MeasureCheck { check: self, owner: &m.name, here, joint: None })?;
+        if let MeasureKind::Distance { from, to } = kind {
+            let [a, b] = [from, to].map(|p| self.model.points[p.0].clone());
+            let at_one_place = self.apart(a.at, b.at) == Some(None);
+            if from == to || a.body == b.body && at_one_place {
+                let message = format!("measure `{}` is the distance of a point from itself", m.name);
+                self.fault("HP0216", here.key("to"), message);
+            } else if at_one_place {
+                let message = format!("the two points of measure `{}` are drawn at the same place", m.name);
+                self.fault("HP0216", here.key("to"), message).note("a distance of zero has no rate").help(
+                    "measure the `position` of one of them along each direction, or points that lie apart",
+                );
             }
-            MeasureKindDraft::Distance { from, to } => {
-                let (a, b) =
-                    (self.point(from, &m.name, here.key("from")), self.point(to, &m.name, here.key("to")));
-                let (from, to) = (a?, b?);
-                let [a, b] = [from, to].map(|p| self.model.points[p.0].clone());
-                let apart = (self.position(a.at) - self.position(b.at)).norm();
-                if from == to || (a.body == b.body && apart <= SAME_POINT * self.extent.size()) {
-                    let message = format!("measure `{}` is the distance of a point from itself", m.name);
-                    self.fault("HP0216", here.key("to"), message);
-                } else if apart <= SAME_POINT * self.extent.size() {
-                    let message =
-                        format!("the two points of measure `{}` are drawn at the same place", m.name);
-                    self.fault("HP0216", here.key("to"), message)
-                        .note("a distance of zero has no rate")
-                        .help("measure the `position` of one of them along each direction, or points that lie apart");
-                }
-                MeasureKind::Distance { from, to }
-            }
-            MeasureKindDraft::Coordinates { point, along } => {
-                let point = self.point(point, &m.name, here.key("point"));
-                let (_, along) = self.line(&Line::Along(*along), &m.name, here, "along")?;
-                MeasureKind::Coordinates { point: point?, along }
-            }
-            MeasureKindDraft::Angle { between, kind } => {
-                let [from, to] = between;
-                let rays = (self.ray(from, &m.name, here, "from"), self.ray(to, &m.name, here, "to"));
-                let kind = match kind {
-                    AngleKindDraft::Between => AngleKind::Between,
-                    AngleKindDraft::Lines => AngleKind::Lines,
-                    AngleKindDraft::About(n) => {
-                        AngleKind::About(self.line(&Line::Along(*n), &m.name, here, "about")?.1)
-                    }
-                };
-                MeasureKind::Angle { between: [rays.0?, rays.1?], kind }
-            }
-            MeasureKindDraft::Velocity { point, along, order } => {
-                let point = self.point(point, &m.name, here.key("point"));
-                let along = self.unit_vector(*along, &m.name, here, "along");
-                MeasureKind::Velocity { point: point?, along: along?, order: *order }
-            }
-            MeasureKindDraft::Curvature { point, about } => {
-                let point = self.point(point, &m.name, here.key("point"));
-                let about = self.unit_vector(*about, &m.name, here, "about");
-                MeasureKind::Curvature { point: point?, about: about? }
-            }
-            MeasureKindDraft::Rate { of } => MeasureKind::Rate { of: self.output(of, here.key("of"))? },
-            MeasureKindDraft::Slope { of, over, driver } => {
-                let outputs = (self.output(of, here.key("of")), self.output(over, here.key("over")));
-                let driver = self.driver_or_only(driver.as_deref(), &m.name, here)?;
-                MeasureKind::Slope { of: outputs.0?, over: outputs.1?, driver }
-            }
-            MeasureKindDraft::Combination { expression } => {
-                let at = here.key("expression");
-                let inputs: Vec<_> = expression.names().iter().map(|n| self.output(n, at.clone())).collect();
-                let inputs: Option<Vec<_>> = inputs.into_iter().collect();
-                MeasureKind::Combination(Combination {
-                    expression: expression.clone(),
-                    inputs: inputs?.into_iter().map(|source| (source, 1.0)).collect(),
-                    per_unit: 1.0,
-                    dimension: Dimension::NUMBER,
-                })
-            }
-            MeasureKindDraft::Toe { body, spin_axis } | MeasureKindDraft::Camber { body, spin_axis } => {
-                let body = self.body(body, here.key("body"));
-                let (spin_axis, _) = self.line(spin_axis, &m.name, here, "spin_axis")?;
-                let body = body?;
-                match &m.kind {
-                    MeasureKindDraft::Toe { .. } => MeasureKind::Toe { body, spin_axis },
-                    _ => MeasureKind::Camber { body, spin_axis },
-                }
-            }
-            MeasureKindDraft::Wheel { wheel, what } => self.wheel_measure(wheel, *what, here)?,
-            MeasureKindDraft::Axle { axle, what } => self.axle_measure(axle, *what, here)?,
-        })
+        }
+        Some(kind)
     }
 
     pub(super) fn metrics(&mut self) {
@@ -179,8 +115,8 @@ impl Check<'_> {
                 let points =
                     (self.point(from, owner, here.item(key, 0)), self.point(to, owner, here.item(key, 1)));
                 let ends = [points.0?, points.1?];
-                let [a, b] = ends.map(|p| self.position(self.model.points[p.0].at));
-                if (b - a).norm() <= SAME_POINT * self.extent.size() {
+                let [a, b] = ends.map(|p| self.model.points[p.0].at);
+                if self.apart(a, b) == Some(None) {
                     let message =
                         format!("the two points of `{key}` of measure `{owner}` are drawn at the same place");
                     self.fault("HP0216", here.key(key), message).help("name two points that lie apart");
@@ -193,20 +129,6 @@ impl Check<'_> {
                 let (axis, _) = self.line(axis, owner, here, key)?;
                 Some(Ray::Fixed { body: body?, axis })
             }
-        }
-    }
-
-    /// A unit vector, if one is given; `None` where it is null.
-    fn unit_vector(
-        &mut self,
-        v: Option<Vec3>,
-        owner: &str,
-        here: Here,
-        key: &'static str,
-    ) -> Option<Option<Vec3>> {
-        match v {
-            Some(v) => self.line(&Line::Along(v), owner, here, key).map(|(_, unit)| Some(unit)),
-            None => Some(None),
         }
     }
 
@@ -239,6 +161,7 @@ impl Check<'_> {
         match name {
             Some(name) => self.find("driver", name, here.key("driver"), names).map(DriverId),
             None if draft.drivers.len() == 1 => Some(DriverId(0)),
+            None if self.lost("driver") => None,
             None => {
                 let listed: Vec<String> = names.map(|n| format!("`{n}`")).collect();
                 let message = format!("measure `{owner}` does not say which driver moves");
@@ -275,7 +198,7 @@ impl Check<'_> {
         let used: Vec<OutputSource> = match &kind {
             MeasureKind::Rate { of } => vec![*of],
             MeasureKind::Slope { of, over, .. } => vec![*of, *over],
-            MeasureKind::Combination(c) => c.sources().collect(),
+            MeasureKind::Combination { expression } => expression.sources().collect(),
             _ => Vec::new(),
         };
         let mut sound = true;
@@ -287,9 +210,9 @@ impl Check<'_> {
         if sound {
             sound = self.is_known(&kind, &name, here);
         }
-        if sound && let MeasureKind::Combination(c) = &kind {
-            let c = self.in_units(c);
-            self.model.measures[k].kind = MeasureKind::Combination(c);
+        if sound && let MeasureKind::Combination { expression } = &kind {
+            let expression = self.in_units(expression);
+            self.model.measures[k].kind = MeasureKind::Combination { expression };
         }
         state[k] = Visit::Done(sound);
         sound
@@ -339,6 +262,99 @@ impl Check<'_> {
         Combination { inputs: inputs.collect(), per_unit: per_unit(dimension), dimension, ..c.clone() }
     }
 }
+
+/// The check of one measure.
+pub(in crate::model) struct MeasureCheck<'c, 'd> {
+    check: &'c mut Check<'d>,
+    owner: &'c str,
+    here: Here,
+    /// The joint that it names.
+    joint: Option<JointId>,
+}
+
+impl MeasureCheck<'_, '_> {
+    pub fn wheel(&mut self, name: &str, what: WheelMeasure) -> Option<MeasureKind> {
+        self.check.wheel_measure(name, what, self.here)
+    }
+
+    pub fn axle(&mut self, name: &str, what: AxleMeasure) -> Option<MeasureKind> {
+        self.check.axle_measure(name, what, self.here)
+    }
+}
+
+/// How a type of field is drafted, and what it means in a model.
+macro_rules! field {
+    ($type:ty, $kind:ident, $form:ident: $draft:ty, |$written:ident, $key:ident, $c:ident| $resolve:expr) => {
+        impl Field for $type {
+            type Draft = $draft;
+            const KIND: FieldKind = FieldKind::$kind;
+
+            fn draft(written: Option<FieldDraft>) -> Option<$draft> {
+                if let Some(FieldDraft::$form(draft)) = written { Some(draft) } else { None }
+            }
+
+            fn resolve($written: &$draft, $key: &'static str, $c: &mut MeasureCheck<'_, '_>) -> Option<Self> {
+                $resolve
+            }
+        }
+    };
+    ($type:ty, $kind:ident, $form:ident: Option<$draft:ty>, may |$written:ident, $key:ident, $c:ident| $resolve:expr) => {
+        impl Field for $type {
+            type Draft = Option<$draft>;
+            const KIND: FieldKind = FieldKind::$kind;
+            const REQUIRED: bool = false;
+
+            fn draft(written: Option<FieldDraft>) -> Option<Self::Draft> {
+                match written {
+                    None => Some(None),
+                    Some(FieldDraft::$form(draft)) => Some(Some(draft)),
+                    Some(_) => None,
+                }
+            }
+
+            fn resolve(
+                $written: &Self::Draft,
+                $key: &'static str,
+                $c: &mut MeasureCheck<'_, '_>,
+            ) -> Option<Self> {
+                $resolve
+            }
+        }
+    };
+}
+
+field!(JointId, Joint, Name: String, |name, key, c| {
+    c.joint = c.check.joint(name, c.here.key(key));
+    c.joint
+});
+field!(usize, Coordinate, Name: Option<String>, may |name, _key, c| {
+    c.check.coordinate(c.joint?, name.as_deref(), c.here)
+});
+field!(PointId, Point, Point: PointRef, |point, key, c| c.check.point(point, c.owner, c.here.key(key)));
+field!(Vec3, Direction, Direction: Vec3, |v, key, c| {
+    Some(c.check.line(&Line::Along(*v), c.owner, c.here, key)?.1)
+});
+field!(Option<Vec3>, Direction, Direction: Option<Vec3>, may |v, key, c| match v {
+    Some(v) => Vec3::resolve(v, key, c).map(Some),
+    None => Some(None),
+});
+field!(Direction, Line, Line: Line, |line, key, c| Some(c.check.line(line, c.owner, c.here, key)?.0));
+field!(Ray, Ray, Ray: RayDraft, |ray, key, c| c.check.ray(ray, c.owner, c.here, key));
+field!(OutputSource, Output, Name: String, |name, key, c| c.check.output(name, c.here.key(key)));
+field!(BodyId, Body, Name: String, |name, key, c| c.check.body(name, c.here.key(key)));
+field!(DriverId, Driver, Name: Option<String>, may |name, _key, c| {
+    c.check.driver_or_only(name.as_deref(), c.owner, c.here)
+});
+field!(Combination, Expression, Expression: Expression, |expression, key, c| {
+    let at = c.here.key(key);
+    let inputs: Vec<_> = expression.names().iter().map(|n| c.check.output(n, at.clone())).collect();
+    Some(Combination {
+        expression: expression.clone(),
+        inputs: inputs.into_iter().map(|source| Some((source?, 1.0))).collect::<Option<_>>()?,
+        per_unit: 1.0,
+        dimension: Dimension::NUMBER,
+    })
+});
 
 /// How far the look at a measure is.
 #[derive(Clone, Copy)]

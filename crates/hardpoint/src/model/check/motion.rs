@@ -62,6 +62,7 @@ impl Check<'_> {
     /// The joint coordinate that a driver prescribes; for what is no joint's, an unnamed joint that has it.
     fn driven(&mut self, d: &DriverDraft, here: Here) -> Option<(JointId, usize)> {
         match &d.drives {
+            DrivenDraft::Unread => None,
             DrivenDraft::Coordinate { joint: name, coordinate } => {
                 let joint = self.joint(name, here.key("joint"))?;
                 let coordinate = self.coordinate(joint, coordinate.as_deref(), here)?;
@@ -79,7 +80,7 @@ impl Check<'_> {
                 let (a, b) =
                     (self.point(from, &d.name, here.key("from")), self.point(to, &d.name, here.key("to")));
                 let [i, j] = [a?, b?].map(|p| self.model.points[p.0].clone());
-                if (self.position(i.at) - self.position(j.at)).norm() <= SAME_POINT * self.extent.size() {
+                if self.apart(i.at, j.at) == Some(None) {
                     let message = format!("the two points of driver `{}` are at the same place", d.name);
                     self.fault("HP0211", here.key("to"), message)
                         .help("an actuator needs two points that lie apart");

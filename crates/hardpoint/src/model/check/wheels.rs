@@ -66,6 +66,9 @@ impl Check<'_> {
         let k = self.find("axle", name, here.key("axle"), names)?;
         let axle = self.axle_ids[k]?;
         if what.needs_wheelbase() && draft.vehicle.wheelbase.is_none() {
+            if self.vehicle_is_unread() {
+                return None;
+            }
             let message = format!("`{}` needs the wheelbase of the vehicle", what.name());
             self.fault("HP0232", here.key("type"), message).help("add `[vehicle]` with `wheelbase = ...`");
             return None;
@@ -80,7 +83,14 @@ impl Check<'_> {
         Some(MeasureKind::Axle { axle, what })
     }
 
+    fn vehicle_is_unread(&self) -> bool {
+        self.draft.unread.any(Section::Vehicle, 0) || self.lost("vehicle")
+    }
+
     fn needs_bump(&mut self, what: &str, wheel: &str, here: Here) {
+        if self.lost("driver") {
+            return;
+        }
         let drivers: Vec<String> = self.draft.drivers.iter().map(|d| format!("`{}`", d.name)).collect();
         let message = format!("`{what}` needs to know which driver moves wheel `{wheel}` up and down");
         self.fault("HP0232", here.key("type"), message)
@@ -102,8 +112,10 @@ impl Check<'_> {
     fn one_wheel(&mut self, w: &WheelDraft, here: Here) -> Option<Wheel> {
         let faults = self.faults.len();
         let body = self.body(&w.body, here.key("body"));
-        let centre = self.place(&w.centre, &w.name, here.key("centre"));
-        if !(w.radius > 0.0 && w.radius.is_finite()) {
+        let [centre, radius, spin, kingpin, side, bump] =
+            ["centre", "radius", "spin_axis", "kingpin", "side", "bump"].map(|key| !self.unread(here, key));
+        let centre = if centre { self.place(&w.centre, &w.name, here.key("centre")) } else { None };
+        if radius && !(w.radius > 0.0 && w.radius.is_finite()) {
             self.fault(
                 "HP0231",
                 here.key("radius"),
@@ -111,13 +123,15 @@ impl Check<'_> {
             )
             .help("give the distance from the wheel's centre to the ground");
         }
-        let side = w.side.or_else(|| centre.and_then(|c| self.side_of(w, c, here)));
-        let spin_axis = self.spin_axis(w, side, here);
+        let side = w.side.or_else(|| centre.filter(|_| side).and_then(|c| self.side_of(w, c, here)));
+        let spin_axis = if spin { self.spin_axis(w, side, here) } else { None };
         let kingpin = match &w.kingpin {
             Some(points) => Some(self.kingpin(w, points, here)?),
-            None => None,
+            None if kingpin => None,
+            None => return None,
         };
         let bump = match &w.bump {
+            None if !bump => return None,
             None => (self.draft.drivers.len() == 1).then_some(DriverId(0)),
             Some(name) => {
                 let draft = self.draft;
@@ -130,12 +144,12 @@ impl Check<'_> {
         let centre = PointId(self.model.points.len() - 1);
         let (name, radius, end) = (w.name.clone(), w.radius, w.end);
         let wheel = Wheel { name, body, centre, spin_axis, radius, side, kingpin, bump, end };
-        (self.faults.len() == faults).then_some(wheel)
+        (self.faults.len() == faults && !self.draft.unread.any(here.section, here.index)).then_some(wheel)
     }
 
     /// The side of the vehicle that a wheel's centre is on.
     fn side_of(&mut self, w: &WheelDraft, centre: HardpointId, here: Here) -> Option<Side> {
-        let y = self.position(centre).y;
+        let y = self.position(centre)?.y;
         if !(y.abs() > SAME_POINT * self.extent.size()) {
             let message = format!("wheel `{}` is on neither side of the vehicle", w.name);
             self.fault("HP0231", here.key("centre"), message)
@@ -201,7 +215,8 @@ impl Check<'_> {
     fn kingpin(&mut self, w: &WheelDraft, points: &[PointRef; 2], here: Here) -> Option<[PointId; 2]> {
         let [lower, upper] = [0, 1].map(|k| self.point(&points[k], &w.name, here.item("kingpin", k)));
         let (lower, upper) = (lower?, upper?);
-        let k = self.position(self.model.points[upper.0].at) - self.position(self.model.points[lower.0].at);
+        let [low, high] = [lower, upper].map(|p| self.position(self.model.points[p.0].at));
+        let k = high? - low?;
         let name = &w.name;
         let (message, help) = if !(k.norm() > SAME_POINT * self.extent.size()) {
             (
@@ -235,7 +250,8 @@ impl Check<'_> {
         let draft = self.draft;
         let names = draft.wheels.iter().map(|w| w.name.as_str());
         let k = self.find("wheel", name, here.key("wheel"), names)?;
-        if what.needs_kingpin() && draft.wheels[k].kingpin.is_none() {
+        let wheel = Here { section: Section::Wheels, index: k };
+        if what.needs_kingpin() && draft.wheels[k].kingpin.is_none() && !self.unread(wheel, "kingpin") {
             let message = format!("`{}` needs the kingpin of wheel `{name}`, which gives none", what.name());
             self.fault("HP0232", here.key("type"), message).help(
                 "add `kingpin = [LOWER, UPPER]` to the wheel, two points of the axis that it steers about, each a \
@@ -272,6 +288,9 @@ impl Check<'_> {
         ];
         let missing: Vec<String> =
             known.iter().filter(|(_, x)| x.is_none()).map(|(key, _)| format!("`{key} = ...`")).collect();
+        if !missing.is_empty() && self.vehicle_is_unread() {
+            return None;
+        }
         if !missing.is_empty() {
             let message = format!("`{}` needs to know more of the vehicle", what.name());
             let help = format!("add to `[vehicle]`: {}", missing.join(", "));

@@ -708,6 +708,7 @@ impl<'r> Drawing<'r> {
             }
             DrivenDraft::Position { .. } | DrivenDraft::Distance { .. } => true,
             DrivenDraft::Orientation { .. } => false,
+            DrivenDraft::Unread => unreachable!("nothing here is read"),
         };
         let (low, high) = if length { (0.01 * self.size, 0.08 * self.size) } else { (0.05, 0.4) };
         let law = self.law_of(low, high);
@@ -804,11 +805,11 @@ impl<'r> Drawing<'r> {
         let position = format!("m{}", self.draft.measures.len() - 3);
         let moving = || PointRef::Named(format!("p{body}"));
         let (velocity, acceleration) = (Some(spin), Some(along));
-        self.measure(MeasureKindDraft::Velocity { point: moving(), along: velocity, order: 1 });
-        self.measure(MeasureKindDraft::Velocity { point: moving(), along: acceleration, order: 2 });
+        self.measure(MeasureKindDraft::Velocity { point: moving(), along: velocity });
+        self.measure(MeasureKindDraft::Acceleration { point: moving(), along: acceleration });
         let ray = |body: String, axis: Vec3| RayDraft::Fixed { body, axis: Line::Along(axis) };
-        let between = [ray(self.name(a), spin), ray(self.name(b), along)];
-        self.measure(MeasureKindDraft::Angle { between, kind: AngleKindDraft::Between });
+        let (from, to) = (ray(self.name(a), spin), ray(self.name(b), along));
+        self.measure(MeasureKindDraft::Angle { from, to, about: None });
         let driven = self.draft.drivers.iter().find_map(|d| match &d.drives {
             DrivenDraft::Coordinate { joint, coordinate } => Some((d, joint.clone(), coordinate.clone())),
             _ => None,

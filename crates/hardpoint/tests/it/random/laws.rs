@@ -642,6 +642,7 @@ fn flat(model: &Model, s: &Solution, size: f64, moved: Option<Pose>, anywhere: b
             | MeasureKind::Toe { .. }
             | MeasureKind::Camber { .. }
             | MeasureKind::Velocity { .. }
+            | MeasureKind::Acceleration { .. }
             | MeasureKind::Slope { .. },
         ) = model.measures.iter().find(|x| x.name == output.name).map(|x| &x.kind)
         {
@@ -721,7 +722,7 @@ fn moved(draft: &Draft, to: Pose) -> Draft {
     d.points.iter_mut().for_each(|p| place(&mut p.at));
     for driver in &mut d.drivers {
         match &mut driver.drives {
-            DrivenDraft::Coordinate { .. } => {}
+            DrivenDraft::Coordinate { .. } | DrivenDraft::Unread => {}
             DrivenDraft::Position { point: p, along } => {
                 point(p);
                 line(along);
@@ -735,7 +736,7 @@ fn moved(draft: &Draft, to: Pose) -> Draft {
     }
     for m in &mut d.measures {
         match &mut m.kind {
-            MeasureKindDraft::Coordinate { .. } => {}
+            MeasureKindDraft::Coordinate { .. } | MeasureKindDraft::Unread => {}
             MeasureKindDraft::Distance { from, to } => {
                 point(from);
                 point(to);
@@ -747,18 +748,20 @@ fn moved(draft: &Draft, to: Pose) -> Draft {
             MeasureKindDraft::Toe { spin_axis, .. } | MeasureKindDraft::Camber { spin_axis, .. } => {
                 line(spin_axis)
             }
-            MeasureKindDraft::Angle { between, kind } => {
-                for ray in between {
+            MeasureKindDraft::Angle { from, to: last, .. }
+            | MeasureKindDraft::TransmissionAngle { from, to: last } => {
+                for ray in [from, last] {
                     match ray {
                         RayDraft::Between(points) => points.iter_mut().for_each(&point),
                         RayDraft::Fixed { axis, .. } => line(axis),
                     }
                 }
-                if let AngleKindDraft::About(n) = kind {
+                if let MeasureKindDraft::Angle { about: Some(n), .. } = &mut m.kind {
                     *n = to.rot * *n;
                 }
             }
-            MeasureKindDraft::Velocity { point: p, along, .. }
+            MeasureKindDraft::Velocity { point: p, along }
+            | MeasureKindDraft::Acceleration { point: p, along }
             | MeasureKindDraft::Curvature { point: p, about: along } => {
                 point(p);
                 *along = along.map(|v| to.rot * v);
@@ -801,6 +804,7 @@ pub fn describe(d: &Draft) -> String {
         DrivenDraft::Orientation { body, relative_to, .. } => {
             format!("{} orientation {body} {relative_to:?}", x.name)
         }
+        DrivenDraft::Unread => format!("{} unread", x.name),
     });
     let changes = d.design.iter().map(|v| {
         let keeps = if v.fixed_length { " fixed length" } else { "" };

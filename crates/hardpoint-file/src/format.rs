@@ -1,0 +1,200 @@
+//! The format as data: which tables a model file has, which keys these have, and what stands there.
+//!
+//! Every table is declared once, beside the code that reads it. From the declarations come the keys that the reader knows, its
+//! defaults and examples, the JSON Schema (`schema.rs`), and the tables of `docs/file-format.md` (`format/docs.rs`).
+
+#[cfg(test)]
+mod docs;
+
+use hardpoint::joint::Quantity;
+
+/// A key of a table.
+#[derive(Clone, Copy)]
+pub(crate) struct Key {
+    pub key: &'static str,
+    pub shape: Shape,
+    pub need: Need,
+    /// A value to show where it is missing or wrong.
+    pub example: &'static str,
+    /// What it means.
+    pub doc: &'static str,
+}
+
+/// Whether a key must be there.
+#[derive(Clone, Copy, PartialEq)]
+pub(crate) enum Need {
+    Required,
+    Optional,
+    /// Where it is left out, this is as if written.
+    Else(&'static str),
+}
+
+/// Keys as they are declared: what each means, whether it must be there, its name, what may stand there, and an example.
+macro_rules! keys {
+    (@ must) => { $crate::format::Need::Required };
+    (@ may) => { $crate::format::Need::Optional };
+    (@ or $default:literal) => { $crate::format::Need::Else($default) };
+    ($($(#[doc = $doc:literal])+ $need:ident $(($default:literal))? $key:literal: $shape:expr, $example:literal;)*) => {
+        &[$($crate::format::Key {
+            key: $key,
+            shape: $shape,
+            need: $crate::format::keys!(@ $need $($default)?),
+            example: $example,
+            doc: concat!($($doc),+).trim_ascii(),
+        }),*]
+    };
+}
+
+/// A table as it is declared: what it is, its name, and its keys.
+macro_rules! table {
+    ($(#[doc = $doc:literal])+ $name:literal, $keys:ident) => {
+        $crate::format::Table::new($name, concat!($($doc),+).trim_ascii(), $keys)
+    };
+    ($(#[doc = $doc:literal])+ $name:literal: $($keys:tt)*) => {
+        $crate::format::Table::new($name, concat!($($doc),+).trim_ascii(), $crate::format::keys! { $($keys)* })
+    };
+}
+pub(crate) use {keys, table};
+
+/// A table with keys of its own.
+#[derive(Clone, Copy)]
+pub(crate) struct Table {
+    /// Where a `type` says which table it is, that type; else what the schema calls it.
+    pub name: &'static str,
+    pub doc: &'static str,
+    pub keys: &'static [Key],
+    /// More keys, which it shares with others.
+    pub shared: &'static [Key],
+    /// Keys that may stand instead of its own.
+    pub instead: &'static [Key],
+}
+
+impl Table {
+    pub const fn new(name: &'static str, doc: &'static str, keys: &'static [Key]) -> Self {
+        Self { name, doc, keys, shared: &[], instead: &[] }
+    }
+
+    pub fn keys(&'static self) -> impl Iterator<Item = &'static Key> {
+        self.keys.iter().chain(self.shared)
+    }
+
+    /// With the `type` that says that it is this table.
+    pub fn typed_keys(&'static self) -> impl Iterator<Item = &'static Key> {
+        TYPE.iter().chain(self.instead).chain(self.keys())
+    }
+}
+
+/// A table that is one of several kinds.
+pub(crate) struct Kinds {
+    pub name: &'static str,
+    pub doc: &'static str,
+    /// Whether a key `type` says which kind it is; else the first key of a kind leads it.
+    pub typed: bool,
+    pub tables: fn() -> Vec<&'static Table>,
+}
+
+/// The key that says which kind a table is.
+const TYPE: &[Key] = keys! {
+    /// Which kind it is.
+    must "type": Shape::Text, "...";
+};
+
+impl Kinds {
+    /// The keys of all kinds, each once.
+    pub fn keys(&self) -> Vec<&'static Key> {
+        let tables = (self.tables)();
+        let mut keys: Vec<&'static Key> = tables.iter().flat_map(|t| t.keys).collect();
+        keys.extend(tables.first().into_iter().flat_map(|t| t.shared));
+        keys
+    }
+}
+
+/// What may stand as a value.
+#[derive(Clone, Copy)]
+pub(crate) enum Shape {
+    Text,
+    /// The name of something, as in "a joint".
+    Name(&'static str),
+    /// A number, or an expression over parameters; in the file's unit of what it measures.
+    Number(Quantity),
+    /// A number by itself, in the file's unit of what it measures.
+    Plain(Quantity),
+    /// A whole number from 1 to this.
+    Count(u32),
+    Flag,
+    /// One of some words, with what they mean, as far as that needs to be said.
+    Words(&'static [(&'static str, &'static str)]),
+    /// One of words that the core knows, as messages call it, and what they mean.
+    Known(&'static str, fn() -> Vec<(&'static str, String)>),
+    /// One of some whole numbers.
+    OneOf(&'static [u32]),
+    /// A list of at least and at most so many.
+    List(&'static Shape, [usize; 2]),
+    /// A table with one entry for each name.
+    Entries(&'static Shape),
+    Table(&'static Table),
+    Kinds(&'static Kinds),
+    /// Any of these; with a name in the schema and what it is.
+    Any(&'static str, &'static str, &'static [Shape]),
+}
+
+impl Shape {
+    /// So many of these.
+    pub const fn exactly(count: usize, of: &'static Shape) -> Self {
+        Self::List(of, [count; 2])
+    }
+
+    pub const fn list(of: &'static Shape) -> Self {
+        Self::List(of, [0, usize::MAX])
+    }
+
+    /// How messages say what is expected.
+    pub fn noun(self) -> String {
+        match self {
+            Self::Name(one) => format!("the name of {one}"),
+            Self::List(Self::Name(one), [2, 2]) => format!("the names of two {}", several(one)),
+            Self::Known(noun, _) => noun.to_owned(),
+            Self::Any(_, _, [one]) => one.noun(),
+            Self::Words(_) => {
+                let words: Vec<String> = self.words().iter().map(|w| format!("`\"{w}\"`")).collect();
+                match words.split_last() {
+                    Some((last, others)) if others.len() < 4 => format!("{} or {last}", others.join(", ")),
+                    _ => "a word in quotes".into(),
+                }
+            }
+            _ => "a text in quotes".into(),
+        }
+    }
+
+    /// The words that it may be.
+    pub fn words(self) -> Vec<&'static str> {
+        match self {
+            Self::Words(words) => words.iter().map(|w| w.0).collect(),
+            Self::Known(_, words) => words().into_iter().map(|w| w.0).collect(),
+            Self::Any(_, _, [one]) => one.words(),
+            _ => Vec::new(),
+        }
+    }
+
+    /// A list that is not empty.
+    pub const fn some(of: &'static Shape) -> Self {
+        Self::List(of, [1, usize::MAX])
+    }
+}
+
+/// More than one of them: `a body`, `bodies`.
+fn several(one: &str) -> String {
+    let noun = one.split_once(' ').map_or(one, |(_, noun)| noun);
+    noun.strip_suffix('y').map_or_else(|| format!("{noun}s"), |stem| format!("{stem}ies"))
+}
+
+pub(crate) const NUMBER: Shape = Shape::Number(Quantity::Number);
+pub(crate) const LENGTH: Shape = Shape::Number(Quantity::Length);
+pub(crate) const ANGLE: Shape = Shape::Number(Quantity::Angle);
+pub(crate) const TWO_NUMBERS: Shape = Shape::exactly(2, &NUMBER);
+pub(crate) const THREE_NUMBERS: Shape = Shape::exactly(3, &NUMBER);
+pub(crate) const BODY: Shape = Shape::Name("a body");
+pub(crate) const DRIVER: Shape = Shape::Name("a driver");
+pub(crate) const HARDPOINT: Shape = Shape::Name("a hardpoint");
+pub(crate) const JOINT: Shape = Shape::Name("a joint");
+pub(crate) const OUTPUT: Shape = Shape::Name("a measure");
