@@ -1,7 +1,7 @@
 //! Text for people: tables, headings, and what goes where.
 
 use std::borrow::Cow;
-use std::io::{IsTerminal, Write};
+use std::io::Write;
 use std::sync::{Mutex, PoisonError};
 
 use comfy_table::{Cell, ColumnConstraint, ContentArrangement, LineStyle, TableStyle, Width};
@@ -125,8 +125,8 @@ const NARROW: usize = 14;
 /// A table under its title, as wide as the terminal, or as it needs to be where there is none.
 pub fn table(table: &Table) -> String {
     let mut grid = empty_grid();
-    if std::io::stdout().is_terminal() {
-        grid.set_content_arrangement(ContentArrangement::Dynamic);
+    if let Some((terminal_size::Width(width), _)) = terminal_size::terminal_size_of(std::io::stdout()) {
+        grid.set_content_arrangement(ContentArrangement::Dynamic).set_width(width);
     }
     laid_out(grid, table)
 }

@@ -163,7 +163,7 @@ impl<'m> Analysis<'m> {
 
     /// How the even steps of the nominal design's motion are solved.
     pub fn solved_by(&self) -> SolvedBy {
-        let hindrance = StepProgram::hindrance(&self.topology);
+        let hindrance = StepProgram::hindrance(&self.topology, self.measures);
         match hindrance.or(self.goes_by_driver().then_some("measures go by a driver that moves alone")) {
             Some(why) => SolvedBy::Kernel(why.into()),
             None => self.programs.solved_by(self.model.times.len()),
@@ -443,7 +443,7 @@ impl<'m> Analysis<'m> {
 
     /// The step of this plan as a program, recorded where the nominal motion begins.
     fn program(&self, purpose: Purpose) -> Option<Arc<StepProgram>> {
-        if StepProgram::hindrance(&self.topology).is_some() {
+        if StepProgram::hindrance(&self.topology, purpose.margins).is_some() {
             return None;
         }
         self.programs.step(purpose, |execution| {

@@ -241,6 +241,7 @@ fn turns_and_poles_are_the_same_by_a_program() {
         measures.angle = { type = "coordinate", joint = "pivot" }
         measures.square = { type = "expression", expression = "angle^2 + A.x" }
         measures.spiral = { type = "expression", expression = "sin(square/10) + angle" }
+        measures.faster = { type = "rate", of = "square" }
         measures.off = { type = "distance", from = { body = "ground", at = [0, 1, 0] }, to = "A" }
         measures.less = { type = "expression", expression = "min(off, 1)" }
         measures.aside = { type = "expression", expression = "abs(A.y)" }
@@ -261,6 +262,7 @@ fn turns_and_poles_are_the_same_by_a_program() {
     for k in 0..=1000 {
         let angle = value("angle", k)[0];
         assert!((value("square", k)[0] - angle * angle - angle.cos()).abs() < 1e-9, "{k}");
+        assert!((value("faster", k)[0] - value("square", k)[1]).abs() < 1e-9, "{k}");
     }
     // min and the poles go by formulas; all else does not.
     let outputs = solution.measured.outputs.len();

@@ -256,11 +256,7 @@ pub(crate) fn evaluate(
     let fixed = effects.fixed(values).map(Jet::constant);
     let mut poses = vec![Pose::IDENTITY.spread(); model.bodies.len()];
     // Formulas are over angles that are counted through turns.
-    let is_formula = |m: usize| {
-        let kind = model.measures.get(m).map(|m| &m.kind);
-        matches!(kind, Some(MeasureKind::Combination { .. }))
-    };
-    let counts = (0..model.measures.len()).any(is_formula);
+    let counts = (0..model.measures.len()).any(|m| is_formula(model, m));
     let mut counted: Vec<f64> = Vec::new();
     let (mut given, mut whole_turns): (Vec<Rates>, Vec<Rates>) = (Vec::new(), Vec::new());
     // Blocks of output times, and outputs there, that the formulas themselves are asked for.
@@ -305,7 +301,7 @@ pub(crate) fn evaluate(
                 if counts {
                     counted.extend(whole_turns.iter().map(|turns| turns.0[0]));
                     let moment = Moment { whole_turns: &whole_turns, ..moment };
-                    for &(_, m) in left[begins..].iter().filter(|(_, m)| is_formula(*m)) {
+                    for &(_, m) in left[begins..].iter().filter(|(_, m)| is_formula(model, *m)) {
                         measured.set(k, m, moment.measure(m).0);
                     }
                 }
@@ -473,6 +469,15 @@ fn turns(model: &Model, topology: &Topology, outputs: &[Output]) -> Vec<Option<T
         _ => None,
     };
     outputs.iter().map(of_output).collect()
+}
+
+/// Whether an output is a formula over others, or the rate of one: what goes by angles with all their turns.
+fn is_formula(model: &Model, output: usize) -> bool {
+    match model.measures.get(output).map(|m| &m.kind) {
+        Some(MeasureKind::Combination { .. }) => true,
+        Some(MeasureKind::Rate { of: OutputSource::Measure(m) }) => is_formula(model, *m),
+        _ => false,
+    }
 }
 
 /// Whether an output is an angle that is counted through turns.

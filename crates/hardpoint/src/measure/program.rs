@@ -286,8 +286,8 @@ impl Recorder<'_> {
         }
         recording::begin();
         let orders = output.known.orders;
-        let is_formula = matches!(output.source, OutputSource::Measure(m)
-            if matches!(self.model.measures[m].kind, MeasureKind::Combination { .. }));
+        let is_formula =
+            matches!(output.source, OutputSource::Measure(m) if super::is_formula(self.model, m));
         let whole_turns: &[_] = if is_formula { &self.whole_turns } else { &[] };
         let at = |fixed: &Fixed<Dual<Recorded>>, poses: &[Pose<Dual<Recorded>>]| {
             Moment { whole_turns, ..Moment::new(self.model, fixed, poses) }.output(output.source)
@@ -336,7 +336,15 @@ impl Recorder<'_> {
         for numbers in derivatives.iter_mut().chain([&mut values]) {
             numbers[orders..].fill(Number::constant(f64::NAN));
         }
-        recording::is_arithmetic().then(|| Given { values, derivatives, limits: recording::limits() })
+        // What is folded with a number that is none may be one.
+        let is_none =
+            |numbers: &[Number; 3]| numbers[..orders].iter().any(|x| x.known().is_some_and(f64::is_nan));
+        let is_number = !derivatives.iter().chain([&values]).any(is_none);
+        (is_number && recording::is_arithmetic()).then(|| Given {
+            values,
+            derivatives,
+            limits: recording::limits(),
+        })
     }
 }
 

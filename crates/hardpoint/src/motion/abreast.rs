@@ -272,7 +272,7 @@ fn determinants_are_even(
         let (mut even, mut before) = (true, one.saved.determinants[b]);
         let mut change = one.changes[b];
         for k in first..=last {
-            let ratio = determinants[k] / before;
+            let ratio = one.state.factors[b].ratio(determinants[k], before);
             let changed = ratio - 1.0;
             // Written so that NaN is not even.
             even &= (MILD[0]..=MILD[1]).contains(&ratio);

@@ -155,7 +155,7 @@ impl<'m> SideBySide<'m> {
                 tape.coordinates(&self.nominal.topology, lanes_of(room));
             }
             let states = &self.states[self.states_at(k)];
-            let [states, derivatives] = [states, &self.derivatives].map(|lines| bytemuck::cast_slice(lines));
+            let [states, derivatives] = [states, &self.derivatives].map(bytemuck::cast_slice);
             each(k, &Found { tape: self.tape(), block: Block { states, derivatives } });
             effort.steps += 1;
             effort.by_program += 1;
@@ -185,7 +185,8 @@ impl<'m> SideBySide<'m> {
         let solved = self.solve(MOST_CORRECTIONS, 0, &[0.0; LANES])?;
         for b in 0..self.determinants.len() {
             let (now, before) = (self.tape().determinant(b), self.nominal.saved.determinants[b]);
-            if !now.iter().all(|x| (MILD[0]..=MILD[1]).contains(&(x / before))) {
+            let factors = &self.nominal.state.factors[b];
+            if !now.iter().all(|x| (MILD[0]..=MILD[1]).contains(&factors.ratio(*x, before))) {
                 return None;
             }
             self.determinants[b] = now;
@@ -242,7 +243,8 @@ impl<'m> SideBySide<'m> {
         for b in 0..self.determinants.len() {
             let now = self.tape().determinant(b);
             for lane in 0..LANES {
-                let ratio = now[lane] / self.determinants[b][lane];
+                let factors = &self.nominal.state.factors[b];
+                let ratio = factors.ratio(now[lane], self.determinants[b][lane]);
                 let change = ratio - 1.0;
                 // Written so that NaN is not even.
                 even &= (MILD[0]..=MILD[1]).contains(&ratio);

@@ -7,7 +7,7 @@ use crate::constraint::{EndRates, Ends, Row};
 use crate::joint::Freedom;
 use crate::model::{Contact, DriverId, GROUND, Model};
 use crate::space::{Factors, LARGEST_DENSE, Pose, Quat, Real, Twist, Watched, Wrench};
-use crate::topology::{Block, Source, Topology};
+use crate::topology::{Block, Closure, Source, Topology};
 
 use super::level::{Flow, Linear, turn_twists};
 use super::parts::Parts;
@@ -157,11 +157,9 @@ impl<T: Real> State<T> {
     pub(super) fn place_ends(&mut self, topology: &Topology, parts: &Parts<T>, closure: usize) {
         let [i, j] = topology.closures[closure].bodies;
         let (m_i, m_j) = (parts.ends[0][closure], parts.ends[1][closure]);
-        let (base, ends) = (topology.closures[closure].base, &mut self.ends[closure]);
+        let ends = &mut self.ends[closure];
         (ends.i, ends.j) = (self.frame[i.0].compose(m_i), self.frame[j.0].compose(m_j));
-        if base != GROUND {
-            ends.axes = self.pose[base.0].rot;
-        }
+        self.turn_base(topology, parts, closure);
         if let Some(k) = topology.closures[closure].contact {
             self.touch(parts, closure, k);
         }
@@ -174,9 +172,19 @@ impl<T: Real> State<T> {
         let (m_i, m_j) = (parts.ends[0][closure], parts.ends[1][closure]);
         let ends = &mut self.ends[closure];
         (ends.i.r, ends.j.r) = (self.frame[i.0].point(m_i.r), self.frame[j.0].point(m_j.r));
-        let base = topology.closures[closure].base;
+        self.turn_base(topology, parts, closure);
+    }
+
+    /// The axes of the body on which a closure's loop stands.
+    #[inline(always)]
+    fn turn_base(&mut self, topology: &Topology, parts: &Parts<T>, closure: usize) {
+        let Closure { base, base_link, .. } = topology.closures[closure];
         if base != GROUND {
-            ends.axes = self.pose[base.0].rot;
+            self.ends[closure].axes = match base_link {
+                // Its pose is that of the step before until the block is solved: wrenches along those axes would not go with their rates.
+                Some(k) => self.frame[base.0].rot * parts.child_from_marker[k].rot,
+                None => self.pose[base.0].rot,
+            };
         }
     }
 

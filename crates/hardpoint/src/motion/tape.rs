@@ -6,8 +6,8 @@
 //! at a time. What was decided while recording is asked for again after every run ([`Tape::judge`]); where the answer is another,
 //! nothing has happened, and the kernel itself solves the step.
 //!
-//! Not recorded are mechanisms with sparse blocks, with curves, and with couplers, whose angles go by the turn that is expected;
-//! and those that are so large that a program each would cost more than it saves.
+//! Not recorded are mechanisms with curves, and with couplers, whose angles go by the turn that is expected; those that are so large that a
+//! program each would cost more than it saves; and margins of sparse blocks.
 
 use std::collections::BTreeMap;
 use std::fmt;
@@ -48,6 +48,8 @@ const LONG: usize = 10_000;
 const SHORTER: usize = 2;
 /// Mechanisms with more links than this are not recorded: the program would no longer stay in the fast memory of a core.
 const MOST_LINKS: usize = 4000;
+/// Nor are those whose sparse factors take more multiplications together.
+const MOST_MULTIPLICATIONS: usize = 70_000;
 /// What a channel is foreseen by.
 const CONDITIONS: usize = NODES * ORDERS;
 
@@ -326,19 +328,21 @@ enum Judged {
     Fastest,
 }
 
-/// Per block: the product of its pivots, and the largest over the smallest.
+/// Per block: its determinant without its sign, and the largest pivot over the smallest.
 const PER_BLOCK: usize = 2;
 
 impl StepProgram {
-    /// Why the steps of a plan are not recorded, if they are not.
-    pub fn hindrance(topology: &Topology) -> Option<&'static str> {
+    /// Why the steps of a plan are not recorded, with margins or without, if they are not.
+    pub fn hindrance(topology: &Topology, margins: bool) -> Option<&'static str> {
         if !topology.coupled_rows.is_empty() {
             Some("couplers count angles by the turn that is expected")
         } else if topology.closures.iter().any(|c| c.contact.is_some()) {
             Some("a point follows a curve")
-        } else if topology.blocks.iter().any(|b| b.unknowns.len() > LARGEST_DENSE) {
-            Some("a block is so large that it is solved by sparse factors")
-        } else if topology.links.len() > MOST_LINKS {
+        } else if margins && topology.blocks.iter().any(|b| b.unknowns.len() > LARGEST_DENSE) {
+            Some("a block is so large that its margin takes longer than its motion")
+        } else if topology.links.len() > MOST_LINKS
+            || topology.blocks.iter().map(|b| b.multiplications).sum::<usize>() > MOST_MULTIPLICATIONS
+        {
             Some("the program would be too long")
         } else {
             None
@@ -399,7 +403,8 @@ impl StepProgram {
             });
             out.extend(speeds);
             let blocks_at = out.len();
-            out.extend(state.watched.iter().flat_map(|w| [w.product, w.most * w.least]));
+            let watched = state.watched.iter().zip(&state.determinants);
+            out.extend(watched.flat_map(|(w, determinant)| [*determinant, w.most * w.least]));
             let margins_at = out.len();
             let defects_at = margins_at + margins.len();
             let states = defects_at + more.judged.len();
@@ -939,10 +944,10 @@ impl Tape {
         1.0 / self.outputs[self.program.outputs.blocks + PER_BLOCK * b + 1].0[lane]
     }
 
-    /// The determinant of a block, without its sign.
+    /// The determinant of a block, to be compared by [`Factors::ratio`](crate::space::Factors::ratio).
     #[inline(always)]
     pub fn determinant(&self, b: usize) -> Lanes {
-        self.outputs[self.program.outputs.blocks + PER_BLOCK * b].0.map(f64::abs)
+        self.outputs[self.program.outputs.blocks + PER_BLOCK * b].0
     }
 
     /// Value, first and second derivative of a channel, in one lane.

@@ -153,6 +153,12 @@ impl<T: Real> SparseLu<T> {
         Factored { pivot_ratio: 0.0, positive: true, determinant, watched: Watched::zero() }
     }
 
+    /// How many multiplications a factorisation takes in the present order.
+    pub fn multiplications(&self) -> usize {
+        let Order { lower, upper, .. } = &self.order;
+        lower.items.iter().map(|&k| upper.range(k as usize).len()).sum()
+    }
+
     fn is_ordered(&self) -> bool {
         self.order.rows.len() == self.inverse.len()
     }

@@ -211,6 +211,7 @@ fn assign(
             coupled: Vec::new(),
             selected: Vec::new(),
             links: 0..0,
+            multiplications: 0,
         })
         .collect();
     let place = |c: usize| match topology.coordinates[c].source {
@@ -330,5 +331,11 @@ fn order_links(topology: &mut Topology, blocks: usize) {
         let start = topology.links.partition_point(|l| l.stage < b + 1);
         let end = topology.links.partition_point(|l| l.stage < b + 2);
         topology.blocks[b].links = start..end;
+    }
+    let placed_by: BTreeMap<usize, usize> =
+        topology.links.iter().enumerate().map(|(k, link)| (link.child.0, k)).collect();
+    for closure in &mut topology.closures {
+        let own = closure.block.map_or(0..0, |b| topology.blocks[b].links.clone());
+        closure.base_link = placed_by.get(&closure.base.0).copied().filter(|k| own.contains(k));
     }
 }

@@ -21,6 +21,7 @@ pub(super) fn examine(model: &Model, topology: &mut Topology) -> Result<(), Topo
             speeds[c].push((d.0, 1.0));
         }
     }
+    let mut multiplications = Vec::new();
     for (b, block) in topology.blocks.iter().enumerate() {
         let row = |k: usize| columns_in_block(topology, &jacobian[block.selected[k]], b);
         let columns = |k: usize| row(k).map(|(column, _)| column).collect();
@@ -29,6 +30,7 @@ pub(super) fn examine(model: &Model, topology: &mut Topology) -> Result<(), Topo
             factors.set_row(k, row(k), 0.0);
         }
         factors.factor();
+        multiplications.push(factors.multiplications());
         // Per driver that acts on the block: what its rows still lack.
         let mut lacking: BTreeMap<usize, Vec<f64>> = BTreeMap::new();
         for (k, &r) in block.selected.iter().enumerate() {
@@ -43,6 +45,7 @@ pub(super) fn examine(model: &Model, topology: &mut Topology) -> Result<(), Topo
             }
         }
     }
+    topology.blocks.iter_mut().zip(multiplications).for_each(|(block, n)| block.multiplications = n);
     // A contradiction is a left-out row that fails under some driver's motion; by how much, per driver.
     let mut contradictions: Vec<(usize, Vec<f64>)> = Vec::new();
     for (r, _) in topology.rows.iter().enumerate().filter(|(_, r)| !r.selected && !r.is_term) {

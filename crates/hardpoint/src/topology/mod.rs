@@ -154,6 +154,8 @@ pub struct Closure {
     /// The body on which its loop stands: where the ways from its two bodies to ground meet. Points are held together along
     /// its axes, so that the loop knows nothing of where its base goes.
     pub base: BodyId,
+    /// The link that places the base, if that is done by the block that solves the closure.
+    pub base_link: Option<usize>,
     /// The elementary constraints.
     pub rows: Vec<Row>,
     /// Number of the first row in [`Topology::rows`].
@@ -223,6 +225,8 @@ pub struct Block {
     pub selected: Vec<usize>,
     /// Range of [`Topology::links`] that it places.
     pub links: std::ops::Range<usize>,
+    /// How many multiplications its factors take in the design configuration, if they are sparse.
+    pub multiplications: usize,
 }
 
 impl Topology {

@@ -262,6 +262,7 @@ fn add_closure(
         coupler,
         bodies,
         base,
+        base_link: None,
         has_axes: rows.iter().any(|r| r.has_axes()),
         rows,
         first_row,

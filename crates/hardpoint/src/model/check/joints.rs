@@ -139,9 +139,7 @@ impl Check<'_> {
         let places = draft.points.iter().enumerate();
         let ids: Vec<_> = places.map(|(k, p)| self.place(p, name, here.item("curve", k))).collect();
         let ids: Vec<_> = ids.into_iter().collect::<Option<_>>()?;
-        if j.axis.is_none() {
-            return None;
-        }
+        j.axis.as_ref()?;
         let m_i = Pose { rot: frame, r: self.position(at[0])? };
         let local = ids.iter().map(|h| Some(m_i.inverse().point(self.position(*h)?)));
         let local: Vec<Vec3> = local.collect::<Option<_>>()?;

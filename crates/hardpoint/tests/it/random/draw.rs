@@ -708,6 +708,7 @@ impl<'r> Drawing<'r> {
             }
             DrivenDraft::Position { .. } | DrivenDraft::Distance { .. } => true,
             DrivenDraft::Orientation { .. } => false,
+            DrivenDraft::Unread => unreachable!("nothing here is read"),
         };
         let (low, high) = if length { (0.01 * self.size, 0.08 * self.size) } else { (0.05, 0.4) };
         let law = self.law_of(low, high);

@@ -722,7 +722,7 @@ fn moved(draft: &Draft, to: Pose) -> Draft {
     d.points.iter_mut().for_each(|p| place(&mut p.at));
     for driver in &mut d.drivers {
         match &mut driver.drives {
-            DrivenDraft::Coordinate { .. } => {}
+            DrivenDraft::Coordinate { .. } | DrivenDraft::Unread => {}
             DrivenDraft::Position { point: p, along } => {
                 point(p);
                 line(along);
@@ -736,7 +736,7 @@ fn moved(draft: &Draft, to: Pose) -> Draft {
     }
     for m in &mut d.measures {
         match &mut m.kind {
-            MeasureKindDraft::Coordinate { .. } => {}
+            MeasureKindDraft::Coordinate { .. } | MeasureKindDraft::Unread => {}
             MeasureKindDraft::Distance { from, to } => {
                 point(from);
                 point(to);
@@ -804,6 +804,7 @@ pub fn describe(d: &Draft) -> String {
         DrivenDraft::Orientation { body, relative_to, .. } => {
             format!("{} orientation {body} {relative_to:?}", x.name)
         }
+        DrivenDraft::Unread => format!("{} unread", x.name),
     });
     let changes = d.design.iter().map(|v| {
         let keeps = if v.fixed_length { " fixed length" } else { "" };
