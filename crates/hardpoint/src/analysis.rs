@@ -510,8 +510,12 @@ impl<'m> Analysis<'m> {
             solution.motion.effort = effort;
             solution.sensitivities = Sensitivities::default();
             solution.stop = None;
-            let design = Design { of_many, ..self.design(design, false) };
-            self.measure(&design, &SlopeValues::default(), None, solution);
+            if self.measures {
+                let design = Design { of_many, ..self.design(design, false) };
+                self.measure(&design, &SlopeValues::default(), None, solution);
+            } else {
+                solution.measured = Measured::default();
+            }
         }
     }
 
