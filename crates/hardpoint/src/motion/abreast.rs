@@ -13,6 +13,7 @@ use crate::sink::Block;
 use crate::topology::Source;
 
 use super::forecast::{NODES, ORDERS, Weights};
+use super::kinematics::QUADRATIC;
 use super::margin::Margin;
 use super::stepper::{Ahead, EVEN, LONGEST, MILD, MILD_CHANGE, RESTS, Saved, Stepper, TRUST_FLOOR};
 use super::tape::{MOST_CORRECTIONS, Room, Runnable, Solved, StepProgram, Tape, all_within, largest};
@@ -107,10 +108,10 @@ impl<'p> Abreast<'p> {
             self.wait -= 1;
             return 0;
         }
-        if one.forecast.known() == 0 || !self.choose_tape(one) {
+        let times: Lanes = std::array::from_fn(|lane| times[group + usize::min(lane, last)]);
+        if one.forecast.known() == 0 || !self.choose_tape(one, [times[last], count as f64]) {
             return 0;
         }
-        let times: Lanes = std::array::from_fn(|lane| times[group + usize::min(lane, last)]);
         if self.try_to(one, &times, [first, last], room()).is_some() {
             self.pause = PAUSE[0];
             return count;
@@ -120,15 +121,17 @@ impl<'p> Abreast<'p> {
         0
     }
 
-    /// Makes a tape where there is none, and another or none where it does not fit; returns whether there is one.
-    fn choose_tape(&mut self, one: &Stepper<'_>) -> bool {
+    /// Makes a tape where there is none, and another or none where it does not fit; returns whether there is one. Till `last` there are
+    /// `count` steps.
+    fn choose_tape(&mut self, one: &Stepper<'_>, [last, count]: [f64; 2]) -> bool {
         let corrections = match &self.tape {
             Some(tape) if tape.is_of_no_use() || one.selections > 0 => usize::MAX,
             Some(tape) if tape.is_too_short() && tape.purpose().corrections < MOST_CORRECTIONS => {
                 tape.purpose().corrections + 1
             }
             Some(_) => return true,
-            None => 1,
+            None if missed(one, last, count) <= QUADRATIC => 1,
+            None => 2,
         };
         let program =
             self.programs.as_ref().filter(|_| corrections <= MOST_CORRECTIONS && one.selections == 0);
@@ -210,6 +213,21 @@ impl Laws {
         let finite = drivers.iter().all(|x| all_within(&x.map(f64::abs), f64::MAX));
         finite.then_some(())
     }
+}
+
+/// By how much a forecast will miss eight steps beyond three positions that are four steps apart, rad or sizes: the remainder of
+/// Hermite's interpolation, `x^9 / 9!` times the ninth derivative, of a motion that goes like a sine. It goes as often as the fastest
+/// driver turns, or as that comes and goes by its law. Up to `last` there are `count` steps.
+fn missed(one: &Stepper<'_>, last: f64, count: f64) -> f64 {
+    let frequency = |d: usize| {
+        let speed = one.parts.fastest(d, one.time, last);
+        let [.., third] = one.parts.law_of(d).at(one.time).derivatives();
+        let of_law = if speed > 0.0 { (third.abs() / speed).sqrt() } else { 0.0 };
+        f64::max(speed / one.driver_units[d], of_law)
+    };
+    let step = (0..one.drivers.len()).map(frequency).fold(0.0, f64::max) * (last - one.time) / count;
+    let far = [8.0, 12.0, 16.0].iter().map(|x: &f64| x * step).product::<f64>().powi(3);
+    far / (1..=9).map(f64::from).product::<f64>()
 }
 
 /// Speed of the fastest driver (rad, or sizes, per unit of the path's parameter), at any of these times or before.
