@@ -12,10 +12,12 @@ use crate::measure::{self, Before, Measured, SlopeValues};
 use crate::model::{BodyId, Effects, Field, Geometry, Model};
 use crate::motion::abreast::Abreast;
 use crate::motion::designs::SideBySide;
+use crate::motion::execution::Cache;
 use crate::motion::kinematics::State;
 use crate::motion::parts::Parts;
+use crate::motion::step_program::{Programs, Purpose, Recorded, StepProgram};
 use crate::motion::stepper::Stepper;
-use crate::motion::tape::{Programs, Purpose, Recorded, StepProgram, Tape};
+use crate::motion::tape::Tape;
 use crate::motion::{BodyState, Effort, Execution, Motion, SolvedBy, Stop, StopKind};
 use crate::number::record as recording;
 use crate::sensitivity::{
@@ -67,7 +69,7 @@ pub struct Analysis<'m> {
     /// Steps as straight-line programs, recorded when they pay.
     programs: Arc<Programs>,
     /// The same of measures.
-    formulas: Arc<measure::Programs>,
+    formulas: Arc<Cache<measure::Asked, measure::Program>>,
 }
 
 /// One design, ready to be analysed.
@@ -344,7 +346,8 @@ impl<'m> Analysis<'m> {
         let at = measure::At { model: self.model, effects: &self.effects, values, laws };
         let program = self.programs.pay(self.model.times.len() * of_many).then(|| {
             let asked = measure::Asked::of(self.model, values, sensitivities);
-            self.formulas.get(asked, &self.effects, self.programs.execution())
+            let execution = self.programs.execution();
+            self.formulas.get(asked, |asked| measure::Program::record(&self.effects, asked, execution))
         });
         let (program, solved) = (program.flatten(), (&*motion, &*sensitivities));
         measure::evaluate(&at, &self.topology, solved, slopes, before, program.as_deref(), measured);
@@ -591,7 +594,7 @@ impl<'a> Walk<'a> {
             let moved: Vec<_> = walk.sensing.iter().flat_map(Sensing::moved).collect();
             let program = move |corrections| {
                 let purpose = Purpose { times: true, any_design, corrections, sensitivities, margins };
-                analysis.program(purpose).filter(|program| program.moved() == moved)
+                analysis.program(purpose).filter(|program| program.moved == moved)
             };
             let nominal = analysis.model.drivers.iter().zip(&design.laws).all(|(d, law)| d.law == *law);
             let laws = if nominal { analysis.programs.laws(analysis.model) } else { None };

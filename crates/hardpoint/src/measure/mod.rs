@@ -13,7 +13,7 @@ use std::collections::BTreeMap;
 use bodies::{with_rates, with_sensitivity};
 use hardpoint_tape::LANES;
 use program::Run;
-pub(crate) use program::{Asked, Program, Programs, dependences};
+pub(crate) use program::{Asked, Program, dependences};
 pub(crate) use slope::{SlopeValues, Slopes};
 use wheel::{WheelAt, camber, toe};
 

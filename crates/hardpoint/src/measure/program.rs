@@ -9,16 +9,13 @@
 //! What formulas decide by values is recorded as a limit. Where one does not hold, or any number is none, the formulas themselves are
 //! asked again ([`Run::fits`]).
 
-use std::collections::BTreeMap;
-use std::sync::{Arc, Mutex};
+use hardpoint_tape::{LANES, Number, Options, record};
 
-use hardpoint_tape::{LANES, Number, Operand, Options, record};
-
-use super::bodies::moving;
+use super::bodies::{moving, pair};
 use super::{Measured, Moment, Output, bodies_asked_for};
 use crate::blocks::{Line, lanes_of};
 use crate::model::{BodyId, Effects, Fixed, GROUND, MeasureKind, Model, OutputSource, VariableId};
-use crate::motion::tape::{Execution, Room, Runnable};
+use crate::motion::execution::{Execution, Room, Runnable, Staged};
 use crate::motion::{BodyState, Motion};
 use crate::number::record as recording;
 use crate::number::{Dual, Jet, Rates};
@@ -59,25 +56,10 @@ impl Asked {
     }
 }
 
-/// The programs of a model, each recorded when it is first asked for.
-#[derive(Debug, Default)]
-pub(crate) struct Programs(Mutex<BTreeMap<Asked, Option<Arc<Program>>>>);
-
-impl Programs {
-    /// What is asked for, if it can be recorded.
-    pub fn get(&self, asked: Asked, effects: &Effects<'_>, execution: Execution) -> Option<Arc<Program>> {
-        let mut programs = self.0.lock().expect("no one panics while recording");
-        let program = programs.entry(asked);
-        program.or_insert_with_key(|asked| Program::record(effects, asked, execution).map(Arc::new)).clone()
-    }
-}
-
 /// The program of all outputs.
 #[derive(Debug)]
 pub(crate) struct Program {
-    /// What depends on the design alone, and what does not.
-    design: Runnable,
-    step: Runnable,
+    program: Staged,
     bodies: Vec<usize>,
     moved: Vec<(usize, usize)>,
     /// Measures whose whole turns are asked for.
@@ -92,7 +74,8 @@ pub(crate) struct Program {
 }
 
 impl Program {
-    fn record(effects: &Effects<'_>, asked: &Asked, execution: Execution) -> Option<Self> {
+    /// What is asked for, if it can be recorded.
+    pub fn record(effects: &Effects<'_>, asked: &Asked, execution: Execution) -> Option<Self> {
         let model = effects.model;
         let (outputs, bodies) = (super::outputs(model), moving_bodies(model));
         let nominal = model.whole(&[]);
@@ -161,16 +144,11 @@ impl Program {
             return None;
         }
         let (program, _) = recorded.program(Options::default());
-        let design_at = inputs;
-        let (design, step) = program.staged(|operand| match operand {
-            Operand::Input(k) => k as usize >= design_at,
-            _ => false,
+        let (moved, outputs, design_at) = (asked.moved.clone(), outputs.len(), inputs);
+        let program = Staged::new(program, design_at, execution, |step| {
+            Runnable::new(step, [outputs, 4 * outputs], execution)
         });
-        let all = design.outputs.len();
-        let design = Runnable::new(design, [all; 2], execution);
-        let step = Runnable::new(step, [outputs.len(), 4 * outputs.len()], execution);
-        let (moved, outputs) = (asked.moved.clone(), outputs.len());
-        Some(Self { design, step, bodies, moved, turning, design_at, outputs, places, derivatives })
+        Some(Self { program, bodies, moved, turning, design_at, outputs, places, derivatives })
     }
 
     /// By variable and output, where its derivatives begin, and how many numbers they are in all.
@@ -229,7 +207,6 @@ fn gone(pose: Pose<Recorded>, way: usize, amount: Recorded) -> Pose<Dual<Recorde
     } else {
         Pose { rot: Mat3 { cols: pose.rot.cols.map(|c| axis.cross(c)) }, r: still }
     };
-    let pair = |v: Vec3<Recorded>, d: Vec3<Recorded>| super::bodies::pair(v, d);
     let cols = std::array::from_fn(|k| pair(pose.rot.cols[k], d.rot.cols[k]));
     Pose { rot: Mat3 { cols }, r: pair(pose.r, d.r) }
 }
@@ -415,11 +392,9 @@ pub(super) struct Run<'p> {
 impl<'p> Run<'p> {
     /// On the design with these values.
     pub fn new(program: &'p Program, values: &[f64]) -> Self {
-        let mut inputs = vec![Line::default(); program.step.inputs()];
-        let (given, found) = inputs.split_at_mut(program.step.inputs() - program.design.sizes()[0]);
-        given[program.design_at..].iter_mut().zip(values).for_each(|(line, x)| line.0 = [*x; LANES]);
-        let given = &lanes_of(given)[..program.design.inputs()];
-        Room::default().run(&program.design, given, &[], [lanes_of(found), &mut [], &mut []]);
+        let mut inputs = vec![Line::default(); program.program.step.inputs()];
+        inputs[program.design_at..].iter_mut().zip(values).for_each(|(line, x)| line.0 = [*x; LANES]);
+        program.program.take_design(&mut inputs);
         let guards = vec![Line::default(); program.outputs];
         Self { program, room: Room::default(), inputs, guards }
     }
@@ -427,7 +402,7 @@ impl<'p> Run<'p> {
     /// Evaluates all outputs at the eight output times that k is one of. The whole turns of measures that are asked for are those that
     /// were [given](Self::turns).
     pub fn at(&mut self, k: usize, motion: &Motion, sensitivities: &Sensitivities, measured: &mut Measured) {
-        let Program { step, bodies, moved, .. } = self.program;
+        let Program { program, bodies, moved, .. } = self.program;
         let (of_bodies, rest) =
             lanes_of(&mut self.inputs).split_at_mut(BodyState::NUMBERS * self.program.bodies.len());
         for (b, to) in bodies.iter().zip(of_bodies.chunks_exact_mut(BodyState::NUMBERS)) {
@@ -438,7 +413,7 @@ impl<'p> Run<'p> {
         }
         let guards = lanes_of(&mut self.guards);
         let results = [guards, measured.values.block_mut(k), measured.d.block_mut(k)];
-        self.room.run(step, bytemuck::cast_slice(&self.inputs), &[], results);
+        self.room.run(&program.step, bytemuck::cast_slice(&self.inputs), &[], results);
     }
 
     /// Whether an output counts, in that many lanes.

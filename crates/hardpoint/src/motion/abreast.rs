@@ -12,11 +12,13 @@ use crate::blocks::{Line, lanes_of};
 use crate::sink::Block;
 use crate::topology::Source;
 
+use super::execution::{Room, Runnable};
 use super::forecast::{NODES, ORDERS, Weights};
 use super::kinematics::QUADRATIC;
 use super::margin::Margin;
+use super::step_program::{MOST_CORRECTIONS, StepProgram};
 use super::stepper::{Ahead, EVEN, LONGEST, MILD, MILD_CHANGE, RESTS, Saved, Stepper, TRUST_FLOOR};
-use super::tape::{MOST_CORRECTIONS, Room, Runnable, Solved, StepProgram, Tape, all_within, largest};
+use super::tape::{Solved, Tape, all_within, largest};
 use super::walk::PART_OF_WAY;
 
 /// The first correction (rad, or sizes) must be within this: a forecast by all positions that fails by more is none.
@@ -125,18 +127,17 @@ impl<'p> Abreast<'p> {
     /// `count` steps.
     fn choose_tape(&mut self, one: &Stepper<'_>, [last, count]: [f64; 2]) -> bool {
         let corrections = match &self.tape {
-            Some(tape) if tape.is_of_no_use() || one.selections > 0 => usize::MAX,
+            _ if one.selections > 0 => None,
+            Some(tape) if tape.is_of_no_use() => None,
             Some(tape) if tape.is_too_short() && tape.purpose().corrections < MOST_CORRECTIONS => {
-                tape.purpose().corrections + 1
+                Some(tape.purpose().corrections + 1)
             }
             Some(_) => return true,
-            None if missed(one, last, count) <= QUADRATIC => 1,
-            None => 2,
+            None if missed(one, last, count) <= QUADRATIC => Some(1),
+            None => Some(MOST_CORRECTIONS),
         };
-        let program =
-            self.programs.as_ref().filter(|_| corrections <= MOST_CORRECTIONS && one.selections == 0);
-        let tape = program.and_then(|program| program(corrections)).map(Tape::new);
-        self.tape = tape.filter(|tape| tape.is_on(&one.branch));
+        let program = corrections.zip(self.programs.as_ref()).and_then(|(n, program)| program(n));
+        self.tape = program.map(Tape::new).filter(|tape| tape.is_on(&one.branch));
         match &mut self.tape {
             Some(tape) => tape.set_designs(std::slice::from_ref(&self.design)),
             None => self.programs = None,
@@ -345,7 +346,7 @@ impl Stepper<'_> {
 
     /// Saves the position and the rates that a tape has found in one lane.
     #[inline(always)]
-    pub(super) fn stand_in(&mut self, tape: &Tape, lane: usize) {
+    fn stand_in(&mut self, tape: &Tape, lane: usize) {
         let Saved { q, qd, qdd, balls, drivers, .. } = &mut self.saved;
         for (n, channel) in tape.channels().iter().enumerate() {
             channel.save(tape.channel(n, lane)[0], q, balls);

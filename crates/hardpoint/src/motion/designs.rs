@@ -15,8 +15,9 @@ use crate::sink::Block;
 use super::abreast::ProgramOf;
 use super::forecast::{NODES, ORDERS, Weights};
 use super::kinematics::QUADRATIC;
+use super::step_program::MOST_CORRECTIONS;
 use super::stepper::{Ahead, MILD, MILD_CHANGE, Stepper, TRUST_FLOOR};
-use super::tape::{MOST_CORRECTIONS, Solved, Tape};
+use super::tape::{Solved, Tape};
 use super::walk::Path;
 use super::{Effort, Motion};
 

@@ -7,6 +7,7 @@
 pub(crate) mod abreast;
 mod assembly;
 pub(crate) mod designs;
+pub(crate) mod execution;
 mod forecast;
 pub(crate) mod jerk;
 pub(crate) mod kinematics;
@@ -14,16 +15,17 @@ pub(crate) mod level;
 pub(crate) mod margin;
 pub(crate) mod parts;
 mod singularity;
+pub(crate) mod step_program;
 pub(crate) mod stepper;
 mod stop;
 pub(crate) mod tape;
 mod walk;
 
 pub use assembly::{Assembly, Closing, Gap, Moved};
+pub use execution::{Execution, SolvedBy};
 pub use jerk::BodyJerk;
 pub use margin::Margin;
 pub use stop::{Stop, StopKind};
-pub use tape::{Execution, SolvedBy};
 
 use crate::blocks::{Blocks, Row};
 use crate::model::{BodyId, JointId, Model};

@@ -1,0 +1,241 @@
+//! Straight-line programs as they are run: by machine code or interpreted, whole or in pieces that share their code.
+
+use std::collections::BTreeMap;
+use std::fmt;
+use std::sync::{Arc, Mutex};
+
+use hardpoint_code::{Code, PARTS, Scratch, Width};
+use hardpoint_tape::{Interpreter, LANES, Lanes, Operand, Pieces, PiecesRoom, Program, Shape};
+
+use crate::blocks::{Line, lanes_of};
+
+/// A program of so many instructions does not stay in the fast memory of a core: where its pieces are alike, they share their code ...
+const LONG: usize = 10_000;
+/// ... if that makes it shorter by this factor.
+const SHORTER: usize = 2;
+
+/// What even steps are solved by: the kernel, which walks the plan, or a straight-line program that was recorded of it.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Execution {
+    /// By what pays: programs where there are steps enough, as machine code where there can be any.
+    #[default]
+    Fastest,
+    /// By the kernel alone.
+    Kernel,
+    /// By programs that are interpreted, from the first step on.
+    Interpreted,
+    /// By programs as machine code, from the first step on; interpreted where there can be none.
+    Compiled,
+}
+
+impl Execution {
+    /// What `HARDPOINT_PATH` calls it: `scalar`, `tape` or `code`.
+    pub fn named(name: &str) -> Option<Self> {
+        match name {
+            "scalar" => Some(Self::Kernel),
+            "tape" => Some(Self::Interpreted),
+            "code" => Some(Self::Compiled),
+            _ => None,
+        }
+    }
+}
+
+/// How the even steps of a motion are solved, eight output times at once or one by one.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum SolvedBy {
+    /// By programs as machine code.
+    Code(Width),
+    /// By programs that are interpreted, and why there is no machine code.
+    Interpreter(String),
+    /// By the kernel, one by one, and why.
+    Kernel(String),
+}
+
+impl fmt::Display for SolvedBy {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Code(width) => write!(f, "machine code ({width}), eight output times at once"),
+            Self::Interpreter(why) => write!(f, "an interpreted program, eight output times at once: {why}"),
+            Self::Kernel(why) => write!(f, "the kernel, one by one: {why}"),
+        }
+    }
+}
+
+/// Programs, each recorded when it is first asked for; none where it cannot be.
+#[derive(Debug)]
+pub(crate) struct Cache<K, P>(Mutex<BTreeMap<K, Option<Arc<P>>>>);
+
+impl<K, P> Default for Cache<K, P> {
+    fn default() -> Self {
+        Self(Mutex::default())
+    }
+}
+
+impl<K: Ord, P> Cache<K, P> {
+    /// The program for this, which `record` makes if it was not asked for before.
+    pub fn get(&self, key: K, record: impl FnOnce(&K) -> Option<P>) -> Option<Arc<P>> {
+        let mut programs = self.0.lock().expect("no one panics while recording");
+        programs.entry(key).or_insert_with_key(|key| record(key).map(Arc::new)).clone()
+    }
+}
+
+/// A program, as machine code where there is any; a long one in pieces that share their code.
+#[derive(Debug)]
+pub(crate) struct Runnable {
+    inputs: usize,
+    sizes: [usize; PARTS],
+    form: Form,
+}
+
+#[derive(Debug)]
+enum Form {
+    Whole(Executable),
+    Pieces(Pieces, Vec<Executable>),
+}
+
+/// A program that is run as it is, with outputs in parts.
+#[derive(Debug)]
+struct Executable {
+    program: Program,
+    code: Option<Code>,
+}
+
+impl Executable {
+    fn new(program: Program, ends: [usize; PARTS - 1], execution: Execution) -> Self {
+        let code =
+            if execution == Execution::Interpreted { None } else { Code::in_parts(&program, ends).ok() };
+        Self { program, code }
+    }
+
+    #[inline(always)]
+    fn run(
+        &self,
+        (scratch, interpreter): (&mut Scratch, &mut Option<Interpreter>),
+        found: &mut Vec<Lanes>,
+        inputs: &[Lanes],
+        uniforms: &[f64],
+        outputs: [&mut [Lanes]; PARTS],
+    ) {
+        match &self.code {
+            Some(code) => code.run_in_parts(scratch, inputs, uniforms, outputs),
+            None => {
+                let interpreter = interpreter.get_or_insert_with(|| Interpreter::new(&self.program));
+                found.resize(self.program.outputs.len(), [0.0; LANES]);
+                interpreter.run(inputs, uniforms, found);
+                let mut rest = &found[..];
+                for to in outputs {
+                    let (part, others) = rest.split_at(to.len());
+                    to.copy_from_slice(part);
+                    rest = others;
+                }
+            }
+        }
+    }
+}
+
+impl Runnable {
+    /// Its outputs in parts that end there.
+    pub fn new(program: Program, ends: [usize; PARTS - 1], execution: Execution) -> Self {
+        Self::in_pieces(program, ends, execution, |_| 0)
+    }
+
+    /// The same; `piece_of` says which piece of a long program an input or uniform belongs to.
+    pub fn in_pieces(
+        program: Program,
+        ends @ [first, second]: [usize; PARTS - 1],
+        execution: Execution,
+        piece_of: impl Fn(Operand) -> usize,
+    ) -> Self {
+        let (inputs, long) = (program.inputs, program.instructions.len());
+        let sizes = [first, second - first, program.outputs.len() - second];
+        let pieces = (long > LONG).then(|| program.in_pieces(piece_of, ends));
+        let form = match pieces.filter(|pieces| SHORTER * pieces.instructions() <= long) {
+            Some(pieces) => {
+                let executable =
+                    |shape: &Shape| Executable::new(shape.program.clone(), shape.ends, execution);
+                let shapes = pieces.shapes.iter().map(executable).collect();
+                Form::Pieces(pieces, shapes)
+            }
+            None => Form::Whole(Executable::new(program, ends, execution)),
+        };
+        Self { inputs, sizes, form }
+    }
+
+    /// How many numbers it is given.
+    pub fn inputs(&self) -> usize {
+        self.inputs
+    }
+
+    /// How many numbers it gives, in every part.
+    pub fn sizes(&self) -> [usize; PARTS] {
+        self.sizes
+    }
+}
+
+/// A program in two: what depends on the design alone, and is worked out once for it, and what does not.
+#[derive(Debug)]
+pub(crate) struct Staged {
+    design: Runnable,
+    pub step: Runnable,
+}
+
+impl Staged {
+    /// Its inputs from `design_at` on are those of the design; `runnable` makes the second part of it one that is run.
+    pub fn new(
+        program: Program,
+        design_at: usize,
+        execution: Execution,
+        runnable: impl FnOnce(Program) -> Runnable,
+    ) -> Self {
+        let (design, step) = program.staged(|operand| match operand {
+            Operand::Input(k) => k as usize >= design_at,
+            _ => false,
+        });
+        let all = design.outputs.len();
+        Self { design: Runnable::new(design, [all; PARTS - 1], execution), step: runnable(step) }
+    }
+
+    /// Works out, behind the inputs that stand in these lines, those of the second part that depend on the design alone.
+    pub fn take_design(&self, inputs: &mut [Line]) {
+        let (given, found) = inputs.split_at_mut(inputs.len() - self.design.sizes[0]);
+        let given = &lanes_of(given)[..self.design.inputs];
+        Room::default().run(&self.design, given, &[], [lanes_of(found), &mut [], &mut []]);
+    }
+}
+
+/// What a program works in.
+#[derive(Debug, Default)]
+pub(crate) struct Room {
+    scratch: Scratch,
+    /// One for every program.
+    interpreters: Vec<Option<Interpreter>>,
+    /// What they give.
+    outputs: Vec<Lanes>,
+    pieces: PiecesRoom,
+}
+
+impl Room {
+    #[inline(always)]
+    pub fn run(
+        &mut self,
+        runnable: &Runnable,
+        inputs: &[Lanes],
+        uniforms: &[f64],
+        outputs: [&mut [Lanes]; PARTS],
+    ) {
+        let Self { scratch, interpreters, outputs: found, pieces: room } = self;
+        match &runnable.form {
+            Form::Whole(executable) => {
+                interpreters.resize(1, None);
+                executable.run((scratch, &mut interpreters[0]), found, inputs, uniforms, outputs);
+            }
+            Form::Pieces(pieces, shapes) => {
+                interpreters.resize(shapes.len(), None);
+                pieces.run(room, inputs, uniforms, outputs, |shape, inputs, uniforms, outputs| {
+                    let with = (&mut *scratch, &mut interpreters[shape]);
+                    shapes[shape].run(with, found, inputs, uniforms, outputs);
+                });
+            }
+        }
+    }
+}

@@ -1,0 +1,511 @@
+//! One step of a plan as a straight-line program.
+//!
+//! What [`State::solve`] computes is the same at every output time and for every design, as long as Newton's method takes as many
+//! corrections and the pivots keep their order. So it is recorded once, with a number of the tape in place of each number, together
+//! with the forecast before it and whatever is asked of the bodies after it; and what is left of it after folding is run eight lanes
+//! at a time. What was decided while recording is asked for again in every run, as numbers by which a tape judges it
+//! ([`Tape::solve`](super::tape::Tape::solve)); where the answer is another, nothing has happened, and the kernel itself solves the step.
+//!
+//! Not recorded are mechanisms with curves, and with couplers, whose angles go by the turn that is expected; those that are so large that a
+//! program each would cost more than it saves; and margins of sparse blocks.
+
+use std::sync::{Arc, OnceLock};
+
+use hardpoint_code::{Code, Unsupported, Width};
+use hardpoint_tape::{Number, Operand, Options, Program, record};
+
+use crate::joint::Freedom;
+use crate::law::Law;
+use crate::model::{BodyId, Effects, Model, VariableId};
+use crate::number::record as recording;
+use crate::space::{LARGEST_DENSE, MOST_GROWTH, Vec3};
+use crate::topology::{Source, Topology};
+
+use super::BodyState;
+use super::execution::{Cache, Execution, Runnable, SolvedBy, Staged};
+use super::forecast::{Channel, NODES, ORDERS};
+use super::kinematics::{CORRECTIONS, QUADRATIC, ROUND_OFF, State};
+use super::margin::Margins;
+use super::parts::Parts;
+use super::stepper::{Saved, Stepper};
+
+/// Newton's first correction while recording, in units of each coordinate, for programs with one correction and with two: the last
+/// of them leaves round-off.
+const OFFSET: [f64; MOST_CORRECTIONS] = [1e-9, 1e-5];
+/// What needs more corrections is solved by running a program again from where it came to.
+pub(super) const MOST_CORRECTIONS: usize = 2;
+/// Mechanisms with more links than this are not recorded: what is recorded of each takes some kilobytes until it is a program.
+const MOST_LINKS: usize = 4000;
+/// Nor are those whose sparse factors take more multiplications together.
+const MOST_MULTIPLICATIONS: usize = 70_000;
+/// What a channel is foreseen by.
+pub(super) const CONDITIONS: usize = NODES * ORDERS;
+
+/// What a program is for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) struct Purpose {
+    /// Whether its lanes are output times, of one design; else they are designs, at one output time.
+    pub times: bool,
+    /// Whether the design is an input; else it is the nominal one.
+    pub any_design: bool,
+    /// Newton's corrections in one run: one or two.
+    pub corrections: usize,
+    /// Whether it works out the derivatives of all bodies by all variables.
+    pub sensitivities: bool,
+    /// Whether it works out how far from a singular position the mechanism is.
+    pub margins: bool,
+}
+
+/// What was recorded besides the motion.
+#[derive(Default)]
+pub(crate) struct Recorded {
+    /// Where any of these is positive, the results do not count.
+    pub limits: Vec<Number>,
+    pub results: Vec<Number>,
+    /// Of each row that a variable could fail: the size of the defect, and what of it may be round-off.
+    pub judged: Vec<Number>,
+    /// Which variable moves which body, in the order of the results.
+    pub moved: Vec<(VariableId, BodyId)>,
+    /// Which variable could fail which row of the constraints.
+    pub defects: Vec<(VariableId, usize)>,
+}
+
+/// The program of a step.
+#[derive(Debug)]
+pub(crate) struct StepProgram {
+    pub purpose: Purpose,
+    pub program: Staged,
+    pub channels: Vec<Channel>,
+    pub unknowns: Vec<Unknown>,
+    pub blocks: Vec<BlockProgram>,
+    pub inputs: Inputs,
+    pub outputs: Outputs,
+    pub variables: usize,
+    /// Which variable moves which body, in the order of their derivatives.
+    pub moved: Vec<(VariableId, BodyId)>,
+    pub defects: Vec<(VariableId, usize)>,
+}
+
+/// How a block was recorded.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct BlockProgram {
+    /// The largest factor in the order of the pivots.
+    growth: f64,
+    /// Whether the determinant is positive, and whether the product of the pivots is.
+    pub positive: bool,
+    positive_product: bool,
+    /// Newton's passes.
+    pub passes: usize,
+    /// Which correction says that it has converged, and how small it is then.
+    last: usize,
+    limit: f64,
+}
+
+impl BlockProgram {
+    /// Of block b, as it was just solved; none where more corrections were needed than are told apart.
+    fn of(state: &State<Number>, b: usize) -> Option<Self> {
+        let (watched, (corrections, passes)) = (&state.watched[b], &state.corrections[b]);
+        let corrected = passes.checked_sub(2).and_then(|k| corrections.get(k));
+        // Either the last that was applied leaves round-off, or the next one is round-off itself.
+        let (last, limit) = match corrected {
+            Some(c) if c.value() <= QUADRATIC => (passes - 2, QUADRATIC),
+            _ => (passes - 1, ROUND_OFF),
+        };
+        (last < CORRECTIONS).then_some(Self {
+            growth: watched.growth.value(),
+            positive: state.pivots[b].1,
+            positive_product: watched.product.value() > 0.0,
+            passes: *passes,
+            last,
+            limit,
+        })
+    }
+}
+
+/// An unknown coordinate, one of a ball's three included, and where its speed is among the outputs; its acceleration comes next.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Unknown {
+    pub coordinate: usize,
+    pub speed: usize,
+}
+
+/// Where the inputs of a program begin: weights, what is known of every channel, drivers, how far ahead of the newest position it is,
+/// variables of the design, and what depends on them alone.
+///
+/// Known are, of designs, the last positions of every channel, the newest first; of output times these are uniforms, and the input is
+/// what is added to the forecast: nothing, or all there is where the position was found by a run before.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Inputs {
+    /// How many are known of each channel.
+    pub known: usize,
+    pub drivers: usize,
+    pub ahead: usize,
+    pub design: usize,
+}
+
+impl Inputs {
+    fn of(channels: &[Channel], purpose: Purpose, drivers: usize) -> Self {
+        let known = if purpose.times { 1 } else { CONDITIONS };
+        let drivers_at = CONDITIONS + known * channels.len();
+        let ahead = drivers_at + ORDERS * drivers;
+        Self { known, drivers: drivers_at, ahead, design: ahead + 1 }
+    }
+}
+
+/// Where the outputs of a program begin: value, first and second derivative of every channel, speeds and accelerations of balls,
+/// and then these.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Outputs {
+    pub judged: usize,
+    pub blocks: usize,
+    pub margins: usize,
+    pub defects: usize,
+    pub states: usize,
+    derivatives: usize,
+}
+
+/// What a run is judged by, in this order.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Judged {
+    /// Positive where the pivots, or what was decided while recording, do not fit.
+    Unfit,
+    /// The largest first correction of all blocks, rad or sizes.
+    First,
+    /// By how much the last correction is more than round-off; positive where another run is needed.
+    Last,
+    /// The largest residual, and the largest in sizes of loops.
+    Residual,
+    ScaledResidual,
+    /// The largest pivot of a block over its smallest, of all blocks.
+    Pivots,
+    /// By how much speeds differ at most from those foreseen by the newest position, and the largest of all speeds; rad, or sizes.
+    Apart,
+    Fastest,
+}
+
+/// Per block: its determinant, and the largest pivot over the smallest.
+pub(super) const PER_BLOCK: usize = 2;
+
+impl StepProgram {
+    /// Why the steps of a plan are not recorded, with margins or without, if they are not.
+    pub fn hindrance(topology: &Topology, margins: bool) -> Option<&'static str> {
+        if !topology.coupled_rows.is_empty() {
+            Some("couplers count angles by the turn that is expected")
+        } else if topology.closures.iter().any(|c| c.contact.is_some()) {
+            Some("a point follows a curve")
+        } else if margins && topology.blocks.iter().any(|b| b.unknowns.len() > LARGEST_DENSE) {
+            Some("a block is so large that its margin takes longer than its motion")
+        } else if topology.links.len() > MOST_LINKS
+            || topology.blocks.iter().map(|b| b.multiplications).sum::<usize>() > MOST_MULTIPLICATIONS
+        {
+            Some("the program would be too long")
+        } else {
+            None
+        }
+    }
+
+    /// Records the step that is solved where `one`, of the nominal design, stands, and what `besides` makes of it and of the values
+    /// of the design's variables; none where either cannot be recorded.
+    pub fn record(
+        one: &Stepper<'_>,
+        effects: &Effects<'_>,
+        purpose: Purpose,
+        besides: impl FnOnce(&Topology, &mut State<Number>, &[Number]) -> Option<Recorded>,
+        execution: Execution,
+    ) -> Option<Self> {
+        let (model, topology) = (one.model, &one.topology);
+        let channels = Channel::all(topology);
+        let unknowns = unknowns(topology, &channels);
+        let (mut places, mut moved, mut defects) = (None, Vec::new(), Vec::new());
+        let (mut fits, mut blocks) = (false, Vec::new());
+        recording::begin();
+        let recorded = record(|| {
+            let mut state = State::new(model, topology);
+            let offset = OFFSET[purpose.corrections - 1];
+            let known = foresee(topology, &channels, &one.saved, (offset, purpose.times), &mut state);
+            let drivers: Vec<[Number; 3]> = one.saved.drivers.iter().map(|f| f.map(Number::input)).collect();
+            let ahead = Number::input(0.0);
+            let nominal = model.whole(&[]).into_iter();
+            let number = if purpose.any_design { Number::input } else { Number::constant };
+            let values: Vec<Number> = nominal.map(number).collect();
+            let geometry = recording::strictly(|| effects.geometry(&values));
+            let parts = Parts::of(model, topology, &geometry);
+            fits = state.solve(topology, &parts, &drivers, f64::INFINITY).is_ok();
+            let recorded = (0..topology.blocks.len()).map_while(|b| BlockProgram::of(&state, b));
+            blocks = recorded.collect::<Vec<_>>();
+            fits &= blocks.len() == topology.blocks.len();
+
+            let mut out = moves(topology, &channels, &state);
+            let bodies = BodyState::all(&state);
+            let (margins, mut limits) = match purpose.margins {
+                true => Margins::new(topology).record(topology, &state),
+                false => Default::default(),
+            };
+            let Some(more) = besides(topology, &mut state, &values) else {
+                fits = false;
+                return out;
+            };
+            limits.extend(more.limits.into_iter().chain(recording::limits()));
+            (moved, defects) = (more.moved, more.defects);
+            let judged = out.len();
+            let residuals = state.largest_residuals(topology, &parts, &drivers);
+            let speeds = speeds(topology, &channels, &known, ahead, &state);
+            out.extend(self::judged(one, &state, &blocks, limits));
+            out.extend(residuals);
+            out.push(match state.watched.is_empty() {
+                true => Number::constant(1.0),
+                false => largest_of(state.watched.iter().map(|w| w.most * w.least)),
+            });
+            out.extend(speeds);
+            let blocks_at = out.len();
+            let watched = state.watched.iter().zip(&state.determinants);
+            out.extend(watched.flat_map(|(w, determinant)| [*determinant, w.most * w.least]));
+            let margins_at = out.len();
+            let defects_at = margins_at + margins.len();
+            let states = defects_at + more.judged.len();
+            places = Some(Outputs {
+                judged,
+                blocks: blocks_at,
+                margins: margins_at,
+                defects: defects_at,
+                states,
+                derivatives: states + bodies.len(),
+            });
+            out.extend([margins, more.judged, bodies, more.results].concat());
+            out
+        });
+        let outputs = places.filter(|_| fits && recording::is_arithmetic())?;
+        let variables = if purpose.any_design { model.variables.len() } else { 0 };
+        let inputs = Inputs::of(&channels, purpose, model.drivers.len());
+        let pieces = pieces(topology, &channels);
+        let piece_of = |operand| {
+            let channel = match operand {
+                Operand::Uniform(k) => Some(k as usize / CONDITIONS),
+                Operand::Input(k) => (k as usize).checked_sub(CONDITIONS).map(|k| k / inputs.known),
+                Operand::Value(_) | Operand::Constant(_) => None,
+            };
+            channel.and_then(|channel| pieces.get(channel)).copied().unwrap_or(0)
+        };
+        let (program, _) = recorded.program(Options::default());
+        let program = Staged::new(program, inputs.design, execution, |step| {
+            Runnable::in_pieces(step, [outputs.states, outputs.derivatives], execution, piece_of)
+        });
+        Some(Self {
+            purpose,
+            program,
+            channels,
+            unknowns,
+            blocks,
+            inputs,
+            outputs,
+            variables,
+            moved,
+            defects,
+        })
+    }
+}
+
+/// Which piece of a program a channel belongs to: one for every block.
+fn pieces(topology: &Topology, channels: &[Channel]) -> Vec<usize> {
+    let mut piece_of = vec![0; topology.coordinates.len()];
+    for (b, block) in topology.blocks.iter().enumerate() {
+        block.unknowns.iter().for_each(|c| piece_of[*c] = b + 1);
+    }
+    let coordinate = |channel: &Channel| match *channel {
+        Channel::Coordinate(c) | Channel::Ball(c, _) => c,
+    };
+    channels.iter().map(|channel| piece_of[coordinate(channel)]).collect()
+}
+
+/// All unknowns, balls' included.
+fn unknowns(topology: &Topology, channels: &[Channel]) -> Vec<Unknown> {
+    let mut unknowns = Vec::new();
+    for (n, channel) in channels.iter().enumerate() {
+        if let Channel::Coordinate(coordinate) = *channel {
+            unknowns.push(Unknown { coordinate, speed: ORDERS * n + 1 });
+        }
+    }
+    let mut speed = ORDERS * channels.len();
+    for first in balls(topology) {
+        for axis in 0..3 {
+            unknowns.push(Unknown { coordinate: first + axis, speed });
+            speed += 2;
+        }
+    }
+    unknowns
+}
+
+/// The first coordinates of unknown balls.
+fn balls(topology: &Topology) -> impl Iterator<Item = usize> {
+    let steps = topology.links.iter().flat_map(|l| &l.steps);
+    let balls = steps.filter(|s| s.freedom == Freedom::Ball).map(|s| s.first);
+    balls.filter(|first| matches!(topology.coordinates[*first].source, Source::Unknown { .. }))
+}
+
+/// Value, first and second derivative of every channel; speeds and accelerations of balls.
+fn moves(topology: &Topology, channels: &[Channel], state: &State<Number>) -> Vec<Number> {
+    let mut out: Vec<Number> = channels.iter().flat_map(|c| c.of(state)).collect();
+    for c in balls(topology).flat_map(|first| first..first + 3) {
+        out.extend([state.motion.speeds[0][c], state.motion.speeds[1][c]]);
+    }
+    out
+}
+
+/// What the steps are judged by, up to [`Judged::Last`], in blocks that are recorded so; none of the limits may be positive.
+fn judged(
+    one: &Stepper<'_>,
+    state: &State<Number>,
+    blocks: &[BlockProgram],
+    limits: Vec<Number>,
+) -> [Number; 3] {
+    let (mut unfit, mut first, mut last) = (limits, Vec::new(), Vec::new());
+    for (b, block) in blocks.iter().enumerate() {
+        let (w, (corrections, _)) = (&state.watched[b], &state.corrections[b]);
+        // The determinant keeps its sign, ...
+        let side = if block.positive_product { -1.0 } else { 1.0 };
+        unfit.push(w.product * side);
+        // ... the order of the pivots serves, ...
+        unfit.push(w.growth + -f64::max(MOST_GROWTH, 2.0 * block.growth));
+        // ... and no other rows are better: 1 / (most least) is the pivot ratio.
+        unfit.push(w.most * w.least * one.try_others[b] + -1.0);
+        first.push(corrections[0]);
+        last.push(corrections[block.last] + -block.limit);
+    }
+    [unfit, first, last].map(|x| largest_of(x.into_iter()))
+}
+
+/// The largest of these; NaN where one is, and of none at all the least number.
+fn largest_of(numbers: impl Iterator<Item = Number>) -> Number {
+    numbers.reduce(Number::larger).unwrap_or_else(|| Number::constant(f64::MIN))
+}
+
+/// By how much the speeds differ at most from those that speed and acceleration at the newest position foresee, so long ahead; and the
+/// fastest of both. In rad, or sizes; a ball's are twice those of its quaternion.
+fn speeds(
+    topology: &Topology,
+    channels: &[Channel],
+    known: &[[Number; CONDITIONS]],
+    ahead: Number,
+    state: &State<Number>,
+) -> [Number; 2] {
+    let (mut apart, mut fastest) = (Vec::new(), Vec::new());
+    for (channel, known) in channels.iter().zip(known) {
+        let per_unit = match *channel {
+            Channel::Coordinate(c) => topology.coordinates[c].per_unit,
+            Channel::Ball(..) => 2.0,
+        };
+        let [_, speed, _] = channel.of(state);
+        let [_, before, acceleration, ..] = *known;
+        let foreseen = acceleration.times_plus(ahead, before);
+        apart.push((speed - foreseen).abs() * per_unit);
+        fastest.push(speed.abs().larger(before.abs()) * per_unit);
+    }
+    [apart, fastest].map(|x| largest_of(x.into_iter()))
+}
+
+/// Makes inputs of what foresees the state, `offset` beside where `at` is; returns what is known of every channel, which is the same at
+/// all of several output times.
+fn foresee(
+    topology: &Topology,
+    channels: &[Channel],
+    at: &Saved,
+    (offset, times): (f64, bool),
+    state: &mut State<Number>,
+) -> Vec<[Number; CONDITIONS]> {
+    let first = |n: usize, x: f64| if n == 0 { x } else { 0.0 };
+    let weights: [Number; CONDITIONS] = std::array::from_fn(|n| Number::input(first(n, 1.0)));
+    let one = |channel: &Channel| {
+        let beside = match *channel {
+            Channel::Coordinate(c) => at.q[c] + offset * topology.coordinates[c].unit,
+            Channel::Ball(c, k) => at.balls[c].nudged(Vec3::new(offset, offset, offset)).component(k),
+        };
+        let of = if times { Number::uniform } else { Number::input };
+        let known: [Number; CONDITIONS] = std::array::from_fn(|n| of(first(n, beside)));
+        let begin = if times { Number::input(0.0) } else { Number::constant(0.0) };
+        // What counts least comes first.
+        let terms = weights.into_iter().zip(known).rev();
+        channel.put(terms.fold(begin, |sum, (w, x)| w.times_plus(x, sum)), state);
+        known
+    };
+    channels.iter().map(one).collect()
+}
+
+/// Recording pays from so many steps on: it costs about as much as a few hundred of the kernel's, once, and later runs have it for
+/// nothing.
+const PAYS: usize = 100;
+
+/// The programs of a plan, each recorded when it is first asked for.
+///
+/// They are recorded of the nominal design where its motion begins, so that they do not depend on who asks first.
+#[derive(Debug)]
+pub(crate) struct Programs {
+    execution: Execution,
+    steps: Cache<Purpose, StepProgram>,
+    laws: Cache<(), Runnable>,
+    /// The registers of machine code, or why there is none.
+    machine: OnceLock<Result<Width, Unsupported>>,
+}
+
+impl Programs {
+    /// None as yet.
+    pub fn new(execution: Execution) -> Self {
+        Self { execution, steps: Cache::default(), laws: Cache::default(), machine: OnceLock::new() }
+    }
+
+    /// What they are run by.
+    pub fn execution(&self) -> Execution {
+        self.execution
+    }
+
+    /// How so many steps are solved, if they can be recorded.
+    pub fn solved_by(&self, steps: usize) -> SolvedBy {
+        let asked = || "it was asked for".to_owned();
+        match self.execution {
+            Execution::Kernel => SolvedBy::Kernel(asked()),
+            _ if !self.pay(steps) => SolvedBy::Kernel(format!("recording pays from {PAYS} output times on")),
+            Execution::Interpreted => SolvedBy::Interpreter(asked()),
+            // What can be made of nothing can be made of all.
+            _ => match self.machine.get_or_init(|| Code::new(&Program::default()).map(|code| code.width())) {
+                Ok(width) => SolvedBy::Code(*width),
+                Err(why) => SolvedBy::Interpreter(why.to_string()),
+            },
+        }
+    }
+
+    /// Whether so many steps are worth a program.
+    pub fn pay(&self, steps: usize) -> bool {
+        match self.execution {
+            Execution::Fastest => steps >= PAYS,
+            Execution::Kernel => false,
+            Execution::Interpreted | Execution::Compiled => true,
+        }
+    }
+
+    /// The program for this purpose; `record` makes it for this execution, if it was not asked for before.
+    pub fn step(
+        &self,
+        purpose: Purpose,
+        record: impl FnOnce(Execution) -> Option<StepProgram>,
+    ) -> Option<Arc<StepProgram>> {
+        self.steps.get(purpose, |_| record(self.execution))
+    }
+
+    /// The drivers' laws of the nominal design at eight times: in one part value, speed and acceleration of each driver, in the next what
+    /// must not be positive. None where a law is no plain formula.
+    pub fn laws(&self, model: &Model) -> Option<Arc<Runnable>> {
+        self.laws.get((), |()| {
+            recording::begin();
+            let recorded = record(|| {
+                let t = Number::input(*model.times.first().unwrap_or(&0.0));
+                let of = |law: &Law| law.to_order::<_, 3>(t).derivatives();
+                let laws: Vec<Number> = model.drivers.iter().flat_map(|d| of(&d.law)).collect();
+                [laws, recording::limits()].concat()
+            });
+            let fits = recording::is_arithmetic();
+            let program = recorded.program(Options::default()).0;
+            let all = program.outputs.len();
+            let laws = ORDERS * model.drivers.len();
+            fits.then(|| Runnable::new(program, [laws, all], self.execution))
+        })
+    }
+}
