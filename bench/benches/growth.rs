@@ -5,7 +5,7 @@
 use divan::Bencher;
 use divan::counter::ItemsCount;
 use hardpoint::Analysis;
-use hardpoint::model::{Draft, Model};
+use hardpoint::{draft::Draft, model::Model};
 
 /// Steps after the first output time.
 const STEPS: usize = 10;

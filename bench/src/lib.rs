@@ -2,12 +2,15 @@
 
 use hardpoint::Analysis;
 use hardpoint::law::Law;
-use hardpoint::model::{
-    BodyDraft, ChangeDraft, Draft, DrivenDraft, DriverDraft, FrameDraft, HardpointDraft, JointDraft, Line,
-    Model, Place, PointDraft, VariableDraft,
-};
 use hardpoint::motion::Execution;
 use hardpoint::space::{Mat3, Pose, Vec3};
+use hardpoint::{
+    draft::{
+        BodyDraft, ChangeDraft, Draft, DrivenDraft, DriverDraft, FrameDraft, HardpointDraft, JointDraft,
+        Line, Place, PointDraft, VariableDraft,
+    },
+    model::Model,
+};
 
 pub mod designs;
 pub mod floor;

@@ -4,10 +4,10 @@ use std::io::Write;
 
 use hardpoint::Analysis;
 use hardpoint::joint::Quantity;
-use hardpoint::model::{Model, did_you_mean};
 use hardpoint::study::{
     add_coordinates, add_tilts, nearest_admissible, variable_named, variable_names, what_if,
 };
+use hardpoint::{draft::did_you_mean, model::Model};
 use hardpoint_file::{AngleUnit, LengthUnit, ModelFile, Units};
 use hardpoint_report::diagnose;
 use hardpoint_report::figures::number;

@@ -304,5 +304,5 @@ fn printable(text: String) -> String {
 
 /// The candidate that the user most likely meant; none for texts too long to be a name.
 pub(crate) fn closest<'a>(name: &str, candidates: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
-    if name.len() > 2 * SHOWN_NAME { None } else { hardpoint::model::did_you_mean(name, candidates) }
+    if name.len() > 2 * SHOWN_NAME { None } else { hardpoint::draft::did_you_mean(name, candidates) }
 }

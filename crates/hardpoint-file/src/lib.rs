@@ -40,7 +40,10 @@ mod units;
 
 use std::path::Path;
 
-use hardpoint::model::{Fault, Model, Section};
+use hardpoint::{
+    draft::{Fault, Section},
+    model::Model,
+};
 use toml::de::DeTable;
 
 pub use diagnostic::{Diagnostic, Diagnostics, Severity};
@@ -92,7 +95,7 @@ impl ModelFile {
     fn span(&self, section: Section, index: usize) -> Option<std::ops::Range<usize>> {
         // Ground is the model's first body and is not in the file.
         let index = if section == Section::Bodies { index.checked_sub(1)? } else { index };
-        let at = hardpoint::model::Locus { section, index, key: "", item: None };
+        let at = hardpoint::draft::Locus { section, index, key: "", item: None };
         self.places.find(&at)
     }
 
@@ -108,7 +111,7 @@ impl ModelFile {
     /// # time = { end = 1.0, steps = 100 }
     /// # "#;
     /// # let file = hardpoint_file::parse(text, "pendulum.toml").unwrap();
-    /// use hardpoint::model::Section;
+    /// use hardpoint::draft::Section;
     /// use hardpoint_file::Severity;
     ///
     /// let d = file

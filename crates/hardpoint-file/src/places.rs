@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use hardpoint::model::{Locus, Section};
+use hardpoint::draft::{Locus, Section};
 
 use crate::tree::{Fields, Value};
 

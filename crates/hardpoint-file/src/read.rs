@@ -12,12 +12,12 @@ mod wheels;
 use std::collections::HashMap;
 use std::ops::Range;
 
-use hardpoint::joint::{self, Quantity};
-use hardpoint::law::Law;
-use hardpoint::model::{
+use hardpoint::draft::{
     BodyDraft, CurveDraft, Draft, FormulaDraft, FormulaOf, FrameDraft, HardpointDraft, JointDraft, Line,
     Nominal, Place, Section,
 };
+use hardpoint::joint::{self, Quantity};
+use hardpoint::law::Law;
 use hardpoint::space::{Pose, Quat, Vec3, rotation_from_euler_313};
 use toml::de::{DeTable, DeValue};
 

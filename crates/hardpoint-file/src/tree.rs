@@ -5,9 +5,9 @@
 use std::ops::Range;
 use std::path::Path;
 
+use hardpoint::draft::{Line, Nominal, NotConstant, Place};
+use hardpoint::expression::Expression;
 use hardpoint::joint::Quantity;
-use hardpoint::law::Expression;
-use hardpoint::model::{Line, Nominal, NotConstant, Place};
 use hardpoint::space::Vec3;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};

@@ -2,9 +2,12 @@
 //! the model file, in the user's names and units.
 
 use hardpoint::joint::Quantity;
-use hardpoint::model::{DesignVariable, JointId, Model, Section};
 use hardpoint::motion::{Closing, Stop, StopKind};
 use hardpoint::topology::TopologyFault;
+use hardpoint::{
+    draft::Section,
+    model::{DesignVariable, JointId, Model},
+};
 use hardpoint_file::{Diagnostic, ModelFile, Severity};
 
 use crate::assembly::GapFact;

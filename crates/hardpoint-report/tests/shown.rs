@@ -4,9 +4,9 @@
 use std::fmt::Write;
 
 use hardpoint::law::{ConstantSpeed, Harmonic, Law};
-use hardpoint::model::*;
 use hardpoint::space::Vec3;
 use hardpoint::{Analysis, Solution};
+use hardpoint::{draft::*, model::*};
 use hardpoint_file::{Diagnostic, ModelFile};
 use hardpoint_report::course::Course;
 use hardpoint_report::diagnose;

@@ -16,6 +16,16 @@ pub(crate) fn lanes_of(lines: &mut [Line]) -> &mut [Lanes] {
     bytemuck::cast_slice_mut(lines)
 }
 
+/// Results of eight output times, or of eight designs, side by side.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Block<'b> {
+    /// Per body but ground 24 numbers: position, columns of the rotation, velocity, angular velocity, acceleration, angular
+    /// acceleration.
+    pub states: &'b [[f64; 8]],
+    /// Per variable, and body that it moves, the 18 numbers of a `BodySensitivity` in the order of its fields.
+    pub derivatives: &'b [[f64; 8]],
+}
+
 /// So many numbers per output time.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Blocks {

@@ -10,7 +10,7 @@
 //! along x; at the design configuration the crank stands upright, so the slider is at x = 4.
 //!
 //! ```
-//! use hardpoint::{Analysis, law::Law, model::*, space::Vec3};
+//! use hardpoint::{Analysis, law::Law, draft::*, model::*, space::Vec3};
 //!
 //! let body = |name: &str| BodyDraft { name: name.into(), frame: FrameDraft::Default };
 //! let joint = |name: &str, kind: &str, i: &str, j: &str, at: &str, axis: [f64; 3]| JointDraft {
@@ -79,22 +79,22 @@
 //! Forces, masses and friction: motion here follows from drivers alone. Flexible bodies. Contacts that open and close. Joint
 //! types beyond [`joint::ALL`]. The shape of a curve as a design variable.
 
-mod analysis;
 mod blocks;
 pub mod constraint;
+pub mod design;
+pub mod draft;
+pub mod expression;
 pub mod joint;
 pub mod law;
+mod linalg;
 pub mod measure;
 pub mod model;
 pub mod motion;
 pub mod number;
+mod run;
 pub mod sensitivity;
-mod sink;
 pub mod space;
 pub mod study;
 pub mod topology;
-mod window;
 
-pub use analysis::{Analysis, Progress, Solution, Streamed};
-pub use sink::Sink;
-pub use window::{Footprint, Keep, Kept};
+pub use run::{Analysis, Footprint, Keep, Kept, Progress, Sink, Solution, Streamed};

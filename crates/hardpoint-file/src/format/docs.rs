@@ -2,8 +2,9 @@
 
 use hardpoint::joint::Quantity;
 
-use super::{Key, Kinds, Need, Shape, several};
 use crate::read::tables;
+
+use super::{Key, Kinds, Need, Shape, several};
 
 /// A key, what may stand there, what holds where it is left out, and what it means.
 fn row(key: &Key) -> String {

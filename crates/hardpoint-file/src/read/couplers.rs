@@ -1,12 +1,13 @@
 //! Couplers: gears, racks, belts, and linear relations between joint coordinates.
 
+use hardpoint::draft::{CouplerDraft, CouplerKindDraft, Section, TermDraft};
 use hardpoint::joint::Quantity;
-use hardpoint::model::{CouplerDraft, CouplerKindDraft, Section, TermDraft};
 
-use super::{COORDINATE, Raw, coordinate_quantity};
 use crate::format::{JOINT, Key, Kinds, LENGTH, NUMBER, Shape, TWO_NUMBERS, Table, keys, table};
 use crate::places::EntryPlace;
 use crate::tree::{Fields, Reader};
+
+use super::{COORDINATE, Raw, coordinate_quantity};
 
 pub(crate) const COUPLER: Kinds = Kinds {
     name: "Coupler",

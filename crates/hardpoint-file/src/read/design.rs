@@ -2,17 +2,19 @@
 
 use std::ops::Range;
 
+use hardpoint::draft::{ChangeDraft, Section, ShapeDraft, VariableDraft};
 use hardpoint::joint::Quantity;
 use hardpoint::law::ParameterKind;
-use hardpoint::model::{ChangeDraft, End, Section, ShapeDraft, VariableDraft};
+use hardpoint::model::End;
 use hardpoint::space::Vec3;
 
-use super::Raw;
 use crate::format::{
     ANGLE, BODY, DRIVER, HARDPOINT, JOINT, Key, Kinds, LENGTH, NUMBER, Shape, TWO_NUMBERS, Table, keys, table,
 };
 use crate::places::EntryPlace;
 use crate::tree::{AXES, DIRECTION, Fields, LINE, Reader, axis_named};
+
+use super::Raw;
 
 pub(crate) const VARIABLE: Kinds = Kinds {
     name: "Variable",

@@ -1,14 +1,15 @@
 //! Drivers: what they prescribe, and by which law.
 
+use hardpoint::draft::{DrivenDraft, DriverDraft, FormulaDraft, FormulaOf, Section};
 use hardpoint::joint::Quantity;
 use hardpoint::law::Law;
-use hardpoint::model::{DrivenDraft, DriverDraft, FormulaDraft, FormulaOf, Section};
 
-use super::{COORDINATE, Raw, coordinate_quantity, law};
 use crate::format::{BODY, JOINT, Kinds, Table, keys, table};
 use crate::places::EntryPlace;
 use crate::read::results::POINT_REF;
 use crate::tree::{Fields, LINE, Reader};
+
+use super::{COORDINATE, Raw, coordinate_quantity, law};
 
 pub(crate) const DRIVER: Kinds = Kinds {
     name: "Driver",

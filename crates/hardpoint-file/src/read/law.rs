@@ -3,7 +3,10 @@
 use std::ops::Range;
 
 use hardpoint::joint::Quantity;
-use hardpoint::law::{self, EndRates, Ends, Expression, Law, LawError, SplineDegree};
+use hardpoint::{
+    expression::Expression,
+    law::{self, EndRates, Ends, Law, LawError, SplineDegree},
+};
 use toml::de::{DeTable, DeValue};
 
 use crate::diagnostic::{Severity, closest, shown};

@@ -2,15 +2,16 @@
 
 use std::ops::Range;
 
+use hardpoint::draft::{ChangeDraft, FormulaDraft, FormulaOf, ParameterDraft, Section, VariableDraft};
 use hardpoint::joint::Quantity;
-use hardpoint::model::{ChangeDraft, FormulaDraft, FormulaOf, ParameterDraft, Section, VariableDraft};
 use toml::de::DeValue;
 
-use super::Raw;
 use crate::diagnostic::shown;
 use crate::format::{NUMBER, Shape, TWO_NUMBERS, Table, table};
 use crate::places::EntryPlace;
 use crate::tree::{Fields, Reader, Subject, Value};
+
+use super::Raw;
 
 pub(crate) const PARAMETER: Shape = Shape::Any(
     "Parameter",

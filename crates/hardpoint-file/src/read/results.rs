@@ -2,18 +2,20 @@
 
 use std::sync::LazyLock;
 
-use hardpoint::model::{
-    AxleMeasure, FieldDraft, FieldKind, Line, MeasureDraft, MeasureField, MeasureKindDraft, MeasureType,
-    MetricDraft, Place, PointDraft, PointRef, RayDraft, Section, Take, WheelMeasure, WheelNeed,
+use hardpoint::draft::{
+    FieldDraft, FieldKind, Line, MeasureDraft, MeasureField, MeasureKindDraft, MeasureType, MetricDraft,
+    Place, PointDraft, PointRef, RayDraft, Section,
 };
+use hardpoint::model::{AxleMeasure, Take, WheelMeasure, WheelNeed};
 use hardpoint::space::Vec3;
 
-use super::{COORDINATE, Raw};
 use crate::format::{
     BODY, DRIVER, JOINT, Key, Kinds, NUMBER, Need, OUTPUT, Shape, TWO_NUMBERS, Table, keys, table,
 };
 use crate::places::EntryPlace;
 use crate::tree::{DIRECTION, Field, Fields, LINE, PLACE, Reader, Subject, Value};
+
+use super::{COORDINATE, Raw};
 
 /// More output times than this are surely a slip.
 const MOST_TIMES: u32 = 1_000_000;

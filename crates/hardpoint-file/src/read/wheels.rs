@@ -1,17 +1,18 @@
 //! The vehicle, its road wheels and axles, and the measures that they list.
 
-use hardpoint::model::{
-    AxleDraft, AxleMeasure, Line, MeasureDraft, MeasureKindDraft, Place, PointRef, Section, Side, Vehicle,
-    VehicleEnd, WheelDraft, WheelMeasure, WheelNeed, WheelSpinDraft,
+use hardpoint::draft::{
+    AxleDraft, Line, MeasureDraft, MeasureKindDraft, Place, PointRef, Section, WheelDraft, WheelSpinDraft,
 };
+use hardpoint::model::{AxleMeasure, Side, Vehicle, VehicleEnd, WheelMeasure, WheelNeed};
 use hardpoint::space::Vec3;
 
-use super::Raw;
-use super::results::{AXLE_MEASURE, POINT_REF, WHEEL_MEASURE};
 use crate::diagnostic::Severity;
 use crate::format::{ANGLE, BODY, DRIVER, LENGTH, NUMBER, Shape, Table, table};
 use crate::places::EntryPlace;
 use crate::tree::{Field, Fields, LINE, PLACE, Reader};
+
+use super::Raw;
+use super::results::{AXLE_MEASURE, POINT_REF, WHEEL_MEASURE};
 
 pub(crate) const WHEEL: Table = table! {
     /// A road wheel. Axes are x forward, y left, z up.

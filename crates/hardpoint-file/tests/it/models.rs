@@ -178,7 +178,7 @@ fn a_model_is_the_same_in_every_unit() {
 
 #[test]
 fn places_are_those_of_the_text() {
-    use hardpoint::model::Section;
+    use hardpoint::draft::Section;
     let file = model("slider_crank.toml");
     let line = |needle: &str| 1 + file.text().lines().position(|l| l.starts_with(needle)).unwrap();
     assert_eq!(file.place(Section::Joints, 1), Some((line("J2 ="), 1)));

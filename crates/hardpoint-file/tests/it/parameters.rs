@@ -114,7 +114,7 @@ fn parameters_are_design_variables_with_bounds_and_size() {
     assert_eq!((reach.tolerance, both.tolerance), (Some(0.0003), None));
     assert!(matches!(reach.changes[..], [Change::Parameter { rate: 1.0, .. }]));
     assert!(m.without_effect().is_empty());
-    assert_eq!(file.place(hardpoint::model::Section::Design, 1), Some((7, 1)));
+    assert_eq!(file.place(hardpoint::draft::Section::Design, 1), Some((7, 1)));
 }
 
 #[test]

@@ -330,7 +330,7 @@ fn a_left_wheel_has_the_toe_and_camber_of_its_spin_axis() {
 /// The measures of a wheel come behind those of the model, and are placed where the list names them.
 #[test]
 fn listed_measures_have_the_wheels_name_and_their_own_place() {
-    use hardpoint::model::Section;
+    use hardpoint::draft::Section;
     let text = text("macpherson") + &STRUT.replace("\"all\"", "[\"caster\", \"toe\"]");
     let file = parsed(&text);
     let names: Vec<&str> = file.model.measures.iter().rev().take(2).map(|m| m.name.as_str()).collect();

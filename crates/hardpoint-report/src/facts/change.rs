@@ -6,8 +6,9 @@ use hardpoint::model::{Change, DesignVariable, End, Model};
 use hardpoint::space::Vec3;
 use hardpoint_file::Units;
 
-use super::joint_name;
 use crate::figures::{names, number, order_unit, rounded, symbol};
+
+use super::joint_name;
 
 /// What a variable changes, in a few words.
 pub(super) fn change_text(model: &Model, changes: &[Change], fixed_length: bool) -> String {

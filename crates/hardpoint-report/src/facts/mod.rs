@@ -7,8 +7,14 @@ mod notes;
 mod redundancy;
 mod text;
 
+pub use change::variable_unit;
+pub use redundancy::{Instead, RedundancyFact};
+pub use text::outline;
+pub(crate) use text::table;
+
 use std::collections::{HashMap, HashSet};
 
+use change::{change_text, direction_text};
 use hardpoint::Solution;
 use hardpoint::constraint::Row;
 use hardpoint::joint::{self, Quantity};
@@ -21,12 +27,6 @@ use hardpoint_file::{ModelFile, Units};
 use serde::Serialize;
 
 use crate::figures::{count, per, rounded, symbol, unit};
-
-pub use change::variable_unit;
-use change::{change_text, direction_text};
-pub use redundancy::{Instead, RedundancyFact};
-pub use text::outline;
-pub(crate) use text::table;
 
 /// The facts, with all names as the user wrote them and all figures in the user's units.
 #[derive(Clone, Debug, Serialize)]

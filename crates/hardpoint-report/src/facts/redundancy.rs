@@ -7,8 +7,9 @@ use hardpoint::model::{JointId, MeasureKind, Model};
 use hardpoint::topology::{Formulation, Redundancy, Role, Topology};
 use serde::Serialize;
 
-use super::joint_name;
 use crate::figures::{count, quoted, some_in_words};
+
+use super::joint_name;
 
 /// Redundant constraints among the same joints, couplers and drivers.
 #[derive(Clone, Debug, Serialize)]

@@ -3,12 +3,13 @@
 use hardpoint::model::JointId;
 use hardpoint_file::ModelFile;
 
+use crate::figures::{count, number, rounded, some_of, with_unit};
+use crate::page::Table;
+
 use super::{
     Answer, CouplerFact, DefectFact, DriverFact, Facts, VariableFact, couplers, drivers, held_spins,
     joints_on, written_kind,
 };
-use crate::figures::{count, number, rounded, some_of, with_unit};
-use crate::page::Table;
 
 /// Of more conditions than this only those are listed that some variable opens.
 const MOST_CONDITIONS: usize = 400;

@@ -4,10 +4,11 @@ use std::fmt::Write;
 
 use plotters::prelude::*;
 
-use super::{ChangeFact, MeasureFact, WhatIfFacts};
 use crate::figures::{number, rounded};
 use crate::metric::MetricChange;
 use crate::page::{Table, escape_text as escaped};
+
+use super::{ChangeFact, MeasureFact, WhatIfFacts};
 
 /// Size of one plot, pixels.
 const SIZE: (u32, u32) = (560, 340);

@@ -3,8 +3,9 @@
 //! All are `atan2(s, c)` of two Dot-1 products. As a constraint their residual is `sin(angle - f)`: zero and of unit
 //! slope at the root, and free of branch cuts over any number of turns.
 
-use super::{EndRates, Ends, axis, direction_rates};
 use crate::space::{Real, Wrench};
+
+use super::{EndRates, Ends, axis, direction_rates};
 
 /// s and c of the angle about z_i: tan(angle) = (y_i . x_j) / (x_i . x_j).
 #[inline(always)]

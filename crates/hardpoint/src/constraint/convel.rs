@@ -3,8 +3,9 @@
 //! A rotation about an axis n by the angle t has `R_21 - R_12 = 2 n_z sin t`, so the two shafts turn alike exactly
 //! where that difference of two Dot-1 products vanishes, whatever the angle between them.
 
-use super::{Ends, dot1};
 use crate::space::{Real, Wrench};
+
+use super::{Ends, dot1};
 
 /// `y_i . x_j - x_i . y_j`.
 #[inline(always)]

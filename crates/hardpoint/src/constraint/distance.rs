@@ -1,7 +1,8 @@
 //! Distance constraint: `|d| = L` with `d = P_j - P_i` (paper Eq. 4.10, unsquared).
 
-use super::{EndRates, Ends, force_rates, point_rates};
 use crate::space::{Real, Wrench};
+
+use super::{EndRates, Ends, force_rates, point_rates};
 
 #[inline(always)]
 pub(super) fn residual<T: Real>(ends: &Ends<T>, target: T) -> T {

@@ -1,7 +1,8 @@
 //! Dot-1 constraint: `a_i . b_j = c` (paper Eq. 4.1, where c = 0; an angle joint keeps another cosine).
 
-use super::{EndRates, Ends, axis, cross_rates, direction_rates};
 use crate::space::{Real, Wrench};
+
+use super::{EndRates, Ends, axis, cross_rates, direction_rates};
 
 #[inline(always)]
 pub(super) fn residual<T: Real>(a: usize, b: usize, ends: &Ends<T>, target: T) -> T {

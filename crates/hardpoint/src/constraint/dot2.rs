@@ -1,7 +1,8 @@
 //! Dot-2 constraint: `a_i . d = f` with `d = P_j - P_i` (paper Eq. 4.4; f is a driver's value or 0).
 
-use super::{EndRates, Ends, axis, direction_rates, force_rates, point_rates};
 use crate::space::{Real, Wrench};
+
+use super::{EndRates, Ends, axis, direction_rates, force_rates, point_rates};
 
 #[inline(always)]
 pub(super) fn residual<T: Real>(a: usize, ends: &Ends<T>, target: T) -> T {

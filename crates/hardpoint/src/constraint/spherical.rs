@@ -1,8 +1,9 @@
 //! Spherical constraint, one component: `e_k . (P_j - P_i) = 0` (paper Eq. 4.7), with e_k a world axis, or an axis of the loop's base
 //! where that moves.
 
-use super::{EndRates, Ends, axis, point_rates};
 use crate::space::{Real, Vec3, Wrench};
+
+use super::{EndRates, Ends, axis, point_rates};
 
 #[inline(always)]
 pub(super) fn residual<T: Real>(k: usize, ends: &Ends<T>) -> T {

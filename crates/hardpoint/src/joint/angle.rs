@@ -1,7 +1,8 @@
 //! Angle: the angle between an axis of body i and an axis of body j stays.
 
-use super::{JointType, Need};
 use crate::constraint::Row;
+
+use super::{JointType, Need};
 
 /// z_i . z_j keeps its design value: one constraint.
 pub static ANGLE: JointType = JointType {

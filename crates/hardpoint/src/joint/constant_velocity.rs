@@ -1,7 +1,8 @@
 //! Constant velocity: two shafts that meet in a point and turn alike, whatever the angle between them.
 
-use super::{Freedom, JointType, Need};
 use crate::constraint::{COINCIDE, Row};
+
+use super::{Freedom, JointType, Need};
 
 /// d = 0 and no turn about the line that halves the shafts' angle: four constraints. `axis` is the shaft on body i,
 /// `axis2` the shaft on body j, both pointing the same way along the train.

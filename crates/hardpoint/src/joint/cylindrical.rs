@@ -1,7 +1,8 @@
 //! Cylindrical: a shaft that slides and turns.
 
-use super::{Freedom, JointType, Need, angle, displacement};
 use crate::constraint::{ON_LINE, PARALLEL_Z};
+
+use super::{Freedom, JointType, Need, angle, displacement};
 
 /// z_j parallel to z_i and d parallel to z_i: four constraints, a displacement and an angle.
 pub static CYLINDRICAL: JointType = JointType {

@@ -1,7 +1,8 @@
 //! Distance: a rod of constant length between two ball ends.
 
-use super::{JointType, LENGTH, Need};
 use crate::constraint::Row;
+
+use super::{JointType, LENGTH, Need};
 
 /// |d| = design length: one constraint.
 pub static DISTANCE: JointType = JointType {

@@ -1,7 +1,8 @@
 //! Dot-1: an axis of body i square to an axis of body j.
 
-use super::{Freedom, JointType, Need};
 use crate::constraint::Row;
+
+use super::{Freedom, JointType, Need};
 
 /// z_i . x_j = 0: one constraint (paper Eq. 4.1).
 pub static DOT1: JointType = JointType {

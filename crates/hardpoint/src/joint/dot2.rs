@@ -1,7 +1,8 @@
 //! Dot-2: the line between two points stays square to an axis.
 
-use super::{JointType, Need};
 use crate::constraint::Row;
+
+use super::{JointType, Need};
 
 /// z_i . d = 0: one constraint (paper Eq. 4.4).
 pub static DOT2: JointType = JointType {

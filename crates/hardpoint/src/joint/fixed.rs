@@ -1,7 +1,8 @@
 //! Fixed: body j is part of body i.
 
-use super::{JointType, Need};
 use crate::constraint::{COINCIDE, PARALLEL_FRAMES, Row};
+
+use super::{JointType, Need};
 
 /// d = 0 and no relative rotation: six constraints.
 pub static FIXED: JointType = JointType {

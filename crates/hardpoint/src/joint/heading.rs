@@ -1,8 +1,9 @@
 //! Heading: how far body j has turned, seen along an axis of body i.
 
-use super::{CoordinateType, JointType, Need};
 use crate::constraint::Row;
 use crate::joint::Quantity;
+
+use super::{CoordinateType, JointType, Need};
 
 /// No constraint of its own; a driver prescribes the angle (a platform's roll), or a measure reads it. `axis2` is the
 /// direction on body j whose angle it is.

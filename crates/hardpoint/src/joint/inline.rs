@@ -1,7 +1,8 @@
 //! In-line: a point on a line.
 
-use super::{Freedom, JointType, Need, displacement};
 use crate::constraint::ON_LINE;
+
+use super::{Freedom, JointType, Need, displacement};
 
 /// Body j's point on the line along z_i: two constraints.
 pub static INLINE: JointType = JointType {

@@ -1,7 +1,8 @@
 //! In-plane: a point on a plane.
 
-use super::{Freedom, JointType, Need, displacement_along};
 use crate::constraint::Row;
+
+use super::{Freedom, JointType, Need, displacement_along};
 
 /// Body j's point on the plane normal to z_i: one constraint.
 pub static INPLANE: JointType = JointType {

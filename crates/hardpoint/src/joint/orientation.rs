@@ -1,7 +1,8 @@
 //! Orientation: body j does not turn relative to body i, but moves as it likes.
 
-use super::{Freedom, JointType, Need};
 use crate::constraint::PARALLEL_FRAMES;
+
+use super::{Freedom, JointType, Need};
 
 /// No relative rotation: three constraints.
 pub static ORIENTATION: JointType = JointType {

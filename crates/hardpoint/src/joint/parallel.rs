@@ -1,7 +1,8 @@
 //! Parallel axes: body j turns about an axis of fixed direction, but moves as it likes.
 
-use super::{Freedom, JointType, Need, angle};
 use crate::constraint::PARALLEL_Z;
+
+use super::{Freedom, JointType, Need, angle};
 
 /// z_j parallel to z_i: two constraints.
 pub static PARALLEL: JointType = JointType {

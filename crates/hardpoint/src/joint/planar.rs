@@ -1,7 +1,8 @@
 //! Planar: body j slides and turns on a plane.
 
-use super::{Freedom, JointType, Need, angle, displacement_along};
 use crate::constraint::{PARALLEL_Z, Row};
+
+use super::{Freedom, JointType, Need, angle, displacement_along};
 
 /// z_j parallel to z_i and the point on the plane: three constraints. x and y are along and across `axis2`.
 pub static PLANAR: JointType = JointType {

@@ -1,7 +1,8 @@
 //! Point on curve: a pin in a slot, or a roller on a cam.
 
-use super::{JointType, Need};
 use crate::constraint::Row;
+
+use super::{JointType, Need};
 
 /// Seen along z_i, body j's point keeps its distance from a curve of body i: zero for a pin in a slot, a roller's radius for a
 /// cam. One constraint. The first place carries the curve, the second is the point.

@@ -1,7 +1,8 @@
 //! Revolute: a hinge.
 
-use super::{Freedom, JointType, Need, angle};
 use crate::constraint::{COINCIDE, PARALLEL_Z};
+
+use super::{Freedom, JointType, Need, angle};
 
 /// d = 0 and z_j parallel to z_i: five constraints, one angle.
 pub static REVOLUTE: JointType = JointType {

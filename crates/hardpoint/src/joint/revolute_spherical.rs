@@ -1,7 +1,8 @@
 //! Revolute-spherical rod: a massless link on a hinge of body i, with a ball on body j.
 
-use super::{JointType, LENGTH, Need};
 use crate::constraint::Row;
+
+use super::{JointType, LENGTH, Need};
 
 /// |d| and z_i . d keep their design values: the ball stays on a circle about the hinge's axis. Two constraints.
 pub static REVOLUTE_SPHERICAL: JointType = JointType {

@@ -1,7 +1,8 @@
 //! Screw: a turn that advances along its own axis.
 
-use super::{Freedom, JointType, Need, angle, displacement};
 use crate::constraint::{ON_LINE, PARALLEL_Z};
+
+use super::{Freedom, JointType, Need, angle, displacement};
 
 /// A cylindrical joint whose displacement is coupled to its angle by `lead`, the advance of one turn: five constraints,
 /// the last of which is a coupler ([`crate::model::Coupler`]).

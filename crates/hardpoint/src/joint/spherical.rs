@@ -1,7 +1,8 @@
 //! Spherical: a ball joint.
 
-use super::{Freedom, JointType, Need};
 use crate::constraint::COINCIDE;
+
+use super::{Freedom, JointType, Need};
 
 /// d = 0: three constraints.
 pub static SPHERICAL: JointType = JointType {

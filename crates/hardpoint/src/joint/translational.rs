@@ -1,7 +1,8 @@
 //! Translational: a slide that cannot turn.
 
-use super::{Freedom, JointType, Need, displacement};
 use crate::constraint::{ON_LINE, PARALLEL_FRAMES};
+
+use super::{Freedom, JointType, Need, displacement};
 
 /// P_j on the line through P_i along z_i, and no relative rotation: five constraints, one displacement.
 pub static TRANSLATIONAL: JointType = JointType {

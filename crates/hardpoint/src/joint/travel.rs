@@ -1,8 +1,9 @@
 //! Travel: how far a point of body j has gone along an axis of body i.
 
-use super::{CoordinateType, JointType, Need};
 use crate::constraint::Row;
 use crate::joint::Quantity;
+
+use super::{CoordinateType, JointType, Need};
 
 /// No constraint of its own; a driver prescribes the point's coordinate (wheel travel), or a measure reads it.
 pub static TRAVEL: JointType = JointType {

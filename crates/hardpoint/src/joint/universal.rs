@@ -1,7 +1,8 @@
 //! Universal: a cross between two forks.
 
-use super::{CoordinateType, Freedom, JointType, Need, Quantity, angle};
 use crate::constraint::{COINCIDE, Row};
+
+use super::{CoordinateType, Freedom, JointType, Need, Quantity, angle};
 
 /// d = 0 and z_i square to x_j: four constraints. `axis` is the pin on body i, `axis2` that on body j;
 /// `angle` is the turn about the first, `angle2` about the second.

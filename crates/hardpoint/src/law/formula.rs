@@ -2,13 +2,12 @@
 
 use std::fmt;
 
-use super::expression::{self, ExpressionError};
+use crate::expression::{self, ExpressionError, Program, Stretch};
+use crate::number::{Jet, Real};
+
 use super::jumps::{Break, find_switches};
 use super::kind::Shape;
 use super::parameter::{Parameter, ParameterKind, Seed, parameter, seeded};
-use super::program::Program;
-use super::range::Stretch;
-use crate::number::{Jet, Real};
 
 /// An expression, its parameters, and what evaluates it.
 #[derive(Clone)]

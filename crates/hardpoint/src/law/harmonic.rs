@@ -3,13 +3,13 @@
 use std::f64::consts::TAU;
 use std::fmt;
 
+use crate::expression::{Stretch, Term};
+use crate::number::{Function, Jet, Real};
+
 use super::Law;
 use super::error::{LawError, check_finite};
 use super::kind::{Shape, parameters, write_sum};
 use super::parameter::{Parameter, ParameterKind, Seed, parameter, seeded};
-use super::range::Stretch;
-use super::term::Term;
-use crate::number::{Function, Jet, Real};
 
 /// A harmonic law: offset + amplitude sin(2π frequency t + phase).
 ///

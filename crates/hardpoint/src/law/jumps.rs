@@ -1,10 +1,11 @@
 //! Where a law is not smooth.
 
+use crate::expression::Program;
+use crate::number::Jet;
+
 use super::Law;
 use super::kind::Shape;
-use super::program::Program;
 use super::sequence::backwards;
-use crate::number::Jet;
 
 /// A jump of a law, of its speed or of its acceleration.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -2,10 +2,11 @@
 
 use std::fmt;
 
+use crate::expression::Stretch;
+use crate::number::{Jet, Real};
+
 use super::jumps::Break;
 use super::parameter::{Parameter, ParameterKind, Seed};
-use super::range::Stretch;
-use crate::number::{Jet, Real};
 
 /// A kind of law.
 ///

@@ -4,68 +4,42 @@
 //! a value held for ever, a constant speed, a harmonic, a polynomial, a smooth step, a spline through points, laws one after the
 //! other.
 //!
-//! The same language writes other numbers of a model, which know no time: [`Expression`].
+//! The language of expressions is that of [`crate::expression`].
 //!
 //! Whatever its kind, a law is evaluated by [`Law::at`], has
 //! [parameters](Law::parameters) by which it is [differentiated](Law::derivative), and says
 //! [where it is not smooth](Law::jumps).
 //!
-//! # The language of expressions
-//!
-//! | written | meaning |
-//! |---|---|
-//! | `1`, `.5`, `1e-3` | numbers, with a decimal point |
-//! | `t`, `pi` | the time in seconds, and 3.14159... |
-//! | any other name | a parameter, if [`Law::parse_with`] is given one of that name |
-//! | `+ - * / ^`, `( )` | `^` binds first and from the right, then the sign (`-t^2` is `-(t^2)`), then `* /`, then `+ -` |
-//! | `sin cos tan asin acos atan sinh cosh tanh` | of one argument, angles in radians |
-//! | `exp ln log10 sqrt abs` | of one argument |
-//! | `atan2(y, x)`, `hypot(x, y)`, `pow(x, p)` | of two arguments |
-//! | `min(a, b, ...)`, `max(a, b, ...)` | of two or more arguments |
-//! | `step(x, x0, h0, x1, h1)` | `h0` up to `x0`, `h1` from `x1` on, between them `h0 + (h1 - h0)(3u² - 2u³)` |
-//! | `if(a < b, x, y)` | `x` where the comparison (`<`, `<=`, `>`, `>=`) holds, else `y` |
-//!
-//! Derivatives are propagated as [`Jet`]s, so they carry rounding error only, no step size; `abs`, `min`, `max`, `step`
-//! and `if` are differentiated on the side that is active.
-//!
 //! What is *not* here: laws of anything but the time; corners of expressions that no `abs`, `atan2`, `min`, `max`, `step` or
 //! `if` makes, such as those of `asin(sin(t))` or `sqrt(t^2)`, are not among the [jumps](Law::jumps).
 
 mod error;
-mod expression;
 mod formula;
 mod harmonic;
 mod jumps;
 mod kind;
-mod number;
 mod parameter;
 mod polynomial;
-mod program;
-mod range;
 mod sequence;
 mod smooth_step;
 mod speed;
-mod spline;
 mod table;
-mod term;
 
 use std::fmt;
 
 pub use error::LawError;
-pub use expression::ExpressionError;
 use formula::Formula;
 pub use harmonic::Harmonic;
 pub use jumps::Jump;
 use kind::{Kind, Shape};
-pub use number::Expression;
 use parameter::Seed;
 pub use parameter::{Parameter, ParameterKind};
-pub use range::{Range, Stretch};
 pub use sequence::Piece;
 pub use smooth_step::SmoothStep;
 pub use speed::ConstantSpeed;
 pub use table::{EndRates, Ends, SplineDegree, Table};
 
+use crate::expression::{self, ExpressionError, Stretch};
 use crate::number::{Dual, Jet, Real};
 
 /// The value of a law and its first three time derivatives at one instant.
@@ -95,7 +69,7 @@ pub type TimeJet<T = f64> = Jet<T, 4>;
 /// assert_eq!(at.d(), 3.0); // 3 t²/4
 /// assert_eq!(at.dd(), 3.0); // 6 t/4
 /// assert_eq!(at.ddd(), 1.5); // 6/4
-/// # Ok::<(), hardpoint::law::ExpressionError>(())
+/// # Ok::<(), hardpoint::expression::ExpressionError>(())
 /// ```
 #[derive(Clone)]
 pub struct Law {
@@ -108,7 +82,7 @@ impl Law {
     ///
     /// # Errors
     ///
-    /// When `text` is not an expression of the [module's](self) language. The error says where, and what to write
+    /// When `text` is not an expression of the [language](crate::expression). The error says where, and what to write
     /// instead:
     ///
     /// ```
@@ -132,7 +106,7 @@ impl Law {
     /// assert_eq!(lift.at(2.0).value(), 100.0);
     /// assert_eq!(lift.derivative(0, 2.0).value(), 4.0); // t²
     /// assert_eq!(lift.to_string(), "amplitude*t^2 with amplitude = 25");
-    /// # Ok::<(), hardpoint::law::ExpressionError>(())
+    /// # Ok::<(), hardpoint::expression::ExpressionError>(())
     /// ```
     ///
     /// # Errors
@@ -170,7 +144,7 @@ impl Law {
     /// let travel = travel_mm.scaled(1e-3);
     /// assert_eq!(travel.at(2.0).value(), 0.05);
     /// assert_eq!(travel.to_string(), "25*t");
-    /// # Ok::<(), hardpoint::law::ExpressionError>(())
+    /// # Ok::<(), hardpoint::expression::ExpressionError>(())
     /// ```
     #[must_use]
     pub fn scaled(mut self, factor: f64) -> Self {
@@ -250,7 +224,7 @@ impl Law {
     ///
     /// let law = Law::parse_with("speed*t", &[("speed", 2.0)])?;
     /// assert_eq!(law.with_parameter(0, 3.0).at(5.0).value(), 15.0);
-    /// # Ok::<(), hardpoint::law::ExpressionError>(())
+    /// # Ok::<(), hardpoint::expression::ExpressionError>(())
     /// ```
     ///
     /// # Panics
@@ -275,7 +249,7 @@ impl Law {
     /// let law = Law::parse("20*sin(pi*t)")?;
     /// let travel = law.over(0.25, 1.0).value;
     /// assert!(travel.high == 20.0 && travel.low.abs() < 1e-12);
-    /// # Ok::<(), hardpoint::law::ExpressionError>(())
+    /// # Ok::<(), hardpoint::expression::ExpressionError>(())
     /// ```
     pub fn over(&self, from: f64, to: f64) -> Stretch {
         let over = self.kind.over(from, to) * Stretch::constant(self.factor);
@@ -299,7 +273,7 @@ impl Law {
     /// let law = Law::parse("abs(t - 0.5) + if(t < 2, 0, 3)")?;
     /// assert_eq!(law.jumps(0.0, 1.0), [Jump { time: 0.5, order: 1, size: 2.0 }]); // from -1 to 1 per second
     /// assert_eq!(law.jumps(1.0, 5.0)[0].order, 0);
-    /// # Ok::<(), hardpoint::law::ExpressionError>(())
+    /// # Ok::<(), hardpoint::expression::ExpressionError>(())
     /// ```
     pub fn jumps(&self, from: f64, to: f64) -> Vec<Jump> {
         jumps::jumps(self, from, to)

@@ -2,12 +2,13 @@
 
 use std::fmt;
 
+use crate::expression::Stretch;
+use crate::number::{Jet, Real};
+
 use super::Law;
 use super::error::{LawError, check_finite};
 use super::kind::{Shape, write_sum};
 use super::parameter::{Parameter, ParameterKind, Seed, parameter, seeded};
-use super::range::Stretch;
-use crate::number::{Jet, Real};
 
 /// c0 + c1 t + c2 t² + ..., with the coefficients for parameters.
 #[derive(Clone, Debug, PartialEq)]

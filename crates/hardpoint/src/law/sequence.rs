@@ -2,14 +2,15 @@
 
 use std::fmt;
 
+use crate::expression::{Range, Stretch};
+use crate::number::{Jet, Real};
+
 use super::Law;
 use super::error::LawError;
 use super::jumps::Break;
 use super::kind::Shape;
 use super::parameter::{Parameter, ParameterKind, Seed, parameter, seeded};
-use super::range::{Range, Stretch};
 use super::table::ROUNDING_OF_TIME;
-use crate::number::{Jet, Real};
 
 /// A piece of a [sequence](Law::sequence).
 #[derive(Clone, Debug, PartialEq)]

@@ -2,14 +2,15 @@
 
 use std::fmt;
 
+use crate::expression::{Range, Stretch};
+use crate::number::{Jet, Real};
+
 use super::Law;
 use super::error::{LawError, check_finite};
 use super::jumps::Break;
 use super::kind::{Shape, parameters};
 use super::parameter::{Parameter, ParameterKind, Seed, parameter, seeded};
 use super::polynomial::sum_of_powers;
-use super::range::{Range, Stretch};
-use crate::number::{Jet, Real};
 
 /// A law that holds `from` up to `start`, `to` from `end` on, and is a polynomial between them:
 /// from + (to - from) s(u) with u = (t - start) / (end - start).

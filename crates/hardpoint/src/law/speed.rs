@@ -2,12 +2,13 @@
 
 use std::fmt;
 
+use crate::expression::{Range, Stretch};
+use crate::number::{Jet, Real};
+
 use super::Law;
 use super::error::{LawError, check_finite};
 use super::kind::{Shape, parameters, write_sum};
 use super::parameter::{Parameter, ParameterKind, Seed, parameter, seeded};
-use super::range::{Range, Stretch};
-use crate::number::{Jet, Real};
 
 /// A law of constant speed: offset + speed t.
 ///

@@ -3,14 +3,15 @@
 use std::fmt;
 use std::sync::Arc;
 
+use crate::expression::Stretch;
+use crate::linalg::{Basis, EndKind, Segment};
+use crate::number::{Jet, Real};
+
 use super::Law;
 use super::error::LawError;
 use super::kind::Shape;
 use super::parameter::{Parameter, ParameterKind, Seed, parameter};
 use super::polynomial::sum_of_powers;
-use super::range::Stretch;
-use super::spline::{Basis, EndKind, Segment};
-use crate::number::{Jet, Real};
 
 /// A table of points, and the spline to lay through them.
 ///

@@ -19,10 +19,11 @@ use wheel::{WheelAt, camber, toe};
 
 use crate::blocks::Blocks;
 use crate::constraint::Row;
+use crate::design::{Effects, Fixed};
 use crate::law::Law;
 use crate::model::{
-    AxleMeasure, BodyId, Dimension, DriverId, Effects, Fixed, JointId, Known, MeasureKind, Model,
-    OutputSource, PointId, Ray, Side, VariableId, WheelId,
+    AxleMeasure, BodyId, Dimension, DriverId, JointId, Known, MeasureKind, Model, OutputSource, PointId, Ray,
+    Side, VariableId, WheelId,
 };
 use crate::motion::{Motion, Passed};
 use crate::number::{Dual, Jet, Rates, Real};

@@ -11,16 +11,17 @@
 
 use hardpoint_tape::{LANES, Number, Options, record};
 
-use super::bodies::{moving, pair};
-use super::{Measured, Moment, Output, bodies_asked_for};
 use crate::blocks::{Line, lanes_of};
-use crate::model::{BodyId, Effects, Fixed, GROUND, MeasureKind, Model, OutputSource, VariableId};
+use crate::design::{Effects, Fixed};
+use crate::model::{BodyId, GROUND, MeasureKind, Model, OutputSource, VariableId};
 use crate::motion::execution::{Execution, Room, Runnable, Staged};
 use crate::motion::{BodyState, Motion};
-use crate::number::record as recording;
-use crate::number::{Dual, Jet, Rates};
+use crate::number::{Dual, Jet, Rates, record as recording};
 use crate::sensitivity::{BodySensitivity, Sensitivities};
 use crate::space::{Mat3, Pose, Vec3};
+
+use super::bodies::{moving, pair};
+use super::{Measured, Moment, Output, bodies_asked_for};
 
 /// Of more sums of products - one for each output, variable, and body that both have to do with - no program is recorded: it would take
 /// more memory than its results.

@@ -3,7 +3,8 @@
 //! A driver that moves by itself is a direction like a change of the design (`docs/theory.md`, section 7); how the outcome
 //! changes with the design is the second derivative along both.
 
-use crate::model::{DriverId, Effects, Fixed, GROUND, MeasureKind, Model, VariableId, WheelId};
+use crate::design::{Effects, Fixed};
+use crate::model::{AxleMeasure, DriverId, GROUND, MeasureKind, Model, VariableId, WheelId};
 use crate::motion::stepper::Stepper;
 use crate::number::{Dual, Real};
 use crate::sensitivity::{Seconds, Way};
@@ -12,7 +13,6 @@ use crate::topology::Topology;
 
 use super::wheel::{Carried, axle_roll_centre};
 use super::{Moment, bodies_asked_for};
-use crate::model::AxleMeasure;
 
 /// Values of the measures that go by a driver, over a motion, and their derivatives by the design variables.
 #[derive(Clone, Debug, Default)]

@@ -80,7 +80,7 @@ pub type CurvePoint = [[f64; 2]; 4];
 
 impl Curve {
     /// The curve through points in a marker's x-y plane, for a follower that is drawn at `follower`.
-    pub(super) fn through(points: &[[f64; 2]], closed: bool, follower: [f64; 2]) -> Result<Self, LawError> {
+    pub(crate) fn through(points: &[[f64; 2]], closed: bool, follower: [f64; 2]) -> Result<Self, LawError> {
         let mut points = points.to_vec();
         if closed {
             points.push(points[0]);
@@ -145,7 +145,7 @@ impl Curve {
     ///
     /// With its first and second derivatives where p has some: next to the nearest point, n away from it, the distance is
     /// `n - k t^2 / (2 (1 - k n))`, t along the curve and k its curvature.
-    pub(super) fn distance<T: Real>(&self, p: Vec3<T>) -> T {
+    pub(crate) fn distance<T: Real>(&self, p: Vec3<T>) -> T {
         let start = T::constant(self.start);
         let contact = Contact::nearest(self, p, start);
         let (frame, e) = (contact.frame(), p - contact.c[0]);

@@ -1,9 +1,8 @@
 //! Named numbers, and formulas over them: what of the model follows the design other than in proportion.
 
-use std::collections::BTreeMap;
-
-use super::*;
-use crate::law::Expression;
+use crate::expression::Expression;
+use crate::joint::Quantity;
+use crate::model::{DriverId, HardpointId, JointId, Model, ParameterId};
 use crate::space::Real;
 
 /// A parameter of the model: a number with a name, for formulas.
@@ -44,11 +43,11 @@ pub enum Target {
 pub struct Formula {
     /// What it gives.
     pub of: Target,
-    pub(super) expression: Expression,
+    pub(crate) expression: Expression,
     /// What the expression's names mean, and how many of the text's units make one SI unit of it.
-    pub(super) inputs: Vec<(Source, f64)>,
+    pub(crate) inputs: Vec<(Source, f64)>,
     /// How many of the text's units make one SI unit of the result.
-    pub(super) per_unit: f64,
+    pub(crate) per_unit: f64,
 }
 
 impl Formula {
@@ -63,7 +62,7 @@ impl Formula {
     }
 
     /// Its result in SI for these sources in SI, over any scalar.
-    pub(super) fn at<T: Real>(&self, source: impl Fn(Source) -> T) -> T {
+    pub(crate) fn at<T: Real>(&self, source: impl Fn(Source) -> T) -> T {
         let number = |k: usize| {
             let (from, per_unit) = self.inputs[k];
             source(from) * T::constant(per_unit)
@@ -74,7 +73,7 @@ impl Formula {
 
 impl Model {
     /// The value of a parameter or coordinate in the nominal design, m, rad or a plain number.
-    pub(super) fn nominal(&self, source: Source) -> f64 {
+    pub(crate) fn nominal(&self, source: Source) -> f64 {
         match source {
             Source::Parameter(p) => self.parameters[p.0].value,
             Source::Coordinate(h, axis) => self.hardpoints[h.0].position[axis],
@@ -85,27 +84,4 @@ impl Model {
     pub fn parameter(&self, name: &str) -> Option<ParameterId> {
         self.parameters.iter().position(|p| p.name == name).map(ParameterId)
     }
-}
-
-/// What the parameters and formulas of a draft give with all design variables at zero: for numbers that no change of the
-/// design can move.
-#[derive(Clone, Debug, Default)]
-pub struct Nominal {
-    /// Of each hardpoint of the draft, m; null where a formula of it is faulty.
-    pub positions: Vec<Vec3>,
-    /// By name: its value in SI if it has one, its quantity, and a design variable or hardpoint that it follows.
-    pub(super) parameters: BTreeMap<String, (Option<f64>, Quantity, Option<String>)>,
-}
-
-/// Why an expression is no constant.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub enum NotConstant {
-    /// It names what is no parameter.
-    Unknown(String),
-    /// It uses this parameter, which follows this (`design variable `b``, or `hardpoint `A``).
-    Follows(String, String),
-    /// It uses a parameter that is faulty, which is reported elsewhere.
-    Faulty,
-    /// Its value is not finite.
-    NotFinite,
 }

@@ -1,9 +1,12 @@
 //! Measures: numbers that follow from the motion.
 
-use super::check::MeasureCheck;
-use super::*;
-use crate::law::Expression;
-use crate::space::Real;
+use crate::expression::Expression;
+use crate::joint::Quantity;
+use crate::model::{
+    AxleId, AxleMeasure, BodyId, Direction, DriverId, HardpointId, JointId, Model, PointId, WheelId,
+    WheelMeasure,
+};
+use crate::space::{Real, Vec3};
 
 /// A number that follows from the motion.
 #[derive(Clone, Debug, PartialEq)]
@@ -23,215 +26,11 @@ pub enum OutputSource {
     Point(PointId, usize),
 }
 
-/// A type of measure as model files name it, but for those of wheels and axles, which are [`WheelMeasure`] and [`AxleMeasure`].
-#[derive(Debug)]
-pub struct MeasureType {
-    /// Its name.
-    pub name: &'static str,
-    /// What it measures, in a sentence.
-    pub summary: &'static str,
-    /// What is to be said of it.
-    pub fields: &'static [MeasureField],
-}
-
-/// A field of a measure.
-#[derive(Debug)]
-pub struct MeasureField {
-    /// Its name in model files.
-    pub key: &'static str,
-    /// What it is.
-    pub kind: FieldKind,
-    /// Whether it must be given.
-    pub required: bool,
-    /// What it means.
-    pub summary: &'static str,
-}
-
-/// What a field of a measure may be.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum FieldKind {
-    /// The name of a joint.
-    Joint,
-    /// The name of a coordinate of that joint.
-    Coordinate,
-    /// A point.
-    Point,
-    /// A global direction.
-    Direction,
-    /// A direction, which may follow hardpoints.
-    Line,
-    /// A direction to measure an angle from or to.
-    Ray,
-    /// The name of a measure, or of a component of a point.
-    Output,
-    /// The name of a driver.
-    Driver,
-    /// The name of a body.
-    Body,
-    /// An expression over outputs.
-    Expression,
-}
-
-/// A field of a measure as written.
-#[derive(Clone, Debug)]
-pub enum FieldDraft {
-    /// A name.
-    Name(String),
-    /// A point.
-    Point(PointRef),
-    /// A global direction, of any length.
-    Direction(Vec3),
-    /// A direction, which may follow hardpoints.
-    Line(Line),
-    /// A direction to measure an angle from or to.
-    Ray(RayDraft),
-    /// An expression.
-    Expression(Expression),
-}
-
-/// What is written as a `Draft` and means this in a model. The fields of a measure are of such types.
-pub(super) trait Field: Sized {
-    type Draft;
-    const KIND: FieldKind;
-    const REQUIRED: bool = true;
-    /// As written, if it is; `None` where it is something else, or missing.
-    fn draft(written: Option<FieldDraft>) -> Option<Self::Draft>;
-    /// What it means; `None`, and a fault, where that is not known.
-    fn resolve(draft: &Self::Draft, key: &'static str, check: &mut MeasureCheck<'_, '_>) -> Option<Self>;
-}
-
-/// Declares the types of measures: their fields, as written and as they mean in a model; their dimension, how much can be known of
-/// them, and how to say what they are. With a formula in `measure/` a type is complete.
+/// The types of measures: their fields, as written and as they mean in a model; their dimension, how much can be known of them, and
+/// how to say what they are. With a formula in `measure/` a type is complete. The model takes its half of each line, the draft
+/// (`draft/measure.rs`) the other.
 macro_rules! measures {
-    ($(
-        $(#[doc = $doc:literal])* $variant:ident $name:literal {
-            $($(#[doc = $field_doc:literal])* $field:ident: $draft:ty => $type:ty),* $(,)?
-        } |$model:pat_param, $words:pat_param| $dimension:expr, $known:expr, $says:expr;
-    )*) => {
-        /// What a measure measures. Formulas and signs are in `docs/measures.md`.
-        #[derive(Clone, Debug, PartialEq)]
-        pub enum MeasureKind {
-            $($(#[doc = $doc])* $variant { $($(#[doc = $field_doc])* $field: $type,)* },)*
-            /// Something about a wheel.
-            Wheel {
-                /// Which wheel.
-                wheel: WheelId,
-                /// What about it.
-                what: WheelMeasure,
-            },
-            /// Something about both wheels of an axle.
-            Axle {
-                /// Which axle.
-                axle: AxleId,
-                /// What about it.
-                what: AxleMeasure,
-            },
-        }
-
-        /// What a measure measures, as written; see [`MeasureKind`].
-        #[derive(Clone, Debug)]
-        pub enum MeasureKindDraft {
-            /// It could not be read.
-            Unread,
-            $($(#[doc = $doc])* $variant { $($(#[doc = $field_doc])* $field: $draft,)* },)*
-            /// Something about a wheel.
-            Wheel {
-                /// The wheel's name.
-                wheel: String,
-                /// What about it.
-                what: WheelMeasure,
-            },
-            /// Something about both wheels of an axle.
-            Axle {
-                /// The axle's name.
-                axle: String,
-                /// What about it.
-                what: AxleMeasure,
-            },
-        }
-
-        impl MeasureType {
-            /// All of them.
-            pub const ALL: &[Self] = &[$(Self {
-                name: $name,
-                summary: concat!($($doc),*).trim_ascii(),
-                fields: &[$(MeasureField {
-                    key: stringify!($field),
-                    kind: <$type as Field>::KIND,
-                    required: <$type as Field>::REQUIRED,
-                    summary: concat!($($field_doc),*).trim_ascii(),
-                }),*],
-            }),*];
-
-            /// A measure of this type from its fields; `None` where one of them is missing, or not of its kind.
-            pub fn draft(&self, mut field: impl FnMut(&MeasureField) -> Option<FieldDraft>) -> Option<MeasureKindDraft> {
-                let mut fields = self.fields.iter().map(|f| field(f)).collect::<Vec<_>>().into_iter();
-                match self.name {
-                    $($name => Some(MeasureKindDraft::$variant {
-                        $($field: <$type as Field>::draft(fields.next()?)?,)*
-                    }),)*
-                    _ => None,
-                }
-            }
-        }
-
-        impl MeasureKindDraft {
-            /// What it means in a model; of wheels and axles the check says it.
-            pub(super) fn resolve(&self, check: &mut MeasureCheck<'_, '_>) -> Option<MeasureKind> {
-                match self {
-                    $(Self::$variant { $($field),* } => {
-                        $(let $field = <$type as Field>::resolve($field, stringify!($field), check);)*
-                        Some(MeasureKind::$variant { $($field: $field?),* })
-                    })*
-                    Self::Unread => None,
-                    Self::Wheel { wheel, what } => check.wheel(wheel, *what),
-                    Self::Axle { axle, what } => check.axle(axle, *what),
-                }
-            }
-        }
-
-        impl Model {
-            /// What an output's value is.
-            pub fn dimension(&self, output: OutputSource) -> Dimension {
-                let OutputSource::Measure(k) = output else { return Dimension::LENGTH };
-                match &self.measures[k].kind {
-                    $(#[allow(unused_variables, reason = "what a measure is follows from some of its fields")]
-                    MeasureKind::$variant { $($field),* } => { let $model = self; $dimension })*
-                    MeasureKind::Wheel { what, .. } => what.dimension(),
-                    MeasureKind::Axle { what, .. } => what.dimension(),
-                }
-            }
-
-            /// How much can be known of an output: the motion ends at accelerations.
-            pub fn known(&self, output: OutputSource) -> Known {
-                let OutputSource::Measure(k) = output else { return POSITIONS };
-                match &self.measures[k].kind {
-                    $(#[allow(unused_variables, reason = "how much is known follows from some of its fields")]
-                    MeasureKind::$variant { $($field),* } => { let $model = self; $known })*
-                    MeasureKind::Wheel { .. } | MeasureKind::Axle { .. } if self.goes_by_driver(k) => moving(1),
-                    MeasureKind::Wheel { .. } | MeasureKind::Axle { .. } => POSITIONS,
-                }
-            }
-
-            /// What a measure is, in words; `direction` says a global direction.
-            pub fn describe(&self, measure: &Measure, direction: &dyn Fn(Vec3) -> String) -> String {
-                let words = Words { model: self, direction };
-                match &measure.kind {
-                    $(#[allow(unused_variables, reason = "not every field is said")]
-                    MeasureKind::$variant { $($field),* } => { let $words = words; $says })*
-                    MeasureKind::Wheel { wheel, what } => {
-                        format!("{} of wheel `{}`", what.name().replace('_', " "), self.wheels[wheel.0].name)
-                    }
-                    MeasureKind::Axle { axle, what } => {
-                        format!("{} of axle `{}`", what.name().replace('_', " "), self.axles[axle.0].name)
-                    }
-                }
-            }
-        }
-    };
-}
-
-measures! {
+    ($declare:ident) => { $declare! {
     /// A joint's coordinate, counted from the design configuration; of a rod or leg the whole length.
     Coordinate "coordinate" {
         /// The joint's name.
@@ -368,7 +167,79 @@ measures! {
         /// The wheel's spin axis in the design configuration, pointing outboard.
         spin_axis: Line => Direction,
     } |_, w| Dimension::ANGLE, POSITIONS, w.of_axis("camber", *body, spin_axis);
+    } };
 }
+pub(crate) use measures;
+
+/// What a type of measure is in a model.
+macro_rules! in_models {
+    ($(
+        $(#[doc = $doc:literal])* $variant:ident $name:literal {
+            $($(#[doc = $field_doc:literal])* $field:ident: $draft:ty => $type:ty),* $(,)?
+        } |$model:pat_param, $words:pat_param| $dimension:expr, $known:expr, $says:expr;
+    )*) => {
+        /// What a measure measures. Formulas and signs are in `docs/measures.md`.
+        #[derive(Clone, Debug, PartialEq)]
+        pub enum MeasureKind {
+            $($(#[doc = $doc])* $variant { $($(#[doc = $field_doc])* $field: $type,)* },)*
+            /// Something about a wheel.
+            Wheel {
+                /// Which wheel.
+                wheel: WheelId,
+                /// What about it.
+                what: WheelMeasure,
+            },
+            /// Something about both wheels of an axle.
+            Axle {
+                /// Which axle.
+                axle: AxleId,
+                /// What about it.
+                what: AxleMeasure,
+            },
+        }
+
+        impl Model {
+            /// What an output's value is.
+            pub fn dimension(&self, output: OutputSource) -> Dimension {
+                let OutputSource::Measure(k) = output else { return Dimension::LENGTH };
+                match &self.measures[k].kind {
+                    $(#[allow(unused_variables, reason = "what a measure is follows from some of its fields")]
+                    MeasureKind::$variant { $($field),* } => { let $model = self; $dimension })*
+                    MeasureKind::Wheel { what, .. } => what.dimension(),
+                    MeasureKind::Axle { what, .. } => what.dimension(),
+                }
+            }
+
+            /// How much can be known of an output: the motion ends at accelerations.
+            pub fn known(&self, output: OutputSource) -> Known {
+                let OutputSource::Measure(k) = output else { return POSITIONS };
+                match &self.measures[k].kind {
+                    $(#[allow(unused_variables, reason = "how much is known follows from some of its fields")]
+                    MeasureKind::$variant { $($field),* } => { let $model = self; $known })*
+                    MeasureKind::Wheel { .. } | MeasureKind::Axle { .. } if self.goes_by_driver(k) => moving(1),
+                    MeasureKind::Wheel { .. } | MeasureKind::Axle { .. } => POSITIONS,
+                }
+            }
+
+            /// What a measure is, in words; `direction` says a global direction.
+            pub fn describe(&self, measure: &Measure, direction: &dyn Fn(Vec3) -> String) -> String {
+                let words = Words { model: self, direction };
+                match &measure.kind {
+                    $(#[allow(unused_variables, reason = "not every field is said")]
+                    MeasureKind::$variant { $($field),* } => { let $words = words; $says })*
+                    MeasureKind::Wheel { wheel, what } => {
+                        format!("{} of wheel `{}`", what.name().replace('_', " "), self.wheels[wheel.0].name)
+                    }
+                    MeasureKind::Axle { axle, what } => {
+                        format!("{} of axle `{}`", what.name().replace('_', " "), self.axles[axle.0].name)
+                    }
+                }
+            }
+        }
+    };
+}
+
+measures!(in_models);
 
 /// All of an output that follows from positions is known.
 const POSITIONS: Known = Known { orders: 3, by_position: true };
@@ -459,12 +330,12 @@ pub enum Ray {
 /// A formula over other outputs.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Combination {
-    pub(super) expression: Expression,
+    pub(crate) expression: Expression,
     /// What its names mean, and how many of the text's units make one SI unit of each.
-    pub(super) inputs: Vec<(OutputSource, f64)>,
+    pub(crate) inputs: Vec<(OutputSource, f64)>,
     /// How many of the text's units make one SI unit of the result.
-    pub(super) per_unit: f64,
-    pub(super) dimension: Dimension,
+    pub(crate) per_unit: f64,
+    pub(crate) dimension: Dimension,
 }
 
 impl Combination {

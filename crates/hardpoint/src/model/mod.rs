@@ -1,45 +1,24 @@
 //! The mechanism as the user means it: named, checked, in SI units and radians.
 //!
-//! A [`Draft`] is what somebody wrote, with names as references; [`Model::from_draft`] checks all of it
-//! at once and gives either a [`Model`] or every [`Fault`] that it found. A model never changes during
-//! an analysis; a changed design is a [`Geometry`] made from it.
+//! [`Model::from_draft`] makes it of a [`Draft`](crate::draft::Draft). A model never changes; a changed design is a
+//! [`Geometry`](crate::design::Geometry) made from it.
 
-mod check;
 mod curve;
-mod design;
-mod draft;
-mod fault;
-mod field;
 mod formula;
-mod idle;
 mod measure;
 mod metric;
-mod shape;
 mod wheel;
 
 pub(crate) use curve::Contact;
 pub use curve::{Curve, CurvePoint};
-pub(crate) use design::{Effects, Fixed};
-pub use design::{Geometry, Kept};
-pub use draft::{
-    AxleDraft, BodyDraft, ChangeDraft, CouplerDraft, CouplerKindDraft, CurveDraft, Draft, DrivenDraft,
-    DriverDraft, FormulaDraft, FormulaOf, FrameDraft, HardpointDraft, JointDraft, Line, MeasureDraft,
-    MetricDraft, ParameterDraft, Place, PointDraft, PointRef, RayDraft, ShapeDraft, TermDraft, Unread,
-    VariableDraft, WheelDraft, WheelSpinDraft,
-};
-pub use fault::{Fault, Locus, Section, did_you_mean};
-pub use field::{Field, MarkerField};
-pub use formula::{Formula, NamedNumber, Nominal, NotConstant, Source, Target};
-pub use idle::Idle;
-pub use measure::{
-    Combination, Dimension, FieldDraft, FieldKind, Known, Measure, MeasureField, MeasureKind,
-    MeasureKindDraft, MeasureType, OutputSource, Ray,
-};
+pub use formula::{Formula, NamedNumber, Source, Target};
+pub(crate) use measure::measures;
+pub use measure::{Combination, Dimension, Known, Measure, MeasureKind, OutputSource, Ray};
 pub use metric::{Metric, Take};
 pub use wheel::{Axle, AxleMeasure, Side, Vehicle, VehicleEnd, Wheel, WheelMeasure, WheelNeed};
 
 use crate::constraint::Ends;
-use crate::joint::{CoordinateType, JointType, Quantity};
+use crate::joint::{CoordinateType, JointType, Need, Quantity};
 use crate::law::Law;
 use crate::space::{Mat3, Pose, Vec3};
 
@@ -318,6 +297,18 @@ impl Change {
     }
 }
 
+/// A body, or two that slide on each other, that can spin about a line without moving anything else. The spin is held at
+/// rest: one of its balls is treated as a universal joint.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Idle {
+    /// The bodies that spin together.
+    pub bodies: Vec<BodyId>,
+    /// The spherical joint that holds the spin.
+    pub joint: JointId,
+    /// The line's direction in the design configuration.
+    pub axis: Vec3,
+}
+
 /// A point fixed in a body.
 #[derive(Clone, Debug, PartialEq)]
 pub struct BodyPoint {
@@ -332,6 +323,11 @@ pub struct BodyPoint {
 }
 
 impl Model {
+    /// Where a hardpoint is in the nominal design, m.
+    pub(crate) fn position(&self, h: HardpointId) -> Vec3 {
+        self.hardpoints[h.0].position
+    }
+
     /// The joint coordinate that a driver prescribes.
     pub fn driven(&self, driver: &Driver) -> &'static CoordinateType {
         &self.joints[driver.joint.0].kind.coordinates[driver.coordinate]
@@ -401,6 +397,28 @@ impl Model {
     }
 }
 
+impl Direction {
+    /// The hardpoints that it follows.
+    pub(crate) fn hardpoints(self) -> impl Iterator<Item = HardpointId> {
+        let through = match self {
+            Self::Along(_) => None,
+            Self::Through(a, b) => Some([a, b]),
+        };
+        through.into_iter().flatten()
+    }
+}
+
+impl Joint {
+    /// The directions of z and x of marker e, as far as they are given.
+    pub(crate) fn axes_of_marker(&self, e: usize) -> [Option<Direction>; 2] {
+        match (self.kind.axis2, e) {
+            (Need::OnBodyJ, 0) => [self.axis, None],
+            (Need::OnBodyJ, _) => [self.axis2, None],
+            _ => [self.axis, self.axis2],
+        }
+    }
+}
+
 /// The box around some points.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Extent {
@@ -416,14 +434,14 @@ impl Extent {
         extent
     }
 
-    fn include(&mut self, p: Vec3) {
+    pub fn include(&mut self, p: Vec3) {
         let (low, high) = (self.low, self.high);
         self.low = Vec3::new(low.x.min(p.x), low.y.min(p.y), low.z.min(p.z));
         self.high = Vec3::new(high.x.max(p.x), high.y.max(p.y), high.z.max(p.z));
     }
 
     /// Its diagonal; 1 where that is no length to compare with.
-    fn size(&self) -> f64 {
+    pub fn size(&self) -> f64 {
         let size = self.size_or_zero();
         if size > 0.0 { size } else { 1.0 }
     }

@@ -8,8 +8,7 @@ use std::sync::Arc;
 
 use hardpoint_tape::{LANES, Lanes};
 
-use crate::blocks::{Line, lanes_of};
-use crate::sink::Block;
+use crate::blocks::{Block, Line, lanes_of};
 use crate::topology::Source;
 
 use super::execution::{Room, Runnable};

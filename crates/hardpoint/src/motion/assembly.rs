@@ -5,8 +5,8 @@
 //! branches like those of any motion. So the mechanism closes on the branch that was drawn, and an assembled one stays as
 //! it is. Where the path ends before the gaps are closed, least squares say how near the joints can come.
 
+use crate::linalg::Elimination;
 use crate::model::{BodyId, DriverId, JointId};
-use crate::space::Elimination;
 use crate::topology::Topology;
 
 use super::kinematics::State;

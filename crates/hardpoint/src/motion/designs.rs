@@ -8,9 +8,8 @@ use std::sync::Arc;
 
 use hardpoint_tape::{LANES, Lanes};
 
-use crate::blocks::{Blocks, Line, lanes_of};
+use crate::blocks::{Block, Blocks, Line, lanes_of};
 use crate::model::{BodyId, VariableId};
-use crate::sink::Block;
 
 use super::abreast::ProgramOf;
 use super::forecast::{NODES, ORDERS, Weights};

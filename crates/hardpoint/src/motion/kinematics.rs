@@ -5,8 +5,9 @@
 
 use crate::constraint::{EndRates, Ends, Row};
 use crate::joint::Freedom;
+use crate::linalg::{Factors, LARGEST_DENSE, Watched};
 use crate::model::{Contact, DriverId, GROUND, Model};
-use crate::space::{Factors, LARGEST_DENSE, Pose, Quat, Real, Twist, Watched, Wrench};
+use crate::space::{Pose, Quat, Real, Twist, Wrench};
 use crate::topology::{Block, Closure, Source, Topology};
 
 use super::level::{Flow, Linear, turn_twists};

@@ -11,7 +11,8 @@
 //! Wanted are U(n) of the bodies and u(n) of the unknown coordinates; all orders below are known. Its transpose carries loads to
 //! ground (`sensitivity/adjoint.rs`).
 
-use crate::space::{Factors, Real, Twist, Wrench};
+use crate::linalg::Factors;
+use crate::space::{Real, Twist, Wrench};
 use crate::topology::{Link, Step, Topology};
 
 /// How often the product of an m-th and an (n - m)-th derivative stands in the n-th of a product: `C(n, m)`.

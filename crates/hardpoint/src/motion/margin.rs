@@ -2,7 +2,8 @@
 
 use crate::constraint::{Ends, Row};
 use crate::joint::Freedom;
-use crate::space::{Elimination, MOST_GROWTH, Real, Twist, Vec3, Wrench};
+use crate::linalg::{Elimination, MOST_GROWTH};
+use crate::space::{Real, Twist, Vec3, Wrench};
 use crate::topology::Topology;
 
 use super::kinematics::State;

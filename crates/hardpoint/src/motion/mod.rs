@@ -27,11 +27,11 @@ pub use jerk::BodyJerk;
 pub use margin::Margin;
 pub use stop::{Stop, StopKind};
 
+use kinematics::State;
+
 use crate::blocks::{Blocks, Row};
 use crate::model::{BodyId, JointId, Model};
 use crate::space::{Mat3, Quat, Real, Vec3};
-
-use kinematics::State;
 
 /// How a body stands and moves, in global components; position, velocity and acceleration are those of
 /// its frame's origin.

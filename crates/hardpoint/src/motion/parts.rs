@@ -1,7 +1,8 @@
 //! A design laid out in the order in which the plan walks it.
 
+use crate::design::Geometry;
 use crate::law::Law;
-use crate::model::{BodyId, Curve, GROUND, Geometry, Model};
+use crate::model::{BodyId, Curve, GROUND, Model};
 use crate::space::{Pose, Real};
 use crate::topology::{RowPlace, Topology};
 

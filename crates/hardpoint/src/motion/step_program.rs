@@ -14,11 +14,13 @@ use std::sync::{Arc, OnceLock};
 use hardpoint_code::{Code, Unsupported, Width};
 use hardpoint_tape::{Number, Operand, Options, Program, record};
 
+use crate::design::Effects;
 use crate::joint::Freedom;
 use crate::law::Law;
-use crate::model::{BodyId, Effects, Model, VariableId};
+use crate::linalg::{LARGEST_DENSE, MOST_GROWTH};
+use crate::model::{BodyId, Model, VariableId};
 use crate::number::record as recording;
-use crate::space::{LARGEST_DENSE, MOST_GROWTH, Vec3};
+use crate::space::Vec3;
 use crate::topology::{Source, Topology};
 
 use super::BodyState;

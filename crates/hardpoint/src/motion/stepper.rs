@@ -5,8 +5,9 @@
 //! ([`super::walk`]), however the output times are spaced.
 
 use crate::joint::{Freedom, Quantity};
+use crate::linalg::{FullPivot, LARGEST_DENSE};
 use crate::model::{Contact, DriverId, Model};
-use crate::space::{FullPivot, LARGEST_DENSE, Quat, Real};
+use crate::space::{Quat, Real};
 use crate::topology::{Source, Topology};
 
 use super::assembly::Assembly;
@@ -627,9 +628,9 @@ fn driver_units(model: &Model, topology: &Topology) -> Vec<f64> {
 mod tests {
     use super::*;
     use crate::law::Law;
-    use crate::model::*;
     use crate::space::Vec3;
     use crate::topology::Formulation;
+    use crate::{draft::*, model::*};
 
     /// Nodes on two slides each, tied by rods to the two nodes before; a leg pushes at the last.
     fn truss(n: usize) -> Model {

@@ -1,7 +1,8 @@
 //! Why a motion ended before its last output time.
 
-use super::assembly::{Closing, Gap};
 use crate::model::{JointId, Model};
+
+use super::assembly::{Closing, Gap};
 
 /// A run that could not go on. What was solved before is kept.
 #[derive(Clone, Debug, PartialEq)]

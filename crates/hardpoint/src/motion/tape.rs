@@ -245,7 +245,7 @@ impl Tape {
         1.0 / self.outputs[self.program.outputs.blocks + PER_BLOCK * b + 1].0[lane]
     }
 
-    /// The determinant of a block, to be compared by [`Factors::ratio`](crate::space::Factors::ratio).
+    /// The determinant of a block, to be compared by [`Factors::ratio`](crate::linalg::Factors::ratio).
     #[inline(always)]
     pub fn determinant(&self, b: usize) -> Lanes {
         self.outputs[self.program.outputs.blocks + PER_BLOCK * b].0

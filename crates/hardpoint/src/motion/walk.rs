@@ -5,14 +5,14 @@
 //! pulses between two output times is followed all the same. The position is predicted along the drivers, too, so kinks of laws
 //! need no care.
 
+use crate::constraint::Row;
+use crate::model::{BodyId, DriverId};
 use crate::space::Real;
 
 use super::kinematics::PositionFailure;
 use super::singularity::Prober;
 use super::stepper::{Ahead, LOCKED, Refusal, Stepper, TRUST, TRUST_FLOOR};
 use super::{BodyState, Passed, Singular, Stop, StopKind};
-use crate::constraint::Row;
-use crate::model::{BodyId, DriverId};
 
 /// A step may be this part of the estimated distance to the nearest singular position. The estimate is 0.94 to 2.17 times the true
 /// distance (`docs/theory.md`, section 4), so that no step reaches beyond.

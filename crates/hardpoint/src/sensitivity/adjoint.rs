@@ -4,7 +4,8 @@
 //! statics, it says what every joint transmits; that, on the design twists of the joint's markers, is the output's
 //! derivative. What is transmitted does not know of any variable (`docs/theory.md` (17) to (20)).
 
-use crate::model::{DriverId, Field, GROUND, Model};
+use crate::design::Field;
+use crate::model::{DriverId, GROUND, Model};
 use crate::motion::kinematics::State;
 use crate::motion::level::BINOMIAL;
 use crate::motion::stepper::{LOCKED, Stepper};

@@ -3,7 +3,8 @@
 use std::collections::HashMap;
 
 use crate::constraint::Row;
-use crate::model::{Field, JointId, Model, Term};
+use crate::design::Field;
+use crate::model::{JointId, Model, Term};
 use crate::space::Twist;
 
 /// Whether and how a mechanism follows a design variable.

@@ -1,7 +1,8 @@
 //! The three levels of one design variable at one step.
 
+use crate::design::Field;
 use crate::law::Law;
-use crate::model::{DriverId, Field, Model};
+use crate::model::{DriverId, Model};
 use crate::motion::kinematics::State;
 use crate::motion::level::{Flow, carried};
 use crate::motion::stepper::LOCKED;

@@ -4,8 +4,9 @@
 //! differentiated along w it is the equation of order 1, w in the place of the time (`docs/theory.md` (15), (24)).
 
 use crate::constraint::EndRates;
+use crate::design::{Effects, Field};
 use crate::law::Law;
-use crate::model::{DriverId, Effects, Field, Model};
+use crate::model::{DriverId, Model};
 use crate::motion::kinematics::State;
 use crate::motion::level::turn_twists;
 use crate::motion::stepper::Stepper;

@@ -2,13 +2,13 @@
 
 use hardpoint_tape::{Lanes, Number};
 
-use crate::model::{BodyId, DriverId, Field, Model, VariableId};
+use crate::design::Field;
+use crate::model::{BodyId, DriverId, Model, VariableId};
 use crate::motion::kinematics::State;
 use crate::motion::level::Flow;
 use crate::motion::step_program::Recorded;
 use crate::motion::stepper::Stepper;
 use crate::motion::tape::Tape;
-use crate::sink::Sink;
 use crate::space::Real;
 use crate::topology::Topology;
 
@@ -52,8 +52,13 @@ impl Sensing {
         fields.flat_map(|(v, field)| field.reach.bodies.iter().map(move |b| (VariableId(v), BodyId(*b))))
     }
 
-    /// Output time k, at t, where a stepper stands with velocity and acceleration.
-    pub fn step(&mut self, one: &mut Stepper<'_>, k: usize, t: f64, sink: &mut impl Sink) {
+    /// The output time t, where a stepper stands with velocity and acceleration: `found` gets the sensitivities of wanted bodies.
+    pub fn step(
+        &mut self,
+        one: &mut Stepper<'_>,
+        t: f64,
+        mut found: impl FnMut(VariableId, BodyId, &BodySensitivity),
+    ) {
         let Self { fields, direct, wanted, resisting, .. } = self;
         let (topology, state, parts) = (&one.topology, &mut one.state, &one.parts);
         state.finish_rates(topology);
@@ -65,7 +70,7 @@ impl Sensing {
                     let numbers = components(&direct.flow, state, body);
                     BodySensitivity::from(|n| numbers[n])
                 };
-                sink.sensitivity(k, VariableId(v), BodyId(body), &derivatives);
+                found(VariableId(v), BodyId(body), &derivatives);
             }
             if let Some(defect) = direct.worst_defect(topology, state, field) {
                 note(&mut resisting[v], topology, defect, t);

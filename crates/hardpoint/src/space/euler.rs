@@ -1,7 +1,8 @@
 //! 3-1-3 Euler angles, for input and output only: stored orientations have no singularity.
 
-use super::{Mat3, Vec3};
 use crate::number::Real;
+
+use super::{Mat3, Vec3};
 
 /// The rotation with 3-1-3 Euler angles `theta` in rad: `C = Rz(t1) Rx(t2) Rz(t3)`.
 ///

@@ -1,8 +1,10 @@
 //! Rotation matrices.
 
-use super::Vec3;
-use crate::number::Real;
 use std::ops::Mul;
+
+use crate::number::Real;
+
+use super::Vec3;
 
 /// A rotation, as the unit vectors of the turned frame: `A = [f g h]` (paper Eq. 2.1).
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -4,26 +4,17 @@
 //! product is the rate at which a constraint is violated (`docs/theory.md`, section 1).
 
 mod euler;
-mod factors;
-mod least_squares;
 mod mat3;
-mod matrix;
 mod pose;
 mod quat;
-mod rank;
-mod sparse;
 mod twist;
 mod vec3;
 
 pub use euler::{euler_313_from_rotation, euler_rates, rotation_from_euler_313};
-pub(crate) use factors::{Factors, LARGEST_DENSE};
-pub(crate) use least_squares::least_squares;
 pub use mat3::Mat3;
-pub(crate) use matrix::{Elimination, MOST_GROWTH, Watched};
 pub use pose::Pose;
 pub use quat::Quat;
 pub use twist::{Twist, Wrench};
 pub use vec3::Vec3;
 
 pub use crate::number::Real;
-pub(crate) use rank::FullPivot;

@@ -1,7 +1,8 @@
 //! Where a frame is and how it is turned.
 
-use super::{Mat3, Twist, Vec3, Wrench};
 use crate::number::{Dual, Real};
+
+use super::{Mat3, Twist, Vec3, Wrench};
 
 /// Position and orientation of a frame in another: `x_outer = r + rot * x_inner`.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -1,7 +1,8 @@
 //! Unit quaternions: the rotation of a spherical joint, stored without singularity.
 
-use super::{Mat3, Vec3};
 use crate::number::Real;
+
+use super::{Mat3, Vec3};
 
 /// A rotation as a unit quaternion `w + x i + y j + z k`.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -1,8 +1,10 @@
 //! Twists and wrenches, all at the world origin and in world components.
 
-use super::Vec3;
-use crate::number::Real;
 use std::ops::{Add, AddAssign, Mul, Neg, Sub, SubAssign};
+
+use crate::number::Real;
+
+use super::Vec3;
 
 /// A first-order motion of a body: angular part, and velocity of the body point at the world origin.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -1,7 +1,8 @@
 //! Vectors of three components.
 
-use crate::number::Real;
 use std::ops::{Add, AddAssign, Index, Mul, Neg, Sub, SubAssign};
+
+use crate::number::Real;
 
 /// A point or a direction with components along x, y and z.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]

@@ -1,8 +1,8 @@
 //! Finite differences by re-solving moved designs: the slow, inexact way, to check the exact one.
 
-use crate::analysis::{Analysis, Solution};
 use crate::model::{Dimension, Model, VariableId};
 use crate::motion::{BodyState, Stop};
+use crate::run::{Analysis, Solution};
 use crate::sensitivity::BodySensitivity;
 use crate::space::Vec3;
 

@@ -1,16 +1,18 @@
 //! Gradients of chosen outputs by all design variables, in whichever direction is shorter.
 
-use crate::analysis::{Analysis, Design, Solution, Walk};
+use hardpoint_tape::LANES;
+
+use crate::design::{Field, Fixed};
 use crate::measure::{self, Moment, More, Output, SlopeValues, bodies_asked_for, dependences, outputs};
-use crate::model::{Field, Fixed, GROUND, MeasureKind, OutputSource, VariableId};
+use crate::model::{GROUND, MeasureKind, OutputSource, VariableId};
 use crate::motion::Stop;
 use crate::motion::kinematics::State;
 use crate::motion::stepper::Stepper;
 use crate::number::{Dual, Jet, Rates};
+use crate::run::{Analysis, Design, Solution, Walk};
 use crate::sensitivity::{Adjoint, Admissibility, Load, Resisting, Support, Watch, admissibility};
 use crate::space::{Mat3, Pose, Twist, Vec3, Wrench};
 use crate::topology::Topology;
-use hardpoint_tape::LANES;
 
 /// What an output costs the adjoint way, in solutions for one variable the direct way: its load takes some evaluations of the
 /// measure besides the three solutions. 1 to 3 in small mechanisms, less in large ones (`docs/performance.md`).

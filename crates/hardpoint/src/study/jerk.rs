@@ -1,7 +1,7 @@
 //! Jerk over a motion.
 
-use crate::analysis::{Analysis, Design, Walk};
 use crate::motion::{BodyJerk, Stop};
+use crate::run::{Analysis, Design, Walk};
 
 /// Third time derivatives of all bodies over a motion.
 #[derive(Clone, Debug, Default)]

@@ -3,10 +3,10 @@
 //! A metric is written once over any number; its derivatives are the same lines run on duals. Between output times, curves
 //! are the polynomials that have their values, rates and accelerations at both ends.
 
-use crate::analysis::Solution;
 use crate::measure::Measured;
 use crate::model::{Metric, Model, OutputSource, Take, VariableId};
 use crate::number::{Dual, Real};
+use crate::run::Solution;
 
 /// The value of a metric.
 #[derive(Clone, Debug, PartialEq)]

@@ -1,9 +1,10 @@
 //! The nearest admissible change: what was asked for, with as much more as keeps the joints closed.
 
-use crate::analysis::{Analysis, Walk};
+use crate::linalg::{FullPivot, least_squares};
 use crate::model::{Change, End, Model, VariableId};
+use crate::run::{Analysis, Walk};
 use crate::sensitivity::{Direct, FieldParts, conditions_at_design};
-use crate::space::{FullPivot, Vec3, least_squares};
+use crate::space::Vec3;
 
 use super::difference::natural_step;
 

@@ -1,11 +1,12 @@
 //! Second design derivatives over a motion: Hessians, their products with vectors, and how a curve bends along a change.
 
-use crate::analysis::{Analysis, Design, Walk};
+use crate::design::Fixed;
 use crate::measure::{Moment, Output, bodies_asked_for, outputs};
-use crate::model::{BodyId, Fixed, GROUND};
+use crate::model::{BodyId, GROUND};
 use crate::motion::Stop;
 use crate::motion::stepper::Stepper;
 use crate::number::Dual;
+use crate::run::{Analysis, Design, Walk};
 use crate::sensitivity::{BodyCurvature, Seconds, Way};
 use crate::space::Pose;
 

@@ -1,7 +1,7 @@
 //! How far sensitivities can be trusted as predictions: from the second derivatives along each variable.
 
-use crate::analysis::{Analysis, Solution};
 use crate::model::VariableId;
+use crate::run::{Analysis, Solution};
 
 use super::difference::natural_step;
 

@@ -4,8 +4,8 @@
 
 use std::ops::ControlFlow;
 
-use crate::analysis::{Analysis, Solution};
 use crate::model::{Dimension, VariableId};
+use crate::run::{Analysis, Solution};
 use crate::sensitivity::{Admissibility, BodySensitivity};
 use crate::space::Vec3;
 

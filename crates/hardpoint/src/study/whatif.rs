@@ -1,8 +1,8 @@
 //! What if the design were changed so: foreseen from the derivatives of today's design, and solved exactly.
 
-use crate::analysis::{Analysis, Solution};
 use crate::joint::Quantity;
 use crate::model::{Change, DesignVariable, Dimension, End, HardpointId, JointId, Model, VariableId};
+use crate::run::{Analysis, Solution};
 use crate::sensitivity::{Admissibility, JointDefect, admissibility_at_design};
 use crate::space::Vec3;
 

@@ -5,9 +5,12 @@ use std::collections::BTreeMap;
 use petgraph::algo::kosaraju_scc;
 use petgraph::graph::{DiGraph, NodeIndex};
 
+use crate::linalg::FullPivot;
+use crate::model::Model;
+
+use super::fault::TopologyFault;
 use super::matching::match_columns;
-use super::*;
-use crate::space::FullPivot;
+use super::{Block, CoupledColumn, RowPlace, Source, Topology, fault};
 
 /// A pivot below this part of the largest is zero when constraints are counted.
 ///

@@ -1,6 +1,8 @@
 //! What can be wrong with a mechanism as a whole, in the user's own names.
 
-use super::*;
+use crate::model::{BodyId, DriverId, JointId, Model};
+
+use super::{Closure, Formulation, Topology};
 
 /// The mechanism cannot be driven as it is written.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]

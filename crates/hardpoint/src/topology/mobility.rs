@@ -2,9 +2,12 @@
 
 use std::collections::BTreeMap;
 
+use crate::linalg::{Factors, FullPivot, LARGEST_DENSE};
+use crate::model::Model;
+
 use super::blocks::{RANK_TOLERANCE, SparseRow, columns_in_block, design_jacobian};
-use super::*;
-use crate::space::{Factors, FullPivot, LARGEST_DENSE};
+use super::fault::TopologyFault;
+use super::{Source, Topology, fault};
 
 /// Counts the degrees of freedom; every unknown is already known to be determined.
 ///

@@ -2,9 +2,11 @@
 
 use std::collections::BTreeMap;
 
+use crate::linalg::Elimination;
+use crate::model::Model;
+
 use super::blocks::{SparseRow, design_jacobian};
-use super::*;
-use crate::space::Elimination;
+use super::{Source, Topology};
 
 /// A constraint whose part in a combination is smaller than this has no part in it.
 const PART: f64 = 1e-7;

@@ -2,9 +2,10 @@
 
 use std::collections::BTreeSet;
 
-use super::{Closure, Topology};
 use crate::model::{Extent, JointId, Model};
 use crate::space::Vec3;
+
+use super::{Closure, Topology};
 
 /// Places nearer to each other than this part of their distance from the origin are one.
 const ONE_PLACE: f64 = 1e-12;

@@ -3,7 +3,11 @@
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
-use super::*;
+use crate::constraint::Row;
+use crate::joint::Freedom;
+use crate::model::{BodyId, DriverId, GROUND, JointId, Model};
+
+use super::{Closure, Coordinate, CutReason, Formulation, Link, Role, RowPlace, Source, Step, Topology};
 
 /// Cost of a joint in the tree: a body without any tree joint has six unknowns, so six is never chosen.
 const ASKED_CUT: usize = 6;

@@ -2,11 +2,11 @@
 
 use hardpoint::Analysis;
 use hardpoint::measure::outputs;
-use hardpoint::model::*;
 use hardpoint::sensitivity::Admissibility;
 use hardpoint::space::Vec3;
 use hardpoint::study::{Gradients, Method};
 use hardpoint::topology::Formulation;
+use hardpoint::{draft::*, model::*};
 
 use crate::workbench::*;
 
@@ -151,7 +151,7 @@ fn gradients_of_what_is_no_matter_of_positions_are_those_of_a_run() {
     let (of, over) = ("aside".to_owned(), "height".to_owned());
     let mut add = |name: &str, kind| draft.measures.push(MeasureDraft { name: name.into(), kind });
     add("slope", MeasureKindDraft::Slope { of, over, driver });
-    let expression = hardpoint::law::Expression::parse("height*aside").unwrap();
+    let expression = hardpoint::expression::Expression::parse("height*aside").unwrap();
     add("product", MeasureKindDraft::Combination { expression });
     let model = Model::from_draft(&draft).unwrap();
     let analysis = Analysis::new(&model).unwrap();

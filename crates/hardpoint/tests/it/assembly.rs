@@ -1,11 +1,11 @@
 //! Mechanisms that are open as drawn: closed along a path, or told why not.
 
-use hardpoint::model::*;
 use hardpoint::motion::{Closing, StopKind};
 use hardpoint::space::Vec3;
 use hardpoint::study::{VerifyOptions, verify};
 use hardpoint::topology::Formulation;
 use hardpoint::{Analysis, Solution};
+use hardpoint::{draft::*, model::*};
 
 use crate::workbench::*;
 

@@ -4,11 +4,11 @@ use std::ops::ControlFlow;
 
 use hardpoint::Analysis;
 use hardpoint::law::Law;
-use hardpoint::model::*;
 use hardpoint::sensitivity::Admissibility;
 use hardpoint::space::Vec3;
 use hardpoint::study::{VerifyOptions, verify};
 use hardpoint::topology::Formulation;
+use hardpoint::{design::Kept, draft::*, model::*};
 
 use crate::workbench::*;
 

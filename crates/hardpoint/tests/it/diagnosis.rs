@@ -3,7 +3,7 @@
 use hardpoint::motion::StopKind;
 use hardpoint::space::Vec3;
 use hardpoint::topology::{Formulation, TopologyFault};
-use hardpoint::{Analysis, model::*};
+use hardpoint::{Analysis, draft::*, model::*};
 
 use crate::workbench::*;
 

@@ -4,12 +4,12 @@ use std::ops::ControlFlow;
 
 use hardpoint::Analysis;
 use hardpoint::joint::Quantity;
-use hardpoint::law::{Expression, Law};
-use hardpoint::model::*;
 use hardpoint::sensitivity::Admissibility;
 use hardpoint::space::Vec3;
 use hardpoint::study::{VerifyOptions, verify};
 use hardpoint::topology::Formulation;
+use hardpoint::{design::Field, draft::*, model::*};
+use hardpoint::{expression::Expression, law::Law};
 
 use crate::workbench::*;
 

@@ -2,20 +2,25 @@
 
 use std::path::{Path, PathBuf};
 
-/// The rooms of the core, in the order of the walk: each may use those before it only.
-const ROOMS: [&str; 13] = [
+/// The rooms of the core, in the order of the walk: each may use those before it only. What somebody wrote (`draft`) knows the model that
+/// it means, and so comes after it; results are kept in `blocks`.
+const ROOMS: [&str; 17] = [
     "number",
+    "linalg",
     "space",
+    "expression",
     "law",
     "constraint",
     "joint",
     "model",
+    "design",
+    "draft",
     "topology",
+    "blocks",
     "motion",
     "sensitivity",
     "measure",
-    "analysis",
-    "window",
+    "run",
     "study",
 ];
 
@@ -44,6 +49,23 @@ fn sources(folder: &Path) -> Vec<(PathBuf, String)> {
     out
 }
 
+/// Whether a line names a room, in a path or in braces: `crate::{model::Model, run::Analysis}`.
+fn mentions(line: &str, room: &str) -> bool {
+    let braces = line.trim_start().starts_with("use crate::{") || line.contains(" use crate::{");
+    line.contains(&format!("crate::{room}::"))
+        || line.contains(&format!("crate::{room};"))
+        || braces
+            && [
+                format!("{{{room}::"),
+                format!(" {room}::"),
+                format!("{{{room},"),
+                format!(" {room},"),
+                format!(" {room}}}"),
+            ]
+            .iter()
+            .any(|w| line.contains(w.as_str()))
+}
+
 #[test]
 fn no_room_of_the_core_uses_a_later_one() {
     let src = Path::new(env!("CARGO_MANIFEST_DIR")).join("src");
@@ -51,13 +73,19 @@ fn no_room_of_the_core_uses_a_later_one() {
     for (path, text) in sources(&src) {
         let inside = path.strip_prefix(&src).unwrap();
         let first = inside.iter().next().unwrap().to_str().unwrap().trim_end_matches(".rs");
-        let Some(room) = ROOMS.iter().position(|r| *r == first) else { continue };
+        if first == "lib" {
+            continue;
+        }
+        let room = ROOMS.iter().position(|r| *r == first);
+        let room = room.unwrap_or_else(|| panic!("{} is in no room: add it to ROOMS", inside.display()));
         looked_at += 1;
-        let code = text.lines().filter(|l| !l.trim_start().starts_with("//"));
+        // Tests of a room may use all of the house.
+        let (code, _) = text.split_once("#[cfg(test)]\nmod ").unwrap_or((&text, ""));
+        let code = code.lines().filter(|l| !l.trim_start().starts_with("//"));
         for (later, name) in ROOMS.iter().enumerate().skip(room + 1) {
-            let mentions = code.clone().any(|l| l.contains(&format!("crate::{name}")));
+            let is_used = code.clone().any(|l| mentions(l, name));
             assert!(
-                !mentions,
+                !is_used,
                 "{} is in the room `{first}` and uses `{name}`, which comes later in the walk: {}",
                 inside.display(),
                 ROOMS[..=later].join(" -> ")

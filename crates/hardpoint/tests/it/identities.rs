@@ -1,9 +1,9 @@
 //! What must be equal, is: formulations, lanes, moved and turned mechanisms, swapped bodies.
 
-use hardpoint::model::*;
 use hardpoint::space::{Mat3, Pose, Vec3};
 use hardpoint::topology::Formulation;
 use hardpoint::{Analysis, Solution};
+use hardpoint::{draft::*, model::*};
 
 use crate::workbench::*;
 

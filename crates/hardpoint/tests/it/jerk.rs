@@ -2,10 +2,10 @@
 
 use hardpoint::Analysis;
 use hardpoint::law::Law;
-use hardpoint::model::*;
 use hardpoint::number::{Dual, Jet, Rates, Real};
 use hardpoint::space::Vec3;
 use hardpoint::topology::Formulation;
+use hardpoint::{draft::*, model::*};
 
 use crate::workbench::*;
 

@@ -3,11 +3,11 @@
 use std::ops::ControlFlow;
 
 use hardpoint::joint::ALL;
-use hardpoint::model::*;
 use hardpoint::space::Vec3;
 use hardpoint::study::{VerifyOptions, verify};
 use hardpoint::topology::{Formulation, Role};
 use hardpoint::{Analysis, Solution};
+use hardpoint::{draft::*, model::*};
 
 use crate::workbench::*;
 

@@ -1,11 +1,11 @@
 //! Independent loops are solved one after another.
 
 use hardpoint::Analysis;
-use hardpoint::model::*;
 use hardpoint::motion::Execution;
 use hardpoint::space::Vec3;
 use hardpoint::study::{Scheme, compare_with_difference, finite_differences};
 use hardpoint::topology::Formulation;
+use hardpoint::{draft::*, model::*};
 
 use crate::workbench::*;
 

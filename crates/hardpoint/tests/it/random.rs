@@ -9,8 +9,8 @@ mod rank;
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
+use hardpoint::draft::Draft;
 use hardpoint::joint::ALL;
-use hardpoint::model::Draft;
 
 use draw::Rng;
 use laws::{Case, Promise, Tally};

@@ -5,9 +5,9 @@ use std::path::Path;
 use hardpoint::Solution;
 use hardpoint::joint::{JointType, Need};
 use hardpoint::law::Law;
-use hardpoint::model::*;
 use hardpoint::sensitivity::Admissibility;
 use hardpoint::space::{Pose, Quat, Vec3};
+use hardpoint::{draft::*, model::*};
 use serde_json::Value;
 
 pub struct Case {

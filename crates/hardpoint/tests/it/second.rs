@@ -2,9 +2,9 @@
 
 use hardpoint::Analysis;
 use hardpoint::law::Law;
-use hardpoint::model::*;
 use hardpoint::space::Vec3;
 use hardpoint::topology::Formulation;
+use hardpoint::{draft::*, model::*};
 
 use crate::workbench::*;
 

@@ -2,11 +2,14 @@
 
 use std::ops::ControlFlow;
 
-use hardpoint::model::{BodyId, Model, Place, VariableId};
 use hardpoint::sensitivity::BodySensitivity;
 use hardpoint::space::Vec3;
 use hardpoint::study::{CheckOutcome, Scheme, Verification, VerifyOptions, verify};
 use hardpoint::{Analysis, Solution};
+use hardpoint::{
+    draft::Place,
+    model::{BodyId, Model, VariableId},
+};
 
 use crate::workbench::*;
 

@@ -1,8 +1,8 @@
 //! Mechanisms to test with, written as a user of the library would write them.
 
 use hardpoint::law::Law;
-use hardpoint::model::*;
 use hardpoint::space::Vec3;
+use hardpoint::{draft::*, model::*};
 
 use crate::reference_case::Case;
 

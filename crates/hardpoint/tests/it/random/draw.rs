@@ -2,8 +2,8 @@
 
 use hardpoint::joint::{ALL, JointType, Need, Quantity, named};
 use hardpoint::law::Law;
-use hardpoint::model::*;
 use hardpoint::space::{Mat3, Pose, Vec3};
+use hardpoint::{draft::*, model::*};
 
 use super::rank::{Basis, coupler_row, driver_row, joint_rows};
 

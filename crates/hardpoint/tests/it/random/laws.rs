@@ -2,13 +2,13 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use hardpoint::model::*;
 use hardpoint::motion::{Execution, StopKind};
 use hardpoint::sensitivity::Admissibility;
 use hardpoint::space::{Pose, Vec3};
 use hardpoint::study::{Scheme, compare_with_difference, finite_differences, natural_step};
 use hardpoint::topology::{Formulation, Role, Source};
 use hardpoint::{Analysis, Solution};
+use hardpoint::{draft::*, model::*};
 
 use super::draw::Rng;
 use super::rank;

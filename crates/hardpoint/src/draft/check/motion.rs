@@ -1,7 +1,14 @@
 //! Checks of what moves and is moved together: drivers and couplers, and the coordinates that they name.
 
-use super::*;
-use crate::joint::JointType;
+use crate::draft::{CouplerKindDraft, DrivenDraft, DriverDraft, Locus, Section};
+use crate::joint;
+use crate::joint::{CoordinateType, JointType};
+use crate::model::{
+    BodyId, BodyPoint, Coupler, Direction, Driver, DriverId, GROUND, HardpointId, Joint, JointId, Term,
+};
+use crate::space::Mat3;
+
+use super::{Check, Here, frame_along};
 
 impl Check<'_> {
     /// A coordinate of a joint, by name or as its only one.

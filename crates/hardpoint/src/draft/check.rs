@@ -7,15 +7,20 @@ mod measures;
 mod motion;
 mod wheels;
 
-use std::collections::{BTreeMap, BTreeSet, HashMap};
-
+pub use formulas::{Nominal, NotConstant};
 pub(super) use measures::MeasureCheck;
 
-use super::fault::did_you_mean;
-use super::*;
-use crate::constraint::Row;
-use crate::joint::{self, CoordinateType, Need};
-use crate::law::Expression;
+use std::collections::{BTreeMap, BTreeSet, HashMap};
+
+use crate::draft::{
+    Draft, Fault, FormulaOf, FrameDraft, Line, Locus, Place, PointRef, Section, did_you_mean,
+};
+use crate::expression::Expression;
+use crate::model::{
+    AxleId, Body, BodyId, BodyPoint, Direction, DriverId, Extent, GROUND, Hardpoint, HardpointId, JointId,
+    Model, PointId, Source, WheelId,
+};
+use crate::space::{Mat3, Pose, Vec3};
 
 /// How far `axis2` may be from square to `axis`, as a cosine: typed unit vectors are good to this.
 const SQUARE_TOLERANCE: f64 = 1e-6;
@@ -38,7 +43,7 @@ impl Model {
     /// where something is [`Unread`] and all else is right.
     ///
     /// ```
-    /// use hardpoint::model::{Draft, Model};
+    /// use hardpoint::{draft::Draft, model::Model};
     /// let faults = Model::from_draft(&Draft::default()).unwrap_err();
     /// assert_eq!(faults[0].message, "the model has no bodies");
     /// ```

@@ -5,14 +5,16 @@
 
 use std::ops::ControlFlow;
 
-use crate::analysis::{Analysis, Design, Progress, Solution, Solved, Walk};
+use hardpoint_tape::LANES;
+
 use crate::measure::{self, Before, SlopeValues, Slopes};
 use crate::model::{BodyId, Model, OutputSource, VariableId};
 use crate::motion::margin::Margins;
 use crate::motion::{BodyState, Motion};
+use crate::run::sink::Sink;
 use crate::sensitivity::{Admissibility, BodySensitivity, Sensitivities};
-use crate::sink::Sink;
-use hardpoint_tape::LANES;
+
+use super::{Analysis, Design, Progress, Solution, Solved, Walk};
 
 /// What the results of one output time take, in bytes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

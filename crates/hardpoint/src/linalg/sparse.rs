@@ -2,8 +2,9 @@
 
 use std::ops::Range;
 
-use super::matrix::{Factored, MOST_GROWTH, Watched};
 use crate::number::{Function, Real};
+
+use super::matrix::{Factored, MOST_GROWTH, Watched};
 
 /// A pivot is at least this part of the largest entry that its column has left. Factors are then no larger than 2, and a change of
 /// the values may double them before [`MOST_GROWTH`] asks for another order. Chains of scissors fill by a tenth more with 0.9,
@@ -552,7 +553,7 @@ mod tests {
     use proptest::prelude::*;
 
     use super::*;
-    use crate::space::Elimination;
+    use crate::linalg::Elimination;
 
     /// Column and value of the entries of each row.
     type Rows = Vec<Vec<(usize, f64)>>;

@@ -1,7 +1,8 @@
 //! Design velocity fields of markers, kept values, points and laws: what one variable, or one driver, changes to first order.
 
-use super::*;
-use crate::space::{Real, Twist};
+use crate::design::Kept;
+use crate::model::{DriverId, JointId, PointId};
+use crate::space::{Real, Twist, Vec3};
 
 /// The first-order change of a design per unit of one variable: the paper's design
 /// velocity, with V and R(theta) U of a marker combined into a body-fixed twist (`docs/theory.md` (8)).

@@ -1,4 +1,4 @@
-//! Reading the text of a law.
+//! Reading the text of an expression.
 //!
 //! Tokens are cut by `winnow`; the grammar is a descent with one token in hand, which knows at every error what the
 //! author was about to write:
@@ -24,9 +24,10 @@ use winnow::prelude::*;
 use winnow::stream::LocatingSlice;
 use winnow::token::{any, one_of, take_while};
 
+use crate::number::Function;
+
 use super::program::{MAX_WAITING, Operation, Program};
 use super::term::{Binary, Comparison};
-use crate::number::Function;
 
 /// What is wrong with the text of a law.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
@@ -76,7 +77,7 @@ fn functions() -> impl Iterator<Item = (&'static str, Option<&'static str>, Call
 }
 
 /// The program that `text` writes, with `parameters` for further names.
-pub(super) fn parse(text: &str, parameters: &[&str]) -> Result<Program, ExpressionError> {
+pub(crate) fn parse(text: &str, parameters: &[&str]) -> Result<Program, ExpressionError> {
     let mut descent = Descent::new(text, parameters);
     descent.program = Program::of_time();
     let mut known = std::collections::BTreeSet::new();
@@ -102,7 +103,7 @@ pub(super) fn parse(text: &str, parameters: &[&str]) -> Result<Program, Expressi
 }
 
 /// The program that `text` writes, which does not know the time, and the other names in it in the order of their first use.
-pub(super) fn parse_open(text: &str) -> Result<(Program, Vec<&str>), ExpressionError> {
+pub(crate) fn parse_open(text: &str) -> Result<(Program, Vec<&str>), ExpressionError> {
     let mut descent = Descent::new(text, &[]);
     descent.free = Some(Free::default());
     if descent.token == Token::End {
@@ -117,7 +118,7 @@ pub(super) fn parse_open(text: &str) -> Result<(Program, Vec<&str>), ExpressionE
 }
 
 /// The names in a text that expressions do not know, each once.
-pub(super) fn names(text: &str) -> Vec<&str> {
+pub(crate) fn names(text: &str) -> Vec<&str> {
     let (mut descent, mut free) = (Descent::new(text, &[]), Free::default());
     while descent.token != Token::End {
         if let Token::Name(name) = descent.token
@@ -585,7 +586,7 @@ fn is_taken(name: &str) -> bool {
 }
 
 /// Whether expressions can use what has this name.
-pub(super) fn is_free_name(name: &str) -> bool {
+pub(crate) fn is_free_name(name: &str) -> bool {
     !is_taken(name) && (self::name, eof).parse_next(&mut LocatingSlice::new(name)).is_ok()
 }
 

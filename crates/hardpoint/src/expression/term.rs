@@ -3,12 +3,13 @@
 use std::cmp::Ordering;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
-use super::range::Range;
 use crate::number::{Function, Real};
+
+use super::range::Range;
 
 /// What an expression is evaluated in: a number with whatever derivatives it carries; or
 /// [bounds](super::range::Stretch) of one.
-pub(super) trait Term:
+pub(crate) trait Term:
     Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Div<Output = Self> + Neg<Output = Self>
 {
     /// The number `x`, at all times.
@@ -127,7 +128,7 @@ fn is_it<T: Real>(x: T, o: T, side: Ordering) -> bool {
 
 /// A function of two quantities.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Binary {
+pub(crate) enum Binary {
     Add,
     Sub,
     Mul,
@@ -141,7 +142,7 @@ pub(super) enum Binary {
 
 impl Binary {
     #[inline(always)]
-    pub(super) fn of<V: Term>(self, x: V, y: V) -> V {
+    pub(crate) fn of<V: Term>(self, x: V, y: V) -> V {
         match self {
             Self::Add => x + y,
             Self::Sub => x - y,
@@ -158,7 +159,7 @@ impl Binary {
 
 /// A comparison of two values.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Comparison {
+pub(crate) enum Comparison {
     Less,
     LessOrEqual,
     Greater,
@@ -167,7 +168,7 @@ pub(super) enum Comparison {
 
 impl Comparison {
     /// Whether `a` compares with `b` in this way; `None` if either is not a number.
-    pub(super) fn holds(self, a: f64, b: f64) -> Option<bool> {
+    pub(crate) fn holds(self, a: f64, b: f64) -> Option<bool> {
         let order = a.partial_cmp(&b)?;
         Some(match self {
             Self::Less => order == Ordering::Less,
@@ -178,7 +179,7 @@ impl Comparison {
     }
 
     /// Whether it holds for all numbers of two ranges, or for none; `None` if that depends.
-    pub(super) fn holds_between(self, a: Range, b: Range) -> Option<bool> {
+    pub(crate) fn holds_between(self, a: Range, b: Range) -> Option<bool> {
         let corners = [(a.low, b.low), (a.low, b.high), (a.high, b.low), (a.high, b.high)];
         let first = self.holds(a.low, b.high)?;
         corners.iter().all(|&(a, b)| self.holds(a, b) == Some(first)).then_some(first)

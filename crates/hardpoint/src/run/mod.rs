@@ -1,15 +1,23 @@
 //! The whole walk for one model: plan, motion, sensitivities, measures.
 
+pub(crate) mod sink;
+mod window;
+
+pub use sink::Sink;
+pub use window::{Footprint, Keep, Kept};
+
 use std::num::NonZero;
 use std::ops::{ControlFlow, Range};
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, OnceLock};
 
 use hardpoint_tape::{LANES, Number};
+use sink::{Store, hand_over};
 
+use crate::design::{Effects, Field, Geometry};
 use crate::law::Law;
 use crate::measure::{self, Before, Measured, SlopeValues};
-use crate::model::{BodyId, Effects, Field, Geometry, Model};
+use crate::model::{BodyId, Model};
 use crate::motion::abreast::Abreast;
 use crate::motion::designs::SideBySide;
 use crate::motion::execution::Cache;
@@ -24,13 +32,12 @@ use crate::sensitivity::{
     Admissibility, JointDefect, Resisting, Sensing, Sensitivities, admissibility, admissibility_at_design,
     along, note_defects, record_derivatives,
 };
-use crate::sink::{Sink, Store};
 use crate::topology::{Formulation, Topology, TopologyFault};
 
 /// A model with its plan of solution, ready to be run as often as needed.
 ///
 /// ```
-/// # use hardpoint::model::*; use hardpoint::law::Law; use hardpoint::space::Vec3;
+/// # use hardpoint::{draft::*, model::*}; use hardpoint::law::Law; use hardpoint::space::Vec3;
 /// // A crank of 0.2 m that turns once per second.
 /// let draft = Draft {
 ///     bodies: vec![BodyDraft { name: "crank".into(), frame: FrameDraft::Default }],
@@ -542,7 +549,9 @@ impl<'m> Analysis<'m> {
                 (&times[..designs.len()], 0),
                 (&mut resisting, variables),
             );
-            found.block.hand_over(&wanted, moved.iter().copied(), sinks, 0..designs.len(), |lane| (lane, k));
+            hand_over(&found.block, &wanted, moved.iter().copied(), sinks, 0..designs.len(), |lane| {
+                (lane, k)
+            });
         })?;
         Some((effort, resisting))
     }
@@ -655,7 +664,9 @@ impl<'a> Walk<'a> {
                     sink.state(k, BodyId(body), &BodyState::of(&one.state, body));
                 }
                 if let Some(sensing) = &mut self.sensing {
-                    sensing.step(one, k, times[k], sink);
+                    sensing.step(one, times[k], |variable, body, found| {
+                        sink.sensitivity(k, variable, body, found)
+                    });
                 }
                 then(sink, Solved::One(one), 1, self.sensing.as_ref());
             } else {
@@ -664,7 +675,7 @@ impl<'a> Walk<'a> {
                 if let Some(block) = self.abreast.own_results() {
                     let moved = self.sensing.iter().flat_map(Sensing::moved);
                     let sinks = std::slice::from_mut(sink);
-                    block.hand_over(&self.wanted, moved, sinks, lanes.clone(), |lane| {
+                    hand_over(&block, &self.wanted, moved, sinks, lanes.clone(), |lane| {
                         (0, k + lane - lanes.start)
                     });
                 }

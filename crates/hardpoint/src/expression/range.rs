@@ -1,4 +1,4 @@
-//! Between which bounds a law stays over a stretch of time.
+//! Between which bounds an expression stays over a stretch of time.
 //!
 //! Expressions are evaluated in intervals that carry an interval for their rate: `f([a, b])` lies in the interval that the
 //! operations give, and in `f(m) + f'([a, b]) [-h/2, h/2]` about the middle m, which is the tighter one when the stretch is short
@@ -8,8 +8,9 @@
 use std::f64::consts::{FRAC_PI_2, LN_10, PI, TAU};
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
-use super::term::{Comparison, Term};
 use crate::number::Function;
+
+use super::term::{Comparison, Term};
 
 /// All numbers from `low` to `high`. What is undefined anywhere is unbounded.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -24,19 +25,19 @@ pub struct Range {
 const HIGHEST_DEGREE: usize = 24;
 
 impl Range {
-    pub(super) const UNBOUNDED: Self = Self { low: f64::NEG_INFINITY, high: f64::INFINITY };
+    pub(crate) const UNBOUNDED: Self = Self { low: f64::NEG_INFINITY, high: f64::INFINITY };
 
     /// From one number to another, in either order; unbounded if either is none.
-    pub(super) fn between(a: f64, b: f64) -> Self {
+    pub(crate) fn between(a: f64, b: f64) -> Self {
         if a.is_nan() || b.is_nan() { Self::UNBOUNDED } else { Self { low: a.min(b), high: a.max(b) } }
     }
 
-    pub(super) fn exactly(x: f64) -> Self {
+    pub(crate) fn exactly(x: f64) -> Self {
         Self::between(x, x)
     }
 
     /// The least range that holds both.
-    pub(super) fn or(self, other: Self) -> Self {
+    pub(crate) fn or(self, other: Self) -> Self {
         Self { low: self.low.min(other.low), high: self.high.max(other.high) }
     }
 
@@ -99,7 +100,7 @@ impl Range {
         self.monotone_on(Self { low: 0.0, high: f64::INFINITY }, f64::sqrt)
     }
 
-    pub(super) fn sin(self) -> Self {
+    pub(crate) fn sin(self) -> Self {
         // So far out no digit of the angle is left.
         const FARTHEST: f64 = 1e15;
         let width = self.high - self.low;
@@ -183,19 +184,19 @@ pub struct Stretch {
 }
 
 impl Stretch {
-    pub(super) const UNBOUNDED: Self = Self { value: Range::UNBOUNDED, rate: Range::UNBOUNDED };
+    pub(crate) const UNBOUNDED: Self = Self { value: Range::UNBOUNDED, rate: Range::UNBOUNDED };
 
     /// The time itself.
-    pub(super) fn time(from: f64, to: f64) -> Self {
+    pub(crate) fn time(from: f64, to: f64) -> Self {
         Self { value: Range::between(from, to), rate: Range::exactly(1.0) }
     }
 
-    pub(super) fn constant(x: f64) -> Self {
+    pub(crate) fn constant(x: f64) -> Self {
         Self { value: Range::exactly(x), rate: Range::exactly(0.0) }
     }
 
     /// What both forms leave, for a quantity that is `middle` in the middle of a stretch of this length.
-    pub(super) fn settled(self, middle: f64, length: f64) -> Self {
+    pub(crate) fn settled(self, middle: f64, length: f64) -> Self {
         let half = 0.5 * length;
         // Of what is not defined all along, the middle says nothing.
         let known = self.value.is_bounded();
@@ -204,7 +205,7 @@ impl Stretch {
     }
 
     /// Of c0 + c1 x + c2 x^2 + ... for x from one number to another.
-    pub(super) fn of_polynomial(coefficients: &[f64], from: f64, to: f64) -> Self {
+    pub(crate) fn of_polynomial(coefficients: &[f64], from: f64, to: f64) -> Self {
         let n = coefficients.len();
         if n > HIGHEST_DEGREE + 1 {
             return Self::UNBOUNDED;
@@ -218,7 +219,7 @@ impl Stretch {
     }
 
     /// The largest size of the rate, per s.
-    pub(super) fn fastest(self) -> f64 {
+    pub(crate) fn fastest(self) -> f64 {
         self.rate.reach_from(0.0)
     }
 
@@ -228,7 +229,7 @@ impl Stretch {
     }
 
     /// The least stretch that holds both.
-    pub(super) fn or(self, o: Self) -> Self {
+    pub(crate) fn or(self, o: Self) -> Self {
         Self { value: self.value.or(o.value), rate: self.rate.or(o.rate) }
     }
 }

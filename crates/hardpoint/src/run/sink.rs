@@ -2,6 +2,7 @@
 
 use std::ops::Range;
 
+use crate::blocks::Block;
 use crate::model::{BodyId, VariableId};
 use crate::motion::{BodyState, Motion};
 use crate::sensitivity::{BodySensitivity, Sensitivities};
@@ -38,41 +39,29 @@ pub trait Sink {
     }
 }
 
-/// Results of eight output times, or of eight designs, side by side.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Block<'b> {
-    /// Per body but ground 24 numbers: position, columns of the rotation, velocity, angular velocity, acceleration, angular
-    /// acceleration.
-    pub states: &'b [[f64; 8]],
-    /// Per variable, and body that it moves, the 18 numbers of a [`BodySensitivity`] in the order of its fields.
-    pub derivatives: &'b [[f64; 8]],
-}
-
-impl Block<'_> {
-    /// Gives the results of wanted bodies, lane by lane, to one of the sinks each, as those of an output time: `of(lane)` says which
-    /// sink, and which time. `moved` says which variable moves which body, in the order of the derivatives.
-    #[inline(always)]
-    pub(crate) fn hand_over<S: Sink>(
-        &self,
-        wanted: &[bool],
-        moved: impl Iterator<Item = (VariableId, BodyId)>,
-        sinks: &mut [S],
-        lanes: Range<usize>,
-        of: impl Fn(usize) -> (usize, usize),
-    ) {
-        let states = self.states.as_chunks::<{ BodyState::NUMBERS }>().0;
-        for (numbers, body) in states.iter().zip(1..).filter(|(_, body)| wanted[*body]) {
-            for lane in lanes.clone() {
-                let (sink, k) = of(lane);
-                sinks[sink].state(k, BodyId(body), &BodyState::from(|n| numbers[n][lane]));
-            }
+/// Gives the results of wanted bodies, lane by lane, to one of the sinks each, as those of an output time: `of(lane)` says which
+/// sink, and which time. `moved` says which variable moves which body, in the order of the derivatives.
+#[inline(always)]
+pub(crate) fn hand_over<S: Sink>(
+    block: &Block<'_>,
+    wanted: &[bool],
+    moved: impl Iterator<Item = (VariableId, BodyId)>,
+    sinks: &mut [S],
+    lanes: Range<usize>,
+    of: impl Fn(usize) -> (usize, usize),
+) {
+    let states = block.states.as_chunks::<{ BodyState::NUMBERS }>().0;
+    for (numbers, body) in states.iter().zip(1..).filter(|(_, body)| wanted[*body]) {
+        for lane in lanes.clone() {
+            let (sink, k) = of(lane);
+            sinks[sink].state(k, BodyId(body), &BodyState::from(|n| numbers[n][lane]));
         }
-        let derivatives = self.derivatives.as_chunks::<{ BodySensitivity::NUMBERS }>().0;
-        for (numbers, (variable, body)) in derivatives.iter().zip(moved).filter(|(_, m)| wanted[m.1.0]) {
-            for lane in lanes.clone() {
-                let (sink, k) = of(lane);
-                sinks[sink].sensitivity(k, variable, body, &BodySensitivity::from(|n| numbers[n][lane]));
-            }
+    }
+    let derivatives = block.derivatives.as_chunks::<{ BodySensitivity::NUMBERS }>().0;
+    for (numbers, (variable, body)) in derivatives.iter().zip(moved).filter(|(_, m)| wanted[m.1.0]) {
+        for lane in lanes.clone() {
+            let (sink, k) = of(lane);
+            sinks[sink].sensitivity(k, variable, body, &BodySensitivity::from(|n| numbers[n][lane]));
         }
     }
 }

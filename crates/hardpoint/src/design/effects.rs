@@ -2,92 +2,17 @@
 //!
 //! The geometry is written once, over any [`Real`]; its derivatives are the same lines run on [`Dual`]s, at whatever design.
 
-use super::*;
 use crate::constraint::Row;
-use crate::joint::Need;
+use crate::design::{Field, Fixed, Geometry, Kept, MarkerField};
 use crate::law::Law;
+use crate::model::{
+    BodyId, Change, DesignVariable, Direction, DriverId, HardpointId, Joint, JointId, Measure, MeasureKind,
+    Model, PointId, Source, Target, VariableId,
+};
 use crate::number::{Dual, Real};
-use crate::space::{euler_313_from_rotation, rotation_from_euler_313};
+use crate::space::{Mat3, Pose, Vec3, rotation_from_euler_313};
 
-/// The body-fixed data of one design: all that the analysis needs of it besides the drivers' laws.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Geometry<T = f64> {
-    /// Per joint, marker i in body i and marker j in body j.
-    pub markers: Vec<[Pose<T>; 2]>,
-    /// Per joint, what its constraints may keep of the design configuration.
-    pub kept: Vec<Kept<T>>,
-    /// Per point of the model, its position in its body's frame, m.
-    pub points: Vec<Vec3<T>>,
-}
-
-/// What measures go by, fixed in the bodies.
-#[derive(Clone, Debug)]
-pub(crate) struct Fixed<T> {
-    /// Per point of the model, its position in its body's frame, m.
-    pub points: Vec<Vec3<T>>,
-    /// Per measure, the directions that it goes by: unit vectors in their bodies' frames.
-    pub directions: Vec<[Option<Vec3<T>>; 2]>,
-    /// Per measure of a joint's coordinate, marker i in body i and marker j in body j.
-    pub markers: Vec<Option<[Pose<T>; 2]>>,
-}
-
-impl<T: Copy> Fixed<T> {
-    /// The same, number by number.
-    pub fn map<U>(&self, f: impl Fn(T) -> U + Copy) -> Fixed<U> {
-        let pose = |p: Pose<T>| Pose { rot: Mat3 { cols: p.rot.cols.map(|c| c.map(f)) }, r: p.r.map(f) };
-        Fixed {
-            points: self.points.iter().map(|p| p.map(f)).collect(),
-            directions: self.directions.iter().map(|d| d.map(|d| d.map(|d| d.map(f)))).collect(),
-            markers: self.markers.iter().map(|m| m.map(|m| m.map(pose))).collect(),
-        }
-    }
-}
-
-/// What a joint can keep of its design configuration, or the rate at which a design variable changes it.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Kept<T = f64> {
-    /// Distance between its markers, m: the length of a rod.
-    pub distance: T,
-    /// Displacement of marker j along z_i, m.
-    pub offset: T,
-    /// Cosine of the angle between z_i and z_j.
-    pub cosine: T,
-    /// Distance of marker j from the curve of marker i, positive on its left, m.
-    pub contact: T,
-}
-
-impl<T: Real> Kept<T> {
-    /// What this constraint keeps; 0 for those that keep nothing.
-    pub fn by(&self, row: Row) -> T {
-        match row {
-            Row::Distance => self.distance,
-            Row::Offset => self.offset,
-            Row::Cosine => self.cosine,
-            Row::Contact => self.contact,
-            _ => T::zero(),
-        }
-    }
-
-    fn map<U>(self, f: impl Fn(T) -> U) -> Kept<U> {
-        Kept {
-            distance: f(self.distance),
-            offset: f(self.offset),
-            cosine: f(self.cosine),
-            contact: f(self.contact),
-        }
-    }
-
-    fn vanishes(self) -> bool {
-        [self.distance, self.offset, self.cosine, self.contact].into_iter().all(T::vanishes)
-    }
-
-    /// The largest of them.
-    pub(crate) fn size(&self) -> T {
-        let [a, b] =
-            [self.distance.abs().larger(self.offset.abs()), self.cosine.abs().larger(self.contact.abs())];
-        a.larger(b)
-    }
-}
+use super::formulas::Formulas;
 
 /// What the variables of a model change, by what they change: found once for many designs.
 #[derive(Clone, Debug)]
@@ -102,90 +27,6 @@ pub(crate) struct Effects<'m> {
     points: Vec<Vec<usize>>,
     /// What formulas do; none in a model without.
     formulas: Option<Formulas>,
-}
-
-/// How formulas follow the variables and each other.
-#[derive(Clone, Debug)]
-struct Formulas {
-    /// Per parameter: the variables that change it, and its rate by each.
-    rates: Vec<Vec<(usize, f64)>>,
-    /// Which formula gives a parameter, the coordinates of a hardpoint, the length of a joint.
-    of_parameter: Vec<Option<usize>>,
-    of_hardpoint: Vec<[Option<usize>; 3]>,
-    of_length: Vec<Option<usize>>,
-    /// The formulas that use a parameter, or a coordinate of a hardpoint.
-    using_parameter: Vec<Vec<usize>>,
-    using_hardpoint: Vec<Vec<usize>>,
-    /// Per variable, whether any formula follows it.
-    is_used: Vec<bool>,
-}
-
-impl Formulas {
-    fn of(model: &Model) -> Option<Self> {
-        if model.formulas.is_empty() {
-            return None;
-        }
-        let (parameters, hardpoints) = (model.parameters.len(), model.hardpoints.len());
-        let mut f = Self {
-            rates: vec![Vec::new(); parameters],
-            of_parameter: vec![None; parameters],
-            of_hardpoint: vec![[None; 3]; hardpoints],
-            of_length: vec![None; model.joints.len()],
-            using_parameter: vec![Vec::new(); parameters],
-            using_hardpoint: vec![Vec::new(); hardpoints],
-            is_used: Vec::new(),
-        };
-        for (k, formula) in model.formulas.iter().enumerate() {
-            match formula.of {
-                Target::Parameter(p) => f.of_parameter[p.0] = Some(k),
-                Target::Coordinate(h, axis) => f.of_hardpoint[h.0][axis] = Some(k),
-                Target::Length(j) => f.of_length[j.0] = Some(k),
-                Target::Law(..) => {}
-            }
-            for source in formula.sources() {
-                match source {
-                    Source::Parameter(p) => f.using_parameter[p.0].push(k),
-                    Source::Coordinate(h, _) => f.using_hardpoint[h.0].push(k),
-                }
-            }
-        }
-        for (k, variable) in model.variables.iter().enumerate() {
-            for change in &variable.changes {
-                if let Change::Parameter { parameter, rate } = change {
-                    f.rates[parameter.0].push((k, *rate));
-                }
-            }
-            let is_used = variable.changes.iter().any(|change| !f.using(change).is_empty());
-            f.is_used.push(is_used);
-        }
-        Some(f)
-    }
-
-    /// The formulas that use what a change moves.
-    fn using(&self, change: &Change) -> &[usize] {
-        match change {
-            Change::Parameter { parameter, .. } => &self.using_parameter[parameter.0],
-            Change::Move { hardpoint, .. } => &self.using_hardpoint[hardpoint.0],
-            _ => &[],
-        }
-    }
-
-    /// The formulas that follow a variable, directly or through others, in order.
-    fn following(&self, model: &Model, variable: VariableId) -> Vec<usize> {
-        let mut seen = vec![false; model.formulas.len()];
-        let changes = &model.variables[variable.0].changes;
-        let mut waiting: Vec<usize> = changes.iter().flat_map(|c| self.using(c)).copied().collect();
-        while let Some(k) = waiting.pop() {
-            if !std::mem::replace(&mut seen[k], true) {
-                match model.formulas[k].of {
-                    Target::Parameter(p) => waiting.extend(&self.using_parameter[p.0]),
-                    Target::Coordinate(h, _) => waiting.extend(&self.using_hardpoint[h.0]),
-                    Target::Length(_) | Target::Law(..) => {}
-                }
-            }
-        }
-        (0..seen.len()).filter(|k| seen[*k]).collect()
-    }
 }
 
 impl<'m> Effects<'m> {
@@ -286,7 +127,7 @@ impl<'m> Effects<'m> {
     }
 
     /// What may change along a direction, some variables at once.
-    fn touched(&self, along: &[(VariableId, f64)]) -> Touched {
+    pub(super) fn touched(&self, along: &[(VariableId, f64)]) -> Touched {
         let mut touched = Touched::default();
         for (variable, by) in along {
             for change in &self.model.variables[variable.0].changes {
@@ -376,12 +217,12 @@ fn is_null<T: Real>(v: Vec3<T>) -> bool {
 
 /// What may change along a direction: hardpoints, joints, points, parameters of laws at a rate, and formulas of such.
 #[derive(Default)]
-struct Touched {
-    hardpoints: Vec<usize>,
-    joints: Vec<usize>,
-    points: Vec<usize>,
-    laws: Vec<(DriverId, usize, f64)>,
-    law_formulas: Vec<usize>,
+pub(super) struct Touched {
+    pub hardpoints: Vec<usize>,
+    pub joints: Vec<usize>,
+    pub points: Vec<usize>,
+    pub laws: Vec<(DriverId, usize, f64)>,
+    pub law_formulas: Vec<usize>,
 }
 
 /// Where everything is with the variables at these values.
@@ -586,95 +427,12 @@ impl<'e, T: Real> Design<'e, T> {
 /// A second axis nearer to the first than this, rad, says nothing about x.
 const ALONG: f64 = 1e-12;
 
-impl Model {
-    /// The geometry of the design with variable k at `design[k]` (missing entries are 0).
-    ///
-    /// Body frames stay where they are in the design configuration; markers move on their bodies.
-    pub fn geometry(&self, design: &[f64]) -> Geometry {
-        Effects::of(self).geometry(&self.whole(design))
-    }
-
-    /// The first-order change of the nominal design per unit of one variable.
-    pub fn field(&self, variable: VariableId) -> Field {
-        Effects::of(self).field(variable, &self.whole(&[]))
-    }
-
-    /// The first-order changes of a design per unit of each variable.
-    pub fn fields(&self, design: &[f64]) -> Vec<Field> {
-        Effects::of(self).fields(&self.whole(design))
-    }
-
-    /// The variables whose change changes nothing that the motion or its results depend on.
-    pub fn without_effect(&self) -> Vec<VariableId> {
-        let effects = Effects::of(self);
-        let directions = self.measures.iter().flat_map(|m| self.directions(m)).flatten();
-        let seen: Vec<usize> = directions.flat_map(|(_, axis)| axis.hardpoints()).map(|h| h.0).collect();
-        let is_idle = |v: &VariableId| {
-            let touched = effects.touched(&[(*v, 1.0)]);
-            let felt = [&touched.joints, &touched.points, &touched.law_formulas];
-            felt.iter().all(|list| list.is_empty())
-                && touched.laws.is_empty()
-                && !touched.hardpoints.iter().any(|h| seen.contains(h))
-        };
-        (0..self.variables.len()).map(VariableId).filter(is_idle).collect()
-    }
-
-    /// A value for every variable: 0 but for this one.
-    pub(crate) fn alone(&self, variable: VariableId, value: f64) -> Vec<f64> {
-        let mut design = self.whole(&[]);
-        design[variable.0] = value;
-        design
-    }
-
-    /// A value for every variable: those given, then 0.
-    pub(crate) fn whole(&self, design: &[f64]) -> Vec<f64> {
-        let given = design.iter().copied().chain(std::iter::repeat(0.0));
-        given.take(self.variables.len()).collect()
-    }
-
-    /// The drivers' laws in the design with variable k at `design[k]` (missing entries are 0).
-    pub fn laws(&self, design: &[f64]) -> Vec<Law> {
-        Effects::of(self).laws(&self.whole(design))
-    }
-
-    /// 3-1-3 Euler angles of a marker in its body's frame, and their rotation C(theta).
-    fn euler_of(&self, joint: &Joint, e: usize) -> ([f64; 3], Mat3) {
-        let in_body = self.bodies[joint.bodies[e].0].frame.rot.transpose() * joint.frames[e];
-        let theta = euler_313_from_rotation(in_body);
-        (theta, rotation_from_euler_313(theta))
-    }
-
-    pub(crate) fn position(&self, h: HardpointId) -> Vec3 {
-        self.hardpoints[h.0].position
-    }
-}
-
-impl Direction {
-    /// The hardpoints that it follows.
-    pub(super) fn hardpoints(self) -> impl Iterator<Item = HardpointId> {
-        let through = match self {
-            Self::Along(_) => None,
-            Self::Through(a, b) => Some([a, b]),
-        };
-        through.into_iter().flatten()
-    }
-}
-
-impl Joint {
-    /// The directions of z and x of marker e, as far as they are given.
-    fn axes_of_marker(&self, e: usize) -> [Option<Direction>; 2] {
-        match (self.kind.axis2, e) {
-            (Need::OnBodyJ, 0) => [self.axis, None],
-            (Need::OnBodyJ, _) => [self.axis2, None],
-            _ => [self.axis, self.axis2],
-        }
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::law::Expression;
+    use crate::draft::*;
+    use crate::expression::Expression;
+    use crate::joint::Quantity;
 
     #[test]
     fn formulas_have_exact_second_derivatives_on_duals_of_duals() {

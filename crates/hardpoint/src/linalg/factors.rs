@@ -1,8 +1,9 @@
 //! Factors of one block: dense for the small blocks that most mechanisms have, sparse for large ones.
 
+use crate::number::{Function, Real};
+
 use super::matrix::{Elimination, Factored};
 use super::sparse::SparseLu;
-use crate::number::{Function, Real};
 
 /// Blocks with more unknowns than this are factored by [`SparseLu`].
 ///

@@ -1,21 +1,48 @@
-//! A number that is written as an expression over named numbers.
+//! Numbers that are written as expressions: over the time (the law of a driver), or over other numbers of the model.
+//!
+//! # The language of expressions
+//!
+//! | written | meaning |
+//! |---|---|
+//! | `1`, `.5`, `1e-3` | numbers, with a decimal point |
+//! | `t`, `pi` | the time in seconds, and 3.14159... |
+//! | any other name | a parameter, if [`Law::parse_with`](crate::law::Law::parse_with) is given one of that name |
+//! | `+ - * / ^`, `( )` | `^` binds first and from the right, then the sign (`-t^2` is `-(t^2)`), then `* /`, then `+ -` |
+//! | `sin cos tan asin acos atan sinh cosh tanh` | of one argument, angles in radians |
+//! | `exp ln log10 sqrt abs` | of one argument |
+//! | `atan2(y, x)`, `hypot(x, y)`, `pow(x, p)` | of two arguments |
+//! | `min(a, b, ...)`, `max(a, b, ...)` | of two or more arguments |
+//! | `step(x, x0, h0, x1, h1)` | `h0` up to `x0`, `h1` from `x1` on, between them `h0 + (h1 - h0)(3u² - 2u³)` |
+//! | `if(a < b, x, y)` | `x` where the comparison (`<`, `<=`, `>`, `>=`) holds, else `y` |
+//!
+//! Derivatives are propagated as [jets](crate::number::Jet), so they carry rounding error only, no step size; `abs`, `min`, `max`, `step`
+//! and `if` are differentiated on the side that is active.
 
-use super::expression::{self, ExpressionError};
-use super::program::{Operation, Program};
+mod parse;
+mod program;
+mod range;
+mod term;
+
+pub use parse::ExpressionError;
+pub(crate) use parse::{names, parse, parse_open};
+pub(crate) use program::{Operation, Program};
+pub use range::{Range, Stretch};
+pub(crate) use term::Term;
+
 use crate::number::Real;
 
-/// A number of a model that is written as an expression in the [language of laws](super), without the time: `hub + shim/2`.
+/// A number of a model that is written as an expression in the [language](self), without the time: `hub + shim/2`.
 ///
 /// Names that are no functions stand for parameters of the model, and those of two parts, like `ball.x`, for coordinates of
 /// its hardpoints. Angles are in radians.
 ///
 /// ```
-/// use hardpoint::law::Expression;
+/// use hardpoint::expression::Expression;
 ///
 /// let width = Expression::parse("2*hub + shim/2")?;
 /// assert_eq!(width.names(), ["hub", "shim"]);
 /// assert_eq!(width.at(&[100.0, 3.0]), 201.5);
-/// # Ok::<(), hardpoint::law::ExpressionError>(())
+/// # Ok::<(), hardpoint::expression::ExpressionError>(())
 /// ```
 #[derive(Clone, Debug)]
 pub struct Expression {
@@ -31,7 +58,7 @@ impl Expression {
     /// # Errors
     /// When `text` is not an expression; the error says where, and what to write instead.
     pub fn parse(text: &str) -> Result<Self, ExpressionError> {
-        let (program, names) = expression::parse_open(text)?;
+        let (program, names) = parse_open(text)?;
         let names = names.into_iter().map(str::to_owned).collect();
         Ok(Self { text: text.to_owned(), names, program, per_metre: 1.0 })
     }
@@ -101,7 +128,7 @@ impl Expression {
     /// Whether expressions can use what has this name: letters, digits and `_`, no digit first, and none of the names that
     /// they know already.
     pub fn can_name(name: &str) -> bool {
-        expression::is_free_name(name)
+        parse::is_free_name(name)
     }
 }
 

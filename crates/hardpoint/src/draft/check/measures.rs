@@ -1,8 +1,17 @@
 //! Checks of measures: what they name, and whether it can be known.
 
-use super::*;
-use crate::law::Expression;
-use crate::model::measure::Field;
+use crate::draft::measure::Field;
+use crate::draft::{
+    FieldDraft, FieldKind, Line, Locus, MeasureDraft, MetricDraft, PointRef, RayDraft, Section,
+};
+use crate::expression::Expression;
+use crate::model::{
+    AxleMeasure, BodyId, Combination, Dimension, Direction, DriverId, JointId, Known, Measure, MeasureKind,
+    Metric, OutputSource, PointId, Ray, Take, WheelMeasure,
+};
+use crate::space::Vec3;
+
+use super::{Check, Here};
 
 impl Check<'_> {
     pub(super) fn measures(&mut self) {
@@ -276,7 +285,7 @@ impl Check<'_> {
 }
 
 /// The check of one measure.
-pub(in crate::model) struct MeasureCheck<'c, 'd> {
+pub(in crate::draft) struct MeasureCheck<'c, 'd> {
     check: &'c mut Check<'d>,
     owner: &'c str,
     here: Here,

@@ -1,7 +1,15 @@
 //! Checks of design variables.
 
-use super::*;
-use crate::model::shape::{Interpolation, ShapeField};
+use std::collections::BTreeSet;
+
+use crate::design::{Interpolation, ShapeField};
+use crate::draft::{ChangeDraft, Line, Section, ShapeDraft, VariableDraft};
+use crate::model::{
+    BodyId, Change, DesignVariable, Direction, DriverId, End, HardpointId, JointId, ParameterId,
+};
+use crate::space::Vec3;
+
+use super::{Check, Here, SAME_POINT, UNPLACED};
 
 impl Check<'_> {
     pub(super) fn variables(&mut self) {

@@ -1,6 +1,13 @@
 //! Checks of road wheels and of what is measured at them.
 
-use super::*;
+use crate::draft::{AxleDraft, PointRef, Section, WheelDraft, WheelSpinDraft};
+use crate::model::{
+    Axle, AxleId, AxleMeasure, BodyPoint, Direction, DriverId, HardpointId, MeasureKind, PointId, Side,
+    VehicleEnd, Wheel, WheelId, WheelMeasure, WheelNeed,
+};
+use crate::space::Vec3;
+
+use super::{Check, Here, SAME_POINT};
 
 /// A direction nearer to the vertical than this, as a cosine, has no heading, and one nearer to the horizontal no rise.
 const HEADLESS: f64 = 1e-6;

@@ -1,25 +1,14 @@
 //! Idle freedoms: a rod that can spin between its balls without moving anything else.
 
-use super::*;
 use crate::constraint::Row;
-use crate::space::{FullPivot, Twist};
+use crate::linalg::FullPivot;
+use crate::model::{BodyId, GROUND, Idle, JointId, Model};
+use crate::space::{Mat3, Twist, Vec3};
 
 /// A constraint that is weaker than this part of the strongest does not hold.
 const RANK_TOLERANCE: f64 = 1e-8;
 /// A point this far from an axis, in sizes, is on it; typed coordinates agree to about this.
 const ON_AXIS: f64 = 1e-6;
-
-/// A body, or two that slide on each other, that can spin about a line without moving anything else. The spin is held at
-/// rest: one of its balls is treated as a universal joint.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Idle {
-    /// The bodies that spin together.
-    pub bodies: Vec<BodyId>,
-    /// The spherical joint that holds the spin.
-    pub joint: JointId,
-    /// The line's direction in the design configuration.
-    pub axis: Vec3,
-}
 
 impl Model {
     /// Finds idle spins and holds them.

@@ -5,11 +5,12 @@
 
 use std::cmp::Ordering;
 
-use super::term::{Binary, Comparison, Term};
 use crate::number::{Function, Jet, Real};
 
+use super::term::{Binary, Comparison, Term};
+
 /// The most operands that may wait for their operation.
-pub(super) const MAX_WAITING: usize = 256;
+pub(crate) const MAX_WAITING: usize = 256;
 
 /// What suffices for most expressions; clearing more of the stack would cost more than evaluating them.
 const FEW_WAITING: usize = 4;
@@ -19,7 +20,7 @@ const USUALLY_WAITING: usize = 12;
 
 /// One operation: takes its operands from the stack, the last on top, and leaves one result.
 #[derive(Clone, Copy, Debug)]
-pub(super) enum Operation {
+pub(crate) enum Operation {
     Constant(f64),
     /// A named parameter, by its place in the list.
     Parameter(usize),
@@ -88,7 +89,7 @@ impl Operation {
 
 /// The operations of an expression.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Program {
+pub(crate) struct Program {
     operations: Vec<Operation>,
     /// For every operand that waits, whether it depends on the time.
     waiting: Vec<bool>,
@@ -99,29 +100,29 @@ pub(super) struct Program {
 
 impl Program {
     /// An empty program for a function of the time, with parameters that do not depend on it.
-    pub(super) fn of_time() -> Self {
+    pub(crate) fn of_time() -> Self {
         Self { is_of_time: true, ..Self::default() }
     }
 
     /// The program that is a number.
-    pub(super) fn constant(value: f64) -> Self {
+    pub(crate) fn constant(value: f64) -> Self {
         let mut program = Self::default();
         program.emit(Operation::Constant(value));
         program
     }
 
     /// The number of operations so far; an operand begins at the length before it was emitted.
-    pub(super) fn len(&self) -> usize {
+    pub(crate) fn len(&self) -> usize {
         self.operations.len()
     }
 
     /// Whether one more operand would exceed [`MAX_WAITING`].
-    pub(super) fn is_full(&self) -> bool {
+    pub(crate) fn is_full(&self) -> bool {
         self.waiting.len() == MAX_WAITING
     }
 
     /// The number that is the operation at `index`, if it is one.
-    pub(super) fn constant_at(&self, index: usize) -> Option<f64> {
+    pub(crate) fn constant_at(&self, index: usize) -> Option<f64> {
         match self.operations.get(index) {
             Some(&Operation::Constant(value)) => Some(value),
             _ => None,
@@ -129,7 +130,7 @@ impl Program {
     }
 
     /// Appends an operation whose operands are there already.
-    pub(super) fn emit(&mut self, operation: Operation) {
+    pub(crate) fn emit(&mut self, operation: Operation) {
         let operands = operation.operands();
         let left = self.waiting.len() - operands;
         let is_timed = matches!(operation, Operation::Time) || self.waiting[left..].contains(&true);
@@ -156,7 +157,7 @@ impl Program {
     }
 
     /// Appends the power of the last two operands; with the faster rules if the exponent is a number.
-    pub(super) fn emit_power(&mut self) {
+    pub(crate) fn emit_power(&mut self) {
         let exponent = self.constant_at(self.len() - 1);
         let Some(exponent) = exponent else {
             return self.emit(Operation::Two(Binary::Pow));
@@ -173,18 +174,18 @@ impl Program {
     }
 
     /// Drops the last operand, which began at `start`.
-    pub(super) fn drop_operand(&mut self, start: usize) {
+    pub(crate) fn drop_operand(&mut self, start: usize) {
         self.operations.truncate(start);
         self.waiting.pop();
     }
 
     /// The program with numbers for its parameters: the one that the text with these numbers in it would have given.
-    pub(super) fn with_values(&self, values: &[f64]) -> Self {
+    pub(crate) fn with_values(&self, values: &[f64]) -> Self {
         self.with_leaves(|parameter| Operation::Constant(values[parameter]))
     }
 
     /// The program with a number, or another parameter, for each of its parameters.
-    pub(super) fn with_leaves(&self, leaf: impl Fn(usize) -> Operation) -> Self {
+    pub(crate) fn with_leaves(&self, leaf: impl Fn(usize) -> Operation) -> Self {
         let mut program = Self { is_of_time: self.is_of_time, ..Self::default() };
         for &operation in &self.operations {
             match operation {
@@ -199,7 +200,7 @@ impl Program {
 
     /// The program's result at a time, for the given parameters; in whatever the time is given.
     #[inline(always)]
-    pub(super) fn at<V: Term>(&self, time: V, parameter: impl Fn(usize) -> V) -> V {
+    pub(crate) fn at<V: Term>(&self, time: V, parameter: impl Fn(usize) -> V) -> V {
         self.watched(time, parameter, |_, _| ())
     }
 
@@ -237,7 +238,7 @@ impl Program {
     }
 
     /// Whether any operation has sides that it could switch between.
-    pub(super) fn has_sides(&self) -> bool {
+    pub(crate) fn has_sides(&self) -> bool {
         self.operations.iter().any(|operation| {
             use Operation::{One, Select, Step, Two};
             matches!(
@@ -248,7 +249,7 @@ impl Program {
     }
 
     /// The sides that the operations with sides take at time `t`, in the order of the operations; without parameters.
-    pub(super) fn sides(&self, t: f64, sides: &mut Vec<u8>) {
+    pub(crate) fn sides(&self, t: f64, sides: &mut Vec<u8>) {
         sides.clear();
         let watch = |operation: Operation, operands: &[Jet]| sides.extend(operation.side(operands));
         self.watched(Jet::time(t), |_| Jet::constant(f64::NAN), watch);

@@ -1,7 +1,13 @@
 //! Checks of joints: their bodies, places, axes, lengths, leads and curves.
 
-use super::*;
-use crate::joint::JointType;
+use crate::constraint::Row;
+use crate::draft::{JointDraft, Line, Section};
+use crate::joint;
+use crate::joint::{JointType, Need};
+use crate::model::{Curve, Direction, GROUND, Hardpoint, HardpointId, Joint, JointId};
+use crate::space::{Mat3, Pose, Vec3};
+
+use super::{Check, Here, SAME_POINT, SQUARE_TOLERANCE, UNPLACED, degrees_between, frame_along};
 
 impl Check<'_> {
     pub(super) fn joints(&mut self) {

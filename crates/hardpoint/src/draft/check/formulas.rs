@@ -1,8 +1,18 @@
 //! Checks of parameters and formulas: what their names mean, in which order they are evaluated, and what may follow them.
 
-use super::*;
-use crate::law::{Expression, Law};
+use std::collections::{BTreeMap, BTreeSet, HashMap};
+
+use crate::draft::{ChangeDraft, Draft, FormulaOf, Locus, Section};
+use crate::expression::Expression;
+use crate::joint::Quantity;
+use crate::law::Law;
+use crate::model::{
+    Change, DriverId, Formula, Hardpoint, HardpointId, JointId, NamedNumber, ParameterId, Source, Target,
+};
 use crate::number::Dual;
+use crate::space::Vec3;
+
+use super::{Check, Here, LISTED_NAMES, extent_of_joints};
 
 /// A formula, and where it stands.
 pub(super) struct Written {
@@ -343,6 +353,29 @@ impl Formula {
             Target::Length(_) | Target::Law(..) => None,
         }
     }
+}
+
+/// What the parameters and formulas of a draft give with all design variables at zero: for numbers that no change of the
+/// design can move.
+#[derive(Clone, Debug, Default)]
+pub struct Nominal {
+    /// Of each hardpoint of the draft, m; null where a formula of it is faulty.
+    pub positions: Vec<Vec3>,
+    /// By name: its value in SI if it has one, its quantity, and a design variable or hardpoint that it follows.
+    parameters: BTreeMap<String, (Option<f64>, Quantity, Option<String>)>,
+}
+
+/// Why an expression is no constant.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum NotConstant {
+    /// It names what is no parameter.
+    Unknown(String),
+    /// It uses this parameter, which follows this (`design variable `b``, or `hardpoint `A``).
+    Follows(String, String),
+    /// It uses a parameter that is faulty, which is reported elsewhere.
+    Faulty,
+    /// Its value is not finite.
+    NotFinite,
 }
 
 impl Nominal {

@@ -1,14 +1,25 @@
-//! What somebody wrote, before it is checked: names for references, SI units and radians.
+//! A mechanism as somebody wrote it, with names as references, and the check that makes a model of it.
+//!
+//! [`Model::from_draft`] checks all of a [`Draft`] at once and gives either a [`Model`] or every [`Fault`] that it found.
+
+mod check;
+mod fault;
+mod idle;
+mod measure;
+
+pub use check::{Nominal, NotConstant};
+pub use fault::{Fault, Locus, Section, did_you_mean};
+pub use measure::{FieldDraft, FieldKind, MeasureField, MeasureKindDraft, MeasureType};
 
 use std::collections::BTreeMap;
 
+use crate::expression::Expression;
 use crate::joint::Quantity;
-use crate::law::{Expression, Law, ParameterKind};
+use crate::law::{Law, ParameterKind};
+use crate::model::{End, Side, Take, Vehicle, VehicleEnd};
 use crate::space::{Pose, Vec3};
 
-use super::{End, MeasureKindDraft, Section, Side, Take, Vehicle, VehicleEnd};
-
-/// A mechanism as written. Fill it by hand or from a file; [`super::Model::from_draft`] checks it.
+/// A mechanism as written. Fill it by hand or from a file; [`Model::from_draft`] checks it.
 #[derive(Clone, Debug, Default)]
 pub struct Draft {
     /// The mechanism's name.
@@ -70,7 +81,7 @@ impl Unread {
     }
 
     /// Whether that field could not be read of any entry of a list.
-    pub(super) fn anywhere(&self, section: Section, field: &str) -> bool {
+    pub(crate) fn anywhere(&self, section: Section, field: &str) -> bool {
         self.0.iter().any(|((s, _), fields)| *s == section && fields.contains(&field))
     }
 
@@ -318,7 +329,7 @@ pub struct VariableDraft {
     pub tolerance: Option<f64>,
 }
 
-/// A part of a design variable; see [`super::Change`].
+/// A part of a design variable; see [`Change`].
 #[derive(Clone, Debug)]
 pub enum ChangeDraft {
     /// A hardpoint moves.
@@ -487,7 +498,7 @@ pub enum PointRef {
     },
 }
 
-/// A road wheel; see [`super::Wheel`].
+/// A road wheel; see [`Wheel`].
 #[derive(Clone, Debug)]
 pub struct WheelDraft {
     /// Its name.
@@ -510,7 +521,7 @@ pub struct WheelDraft {
     pub end: Option<VehicleEnd>,
 }
 
-/// Two wheels side by side; see [`super::Axle`].
+/// Two wheels side by side; see [`Axle`].
 #[derive(Clone, Debug)]
 pub struct AxleDraft {
     /// Its name.
@@ -544,7 +555,7 @@ pub struct MeasureDraft {
     pub kind: MeasureKindDraft,
 }
 
-/// A metric; see [`super::Metric`]. Its numbers are in units of which so many make a metre or a radian, since what they measure
+/// A metric; see [`Metric`]. Its numbers are in units of which so many make a metre or a radian, since what they measure
 /// follows from the measures.
 #[derive(Clone, Debug)]
 pub struct MetricDraft {
@@ -564,7 +575,7 @@ pub struct MetricDraft {
     pub per_radian: f64,
 }
 
-/// A direction that an angle is measured from or to; see [`super::Ray`].
+/// A direction that an angle is measured from or to; see [`Ray`].
 #[derive(Clone, Debug)]
 pub enum RayDraft {
     /// From one point to another.

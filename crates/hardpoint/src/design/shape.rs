@@ -1,11 +1,12 @@
 //! Design velocity fields over the whole of a body: V(s), and the rotation that goes with it, at every point s (paper,
 //! section 3: one parameter tau, many points).
 
-use crate::space::{Vec3, least_squares};
+use crate::linalg::least_squares;
+use crate::space::Vec3;
 
 /// How every point of a body moves per unit of a design variable.
 #[derive(Clone, Debug)]
-pub(super) enum ShapeField {
+pub(crate) enum ShapeField {
     /// All points the same way: m per m.
     Translate(Vec3),
     /// About a line through a point: per rad.
@@ -53,7 +54,7 @@ fn cantilever(x: f64) -> (f64, f64) {
 /// Radial basis functions `r^3` at given points and a linear function: the smoothest field through their velocities. Points
 /// that move as a rigid or an evenly stretched body move everything so.
 #[derive(Clone, Debug)]
-pub(super) struct Interpolation {
+pub(crate) struct Interpolation {
     centre: Vec3,
     scale: f64,
     points: Vec<Vec3>,

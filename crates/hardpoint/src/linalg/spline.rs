@@ -9,11 +9,11 @@
 use std::sync::OnceLock;
 
 /// The coefficients between two knots: of 1, s, s², ... with s the time since the first of the two.
-pub(super) type Segment = [f64; 6];
+pub(crate) type Segment = [f64; 6];
 
 /// What is known at the ends.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum EndKind {
+pub(crate) enum EndKind {
     Natural,
     Clamped,
     Periodic,
@@ -42,7 +42,7 @@ enum Source {
 /// All splines with the same knots and the same kind of ends: they are linear in their data, which are the values at the
 /// knots (but the last, if periodic), then, if clamped, the derivatives at the start and those at the end.
 #[derive(Debug)]
-pub(super) struct Basis {
+pub(crate) struct Basis {
     times: Vec<f64>,
     /// How many derivatives belong to a knot: 1 for cubics, 2 for quintics.
     rates: usize,
@@ -55,7 +55,7 @@ pub(super) struct Basis {
 
 impl Basis {
     /// The splines with these knots, strictly increasing; two at least, three if periodic or natural and quintic.
-    pub(super) fn new(times: &[f64], rates: usize, ends: EndKind) -> Self {
+    pub(crate) fn new(times: &[f64], rates: usize, ends: EndKind) -> Self {
         let times = times.to_vec();
         let mut basis = Self { times, rates, ends, factor: Vec::new(), cardinals: Vec::new() };
         let data = match ends {
@@ -69,12 +69,12 @@ impl Basis {
     }
 
     /// The number of data.
-    pub(super) fn len(&self) -> usize {
+    pub(crate) fn len(&self) -> usize {
         self.cardinals.len()
     }
 
     /// The spline for these data, segment by segment.
-    pub(super) fn segments(&self, data: &[f64]) -> Vec<Segment> {
+    pub(crate) fn segments(&self, data: &[f64]) -> Vec<Segment> {
         let mut unknowns = vec![0.0; self.factor.len()];
         self.for_entries(|row, column, entry| {
             if let Source::Data(datum) = column {
@@ -92,7 +92,7 @@ impl Basis {
     }
 
     /// The spline that is the derivative of [`segments`](Self::segments) by one of the data.
-    pub(super) fn cardinal(&self, datum: usize) -> &[Segment] {
+    pub(crate) fn cardinal(&self, datum: usize) -> &[Segment] {
         self.cardinals[datum].get_or_init(|| {
             let mut data = vec![0.0; self.len()];
             data[datum] = 1.0;

@@ -1,0 +1,87 @@
+//! How formulas follow the variables and each other.
+
+use crate::model::{Change, Model, Source, Target, VariableId};
+
+/// How formulas follow the variables and each other.
+#[derive(Clone, Debug)]
+pub(super) struct Formulas {
+    /// Per parameter: the variables that change it, and its rate by each.
+    pub rates: Vec<Vec<(usize, f64)>>,
+    /// Which formula gives a parameter, the coordinates of a hardpoint, the length of a joint.
+    pub of_parameter: Vec<Option<usize>>,
+    pub of_hardpoint: Vec<[Option<usize>; 3]>,
+    pub of_length: Vec<Option<usize>>,
+    /// The formulas that use a parameter, or a coordinate of a hardpoint.
+    using_parameter: Vec<Vec<usize>>,
+    using_hardpoint: Vec<Vec<usize>>,
+    /// Per variable, whether any formula follows it.
+    pub is_used: Vec<bool>,
+}
+
+impl Formulas {
+    pub fn of(model: &Model) -> Option<Self> {
+        if model.formulas.is_empty() {
+            return None;
+        }
+        let (parameters, hardpoints) = (model.parameters.len(), model.hardpoints.len());
+        let mut f = Self {
+            rates: vec![Vec::new(); parameters],
+            of_parameter: vec![None; parameters],
+            of_hardpoint: vec![[None; 3]; hardpoints],
+            of_length: vec![None; model.joints.len()],
+            using_parameter: vec![Vec::new(); parameters],
+            using_hardpoint: vec![Vec::new(); hardpoints],
+            is_used: Vec::new(),
+        };
+        for (k, formula) in model.formulas.iter().enumerate() {
+            match formula.of {
+                Target::Parameter(p) => f.of_parameter[p.0] = Some(k),
+                Target::Coordinate(h, axis) => f.of_hardpoint[h.0][axis] = Some(k),
+                Target::Length(j) => f.of_length[j.0] = Some(k),
+                Target::Law(..) => {}
+            }
+            for source in formula.sources() {
+                match source {
+                    Source::Parameter(p) => f.using_parameter[p.0].push(k),
+                    Source::Coordinate(h, _) => f.using_hardpoint[h.0].push(k),
+                }
+            }
+        }
+        for (k, variable) in model.variables.iter().enumerate() {
+            for change in &variable.changes {
+                if let Change::Parameter { parameter, rate } = change {
+                    f.rates[parameter.0].push((k, *rate));
+                }
+            }
+            let is_used = variable.changes.iter().any(|change| !f.using(change).is_empty());
+            f.is_used.push(is_used);
+        }
+        Some(f)
+    }
+
+    /// The formulas that use what a change moves.
+    fn using(&self, change: &Change) -> &[usize] {
+        match change {
+            Change::Parameter { parameter, .. } => &self.using_parameter[parameter.0],
+            Change::Move { hardpoint, .. } => &self.using_hardpoint[hardpoint.0],
+            _ => &[],
+        }
+    }
+
+    /// The formulas that follow a variable, directly or through others, in order.
+    pub fn following(&self, model: &Model, variable: VariableId) -> Vec<usize> {
+        let mut seen = vec![false; model.formulas.len()];
+        let changes = &model.variables[variable.0].changes;
+        let mut waiting: Vec<usize> = changes.iter().flat_map(|c| self.using(c)).copied().collect();
+        while let Some(k) = waiting.pop() {
+            if !std::mem::replace(&mut seen[k], true) {
+                match model.formulas[k].of {
+                    Target::Parameter(p) => waiting.extend(&self.using_parameter[p.0]),
+                    Target::Coordinate(h, _) => waiting.extend(&self.using_hardpoint[h.0]),
+                    Target::Length(_) | Target::Law(..) => {}
+                }
+            }
+        }
+        (0..seen.len()).filter(|k| seen[*k]).collect()
+    }
+}

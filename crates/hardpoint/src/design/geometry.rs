@@ -1,0 +1,85 @@
+//! The geometry of a design: all that is fixed in its bodies.
+
+use crate::constraint::Row;
+use crate::number::Real;
+use crate::space::{Mat3, Pose, Vec3};
+
+/// The body-fixed data of one design: all that the analysis needs of it besides the drivers' laws.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Geometry<T = f64> {
+    /// Per joint, marker i in body i and marker j in body j.
+    pub markers: Vec<[Pose<T>; 2]>,
+    /// Per joint, what its constraints may keep of the design configuration.
+    pub kept: Vec<Kept<T>>,
+    /// Per point of the model, its position in its body's frame, m.
+    pub points: Vec<Vec3<T>>,
+}
+
+/// What measures go by, fixed in the bodies.
+#[derive(Clone, Debug)]
+pub(crate) struct Fixed<T> {
+    /// Per point of the model, its position in its body's frame, m.
+    pub points: Vec<Vec3<T>>,
+    /// Per measure, the directions that it goes by: unit vectors in their bodies' frames.
+    pub directions: Vec<[Option<Vec3<T>>; 2]>,
+    /// Per measure of a joint's coordinate, marker i in body i and marker j in body j.
+    pub markers: Vec<Option<[Pose<T>; 2]>>,
+}
+
+impl<T: Copy> Fixed<T> {
+    /// The same, number by number.
+    pub fn map<U>(&self, f: impl Fn(T) -> U + Copy) -> Fixed<U> {
+        let pose = |p: Pose<T>| Pose { rot: Mat3 { cols: p.rot.cols.map(|c| c.map(f)) }, r: p.r.map(f) };
+        Fixed {
+            points: self.points.iter().map(|p| p.map(f)).collect(),
+            directions: self.directions.iter().map(|d| d.map(|d| d.map(|d| d.map(f)))).collect(),
+            markers: self.markers.iter().map(|m| m.map(|m| m.map(pose))).collect(),
+        }
+    }
+}
+
+/// What a joint can keep of its design configuration, or the rate at which a design variable changes it.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Kept<T = f64> {
+    /// Distance between its markers, m: the length of a rod.
+    pub distance: T,
+    /// Displacement of marker j along z_i, m.
+    pub offset: T,
+    /// Cosine of the angle between z_i and z_j.
+    pub cosine: T,
+    /// Distance of marker j from the curve of marker i, positive on its left, m.
+    pub contact: T,
+}
+
+impl<T: Real> Kept<T> {
+    /// What this constraint keeps; 0 for those that keep nothing.
+    pub fn by(&self, row: Row) -> T {
+        match row {
+            Row::Distance => self.distance,
+            Row::Offset => self.offset,
+            Row::Cosine => self.cosine,
+            Row::Contact => self.contact,
+            _ => T::zero(),
+        }
+    }
+
+    pub(super) fn map<U>(self, f: impl Fn(T) -> U) -> Kept<U> {
+        Kept {
+            distance: f(self.distance),
+            offset: f(self.offset),
+            cosine: f(self.cosine),
+            contact: f(self.contact),
+        }
+    }
+
+    pub(super) fn vanishes(self) -> bool {
+        [self.distance, self.offset, self.cosine, self.contact].into_iter().all(T::vanishes)
+    }
+
+    /// The largest of them.
+    pub(crate) fn size(&self) -> T {
+        let [a, b] =
+            [self.distance.abs().larger(self.offset.abs()), self.cosine.abs().larger(self.contact.abs())];
+        a.larger(b)
+    }
+}

@@ -1,0 +1,80 @@
+//! The design: the geometry of any values of the design variables, and how fast it changes with each (the paper's section 3).
+//!
+//! A model never changes. A design is a list of values, one per variable; [`Geometry`] is what they make of the markers, points and
+//! lengths, and a [`Field`] the rate at which one variable, or a direction in the space of them all, changes that: the paper's design
+//! velocity field.
+
+use crate::law::Law;
+use crate::model::{Joint, Model, VariableId};
+use crate::space::{Mat3, euler_313_from_rotation, rotation_from_euler_313};
+
+mod effects;
+mod field;
+mod formulas;
+mod geometry;
+mod shape;
+
+pub(crate) use effects::Effects;
+pub use field::{Field, MarkerField};
+pub(crate) use geometry::Fixed;
+pub use geometry::{Geometry, Kept};
+pub(crate) use shape::{Interpolation, ShapeField};
+
+impl Model {
+    /// The geometry of the design with variable k at `design[k]` (missing entries are 0).
+    ///
+    /// Body frames stay where they are in the design configuration; markers move on their bodies.
+    pub fn geometry(&self, design: &[f64]) -> Geometry {
+        Effects::of(self).geometry(&self.whole(design))
+    }
+
+    /// The first-order change of the nominal design per unit of one variable.
+    pub fn field(&self, variable: VariableId) -> Field {
+        Effects::of(self).field(variable, &self.whole(&[]))
+    }
+
+    /// The first-order changes of a design per unit of each variable.
+    pub fn fields(&self, design: &[f64]) -> Vec<Field> {
+        Effects::of(self).fields(&self.whole(design))
+    }
+
+    /// The variables whose change changes nothing that the motion or its results depend on.
+    pub fn without_effect(&self) -> Vec<VariableId> {
+        let effects = Effects::of(self);
+        let directions = self.measures.iter().flat_map(|m| self.directions(m)).flatten();
+        let seen: Vec<usize> = directions.flat_map(|(_, axis)| axis.hardpoints()).map(|h| h.0).collect();
+        let is_idle = |v: &VariableId| {
+            let touched = effects.touched(&[(*v, 1.0)]);
+            let felt = [&touched.joints, &touched.points, &touched.law_formulas];
+            felt.iter().all(|list| list.is_empty())
+                && touched.laws.is_empty()
+                && !touched.hardpoints.iter().any(|h| seen.contains(h))
+        };
+        (0..self.variables.len()).map(VariableId).filter(is_idle).collect()
+    }
+
+    /// A value for every variable: 0 but for this one.
+    pub(crate) fn alone(&self, variable: VariableId, value: f64) -> Vec<f64> {
+        let mut design = self.whole(&[]);
+        design[variable.0] = value;
+        design
+    }
+
+    /// A value for every variable: those given, then 0.
+    pub(crate) fn whole(&self, design: &[f64]) -> Vec<f64> {
+        let given = design.iter().copied().chain(std::iter::repeat(0.0));
+        given.take(self.variables.len()).collect()
+    }
+
+    /// The drivers' laws in the design with variable k at `design[k]` (missing entries are 0).
+    pub fn laws(&self, design: &[f64]) -> Vec<Law> {
+        Effects::of(self).laws(&self.whole(design))
+    }
+
+    /// 3-1-3 Euler angles of a marker in its body's frame, and their rotation C(theta).
+    fn euler_of(&self, joint: &Joint, e: usize) -> ([f64; 3], Mat3) {
+        let in_body = self.bodies[joint.bodies[e].0].frame.rot.transpose() * joint.frames[e];
+        let theta = euler_313_from_rotation(in_body);
+        (theta, rotation_from_euler_313(theta))
+    }
+}

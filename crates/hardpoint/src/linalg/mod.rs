@@ -1,0 +1,15 @@
+//! Linear algebra: factors of the loop's equations, rank, least squares, splines. Written once over any [`Real`](crate::number::Real)
+//! where kernels are recorded from it.
+
+mod factors;
+mod least_squares;
+mod matrix;
+mod rank;
+mod sparse;
+mod spline;
+
+pub(crate) use factors::{Factors, LARGEST_DENSE};
+pub(crate) use least_squares::least_squares;
+pub(crate) use matrix::{Elimination, MOST_GROWTH, Watched};
+pub(crate) use rank::FullPivot;
+pub(crate) use spline::{Basis, EndKind, Segment};
