@@ -6,6 +6,8 @@ use crate::model::{Change, Model, Source, Target, VariableId};
 #[derive(Clone, Debug)]
 pub(super) struct Formulas {
     /// Per parameter: the variables that change it, and its rate by each.
+    ///
+    /// `p = p_o + sum_k rate_k b_k`.
     pub rates: Vec<Vec<(usize, f64)>>,
     /// Which formula gives a parameter, the coordinates of a hardpoint, the length of a joint.
     pub of_parameter: Vec<Option<usize>>,
@@ -73,6 +75,7 @@ impl Formulas {
         let mut seen = vec![false; model.formulas.len()];
         let changes = &model.variables[variable.0].changes;
         let mut waiting: Vec<usize> = changes.iter().flat_map(|c| self.using(c)).copied().collect();
+        // All that can be reached along "is used by", from the parameters and coordinates that the variable itself changes.
         while let Some(k) = waiting.pop() {
             if !std::mem::replace(&mut seen[k], true) {
                 match model.formulas[k].of {
