@@ -2,6 +2,9 @@
 //!
 //! A measure is written once, over any [`Real`]; its rate, acceleration and the design derivatives of all three follow by
 //! the product and chain rules where it runs on [`Rates`].
+//!
+//! Formulas, symbols and signs are those of `docs/measures.md`; a number stands for value, rate and acceleration, and for the
+//! derivative by a design variable of all three (`docs/theory.md`, section 9).
 
 mod bodies;
 mod program;
@@ -496,6 +499,7 @@ const TURN: f64 = 2.0 * std::f64::consts::PI;
 
 /// The angle nearest to another that is a whole number of turns from this one.
 fn turned(angle: f64, near: f64) -> f64 {
+    // angle + 2 pi k,  k the whole number nearest to (near - angle) / 2 pi
     angle + TURN * ((near - angle) / TURN).round()
 }
 
@@ -510,6 +514,7 @@ struct Counted {
 impl Counted {
     /// About what it is when it is going at this rate at that time.
     fn then(self, rate: f64, time: f64) -> f64 {
+        // x + h (x. before + x. then) / 2: off by h^3 x... / 12, of which only half a turn matters
         self.value + 0.5 * (time - self.time) * (self.rate + rate)
     }
 }
@@ -635,13 +640,16 @@ impl<'a, T: Real> Moment<'a, T> {
                 let wrapped = self.coordinate(k, *joint, *coordinate);
                 self.whole_turns.get(k).map_or(wrapped, |turns| wrapped + *turns)
             }
+            // abs(P_to - P_from)
             MeasureKind::Distance { from, to } => (self.point(*to) - self.point(*from)).norm(),
             MeasureKind::Coordinates { point, along } => {
+                // n . P
                 let p = self.point(*point);
                 along.spread().dot(p)
             }
             MeasureKind::Angle { from, to, about } => {
                 let [a, b] = self.rays(k, [from, to]);
+                // atan2(abs(a x b), a . b);  about n, of what is seen along it:  atan2(n . (a x b), a . b - (n . a) (n . b))
                 let (across, along) = (a.cross(b), a.dot(b));
                 let within = match about {
                     None => across.norm().atan2(along),
@@ -654,8 +662,10 @@ impl<'a, T: Real> Moment<'a, T> {
             }
             MeasureKind::TransmissionAngle { from, to } => {
                 let [a, b] = self.rays(k, [from, to]);
+                // atan2(abs(a x b), abs(a . b)): between lines, 0 to 90 deg
                 a.cross(b).norm().atan2(a.dot(b).abs())
             }
+            // n . v or abs(v),    n . a or abs(a)
             MeasureKind::Velocity { point, along } => component(self.point(*point).map(T::rate), *along),
             MeasureKind::Acceleration { point, along } => {
                 component(self.point(*point).map(T::rate).map(T::rate), *along)
@@ -663,6 +673,7 @@ impl<'a, T: Real> Moment<'a, T> {
             MeasureKind::Curvature { point, about } => {
                 let v = self.point(*point).map(T::rate);
                 let a = v.map(T::rate);
+                // n . (v x a) / abs(v)^3,  or abs(v x a) / abs(v)^3; none where v^2 <= 1e-12 abs(a) size, a point that comes from rest
                 let (turn, speed) = (v.cross(a), v.norm());
                 let turn = about.map_or_else(|| turn.norm(), |about| about.spread().dot(turn));
                 let (way, far) = (speed * speed, a.norm() * T::constant(RESTS * self.model.size()));
@@ -672,6 +683,7 @@ impl<'a, T: Real> Moment<'a, T> {
             MeasureKind::Rate { of } => self.output(*of).rate(),
             MeasureKind::Combination { expression } => expression.at(|source| self.output(source)),
             MeasureKind::Toe { body, .. } => {
+                // atan2(e_x, e_y) and -asin(e_z), as of a left wheel
                 let e = self.direction(k, 0, *body);
                 toe(e, T::constant(Side::Left.sign()))
             }
@@ -700,21 +712,25 @@ impl<'a, T: Real> Moment<'a, T> {
         // Headings to the left: toe-in of a right wheel is one, of a left wheel the opposite.
         let headings = || [-toe(&left), toe(&right)];
         let wheelbase = || T::constant(self.model.vehicle.wheelbase.unwrap_or(f64::NAN));
+        // track = C_y,L - C_y,R;  a = -toe_L, b = toe_R to the left;  cot r = cot a + track / wheelbase
         let track = left.contact().y - right.contact().y;
         match what {
             AxleMeasure::Track => track,
             AxleMeasure::TotalToe => toe(&left) + toe(&right),
             AxleMeasure::AckermannError => {
                 let [l, r] = headings();
+                // b - r
                 r - right_by_ackermann(l, track / wheelbase())
             }
             AxleMeasure::Ackermann => {
                 let [l, r] = headings();
+                // (a - b) / (a - r)
                 (l - r) / steering(l - right_by_ackermann(l, track / wheelbase()), [l, r])
             }
             AxleMeasure::TurningRadius => {
                 let least = headings().map(|x| x.sin_cos().0.abs());
                 // The outer wheel steers less.
+                // wheelbase / sin(the lesser heading)
                 wheelbase() / steering(-(-least[0]).larger(-least[1]), headings())
             }
             AxleMeasure::RollCentreY | AxleMeasure::RollCentreHeight => T::constant(f64::NAN),
@@ -756,9 +772,13 @@ impl<'a, T: Real> Moment<'a, T> {
         let axis = |end: usize, k: usize| self.poses[j.bodies[end].0].rot * markers[end].rot.cols[k];
         let origin = |end: usize| self.poses[j.bodies[end].0].point(markers[end].r);
         match j.kind.coordinates[coordinate].row {
+            // atan2(y_i . x_j, x_i . x_j)
             Row::Angle | Row::Heading => axis(0, 1).dot(axis(1, 0)).atan2(axis(0, 0).dot(axis(1, 0))),
+            // atan2(z_i . y_j, z_i . z_j)
             Row::AngleOnJ => axis(0, 2).dot(axis(1, 1)).atan2(axis(0, 2).dot(axis(1, 2))),
+            // a_i . (P_j - P_i)
             Row::Dot2(k) => axis(0, k).dot(origin(1) - origin(0)),
+            // abs(P_j - P_i)
             _ => (origin(1) - origin(0)).norm(),
         }
     }
@@ -787,6 +807,7 @@ fn steering<T: Real>(x: T, headings: [T; 2]) -> T {
 /// `cot r = cot l + track / wheelbase`, without the poles.
 fn right_by_ackermann<T: Real>(l: T, track_by_wheelbase: T) -> T {
     let (sin, cos) = l.sin_cos();
+    // r = atan2(sin l, cos l + sin l track / wheelbase)
     sin.atan2(cos + sin * track_by_wheelbase)
 }
 

@@ -83,6 +83,7 @@ impl<'a> Slopes<'a> {
             .map(|(d, v)| [d, drivers.len() + v])
             .collect();
         let fixed = |by: usize| {
+            // With the driver none of it goes (the outer `d` is 0); along the variable what that moves in its body (the inner `d`).
             let value = |k: usize| Dual::constant(Dual { v: values[k], d: f64::from(u8::from(k == by)) });
             let values: Vec<_> = (0..values.len()).map(value).collect();
             effects.fixed(&values)
@@ -158,9 +159,11 @@ impl<T: Real> Alone<'_, T> {
         });
         let wheel = |moment: &Moment<'_, Dual<T>>, d: usize, wheel: WheelId| Carried {
             wheel: moment.wheel(k, d, wheel),
+            // The twist w, v per unit of q, which is what a pose with `d` along q splits into
             carrier: moment.poses[model.wheels[wheel.0].body.0].split().1,
         };
         match model.measures[k].kind {
+            // (d of/dq) / (d over/dq), each with its derivative by the variable; the quotient rule is the dual's
             MeasureKind::Slope { of, over, .. } => first.output(of).d / first.output(over).d,
             MeasureKind::Wheel { wheel: w, what } => wheel(first, 0, w).measure(what, &model.vehicle),
             MeasureKind::Axle { axle, what } => {

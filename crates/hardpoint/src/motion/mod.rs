@@ -110,6 +110,7 @@ impl BodyState {
         let [v, a, _] = &state.motion.twists;
         let (pose, v, a) = (&state.pose[b], v[b], a[b]);
         let (r, [f, g, h]) = (pose.r, pose.rot.cols);
+        // r. = V at r = V_v + omega x r,    r.. = A at r + omega x r.
         let u = v.at(r);
         let n = a.at(r) + v.w.cross(u);
         let (o, e) = (v.w, a.w);

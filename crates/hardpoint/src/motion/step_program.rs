@@ -398,6 +398,7 @@ fn speeds(
         };
         let [_, speed, _] = channel.of(state);
         let [_, before, acceleration, ..] = *known;
+        // q. at the newest position + q.. h
         let foreseen = acceleration.times_plus(ahead, before);
         apart.push((speed - foreseen).abs() * per_unit);
         fastest.push(speed.abs().larger(before.abs()) * per_unit);
@@ -425,6 +426,7 @@ fn foresee(
         let known: [Number; CONDITIONS] = std::array::from_fn(|n| of(first(n, beside)));
         let begin = if times { Number::input(0.0) } else { Number::constant(0.0) };
         // What counts least comes first.
+        // q(t) = begin + sum_j weight_j(t) known_j: Hermite's interpolation (27), the weights worked out once for all channels
         let terms = weights.into_iter().zip(known).rev();
         channel.put(terms.fold(begin, |sum, (w, x)| w.times_plus(x, sum)), state);
         known

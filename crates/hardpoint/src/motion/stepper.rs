@@ -291,6 +291,7 @@ impl<'m> Stepper<'m> {
         }
         self.fastest_driver = self.driver_speed();
         let moved = self.foresee_at(h);
+        // abs(dq_0) <= max(half of the foreseen move, 0.02): a correction out of proportion may lead to another branch.
         let trust = (TRUST * moved).max(TRUST_FLOOR);
         let selections = self.selections;
         if self.state.solve(&self.topology, &self.parts, &self.drivers, trust).is_err()
@@ -326,6 +327,7 @@ impl<'m> Stepper<'m> {
             let most = match self.ahead {
                 Ahead::Even => {
                     let moved = (self.drivers[d][0] - self.saved.drivers[d][0]).abs() / unit;
+                    // Over the step h max abs(f.) <= 2 max(the last two moves) / h: between the output times the law does nothing of its own.
                     (EVEN * self.moves[d].max(moved)).clamp(RESTS, LONGEST)
                 }
                 _ => LONGEST,
@@ -350,6 +352,7 @@ impl<'m> Stepper<'m> {
         let mut most = 0.0;
         for (b, factors) in self.state.factors.iter().enumerate() {
             let ratio = factors.ratio(self.state.determinants[b], self.saved.determinants[b]);
+            // r = det_k / det_k-1 in [0.78, 1.28],    abs((r_k - 1) - (r_k-1 - 1) h_k / h_k-1) <= 0.125           (28)
             let change = ratio - 1.0;
             most = most.larger((ratio - MIDDLE).abs() * (1.0 / REACH));
             if self.ahead == Ahead::Even {
@@ -411,6 +414,7 @@ impl<'m> Stepper<'m> {
     /// Whether the position just solved is on the branch, in the turn that was expected, and closed.
     pub(super) fn examine_position(&mut self) -> Result<(), Refusal> {
         for (b, &(_, positive)) in self.state.pivots.iter().enumerate() {
+            // sign(det J) is that of the branch: between two positions of opposite sign lies a singular one.
             if positive != self.branch[b].0 {
                 return Err(Refusal::Branch { block: b });
             }
@@ -446,6 +450,7 @@ impl<'m> Stepper<'m> {
         let mut most = 0.0;
         for (c, coordinate) in self.topology.coordinates.iter().enumerate() {
             if let Source::Unknown { .. } = coordinate.source {
+                // q. h + q.. h^2 / 2
                 let step = (saved.qd[c] + saved.qdd[c] * half) * h;
                 most = most.larger((step * coordinate.per_unit).abs());
             }
@@ -460,6 +465,7 @@ impl<'m> Stepper<'m> {
         for &r in &self.topology.coupled_rows {
             for (k, _) in self.topology.parts_of_row(r) {
                 let [x, v, a] = self.saved.coupled[k];
+                // chi + chi. h + chi.. h^2 / 2
                 self.state.near[k] = x + (v + a * half) * h;
             }
         }
@@ -496,6 +502,7 @@ impl<'m> Stepper<'m> {
         let (mut fastest, mut difference) = (0.0_f64, 0.0_f64);
         for (c, coordinate) in self.topology.coordinates.iter().enumerate() {
             if let Source::Unknown { .. } = coordinate.source {
+                // abs(q. - (q._0 + q.._0 h)) against the larger of the two speeds
                 let predicted = saved.qd[c] + saved.qdd[c] * h;
                 let speed = s.motion.speeds[0][c].abs().larger(saved.qd[c].abs());
                 let apart = (s.motion.speeds[0][c] - predicted).abs();
@@ -567,6 +574,7 @@ impl<'m> Stepper<'m> {
                     entries.filter(|(_, x)| *x != 0.0).collect()
                 })
                 .collect();
+            // All rows of the block where it stands now, redundant ones included; complete pivoting takes the strongest.
             let pivots = FullPivot::of_sparse(matrix, block.unknowns.len(), f64::MIN_POSITIVE);
             let mut selected: Vec<usize> = pivots.rows.iter().map(|&r| rows[r]).collect();
             selected.sort_unstable();
@@ -612,6 +620,7 @@ pub(super) fn smooth(difference: f64, fastest: f64, fastest_driver: f64) -> bool
 /// Per driver, what its travel is compared with: 1 rad, or the size of the largest loop that it moves.
 fn driver_units(model: &Model, topology: &Topology) -> Vec<f64> {
     let whole = model.size();
+    // Du_d / unit is a number without dimension: rad, or a part of the loop.
     let unit = |(k, driver): (usize, &crate::model::Driver)| {
         if model.driven(driver).quantity != Quantity::Length {
             return 1.0;

@@ -89,6 +89,7 @@ impl Stepper<'_> {
         let mut far = 0.0;
         while self.time < target {
             let rest = target - self.time;
+            // The longest step with  sum over d of Du_d / rho_d <= 0.4  (22), Du_d the range of law d over [t, t + h]
             let mut h = self.stride(path, rest, ONE_TIME * scale);
             if path == Path::Laws && h <= ONE_TIME * scale && h < rest && !(self.travelled() <= SHORTEST) {
                 self.jump(self.time + h)?;
@@ -97,6 +98,7 @@ impl Stepper<'_> {
             // The step is short because it is a part of the way there, not because a law rests and moves later.
             let near = self.travelled() < NEAREST
                 && self.around.part_of_way(&self.travel) > WHOLE_PART * PART_OF_WAY;
+            // 0.4 rho is below 1e-6 rad: one more step would come no nearer, and below that round-off decides.
             if h < rest && near && self.is_singular_ahead(path) {
                 return Err(self.stop(path, self.time + h, Refusal::TooNear, true));
             }
@@ -106,6 +108,7 @@ impl Stepper<'_> {
                 match self.step_to(path, t, if last { rest } else { h }) {
                     Ok(()) => break,
                     Err(refusal) => {
+                        // What Newton refuses, or the far end, may be reached in halves.
                         h *= 0.5;
                         self.measure_travel(path, h);
                         steps += 1;
@@ -163,6 +166,8 @@ impl Stepper<'_> {
             let (mut from, mut to) = (self.time, target);
             while !bounded(from, to) && to - from > POLE[0] * whole {
                 let middle = 0.5 * (from + to);
+                // The half of the stretch over which interval arithmetic gives no bound, again and again; what stays unbounded to the end and is
+                // large there is a pole, not only a bound that is too wide.
                 (from, to) = if bounded(from, middle) { (middle, to) } else { (from, middle) };
             }
             if bounded(from, to) {
@@ -199,6 +204,7 @@ impl Stepper<'_> {
         let directions = if path == Path::Laws { drivers.len() } else { 1 };
         let prober =
             prober.get_or_insert_with(|| Box::new(Prober::new(topology, state.pose.len(), drivers.len())));
+        // df_d/du: 1 of the driver that goes by itself; the line's f(1) - f(0) of all together; 0 of an assembly, whose gaps go
         let speed = |direction: usize, d: usize| match path {
             Path::Assembly => 0.0,
             Path::Line { .. } => line[d][1] - line[d][0],
@@ -220,11 +226,13 @@ impl Stepper<'_> {
             Path::Laws => {
                 for d in 0..self.drivers.len() {
                     let from = self.saved.drivers[d][0];
+                    // Du_d = max over [t, t + h] of abs(f_d - f_d(t)), from above
                     self.travel[d] = self.parts.travel(d, self.time, self.time + h, from);
                 }
             }
         }
         self.travel_unit = match path {
+            // The parameter runs from 0 to 1; one unit of it is as much travel as this, rad or sizes.
             Path::Assembly => self.state.largest_gap(&self.topology),
             Path::Line { .. } => {
                 let of_driver = self.line.iter().zip(&self.driver_units);
@@ -249,6 +257,7 @@ impl Stepper<'_> {
         let mut h = rest;
         loop {
             self.measure_travel(path, h);
+            // sum Du_d / rho_d <= 0.4,    max over the unknowns of sum abs(q_d') Du_d <= 2,    Du_d <= 1
             let part = self.around.part_of_way(&self.travel) / PART_OF_WAY;
             let moved = self.around.move_of_fastest(&self.travel) / LONGEST_MOVE;
             let much = part.max(moved).max(self.travelled() / LONGEST);
@@ -256,6 +265,7 @@ impl Stepper<'_> {
                 return h;
             }
             // Where the travel goes with h, the first guess is right; ranges of laws over long steps may be wider.
+            // Du ~ h: h / much would just do
             h = (h * (0.95 / much).clamp(0.02, 0.9)).max(shortest);
         }
     }
@@ -269,6 +279,7 @@ impl Stepper<'_> {
         let selections = self.selections;
         self.solve_at(path, t, h)?;
         self.examine(path);
+        // sum Du_d / rho_d <= 1.67 with rho_d of the far end
         if selections == self.selections && !(self.beyond.part_of_way(&self.travel) <= PART_FROM_FAR_END) {
             return Err(Refusal::TooNear);
         }
@@ -299,6 +310,7 @@ impl Stepper<'_> {
                 Path::Laws => self.drivers[k][0] - self.saved.drivers[k][0],
                 _ => h,
             };
+            // q + sum over the drivers of (q_d' Du_d + q_d'' Du_d^2 / 2); what two drivers bend together is left to Newton.
             let half = du * du * 0.5;
             let (slopes, bends) = (&self.around.slopes[k], &self.around.bends[k]);
             for (c, moved) in moves.iter_mut().enumerate() {
@@ -355,6 +367,7 @@ impl Stepper<'_> {
     pub fn beyond(&mut self) -> Option<Singular> {
         self.stand(Path::Laws).ok()?;
         let ahead = self.ahead(Path::Laws)?;
+        // m of (23): 1/2 at a limit, 1 where two motions meet
         let limit = (ahead.power - 0.5).abs() < TELLING;
         let meets = (ahead.power - 1.0).abs() < TELLING;
         if !(ahead.distance > 0.0 && (limit || meets)) {
@@ -392,6 +405,7 @@ impl Stepper<'_> {
             Refusal::Position(_) | Refusal::Branch { .. } | Refusal::TooNear => {
                 let ahead = self.ahead(path);
                 // The step that failed is no longer than a part of the way.
+                // (23) tells of a place only where it is about as near as the step that failed there.
                 let near = 1e3 * (t - self.time).abs().max(ONE_TIME * t.abs());
                 match ahead.filter(|a| a.distance > 0.0 && a.distance <= near) {
                     Some(a) => {
