@@ -327,7 +327,7 @@ impl<'m> Stepper<'m> {
             let most = match self.ahead {
                 Ahead::Even => {
                     let moved = (self.drivers[d][0] - self.saved.drivers[d][0]).abs() / unit;
-                    // Over the step h max abs(f.) <= 2 max(the last two moves) / h: between the output times the law does nothing of its own.
+                    // Over the step h  max abs(f.) <= 2 (larger of the last two moves) / h: between its ends the law does nothing of its own.
                     (EVEN * self.moves[d].max(moved)).clamp(RESTS, LONGEST)
                 }
                 _ => LONGEST,

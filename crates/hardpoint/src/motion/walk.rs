@@ -166,7 +166,7 @@ impl Stepper<'_> {
             let (mut from, mut to) = (self.time, target);
             while !bounded(from, to) && to - from > POLE[0] * whole {
                 let middle = 0.5 * (from + to);
-                // The half of the stretch over which interval arithmetic gives no bound, again and again; what stays unbounded to the end and is
+                // The half over which interval arithmetic gives no bound, again and again; what stays unbounded to the end and is
                 // large there is a pole, not only a bound that is too wide.
                 (from, to) = if bounded(from, middle) { (middle, to) } else { (from, middle) };
             }
