@@ -185,7 +185,7 @@ impl Stepper<'_> {
             for k in 0..n {
                 for c in 0..n {
                     let dot: f64 = jacobian.iter().map(|row| row[k] * row[c]).sum();
-                    // (J^T J + damping I) step = -J^T phi,  in units of rows and coordinates
+                    // (J^T J + damping I) step = -J^T phi,  in units of rows and coordinates                            (36)
                     normal.row_mut(k)[c] = dot + if k == c { damping } else { 0.0 };
                 }
                 step[k] = -jacobian.iter().zip(&residuals).map(|(row, r)| row[k] * r).sum::<f64>();

@@ -454,7 +454,7 @@ impl Watch {
         }
         for (v, field) in adjoint.fields.iter().enumerate() {
             let sum = self.sum[v].abs();
-            // (27), as for a variable that is solved for by itself
+            // (30), as for a variable that is solved for by itself
             let limit = (self.most[v] * LOCKED).larger(field.scale * DEFECT_FLOOR);
             Defect::enter(&mut self.worst[v], r, sum, limit);
         }

@@ -79,8 +79,8 @@ pub fn conditions_at_design(model: &Model, field: &Field) -> Vec<Condition> {
         // A driven coordinate is a constraint too: it must stay at zero in the design configuration.
         let driven = driven.get(&joint).into_iter().flatten().copied();
         let rows = model.joints[k].kind.rows.iter().copied().chain(driven);
-        // l . (z_j - z_i) - L', which is (11) with W = 0: the paper's (4.3), (4.6), (4.9) and (4.11) differentiated by tau at tau = 0,
-        // written out in `docs/theory.md` (28).
+        // l . (z_j - z_i) - L', which is (11) with W = 0: the paper's (4.3), (4.6), (4.9) and (4.11) differentiated by tau at tau = 0
+        // (`docs/theory.md` (32)).
         let value = |row: Row| row.wrench(&ends).on(z[1] - z[0]) - kept.by(row);
         conditions.extend(rows.map(|row| Condition { joint, row, value: value(row) }));
     }

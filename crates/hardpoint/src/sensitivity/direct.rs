@@ -452,7 +452,7 @@ impl<T: Real> Direct<T> {
     ) -> (T, T) {
         let (sum, most) = self.row_defect(topology, state, field, r);
         // What typed coordinates may be off by in the motion, they may be off by in the design's terms.
-        //     |sum| <= max(1e-5 of the largest term, 1e-9 of the field's speed)
+        // abs(sum) <= max(1e-5 of the largest term, 1e-9 of the field's largest speed)                     (30)
         let limit = most * T::constant(LOCKED);
         (sum.abs(), limit.larger(field.scale * T::constant(DEFECT_FLOOR)))
     }
