@@ -148,6 +148,7 @@ impl<'m> Effects<'m> {
                 match change {
                     Change::Move { hardpoint, .. } => touched.hardpoints.push(hardpoint.0),
                     Change::Law { driver, parameter, rate } => {
+                        // dp/db, times how fast b goes
                         touched.laws.push((*driver, *parameter, by * rate));
                     }
                     _ => touched.joints.extend(change.joint().map(|j| j.0)),
@@ -263,6 +264,7 @@ impl<'e, T: Real> Design<'e, T> {
     fn new(effects: &'e Effects<'_>, values: Vec<T>) -> Self {
         let variables = &effects.model.variables;
         let counts = values.iter().map(|v| !v.vanishes()).collect();
+        // L = abs(d) is measured with b = 0 for those that keep lengths: then L' = 0, and the mechanism re-assembles.
         let follows = |(value, v): (&T, &DesignVariable)| if v.fixed_length { T::zero() } else { *value };
         let for_lengths = values.iter().zip(variables).map(follows).collect();
         let plain = |variables| Values { variables, formulas: Vec::new() };
@@ -315,6 +317,7 @@ impl<'e, T: Real> Design<'e, T> {
     fn place(&self, h: HardpointId, values: &Values<T>) -> Vec3<T> {
         let mut place = self.effects.model.position(h).spread();
         if let (Some(f), false) = (&self.effects.formulas, values.formulas.is_empty()) {
+            // P_o, or component by component what its formula gives
             let given = |axis: usize| f.of_hardpoint[h.0][axis].map_or(place[axis], |k| values.formulas[k]);
             place = Vec3::new(given(0), given(1), given(2));
         }
@@ -447,6 +450,7 @@ impl<'e, T: Real> Design<'e, T> {
     /// The directions that a measure goes by, in their bodies' frames.
     fn directions(&self, measure: &Measure) -> [Option<Vec3<T>>; 2] {
         let in_body = |(body, axis): (BodyId, Direction)| {
+            // A^T h
             self.frame(body).rot.transpose_mul(self.direction(axis, &self.values))
         };
         self.effects.model.directions(measure).map(|d| d.map(in_body))

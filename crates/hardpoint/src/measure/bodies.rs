@@ -19,6 +19,7 @@ pub(super) fn moving<T: Real>([r, x, y, z, v, omega, a, alpha]: [Vec3<T>; 8]) ->
         let e2 = alpha.cross(e) + omega.cross(e1);
         zip([e, e1, e2])
     };
+    // r, r. = v, r.. = a of the frame's origin are known as they are.
     Pose { rot: Mat3 { cols: [x, y, z].map(column) }, r: zip([r, v, a]) }
 }
 

@@ -257,6 +257,7 @@ pub(crate) fn evaluate(
     let turns = turns(model, topology, &measured.outputs);
     let bodies = bodies_asked_for(model);
 
+    // What is fixed in the bodies has no rates: they are all in the poses.
     let fixed = effects.fixed(values).map(Jet::constant);
     let mut poses = vec![Pose::IDENTITY.spread(); model.bodies.len()];
     // Formulas are over angles that are counted through turns.
@@ -374,6 +375,7 @@ pub(crate) fn derivatives(
     let mut values: Vec<Dual> = values.iter().map(|v| Dual::constant(*v)).collect();
     let (mut given, mut whole_turns): (Vec<Dual<Rates>>, Vec<Dual<Rates>>) = (Vec::new(), Vec::new());
     for b in (0..sensitivities.variables).filter(|_| !listed.is_empty()) {
+        // d/db of what is fixed in the bodies; that of the poses is W at this time, by `with_sensitivity`.
         values[b] = Dual::variable(values[b].v);
         let fixed = effects.fixed(&values);
         let fixed = fixed.map(|x| Dual { v: Jet::constant(x.v), d: Jet::constant(x.d) });
@@ -561,6 +563,7 @@ fn unwrap_angles(
         let Some(turns_of) = turns_of else { continue };
         let [now, rate, acceleration] = measured.value(k, m);
         let near = match turns_of {
+            // About f(t), q of the tree, or what its rates make of the value before
             Turns::Driver(d) => laws[d.0].at(motion.times[k]).value(),
             Turns::Coordinate(q) => motion.coordinates.row(k).get(*q),
             Turns::Path(begins) => {
@@ -626,6 +629,7 @@ impl<'a, T: Real> Moment<'a, T> {
     }
 
     fn point(&self, p: PointId) -> Vec3<T> {
+        // P = r + A s
         self.poses[self.model.points[p.0].body.0].point(self.fixed.points[p.0])
     }
 
@@ -753,6 +757,7 @@ impl<'a, T: Real> Moment<'a, T> {
         let centre = point(wheel.centre);
         WheelAt {
             centre,
+            // e = A e', e' fixed in the knuckle
             spin_axis: pose(wheel.body).rot * self.fixed.directions[k][d].expect("a wheel has a spin axis"),
             radius: T::constant(wheel.radius),
             side: T::constant(wheel.side.sign()),
@@ -762,6 +767,7 @@ impl<'a, T: Real> Moment<'a, T> {
 
     /// Direction d of measure k, which is fixed in this body.
     fn direction(&self, k: usize, d: usize, body: BodyId) -> Vec3<T> {
+        // a = A a'
         self.poses[body.0].rot * self.fixed.directions[k][d].expect("a measure with directions")
     }
 
@@ -769,6 +775,7 @@ impl<'a, T: Real> Moment<'a, T> {
     fn coordinate(&self, k: usize, joint: JointId, coordinate: usize) -> T {
         let j = &self.model.joints[joint.0];
         let markers = self.fixed.markers[k].expect("a measure of a joint's coordinate");
+        // Axes and origins of the joint's markers: A C e_k and r + A s
         let axis = |end: usize, k: usize| self.poses[j.bodies[end].0].rot * markers[end].rot.cols[k];
         let origin = |end: usize| self.poses[j.bodies[end].0].point(markers[end].r);
         match j.kind.coordinates[coordinate].row {

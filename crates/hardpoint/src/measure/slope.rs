@@ -77,6 +77,7 @@ impl<'a> Slopes<'a> {
         let unit = |v: usize| model.alone(VariableId(v), 1.0);
         let ways =
             drivers.iter().map(|d| Way::Driver(*d)).chain((0..variables).map(|v| Way::Design(unit(v))));
+        // Directions: first the drivers, then unit vectors of the variables; pairs: every driver u with every variable w (15).
         let ways: Vec<Way> = ways.collect();
         let pairs: Vec<[usize; 2]> = (0..variables)
             .flat_map(|v| (0..drivers.len()).map(move |d| (d, v)))
@@ -107,6 +108,7 @@ impl<'a> Slopes<'a> {
         for by in 0..=self.variables {
             for (d, poses) in self.poses.iter_mut().enumerate() {
                 for &body in &self.asked_for {
+                    // X + eps_q X_q + eps_b X_b + eps_q eps_b X_qb, without b for the values themselves
                     poses[body] = if by < self.variables {
                         self.seconds.pose(state, by * self.drivers.len() + d, body)
                     } else {
@@ -167,6 +169,7 @@ impl<T: Real> Alone<'_, T> {
             MeasureKind::Slope { of, over, .. } => first.output(of).d / first.output(over).d,
             MeasureKind::Wheel { wheel: w, what } => wheel(first, 0, w).measure(what, &model.vehicle),
             MeasureKind::Axle { axle, what } => {
+                // Each wheel goes up and down by its own driver; they may be one.
                 let [left, right] = model.axles[axle.0].wheels;
                 let (y, height) = axle_roll_centre([wheel(first, 0, left), wheel(second, 1, right)]);
                 if what == AxleMeasure::RollCentreY { y } else { height }

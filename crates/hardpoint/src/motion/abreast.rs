@@ -159,6 +159,7 @@ impl<'p> Abreast<'p> {
             return None;
         }
         one.fastest_driver = fastest_driver(tape, one);
+        // t - z_0 of (27) in every lane, z_0 the stepper's own time
         let ahead = times.map(|t| t - one.time);
         let are_new = self.weights.set(one.forecast.nodes(ahead[last]), &ahead);
         tape.look_ahead(&self.weights.of, are_new, &ahead);
@@ -262,6 +263,7 @@ fn laws_are_even(tape: &Tape, one: &mut Stepper<'_>, times: &Lanes, [first, last
         moves /= unit;
         let most = (EVEN * moves).clamp(RESTS, LONGEST);
         let [from, to] = [one.time, times[last]];
+        // h max abs(f.) <= 2 max abs(f_k - f_k-1), h the longest of the new steps
         let stretch = [from, to, from + CELL * (to - from)];
         let travel = longest / unit * one.calm[d].fastest(&one.parts, d, stretch, most * unit / longest);
         if !(travel <= most) {

@@ -249,6 +249,7 @@ impl<'m> SideBySide<'m> {
                 // Written so that NaN is not even.
                 even &= (MILD[0]..=MILD[1]).contains(&ratio);
                 if k > 1 {
+                    // (28) in every lane, h_k / h_k-1 being the same for all designs
                     even &= (change - self.changes[b][lane] * beside).abs() <= MILD_CHANGE;
                 }
                 (self.changes[b][lane], self.determinants[b][lane]) = (change, now[lane]);
@@ -261,6 +262,7 @@ impl<'m> SideBySide<'m> {
     fn save(&mut self, t: f64) {
         let Some((tape, _)) = &self.tapes[self.by] else { return };
         for (channel, known) in self.known.iter_mut().enumerate() {
+            // Node n becomes node n + 1, and where the designs are now node 0 of (27).
             known.copy_within(..(NODES - 1) * ORDERS, ORDERS);
             for (order, to) in known[..ORDERS].iter_mut().enumerate() {
                 *to = *tape.channel_lanes(channel, order);

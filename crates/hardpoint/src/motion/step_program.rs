@@ -110,6 +110,7 @@ impl BlockProgram {
         let corrected = passes.checked_sub(2).and_then(|k| corrections.get(k));
         // Either the last that was applied leaves round-off, or the next one is round-off itself.
         let (last, limit) = match corrected {
+            // dq_0 ... dq_passes-2 were applied. In the last pass none was worked out, the one before being at most 1e-8, or one of at most 1e-14.
             Some(c) if c.value() <= QUADRATIC => (passes - 2, QUADRATIC),
             _ => (passes - 1, ROUND_OFF),
         };
@@ -228,6 +229,7 @@ impl StepProgram {
             let drivers: Vec<[Number; 3]> = one.saved.drivers.iter().map(|f| f.map(Number::input)).collect();
             let ahead = Number::input(0.0);
             let nominal = model.whole(&[]).into_iter();
+            // b as an input makes the geometry a part of the program; as a constant it is folded.
             let number = if purpose.any_design { Number::input } else { Number::constant };
             let values: Vec<Number> = nominal.map(number).collect();
             let geometry = recording::strictly(|| effects.geometry(&values));

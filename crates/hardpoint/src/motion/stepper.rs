@@ -69,6 +69,7 @@ pub(crate) struct Stepper<'m> {
     /// What drivers follow on a straight path: from where to where each goes.
     pub(super) line: Vec<[f64; 2]>,
     /// Per block: sign of the determinant on this branch, and the first pivot ratio.
+    /// sign(det J): it keeps it as long as no singular position is passed.
     pub(super) branch: Vec<(bool, f64)>,
     /// Per block: the pivot ratio below which other rows are tried.
     pub(super) try_others: Vec<f64>,
@@ -81,6 +82,7 @@ pub(crate) struct Stepper<'m> {
     /// Made when first needed: who takes many steps at once examines nothing.
     pub(super) prober: Option<Box<Prober>>,
     /// Per block: by what part its determinant changed over the last step between output times, and how long that was.
+    /// `r_k - 1` of theory (28).
     pub(super) changes: Vec<f64>,
     pub(super) change_step: f64,
     /// Per driver: how far it moved over that step.
@@ -248,6 +250,7 @@ impl<'m> Stepper<'m> {
             self.line[d] = [0.0, self.parts.law(d, t)[0]];
         }
         if self.line.iter().any(|[_, to]| to.abs() != 0.0) {
+            // q(f = 0), which is drawn, to q(f(t_0)): all drivers straight there together
             let ramp = Path::Line { at: t };
             self.time = 0.0;
             self.attempt(ramp, 0.0).map_err(|r| self.stop(ramp, 0.0, r, false))?;
@@ -300,6 +303,7 @@ impl<'m> Stepper<'m> {
         {
             return false;
         }
+        // Determinants of different rows cannot be compared.
         let even = selections == self.selections && self.note_changes(h);
         if self.ahead == Ahead::Even && !even {
             return false;
@@ -369,6 +373,7 @@ impl<'m> Stepper<'m> {
     /// Sets the drivers for the path at t.
     #[inline(always)]
     pub(super) fn drive(&mut self, path: Path, t: f64) -> Result<(), Refusal> {
+        // phi = (1 - s) phi_0: what is left of every gap, and its rate by s
         self.state.gap_left = if path == Path::Assembly { [1.0 - t, -1.0] } else { [0.0; 2] };
         for k in 0..self.drivers.len() {
             let law = match path {
@@ -378,6 +383,7 @@ impl<'m> Stepper<'m> {
                     let [from, to] = self.line[k];
                     // At the end exactly there.
                     let here = if t == 1.0 { to } else { from + (to - from) * t };
+                    // f = f_0 + (f_1 - f_0) s,    df/ds = f_1 - f_0,    d2f/ds2 = 0
                     [here, to - from, 0.0]
                 }
             };
@@ -425,6 +431,7 @@ impl<'m> Stepper<'m> {
         self.residuals = self.state.residuals(&self.topology, &self.parts, &self.drivers);
         // On the way to being closed, redundant constraints need not agree yet.
         let half_open = self.state.gap_left[0] > 0.0;
+        // abs(phi) <= 1e-5 of the loop's size, of rows left out as well: else redundant constraints contradict each other here.
         if !half_open && !(self.residuals.scaled <= LOCKED) {
             let (row, residual) = self.state.worst_row(&self.topology, &self.parts, &self.drivers);
             return Err(Refusal::Locked { row, residual });
@@ -477,6 +484,7 @@ impl<'m> Stepper<'m> {
         self.driver_units
             .iter()
             .zip(&self.drivers)
+            // max abs(f.) / unit
             .fold(self.fastest_driver, |most, (unit, f)| most.max(f[1].abs() / unit))
     }
 
@@ -555,6 +563,7 @@ impl<'m> Stepper<'m> {
     fn reselect(&mut self) -> Result<(), Refusal> {
         for b in 0..self.topology.blocks.len() {
             let ratio = self.state.pivots[b].0;
+            // min / max of the pivots against a tenth of what it was when these rows were chosen
             if ratio >= self.try_others[b] {
                 continue;
             }
@@ -614,6 +623,7 @@ impl<'m> Stepper<'m> {
 #[inline(always)]
 pub(super) fn smooth(difference: f64, fastest: f64, fastest_driver: f64) -> bool {
     // Written so that NaN is refused.
+    // max abs(q. - foreseen) <= max(0.25 max abs(q.), 1e-3 max abs(f.)): on another branch the speeds are others
     difference <= f64::max(SPEED_TRUST * fastest, SPEED_FLOOR * fastest_driver)
 }
 

@@ -112,6 +112,7 @@ impl Stepper<'_> {
                         h *= 0.5;
                         self.measure_travel(path, h);
                         steps += 1;
+                        // At 1e-10 rad a step is round-off; `stop` finds out what it is that is so near.
                         let too_short = self.travelled() < SHORTEST || h <= ONE_TIME * scale;
                         if too_short || steps > MOST_STEPS {
                             self.stand(path).map_err(|r| self.stop(path, t, r, true))?;
@@ -200,6 +201,7 @@ impl Stepper<'_> {
     /// Finds out how near singular positions are to where the state stands: along each driver alone, or along the whole path where
     /// all go together.
     fn examine(&mut self, path: Path) {
+        // On the laws' path one direction per driver, f_d' = 1: what is near is near whether a driver hurries or rests.
         let Self { prober, topology, parts, state, line, beyond, drivers, .. } = self;
         let directions = if path == Path::Laws { drivers.len() } else { 1 };
         let prober =
@@ -272,6 +274,7 @@ impl Stepper<'_> {
 
     /// Goes a step h along a path, to t, if it is a safe one.
     fn step_to(&mut self, path: Path, t: f64, h: f64) -> Result<(), Refusal> {
+        // What disagrees in the middle of a step may agree again at its end.
         if self.saved.residual > SUSPECT * LOCKED && path == Path::Laws {
             self.solve_at(path, self.time + 0.5 * h, 0.5 * h)?;
         }
@@ -338,6 +341,7 @@ impl Stepper<'_> {
     fn jump(&mut self, t: f64) -> Result<(), Box<Stop>> {
         let before = self.time;
         for d in 0..self.line.len() {
+            // From f(t-) to f(t+), at one time
             self.line[d] = [self.saved.drivers[d][0], self.parts.law(d, t)[0]];
         }
         let path = Path::Line { at: t };
@@ -375,6 +379,7 @@ impl Stepper<'_> {
         }
         let now = self.drivers.iter().map(|f| f[0]);
         let travel = now.enumerate().map(|(d, now)| {
+            // f(t*) - f(t), t* = t + distance of (23)
             let then = self.parts.law_of(d).at(self.time + ahead.distance).value();
             // A law that ends there goes on as it does now.
             if then.is_finite() { then - now } else { self.drivers[d][1] * ahead.distance }
@@ -409,6 +414,7 @@ impl Stepper<'_> {
                 let near = 1e3 * (t - self.time).abs().max(ONE_TIME * t.abs());
                 match ahead.filter(|a| a.distance > 0.0 && a.distance <= near) {
                     Some(a) => {
+                        // t* = t + m / (s'/s) of (23), m < 3/4 a limit
                         failed = self.time + a.distance;
                         let limit = a.power < LIMIT;
                         (if limit { StopKind::Limit } else { StopKind::BranchChange }, Some(a.block))

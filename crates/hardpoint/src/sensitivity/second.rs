@@ -76,6 +76,7 @@ struct First {
 impl First {
     fn new(model: &Model, topology: &Topology, field: FieldParts<f64>) -> Self {
         let mut direct = Direct::new(model, topology);
+        // Along the design even the axes of joints on ground move: x^w = ad(z_w) x.
         direct.flow.ground_stands = false;
         Self {
             field,
@@ -87,6 +88,7 @@ impl First {
 
     /// Where a state stands. What the direction does not reach stays zero.
     fn solve(&mut self, topology: &Topology, state: &mut State<f64>) {
+        // W_u, S_u by (11), and z_u = Ad(X) e_u by (8)
         self.direct.solve_position(topology, state, &self.field);
         for m in self.field.links.iter().filter(|m| m.end == 0) {
             self.links[m.at] = state.pose[m.body].carry(m.e);
@@ -109,6 +111,7 @@ impl First {
     /// How the markers of a closure go.
     fn ends(&self, topology: &Topology, c: usize) -> EndRates<f64> {
         let ([i, j], [z_i, z_j], none) = (topology.closures[c].bodies, self.closures[c], Twist::ZERO);
+        // D_w = W_w + z_w, in place of V; second rates are not asked for
         EndRates { v_i: self.w()[i.0] + z_i, v_j: self.w()[j.0] + z_j, a_i: none, a_j: none }
     }
 }
@@ -164,6 +167,7 @@ impl Seconds {
             let moving: Vec<Dual> = values.iter().zip(speeds).map(|(v, d)| Dual { v: *v, d }).collect();
             let field = directions[u].field(effects, &moving);
             let field = FieldParts::new(topology, &field);
+            // e_u and de_u/dw
             let twists = |of: &[Moving<Dual>]| {
                 let part =
                     |e: Twist<Dual>, part: fn(Dual) -> f64| Twist { w: e.w.map(part), v: e.v.map(part) };
@@ -329,6 +333,7 @@ impl Pair {
             flow.move_end(topology, (m.at, m.end), z, &state.l[0]);
         }
         for &(row, rate) in &self.field.kept {
+            // L_uw
             flow.demand[row] += rate.d;
         }
         flow.follow::<1>(topology, reach.driven_links.iter().copied(), &state.x);

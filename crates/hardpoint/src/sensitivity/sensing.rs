@@ -60,6 +60,7 @@ impl Sensing {
         mut found: impl FnMut(VariableId, BodyId, &BodySensitivity),
     ) {
         let Self { fields, direct, wanted, resisting, .. } = self;
+        // x., x.., l., l.. of all coordinates and rows once; then three right-hand sides for each variable: (11), (12), (13).
         let (topology, state, parts) = (&one.topology, &mut one.state, &one.parts);
         state.finish_rates(topology);
         for (v, field) in fields.iter_mut().enumerate() {
@@ -116,6 +117,7 @@ pub(super) fn note(resisting: &mut Resisting, topology: &Topology, defect: Defec
     let row = closure.rows[place.index];
     let (joints, time) = resisting;
     // A periodic motion comes back to its largest defect: the first time counts, not round-off.
+    // The joint's largest defect over the motion, and when the largest of all joints is
     if joints.iter().all(|j| defect.value > j.value * (1.0 + 1e-9)) {
         *time = t;
     }
@@ -169,6 +171,7 @@ pub(crate) fn record_derivatives(
         if !field.is_constant() {
             return None;
         }
+        // What is recorded does not know the time: z, L' and shifts, but no df/dp of a law.
         field.set_shifts();
         direct.solve(topology, state, &field);
         direct.judged_defects(topology, state, &field, |row, defect, limit| {
