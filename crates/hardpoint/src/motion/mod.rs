@@ -1,8 +1,8 @@
 //! Position, velocity and acceleration of every body over time.
 //!
 //! One step is: Newton on each block in turn, then velocity and acceleration from the same factors
-//! ([`kinematics`]). Output times that follow each other closely are stepped through as they
-//! are ([`stepper`], [`abreast`]); everywhere else the path is followed in steps of its own ([`walk`]).
+//! (`kinematics`). Output times that follow each other closely are stepped through as they
+//! are (`stepper`, `abreast`); everywhere else the path is followed in steps of its own (`walk`).
 
 pub(crate) mod abreast;
 mod assembly;
