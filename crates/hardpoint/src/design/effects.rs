@@ -264,7 +264,7 @@ impl<'e, T: Real> Design<'e, T> {
     fn new(effects: &'e Effects<'_>, values: Vec<T>) -> Self {
         let variables = &effects.model.variables;
         let counts = values.iter().map(|v| !v.vanishes()).collect();
-        // L = abs(d) is measured with b = 0 for those that keep lengths: then L' = 0, and the mechanism re-assembles.
+        // With b = 0 for the variables that keep lengths L = abs(d) does not follow them: L' = 0, and the mechanism re-assembles.
         let follows = |(value, v): (&T, &DesignVariable)| if v.fixed_length { T::zero() } else { *value };
         let for_lengths = values.iter().zip(variables).map(follows).collect();
         let plain = |variables| Values { variables, formulas: Vec::new() };

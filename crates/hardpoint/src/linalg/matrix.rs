@@ -128,7 +128,6 @@ impl<T: Real> Elimination<T> {
             for r in k + 1..n {
                 // l_rk = a_rk / u_kk,    a_rc <- a_rc - l_rk u_kc
                 let m = a[r * n + k] * inverse;
-                // l_rk = a_rk / u_kk,    a_rc <- a_rc - l_rk u_kc
                 a[r * n + k] = m;
                 growth = growth.larger(m.abs());
                 for c in k + 1..n {

@@ -516,7 +516,7 @@ struct Counted {
 impl Counted {
     /// About what it is when it is going at this rate at that time.
     fn then(self, rate: f64, time: f64) -> f64 {
-        // x + h (x. before + x. then) / 2: off by h^3 x... / 12, of which only half a turn matters
+        // x + h (x. before + x. then) / 2: wrong by h^3 x... / 12, where anything below half a turn is right
         self.value + 0.5 * (time - self.time) * (self.rate + rate)
     }
 }

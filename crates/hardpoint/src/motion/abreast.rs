@@ -176,7 +176,7 @@ impl<'p> Abreast<'p> {
             self.own.each_mut().map(|own| lanes_of(own))
         });
         // As a motion begins, less is known of it.
-        // Of a Hermite polynomial of degree 8 the remainder is (27); a first correction of more than 1e-3 is no round-off of it.
+        // With three nodes the forecast misses by (27) alone; a first correction above 1e-3 says that the motion is no such polynomial.
         let trust = if one.forecast.known() < NODES { TRUST_FLOOR } else { FORESEEN };
         let solved = tape.solve(trust, results).ok()?;
         let change_step = determinants_are_even(tape, one, times, [first, last]);

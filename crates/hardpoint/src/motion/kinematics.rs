@@ -217,7 +217,8 @@ impl<T: Real> State<T> {
     #[inline(never)]
     fn touch(&mut self, parts: &Parts<T>, closure: usize, k: usize) {
         let Ends { i, j, .. } = self.ends[closure];
-        // The foot u of the perpendicular, (p - C(u)) . C'(u) = 0, p = A_i^T (P_j - P_i); marker i <- there, x along C'.
+        // p = P_j as seen from marker i; the foot u of the perpendicular on the curve, (p - C(u)) . C'(u) = 0; marker i goes there,
+        // x along C'.
         let p = i.inverse().point(j.r);
         self.contacts[k] = Contact::nearest(&parts.curves[k], p, self.contacts[k].u);
         self.ends[closure].i = i.compose(self.contacts[k].frame());
@@ -230,8 +231,8 @@ impl<T: Real> State<T> {
         let (v, a, contact) = (rates.v_i, rates.a_i, &self.contacts[k]);
         // The marker that carries the curve, and the follower's motion seen from it.
         let i = foot.compose(contact.frame().inverse());
-        // p.  = A_i^T (v_j - v_i),    p.. = A_i^T (a_j - a_i - 2 omega_i x (v_j - v_i)),  with v and a of the points of both bodies at
-        // P_j:  v = V at P_j,  a = V. at P_j + omega x v
+        // p.  = A_i^T (v_j - v_i),    p.. = A_i^T (a_j - a_i - 2 omega_i x (v_j - v_i)),  with A_i the axes of that marker, v and a those
+        // of the points of both bodies at P_j:  v = V at P_j,  a = V. at P_j + omega x v
         let relative = rates.v_j.at(j.r) - v.at(j.r);
         let acceleration = |v: Twist<T>, a: Twist<T>| a.at(j.r) + v.w.cross(v.at(j.r));
         let coriolis = v.w.cross(relative) * T::constant(2.0);
@@ -412,7 +413,7 @@ impl<T: Real> State<T> {
             if before <= QUADRATIC {
                 return Ok(());
             }
-            // dq = -J^-1 phi; a good prediction makes it some 1e-3, and every further one about the square of that before (theory (26)).
+            // dq = -J^-1 phi; every further one is about the square of the one before (theory (26)).
             self.factors[b].solve(&mut self.rhs);
             let corrections = self.correction(topology, b);
             self.corrections[b].0[pass.min(CORRECTIONS - 1)] = corrections;
@@ -494,7 +495,7 @@ impl<T: Real> State<T> {
         for &c in &block.closures {
             self.rates_of_wrenches(topology, c, 1);
         }
-        // J q.. = f.. - l. . (V_j - V_i) - l . (...), with the x. and l. of this V                            (10)
+        // J q.. = f.. - l. . (V_j - V_i) - l . (A_j - A_i as if q.. were 0), with the x. and l. of this V        (10)
         self.solve_order::<1>(topology, b, |d| drivers[d.0][2]);
     }
 

@@ -583,7 +583,7 @@ impl<'m> Stepper<'m> {
                     entries.filter(|(_, x)| *x != 0.0).collect()
                 })
                 .collect();
-            // All rows of the block where it stands now, redundant ones included; complete pivoting takes the strongest.
+            // All rows of the block where it stands now, redundant ones included: those with the largest pivots.
             let pivots = FullPivot::of_sparse(matrix, block.unknowns.len(), f64::MIN_POSITIVE);
             let mut selected: Vec<usize> = pivots.rows.iter().map(|&r| rows[r]).collect();
             selected.sort_unstable();

@@ -98,7 +98,7 @@ impl Stepper<'_> {
             // The step is short because it is a part of the way there, not because a law rests and moves later.
             let near = self.travelled() < NEAREST
                 && self.around.part_of_way(&self.travel) > WHOLE_PART * PART_OF_WAY;
-            // 0.4 rho is below 1e-6 rad: one more step would come no nearer, and below that round-off decides.
+            // All that the distance allows is below 1e-6 rad, or sizes: nearer by, round-off decides.
             if h < rest && near && self.is_singular_ahead(path) {
                 return Err(self.stop(path, self.time + h, Refusal::TooNear, true));
             }
@@ -267,7 +267,6 @@ impl Stepper<'_> {
                 return h;
             }
             // Where the travel goes with h, the first guess is right; ranges of laws over long steps may be wider.
-            // Du ~ h: h / much would just do
             h = (h * (0.95 / much).clamp(0.02, 0.9)).max(shortest);
         }
     }

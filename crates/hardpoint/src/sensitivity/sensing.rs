@@ -117,7 +117,6 @@ pub(super) fn note(resisting: &mut Resisting, topology: &Topology, defect: Defec
     let row = closure.rows[place.index];
     let (joints, time) = resisting;
     // A periodic motion comes back to its largest defect: the first time counts, not round-off.
-    // The joint's largest defect over the motion, and when the largest of all joints is
     if joints.iter().all(|j| defect.value > j.value * (1.0 + 1e-9)) {
         *time = t;
     }
@@ -141,11 +140,11 @@ fn components<T: Real>(flow: &Flow<T>, state: &State<T>, body: usize) -> [T; Bod
     let two = T::constant(2.0);
     // dr/db  = W_v + W_w x r,    d(pi)/db = W_w
     let (p, q) = (w0.at(r), w0.w);
-    // dv/db  = W.      at r + W_w x v
+    // dv/db  = W. at r + W_w x v
     let u = w0.w.cross_plus(velocity, w1.at(r));
     // d(omega)/db = W._w + W_w x omega
     let o = w0.w.cross_plus(v.w, w1.w);
-    // da/db  = W..     at r + 2 W._w x v + W_w x a:  d/dt of dv/db, with r. = v
+    // da/db  = W.. at r + 2 W._w x v + W_w x a:  d/dt of dv/db, with r. = v
     let n = w0.w.cross_plus(acceleration, (w1.w * two).cross_plus(velocity, w2.at(r)));
     // d(alpha)/db = W.._w + W._w x omega + W_w x alpha:  d/dt of d(omega)/db
     let e = w0.w.cross_plus(a.w, w1.w.cross_plus(v.w, w2.w));

@@ -54,7 +54,7 @@ pub(super) fn examine(model: &Model, topology: &mut Topology) -> Result<(), Topo
     let mut contradictions: Vec<(usize, Vec<f64>)> = Vec::new();
     for (r, _) in topology.rows.iter().enumerate().filter(|(_, r)| !r.selected && !r.is_term) {
         let rates = row_rates(topology, &jacobian, &speeds, r).into_iter();
-        // abs(sum x q. - f.) / (1 + largest term): a left-out row under the unit speed of driver d
+        // abs(sum J q. - f.) / (1 + largest term): a left-out row under the unit speed of driver d
         let failures = rates.map(|(d, [sum, largest, demand])| (d, (sum - demand) / (1.0 + largest)));
         let failures: Vec<(usize, f64)> = failures.filter(|(_, f)| f.abs() > RANK_TOLERANCE.sqrt()).collect();
         if !failures.is_empty() {
