@@ -54,12 +54,14 @@ impl<'m> Effects<'m> {
         for (k, variable) in model.variables.iter().enumerate() {
             for change in &variable.changes {
                 if let Change::Move { hardpoint, velocity } = change {
+                    // dP/db = V, constant: P = P_o + V b at any b
                     effects.moves[hardpoint.0].push((k, *velocity));
                 } else if let Some(joint) = change.joint() {
                     effects.changes[joint.0].push((k, change));
                 }
             }
         }
+        // A joint follows the hardpoints that it is at, and those that its axes pass through.
         for (j, joint) in model.joints.iter().enumerate() {
             joint.at.iter().for_each(|h| effects.joints[h.0].push(j));
             for axis in [joint.axis, joint.axis2].into_iter().flatten() {
@@ -154,6 +156,7 @@ impl<'m> Effects<'m> {
                     _ => touched.joints.extend(change.joint().map(|j| j.0)),
                 }
             }
+            // ... and by formulas, directly or through others
             let following = self.formulas.as_ref().map(|f| f.following(self.model, *variable));
             for k in following.unwrap_or_default() {
                 match self.model.formulas[k].of {

@@ -35,6 +35,8 @@ impl Formulas {
             using_hardpoint: vec![Vec::new(); hardpoints],
             is_used: Vec::new(),
         };
+        // Both ways of the graph: which formula gives a number, and which formulas use it. The model has them in an order in which
+        // each comes after those that it uses.
         for (k, formula) in model.formulas.iter().enumerate() {
             match formula.of {
                 Target::Parameter(p) => f.of_parameter[p.0] = Some(k),
@@ -55,6 +57,7 @@ impl Formulas {
                     f.rates[parameter.0].push((k, *rate));
                 }
             }
+            // If no formula uses what it changes, results stay nominal and need not be worked out.
             let is_used = variable.changes.iter().any(|change| !f.using(change).is_empty());
             f.is_used.push(is_used);
         }

@@ -271,6 +271,7 @@ pub(crate) fn evaluate(
         let begins = left.len();
         loop {
             if let Some(run) = &mut run {
+                // Eight output times at once; what the program cannot tell is listed, and asked of the formulas one by one.
                 run.at(first, motion, sensitivities, measured);
             }
             left.truncate(begins);
@@ -295,6 +296,7 @@ pub(crate) fn evaluate(
                     let mut poses = poses.clone();
                     place(&mut poses);
                     passed.states.iter().for_each(|(body, state)| poses[body.0] = with_rates(state));
+                    // An angle where the path passed between output times
                     let Jet([angle, rate, _]) = Moment::new(model, &fixed, &poses).measure(m);
                     [angle, rate]
                 };
@@ -304,6 +306,7 @@ pub(crate) fn evaluate(
                     whole_turns[m].0[0] = whole;
                 });
                 if counts {
+                    // The formula of measures asks for angles with their turns, so these are found first.
                     counted.extend(whole_turns.iter().map(|turns| turns.0[0]));
                     let moment = Moment { whole_turns: &whole_turns, ..moment };
                     for &(_, m) in left[begins..].iter().filter(|(_, m)| is_formula(model, *m)) {
@@ -388,6 +391,7 @@ pub(crate) fn derivatives(
                 bodies.iter().for_each(|&b| poses[b] = with_sensitivity(&states.body(b), &d.body(b)));
                 given.clear();
                 let both = more.slopes.at(k).iter().zip(more.slopes.d(k, b));
+                // A measure by a driver has a value and its derivative by b, but no rates.
                 given.extend(both.map(|(x, d)| Dual { v: only(*x), d: only(*d) }));
                 let turns = more.whole_turns.get(k * model.measures.len()..).unwrap_or_default();
                 whole_turns.clear();
@@ -533,6 +537,7 @@ fn along_the_path<'p>(
     let (mut counted, first) = (last, last.is_none());
     for place in passed {
         let [angle, rate] = measure(place);
+        // about what it is: where the path begins, or where the one before ended, or by the trapezoidal rule
         let near = match counted {
             None => begins.unwrap_or(angle),
             // Another path begins where the one before ended.

@@ -109,11 +109,13 @@ impl Program {
             for &b in &bodies {
                 let numbers: Vec<Number> =
                     BodyState::at_design(model, BodyId(b)).numbers().map(&mut input).collect();
+                // r, A, v, omega, a, alpha of every body: a pose with its rates, and what it turns with
                 let vectors = std::array::from_fn(|k| vector(&numbers[3 * k..]));
                 (turns[b], poses[b]) = ([vectors[5], vectors[7]], moving(vectors));
             }
             let mut way = |&(_, b): &(usize, usize)| {
                 let numbers: [Number; BodySensitivity::NUMBERS] = std::array::from_fn(|_| input(0.0));
+                // dr, pi', dv, d(omega), da, d(alpha) of a body by a variable: how far it goes along each way
                 ways_of(std::array::from_fn(|k| vector(&numbers[3 * k..])), turns[b])
             };
             let ways: Vec<_> = asked.moved.iter().map(&mut way).collect();
@@ -134,6 +136,7 @@ impl Program {
                 let found =
                     given.iter().flat_map(|g| [g.values].into_iter().chain(g.derivatives.iter().copied()));
                 let check = found.flatten().filter(|x| !x.known().is_some_and(f64::is_nan));
+                // 0 x + 0 y + ...: 0, or NaN where any of them is no number
                 let check = check.fold(zero, |sum, x| x.times_plus(nothing, sum));
                 let limits = given.iter().flat_map(|g| &g.limits).chain(&of_design);
                 let guard = limits.fold(check, |most, limit| most.larger(*limit));
@@ -390,6 +393,7 @@ pub(crate) fn dependences(
     }
     for v in 0..values.len() {
         let value = values[v];
+        // NaN in place of db: what becomes NaN depends on b
         values[v].d = f64::NAN;
         note(1, v, depend(&fixed(&values), &poses));
         values[v] = value;

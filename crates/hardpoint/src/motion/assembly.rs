@@ -77,11 +77,13 @@ impl State<f64> {
 impl Stepper<'_> {
     /// Closes the mechanism as drawn, all drivers at zero, and stands on its branch.
     pub(super) fn assemble(&mut self) -> Result<(), Box<Stop>> {
+        // phi_0 at q = 0; what is round-off of the drawing counts as closed.
         self.measure_gaps();
         if !(self.state.largest_gap(&self.topology) > CLOSED) {
             self.state.gap.fill(0.0);
         }
         self.time = 0.0;
+        // s = 0: phi - phi_0 = 0 holds where it is drawn, and the signs of the determinants there say which branch this is.
         let drawn = self.drive(Path::Assembly, 0.0).and_then(|()| {
             self.restore();
             self.solve_within(f64::INFINITY)
@@ -92,6 +94,7 @@ impl Stepper<'_> {
         if self.state.largest_gap(&self.topology) == 0.0 {
             return Ok(());
         }
+        // phi - (1 - s) phi_0 = 0 from s = 0 to 1
         if let Err(stop) = self.walk(Path::Assembly, 1.0) {
             if matches!(stop.kind, StopKind::Locked { .. }) {
                 return Err(stop);

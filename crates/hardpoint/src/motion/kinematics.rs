@@ -370,6 +370,7 @@ impl<T: Real> State<T> {
     ) -> Result<(), PositionFailure> {
         for (c, coordinate) in topology.coordinates.iter().enumerate() {
             if let Source::Driven(d) = coordinate.source {
+                // q, q., q.. = f, f., f.. of what drivers prescribe in the tree
                 [self.q[c], self.motion.speeds[0][c], self.motion.speeds[1][c]] = drivers[d.0];
             }
         }
@@ -377,11 +378,13 @@ impl<T: Real> State<T> {
         self.place_bodies(topology, parts, topology.driven_links());
         self.rates_of_driven(topology);
         for b in 0..topology.blocks.len() {
+            // Block after block: J is block lower triangular, so all that a block stands on is known by now.
             self.newton(topology, parts, drivers, b, trust)?;
             self.place_bodies(topology, parts, topology.blocks[b].links.clone());
             self.rates_of_block(topology, parts, drivers, b);
         }
         for (c, closure) in topology.closures.iter().enumerate() {
+            // Closures between bodies that drivers alone place: no unknown moves them, and their rows are watched.
             if closure.block.is_none() {
                 self.place_ends(topology, parts, c);
                 self.finish_closure(topology, c);
@@ -438,6 +441,7 @@ impl<T: Real> State<T> {
     fn correction(&self, topology: &Topology, b: usize) -> T {
         let mut most = T::zero();
         for (&c, &d) in topology.blocks[b].unknowns.iter().zip(&self.rhs) {
+            // max abs(dq_a) / unit_a
             most = most.larger((d * T::constant(topology.coordinates[c].per_unit)).abs());
         }
         most

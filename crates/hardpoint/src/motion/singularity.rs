@@ -176,10 +176,12 @@ impl Prober {
                 *driver = [0.0, speed(direction, d), 0.0];
             }
             self.rates(topology, parts, state);
+            // q' and q'' by (9) and (10), with f' of this direction in the place of f.
             found.slopes[direction].copy_from_slice(&state.motion.speeds[0]);
             found.bends[direction].copy_from_slice(&state.motion.speeds[1]);
             for &r in &topology.coupled_rows {
                 for (k, _) in topology.parts_of_row(r) {
+                    // chi' and chi'' of what a coupler counts
                     let [_, speed, rate] = state.coordinate_of_row(topology, k);
                     found.turning[direction][k] = [speed, rate];
                 }
@@ -195,6 +197,7 @@ impl Prober {
             for b in 0..topology.blocks.len() {
                 let mut nearness = 0.0;
                 for load in 0..LOADS {
+                    // 1/rho_b = max over the loads                                                                       (22)
                     nearness = nearness.larger(self.respond(topology, state, b, load));
                 }
                 found.nearness[direction][b] = nearness;
@@ -214,6 +217,7 @@ impl Prober {
         gap_rate: f64,
         drivers: &[[f64; 3]],
     ) -> Option<Ahead> {
+        // Along the motion as it goes: f., f.. of all drivers together, so that the distance is a time.
         self.drivers.copy_from_slice(drivers);
         self.swap(state);
         let gap = std::mem::replace(&mut state.gap_left[1], gap_rate);
@@ -223,6 +227,7 @@ impl Prober {
             for load in 0..LOADS {
                 let nearness = self.respond(topology, state, b, load);
                 let Some(ahead) = self.extrapolate(topology, b) else { continue };
+                // The block and load that respond most steeply tell of what is nearest.
                 if nearest.is_none_or(|(most, _)| nearness > most) {
                     nearest = Some((nearness, ahead));
                 }

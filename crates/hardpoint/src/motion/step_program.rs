@@ -223,6 +223,7 @@ impl StepProgram {
         let (mut fits, mut blocks) = (false, Vec::new());
         recording::begin();
         let recorded = record(|| {
+            // The kernel itself, on numbers that write down what is done with them.
             let mut state = State::new(model, topology);
             let offset = OFFSET[purpose.corrections - 1];
             let known = foresee(topology, &channels, &one.saved, (offset, purpose.times), &mut state);
@@ -234,11 +235,13 @@ impl StepProgram {
             let values: Vec<Number> = nominal.map(number).collect();
             let geometry = recording::strictly(|| effects.geometry(&values));
             let parts = Parts::of(model, topology, &geometry);
+            // (26), (9), (10): as many corrections as recorded here, whatever the numbers are later
             fits = state.solve(topology, &parts, &drivers, f64::INFINITY).is_ok();
             let recorded = (0..topology.blocks.len()).map_while(|b| BlockProgram::of(&state, b));
             blocks = recorded.collect::<Vec<_>>();
             fits &= blocks.len() == topology.blocks.len();
 
+            // Outputs, in the order of `Outputs`: channels, what is judged, blocks, margins, defects, bodies, derivatives.
             let mut out = moves(topology, &channels, &state);
             let bodies = BodyState::all(&state);
             let (margins, mut limits) = match purpose.margins {
@@ -263,6 +266,7 @@ impl StepProgram {
             out.extend(speeds);
             let blocks_at = out.len();
             let watched = state.watched.iter().zip(&state.determinants);
+            // det J, and max / min of the pivots
             out.extend(watched.flat_map(|(w, determinant)| [*determinant, w.most * w.least]));
             let margins_at = out.len();
             let defects_at = margins_at + margins.len();

@@ -427,6 +427,7 @@ impl Stepper<'_> {
                     },
                 }
             }
+            // What is left of a row that was not solved with: the constraints agreed as drawn and do not here.
             Refusal::Locked { row, residual } => {
                 let place = &self.topology.rows[row];
                 let closure = &self.topology.closures[place.closure];

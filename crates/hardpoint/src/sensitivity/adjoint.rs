@@ -82,10 +82,12 @@ impl Support {
                 blocks.push(b);
                 for &c in &block.closures {
                     feels.1[c] = true;
+                    // +- T_c on both of its bodies
                     topology.closures[c].bodies.iter().for_each(|b| pushed[b.0] = true);
                 }
                 for k in block.links.clone().rev() {
                     feels.0[k] = true;
+                    // T_k goes on to the parent
                     pushed[topology.links[k].child.0] = true;
                     pushed[topology.links[k].parent.0] = true;
                 }

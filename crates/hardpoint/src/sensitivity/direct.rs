@@ -81,6 +81,7 @@ impl Reach {
         };
         for k in topology.driven_links() {
             let link = &topology.links[k];
+            // W_c = W_p + z_p - z_c + x S, with S = df/dp: anything of it
             if moves[link.parent.0] || starts(k) {
                 moves[link.child.0] = true;
                 reach.driven_links.push(k);
@@ -93,6 +94,7 @@ impl Reach {
                 || closure.driver.is_some_and(|d| drivers.contains(&d))
         };
         for (b, block) in topology.blocks.iter().enumerate() {
+            // Any right-hand side of the block: then, as far as the lists tell, all of its S may differ from 0.
             let felt = block.closures.iter().any(|&c| changed(c, &moves))
                 || block.links.clone().any(|k| moves[topology.links[k].parent.0] || starts(k));
             if felt {

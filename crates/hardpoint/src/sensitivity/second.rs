@@ -174,6 +174,7 @@ impl Seconds {
                 of.iter().map(|m| [part(m.e, |x| x.v), part(m.e, |x| x.d)]).collect()
             };
             let laws = [LAW_STEP, -LAW_STEP].map(|h| {
+                // b + h w and b - h w
                 let moved: Vec<f64> = moving.iter().map(|x| x.v + h * x.d).collect();
                 effects.laws(&moved)
             });
@@ -202,6 +203,7 @@ impl Seconds {
     pub fn solve(&mut self, stepper: &mut Stepper<'_>, t: f64) {
         let (topology, state, parts) = (&stepper.topology, &mut stepper.state, &stepper.parts);
         for first in &mut self.firsts {
+            // Every direction by itself (11); then every pair with what its two directions left (15).
             first.field.set_time(|d| parts.law_of(d.0), t);
             first.solve(topology, state);
         }
