@@ -64,7 +64,7 @@
 //!
 //! # The few ideas it rests on
 //!
-//! - A **model** is checked once and never changes; a changed design is a [`model::Geometry`] made from it.
+//! - A **model** is checked once and never changes; a changed design is a [`design::Geometry`] made from it.
 //! - Columns are twists, rows are wrenches, and a design variable is a twist too (`docs/theory.md`). Joints are
 //!   data: a chain of freedoms, and a list of elementary constraints ([`joint::JointType`]).
 //! - A [`topology::Topology`] says once how the mechanism is solved; position, velocity, acceleration and every

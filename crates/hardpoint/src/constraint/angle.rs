@@ -24,6 +24,7 @@ fn about_x_j<T: Real>(ends: &Ends<T>) -> [T; 2] {
 #[inline(always)]
 fn sine_of_difference<T: Real>([s, c]: [T; 2], target: T) -> T {
     let (sin, cos) = target.sin_cos();
+    // sin(angle - f) = sin(angle) cos f - cos(angle) sin f.  Its rate at the root is that of the angle itself.
     s * cos - c * sin
 }
 
@@ -31,6 +32,7 @@ fn sine_of_difference<T: Real>([s, c]: [T; 2], target: T) -> T {
 #[inline(never)]
 fn unwrapped<T: Real>([s, c]: [T; 2], near: T) -> T {
     const TURN: f64 = 2.0 * std::f64::consts::PI;
+    // angle + 2 pi k, as near to `near` as it gets
     let angle = s.value().atan2(c.value());
     T::constant(angle + TURN * ((near.value() - angle) / TURN).round())
 }
@@ -60,6 +62,7 @@ pub(super) fn wrench<T: Real>(ends: &Ends<T>) -> Wrench<T> {
 
 #[inline(always)]
 pub(super) fn wrench_rates<T: Real>(ends: &Ends<T>, rates: &EndRates<T>) -> [Wrench<T>; 2] {
+    // l = [z_i; 0]
     let [_, z1, z2] = direction_rates(axis(&ends.i.rot, 2), rates.v_i, rates.a_i);
     [Wrench::moment(z1), Wrench::moment(z2)]
 }
@@ -85,6 +88,7 @@ pub(super) fn heading_residual<T: Real>(ends: &Ends<T>, target: T) -> T {
 /// The moment `x_j x (c y_i - s x_i) / (s^2 + c^2)`, the gradient of atan2(s, c).
 #[inline(always)]
 pub(super) fn heading_wrench<T: Real>(ends: &Ends<T>) -> Wrench<T> {
+    // d atan2(s, c) = (c ds - s dc) / (s^2 + c^2),  ds = (x_j x y_i) . (w_j - w_i),  dc = (x_j x x_i) . (w_j - w_i)
     let [s, c] = about_z_i(ends);
     let g = axis(&ends.i.rot, 1) * c - axis(&ends.i.rot, 0) * s;
     Wrench::moment(axis(&ends.j.rot, 0).cross(g) * (T::one() / (s * s + c * c)))

@@ -10,6 +10,7 @@ use super::{Ends, dot1};
 /// `y_i . x_j - x_i . y_j`.
 #[inline(always)]
 pub(super) fn residual<T: Real>(ends: &Ends<T>, target: T) -> T {
+    // R = A_i^T A_j:  R_21 = y_i . x_j,  R_12 = x_i . y_j
     dot1::residual(1, 0, ends, target) - dot1::residual(0, 1, ends, T::zero())
 }
 

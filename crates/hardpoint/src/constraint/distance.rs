@@ -12,6 +12,7 @@ pub(super) fn residual<T: Real>(ends: &Ends<T>, target: T) -> T {
 /// The unit force u = d / |d| along the rod.
 #[inline(always)]
 pub(super) fn wrench<T: Real>(ends: &Ends<T>) -> Wrench<T> {
+    // d abs(d) = u . (V_j at P_j - V_i at P_i) = u . (V_j at P_j - V_i at P_j), since u is along P_j - P_i
     let d = ends.j.r - ends.i.r;
     Wrench::force(d * (T::one() / d.norm()), ends.j.r)
 }

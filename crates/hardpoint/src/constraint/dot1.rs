@@ -12,6 +12,7 @@ pub(super) fn residual<T: Real>(a: usize, b: usize, ends: &Ends<T>, target: T) -
 /// The moment `b_j x a_i`.
 #[inline(always)]
 pub(super) fn wrench<T: Real>(a: usize, b: usize, ends: &Ends<T>) -> Wrench<T> {
+    // d(a . b) = a . (w_j x b) + (w_i x a) . b = (b x a) . (w_j - w_i)
     Wrench::moment(axis(&ends.j.rot, b).cross(axis(&ends.i.rot, a)))
 }
 
@@ -24,6 +25,7 @@ pub(super) fn wrench_rates<T: Real>(
 ) -> [Wrench<T>; 2] {
     let a = direction_rates(axis(&ends.i.rot, a), rates.v_i, rates.a_i);
     let b = direction_rates(axis(&ends.j.rot, b), rates.v_j, rates.a_j);
+    // l = [b_j x a_i; 0]
     let [m1, m2] = cross_rates(b, a);
     [Wrench::moment(m1), Wrench::moment(m2)]
 }

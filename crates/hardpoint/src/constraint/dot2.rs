@@ -12,11 +12,13 @@ pub(super) fn residual<T: Real>(a: usize, ends: &Ends<T>, target: T) -> T {
 /// The force a_i through P_j.
 #[inline(always)]
 pub(super) fn wrench<T: Real>(a: usize, ends: &Ends<T>) -> Wrench<T> {
+    // d(a . d) = a . (v_j - v_i) at P_j:  a . (V_j at P_j - V_i at P_i) + (w_i x a) . (P_j - P_i)
     Wrench::force(axis(&ends.i.rot, a), ends.j.r)
 }
 
 #[inline(always)]
 pub(super) fn wrench_rates<T: Real>(a: usize, ends: &Ends<T>, rates: &EndRates<T>) -> [Wrench<T>; 2] {
+    // l = [P_j x a_i; a_i]
     force_rates(
         direction_rates(axis(&ends.i.rot, a), rates.v_i, rates.a_i),
         point_rates(ends.j.r, rates.v_j, rates.a_j),

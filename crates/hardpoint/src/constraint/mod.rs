@@ -3,6 +3,14 @@
 //! Each constraint row stands between marker i and marker j. Its wrench `l` says how any motion W of
 //! the two markers violates it, `d(phi) = l . (W_j - W_i)` (`docs/theory.md` (5)); Jacobian, velocity,
 //! acceleration and every sensitivity are made of `l` and its two time derivatives.
+//!
+//! | here | theory, section 2 | paper |
+//! |---|---|---|
+//! | `ends.i`, `ends.j` | markers `X_i M_i`, `X_j M_j`: P_i, P_j and axes a_i, b_j | x"-y"-z" frames; `r + A s`, `A C a"` (4.2, 4.5) |
+//! | `target` | what a row keeps, and f of its driver | C of (4.10) |
+//! | `residual` | phi | phi of (4.1), (4.4), (4.7), (4.10) |
+//! | `wrench` | l, on a twist of j; its opposite on one of i | a row of `phi_z` (5.3a) |
+//! | `wrench_rates` | l., l.. | |
 
 mod angle;
 mod convel;
@@ -248,6 +256,7 @@ impl Row {
 /// A direction fixed in a body with twist `v` and twist rate `a`, and its first two time derivatives.
 #[inline(always)]
 fn direction_rates<T: Real>(e: Vec3<T>, v: Twist<T>, a: Twist<T>) -> [Vec3<T>; 3] {
+    // e. = omega x e,    e.. = alpha x e + omega x e.                                                     (3)
     let d = v.w.cross(e);
     [e, d, a.w.cross(e) + v.w.cross(d)]
 }
@@ -255,6 +264,7 @@ fn direction_rates<T: Real>(e: Vec3<T>, v: Twist<T>, a: Twist<T>) -> [Vec3<T>; 3
 /// A point fixed in a body with twist `v` and twist rate `a`, and its first two time derivatives.
 #[inline(always)]
 fn point_rates<T: Real>(p: Vec3<T>, v: Twist<T>, a: Twist<T>) -> [Vec3<T>; 3] {
+    // p. = V at p,    p.. = V. at p + omega x p.
     let d = v.at(p);
     [p, d, a.at(p) + v.w.cross(d)]
 }
@@ -263,12 +273,14 @@ fn point_rates<T: Real>(p: Vec3<T>, v: Twist<T>, a: Twist<T>) -> [Vec3<T>; 3] {
 #[inline(always)]
 fn cross_rates<T: Real>(a: [Vec3<T>; 3], b: [Vec3<T>; 3]) -> [Vec3<T>; 2] {
     let two = T::constant(2.0);
+    // (a x b). = a. x b + a x b.,    (a x b).. = a.. x b + 2 a. x b. + a x b..
     [a[1].cross(b[0]) + a[0].cross(b[1]), a[2].cross(b[0]) + a[1].cross(b[1]) * two + a[0].cross(b[2])]
 }
 
 /// Rates of a force `f` through a moving point `p`.
 #[inline(always)]
 fn force_rates<T: Real>(f: [Vec3<T>; 3], p: [Vec3<T>; 3]) -> [Wrench<T>; 2] {
+    // l = [p x f; f]
     let [m1, m2] = cross_rates(p, f);
     [Wrench { m: m1, f: f[1] }, Wrench { m: m2, f: f[2] }]
 }

@@ -13,11 +13,13 @@ pub(super) fn residual<T: Real>(k: usize, ends: &Ends<T>) -> T {
 /// The force e_k through the common point.
 #[inline(always)]
 pub(super) fn wrench<T: Real>(k: usize, ends: &Ends<T>) -> Wrench<T> {
+    // l = [P x e_k; e_k],  d(phi) = e_k . (V_j at P - V_i at P);  off the common point wrong by (w_i x d) . e_k, which Newton sees vanish
     Wrench { m: across(ends.j.r, k), f: Vec3::AXES[k].spread() }
 }
 
 #[inline(always)]
 pub(super) fn wrench_rates<T: Real>(k: usize, ends: &Ends<T>, rates: &EndRates<T>) -> [Wrench<T>; 2] {
+    // l. = [P. x e_k; 0],    l.. = [P.. x e_k; 0]
     let [_, velocity, acceleration] = point_rates(ends.j.r, rates.v_j, rates.a_j);
     [Wrench::moment(across(velocity, k)), Wrench::moment(across(acceleration, k))]
 }

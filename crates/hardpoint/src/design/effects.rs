@@ -1,6 +1,17 @@
 //! What design variables do: the geometry of any design, and its derivative by each variable.
 //!
 //! The geometry is written once, over any [`Real`]; its derivatives are the same lines run on [`Dual`]s, at whatever design.
+//!
+//! The paper's section 3 line by line, with tau the value of one variable and `s_o`, `theta_o` those of the nominal design:
+//!
+//! | here | paper | what |
+//! |---|---|---|
+//! | [`Design::place`] | | hardpoint `P = P_o + sum_k v_k b_k`, m, global |
+//! | [`Design::marker`] | s, C of (3.1), (2.2) | marker in its body, `X_body^-1 X_marker` |
+//! | `position`, `v` of a change | `V_Omega` (3.2) | location design velocity, m per unit |
+//! | `rotation` of a change | `d(xi)/dtau = R U` (3.10) | orientation design velocity as a rotation vector, rad per unit |
+//! | `u` of a change | `U_theta` (3.3) | the same as rates of the 3-1-3 Euler angles, rad per unit |
+//! | [`Effects::field_along`] | `dD/dtau` (5.5) | `d/db` of all of it, by duals `b + eps` |
 
 use crate::constraint::Row;
 use crate::design::{Field, Fixed, Geometry, Kept, MarkerField};
@@ -43,12 +54,14 @@ impl<'m> Effects<'m> {
         for (k, variable) in model.variables.iter().enumerate() {
             for change in &variable.changes {
                 if let Change::Move { hardpoint, velocity } = change {
+                    // dP/db = V, constant: P = P_o + V b at any b
                     effects.moves[hardpoint.0].push((k, *velocity));
                 } else if let Some(joint) = change.joint() {
                     effects.changes[joint.0].push((k, change));
                 }
             }
         }
+        // A joint follows the hardpoints that it is at, and those that its axes pass through.
         for (j, joint) in model.joints.iter().enumerate() {
             joint.at.iter().for_each(|h| effects.joints[h.0].push(j));
             for axis in [joint.axis, joint.axis2].into_iter().flatten() {
@@ -104,6 +117,7 @@ impl<'m> Effects<'m> {
     pub fn field_along<T: Real>(&self, along: &[(VariableId, f64)], values: &[T]) -> Field<T> {
         let mut duals: Vec<Dual<T>> = values.iter().map(|v| Dual::constant(*v)).collect();
         for &(variable, rate) in along {
+            // b_k + eps rate_k: what stands at eps of any result is its derivative along the direction
             duals[variable.0].d = T::constant(rate);
         }
         let design = Design::new(self, duals);
@@ -111,11 +125,13 @@ impl<'m> Effects<'m> {
         let mut field = Field { laws: self.law_rates(&touched, &design), ..Field::default() };
         for j in touched.joints {
             for end in 0..2 {
+                // e = [R U; V - (R U) x s], the twist of the marker's pose in its body                                (8)
                 let (_, twist) = design.marker(j, end).split();
                 if !is_null(twist.w) || !is_null(twist.v) {
                     field.markers.push(MarkerField { joint: JointId(j), end, twist });
                 }
             }
+            // L'
             let rates = design.kept(j).map(|x| x.d);
             if !rates.vanishes() {
                 field.kept.push((JointId(j), rates));
@@ -134,11 +150,13 @@ impl<'m> Effects<'m> {
                 match change {
                     Change::Move { hardpoint, .. } => touched.hardpoints.push(hardpoint.0),
                     Change::Law { driver, parameter, rate } => {
+                        // dp/db, times how fast b goes
                         touched.laws.push((*driver, *parameter, by * rate));
                     }
                     _ => touched.joints.extend(change.joint().map(|j| j.0)),
                 }
             }
+            // ... and by formulas, directly or through others
             let following = self.formulas.as_ref().map(|f| f.following(self.model, *variable));
             for k in following.unwrap_or_default() {
                 match self.model.formulas[k].of {
@@ -170,6 +188,7 @@ impl<'m> Effects<'m> {
             touched.laws.iter().map(|(d, p, rate)| (*d, *p, T::constant(*rate))).collect();
         for &k in &touched.law_formulas {
             if let Target::Law(driver, parameter) = self.model.formulas[k].of {
+                // dp/db of a parameter of a law that a formula gives
                 let rate = design.values.formulas[k].d;
                 match rates.iter_mut().find(|r| (r.0, r.1) == (driver, parameter)) {
                     Some(known) => known.2 += rate,
@@ -198,6 +217,7 @@ impl<'m> Effects<'m> {
                 if let Change::Law { driver, parameter, rate } = change {
                     let law = &mut laws[driver.0];
                     let now = law.parameters()[*parameter].value;
+                    // p = p_o + (dp/db) b
                     *law = law.with_parameter(*parameter, now + rate * value);
                 }
             }
@@ -247,6 +267,7 @@ impl<'e, T: Real> Design<'e, T> {
     fn new(effects: &'e Effects<'_>, values: Vec<T>) -> Self {
         let variables = &effects.model.variables;
         let counts = values.iter().map(|v| !v.vanishes()).collect();
+        // With b = 0 for the variables that keep lengths L = abs(d) does not follow them: L' = 0, and the mechanism re-assembles.
         let follows = |(value, v): (&T, &DesignVariable)| if v.fixed_length { T::zero() } else { *value };
         let for_lengths = values.iter().zip(variables).map(follows).collect();
         let plain = |variables| Values { variables, formulas: Vec::new() };
@@ -282,6 +303,7 @@ impl<'e, T: Real> Design<'e, T> {
                 let given = given.map_or_else(|| T::constant(model.nominal(source)), |k| results[k]);
                 rates
                     .into_iter()
+                    // what the formula uses = what is given + sum_k rate_k b_k
                     .fold(given, |sum, (k, rate)| T::constant(rate).times_plus(variables[k], sum))
             });
             results.push(result);
@@ -298,10 +320,12 @@ impl<'e, T: Real> Design<'e, T> {
     fn place(&self, h: HardpointId, values: &Values<T>) -> Vec3<T> {
         let mut place = self.effects.model.position(h).spread();
         if let (Some(f), false) = (&self.effects.formulas, values.formulas.is_empty()) {
+            // P_o, or component by component what its formula gives
             let given = |axis: usize| f.of_hardpoint[h.0][axis].map_or(place[axis], |k| values.formulas[k]);
             place = Vec3::new(given(0), given(1), given(2));
         }
         for &(k, velocity) in self.effects.moves[h.0].iter().filter(|(k, _)| self.counts[*k]) {
+            // P = P_o + sum_k v_k b_k, with P_o by formulas where these give it
             place = velocity.spread().times_plus(values.variables[k], place);
         }
         place
@@ -312,6 +336,7 @@ impl<'e, T: Real> Design<'e, T> {
         match d {
             Direction::Along(u) => u.spread(),
             Direction::Through(a, b) => {
+                // h = (P_b - P_a) / abs(P_b - P_a):  h' = ((V_b - V_a) - h h . (V_b - V_a)) / abs(P_b - P_a)
                 let d = self.place(b, values) - self.place(a, values);
                 d * (T::one() / d.norm())
             }
@@ -326,6 +351,7 @@ impl<'e, T: Real> Design<'e, T> {
     /// Marker e of joint j in its body's frame.
     fn marker(&self, j: usize, e: usize) -> Pose<T> {
         let body = self.effects.model.joints[j].bodies[e];
+        // (s, C) = X_body^-1 X_marker; the body's frame stays where it is (paper, section 2).
         self.frame(body).inverse().compose(self.marker_in_world(j, e, &self.values))
     }
 
@@ -338,6 +364,7 @@ impl<'e, T: Real> Design<'e, T> {
             let b = values.variables[k];
             match change {
                 Change::Marker { end, position, rotation, .. } if end.covers(e) => {
+                    // P = P_o + b V,    C = exp(b R U) C_o in the world, (3.4) to first order                               (paper 3.1, 3.4)
                     r = position.spread().times_plus(b, r);
                     if let Some(axis) = rotation.unit() {
                         rot = Mat3::about(axis, b * T::constant(rotation.norm())) * rot;
@@ -345,10 +372,13 @@ impl<'e, T: Real> Design<'e, T> {
                 }
                 Change::Field { end, v, u, .. } if *end == e => {
                     let body = self.frame(joint.bodies[e]).rot;
+                    // P = P_o + A (b V)                                                                                   (paper 3.1)
                     r += body * v.spread() * b;
+                    // theta = theta_o + b U,  C = C(theta) C(theta_o)^-1 C_o in the body's frame                          (paper 3.1, 2.2)
                     let (theta, c) = self.effects.model.euler_of(joint, e);
                     let turned = [0, 1, 2].map(|n| T::constant(u[n]).times_plus(b, T::constant(theta[n])));
                     let turned = rotation_from_euler_313(turned) * c.transpose().spread();
+                    // ... and in the world, A C A^T
                     rot = body * turned * body.transpose() * rot;
                 }
                 _ => {}
@@ -364,10 +394,12 @@ impl<'e, T: Real> Design<'e, T> {
         let mut rot = joint.frames[e].spread();
         let [axis, axis2] = joint.axes_of_marker(e);
         if let Some(axis @ Direction::Through(..)) = axis {
+            // z turns into h by the rotation about z x h; in the first order by h x h'.
             rot = Mat3::between(rot.cols[2], self.direction(axis, values)) * rot;
         }
         if let Some(axis2 @ Direction::Through(..)) = axis2 {
             let (d, z) = (self.direction(axis2, values), rot.cols[2]);
+            // x = (d - z z . d) / abs(..),  y = z x x
             let across = d - z * z.dot(d);
             let length = across.norm();
             if length.decisive() > ALONG {
@@ -382,6 +414,7 @@ impl<'e, T: Real> Design<'e, T> {
     fn kept(&self, j: usize) -> Kept<T> {
         let (joint, zero) = (&self.effects.model.joints[j], T::zero());
         let [m_i, m_j] = [0, 1].map(|e| self.marker_in_world(j, e, &self.for_lengths));
+        // d = P_j - P_i of the design; what a joint keeps is measured on it: L = abs(d), z_i . d, z_i . z_j, the distance from a curve.
         let (d, z_i, z_j) = (m_j.r - m_i.r, m_i.rot.cols[2], m_j.rot.cols[2]);
         let given = joint.length.map(|length| {
             let formula = self.effects.formulas.as_ref().and_then(|f| f.of_length[j]);
@@ -389,6 +422,7 @@ impl<'e, T: Real> Design<'e, T> {
             let mut given = given.unwrap_or_else(|| T::constant(length));
             for &(k, change) in self.effects.changes[j].iter().filter(|(k, _)| self.counts[*k]) {
                 if let Change::Length { rate, .. } = change {
+                    // A length given as a number of its own is L_o + L' b, whatever its ends do.
                     given = self.values.variables[k].times_plus(T::constant(*rate), given);
                 }
             }
@@ -402,6 +436,7 @@ impl<'e, T: Real> Design<'e, T> {
         let distance =
             given.unwrap_or_else(|| if keeps() && d.dot(d).decisive() > 0.0 { d.norm() } else { zero });
         let contact = joint.curve.as_ref().map_or(zero, |curve| {
+            // Which side of the curve the point is on is kept; a given distance has no sign.
             let drawn = curve.distance(m_i.rot.transpose_mul(d));
             let sign = || T::constant(f64::signum(drawn.value()));
             given.map_or(drawn, |length| length.abs() * sign())
@@ -418,6 +453,7 @@ impl<'e, T: Real> Design<'e, T> {
     /// The directions that a measure goes by, in their bodies' frames.
     fn directions(&self, measure: &Measure) -> [Option<Vec3<T>>; 2] {
         let in_body = |(body, axis): (BodyId, Direction)| {
+            // A^T h
             self.frame(body).rot.transpose_mul(self.direction(axis, &self.values))
         };
         self.effects.model.directions(measure).map(|d| d.map(in_body))

@@ -30,6 +30,9 @@ pub struct MarkerField<T = f64> {
     /// 0 for the marker on body i, 1 for that on body j.
     pub end: usize,
     /// Body-fixed twist `[R U; V - (R U) x s]` in the body's frame.
+    ///
+    /// Angular part `d(xi)/dtau` of the paper's (3.10), rad per unit; linear part the velocity of the marker's point that passes the
+    /// origin of the body's frame, m per unit, so that the marker itself has V = e_v + e_w x s.
     pub twist: Twist<T>,
 }
 
@@ -44,6 +47,7 @@ impl<T> Default for Field<T> {
 impl<T: Copy> Field<T> {
     /// The twist of a joint's marker, if it moves.
     pub fn twist_of(&self, joint: JointId, end: usize) -> Option<Twist<T>> {
+        // e of (8); null if it is not listed
         let found = self.markers.binary_search_by_key(&(joint, end), |m| (m.joint, m.end));
         found.ok().map(|k| self.markers[k].twist)
     }
@@ -58,6 +62,7 @@ impl<T: Copy> Field<T> {
 impl<T: Real> Field<T> {
     /// That of a driver which moves by itself: its value shifts by one unit per unit.
     pub(crate) fn of_driver(driver: DriverId) -> Self {
+        // L_u = 1 in the driver's row, or S_u = 1 of its coordinate; z = 0 (theory, "One driver alone")
         Self { shifts: vec![(driver, T::one())], ..Self::default() }
     }
 }

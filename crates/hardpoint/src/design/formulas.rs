@@ -6,6 +6,8 @@ use crate::model::{Change, Model, Source, Target, VariableId};
 #[derive(Clone, Debug)]
 pub(super) struct Formulas {
     /// Per parameter: the variables that change it, and its rate by each.
+    ///
+    /// `p = p_o + sum_k rate_k b_k`.
     pub rates: Vec<Vec<(usize, f64)>>,
     /// Which formula gives a parameter, the coordinates of a hardpoint, the length of a joint.
     pub of_parameter: Vec<Option<usize>>,
@@ -33,6 +35,8 @@ impl Formulas {
             using_hardpoint: vec![Vec::new(); hardpoints],
             is_used: Vec::new(),
         };
+        // Both ways of the graph: which formula gives a number, and which formulas use it. The model has them in an order in which
+        // each comes after those that it uses.
         for (k, formula) in model.formulas.iter().enumerate() {
             match formula.of {
                 Target::Parameter(p) => f.of_parameter[p.0] = Some(k),
@@ -53,6 +57,7 @@ impl Formulas {
                     f.rates[parameter.0].push((k, *rate));
                 }
             }
+            // If no formula uses what it changes, results stay nominal and need not be worked out.
             let is_used = variable.changes.iter().any(|change| !f.using(change).is_empty());
             f.is_used.push(is_used);
         }
@@ -73,6 +78,7 @@ impl Formulas {
         let mut seen = vec![false; model.formulas.len()];
         let changes = &model.variables[variable.0].changes;
         let mut waiting: Vec<usize> = changes.iter().flat_map(|c| self.using(c)).copied().collect();
+        // All that can be reached along "is used by", from the parameters and coordinates that the variable itself changes.
         while let Some(k) = waiting.pop() {
             if !std::mem::replace(&mut seen[k], true) {
                 match model.formulas[k].of {

@@ -1,4 +1,10 @@
 //! The geometry of a design: all that is fixed in its bodies.
+//!
+//! | here | theory | paper | |
+//! |---|---|---|---|
+//! | `markers[j][e]`: `r`, `rot` | M_i, M_j = (s, C) | s (3.1), C (2.2) | position, m, and axes of a joint's marker in its body's frame |
+//! | `kept[j]` | L, d0, c0, r0 | C of (4.10), squared there | what its rows compare with |
+//! | `points[k]` | | `s_o` of any point of the body | m, in its body's frame |
 
 use crate::constraint::Row;
 use crate::number::Real;

@@ -73,6 +73,7 @@ impl Model {
 
     /// 3-1-3 Euler angles of a marker in its body's frame, and their rotation C(theta).
     fn euler_of(&self, joint: &Joint, e: usize) -> ([f64; 3], Mat3) {
+        // C = A^T (A C), theta of C = Rz(theta1) Rx(theta2) Rz(theta3)                                        (paper 2.2)
         let in_body = self.bodies[joint.bodies[e].0].frame.rot.transpose() * joint.frames[e];
         let theta = euler_313_from_rotation(in_body);
         (theta, rotation_from_euler_313(theta))

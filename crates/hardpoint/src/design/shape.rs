@@ -24,14 +24,18 @@ impl ShapeField {
     /// the curl of the velocity.
     pub fn at(&self, s: Vec3) -> [Vec3; 2] {
         match self {
+            // V(s), and w(s) = rot V / 2; of a beam that is so on its axis
             Self::Translate(v) => [*v, Vec3::ZERO],
+            // V = h x (s - c),  w = h
             Self::Rotate { axis, through } => [axis.cross(s - *through), *axis],
+            // V = s - c, or u u . (s - c); both are gradients, so w = 0
             Self::Scale { from, along: None } => [s - *from, Vec3::ZERO],
             Self::Scale { from, along: Some(u) } => [*u * u.dot(s - *from), Vec3::ZERO],
             Self::Bend { from, to, towards } => {
                 let length = (*to - *from).norm();
                 let e = (*to - *from) * (1.0 / length);
                 let along = e.dot(s - *from);
+                // With x = e . (s - from) / L:  V = n y(x) + w x (s - from - e x L),  w = e x n y'(x) / L
                 let (deflection, slope) = cantilever(along / length);
                 // Sections stay plane and square to the bent axis.
                 let turn = e.cross(*towards) * (slope / length);
@@ -46,6 +50,7 @@ impl ShapeField {
 fn cantilever(x: f64) -> (f64, f64) {
     match x {
         x if x <= 0.0 => (0.0, 0.0),
+        // y = x^2 (3 - x) / 2, y' = 3 x (2 - x) / 2:  y''(1) = 0, y'''  constant: a force at the free end, no moment there
         x if x < 1.0 => (0.5 * x * x * (3.0 - x), 1.5 * x * (2.0 - x)),
         x => (1.0 + 1.5 * (x - 1.0), 1.5),
     }
@@ -77,6 +82,8 @@ impl Interpolation {
         let scaled: Vec<Vec3> = points.iter().map(|p| (*p - centre) * (1.0 / scale)).collect();
         let linear = |p: Vec3, k: usize| [1.0, p.x, p.y, p.z][k];
         let entry = |i: usize, j: usize| match (i < n, j < n) {
+            // (K   P) (w)   (v)       K_ij = abs(s_i - s_j)^3,  P_i = (1, x_i, y_i, z_i)
+            // (P^T 0) (c) = (0)       P^T w = 0: no part of the r^3 goes like a linear function
             (true, true) => (scaled[i] - scaled[j]).norm().powi(3),
             (true, false) => linear(scaled[i], j - n),
             (false, true) => linear(scaled[j], i - n),
@@ -101,7 +108,9 @@ impl Interpolation {
     fn at(&self, s: Vec3) -> [Vec3; 2] {
         let s = (s - self.centre) * (1.0 / self.scale);
         let [value, dx, dy, dz] = self.linear;
+        // V(s) = c_0 + c_x x + c_y y + c_z z + sum_i w_i abs(s - s_i)^3
         let mut v = value + dx * s.x + dy * s.y + dz * s.z;
+        // w(s) = rot V / 2,    grad abs(s - s_i)^3 = 3 abs(s - s_i) (s - s_i)
         // curl(f w) = grad f x w
         let [x, y, z] = Vec3::AXES;
         let mut curl = x.cross(dx) + y.cross(dy) + z.cross(dz);
@@ -111,6 +120,7 @@ impl Interpolation {
             v += *w * (r * r * r);
             curl += (apart * (3.0 * r)).cross(*w);
         }
+        // s was in units of `scale`; the angle is per true length.
         [v, curl * (0.5 / self.scale)]
     }
 }

@@ -1,6 +1,6 @@
 //! A mechanism as somebody wrote it, with names as references, and the check that makes a model of it.
 //!
-//! [`Model::from_draft`] checks all of a [`Draft`] at once and gives either a [`Model`] or every [`Fault`] that it found.
+//! [`Model::from_draft`](crate::model::Model::from_draft) checks all of a [`Draft`] at once and gives either a [`Model`](crate::model::Model) or every [`Fault`] that it found.
 
 mod check;
 mod fault;
@@ -19,7 +19,7 @@ use crate::law::{Law, ParameterKind};
 use crate::model::{End, Side, Take, Vehicle, VehicleEnd};
 use crate::space::{Pose, Vec3};
 
-/// A mechanism as written. Fill it by hand or from a file; [`Model::from_draft`] checks it.
+/// A mechanism as written. Fill it by hand or from a file; [`Model::from_draft`](crate::model::Model::from_draft) checks it.
 #[derive(Clone, Debug, Default)]
 pub struct Draft {
     /// The mechanism's name.
@@ -329,7 +329,7 @@ pub struct VariableDraft {
     pub tolerance: Option<f64>,
 }
 
-/// A part of a design variable; see [`Change`].
+/// A part of a design variable; see [`Change`](crate::model::Change).
 #[derive(Clone, Debug)]
 pub enum ChangeDraft {
     /// A hardpoint moves.
@@ -498,7 +498,7 @@ pub enum PointRef {
     },
 }
 
-/// A road wheel; see [`Wheel`].
+/// A road wheel; see [`Wheel`](crate::model::Wheel).
 #[derive(Clone, Debug)]
 pub struct WheelDraft {
     /// Its name.
@@ -521,7 +521,7 @@ pub struct WheelDraft {
     pub end: Option<VehicleEnd>,
 }
 
-/// Two wheels side by side; see [`Axle`].
+/// Two wheels side by side; see [`Axle`](crate::model::Axle).
 #[derive(Clone, Debug)]
 pub struct AxleDraft {
     /// Its name.
@@ -555,7 +555,7 @@ pub struct MeasureDraft {
     pub kind: MeasureKindDraft,
 }
 
-/// A metric; see [`Metric`]. Its numbers are in units of which so many make a metre or a radian, since what they measure
+/// A metric; see [`Metric`](crate::model::Metric). Its numbers are in units of which so many make a metre or a radian, since what they measure
 /// follows from the measures.
 #[derive(Clone, Debug)]
 pub struct MetricDraft {
@@ -575,7 +575,7 @@ pub struct MetricDraft {
     pub per_radian: f64,
 }
 
-/// A direction that an angle is measured from or to; see [`Ray`].
+/// A direction that an angle is measured from or to; see [`Ray`](crate::model::Ray).
 #[derive(Clone, Debug)]
 pub enum RayDraft {
     /// From one point to another.

@@ -110,6 +110,7 @@ impl Range {
         // Whether an angle at + 2 pi k is among them, also by a hair.
         let reaches = |at: f64| {
             let hair = 4.0 * f64::EPSILON * (1.0 + self.low.abs());
+            // The first at + 2 pi k that is not below the range
             let next = at + TAU * ((self.low - hair - at) / TAU).ceil();
             next <= self.high + hair
         };
@@ -200,6 +201,7 @@ impl Stretch {
         let half = 0.5 * length;
         // Of what is not defined all along, the middle says nothing.
         let known = self.value.is_bounded();
+        // f(m) + f'([a, b]) [-h/2, h/2], by the mean value theorem
         let mean = Range::exactly(middle) + self.rate * Range::between(-half, half);
         Self { value: if known && mean.is_bounded() { self.value.and(mean) } else { self.value }, ..self }
     }
@@ -212,6 +214,7 @@ impl Stretch {
         }
         let mut slopes = [0.0; HIGHEST_DEGREE + 1];
         for (k, slope) in slopes[..n.saturating_sub(1)].iter_mut().enumerate() {
+            // p' = sum (k + 1) c_k+1 x^k
             *slope = (k + 1) as f64 * coefficients[k + 1];
         }
         let rate = of_polynomial(&slopes[..n.saturating_sub(1).max(1)], from, to);
@@ -225,6 +228,7 @@ impl Stretch {
 
     /// g of it, with the ranges of g and of its derivative.
     fn chain(self, g: Range, slope: Range) -> Self {
+        // (g(x)). = g'(x) x.
         Self { value: g, rate: slope * self.rate }
     }
 
@@ -292,6 +296,7 @@ impl Term for Stretch {
     fn angle(self, x: Self) -> Self {
         let y = self;
         let (across, along) = (y.value, x.value);
+        // atan2(y, x). = (x y. - y x.) / (x^2 + y^2)
         let rate = (along * y.rate - across * x.rate) / (along.square() + across.square());
         // On the negative x axis the angle jumps.
         let value = if along.low <= 0.0 && across.has(0.0) {
@@ -306,6 +311,7 @@ impl Term for Stretch {
     }
 
     fn length(self, o: Self) -> Self {
+        // r = sqrt(x^2 + y^2),    r. = (x x. + y y.) / r,    abs(r.) <= abs(x.) + abs(y.)
         let length = (self.value.square() + o.value.square()).sqrt();
         let rate = (self.value * self.rate + o.value * o.rate) / length;
         // Whatever the direction, a length changes no faster than its components together.
@@ -415,6 +421,7 @@ fn of_polynomial(coefficients: &[f64], from: f64, to: f64) -> Range {
     let mut c = [0.0; HIGHEST_DEGREE + 1];
     c[..coefficients.len()].copy_from_slice(coefficients);
     let c = &mut c[..=n];
+    // p = sum c_k u^k,  b_i = sum_{j<=i} C(i,j) / C(n,j) c_j,  min b_i <= p <= max b_i                    (theory (31))
     // In powers of x - from, by Horner's rule ...
     for k in 0..n {
         for i in (k..n).rev() {

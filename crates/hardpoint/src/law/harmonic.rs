@@ -51,6 +51,7 @@ impl Shape for Harmonic {
     #[inline(always)]
     fn at<T: Real, const N: usize>(&self, time: Jet<T, N>, seed: Option<Seed<T>>) -> Jet<T, N> {
         let number = |value: f64, parameter: usize| seeded(value, parameter, seed);
+        // f = offset + amplitude sin(2 pi frequency t + phase), its rates by the chain rule of the jet
         let turn = time.times(number(self.frequency, 1) * TAU).plus(number(self.phase, 2));
         turn.map(Function::Sin).times(number(self.amplitude, 0)).plus(number(self.offset, 3))
     }

@@ -138,6 +138,7 @@ pub(super) fn jumps(law: &Law, from: f64, to: f64) -> Vec<Jump> {
 /// The law at `t`, continued from the times before.
 fn just_before(law: &Law, t: f64) -> Jet {
     let [f, d, dd, ddd] = law.evaluate(backwards(t), None).derivatives();
+    // In s = -t: d/dt = -d/ds
     Jet([f, -d, dd, -ddd])
 }
 

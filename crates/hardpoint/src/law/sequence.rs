@@ -108,6 +108,7 @@ impl Sequence {
         let zero = T::zero();
         let (mut start, mut offset) = (zero, zero);
         for j in 0..k {
+            // start_j+1 = start_j + duration_j,    offset_j+1 = offset_j + f_j(duration_j) - f_j+1(0) where the next goes on from there
             let duration = self.duration(j, seed);
             let at_end: Jet<T, N> = backwards(duration);
             let end = self.pieces[j].law.evaluate(at_end, self.seed_in(j, seed)).value();

@@ -65,6 +65,7 @@ impl SmoothStep {
             5 => (3, &[10.0, -15.0, 6.0]),
             _ => (4, &[35.0, -84.0, 70.0, -20.0]),
         };
+        // s(u) = u^lowest (c0 + c1 u + ...)
         u.powi(lowest) * sum_of_powers(u, coefficients.len(), |k| T::constant(coefficients[k]))
     }
 }
@@ -107,6 +108,7 @@ impl Shape for SmoothStep {
         if t > self.end || t == self.end && !is_backwards {
             return Jet::constant(to);
         }
+        // f = from + (to - from) s(u),    u = (t - start) / (end - start)
         let u = time.plus(-start).times(T::one() / (end - start));
         self.rise(u).times(to - from).plus(from)
     }

@@ -46,6 +46,7 @@ impl Shape for ConstantSpeed {
     #[inline(always)]
     fn at<T: Real, const N: usize>(&self, time: Jet<T, N>, seed: Option<Seed<T>>) -> Jet<T, N> {
         let number = |value: f64, parameter: usize| seeded(value, parameter, seed);
+        // f = offset + speed t
         time.times(number(self.speed, 0)).plus(number(self.offset, 1))
     }
 

@@ -262,6 +262,7 @@ impl Shape for Spline {
         let f = of(&self.segments);
         match seed {
             None => f,
+            // A spline is linear in its data: f = sum_k data_k c_k(t), so df/d(data_k) is the cardinal spline c_k.
             Some(Seed { parameter, size }) => f + of(self.basis.cardinal(parameter)).times(size),
         }
     }

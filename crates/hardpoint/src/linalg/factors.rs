@@ -67,6 +67,7 @@ impl<T: Real> Factors<T> {
     pub fn ratio(&self, now: T, before: T) -> T {
         match self {
             Self::Dense(_) => now / before,
+            // exp(ln abs(det) - ln abs(det before))
             Self::Sparse(_) => (now - before).map(Function::Exp),
         }
     }

@@ -29,18 +29,23 @@ pub(crate) fn least_squares(
         return vec![vec![0.0; n]; right.len()];
     }
     columns.iter_mut().flatten().for_each(|x| *x /= largest);
+    // Q^T A P = (R over 0), of as many rows as independent columns
     let q = Triangular::of(columns, ROUND_OFF * m.max(n) as f64);
     let rank = q.reflections.len();
     let row = |i: usize| (0..n).map(|j| if j < i { 0.0 } else { q.columns[j][i] }).collect();
+    // V^T R^T N = (S over 0)
     let v = Triangular::of((0..rank).map(row).collect(), 0.0);
     let solution = |b: &Vec<f64>| {
+        // c = Q^T b
         let mut c = b.clone();
         q.reflections.iter().for_each(|h| reflect(h, &mut c));
         let mut y = vec![0.0; n];
         for i in 0..rank {
+            // S^T y = N^T c, forwards, since S^T is lower triangular; the rest of y is 0, which makes x the shortest
             let known: f64 = (0..i).map(|k| v.columns[i][k] * y[k]).sum();
             y[i] = (c[v.order[i]] - known) / v.columns[i][i];
         }
+        // x = P V y
         v.reflections.iter().rev().for_each(|h| reflect(h, &mut y));
         let mut x = vec![0.0; n];
         q.order.iter().zip(y).for_each(|(&c, y)| x[c] = y / largest);
@@ -76,6 +81,7 @@ impl Triangular {
             columns.swap(k, longest);
             order.swap(k, longest);
             let mut normal = columns[k][k..].to_vec();
+            // Householder: u = (a + sign(a_0) abs(a) e_0) / abs(..) mirrors a to -sign(a_0) abs(a) e_0; the sum loses no digits
             normal[0] += length.copysign(normal[0]);
             let size = norm(&normal);
             normal.iter_mut().for_each(|x| *x /= size);
@@ -90,6 +96,7 @@ impl Triangular {
 fn reflect(normal: &[f64], x: &mut [f64]) {
     let last = x.len() - normal.len();
     let twice: f64 = 2.0 * normal.iter().zip(&x[last..]).map(|(a, b)| a * b).sum::<f64>();
+    // x <- x - 2 u (u . x)
     x[last..].iter_mut().zip(normal).for_each(|(x, u)| *x -= twice * u);
 }
 

@@ -14,6 +14,8 @@ pub(crate) struct Elimination<T> {
     /// Row-major n x n: the matrix.
     rows: Vec<T>,
     /// Its factors, rows in the order of the pivots, diagonal inverted.
+    ///
+    /// `P A = L U`, l_ii = 1: below the diagonal l_rk, above it u_kc, on it 1 / u_kk.
     a: Vec<T>,
     order: Vec<usize>,
     /// Whether that order is an even permutation.
@@ -60,6 +62,7 @@ impl<T: Real> Watched<T> {
         let product = self.product.decisive();
         // NaN, as of a pivot of zero, is no sign either.
         let regular = product.abs() > 0.0;
+        // min abs(u_kk) / max abs(u_kk) = 1 / (max abs(u_kk) max abs(1 / u_kk))
         let ratio = if regular { 1.0 / (self.most.decisive() * self.least.decisive()) } else { 0.0 };
         (ratio, product > 0.0)
     }
@@ -123,6 +126,7 @@ impl<T: Real> Elimination<T> {
             least = least.larger(inverse.abs());
             determinant = determinant * pivot;
             for r in k + 1..n {
+                // l_rk = a_rk / u_kk,    a_rc <- a_rc - l_rk u_kc
                 let m = a[r * n + k] * inverse;
                 a[r * n + k] = m;
                 growth = growth.larger(m.abs());
@@ -133,6 +137,7 @@ impl<T: Real> Elimination<T> {
         }
         let watched = Watched { product: determinant, most, least, growth };
         let (pivot_ratio, positive) = watched.verdict();
+        // det A = sign(P) prod u_kk
         let positive = positive == self.even;
         (Factored { pivot_ratio, positive, determinant: determinant.abs(), watched }, growth.decisive())
     }
@@ -180,6 +185,7 @@ impl<T: Real> Elimination<T> {
         let a = &self.a[..n * n];
         let x = &mut self.scratch[..n];
         for k in 0..n {
+            // L y = P b:  y_k = b_k - sum_{c<k} l_kc y_c
             let mut s = b[self.order[k]];
             for c in 0..k {
                 s = (-a[k * n + c]).times_plus(x[c], s);
@@ -187,6 +193,7 @@ impl<T: Real> Elimination<T> {
             x[k] = s;
         }
         for k in (0..n).rev() {
+            // U x = y:  x_k = (y_k - sum_{c>k} u_kc x_c) / u_kk
             let mut s = x[k];
             for c in k + 1..n {
                 s = (-a[k * n + c]).times_plus(x[c], s);
@@ -206,6 +213,7 @@ impl<T: Real> Elimination<T> {
         let x = &mut self.scratch[..n];
         x.copy_from_slice(&b[..n]);
         for k in 0..n {
+            // U^T y = b, column by column: y_k = b_k / u_kk, and off with it from all later ones
             x[k] = x[k] * a[k * n + k];
             for c in k + 1..n {
                 x[c] = (-a[k * n + c]).times_plus(x[k], x[c]);

@@ -58,6 +58,7 @@ impl FullPivot {
             rows.swap(r, k);
             used[c] = true;
             columns.push(c);
+            // Gauss and Jordan: the pivot becomes 1, and all other rows, those of earlier pivots too, lose column c.
             let inverse = 1.0 / a[k][c];
             for x in &mut a[k] {
                 *x *= inverse;
@@ -75,6 +76,7 @@ impl FullPivot {
         let free = (0..n)
             .filter(|&c| !used[c])
             .map(|c| {
+                // x_c = 1 and x_p = -a_kc, p the column of pivot k: the null vector that moves, besides the pivots' columns, only c
                 let others = columns.iter().enumerate().map(|(k, &p)| (p, -a[k][c]));
                 others.chain([(c, 1.0)]).filter(|(_, x)| *x != 0.0).collect()
             })
@@ -135,6 +137,7 @@ impl Sparse {
         let n = self.counts.len();
         let largest = self.rows.iter().flatten().map(|(_, x)| x.abs()).fold(0.0, f64::max);
         let least = f64::max(tolerance, tolerance * largest);
+        // Pivots of at least 1e-2 of the largest entry first, then of 1e-4 of it, and so on down to the tolerance.
         let mut stage = f64::max(STAGE * largest, least);
         while self.pivots.len() < n && largest > 0.0 {
             let waiting = (0..self.rows.len()).filter(|&r| !self.done[r] && !self.rows[r].is_empty());
@@ -198,6 +201,7 @@ impl Sparse {
                 continue;
             }
             let Ok(at) = self.rows[other].binary_search_by_key(&c, |e| e.0) else { continue };
+            // row <- row - (a_ic / a_rc) pivot row
             let factor = self.rows[other][at].1 * inverse;
             let row = std::mem::take(&mut self.rows[other]);
             self.rows[other] = self.combined(other, &row, &pivot_row, c, factor, dust);
@@ -265,6 +269,7 @@ impl Sparse {
                             sum += x * v[column];
                         }
                     }
+                    // From the last pivot back: u_cc v_c + sum_{j != c} u_cj v_j = 0
                     v[c] = -sum / pivot;
                 }
                 (0..n).filter(|&c| v[c] != 0.0).map(|c| (c, v[c])).collect()

@@ -180,6 +180,7 @@ impl<T: Real> SparseLu<T> {
             }
             for at in lower.range(i) {
                 let k = lower.items[at] as usize;
+                // l_ik = (row i so far)_k / u_kk; then row i <- row i - l_ik u_k
                 let l = work[k] * inverse[k];
                 (self.lower[at], work[k]) = (l, zero);
                 growth = growth.larger(l.abs());
@@ -195,6 +196,7 @@ impl<T: Real> SparseLu<T> {
             (inverse[i], work[i]) = (one / pivot, zero);
             most = most.larger(pivot.abs());
             least = least.larger(inverse[i].abs());
+            // abs(det) = prod abs(u_ii) = e^logarithm prod abs(u_ii units_i), the factors about 1: no power of two too large or small
             product = product * (pivot * units[i]);
             if i % MULTIPLIED == MULTIPLIED - 1 || i + 1 == n {
                 let size = product.abs();
@@ -229,6 +231,7 @@ impl<T: Real> SparseLu<T> {
         // Twice turned over, a list is in ascending order.
         let upper = placed(beside, &column_places).transposed(n).transposed(n);
         (self.lower, self.upper) = (vec![zero; lower.items.len()], vec![zero; upper.items.len()]);
+        // units_i = 2^-round(log2 abs(u_ii)),    logarithm = sum round(log2 abs(u_ii)) ln 2
         let exponents = || pivots.iter().map(|p| p.size.log2().round());
         self.order = Order {
             even: is_odd(&rows) == is_odd(&columns),
@@ -250,6 +253,7 @@ impl<T: Real> SparseLu<T> {
         let Order { rows, columns, lower, upper, .. } = &self.order;
         let x = &mut self.work[..rows.len()];
         for i in 0..rows.len() {
+            // L y = P b
             let mut s = b[rows[i] as usize];
             for (k, l) in lower.with(i, &self.lower) {
                 s = (-l).times_plus(x[k], s);
@@ -257,6 +261,7 @@ impl<T: Real> SparseLu<T> {
             x[i] = s;
         }
         for i in (0..rows.len()).rev() {
+            // U z = y, x = Q z
             let mut s = x[i];
             for (j, u) in upper.with(i, &self.upper) {
                 s = (-u).times_plus(x[j], s);
@@ -282,6 +287,7 @@ impl<T: Real> SparseLu<T> {
             *x = b[c as usize];
         }
         for i in 0..rows.len() {
+            // U^T y = Q^T b
             let s = x[i] * self.inverse[i];
             x[i] = s;
             for (j, u) in upper.with(i, &self.upper) {
@@ -290,6 +296,7 @@ impl<T: Real> SparseLu<T> {
         }
         for i in (0..rows.len()).rev() {
             let s = x[i];
+            // L^T z = y likewise from the last one on, and x = P^T z
             for (k, l) in lower.with(i, &self.lower) {
                 x[k] = (-l).times_plus(s, x[k]);
             }
@@ -393,6 +400,7 @@ impl Choice {
         let mut looked_at = 0;
         for length in 1..=self.rows.len() {
             // What is not shorter costs at least so much, whatever is crossed.
+            // (r - 1) (c - 1) >= (length - 1) (crossed - 1) for r >= length, c >= crossed
             let is_least = |best: &Pivot, crossed: usize| best.cost <= (length - 1) * (crossed - 1);
             if best.is_some_and(|best| is_least(&best, length)) {
                 break;
@@ -428,12 +436,14 @@ impl Choice {
 
     /// Takes this entry for the best pivot if it is cheaper, and large enough.
     fn consider(&mut self, row: u32, column: u32, best: &mut Option<Pivot>) {
+        // Markowitz: (entries of the row - 1) (entries of the column - 1), the most places that eliminating here may fill
         let cost = (self.rows[row as usize].len() - 1) * (self.columns[column as usize].len() - 1);
         if best.is_some_and(|best| cost >= best.cost) {
             return;
         }
         let size = self.size(row, column);
         // Written so that NaN is no pivot.
+        // abs(l) <= 1 / IN_COLUMN = 2
         if !(size > 0.0 && size >= IN_COLUMN * self.largest(column)) {
             return;
         }

@@ -21,6 +21,8 @@ pub(crate) enum EndKind {
 
 /// The gradient of h^(2m-1)/2 ∫ (f⁽ᵐ⁾)² dt by the scaled derivatives h d, h² dd at both ends; rows and columns in the order
 /// value, derivatives, value, derivatives; the rows of the values are not needed.
+///
+/// E = y^T K y / (2 h^(2m-1)) with y = (f, h d, h^2 dd) at both ends.
 const CUBIC: [[f64; 4]; 4] = [[0.0; 4], [6.0, 4.0, -6.0, 2.0], [0.0; 4], [6.0, 2.0, -6.0, 4.0]];
 const QUINTIC: [[f64; 6]; 6] = [
     [0.0; 6],
@@ -78,6 +80,7 @@ impl Basis {
         let mut unknowns = vec![0.0; self.factor.len()];
         self.for_entries(|row, column, entry| {
             if let Source::Data(datum) = column {
+                // dE/d(unknown) = 0:  A unknowns = - sum of entry data
                 unknowns[row] -= entry * data[datum];
             }
         });
@@ -126,6 +129,7 @@ impl Basis {
                 };
                 for column in 0..2 * m {
                     let scaled = if m == 2 { CUBIC[row][column] } else { QUINTIC[row][column] };
+                    // dE/d d_r = sum_c K_rc h^(r + c + 1 - 2m) d_c, r and c counting the derivatives 0, 1, 2
                     let power = (row % m + column % m + 1) as i32 - 2 * m as i32;
                     add(unknown, self.source(k + column / m, column % m), scaled * h.powi(power));
                 }
@@ -163,6 +167,7 @@ impl Basis {
                 row[j - first] = (row[j - first] - sum) / other[j - other_first];
             }
             let (diagonal, left) = row.split_last_mut().expect("a row reaches to its diagonal");
+            // L_ii = sqrt(a_ii - sum_k L_ik^2)
             *diagonal = (*diagonal - left.iter().map(|entry| entry * entry).sum::<f64>()).sqrt();
         }
         rows
@@ -177,10 +182,12 @@ impl Basis {
         for i in 0..b.len() {
             let (diagonal, left, first) = parts(i);
             let sum: f64 = left.iter().zip(&b[first..i]).map(|(l, x)| l * x).sum();
+            // L y = b
             b[i] = (b[i] - sum) / diagonal;
         }
         for i in (0..b.len()).rev() {
             let (diagonal, left, first) = parts(i);
+            // L^T x = y, column by column
             b[i] /= diagonal;
             for (k, l) in left.iter().enumerate() {
                 b[first + k] -= l * b[i];
@@ -207,5 +214,6 @@ fn hermite(h: f64, rates: usize, at: impl Fn(usize, usize) -> f64) -> Segment {
             6.0 * rise - 3.0 * (v0 + v1) + 0.5 * (a1 - a0),
         ]
     };
+    // sum c_k u^k = sum (c_k / h^k) s^k
     std::array::from_fn(|k| scaled[k] / h.powi(k as i32))
 }

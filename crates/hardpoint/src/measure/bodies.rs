@@ -14,10 +14,12 @@ pub(super) fn with_rates(s: &BodyState) -> Pose<Rates> {
 /// The same from r, the columns of A, v, omega, a and alpha.
 pub(super) fn moving<T: Real>([r, x, y, z, v, omega, a, alpha]: [Vec3<T>; 8]) -> Pose<Rates<T>> {
     let column = |e: Vec3<T>| {
+        // e. = omega x e,    e.. = alpha x e + omega x e.
         let e1 = omega.cross(e);
         let e2 = alpha.cross(e) + omega.cross(e1);
         zip([e, e1, e2])
     };
+    // r, r. = v, r.. = a of the frame's origin are known as they are.
     Pose { rot: Mat3 { cols: [x, y, z].map(column) }, r: zip([r, v, a]) }
 }
 
@@ -25,6 +27,8 @@ pub(super) fn moving<T: Real>([r, x, y, z, v, omega, a, alpha]: [Vec3<T>; 8]) ->
 pub(super) fn with_sensitivity(s: &BodyState, d: &BodySensitivity) -> Pose<Dual<Rates>> {
     let Pose { rot, r } = with_rates(s);
     let column = |k: usize| {
+        // With b = d/db:  e_b = pi' x e,    (e.)_b = omega_b x e + omega x e_b,
+        //                 (e..)_b = alpha_b x e + alpha x e_b + omega_b x e. + omega x (e.)_b
         let e0 = s.rotation.cols[k];
         let e1 = s.omega.cross(e0);
         let b0 = d.dpi.cross(e0);

@@ -2,6 +2,9 @@
 //!
 //! A measure is written once, over any [`Real`]; its rate, acceleration and the design derivatives of all three follow by
 //! the product and chain rules where it runs on [`Rates`].
+//!
+//! Formulas, symbols and signs are those of `docs/measures.md`; a number stands for value, rate and acceleration, and for the
+//! derivative by a design variable of all three (`docs/theory.md`, section 9).
 
 mod bodies;
 mod program;
@@ -254,6 +257,7 @@ pub(crate) fn evaluate(
     let turns = turns(model, topology, &measured.outputs);
     let bodies = bodies_asked_for(model);
 
+    // What is fixed in the bodies has no rates: they are all in the poses.
     let fixed = effects.fixed(values).map(Jet::constant);
     let mut poses = vec![Pose::IDENTITY.spread(); model.bodies.len()];
     // Formulas are over angles that are counted through turns.
@@ -267,6 +271,7 @@ pub(crate) fn evaluate(
         let begins = left.len();
         loop {
             if let Some(run) = &mut run {
+                // Eight output times at once; what the program cannot tell is listed, and asked of the formulas one by one.
                 run.at(first, motion, sensitivities, measured);
             }
             left.truncate(begins);
@@ -291,6 +296,7 @@ pub(crate) fn evaluate(
                     let mut poses = poses.clone();
                     place(&mut poses);
                     passed.states.iter().for_each(|(body, state)| poses[body.0] = with_rates(state));
+                    // An angle where the path passed between output times
                     let Jet([angle, rate, _]) = Moment::new(model, &fixed, &poses).measure(m);
                     [angle, rate]
                 };
@@ -300,6 +306,7 @@ pub(crate) fn evaluate(
                     whole_turns[m].0[0] = whole;
                 });
                 if counts {
+                    // The formula of measures asks for angles with their turns, so these are found first.
                     counted.extend(whole_turns.iter().map(|turns| turns.0[0]));
                     let moment = Moment { whole_turns: &whole_turns, ..moment };
                     for &(_, m) in left[begins..].iter().filter(|(_, m)| is_formula(model, *m)) {
@@ -371,6 +378,7 @@ pub(crate) fn derivatives(
     let mut values: Vec<Dual> = values.iter().map(|v| Dual::constant(*v)).collect();
     let (mut given, mut whole_turns): (Vec<Dual<Rates>>, Vec<Dual<Rates>>) = (Vec::new(), Vec::new());
     for b in (0..sensitivities.variables).filter(|_| !listed.is_empty()) {
+        // d/db of what is fixed in the bodies; that of the poses is W at this time, by `with_sensitivity`.
         values[b] = Dual::variable(values[b].v);
         let fixed = effects.fixed(&values);
         let fixed = fixed.map(|x| Dual { v: Jet::constant(x.v), d: Jet::constant(x.d) });
@@ -383,6 +391,7 @@ pub(crate) fn derivatives(
                 bodies.iter().for_each(|&b| poses[b] = with_sensitivity(&states.body(b), &d.body(b)));
                 given.clear();
                 let both = more.slopes.at(k).iter().zip(more.slopes.d(k, b));
+                // A measure by a driver has a value and its derivative by b, but no rates.
                 given.extend(both.map(|(x, d)| Dual { v: only(*x), d: only(*d) }));
                 let turns = more.whole_turns.get(k * model.measures.len()..).unwrap_or_default();
                 whole_turns.clear();
@@ -496,6 +505,7 @@ const TURN: f64 = 2.0 * std::f64::consts::PI;
 
 /// The angle nearest to another that is a whole number of turns from this one.
 fn turned(angle: f64, near: f64) -> f64 {
+    // angle + 2 pi k,  k the whole number nearest to (near - angle) / 2 pi
     angle + TURN * ((near - angle) / TURN).round()
 }
 
@@ -510,6 +520,7 @@ struct Counted {
 impl Counted {
     /// About what it is when it is going at this rate at that time.
     fn then(self, rate: f64, time: f64) -> f64 {
+        // x + h (x. before + x. then) / 2: wrong by h^3 x... / 12, where anything below half a turn is right
         self.value + 0.5 * (time - self.time) * (self.rate + rate)
     }
 }
@@ -526,6 +537,7 @@ fn along_the_path<'p>(
     let (mut counted, first) = (last, last.is_none());
     for place in passed {
         let [angle, rate] = measure(place);
+        // about what it is: where the path begins, or where the one before ended, or by the trapezoidal rule
         let near = match counted {
             None => begins.unwrap_or(angle),
             // Another path begins where the one before ended.
@@ -556,6 +568,7 @@ fn unwrap_angles(
         let Some(turns_of) = turns_of else { continue };
         let [now, rate, acceleration] = measured.value(k, m);
         let near = match turns_of {
+            // About f(t), q of the tree, or what its rates make of the value before
             Turns::Driver(d) => laws[d.0].at(motion.times[k]).value(),
             Turns::Coordinate(q) => motion.coordinates.row(k).get(*q),
             Turns::Path(begins) => {
@@ -621,6 +634,7 @@ impl<'a, T: Real> Moment<'a, T> {
     }
 
     fn point(&self, p: PointId) -> Vec3<T> {
+        // P = r + A s
         self.poses[self.model.points[p.0].body.0].point(self.fixed.points[p.0])
     }
 
@@ -635,13 +649,16 @@ impl<'a, T: Real> Moment<'a, T> {
                 let wrapped = self.coordinate(k, *joint, *coordinate);
                 self.whole_turns.get(k).map_or(wrapped, |turns| wrapped + *turns)
             }
+            // abs(P_to - P_from)
             MeasureKind::Distance { from, to } => (self.point(*to) - self.point(*from)).norm(),
             MeasureKind::Coordinates { point, along } => {
+                // n . P
                 let p = self.point(*point);
                 along.spread().dot(p)
             }
             MeasureKind::Angle { from, to, about } => {
                 let [a, b] = self.rays(k, [from, to]);
+                // atan2(abs(a x b), a . b);  about n, of what is seen along it:  atan2(n . (a x b), a . b - (n . a) (n . b))
                 let (across, along) = (a.cross(b), a.dot(b));
                 let within = match about {
                     None => across.norm().atan2(along),
@@ -654,8 +671,10 @@ impl<'a, T: Real> Moment<'a, T> {
             }
             MeasureKind::TransmissionAngle { from, to } => {
                 let [a, b] = self.rays(k, [from, to]);
+                // atan2(abs(a x b), abs(a . b)): between lines, 0 to 90 deg
                 a.cross(b).norm().atan2(a.dot(b).abs())
             }
+            // n . v or abs(v),    n . a or abs(a)
             MeasureKind::Velocity { point, along } => component(self.point(*point).map(T::rate), *along),
             MeasureKind::Acceleration { point, along } => {
                 component(self.point(*point).map(T::rate).map(T::rate), *along)
@@ -663,6 +682,7 @@ impl<'a, T: Real> Moment<'a, T> {
             MeasureKind::Curvature { point, about } => {
                 let v = self.point(*point).map(T::rate);
                 let a = v.map(T::rate);
+                // n . (v x a) / abs(v)^3,  or abs(v x a) / abs(v)^3; none where v^2 <= 1e-12 abs(a) size, a point that comes from rest
                 let (turn, speed) = (v.cross(a), v.norm());
                 let turn = about.map_or_else(|| turn.norm(), |about| about.spread().dot(turn));
                 let (way, far) = (speed * speed, a.norm() * T::constant(RESTS * self.model.size()));
@@ -672,6 +692,7 @@ impl<'a, T: Real> Moment<'a, T> {
             MeasureKind::Rate { of } => self.output(*of).rate(),
             MeasureKind::Combination { expression } => expression.at(|source| self.output(source)),
             MeasureKind::Toe { body, .. } => {
+                // atan2(e_x, e_y) and -asin(e_z), as of a left wheel
                 let e = self.direction(k, 0, *body);
                 toe(e, T::constant(Side::Left.sign()))
             }
@@ -700,21 +721,25 @@ impl<'a, T: Real> Moment<'a, T> {
         // Headings to the left: toe-in of a right wheel is one, of a left wheel the opposite.
         let headings = || [-toe(&left), toe(&right)];
         let wheelbase = || T::constant(self.model.vehicle.wheelbase.unwrap_or(f64::NAN));
+        // track = C_y,L - C_y,R;  a = -toe_L, b = toe_R to the left;  cot r = cot a + track / wheelbase
         let track = left.contact().y - right.contact().y;
         match what {
             AxleMeasure::Track => track,
             AxleMeasure::TotalToe => toe(&left) + toe(&right),
             AxleMeasure::AckermannError => {
                 let [l, r] = headings();
+                // b - r
                 r - right_by_ackermann(l, track / wheelbase())
             }
             AxleMeasure::Ackermann => {
                 let [l, r] = headings();
+                // (a - b) / (a - r)
                 (l - r) / steering(l - right_by_ackermann(l, track / wheelbase()), [l, r])
             }
             AxleMeasure::TurningRadius => {
                 let least = headings().map(|x| x.sin_cos().0.abs());
                 // The outer wheel steers less.
+                // wheelbase / sin(the lesser heading)
                 wheelbase() / steering(-(-least[0]).larger(-least[1]), headings())
             }
             AxleMeasure::RollCentreY | AxleMeasure::RollCentreHeight => T::constant(f64::NAN),
@@ -737,6 +762,7 @@ impl<'a, T: Real> Moment<'a, T> {
         let centre = point(wheel.centre);
         WheelAt {
             centre,
+            // e = A e', e' fixed in the knuckle
             spin_axis: pose(wheel.body).rot * self.fixed.directions[k][d].expect("a wheel has a spin axis"),
             radius: T::constant(wheel.radius),
             side: T::constant(wheel.side.sign()),
@@ -746,6 +772,7 @@ impl<'a, T: Real> Moment<'a, T> {
 
     /// Direction d of measure k, which is fixed in this body.
     fn direction(&self, k: usize, d: usize, body: BodyId) -> Vec3<T> {
+        // a = A a'
         self.poses[body.0].rot * self.fixed.directions[k][d].expect("a measure with directions")
     }
 
@@ -753,12 +780,17 @@ impl<'a, T: Real> Moment<'a, T> {
     fn coordinate(&self, k: usize, joint: JointId, coordinate: usize) -> T {
         let j = &self.model.joints[joint.0];
         let markers = self.fixed.markers[k].expect("a measure of a joint's coordinate");
+        // Axes and origins of the joint's markers: A C e_k and r + A s
         let axis = |end: usize, k: usize| self.poses[j.bodies[end].0].rot * markers[end].rot.cols[k];
         let origin = |end: usize| self.poses[j.bodies[end].0].point(markers[end].r);
         match j.kind.coordinates[coordinate].row {
+            // atan2(y_i . x_j, x_i . x_j)
             Row::Angle | Row::Heading => axis(0, 1).dot(axis(1, 0)).atan2(axis(0, 0).dot(axis(1, 0))),
+            // atan2(z_i . y_j, z_i . z_j)
             Row::AngleOnJ => axis(0, 2).dot(axis(1, 1)).atan2(axis(0, 2).dot(axis(1, 2))),
+            // a_i . (P_j - P_i)
             Row::Dot2(k) => axis(0, k).dot(origin(1) - origin(0)),
+            // abs(P_j - P_i)
             _ => (origin(1) - origin(0)).norm(),
         }
     }
@@ -787,6 +819,7 @@ fn steering<T: Real>(x: T, headings: [T; 2]) -> T {
 /// `cot r = cot l + track / wheelbase`, without the poles.
 fn right_by_ackermann<T: Real>(l: T, track_by_wheelbase: T) -> T {
     let (sin, cos) = l.sin_cos();
+    // r = atan2(sin l, cos l + sin l track / wheelbase)
     sin.atan2(cos + sin * track_by_wheelbase)
 }
 

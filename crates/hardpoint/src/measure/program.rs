@@ -8,6 +8,16 @@
 //!
 //! What formulas decide by values is recorded as a limit. Where one does not hold, or any number is none, the formulas themselves are
 //! asked again ([`Run::fits`]).
+//!
+//! With g_k how an output y goes with way k of a body, and a_k how far the body goes that way per unit of a variable b,
+//!
+//! ```text
+//! y_b    =  sum_k g_k a_k
+//! (y.)_b   =  sum_k (g_k. a_k + g_k a_k.)
+//! (y..)_b  =  sum_k (g_k.. a_k + 2 g_k. a_k. + g_k a_k..)
+//! ```
+//!
+//! and a = (dr, pi') with their rates: slides of the frame's origin, turns about it.
 
 use hardpoint_tape::{LANES, Number, Options, record};
 
@@ -99,11 +109,13 @@ impl Program {
             for &b in &bodies {
                 let numbers: Vec<Number> =
                     BodyState::at_design(model, BodyId(b)).numbers().map(&mut input).collect();
+                // r, A, v, omega, a, alpha of every body: a pose with its rates, and what it turns with
                 let vectors = std::array::from_fn(|k| vector(&numbers[3 * k..]));
                 (turns[b], poses[b]) = ([vectors[5], vectors[7]], moving(vectors));
             }
             let mut way = |&(_, b): &(usize, usize)| {
                 let numbers: [Number; BodySensitivity::NUMBERS] = std::array::from_fn(|_| input(0.0));
+                // dr, pi', dv, d(omega), da, d(alpha) of a body by a variable: how far it goes along each way
                 ways_of(std::array::from_fn(|k| vector(&numbers[3 * k..])), turns[b])
             };
             let ways: Vec<_> = asked.moved.iter().map(&mut way).collect();
@@ -124,6 +136,7 @@ impl Program {
                 let found =
                     given.iter().flat_map(|g| [g.values].into_iter().chain(g.derivatives.iter().copied()));
                 let check = found.flatten().filter(|x| !x.known().is_some_and(f64::is_nan));
+                // 0 x + 0 y + ...: 0, or NaN where any of them is no number
                 let check = check.fold(zero, |sum, x| x.times_plus(nothing, sum));
                 let limits = given.iter().flat_map(|g| &g.limits).chain(&of_design);
                 let guard = limits.fold(check, |most, limit| most.larger(*limit));
@@ -192,6 +205,7 @@ fn ways_of(
     [omega, alpha]: [Vec3<Number>; 2],
 ) -> [[Number; 3]; WAYS] {
     // Those of the rotation vector: domega is the rate of dpi and dpi x omega.
+    // (pi')'s rates:  (pi'). = d(omega)/db + omega x pi',    (pi').. = d(alpha)/db + alpha x pi' + omega x (pi').
     let first = omega.cross_plus(dpi, domega);
     let second = omega.cross_plus(first, alpha.cross_plus(dpi, dalpha));
     let way = |[x, y, z]: [Vec3<Number>; 3]| [[x.x, y.x, z.x], [x.y, y.y, z.y], [x.z, y.z, z.z]];
@@ -201,6 +215,7 @@ fn ways_of(
 
 /// A pose that goes one way, and how much of the way that is.
 fn gone(pose: Pose<Recorded>, way: usize, amount: Recorded) -> Pose<Dual<Recorded>> {
+    // A slide: dr = e_k a;  a turn: d(column) = e_k x column a, with r at rest.
     let axis = Vec3::AXES[way % 3].map(|x| amount.times(Number::constant(x)));
     let still = Vec3::zero();
     let d = if way < 3 {
@@ -288,6 +303,7 @@ impl Recorder<'_> {
                 if output.known.by_position {
                     // Leibniz' rule, along a way that stands still in the world.
                     let [g, rate, acceleration] = along(0);
+                    // Rows: what multiplies a, a., a..; columns: of y, y., y..
                     [[g, rate, acceleration], [zero, g, rate * 2.0], [zero, zero, g]]
                 } else {
                     std::array::from_fn(along)
@@ -300,6 +316,7 @@ impl Recorder<'_> {
                     for (slopes, way) in slopes.iter().zip(way) {
                         for order in 0..orders {
                             let sum = &mut derivatives[v][order];
+                            // y(order)_b += (slope by a(level)) a(level)
                             *sum = slopes[order].times_plus(*way, *sum);
                         }
                     }
@@ -309,6 +326,7 @@ impl Recorder<'_> {
         for &v in variables.iter().filter(|v| **v < self.asked.variables) {
             let fixed = self.geometry.moved[v].as_ref().expect("laid out for every variable of an output");
             let d = at(fixed, &poses).d.0;
+            // ... + dy/db with all bodies where they are: what is measured with moves within its body
             (0..3).for_each(|order| derivatives[v][order] += d[order]);
         }
         for numbers in derivatives.iter_mut().chain([&mut values]) {
@@ -375,6 +393,7 @@ pub(crate) fn dependences(
     }
     for v in 0..values.len() {
         let value = values[v];
+        // NaN in place of db: what becomes NaN depends on b
         values[v].d = f64::NAN;
         note(1, v, depend(&fixed(&values), &poses));
         values[v] = value;

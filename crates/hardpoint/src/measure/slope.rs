@@ -77,12 +77,14 @@ impl<'a> Slopes<'a> {
         let unit = |v: usize| model.alone(VariableId(v), 1.0);
         let ways =
             drivers.iter().map(|d| Way::Driver(*d)).chain((0..variables).map(|v| Way::Design(unit(v))));
+        // Directions: first the drivers, then unit vectors of the variables; pairs: every driver u with every variable w (15).
         let ways: Vec<Way> = ways.collect();
         let pairs: Vec<[usize; 2]> = (0..variables)
             .flat_map(|v| (0..drivers.len()).map(move |d| (d, v)))
             .map(|(d, v)| [d, drivers.len() + v])
             .collect();
         let fixed = |by: usize| {
+            // With the driver none of it goes (the outer `d` is 0); along the variable what that moves in its body (the inner `d`).
             let value = |k: usize| Dual::constant(Dual { v: values[k], d: f64::from(u8::from(k == by)) });
             let values: Vec<_> = (0..values.len()).map(value).collect();
             effects.fixed(&values)
@@ -106,6 +108,7 @@ impl<'a> Slopes<'a> {
         for by in 0..=self.variables {
             for (d, poses) in self.poses.iter_mut().enumerate() {
                 for &body in &self.asked_for {
+                    // X + eps_q X_q + eps_b X_b + eps_q eps_b X_qb, without b for the values themselves
                     poses[body] = if by < self.variables {
                         self.seconds.pose(state, by * self.drivers.len() + d, body)
                     } else {
@@ -158,12 +161,15 @@ impl<T: Real> Alone<'_, T> {
         });
         let wheel = |moment: &Moment<'_, Dual<T>>, d: usize, wheel: WheelId| Carried {
             wheel: moment.wheel(k, d, wheel),
+            // The twist w, v per unit of q, which is what a pose with `d` along q splits into
             carrier: moment.poses[model.wheels[wheel.0].body.0].split().1,
         };
         match model.measures[k].kind {
+            // (d of/dq) / (d over/dq), each with its derivative by the variable; the quotient rule is the dual's
             MeasureKind::Slope { of, over, .. } => first.output(of).d / first.output(over).d,
             MeasureKind::Wheel { wheel: w, what } => wheel(first, 0, w).measure(what, &model.vehicle),
             MeasureKind::Axle { axle, what } => {
+                // Each wheel goes up and down by its own driver; they may be one.
                 let [left, right] = model.axles[axle.0].wheels;
                 let (y, height) = axle_roll_centre([wheel(first, 0, left), wheel(second, 1, right)]);
                 if what == AxleMeasure::RollCentreY { y } else { height }

@@ -1,4 +1,14 @@
 //! Formulas of a wheel and its kingpin. Their signs: `docs/measures.md`.
+//!
+//! | here | symbol there | |
+//! |---|---|---|
+//! | `centre`, `radius` | W, R | wheel centre, global, m; from it to the ground in the wheel's plane, m |
+//! | `spin_axis` | e | unit vector, outboard |
+//! | `side` | s | 1 left, -1 right |
+//! | `kingpin` | L, U, k = U - L | lower and upper point, global, m |
+//! | `contact()`, `outboard()`, `forward()` | C, o, f | |
+//! | `off_kingpin(P)` | d(P) | |
+//! | `.d` of a number of [`Carried`], `carrier` | X', w and v | per unit of the driver q, (11) of `docs/theory.md` with `L_u = 1` |
 
 use crate::model::{Vehicle, VehicleEnd, WheelMeasure, WheelNeed};
 use crate::number::{Dual, Real};
@@ -34,30 +44,40 @@ impl<T: Real> WheelAt<T> {
         match what {
             WheelMeasure::Toe => toe(self.spin_axis, self.side),
             WheelMeasure::Camber => camber(self.spin_axis),
+            // atan2(z . (f_0 x f), f_0 . f)
             WheelMeasure::SteerAngle => {
                 let (d, f) = (design().forward(), self.forward());
                 d.cross(f).z.atan2(d.dot(f))
             }
+            // atan2(-k_x, k_z)
             WheelMeasure::Caster => {
                 let k = self.along_kingpin();
                 (-k.x).atan2(k.z)
             }
+            // atan2(-s k_y, k_z)
             WheelMeasure::KingpinInclination => {
                 let k = self.along_kingpin();
                 (-self.side * k.y).atan2(k.z)
             }
+            // d(C) . o
             WheelMeasure::ScrubRadius => self.off_kingpin(self.contact()).dot(self.outboard()),
+            // d(W) . o
             WheelMeasure::SpindleOffset => self.off_kingpin(self.centre).dot(self.outboard()),
+            // -d(C) . f
             WheelMeasure::CasterTrail => self.caster_trail(),
             WheelMeasure::MechanicalTrail => {
                 // The kingpin as the wheel's side view shows it: its slope is that of k.f against k.z.
                 let k = self.along_kingpin();
                 let aside = k.dot(self.forward());
+                // caster_trail k_z / sqrt((k . f)^2 + k_z^2)
                 self.caster_trail() * k.z / (aside * aside + k.z * k.z).sqrt()
             }
+            // d(W) . f
             WheelMeasure::HubTrail => self.off_kingpin(self.centre).dot(self.forward()),
+            // W_z - W0_z,    W0_x - W_x
             WheelMeasure::WheelTravel => self.centre.z - design().centre.z,
             WheelMeasure::WheelRecession => design().centre.x - self.centre.x,
+            // s C_y,    s (C_y - C0_y)
             WheelMeasure::HalfTrack => self.half_track(),
             WheelMeasure::HalfTrackChange => self.half_track() - design().half_track(),
             WheelMeasure::ContactX => self.contact().x,
@@ -85,12 +105,14 @@ impl<T: Real> WheelAt<T> {
 
     /// Outboard along the ground: the horizontal part of the spin axis, of unit length.
     fn outboard(&self) -> Vec3<T> {
+        // o = (e_x, e_y, 0) / sqrt(e_x^2 + e_y^2)
         let Vec3 { x, y, .. } = self.spin_axis;
         Vec3::new(x, y, T::zero()) * (T::one() / (x * x + y * y).sqrt())
     }
 
     /// Forward along the ground: where the wheel's plane and the ground meet.
     fn forward(&self) -> Vec3<T> {
+        // f = (s o_y, -s o_x, 0): o turned by a right angle, to the right of a left wheel's outboard and to the left of a right one's
         let Vec3 { x, y, z } = self.outboard();
         Vec3::new(self.side * y, -self.side * x, z)
     }
@@ -98,6 +120,7 @@ impl<T: Real> WheelAt<T> {
     /// `C - R u`, with u the upward direction in the wheel's plane, `(z - (z.e) e) / abs(..)`.
     pub fn contact(&self) -> Vec3<T> {
         let e = self.spin_axis;
+        // C = W - R u,    u = (z - (z . e) e) / abs(z - (z . e) e)
         let up = Vec3::AXES[2].spread() - e * e.z;
         self.centre - up * (self.radius / up.norm())
     }
@@ -120,6 +143,7 @@ impl<T: Real> WheelAt<T> {
     fn off_kingpin(&self, p: Vec3<T>) -> Vec3<T> {
         let [lower, upper] = self.kingpin();
         let (d, k) = (p - lower, upper - lower);
+        // d(P) = P - L - k (P_z - L_z) / k_z
         d - k * (d.z / k.z)
     }
 
@@ -139,6 +163,7 @@ impl<T: Real> Carried<T> {
     /// The value of a measure that goes by this driver.
     pub fn measure(&self, what: WheelMeasure, vehicle: &Vehicle) -> T {
         let wheel = &self.wheel;
+        // W_z', C and C': the contact point wanders on the wheel, so C' is not the velocity of a point of the carrier.
         let (rise, contact) = (wheel.centre.z.d, wheel.contact());
         let (c, path) = (contact.map(|x| x.v), contact.map(|x| x.d));
         let Twist { w, .. } = self.carrier;
@@ -146,19 +171,25 @@ impl<T: Real> Carried<T> {
         let v = self.carrier.at(c);
         let side = wheel.side.v;
         match what {
+            // toe' / W_z',    camber' / W_z',    -W_x' / W_z',    s C_y' / W_z'
             WheelMeasure::BumpSteer => toe(wheel.spin_axis, wheel.side).d / rise,
             WheelMeasure::BumpCamber => camber(wheel.spin_axis).d / rise,
             WheelMeasure::BumpRecession => -wheel.centre.x.d / rise,
             WheelMeasure::BumpScrub => side * path.y / rise,
+            // The line from C square to its path (C_y', C_z') meets y = 0 so high above C: C_y C_y' / C_z'; geometric with v in place of C'.
             WheelMeasure::RollCentreHeight => c.y * path.y / path.z,
             WheelMeasure::RollCentreHeightGeometric => c.y * v.y / v.z,
+            // v + w x (P - C) = 0 in y and z at P_x = C_x:  v_y - w_x (P_z - C_z) = 0,  v_z + w_x (P_y - C_y) = 0
             WheelMeasure::FrontCentreY => c.y - v.z / seen(w.x, w),
             WheelMeasure::FrontCentreZ => c.z + v.y / seen(w.x, w),
+            // ... in x and z at P_y = C_y:  v_x + w_y (P_z - C_z) = 0,  v_z - w_y (P_x - C_x) = 0
             WheelMeasure::SideCentreX => c.x + v.z / seen(w.y, w),
             WheelMeasure::SideCentreZ => c.z - v.x / seen(w.y, w),
+            // w / abs(w), times the sign of w_x
             WheelMeasure::InstantAxisX => w.x.abs() / w.norm(),
             WheelMeasure::InstantAxisY => w.y * w.x / (w.x.abs() * w.norm()),
             WheelMeasure::InstantAxisZ => w.z * w.x / (w.x.abs() * w.norm()),
+            // (+-v_x / v_z) p l / h with brakes at the wheel,  (+-W_x' / W_z') d l / h with the differential on the body
             WheelMeasure::AntiDive => v.x / v.z * support::<T>(what, vehicle),
             WheelMeasure::AntiLift => -(v.x / v.z) * support::<T>(what, vehicle),
             WheelMeasure::AntiSquat => -(wheel.centre.x.d / rise) * support::<T>(what, vehicle),
@@ -189,6 +220,7 @@ fn support<T: Real>(what: WheelMeasure, vehicle: &Vehicle) -> T {
         WheelNeed::Driving(end) => (vehicle.front_drive_share, end),
         _ => (None, VehicleEnd::Front),
     };
+    // p or d of this end; p l / h, d l / h
     let share = front.map(|front| if end == VehicleEnd::Front { front } else { 1.0 - front });
     let known = share.zip(vehicle.wheelbase).zip(vehicle.centre_of_gravity);
     T::constant(known.map_or(f64::NAN, |((share, wheelbase), height)| share * wheelbase / height))
@@ -199,10 +231,12 @@ fn support<T: Real>(what: WheelMeasure, vehicle: &Vehicle) -> T {
 pub(super) fn axle_roll_centre<T: Real>(wheels: [Carried<T>; 2]) -> (T, T) {
     let [(p, a), (q, b)] = wheels.map(|side| {
         let contact = side.wheel.contact();
+        // Square to the path (C_y', C_z'): (-C_z', C_y')
         let along = [-contact.z.d, contact.y.d];
         ([contact.y.v, contact.z.v], along)
     });
     let cross = |a: [T; 2], b: [T; 2]| a[0] * b[1] - a[1] * b[0];
+    // p + way a = q + other b,  times b:  way = (q - p) x b / (a x b)
     let way = cross([q[0] - p[0], q[1] - p[1]], b) / cross(a, b);
     let ground = (p[1] + q[1]) * T::constant(0.5);
     (p[0] + way * a[0], p[1] + way * a[1] - ground)

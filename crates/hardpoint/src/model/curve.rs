@@ -49,6 +49,7 @@ impl<T: Real> Contact<T> {
     #[inline(always)]
     pub fn frame(&self) -> Pose<T> {
         let d = self.c[1];
+        // x = C' / abs(C'),  y = z x x
         let x = d * (T::one() / d.norm());
         let z = Vec3::new(T::zero(), T::zero(), T::one());
         Pose { rot: Mat3 { cols: [x, z.cross(x), z] }, r: self.c[0] }
@@ -62,15 +63,20 @@ impl<T: Real> Contact<T> {
         let two = T::constant(2.0);
         let e = p[0] - c;
         // (p. - C' u.) . C' + (p - C) . C'' u. = 0, and its derivative.
+        // u. = p. . C' / g,    g = C'^2 - (p - C) . C''
         let g = d.dot(d) - e.dot(dd);
         let u1 = p[1].dot(d) / g;
+        // g. = 2 C' . C'' u. - (p. - C' u.) . C'' - (p - C) . C''' u.
         let g1 = two * d.dot(dd) * u1 - (p[1] - d * u1).dot(dd) - e.dot(ddd) * u1;
+        // u.. = (p.. . C' + p. . C'' u. - g. u.) / g
         let u2 = (p[2].dot(d) + p[1].dot(dd) * u1 - g1 * u1) / g;
         // The tangent turns by k = C' x C'' / C'^2 per u.
         let square = d.dot(d);
         let cross = |a: Vec3<T>, b: Vec3<T>| a.x * b.y - a.y * b.x;
         let k = cross(d, dd) / square;
+        // k' = C' x C''' / C'^2 - 2 k C' . C'' / C'^2
         let k1 = cross(d, ddd) / square - two * k * d.dot(dd) / square;
+        // (k u.) and (k u.). = k' u.^2 + k u..
         [k * u1, k1 * u1 * u1 + k * u2]
     }
 }
@@ -120,6 +126,7 @@ impl Curve {
         for _ in 0..MAX_STEPS {
             let [c, d, dd, _] = self.at(u);
             let e = [p[0] - c[0], p[1] - c[1]];
+            // Newton on g(u) = (p - C) . C':  g' = (p - C) . C'' - C'^2
             let slope = dot(d, d) - dot(e, dd);
             let step = dot(e, d) / slope;
             u += step;
@@ -151,6 +158,7 @@ impl Curve {
         let (frame, e) = (contact.frame(), p - contact.c[0]);
         let (t, n) = (frame.rot.cols[0].dot(e), frame.rot.cols[1].dot(e));
         let [_, d, dd, _] = contact.c;
+        // k = C' x C'' / abs(C')^3, of the parallel curve through p: k / (1 - k n)
         let k = (d.x * dd.y - d.y * dd.x) / (d.dot(d) * d.norm());
         let flat = k / (T::one() - k * n);
         n - T::constant(0.5) * flat * t * t

@@ -159,6 +159,7 @@ impl<'p> Abreast<'p> {
             return None;
         }
         one.fastest_driver = fastest_driver(tape, one);
+        // t - z_0 of (27) in every lane, z_0 the stepper's own time
         let ahead = times.map(|t| t - one.time);
         let are_new = self.weights.set(one.forecast.nodes(ahead[last]), &ahead);
         tape.look_ahead(&self.weights.of, are_new, &ahead);
@@ -175,6 +176,7 @@ impl<'p> Abreast<'p> {
             self.own.each_mut().map(|own| lanes_of(own))
         });
         // As a motion begins, less is known of it.
+        // With three nodes the forecast misses by (27) alone; a first correction above 1e-3 says that the motion is no such polynomial.
         let trust = if one.forecast.known() < NODES { TRUST_FLOOR } else { FORESEEN };
         let solved = tape.solve(trust, results).ok()?;
         let change_step = determinants_are_even(tape, one, times, [first, last]);
@@ -221,11 +223,14 @@ impl Laws {
 fn missed(one: &Stepper<'_>, last: f64, count: f64) -> f64 {
     let frequency = |d: usize| {
         let speed = one.parts.fastest(d, one.time, last);
+        // omega = f. / unit: a driver that turns so fast makes all it drives go like sin(omega t). Or f itself goes like sin(omega t), and
+        // then f... = -omega^2 f.
         let [.., third] = one.parts.law_of(d).at(one.time).derivatives();
         let of_law = if speed > 0.0 { (third.abs() / speed).sqrt() } else { 0.0 };
         f64::max(speed / one.driver_units[d], of_law)
     };
     let step = (0..one.drivers.len()).map(frequency).fold(0.0, f64::max) * (last - one.time) / count;
+    // abs(q - p) <= max abs(q(9)) / 9! prod (t - z_i), the z_i thrice 0, -4 and -8 steps h, t = 8 h:  (8 12 16)^3 (omega h)^9 / 9!
     let far = [8.0, 12.0, 16.0].iter().map(|x: &f64| x * step).product::<f64>().powi(3);
     far / (1..=9).map(f64::from).product::<f64>()
 }
@@ -254,9 +259,11 @@ fn laws_are_even(tape: &Tape, one: &mut Stepper<'_>, times: &Lanes, [first, last
             moves = if moved > moves { moved } else { moves };
             before = value;
         }
+        // max over the new output times of abs(f_k - f_k-1)
         moves /= unit;
         let most = (EVEN * moves).clamp(RESTS, LONGEST);
         let [from, to] = [one.time, times[last]];
+        // h max abs(f.) <= 2 max abs(f_k - f_k-1), h the longest of the new steps
         let stretch = [from, to, from + CELL * (to - from)];
         let travel = longest / unit * one.calm[d].fastest(&one.parts, d, stretch, most * unit / longest);
         if !(travel <= most) {
@@ -291,6 +298,7 @@ fn determinants_are_even(
         let mut change = one.changes[b];
         for k in first..=last {
             let ratio = one.state.factors[b].ratio(determinants[k], before);
+            // r_k = det_k / det_k-1;  r_k in [0.78, 1.28],  abs((r_k - 1) - (r_k-1 - 1) h_k / h_k-1) <= 0.125     (28)
             let changed = ratio - 1.0;
             // Written so that NaN is not even.
             even &= (MILD[0]..=MILD[1]).contains(&ratio);

@@ -68,6 +68,7 @@ pub struct Moved {
 impl State<f64> {
     /// The largest gap of the drawing, in sizes or as a cosine.
     pub(super) fn largest_gap(&self, topology: &Topology) -> f64 {
+        // max over the rows of abs(phi_0) / unit
         let scaled = self.gap.iter().zip(&topology.rows).map(|(gap, place)| gap.abs() / place.unit);
         scaled.fold(0.0, f64::max)
     }
@@ -76,11 +77,13 @@ impl State<f64> {
 impl Stepper<'_> {
     /// Closes the mechanism as drawn, all drivers at zero, and stands on its branch.
     pub(super) fn assemble(&mut self) -> Result<(), Box<Stop>> {
+        // phi_0 at q = 0; what is round-off of the drawing counts as closed.
         self.measure_gaps();
         if !(self.state.largest_gap(&self.topology) > CLOSED) {
             self.state.gap.fill(0.0);
         }
         self.time = 0.0;
+        // s = 0: phi - phi_0 = 0 holds where it is drawn, and the signs of the determinants there say which branch this is.
         let drawn = self.drive(Path::Assembly, 0.0).and_then(|()| {
             self.restore();
             self.solve_within(f64::INFINITY)
@@ -91,6 +94,7 @@ impl Stepper<'_> {
         if self.state.largest_gap(&self.topology) == 0.0 {
             return Ok(());
         }
+        // phi - (1 - s) phi_0 = 0 from s = 0 to 1
         if let Err(stop) = self.walk(Path::Assembly, 1.0) {
             if matches!(stop.kind, StopKind::Locked { .. }) {
                 return Err(stop);
@@ -117,6 +121,7 @@ impl Stepper<'_> {
             self.state.gap[r] = if self.topology.rows[r].is_term {
                 zero
             } else {
+                // phi_0, with q = 0 and all drivers at 0
                 self.state.residual_of(&self.topology, &self.parts, &self.drivers, r)
             };
         }
@@ -138,6 +143,7 @@ impl Stepper<'_> {
             }
             let is_length = closure.rows[place.index].is_length();
             match gaps.iter_mut().find(|(g, _)| g.of == of && g.is_length == is_length) {
+                // Of a joint with several open rows the length of all of them together.
                 Some((gap, _)) => gap.size = gap.size.hypot(size),
                 None => gaps.push((Gap { of, size: size.abs(), is_length }, place.unit)),
             }
@@ -182,6 +188,7 @@ impl Stepper<'_> {
             for k in 0..n {
                 for c in 0..n {
                     let dot: f64 = jacobian.iter().map(|row| row[k] * row[c]).sum();
+                    // (J^T J + damping I) step = -J^T phi,  in units of rows and coordinates                            (36)
                     normal.row_mut(k)[c] = dot + if k == c { damping } else { 0.0 };
                 }
                 step[k] = -jacobian.iter().zip(&residuals).map(|(row, r)| row[k] * r).sum::<f64>();
@@ -195,6 +202,7 @@ impl Stepper<'_> {
             self.state.turn_balls(&self.topology, 0..self.topology.links.len());
             let (now, jacobian_now) = self.scaled_rows(&rows, &unknowns);
             let (old, new) = (squares(&residuals), squares(&now));
+            // A step that helps makes the next one more like Newton's, one that does not more like a short one downhill.
             if new < old {
                 (residuals, jacobian) = (now, jacobian_now);
                 damping *= 0.3;
@@ -231,6 +239,7 @@ impl Stepper<'_> {
                     for step in &self.topology.links[link].steps {
                         for c in step.first..step.first + step.freedom.coordinates() {
                             let unit = self.topology.coordinates[c].unit;
+                            // J_ra = +- c_k l_k . x_a                                                                             (6)
                             *by_coordinate.entry(c).or_insert(0.0) +=
                                 scale * unit * side * factor * wrench.on(s.x[0][c]);
                         }

@@ -179,11 +179,13 @@ impl<'m> SideBySide<'m> {
         for n in 0..self.known.len() {
             let x = self.tape().channels()[n].saved(&saved.q, &saved.balls);
             self.known[n] = [[0.0; LANES]; NODES * ORDERS];
+            // q of the nominal design, in every lane; what is foreseen 0 beyond it is q itself
             self.known[n][0] = [x; LANES];
         }
         (self.times, self.count) = ([t; NODES], 1);
         let solved = self.solve(MOST_CORRECTIONS, 0, &[0.0; LANES])?;
         for b in 0..self.determinants.len() {
+            // det of the design over det of the nominal one, as in (28) over a step: what is so near is on the same branch.
             let (now, before) = (self.tape().determinant(b), self.nominal.saved.determinants[b]);
             let factors = &self.nominal.state.factors[b];
             if !now.iter().all(|x| (MILD[0]..=MILD[1]).contains(&factors.ratio(*x, before))) {
@@ -199,6 +201,7 @@ impl<'m> SideBySide<'m> {
     /// All designs at the next output time, k.
     fn step(&mut self, k: usize, t: f64) -> Option<Solved> {
         let ahead = [self.course.get(k)?.h; LANES];
+        // abs(dq_0) <= 1e-9 at the last step: by (26) one correction will leave round-off at the next, too.
         let is_good = self.count == NODES && self.missed <= GOOD;
         let solved = self.solve(if is_good { 1 } else { MOST_CORRECTIONS }, k, &ahead)?;
         if !self.tape().speeds_are_smooth(self.course[k].fastest) || !self.determinants_are_even(k) {
@@ -249,6 +252,7 @@ impl<'m> SideBySide<'m> {
                 // Written so that NaN is not even.
                 even &= (MILD[0]..=MILD[1]).contains(&ratio);
                 if k > 1 {
+                    // (28) in every lane, h_k / h_k-1 being the same for all designs
                     even &= (change - self.changes[b][lane] * beside).abs() <= MILD_CHANGE;
                 }
                 (self.changes[b][lane], self.determinants[b][lane]) = (change, now[lane]);
@@ -261,6 +265,7 @@ impl<'m> SideBySide<'m> {
     fn save(&mut self, t: f64) {
         let Some((tape, _)) = &self.tapes[self.by] else { return };
         for (channel, known) in self.known.iter_mut().enumerate() {
+            // Node n becomes node n + 1, and where the designs are now node 0 of (27).
             known.copy_within(..(NODES - 1) * ORDERS, ORDERS);
             for (order, to) in known[..ORDERS].iter_mut().enumerate() {
                 *to = *tape.channel_lanes(channel, order);

@@ -3,6 +3,13 @@
 //! The last three accepted positions, each with its speeds and accelerations, are nine conditions on a polynomial of degree
 //! eight per coordinate (Hermite's interpolation, in Newton's form). Newton's method then starts so near to the solution that
 //! one correction is enough, also eight output times ahead.
+//!
+//! With the nodes `t_0 t_0 t_0 t_1 t_1 t_1 t_2 t_2 t_2`, the newest first (`docs/theory.md` (27)),
+//!
+//! ```text
+//! p(t) = d_0 + (t - z_0) (d_1 + (t - z_1) (d_2 + ...)),        d_k = [z_0 ... z_k]
+//! [z_i ... z_i+k] = ([z_i+1 ... z_i+k] - [z_i ... z_i+k-1]) / (z_i+k - z_i),   or q(k) / k!  where z_i = z_i+k
+//! ```
 
 use hardpoint_tape::{LANES, Lanes};
 
@@ -30,6 +37,7 @@ pub(super) struct Forecast {
     /// Per position and channel: value and derivatives.
     values: [Vec<[f64; ORDERS]>; NODES],
     /// Per channel: divided differences.
+    /// d_0 ... d_8.
     differences: Vec<[f64; NODES * ORDERS]>,
 }
 
@@ -65,6 +73,7 @@ impl Channel {
             Self::Coordinate(c) => [state.q[c], speeds[c], accelerations[c]],
             Self::Ball(first, k) => {
                 let of = |x: &[T]| Vec3::new(x[first], x[first + 1], x[first + 2]);
+                // q. = (0, w) q / 2,    q.. = (0, w.) q / 2 + (0, w) q. / 2,  w and its rate about the axes of the parent's marker
                 let (q, w) = (state.balls[first], of(speeds));
                 let rate = q.rate(w);
                 let second = q.rate(of(accelerations)).plus(rate.rate(w));
@@ -199,6 +208,7 @@ impl Forecast {
                 for i in 0..n - k {
                     column[i] = if i / ORDERS == (i + k) / ORDERS {
                         let x = self.values[i / ORDERS][c][k];
+                        // q(k) / k!
                         if k == 2 { x * 0.5 } else { x }
                     } else {
                         (column[i + 1] - column[i]) * inverse[k][i]
@@ -216,6 +226,7 @@ impl Forecast {
         let n = self.divide(h);
         let ahead: [f64; NODES] = std::array::from_fn(|k| t - self.times[k]);
         for (channel, d) in self.channels.iter().zip(&self.differences) {
+            // Horner's rule, from the innermost factor
             let mut x = d[n - 1];
             for i in (0..n - 1).rev() {
                 x = x.times_plus(ahead[i / ORDERS], d[i]);
@@ -243,6 +254,7 @@ impl Weights {
     /// be worked out.
     #[inline(always)]
     pub fn set(&mut self, (nodes, count): ([f64; NODES], usize), ahead: &Lanes) -> bool {
+        // p(t) is linear in what is known: p = sum_j weight_j(t) known_j, and the weights are those of last time if steps are equal.
         let near = AS_FAR * ahead.iter().fold(0.0, |most: f64, h| most.max(h.abs()));
         let mut same = self.count == count;
         for (a, b) in nodes[..count].iter().chain(ahead).zip(self.nodes[..count].iter().chain(&self.ahead)) {
@@ -272,6 +284,7 @@ impl Weights {
             for k in 1..n {
                 for i in 0..n - k {
                     column[i] = if i / ORDERS == (i + k) / ORDERS {
+                        // Known j is 1, all others are 0: the same table of divided differences.
                         let given = f64::from(u8::from(j == ORDERS * (i / ORDERS) + k));
                         if k == 2 { 0.5 * given } else { given }
                     } else {
@@ -280,6 +293,7 @@ impl Weights {
                 }
                 d[k] = column[0];
             }
+            // In s = t / unit a rate is known as unit q., an acceleration as unit^2 q..
             let scale = [1.0, unit, unit * unit][j % ORDERS];
             for (weight, h) in self.of[j].iter_mut().zip(self.ahead) {
                 let x = (0..n - 1).rev().fold(d[n - 1], |x, i| x * (h / unit - node(i)) + d[i]);

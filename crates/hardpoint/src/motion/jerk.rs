@@ -27,6 +27,8 @@ impl BodyJerk {
     fn of(state: &State<f64>, body: usize) -> Self {
         let [v, a, b] = [0, 1, 2].map(|n| state.motion.twists[n][body]);
         let r = state.pose[body].r;
+        // r.   = V at r,    r..  = A at r + omega x r.
+        // r... = B at r + 2 alpha x r. + omega x r..: the rate of r.., with B at r = B_v + B_w x r                      (21)
         let velocity = v.at(r);
         let acceleration = a.at(r) + v.w.cross(velocity);
         let jerk = b.at(r) + a.w.cross(velocity) * 2.0 + v.w.cross(acceleration);

@@ -2,6 +2,17 @@
 //!
 //! This is the hot path. It is generic over its scalar, allocates nothing, and walks the lists of
 //! [`Topology`]; the sensitivities solve the same equation ([`Flow`]) with the same factors.
+//!
+//! Written in the symbols of `docs/theory.md`, a step for drivers at f, f., f.. is
+//!
+//! ```text
+//! X_j = X_i M_i J(q) M_j^-1,    J dq = -phi  until phi = 0                                      (4), (6)
+//! J q.  = f. in the rows of drivers, else 0                                                     (9)
+//! J q.. = f.. - l. . (V_j - V_i) - l . (A_j - A_i  as if q.. were 0)                            (10)
+//! ```
+//!
+//! which is the paper's `phi(Z, D, t) = 0` (5.1) at one time, D standing, and its first two time derivatives. The paper's Z, poses of
+//! bodies, are `pose`; q are the coordinates of the tree, all six of every body in the absolute formulation.
 
 use crate::constraint::{EndRates, Ends, Row};
 use crate::joint::Freedom;
@@ -26,14 +37,19 @@ const SINGULAR: f64 = 1e-12;
 #[derive(Clone, Debug)]
 pub(crate) struct State<T> {
     /// Per coordinate: value (unused for balls).
+    /// q of the theory: rad or m, from 0 in the design configuration; of j relative to i, whichever way the link runs.
     pub q: Vec<T>,
     /// Per coordinate that begins a ball: its rotation.
+    /// J(q) of theory (4) as a unit quaternion, from the parent's marker to the child's.
     pub balls: Vec<Quat<T>>,
     /// Per body: the marker that places it, in the world.
+    /// `X_p M_p J(q)` of its link; the paper's x"-y"-z" frame on the child.
     pub frame: Vec<Pose<T>>,
     /// Per body: pose.
+    /// X = (A, r), the paper's x'-y'-z' frame: `X_p M_p J(q) M_c^-1` (4).
     pub pose: Vec<Pose<T>>,
     /// Of orders 0, 1, 2: speeds of the coordinates and twists V of the bodies, their accelerations, and their jerks.
+    /// In theory q. and V, q.. and A = dV/dt, q... and B = dA/dt: (9), (10), (21).
     pub motion: Flow<T>,
     /// Per order and coordinate: world unit twist x, and its first two time derivatives.
     pub x: [Vec<Twist<T>>; 3],
@@ -43,13 +59,16 @@ pub(crate) struct State<T> {
     pub ends: Vec<Ends<T>>,
     pub factors: Vec<Factors<T>>,
     /// Right-hand side of a block.
+    /// Before a solution what the rows miss, after it the unknowns: dq, q.(n), S(n).
     pub rhs: Vec<T>,
     /// Per row: by how much it failed where the Jacobian was formed last.
+    /// phi, m or rad; (5) says how it changes.
     pub residual: Vec<T>,
     /// Per row of a coupler's term: about what its coordinate is, to count angles through whole turns.
     pub near: Vec<T>,
     /// Per row: by how much it failed in the design configuration as drawn, and how much of that is still allowed, with
     /// its rate: an assembly takes it from 1 to 0.
+    /// phi_0, and 1 - s with its rate: an assembly holds `phi - (1 - s) phi_0 = 0`.
     pub gap: Vec<T>,
     pub gap_left: [f64; 2],
     /// Per curve: where the point that follows it touches.
@@ -57,6 +76,7 @@ pub(crate) struct State<T> {
     /// Per block: smallest over largest pivot, and the sign of the determinant.
     pub pivots: Vec<(f64, bool)>,
     /// Per block: its determinant, to be compared by [`Factors::ratio`].
+    /// abs(det J), or its logarithm where the factors are sparse.
     pub determinants: Vec<T>,
     /// Per block: what is watched of its factors.
     pub watched: Vec<Watched<T>>,
@@ -127,10 +147,12 @@ impl<T: Real> State<T> {
             let on_ground = link.parent == GROUND;
             let mut frame = if on_ground { marker } else { self.frame[link.parent.0].compose(marker) };
             for step in &link.steps {
+                // x = [h; c x h] of a turn about h through c, [0; h] of a slide along h, times -1 where the link runs from j to i
                 for c in 0..step.freedom.coordinates() {
                     self.x[0][step.first + c] = step.twist(c, &frame.rot, frame.r);
                 }
                 let q = self.q[step.first] * T::constant(step.sign);
+                // J(q): a turn about its own axis, R <- R Rot(axis, q); a slide, r <- r + q h; a ball, R <- R A(quaternion)
                 match step.freedom {
                     Freedom::Turn(axis) => {
                         let (sin, cos) = q.sin_cos();
@@ -149,6 +171,7 @@ impl<T: Real> State<T> {
     fn place_bodies(&mut self, topology: &Topology, parts: &Parts<T>, links: std::ops::Range<usize>) {
         for k in links {
             let child = topology.links[k].child.0;
+            // X_c = (X_p M_p J(q)) M_c^-1                                                                         (4)
             self.pose[child] = self.frame[child].compose(parts.child_from_marker[k]);
         }
     }
@@ -159,6 +182,7 @@ impl<T: Real> State<T> {
         let [i, j] = topology.closures[closure].bodies;
         let (m_i, m_j) = (parts.ends[0][closure], parts.ends[1][closure]);
         let ends = &mut self.ends[closure];
+        // P_i, P_j and the axes a_i, b_j of the rows: X_i M_i and X_j M_j, seen from the markers that place the bodies
         (ends.i, ends.j) = (self.frame[i.0].compose(m_i), self.frame[j.0].compose(m_j));
         self.turn_base(topology, parts, closure);
         if let Some(k) = topology.closures[closure].contact {
@@ -193,6 +217,8 @@ impl<T: Real> State<T> {
     #[inline(never)]
     fn touch(&mut self, parts: &Parts<T>, closure: usize, k: usize) {
         let Ends { i, j, .. } = self.ends[closure];
+        // p = P_j as seen from marker i; the foot u of the perpendicular on the curve, (p - C(u)) . C'(u) = 0; marker i goes there,
+        // x along C'.
         let p = i.inverse().point(j.r);
         self.contacts[k] = Contact::nearest(&parts.curves[k], p, self.contacts[k].u);
         self.ends[closure].i = i.compose(self.contacts[k].frame());
@@ -205,6 +231,8 @@ impl<T: Real> State<T> {
         let (v, a, contact) = (rates.v_i, rates.a_i, &self.contacts[k]);
         // The marker that carries the curve, and the follower's motion seen from it.
         let i = foot.compose(contact.frame().inverse());
+        // p.  = A_i^T (v_j - v_i),    p.. = A_i^T (a_j - a_i - 2 omega_i x (v_j - v_i)),  with A_i the axes of that marker, v and a those
+        // of the points of both bodies at P_j:  v = V at P_j,  a = V. at P_j + omega x v
         let relative = rates.v_j.at(j.r) - v.at(j.r);
         let acceleration = |v: Twist<T>, a: Twist<T>| a.at(j.r) + v.w.cross(v.at(j.r));
         let coriolis = v.w.cross(relative) * T::constant(2.0);
@@ -212,6 +240,8 @@ impl<T: Real> State<T> {
         let p = [i.inverse().point(j.r), i.rot.transpose_mul(relative), i.rot.transpose_mul(second)];
         let [turn, turn_rate] = contact.turning(p);
         let z = i.rot.cols[2];
+        // omega of the walking marker = omega_i + (k u.) z,    its rate = alpha_i + (k u.). z + omega_i x z (k u.).
+        // The row is a Dot-2: of marker i it asks for an axis only, so the angular parts will do.
         let mut walking = *rates;
         walking.v_i.w += z * turn;
         walking.a_i.w += z * turn_rate + v.w.cross(z) * turn;
@@ -227,6 +257,7 @@ impl<T: Real> State<T> {
         let gap = self.gap[r] * T::constant(self.gap_left[0]);
         if place.terms.is_empty() {
             let driven = closure.driver.map_or(T::zero(), |d| drivers[d.0][0]);
+            // phi = what the row measures - what it keeps - f - (1 - s) phi_0
             row.residual(ends, parts.kept[r] + driven) - gap
         } else {
             self.coupled(topology, parts, r) - gap
@@ -256,6 +287,7 @@ impl<T: Real> State<T> {
         for (k, factor) in topology.parts_of_row(r) {
             let place = &topology.rows[k];
             let row = topology.closures[place.closure].rows[place.index];
+            // phi = sum c_k chi_k, each chi_k counted from its design value
             let value = row.value(&self.ends[place.closure], self.near[k]) - parts.kept[k];
             sum += value * T::constant(factor);
         }
@@ -273,6 +305,7 @@ impl<T: Real> State<T> {
         let (l, x, zero) = (&self.l[0], &self.x[0], T::zero());
         let entries = place.columns.iter().map(|c| {
             let mut sum = zero;
+            // J_ra = sum over the terms of +- c_k l_k . x_a                                                       (6)
             for &(term, coordinate, factor) in &c.parts {
                 sum += l[term].on(x[coordinate]) * T::constant(factor);
             }
@@ -300,12 +333,14 @@ impl<T: Real> State<T> {
         let zero = T::zero();
         for (k, &r) in block.selected.iter().enumerate() {
             let residual = self.residual(topology, parts, drivers, r);
+            // J dq = -phi
             (self.residual[r], self.rhs[k]) = (residual, -residual);
             let place = &topology.rows[r];
             let closure = &topology.closures[place.closure];
             let wrench = closure.rows[place.index].wrench(&self.ends[place.closure]);
             self.l[0][r] = wrench;
             if place.terms.is_empty() {
+                // J_ra = +- l_r . x_a, by the side of the loop on which a is                                          (6)
                 let x = &self.x[0];
                 let entries = closure.entries.iter().map(
                     #[inline(always)]
@@ -335,6 +370,7 @@ impl<T: Real> State<T> {
     ) -> Result<(), PositionFailure> {
         for (c, coordinate) in topology.coordinates.iter().enumerate() {
             if let Source::Driven(d) = coordinate.source {
+                // q, q., q.. = f, f., f.. of what drivers prescribe in the tree
                 [self.q[c], self.motion.speeds[0][c], self.motion.speeds[1][c]] = drivers[d.0];
             }
         }
@@ -342,11 +378,13 @@ impl<T: Real> State<T> {
         self.place_bodies(topology, parts, topology.driven_links());
         self.rates_of_driven(topology);
         for b in 0..topology.blocks.len() {
+            // Block after block: J is block lower triangular, so all that a block stands on is known by now.
             self.newton(topology, parts, drivers, b, trust)?;
             self.place_bodies(topology, parts, topology.blocks[b].links.clone());
             self.rates_of_block(topology, parts, drivers, b);
         }
         for (c, closure) in topology.closures.iter().enumerate() {
+            // Closures between bodies that drivers alone place: no unknown moves them, and their rows are watched.
             if closure.block.is_none() {
                 self.place_ends(topology, parts, c);
                 self.finish_closure(topology, c);
@@ -378,10 +416,12 @@ impl<T: Real> State<T> {
             if before <= QUADRATIC {
                 return Ok(());
             }
+            // dq = -J^-1 phi; every further one is about the square of the one before (theory (26)).
             self.factors[b].solve(&mut self.rhs);
             let corrections = self.correction(topology, b);
             self.corrections[b].0[pass.min(CORRECTIONS - 1)] = corrections;
             let correction = corrections.decisive();
+            // abs(dq) <= 1e-14: q is solved, and the factors are those of q.
             if correction <= ROUND_OFF {
                 return Ok(());
             }
@@ -390,6 +430,7 @@ impl<T: Real> State<T> {
                 return Err(PositionFailure::NoConvergence { block: b });
             }
             self.apply(topology, b);
+            // abs(dq_k+1) <= abs(dq_k) / 2. After abs(dq) <= 1e-8 what is left, its square, is round-off: once more only for the factors.
             before = if correction <= QUADRATIC { correction } else { 0.5 * correction };
         }
         Err(PositionFailure::NoConvergence { block: b })
@@ -400,6 +441,7 @@ impl<T: Real> State<T> {
     fn correction(&self, topology: &Topology, b: usize) -> T {
         let mut most = T::zero();
         for (&c, &d) in topology.blocks[b].unknowns.iter().zip(&self.rhs) {
+            // max abs(dq_a) / unit_a
             most = most.larger((d * T::constant(topology.coordinates[c].per_unit)).abs());
         }
         most
@@ -409,6 +451,7 @@ impl<T: Real> State<T> {
     #[inline(always)]
     pub(super) fn apply(&mut self, topology: &Topology, b: usize) {
         for (k, &c) in topology.blocks[b].unknowns.iter().enumerate() {
+            // q <- q + dq, of a ball dq about the axes of its parent's marker
             self.q[c] += self.rhs[k];
         }
         self.turn_balls(topology, topology.blocks[b].links.clone());
@@ -422,6 +465,7 @@ impl<T: Real> State<T> {
             for step in link.steps.iter().filter(|s| s.freedom == Freedom::Ball) {
                 let k = step.first;
                 let d = crate::space::Vec3::new(self.q[k], self.q[k + 1], self.q[k + 2]);
+                // quaternion <- (1, d/2) quaternion, normalised
                 self.balls[k] = self.balls[k].nudged(d);
                 self.q[k..k + 3].fill(zero);
             }
@@ -431,6 +475,7 @@ impl<T: Real> State<T> {
     /// Velocity and acceleration of the bodies that drivers alone place.
     #[inline(always)]
     fn rates_of_driven(&mut self, topology: &Topology) {
+        // q, q., q.. = f, f., f..:  V_c = V_p + sum x q.,  then x. and  A_c = A_p + sum (x q.. + x. q.)       (9), (10)
         let links = topology.driven_links();
         self.motion.follow::<0>(topology, links.clone(), &self.x);
         self.rates_of_twists::<1>(topology, links.clone());
@@ -448,11 +493,13 @@ impl<T: Real> State<T> {
             }
             self.finish_closure(topology, c);
         }
+        // J q. = f.                                                                                           (9)
         self.solve_order::<0>(topology, b, |d| drivers[d.0][1]);
         self.rates_of_twists::<1>(topology, block.links.clone());
         for &c in &block.closures {
             self.rates_of_wrenches(topology, c, 1);
         }
+        // J q.. = f.. - l. . (V_j - V_i) - l . (A_j - A_i as if q.. were 0), with the x. and l. of this V        (10)
         self.solve_order::<1>(topology, b, |d| drivers[d.0][2]);
     }
 
@@ -465,6 +512,7 @@ impl<T: Real> State<T> {
             let closure = &topology.closures[c];
             motion.ask(topology, c, closure.driver.map_or(T::zero(), &demand));
             for r in closure.numbers().filter(|_| N == 0) {
+                // phi - (1 - s) phi_0 = 0 along s:  l . (V_j - V_i) = -phi_0, with gap_left[1] = d(1 - s)/ds = -1; no higher order
                 motion.demand[r] += gap[r] * T::constant(gap_left[1]);
             }
         }
@@ -578,6 +626,7 @@ impl<T: Real> State<T> {
         let place = &topology.rows[r];
         let closure = &topology.closures[place.closure];
         let [i, j] = closure.bodies;
+        // chi. = l . (V_j - V_i),    chi.. = l . (A_j - A_i) + l. . (V_j - V_i)
         let [v, a] = [0, 1].map(|n| self.motion.twists[n][j.0] - self.motion.twists[n][i.0]);
         let value = closure.rows[place.index].value(&self.ends[place.closure], self.near[r]);
         [value, self.l[0][r].on(v), self.l[0][r].on(a) + self.l[1][r].on(v)]
@@ -592,6 +641,7 @@ impl<T: Real> State<T> {
         for (k, factor) in topology.parts_of_row(r) {
             for &(column, c, side) in &topology.closures[topology.rows[k].closure].entries {
                 let unit = topology.coordinates[c].unit;
+                // (6), the row per its unit and the coordinate per its: a number without dimension
                 out[column] += self.l[0][k].on(self.x[0][c]) * T::constant(scale * unit * side * factor);
             }
         }
@@ -602,6 +652,7 @@ impl<T: Real> State<T> {
     fn rates_of_twists<const N: usize>(&mut self, topology: &Topology, links: std::ops::Range<usize>) {
         let Flow { speeds, twists, .. } = &self.motion;
         for link in topology.links[links].iter().filter(|link| !link.keeps_its_twist()) {
+            // x(n) = sum_{m<n} C(n-1,m) ad(V(m)) x(n-1-m), V of the parent first
             let v: [Twist<T>; N] = std::array::from_fn(|n| twists[n][link.parent.0]);
             turn_twists(link, v, &mut self.x, speeds);
         }
@@ -618,6 +669,7 @@ impl<T: Real> State<T> {
         }
         for (k, row) in closure.rows.iter().enumerate() {
             let r = closure.first_row + k;
+            // l., l.. by the product rule from the markers' first two rates, (3) for their axes and v = V at P for their points
             if order > 1 {
                 [self.l[1][r], self.l[2][r]] = row.wrench_rates(&self.ends[c], &rates);
             } else if topology.rows[r].drives() {

@@ -34,8 +34,12 @@ pub(crate) struct Linear<'s, T> {
 #[derive(Clone, Debug)]
 pub(crate) struct Flow<T> {
     /// Per order and coordinate: u. Those of driven coordinates are given.
+    ///
+    /// `[n][a]`, n = 0, 1, 2: u(n) is q.(n) of a motion, S(n) along the design, n! c_n of a response; rad or m per unit.
     pub speeds: [Vec<T>; 3],
     /// Per order and body: U.
+    ///
+    /// `[n][body]`: V, A, B of a motion; W, W., W.. along the design. Ground, body 0, stands.
     pub twists: [Vec<Twist<T>>; 3],
     /// Per order and closure, as far as higher orders ask: `D_j - D_i`.
     pub apart: [Vec<Twist<T>>; 2],
@@ -48,6 +52,7 @@ pub(crate) struct Flow<T> {
     /// Whether single axes on ground stand: in time they do, along the design they may not.
     pub ground_stands: bool,
     /// Per link: what it has besides the speeds of this order.
+    /// `z_p(n) - z_c(n) + sum_{m=1..n} C(n,m) sum_a x_a(m) u_a(n-m)`.
     bias: Vec<Twist<T>>,
 }
 
@@ -107,10 +112,12 @@ impl<T: Real> Flow<T> {
         }
         for k in links {
             let link = &topology.links[k];
+            // bias = z_p(n) - z_c(n) ...
             let mut bias = if self.moves[N].is_empty() { Twist::zero() } else { self.moves[N][k] };
             if !(self.ground_stands && link.keeps_its_twist()) {
                 for step in link.steps.iter().filter(|s| self.drives || !s.is_driven) {
                     for c in step.first..step.first + step.freedom.coordinates() {
+                        // ... + C(n,m) x_a(m) u_a(n-m): what (24), first line, has of lower orders of u
                         for m in 1..=N {
                             bias = x[m][c].times_plus(self.speeds[N - m][c] * BINOMIAL[N][m], bias);
                         }
@@ -130,6 +137,7 @@ impl<T: Real> Flow<T> {
             for r in closure.numbers() {
                 if topology.rows[r].drives() {
                     for m in 1..=N {
+                        // demand = f(n) - l . (z_j(n) - z_i(n)) - C(n,m) l(m) . (D_j(n-m) - D_i(n-m)): (24), second line, likewise
                         self.demand[r] -= l[m][r].on(self.apart[N - m][c]) * BINOMIAL[N][m];
                     }
                 }
@@ -137,6 +145,7 @@ impl<T: Real> Flow<T> {
         }
         for &r in &topology.blocks[b].coupled {
             for &(term, factor) in &topology.rows[r].terms {
+                // Of a coupler it is the sum over its terms, c_k times what each has; the first term, with factor 1, stands in its row.
                 let x = self.demand[term];
                 self.demand[r] += x * T::constant(factor);
             }
@@ -156,6 +165,7 @@ impl<T: Real> Flow<T> {
         let (speeds, twists) = (&self.speeds[N], &mut self.twists[N]);
         for k in links {
             let link = &topology.links[k];
+            // U_c = U_p + bias + sum x_a u_a                                                                      (7), first line
             let mut twist = twists[link.parent.0];
             if let Some(bias) = bias.get(k) {
                 twist += *bias;
@@ -190,6 +200,7 @@ impl<T: Real> Flow<T> {
         self.turn_wrenches::<N>(topology, b, l);
         // First as if the unknowns were zero: what the rows miss then is theirs to make up.
         self.carry::<N>(topology, block.links.clone(), &x[0], |step| step.is_driven);
+        // J u(n) = rhs,    J_ra = +- l_r . x_a (6),    rhs_r = demand_r - l_r . (U_j - U_i)  with the U of that pass
         for (k, &r) in block.selected.iter().enumerate() {
             rhs[k] = self.demand[r] - along(topology, &l[0], &self.twists[N], r);
         }
@@ -197,7 +208,9 @@ impl<T: Real> Flow<T> {
         for (k, &c) in block.unknowns.iter().enumerate() {
             self.speeds[N][c] = rhs[k];
         }
+        // With u(n) the same pass gives U(n), on which all selected rows of the block agree.
         self.carry::<N>(topology, block.links.clone(), &x[0], |_| true);
+        // D_j - D_i = U_j - U_i where no marker moves in its body; `Direct` adds z_j - z_i.
         if let Some(apart) = self.apart.get_mut(N) {
             for &c in &block.closures {
                 let [i, j] = topology.closures[c].bodies;
@@ -211,6 +224,7 @@ impl<T: Real> Flow<T> {
 /// `x(n) = sum_{m<n} C(n-1,m) ad(V(m)) x(n-1-m)`, (3) differentiated.
 #[inline(always)]
 pub(crate) fn carried<T: Real, const N: usize>(x: [Twist<T>; N], v: [Twist<T>; N]) -> Twist<T> {
+    // C(n-1,0) ad(V) x(n-1) + C(n-1,1) ad(V.) x(n-2) + ...
     let mut rate = v[0].ad(x[N - 1]);
     for m in 1..N {
         rate += v[m].ad(x[N - 1 - m]) * T::constant(BINOMIAL[N - 1][m]);
@@ -230,6 +244,7 @@ pub(crate) fn turn_twists<T: Real, const N: usize>(
     for (n, step) in link.steps.iter().enumerate() {
         let coordinates = step.first..step.first + step.freedom.coordinates();
         for c in coordinates.clone() {
+            // The frame behind a single freedom would do as well, since ad(x u) x = 0; the axes of a ball are those of the frame before it.
             x[N][c] = carried(std::array::from_fn(|m| x[m][c]), v);
         }
         if n + 1 == link.steps.len() {
@@ -238,6 +253,7 @@ pub(crate) fn turn_twists<T: Real, const N: usize>(
         for c in coordinates {
             for m in 0..N {
                 for k in (0..=m).rev() {
+                    // V(m) behind the freedom = V(m) before it + (x u)(m),    (x u)(m) = sum_{k=0..m} C(m,k) x(k) u(m-k)
                     v[m] = x[k][c].times_plus(speeds[m - k][c] * BINOMIAL[m][k], v[m]);
                 }
             }

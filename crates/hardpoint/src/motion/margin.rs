@@ -89,6 +89,7 @@ impl<T: Real> Margins<T> {
         let (row, sums) = (&mut self.row[..n], &mut self.row_sums[..n]);
         for (k, &r) in block.selected.iter().enumerate() {
             relative_row(topology, state, r, row);
+            // R: each row of J by its unit and its most (29)
             factors.row_mut(k).copy_from_slice(row);
         }
         if !(judged(factors, limit) > 0.0) {
@@ -97,6 +98,7 @@ impl<T: Real> Margins<T> {
         sums.fill(zero);
         for k in 0..n {
             row.fill(zero);
+            // |R^-1| = the largest sum over a row of the sizes of its entries; column k of R^-1 is R^-1 e_k
             row[k] = one;
             factors.solve(row);
             for (sum, x) in sums.iter_mut().zip(row.iter()) {
@@ -125,6 +127,7 @@ impl<T: Real> Margins<T> {
             relative_row(topology, state, r, row);
             for k in 0..n {
                 for (to, x) in factors.row_mut(k).iter_mut().zip(row.iter()) {
+                    // N = R^T R, summed over all rows of the block: N_kc += R_rk R_rc
                     *to = row[k].times_plus(*x, *to);
                 }
             }
@@ -135,6 +138,7 @@ impl<T: Real> Margins<T> {
         sums.fill(zero);
         for &r in &self.rows[b] {
             relative_row(topology, state, r, row);
+            // Column r of R^+ = N^-1 R^T is N^-1 (row r of R)
             factors.solve(row);
             for (sum, x) in sums.iter_mut().zip(row.iter()) {
                 *sum += x.abs();
@@ -147,6 +151,7 @@ impl<T: Real> Margins<T> {
 /// Factors, and gives the pivot ratio; the order of the pivots must go on to serve.
 #[inline(always)]
 fn judged<T: Real>(factors: &mut Elimination<T>, limit: &mut impl FnMut(T)) -> f64 {
+    // One order of pivots serves as long as its factors stay below 4, or below twice what they were when recorded.
     let found = factors.factor();
     let growth = found.watched.growth;
     limit(growth - T::constant(f64::max(MOST_GROWTH, 2.0 * growth.decisive())));
@@ -176,6 +181,7 @@ fn relative_row<T: Real>(topology: &Topology, state: &State<T>, r: usize, row: &
     for (k, factor) in topology.parts_of_row(r) {
         let l = wrench(topology, state, k);
         for &(column, c, side) in &topology.closures[topology.rows[k].closure].entries {
+            // +- c_k l_k . x_c, in the units of row and coordinate                                                (6)
             let unit = topology.coordinates[c].unit;
             row[column] += l.on(state.x[0][c]) * T::constant(scale * unit * side * factor);
         }
@@ -209,6 +215,7 @@ fn most_resistance<T: Real>(topology: &Topology, state: &State<T>, r: usize) -> 
             let at_i = side < 0.0 && closure.rows[at.index] == Row::Distance;
             let point = if at_i { i.r } else { j.r };
             for step in &topology.links[link].steps {
+                // a slide: abs(f); a turn: sqrt((abs(f) arm)^2 + couple^2), the arm seen along the axis
                 let resistance = match step.freedom {
                     Freedom::Slide(_) => l.f.norm() * T::constant(topology.coordinates[step.first].unit),
                     Freedom::Turn(_) | Freedom::Ball => most_moment(&l, point, &state.x[0][step.first]),
@@ -224,8 +231,10 @@ fn most_resistance<T: Real>(topology: &Topology, state: &State<T>, r: usize) -> 
 #[inline(always)]
 fn most_moment<T: Real>(l: &Wrench<T>, point: Vec3<T>, turn: &Twist<T>) -> T {
     // The axis passes through w x v, its point next to the origin; the arm is seen along it.
+    // x = [w; c x w]:  w x v = w x (c x w) = c - w (w . c),  the axis' point next to the origin
     let between = point - turn.w.cross(turn.v);
     let arm = between - turn.w * turn.w.dot(between);
+    // l = [P x f + couple; f];  most = sqrt((abs(f) abs(arm))^2 + abs(couple)^2)
     let (moment, couple) = (l.f.norm() * arm.norm(), l.m - point.cross(l.f));
     (moment * moment + couple.dot(couple)).sqrt()
 }

@@ -1,8 +1,8 @@
 //! Position, velocity and acceleration of every body over time.
 //!
 //! One step is: Newton on each block in turn, then velocity and acceleration from the same factors
-//! ([`kinematics`]). Output times that follow each other closely are stepped through as they
-//! are ([`stepper`], [`abreast`]); everywhere else the path is followed in steps of its own ([`walk`]).
+//! (`kinematics`). Output times that follow each other closely are stepped through as they
+//! are (`stepper`, `abreast`); everywhere else the path is followed in steps of its own (`walk`).
 
 pub(crate) mod abreast;
 mod assembly;
@@ -110,6 +110,7 @@ impl BodyState {
         let [v, a, _] = &state.motion.twists;
         let (pose, v, a) = (&state.pose[b], v[b], a[b]);
         let (r, [f, g, h]) = (pose.r, pose.rot.cols);
+        // r. = V at r = V_v + omega x r,    r.. = A at r + omega x r.
         let u = v.at(r);
         let n = a.at(r) + v.w.cross(u);
         let (o, e) = (v.w, a.w);

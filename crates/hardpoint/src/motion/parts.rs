@@ -12,12 +12,19 @@ use crate::topology::{RowPlace, Topology};
 #[derive(Clone, Debug)]
 pub(crate) struct Parts<T> {
     /// Per link: the marker on the parent.
+    ///
+    /// `M_c,parent^-1 M_p`: the marker M_p as seen from the marker by which the parent is placed (theory (4)).
     pub parent_marker: Vec<Pose<T>>,
     /// Per link: the child's own frame.
+    ///
+    /// M_c^-1 of theory (4).
     pub child_from_marker: Vec<Pose<T>>,
     /// Per closure: marker i on body i, and marker j on body j.
+    ///
+    /// M_i and M_j, likewise as seen from the markers by which the bodies are placed.
     pub ends: [Vec<Pose<T>>; 2],
     /// Per row: what it keeps of the design configuration, like the length of a rod; 0 where it keeps nothing.
+    /// L, c0, d0, r0 of the table in theory, section 2; m or a cosine.
     pub kept: Vec<T>,
     /// Curves, in the order of [`crate::topology::Closure::contact`].
     pub curves: Vec<Curve>,
@@ -39,6 +46,7 @@ impl<T: Real> Parts<T> {
                 let (parent, child) = (frames[link.parent_end], frames[1 - link.parent_end]);
                 let mut m = marker(j.0, 1 - link.parent_end);
                 if parent != child {
+                    // M_c C_c^T C_p: in the design configuration parallel to the parent's marker, so that J(0) = 1
                     m.rot = m.rot * (child.transpose() * parent).spread();
                 }
                 seen[link.child.0] = m.inverse();

@@ -28,6 +28,7 @@ const LOADS: usize = 2;
 #[derive(Clone, Debug)]
 pub(super) struct Surroundings {
     /// Per direction and block: the inverse distance to the nearest singular position, per unit of the direction.
+    /// 1/rho of (22), per rad or m of the driver.
     nearness: Vec<Vec<f64>>,
     /// Per direction: first and second derivatives of the coordinates by it.
     pub slopes: Vec<Vec<f64>>,
@@ -55,9 +56,13 @@ pub(super) struct Ahead {
 #[derive(Clone, Debug)]
 pub(super) struct Prober {
     /// The motion along a direction, in place of that along the time, and the rates of all twists and wrenches.
+    /// `q'`, `q''` of the coordinates and the twists of the bodies, a prime being d/du along a driver u with all others at rest.
     motion: Flow<f64>,
+    /// x', x''.
     x: [Vec<Twist<f64>>; 2],
+    /// l', l''.
     l: [Vec<Wrench<f64>>; 2],
+    /// r of (22): +-(0.5 to 1) of the row's unit.
     /// Per load and row.
     loads: [Vec<f64>; LOADS],
     /// The series of the response, of one block at a time: c0, c1 and 2 c2 of its coordinates.
@@ -98,6 +103,7 @@ impl Surroundings {
         let mut most = 0.0;
         for b in 0..self.nearness.first().map_or(0, Vec::len) {
             let of_block = travel[..self.known].iter().zip(&self.nearness);
+            // sum over the drivers of Du_d / rho_d
             let sum: f64 = of_block.map(|(du, nearness)| part(*du, nearness[b])).sum();
             // Written so that NaN is far too much.
             if !(sum <= most) {
@@ -166,13 +172,16 @@ impl Prober {
         let gap = std::mem::replace(&mut state.gap_left[1], gap_rate);
         for direction in 0..directions {
             for (d, driver) in self.drivers.iter_mut().enumerate() {
+                // f' = 1 of one driver, 0 of the others; f'' = 0
                 *driver = [0.0, speed(direction, d), 0.0];
             }
             self.rates(topology, parts, state);
+            // q' and q'' by (9) and (10), with f' of this direction in the place of f.
             found.slopes[direction].copy_from_slice(&state.motion.speeds[0]);
             found.bends[direction].copy_from_slice(&state.motion.speeds[1]);
             for &r in &topology.coupled_rows {
                 for (k, _) in topology.parts_of_row(r) {
+                    // chi' and chi'' of what a coupler counts
                     let [_, speed, rate] = state.coordinate_of_row(topology, k);
                     found.turning[direction][k] = [speed, rate];
                 }
@@ -188,6 +197,7 @@ impl Prober {
             for b in 0..topology.blocks.len() {
                 let mut nearness = 0.0;
                 for load in 0..LOADS {
+                    // 1/rho_b = max over the loads                                                                       (22)
                     nearness = nearness.larger(self.respond(topology, state, b, load));
                 }
                 found.nearness[direction][b] = nearness;
@@ -207,6 +217,7 @@ impl Prober {
         gap_rate: f64,
         drivers: &[[f64; 3]],
     ) -> Option<Ahead> {
+        // Along the motion as it goes: f., f.. of all drivers together, so that the distance is a time.
         self.drivers.copy_from_slice(drivers);
         self.swap(state);
         let gap = std::mem::replace(&mut state.gap_left[1], gap_rate);
@@ -216,6 +227,7 @@ impl Prober {
             for load in 0..LOADS {
                 let nearness = self.respond(topology, state, b, load);
                 let Some(ahead) = self.extrapolate(topology, b) else { continue };
+                // The block and load that respond most steeply tell of what is nearest.
                 if nearest.is_none_or(|(most, _)| nearness > most) {
                     nearest = Some((nearness, ahead));
                 }
@@ -243,12 +255,15 @@ impl Prober {
         let (block, response) = (&topology.blocks[b], &mut self.response);
         // (24) with z = 0 and f = r, which stands still.
         for r in block.closures.iter().flat_map(|&c| topology.closures[c].numbers()) {
+            // J c0 = r
             response.demand[r] = if topology.rows[r].is_term { 0.0 } else { self.loads[load][r] };
         }
         response.solve::<0>(topology, b, state.linear());
         block.closures.iter().for_each(|&c| response.ask(topology, c, 0.0));
+        // J c1 = -J' c0: order 1 of (24) with f' = 0
         response.solve::<1>(topology, b, state.linear());
         block.closures.iter().for_each(|&c| response.ask(topology, c, 0.0));
+        // J (2 c2) = -2 J' c1 - J'' c0: order 2 of (24), u(2) = s'' = 2 c2
         response.solve::<2>(topology, b, state.linear());
         // The next block is examined by itself.
         for k in block.links.clone() {
@@ -263,6 +278,7 @@ impl Prober {
             let unknowns = topology.blocks[b].unknowns.iter();
             unknowns.fold(0.0, |most: f64, &k| most.larger((c[k] * topology.coordinates[k].per_unit).abs()))
         };
+        // speeds[2] is 2 c2, hence the half
         let [c0, c1, c2] = self.response.speeds.each_ref().map(|c| norm(c));
         (c1 / c0).larger((c2 * 0.5 / c0).sqrt())
     }
@@ -274,6 +290,7 @@ impl Prober {
         let unknowns = topology.blocks[b].unknowns.iter().copied();
         let most = unknowns.max_by(|&j, &k| size(j).total_cmp(&size(k)))?;
         let [c0, c1, c2] = self.response.speeds.each_ref().map(|c| c[most]);
+        // a = s'/s = m / D, b = s''/s = m (m + 1) / D^2 (23):  a^2 / (b - a^2) = m,  D = m / a
         let (first, second) = (c1 / c0, c2 / c0);
         let power = first * first / (second - first * first);
         let distance = power / first;

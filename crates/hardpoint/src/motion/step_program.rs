@@ -110,6 +110,7 @@ impl BlockProgram {
         let corrected = passes.checked_sub(2).and_then(|k| corrections.get(k));
         // Either the last that was applied leaves round-off, or the next one is round-off itself.
         let (last, limit) = match corrected {
+            // dq_0 ... dq_passes-2 were applied. In the last pass none was worked out, the one before being at most 1e-8, or one of at most 1e-14.
             Some(c) if c.value() <= QUADRATIC => (passes - 2, QUADRATIC),
             _ => (passes - 1, ROUND_OFF),
         };
@@ -222,21 +223,25 @@ impl StepProgram {
         let (mut fits, mut blocks) = (false, Vec::new());
         recording::begin();
         let recorded = record(|| {
+            // The kernel itself, on numbers that write down what is done with them.
             let mut state = State::new(model, topology);
             let offset = OFFSET[purpose.corrections - 1];
             let known = foresee(topology, &channels, &one.saved, (offset, purpose.times), &mut state);
             let drivers: Vec<[Number; 3]> = one.saved.drivers.iter().map(|f| f.map(Number::input)).collect();
             let ahead = Number::input(0.0);
             let nominal = model.whole(&[]).into_iter();
+            // b as an input makes the geometry a part of the program; as a constant it is folded.
             let number = if purpose.any_design { Number::input } else { Number::constant };
             let values: Vec<Number> = nominal.map(number).collect();
             let geometry = recording::strictly(|| effects.geometry(&values));
             let parts = Parts::of(model, topology, &geometry);
+            // (26), (9), (10): as many corrections as recorded here, whatever the numbers are later
             fits = state.solve(topology, &parts, &drivers, f64::INFINITY).is_ok();
             let recorded = (0..topology.blocks.len()).map_while(|b| BlockProgram::of(&state, b));
             blocks = recorded.collect::<Vec<_>>();
             fits &= blocks.len() == topology.blocks.len();
 
+            // Outputs, in the order of `Outputs`: channels, what is judged, blocks, margins, defects, bodies, derivatives.
             let mut out = moves(topology, &channels, &state);
             let bodies = BodyState::all(&state);
             let (margins, mut limits) = match purpose.margins {
@@ -261,6 +266,7 @@ impl StepProgram {
             out.extend(speeds);
             let blocks_at = out.len();
             let watched = state.watched.iter().zip(&state.determinants);
+            // det J, and max / min of the pivots
             out.extend(watched.flat_map(|(w, determinant)| [*determinant, w.most * w.least]));
             let margins_at = out.len();
             let defects_at = margins_at + margins.len();
@@ -398,6 +404,7 @@ fn speeds(
         };
         let [_, speed, _] = channel.of(state);
         let [_, before, acceleration, ..] = *known;
+        // q. at the newest position + q.. h
         let foreseen = acceleration.times_plus(ahead, before);
         apart.push((speed - foreseen).abs() * per_unit);
         fastest.push(speed.abs().larger(before.abs()) * per_unit);
@@ -425,6 +432,7 @@ fn foresee(
         let known: [Number; CONDITIONS] = std::array::from_fn(|n| of(first(n, beside)));
         let begin = if times { Number::input(0.0) } else { Number::constant(0.0) };
         // What counts least comes first.
+        // q(t) = begin + sum_j weight_j(t) known_j: Hermite's interpolation (27), the weights worked out once for all channels
         let terms = weights.into_iter().zip(known).rev();
         channel.put(terms.fold(begin, |sum, (w, x)| w.times_plus(x, sum)), state);
         known

@@ -69,6 +69,7 @@ pub(crate) struct Stepper<'m> {
     /// What drivers follow on a straight path: from where to where each goes.
     pub(super) line: Vec<[f64; 2]>,
     /// Per block: sign of the determinant on this branch, and the first pivot ratio.
+    /// sign(det J): it keeps it as long as no singular position is passed.
     pub(super) branch: Vec<(bool, f64)>,
     /// Per block: the pivot ratio below which other rows are tried.
     pub(super) try_others: Vec<f64>,
@@ -81,6 +82,7 @@ pub(crate) struct Stepper<'m> {
     /// Made when first needed: who takes many steps at once examines nothing.
     pub(super) prober: Option<Box<Prober>>,
     /// Per block: by what part its determinant changed over the last step between output times, and how long that was.
+    /// `r_k - 1` of theory (28).
     pub(super) changes: Vec<f64>,
     pub(super) change_step: f64,
     /// Per driver: how far it moved over that step.
@@ -248,6 +250,7 @@ impl<'m> Stepper<'m> {
             self.line[d] = [0.0, self.parts.law(d, t)[0]];
         }
         if self.line.iter().any(|[_, to]| to.abs() != 0.0) {
+            // q(f = 0), which is drawn, to q(f(t_0)): all drivers straight there together
             let ramp = Path::Line { at: t };
             self.time = 0.0;
             self.attempt(ramp, 0.0).map_err(|r| self.stop(ramp, 0.0, r, false))?;
@@ -291,6 +294,7 @@ impl<'m> Stepper<'m> {
         }
         self.fastest_driver = self.driver_speed();
         let moved = self.foresee_at(h);
+        // abs(dq_0) <= max(half of the foreseen move, 0.02): a correction out of proportion may lead to another branch.
         let trust = (TRUST * moved).max(TRUST_FLOOR);
         let selections = self.selections;
         if self.state.solve(&self.topology, &self.parts, &self.drivers, trust).is_err()
@@ -299,6 +303,7 @@ impl<'m> Stepper<'m> {
         {
             return false;
         }
+        // Determinants of different rows cannot be compared.
         let even = selections == self.selections && self.note_changes(h);
         if self.ahead == Ahead::Even && !even {
             return false;
@@ -326,6 +331,7 @@ impl<'m> Stepper<'m> {
             let most = match self.ahead {
                 Ahead::Even => {
                     let moved = (self.drivers[d][0] - self.saved.drivers[d][0]).abs() / unit;
+                    // Over the step h  max abs(f.) <= 2 (larger of the last two moves) / h: between its ends the law does nothing of its own.
                     (EVEN * self.moves[d].max(moved)).clamp(RESTS, LONGEST)
                 }
                 _ => LONGEST,
@@ -350,6 +356,7 @@ impl<'m> Stepper<'m> {
         let mut most = 0.0;
         for (b, factors) in self.state.factors.iter().enumerate() {
             let ratio = factors.ratio(self.state.determinants[b], self.saved.determinants[b]);
+            // r = det_k / det_k-1 in [0.78, 1.28],    abs((r_k - 1) - (r_k-1 - 1) h_k / h_k-1) <= 0.125           (28)
             let change = ratio - 1.0;
             most = most.larger((ratio - MIDDLE).abs() * (1.0 / REACH));
             if self.ahead == Ahead::Even {
@@ -366,6 +373,7 @@ impl<'m> Stepper<'m> {
     /// Sets the drivers for the path at t.
     #[inline(always)]
     pub(super) fn drive(&mut self, path: Path, t: f64) -> Result<(), Refusal> {
+        // phi = (1 - s) phi_0: what is left of every gap, and its rate by s
         self.state.gap_left = if path == Path::Assembly { [1.0 - t, -1.0] } else { [0.0; 2] };
         for k in 0..self.drivers.len() {
             let law = match path {
@@ -375,6 +383,7 @@ impl<'m> Stepper<'m> {
                     let [from, to] = self.line[k];
                     // At the end exactly there.
                     let here = if t == 1.0 { to } else { from + (to - from) * t };
+                    // f = f_0 + (f_1 - f_0) s,    df/ds = f_1 - f_0,    d2f/ds2 = 0
                     [here, to - from, 0.0]
                 }
             };
@@ -411,6 +420,7 @@ impl<'m> Stepper<'m> {
     /// Whether the position just solved is on the branch, in the turn that was expected, and closed.
     pub(super) fn examine_position(&mut self) -> Result<(), Refusal> {
         for (b, &(_, positive)) in self.state.pivots.iter().enumerate() {
+            // sign(det J) is that of the branch: between two positions of opposite sign lies a singular one.
             if positive != self.branch[b].0 {
                 return Err(Refusal::Branch { block: b });
             }
@@ -421,6 +431,7 @@ impl<'m> Stepper<'m> {
         self.residuals = self.state.residuals(&self.topology, &self.parts, &self.drivers);
         // On the way to being closed, redundant constraints need not agree yet.
         let half_open = self.state.gap_left[0] > 0.0;
+        // abs(phi) <= 1e-5 of the loop's size, of rows left out as well: else redundant constraints contradict each other here.
         if !half_open && !(self.residuals.scaled <= LOCKED) {
             let (row, residual) = self.state.worst_row(&self.topology, &self.parts, &self.drivers);
             return Err(Refusal::Locked { row, residual });
@@ -446,6 +457,7 @@ impl<'m> Stepper<'m> {
         let mut most = 0.0;
         for (c, coordinate) in self.topology.coordinates.iter().enumerate() {
             if let Source::Unknown { .. } = coordinate.source {
+                // q. h + q.. h^2 / 2
                 let step = (saved.qd[c] + saved.qdd[c] * half) * h;
                 most = most.larger((step * coordinate.per_unit).abs());
             }
@@ -460,6 +472,7 @@ impl<'m> Stepper<'m> {
         for &r in &self.topology.coupled_rows {
             for (k, _) in self.topology.parts_of_row(r) {
                 let [x, v, a] = self.saved.coupled[k];
+                // chi + chi. h + chi.. h^2 / 2
                 self.state.near[k] = x + (v + a * half) * h;
             }
         }
@@ -471,6 +484,7 @@ impl<'m> Stepper<'m> {
         self.driver_units
             .iter()
             .zip(&self.drivers)
+            // max abs(f.) / unit
             .fold(self.fastest_driver, |most, (unit, f)| most.max(f[1].abs() / unit))
     }
 
@@ -496,6 +510,7 @@ impl<'m> Stepper<'m> {
         let (mut fastest, mut difference) = (0.0_f64, 0.0_f64);
         for (c, coordinate) in self.topology.coordinates.iter().enumerate() {
             if let Source::Unknown { .. } = coordinate.source {
+                // abs(q. - (q._0 + q.._0 h)) against the larger of the two speeds
                 let predicted = saved.qd[c] + saved.qdd[c] * h;
                 let speed = s.motion.speeds[0][c].abs().larger(saved.qd[c].abs());
                 let apart = (s.motion.speeds[0][c] - predicted).abs();
@@ -548,6 +563,7 @@ impl<'m> Stepper<'m> {
     fn reselect(&mut self) -> Result<(), Refusal> {
         for b in 0..self.topology.blocks.len() {
             let ratio = self.state.pivots[b].0;
+            // min / max of the pivots against a tenth of what it was when these rows were chosen
             if ratio >= self.try_others[b] {
                 continue;
             }
@@ -567,6 +583,7 @@ impl<'m> Stepper<'m> {
                     entries.filter(|(_, x)| *x != 0.0).collect()
                 })
                 .collect();
+            // All rows of the block where it stands now, redundant ones included: those with the largest pivots.
             let pivots = FullPivot::of_sparse(matrix, block.unknowns.len(), f64::MIN_POSITIVE);
             let mut selected: Vec<usize> = pivots.rows.iter().map(|&r| rows[r]).collect();
             selected.sort_unstable();
@@ -606,12 +623,14 @@ impl<'m> Stepper<'m> {
 #[inline(always)]
 pub(super) fn smooth(difference: f64, fastest: f64, fastest_driver: f64) -> bool {
     // Written so that NaN is refused.
+    // max abs(q. - foreseen) <= max(0.25 max abs(q.), 1e-3 max abs(f.)): on another branch the speeds are others
     difference <= f64::max(SPEED_TRUST * fastest, SPEED_FLOOR * fastest_driver)
 }
 
 /// Per driver, what its travel is compared with: 1 rad, or the size of the largest loop that it moves.
 fn driver_units(model: &Model, topology: &Topology) -> Vec<f64> {
     let whole = model.size();
+    // Du_d / unit is a number without dimension: rad, or a part of the loop.
     let unit = |(k, driver): (usize, &crate::model::Driver)| {
         if model.driven(driver).quantity != Quantity::Length {
             return 1.0;

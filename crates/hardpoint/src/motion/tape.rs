@@ -190,9 +190,11 @@ impl Tape {
             if self.runs == MOST_RUNS {
                 return Err(Refused);
             }
+            // As in (26): the next first correction must be at most half of this one.
             trust = CONTRACTS * largest(self.judged(Judged::First));
             self.go_on_from_here();
         }
+        // min / max of the pivots = 1 / (max abs(pivot) max abs(1 / pivot)), of the worst block and lane
         let pivot_ratio = 1.0 / largest(self.judged(Judged::Pivots));
         let fits = all_within(self.judged(Judged::Unfit), 0.0)
             && all_within(self.judged(Judged::ScaledResidual), LOCKED)

@@ -89,6 +89,7 @@ impl Stepper<'_> {
         let mut far = 0.0;
         while self.time < target {
             let rest = target - self.time;
+            // The longest step with  sum over d of Du_d / rho_d <= 0.4  (22), Du_d the range of law d over [t, t + h]
             let mut h = self.stride(path, rest, ONE_TIME * scale);
             if path == Path::Laws && h <= ONE_TIME * scale && h < rest && !(self.travelled() <= SHORTEST) {
                 self.jump(self.time + h)?;
@@ -97,6 +98,7 @@ impl Stepper<'_> {
             // The step is short because it is a part of the way there, not because a law rests and moves later.
             let near = self.travelled() < NEAREST
                 && self.around.part_of_way(&self.travel) > WHOLE_PART * PART_OF_WAY;
+            // All that the distance allows is below 1e-6 rad, or sizes: nearer by, round-off decides.
             if h < rest && near && self.is_singular_ahead(path) {
                 return Err(self.stop(path, self.time + h, Refusal::TooNear, true));
             }
@@ -106,9 +108,11 @@ impl Stepper<'_> {
                 match self.step_to(path, t, if last { rest } else { h }) {
                     Ok(()) => break,
                     Err(refusal) => {
+                        // What Newton refuses, or the far end, may be reached in halves.
                         h *= 0.5;
                         self.measure_travel(path, h);
                         steps += 1;
+                        // At 1e-10 rad a step is round-off; `stop` finds out what it is that is so near.
                         let too_short = self.travelled() < SHORTEST || h <= ONE_TIME * scale;
                         if too_short || steps > MOST_STEPS {
                             self.stand(path).map_err(|r| self.stop(path, t, r, true))?;
@@ -163,6 +167,8 @@ impl Stepper<'_> {
             let (mut from, mut to) = (self.time, target);
             while !bounded(from, to) && to - from > POLE[0] * whole {
                 let middle = 0.5 * (from + to);
+                // The half over which interval arithmetic gives no bound, again and again; what stays unbounded to the end and is
+                // large there is a pole, not only a bound that is too wide.
                 (from, to) = if bounded(from, middle) { (middle, to) } else { (from, middle) };
             }
             if bounded(from, to) {
@@ -195,10 +201,12 @@ impl Stepper<'_> {
     /// Finds out how near singular positions are to where the state stands: along each driver alone, or along the whole path where
     /// all go together.
     fn examine(&mut self, path: Path) {
+        // On the laws' path one direction per driver, f_d' = 1: what is near is near whether a driver hurries or rests.
         let Self { prober, topology, parts, state, line, beyond, drivers, .. } = self;
         let directions = if path == Path::Laws { drivers.len() } else { 1 };
         let prober =
             prober.get_or_insert_with(|| Box::new(Prober::new(topology, state.pose.len(), drivers.len())));
+        // df_d/du: 1 of the driver that goes by itself; the line's f(1) - f(0) of all together; 0 of an assembly, whose gaps go
         let speed = |direction: usize, d: usize| match path {
             Path::Assembly => 0.0,
             Path::Line { .. } => line[d][1] - line[d][0],
@@ -220,11 +228,13 @@ impl Stepper<'_> {
             Path::Laws => {
                 for d in 0..self.drivers.len() {
                     let from = self.saved.drivers[d][0];
+                    // Du_d = max over [t, t + h] of abs(f_d - f_d(t)), from above
                     self.travel[d] = self.parts.travel(d, self.time, self.time + h, from);
                 }
             }
         }
         self.travel_unit = match path {
+            // The parameter runs from 0 to 1; one unit of it is as much travel as this, rad or sizes.
             Path::Assembly => self.state.largest_gap(&self.topology),
             Path::Line { .. } => {
                 let of_driver = self.line.iter().zip(&self.driver_units);
@@ -249,6 +259,7 @@ impl Stepper<'_> {
         let mut h = rest;
         loop {
             self.measure_travel(path, h);
+            // sum Du_d / rho_d <= 0.4,    max over the unknowns of sum abs(q_d') Du_d <= 2,    Du_d <= 1
             let part = self.around.part_of_way(&self.travel) / PART_OF_WAY;
             let moved = self.around.move_of_fastest(&self.travel) / LONGEST_MOVE;
             let much = part.max(moved).max(self.travelled() / LONGEST);
@@ -262,6 +273,7 @@ impl Stepper<'_> {
 
     /// Goes a step h along a path, to t, if it is a safe one.
     fn step_to(&mut self, path: Path, t: f64, h: f64) -> Result<(), Refusal> {
+        // What disagrees in the middle of a step may agree again at its end.
         if self.saved.residual > SUSPECT * LOCKED && path == Path::Laws {
             self.solve_at(path, self.time + 0.5 * h, 0.5 * h)?;
         }
@@ -269,6 +281,7 @@ impl Stepper<'_> {
         let selections = self.selections;
         self.solve_at(path, t, h)?;
         self.examine(path);
+        // sum Du_d / rho_d <= 1.67 with rho_d of the far end
         if selections == self.selections && !(self.beyond.part_of_way(&self.travel) <= PART_FROM_FAR_END) {
             return Err(Refusal::TooNear);
         }
@@ -299,6 +312,7 @@ impl Stepper<'_> {
                 Path::Laws => self.drivers[k][0] - self.saved.drivers[k][0],
                 _ => h,
             };
+            // q + sum over the drivers of (q_d' Du_d + q_d'' Du_d^2 / 2); what two drivers bend together is left to Newton.
             let half = du * du * 0.5;
             let (slopes, bends) = (&self.around.slopes[k], &self.around.bends[k]);
             for (c, moved) in moves.iter_mut().enumerate() {
@@ -326,6 +340,7 @@ impl Stepper<'_> {
     fn jump(&mut self, t: f64) -> Result<(), Box<Stop>> {
         let before = self.time;
         for d in 0..self.line.len() {
+            // From f(t-) to f(t+), at one time
             self.line[d] = [self.saved.drivers[d][0], self.parts.law(d, t)[0]];
         }
         let path = Path::Line { at: t };
@@ -355,6 +370,7 @@ impl Stepper<'_> {
     pub fn beyond(&mut self) -> Option<Singular> {
         self.stand(Path::Laws).ok()?;
         let ahead = self.ahead(Path::Laws)?;
+        // m of (23): 1/2 at a limit, 1 where two motions meet
         let limit = (ahead.power - 0.5).abs() < TELLING;
         let meets = (ahead.power - 1.0).abs() < TELLING;
         if !(ahead.distance > 0.0 && (limit || meets)) {
@@ -362,6 +378,7 @@ impl Stepper<'_> {
         }
         let now = self.drivers.iter().map(|f| f[0]);
         let travel = now.enumerate().map(|(d, now)| {
+            // f(t*) - f(t), t* = t + distance of (23)
             let then = self.parts.law_of(d).at(self.time + ahead.distance).value();
             // A law that ends there goes on as it does now.
             if then.is_finite() { then - now } else { self.drivers[d][1] * ahead.distance }
@@ -392,9 +409,11 @@ impl Stepper<'_> {
             Refusal::Position(_) | Refusal::Branch { .. } | Refusal::TooNear => {
                 let ahead = self.ahead(path);
                 // The step that failed is no longer than a part of the way.
+                // (23) tells of a place only where it is about as near as the step that failed there.
                 let near = 1e3 * (t - self.time).abs().max(ONE_TIME * t.abs());
                 match ahead.filter(|a| a.distance > 0.0 && a.distance <= near) {
                     Some(a) => {
+                        // t* = t + m / (s'/s) of (23), m < 3/4 a limit
                         failed = self.time + a.distance;
                         let limit = a.power < LIMIT;
                         (if limit { StopKind::Limit } else { StopKind::BranchChange }, Some(a.block))
@@ -408,6 +427,7 @@ impl Stepper<'_> {
                     },
                 }
             }
+            // What is left of a row that was not solved with: the constraints agreed as drawn and do not here.
             Refusal::Locked { row, residual } => {
                 let place = &self.topology.rows[row];
                 let closure = &self.topology.closures[place.closure];

@@ -3,6 +3,15 @@
 //! How an output goes with the design twists of the bodies is a load on them, a wrench each. Carried to ground like a load in
 //! statics, it says what every joint transmits; that, on the design twists of the joint's markers, is the output's
 //! derivative. What is transmitted does not know of any variable (`docs/theory.md` (17) to (20)).
+//!
+//! | here | theory | what |
+//! |---|---|---|
+//! | `load[n]` | F, F., F.. | on each body, per unit of the output; on the way to ground, all that is still to be carried |
+//! | `links[n]` | T_k, T_k., T_k.. | what a link transmits to its parent (18) |
+//! | `closures[n]` | T_c, T_c., T_c.. | what a closure's rows push body j with, and body i back |
+//! | `rows[n]` | mu, mu., mu.. | `T_c = - sum mu_r l_r` |
+//! | `seen` | t, t., t.. | T as the body of a marker sees it (20) |
+//! | `gradient[v][n]` | dy/db, d(y.)/db, d(y..)/db | (19) and its time derivatives |
 
 use crate::design::Field;
 use crate::model::{DriverId, GROUND, Model};
@@ -64,6 +73,8 @@ impl Support {
     fn new(topology: &Topology, fields: &[FieldParts<f64>], loaded: &[usize]) -> Self {
         let mut pushed = vec![false; 1 + topology.links.iter().map(|l| l.child.0).max().unwrap_or(0)];
         loaded.iter().for_each(|&b| pushed[b] = true);
+        // From the last block to the first: a load on a child goes through its link to the parent, and through the block's closures to
+        // all bodies that these stand between.
         let (mut blocks, mut driven_links) = (Vec::new(), Vec::new());
         let mut feels = (vec![false; topology.links.len()], vec![false; topology.closures.len()]);
         for (b, block) in topology.blocks.iter().enumerate().rev() {
@@ -71,10 +82,12 @@ impl Support {
                 blocks.push(b);
                 for &c in &block.closures {
                     feels.1[c] = true;
+                    // +- T_c on both of its bodies
                     topology.closures[c].bodies.iter().for_each(|b| pushed[b.0] = true);
                 }
                 for k in block.links.clone().rev() {
                     feels.0[k] = true;
+                    // T_k goes on to the parent
                     pushed[topology.links[k].child.0] = true;
                     pushed[topology.links[k].parent.0] = true;
                 }
@@ -122,11 +135,13 @@ impl Support {
         for driver in field.drivers() {
             for (c, coordinate) in topology.coordinates.iter().enumerate() {
                 if coordinate.source == Source::Driven(driver) && links[coordinate.link] {
+                    // nu_d = T_k . x_a
                     self.laws.push((v, driver, Follower::Coordinate(c)));
                 }
             }
             for (c, closure) in topology.closures.iter().enumerate() {
                 if closure.driver == Some(driver) && closures[c] {
+                    // nu_d = mu_r
                     self.laws.push((v, driver, Follower::Row(closure.first_row)));
                 }
             }
@@ -219,6 +234,7 @@ impl Adjoint {
                 for r in closure.numbers() {
                     rows[n][r] = zero;
                     for m in (0..n).filter(|_| topology.rows[r].drives()) {
+                        // - C(n,m) mu_r(m) l_r(n-m) for m < n, of (25), second line
                         known = l[n - m][r].times_plus(rows[m][r] * -BINOMIAL[n][m], known);
                     }
                 }
@@ -232,6 +248,7 @@ impl Adjoint {
             }
             // Parents outside of the block get some, too, which nobody reads.
             for link in topology.links[block.links.clone()].iter().rev() {
+                // below(p) = F_p + sum of below(c) over its children: T_k as far as it is known
                 let carried = below[link.child.0];
                 below[link.parent.0] += carried;
             }
@@ -239,13 +256,16 @@ impl Adjoint {
                 let k = topology.coordinates[a].link;
                 let mut works = below[topology.links[k].child.0].on(x[0][a]);
                 for m in 0..n {
+                    // below . x_a + sum_{m<n} C(n,m) T_k(m) . x_a(n-m): what (25), third line, comes to as long as mu(n) = 0
                     works += links[m][k].on(x[n - m][a]) * BINOMIAL[n][m];
                 }
                 rhs[column] = works;
             }
+            // J^T mu(n) = works
             factors[b].solve_transposed(rhs);
             for (k, &r) in block.selected.iter().enumerate() {
                 for (part, factor) in topology.parts_of_row(r) {
+                    // mu of a coupler's terms: c_k mu
                     rows[n][part] = rhs[k] * factor;
                 }
             }
@@ -254,6 +274,7 @@ impl Adjoint {
                 let mut taken = none;
                 for r in closure.numbers() {
                     if topology.rows[r].drives() {
+                        // T_c(n) = known - sum mu_r(n) l_r
                         taken = l[0][r].times_plus(-rows[n][r], taken);
                     }
                 }
@@ -281,12 +302,15 @@ impl Adjoint {
                 Carrier::Closure(c) => self.closures[n][c],
             };
             let seen = &mut self.seen[place.index];
+            // t   = Ad(X)^T T                                                                                     (20)
             seen[0] = pose.carry_back(of(0));
             if orders > 1 {
+                // t.  = Ad(X)^T (T. + ad(V)^T T)
                 let mut turned = v.ad_transposed(of(0));
                 let mut first = of(1);
                 first += turned;
                 seen[1] = pose.carry_back(first);
+                // t.. = Ad(X)^T (T.. + ad(V)^T (2 T. + ad(V)^T T) + ad(A)^T T)
                 turned += of(1);
                 turned += of(1);
                 let mut second = v.ad_transposed(turned);
@@ -306,6 +330,7 @@ impl Adjoint {
         orders: usize,
         gradient: &mut [[f64; 3]],
     ) {
+        // T_k . (z_p - z_c) + T_c . (z_j - z_i): of order n t(n) . e, since e stands
         for &(v, place, e) in &support.moves {
             for n in 0..orders {
                 gradient[v][n] += self.seen[place][n].on(e);
@@ -313,6 +338,7 @@ impl Adjoint {
         }
         for &(v, row, rate) in &support.keeps {
             for n in 0..orders {
+                // mu_r(n) L'_r
                 gradient[v][n] += self.rows[n][row] * rate;
             }
         }
@@ -322,12 +348,14 @@ impl Adjoint {
                 Follower::Row(r) => self.rows[n][r],
                 Follower::Coordinate(c) => {
                     let k = topology.coordinates[c].link;
+                    // nu_d(n) = sum_m C(n,m) T_k(m) . x_a(n-m)
                     let term = |m: usize| self.links[m][k].on(x[n - m][c]) * BINOMIAL[n][m];
                     (0..=n).map(term).fold(zero, |sum, x| sum + x)
                 }
             };
             for n in 0..orders {
                 for m in 0..=n {
+                    // (nu_d df_d/dp)(n) = sum_m C(n,m) nu_d(m) df_d(n-m)/dp
                     let rate = self.fields[v].law_rate(driver, n - m);
                     gradient[v][n] += part(m) * rate * BINOMIAL[n][m];
                 }
@@ -340,6 +368,7 @@ impl Adjoint {
 #[inline(always)]
 fn pass_on(topology: &Topology, k: usize, load: &mut [Wrench], links: &mut [Wrench]) {
     let link = &topology.links[k];
+    // T_k = what the child bears with all that came to it; F_p <- F_p + T_k                               (18), first line
     let carried = load[link.child.0];
     links[k] = carried;
     load[link.parent.0] += carried;
@@ -405,6 +434,7 @@ impl Watch {
                 let support =
                     self.supports[body.0].get_or_insert_with(|| adjoint.support(topology, &[body.0]));
                 self.side.fill([zero; 3]);
+                // l . W_i and l . W_j as outputs: the load F = l on that one body                                     (17)
                 let load = [(body.0, [state.l[0][k], none, none])];
                 adjoint.add_work(topology, state, support, &load, 1, &mut self.side);
                 for (v, [term, ..]) in self.side.iter().enumerate() {
@@ -414,9 +444,11 @@ impl Watch {
             for (v, field) in adjoint.fields.iter().enumerate() {
                 let (sum, most) = (&mut self.sum[v], &mut self.most[v]);
                 for m in field.closures.iter().filter(|m| m.at == topology.rows[k].closure) {
+                    // l . (z_j - z_i),    z = Ad(X) e                                                                     (8)
                     let z = state.l[0][k].on(state.pose[m.body].carry(m.e));
                     enter(sum, most, if m.end == 1 { z * factor } else { z * -factor });
                 }
+                // - (L' + df/dp): the sum of all is what (11) leaves of the row
                 let rate = field.kept.binary_search_by_key(&k, |l| l.0).map_or(zero, |n| field.kept[n].1);
                 let driven = closure.driver.map_or(zero, |d| field.law_rate(d, 0));
                 enter(sum, most, -(rate + driven) * factor);
@@ -424,6 +456,7 @@ impl Watch {
         }
         for (v, field) in adjoint.fields.iter().enumerate() {
             let sum = self.sum[v].abs();
+            // (30), as for a variable that is solved for by itself
             let limit = (self.most[v] * LOCKED).larger(field.scale * DEFECT_FLOOR);
             Defect::enter(&mut self.worst[v], r, sum, limit);
         }

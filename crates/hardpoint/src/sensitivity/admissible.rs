@@ -79,12 +79,15 @@ pub fn conditions_at_design(model: &Model, field: &Field) -> Vec<Condition> {
         // A driven coordinate is a constraint too: it must stay at zero in the design configuration.
         let driven = driven.get(&joint).into_iter().flatten().copied();
         let rows = model.joints[k].kind.rows.iter().copied().chain(driven);
+        // l . (z_j - z_i) - L', which is (11) with W = 0: the paper's (4.3), (4.6), (4.9) and (4.11) differentiated by tau at tau = 0
+        // (`docs/theory.md` (32)).
         let value = |row: Row| row.wrench(&ends).on(z[1] - z[0]) - kept.by(row);
         conditions.extend(rows.map(|row| Condition { joint, row, value: value(row) }));
     }
     for coupler in &model.couplers {
         let change = |t: &Term| {
             let z = twists(t.joint.0);
+            // sum c_k l_k . (z_j - z_i), per c_0 so that it is in the unit of the first term
             t.coefficient * model.coupled(t).row.wrench(&model.ends(t.joint)).on(z[1] - z[0])
         };
         let first = coupler.terms[0];
@@ -97,6 +100,7 @@ pub fn conditions_at_design(model: &Model, field: &Field) -> Vec<Condition> {
 /// The joints that a variable opens at the design configuration while all bodies stay, each with the condition that fails
 /// most. None means admissible there.
 pub fn admissibility_at_design(model: &Model, field: &Field) -> Vec<JointDefect> {
+    // A joint opens if abs(l . (z_j - z_i) - L') > 1e-7 of the field's largest speed.
     let scale = field.markers.iter().map(|m| m.twist.w.norm().max(m.twist.v.norm())).fold(0.0, f64::max);
     let mut joints: Vec<JointDefect> = Vec::new();
     let mut place_of: HashMap<JointId, usize> = HashMap::new();

@@ -1,4 +1,23 @@
 //! The three levels of one design variable at one step.
+//!
+//! What stands here under which name (`docs/theory.md`, sections 5 and 6; the paper's sections 3 and 5):
+//!
+//! | here | theory | paper | what, per unit of the variable b |
+//! |---|---|---|---|
+//! | `Moving::e` | e | V and R U (3.2, 3.3, 3.10), in `dD/dtau` (5.5) | body-fixed twist of a marker, rad and m |
+//! | `z` | z, z., z.. | | the same in the world, with its rates (8) |
+//! | `flow.twists[n]` | W, W., W.. | Y (5.3c): `dr/dtau = W_v + W_w x r`, `dpi/dtau = W_w` | design twist of each body |
+//! | `flow.speeds[n]` | S, S., S.. | | of each coordinate of the tree |
+//! | `flow.apart[n]` | `D_j - D_i`, D = W + z | | between the markers of each closure |
+//! | `state.l[n]` | l, l., l.. | a row of `phi_z` (5.3a) and of `phi_D` (5.3b) | wrench of each row |
+//! | `kept`, `law_rates` | L', df/dp | in `phi_D dD/dtau` | what a row keeps, and what a driver asks for, change |
+//!
+//! To a row it is the same whether a body takes its marker along or the marker moves in its body, so one wrench is the row of
+//! `phi_z` and of `phi_D`, and the paper's `phi_z Y = -phi_D dD/dtau` (5.6) reads
+//!
+//! ```text
+//! l . (W_j - W_i)  =  L' - l . (z_j - z_i)                                                     docs/theory.md (11)
+//! ```
 
 use crate::design::Field;
 use crate::law::Law;
@@ -13,15 +32,21 @@ use crate::topology::{Source, Topology};
 /// by closure.
 #[derive(Clone, Debug)]
 pub(crate) struct FieldParts<T> {
+    /// e of the markers that move, by link: they shift and turn what the freedoms start from or end in.
     pub(super) links: Vec<Moving<T>>,
+    /// e of the markers that move, by closure: they open its rows.
     pub(super) closures: Vec<Moving<T>>,
     /// Rows whose kept values change, and their rates.
+    /// L', ascending by row: m or a cosine per unit of b.
     pub(super) kept: Vec<(usize, T)>,
     /// Parameters of drivers' laws that change, and their rates.
+    /// dp/db, with driver and parameter.
     laws: Vec<(DriverId, usize, T)>,
     /// Drivers whose values shift, and how fast.
+    /// df/db, the same at all times: m or rad per unit of b.
     shifts: Vec<(DriverId, T)>,
     /// What that adds to the driver's value, speed and acceleration at the time that was set last.
+    /// At orders n = 0, 1, 2: `sum over p of df(n)/dp dp/db`.
     law_rates: Vec<(DriverId, [T; 3])>,
     /// Largest speed in each field: what round-off of a defect is compared with.
     pub(super) scale: T,
@@ -46,6 +71,8 @@ impl Reach {
     /// Of changes at these links and closures, and of these drivers.
     fn new(topology: &Topology, links: &[usize], closures: &[usize], drivers: &[DriverId]) -> Self {
         let bodies = 1 + topology.links.iter().map(|l| l.child.0).max().unwrap_or(0);
+        // A change spreads the way that motion does: a body moves if its parent does, if its link's marker or driver does, or if its
+        // block has a closure that is changed; what comes later in the order of solution never acts back.
         let (mut moves, mut reach) = (vec![false; bodies], Self::default());
         let starts = |k: usize| {
             let mut coordinates = topology.links[k].coordinates().map(|c| topology.coordinates[c].source);
@@ -54,6 +81,7 @@ impl Reach {
         };
         for k in topology.driven_links() {
             let link = &topology.links[k];
+            // W_c = W_p + z_p - z_c + x S, with S = df/dp: anything of it
             if moves[link.parent.0] || starts(k) {
                 moves[link.child.0] = true;
                 reach.driven_links.push(k);
@@ -66,6 +94,7 @@ impl Reach {
                 || closure.driver.is_some_and(|d| drivers.contains(&d))
         };
         for (b, block) in topology.blocks.iter().enumerate() {
+            // Any right-hand side of the block: then, as far as the lists tell, all of its S may differ from 0.
             let felt = block.closures.iter().any(|&c| changed(c, &moves))
                 || block.links.clone().any(|k| moves[topology.links[k].parent.0] || starts(k));
             if felt {
@@ -103,6 +132,7 @@ impl<T: Real> Moving<T> {
     fn carried(&self, state: &State<T>) -> [Twist<T>; 3] {
         let [v, a, _] = &state.motion.twists;
         let (v, a) = (v[self.body], a[self.body]);
+        // z = Ad(X) e,    z. = ad(V) z,    z.. = ad(A) z + ad(V) z.              (8), with e standing in the body
         let z0 = state.pose[self.body].carry(self.e);
         let z1 = carried([z0], [v]);
         [z0, z1, carried([z0, z1], [v, a])]
@@ -116,6 +146,7 @@ impl<T: Real> FieldParts<T> {
             let Some(joint) = link.joint else { continue };
             for (end, body) in [(0, link.parent.0), (1, link.child.0)] {
                 let marker = if end == 0 { link.parent_end } else { 1 - link.parent_end };
+                // The link runs from its parent's marker to its child's, whichever of them is the joint's i.
                 if let Some(e) = field.twist_of(joint, marker) {
                     links.push(Moving { at, end, body, e });
                 }
@@ -129,6 +160,7 @@ impl<T: Real> FieldParts<T> {
             }
             let Some(rates) = field.kept_rate(closure.joint) else { continue };
             for (k, row) in closure.rows.iter().enumerate() {
+                // L' of this row: `u . (V_j - V_i)` of a rod, the change of what else a row keeps; 0 of a row that keeps nothing.
                 let rate = rates.by(*row);
                 if rate.abs().decisive() > 0.0 {
                     kept.push((closure.first_row + k, rate));
@@ -136,6 +168,7 @@ impl<T: Real> FieldParts<T> {
             }
         }
         // Per unit of a variable: how fast markers move and turn, kept values change, laws change.
+        // Their largest is what a defect of this variable is measured by, whatever its unit.
         let markers = field.markers.iter().map(|m| m.twist.w.norm().larger(m.twist.v.norm()));
         let kept_rates = field.kept.iter().map(|(_, k)| k.size());
         let laws = field.laws.iter().map(|(.., rate)| rate.abs());
@@ -182,6 +215,7 @@ impl<T: Real> FieldParts<T> {
                     sums.iter_mut().zip(derivatives).for_each(|(sum, d)| *sum += rate * d);
                 }
             }
+            // df(n)/db = sum over the parameters p of df(n)/dp dp/db, n = 0, 1, 2; a shift has no rates of its own.
             *rates = sums.map(|sum| T::constant(sum));
             for (_, rate) in self.shifts.iter().filter(|(d, _)| d == driver) {
                 rates[0] += *rate;
@@ -266,6 +300,7 @@ impl<T: Real> Direct<T> {
     #[inline(always)]
     fn set_field(&mut self, topology: &Topology, state: &State<T>, field: &FieldParts<T>) {
         let (none, Self { flow, z, moved }) = (Twist::zero(), self);
+        // W = W. = W.. = 0 of all bodies that this variable does not reach.
         if *moved != field.reach.bodies {
             for twists in &mut flow.twists {
                 moved.iter().for_each(|&b| twists[b] = none);
@@ -278,6 +313,7 @@ impl<T: Real> Direct<T> {
         for k in field.reach.driven_links.iter().copied().chain(in_blocks) {
             flow.moves.iter_mut().for_each(|moves| moves[k] = none);
         }
+        // moves(n) = z_p(n) - z_c(n): the first term of (11), (12), (13) on the right
         for m in &field.links {
             for (n, z) in m.carried(state).into_iter().enumerate() {
                 flow.move_link(n, (m.at, m.end), z);
@@ -296,6 +332,8 @@ impl<T: Real> Direct<T> {
         field: &FieldParts<T>,
     ) {
         let (reach, Self { flow, z, .. }) = (&field.reach, self);
+        // demand = L' + df(n)/dp - l . (z_j(n) - z_i(n)); L' stands still, so it is asked for at order 0 alone. What (12) and (13) have
+        // besides, -sum_{m=1..n} C(n,m) l(m) . (D_j(n-m) - D_i(n-m)), is the same for all that is solved here: see `Flow::solve`.
         reach.closures.iter().for_each(|&c| flow.ask(topology, c, T::zero()));
         for (m, z) in field.closures.iter().zip(&*z) {
             flow.move_end(topology, (m.at, m.end), z[N], &state.l[0]);
@@ -306,6 +344,8 @@ impl<T: Real> Direct<T> {
         if flow.drives {
             follow_laws(topology, field, N, flow);
         }
+        // W(n) of links without unknowns, from ground on; then S(n) and W(n) block by block:
+        //     J S(n) = demand - l . (W_j - W_i)   with W as if the unknown S(n) were 0
         flow.follow::<N>(topology, reach.driven_links.iter().copied(), &state.x);
         for &b in &reach.blocks {
             flow.solve::<N>(topology, b, state.linear());
@@ -313,6 +353,7 @@ impl<T: Real> Direct<T> {
         if let Some(apart) = flow.apart.get_mut(N) {
             let in_blocks = |m: &Moving<T>| topology.closures[m.at].block.is_some();
             for (m, z) in field.closures.iter().zip(z).filter(|(m, _)| in_blocks(m)) {
+                // D_j - D_i = (W_j - W_i) + (z_j - z_i), for the orders above; the first part stands there already.
                 apart[m.at] += if m.end == 1 { z[N] } else { -z[N] };
             }
         }
@@ -380,6 +421,7 @@ impl<T: Real> Direct<T> {
     #[inline(always)]
     fn row_defect(&self, topology: &Topology, state: &State<T>, field: &FieldParts<T>, r: usize) -> (T, T) {
         let zero = T::zero();
+        // l . (W_j - W_i) + l . (z_j - z_i) - (L' + df/dp), summed over a coupler's terms: (11) of a row that it was not solved with
         let (mut sum, mut most) = (zero, zero);
         for (k, factor) in topology.parts_of_row(r) {
             let closure = topology.rows[k].closure;
@@ -412,6 +454,7 @@ impl<T: Real> Direct<T> {
     ) -> (T, T) {
         let (sum, most) = self.row_defect(topology, state, field, r);
         // What typed coordinates may be off by in the motion, they may be off by in the design's terms.
+        // abs(sum) <= max(1e-5 of the largest term, 1e-9 of the field's largest speed)                     (30)
         let limit = most * T::constant(LOCKED);
         (sum.abs(), limit.larger(field.scale * T::constant(DEFECT_FLOOR)))
     }
@@ -421,11 +464,13 @@ impl<T: Real> Direct<T> {
 fn follow_laws<T: Real>(topology: &Topology, field: &FieldParts<T>, order: usize, flow: &mut Flow<T>) {
     for (c, coordinate) in topology.coordinates.iter().enumerate() {
         if let Source::Driven(d) = coordinate.source {
+            // S(n) = df(n)/dp of a driven coordinate of the tree: it is q = f(t, p) itself.
             flow.speeds[order][c] = field.law_rate(d, order);
         }
     }
     for closure in &topology.closures {
         if let Some(d) = closure.driver {
+            // The same of a driver across a cut joint, in its own row.
             flow.demand[closure.first_row] += field.law_rate(d, order);
         }
     }

@@ -2,6 +2,15 @@
 //!
 //! The first-order condition of every row, `l . D_u = L_u`, holds in the design that a second direction w leads to as well;
 //! differentiated along w it is the equation of order 1, w in the place of the time (`docs/theory.md` (15), (24)).
+//!
+//! | here | theory | what, per unit of a direction (or of both) |
+//! |---|---|---|
+//! | `First::w()` | W_u | design twists of the bodies along one direction (11) |
+//! | `First::direct.flow.speeds[0]` | S_u | of the coordinates |
+//! | `First::links`, `closures` | z_u | of markers, in the world |
+//! | `Pair::z` | z_u^w | how these change along the second direction |
+//! | `Seconds::x`, `l` | x^w, l^w | unit twists and wrenches likewise, in place of their rates in time |
+//! | `Pair::w`, `flow.speeds[1]` | W_uw, S_uw | derivative along w of W_u and S_u |
 
 use crate::constraint::EndRates;
 use crate::design::{Effects, Field};
@@ -56,6 +65,7 @@ pub struct BodyCurvature {
 /// What one direction does at one position, to first order.
 struct First {
     field: FieldParts<f64>,
+    /// U = W_u, u = S_u, z = z_u, f = L_u.
     /// Order 0 is the direction; order 1 is how a pair changes that.
     direct: Direct<f64>,
     /// Per link, the design twist of its parent's marker; per closure, those of markers i and j.
@@ -66,6 +76,7 @@ struct First {
 impl First {
     fn new(model: &Model, topology: &Topology, field: FieldParts<f64>) -> Self {
         let mut direct = Direct::new(model, topology);
+        // Along the design even the axes of joints on ground move: x^w = ad(z_w) x.
         direct.flow.ground_stands = false;
         Self {
             field,
@@ -77,6 +88,7 @@ impl First {
 
     /// Where a state stands. What the direction does not reach stays zero.
     fn solve(&mut self, topology: &Topology, state: &mut State<f64>) {
+        // W_u, S_u by (11), and z_u = Ad(X) e_u by (8)
         self.direct.solve_position(topology, state, &self.field);
         for m in self.field.links.iter().filter(|m| m.end == 0) {
             self.links[m.at] = state.pose[m.body].carry(m.e);
@@ -99,6 +111,7 @@ impl First {
     /// How the markers of a closure go.
     fn ends(&self, topology: &Topology, c: usize) -> EndRates<f64> {
         let ([i, j], [z_i, z_j], none) = (topology.closures[c].bodies, self.closures[c], Twist::ZERO);
+        // D_w = W_w + z_w, in place of V; second rates are not asked for
         EndRates { v_i: self.w()[i.0] + z_i, v_j: self.w()[j.0] + z_j, a_i: none, a_j: none }
     }
 }
@@ -150,15 +163,18 @@ impl Seconds {
         });
         let pair = |&[u, w]: &[usize; 2]| {
             let speeds = directions[w].speeds().iter().copied().chain(std::iter::repeat(0.0));
+            // b + eps w with eps^2 = 0: e_u + eps de_u/dw, L_u + eps L_uw, and the same of the laws' parameters
             let moving: Vec<Dual> = values.iter().zip(speeds).map(|(v, d)| Dual { v: *v, d }).collect();
             let field = directions[u].field(effects, &moving);
             let field = FieldParts::new(topology, &field);
+            // e_u and de_u/dw
             let twists = |of: &[Moving<Dual>]| {
                 let part =
                     |e: Twist<Dual>, part: fn(Dual) -> f64| Twist { w: e.w.map(part), v: e.v.map(part) };
                 of.iter().map(|m| [part(m.e, |x| x.v), part(m.e, |x| x.d)]).collect()
             };
             let laws = [LAW_STEP, -LAW_STEP].map(|h| {
+                // b + h w and b - h w
                 let moved: Vec<f64> = moving.iter().map(|x| x.v + h * x.d).collect();
                 effects.laws(&moved)
             });
@@ -187,6 +203,7 @@ impl Seconds {
     pub fn solve(&mut self, stepper: &mut Stepper<'_>, t: f64) {
         let (topology, state, parts) = (&stepper.topology, &mut stepper.state, &stepper.parts);
         for first in &mut self.firsts {
+            // Every direction by itself (11); then every pair with what its two directions left (15).
             first.field.set_time(|d| parts.law_of(d.0), t);
             first.solve(topology, state);
         }
@@ -224,6 +241,7 @@ impl Seconds {
     pub fn curvature(&self, state: &State<f64>, p: usize, body: usize) -> BodyCurvature {
         let pair = &self.pairs[p];
         let [u, w] = pair.of.map(|k| self.firsts[k].w()[body]);
+        // r_uw = W_uw,v + W_uw,w x r + W_u,w x r_w                                                            (16)
         let (r, uw) = (state.pose[body].r, pair.w[body]);
         BodyCurvature { d2r: uw.at(r) + u.w.cross(w.at(r)), ddpi: uw.w }
     }
@@ -237,6 +255,7 @@ pub(crate) fn along(direction: &[f64]) -> Vec<(crate::model::VariableId, f64)> {
 
 /// A pose with its derivatives: by the twists along u, along w, and the derivative along w of that along u.
 fn with_twists(Pose { rot, r }: Pose, u: Twist, w: Twist, uw: Twist) -> Pose<Dual<Dual>> {
+    // e_u = W_u,w x e,    e_w = W_w,w x e,    e_uw = W_uw,w x e + W_u,w x e_w  of an axis e; r_uw by (16)
     let (r_u, r_w) = (u.at(r), w.at(r));
     let column = |e: Vec3| {
         let (e_u, e_w) = (u.w.cross(e), w.w.cross(e));
@@ -257,6 +276,7 @@ impl Pair {
         let Self { field, laws, law_rates, .. } = self;
         for ((driver, [ahead, behind]), (_, out)) in laws.iter().zip(law_rates) {
             let rate = |law: &Law| field.law_speed(*driver, law, t);
+            // f_uw = d/dw (sum_p df/dp dp/du),  (g(b + h w) - g(b - h w)) / 2h + O(h^2)
             *out = (rate(ahead) - rate(behind)) / (2.0 * LAW_STEP);
         }
     }
@@ -299,6 +319,7 @@ impl Pair {
             flow.moves[1][k] = Twist::ZERO;
             for c in topology.links[k].coordinates() {
                 if let Source::Driven(d) = topology.coordinates[c].source {
+                    // S_uw of a driven coordinate
                     flow.speeds[1][c] = self.law_rate(d);
                 }
             }
@@ -307,12 +328,14 @@ impl Pair {
             flow.move_link(1, (m.at, m.end), z);
         }
         for &c in &reach.closures {
+            // rhs = L_uw - l^w . (D_u,j - D_u,i) - l . (z_u,j^w - z_u,i^w), the middle by `Flow::solve`            (15)
             flow.ask(topology, c, topology.closures[c].driver.map_or(0.0, |d| self.law_rate(d)));
         }
         for (m, &z) in self.field.closures.iter().zip(z_closures) {
             flow.move_end(topology, (m.at, m.end), z, &state.l[0]);
         }
         for &(row, rate) in &self.field.kept {
+            // L_uw
             flow.demand[row] += rate.d;
         }
         flow.follow::<1>(topology, reach.driven_links.iter().copied(), &state.x);

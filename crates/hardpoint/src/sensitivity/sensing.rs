@@ -60,6 +60,7 @@ impl Sensing {
         mut found: impl FnMut(VariableId, BodyId, &BodySensitivity),
     ) {
         let Self { fields, direct, wanted, resisting, .. } = self;
+        // x., x.., l., l.. of all coordinates and rows once; then three right-hand sides for each variable: (11), (12), (13).
         let (topology, state, parts) = (&one.topology, &mut one.state, &one.parts);
         state.finish_rates(topology);
         for (v, field) in fields.iter_mut().enumerate() {
@@ -133,13 +134,19 @@ pub(super) fn note(resisting: &mut Resisting, topology: &Topology, defect: Defec
 fn components<T: Real>(flow: &Flow<T>, state: &State<T>, body: usize) -> [T; BodySensitivity::NUMBERS] {
     let [w0, w1, w2] = flow.twists.each_ref().map(|w| w[body]);
     let ([v, a, _], r) = (state.motion.twists.each_ref().map(|v| v[body]), state.pose[body].r);
+    // v = V at r,    a = V. at r + omega x v
     let velocity = v.at(r);
     let acceleration = v.w.cross_plus(velocity, a.at(r));
     let two = T::constant(2.0);
+    // dr/db  = W_v + W_w x r,    d(pi)/db = W_w
     let (p, q) = (w0.at(r), w0.w);
+    // dv/db  = W. at r + W_w x v
     let u = w0.w.cross_plus(velocity, w1.at(r));
+    // d(omega)/db = W._w + W_w x omega
     let o = w0.w.cross_plus(v.w, w1.w);
+    // da/db  = W.. at r + 2 W._w x v + W_w x a:  d/dt of dv/db, with r. = v
     let n = w0.w.cross_plus(acceleration, (w1.w * two).cross_plus(velocity, w2.at(r)));
+    // d(alpha)/db = W.._w + W._w x omega + W_w x alpha:  d/dt of d(omega)/db
     let e = w0.w.cross_plus(a.w, w1.w.cross_plus(v.w, w2.w));
     [p.x, p.y, p.z, q.x, q.y, q.z, u.x, u.y, u.z, o.x, o.y, o.z, n.x, n.y, n.z, e.x, e.y, e.z]
 }
@@ -163,6 +170,7 @@ pub(crate) fn record_derivatives(
         if !field.is_constant() {
             return None;
         }
+        // What is recorded does not know the time: z, L' and shifts, but no df/dp of a law.
         field.set_shifts();
         direct.solve(topology, state, &field);
         direct.judged_defects(topology, state, &field, |row, defect, limit| {

@@ -8,6 +8,7 @@ use super::{Mat3, Vec3};
 ///
 /// Paper Eq. 2.2; its first element is misprinted there, `c1 c3 - s1 c2 s3` is right.
 pub fn rotation_from_euler_313<T: Real>(theta: [T; 3]) -> Mat3<T> {
+    // Columns of Rz(t1) Rx(t2) Rz(t3)                                                                      (paper 2.2)
     let [(s1, c1), (s2, c2), (s3, c3)] = theta.map(T::sin_cos);
     Mat3 {
         cols: [
@@ -23,6 +24,7 @@ pub fn rotation_from_euler_313<T: Real>(theta: [T; 3]) -> Mat3<T> {
 /// Where t2 is 0 or pi only t1 +- t3 is defined; t3 is then 0.
 pub fn euler_313_from_rotation(c: Mat3) -> [f64; 3] {
     let [f, g, h] = c.cols;
+    // h = (s1 s2, -c1 s2, c2),    (f_z, g_z) = (s2 s3, s2 c3)
     let s2 = h.x.hypot(h.y);
     if s2 < 1e-12 {
         return [f.y.atan2(f.x), s2.atan2(h.z), 0.0];
@@ -35,6 +37,7 @@ pub fn euler_313_from_rotation(c: Mat3) -> [f64; 3] {
 /// The second column of the paper's Eq. 3.8 is misprinted; `(c1, s1, 0)` is right. R is singular
 /// at t2 = 0 and is therefore only ever multiplied by, never inverted.
 pub fn euler_rates(theta: [f64; 3], u: Vec3) -> Vec3 {
+    // R U = U_1 (0, 0, 1) + U_2 (c1, s1, 0) + U_3 (s1 s2, -c1 s2, c2)                                      (paper 3.8)
     let (s1, c1) = theta[0].sin_cos();
     let (s2, c2) = theta[1].sin_cos();
     Vec3::new(c1 * u.y + s1 * s2 * u.z, s1 * u.y - c1 * s2 * u.z, u.x + c2 * u.z)

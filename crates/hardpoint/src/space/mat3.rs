@@ -50,6 +50,7 @@ impl<T: Real> Mat3<T> {
         let one = T::one();
         let turn = |e: Vec3| {
             let along = (axis * axis.dot(e)).spread();
+            // Rodrigues: e cos + (n x e) sin + n (n . e) (1 - cos)
             e.spread() * c + axis.cross(e).spread() * s + along * (one - c)
         };
         Self { cols: Vec3::AXES.map(turn) }
@@ -59,6 +60,7 @@ impl<T: Real> Mat3<T> {
     pub fn between(a: Vec3<T>, b: Vec3<T>) -> Self {
         let v = a.cross(b);
         let one = T::one();
+        // e + v x e + v x (v x e) / (1 + a . b),  v = a x b = n sin: Rodrigues with (1 - cos) / sin^2 = 1 / (1 + cos)
         let k = one / (one + a.dot(b));
         let turn = |e: Vec3| {
             let turned = v.cross(e.spread());
@@ -85,6 +87,7 @@ impl<T: Real> Mat3<T> {
     pub fn turned(self, k: usize, sin: T, cos: T) -> Self {
         let (a, b) = ((k + 1) % 3, (k + 2) % 3);
         let mut cols = self.cols;
+        // a <- a cos + b sin,    b <- b cos - a sin;  a, b the axes after k
         cols[a] = self.cols[b].times_plus(sin, self.cols[a] * cos);
         cols[b] = self.cols[a].times_plus(-sin, self.cols[b] * cos);
         Self { cols }

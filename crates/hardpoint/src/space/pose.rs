@@ -28,6 +28,7 @@ impl<T: Real> Pose<T> {
     /// The pose of `inner`, given in this frame, in the outer frame.
     #[inline(always)]
     pub fn compose(self, inner: Self) -> Self {
+        // (A, r) (A', r') = (A A', r + A r')
         Self { rot: self.rot * inner.rot, r: self.point(inner.r) }
     }
 
@@ -35,6 +36,7 @@ impl<T: Real> Pose<T> {
     #[inline(always)]
     pub fn inverse(self) -> Self {
         let rot = self.rot.transpose();
+        // (A, r)^-1 = (A^T, -A^T r)
         Self { rot, r: -(rot * self.r) }
     }
 
@@ -47,6 +49,7 @@ impl<T: Real> Pose<T> {
     /// A twist of the inner frame carried into the outer one: `Ad(X) e` (`docs/theory.md` (2)).
     #[inline(always)]
     pub fn carry(self, e: Twist<T>) -> Twist<T> {
+        // Ad(X) [w; v] = [A w;  A v + r x A w]                                                                (2)
         let w = self.rot * e.w;
         Twist { w, v: self.r.cross_plus(w, self.rot * e.v) }
     }
@@ -54,6 +57,7 @@ impl<T: Real> Pose<T> {
     /// A wrench of the outer frame, seen from the inner one: `l . Ad(X) e = carry_back(l) . e`.
     #[inline(always)]
     pub fn carry_back(self, l: Wrench<T>) -> Wrench<T> {
+        // Ad(X)^T [m; f] = [A^T (m - r x f);  A^T f]
         Wrench { m: self.rot.transpose_mul(l.m - self.r.cross(l.f)), f: self.rot.transpose_mul(l.f) }
     }
 
@@ -72,6 +76,7 @@ impl<T: Real> Pose<Dual<T>> {
         // The rate of every unit vector c is w x c: w is half the sum of c x c'.
         let turn = |k: usize| value.rot.cols[k].cross(self.rot.cols[k].map(|x| x.d));
         let w = (turn(0) + turn(1) + turn(2)) * T::constant(0.5);
+        // r' = v + w x r
         (value, Twist { w, v: self.r.map(|x| x.d) - w.cross(value.r) })
     }
 }

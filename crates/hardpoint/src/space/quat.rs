@@ -39,6 +39,7 @@ impl Quat<f64> {
     /// The quaternion of a rotation matrix, from its largest component (Shepperd).
     pub fn from_rotation(a: Mat3) -> Self {
         let [f, g, h] = a.cols;
+        // 1 + sizes = 4 w^2, 4 x^2, 4 y^2, 4 z^2; the largest is at least 1, so that nothing is divided by little.
         let sizes = [f.x + g.y + h.z, f.x - g.y - h.z, g.y - f.x - h.z, h.z - f.x - g.y];
         let k = (0..4).fold(0, |best, k| if sizes[k] > sizes[best] { k } else { best });
         let s = 0.5 / (1.0 + sizes[k]).sqrt();
@@ -61,6 +62,7 @@ impl<T: Real> Quat<T> {
     #[inline(always)]
     pub fn nudged(self, d: Vec3<T>) -> Self {
         let h = d * T::constant(0.5);
+        // (1, d/2) q = (q_w - d/2 . q_v,  q_v + q_w d/2 + d/2 x q_v)
         let w = self.w - h.dot(self.v);
         let v = self.v + h * self.w + h.cross(self.v);
         Self { w, v }.normalised()
@@ -82,6 +84,7 @@ impl<T: Real> Quat<T> {
     /// Rate of change where the frame turns with `w` about the *fixed* axes: `(0, w) q / 2`.
     #[inline(always)]
     pub(crate) fn rate(self, w: Vec3<T>) -> Self {
+        // (0, w/2) q
         let h = w * T::constant(0.5);
         Self { w: -h.dot(self.v), v: h * self.w + h.cross(self.v) }
     }

@@ -1,4 +1,7 @@
 //! Twists and wrenches, all at the world origin and in world components.
+//!
+//! `docs/theory.md`, section 1: W = [w; v] and l = [m; f]. A body's point at p goes with `v + w x p`; a wrench is the same at any
+//! point, so that sums over bodies and joints need no lever arms.
 
 use std::ops::{Add, AddAssign, Mul, Neg, Sub, SubAssign};
 
@@ -45,30 +48,35 @@ impl<T: Real> Twist<T> {
     /// The turn at unit rate about the line through `point` along `axis`.
     #[inline(always)]
     pub fn turn(axis: Vec3<T>, point: Vec3<T>) -> Self {
+        // x = [h; c x h]: the points of the line stand, v + h x c = 0
         Self { w: axis, v: point.cross(axis) }
     }
 
     /// The slide at unit rate along `axis`.
     #[inline(always)]
     pub fn slide(axis: Vec3<T>) -> Self {
+        // x = [0; h]
         Self { w: Vec3::zero(), v: axis }
     }
 
     /// Rate of a twist fixed in a body that moves with `self`: `ad(self) o` (`docs/theory.md` (3)).
     #[inline(always)]
     pub fn ad(self, o: Self) -> Self {
+        // ad(V) x = [V_w x x_w;  V_w x x_v + V_v x x_w]                                                      (3)
         Self { w: self.w.cross(o.w), v: self.w.cross_plus(o.v, self.v.cross(o.w)) }
     }
 
     /// What the rate of a carried twist o works: `l . ad(self) o = ad_transposed(l) . o`.
     #[inline(always)]
     pub fn ad_transposed(self, l: Wrench<T>) -> Wrench<T> {
+        // ad(V)^T l = [m x V_w + f x V_v;  f x V_w], from  m . (V_w x x_w) + f . (V_w x x_v + V_v x x_w)
         Wrench { m: l.m.cross_plus(self.w, l.f.cross(self.v)), f: l.f.cross(self.w) }
     }
 
     /// Velocity of the body point at `p`.
     #[inline(always)]
     pub fn at(self, p: Vec3<T>) -> Vec3<T> {
+        // w x p + v
         self.w.cross_plus(p, self.v)
     }
 
@@ -109,6 +117,7 @@ impl<T: Real> Wrench<T> {
     /// The force `f` acting through `point`.
     #[inline(always)]
     pub fn force(f: Vec3<T>, point: Vec3<T>) -> Self {
+        // l = [p x f; f]
         Self { m: point.cross(f), f }
     }
 
@@ -121,6 +130,7 @@ impl<T: Real> Wrench<T> {
     /// Power on a motion: `m . w + f . v`.
     #[inline(always)]
     pub fn on(self, t: Twist<T>) -> T {
+        // l . W = m . w + f . v                                                                               (1)
         let (m, f, w, v) = (self.m, self.f, t.w, t.v);
         let moment = m.dot(w);
         f.z.times_plus(v.z, f.y.times_plus(v.y, f.x.times_plus(v.x, moment)))

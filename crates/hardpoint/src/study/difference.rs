@@ -54,6 +54,7 @@ pub fn natural_step(model: &Model, variable: VariableId) -> f64 {
         .iter()
         .map(|m| {
             let s = geometry.markers[m.joint.0][m.end].r;
+            // max(abs(R U), abs(V) / size),  V = e_v + e_w x s
             m.twist.w.norm().max(m.twist.at(s).norm() / size)
         })
         .fold(0.0, f64::max);
@@ -98,6 +99,7 @@ pub fn finite_differences(
 
 /// `apart`: how far the two designs are from each other.
 fn quotient(variable: VariableId, step: f64, plus: &Solution, minus: &Solution, apart: f64) -> Difference {
+    // (y(b + h) - y(b - h)) / 2h = y_b + O(h^2);  (y(b + h) - y(b)) / h = y_b + O(h)
     let k = 1.0 / apart;
     let bodies =
         plus.motion.states().zip(minus.motion.states()).map(|(p, m)| body_quotient(&p, &m, k)).collect();
@@ -119,6 +121,7 @@ fn quotient(variable: VariableId, step: f64, plus: &Solution, minus: &Solution, 
 
 fn body_quotient(p: &BodyState, m: &BodyState, k: f64) -> BodySensitivity {
     // dA/db A^T is skew; its vector is half the sum of the columns' cross products.
+    // e x e' summed over the three axes is 2 pi', with e the mean of both designs' and e' the quotient of their difference
     let columns = |c: usize| (p.rotation.cols[c] + m.rotation.cols[c]) * 0.5;
     let turned = |c: usize| columns(c).cross(p.rotation.cols[c] - m.rotation.cols[c]);
     let dpi: Vec3 = (turned(0) + turned(1) + turned(2)) * (0.5 * k);

@@ -275,12 +275,14 @@ impl<'a> Tracing<'a> {
         for ((_, load), by) in loads.iter_mut().zip(by_twists.chunks_exact(6)) {
             for (order, load) in load.iter_mut().enumerate() {
                 let part = |first: usize| Vec3::from([0, 1, 2].map(|k| by[first + k][order]));
+                // F_i = (dy/d(turn about x, y, z), dy/d(slide along x, y, z)) of body i, and its rates                (17)
                 *load = Wrench { m: part(0), f: part(3) };
             }
         }
         self.gradient.fill([0.0; 3]);
         self.adjoint.add_work(topology, state, support, loads, 3, &mut self.gradient);
         for (&v, by) in variables.iter().zip(by_variables) {
+            // ... + dy/db with all bodies where they are                                                          (19), last term
             (0..3).for_each(|order| self.gradient[v][order] += by[order]);
         }
     }
@@ -319,9 +321,11 @@ fn pose_with_rates(state: &State<f64>, b: usize) -> Pose<Rates> {
         Vec3::new(component(0), component(1), component(2))
     };
     let column = |e: Vec3| {
+        // e. = omega x e,    e.. = alpha x e + omega x e.
         let first = v.w.cross(e);
         rates(e, first, a.w.cross(e) + v.w.cross(first))
     };
+    // r. = V at r,    r.. = V. at r + omega x r.
     let velocity = v.at(pose.r);
     let r = rates(pose.r, velocity, a.at(pose.r) + v.w.cross(velocity));
     Pose { rot: Mat3 { cols: pose.rot.cols.map(column) }, r }
@@ -338,6 +342,7 @@ fn move_along(pose: &mut Pose<Dual<Rates>>, unit: usize) {
     let axis = Vec3::AXES[unit % 3].spread();
     let twist = if unit < 3 { Twist::turn(axis, Vec3::zero()) } else { Twist::slide(axis) };
     for c in &mut pose.rot.cols {
+        // de = w x e,    dr = v + w x r,  with their rates by those of e and r, since the unit twist stands in the world
         let rate = twist.w.cross(c.map(|x| x.v));
         set(c, rate);
     }

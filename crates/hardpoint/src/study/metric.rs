@@ -100,6 +100,7 @@ impl<T: Real> Curve<'_, T> {
     /// part of the interval that has passed.
     fn coefficients(&self, k: usize) -> [T; 6] {
         let ([a, b], c) = ([&self.values[k], &self.values[k + 1]], T::constant);
+        // p(s) = c0 + c1 s + ... + c5 s^5,  s = (t - t_k) / h,  with y, h y., h^2 y.. at s = 0 and s = 1
         let (h, zero) = (self.times[k + 1] - self.times[k], c(0.0));
         // Newton's form on [0, 0, 0, 1, 1, 1], or with fewer ends of each.
         let [a0, a1, a2] = [a[0], a[1] * c(h), a[2] * c(0.5 * h * h)];
@@ -160,6 +161,7 @@ fn roots(c: &[f64]) -> Vec<f64> {
     // In Bernstein's form the coefficients enclose the polynomial.
     let n = c.len() - 1;
     let choose = |n: usize, k: usize| (0..k).fold(1.0, |x, i| x * (n - i) as f64 / (i + 1) as f64);
+    // b_i = sum_{j<=i} C(i,j) / C(n,j) c_j                                                                (31)
     let enclosing = (0..=n).map(|i| (0..=i).map(|j| choose(i, j) / choose(n, j) * c[j]).sum::<f64>());
     let [low, high] = enclosing.fold([f64::INFINITY, f64::NEG_INFINITY], |[l, h], b| [l.min(b), h.max(b)]);
     if n == 0 || !(low < 0.0 && high > 0.0) {
@@ -253,6 +255,7 @@ fn interpolation_error(
             Some(x) => (apart(x, k, t)?[0] / x.at(k, t)[1]).abs(),
             None => 0.0,
         };
+        // abs(dy) + abs(dx / x.) abs(y.)
         Some(apart(y, k, t)?[0].abs() + late * y.at(k, t)[1].abs())
     };
     match &metric.take {
@@ -329,6 +332,7 @@ fn take<T: Real>(metric: &Metric, y: &Curve<'_, T>, x: &Option<Curve<'_, T>>) ->
         }
         Take::Slope(at) => {
             let (k, t) = reach(y, x, *at)?;
+            // dy/dx = y. / x.
             let by = x.as_ref().map_or(T::one(), |x| x.at(k, t)[1]);
             Some((y.at(k, t)[1] / by, Some(y.within(k, t))))
         }
@@ -372,6 +376,7 @@ fn reach<T: Real>(y: &Curve<'_, T>, x: &Option<Curve<'_, T>>, at: f64) -> Option
     // One step of Newton's method more gives the derivative of the time.
     let t = T::constant(0.5 * (low + high));
     let [value, rate] = x.at(k, t);
+    // x(t, b) = at:  t_b = -x_b / x.,  which the dual of one Newton step t - (x - at) / x. carries
     Some((k, t - (value - T::constant(at)) / rate))
 }
 
@@ -443,6 +448,7 @@ fn mean<T: Real>(
     for k in 1..y.values.len() {
         if counts(k - 1) && counts(k) {
             let step = (at(k) - at(k - 1)).abs();
+            // sum (y_k + y_k-1) abs(x_k - x_k-1) / 2  over  sum abs(x_k - x_k-1)
             sum += (value(k - 1) + value(k)) * step * T::constant(0.5);
             way += step;
         }

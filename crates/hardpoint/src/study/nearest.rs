@@ -42,6 +42,7 @@ pub fn nearest_admissible(analysis: &Analysis<'_>, change: &[f64]) -> Nearest {
     let weight: Vec<f64> = (0..asked.len()).map(|v| weight(model, &asked, v)).collect();
     let mut rows = conditions(analysis, &scales);
     // What does not move opens nothing.
+    // A_kv = d(defect k)/d(b_v) natural_v / unit_k, 0 for what stands
     rows.iter_mut()
         .for_each(|row| row.iter_mut().zip(&weight).filter(|x| *x.1 == 0.0).for_each(|x| *x.0 = 0.0));
     rows.retain(|row| row.iter().any(|x| x.abs() > MET));
@@ -51,6 +52,7 @@ pub fn nearest_admissible(analysis: &Analysis<'_>, change: &[f64]) -> Nearest {
     let mut found = asked.clone();
     if !a.is_empty() {
         // d = x - B (A B)^+ A x    with W = B B: the least change, measured by W, that the conditions leave
+        // min (d - x)^T W^-1 (d - x)  with  A d = 0,  x what was asked for                                   (35)
         let b: Vec<f64> = weight.iter().map(|w| w.sqrt()).collect();
         let right = a.iter().map(|row| dot(row, &asked)).collect();
         let least = least_squares([a.len(), b.len()], |i, v| a[i][v] * b[v], &[right]).remove(0);
@@ -114,6 +116,7 @@ fn conditions(analysis: &Analysis<'_>, scales: &[f64]) -> Vec<Vec<f64>> {
                 keys.len() - 1
             });
             let unit = if c.row.is_length() { size } else { 1.0 };
+            // l . (z_j - z_i) - L' in the design configuration                                                 (32)
             rows[at][v] = c.value * scales[v] / unit;
         }
     }
@@ -143,6 +146,7 @@ fn conditions(analysis: &Analysis<'_>, scales: &[f64]) -> Vec<Vec<f64>> {
                         let place = &topology.rows[r];
                         let row = topology.closures[place.closure].rows[place.index];
                         let unit = if row.is_length() { size } else { 1.0 };
+                        // l . (D_j - D_i) - L' of a left-out row at this output time                                 (11)
                         rows[first + at][v] = value * scales[v] / unit;
                     });
                 }

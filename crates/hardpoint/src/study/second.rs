@@ -102,6 +102,7 @@ impl<'a> Bends<'a> {
         let (model, effects) = (analysis.model(), analysis.effects());
         let ways: Vec<Way> = directions.iter().map(|d| Way::Design(d.clone())).collect();
         let fixed = |&[u, w]: &[usize; 2]| {
+            // b + eps_w w + eps_u u: at eps_w the derivative along w, at eps_u that along u, at both the second one
             let value = |k: usize| Dual {
                 v: Dual { v: design.values[k], d: directions[w][k] },
                 d: Dual::constant(directions[u][k]),

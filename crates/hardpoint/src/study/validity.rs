@@ -31,6 +31,7 @@ pub struct Validity {
 /// How many times a change may be made until its second-order part is 5 % of its first-order part; infinite where that is
 /// exactly linear. Both parts are those of a natural step.
 pub(super) fn linear_up_to(first: f64, second: f64) -> f64 {
+    // y(b + s) = y + y_b s + y_bb s^2 / 2:  abs(y_bb s^2 / 2) = 0.05 abs(y_b s)  at  s = 0.05 abs(y_b) / abs(y_bb / 2)  (34)
     if second <= ROUND_OFF * first { f64::INFINITY } else { LINEAR * first / second }
 }
 
@@ -50,6 +51,7 @@ pub fn validity(
     let followed: Vec<usize> =
         (0..variables).filter(|v| solution.sensitivities.at(0, *v).is_some()).collect();
     // The largest sensitivity of each output over the motion, and how far that takes it with a natural step of the variable.
+    // max over the motion of abs(y_b)
     let first = |v: usize, m: usize| {
         let d = (0..measured.len()).map(|k| measured.d(k, VariableId(v), m)[0].abs());
         d.fold(0.0, f64::max)
@@ -70,6 +72,7 @@ pub fn validity(
         let steps = usize::min(second.times.len(), measured.len());
         for (p, &v) in group.iter().enumerate() {
             for (m, output) in measured.outputs.iter().enumerate().filter(|(_, o)| o.known.by_position) {
+                // max over the motion of abs(y_bb) / 2
                 let bend = 0.5 * (0..steps).map(|k| second.value(k, p, m).abs()).fold(0.0, f64::max);
                 let (first, unit) = (firsts[v][m], size.powi(output.dimension.length.into()));
                 if first * natural[v] > f64::max(NOTHING * unit, SLIGHT * strongest[m]) {

@@ -100,6 +100,7 @@ impl WhatIf {
 
     /// The value of output m at time k as foreseen to first and to second order.
     pub fn foreseen(&self, k: usize, m: usize) -> [f64; 2] {
+        // y + y_b . d,    y + y_b . d + d . y_bb d / 2
         let linear = self.today.measured.value(k, m)[0] + self.first(k, m);
         [linear, linear + self.second(k, m)]
     }
@@ -134,6 +135,7 @@ impl WhatIf {
             (first, second) = (first.max(self.first(k, m).abs()), second.max(self.second(k, m).abs()));
         }
         let natural = |first: f64, second: f64| {
+            // Per natural step: the first-order part goes with the size of the change, the second-order part with its square.
             linear_up_to(first / self.part, second / (self.part * self.part)) / self.part
         };
         let linear_up_to = (bends && first > 0.0).then(|| natural(first, second));

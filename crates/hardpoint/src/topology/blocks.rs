@@ -36,6 +36,7 @@ pub(super) fn design_jacobian(model: &Model, topology: &Topology) -> Vec<SparseR
         let mut sum = BTreeMap::new();
         for (k, factor) in topology.parts_of_row(r) {
             for &(c, x) in &parts[k] {
+                // l = sum c_k l_k
                 *sum.entry(c).or_insert(0.0) += x * factor;
             }
         }
@@ -63,6 +64,7 @@ fn jacobian_of_parts(model: &Model, topology: &Topology) -> Vec<SparseRow> {
                 for step in &link.steps {
                     for c in 0..step.freedom.coordinates() {
                         let unit = topology.coordinates[step.first + c].unit;
+                        // J_ra = +- l_r . x_a, per unit of the row and times that of the coordinate: a number without dimension      (6)
                         let entry = side * scale * unit * wrench.on(step.twist(c, &frame.rot, frame.r));
                         entries.push((step.first + c, entry));
                     }
@@ -133,6 +135,7 @@ fn independent_groups(
     }
     for (column, row) in match_columns(&patterns, coordinates.len()).into_iter().enumerate() {
         for &other in patterns[row?].iter().filter(|&&other| other != column) {
+            // Unknown `column` is solved from its row once all other unknowns in that row are known.
             depends.add_edge(NodeIndex::new(column), NodeIndex::new(other), ());
         }
         for &link in &bases[row?] {
@@ -222,6 +225,7 @@ fn assign(
         Source::Driven(_) => None,
     };
     // A closure belongs to the last block that moves it; the terms of a coupler to the last that moves any of them.
+    // J is block lower triangular: a row may have entries in blocks before its own, none in later ones.
     let block_of: Vec<Option<usize>> =
         jacobian.iter().map(|row| row.iter().filter_map(|(c, _)| place(*c)).map(|(b, _)| b).max()).collect();
     let mut block_of_row = block_of.clone();
@@ -274,6 +278,7 @@ fn assign(
         let rows = topology.rows_of_block(b);
         let width = topology.blocks[b].unknowns.len();
         let in_block = rows.iter().map(|&r| columns_in_block(topology, &jacobian[r], b).collect()).collect();
+        // Rank = unknowns: as many independent rows as the block has columns. Less, and the null vectors are motions left free.
         let pivots = FullPivot::of_sparse(in_block, width, RANK_TOLERANCE);
         let mut selected: Vec<usize> = pivots.rows.iter().map(|&r| rows[r]).collect();
         selected.sort_unstable();

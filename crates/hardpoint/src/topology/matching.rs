@@ -23,6 +23,7 @@ pub(super) fn match_columns(rows: &[Vec<usize>], columns: usize) -> Vec<Option<u
     }
     const FAR: usize = usize::MAX;
     loop {
+        // Level of a column: how many displacements lead to it from a column without a row.
         let mut level: Vec<usize> = row_of.iter().map(|r| if r.is_none() { 0 } else { FAR }).collect();
         let mut queue: Vec<usize> = (0..columns).filter(|&c| level[c] == 0).collect();
         let free = queue.clone();

@@ -38,6 +38,7 @@ pub(super) fn examine(model: &Model, topology: &mut Topology) -> Result<(), Topo
         let mut lacking: BTreeMap<usize, Vec<f64>> = BTreeMap::new();
         for (k, &r) in block.selected.iter().enumerate() {
             for (d, [sum, _, demand]) in row_rates(topology, &jacobian, &speeds, r) {
+                // J q. = f. - (what the row has of unknowns of earlier blocks and of driven coordinates), f. = 1 of driver d alone   (9)
                 lacking.entry(d).or_insert_with(|| vec![0.0; block.selected.len()])[k] = demand - sum;
             }
         }
@@ -53,6 +54,7 @@ pub(super) fn examine(model: &Model, topology: &mut Topology) -> Result<(), Topo
     let mut contradictions: Vec<(usize, Vec<f64>)> = Vec::new();
     for (r, _) in topology.rows.iter().enumerate().filter(|(_, r)| !r.selected && !r.is_term) {
         let rates = row_rates(topology, &jacobian, &speeds, r).into_iter();
+        // abs(sum J q. - f.) / (1 + largest term): a left-out row under the unit speed of driver d
         let failures = rates.map(|(d, [sum, largest, demand])| (d, (sum - demand) / (1.0 + largest)));
         let failures: Vec<(usize, f64)> = failures.filter(|(_, f)| f.abs() > RANK_TOLERANCE.sqrt()).collect();
         if !failures.is_empty() {
@@ -63,6 +65,7 @@ pub(super) fn examine(model: &Model, topology: &mut Topology) -> Result<(), Topo
     }
     // Each independent contradiction forbids one combination of the drivers' speeds.
     let rows = contradictions.iter().map(|(_, fails)| fails.clone()).collect();
+    // Degrees of freedom = drivers - rank(what their speeds violate)
     topology.mobility = drivers - FullPivot::of(rows, drivers, RANK_TOLERANCE.sqrt()).rows.len();
     if contradictions.is_empty() {
         Ok(())

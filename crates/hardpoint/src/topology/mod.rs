@@ -362,6 +362,7 @@ impl Step {
         r: crate::space::Vec3<T>,
     ) -> Twist<T> {
         match self.freedom {
+            // x = [h; c x h] of a turn about h through c, [0; h] of a slide; backwards, from j to i, with its sign turned (4)
             Freedom::Turn(axis) => Twist::turn(rot.cols[axis] * T::constant(self.sign), r),
             Freedom::Slide(axis) => Twist::slide(rot.cols[axis] * T::constant(self.sign)),
             Freedom::Ball => Twist::turn(rot.cols[k], r),

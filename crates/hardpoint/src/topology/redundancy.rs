@@ -78,6 +78,7 @@ impl Topology {
             for (k, &r) in block.selected.iter().enumerate().filter(|(k, _)| parts[*k].abs() > PART) {
                 implied_by.push(r);
                 for &(c, x) in &jacobian[r] {
+                    // left <- left - c_k row_k, which also changes it over the unknowns of earlier blocks
                     *left.entry(c).or_insert(0.0) -= parts[k] * x;
                 }
             }

@@ -84,5 +84,6 @@ fn extent(model: &Model, joints: impl Iterator<Item = usize>) -> f64 {
         far = far.max(place.norm());
     }
     let size = Extent::of(places.into_iter()).size_or_zero();
+    // Of places that are one but for round-off the differences have no digits.
     if size > ONE_PLACE * far { size } else { 0.0 }
 }

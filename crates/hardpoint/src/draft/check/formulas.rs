@@ -380,7 +380,7 @@ pub enum NotConstant {
 
 impl Nominal {
     /// What the parameters and hardpoints of a draft are with all design variables at zero. What is faulty is left out:
-    /// [`Model::from_draft`] reports it.
+    /// [`Model::from_draft`](crate::model::Model::from_draft) reports it.
     pub fn of(draft: &Draft) -> Self {
         let mut c = Check::new(draft);
         c.formulas();
