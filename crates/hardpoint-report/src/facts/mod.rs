@@ -461,12 +461,10 @@ fn driven_text(model: &Model, joint: &Joint, points: &Points<'_>) -> String {
     });
     let relative =
         if joint.bodies[0] == GROUND { String::new() } else { format!(" relative to `{}`", body(0)) };
-    if std::ptr::eq(joint.kind, &joint::TRAVEL) {
-        format!("{} along {axis}{relative}", place(1))
-    } else if std::ptr::eq(joint.kind, &joint::HEADING) {
-        format!("orientation of `{}` about {axis}{relative}", body(1))
-    } else {
-        format!("distance from {} to {}", place(0), place(1))
+    match joint.kind.places {
+        0 => format!("orientation of `{}` about {axis}{relative}", body(1)),
+        1 => format!("{} along {axis}{relative}", place(1)),
+        _ => format!("distance from {} to {}", place(0), place(1)),
     }
 }
 

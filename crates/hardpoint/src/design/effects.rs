@@ -2,7 +2,6 @@
 //!
 //! The geometry is written once, over any [`Real`]; its derivatives are the same lines run on [`Dual`]s, at whatever design.
 
-use crate::constraint::Row;
 use crate::design::{Field, Fixed, Geometry, Kept, MarkerField};
 use crate::law::Law;
 use crate::model::{
@@ -395,12 +394,8 @@ impl<'e, T: Real> Design<'e, T> {
             given
         });
         // Markers at one place keep no distance, and it would have no derivative.
-        let keeps = || {
-            joint.kind.rows.contains(&Row::Distance)
-                || joint.kind.coordinates.iter().any(|c| c.row == Row::Distance)
-        };
-        let distance =
-            given.unwrap_or_else(|| if keeps() && d.dot(d).decisive() > 0.0 { d.norm() } else { zero });
+        let keeps = joint.kind.is_rod() && d.dot(d).decisive() > 0.0;
+        let distance = given.unwrap_or_else(|| if keeps { d.norm() } else { zero });
         let contact = joint.curve.as_ref().map_or(zero, |curve| {
             let drawn = curve.distance(m_i.rot.transpose_mul(d));
             let sign = || T::constant(f64::signum(drawn.value()));

@@ -1,6 +1,6 @@
 //! Formulas of a wheel and its kingpin. Their signs: `docs/measures.md`.
 
-use crate::model::{Vehicle, VehicleEnd, WheelMeasure, WheelNeed};
+use crate::model::{Vehicle, VehicleEnd, WheelMeasure};
 use crate::number::{Dual, Real};
 use crate::space::{Twist, Vec3};
 
@@ -184,12 +184,9 @@ fn seen<T: Real>(component: T, turn: Vec3<T>) -> T {
 /// What a wheel's rise per way rearward counts for: its end's share of the force, times wheelbase by height of the centre of
 /// gravity.
 fn support<T: Real>(what: WheelMeasure, vehicle: &Vehicle) -> T {
-    let (front, end) = match what.needs() {
-        WheelNeed::Braking(end) => (vehicle.front_brake_share, end),
-        WheelNeed::Driving(end) => (vehicle.front_drive_share, end),
-        _ => (None, VehicleEnd::Front),
-    };
-    let share = front.map(|front| if end == VehicleEnd::Front { front } else { 1.0 - front });
+    let need = what.needs();
+    let front = vehicle.front_share(need).and_then(|(_, share)| share);
+    let share = front.map(|front| if need.end() == Some(VehicleEnd::Front) { front } else { 1.0 - front });
     let known = share.zip(vehicle.wheelbase).zip(vehicle.centre_of_gravity);
     T::constant(known.map_or(f64::NAN, |((share, wheelbase), height)| share * wheelbase / height))
 }

@@ -1,5 +1,6 @@
 //! What can be wrong with a mechanism as a whole, in the user's own names.
 
+use crate::draft::some_of;
 use crate::model::{BodyId, DriverId, JointId, Model};
 
 use super::{Closure, Formulation, Topology};
@@ -20,7 +21,7 @@ pub enum TopologyFault {
         bodies: Vec<String>,
     },
     /// The configuration as drawn is singular: motions are free there that are not free nearby (HP0304).
-    #[error("the mechanism is drawn in a singular position ({})", some_of(.bodies))]
+    #[error("the mechanism is drawn in a singular position ({})", dozen(.bodies))]
     Singular {
         /// How many motions are free in that position only.
         freedom: usize,
@@ -50,7 +51,7 @@ pub enum TopologyFault {
         joint_names: Vec<String>,
     },
     /// The joints hold each other: nothing that a driver moves can move (HP0303).
-    #[error("the mechanism cannot move: its joints hold each other ({})", some_of(.bodies))]
+    #[error("the mechanism cannot move: its joints hold each other ({})", dozen(.bodies))]
     Immovable {
         /// The joints whose constraints fail as soon as something moves.
         joints: Vec<JointId>,
@@ -68,17 +69,12 @@ fn counted(n: usize, one: &str) -> String {
 
 fn under_driven_text(freedom: &usize, bodies: &[String]) -> String {
     let s = if *freedom == 1 { "motion remains" } else { "motions remain" };
-    format!("the mechanism is under-driven: {freedom} {s} free ({})", some_of(bodies))
+    format!("the mechanism is under-driven: {freedom} {s} free ({})", dozen(bodies))
 }
 
 /// The names with commas between; of a long list the first dozen, and how many more there are.
-fn some_of(names: &[String]) -> String {
-    const SHOWN: usize = 12;
-    let shown = names[..names.len().min(SHOWN)].join(", ");
-    match names.len().saturating_sub(SHOWN) {
-        0 => shown,
-        more => format!("{shown} and {more} more"),
-    }
+fn dozen(names: &[String]) -> String {
+    some_of(names, ", ", 12)
 }
 
 impl TopologyFault {
@@ -96,7 +92,7 @@ impl TopologyFault {
     pub fn notes(&self) -> Vec<String> {
         match self {
             Self::UnderDriven { joint_names, .. } => {
-                vec![format!("the joints that still move: {}", some_of(joint_names))]
+                vec![format!("the joints that still move: {}", dozen(joint_names))]
             }
             Self::Singular { freedom, joint_names, .. } => vec![
                 format!(
@@ -108,17 +104,14 @@ impl TopologyFault {
                     },
                     if *freedom == 1 { "is" } else { "are" }
                 ),
-                format!("the joints of that motion: {}", some_of(joint_names)),
+                format!("the joints of that motion: {}", dozen(joint_names)),
             ],
             Self::OverDriven { driver_names, joint_names, .. } => vec![
-                format!("drivers that contradict each other: {}", some_of(driver_names)),
-                format!("where they meet: {}", some_of(joint_names)),
+                format!("drivers that contradict each other: {}", dozen(driver_names)),
+                format!("where they meet: {}", dozen(joint_names)),
             ],
             Self::Immovable { joint_names, .. } => {
-                vec![format!(
-                    "the constraints that fail as soon as something moves: {}",
-                    some_of(joint_names)
-                )]
+                vec![format!("the constraints that fail as soon as something moves: {}", dozen(joint_names))]
             }
         }
     }
