@@ -132,17 +132,15 @@ fn conditions(analysis: &Analysis<'_>, scales: &[f64]) -> Vec<Vec<f64>> {
                 for (v, field) in parts.iter_mut().enumerate() {
                     field.set_time(|d| stepper.parts.law_of(d.0), model.times[done]);
                     direct.solve_position(&stepper.topology, &mut stepper.state, field);
-                    direct.defects(&stepper.topology, &stepper.state, field, |r, value| {
+                    for (r, value) in direct.defects(&stepper.topology, &stepper.state, field) {
                         let at = numbers.iter().position(|n| *n == r).unwrap_or_else(|| {
                             numbers.push(r);
                             rows.push(vec![0.0; variables]);
                             numbers.len() - 1
                         });
-                        let place = &topology.rows[r];
-                        let row = topology.closures[place.closure].rows[place.index];
-                        let unit = if row.is_length() { size } else { 1.0 };
+                        let unit = if topology.constraint(r).is_length() { size } else { 1.0 };
                         rows[first + at][v] = value * scales[v] / unit;
-                    });
+                    }
                 }
             }
             done += 1;

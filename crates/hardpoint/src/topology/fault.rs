@@ -3,7 +3,8 @@
 use crate::draft::some_of;
 use crate::model::{BodyId, DriverId, JointId, Model};
 
-use super::{Closure, Formulation, Topology};
+use super::blocks::SparseRow;
+use super::{Closure, Formulation, Link, RowId, Topology};
 
 /// The mechanism cannot be driven as it is written.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -159,17 +160,13 @@ impl TopologyFault {
 pub(super) fn free_motions(
     model: &Model,
     topology: &Topology,
-    free: &[Vec<(usize, f64)>],
+    free: &[SparseRow],
     nearby: usize,
 ) -> TopologyFault {
-    let moving: Vec<usize> = free
-        .iter()
-        .flatten()
-        .filter(|(_, x)| x.abs() > 1e-6)
-        .map(|&(c, _)| topology.coordinates[c].link)
-        .collect();
-    let mut joints: Vec<JointId> = moving.iter().filter_map(|&k| topology.links[k].joint).collect();
-    let mut bodies: Vec<BodyId> = moving.iter().map(|&k| topology.links[k].child).collect();
+    let moving = free.iter().flatten().filter(|(_, x)| x.abs() > 1e-6);
+    let moving: Vec<&Link> = moving.map(|&(c, _)| &topology[topology[c].link]).collect();
+    let mut joints: Vec<JointId> = moving.iter().filter_map(|link| link.joint).collect();
+    let mut bodies: Vec<BodyId> = moving.iter().map(|link| link.child).collect();
     bodies.sort_unstable();
     bodies.dedup();
     joints.sort_unstable();
@@ -193,24 +190,22 @@ pub(super) fn free_motions(
 pub(super) fn contradicted(
     model: &Model,
     topology: &Topology,
-    contradictions: &[(usize, Vec<f64>)],
+    contradictions: &[(RowId, Vec<f64>)],
 ) -> TopologyFault {
     let mut drivers: Vec<DriverId> = Vec::new();
     let mut joints = Vec::new();
     let mut joint_names: Vec<String> = Vec::new();
     let mut bodies: Vec<BodyId> = Vec::new();
     for (r, fails) in contradictions {
-        let place = &topology.rows[*r];
-        let closure = &topology.closures[place.closure];
+        let closure = topology.closure_of(*r);
         drivers.extend((0..fails.len()).filter(|&d| fails[d] != 0.0).map(DriverId));
         drivers.extend(closure.driver);
         joints.push(closure.joint);
-        let around = |c: &Closure| c.links.iter().map(|(k, _)| topology.links[*k].child).collect::<Vec<_>>();
+        let around = |c: &Closure| c.links.iter().map(|k| topology[k.link].child).collect::<Vec<_>>();
         bodies.extend(around(closure));
-        if let Some(block) = closure.block {
-            bodies
-                .extend(topology.blocks[block].closures.iter().flat_map(|&c| around(&topology.closures[c])));
-            bodies.extend(topology.links[topology.blocks[block].links.clone()].iter().map(|l| l.child));
+        if let Some(block) = closure.block.map(|b| &topology[b]) {
+            bodies.extend(block.closures.iter().flat_map(|&c| around(&topology[c])));
+            bodies.extend(block.link_ids().map(|k| topology[k].child));
         }
         joint_names.push(topology.row_name(model, *r));
     }

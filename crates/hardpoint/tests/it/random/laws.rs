@@ -6,7 +6,7 @@ use hardpoint::motion::{Execution, StopKind};
 use hardpoint::sensitivity::Admissibility;
 use hardpoint::space::{Pose, Vec3};
 use hardpoint::study::{Comparison, Scheme, finite_differences};
-use hardpoint::topology::{Formulation, Role, Source};
+use hardpoint::topology::{Formulation, Role, SetBy};
 use hardpoint::{Analysis, Solution};
 use hardpoint::{draft::*, model::*};
 
@@ -362,7 +362,7 @@ impl Case<'_> {
             let in_tree = topology
                 .coordinates
                 .iter()
-                .any(|x| matches!(x.source, Source::Driven(id) if model.drivers[id.0].name == d.name));
+                .any(|x| matches!(x.set_by, SetBy::Driver(id) if model.drivers[id.0].name == d.name));
             let place = if in_tree { "tree" } else { "cut" };
             used.insert(format!("{}.{} driven {place}", joint.kind.name, c.name));
         }
