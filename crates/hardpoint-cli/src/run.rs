@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use hardpoint::model::{Model, VariableId};
-use hardpoint::study::{Difference, Scheme, finite_differences, natural_step, validity};
+use hardpoint::study::{Difference, Scheme, finite_differences, validity};
 use hardpoint::topology::Formulation;
 use hardpoint::{Analysis, Solution};
 use hardpoint_file::ModelFile;
@@ -213,7 +213,7 @@ fn compare(session: &Session, analysis: &Analysis<'_>, solution: &Solution) -> V
             break;
         }
         let steps: Vec<(VariableId, f64)> =
-            group.iter().map(|v| (*v, STEP * natural_step(model, *v))).collect();
+            group.iter().map(|v| (*v, STEP * model.natural_step(*v))).collect();
         let found = finite_differences(analysis, solution, Scheme::Central, &steps);
         for (variable, difference) in group.iter().zip(found) {
             differences[variable.0] = difference.ok();

@@ -168,7 +168,7 @@ impl Session {
                 if goes_on.get() { self.go_on() } else { ControlFlow::Break(()) }
             },
             |first, window| {
-                gathering.add(model, first, window);
+                gathering.add(first, window);
                 goes_on.set(each(window) && goes_on.get());
             },
         );

@@ -58,6 +58,8 @@ use tree::Reader;
 const LARGEST_FILE: u64 = 64 << 20;
 /// How many syntax errors are shown: after a few, they follow from the ones before.
 const SYNTAX_ERRORS: usize = 5;
+/// So many files of a folder are named where the one asked for is not there.
+const LISTED_FILES: usize = 12;
 
 /// A model, and the text that it was read from.
 #[derive(Clone, Debug)]
@@ -248,10 +250,9 @@ fn neighbours(path: &Path, extension: &str) -> (Option<String>, Option<String>) 
     let stems = names.iter().filter_map(|n| n.strip_suffix(&ending));
     let help = closest(wanted, stems)
         .map(|stem| format!("did you mean `{}`?", folder.join(format!("{stem}{ending}")).display()));
-    let more = names.len().saturating_sub(12);
-    let list = names.iter().take(12).map(|n| format!("`{}`", shown(n))).collect::<Vec<_>>().join(", ");
-    let more = if more > 0 { format!(" and {more} more") } else { String::new() };
-    (Some(format!("the {ending} files in `{}`: {list}{more}", folder.display())), help)
+    let names: Vec<String> = names.iter().map(|n| format!("`{}`", shown(n))).collect();
+    let list = hardpoint::draft::some_of(&names, ", ", LISTED_FILES);
+    (Some(format!("the {ending} files in `{}`: {list}", folder.display())), help)
 }
 
 /// Reads and checks the text of a model file; `file_name` is for the diagnostics only. A text has no folder, so

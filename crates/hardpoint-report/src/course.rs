@@ -3,7 +3,7 @@
 use hardpoint::model::{Dimension, Model, OutputSource, VariableId};
 use hardpoint::motion::{Margin, Motion};
 use hardpoint::sensitivity::Admissibility;
-use hardpoint::study::natural_step;
+use hardpoint::study::Magnitude;
 use hardpoint::{Footprint, Keep, Kept, Solution};
 
 /// What is kept of a run for the page and what is compared afterwards: so many bytes.
@@ -45,8 +45,8 @@ pub struct Course {
     curves: Option<Solution>,
     /// Of so many output times, metrics are taken from each.
     pub metric_stride: usize,
-    /// Of the motion at orders 0, 1 and 2: lengths in sizes, angles in rad.
-    magnitude: [f64; 3],
+    /// Of the motion.
+    magnitude: Magnitude,
     /// `peaks[(m * 3 + order) * variables + b]`: of the derivative of order of measure m by variable b.
     peaks: Vec<Peak>,
     variables: usize,
@@ -91,7 +91,7 @@ impl Gathering {
         let orders: Vec<_> = measures.map(|o| (o.dimension, o.known.orders)).collect();
         let variables = model.variables.len();
         let course = Course {
-            magnitude: [1.0, 0.0, 0.0],
+            magnitude: Magnitude::at_rest(model),
             peaks: vec![Peak::default(); orders.len() * 3 * variables],
             variables,
             ..Course::default()
@@ -100,12 +100,12 @@ impl Gathering {
     }
 
     /// Takes a window that begins with output time `first`.
-    pub fn add(&mut self, model: &Model, first: usize, window: &Solution) {
+    pub fn add(&mut self, first: usize, window: &Solution) {
         let course = &mut self.course;
         course.steps += window.motion.len();
         course.last_time = window.motion.times.last().copied().or(course.last_time);
         course.margins.add(&window.motion);
-        grow(&mut course.magnitude, model.size(), &window.motion);
+        course.magnitude.add(&window.motion);
         if window.sensitivities.variables == self.course.variables {
             for (k, &t) in window.motion.times.iter().enumerate() {
                 self.peaks_at(window, k, t);
@@ -144,7 +144,7 @@ impl Course {
     /// That of a solution that is there as a whole.
     pub fn of(model: &Model, solution: &Solution) -> Self {
         let mut gathering = Gathering::new(model);
-        gathering.add(model, 0, solution);
+        gathering.add(0, solution);
         gathering.end(solution)
     }
 
@@ -170,10 +170,10 @@ impl Course {
         self.peaks[(m * 3 + order) * self.variables + b].near.first().copied()
     }
 
-    /// The level below which sensitivities are round-off.
+    /// The levels below which sensitivities are round-off.
     pub(crate) fn round_off(&self, model: &Model) -> RoundOff {
-        let natural = (0..model.variables.len()).map(|b| natural_step(model, VariableId(b))).collect();
-        RoundOff { size: model.size(), magnitude: self.magnitude, natural }
+        let natural = (0..model.variables.len()).map(|b| model.natural_step(VariableId(b))).collect();
+        RoundOff { magnitude: self.magnitude, natural }
     }
 }
 
@@ -209,29 +209,15 @@ impl Peak {
     }
 }
 
-fn grow(magnitude: &mut [f64; 3], size: f64, motion: &Motion) {
-    for s in motion.states() {
-        magnitude[1] = magnitude[1].max(s.omega.norm()).max(s.v.norm() / size);
-        magnitude[2] = magnitude[2].max(s.alpha.norm()).max(s.a.norm() / size);
-    }
-}
-
-/// What counts as no sensitivity at all: a change of the design by the size of the mechanism, or by 1 rad,
-/// would change the quantity by less than this part of the whole motion.
-const NOTHING: f64 = 1e-10;
-
-/// The level below which a sensitivity is round-off and is shown as 0.
+/// The levels below which sensitivities are round-off and are shown as 0.
 pub(crate) struct RoundOff {
-    size: f64,
-    magnitude: [f64; 3],
+    magnitude: Magnitude,
     natural: Vec<f64>,
 }
 
 impl RoundOff {
     /// For a quantity's derivative by variable b, SI.
-    pub fn of(&self, b: usize, of: impl Into<Dimension>, order: usize) -> f64 {
-        let of: Dimension = of.into();
-        let order = (order as i8 - of.time).clamp(0, 2) as usize;
-        NOTHING * self.magnitude[order] * self.size.powi(of.length.into()) / self.natural[b]
+    pub fn of(&self, b: usize, of: Dimension, order: usize) -> f64 {
+        self.magnitude.round_off(of, order) / self.natural[b]
     }
 }

@@ -187,11 +187,7 @@ const SHOWN: usize = 8;
 
 /// The items with commas between; of a long list the first few, and how many more there are.
 pub fn some_of(items: &[impl AsRef<str>], separator: &str) -> String {
-    let shown: Vec<&str> = items.iter().take(SHOWN).map(AsRef::as_ref).collect();
-    match items.len().saturating_sub(SHOWN) {
-        0 => shown.join(separator),
-        more => format!("{} and {more} more", shown.join(separator)),
-    }
+    hardpoint::draft::some_of(items, separator, SHOWN)
 }
 
 #[cfg(test)]

@@ -152,9 +152,5 @@ impl MarginFact {
 
 /// The names on one line; of many the first, and how many more there are.
 fn few(joints: &[String]) -> String {
-    const SHOWN: usize = 4;
-    match joints.len().saturating_sub(SHOWN) {
-        0 => joints.join(", "),
-        more => format!("{} and {more} more", joints[..SHOWN].join(", ")),
-    }
+    hardpoint::draft::some_of(joints, ", ", 4)
 }

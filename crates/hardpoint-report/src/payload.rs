@@ -13,7 +13,7 @@ use hardpoint::model::{
 };
 use hardpoint::sensitivity::BodySensitivity;
 use hardpoint::space::Vec3;
-use hardpoint::study::{Difference, compare_with_difference};
+use hardpoint::study::{Comparison, Difference};
 use hardpoint::topology::Role;
 use hardpoint::{Analysis, Solution};
 use hardpoint_file::{ModelFile, Units};
@@ -455,11 +455,11 @@ impl Compose<'_> {
         let measured = &self.solution.measured;
         let columns = measured.outputs.len();
         let bodies = self.model.bodies.len();
-        let agreement = difference.map(|d| Agreement::new(self, d));
+        let comparison = difference.map(|d| Comparison::of(self.model, self.solution, d));
         let mut list = Vec::new();
         for (m, output) in measured.outputs.iter().enumerate() {
-            let overlay = difference.zip(agreement.as_ref()).map(|(d, agreement)| {
-                (d, agreement.of_output(m), move |k: usize, order: usize| d.outputs[k * columns + m][order])
+            let overlay = difference.zip(comparison.as_ref()).map(|(d, comparison)| {
+                (d, comparison.of_output(m), move |k: usize, order: usize| d.outputs[k * columns + m][order])
             });
             let exact = |k: usize, order: usize| measured.d(k, VariableId(b), m)[order];
             list.push(self.sensitivity(
@@ -475,9 +475,9 @@ impl Compose<'_> {
                 break;
             }
             let of = |s: &BodySensitivity, order: usize| ORIGIN[order](s).to_array()[axis];
-            let overlay = difference.zip(agreement.as_ref()).filter(|_| self.detail.body_differences);
-            let overlay = overlay.map(|(d, agreement)| {
-                (d, agreement.of_body(body), move |k: usize, order: usize| {
+            let overlay = difference.zip(comparison.as_ref()).filter(|_| self.detail.body_differences);
+            let overlay = overlay.map(|(d, comparison)| {
+                (d, comparison.of_origin(BodyId(body)), move |k: usize, order: usize| {
                     of(&d.bodies[k * bodies + body], order)
                 })
             });
@@ -510,38 +510,6 @@ impl Compose<'_> {
             FiniteDifference { value, rate, accel, step, step_unit: symbol(self.units, by).into(), worst }
         });
         Sensitivity { quantity, value, rate, accel, fd }
-    }
-}
-
-/// How well a difference agrees with the exact sensitivities, in the order in which the core compares:
-/// six kinds of motion of every body, then three orders of every output.
-struct Agreement {
-    errors: Vec<f64>,
-    bodies: usize,
-    /// Per output, where its errors begin and how many there are.
-    outputs: Vec<(usize, usize)>,
-}
-
-impl Agreement {
-    fn new(compose: &Compose<'_>, difference: &Difference) -> Self {
-        let list = compare_with_difference(compose.analysis, compose.solution, difference);
-        let bodies = compose.model.bodies.len() - 1;
-        let mut next = 6 * bodies;
-        let outputs = compose.solution.measured.outputs.iter().map(|o| {
-            next += o.known.orders;
-            (next - o.known.orders, o.known.orders)
-        });
-        Self { outputs: outputs.collect(), errors: list.into_iter().map(|e| e.error).collect(), bodies }
-    }
-
-    /// Of a body's position, velocity and acceleration.
-    fn of_body(&self, body: usize) -> [f64; 3] {
-        [0, 2, 4].map(|kind| self.errors[kind * self.bodies + body - 1])
-    }
-
-    fn of_output(&self, m: usize) -> [f64; 3] {
-        let (first, orders) = self.outputs[m];
-        [0, 1, 2].map(|order| if order < orders { self.errors[first + order] } else { 0.0 })
     }
 }
 

@@ -1,7 +1,7 @@
 //! `verify.json`: exact sensitivities against re-solved designs.
 
 use hardpoint::Analysis;
-use hardpoint::study::{CheckOutcome, Scheme, StepError, Verification, natural_step};
+use hardpoint::study::{CheckOutcome, Scheme, StepError, Verification};
 use hardpoint_file::{ModelFile, Units};
 use serde::Serialize;
 
@@ -114,7 +114,7 @@ impl Verdict {
             verification.scheme == Scheme::Central && analysis.topology().redundant().next().is_some();
         let check = |c: &hardpoint::study::Check| {
             let variable = &model.variables[c.variable.0];
-            let natural = natural_step(model, c.variable);
+            let natural = model.natural_step(c.variable);
             let step = |s: &StepError| StepFact {
                 part: s.step / natural,
                 step: units.from_si(variable.quantity, s.step),

@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 
 use hardpoint::model::VariableId;
 use hardpoint::sensitivity::BodySensitivity;
-use hardpoint::study::{Scheme, finite_differences, natural_step};
+use hardpoint::study::{Scheme, finite_differences};
 use hardpoint::{Analysis, Solution};
 use hardpoint_file::ModelFile;
 use hardpoint_report::columns::Columns;
@@ -188,7 +188,7 @@ fn page_holds_all_quantities_and_their_comparison() {
     let file = file();
     let (analysis, solution, summary) = solved(&file);
     let steps: Vec<(VariableId, f64)> =
-        [0, 1].map(|b| (VariableId(b), 1e-4 * natural_step(&file.model, VariableId(b)))).to_vec();
+        [0, 1].map(|b| (VariableId(b), 1e-4 * file.model.natural_step(VariableId(b)))).to_vec();
     let mut differences: Vec<_> = finite_differences(&analysis, &solution, Scheme::Central, &steps)
         .into_iter()
         .map(Result::ok)

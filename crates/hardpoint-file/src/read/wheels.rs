@@ -201,32 +201,28 @@ impl Reader<'_> {
         let vehicle = &raw.draft.vehicle;
         // A wheel that names no driver takes the only one.
         let moves = has("bump") || raw.draft.drivers.len() == 1;
-        let stands = moves && vehicle.wheelbase.is_some() && vehicle.centre_of_gravity.is_some();
-        let possible = |m: &WheelMeasure| match m.needs() {
-            WheelNeed::Nothing => true,
-            WheelNeed::Kingpin => has("kingpin"),
-            WheelNeed::Bump => moves,
-            WheelNeed::Braking(at) => stands && end == Some(at.name()) && vehicle.front_brake_share.is_some(),
-            WheelNeed::Driving(at) => stands && end == Some(at.name()) && vehicle.front_drive_share.is_some(),
+        let has_kingpin = |need: WheelNeed| need != WheelNeed::Kingpin || has("kingpin");
+        let has_driver = |need: WheelNeed| !need.goes_by_driver() || moves;
+        let is_at = |need: WheelNeed| need.end().is_none_or(|at| end == Some(at.name()));
+        let possible = |m: &WheelMeasure| {
+            let need = m.needs();
+            has_kingpin(need) && has_driver(need) && is_at(need) && vehicle.lacks(need).next().is_none()
         };
         let drivers = raw.draft.drivers.len();
         let no_driver = match drivers {
             0 => "there is no driver that could be its `bump`".to_owned(),
             n => format!("`bump` does not say which of the {n} drivers moves the wheel up and down"),
         };
-        let of_vehicle = |share: bool| match () {
-            _ if vehicle.wheelbase.is_none() => Some("`[vehicle]` has no `wheelbase`"),
-            _ if vehicle.centre_of_gravity.is_none() => Some("`[vehicle]` has no `centre_of_gravity`"),
-            _ => (!share).then_some("`[vehicle]` does not say which share of the force this end takes"),
-        };
         // Whoever says nothing of the vehicle or of its ends does not ask what they do to the pitching.
-        let (brakes, drives) = (vehicle.front_brake_share.is_some(), vehicle.front_drive_share.is_some());
         let lacking = |m: &WheelMeasure| match m.needs() {
-            WheelNeed::Kingpin => (!has("kingpin")).then_some("the wheel has no `kingpin`"),
-            need if need.goes_by_driver() && !moves => Some(no_driver.as_str()),
-            WheelNeed::Braking(at) if end == Some(at.name()) => of_vehicle(brakes),
-            WheelNeed::Driving(at) if end == Some(at.name()) => of_vehicle(drives),
-            _ => None,
+            need if !has_kingpin(need) => Some("the wheel has no `kingpin`"),
+            need if !has_driver(need) => Some(no_driver.as_str()),
+            need if !is_at(need) => None,
+            need => vehicle.lacks(need).next().map(|key| match key {
+                "wheelbase" => "`[vehicle]` has no `wheelbase`",
+                "centre_of_gravity" => "`[vehicle]` has no `centre_of_gravity`",
+                _ => "`[vehicle]` does not say which share of the force this end takes",
+            }),
         };
         self.left_out(fields, WheelMeasure::ALL, WheelMeasure::name, lacking);
         let possible: Vec<_> = WheelMeasure::ALL.iter().copied().filter(possible).collect();

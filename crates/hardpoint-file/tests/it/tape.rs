@@ -175,8 +175,7 @@ fn designs_by_programs_are_those_of_the_kernel() {
         // More groups of lanes than one; in some all lanes have one design, in others none are equal.
         let mut designs: Vec<Vec<f64>> = vec![vec![0.0; model.variables.len()]; 8];
         for k in 0..20 {
-            let step =
-                |b: usize| 1e-3 * hardpoint::study::natural_step(&model, hardpoint::model::VariableId(b));
+            let step = |b: usize| 1e-3 * model.natural_step(hardpoint::model::VariableId(b));
             let sign = |b: usize| if (k * 7 + b * 3) % 5 < 2 { -1.0 } else { 1.0 };
             designs.push((0..model.variables.len()).map(|b| sign(b) * step(b) * k as f64 / 20.0).collect());
         }

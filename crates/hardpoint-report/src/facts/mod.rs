@@ -22,7 +22,7 @@ use hardpoint::model::{
     BodyId, Coupler, Direction, Driver, GROUND, HardpointId, Joint, JointId, Model, OutputSource, VariableId,
 };
 use hardpoint::sensitivity::{self, Condition, JointDefect, admissibility_at_design, conditions_at_design};
-use hardpoint::topology::{Closure, CutReason, Formulation, Role, Topology};
+use hardpoint::topology::{Block, Closure, CutReason, Formulation, Role, RowId, Topology};
 use hardpoint_file::{ModelFile, Units};
 use serde::Serialize;
 
@@ -461,58 +461,53 @@ fn driven_text(model: &Model, joint: &Joint, points: &Points<'_>) -> String {
     });
     let relative =
         if joint.bodies[0] == GROUND { String::new() } else { format!(" relative to `{}`", body(0)) };
-    if std::ptr::eq(joint.kind, &joint::TRAVEL) {
-        format!("{} along {axis}{relative}", place(1))
-    } else if std::ptr::eq(joint.kind, &joint::HEADING) {
-        format!("orientation of `{}` about {axis}{relative}", body(1))
-    } else {
-        format!("distance from {} to {}", place(0), place(1))
+    match joint.kind.places {
+        0 => format!("orientation of `{}` about {axis}{relative}", body(1)),
+        1 => format!("{} along {axis}{relative}", place(1)),
+        _ => format!("distance from {} to {}", place(0), place(1)),
     }
 }
 
 fn blocks(model: &Model, topology: &Topology) -> Vec<BlockFact> {
-    let fact = |(k, block): (usize, &hardpoint::topology::Block)| {
-        let links = block.unknowns.iter().map(|&c| topology.coordinates[c].link);
+    let fact = |(k, block): (usize, &Block)| {
+        let links = block.unknowns.iter().map(|&c| &topology[topology[c].link]);
         let mut joints: Vec<String> = links
-            .map(|l| match topology.links[l].joint {
+            .map(|link| match link.joint {
                 Some(j) => joint_name(model, j),
-                None => model.bodies[topology.links[l].child.0].name.clone(),
+                None => model.bodies[link.child.0].name.clone(),
             })
             .collect();
         joints.dedup();
-        let is_further_term = |c: &Closure| topology.rows[c.first_row].is_term;
-        let closures = block.closures.iter().map(|&c| &topology.closures[c]);
+        let is_further_term = |c: &Closure| topology[c.first_row].is_term;
+        let closures = block.closures.iter().map(|&c| &topology[c]);
         let closes = closures.filter(|c| !c.rows.is_empty() && !is_further_term(c));
         let closes = closes.map(|c| match (c.driver, c.coupler) {
             (Some(d), _) => model.drivers[d.0].name.clone(),
             (None, Some(k)) => model.couplers[k].name.clone(),
             (None, None) => joint_name(model, c.joint),
         });
-        let rows = |c: &usize| {
-            let closure = &topology.closures[*c];
-            topology.rows[closure.first_row..closure.first_row + closure.rows.len()].iter()
-        };
+        let rows = block.closures.iter().flat_map(|&c| topology[c].row_ids());
         BlockFact {
             number: k + 1,
             unknowns: block.unknowns.len(),
             joints,
             closes: closes.collect(),
-            places: topology.links[block.links.clone()]
-                .iter()
-                .map(|l| model.bodies[l.child.0].name.clone())
-                .collect(),
-            redundant: block.closures.iter().flat_map(rows).filter(|r| !r.selected && !r.is_term).count(),
+            places: block.link_ids().map(|k| model.bodies[topology[k].child.0].name.clone()).collect(),
+            redundant: rows.filter(|&r| topology[r].is_redundant()).count(),
         }
     };
     topology.blocks.iter().enumerate().map(fact).collect()
 }
 
 fn redundant(model: &Model, topology: &Topology) -> Vec<RedundantFact> {
-    let fact = |(closure, row): (&Closure, Row)| RedundantFact {
-        joint: joint_name(model, closure.joint),
-        driver: closure.driver.map(|d| model.drivers[d.0].name.clone()),
-        coupler: closure.coupler.map(|c| model.couplers[c].name.clone()),
-        constraint: row.describe(),
+    let fact = |r: RowId| {
+        let closure = topology.closure_of(r);
+        RedundantFact {
+            joint: joint_name(model, closure.joint),
+            driver: closure.driver.map(|d| model.drivers[d.0].name.clone()),
+            coupler: closure.coupler.map(|c| model.couplers[c].name.clone()),
+            constraint: topology.constraint(r).describe(),
+        }
     };
     topology.redundant().map(fact).collect()
 }

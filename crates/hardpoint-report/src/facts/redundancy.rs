@@ -88,14 +88,14 @@ pub(super) fn redundancy(model: &Model, topology: &Topology) -> Vec<RedundancyFa
 fn parts(model: &Model, plan: &Topology, redundancy: &Redundancy) -> Vec<Part> {
     let mut parts = Vec::new();
     for &row in std::iter::once(&redundancy.row).chain(&redundancy.implied_by) {
-        for (r, _) in plan.parts_of_row(row) {
-            let closure = &plan.closures[plan.rows[r].closure];
+        for term in plan.parts_of_row(row) {
+            let closure = plan.closure_of(term.row);
             parts.push(match (closure.driver, closure.coupler) {
                 (Some(d), _) => Part::Driver(d.0),
                 (None, Some(c)) => Part::Coupler(c),
                 (None, None) => Part::Joint(closure.joint.0),
             });
-            let around = closure.links.iter().filter_map(|(link, _)| plan.links[*link].joint);
+            let around = closure.links.iter().filter_map(|around| plan[around.link].joint);
             parts.extend(around.map(|j| Part::Joint(j.0)));
         }
     }

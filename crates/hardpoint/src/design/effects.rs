@@ -13,7 +13,6 @@
 //! | `u` of a change | `U_theta` (3.3) | the same as rates of the 3-1-3 Euler angles, rad per unit |
 //! | [`Effects::field_along`] | `dD/dtau` (5.5) | `d/db` of all of it, by duals `b + eps` |
 
-use crate::constraint::Row;
 use crate::design::{Field, Fixed, Geometry, Kept, MarkerField};
 use crate::law::Law;
 use crate::model::{
@@ -429,12 +428,8 @@ impl<'e, T: Real> Design<'e, T> {
             given
         });
         // Markers at one place keep no distance, and it would have no derivative.
-        let keeps = || {
-            joint.kind.rows.contains(&Row::Distance)
-                || joint.kind.coordinates.iter().any(|c| c.row == Row::Distance)
-        };
-        let distance =
-            given.unwrap_or_else(|| if keeps() && d.dot(d).decisive() > 0.0 { d.norm() } else { zero });
+        let keeps = joint.kind.is_rod() && d.dot(d).decisive() > 0.0;
+        let distance = given.unwrap_or_else(|| if keeps { d.norm() } else { zero });
         let contact = joint.curve.as_ref().map_or(zero, |curve| {
             // Which side of the curve the point is on is kept; a given distance has no sign.
             let drawn = curve.distance(m_i.rot.transpose_mul(d));

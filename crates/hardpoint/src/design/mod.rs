@@ -38,6 +38,22 @@ impl Model {
         Effects::of(self).fields(&self.whole(design))
     }
 
+    /// The natural step of a variable: the change that moves the farthest marker by the mechanism's size, or turns it by 1 rad. Where
+    /// the variable moves no marker, the size itself.
+    ///
+    /// Steps and tolerances are given as parts of it, so that they mean the same for every variable and model.
+    pub fn natural_step(&self, variable: VariableId) -> f64 {
+        let size = self.size();
+        let geometry = self.geometry(&[]);
+        let speed = |m: &MarkerField| {
+            let s = geometry.markers[m.joint.0][m.end].r;
+            // max(abs(R U), abs(V) / size),  V = e_v + e_w x s
+            m.twist.w.norm().max(m.twist.at(s).norm() / size)
+        };
+        let fastest = self.field(variable).markers.iter().map(speed).fold(0.0, f64::max);
+        if fastest > 0.0 { 1.0 / fastest } else { size }
+    }
+
     /// The variables whose change changes nothing that the motion or its results depend on.
     pub fn without_effect(&self) -> Vec<VariableId> {
         let effects = Effects::of(self);

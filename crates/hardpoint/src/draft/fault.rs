@@ -100,6 +100,15 @@ impl fmt::Display for Section {
     }
 }
 
+/// The items with separators between; of a long list so many, and how many more there are.
+pub fn some_of(items: &[impl AsRef<str>], separator: &str, most: usize) -> String {
+    let shown: Vec<&str> = items.iter().take(most).map(AsRef::as_ref).collect();
+    match items.len().saturating_sub(most) {
+        0 => shown.join(separator),
+        more => format!("{} and {more} more", shown.join(separator)),
+    }
+}
+
 /// The candidate that the user most likely meant, if any is close: at most a third of its letters differ.
 pub fn did_you_mean<'a>(name: &str, candidates: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
     let lower = name.to_lowercase();

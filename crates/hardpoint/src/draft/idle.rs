@@ -21,11 +21,7 @@ impl Model {
             }
         }
         let alone = (1..self.bodies.len()).map(|b| vec![BodyId(b)]);
-        let slides = self.joints.iter().filter(|j| {
-            let held = std::ptr::eq(j.kind, &crate::joint::TRANSLATIONAL)
-                || std::ptr::eq(j.kind, &crate::joint::FIXED);
-            held && !j.bodies.contains(&GROUND)
-        });
+        let slides = self.joints.iter().filter(|j| j.kind.turns_as_one() && !j.bodies.contains(&GROUND));
         let groups: Vec<Vec<BodyId>> = alone.chain(slides.map(|j| j.bodies.to_vec())).collect();
         let mut prescribed = vec![Vec::new(); self.joints.len()];
         for d in &self.drivers {
@@ -41,7 +37,7 @@ impl Model {
             joints.sort_unstable();
             joints.dedup();
             joints.retain(|j| !self.joints[j.0].bodies.iter().all(|b| bodies.contains(b)));
-            let is_ball = |j: &JointId| std::ptr::eq(self.joints[j.0].kind, &crate::joint::SPHERICAL);
+            let is_ball = |j: &JointId| self.joints[j.0].kind.is_ball();
             let Some(ball) = joints.iter().copied().find(is_ball) else { continue };
             let Some(axis) = self.spin(&bodies, &joints, ball, &prescribed, size) else { continue };
             let z = axis.any_square();

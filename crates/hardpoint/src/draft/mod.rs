@@ -8,7 +8,7 @@ mod idle;
 mod measure;
 
 pub use check::{Nominal, NotConstant};
-pub use fault::{Fault, Locus, Section, did_you_mean};
+pub use fault::{Fault, Locus, Section, did_you_mean, some_of};
 pub use measure::{FieldDraft, FieldKind, MeasureField, MeasureKindDraft, MeasureType};
 
 use std::collections::BTreeMap;

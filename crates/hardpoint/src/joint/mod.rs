@@ -195,6 +195,31 @@ impl JointType {
         self.coordinates.iter().enumerate().find(|(_, c)| c.name == name)
     }
 
+    /// Whether it is a ball and nothing else.
+    pub fn is_ball(&self) -> bool {
+        self.freedoms == Some(&[Freedom::Ball]) && self.tree_rows.is_empty()
+    }
+
+    /// Whether its two bodies turn as one, and slide along one line at most.
+    pub fn turns_as_one(&self) -> bool {
+        matches!(self.freedoms, Some([] | [Freedom::Slide(_)]))
+    }
+
+    /// Whether the distance of its two points is kept, or may be driven.
+    pub fn is_rod(&self) -> bool {
+        self.coordinates.iter().any(|c| c.row == Row::Distance)
+    }
+
+    /// Whether its point j follows a curve on body i.
+    pub fn follows_curve(&self) -> bool {
+        self.rows.contains(&Row::Contact)
+    }
+
+    /// Whether a `lead` couples its displacement to its angle.
+    pub fn has_lead(&self) -> bool {
+        std::ptr::eq(self, &SCREW)
+    }
+
     /// How many coordinates the joint has in the tree; `None` if it is always cut.
     pub fn freedom_count(&self) -> Option<usize> {
         self.freedoms.map(|f| f.iter().map(|f| f.coordinates()).sum())
@@ -212,6 +237,18 @@ mod tests {
                 assert_eq!(n + t.rows.len() - t.tree_rows.len(), 6, "{}", t.name);
             }
         }
+    }
+
+    #[test]
+    fn what_is_asked_of_joints_is_true_of_those_that_it_is_meant_for() {
+        let those = |is: fn(&JointType) -> bool| -> Vec<&str> {
+            ALL.iter().copied().filter(|t| is(t)).map(|t| t.name).collect()
+        };
+        assert_eq!(those(JointType::is_ball), ["spherical"]);
+        assert_eq!(those(JointType::turns_as_one), ["fixed", "translational"]);
+        assert_eq!(those(JointType::is_rod), ["distance", "revolute_spherical", "leg"]);
+        assert_eq!(those(JointType::follows_curve), ["point_on_curve"]);
+        assert_eq!(those(JointType::has_lead), ["screw"]);
     }
 
     #[test]

@@ -32,7 +32,7 @@ use crate::motion::{Motion, Passed};
 use crate::number::{Dual, Jet, Rates, Real};
 use crate::sensitivity::{Admissibility, Sensitivities};
 use crate::space::{Pose, Vec3};
-use crate::topology::Topology;
+use crate::topology::{CoordinateId, Topology};
 
 /// A column of [`Measured`].
 #[derive(Clone, Debug, PartialEq)]
@@ -424,7 +424,7 @@ enum Turns {
     /// The driver's law.
     Driver(DriverId),
     /// The tree coordinate, which is the angle itself.
-    Coordinate(usize),
+    Coordinate(CoordinateId),
     /// The path alone, for a cut joint or an angle between two directions about an axis: where it begins, it is this, or as it is
     /// measured, without a whole turn.
     Path(Option<f64>),
@@ -570,7 +570,7 @@ fn unwrap_angles(
         let near = match turns_of {
             // About f(t), q of the tree, or what its rates make of the value before
             Turns::Driver(d) => laws[d.0].at(motion.times[k]).value(),
-            Turns::Coordinate(q) => motion.coordinates.row(k).get(*q),
+            Turns::Coordinate(q) => motion.coordinates.row(k).get(q.0),
             Turns::Path(begins) => {
                 let counted = |time: f64, [value, rate, _]: [f64; 3]| Counted { value, rate, time };
                 let last = match (k, before) {

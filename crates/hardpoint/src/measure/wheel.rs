@@ -10,7 +10,7 @@
 //! | `off_kingpin(P)` | d(P) | |
 //! | `.d` of a number of [`Carried`], `carrier` | X', w and v | per unit of the driver q, (11) of `docs/theory.md` with `L_u = 1` |
 
-use crate::model::{Vehicle, VehicleEnd, WheelMeasure, WheelNeed};
+use crate::model::{Vehicle, VehicleEnd, WheelMeasure};
 use crate::number::{Dual, Real};
 use crate::space::{Twist, Vec3};
 
@@ -215,13 +215,10 @@ fn seen<T: Real>(component: T, turn: Vec3<T>) -> T {
 /// What a wheel's rise per way rearward counts for: its end's share of the force, times wheelbase by height of the centre of
 /// gravity.
 fn support<T: Real>(what: WheelMeasure, vehicle: &Vehicle) -> T {
-    let (front, end) = match what.needs() {
-        WheelNeed::Braking(end) => (vehicle.front_brake_share, end),
-        WheelNeed::Driving(end) => (vehicle.front_drive_share, end),
-        _ => (None, VehicleEnd::Front),
-    };
+    let need = what.needs();
+    let front = vehicle.front_share(need).and_then(|(_, share)| share);
     // p or d of this end; p l / h, d l / h
-    let share = front.map(|front| if end == VehicleEnd::Front { front } else { 1.0 - front });
+    let share = front.map(|front| if need.end() == Some(VehicleEnd::Front) { front } else { 1.0 - front });
     let known = share.zip(vehicle.wheelbase).zip(vehicle.centre_of_gravity);
     T::constant(known.map_or(f64::NAN, |((share, wheelbase), height)| share * wheelbase / height))
 }

@@ -47,6 +47,26 @@ pub struct Vehicle {
     pub front_drive_share: Option<f64>,
 }
 
+impl Vehicle {
+    /// The front wheels' part of the force that a measure is of, if it is of one: how model files call it, and what they say.
+    pub fn front_share(&self, need: WheelNeed) -> Option<(&'static str, Option<f64>)> {
+        match need {
+            WheelNeed::Braking(_) => Some(("front_brake_share", self.front_brake_share)),
+            WheelNeed::Driving(_) => Some(("front_drive_share", self.front_drive_share)),
+            WheelNeed::Nothing | WheelNeed::Kingpin | WheelNeed::Bump => None,
+        }
+    }
+
+    /// What a measure of a wheel needs to know of the vehicle and model files do not say, by their keys.
+    pub fn lacks(&self, need: WheelNeed) -> impl Iterator<Item = &'static str> {
+        let share = self.front_share(need);
+        let of_pitching =
+            [("wheelbase", self.wheelbase), ("centre_of_gravity", self.centre_of_gravity)].map(Some);
+        let needed = of_pitching.into_iter().filter(move |_| share.is_some()).chain([share]).flatten();
+        needed.filter(|(_, known)| known.is_none()).map(|(key, _)| key)
+    }
+}
+
 /// An end of the vehicle.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum VehicleEnd {
@@ -82,6 +102,14 @@ pub enum WheelNeed {
 }
 
 impl WheelNeed {
+    /// The end of the vehicle that the measure is of, if it is not of both.
+    pub fn end(self) -> Option<VehicleEnd> {
+        match self {
+            Self::Braking(end) | Self::Driving(end) => Some(end),
+            Self::Nothing | Self::Kingpin | Self::Bump => None,
+        }
+    }
+
     /// Whether the measure says what happens while one driver alone moves.
     pub fn goes_by_driver(self) -> bool {
         !matches!(self, Self::Nothing | Self::Kingpin)

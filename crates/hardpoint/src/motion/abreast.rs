@@ -9,7 +9,6 @@ use std::sync::Arc;
 use hardpoint_tape::{LANES, Lanes};
 
 use crate::blocks::{Block, Line, lanes_of};
-use crate::topology::Source;
 
 use super::execution::{Room, Runnable};
 use super::forecast::{NODES, ORDERS, Weights};
@@ -359,15 +358,13 @@ impl Stepper<'_> {
             channel.save(tape.channel(n, lane)[0], q, balls);
         }
         for (c, [speeds, accelerations]) in tape.unknowns() {
-            (qd[c], qdd[c]) = (speeds[lane], accelerations[lane]);
+            (qd[c.0], qdd[c.0]) = (speeds[lane], accelerations[lane]);
         }
         for (d, driver) in drivers.iter_mut().enumerate() {
             *driver = std::array::from_fn(|order| tape.driver(d, order)[lane]);
         }
-        for (c, coordinate) in self.topology.coordinates.iter().enumerate() {
-            if let Source::Driven(d) = coordinate.source {
-                [q[c], qd[c], qdd[c]] = drivers[d.0];
-            }
+        for (c, d) in self.topology.driven_coordinates() {
+            [q[c.0], qd[c.0], qdd[c.0]] = drivers[d.0];
         }
     }
 }

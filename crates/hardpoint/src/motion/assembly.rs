@@ -7,7 +7,7 @@
 
 use crate::linalg::Elimination;
 use crate::model::{BodyId, DriverId, JointId};
-use crate::topology::Topology;
+use crate::topology::{BlockId, CoordinateId, LoopLink, RowId, Term, Topology};
 
 use super::kinematics::State;
 use super::stepper::Stepper;
@@ -102,7 +102,7 @@ impl Stepper<'_> {
             return Err(Box::new(Stop { kind: StopKind::DoesNotAssemble, ..*stop }));
         }
         let told = WORTH_TELLING;
-        let gaps = self.gaps(|s, r| s.state.gap[r], told);
+        let gaps = self.gaps(|s, r| s.state.gap[r.0], told);
         if !gaps.is_empty() {
             self.assembly = Some(Assembly { gaps, moved: self.moved(told) });
         }
@@ -117,8 +117,8 @@ impl Stepper<'_> {
         self.drivers.fill([zero; 3]);
         self.state.gap_left = [0.0; 2];
         self.state.stand(&self.topology, &self.parts);
-        for r in 0..self.topology.rows.len() {
-            self.state.gap[r] = if self.topology.rows[r].is_term {
+        for (r, place) in RowId::each(&self.topology.rows) {
+            self.state.gap[r.0] = if place.is_term {
                 zero
             } else {
                 // phi_0, with q = 0 and all drivers at 0
@@ -128,10 +128,10 @@ impl Stepper<'_> {
     }
 
     /// The gaps that a value per row gives, summed up per joint, driver or coupler; small ones left out.
-    fn gaps(&self, of_row: impl Fn(&Self, usize) -> f64, least: f64) -> Vec<Gap> {
+    fn gaps(&self, of_row: impl Fn(&Self, RowId) -> f64, least: f64) -> Vec<Gap> {
         let mut gaps: Vec<(Gap, f64)> = Vec::new();
-        for (r, place) in self.topology.rows.iter().enumerate().filter(|(_, p)| !p.is_term) {
-            let closure = &self.topology.closures[place.closure];
+        for (r, place) in RowId::each(&self.topology.rows).filter(|(_, p)| !p.is_term) {
+            let closure = &self.topology[place.closure];
             let of = match (closure.driver, closure.coupler) {
                 (Some(d), _) => Closing::Driver(d),
                 (None, Some(c)) => Closing::Coupler(c),
@@ -173,11 +173,10 @@ impl Stepper<'_> {
     /// could not be closed, from where the path ended.
     ///
     /// Levenberg's and Marquardt's method on the scaled rows; it need not be fast.
-    pub fn least_gaps(&mut self, block: usize) -> Vec<Gap> {
+    pub fn least_gaps(&mut self, block: BlockId) -> Vec<Gap> {
         self.state.gap_left = [0.0; 2];
         self.restore();
-        let (unknowns, rows) =
-            (self.topology.blocks[block].unknowns.clone(), self.topology.rows_of_block(block));
+        let (unknowns, rows) = (self.topology[block].unknowns.clone(), self.topology.rows_of_block(block));
         let n = unknowns.len();
         let mut damping = 1e-3;
         let (mut residuals, mut jacobian) = self.scaled_rows(&rows, &unknowns);
@@ -197,9 +196,9 @@ impl Stepper<'_> {
             normal.solve(&mut step);
             let before = (self.state.q.clone(), self.state.balls.clone());
             for (k, &c) in unknowns.iter().enumerate() {
-                self.state.q[c] += step[k] * self.topology.coordinates[c].unit;
+                self.state.q[c.0] += step[k] * self.topology[c].unit;
             }
-            self.state.turn_balls(&self.topology, 0..self.topology.links.len());
+            self.state.turn_balls(&self.topology, self.topology.link_ids());
             let (now, jacobian_now) = self.scaled_rows(&rows, &unknowns);
             let (old, new) = (squares(&residuals), squares(&now));
             // A step that helps makes the next one more like Newton's, one that does not more like a short one downhill.
@@ -222,27 +221,23 @@ impl Stepper<'_> {
     }
 
     /// Scaled residuals of constraint rows, and their derivatives by these coordinates.
-    fn scaled_rows(&mut self, rows: &[usize], unknowns: &[usize]) -> (Vec<f64>, Vec<Vec<f64>>) {
+    fn scaled_rows(&mut self, rows: &[RowId], unknowns: &[CoordinateId]) -> (Vec<f64>, Vec<Vec<f64>>) {
         self.state.stand(&self.topology, &self.parts);
         let mut residuals = Vec::new();
         let mut jacobian = Vec::new();
         for &r in rows {
             let s = &self.state;
-            let scale = 1.0 / self.topology.rows[r].unit;
+            let scale = 1.0 / self.topology[r].unit;
             residuals.push(scale * s.residual_of(&self.topology, &self.parts, &self.drivers, r));
             let mut by_coordinate = std::collections::BTreeMap::new();
-            for (k, factor) in self.topology.parts_of_row(r) {
-                let place = &self.topology.rows[k];
-                let closure = &self.topology.closures[place.closure];
-                let wrench = closure.rows[place.index].wrench(&s.ends[place.closure]);
-                for &(link, side) in &closure.links {
-                    for step in &self.topology.links[link].steps {
-                        for c in step.first..step.first + step.freedom.coordinates() {
-                            let unit = self.topology.coordinates[c].unit;
-                            // J_ra = +- c_k l_k . x_a                                                                             (6)
-                            *by_coordinate.entry(c).or_insert(0.0) +=
-                                scale * unit * side * factor * wrench.on(s.x[0][c]);
-                        }
+            for Term { row, factor } in self.topology.parts_of_row(r) {
+                let wrench = s.wrench_of(&self.topology, row);
+                for &LoopLink { link, side } in &self.topology.closure_of(row).links {
+                    for c in self.topology[link].coordinates() {
+                        let unit = self.topology[c].unit;
+                        // J_ra = +- c_k l_k . x_a                                                                             (6)
+                        *by_coordinate.entry(c).or_insert(0.0) +=
+                            scale * unit * side * factor * wrench.on(s.x[0][c.0]);
                     }
                 }
             }

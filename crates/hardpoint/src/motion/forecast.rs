@@ -15,7 +15,7 @@ use hardpoint_tape::{LANES, Lanes};
 
 use crate::joint::Freedom;
 use crate::space::{Quat, Real, Vec3};
-use crate::topology::{Source, Topology};
+use crate::topology::{CoordinateId, Topology};
 
 use super::kinematics::State;
 
@@ -44,9 +44,9 @@ pub(super) struct Forecast {
 /// What is foreseen.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Channel {
-    Coordinate(usize),
+    Coordinate(CoordinateId),
     /// One of the four components of the quaternion of the ball that begins at a coordinate.
-    Ball(usize, usize),
+    Ball(CoordinateId, usize),
 }
 
 impl Channel {
@@ -54,7 +54,7 @@ impl Channel {
     pub fn all(topology: &Topology) -> Vec<Self> {
         let mut channels = Vec::new();
         for step in topology.links.iter().flat_map(|l| &l.steps) {
-            if matches!(topology.coordinates[step.first].source, Source::Driven(_)) {
+            if !topology[step.first].is_unknown() {
                 continue;
             }
             match step.freedom {
@@ -70,8 +70,8 @@ impl Channel {
     pub fn of<T: Real>(self, state: &State<T>) -> [T; ORDERS] {
         let [speeds, accelerations, _] = &state.motion.speeds;
         match self {
-            Self::Coordinate(c) => [state.q[c], speeds[c], accelerations[c]],
-            Self::Ball(first, k) => {
+            Self::Coordinate(c) => [state.q[c.0], speeds[c.0], accelerations[c.0]],
+            Self::Ball(CoordinateId(first), k) => {
                 let of = |x: &[T]| Vec3::new(x[first], x[first + 1], x[first + 2]);
                 // q. = (0, w) q / 2,    q.. = (0, w.) q / 2 + (0, w) q. / 2,  w and its rate about the axes of the parent's marker
                 let (q, w) = (state.balls[first], of(speeds));
@@ -86,7 +86,7 @@ impl Channel {
     #[inline(always)]
     pub fn put<T: Real>(self, x: T, state: &mut State<T>) {
         self.save(x, &mut state.q, &mut state.balls);
-        if let Self::Ball(first, 3) = self {
+        if let Self::Ball(CoordinateId(first), 3) = self {
             state.balls[first] = state.balls[first].normalised();
             state.q[first..first + 3].fill(T::zero());
         }
@@ -95,8 +95,8 @@ impl Channel {
     /// What stands in a saved position.
     pub fn saved(self, q: &[f64], balls: &[Quat<f64>]) -> f64 {
         match self {
-            Self::Coordinate(c) => q[c],
-            Self::Ball(first, k) => balls[first].component(k),
+            Self::Coordinate(c) => q[c.0],
+            Self::Ball(first, k) => balls[first.0].component(k),
         }
     }
 
@@ -104,11 +104,11 @@ impl Channel {
     #[inline(always)]
     pub fn save<T: Real>(self, x: T, q: &mut [T], balls: &mut [Quat<T>]) {
         match self {
-            Self::Coordinate(c) => q[c] = x,
-            Self::Ball(first, 0) => balls[first].w = x,
-            Self::Ball(first, 1) => balls[first].v.x = x,
-            Self::Ball(first, 2) => balls[first].v.y = x,
-            Self::Ball(first, _) => balls[first].v.z = x,
+            Self::Coordinate(c) => q[c.0] = x,
+            Self::Ball(first, 0) => balls[first.0].w = x,
+            Self::Ball(first, 1) => balls[first.0].v.x = x,
+            Self::Ball(first, 2) => balls[first.0].v.y = x,
+            Self::Ball(first, _) => balls[first.0].v.z = x,
         }
     }
 }

@@ -14,12 +14,12 @@
 //! which is the paper's `phi(Z, D, t) = 0` (5.1) at one time, D standing, and its first two time derivatives. The paper's Z, poses of
 //! bodies, are `pose`; q are the coordinates of the tree, all six of every body in the absolute formulation.
 
-use crate::constraint::{EndRates, Ends, Row};
+use crate::constraint::{EndRates, Ends};
 use crate::joint::Freedom;
 use crate::linalg::{Factors, LARGEST_DENSE, Watched};
 use crate::model::{Contact, DriverId, GROUND, Model};
 use crate::space::{Pose, Quat, Real, Twist, Wrench};
-use crate::topology::{Block, Closure, Source, Topology};
+use crate::topology::{Block, BlockId, Closure, ClosureId, Entry, LinkId, RowId, Term, Topology};
 
 use super::level::{Flow, Linear, turn_twists};
 use super::parts::Parts;
@@ -101,9 +101,9 @@ pub(crate) struct Residuals {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum PositionFailure {
     /// The Jacobian of this block is singular.
-    Singular { block: usize },
+    Singular { block: BlockId },
     /// Newton did not converge, or would have gone further than the prediction can be trusted.
-    NoConvergence { block: usize },
+    NoConvergence { block: BlockId },
 }
 
 impl<T: Real> State<T> {
@@ -140,18 +140,23 @@ impl<T: Real> State<T> {
 
     /// Places the children of these links and their unit twists (`docs/theory.md` (4)).
     #[inline(always)]
-    pub(super) fn place(&mut self, topology: &Topology, parts: &Parts<T>, links: std::ops::Range<usize>) {
+    pub(super) fn place(
+        &mut self,
+        topology: &Topology,
+        parts: &Parts<T>,
+        links: impl Iterator<Item = LinkId>,
+    ) {
         for k in links {
-            let link = &topology.links[k];
-            let marker = parts.parent_marker[k];
+            let link = &topology[k];
+            let marker = parts.parent_marker[k.0];
             let on_ground = link.parent == GROUND;
             let mut frame = if on_ground { marker } else { self.frame[link.parent.0].compose(marker) };
             for step in &link.steps {
                 // x = [h; c x h] of a turn about h through c, [0; h] of a slide along h, times -1 where the link runs from j to i
-                for c in 0..step.freedom.coordinates() {
-                    self.x[0][step.first + c] = step.twist(c, &frame.rot, frame.r);
+                for (n, c) in step.coordinates().enumerate() {
+                    self.x[0][c.0] = step.twist(n, &frame.rot, frame.r);
                 }
-                let q = self.q[step.first] * T::constant(step.sign);
+                let q = self.q[step.first.0] * T::constant(step.sign);
                 // J(q): a turn about its own axis, R <- R Rot(axis, q); a slide, r <- r + q h; a ball, R <- R A(quaternion)
                 match step.freedom {
                     Freedom::Turn(axis) => {
@@ -159,7 +164,7 @@ impl<T: Real> State<T> {
                         frame.rot = frame.rot.turned(axis, sin, cos);
                     }
                     Freedom::Slide(axis) => frame.r = frame.rot.cols[axis].times_plus(q, frame.r),
-                    Freedom::Ball => frame.rot = frame.rot * self.balls[step.first].rotation(),
+                    Freedom::Ball => frame.rot = frame.rot * self.balls[step.first.0].rotation(),
                 }
             }
             self.frame[link.child.0] = frame;
@@ -168,46 +173,46 @@ impl<T: Real> State<T> {
 
     /// Poses of the bodies, from the markers that place them.
     #[inline(always)]
-    fn place_bodies(&mut self, topology: &Topology, parts: &Parts<T>, links: std::ops::Range<usize>) {
+    fn place_bodies(&mut self, topology: &Topology, parts: &Parts<T>, links: impl Iterator<Item = LinkId>) {
         for k in links {
-            let child = topology.links[k].child.0;
+            let child = topology[k].child.0;
             // X_c = (X_p M_p J(q)) M_c^-1                                                                         (4)
-            self.pose[child] = self.frame[child].compose(parts.child_from_marker[k]);
+            self.pose[child] = self.frame[child].compose(parts.child_from_marker[k.0]);
         }
     }
 
     /// Markers of a closure in the world.
     #[inline(always)]
-    pub(super) fn place_ends(&mut self, topology: &Topology, parts: &Parts<T>, closure: usize) {
-        let [i, j] = topology.closures[closure].bodies;
-        let (m_i, m_j) = (parts.ends[0][closure], parts.ends[1][closure]);
-        let ends = &mut self.ends[closure];
+    pub(super) fn place_ends(&mut self, topology: &Topology, parts: &Parts<T>, c: ClosureId) {
+        let [i, j] = topology[c].bodies;
+        let (m_i, m_j) = (parts.ends[0][c.0], parts.ends[1][c.0]);
+        let ends = &mut self.ends[c.0];
         // P_i, P_j and the axes a_i, b_j of the rows: X_i M_i and X_j M_j, seen from the markers that place the bodies
         (ends.i, ends.j) = (self.frame[i.0].compose(m_i), self.frame[j.0].compose(m_j));
-        self.turn_base(topology, parts, closure);
-        if let Some(k) = topology.closures[closure].contact {
-            self.touch(parts, closure, k);
+        self.turn_base(topology, parts, c);
+        if let Some(k) = topology[c].contact {
+            self.touch(parts, c, k);
         }
     }
 
     /// The points of a closure's markers alone.
     #[inline(always)]
-    fn place_end_points(&mut self, topology: &Topology, parts: &Parts<T>, closure: usize) {
-        let [i, j] = topology.closures[closure].bodies;
-        let (m_i, m_j) = (parts.ends[0][closure], parts.ends[1][closure]);
-        let ends = &mut self.ends[closure];
+    fn place_end_points(&mut self, topology: &Topology, parts: &Parts<T>, c: ClosureId) {
+        let [i, j] = topology[c].bodies;
+        let (m_i, m_j) = (parts.ends[0][c.0], parts.ends[1][c.0]);
+        let ends = &mut self.ends[c.0];
         (ends.i.r, ends.j.r) = (self.frame[i.0].point(m_i.r), self.frame[j.0].point(m_j.r));
-        self.turn_base(topology, parts, closure);
+        self.turn_base(topology, parts, c);
     }
 
     /// The axes of the body on which a closure's loop stands.
     #[inline(always)]
-    fn turn_base(&mut self, topology: &Topology, parts: &Parts<T>, closure: usize) {
-        let Closure { base, base_link, .. } = topology.closures[closure];
+    fn turn_base(&mut self, topology: &Topology, parts: &Parts<T>, c: ClosureId) {
+        let Closure { base, base_link, .. } = topology[c];
         if base != GROUND {
-            self.ends[closure].axes = match base_link {
+            self.ends[c.0].axes = match base_link {
                 // Its pose is that of the step before until the block is solved: wrenches along those axes would not go with their rates.
-                Some(k) => self.frame[base.0].rot * parts.child_from_marker[k].rot,
+                Some(k) => self.frame[base.0].rot * parts.child_from_marker[k.0].rot,
                 None => self.pose[base.0].rot,
             };
         }
@@ -215,19 +220,19 @@ impl<T: Real> State<T> {
 
     /// Lets marker i of a closure walk along its curve to where it is next to marker j.
     #[inline(never)]
-    fn touch(&mut self, parts: &Parts<T>, closure: usize, k: usize) {
-        let Ends { i, j, .. } = self.ends[closure];
+    fn touch(&mut self, parts: &Parts<T>, c: ClosureId, k: usize) {
+        let Ends { i, j, .. } = self.ends[c.0];
         // p = P_j as seen from marker i; the foot u of the perpendicular on the curve, (p - C(u)) . C'(u) = 0; marker i goes there,
         // x along C'.
         let p = i.inverse().point(j.r);
         self.contacts[k] = Contact::nearest(&parts.curves[k], p, self.contacts[k].u);
-        self.ends[closure].i = i.compose(self.contacts[k].frame());
+        self.ends[c.0].i = i.compose(self.contacts[k].frame());
     }
 
     /// Rates of a marker i that walks along its curve: those of its body and its own turning.
     #[inline(never)]
-    pub fn walk(&self, closure: usize, k: usize, rates: &EndRates<T>) -> EndRates<T> {
-        let Ends { i: foot, j, .. } = &self.ends[closure];
+    pub fn walk(&self, c: ClosureId, k: usize, rates: &EndRates<T>) -> EndRates<T> {
+        let Ends { i: foot, j, .. } = &self.ends[c.0];
         let (v, a, contact) = (rates.v_i, rates.a_i, &self.contacts[k]);
         // The marker that carries the curve, and the follower's motion seen from it.
         let i = foot.compose(contact.frame().inverse());
@@ -250,15 +255,15 @@ impl<T: Real> State<T> {
 
     /// By how much constraint row r fails.
     #[inline(always)]
-    pub(super) fn residual(&self, topology: &Topology, parts: &Parts<T>, drivers: &[[T; 3]], r: usize) -> T {
-        let place = &topology.rows[r];
-        let closure = &topology.closures[place.closure];
-        let (row, ends) = (closure.rows[place.index], &self.ends[place.closure]);
-        let gap = self.gap[r] * T::constant(self.gap_left[0]);
+    pub(super) fn residual(&self, topology: &Topology, parts: &Parts<T>, drivers: &[[T; 3]], r: RowId) -> T {
+        let place = &topology[r];
+        let closure = &topology[place.closure];
+        let (row, ends) = (closure.rows[place.index], &self.ends[place.closure.0]);
+        let gap = self.gap[r.0] * T::constant(self.gap_left[0]);
         if place.terms.is_empty() {
             let driven = closure.driver.map_or(T::zero(), |d| drivers[d.0][0]);
             // phi = what the row measures - what it keeps - f - (1 - s) phi_0
-            row.residual(ends, parts.kept[r] + driven) - gap
+            row.residual(ends, parts.kept[r.0] + driven) - gap
         } else {
             self.coupled(topology, parts, r) - gap
         }
@@ -267,64 +272,74 @@ impl<T: Real> State<T> {
     /// Places everything where the coordinates say, the drivers' own values included.
     #[inline(never)]
     pub fn stand(&mut self, topology: &Topology, parts: &Parts<T>) {
-        self.place(topology, parts, 0..topology.links.len());
-        self.place_bodies(topology, parts, 0..topology.links.len());
-        for c in 0..topology.closures.len() {
+        self.place(topology, parts, topology.link_ids());
+        self.place_bodies(topology, parts, topology.link_ids());
+        for c in topology.closure_ids() {
             self.place_ends(topology, parts, c);
         }
     }
 
     /// [`State::residual`] for callers that are not in a hurry.
     #[inline(never)]
-    pub fn residual_of(&self, topology: &Topology, parts: &Parts<T>, drivers: &[[T; 3]], r: usize) -> T {
+    pub fn residual_of(&self, topology: &Topology, parts: &Parts<T>, drivers: &[[T; 3]], r: RowId) -> T {
         self.residual(topology, parts, drivers, r)
     }
 
     /// The sum of a coupler's terms. Kept out of the way of the other rows, which are many.
     #[inline(never)]
-    fn coupled(&self, topology: &Topology, parts: &Parts<T>, r: usize) -> T {
+    fn coupled(&self, topology: &Topology, parts: &Parts<T>, r: RowId) -> T {
         let mut sum = T::zero();
-        for (k, factor) in topology.parts_of_row(r) {
-            let place = &topology.rows[k];
-            let row = topology.closures[place.closure].rows[place.index];
+        for Term { row, factor } in topology.parts_of_row(r) {
             // phi = sum c_k chi_k, each chi_k counted from its design value
-            let value = row.value(&self.ends[place.closure], self.near[k]) - parts.kept[k];
+            let value = self.value(topology, row) - parts.kept[row.0];
             sum += value * T::constant(factor);
         }
         sum
     }
 
+    /// What the constraint of a row measures.
+    #[inline(always)]
+    fn value(&self, topology: &Topology, r: RowId) -> T {
+        topology.constraint(r).value(&self.ends[topology[r].closure.0], self.near[r.0])
+    }
+
     /// Fills row k of the block's Jacobian with a coupler, row r, the sum of its terms.
     #[inline(never)]
-    fn enter_coupler(&mut self, topology: &Topology, b: usize, k: usize, r: usize) {
-        let place = &topology.rows[r];
-        for &(term, _) in &place.terms {
-            let at = &topology.rows[term];
-            self.l[0][term] = self.wrench_of(topology.closures[at.closure].rows[at.index], at.closure);
+    fn enter_coupler(&mut self, topology: &Topology, b: BlockId, k: usize, r: RowId) {
+        let place = &topology[r];
+        for term in &place.terms {
+            self.l[0][term.row.0] = self.wrench_of(topology, term.row);
         }
         let (l, x, zero) = (&self.l[0], &self.x[0], T::zero());
         let entries = place.columns.iter().map(|c| {
             let mut sum = zero;
             // J_ra = sum over the terms of +- c_k l_k . x_a                                                       (6)
-            for &(term, coordinate, factor) in &c.parts {
-                sum += l[term].on(x[coordinate]) * T::constant(factor);
+            for &Term { row, factor } in &c.parts {
+                sum += l[row.0].on(x[c.coordinate.0]) * T::constant(factor);
             }
             (c.column, sum)
         });
-        self.factors[b].set_row(k, entries, zero);
+        self.factors[b.0].set_row(k, entries, zero);
     }
 
+    /// The wrench of a row where its markers stand.
     #[inline(never)]
-    pub(super) fn wrench_of(&self, row: Row, closure: usize) -> Wrench<T> {
-        row.wrench(&self.ends[closure])
+    pub(super) fn wrench_of(&self, topology: &Topology, r: RowId) -> Wrench<T> {
+        topology.constraint(r).wrench(&self.ends[topology[r].closure.0])
     }
 
     /// Residuals, wrenches and factors of block b where it stands.
     #[inline(always)]
-    pub(super) fn linearise(&mut self, topology: &Topology, parts: &Parts<T>, drivers: &[[T; 3]], b: usize) {
-        let block: &Block = &topology.blocks[b];
+    pub(super) fn linearise(
+        &mut self,
+        topology: &Topology,
+        parts: &Parts<T>,
+        drivers: &[[T; 3]],
+        b: BlockId,
+    ) {
+        let block: &Block = &topology[b];
         for &c in &block.closures {
-            if topology.closures[c].solved_by_points {
+            if topology[c].solved_by_points {
                 self.place_end_points(topology, parts, c);
             } else {
                 self.place_ends(topology, parts, c);
@@ -334,27 +349,27 @@ impl<T: Real> State<T> {
         for (k, &r) in block.selected.iter().enumerate() {
             let residual = self.residual(topology, parts, drivers, r);
             // J dq = -phi
-            (self.residual[r], self.rhs[k]) = (residual, -residual);
-            let place = &topology.rows[r];
-            let closure = &topology.closures[place.closure];
-            let wrench = closure.rows[place.index].wrench(&self.ends[place.closure]);
-            self.l[0][r] = wrench;
+            (self.residual[r.0], self.rhs[k]) = (residual, -residual);
+            let place = &topology[r];
+            let closure = &topology[place.closure];
+            let wrench = closure.rows[place.index].wrench(&self.ends[place.closure.0]);
+            self.l[0][r.0] = wrench;
             if place.terms.is_empty() {
                 // J_ra = +- l_r . x_a, by the side of the loop on which a is                                          (6)
                 let x = &self.x[0];
                 let entries = closure.entries.iter().map(
                     #[inline(always)]
-                    |&(column, coordinate, side)| (column, wrench.on(x[coordinate]) * T::constant(side)),
+                    |e: &Entry| (e.column, wrench.on(x[e.coordinate.0]) * T::constant(e.side)),
                 );
-                self.factors[b].set_row(k, entries, zero);
+                self.factors[b.0].set_row(k, entries, zero);
             } else {
                 self.enter_coupler(topology, b, k, r);
             }
         }
-        let found = self.factors[b].factor();
-        self.pivots[b] = (found.pivot_ratio, found.positive);
-        self.determinants[b] = found.determinant;
-        self.watched[b] = found.watched;
+        let found = self.factors[b.0].factor();
+        self.pivots[b.0] = (found.pivot_ratio, found.positive);
+        self.determinants[b.0] = found.determinant;
+        self.watched[b.0] = found.watched;
     }
 
     /// Position, velocity and acceleration of all bodies for the drivers' values and their derivatives, from the prediction in
@@ -368,22 +383,20 @@ impl<T: Real> State<T> {
         drivers: &[[T; 3]],
         trust: f64,
     ) -> Result<(), PositionFailure> {
-        for (c, coordinate) in topology.coordinates.iter().enumerate() {
-            if let Source::Driven(d) = coordinate.source {
-                // q, q., q.. = f, f., f.. of what drivers prescribe in the tree
-                [self.q[c], self.motion.speeds[0][c], self.motion.speeds[1][c]] = drivers[d.0];
-            }
+        for (c, d) in topology.driven_coordinates() {
+            // q, q., q.. = f, f., f.. of what drivers prescribe in the tree
+            [self.q[c.0], self.motion.speeds[0][c.0], self.motion.speeds[1][c.0]] = drivers[d.0];
         }
         self.place(topology, parts, topology.driven_links());
         self.place_bodies(topology, parts, topology.driven_links());
         self.rates_of_driven(topology);
-        for b in 0..topology.blocks.len() {
+        for b in topology.block_ids() {
             // Block after block: J is block lower triangular, so all that a block stands on is known by now.
             self.newton(topology, parts, drivers, b, trust)?;
-            self.place_bodies(topology, parts, topology.blocks[b].links.clone());
+            self.place_bodies(topology, parts, topology[b].link_ids());
             self.rates_of_block(topology, parts, drivers, b);
         }
-        for (c, closure) in topology.closures.iter().enumerate() {
+        for (c, closure) in ClosureId::each(&topology.closures) {
             // Closures between bodies that drivers alone place: no unknown moves them, and their rows are watched.
             if closure.block.is_none() {
                 self.place_ends(topology, parts, c);
@@ -400,26 +413,26 @@ impl<T: Real> State<T> {
         topology: &Topology,
         parts: &Parts<T>,
         drivers: &[[T; 3]],
-        b: usize,
+        b: BlockId,
         trust: f64,
     ) -> Result<(), PositionFailure> {
-        let links = topology.blocks[b].links.clone();
+        let links = topology[b].link_ids();
         let mut before = trust;
         for pass in 0..MAX_ITERATIONS {
             self.place(topology, parts, links.clone());
             self.linearise(topology, parts, drivers, b);
             self.iterations += 1;
-            self.corrections[b].1 = pass + 1;
-            if !(self.pivots[b].0 > SINGULAR) {
+            self.corrections[b.0].1 = pass + 1;
+            if !(self.pivots[b.0].0 > SINGULAR) {
                 return Err(PositionFailure::Singular { block: b });
             }
             if before <= QUADRATIC {
                 return Ok(());
             }
             // dq = -J^-1 phi; every further one is about the square of the one before (theory (26)).
-            self.factors[b].solve(&mut self.rhs);
+            self.factors[b.0].solve(&mut self.rhs);
             let corrections = self.correction(topology, b);
-            self.corrections[b].0[pass.min(CORRECTIONS - 1)] = corrections;
+            self.corrections[b.0].0[pass.min(CORRECTIONS - 1)] = corrections;
             let correction = corrections.decisive();
             // abs(dq) <= 1e-14: q is solved, and the factors are those of q.
             if correction <= ROUND_OFF {
@@ -438,32 +451,32 @@ impl<T: Real> State<T> {
 
     /// Largest component of the correction in `rhs`, lengths in sizes of their loops.
     #[inline(always)]
-    fn correction(&self, topology: &Topology, b: usize) -> T {
+    fn correction(&self, topology: &Topology, b: BlockId) -> T {
         let mut most = T::zero();
-        for (&c, &d) in topology.blocks[b].unknowns.iter().zip(&self.rhs) {
+        for (&c, &d) in topology[b].unknowns.iter().zip(&self.rhs) {
             // max abs(dq_a) / unit_a
-            most = most.larger((d * T::constant(topology.coordinates[c].per_unit)).abs());
+            most = most.larger((d * T::constant(topology[c].per_unit)).abs());
         }
         most
     }
 
     /// Adds the correction in `rhs` to the unknowns of block b.
     #[inline(always)]
-    pub(super) fn apply(&mut self, topology: &Topology, b: usize) {
-        for (k, &c) in topology.blocks[b].unknowns.iter().enumerate() {
+    pub(super) fn apply(&mut self, topology: &Topology, b: BlockId) {
+        for (k, &c) in topology[b].unknowns.iter().enumerate() {
             // q <- q + dq, of a ball dq about the axes of its parent's marker
-            self.q[c] += self.rhs[k];
+            self.q[c.0] += self.rhs[k];
         }
-        self.turn_balls(topology, topology.blocks[b].links.clone());
+        self.turn_balls(topology, topology[b].link_ids());
     }
 
     /// Moves the increments that stand in the `q` of balls into their rotations.
     #[inline(always)]
-    pub fn turn_balls(&mut self, topology: &Topology, links: std::ops::Range<usize>) {
+    pub fn turn_balls(&mut self, topology: &Topology, links: impl Iterator<Item = LinkId>) {
         let zero = T::zero();
-        for link in &topology.links[links] {
-            for step in link.steps.iter().filter(|s| s.freedom == Freedom::Ball) {
-                let k = step.first;
+        for link in links {
+            for step in topology[link].steps.iter().filter(|s| s.freedom == Freedom::Ball) {
+                let k = step.first.0;
                 let d = crate::space::Vec3::new(self.q[k], self.q[k + 1], self.q[k + 2]);
                 // quaternion <- (1, d/2) quaternion, normalised
                 self.balls[k] = self.balls[k].nudged(d);
@@ -484,10 +497,10 @@ impl<T: Real> State<T> {
 
     /// Velocity and acceleration of the bodies of block b, with the factors that its position left (`docs/theory.md` (9), (10)).
     #[inline(always)]
-    fn rates_of_block(&mut self, topology: &Topology, parts: &Parts<T>, drivers: &[[T; 3]], b: usize) {
-        let block = &topology.blocks[b];
+    fn rates_of_block(&mut self, topology: &Topology, parts: &Parts<T>, drivers: &[[T; 3]], b: BlockId) {
+        let block = &topology[b];
         for &c in &block.closures {
-            let closure = &topology.closures[c];
+            let closure = &topology[c];
             if closure.solved_by_points && closure.has_axes {
                 self.place_ends(topology, parts, c);
             }
@@ -495,7 +508,7 @@ impl<T: Real> State<T> {
         }
         // J q. = f.                                                                                           (9)
         self.solve_order::<0>(topology, b, |d| drivers[d.0][1]);
-        self.rates_of_twists::<1>(topology, block.links.clone());
+        self.rates_of_twists::<1>(topology, block.link_ids());
         for &c in &block.closures {
             self.rates_of_wrenches(topology, c, 1);
         }
@@ -506,14 +519,19 @@ impl<T: Real> State<T> {
     /// Velocity, acceleration or jerk of the bodies of block b: (24) of `docs/theory.md` with U = V, u = q. and z = 0, where f is a
     /// driver's speed in its row, `demand` its n-th rate; while an assembly closes its gaps, their rates in all others.
     #[inline(always)]
-    fn solve_order<const N: usize>(&mut self, topology: &Topology, b: usize, demand: impl Fn(DriverId) -> T) {
+    fn solve_order<const N: usize>(
+        &mut self,
+        topology: &Topology,
+        b: BlockId,
+        demand: impl Fn(DriverId) -> T,
+    ) {
         let Self { x, l, factors, rhs, motion, gap, gap_left, .. } = self;
-        for &c in &topology.blocks[b].closures {
-            let closure = &topology.closures[c];
+        for &c in &topology[b].closures {
+            let closure = &topology[c];
             motion.ask(topology, c, closure.driver.map_or(T::zero(), &demand));
-            for r in closure.numbers().filter(|_| N == 0) {
+            for r in closure.row_ids().filter(|_| N == 0) {
                 // phi - (1 - s) phi_0 = 0 along s:  l . (V_j - V_i) = -phi_0, with gap_left[1] = d(1 - s)/ds = -1; no higher order
-                motion.demand[r] += gap[r] * T::constant(gap_left[1]);
+                motion.demand[r.0] += gap[r.0] * T::constant(gap_left[1]);
             }
         }
         motion.solve::<N>(topology, b, Linear { x, l, factors, rhs });
@@ -524,10 +542,10 @@ impl<T: Real> State<T> {
     #[inline(never)]
     pub(super) fn all_rates(&mut self, topology: &Topology, parts: &Parts<T>, drivers: &[[T; 3]]) {
         self.rates_of_driven(topology);
-        for b in 0..topology.blocks.len() {
+        for b in topology.block_ids() {
             self.rates_of_block(topology, parts, drivers, b);
         }
-        self.rates_of_twists::<2>(topology, 0..topology.links.len());
+        self.rates_of_twists::<2>(topology, topology.link_ids());
         for &c in topology.blocks.iter().flat_map(|b| &b.closures) {
             self.rates_of_wrenches(topology, c, 2);
         }
@@ -536,13 +554,11 @@ impl<T: Real> State<T> {
     /// Third derivatives of all bodies where they stand with velocity and acceleration, for those of the drivers.
     pub(super) fn jerk(&mut self, topology: &Topology, demand: impl Fn(DriverId) -> T) {
         self.finish_rates(topology);
-        for (c, coordinate) in topology.coordinates.iter().enumerate() {
-            if let Source::Driven(d) = coordinate.source {
-                self.motion.speeds[2][c] = demand(d);
-            }
+        for (c, d) in topology.driven_coordinates() {
+            self.motion.speeds[2][c.0] = demand(d);
         }
         self.motion.follow::<2>(topology, topology.driven_links(), &self.x);
-        for b in 0..topology.blocks.len() {
+        for b in topology.block_ids() {
             self.solve_order::<2>(topology, b, &demand);
         }
     }
@@ -557,27 +573,25 @@ impl<T: Real> State<T> {
     /// What only sensitivities need: second derivatives of twists and wrenches, and all of the rows left out.
     pub fn finish_rates(&mut self, topology: &Topology) {
         self.finish_wrenches(topology);
-        self.rates_of_twists::<2>(topology, 0..topology.links.len());
-        for c in 0..topology.closures.len() {
+        self.rates_of_twists::<2>(topology, topology.link_ids());
+        for c in topology.closure_ids() {
             self.rates_of_wrenches(topology, c, 2);
         }
     }
 
     /// Wrenches of the rows that the motion is not solved with.
     pub fn finish_wrenches(&mut self, topology: &Topology) {
-        for (r, place) in topology.rows.iter().enumerate().filter(|(_, p)| !p.drives()) {
-            self.l[0][r] = self.wrench_of(topology.closures[place.closure].rows[place.index], place.closure);
+        for (r, _) in RowId::each(&topology.rows).filter(|(_, p)| !p.drives()) {
+            self.l[0][r.0] = self.wrench_of(topology, r);
         }
     }
 
     /// Wrenches of the rows of a closure that are terms of couplers.
     #[inline(always)]
-    fn finish_closure(&mut self, topology: &Topology, c: usize) {
-        let closure = &topology.closures[c];
-        for (k, row) in closure.rows.iter().enumerate() {
-            let place = &topology.rows[closure.first_row + k];
-            if place.drives() && !place.selected {
-                self.l[0][closure.first_row + k] = row.wrench(&self.ends[c]);
+    fn finish_closure(&mut self, topology: &Topology, c: ClosureId) {
+        for (r, row) in topology[c].numbered_rows() {
+            if topology[r].drives() && !topology[r].selected {
+                self.l[0][r.0] = row.wrench(&self.ends[c.0]);
             }
         }
     }
@@ -592,12 +606,12 @@ impl<T: Real> State<T> {
     pub fn largest_residuals(&self, topology: &Topology, parts: &Parts<T>, drivers: &[[T; 3]]) -> [T; 2] {
         let zero = T::zero();
         let (mut largest, mut scaled) = (zero, zero);
-        for (r, place) in topology.rows.iter().enumerate() {
+        for (r, place) in RowId::each(&topology.rows) {
             if place.is_term {
                 continue;
             }
             let residual = if place.selected {
-                self.residual[r].abs()
+                self.residual[r.0].abs()
             } else {
                 self.residual_of(topology, parts, drivers, r).abs()
             };
@@ -608,9 +622,9 @@ impl<T: Real> State<T> {
     }
 
     /// The row that fails most, and its residual.
-    pub fn worst_row(&self, topology: &Topology, parts: &Parts<T>, drivers: &[[T; 3]]) -> (usize, f64) {
-        let mut worst = (0, 0.0, 0.0);
-        for (r, place) in topology.rows.iter().enumerate().filter(|(_, p)| !p.is_term) {
+    pub fn worst_row(&self, topology: &Topology, parts: &Parts<T>, drivers: &[[T; 3]]) -> (RowId, f64) {
+        let mut worst = (RowId(0), 0.0, 0.0);
+        for (r, place) in RowId::each(&topology.rows).filter(|(_, p)| !p.is_term) {
             let residual = self.residual_of(topology, parts, drivers, r).abs().decisive();
             let scaled = residual / place.unit;
             // Written so that a NaN is the largest of all.
@@ -622,36 +636,35 @@ impl<T: Real> State<T> {
     }
 
     /// The coordinate that a coupler's term counts, with its speed and acceleration.
-    pub fn coordinate_of_row(&self, topology: &Topology, r: usize) -> [T; 3] {
-        let place = &topology.rows[r];
-        let closure = &topology.closures[place.closure];
-        let [i, j] = closure.bodies;
+    pub fn coordinate_of_row(&self, topology: &Topology, r: RowId) -> [T; 3] {
+        let [i, j] = topology.closure_of(r).bodies;
         // chi. = l . (V_j - V_i),    chi.. = l . (A_j - A_i) + l. . (V_j - V_i)
         let [v, a] = [0, 1].map(|n| self.motion.twists[n][j.0] - self.motion.twists[n][i.0]);
-        let value = closure.rows[place.index].value(&self.ends[place.closure], self.near[r]);
-        [value, self.l[0][r].on(v), self.l[0][r].on(a) + self.l[1][r].on(v)]
+        let [l, l_rate, _] = self.l.each_ref().map(|l| l[r.0]);
+        [self.value(topology, r), l.on(v), l.on(a) + l_rate.on(v)]
     }
 
     /// Constraint row r of the Jacobian, by column of its block, lengths in sizes.
     #[inline(always)]
-    pub fn scaled_row(&self, topology: &Topology, r: usize, out: &mut [T]) {
-        let scale = 1.0 / topology.rows[r].unit;
+    pub fn scaled_row(&self, topology: &Topology, r: RowId, out: &mut [T]) {
+        let scale = 1.0 / topology[r].unit;
         let zero = T::zero();
         out.fill(zero);
-        for (k, factor) in topology.parts_of_row(r) {
-            for &(column, c, side) in &topology.closures[topology.rows[k].closure].entries {
-                let unit = topology.coordinates[c].unit;
-                // (6), the row per its unit and the coordinate per its: a number without dimension
-                out[column] += self.l[0][k].on(self.x[0][c]) * T::constant(scale * unit * side * factor);
+        for Term { row, factor } in topology.parts_of_row(r) {
+            for &Entry { column, coordinate: c, side } in &topology.closure_of(row).entries {
+                let unit = topology[c].unit;
+                out[column] +=
+                    // (6), the row per its unit and the coordinate per its: a number without dimension
+                    self.l[0][row.0].on(self.x[0][c.0]) * T::constant(scale * unit * side * factor);
             }
         }
     }
 
     /// The n-th time derivatives of the unit twists of these links.
     #[inline(always)]
-    fn rates_of_twists<const N: usize>(&mut self, topology: &Topology, links: std::ops::Range<usize>) {
+    fn rates_of_twists<const N: usize>(&mut self, topology: &Topology, links: impl Iterator<Item = LinkId>) {
         let Flow { speeds, twists, .. } = &self.motion;
-        for link in topology.links[links].iter().filter(|link| !link.keeps_its_twist()) {
+        for link in links.map(|k| &topology[k]).filter(|link| !link.keeps_its_twist()) {
             // x(n) = sum_{m<n} C(n-1,m) ad(V(m)) x(n-1-m), V of the parent first
             let v: [Twist<T>; N] = std::array::from_fn(|n| twists[n][link.parent.0]);
             turn_twists(link, v, &mut self.x, speeds);
@@ -660,20 +673,19 @@ impl<T: Real> State<T> {
 
     /// First time derivative of the wrenches that the motion needs; or all of what sensitivities need besides.
     #[inline(always)]
-    fn rates_of_wrenches(&mut self, topology: &Topology, c: usize, order: usize) {
-        let closure = &topology.closures[c];
+    fn rates_of_wrenches(&mut self, topology: &Topology, c: ClosureId, order: usize) {
+        let closure = &topology[c];
         let ([v, a, _], [i, j]) = (&self.motion.twists, closure.bodies);
         let mut rates = EndRates { v_i: v[i.0], v_j: v[j.0], a_i: a[i.0], a_j: a[j.0] };
         if let Some(k) = closure.contact {
             rates = self.walk(c, k, &rates);
         }
-        for (k, row) in closure.rows.iter().enumerate() {
-            let r = closure.first_row + k;
+        for (r, row) in closure.numbered_rows() {
             // l., l.. by the product rule from the markers' first two rates, (3) for their axes and v = V at P for their points
             if order > 1 {
-                [self.l[1][r], self.l[2][r]] = row.wrench_rates(&self.ends[c], &rates);
-            } else if topology.rows[r].drives() {
-                [self.l[1][r], _] = row.wrench_rates(&self.ends[c], &rates);
+                [self.l[1][r.0], self.l[2][r.0]] = row.wrench_rates(&self.ends[c.0], &rates);
+            } else if topology[r].drives() {
+                [self.l[1][r.0], _] = row.wrench_rates(&self.ends[c.0], &rates);
             }
         }
     }
@@ -682,9 +694,9 @@ impl<T: Real> State<T> {
 /// Room for the factors of a block with the rows that it is solved with now.
 pub(crate) fn factors_of<T: Real>(topology: &Topology, block: &Block, largest_dense: usize) -> Factors<T> {
     let columns = |k: usize| {
-        let place = &topology.rows[block.selected[k]];
+        let place = &topology[block.selected[k]];
         if place.terms.is_empty() {
-            topology.closures[place.closure].entries.iter().map(|e| e.0).collect()
+            topology[place.closure].entries.iter().map(|e| e.column).collect()
         } else {
             place.columns.iter().map(|c| c.column).collect()
         }

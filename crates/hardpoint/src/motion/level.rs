@@ -13,7 +13,7 @@
 
 use crate::linalg::Factors;
 use crate::space::{Real, Twist, Wrench};
-use crate::topology::{Link, Step, Topology};
+use crate::topology::{BlockId, ClosureId, Link, LinkId, RowId, Step, Term, Topology};
 
 /// How often the product of an m-th and an (n - m)-th derivative stands in the n-th of a product: `C(n, m)`.
 pub(crate) const BINOMIAL: [[f64; 3]; 3] = [[1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [1.0, 2.0, 1.0]];
@@ -80,22 +80,28 @@ impl<T: Real> Flow<T> {
 
     /// Lets all rows of closure c ask for f.
     #[inline(always)]
-    pub fn ask(&mut self, topology: &Topology, c: usize, f: T) {
-        self.demand[topology.closures[c].numbers()].fill(f);
+    pub fn ask(&mut self, topology: &Topology, c: ClosureId, f: T) {
+        topology[c].row_ids().for_each(|r| self.demand[r.0] = f);
     }
 
     /// Enters how, at order n, the parent's (0) or the child's (1) marker of link k moves in its body: `z_p - z_c`.
     #[inline(always)]
-    pub fn move_link(&mut self, n: usize, (k, end): (usize, usize), z: Twist<T>) {
-        self.moves[n][k] += if end == 0 { z } else { -z };
+    pub fn move_link(&mut self, n: usize, (k, end): (LinkId, usize), z: Twist<T>) {
+        self.moves[n][k.0] += if end == 0 { z } else { -z };
     }
 
     /// Enters how marker i (0) or j (1) of closure c moves in its body: what its rows ask for is less `l . (z_j - z_i)`.
     #[inline(always)]
-    pub fn move_end(&mut self, topology: &Topology, (c, end): (usize, usize), z: Twist<T>, l: &[Wrench<T>]) {
+    pub fn move_end(
+        &mut self,
+        topology: &Topology,
+        (c, end): (ClosureId, usize),
+        z: Twist<T>,
+        l: &[Wrench<T>],
+    ) {
         let z = if end == 1 { -z } else { z };
-        for r in topology.closures[c].numbers().filter(|&r| topology.rows[r].drives()) {
-            self.demand[r] += l[r].on(z);
+        for r in topology[c].row_ids().filter(|&r| topology[r].drives()) {
+            self.demand[r.0] += l[r.0].on(z);
         }
     }
 
@@ -104,50 +110,49 @@ impl<T: Real> Flow<T> {
     fn turn_axes<const N: usize>(
         &mut self,
         topology: &Topology,
-        links: impl Iterator<Item = usize>,
+        links: impl Iterator<Item = LinkId>,
         x: &[Vec<Twist<T>>; 3],
     ) {
         if N == 0 {
             return;
         }
         for k in links {
-            let link = &topology.links[k];
+            let link = &topology[k];
             // bias = z_p(n) - z_c(n) ...
-            let mut bias = if self.moves[N].is_empty() { Twist::zero() } else { self.moves[N][k] };
+            let mut bias = if self.moves[N].is_empty() { Twist::zero() } else { self.moves[N][k.0] };
             if !(self.ground_stands && link.keeps_its_twist()) {
                 for step in link.steps.iter().filter(|s| self.drives || !s.is_driven) {
-                    for c in step.first..step.first + step.freedom.coordinates() {
+                    for c in step.coordinates() {
                         // ... + C(n,m) x_a(m) u_a(n-m): what (24), first line, has of lower orders of u
                         for m in 1..=N {
-                            bias = x[m][c].times_plus(self.speeds[N - m][c] * BINOMIAL[N][m], bias);
+                            bias = x[m][c.0].times_plus(self.speeds[N - m][c.0] * BINOMIAL[N][m], bias);
                         }
                     }
                 }
             }
-            self.bias[k] = bias;
+            self.bias[k.0] = bias;
         }
     }
 
     /// What the rows of block b have left to ask: `f(n) - sum_{m=1..n} C(n,m) l(m) . (D_j(n-m) - D_i(n-m)) - l . (z_j(n) - z_i(n))`,
     /// summed over the terms of couplers.
     #[inline(always)]
-    fn turn_wrenches<const N: usize>(&mut self, topology: &Topology, b: usize, l: &[Vec<Wrench<T>>; 3]) {
-        for &c in topology.blocks[b].closures.iter().filter(|_| N > 0) {
-            let closure = &topology.closures[c];
-            for r in closure.numbers() {
-                if topology.rows[r].drives() {
+    fn turn_wrenches<const N: usize>(&mut self, topology: &Topology, b: BlockId, l: &[Vec<Wrench<T>>; 3]) {
+        for &c in topology[b].closures.iter().filter(|_| N > 0) {
+            for r in topology[c].row_ids() {
+                if topology[r].drives() {
                     for m in 1..=N {
                         // demand = f(n) - l . (z_j(n) - z_i(n)) - C(n,m) l(m) . (D_j(n-m) - D_i(n-m)): (24), second line, likewise
-                        self.demand[r] -= l[m][r].on(self.apart[N - m][c]) * BINOMIAL[N][m];
+                        self.demand[r.0] -= l[m][r.0].on(self.apart[N - m][c.0]) * BINOMIAL[N][m];
                     }
                 }
             }
         }
-        for &r in &topology.blocks[b].coupled {
-            for &(term, factor) in &topology.rows[r].terms {
+        for &r in &topology[b].coupled {
+            for term in &topology[r].terms {
                 // Of a coupler it is the sum over its terms, c_k times what each has; the first term, with factor 1, stands in its row.
-                let x = self.demand[term];
-                self.demand[r] += x * T::constant(factor);
+                let x = self.demand[term.row.0];
+                self.demand[r.0] += x * T::constant(term.factor);
             }
         }
     }
@@ -157,22 +162,22 @@ impl<T: Real> Flow<T> {
     fn carry<const N: usize>(
         &mut self,
         topology: &Topology,
-        links: impl Iterator<Item = usize>,
+        links: impl Iterator<Item = LinkId>,
         x: &[Twist<T>],
         counts: impl Fn(&Step) -> bool,
     ) {
         let bias = if N > 0 { &self.bias } else { &self.moves[0] };
         let (speeds, twists) = (&self.speeds[N], &mut self.twists[N]);
         for k in links {
-            let link = &topology.links[k];
+            let link = &topology[k];
             // U_c = U_p + bias + sum x_a u_a                                                                      (7), first line
             let mut twist = twists[link.parent.0];
-            if let Some(bias) = bias.get(k) {
+            if let Some(bias) = bias.get(k.0) {
                 twist += *bias;
             }
             for step in link.steps.iter().filter(|s| counts(s)) {
-                for c in step.first..step.first + step.freedom.coordinates() {
-                    twist = x[c].times_plus(speeds[c], twist);
+                for c in step.coordinates() {
+                    twist = x[c.0].times_plus(speeds[c.0], twist);
                 }
             }
             twists[link.child.0] = twist;
@@ -184,7 +189,7 @@ impl<T: Real> Flow<T> {
     pub fn follow<const N: usize>(
         &mut self,
         topology: &Topology,
-        links: impl Iterator<Item = usize> + Clone,
+        links: impl Iterator<Item = LinkId> + Clone,
         x: &[Vec<Twist<T>>; 3],
     ) {
         self.turn_axes::<N>(topology, links.clone(), x);
@@ -194,27 +199,27 @@ impl<T: Real> Flow<T> {
     /// Solves the equation of order n in block b: (24), where `demand` and `moves` say what is asked. With the orders below known, what
     /// is left of it is one linear problem, `J u(n) = rhs`.
     #[inline(always)]
-    pub fn solve<const N: usize>(&mut self, topology: &Topology, b: usize, linear: Linear<'_, T>) {
-        let (block, Linear { x, l, factors, rhs }) = (&topology.blocks[b], linear);
-        self.turn_axes::<N>(topology, block.links.clone(), x);
+    pub fn solve<const N: usize>(&mut self, topology: &Topology, b: BlockId, linear: Linear<'_, T>) {
+        let (block, Linear { x, l, factors, rhs }) = (&topology[b], linear);
+        self.turn_axes::<N>(topology, block.link_ids(), x);
         self.turn_wrenches::<N>(topology, b, l);
         // First as if the unknowns were zero: what the rows miss then is theirs to make up.
-        self.carry::<N>(topology, block.links.clone(), &x[0], |step| step.is_driven);
+        self.carry::<N>(topology, block.link_ids(), &x[0], |step| step.is_driven);
         // J u(n) = rhs,    J_ra = +- l_r . x_a (6),    rhs_r = demand_r - l_r . (U_j - U_i)  with the U of that pass
         for (k, &r) in block.selected.iter().enumerate() {
-            rhs[k] = self.demand[r] - along(topology, &l[0], &self.twists[N], r);
+            rhs[k] = self.demand[r.0] - along(topology, &l[0], &self.twists[N], r);
         }
-        factors[b].solve(rhs);
+        factors[b.0].solve(rhs);
         for (k, &c) in block.unknowns.iter().enumerate() {
-            self.speeds[N][c] = rhs[k];
+            self.speeds[N][c.0] = rhs[k];
         }
         // With u(n) the same pass gives U(n), on which all selected rows of the block agree.
-        self.carry::<N>(topology, block.links.clone(), &x[0], |_| true);
+        self.carry::<N>(topology, block.link_ids(), &x[0], |_| true);
         // D_j - D_i = U_j - U_i where no marker moves in its body; `Direct` adds z_j - z_i.
         if let Some(apart) = self.apart.get_mut(N) {
             for &c in &block.closures {
-                let [i, j] = topology.closures[c].bodies;
-                apart[c] = self.twists[N][j.0] - self.twists[N][i.0];
+                let [i, j] = topology[c].bodies;
+                apart[c.0] = self.twists[N][j.0] - self.twists[N][i.0];
             }
         }
     }
@@ -242,19 +247,18 @@ pub(crate) fn turn_twists<T: Real, const N: usize>(
     speeds: &[Vec<T>; 3],
 ) {
     for (n, step) in link.steps.iter().enumerate() {
-        let coordinates = step.first..step.first + step.freedom.coordinates();
-        for c in coordinates.clone() {
+        for c in step.coordinates() {
             // The frame behind a single freedom would do as well, since ad(x u) x = 0; the axes of a ball are those of the frame before it.
-            x[N][c] = carried(std::array::from_fn(|m| x[m][c]), v);
+            x[N][c.0] = carried(std::array::from_fn(|m| x[m][c.0]), v);
         }
         if n + 1 == link.steps.len() {
             break;
         }
-        for c in coordinates {
+        for c in step.coordinates() {
             for m in 0..N {
                 for k in (0..=m).rev() {
                     // V(m) behind the freedom = V(m) before it + (x u)(m),    (x u)(m) = sum_{k=0..m} C(m,k) x(k) u(m-k)
-                    v[m] = x[k][c].times_plus(speeds[m - k][c] * BINOMIAL[m][k], v[m]);
+                    v[m] = x[k][c.0].times_plus(speeds[m - k][c.0] * BINOMIAL[m][k], v[m]);
                 }
             }
         }
@@ -263,13 +267,14 @@ pub(crate) fn turn_twists<T: Real, const N: usize>(
 
 /// `l_r . (U_j - U_i)`, summed over a coupler's terms.
 #[inline(always)]
-fn along<T: Real>(topology: &Topology, l: &[Wrench<T>], motion: &[Twist<T>], r: usize) -> T {
-    let place = &topology.rows[r];
-    let [i, j] = topology.closures[place.closure].bodies;
-    let mut sum = l[r].on(motion[j.0] - motion[i.0]);
-    for &(term, factor) in &place.terms {
-        let [i, j] = topology.closures[topology.rows[term].closure].bodies;
-        sum += l[term].on(motion[j.0] - motion[i.0]) * T::constant(factor);
+fn along<T: Real>(topology: &Topology, l: &[Wrench<T>], motion: &[Twist<T>], r: RowId) -> T {
+    let of_row = |r: RowId| {
+        let [i, j] = topology.closure_of(r).bodies;
+        l[r.0].on(motion[j.0] - motion[i.0])
+    };
+    let mut sum = of_row(r);
+    for &Term { row, factor } in &topology[r].terms {
+        sum += of_row(row) * T::constant(factor);
     }
     sum
 }

@@ -4,7 +4,7 @@ use crate::constraint::{Ends, Row};
 use crate::joint::Freedom;
 use crate::linalg::{Elimination, MOST_GROWTH};
 use crate::space::{Real, Twist, Vec3, Wrench};
-use crate::topology::Topology;
+use crate::topology::{BlockId, Entry, LoopLink, RowId, Term, Topology};
 
 use super::kinematics::State;
 
@@ -23,14 +23,14 @@ pub struct Margin {
     /// The least of all blocks.
     pub value: f64,
     /// The block that has it.
-    pub block: usize,
+    pub block: BlockId,
 }
 
 /// Works out margins; keeps its room from step to step.
 pub(crate) struct Margins<T> {
     blocks: Vec<Elimination<T>>,
     /// Per block: all of its rows, and whether there are more than it needs.
-    rows: Vec<Vec<usize>>,
+    rows: Vec<Vec<RowId>>,
     redundant: Vec<bool>,
     row: Vec<T>,
     row_sums: Vec<T>,
@@ -41,7 +41,7 @@ impl<T: Real> Margins<T> {
         let widths = topology.blocks.iter().map(|b| b.unknowns.len());
         let dense = |n: usize| if n <= MOST_UNKNOWNS { n } else { 0 };
         let widest = widths.clone().max().unwrap_or(0);
-        let rows: Vec<Vec<usize>> = (0..topology.blocks.len()).map(|b| topology.rows_of_block(b)).collect();
+        let rows: Vec<Vec<RowId>> = topology.block_ids().map(|b| topology.rows_of_block(b)).collect();
         let redundant = rows.iter().zip(&topology.blocks).map(|(r, b)| r.len() > b.unknowns.len()).collect();
         Self {
             rows,
@@ -54,9 +54,9 @@ impl<T: Real> Margins<T> {
 
     /// The margin where `state` stands.
     pub fn at(&mut self, topology: &Topology, state: &State<T>) -> Margin {
-        let values = (0..topology.blocks.len()).map(|b| {
-            let small = topology.blocks[b].unknowns.len() <= MOST_UNKNOWNS;
-            if small { self.of_block(topology, state, b, &mut |_| ()).value() } else { state.pivots[b].0 }
+        let values = topology.block_ids().map(|b| {
+            let small = topology[b].unknowns.len() <= MOST_UNKNOWNS;
+            if small { self.of_block(topology, state, b, &mut |_| ()).value() } else { state.pivots[b.0].0 }
         });
         Margin::least(values)
     }
@@ -64,17 +64,23 @@ impl<T: Real> Margins<T> {
     /// The margin of every block, and what must not be positive for it to be that.
     pub fn record(&mut self, topology: &Topology, state: &State<T>) -> (Vec<T>, Vec<T>) {
         let mut limits = Vec::new();
-        let blocks = 0..topology.blocks.len();
-        let margins = blocks.map(|b| self.of_block(topology, state, b, &mut |x| limits.push(x))).collect();
+        let of_block = |b| self.of_block(topology, state, b, &mut |x| limits.push(x));
+        let margins = topology.block_ids().map(of_block).collect();
         (margins, limits)
     }
 
     /// 1 / |J^-1|, the inverse column by column; where constraints are redundant 1 / |J^+| of all of them, so that the margin does
     /// not depend on which of them the block is solved with.
     #[inline(always)]
-    fn of_block(&mut self, topology: &Topology, state: &State<T>, b: usize, limit: &mut impl FnMut(T)) -> T {
+    fn of_block(
+        &mut self,
+        topology: &Topology,
+        state: &State<T>,
+        b: BlockId,
+        limit: &mut impl FnMut(T),
+    ) -> T {
         let squared = T::constant(SQUARED);
-        if self.redundant[b] {
+        if self.redundant[b.0] {
             let all = self.of_all_rows(topology, state, b, limit);
             if all.decisive() > SQUARED {
                 limit(squared - all);
@@ -82,10 +88,10 @@ impl<T: Real> Margins<T> {
             }
             limit(all - squared);
         }
-        let block = &topology.blocks[b];
+        let block = &topology[b];
         let n = block.unknowns.len();
         let (zero, one) = (T::zero(), T::one());
-        let factors = &mut self.blocks[b];
+        let factors = &mut self.blocks[b.0];
         let (row, sums) = (&mut self.row[..n], &mut self.row_sums[..n]);
         for (k, &r) in block.selected.iter().enumerate() {
             relative_row(topology, state, r, row);
@@ -114,16 +120,16 @@ impl<T: Real> Margins<T> {
         &mut self,
         topology: &Topology,
         state: &State<T>,
-        b: usize,
+        b: BlockId,
         limit: &mut impl FnMut(T),
     ) -> T {
-        let block = &topology.blocks[b];
+        let block = &topology[b];
         let n = block.unknowns.len();
         let (zero, one) = (T::zero(), T::one());
-        let factors = &mut self.blocks[b];
+        let factors = &mut self.blocks[b.0];
         let (row, sums) = (&mut self.row[..n], &mut self.row_sums[..n]);
         (0..n).for_each(|k| factors.row_mut(k).fill(zero));
-        for &r in &self.rows[b] {
+        for &r in &self.rows[b.0] {
             relative_row(topology, state, r, row);
             for k in 0..n {
                 for (to, x) in factors.row_mut(k).iter_mut().zip(row.iter()) {
@@ -136,7 +142,7 @@ impl<T: Real> Margins<T> {
             return zero;
         }
         sums.fill(zero);
-        for &r in &self.rows[b] {
+        for &r in &self.rows[b.0] {
             relative_row(topology, state, r, row);
             // Column r of R^+ = N^-1 R^T is N^-1 (row r of R)
             factors.solve(row);
@@ -161,10 +167,10 @@ fn judged<T: Real>(factors: &mut Elimination<T>, limit: &mut impl FnMut(T)) -> f
 impl Margin {
     /// The least of those of all blocks; written so that NaN is the least of all.
     pub(crate) fn least(blocks: impl Iterator<Item = f64>) -> Self {
-        let least = Self { value: 1.0, block: 0 };
+        let least = Self { value: 1.0, block: BlockId(0) };
         blocks.enumerate().fold(least, |least, (block, value)| match value >= least.value {
             true => least,
-            false => Self { value: if value.is_nan() { 0.0 } else { value }, block },
+            false => Self { value: if value.is_nan() { 0.0 } else { value }, block: BlockId(block) },
         })
     }
 }
@@ -174,16 +180,16 @@ const SQUARED: f64 = 1e-6;
 
 /// Constraint row r of the Jacobian, by column of its block, as a part of the most that it could resist.
 #[inline(always)]
-fn relative_row<T: Real>(topology: &Topology, state: &State<T>, r: usize, row: &mut [T]) {
-    let scale = 1.0 / topology.rows[r].unit;
+fn relative_row<T: Real>(topology: &Topology, state: &State<T>, r: RowId, row: &mut [T]) {
+    let scale = 1.0 / topology[r].unit;
     let zero = T::zero();
     row.fill(zero);
-    for (k, factor) in topology.parts_of_row(r) {
-        let l = wrench(topology, state, k);
-        for &(column, c, side) in &topology.closures[topology.rows[k].closure].entries {
+    for Term { row: part, factor } in topology.parts_of_row(r) {
+        let l = wrench(topology, state, part);
+        for &Entry { column, coordinate: c, side } in &topology.closure_of(part).entries {
             // +- c_k l_k . x_c, in the units of row and coordinate                                                (6)
-            let unit = topology.coordinates[c].unit;
-            row[column] += l.on(state.x[0][c]) * T::constant(scale * unit * side * factor);
+            let unit = topology[c].unit;
+            row[column] += l.on(state.x[0][c.0]) * T::constant(scale * unit * side * factor);
         }
     }
     let per_most = T::one() / most_resistance(topology, state, r);
@@ -192,33 +198,27 @@ fn relative_row<T: Real>(topology: &Topology, state: &State<T>, r: usize, row: &
 
 /// The wrench of a row, whether or not the motion needs it.
 #[inline(always)]
-fn wrench<T: Real>(topology: &Topology, state: &State<T>, k: usize) -> Wrench<T> {
-    let place = &topology.rows[k];
-    if place.drives() {
-        return state.l[0][k];
-    }
-    state.wrench_of(topology.closures[place.closure].rows[place.index], place.closure)
+fn wrench<T: Real>(topology: &Topology, state: &State<T>, r: RowId) -> Wrench<T> {
+    if topology[r].drives() { state.l[0][r.0] } else { state.wrench_of(topology, r) }
 }
 
 /// The most that constraint row r could resist in any coordinate of its loop, scaled like its row of the Jacobian.
 #[inline(always)]
-fn most_resistance<T: Real>(topology: &Topology, state: &State<T>, r: usize) -> T {
-    let scale = 1.0 / topology.rows[r].unit;
+fn most_resistance<T: Real>(topology: &Topology, state: &State<T>, r: RowId) -> T {
+    let scale = 1.0 / topology[r].unit;
     let mut most = T::constant(f64::MIN_POSITIVE);
-    for (k, factor) in topology.parts_of_row(r) {
-        let at = &topology.rows[k];
-        let closure = &topology.closures[at.closure];
-        let Ends { i, j, .. } = &state.ends[at.closure];
-        let l = wrench(topology, state, k);
-        for &(link, side) in &closure.links {
+    for Term { row, factor } in topology.parts_of_row(r) {
+        let Ends { i, j, .. } = &state.ends[topology[row].closure.0];
+        let l = wrench(topology, state, row);
+        for &LoopLink { link, side } in &topology.closure_of(row).links {
             // A rod pulls at either body where it is tied to it; any other force acts at P_j.
-            let at_i = side < 0.0 && closure.rows[at.index] == Row::Distance;
+            let at_i = side < 0.0 && topology.constraint(row) == Row::Distance;
             let point = if at_i { i.r } else { j.r };
-            for step in &topology.links[link].steps {
+            for step in &topology[link].steps {
                 // a slide: abs(f); a turn: sqrt((abs(f) arm)^2 + couple^2), the arm seen along the axis
                 let resistance = match step.freedom {
-                    Freedom::Slide(_) => l.f.norm() * T::constant(topology.coordinates[step.first].unit),
-                    Freedom::Turn(_) | Freedom::Ball => most_moment(&l, point, &state.x[0][step.first]),
+                    Freedom::Slide(_) => l.f.norm() * T::constant(topology[step.first].unit),
+                    Freedom::Turn(_) | Freedom::Ball => most_moment(&l, point, &state.x[0][step.first.0]),
                 };
                 most = most.larger(resistance * T::constant(scale * factor.abs()));
             }

@@ -106,7 +106,7 @@ impl Parts<f64> {
 /// Per row, what it keeps.
 fn kept<T: Real>(topology: &Topology, design: &Geometry<T>) -> Vec<T> {
     let of_row = |place: &RowPlace| {
-        let closure = &topology.closures[place.closure];
+        let closure = &topology[place.closure];
         design.kept[closure.joint.0].by(closure.rows[place.index])
     };
     topology.rows.iter().map(of_row).collect()

@@ -15,7 +15,7 @@
 //! The directions are the drivers, one by one: what is near is near whether the drivers hurry, rest or turn round.
 
 use crate::space::{Real, Twist, Wrench};
-use crate::topology::{Source, Topology};
+use crate::topology::{BlockId, CoordinateId, Topology};
 
 use super::kinematics::State;
 use super::level::Flow;
@@ -45,7 +45,7 @@ pub(super) struct Surroundings {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Ahead {
     /// The block that becomes singular.
-    pub block: usize,
+    pub block: BlockId,
     /// How far ahead, in units of the direction; negative where it lies behind.
     pub distance: f64,
     /// Which power of the distance the response goes with: about -1/2 at a limit, -1 where two motions meet.
@@ -179,28 +179,24 @@ impl Prober {
             // q' and q'' by (9) and (10), with f' of this direction in the place of f.
             found.slopes[direction].copy_from_slice(&state.motion.speeds[0]);
             found.bends[direction].copy_from_slice(&state.motion.speeds[1]);
-            for &r in &topology.coupled_rows {
-                for (k, _) in topology.parts_of_row(r) {
-                    // chi' and chi'' of what a coupler counts
-                    let [_, speed, rate] = state.coordinate_of_row(topology, k);
-                    found.turning[direction][k] = [speed, rate];
-                }
+            for r in topology.coupler_terms() {
+                // chi' and chi'' of what a coupler counts
+                let [_, speed, rate] = state.coordinate_of_row(topology, r);
+                found.turning[direction][r.0] = [speed, rate];
             }
             let mut fastest = 0.0;
-            for (c, coordinate) in topology.coordinates.iter().enumerate() {
-                if matches!(coordinate.source, Source::Unknown { .. }) {
-                    let speed = state.motion.speeds[0][c] * coordinate.per_unit;
-                    fastest = fastest.larger(speed.abs());
-                }
+            for c in topology.unknown_coordinates() {
+                let speed = state.motion.speeds[0][c.0] * topology[c].per_unit;
+                fastest = fastest.larger(speed.abs());
             }
             found.fastest[direction] = fastest;
-            for b in 0..topology.blocks.len() {
+            for b in topology.block_ids() {
                 let mut nearness = 0.0;
                 for load in 0..LOADS {
                     // 1/rho_b = max over the loads                                                                       (22)
                     nearness = nearness.larger(self.respond(topology, state, b, load));
                 }
-                found.nearness[direction][b] = nearness;
+                found.nearness[direction][b.0] = nearness;
             }
         }
         state.gap_left[1] = gap;
@@ -223,7 +219,7 @@ impl Prober {
         let gap = std::mem::replace(&mut state.gap_left[1], gap_rate);
         let mut nearest: Option<(f64, Ahead)> = None;
         self.rates(topology, parts, state);
-        for b in 0..topology.blocks.len() {
+        for b in topology.block_ids() {
             for load in 0..LOADS {
                 let nearness = self.respond(topology, state, b, load);
                 let Some(ahead) = self.extrapolate(topology, b) else { continue };
@@ -240,10 +236,8 @@ impl Prober {
 
     /// Velocity and acceleration along the drivers' speeds, and all rates of twists and wrenches.
     fn rates(&mut self, topology: &Topology, parts: &Parts<f64>, state: &mut State<f64>) {
-        for (c, coordinate) in topology.coordinates.iter().enumerate() {
-            if let Source::Driven(d) = coordinate.source {
-                [_, state.motion.speeds[0][c], state.motion.speeds[1][c]] = self.drivers[d.0];
-            }
+        for (c, d) in topology.driven_coordinates() {
+            [_, state.motion.speeds[0][c.0], state.motion.speeds[1][c.0]] = self.drivers[d.0];
         }
         state.all_rates(topology, parts, &self.drivers);
     }
@@ -251,12 +245,12 @@ impl Prober {
     /// The response of a block to a load: c0, c1 and 2 c2 of its unknowns; all bodies outside of it stand. Returns how near a
     /// singular position is by it.
     #[inline(never)]
-    fn respond(&mut self, topology: &Topology, state: &mut State<f64>, b: usize, load: usize) -> f64 {
-        let (block, response) = (&topology.blocks[b], &mut self.response);
+    fn respond(&mut self, topology: &Topology, state: &mut State<f64>, b: BlockId, load: usize) -> f64 {
+        let (block, response) = (&topology[b], &mut self.response);
         // (24) with z = 0 and f = r, which stands still.
-        for r in block.closures.iter().flat_map(|&c| topology.closures[c].numbers()) {
+        for r in block.closures.iter().flat_map(|&c| topology[c].row_ids()) {
             // J c0 = r
-            response.demand[r] = if topology.rows[r].is_term { 0.0 } else { self.loads[load][r] };
+            response.demand[r.0] = if topology[r].is_term { 0.0 } else { self.loads[load][r.0] };
         }
         response.solve::<0>(topology, b, state.linear());
         block.closures.iter().for_each(|&c| response.ask(topology, c, 0.0));
@@ -266,17 +260,17 @@ impl Prober {
         // J (2 c2) = -2 J' c1 - J'' c0: order 2 of (24), u(2) = s'' = 2 c2
         response.solve::<2>(topology, b, state.linear());
         // The next block is examined by itself.
-        for k in block.links.clone() {
-            response.twists.iter_mut().for_each(|twists| twists[topology.links[k].child.0] = Twist::ZERO);
+        for k in block.link_ids() {
+            response.twists.iter_mut().for_each(|twists| twists[topology[k].child.0] = Twist::ZERO);
         }
         self.nearness(topology, b)
     }
 
     /// `max(|c1| / |c0|, sqrt(|c2| / |c0|))` over the block's unknowns, lengths in sizes of their loops.
-    fn nearness(&self, topology: &Topology, b: usize) -> f64 {
+    fn nearness(&self, topology: &Topology, b: BlockId) -> f64 {
         let norm = |c: &[f64]| {
-            let unknowns = topology.blocks[b].unknowns.iter();
-            unknowns.fold(0.0, |most: f64, &k| most.larger((c[k] * topology.coordinates[k].per_unit).abs()))
+            let unknowns = topology[b].unknowns.iter();
+            unknowns.fold(0.0, |most: f64, &k| most.larger((c[k.0] * topology[k].per_unit).abs()))
         };
         // speeds[2] is 2 c2, hence the half
         let [c0, c1, c2] = self.response.speeds.each_ref().map(|c| norm(c));
@@ -285,11 +279,11 @@ impl Prober {
 
     /// Where the response would be infinite. With s ~ (u* - u)^-m it is `s'/s = m / (u* - u)` and `s''/s = m (m + 1) / (u* - u)^2`,
     /// read off the unknown that responds most.
-    fn extrapolate(&self, topology: &Topology, b: usize) -> Option<Ahead> {
-        let size = |k: usize| (self.response.speeds[0][k] * topology.coordinates[k].per_unit).abs();
-        let unknowns = topology.blocks[b].unknowns.iter().copied();
+    fn extrapolate(&self, topology: &Topology, b: BlockId) -> Option<Ahead> {
+        let size = |k: CoordinateId| (self.response.speeds[0][k.0] * topology[k].per_unit).abs();
+        let unknowns = topology[b].unknowns.iter().copied();
         let most = unknowns.max_by(|&j, &k| size(j).total_cmp(&size(k)))?;
-        let [c0, c1, c2] = self.response.speeds.each_ref().map(|c| c[most]);
+        let [c0, c1, c2] = self.response.speeds.each_ref().map(|c| c[most.0]);
         // a = s'/s = m / D, b = s''/s = m (m + 1) / D^2 (23):  a^2 / (b - a^2) = m,  D = m / a
         let (first, second) = (c1 / c0, c2 / c0);
         let power = first * first / (second - first * first);

@@ -21,7 +21,7 @@ use crate::linalg::{LARGEST_DENSE, MOST_GROWTH};
 use crate::model::{BodyId, Model, VariableId};
 use crate::number::record as recording;
 use crate::space::Vec3;
-use crate::topology::{Source, Topology};
+use crate::topology::{BlockId, CoordinateId, RowId, Step, Topology};
 
 use super::BodyState;
 use super::execution::{Cache, Execution, Runnable, SolvedBy, Staged};
@@ -69,7 +69,7 @@ pub(crate) struct Recorded {
     /// Which variable moves which body, in the order of the results.
     pub moved: Vec<(VariableId, BodyId)>,
     /// Which variable could fail which row of the constraints.
-    pub defects: Vec<(VariableId, usize)>,
+    pub defects: Vec<(VariableId, RowId)>,
 }
 
 /// The program of a step.
@@ -85,7 +85,7 @@ pub(crate) struct StepProgram {
     pub variables: usize,
     /// Which variable moves which body, in the order of their derivatives.
     pub moved: Vec<(VariableId, BodyId)>,
-    pub defects: Vec<(VariableId, usize)>,
+    pub defects: Vec<(VariableId, RowId)>,
 }
 
 /// How a block was recorded.
@@ -128,7 +128,7 @@ impl BlockProgram {
 /// An unknown coordinate, one of a ball's three included, and where its speed is among the outputs; its acceleration comes next.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Unknown {
-    pub coordinate: usize,
+    pub coordinate: CoordinateId,
     pub speed: usize,
 }
 
@@ -316,13 +316,13 @@ impl StepProgram {
 /// Which piece of a program a channel belongs to: one for every block.
 fn pieces(topology: &Topology, channels: &[Channel]) -> Vec<usize> {
     let mut piece_of = vec![0; topology.coordinates.len()];
-    for (b, block) in topology.blocks.iter().enumerate() {
-        block.unknowns.iter().for_each(|c| piece_of[*c] = b + 1);
+    for (b, block) in BlockId::each(&topology.blocks) {
+        block.unknowns.iter().for_each(|c| piece_of[c.0] = b.0 + 1);
     }
     let coordinate = |channel: &Channel| match *channel {
         Channel::Coordinate(c) | Channel::Ball(c, _) => c,
     };
-    channels.iter().map(|channel| piece_of[coordinate(channel)]).collect()
+    channels.iter().map(|channel| piece_of[coordinate(channel).0]).collect()
 }
 
 /// All unknowns, balls' included.
@@ -334,27 +334,25 @@ fn unknowns(topology: &Topology, channels: &[Channel]) -> Vec<Unknown> {
         }
     }
     let mut speed = ORDERS * channels.len();
-    for first in balls(topology) {
-        for axis in 0..3 {
-            unknowns.push(Unknown { coordinate: first + axis, speed });
-            speed += 2;
-        }
+    for coordinate in of_balls(topology) {
+        unknowns.push(Unknown { coordinate, speed });
+        speed += 2;
     }
     unknowns
 }
 
-/// The first coordinates of unknown balls.
-fn balls(topology: &Topology) -> impl Iterator<Item = usize> {
+/// The coordinates of unknown balls.
+fn of_balls(topology: &Topology) -> impl Iterator<Item = CoordinateId> {
     let steps = topology.links.iter().flat_map(|l| &l.steps);
-    let balls = steps.filter(|s| s.freedom == Freedom::Ball).map(|s| s.first);
-    balls.filter(|first| matches!(topology.coordinates[*first].source, Source::Unknown { .. }))
+    let balls = steps.filter(|s| s.freedom == Freedom::Ball && topology[s.first].is_unknown());
+    balls.flat_map(Step::coordinates)
 }
 
 /// Value, first and second derivative of every channel; speeds and accelerations of balls.
 fn moves(topology: &Topology, channels: &[Channel], state: &State<Number>) -> Vec<Number> {
     let mut out: Vec<Number> = channels.iter().flat_map(|c| c.of(state)).collect();
-    for c in balls(topology).flat_map(|first| first..first + 3) {
-        out.extend([state.motion.speeds[0][c], state.motion.speeds[1][c]]);
+    for c in of_balls(topology) {
+        out.extend([state.motion.speeds[0][c.0], state.motion.speeds[1][c.0]]);
     }
     out
 }
@@ -399,7 +397,7 @@ fn speeds(
     let (mut apart, mut fastest) = (Vec::new(), Vec::new());
     for (channel, known) in channels.iter().zip(known) {
         let per_unit = match *channel {
-            Channel::Coordinate(c) => topology.coordinates[c].per_unit,
+            Channel::Coordinate(c) => topology[c].per_unit,
             Channel::Ball(..) => 2.0,
         };
         let [_, speed, _] = channel.of(state);
@@ -425,8 +423,8 @@ fn foresee(
     let weights: [Number; CONDITIONS] = std::array::from_fn(|n| Number::input(first(n, 1.0)));
     let one = |channel: &Channel| {
         let beside = match *channel {
-            Channel::Coordinate(c) => at.q[c] + offset * topology.coordinates[c].unit,
-            Channel::Ball(c, k) => at.balls[c].nudged(Vec3::new(offset, offset, offset)).component(k),
+            Channel::Coordinate(c) => at.q[c.0] + offset * topology[c].unit,
+            Channel::Ball(c, k) => at.balls[c.0].nudged(Vec3::new(offset, offset, offset)).component(k),
         };
         let of = if times { Number::uniform } else { Number::input };
         let known: [Number; CONDITIONS] = std::array::from_fn(|n| of(first(n, beside)));

@@ -8,7 +8,7 @@ use crate::joint::{Freedom, Quantity};
 use crate::linalg::{FullPivot, LARGEST_DENSE};
 use crate::model::{Contact, DriverId, Model};
 use crate::space::{Quat, Real};
-use crate::topology::{Source, Topology};
+use crate::topology::{BlockId, RowId, SetBy, Topology};
 
 use super::assembly::Assembly;
 use super::forecast::Forecast;
@@ -165,10 +165,10 @@ pub(super) enum Refusal {
     Position(PositionFailure),
     /// The determinant changed its sign, or a turn cannot be told.
     Branch {
-        block: usize,
+        block: BlockId,
     },
     Locked {
-        row: usize,
+        row: RowId,
         residual: f64,
     },
     Law {
@@ -419,9 +419,9 @@ impl<'m> Stepper<'m> {
 
     /// Whether the position just solved is on the branch, in the turn that was expected, and closed.
     pub(super) fn examine_position(&mut self) -> Result<(), Refusal> {
-        for (b, &(_, positive)) in self.state.pivots.iter().enumerate() {
+        for (b, &(_, positive)) in BlockId::each(&self.state.pivots) {
             // sign(det J) is that of the branch: between two positions of opposite sign lies a singular one.
-            if positive != self.branch[b].0 {
+            if positive != self.branch[b.0].0 {
                 return Err(Refusal::Branch { block: b });
             }
         }
@@ -455,12 +455,10 @@ impl<'m> Stepper<'m> {
     fn expected_move(&self, h: f64) -> f64 {
         let (saved, half) = (&self.saved, 0.5 * h);
         let mut most = 0.0;
-        for (c, coordinate) in self.topology.coordinates.iter().enumerate() {
-            if let Source::Unknown { .. } = coordinate.source {
-                // q. h + q.. h^2 / 2
-                let step = (saved.qd[c] + saved.qdd[c] * half) * h;
-                most = most.larger((step * coordinate.per_unit).abs());
-            }
+        for c in self.topology.unknown_coordinates() {
+            // q. h + q.. h^2 / 2
+            let step = (saved.qd[c.0] + saved.qdd[c.0] * half) * h;
+            most = most.larger((step * self.topology[c].per_unit).abs());
         }
         most
     }
@@ -469,12 +467,10 @@ impl<'m> Stepper<'m> {
     #[inline(always)]
     pub(super) fn expect_turns(&mut self, h: f64) {
         let half = 0.5 * h;
-        for &r in &self.topology.coupled_rows {
-            for (k, _) in self.topology.parts_of_row(r) {
-                let [x, v, a] = self.saved.coupled[k];
-                // chi + chi. h + chi.. h^2 / 2
-                self.state.near[k] = x + (v + a * half) * h;
-            }
+        for r in self.topology.coupler_terms() {
+            let [x, v, a] = self.saved.coupled[r.0];
+            // chi + chi. h + chi.. h^2 / 2
+            self.state.near[r.0] = x + (v + a * half) * h;
         }
     }
 
@@ -490,33 +486,27 @@ impl<'m> Stepper<'m> {
 
     /// The block of a coupler that counts an angle whose turn the prediction does not tell for sure.
     #[inline(always)]
-    pub(super) fn uncertain_turn(&self) -> Option<usize> {
-        let s = &self.state;
-        let uncertain = |k: usize| {
-            let [value, ..] = s.coordinate_of_row(&self.topology, k);
-            let closure = &self.topology.closures[self.topology.rows[k].closure];
-            let row = closure.rows[self.topology.rows[k].index];
+    pub(super) fn uncertain_turn(&self) -> Option<BlockId> {
+        let (topology, s) = (&self.topology, &self.state);
+        let uncertain = |r: &RowId| {
+            let [value, ..] = s.coordinate_of_row(topology, *r);
             // Written so that NaN is uncertain.
-            !row.is_length() && !((value - s.near[k]).abs() <= TURN_TRUST)
+            !topology.constraint(*r).is_length() && !((value - s.near[r.0]).abs() <= TURN_TRUST)
         };
-        let rows = self.topology.coupled_rows.iter();
-        let found = rows.copied().find(|&r| self.topology.parts_of_row(r).any(|(k, _)| uncertain(k)));
-        found.and_then(|r| self.topology.closures[self.topology.rows[r].closure].block)
+        // All terms of a coupler are of its block.
+        topology.coupler_terms().find(uncertain).and_then(|r| topology.closure_of(r).block)
     }
 
     /// Whether the speeds are those of the same branch as before the step.
     pub(super) fn speeds_are_smooth(&self, h: f64) -> bool {
         let (s, saved) = (&self.state, &self.saved);
         let (mut fastest, mut difference) = (0.0_f64, 0.0_f64);
-        for (c, coordinate) in self.topology.coordinates.iter().enumerate() {
-            if let Source::Unknown { .. } = coordinate.source {
-                // abs(q. - (q._0 + q.._0 h)) against the larger of the two speeds
-                let predicted = saved.qd[c] + saved.qdd[c] * h;
-                let speed = s.motion.speeds[0][c].abs().larger(saved.qd[c].abs());
-                let apart = (s.motion.speeds[0][c] - predicted).abs();
-                fastest = fastest.larger(speed * coordinate.per_unit);
-                difference = difference.larger(apart * coordinate.per_unit);
-            }
+        for c in self.topology.unknown_coordinates() {
+            let (now, per_unit) = (s.motion.speeds[0][c.0], self.topology[c].per_unit);
+            // abs(q. - (q._0 + q.._0 h)) against the larger of the two speeds
+            let predicted = saved.qd[c.0] + saved.qdd[c.0] * h;
+            fastest = fastest.larger(now.abs().larger(saved.qd[c.0].abs()) * per_unit);
+            difference = difference.larger((now - predicted).abs() * per_unit);
         }
         smooth(difference, fastest, self.fastest_driver)
     }
@@ -537,10 +527,8 @@ impl<'m> Stepper<'m> {
         saved.drivers.copy_from_slice(&self.drivers);
         saved.contacts.copy_from_slice(&s.contacts);
         saved.residual = self.residuals.scaled;
-        for &r in &self.topology.coupled_rows {
-            for (k, _) in self.topology.parts_of_row(r) {
-                saved.coupled[k] = s.coordinate_of_row(&self.topology, k);
-            }
+        for r in self.topology.coupler_terms() {
+            saved.coupled[r.0] = s.coordinate_of_row(&self.topology, r);
         }
         self.time = t;
         self.ahead = Ahead::Unknown;
@@ -552,28 +540,26 @@ impl<'m> Stepper<'m> {
         s.q.copy_from_slice(&saved.q);
         s.balls.copy_from_slice(&saved.balls);
         s.contacts.copy_from_slice(&saved.contacts);
-        for &r in &self.topology.coupled_rows {
-            for (k, _) in self.topology.parts_of_row(r) {
-                s.near[k] = saved.coupled[k][0];
-            }
+        for r in self.topology.coupler_terms() {
+            s.near[r.0] = saved.coupled[r.0][0];
         }
     }
 
     /// Chooses other independent rows for blocks whose present ones have become nearly dependent.
     fn reselect(&mut self) -> Result<(), Refusal> {
-        for b in 0..self.topology.blocks.len() {
-            let ratio = self.state.pivots[b].0;
+        for b in self.topology.block_ids() {
+            let ratio = self.state.pivots[b.0].0;
             // min / max of the pivots against a tenth of what it was when these rows were chosen
-            if ratio >= self.try_others[b] {
+            if ratio >= self.try_others[b.0] {
                 continue;
             }
-            self.try_others[b] = LOOK_AGAIN * ratio;
+            self.try_others[b.0] = LOOK_AGAIN * ratio;
             let rows = self.topology.rows_of_block(b);
-            if rows.len() == self.topology.blocks[b].unknowns.len() {
+            if rows.len() == self.topology[b].unknowns.len() {
                 continue;
             }
             self.state.finish_wrenches(&self.topology);
-            let (block, s) = (&self.topology.blocks[b], &self.state);
+            let (block, s) = (&self.topology[b], &self.state);
             let matrix = rows
                 .iter()
                 .map(|&r| {
@@ -585,7 +571,7 @@ impl<'m> Stepper<'m> {
                 .collect();
             // All rows of the block where it stands now, redundant ones included: those with the largest pivots.
             let pivots = FullPivot::of_sparse(matrix, block.unknowns.len(), f64::MIN_POSITIVE);
-            let mut selected: Vec<usize> = pivots.rows.iter().map(|&r| rows[r]).collect();
+            let mut selected: Vec<RowId> = pivots.rows.iter().map(|&r| rows[r]).collect();
             selected.sort_unstable();
             if selected.len() < block.unknowns.len() || selected == block.selected {
                 continue;
@@ -597,23 +583,23 @@ impl<'m> Stepper<'m> {
             self.state
                 .solve(&self.topology, &self.parts, &self.drivers, f64::INFINITY)
                 .map_err(Refusal::Position)?;
-            let (ratio, positive) = self.state.pivots[b];
-            self.branch[b] = (positive, ratio);
-            self.try_others[b] = RESELECT * ratio;
+            let (ratio, positive) = self.state.pivots[b.0];
+            self.branch[b.0] = (positive, ratio);
+            self.try_others[b.0] = RESELECT * ratio;
         }
         Ok(())
     }
 
     /// Room for the factors of a block that is solved with other rows from now on: they have entries in other places.
-    pub(super) fn renew_factors(&mut self, b: usize) {
-        let block = &self.topology.blocks[b];
-        self.state.factors[b] = factors_of(&self.topology, block, LARGEST_DENSE);
+    pub(super) fn renew_factors(&mut self, b: BlockId) {
+        let block = &self.topology[b];
+        self.state.factors[b.0] = factors_of(&self.topology, block, LARGEST_DENSE);
     }
 
     /// Values of the tree coordinates; 0 for those of balls.
     pub fn coordinates(&self) -> impl Iterator<Item = f64> + '_ {
         let ball = self.topology.links.iter().flat_map(|l| &l.steps).filter(|s| s.freedom == Freedom::Ball);
-        debug_assert!(ball.map(|s| self.state.q[s.first]).all(|q| q == 0.0));
+        debug_assert!(ball.map(|s| self.state.q[s.first.0]).all(|q| q == 0.0));
         self.state.q.iter().copied()
     }
 }
@@ -636,7 +622,7 @@ fn driver_units(model: &Model, topology: &Topology) -> Vec<f64> {
             return 1.0;
         }
         let d = DriverId(k);
-        let coordinate = topology.coordinates.iter().find(|c| c.source == Source::Driven(d));
+        let coordinate = topology.coordinates.iter().find(|c| c.set_by == SetBy::Driver(d));
         let closure = topology.closures.iter().find(|c| c.driver == Some(d));
         coordinate.map(|c| c.unit).or(closure.map(|c| c.size)).unwrap_or(whole)
     };

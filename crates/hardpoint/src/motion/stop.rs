@@ -1,6 +1,7 @@
 //! Why a motion ended before its last output time.
 
 use crate::model::{JointId, Model};
+use crate::topology::BlockId;
 
 use super::assembly::{Closing, Gap};
 
@@ -16,7 +17,7 @@ pub struct Stop {
     /// Values of all drivers at the last solved position, m or rad.
     pub drivers: Vec<f64>,
     /// The block of the plan that holds that loop.
-    pub block: Option<usize>,
+    pub block: Option<BlockId>,
     /// Smallest over largest pivot of the loop in question there: near 0 at a limit position.
     pub pivot_ratio: f64,
     /// The joints of that loop.

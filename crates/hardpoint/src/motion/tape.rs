@@ -6,7 +6,7 @@ use hardpoint_tape::{LANES, Lanes};
 
 use crate::blocks::{Line, lanes_of};
 use crate::model::{BodyId, VariableId};
-use crate::topology::{Source, Topology};
+use crate::topology::{CoordinateId, RowId, SetBy, Topology};
 
 use super::execution::Room;
 use super::forecast::{Channel, ORDERS};
@@ -103,14 +103,14 @@ impl Tape {
     #[inline(always)]
     pub fn coordinates(&self, topology: &Topology, out: &mut [Lanes]) {
         for (coordinate, out) in topology.coordinates.iter().zip(&mut *out) {
-            *out = match coordinate.source {
-                Source::Driven(d) => *self.driver(d.0, 0),
-                Source::Unknown { .. } => [0.0; LANES],
+            *out = match coordinate.set_by {
+                SetBy::Driver(d) => *self.driver(d.0, 0),
+                SetBy::Block { .. } => [0.0; LANES],
             };
         }
         for (n, channel) in self.program.channels.iter().enumerate() {
             if let Channel::Coordinate(c) = *channel {
-                out[c] = *self.channel_lanes(n, 0);
+                out[c.0] = *self.channel_lanes(n, 0);
             }
         }
     }
@@ -271,7 +271,7 @@ impl Tape {
 
     /// Every unknown coordinate with its speed and acceleration.
     #[inline(always)]
-    pub fn unknowns(&self) -> impl Iterator<Item = (usize, [&Lanes; 2])> {
+    pub fn unknowns(&self) -> impl Iterator<Item = (CoordinateId, [&Lanes; 2])> {
         let at = |k: usize| &self.outputs[k].0;
         self.program.unknowns.iter().map(move |u| (u.coordinate, [at(u.speed), at(u.speed + 1)]))
     }
@@ -297,7 +297,7 @@ impl Tape {
     }
 
     /// Which variable fails which row, by how much, and what of it may be round-off; variable by variable.
-    pub fn defects(&self) -> impl Iterator<Item = (VariableId, usize, &[Lanes; 2])> {
+    pub fn defects(&self) -> impl Iterator<Item = (VariableId, RowId, &[Lanes; 2])> {
         let found: &[Lanes] = bytemuck::cast_slice(&self.outputs[self.program.outputs.defects..]);
         let found = found.as_chunks().0;
         self.program.defects.iter().zip(found).map(|(&(variable, row), found)| (variable, row, found))

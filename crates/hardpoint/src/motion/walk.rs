@@ -5,7 +5,6 @@
 //! pulses between two output times is followed all the same. The position is predicted along the drivers, too, so kinks of laws
 //! need no care.
 
-use crate::constraint::Row;
 use crate::model::{BodyId, DriverId};
 use crate::space::Real;
 
@@ -318,21 +317,17 @@ impl Stepper<'_> {
             for (c, moved) in moves.iter_mut().enumerate() {
                 *moved = bends[c].times_plus(half, slopes[c].times_plus(du, *moved));
             }
-            for &r in &self.topology.coupled_rows {
-                for (row, _) in self.topology.parts_of_row(r) {
-                    let [slope, bend] = self.around.turning[k][row];
-                    self.state.near[row] += slope * du + bend * half;
-                }
+            for r in self.topology.coupler_terms() {
+                let [slope, bend] = self.around.turning[k][r.0];
+                self.state.near[r.0] += slope * du + bend * half;
             }
         }
-        for (c, coordinate) in self.topology.coordinates.iter().enumerate() {
-            if matches!(coordinate.source, crate::topology::Source::Unknown { .. }) {
-                self.state.q[c] += moves[c];
-                most = most.max((moves[c] * coordinate.per_unit).abs());
-            }
+        for c in self.topology.unknown_coordinates() {
+            self.state.q[c.0] += moves[c.0];
+            most = most.max((moves[c.0] * self.topology[c].per_unit).abs());
         }
         self.predicted = moves;
-        self.state.turn_balls(&self.topology, 0..self.topology.links.len());
+        self.state.turn_balls(&self.topology, self.topology.link_ids());
         most
     }
 
@@ -429,11 +424,9 @@ impl Stepper<'_> {
             }
             // What is left of a row that was not solved with: the constraints agreed as drawn and do not here.
             Refusal::Locked { row, residual } => {
-                let place = &self.topology.rows[row];
-                let closure = &self.topology.closures[place.closure];
-                let row: Row = closure.rows[place.index];
-                let kind = StopKind::Locked { joint: closure.joint, residual, is_length: row.is_length() };
-                (kind, closure.block)
+                let closure = self.topology.closure_of(row);
+                let is_length = self.topology.constraint(row).is_length();
+                (StopKind::Locked { joint: closure.joint, residual, is_length }, closure.block)
             }
             Refusal::Law { driver } => (StopKind::LawNotFinite { driver: DriverId(driver) }, None),
             Refusal::TooFar { driver } => (StopKind::TooFar { driver: DriverId(driver) }, None),
@@ -449,7 +442,7 @@ impl Stepper<'_> {
             failed_time,
             drivers: self.saved.drivers.iter().map(|f| f[0]).collect(),
             block,
-            pivot_ratio: block.map_or(1.0, |b| self.saved.pivots[b].0),
+            pivot_ratio: block.map_or(1.0, |b| self.saved.pivots[b.0].0),
             joints: block.map_or_else(Vec::new, |b| self.topology.joints_of_block(b)),
             remains: Vec::new(),
             closed: (path == Path::Assembly).then_some(self.time),

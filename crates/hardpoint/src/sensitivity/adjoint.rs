@@ -19,7 +19,7 @@ use crate::motion::kinematics::State;
 use crate::motion::level::BINOMIAL;
 use crate::motion::stepper::{LOCKED, Stepper};
 use crate::space::{Real, Twist, Wrench};
-use crate::topology::{Source, Topology};
+use crate::topology::{BlockId, ClosureId, CoordinateId, LinkId, RowId, Term, Topology};
 
 use super::direct::{DEFECT_FLOOR, Defect, FieldParts};
 use super::sensing::{Resisting, note};
@@ -33,14 +33,14 @@ pub(crate) struct Support {
     /// Bodies that the load comes to.
     bodies: Vec<usize>,
     /// Blocks, and links placed by drivers alone, from the load to ground.
-    blocks: Vec<usize>,
-    driven_links: Vec<usize>,
+    blocks: Vec<BlockId>,
+    driven_links: Vec<LinkId>,
     /// Markers that some variable moves.
     places: Vec<Place>,
     /// Per variable and marker that it moves: place, and body-fixed twist with the sign of that end.
     moves: Vec<(usize, usize, Twist)>,
     /// Per variable and kept value that it changes: row and rate.
-    keeps: Vec<(usize, usize, f64)>,
+    keeps: Vec<(usize, RowId, f64)>,
     /// Per variable and law that it changes: the driver, and what follows it.
     laws: Vec<(usize, DriverId, Follower)>,
 }
@@ -57,15 +57,15 @@ struct Place {
 /// What transmits a wrench.
 #[derive(Clone, Copy, Debug)]
 enum Carrier {
-    Link(usize),
-    Closure(usize),
+    Link(LinkId),
+    Closure(ClosureId),
 }
 
 /// What does as a driver says.
 #[derive(Clone, Copy, Debug)]
 enum Follower {
-    Coordinate(usize),
-    Row(usize),
+    Coordinate(CoordinateId),
+    Row(RowId),
 }
 
 impl Support {
@@ -77,27 +77,27 @@ impl Support {
         // all bodies that these stand between.
         let (mut blocks, mut driven_links) = (Vec::new(), Vec::new());
         let mut feels = (vec![false; topology.links.len()], vec![false; topology.closures.len()]);
-        for (b, block) in topology.blocks.iter().enumerate().rev() {
-            if block.links.clone().any(|k| pushed[topology.links[k].child.0]) {
+        for (b, block) in BlockId::each(&topology.blocks).rev() {
+            if block.link_ids().any(|k| pushed[topology[k].child.0]) {
                 blocks.push(b);
                 for &c in &block.closures {
-                    feels.1[c] = true;
+                    feels.1[c.0] = true;
                     // +- T_c on both of its bodies
-                    topology.closures[c].bodies.iter().for_each(|b| pushed[b.0] = true);
+                    topology[c].bodies.iter().for_each(|b| pushed[b.0] = true);
                 }
-                for k in block.links.clone().rev() {
-                    feels.0[k] = true;
+                for k in block.link_ids().rev() {
+                    feels.0[k.0] = true;
                     // T_k goes on to the parent
-                    pushed[topology.links[k].child.0] = true;
-                    pushed[topology.links[k].parent.0] = true;
+                    pushed[topology[k].child.0] = true;
+                    pushed[topology[k].parent.0] = true;
                 }
             }
         }
         for k in topology.driven_links().rev() {
-            if pushed[topology.links[k].child.0] {
-                feels.0[k] = true;
+            if pushed[topology[k].child.0] {
+                feels.0[k.0] = true;
                 driven_links.push(k);
-                pushed[topology.links[k].parent.0] = true;
+                pushed[topology[k].parent.0] = true;
             }
         }
         let bodies = (0..pushed.len()).filter(|&b| pushed[b]).collect();
@@ -120,27 +120,27 @@ impl Support {
         field: &FieldParts<f64>,
     ) {
         // What a link transmits pushes its child: it works on z_p - z_c; that of a closure pushes j, and works on z_j - z_i.
-        for m in field.links.iter().filter(|m| links[m.at]) {
-            let index = 2 * m.at + m.end;
+        for m in field.links.iter().filter(|m| links[m.at.0]) {
+            let index = 2 * m.at.0 + m.end;
             self.places.push(Place { index, joint: Carrier::Link(m.at), body: m.body });
             self.moves.push((v, index, if m.end == 0 { m.e } else { -m.e }));
         }
-        for m in field.closures.iter().filter(|m| closures[m.at]) {
-            let index = 2 * (links.len() + m.at) + m.end;
+        for m in field.closures.iter().filter(|m| closures[m.at.0]) {
+            let index = 2 * (links.len() + m.at.0) + m.end;
             self.places.push(Place { index, joint: Carrier::Closure(m.at), body: m.body });
             self.moves.push((v, index, if m.end == 1 { m.e } else { -m.e }));
         }
-        let kept = field.kept.iter().filter(|(row, _)| closures[topology.rows[*row].closure]);
+        let kept = field.kept.iter().filter(|(row, _)| closures[topology[*row].closure.0]);
         self.keeps.extend(kept.map(|&(row, rate)| (v, row, rate)));
         for driver in field.drivers() {
-            for (c, coordinate) in topology.coordinates.iter().enumerate() {
-                if coordinate.source == Source::Driven(driver) && links[coordinate.link] {
+            for (c, _) in topology.driven_coordinates().filter(|(_, d)| *d == driver) {
+                if links[topology[c].link.0] {
                     // nu_d = T_k . x_a
                     self.laws.push((v, driver, Follower::Coordinate(c)));
                 }
             }
-            for (c, closure) in topology.closures.iter().enumerate() {
-                if closure.driver == Some(driver) && closures[c] {
+            for (c, closure) in ClosureId::each(&topology.closures) {
+                if closure.driver == Some(driver) && closures[c.0] {
                     // nu_d = mu_r
                     self.laws.push((v, driver, Follower::Row(closure.first_row)));
                 }
@@ -226,63 +226,63 @@ impl Adjoint {
         let State { x, l, factors, rhs, .. } = state;
         let load = &mut load[n];
         for &b in &support.blocks {
-            let block = &topology.blocks[b];
+            let block = &topology[b];
             // What is known before: the parts of lower orders, on wrenches that turn.
             for &c in &block.closures {
-                let closure = &topology.closures[c];
+                let closure = &topology[c];
                 let mut known = none;
-                for r in closure.numbers() {
-                    rows[n][r] = zero;
-                    for m in (0..n).filter(|_| topology.rows[r].drives()) {
+                for r in closure.row_ids() {
+                    rows[n][r.0] = zero;
+                    for m in (0..n).filter(|_| topology[r].drives()) {
                         // - C(n,m) mu_r(m) l_r(n-m) for m < n, of (25), second line
-                        known = l[n - m][r].times_plus(rows[m][r] * -BINOMIAL[n][m], known);
+                        known = l[n - m][r.0].times_plus(rows[m][r.0] * -BINOMIAL[n][m], known);
                     }
                 }
-                closures[n][c] = known;
+                closures[n][c.0] = known;
                 load[closure.bodies[1].0] += known;
                 load[closure.bodies[0].0] -= known;
             }
             // First as if the closures took nothing: what then works on the unknowns is theirs to take.
-            for link in &topology.links[block.links.clone()] {
+            for link in block.link_ids().map(|k| &topology[k]) {
                 below[link.child.0] = load[link.child.0];
             }
             // Parents outside of the block get some, too, which nobody reads.
-            for link in topology.links[block.links.clone()].iter().rev() {
+            for link in block.link_ids().rev().map(|k| &topology[k]) {
                 // below(p) = F_p + sum of below(c) over its children: T_k as far as it is known
                 let carried = below[link.child.0];
                 below[link.parent.0] += carried;
             }
             for (column, &a) in block.unknowns.iter().enumerate() {
-                let k = topology.coordinates[a].link;
-                let mut works = below[topology.links[k].child.0].on(x[0][a]);
+                let k = topology[a].link;
+                let mut works = below[topology[k].child.0].on(x[0][a.0]);
                 for m in 0..n {
                     // below . x_a + sum_{m<n} C(n,m) T_k(m) . x_a(n-m): what (25), third line, comes to as long as mu(n) = 0
-                    works += links[m][k].on(x[n - m][a]) * BINOMIAL[n][m];
+                    works += links[m][k.0].on(x[n - m][a.0]) * BINOMIAL[n][m];
                 }
                 rhs[column] = works;
             }
             // J^T mu(n) = works
-            factors[b].solve_transposed(rhs);
+            factors[b.0].solve_transposed(rhs);
             for (k, &r) in block.selected.iter().enumerate() {
-                for (part, factor) in topology.parts_of_row(r) {
+                for Term { row, factor } in topology.parts_of_row(r) {
                     // mu of a coupler's terms: c_k mu
-                    rows[n][part] = rhs[k] * factor;
+                    rows[n][row.0] = rhs[k] * factor;
                 }
             }
             for &c in &block.closures {
-                let closure = &topology.closures[c];
+                let closure = &topology[c];
                 let mut taken = none;
-                for r in closure.numbers() {
-                    if topology.rows[r].drives() {
+                for r in closure.row_ids() {
+                    if topology[r].drives() {
                         // T_c(n) = known - sum mu_r(n) l_r
-                        taken = l[0][r].times_plus(-rows[n][r], taken);
+                        taken = l[0][r.0].times_plus(-rows[n][r.0], taken);
                     }
                 }
-                closures[n][c] += taken;
+                closures[n][c.0] += taken;
                 load[closure.bodies[1].0] += taken;
                 load[closure.bodies[0].0] -= taken;
             }
-            for k in block.links.clone().rev() {
+            for k in block.link_ids().rev() {
                 pass_on(topology, k, load, &mut links[n]);
             }
         }
@@ -298,8 +298,8 @@ impl Adjoint {
         for place in &support.places {
             let (pose, v, a) = (&state.pose[place.body], v[place.body], a[place.body]);
             let of = |n: usize| match place.joint {
-                Carrier::Link(k) => self.links[n][k],
-                Carrier::Closure(c) => self.closures[n][c],
+                Carrier::Link(k) => self.links[n][k.0],
+                Carrier::Closure(c) => self.closures[n][c.0],
             };
             let seen = &mut self.seen[place.index];
             // t   = Ad(X)^T T                                                                                     (20)
@@ -339,17 +339,17 @@ impl Adjoint {
         for &(v, row, rate) in &support.keeps {
             for n in 0..orders {
                 // mu_r(n) L'_r
-                gradient[v][n] += self.rows[n][row] * rate;
+                gradient[v][n] += self.rows[n][row.0] * rate;
             }
         }
         let (zero, x) = (0.0, &state.x);
         for &(v, driver, follower) in &support.laws {
             let part = |n: usize| match follower {
-                Follower::Row(r) => self.rows[n][r],
+                Follower::Row(r) => self.rows[n][r.0],
                 Follower::Coordinate(c) => {
-                    let k = topology.coordinates[c].link;
+                    let k = topology[c].link;
                     // nu_d(n) = sum_m C(n,m) T_k(m) . x_a(n-m)
-                    let term = |m: usize| self.links[m][k].on(x[n - m][c]) * BINOMIAL[n][m];
+                    let term = |m: usize| self.links[m][k.0].on(x[n - m][c.0]) * BINOMIAL[n][m];
                     (0..=n).map(term).fold(zero, |sum, x| sum + x)
                 }
             };
@@ -366,11 +366,11 @@ impl Adjoint {
 
 /// A link transmits what comes to its child, to its parent.
 #[inline(always)]
-fn pass_on(topology: &Topology, k: usize, load: &mut [Wrench], links: &mut [Wrench]) {
-    let link = &topology.links[k];
+fn pass_on(topology: &Topology, k: LinkId, load: &mut [Wrench], links: &mut [Wrench]) {
+    let link = &topology[k];
     // T_k = what the child bears with all that came to it; F_p <- F_p + T_k                               (18), first line
     let carried = load[link.child.0];
-    links[k] = carried;
+    links[k.0] = carried;
     load[link.parent.0] += carried;
 }
 
@@ -408,9 +408,8 @@ impl Watch {
         t: f64,
         resisting: &mut [Resisting],
     ) {
-        let left_out = |r: &usize| !topology.rows[*r].selected && !topology.rows[*r].is_term;
         self.worst.fill(None);
-        for r in (0..topology.rows.len()).filter(left_out) {
+        for r in topology.redundant() {
             self.row(adjoint, topology, state, r);
         }
         for (worst, resisting) in self.worst.iter().zip(resisting) {
@@ -421,12 +420,12 @@ impl Watch {
     }
 
     /// Enters row r where it fails most.
-    fn row(&mut self, adjoint: &mut Adjoint, topology: &Topology, state: &mut State<f64>, r: usize) {
+    fn row(&mut self, adjoint: &mut Adjoint, topology: &Topology, state: &mut State<f64>, r: RowId) {
         let (zero, none) = (0.0, Wrench::zero());
         self.sum.fill(zero);
         self.most.fill(zero);
-        for (k, factor) in topology.parts_of_row(r) {
-            let closure = &topology.closures[topology.rows[k].closure];
+        for Term { row, factor } in topology.parts_of_row(r) {
+            let closure = topology.closure_of(row);
             for (body, sign) in closure.bodies.into_iter().zip([-factor, factor]) {
                 if body == GROUND {
                     continue;
@@ -435,7 +434,7 @@ impl Watch {
                     self.supports[body.0].get_or_insert_with(|| adjoint.support(topology, &[body.0]));
                 self.side.fill([zero; 3]);
                 // l . W_i and l . W_j as outputs: the load F = l on that one body                                     (17)
-                let load = [(body.0, [state.l[0][k], none, none])];
+                let load = [(body.0, [state.l[0][row.0], none, none])];
                 adjoint.add_work(topology, state, support, &load, 1, &mut self.side);
                 for (v, [term, ..]) in self.side.iter().enumerate() {
                     enter(&mut self.sum[v], &mut self.most[v], *term * sign);
@@ -443,15 +442,14 @@ impl Watch {
             }
             for (v, field) in adjoint.fields.iter().enumerate() {
                 let (sum, most) = (&mut self.sum[v], &mut self.most[v]);
-                for m in field.closures.iter().filter(|m| m.at == topology.rows[k].closure) {
+                for m in field.closures.iter().filter(|m| m.at == topology[row].closure) {
                     // l . (z_j - z_i),    z = Ad(X) e                                                                     (8)
-                    let z = state.l[0][k].on(state.pose[m.body].carry(m.e));
+                    let z = state.l[0][row.0].on(state.pose[m.body].carry(m.e));
                     enter(sum, most, if m.end == 1 { z * factor } else { z * -factor });
                 }
                 // - (L' + df/dp): the sum of all is what (11) leaves of the row
-                let rate = field.kept.binary_search_by_key(&k, |l| l.0).map_or(zero, |n| field.kept[n].1);
                 let driven = closure.driver.map_or(zero, |d| field.law_rate(d, 0));
-                enter(sum, most, -(rate + driven) * factor);
+                enter(sum, most, -(field.kept_rate(row) + driven) * factor);
             }
         }
         for (v, field) in adjoint.fields.iter().enumerate() {

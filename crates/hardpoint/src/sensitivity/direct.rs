@@ -26,19 +26,19 @@ use crate::motion::kinematics::State;
 use crate::motion::level::{Flow, carried};
 use crate::motion::stepper::LOCKED;
 use crate::space::{Real, Twist};
-use crate::topology::{Source, Topology};
+use crate::topology::{BlockId, ClosureId, LinkId, RowId, Term, Topology};
 
 /// Design velocities of one variable laid out for the plan: body-fixed marker twists by link and
 /// by closure.
 #[derive(Clone, Debug)]
 pub(crate) struct FieldParts<T> {
     /// e of the markers that move, by link: they shift and turn what the freedoms start from or end in.
-    pub(super) links: Vec<Moving<T>>,
+    pub(super) links: Vec<Moving<T, LinkId>>,
     /// e of the markers that move, by closure: they open its rows.
-    pub(super) closures: Vec<Moving<T>>,
+    pub(super) closures: Vec<Moving<T, ClosureId>>,
     /// Rows whose kept values change, and their rates.
     /// L', ascending by row: m or a cosine per unit of b.
-    pub(super) kept: Vec<(usize, T)>,
+    pub(super) kept: Vec<(RowId, T)>,
     /// Parameters of drivers' laws that change, and their rates.
     /// dp/db, with driver and parameter.
     laws: Vec<(DriverId, usize, T)>,
@@ -58,52 +58,52 @@ pub(crate) struct FieldParts<T> {
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Reach {
     /// Links placed by drivers alone, whose children move.
-    pub driven_links: Vec<usize>,
+    pub driven_links: Vec<LinkId>,
     /// Blocks with anything to make up for.
-    pub blocks: Vec<usize>,
+    pub blocks: Vec<BlockId>,
     /// Closures of these blocks, and those between driven bodies.
-    pub closures: Vec<usize>,
+    pub closures: Vec<ClosureId>,
     /// Bodies that move.
     pub bodies: Vec<usize>,
 }
 
 impl Reach {
     /// Of changes at these links and closures, and of these drivers.
-    fn new(topology: &Topology, links: &[usize], closures: &[usize], drivers: &[DriverId]) -> Self {
+    fn new(topology: &Topology, links: &[LinkId], closures: &[ClosureId], drivers: &[DriverId]) -> Self {
         let bodies = 1 + topology.links.iter().map(|l| l.child.0).max().unwrap_or(0);
         // A change spreads the way that motion does: a body moves if its parent does, if its link's marker or driver does, or if its
         // block has a closure that is changed; what comes later in the order of solution never acts back.
         let (mut moves, mut reach) = (vec![false; bodies], Self::default());
-        let starts = |k: usize| {
-            let mut coordinates = topology.links[k].coordinates().map(|c| topology.coordinates[c].source);
-            links.binary_search(&k).is_ok()
-                || coordinates.any(|s| matches!(s, Source::Driven(d) if drivers.contains(&d)))
-        };
+        let mut driven = vec![false; topology.links.len()];
+        for (c, d) in topology.driven_coordinates() {
+            driven[topology[c].link.0] |= drivers.contains(&d);
+        }
+        let starts = |k: LinkId| links.binary_search(&k).is_ok() || driven[k.0];
         for k in topology.driven_links() {
-            let link = &topology.links[k];
+            let link = &topology[k];
             // W_c = W_p + z_p - z_c + x S, with S = df/dp: anything of it
             if moves[link.parent.0] || starts(k) {
                 moves[link.child.0] = true;
                 reach.driven_links.push(k);
             }
         }
-        let changed = |c: usize, moves: &[bool]| {
-            let closure = &topology.closures[c];
+        let changed = |c: ClosureId, moves: &[bool]| {
+            let closure = &topology[c];
             closures.binary_search(&c).is_ok()
                 || closure.bodies.iter().any(|b| moves[b.0])
                 || closure.driver.is_some_and(|d| drivers.contains(&d))
         };
-        for (b, block) in topology.blocks.iter().enumerate() {
+        for (b, block) in BlockId::each(&topology.blocks) {
             // Any right-hand side of the block: then, as far as the lists tell, all of its S may differ from 0.
             let felt = block.closures.iter().any(|&c| changed(c, &moves))
-                || block.links.clone().any(|k| moves[topology.links[k].parent.0] || starts(k));
+                || block.link_ids().any(|k| moves[topology[k].parent.0] || starts(k));
             if felt {
                 reach.blocks.push(b);
                 reach.closures.extend(&block.closures);
-                block.links.clone().for_each(|k| moves[topology.links[k].child.0] = true);
+                block.link_ids().for_each(|k| moves[topology[k].child.0] = true);
             }
         }
-        for (c, closure) in topology.closures.iter().enumerate() {
+        for (c, closure) in ClosureId::each(&topology.closures) {
             if closure.block.is_none() && changed(c, &moves) {
                 reach.closures.push(c);
             }
@@ -115,9 +115,9 @@ impl Reach {
 
 /// A marker that some design velocity moves.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Moving<T> {
+pub(super) struct Moving<T, At> {
     /// Which link or closure.
-    pub at: usize,
+    pub at: At,
     /// Which marker: 0 is the parent's of a link or i of a closure, 1 the child's or j.
     pub end: usize,
     /// The body that carries it.
@@ -126,7 +126,7 @@ pub(super) struct Moving<T> {
     pub e: Twist<T>,
 }
 
-impl<T: Real> Moving<T> {
+impl<T: Real, At: Copy> Moving<T, At> {
     /// `z = Ad(X) e`, carried by its body: `z. = ad(V) z, z.. = ad(A) z + ad(V) z.` (`docs/theory.md` (8)).
     #[inline(always)]
     fn carried(&self, state: &State<T>) -> [Twist<T>; 3] {
@@ -142,7 +142,7 @@ impl<T: Real> Moving<T> {
 impl<T: Real> FieldParts<T> {
     pub fn new(topology: &Topology, field: &Field<T>) -> Self {
         let (mut links, mut closures, mut kept) = (Vec::new(), Vec::new(), Vec::new());
-        for (at, link) in topology.links.iter().enumerate() {
+        for (at, link) in LinkId::each(&topology.links) {
             let Some(joint) = link.joint else { continue };
             for (end, body) in [(0, link.parent.0), (1, link.child.0)] {
                 let marker = if end == 0 { link.parent_end } else { 1 - link.parent_end };
@@ -152,18 +152,18 @@ impl<T: Real> FieldParts<T> {
                 }
             }
         }
-        for (at, closure) in topology.closures.iter().enumerate() {
+        for (at, closure) in ClosureId::each(&topology.closures) {
             for (end, body) in closure.bodies.into_iter().enumerate() {
                 if let Some(e) = field.twist_of(closure.joint, end) {
                     closures.push(Moving { at, end, body: body.0, e });
                 }
             }
             let Some(rates) = field.kept_rate(closure.joint) else { continue };
-            for (k, row) in closure.rows.iter().enumerate() {
+            for (r, row) in closure.numbered_rows() {
                 // L' of this row: `u . (V_j - V_i)` of a rod, the change of what else a row keeps; 0 of a row that keeps nothing.
-                let rate = rates.by(*row);
+                let rate = rates.by(row);
                 if rate.abs().decisive() > 0.0 {
-                    kept.push((closure.first_row + k, rate));
+                    kept.push((r, rate));
                 }
             }
         }
@@ -179,11 +179,11 @@ impl<T: Real> FieldParts<T> {
         drivers.sort_unstable();
         drivers.dedup();
         let law_rates = drivers.iter().map(|&d| (d, [T::zero(); 3])).collect();
-        let of = |moving: &[Moving<T>]| moving.iter().map(|m| m.at).collect::<Vec<_>>();
-        let mut changed = of(&closures);
-        changed.extend(kept.iter().map(|&(row, _)| topology.rows[row].closure));
+        let moved: Vec<LinkId> = links.iter().map(|m| m.at).collect();
+        let mut changed: Vec<ClosureId> = closures.iter().map(|m| m.at).collect();
+        changed.extend(kept.iter().map(|&(row, _)| topology[row].closure));
         changed.sort_unstable();
-        let reach = Reach::new(topology, &of(&links), &changed, &drivers);
+        let reach = Reach::new(topology, &moved, &changed, &drivers);
         let (laws, shifts) = (field.laws.clone(), field.shifts.clone());
         Self { links, closures, kept, laws, shifts, law_rates, scale, reach }
     }
@@ -231,6 +231,20 @@ impl<T: Real> FieldParts<T> {
         }
     }
 
+    /// How fast what a row keeps changes.
+    #[inline(always)]
+    pub(super) fn kept_rate(&self, row: RowId) -> T {
+        let found = self.kept.binary_search_by_key(&row, |kept| kept.0);
+        found.map_or(T::zero(), |n| self.kept[n].1)
+    }
+
+    /// The rows that the change may make fail, since the motion is not solved with them.
+    #[inline(always)]
+    fn left_out(&self, topology: &Topology) -> impl Iterator<Item = RowId> {
+        let rows = self.reach.closures.iter().flat_map(|&c| topology[c].row_ids());
+        rows.filter(|&r| topology[r].is_redundant())
+    }
+
     /// What a change of its law adds to a driver's value, speed or acceleration.
     #[inline(always)]
     pub(super) fn law_rate(&self, driver: DriverId, order: usize) -> T {
@@ -253,7 +267,7 @@ pub(crate) struct Direct<T> {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Defect {
     /// The row.
-    pub row: usize,
+    pub row: RowId,
     /// The defect, in the row's unit per unit of the variable.
     pub value: f64,
 }
@@ -261,7 +275,7 @@ pub(crate) struct Defect {
 impl Defect {
     /// Enters that of a row where it is worse than those of others, and than what may be round-off.
     #[inline(always)]
-    pub(super) fn enter<T: Real>(worst: &mut Option<Self>, row: usize, sum: T, limit: T) {
+    pub(super) fn enter<T: Real>(worst: &mut Option<Self>, row: RowId, sum: T, limit: T) {
         let (value, limit) = (sum.value(), limit.value());
         // Written so that NaN is a defect.
         if !(value <= limit) && worst.is_none_or(|w| value > w.value) {
@@ -309,9 +323,9 @@ impl<T: Real> Direct<T> {
             moved.extend_from_slice(&field.reach.bodies);
         }
         flow.drives |= !field.law_rates.is_empty();
-        let in_blocks = field.reach.blocks.iter().flat_map(|&b| topology.blocks[b].links.clone());
+        let in_blocks = field.reach.blocks.iter().flat_map(|&b| topology[b].link_ids());
         for k in field.reach.driven_links.iter().copied().chain(in_blocks) {
-            flow.moves.iter_mut().for_each(|moves| moves[k] = none);
+            flow.moves.iter_mut().for_each(|moves| moves[k.0] = none);
         }
         // moves(n) = z_p(n) - z_c(n): the first term of (11), (12), (13) on the right
         for m in &field.links {
@@ -339,7 +353,7 @@ impl<T: Real> Direct<T> {
             flow.move_end(topology, (m.at, m.end), z[N], &state.l[0]);
         }
         for &(row, rate) in field.kept.iter().filter(|_| N == 0) {
-            flow.demand[row] += rate;
+            flow.demand[row.0] += rate;
         }
         if flow.drives {
             follow_laws(topology, field, N, flow);
@@ -351,10 +365,9 @@ impl<T: Real> Direct<T> {
             flow.solve::<N>(topology, b, state.linear());
         }
         if let Some(apart) = flow.apart.get_mut(N) {
-            let in_blocks = |m: &Moving<T>| topology.closures[m.at].block.is_some();
-            for (m, z) in field.closures.iter().zip(z).filter(|(m, _)| in_blocks(m)) {
+            for (m, z) in field.closures.iter().zip(z).filter(|(m, _)| topology[m.at].block.is_some()) {
                 // D_j - D_i = (W_j - W_i) + (z_j - z_i), for the orders above; the first part stands there already.
-                apart[m.at] += if m.end == 1 { z[N] } else { -z[N] };
+                apart[m.at.0] += if m.end == 1 { z[N] } else { -z[N] };
             }
         }
     }
@@ -367,111 +380,74 @@ impl<T: Real> Direct<T> {
         field: &FieldParts<T>,
     ) -> Option<Defect> {
         let mut worst = None;
-        for &c in &field.reach.closures {
-            let closure = &topology.closures[c];
-            for r in closure.numbers() {
-                if !topology.rows[r].selected && !topology.rows[r].is_term {
-                    let (sum, limit) = self.judged_defect(topology, state, field, r);
-                    Defect::enter(&mut worst, r, sum, limit);
-                }
-            }
+        for (row, defect, limit) in self.judged_defects(topology, state, field) {
+            Defect::enter(&mut worst, row, defect, limit);
         }
         worst
     }
 
-    /// The left-out rows under the change that was solved last: `out(row, defect, limit)`, the size of the defect and what of it may
-    /// be round-off.
+    /// The left-out rows under the change that was solved last: each with the size of its defect and what of it may be round-off.
     pub fn judged_defects(
         &self,
         topology: &Topology,
         state: &State<T>,
         field: &FieldParts<T>,
-        mut out: impl FnMut(usize, T, T),
-    ) {
-        for &c in &field.reach.closures {
-            let closure = &topology.closures[c];
-            for r in closure.numbers() {
-                if !topology.rows[r].selected && !topology.rows[r].is_term {
-                    let (defect, limit) = self.judged_defect(topology, state, field, r);
-                    out(r, defect, limit);
-                }
-            }
-        }
+    ) -> impl Iterator<Item = (RowId, T, T)> {
+        field.left_out(topology).map(|r| {
+            let (sum, most) = self.row_defect(topology, state, field, r);
+            // What typed coordinates may be off by in the motion, they may be off by in the design's terms.
+            // abs(sum) <= max(1e-5 of the largest term, 1e-9 of the field's largest speed)                     (30)
+            let limit = most * T::constant(LOCKED);
+            (r, sum.abs(), limit.larger(field.scale * T::constant(DEFECT_FLOOR)))
+        })
     }
 
-    /// Defects of the left-out rows under the change that was solved last, with their signs: `out(row, defect)`.
+    /// Defects of the left-out rows under the change that was solved last, with their signs.
     pub fn defects(
         &self,
         topology: &Topology,
         state: &State<T>,
         field: &FieldParts<T>,
-        mut out: impl FnMut(usize, T),
-    ) {
-        for &c in &field.reach.closures {
-            let closure = &topology.closures[c];
-            for r in closure.numbers() {
-                if !topology.rows[r].selected && !topology.rows[r].is_term {
-                    out(r, self.row_defect(topology, state, field, r).0);
-                }
-            }
-        }
+    ) -> impl Iterator<Item = (RowId, T)> {
+        field.left_out(topology).map(|r| (r, self.row_defect(topology, state, field, r).0))
     }
 
     /// By how much row r fails, and the largest of the terms that must cancel.
     #[inline(always)]
-    fn row_defect(&self, topology: &Topology, state: &State<T>, field: &FieldParts<T>, r: usize) -> (T, T) {
+    fn row_defect(&self, topology: &Topology, state: &State<T>, field: &FieldParts<T>, r: RowId) -> (T, T) {
         let zero = T::zero();
         // l . (W_j - W_i) + l . (z_j - z_i) - (L' + df/dp), summed over a coupler's terms: (11) of a row that it was not solved with
         let (mut sum, mut most) = (zero, zero);
-        for (k, factor) in topology.parts_of_row(r) {
-            let closure = topology.rows[k].closure;
-            let [i, j] = topology.closures[closure].bodies;
-            let (l, w, factor) = (state.l[0][k], &self.flow.twists[0], T::constant(factor));
+        for Term { row, factor } in topology.parts_of_row(r) {
+            let closure = topology.closure_of(row);
+            let [i, j] = closure.bodies;
+            let (l, w, factor) = (state.l[0][row.0], &self.flow.twists[0], T::constant(factor));
             let mut add = |term: T| {
                 sum += term * factor;
                 most = most.larger((term * factor).abs());
             };
             add(l.on(w[j.0]));
             add(-l.on(w[i.0]));
-            for (m, z) in field.closures.iter().zip(&self.z).filter(|(m, _)| m.at == closure) {
+            for (m, z) in field.closures.iter().zip(&self.z).filter(|(m, _)| m.at == topology[row].closure) {
                 add(if m.end == 1 { l.on(z[0]) } else { -l.on(z[0]) });
             }
-            let rate = field.kept.binary_search_by_key(&k, |l| l.0).map_or(zero, |n| field.kept[n].1);
-            let driven = topology.closures[closure].driver.map_or(zero, |d| field.law_rate(d, 0));
-            add(-(rate + driven));
+            let driven = closure.driver.map_or(zero, |d| field.law_rate(d, 0));
+            add(-(field.kept_rate(row) + driven));
         }
         (sum, most)
-    }
-
-    /// The size of the defect of row r, and what of it may be round-off.
-    #[inline(always)]
-    fn judged_defect(
-        &self,
-        topology: &Topology,
-        state: &State<T>,
-        field: &FieldParts<T>,
-        r: usize,
-    ) -> (T, T) {
-        let (sum, most) = self.row_defect(topology, state, field, r);
-        // What typed coordinates may be off by in the motion, they may be off by in the design's terms.
-        // abs(sum) <= max(1e-5 of the largest term, 1e-9 of the field's largest speed)                     (30)
-        let limit = most * T::constant(LOCKED);
-        (sum.abs(), limit.larger(field.scale * T::constant(DEFECT_FLOOR)))
     }
 }
 
 /// Driven coordinates, in the tree and across cuts, follow the change of their laws.
 fn follow_laws<T: Real>(topology: &Topology, field: &FieldParts<T>, order: usize, flow: &mut Flow<T>) {
-    for (c, coordinate) in topology.coordinates.iter().enumerate() {
-        if let Source::Driven(d) = coordinate.source {
-            // S(n) = df(n)/dp of a driven coordinate of the tree: it is q = f(t, p) itself.
-            flow.speeds[order][c] = field.law_rate(d, order);
-        }
+    for (c, d) in topology.driven_coordinates() {
+        // S(n) = df(n)/dp of a driven coordinate of the tree: it is q = f(t, p) itself.
+        flow.speeds[order][c.0] = field.law_rate(d, order);
     }
     for closure in &topology.closures {
         if let Some(d) = closure.driver {
             // The same of a driver across a cut joint, in its own row.
-            flow.demand[closure.first_row] += field.law_rate(d, order);
+            flow.demand[closure.first_row.0] += field.law_rate(d, order);
         }
     }
 }

@@ -21,7 +21,7 @@ use crate::motion::level::turn_twists;
 use crate::motion::stepper::Stepper;
 use crate::number::{Dual, Real};
 use crate::space::{Mat3, Pose, Twist, Vec3, Wrench};
-use crate::topology::{Source, Topology};
+use crate::topology::{ClosureId, LinkId, SetBy, Topology};
 
 use super::direct::{Direct, FieldParts, Moving};
 
@@ -91,10 +91,10 @@ impl First {
         // W_u, S_u by (11), and z_u = Ad(X) e_u by (8)
         self.direct.solve_position(topology, state, &self.field);
         for m in self.field.links.iter().filter(|m| m.end == 0) {
-            self.links[m.at] = state.pose[m.body].carry(m.e);
+            self.links[m.at.0] = state.pose[m.body].carry(m.e);
         }
         for m in &self.field.closures {
-            self.closures[m.at][m.end] = state.pose[m.body].carry(m.e);
+            self.closures[m.at.0][m.end] = state.pose[m.body].carry(m.e);
         }
     }
 
@@ -104,13 +104,13 @@ impl First {
     }
 
     /// The twist of the frame that the freedoms of link k start from.
-    fn start(&self, topology: &Topology, k: usize) -> Twist {
-        self.w()[topology.links[k].parent.0] + self.links[k]
+    fn start(&self, topology: &Topology, k: LinkId) -> Twist {
+        self.w()[topology[k].parent.0] + self.links[k.0]
     }
 
     /// How the markers of a closure go.
-    fn ends(&self, topology: &Topology, c: usize) -> EndRates<f64> {
-        let ([i, j], [z_i, z_j], none) = (topology.closures[c].bodies, self.closures[c], Twist::ZERO);
+    fn ends(&self, topology: &Topology, c: ClosureId) -> EndRates<f64> {
+        let ([i, j], [z_i, z_j], none) = (topology[c].bodies, self.closures[c.0], Twist::ZERO);
         // D_w = W_w + z_w, in place of V; second rates are not asked for
         EndRates { v_i: self.w()[i.0] + z_i, v_j: self.w()[j.0] + z_j, a_i: none, a_j: none }
     }
@@ -167,12 +167,6 @@ impl Seconds {
             let moving: Vec<Dual> = values.iter().zip(speeds).map(|(v, d)| Dual { v: *v, d }).collect();
             let field = directions[u].field(effects, &moving);
             let field = FieldParts::new(topology, &field);
-            // e_u and de_u/dw
-            let twists = |of: &[Moving<Dual>]| {
-                let part =
-                    |e: Twist<Dual>, part: fn(Dual) -> f64| Twist { w: e.w.map(part), v: e.v.map(part) };
-                of.iter().map(|m| [part(m.e, |x| x.v), part(m.e, |x| x.d)]).collect()
-            };
             let laws = [LAW_STEP, -LAW_STEP].map(|h| {
                 // b + h w and b - h w
                 let moved: Vec<f64> = moving.iter().map(|x| x.v + h * x.d).collect();
@@ -182,8 +176,8 @@ impl Seconds {
             let drivers: Vec<DriverId> = field.drivers().collect();
             Pair {
                 of: [u, w],
-                links: twists(&field.links),
-                closures: twists(&field.closures),
+                links: field.links.iter().map(parts).collect(),
+                closures: field.closures.iter().map(parts).collect(),
                 z: Vec::with_capacity(field.links.len() + field.closures.len()),
                 laws: drivers.iter().map(of_driver).collect(),
                 law_rates: drivers.iter().map(|d| (*d, 0.0)).collect(),
@@ -247,6 +241,12 @@ impl Seconds {
     }
 }
 
+/// The body-fixed twist of a marker that moves, and the derivative of that.
+fn parts<At>(m: &Moving<Dual, At>) -> [Twist; 2] {
+    let part = |part: fn(Dual) -> f64| Twist { w: m.e.w.map(part), v: m.e.v.map(part) };
+    [part(|x| x.v), part(|x| x.d)]
+}
+
 /// The variables that a direction changes, and how fast.
 pub(crate) fn along(direction: &[f64]) -> Vec<(crate::model::VariableId, f64)> {
     let all = direction.iter().enumerate().map(|(k, d)| (crate::model::VariableId(k), *d));
@@ -289,20 +289,20 @@ impl Pair {
     fn solve(&mut self, topology: &Topology, state: &mut State<f64>, firsts: &mut [First]) {
         let ([u, w], reach) = (self.of, &self.field.reach);
         let first = &firsts[w];
-        let in_blocks = reach.blocks.iter().flat_map(|&b| topology.blocks[b].links.clone());
+        let in_blocks = reach.blocks.iter().flat_map(|&b| topology[b].link_ids());
         let links = reach.driven_links.iter().copied().chain(in_blocks);
         // x^w = ad(W_w + z_w + sum over the freedoms before) x, and l^w for markers that move with D_w
         for k in links.clone() {
             let v = [first.start(topology, k)];
-            turn_twists(&topology.links[k], v, &mut state.x, &first.direct.flow.speeds);
+            turn_twists(&topology[k], v, &mut state.x, &first.direct.flow.speeds);
         }
         for &c in &reach.closures {
-            let (closure, mut rates) = (&topology.closures[c], first.ends(topology, c));
+            let (closure, mut rates) = (&topology[c], first.ends(topology, c));
             if let Some(k) = closure.contact {
                 rates = state.walk(c, k, &rates);
             }
-            for (n, row) in closure.rows.iter().enumerate() {
-                [state.l[1][closure.first_row + n], _] = row.wrench_rates(&state.ends[c], &rates);
+            for (r, row) in closure.numbered_rows() {
+                [state.l[1][r.0], _] = row.wrench_rates(&state.ends[c.0], &rates);
             }
         }
         // z_u^w = ad(W_w) z_u + Ad(X) de_u/dw
@@ -316,11 +316,11 @@ impl Pair {
         let (z_links, z_closures) = self.z.split_at(self.links.len());
         let flow = &mut firsts[u].direct.flow;
         for k in links {
-            flow.moves[1][k] = Twist::ZERO;
-            for c in topology.links[k].coordinates() {
-                if let Source::Driven(d) = topology.coordinates[c].source {
+            flow.moves[1][k.0] = Twist::ZERO;
+            for c in topology[k].coordinates() {
+                if let SetBy::Driver(d) = topology[c].set_by {
                     // S_uw of a driven coordinate
-                    flow.speeds[1][c] = self.law_rate(d);
+                    flow.speeds[1][c.0] = self.law_rate(d);
                 }
             }
         }
@@ -329,14 +329,14 @@ impl Pair {
         }
         for &c in &reach.closures {
             // rhs = L_uw - l^w . (D_u,j - D_u,i) - l . (z_u,j^w - z_u,i^w), the middle by `Flow::solve`            (15)
-            flow.ask(topology, c, topology.closures[c].driver.map_or(0.0, |d| self.law_rate(d)));
+            flow.ask(topology, c, topology[c].driver.map_or(0.0, |d| self.law_rate(d)));
         }
         for (m, &z) in self.field.closures.iter().zip(z_closures) {
             flow.move_end(topology, (m.at, m.end), z, &state.l[0]);
         }
         for &(row, rate) in &self.field.kept {
             // L_uw
-            flow.demand[row] += rate.d;
+            flow.demand[row.0] += rate.d;
         }
         flow.follow::<1>(topology, reach.driven_links.iter().copied(), &state.x);
         for &b in &reach.blocks {

@@ -112,18 +112,16 @@ pub(crate) fn admissibility(
 
 /// Keeps in mind which joint resists a variable most, and when.
 pub(super) fn note(resisting: &mut Resisting, topology: &Topology, defect: Defect, t: f64) {
-    let place = &topology.rows[defect.row];
-    let closure = &topology.closures[place.closure];
-    let row = closure.rows[place.index];
+    let (joint, row) = (topology.closure_of(defect.row).joint, topology.constraint(defect.row));
     let (joints, time) = resisting;
     // A periodic motion comes back to its largest defect: the first time counts, not round-off.
     if joints.iter().all(|j| defect.value > j.value * (1.0 + 1e-9)) {
         *time = t;
     }
-    match joints.iter_mut().find(|j| j.joint == closure.joint) {
+    match joints.iter_mut().find(|j| j.joint == joint) {
         Some(j) if defect.value > j.value => (j.row, j.value) = (row, defect.value),
         Some(_) => {}
-        None => joints.push(JointDefect { joint: closure.joint, row, value: defect.value }),
+        None => joints.push(JointDefect { joint, row, value: defect.value }),
     }
 }
 
@@ -173,10 +171,10 @@ pub(crate) fn record_derivatives(
         // What is recorded does not know the time: z, L' and shifts, but no df/dp of a law.
         field.set_shifts();
         direct.solve(topology, state, &field);
-        direct.judged_defects(topology, state, &field, |row, defect, limit| {
+        for (row, defect, limit) in direct.judged_defects(topology, state, &field) {
             recorded.defects.push((VariableId(v), row));
             defects.extend([defect, limit]);
-        });
+        }
         for &body in &field.reach.bodies {
             recorded.results.extend(components(&direct.flow, state, body));
             recorded.moved.push((VariableId(v), BodyId(body)));

@@ -118,6 +118,11 @@ impl<T: Real> Vec3<T> {
         )
     }
 
+    /// The mirror image in the plane square to this unit normal: `v - 2 (v . n) n`.
+    pub fn mirrored(self, normal: Self) -> Self {
+        self - normal * (T::constant(2.0) * self.dot(normal))
+    }
+
     /// Length.
     #[inline(always)]
     pub fn norm(self) -> T {
@@ -191,5 +196,20 @@ impl<T: SubAssign> SubAssign for Vec3<T> {
         self.x -= o.x;
         self.y -= o.y;
         self.z -= o.z;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_mirror_image_turns_around_along_the_normal_only() {
+        let v = Vec3::new(1.0, 2.0, -3.0);
+        assert_eq!(v.mirrored(Vec3::AXES[1]), Vec3::new(1.0, -2.0, -3.0));
+        let n = Vec3::new(0.6, 0.0, 0.8);
+        let image = v.mirrored(n);
+        assert!((image.dot(n) + v.dot(n)).abs() < 1e-15 && (image.cross(n) - v.cross(n)).norm() < 1e-15);
+        assert!((image.mirrored(n) - v).norm() < 1e-15);
     }
 }

@@ -1,6 +1,6 @@
 //! Finite differences by re-solving moved designs: the slow, inexact way, to check the exact one.
 
-use crate::model::{Dimension, Model, VariableId};
+use crate::model::{Dimension, VariableId};
 use crate::motion::{BodyState, Stop};
 use crate::run::{Analysis, Solution};
 use crate::sensitivity::BodySensitivity;
@@ -40,25 +40,6 @@ pub struct Difference {
     pub bodies: Vec<BodySensitivity>,
     /// `outputs[k * m + j]`: of value, rate and acceleration of output j at time k.
     pub outputs: Vec<[f64; 3]>,
-}
-
-/// The change of a variable that moves the farthest marker by the mechanism's size, or turns it by 1 rad.
-///
-/// Steps are given as parts of it, so that they mean the same for every variable and model.
-pub fn natural_step(model: &Model, variable: VariableId) -> f64 {
-    let size = model.size();
-    let geometry = model.geometry(&[]);
-    let speed = model
-        .field(variable)
-        .markers
-        .iter()
-        .map(|m| {
-            let s = geometry.markers[m.joint.0][m.end].r;
-            // max(abs(R U), abs(V) / size),  V = e_v + e_w x s
-            m.twist.w.norm().max(m.twist.at(s).norm() / size)
-        })
-        .fold(0.0, f64::max);
-    if speed > 0.0 { 1.0 / speed } else { size }
 }
 
 /// Re-solves the designs that a scheme asks for, for each variable and step, eight at a time, and divides. `nominal` is the

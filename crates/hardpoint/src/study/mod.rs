@@ -1,8 +1,10 @@
 //! Studies: questions that take many solutions.
 
+mod comparison;
 mod difference;
 mod gradient;
 mod jerk;
+mod magnitude;
 mod metric;
 mod nearest;
 mod second;
@@ -10,17 +12,16 @@ mod validity;
 mod verify;
 mod whatif;
 
-pub use difference::{Difference, Scheme, finite_differences, natural_step};
+pub use comparison::{Comparison, StepError};
+pub use difference::{Difference, Scheme, finite_differences};
 pub use gradient::{Gradients, Method};
 pub use jerk::Jerks;
+pub use magnitude::Magnitude;
 pub use metric::{MetricValue, metrics};
 pub use nearest::{Nearest, nearest_admissible};
 pub use second::SecondDerivatives;
 pub use validity::{Validity, validity};
-pub use verify::{
-    Check, CheckOutcome, PASS, PASS_ONE_SIDED, StepError, Verification, VerifyOptions,
-    compare_with_difference, verify,
-};
+pub use verify::{Check, CheckOutcome, PASS, PASS_ONE_SIDED, Verification, VerifyOptions, verify};
 pub use whatif::{
     Foresight, WhatIf, add_coordinates, add_tilts, repeats_coordinate, variable_named, variable_names,
     what_if,

@@ -6,8 +6,6 @@ use crate::run::{Analysis, Walk};
 use crate::sensitivity::{Direct, FieldParts, conditions_at_design};
 use crate::space::Vec3;
 
-use super::difference::natural_step;
-
 /// Conditions that the motion adds are taken at so many of its output times, evenly.
 const TIMES: usize = 24;
 /// A condition is met where its defect is below this part of what the largest change makes of the strongest condition: some
@@ -32,12 +30,12 @@ pub struct Nearest {
 ///
 /// It is the least-squares projection onto the null space of these conditions, over the variables asked for and all others of
 /// the model that move one coordinate of a hardpoint or tilt one joint ([`add_coordinates`](super::add_coordinates),
-/// [`add_tilts`](super::add_tilts)), each measured by its [`natural_step`]; what was asked for is kept as long as others can
+/// [`add_tilts`](super::add_tilts)), each measured by its [natural step](crate::model::Model::natural_step); what was asked for is kept as long as others can
 /// make up for it.
 pub fn nearest_admissible(analysis: &Analysis<'_>, change: &[f64]) -> Nearest {
     let model = analysis.model();
     let change = model.whole(change);
-    let scales: Vec<f64> = (0..change.len()).map(|v| natural_step(model, VariableId(v))).collect();
+    let scales: Vec<f64> = (0..change.len()).map(|v| model.natural_step(VariableId(v))).collect();
     let asked: Vec<f64> = change.iter().zip(&scales).map(|(x, scale)| x / scale).collect();
     let weight: Vec<f64> = (0..asked.len()).map(|v| weight(model, &asked, v)).collect();
     let mut rows = conditions(analysis, &scales);
@@ -137,18 +135,16 @@ fn conditions(analysis: &Analysis<'_>, scales: &[f64]) -> Vec<Vec<f64>> {
                 for (v, field) in parts.iter_mut().enumerate() {
                     field.set_time(|d| stepper.parts.law_of(d.0), model.times[done]);
                     direct.solve_position(&stepper.topology, &mut stepper.state, field);
-                    direct.defects(&stepper.topology, &stepper.state, field, |r, value| {
+                    for (r, value) in direct.defects(&stepper.topology, &stepper.state, field) {
                         let at = numbers.iter().position(|n| *n == r).unwrap_or_else(|| {
                             numbers.push(r);
                             rows.push(vec![0.0; variables]);
                             numbers.len() - 1
                         });
-                        let place = &topology.rows[r];
-                        let row = topology.closures[place.closure].rows[place.index];
-                        let unit = if row.is_length() { size } else { 1.0 };
+                        let unit = if topology.constraint(r).is_length() { size } else { 1.0 };
                         // l . (D_j - D_i) - L' of a left-out row at this output time                                 (11)
                         rows[first + at][v] = value * scales[v] / unit;
-                    });
+                    }
                 }
             }
             done += 1;

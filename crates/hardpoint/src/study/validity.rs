@@ -3,7 +3,7 @@
 use crate::model::VariableId;
 use crate::run::{Analysis, Solution};
 
-use super::difference::natural_step;
+use super::magnitude::Magnitude;
 
 /// The second-order part may be this part of the first-order one where a linear prediction is still trusted.
 const LINEAR: f64 = 0.05;
@@ -11,8 +11,6 @@ const LINEAR: f64 = 0.05;
 /// variable. Second derivatives hold to some 1e-13 of the terms that cancel in them, and these may be a thousand times larger
 /// than the first-order part; what bends at all in a mechanism bends by far more.
 const ROUND_OFF: f64 = 1e-10;
-/// A sensitivity below this part of the output's change over a natural step, m or rad, is none.
-const NOTHING: f64 = 1e-10;
 /// A variable that moves an output by less than this part of what the strongest does is not judged by it: next to nothing, any
 /// bend is large.
 const SLIGHT: f64 = 1e-2;
@@ -57,10 +55,10 @@ pub fn validity(
         d.fold(0.0, f64::max)
     };
     let firsts: Vec<Vec<f64>> = (0..variables).map(|v| (0..outputs).map(|m| first(v, m)).collect()).collect();
-    let natural: Vec<f64> = (0..variables).map(|v| natural_step(model, VariableId(v))).collect();
+    let natural: Vec<f64> = (0..variables).map(|v| model.natural_step(VariableId(v))).collect();
     let strongest = |m: usize| followed.iter().map(|&v| firsts[v][m] * natural[v]).fold(0.0, f64::max);
     let strongest: Vec<f64> = (0..outputs).map(strongest).collect();
-    let size = model.size();
+    let magnitude = Magnitude::of_motion(model, &solution.motion);
     let per_variable = solution.motion.len() * (8 * outputs + 48 * model.bodies.len());
     for (part, group) in followed.chunks((MOST_BYTES / per_variable).max(1)).enumerate() {
         if !more(part) {
@@ -74,10 +72,10 @@ pub fn validity(
             for (m, output) in measured.outputs.iter().enumerate().filter(|(_, o)| o.known.by_position) {
                 // max over the motion of abs(y_bb) / 2
                 let bend = 0.5 * (0..steps).map(|k| second.value(k, p, m).abs()).fold(0.0, f64::max);
-                let (first, unit) = (firsts[v][m], size.powi(output.dimension.length.into()));
-                if first * natural[v] > f64::max(NOTHING * unit, SLIGHT * strongest[m]) {
+                let first = firsts[v][m] * natural[v];
+                if first > f64::max(magnitude.round_off(output.dimension, 0), SLIGHT * strongest[m]) {
                     found[v].linear_up_to[m] =
-                        Some(natural[v] * linear_up_to(first * natural[v], bend * natural[v].powi(2)));
+                        Some(natural[v] * linear_up_to(first, bend * natural[v].powi(2)));
                 }
             }
         }

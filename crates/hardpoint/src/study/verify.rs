@@ -4,12 +4,12 @@
 
 use std::ops::ControlFlow;
 
-use crate::model::{Dimension, VariableId};
+use crate::model::VariableId;
 use crate::run::{Analysis, Solution};
-use crate::sensitivity::{Admissibility, BodySensitivity};
-use crate::space::Vec3;
+use crate::sensitivity::Admissibility;
 
-use super::difference::{Difference, Scheme, finite_differences, natural_step};
+use super::comparison::{Comparison, StepError};
+use super::difference::{Scheme, finite_differences};
 
 /// A quantity passes if central differences agree to this at some step of the sweep, relative to the largest sensitivity of its
 /// kind. The best that they can reach in a well-conditioned mechanism is about (machine epsilon)^(2/3) = 4e-11;
@@ -25,7 +25,7 @@ pub const PASS_ONE_SIDED: f64 = 4e-4;
 pub struct VerifyOptions {
     /// Which designs are compared.
     pub scheme: Scheme,
-    /// Steps as parts of [`natural_step`], from coarse to fine.
+    /// Steps as parts of [natural steps](crate::model::Model::natural_step), from coarse to fine.
     pub steps: Vec<f64>,
 }
 
@@ -69,9 +69,9 @@ pub struct Check {
     pub variable: VariableId,
     /// What came of it.
     pub outcome: CheckOutcome,
-    /// Every quantity, in the order of [`compare_with_difference`], at the step where it agrees best. Truncation and round-off are
-    /// not the same for all of them, so that no one step suits all.
-    pub quantities: Vec<StepError>,
+    /// Every quantity at the step where it agrees best. Truncation and round-off are not the same for all of them, so that no one
+    /// step suits all.
+    pub quantities: Comparison,
     /// At every step that could be solved, the quantity that agrees worst there.
     pub sweep: Vec<StepError>,
 }
@@ -89,23 +89,10 @@ pub enum CheckOutcome {
     NotSolved,
 }
 
-/// Analytic against finite difference of one quantity at one step.
-#[derive(Clone, Debug, PartialEq)]
-pub struct StepError {
-    /// The step, m, rad, or units of tau.
-    pub step: f64,
-    /// Largest relative deviation over all times.
-    pub error: f64,
-    /// The quantity: `knuckle acceleration`, `toe rate`, ...
-    pub quantity: String,
-    /// The time where it is, s.
-    pub time: f64,
-}
-
 impl Check {
     /// The quantity that agrees worst at its own best step, which decides.
     pub fn worst(&self) -> Option<&StepError> {
-        worst_of(&self.quantities)
+        self.quantities.worst()
     }
 }
 
@@ -142,10 +129,6 @@ pub fn verify(
     Verification { scheme: options.scheme, checks, interrupted }
 }
 
-fn worst_of(errors: &[StepError]) -> Option<&StepError> {
-    errors.iter().max_by(|a, b| a.error.total_cmp(&b.error))
-}
-
 fn check_variable(
     analysis: &Analysis<'_>,
     solution: &Solution,
@@ -156,128 +139,25 @@ fn check_variable(
         let (quantities, sweep) = Default::default();
         return Check { variable, outcome: CheckOutcome::CannotFollow, quantities, sweep };
     }
-    let natural = natural_step(analysis.model(), variable);
+    let natural = analysis.model().natural_step(variable);
     let steps: Vec<(VariableId, f64)> = options.steps.iter().map(|part| (variable, part * natural)).collect();
-    let mut quantities: Vec<StepError> = Vec::new();
+    let mut quantities = Comparison::default();
     let mut sweep = Vec::new();
     for d in finite_differences(analysis, solution, options.scheme, &steps).into_iter().flatten() {
-        let errors = compare_with_difference(analysis, solution, &d);
-        sweep.push(worst_of(&errors).cloned().unwrap_or_else(|| StepError {
+        let comparison = Comparison::of(analysis.model(), solution, &d);
+        sweep.push(comparison.worst().cloned().unwrap_or_else(|| StepError {
             step: d.step,
             error: 0.0,
             quantity: "nothing to compare".into(),
             time: 0.0,
         }));
-        if quantities.is_empty() {
-            quantities = errors;
-        } else {
-            let better = quantities.iter_mut().zip(errors).filter(|(best, e)| e.error < best.error);
-            better.for_each(|(best, e)| *best = e);
-        }
+        quantities.keep_better(comparison);
     }
-    let passed = quantities.iter().all(|q| q.error <= options.scheme.tolerance());
+    let passed = quantities.errors().iter().all(|q| q.error <= options.scheme.tolerance());
     let outcome = match (sweep.is_empty() || solution.motion.is_empty(), passed) {
         (true, _) => CheckOutcome::NotSolved,
         (_, true) => CheckOutcome::Passed,
         (_, false) => CheckOutcome::Failed,
     };
     Check { variable, outcome, quantities, sweep }
-}
-
-/// Largest relative deviation of every quantity, in this order: position, orientation, velocity, angular
-/// velocity, acceleration, angular acceleration, each of all bodies but ground; then value, rate and
-/// acceleration of every output.
-///
-/// A deviation is relative to the largest sensitivity of its kind over all bodies and times, or, where
-/// the design hardly matters, to what one natural step would have to change for one part in a thousand of
-/// the motion itself.
-pub fn compare_with_difference(
-    analysis: &Analysis<'_>,
-    solution: &Solution,
-    d: &Difference,
-) -> Vec<StepError> {
-    /// A sensitivity that moves a quantity by less than this part of it per natural step counts as zero.
-    const NEGLIGIBLE: f64 = 1e-3;
-    /// An order that changes the one before it by less than this part during the run is round-off.
-    const STEADY: f64 = 1e-12;
-    let model = analysis.model();
-    let natural = natural_step(model, d.variable);
-    let mut errors = Vec::new();
-    let Some(times) = (!solution.motion.is_empty()).then_some(&solution.motion.times) else { return errors };
-    let steps = times.len();
-    let size = model.size();
-
-    let mut push = |name: String, scale: f64, deviations: &mut dyn Iterator<Item = f64>| {
-        let (k, most) = deviations.enumerate().fold((0, 0.0), |best, (k, x)| {
-            // A NaN deviation must win.
-            if !(x <= best.1) { (k, x) } else { best }
-        });
-        let error = if most == 0.0 { 0.0 } else { most / scale };
-        let error = if error.is_nan() { f64::INFINITY } else { error };
-        errors.push(StepError { step: d.step, error, quantity: name, time: times[k] });
-    };
-
-    // The motion's own magnitude at orders 0, 1, 2: lengths in sizes, angles in rad. Where a motion
-    // stands still, or runs at a steady speed, the next order is round-off: it is judged as if it made up
-    // the order before it once in the run.
-    let span = if steps > 1 { times[steps - 1] - times[0] } else { 1.0 };
-    let mut magnitude = solution.motion.states().fold([1.0_f64, 0.0, 0.0], |m, s| {
-        [
-            m[0],
-            m[1].max(s.omega.norm()).max(s.v.norm() / size),
-            m[2].max(s.alpha.norm()).max(s.a.norm() / size),
-        ]
-    });
-    for order in 1..3 {
-        if magnitude[order] * span < STEADY * magnitude[order - 1] {
-            magnitude[order] = magnitude[order - 1] / span;
-        }
-    }
-    let floor = |order: usize, of: Dimension| {
-        let order = (order as i8 - of.time).clamp(0, 2) as usize;
-        NEGLIGIBLE * magnitude[order] * size.powi(of.length.into()) / natural
-    };
-
-    type Of = fn(&BodySensitivity) -> Vec3;
-    let (length, angle) = (Dimension::LENGTH, Dimension::ANGLE);
-    let kinds: [(&str, Of, usize, Dimension); 6] = [
-        ("position", |s| s.dr, 0, length),
-        ("orientation", |s| s.dpi, 0, angle),
-        ("velocity", |s| s.dv, 1, length),
-        ("angular velocity", |s| s.domega, 1, angle),
-        ("acceleration", |s| s.da, 2, length),
-        ("angular acceleration", |s| s.dalpha, 2, angle),
-    ];
-    let n = solution.motion.bodies;
-    // Time by time and body by body, like the difference; nothing where the mechanism cannot follow the variable.
-    let exact = (0..steps).filter_map(|k| solution.sensitivities.at(k, d.variable.0));
-    let exact: Vec<BodySensitivity> = exact.flat_map(|bodies| bodies.iter()).collect();
-    for (kind, of, order, dimension) in kinds {
-        let analytic = |k: usize, i: usize| exact.get(k * n + i).map(of);
-        let largest = exact.iter().map(|s| of(s).norm()).fold(0.0, f64::max);
-        let scale = largest.max(floor(order, dimension));
-        for i in 1..n {
-            let name = format!("{} {kind}", model.bodies[i].name);
-            let mut deviations = (0..steps)
-                .map(|k| analytic(k, i).map_or(f64::NAN, |a| (a - of(&d.bodies[k * n + i])).norm()));
-            push(name, scale, &mut deviations);
-        }
-    }
-    let measured = &solution.measured;
-    let columns = measured.outputs.len();
-    for (m, output) in measured.outputs.iter().enumerate() {
-        for order in 0..output.known.orders {
-            let analytic = |k: usize| measured.d(k, d.variable, m)[order];
-            let largest = (0..steps).map(|k| analytic(k).abs()).fold(0.0, f64::max);
-            let scale = largest.max(floor(order, output.dimension));
-            // Next to a time without a number the neighbours' may be anything.
-            let defined =
-                |k: &usize| measured.value(*k, m)[..output.known.orders].iter().all(|x| x.is_finite());
-            let deviation = |k: usize| (analytic(k) - d.outputs[k * columns + m][order]).abs();
-            let mut deviations = (0..steps).map(|k| if defined(&k) { deviation(k) } else { 0.0 });
-            let name = output.order_name(order);
-            push(if order == 0 { format!("{name} value") } else { name }, scale, &mut deviations);
-        }
-    }
-    errors
 }

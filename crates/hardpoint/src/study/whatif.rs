@@ -6,7 +6,6 @@ use crate::run::{Analysis, Solution};
 use crate::sensitivity::{Admissibility, JointDefect, admissibility_at_design};
 use crate::space::Vec3;
 
-use super::difference::natural_step;
 use super::second::SecondDerivatives;
 use super::validity::linear_up_to;
 
@@ -61,7 +60,7 @@ pub fn what_if(analysis: &Analysis<'_>, today: Solution, change: &[f64]) -> What
         _ => Vec::new(),
     };
     let field = analysis.effects().field_along(&crate::sensitivity::along(&change), &model.whole(&[]));
-    let part = |(v, by): (usize, &f64)| by.abs() / natural_step(model, VariableId(v));
+    let part = |(v, by): (usize, &f64)| by.abs() / model.natural_step(VariableId(v));
     WhatIf {
         part: change.iter().enumerate().map(part).fold(0.0, f64::max),
         exact: analysis.run_design(&change),

@@ -6,11 +6,14 @@ use petgraph::algo::kosaraju_scc;
 use petgraph::graph::{DiGraph, NodeIndex};
 
 use crate::linalg::FullPivot;
-use crate::model::Model;
+use crate::model::{BodyId, Model};
 
 use super::fault::TopologyFault;
 use super::matching::match_columns;
-use super::{Block, CoupledColumn, RowPlace, Source, Topology, fault};
+use super::{
+    Block, BlockId, ClosureId, CoordinateId, CoupledColumn, Entry, LinkId, LoopLink, RowId, SetBy, Term,
+    Topology, fault,
+};
 
 /// A pivot below this part of the largest is zero when constraints are counted.
 ///
@@ -20,29 +23,29 @@ pub(super) const RANK_TOLERANCE: f64 = 1e-8;
 
 /// A sparse row of the Jacobian at the design configuration: (coordinate, entry), lengths in units of
 /// the mechanism's size.
-pub(super) type SparseRow = Vec<(usize, f64)>;
+pub(super) type SparseRow = Vec<(CoordinateId, f64)>;
 
 /// The Jacobian of all rows of all closures at the design configuration; empty for the further terms of a coupler, which
 /// are summed in its row.
 pub(super) fn design_jacobian(model: &Model, topology: &Topology) -> Vec<SparseRow> {
     let parts = jacobian_of_parts(model, topology);
-    let sum = |(r, place): (usize, &RowPlace)| -> SparseRow {
-        if place.is_term {
+    let sum = |r: RowId| -> SparseRow {
+        if topology[r].is_term {
             return Vec::new();
         }
-        if place.terms.is_empty() {
-            return parts[r].clone();
+        if topology[r].terms.is_empty() {
+            return parts[r.0].clone();
         }
         let mut sum = BTreeMap::new();
-        for (k, factor) in topology.parts_of_row(r) {
-            for &(c, x) in &parts[k] {
+        for Term { row, factor } in topology.parts_of_row(r) {
+            for &(c, x) in &parts[row.0] {
                 // l = sum c_k l_k
                 *sum.entry(c).or_insert(0.0) += x * factor;
             }
         }
         sum.into_iter().collect()
     };
-    topology.rows.iter().enumerate().map(sum).collect()
+    RowId::all(0..topology.rows.len()).map(sum).collect()
 }
 
 /// The Jacobian of all rows, each by itself.
@@ -54,19 +57,19 @@ fn jacobian_of_parts(model: &Model, topology: &Topology) -> Vec<SparseRow> {
     for closure in &topology.closures {
         let mut ends = model.ends(closure.joint);
         ends.axes = model.bodies[closure.base.0].frame.rot;
-        for row in &closure.rows {
+        for (r, row) in closure.numbered_rows() {
             let wrench = row.wrench(&ends);
-            let scale = 1.0 / topology.rows[rows.len()].unit;
+            let scale = 1.0 / topology[r].unit;
             let mut entries = Vec::new();
-            for &(k, side) in &closure.links {
-                let link = &topology.links[k];
+            for &LoopLink { link, side } in &closure.links {
+                let link = &topology[link];
                 let frame = link.frame_at_design(model);
                 for step in &link.steps {
-                    for c in 0..step.freedom.coordinates() {
-                        let unit = topology.coordinates[step.first + c].unit;
+                    for (k, c) in step.coordinates().enumerate() {
+                        let unit = topology[c].unit;
                         // J_ra = +- l_r . x_a, per unit of the row and times that of the coordinate: a number without dimension      (6)
-                        let entry = side * scale * unit * wrench.on(step.twist(c, &frame.rot, frame.r));
-                        entries.push((step.first + c, entry));
+                        let entry = side * scale * unit * wrench.on(step.twist(k, &frame.rot, frame.r));
+                        entries.push((c, entry));
                     }
                 }
             }
@@ -79,13 +82,11 @@ fn jacobian_of_parts(model: &Model, topology: &Topology) -> Vec<SparseRow> {
 /// Splits unknowns and rows into blocks, and orders the links by them.
 pub(super) fn split(model: &Model, topology: &mut Topology) -> Result<(), TopologyFault> {
     let jacobian = design_jacobian(model, topology);
-    let unknown: Vec<bool> =
-        topology.coordinates.iter().map(|c| matches!(c.source, Source::Unknown { .. })).collect();
-    let groups = match independent_groups(topology, &jacobian, &unknown) {
+    let groups = match independent_groups(topology, &jacobian) {
         Some(groups) if assign(topology, &jacobian, &groups).is_ok() => groups,
         // Loops that depend on each other in a way that no single loop shows: solve all together.
         _ => {
-            let all: Vec<usize> = (0..unknown.len()).filter(|&c| unknown[c]).collect();
+            let all: Vec<CoordinateId> = topology.unknown_coordinates().collect();
             let groups = if all.is_empty() { Vec::new() } else { vec![all] };
             assign(topology, &jacobian, &groups).map_err(|free| {
                 fault::free_motions(model, topology, &free, freedoms_nearby(model, topology))
@@ -98,33 +99,26 @@ pub(super) fn split(model: &Model, topology: &mut Topology) -> Result<(), Topolo
 }
 
 /// Strongly connected groups of unknowns, in order of solution; `None` where loops alone do not decide.
-fn independent_groups(
-    topology: &Topology,
-    jacobian: &[SparseRow],
-    unknown: &[bool],
-) -> Option<Vec<Vec<usize>>> {
+fn independent_groups(topology: &Topology, jacobian: &[SparseRow]) -> Option<Vec<Vec<CoordinateId>>> {
     // Rows that are independent within their own closure, with the closure's unknowns as pattern.
-    let coordinates: Vec<usize> = (0..unknown.len()).filter(|&c| unknown[c]).collect();
-    let mut column_of = vec![usize::MAX; unknown.len()];
-    for (column, &c) in coordinates.iter().enumerate() {
-        column_of[c] = column;
-    }
+    let coordinates: Vec<CoordinateId> = topology.unknown_coordinates().collect();
+    let column_of = columns(topology, &coordinates);
+    let column_of = |c: CoordinateId| column_of[c.0];
     let mut patterns: Vec<Vec<usize>> = Vec::new();
     // ... and the links that place the bodies on which their loops stand.
-    let placed_by = last_unknown_links(topology, unknown);
-    let mut bases: Vec<Vec<usize>> = Vec::new();
-    for closure in topology.closures.iter().filter(|c| !topology.rows[c.first_row].is_term) {
-        let range = closure.numbers();
-        let dense: Vec<Vec<f64>> = jacobian[range.clone()]
+    let placed_by = last_unknown_links(topology);
+    let mut bases: Vec<Vec<LinkId>> = Vec::new();
+    for closure in topology.closures.iter().filter(|c| !topology[c.first_row].is_term) {
+        let dense: Vec<Vec<f64>> = jacobian[closure.range()]
             .iter()
-            .map(|row| row.iter().filter(|(c, _)| unknown[*c]).map(|(_, x)| *x).collect())
+            .map(|row| row.iter().filter(|(c, _)| topology[*c].is_unknown()).map(|(_, x)| *x).collect())
             .collect();
         let n = dense.first().map_or(0, Vec::len);
-        for r in FullPivot::of(dense, n, RANK_TOLERANCE).rows {
-            let row = &jacobian[range.start + r];
-            patterns.push(row.iter().filter(|(c, _)| unknown[*c]).map(|(c, _)| column_of[*c]).collect());
-            let closures = topology.parts_of_row(range.start + r).map(|(k, _)| topology.rows[k].closure);
-            bases.push(closures.filter_map(|c| placed_by[topology.closures[c].base.0]).collect());
+        for k in FullPivot::of(dense, n, RANK_TOLERANCE).rows {
+            let r = RowId(closure.first_row.0 + k);
+            patterns.push(jacobian[r.0].iter().filter_map(|(c, _)| column_of(*c)).collect());
+            let closures = topology.parts_of_row(r).map(|part| topology.closure_of(part.row));
+            bases.push(closures.filter_map(|c| placed_by[c.base.0]).collect());
         }
     }
     // An unknown depends on every other unknown of the row that it is matched with. A loop could be solved before the body
@@ -139,14 +133,14 @@ fn independent_groups(
             depends.add_edge(NodeIndex::new(column), NodeIndex::new(other), ());
         }
         for &link in &bases[row?] {
-            for c in topology.links[link].coordinates().filter(|&c| unknown[c] && column_of[c] != column) {
-                depends.add_edge(NodeIndex::new(column), NodeIndex::new(column_of[c]), ());
+            for other in topology[link].coordinates().filter_map(column_of).filter(|&other| other != column) {
+                depends.add_edge(NodeIndex::new(column), NodeIndex::new(other), ());
             }
         }
     }
     // Kosaraju's algorithm does not recurse: a chain of loops may be any number deep.
     let groups = kosaraju_scc(&depends).into_iter();
-    let mut groups: Vec<Vec<usize>> =
+    let mut groups: Vec<Vec<CoordinateId>> =
         groups.map(|g| g.into_iter().map(|n| coordinates[n.index()]).collect()).collect();
     for g in &mut groups {
         g.sort_unstable();
@@ -169,23 +163,28 @@ fn freedoms_nearby(model: &Model, topology: &Topology) -> usize {
         let mut next = || SHIFT * size * parts.next().expect("there is always another");
         hardpoint.position += crate::space::Vec3::new(next(), next(), next());
     }
-    let mut column_of = vec![None; topology.coordinates.len()];
-    let unknown = |c: &usize| matches!(topology.coordinates[*c].source, Source::Unknown { .. });
-    let columns: Vec<usize> = (0..topology.coordinates.len()).filter(unknown).collect();
-    for (column, &c) in columns.iter().enumerate() {
-        column_of[c] = Some(column);
-    }
+    let unknowns: Vec<CoordinateId> = topology.unknown_coordinates().collect();
+    let column_of = columns(topology, &unknowns);
     let rows = design_jacobian(&shifted, topology).into_iter();
-    let rows = rows.map(|row| row.into_iter().filter_map(|(c, x)| Some((column_of[c]?, x))).collect());
-    FullPivot::of_sparse(rows.collect(), columns.len(), RANK_TOLERANCE).free.len()
+    let rows = rows.map(|row| row.into_iter().filter_map(|(c, x)| Some((column_of[c.0]?, x))).collect());
+    FullPivot::of_sparse(rows.collect(), unknowns.len(), RANK_TOLERANCE).free.len()
+}
+
+/// Per coordinate: its column, if these have one each.
+fn columns(topology: &Topology, coordinates: &[CoordinateId]) -> Vec<Option<usize>> {
+    let mut column_of = vec![None; topology.coordinates.len()];
+    for (column, c) in coordinates.iter().enumerate() {
+        column_of[c.0] = Some(column);
+    }
+    column_of
 }
 
 /// Per body: the nearest link on its way to ground that has unknowns.
-fn last_unknown_links(topology: &Topology, unknown: &[bool]) -> Vec<Option<usize>> {
+fn last_unknown_links(topology: &Topology) -> Vec<Option<LinkId>> {
     let bodies = topology.links.iter().map(|l| l.child.0).max().unwrap_or(0) + 1;
     let mut placed_by = vec![None; bodies];
-    for (k, link) in topology.links.iter().enumerate() {
-        let own = link.coordinates().any(|c| unknown[c]);
+    for (k, link) in LinkId::each(&topology.links) {
+        let own = link.coordinates().any(|c| topology[c].is_unknown());
         placed_by[link.child.0] = if own { Some(k) } else { placed_by[link.parent.0] };
     }
     placed_by
@@ -196,15 +195,15 @@ fn last_unknown_links(topology: &Topology, unknown: &[bool]) -> Vec<Option<usize
 fn assign(
     topology: &mut Topology,
     jacobian: &[SparseRow],
-    groups: &[Vec<usize>],
+    groups: &[Vec<CoordinateId>],
 ) -> Result<(), Vec<SparseRow>> {
-    for (block, group) in groups.iter().enumerate() {
+    for (block, group) in BlockId::each(groups) {
         for (column, &c) in group.iter().enumerate() {
-            topology.coordinates[c].source = Source::Unknown { block, column };
+            topology[c].set_by = SetBy::Block { block, column };
         }
     }
     for step in topology.links.iter_mut().flat_map(|l| &mut l.steps) {
-        step.is_driven = matches!(topology.coordinates[step.first].source, Source::Driven(_));
+        step.is_driven = !topology.coordinates[step.first.0].is_unknown();
     }
     for row in &mut topology.rows {
         row.selected = false; // also the rows that no block has
@@ -220,71 +219,69 @@ fn assign(
             multiplications: 0,
         })
         .collect();
-    let place = |c: usize| match topology.coordinates[c].source {
-        Source::Unknown { block, column } => Some((block, column)),
-        Source::Driven(_) => None,
+    let place = |c: CoordinateId| match topology[c].set_by {
+        SetBy::Block { block, column } => Some((block, column)),
+        SetBy::Driver(_) => None,
     };
     // A closure belongs to the last block that moves it; the terms of a coupler to the last that moves any of them.
     // J is block lower triangular: a row may have entries in blocks before its own, none in later ones.
-    let block_of: Vec<Option<usize>> =
+    let block_of: Vec<Option<BlockId>> =
         jacobian.iter().map(|row| row.iter().filter_map(|(c, _)| place(*c)).map(|(b, _)| b).max()).collect();
     let mut block_of_row = block_of.clone();
-    for r in 0..topology.rows.len() {
-        for &(term, _) in &topology.rows[r].terms {
-            block_of_row[term] = block_of[r];
+    for (r, row) in RowId::each(&topology.rows) {
+        for term in &row.terms {
+            block_of_row[term.row.0] = block_of[r.0];
         }
     }
     let mut entries_of = Vec::with_capacity(topology.closures.len());
-    for (k, closure) in topology.closures.iter().enumerate() {
-        let block = block_of_row[closure.first_row];
+    for (k, closure) in ClosureId::each(&topology.closures) {
+        let block = block_of_row[closure.first_row.0];
         let mut entries = Vec::new();
-        for &(link, side) in &closure.links {
-            for step in &topology.links[link].steps {
-                for c in step.first..step.first + step.freedom.coordinates() {
-                    if let Some((b, column)) = place(c)
-                        && Some(b) == block
-                    {
-                        entries.push((column, c, side));
-                    }
+        for &LoopLink { link, side } in &closure.links {
+            for coordinate in topology[link].coordinates() {
+                if let Some((b, column)) = place(coordinate)
+                    && Some(b) == block
+                {
+                    entries.push(Entry { column, coordinate, side });
                 }
             }
         }
         entries_of.push(entries);
         if let Some(b) = block {
-            blocks[b].closures.push(k);
+            blocks[b.0].closures.push(k);
         }
     }
     for (closure, entries) in topology.closures.iter_mut().zip(entries_of) {
-        closure.block = block_of_row[closure.first_row];
+        closure.block = block_of_row[closure.first_row.0];
         closure.entries = entries;
     }
     for k in 0..topology.coupled_rows.len() {
         let r = topology.coupled_rows[k];
-        let mut columns: BTreeMap<usize, Vec<(usize, usize, f64)>> = BTreeMap::new();
-        for (term, factor) in topology.parts_of_row(r) {
-            for &(column, c, side) in &topology.closures[topology.rows[term].closure].entries {
-                columns.entry(column).or_default().push((term, c, side * factor));
+        let mut columns: BTreeMap<usize, CoupledColumn> = BTreeMap::new();
+        for Term { row, factor } in topology.parts_of_row(r) {
+            for &Entry { column, coordinate, side } in &topology.closure_of(row).entries {
+                let new = || CoupledColumn { column, coordinate, parts: Vec::new() };
+                columns.entry(column).or_insert_with(new).parts.push(Term { row, factor: side * factor });
             }
         }
-        let columns = columns.into_iter().map(|(column, parts)| CoupledColumn { column, parts });
-        topology.rows[r].columns = columns.collect();
-        if let Some(b) = block_of_row[r] {
-            blocks[b].coupled.push(r);
+        topology[r].columns = columns.into_values().collect();
+        if let Some(b) = block_of_row[r.0] {
+            blocks[b.0].coupled.push(r);
         }
     }
     let mut free = Vec::new();
     topology.blocks = blocks;
-    for b in 0..groups.len() {
+    for b in topology.block_ids() {
         let rows = topology.rows_of_block(b);
-        let width = topology.blocks[b].unknowns.len();
-        let in_block = rows.iter().map(|&r| columns_in_block(topology, &jacobian[r], b).collect()).collect();
+        let width = topology[b].unknowns.len();
+        let in_block = rows.iter().map(|r| columns_in_block(topology, &jacobian[r.0], b).collect()).collect();
         // Rank = unknowns: as many independent rows as the block has columns. Less, and the null vectors are motions left free.
         let pivots = FullPivot::of_sparse(in_block, width, RANK_TOLERANCE);
-        let mut selected: Vec<usize> = pivots.rows.iter().map(|&r| rows[r]).collect();
+        let mut selected: Vec<RowId> = pivots.rows.iter().map(|&k| rows[k]).collect();
         selected.sort_unstable();
         topology.select(b, selected);
         for v in pivots.free {
-            free.push(v.into_iter().map(|(column, x)| (topology.blocks[b].unknowns[column], x)).collect());
+            free.push(v.into_iter().map(|(column, x)| (topology[b].unknowns[column], x)).collect());
         }
     }
     if free.is_empty() { Ok(()) } else { Err(free) }
@@ -294,10 +291,10 @@ fn assign(
 pub(super) fn columns_in_block(
     topology: &Topology,
     row: &SparseRow,
-    block: usize,
+    block: BlockId,
 ) -> impl Iterator<Item = (usize, f64)> {
-    row.iter().filter_map(move |&(c, x)| match topology.coordinates[c].source {
-        Source::Unknown { block: b, column } if b == block => Some((column, x)),
+    row.iter().filter_map(move |&(c, x)| match topology[c].set_by {
+        SetBy::Block { block: b, column } if b == block => Some((column, x)),
         _ => None,
     })
 }
@@ -305,45 +302,43 @@ pub(super) fn columns_in_block(
 /// Sorts links by the stage at which their child's pose is known, and renumbers what refers to them.
 fn order_links(topology: &mut Topology, blocks: usize) {
     let mut stage_of_body = BTreeMap::new();
-    for k in 0..topology.links.len() {
-        let link = &topology.links[k];
+    for k in topology.link_ids() {
+        let link = &topology[k];
         let own = link
             .coordinates()
-            .filter_map(|c| match topology.coordinates[c].source {
-                Source::Unknown { block, .. } => Some(block + 1),
-                Source::Driven(_) => None,
+            .filter_map(|c| match topology[c].set_by {
+                SetBy::Block { block, .. } => Some(block.0 + 1),
+                SetBy::Driver(_) => None,
             })
             .max()
             .unwrap_or(0);
         let parent = stage_of_body.get(&link.parent).copied().unwrap_or(0);
         let stage = usize::max(own, parent);
         stage_of_body.insert(link.child, stage);
-        topology.links[k].stage = stage;
+        topology[k].stage = stage;
     }
-    let mut order: Vec<usize> = (0..topology.links.len()).collect();
-    order.sort_by_key(|&k| topology.links[k].stage);
-    let mut new_place = vec![0; order.len()];
-    for (new, &old) in order.iter().enumerate() {
-        new_place[old] = new;
+    let mut order: Vec<LinkId> = topology.link_ids().collect();
+    order.sort_by_key(|&k| topology[k].stage);
+    let mut new_place = vec![LinkId(0); order.len()];
+    for (new, old) in LinkId::each(&order) {
+        new_place[old.0] = new;
     }
-    topology.links = order.iter().map(|&k| topology.links[k].clone()).collect();
+    topology.links = order.iter().map(|&k| topology[k].clone()).collect();
     for c in &mut topology.coordinates {
-        c.link = new_place[c.link];
+        c.link = new_place[c.link.0];
     }
-    for closure in &mut topology.closures {
-        for (k, _) in &mut closure.links {
-            *k = new_place[*k];
-        }
+    for around in topology.closures.iter_mut().flat_map(|c| &mut c.links) {
+        around.link = new_place[around.link.0];
     }
     for b in 0..blocks {
         let start = topology.links.partition_point(|l| l.stage < b + 1);
         let end = topology.links.partition_point(|l| l.stage < b + 2);
         topology.blocks[b].links = start..end;
     }
-    let placed_by: BTreeMap<usize, usize> =
-        topology.links.iter().enumerate().map(|(k, link)| (link.child.0, k)).collect();
+    let placed_by: BTreeMap<BodyId, LinkId> =
+        LinkId::each(&topology.links).map(|(k, link)| (link.child, k)).collect();
     for closure in &mut topology.closures {
-        let own = closure.block.map_or(0..0, |b| topology.blocks[b].links.clone());
-        closure.base_link = placed_by.get(&closure.base.0).copied().filter(|k| own.contains(k));
+        let own = closure.block.map_or(0..0, |b| topology.blocks[b.0].links.clone());
+        closure.base_link = placed_by.get(&closure.base).copied().filter(|k| own.contains(&k.0));
     }
 }

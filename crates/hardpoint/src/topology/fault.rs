@@ -1,8 +1,10 @@
 //! What can be wrong with a mechanism as a whole, in the user's own names.
 
+use crate::draft::some_of;
 use crate::model::{BodyId, DriverId, JointId, Model};
 
-use super::{Closure, Formulation, Topology};
+use super::blocks::SparseRow;
+use super::{Closure, Formulation, Link, RowId, Topology};
 
 /// The mechanism cannot be driven as it is written.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -20,7 +22,7 @@ pub enum TopologyFault {
         bodies: Vec<String>,
     },
     /// The configuration as drawn is singular: motions are free there that are not free nearby (HP0304).
-    #[error("the mechanism is drawn in a singular position ({})", some_of(.bodies))]
+    #[error("the mechanism is drawn in a singular position ({})", dozen(.bodies))]
     Singular {
         /// How many motions are free in that position only.
         freedom: usize,
@@ -50,7 +52,7 @@ pub enum TopologyFault {
         joint_names: Vec<String>,
     },
     /// The joints hold each other: nothing that a driver moves can move (HP0303).
-    #[error("the mechanism cannot move: its joints hold each other ({})", some_of(.bodies))]
+    #[error("the mechanism cannot move: its joints hold each other ({})", dozen(.bodies))]
     Immovable {
         /// The joints whose constraints fail as soon as something moves.
         joints: Vec<JointId>,
@@ -68,17 +70,12 @@ fn counted(n: usize, one: &str) -> String {
 
 fn under_driven_text(freedom: &usize, bodies: &[String]) -> String {
     let s = if *freedom == 1 { "motion remains" } else { "motions remain" };
-    format!("the mechanism is under-driven: {freedom} {s} free ({})", some_of(bodies))
+    format!("the mechanism is under-driven: {freedom} {s} free ({})", dozen(bodies))
 }
 
 /// The names with commas between; of a long list the first dozen, and how many more there are.
-fn some_of(names: &[String]) -> String {
-    const SHOWN: usize = 12;
-    let shown = names[..names.len().min(SHOWN)].join(", ");
-    match names.len().saturating_sub(SHOWN) {
-        0 => shown,
-        more => format!("{shown} and {more} more"),
-    }
+fn dozen(names: &[String]) -> String {
+    some_of(names, ", ", 12)
 }
 
 impl TopologyFault {
@@ -96,7 +93,7 @@ impl TopologyFault {
     pub fn notes(&self) -> Vec<String> {
         match self {
             Self::UnderDriven { joint_names, .. } => {
-                vec![format!("the joints that still move: {}", some_of(joint_names))]
+                vec![format!("the joints that still move: {}", dozen(joint_names))]
             }
             Self::Singular { freedom, joint_names, .. } => vec![
                 format!(
@@ -108,17 +105,14 @@ impl TopologyFault {
                     },
                     if *freedom == 1 { "is" } else { "are" }
                 ),
-                format!("the joints of that motion: {}", some_of(joint_names)),
+                format!("the joints of that motion: {}", dozen(joint_names)),
             ],
             Self::OverDriven { driver_names, joint_names, .. } => vec![
-                format!("drivers that contradict each other: {}", some_of(driver_names)),
-                format!("where they meet: {}", some_of(joint_names)),
+                format!("drivers that contradict each other: {}", dozen(driver_names)),
+                format!("where they meet: {}", dozen(joint_names)),
             ],
             Self::Immovable { joint_names, .. } => {
-                vec![format!(
-                    "the constraints that fail as soon as something moves: {}",
-                    some_of(joint_names)
-                )]
+                vec![format!("the constraints that fail as soon as something moves: {}", dozen(joint_names))]
             }
         }
     }
@@ -166,17 +160,13 @@ impl TopologyFault {
 pub(super) fn free_motions(
     model: &Model,
     topology: &Topology,
-    free: &[Vec<(usize, f64)>],
+    free: &[SparseRow],
     nearby: usize,
 ) -> TopologyFault {
-    let moving: Vec<usize> = free
-        .iter()
-        .flatten()
-        .filter(|(_, x)| x.abs() > 1e-6)
-        .map(|&(c, _)| topology.coordinates[c].link)
-        .collect();
-    let mut joints: Vec<JointId> = moving.iter().filter_map(|&k| topology.links[k].joint).collect();
-    let mut bodies: Vec<BodyId> = moving.iter().map(|&k| topology.links[k].child).collect();
+    let moving = free.iter().flatten().filter(|(_, x)| x.abs() > 1e-6);
+    let moving: Vec<&Link> = moving.map(|&(c, _)| &topology[topology[c].link]).collect();
+    let mut joints: Vec<JointId> = moving.iter().filter_map(|link| link.joint).collect();
+    let mut bodies: Vec<BodyId> = moving.iter().map(|link| link.child).collect();
     bodies.sort_unstable();
     bodies.dedup();
     joints.sort_unstable();
@@ -200,24 +190,22 @@ pub(super) fn free_motions(
 pub(super) fn contradicted(
     model: &Model,
     topology: &Topology,
-    contradictions: &[(usize, Vec<f64>)],
+    contradictions: &[(RowId, Vec<f64>)],
 ) -> TopologyFault {
     let mut drivers: Vec<DriverId> = Vec::new();
     let mut joints = Vec::new();
     let mut joint_names: Vec<String> = Vec::new();
     let mut bodies: Vec<BodyId> = Vec::new();
     for (r, fails) in contradictions {
-        let place = &topology.rows[*r];
-        let closure = &topology.closures[place.closure];
+        let closure = topology.closure_of(*r);
         drivers.extend((0..fails.len()).filter(|&d| fails[d] != 0.0).map(DriverId));
         drivers.extend(closure.driver);
         joints.push(closure.joint);
-        let around = |c: &Closure| c.links.iter().map(|(k, _)| topology.links[*k].child).collect::<Vec<_>>();
+        let around = |c: &Closure| c.links.iter().map(|k| topology[k.link].child).collect::<Vec<_>>();
         bodies.extend(around(closure));
-        if let Some(block) = closure.block {
-            bodies
-                .extend(topology.blocks[block].closures.iter().flat_map(|&c| around(&topology.closures[c])));
-            bodies.extend(topology.links[topology.blocks[block].links.clone()].iter().map(|l| l.child));
+        if let Some(block) = closure.block.map(|b| &topology[b]) {
+            bodies.extend(block.closures.iter().flat_map(|&c| around(&topology[c])));
+            bodies.extend(block.link_ids().map(|k| topology[k].child));
         }
         joint_names.push(topology.row_name(model, *r));
     }

@@ -7,7 +7,7 @@ use crate::model::Model;
 
 use super::blocks::{RANK_TOLERANCE, SparseRow, columns_in_block, design_jacobian};
 use super::fault::TopologyFault;
-use super::{Source, Topology, fault};
+use super::{BlockId, RowId, Topology, fault};
 
 /// Counts the degrees of freedom; every unknown is already known to be determined.
 ///
@@ -19,14 +19,12 @@ pub(super) fn examine(model: &Model, topology: &mut Topology) -> Result<(), Topo
     let drivers = model.drivers.len();
     // Per coordinate: its speed per unit speed of the drivers that move it, lengths in units of the size.
     let mut speeds: Vec<Vec<(usize, f64)>> = vec![Vec::new(); topology.coordinates.len()];
-    for (c, coordinate) in topology.coordinates.iter().enumerate() {
-        if let Source::Driven(d) = coordinate.source {
-            speeds[c].push((d.0, 1.0));
-        }
+    for (c, d) in topology.driven_coordinates() {
+        speeds[c.0].push((d.0, 1.0));
     }
     let mut multiplications = Vec::new();
-    for (b, block) in topology.blocks.iter().enumerate() {
-        let row = |k: usize| columns_in_block(topology, &jacobian[block.selected[k]], b);
+    for (b, block) in BlockId::each(&topology.blocks) {
+        let row = |k: usize| columns_in_block(topology, &jacobian[block.selected[k].0], b);
         let columns = |k: usize| row(k).map(|(column, _)| column).collect();
         let mut factors = Factors::new(block.unknowns.len(), columns, LARGEST_DENSE);
         for k in 0..block.selected.len() {
@@ -45,14 +43,14 @@ pub(super) fn examine(model: &Model, topology: &mut Topology) -> Result<(), Topo
         for (d, mut rhs) in lacking {
             factors.solve(&mut rhs);
             for (column, &c) in block.unknowns.iter().enumerate().filter(|(column, _)| rhs[*column] != 0.0) {
-                speeds[c].push((d, rhs[column]));
+                speeds[c.0].push((d, rhs[column]));
             }
         }
     }
     topology.blocks.iter_mut().zip(multiplications).for_each(|(block, n)| block.multiplications = n);
     // A contradiction is a left-out row that fails under some driver's motion; by how much, per driver.
-    let mut contradictions: Vec<(usize, Vec<f64>)> = Vec::new();
-    for (r, _) in topology.rows.iter().enumerate().filter(|(_, r)| !r.selected && !r.is_term) {
+    let mut contradictions: Vec<(RowId, Vec<f64>)> = Vec::new();
+    for r in topology.redundant() {
         let rates = row_rates(topology, &jacobian, &speeds, r).into_iter();
         // abs(sum J q. - f.) / (1 + largest term): a left-out row under the unit speed of driver d
         let failures = rates.map(|(d, [sum, largest, demand])| (d, (sum - demand) / (1.0 + largest)));
@@ -80,17 +78,17 @@ fn row_rates(
     topology: &Topology,
     jacobian: &[SparseRow],
     speeds: &[Vec<(usize, f64)>],
-    r: usize,
+    r: RowId,
 ) -> BTreeMap<usize, [f64; 3]> {
     let mut rates: BTreeMap<usize, [f64; 3]> = BTreeMap::new();
-    for &(c, x) in &jacobian[r] {
-        for &(d, speed) in &speeds[c] {
+    for &(c, x) in &jacobian[r.0] {
+        for &(d, speed) in &speeds[c.0] {
             let [sum, largest, _] = rates.entry(d).or_default();
             *sum += x * speed;
             *largest = largest.max((x * speed).abs());
         }
     }
-    if let Some(d) = topology.closures[topology.rows[r].closure].driver {
+    if let Some(d) = topology.closure_of(r).driver {
         rates.entry(d.0).or_default()[2] = 1.0;
     }
     rates

@@ -7,6 +7,7 @@
 
 mod blocks;
 mod fault;
+mod ids;
 mod matching;
 mod mobility;
 mod redundancy;
@@ -14,7 +15,10 @@ mod size;
 mod tree;
 
 pub use fault::TopologyFault;
+pub use ids::{BlockId, ClosureId, CoordinateId, LinkId, RowId};
 pub use redundancy::Redundancy;
+
+use std::ops::Range;
 
 use crate::constraint::Row;
 use crate::joint::Freedom;
@@ -31,7 +35,7 @@ pub enum Formulation {
     Absolute,
 }
 
-/// The plan of solution. All indices are resolved; the hot path only walks these lists.
+/// The plan of solution. All references are ids, by which the plan is indexed; the hot path only walks these lists.
 #[derive(Clone, Debug)]
 pub struct Topology {
     /// The formulation that it was made for.
@@ -47,7 +51,7 @@ pub struct Topology {
     /// For every row of every closure (numbered through): where it stands.
     pub rows: Vec<RowPlace>,
     /// The rows that are couplers.
-    pub coupled_rows: Vec<usize>,
+    pub coupled_rows: Vec<RowId>,
     /// Degrees of freedom without drivers, at the design configuration.
     pub mobility: usize,
     /// Why each joint is in the tree or cut, by joint.
@@ -105,8 +109,8 @@ pub struct Step {
     pub freedom: Freedom,
     /// -1 where the link runs from body j to body i, so that coordinates stay those of j relative to i.
     pub sign: f64,
-    /// Its first coordinate in [`Topology::coordinates`].
-    pub first: usize,
+    /// Its first coordinate.
+    pub first: CoordinateId,
     /// Whether a driver prescribes it.
     pub is_driven: bool,
 }
@@ -115,9 +119,9 @@ pub struct Step {
 #[derive(Clone, Copy, Debug)]
 pub struct Coordinate {
     /// Its link.
-    pub link: usize,
-    /// Where its value comes from.
-    pub source: Source,
+    pub link: LinkId,
+    /// What sets its value.
+    pub set_by: SetBy,
     /// Whether it is a length (else an angle).
     pub is_length: bool,
     /// What it is compared with: the size of the largest loop that it moves, m, if it is a length; else 1 rad.
@@ -126,15 +130,15 @@ pub struct Coordinate {
     pub per_unit: f64,
 }
 
-/// Where a coordinate's value comes from.
+/// What sets a coordinate's value.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Source {
+pub enum SetBy {
     /// A driver prescribes it.
-    Driven(DriverId),
-    /// Column `column` of block `block`.
-    Unknown {
+    Driver(DriverId),
+    /// It is unknown: a block is solved for it.
+    Block {
         /// Which block.
-        block: usize,
+        block: BlockId,
         /// Which of the block's unknowns.
         column: usize,
     },
@@ -155,11 +159,11 @@ pub struct Closure {
     /// its axes, so that the loop knows nothing of where its base goes.
     pub base: BodyId,
     /// The link that places the base, if that is done by the block that solves the closure.
-    pub base_link: Option<usize>,
+    pub base_link: Option<LinkId>,
     /// The elementary constraints.
     pub rows: Vec<Row>,
-    /// Number of the first row in [`Topology::rows`].
-    pub first_row: usize,
+    /// The first of its rows; the others follow.
+    pub first_row: RowId,
     /// If a point follows a curve: which of all curves, counted over the closures.
     pub contact: Option<usize>,
     /// Whether any of its rows asks for the markers' axes, rather than for their points only.
@@ -167,20 +171,52 @@ pub struct Closure {
     /// Whether the rows that it is solved with ask for points only.
     pub solved_by_points: bool,
     /// The block that solves it; `None` if no unknown moves it.
-    pub block: Option<usize>,
-    /// Its columns in that block: column, coordinate, and +1 or -1 for the side of j or i.
-    pub entries: Vec<(usize, usize, f64)>,
+    pub block: Option<BlockId>,
+    /// Where its rows stand in that block.
+    pub entries: Vec<Entry>,
     /// All links around the loop that it closes.
-    pub links: Vec<(usize, f64)>,
+    pub links: Vec<LoopLink>,
     /// Extent of the joints of that loop in the design configuration, m: what its gaps are compared with.
     pub size: f64,
 }
 
+/// A column of a block in which the rows of a closure stand.
+#[derive(Clone, Copy, Debug)]
+pub struct Entry {
+    /// The column.
+    pub column: usize,
+    /// Its coordinate.
+    pub coordinate: CoordinateId,
+    /// +1 or -1: whether it moves body j of the closure, or body i.
+    pub side: f64,
+}
+
+/// A link on the way around a loop.
+#[derive(Clone, Copy, Debug)]
+pub struct LoopLink {
+    /// The link.
+    pub link: LinkId,
+    /// +1 or -1: whether it is on the way to body j, or to body i.
+    pub side: f64,
+}
+
 impl Closure {
-    /// The numbers of its rows in [`Topology::rows`].
+    /// Its rows' places in [`Topology::rows`].
     #[inline(always)]
-    pub fn numbers(&self) -> std::ops::Range<usize> {
-        self.first_row..self.first_row + self.rows.len()
+    fn range(&self) -> Range<usize> {
+        self.first_row.0..self.first_row.0 + self.rows.len()
+    }
+
+    /// Its rows.
+    #[inline(always)]
+    pub fn row_ids(&self) -> impl DoubleEndedIterator<Item = RowId> + Clone + use<> {
+        RowId::all(self.range())
+    }
+
+    /// Its rows, with the constraint of each.
+    #[inline(always)]
+    pub fn numbered_rows(&self) -> impl Iterator<Item = (RowId, Row)> + Clone {
+        self.row_ids().zip(self.rows.iter().copied())
     }
 }
 
@@ -188,13 +224,13 @@ impl Closure {
 #[derive(Clone, Debug)]
 pub struct RowPlace {
     /// Its closure.
-    pub closure: usize,
+    pub closure: ClosureId,
     /// Which of the closure's rows.
     pub index: usize,
     /// Whether it is one of the independent rows that are solved with; else it is redundant and watched.
     pub selected: bool,
-    /// The further terms of a coupler, which this row is the first of: their rows, and their factors.
-    pub terms: Vec<(usize, f64)>,
+    /// The further terms of a coupler, which this row is the first of.
+    pub terms: Vec<Term>,
     /// Of a coupler: the columns of its block where its terms stand.
     pub columns: Vec<CoupledColumn>,
     /// Whether it is a further term of a coupler, and no constraint by itself.
@@ -203,30 +239,49 @@ pub struct RowPlace {
     pub unit: f64,
 }
 
+/// A row that is a part of a constraint, times its factor.
+#[derive(Clone, Copy, Debug)]
+pub struct Term {
+    /// The row.
+    pub row: RowId,
+    /// Its factor.
+    pub factor: f64,
+}
+
 /// Where the terms of a coupler meet in a column of its block.
 #[derive(Clone, Debug)]
 pub struct CoupledColumn {
     /// The column.
     pub column: usize,
-    /// The terms' rows, the coordinate of the column, and the factor with the side of its loop.
-    pub parts: Vec<(usize, usize, f64)>,
+    /// The coordinate of the column.
+    pub coordinate: CoordinateId,
+    /// The terms' rows, with their factors and the sides of their loops.
+    pub parts: Vec<Term>,
 }
 
 /// Unknowns and rows that are solved together.
 #[derive(Clone, Debug)]
 pub struct Block {
     /// Coordinates, by column.
-    pub unknowns: Vec<usize>,
+    pub unknowns: Vec<CoordinateId>,
     /// The closures whose rows belong to it.
-    pub closures: Vec<usize>,
+    pub closures: Vec<ClosureId>,
     /// Those of its rows that are couplers.
-    pub coupled: Vec<usize>,
+    pub coupled: Vec<RowId>,
     /// The independent rows that it is solved with, as many as unknowns.
-    pub selected: Vec<usize>,
-    /// Range of [`Topology::links`] that it places.
-    pub links: std::ops::Range<usize>,
+    pub selected: Vec<RowId>,
+    /// The range of [`Topology::links`] that it places.
+    links: Range<usize>,
     /// How many multiplications its factors take in the design configuration, if they are sparse.
     pub multiplications: usize,
+}
+
+impl Block {
+    /// The links that it places.
+    #[inline(always)]
+    pub fn link_ids(&self) -> impl DoubleEndedIterator<Item = LinkId> + ExactSizeIterator + Clone + use<> {
+        LinkId::all(self.links.clone())
+    }
 }
 
 impl Topology {
@@ -244,8 +299,57 @@ impl Topology {
     }
 
     /// Links placed by drivers alone.
-    pub fn driven_links(&self) -> std::ops::Range<usize> {
-        0..self.blocks.first().map_or(self.links.len(), |b| b.links.start)
+    #[inline(always)]
+    pub fn driven_links(
+        &self,
+    ) -> impl DoubleEndedIterator<Item = LinkId> + ExactSizeIterator + Clone + use<> {
+        LinkId::all(0..self.blocks.first().map_or(self.links.len(), |b| b.links.start))
+    }
+
+    /// All links.
+    #[inline(always)]
+    pub fn link_ids(&self) -> impl DoubleEndedIterator<Item = LinkId> + ExactSizeIterator + Clone + use<> {
+        LinkId::all(0..self.links.len())
+    }
+
+    /// All closures.
+    #[inline(always)]
+    pub fn closure_ids(&self) -> impl Iterator<Item = ClosureId> + Clone + use<> {
+        ClosureId::all(0..self.closures.len())
+    }
+
+    /// All blocks.
+    #[inline(always)]
+    pub fn block_ids(&self) -> impl Iterator<Item = BlockId> + Clone + use<> {
+        BlockId::all(0..self.blocks.len())
+    }
+
+    /// The coordinates that drivers prescribe.
+    #[inline(always)]
+    pub fn driven_coordinates(&self) -> impl Iterator<Item = (CoordinateId, DriverId)> {
+        CoordinateId::each(&self.coordinates).filter_map(|(c, coordinate)| match coordinate.set_by {
+            SetBy::Driver(d) => Some((c, d)),
+            SetBy::Block { .. } => None,
+        })
+    }
+
+    /// The coordinates that are unknown.
+    #[inline(always)]
+    pub fn unknown_coordinates(&self) -> impl Iterator<Item = CoordinateId> {
+        CoordinateId::each(&self.coordinates).filter(|(_, c)| c.is_unknown()).map(|(c, _)| c)
+    }
+
+    /// The closure of a row.
+    #[inline(always)]
+    pub fn closure_of(&self, r: RowId) -> &Closure {
+        &self[self[r].closure]
+    }
+
+    /// The elementary constraint of a row.
+    #[inline(always)]
+    pub fn constraint(&self, r: RowId) -> Row {
+        let place = &self[r];
+        self[place.closure].rows[place.index]
     }
 
     /// How many coordinates are unknown.
@@ -253,31 +357,37 @@ impl Topology {
         self.blocks.iter().map(|b| b.unknowns.len()).sum()
     }
 
-    /// The rows that are left out because the others imply them, with their joints.
-    pub fn redundant(&self) -> impl Iterator<Item = (&Closure, Row)> {
-        self.rows.iter().filter(|r| !r.selected && !r.is_term).map(|r| {
-            let c = &self.closures[r.closure];
-            (c, c.rows[r.index])
-        })
+    /// The rows that are left out because the others imply them.
+    pub fn redundant(&self) -> impl Iterator<Item = RowId> {
+        RowId::each(&self.rows).filter(|(_, place)| place.is_redundant()).map(|(r, _)| r)
     }
 
     /// All constraint rows of a block's closures, the redundant ones included.
-    pub fn rows_of_block(&self, block: usize) -> Vec<usize> {
-        let closures = self.blocks[block].closures.iter().map(|&c| &self.closures[c]);
-        let rows = closures.flat_map(|c| c.first_row..c.first_row + c.rows.len());
-        rows.filter(|&r| !self.rows[r].is_term).collect()
+    pub fn rows_of_block(&self, block: BlockId) -> Vec<RowId> {
+        let rows = self[block].closures.iter().flat_map(|&c| self[c].row_ids());
+        rows.filter(|&r| !self[r].is_term).collect()
     }
 
     /// The rows whose sum, each times its factor, is constraint row r: itself, and a coupler's further terms.
-    pub fn parts_of_row(&self, r: usize) -> impl Iterator<Item = (usize, f64)> + '_ {
-        std::iter::once((r, 1.0)).chain(self.rows[r].terms.iter().copied())
+    pub fn parts_of_row(&self, r: RowId) -> impl Iterator<Item = Term> + '_ {
+        std::iter::once(Term { row: r, factor: 1.0 }).chain(self[r].terms.iter().copied())
     }
 
-    /// What a closure's rows are called in messages: the joint with its constraint, the driver, or the coupler.
-    pub(crate) fn row_name(&self, model: &Model, r: usize) -> String {
-        let place = &self.rows[r];
-        let closure = &self.closures[place.closure];
-        let row = self.describe(model, closure, closure.rows[place.index]);
+    /// The rows that are terms of couplers, the first ones included.
+    pub fn coupler_terms(&self) -> impl Iterator<Item = RowId> + '_ {
+        self.coupled_rows.iter().flat_map(|&r| self.parts_of_row(r)).map(|term| term.row)
+    }
+
+    /// What a row is called in messages: the joint with its constraint, the driver, or the coupler.
+    pub fn row_name(&self, model: &Model, r: RowId) -> String {
+        let closure = self.closure_of(r);
+        let row = match self.constraint(r) {
+            Row::PointOnBase(k) => {
+                let base = &model.bodies[closure.base.0].name;
+                format!("points coincide along {} of `{base}`", ["x", "y", "z"][k])
+            }
+            row => row.describe(),
+        };
         match (closure.driver, closure.coupler) {
             (Some(d), _) => format!("driver `{}` ({row})", model.drivers[d.0].name),
             (None, Some(c)) => format!("coupler `{}`", model.couplers[c].name),
@@ -285,38 +395,24 @@ impl Topology {
         }
     }
 
-    /// What a closure's row asks for, in words.
-    pub fn describe(&self, model: &Model, closure: &Closure, row: Row) -> String {
-        match row {
-            Row::PointOnBase(k) => {
-                format!(
-                    "points coincide along {} of `{}`",
-                    ["x", "y", "z"][k],
-                    model.bodies[closure.base.0].name
-                )
-            }
-            _ => row.describe(),
-        }
-    }
-
     /// Solves a block with these independent rows, in ascending order, from now on.
-    pub(crate) fn select(&mut self, block: usize, selected: Vec<usize>) {
+    pub(crate) fn select(&mut self, block: BlockId, selected: Vec<RowId>) {
         for r in self.rows_of_block(block) {
-            self.rows[r].selected = selected.binary_search(&r).is_ok();
+            self[r].selected = selected.binary_search(&r).is_ok();
         }
-        for &c in &self.blocks[block].closures {
-            let closure = &mut self.closures[c];
-            let rows = closure.rows.iter().zip(&self.rows[closure.first_row..]);
-            closure.solved_by_points = rows.filter(|(_, p)| p.drives()).all(|(row, _)| !row.has_axes());
+        for k in 0..self[block].closures.len() {
+            let c = self[block].closures[k];
+            let points_only = |(r, row): (RowId, Row)| !(self[r].drives() && row.has_axes());
+            let by_points = self[c].numbered_rows().all(points_only);
+            self[c].solved_by_points = by_points;
         }
-        self.blocks[block].selected = selected;
+        self[block].selected = selected;
     }
 
     /// Joints whose motion or closing a block decides.
-    pub fn joints_of_block(&self, block: usize) -> Vec<JointId> {
-        let block = &self.blocks[block];
-        let tree = block.unknowns.iter().filter_map(|&c| self.links[self.coordinates[c].link].joint);
-        let cut = block.closures.iter().map(|&c| self.closures[c].joint);
+    pub fn joints_of_block(&self, block: BlockId) -> Vec<JointId> {
+        let tree = self[block].unknowns.iter().filter_map(|&c| self[self[c].link].joint);
+        let cut = self[block].closures.iter().map(|&c| self[c].joint);
         let mut joints: Vec<JointId> = tree.chain(cut).collect();
         joints.sort_unstable();
         joints.dedup();
@@ -329,12 +425,24 @@ impl RowPlace {
     pub fn drives(&self) -> bool {
         self.selected || self.is_term || !self.terms.is_empty()
     }
+
+    /// Whether it is left out of the solution because other rows imply it.
+    pub fn is_redundant(&self) -> bool {
+        !self.selected && !self.is_term
+    }
+}
+
+impl Coordinate {
+    /// Whether a block is solved for it.
+    pub fn is_unknown(&self) -> bool {
+        matches!(self.set_by, SetBy::Block { .. })
+    }
 }
 
 impl Link {
-    /// Its coordinates in [`Topology::coordinates`].
-    pub fn coordinates(&self) -> impl Iterator<Item = usize> + '_ {
-        self.steps.iter().flat_map(|s| s.first..s.first + s.freedom.coordinates())
+    /// Its coordinates.
+    pub fn coordinates(&self) -> impl Iterator<Item = CoordinateId> + '_ {
+        self.steps.iter().flat_map(Step::coordinates)
     }
 
     /// Whether its unit twists never change: a single freedom that starts on ground.
@@ -353,6 +461,12 @@ impl Link {
 }
 
 impl Step {
+    /// Its coordinates: one, or three of a ball.
+    #[inline(always)]
+    pub fn coordinates(&self) -> impl Iterator<Item = CoordinateId> + Clone + use<> {
+        CoordinateId::all(self.first.0..self.first.0 + self.freedom.coordinates())
+    }
+
     /// World unit twist of its coordinate k (0, or 0 to 2 for a ball) where its frame is `frame`.
     #[inline(always)]
     pub fn twist<T: crate::space::Real>(

@@ -5,8 +5,8 @@ use std::collections::BTreeMap;
 use crate::linalg::Elimination;
 use crate::model::Model;
 
-use super::blocks::{SparseRow, design_jacobian};
-use super::{Source, Topology};
+use super::blocks::{SparseRow, columns_in_block, design_jacobian};
+use super::{CoordinateId, RowId, SetBy, Topology};
 
 /// A constraint whose part in a combination is smaller than this has no part in it.
 const PART: f64 = 1e-7;
@@ -17,10 +17,10 @@ const MOST_UNKNOWNS: usize = 300;
 /// left out, and the others would still say the same.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Redundancy {
-    /// The redundant row, an index into [`Topology::rows`].
-    pub row: usize,
+    /// The redundant row.
+    pub row: RowId,
     /// The rows that imply it; empty where they were not searched for.
-    pub implied_by: Vec<usize>,
+    pub implied_by: Vec<RowId>,
 }
 
 impl Topology {
@@ -28,8 +28,8 @@ impl Topology {
     pub fn redundancies(&self, model: &Model) -> Vec<Redundancy> {
         let jacobian = design_jacobian(model, self);
         let mut factors: Vec<Option<Elimination<f64>>> = vec![None; self.blocks.len()];
-        let rows = self.rows.iter().enumerate().filter(|(_, p)| !p.selected && !p.is_term);
-        rows.map(|(row, _)| Redundancy { row, implied_by: self.implied_by(row, &jacobian, &mut factors) })
+        self.redundant()
+            .map(|row| Redundancy { row, implied_by: self.implied_by(row, &jacobian, &mut factors) })
             .collect()
     }
 
@@ -37,36 +37,32 @@ impl Topology {
     /// block's unknowns is a combination of the block's own rows.
     fn implied_by(
         &self,
-        row: usize,
+        row: RowId,
         jacobian: &[SparseRow],
         factors: &mut [Option<Elimination<f64>>],
-    ) -> Vec<usize> {
-        let mut left: BTreeMap<usize, f64> = jacobian[row].iter().copied().collect();
+    ) -> Vec<RowId> {
+        let mut left: BTreeMap<CoordinateId, f64> = jacobian[row.0].iter().copied().collect();
         let mut implied_by = Vec::new();
         loop {
-            let block_of = |(c, x): (&usize, &f64)| match self.coordinates[*c].source {
-                Source::Unknown { block, .. } if x.abs() > PART => Some(block),
+            let block_of = |(c, x): (&CoordinateId, &f64)| match self[*c].set_by {
+                SetBy::Block { block, .. } if x.abs() > PART => Some(block),
                 _ => None,
             };
             let Some(b) = left.iter().filter_map(block_of).max() else { break };
-            let block = &self.blocks[b];
+            let block = &self[b];
             let n = block.unknowns.len();
             if n > MOST_UNKNOWNS {
                 return Vec::new();
             }
             // J^T c = left
-            let transposed = factors[b].get_or_insert_with(|| {
+            let transposed = factors[b.0].get_or_insert_with(|| {
                 let mut transposed = Elimination::new(n);
                 for k in 0..n {
                     transposed.row_mut(k).fill(0.0);
                 }
                 for (k, &r) in block.selected.iter().enumerate() {
-                    for &(c, x) in &jacobian[r] {
-                        if let Source::Unknown { block, column } = self.coordinates[c].source
-                            && block == b
-                        {
-                            transposed.row_mut(column)[k] += x;
-                        }
+                    for (column, x) in columns_in_block(self, &jacobian[r.0], b) {
+                        transposed.row_mut(column)[k] += x;
                     }
                 }
                 transposed.factor();
@@ -77,7 +73,7 @@ impl Topology {
             transposed.solve(&mut parts);
             for (k, &r) in block.selected.iter().enumerate().filter(|(k, _)| parts[*k].abs() > PART) {
                 implied_by.push(r);
-                for &(c, x) in &jacobian[r] {
+                for &(c, x) in &jacobian[r.0] {
                     // left <- left - c_k row_k, which also changes it over the unknowns of earlier blocks
                     *left.entry(c).or_insert(0.0) -= parts[k] * x;
                 }
@@ -89,10 +85,5 @@ impl Topology {
         }
         implied_by.sort_unstable();
         implied_by
-    }
-
-    /// A row in messages: its joint, coupler or driver, with the constraint.
-    pub fn name_of_row(&self, model: &Model, row: usize) -> String {
-        self.row_name(model, row)
     }
 }

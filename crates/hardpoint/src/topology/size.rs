@@ -19,27 +19,27 @@ pub(super) fn measure(model: &Model, topology: &mut Topology) {
     for (closure, size) in topology.closures.iter_mut().zip(&sizes) {
         closure.size = *size;
     }
-    for (r, place) in topology.rows.iter_mut().enumerate() {
-        let closure = &topology.closures[place.closure];
-        let row = &closure.rows[r - closure.first_row];
-        place.unit = if row.is_length() { closure.size } else { 1.0 };
+    for place in &mut topology.rows {
+        let closure = &topology.closures[place.closure.0];
+        place.unit = if closure.rows[place.index].is_length() { closure.size } else { 1.0 };
     }
     // A coupler is one row: all of its terms are compared with what the first one is.
     for k in 0..topology.coupled_rows.len() {
         let r = topology.coupled_rows[k];
-        for (term, _) in topology.rows[r].terms.clone() {
-            topology.rows[term].unit = topology.rows[r].unit;
+        for term in topology[r].terms.clone() {
+            topology[term.row].unit = topology[r].unit;
         }
     }
     // What no loop holds is placed by drivers alone.
     let mut largest = vec![0.0_f64; topology.links.len()];
     for closure in &topology.closures {
-        for &(link, _) in &closure.links {
-            largest[link] = largest[link].max(closure.size);
+        for around in &closure.links {
+            let largest = &mut largest[around.link.0];
+            *largest = largest.max(closure.size);
         }
     }
     for coordinate in topology.coordinates.iter_mut().filter(|c| c.is_length) {
-        let size = largest[coordinate.link];
+        let size = largest[coordinate.link.0];
         coordinate.unit = if size > 0.0 { size } else { whole };
         coordinate.per_unit = 1.0 / coordinate.unit;
     }
@@ -64,7 +64,7 @@ fn loop_size(
     joints_of_body: &[Vec<usize>],
     whole: f64,
 ) -> f64 {
-    let links = || closure.links.iter().map(|&(k, _)| &topology.links[k]);
+    let links = || closure.links.iter().map(|around| &topology[around.link]);
     let around: BTreeSet<usize> =
         links().filter_map(|l| l.joint).chain(std::iter::once(closure.joint)).map(|j| j.0).collect();
     let size = extent(model, around.iter().copied());

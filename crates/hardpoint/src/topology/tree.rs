@@ -7,7 +7,10 @@ use crate::constraint::Row;
 use crate::joint::Freedom;
 use crate::model::{BodyId, DriverId, GROUND, JointId, Model};
 
-use super::{Closure, Coordinate, CutReason, Formulation, Link, Role, RowPlace, Source, Step, Topology};
+use super::{
+    BlockId, Closure, ClosureId, Coordinate, CoordinateId, CutReason, Formulation, Link, LinkId, LoopLink,
+    Role, RowId, RowPlace, SetBy, Step, Term, Topology,
+};
 
 /// Cost of a joint in the tree: a body without any tree joint has six unknowns, so six is never chosen.
 const ASKED_CUT: usize = 6;
@@ -70,8 +73,8 @@ pub(super) fn grow(model: &Model, formulation: Formulation) -> Topology {
         }
     }
     // Ground has no link, and depth 0.
-    let mut way = vec![Way::default(); model.bodies.len()];
-    for (k, link) in topology.links.iter().enumerate() {
+    let mut way = vec![Way { link: LinkId(0), depth: 0 }; model.bodies.len()];
+    for (k, link) in LinkId::each(&topology.links) {
         let depth = depth[link.child.0].expect("every body is placed by now");
         way[link.child.0] = Way { link: k, depth };
     }
@@ -98,9 +101,12 @@ pub(super) fn grow(model: &Model, formulation: Formulation) -> Topology {
     for coupler in &model.couplers {
         // Every other row has the factor 1, so a coupler is divided by its first coefficient.
         let others = coupler.terms.iter().enumerate().skip(1);
-        let factors = others.map(|(k, t)| (first + k, t.coefficient / coupler.terms[0].coefficient));
+        let factors = others.map(|(k, t)| Term {
+            row: RowId(first + k),
+            factor: t.coefficient / coupler.terms[0].coefficient,
+        });
         topology.rows[first].terms = factors.collect();
-        topology.coupled_rows.push(first);
+        topology.coupled_rows.push(RowId(first));
         for k in 1..coupler.terms.len() {
             topology.rows[first + k].is_term = true;
         }
@@ -203,15 +209,15 @@ fn add_link(
     sign: f64,
     freedoms: &[(Freedom, Option<DriverId>)],
 ) {
-    let link = topology.links.len();
+    let link = LinkId(topology.links.len());
     let mut steps = Vec::new();
     for &(freedom, driver) in freedoms {
-        steps.push(Step { freedom, sign, first: topology.coordinates.len(), is_driven: false });
+        steps.push(Step { freedom, sign, first: CoordinateId(topology.coordinates.len()), is_driven: false });
         for _ in 0..freedom.coordinates() {
             topology.coordinates.push(Coordinate {
                 link,
                 // The block of an unknown is found later.
-                source: driver.map_or(Source::Unknown { block: usize::MAX, column: 0 }, Source::Driven),
+                set_by: driver.map_or(SetBy::Block { block: BlockId(usize::MAX), column: 0 }, SetBy::Driver),
                 is_length: matches!(freedom, Freedom::Slide(_)),
                 unit: 1.0,
                 per_unit: 1.0,
@@ -229,9 +235,9 @@ struct Owner {
 }
 
 /// From a body towards ground: the link that places it, and how many links there are to ground.
-#[derive(Clone, Copy, Default)]
+#[derive(Clone, Copy)]
 struct Way {
-    link: usize,
+    link: LinkId,
     depth: usize,
 }
 
@@ -242,8 +248,8 @@ fn add_closure(
     bodies: [BodyId; 2],
     rows: Vec<Row>,
 ) {
-    let first_row = topology.rows.len();
-    let closure = topology.closures.len();
+    let first_row = RowId(topology.rows.len());
+    let closure = ClosureId(topology.closures.len());
     for index in 0..rows.len() {
         topology.rows.push(RowPlace {
             closure,
@@ -282,17 +288,17 @@ fn add_closure(
 /// Links from j (+1) and from i (-1) down to the body where their ways to ground meet, and that body.
 ///
 /// Neither way is followed further than that: in a chain of loops, the last one is far from ground.
-fn loop_links(topology: &Topology, way: &[Way], [mut i, mut j]: [BodyId; 2]) -> (Vec<(usize, f64)>, BodyId) {
+fn loop_links(topology: &Topology, way: &[Way], [mut i, mut j]: [BodyId; 2]) -> (Vec<LoopLink>, BodyId) {
     let (mut from_i, mut from_j) = (Vec::new(), Vec::new());
     while i != j {
         let (Way { link: a, depth: depth_i }, Way { link: b, depth: depth_j }) = (way[i.0], way[j.0]);
         if depth_i >= depth_j {
-            from_i.push((a, -1.0));
-            i = topology.links[a].parent;
+            from_i.push(LoopLink { link: a, side: -1.0 });
+            i = topology[a].parent;
         }
         if depth_j >= depth_i {
-            from_j.push((b, 1.0));
-            j = topology.links[b].parent;
+            from_j.push(LoopLink { link: b, side: 1.0 });
+            j = topology[b].parent;
         }
     }
     from_j.extend(from_i);

@@ -255,9 +255,9 @@ fn redundant_constraints_are_named_with_those_that_say_the_same() {
     assert_eq!(redundancies.len(), 3);
     for r in redundancies {
         // In a plane every hinge says that the others' axes are parallel and that nothing leaves the plane.
-        assert!(analysis.topology().name_of_row(&model, r.row).starts_with('`'));
+        assert!(analysis.topology().row_name(&model, r.row).starts_with('`'));
         for row in r.implied_by {
-            assert!(analysis.topology().rows[row].selected);
+            assert!(analysis.topology()[row].selected);
         }
     }
 }

@@ -3,7 +3,7 @@
 use hardpoint::Analysis;
 use hardpoint::motion::Execution;
 use hardpoint::space::Vec3;
-use hardpoint::study::{Scheme, compare_with_difference, finite_differences};
+use hardpoint::study::{Comparison, Scheme, finite_differences};
 use hardpoint::topology::Formulation;
 use hardpoint::{draft::*, model::*};
 
@@ -201,8 +201,8 @@ fn a_coupled_truss_of_any_size_turns_as_one_body() {
         let steps = [(VariableId(0), 1e-4), (VariableId(1), 1e-4)];
         for difference in finite_differences(&analysis, &solution, Scheme::Central, &steps) {
             let difference = difference.unwrap();
-            let errors = compare_with_difference(&analysis, &solution, &difference);
-            let worst = errors.iter().max_by(|a, b| a.error.total_cmp(&b.error)).unwrap();
+            let comparison = Comparison::of(&model, &solution, &difference);
+            let worst = comparison.worst().unwrap();
             assert!(worst.error < 1e-5, "{n} nodes, variable {}: {worst:?}", difference.variable.0);
         }
     }

@@ -71,12 +71,12 @@ impl Check<'_> {
         let frames = match (axis, axis2) {
             (Some((_, z)), Some((_, z_j))) if kind.axis2 == Need::OnBodyJ => {
                 let cosine = z.dot(z_j);
-                if std::ptr::eq(kind, &joint::ANGLE) && cosine.abs() > 1.0 - SQUARE_TOLERANCE {
+                if kind.rows.contains(&Row::Cosine) && cosine.abs() > 1.0 - SQUARE_TOLERANCE {
                     let message =
                         format!("the axes of joint `{name}` are parallel, where their angle holds nothing");
                     self.fault("HP0209", here.key("axis2"), message).help("use a `parallel` joint");
                 }
-                if std::ptr::eq(kind, &joint::CONSTANT_VELOCITY) && cosine < SQUARE_TOLERANCE {
+                if kind.rows.contains(&Row::ConstantVelocity) && cosine < SQUARE_TOLERANCE {
                     let message = format!("the shafts of joint `{name}` point at each other or are square");
                     self.fault("HP0209", here.key("axis2"), message)
                         .note(format!(
@@ -127,8 +127,7 @@ impl Check<'_> {
         if self.unread(here, "curve") {
             return None;
         }
-        let follows = std::ptr::eq(kind, &joint::POINT_ON_CURVE);
-        let draft = match (&j.curve, follows) {
+        let draft = match (&j.curve, kind.follows_curve()) {
             (None, false) => return None,
             (Some(_), false) => {
                 self.fault("HP0226", here.key("curve"), format!("a {} joint has no `curve`", kind.name))
@@ -201,7 +200,7 @@ impl Check<'_> {
             Some(given) => given?,
             None => j.length?,
         };
-        if !kind.coordinates.iter().any(|c| c.row == Row::Distance) && !kind.rows.contains(&Row::Contact) {
+        if !kind.is_rod() && !kind.follows_curve() {
             self.fault("HP0223", here.key("length"), format!("a {} joint has no `length`", kind.name))
                 .help(format!("remove `length` from `{}`", j.name));
         } else if !(length > 0.0 && length.is_finite()) {
@@ -213,12 +212,12 @@ impl Check<'_> {
 
     /// HP0223: a screw without a lead, or a lead without a screw.
     fn lead(&mut self, j: &JointDraft, kind: &'static JointType, here: Here) {
-        let is_screw = std::ptr::eq(kind, &joint::SCREW);
+        let has_lead = kind.has_lead();
         if self.unread(here, "lead") {
             return;
         }
         match j.lead {
-            Some(_) if !is_screw => {
+            Some(_) if !has_lead => {
                 self.fault("HP0223", here.key("lead"), format!("a {} joint has no `lead`", kind.name))
                     .help(format!("remove `lead` from `{}`, or make it a `screw`", j.name));
             }
@@ -227,7 +226,7 @@ impl Check<'_> {
                 self.fault("HP0223", here.key("lead"), message)
                     .help("give the advance of one turn; negative for a left-hand thread");
             }
-            None if is_screw => {
+            None if has_lead => {
                 self.fault("HP0223", here.key("type"), format!("screw `{}` needs `lead`", j.name))
                     .help("give the advance of one turn, like `lead = 5`; negative for a left-hand thread");
             }
@@ -282,8 +281,7 @@ impl Check<'_> {
         let places: Vec<_> =
             j.at.iter().enumerate().map(|(k, p)| self.place(p, name, here.item("at", k))).collect();
         let (first, last) = (places[0]?, places[places.len() - 1]?);
-        let is_rod = kind.coordinates.iter().any(|c| c.row == Row::Distance);
-        if is_rod && self.apart(first, last) == Some(None) {
+        if kind.is_rod() && self.apart(first, last) == Some(None) {
             self.fault("HP0211", here.key("at"), format!("the two ends of `{name}` are at the same place"))
                 .help("a rod needs two points that lie apart");
         }

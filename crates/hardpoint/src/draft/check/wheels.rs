@@ -3,7 +3,7 @@
 use crate::draft::{AxleDraft, PointRef, Section, WheelDraft, WheelSpinDraft};
 use crate::model::{
     Axle, AxleId, AxleMeasure, BodyPoint, Direction, DriverId, HardpointId, MeasureKind, PointId, Side,
-    VehicleEnd, Wheel, WheelId, WheelMeasure, WheelNeed,
+    VehicleEnd, Wheel, WheelId, WheelMeasure,
 };
 use crate::space::Vec3;
 
@@ -272,10 +272,9 @@ impl Check<'_> {
             self.needs_bump(what.name(), name, here);
             return None;
         }
-        let (WheelNeed::Braking(end) | WheelNeed::Driving(end)) = needs else {
-            return Some(MeasureKind::Wheel { wheel: id, what });
-        };
-        if wheel.end.is_some_and(|at| at != end) {
+        if let (Some(end), Some(at)) = (needs.end(), wheel.end)
+            && end != at
+        {
             let message = format!("`{}` is of {} wheels, and `{name}` is none", what.name(), end.name());
             self.fault("HP0232", here.key("type"), message).help(match end {
                 VehicleEnd::Front => "at the rear measure `anti_lift` or `anti_squat`",
@@ -283,18 +282,7 @@ impl Check<'_> {
             });
             return None;
         }
-        let vehicle = &draft.vehicle;
-        let (share, key) = match needs {
-            WheelNeed::Driving(_) => (vehicle.front_drive_share, "front_drive_share"),
-            _ => (vehicle.front_brake_share, "front_brake_share"),
-        };
-        let known = [
-            ("wheelbase", vehicle.wheelbase),
-            ("centre_of_gravity", vehicle.centre_of_gravity),
-            (key, share),
-        ];
-        let missing: Vec<String> =
-            known.iter().filter(|(_, x)| x.is_none()).map(|(key, _)| format!("`{key} = ...`")).collect();
+        let missing: Vec<String> = draft.vehicle.lacks(needs).map(|key| format!("`{key} = ...`")).collect();
         if !missing.is_empty() && self.vehicle_is_unread() {
             return None;
         }

@@ -5,8 +5,8 @@ use std::collections::{BTreeMap, BTreeSet};
 use hardpoint::motion::{Execution, StopKind};
 use hardpoint::sensitivity::Admissibility;
 use hardpoint::space::{Pose, Vec3};
-use hardpoint::study::{Scheme, compare_with_difference, finite_differences, natural_step};
-use hardpoint::topology::{Formulation, Role, Source};
+use hardpoint::study::{Comparison, Scheme, finite_differences};
+use hardpoint::topology::{Formulation, Role, SetBy};
 use hardpoint::{Analysis, Solution};
 use hardpoint::{draft::*, model::*};
 
@@ -362,7 +362,7 @@ impl Case<'_> {
             let in_tree = topology
                 .coordinates
                 .iter()
-                .any(|x| matches!(x.source, Source::Driven(id) if model.drivers[id.0].name == d.name));
+                .any(|x| matches!(x.set_by, SetBy::Driver(id) if model.drivers[id.0].name == d.name));
             let place = if in_tree { "tree" } else { "cut" };
             used.insert(format!("{}.{} driven {place}", joint.kind.name, c.name));
         }
@@ -406,7 +406,7 @@ impl Case<'_> {
             if at_rest && *admissibility == Admissibility::Admissible {
                 let moved = s.sensitivities.at(0, v).into_iter().flat_map(|d| d.iter());
                 let moved = moved.map(|d| (d.dr.norm() / model.size()).max(d.dpi.norm())).fold(0.0, f64::max);
-                let moved = moved * natural_step(model, VariableId(v));
+                let moved = moved * model.natural_step(VariableId(v));
                 let margin = s.motion.margins[0].value;
                 // Typed velocities count as admissible up to 1e-7.
                 self.allow("admissible", moved, 1e-11 / margin, || model.variables[v].name.clone());
@@ -421,28 +421,21 @@ impl Case<'_> {
             (0..model.variables.len()).filter(|&v| s.sensitivities.at(0, v).is_some()).collect();
         rng.shuffle(&mut variables);
         for v in variables.into_iter().take(2).map(VariableId) {
-            let natural = natural_step(model, v);
+            let natural = model.natural_step(v);
             // Near a singular position the motion changes within steps of the margin.
             let part =
                 [3e-3, 1e-3, 3e-4, 1e-4, 3e-5, 1e-5, 3e-6].map(|part| (v, part * natural * margin.sqrt()));
-            let mut best: Vec<(f64, String)> = Vec::new();
+            let mut best = Comparison::default();
             for d in finite_differences(analysis, s, Scheme::Central, &part).into_iter().flatten() {
-                let errors = compare_with_difference(analysis, s, &d);
-                if best.is_empty() {
-                    best = errors.iter().map(|e| (e.error, e.quantity.clone())).collect();
-                }
-                for (best, e) in best.iter_mut().zip(errors) {
-                    best.0 = if e.error < best.0 { e.error } else { best.0 };
-                }
+                best.keep_better(Comparison::of(model, s, &d));
             }
-            if best.is_empty() {
+            let Some(worst) = best.worst() else {
                 self.fail(format!("no design near {} could be solved", model.variables[v.0].name));
                 continue;
-            }
-            let worst = best.iter().max_by(|a, b| a.0.total_cmp(&b.0)).expect("bodies");
+            };
             let limit = DIFFERENCE / margin;
-            self.allow("re-solved designs", worst.0, limit, || {
-                format!("{}: {}, margin {margin:e}", model.variables[v.0].name, worst.1)
+            self.allow("re-solved designs", worst.error, limit, || {
+                format!("{}: {}, margin {margin:e}", model.variables[v.0].name, worst.quantity)
             });
         }
     }
@@ -497,7 +490,7 @@ impl Case<'_> {
                         &|k| s.measured.value(k, m)[order + 1],
                     );
                     for v in (0..model.variables.len()).filter(|&v| s.sensitivities.at(0, v).is_some()) {
-                        let floor = floor / natural_step(&model, VariableId(v));
+                        let floor = floor / model.natural_step(VariableId(v));
                         let name =
                             format!("rate {} of {} by {}", order + 1, output.name, model.variables[v].name);
                         push(name, floor, &|k| s.measured.d(k, VariableId(v), m)[order], &|k| {
@@ -613,7 +606,7 @@ fn flat(model: &Model, s: &Solution, size: f64, moved: Option<Pose>, anywhere: b
         groups.push(Group { name, order: order as i32, floor: speeds[order], values, counts_turns: false });
     }
     for &v in variables.iter().filter(|&&v| s.sensitivities.at(0, v).is_some()) {
-        let natural = natural_step(model, VariableId(v));
+        let natural = model.natural_step(VariableId(v));
         let at = |k: usize, b: usize| s.sensitivities.at(k, v).expect("followed").body(b);
         let of: [&dyn Fn(usize, usize) -> [Vec3; 2]; 3] = [
             &|k, b| [back(at(k, b).dr) * (1.0 / size), back(at(k, b).dpi)],
@@ -665,7 +658,7 @@ fn flat(model: &Model, s: &Solution, size: f64, moved: Option<Pose>, anywhere: b
             for &v in variables.iter().filter(|&&v| s.sensitivities.at(0, v).is_some()) {
                 let values = (0..times).map(|k| s.measured.d(k, VariableId(v), m)[order]).collect();
                 let name = format!("{} order {order} by {}", output.name, model.variables[v].name);
-                let floor = floor / natural_step(model, VariableId(v));
+                let floor = floor / model.natural_step(VariableId(v));
                 groups.push(Group { name, order: order as i32 + 1, floor, values, counts_turns: false });
             }
         }
