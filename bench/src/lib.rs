@@ -33,14 +33,14 @@ pub fn workload_model(name: &str) -> Model {
     hardpoint_file::parse(&workload_text(name), name).unwrap_or_else(|e| panic!("{e}")).model
 }
 
-/// An analysis of the bodies alone, its steps solved as `HARDPOINT_PATH` asks for.
+/// An analysis, its steps solved as `HARDPOINT_PATH` asks for.
 ///
 /// # Panics
 /// If the model cannot be driven.
 pub fn analysis(model: &Model) -> Analysis<'_> {
     let path = std::env::var("HARDPOINT_PATH").ok();
     let execution = path.and_then(|name| Execution::named(&name)).unwrap_or_default();
-    Analysis::new(model).expect("a model that can be driven").bodies_only().executed(execution)
+    Analysis::new(model).expect("a model that can be driven").executed(execution)
 }
 
 /// The text of `bench/models/NAME.toml`.

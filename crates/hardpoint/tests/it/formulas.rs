@@ -2,12 +2,12 @@
 
 use std::ops::ControlFlow;
 
-use hardpoint::Analysis;
 use hardpoint::joint::Quantity;
 use hardpoint::sensitivity::Admissibility;
 use hardpoint::space::Vec3;
 use hardpoint::study::{VerifyOptions, verify};
 use hardpoint::topology::Formulation;
+use hardpoint::{Analysis, Run};
 use hardpoint::{design::Field, draft::*, model::*};
 use hardpoint::{expression::Expression, law::Law};
 
@@ -192,9 +192,9 @@ fn designs_side_by_side_are_those_one_by_one() {
     let analysis = Analysis::new(&model).unwrap();
     let design = |k: usize| (0..model.variables.len()).map(|v| 1e-3 * (v + k) as f64).collect::<Vec<f64>>();
     let designs: Vec<_> = (0..8).map(design).collect();
-    let together = analysis.run_designs(&designs);
+    let together = designs_of(&analysis, &designs);
     for (k, (design, together)) in designs.iter().zip(&together).enumerate() {
-        let alone = analysis.run_design(design);
+        let alone = analysis.solve(Run::new().at(design).without_sensitivities());
         let angle = alone.measured.index("angle").unwrap();
         for step in 0..alone.motion.len() {
             let (a, b) = (alone.measured.value(step, angle)[0], together.measured.value(step, angle)[0]);

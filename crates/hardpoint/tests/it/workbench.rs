@@ -2,6 +2,7 @@
 
 use hardpoint::law::Law;
 use hardpoint::space::Vec3;
+use hardpoint::{Analysis, Run, Solution};
 use hardpoint::{draft::*, model::*};
 
 use crate::reference_case::Case;
@@ -76,6 +77,14 @@ pub fn four_bar(points: [[f64; 2]; 4], law: &str, times: &[f64]) -> Draft {
         times: times.to_vec(),
         ..Draft::default()
     }
+}
+
+/// Motions of designs, with their measures.
+pub fn designs_of(analysis: &Analysis<'_>, designs: &[Vec<f64>]) -> Vec<Solution> {
+    let mut all = vec![Solution::default(); designs.len()];
+    let run = Run::new().without_sensitivities();
+    analysis.solve_designs(run, designs, |k, solution| all[k] = std::mem::take(solution));
+    all
 }
 
 /// Times 0 to `end` in n steps.
