@@ -19,7 +19,7 @@ impl Draft {
 
     /// Adds a named point at a global position, m.
     pub fn hardpoint(mut self, name: impl Into<String>, position: impl Into<Vec3>) -> Self {
-        self.hardpoints.push(HardpointDraft { name: name.into(), position: position.into() });
+        self.hardpoints.push(HardpointDraft::new(name, position));
         self
     }
 
@@ -86,7 +86,7 @@ impl Draft {
 
     /// Adds a driver. A joint's name stands for its only coordinate, `["joint", "coordinate"]` for one of several.
     pub fn driver(mut self, name: impl Into<String>, drives: impl Into<DrivenDraft>, law: Law) -> Self {
-        self.drivers.push(DriverDraft { name: name.into(), drives: drives.into(), law });
+        self.drivers.push(DriverDraft::new(name, drives, law));
         self
     }
 
@@ -103,19 +103,18 @@ impl Draft {
         hardpoint: impl Into<String>,
         velocity: impl Into<Vec3>,
     ) -> Self {
-        let change = ChangeDraft::Move { hardpoint: hardpoint.into(), velocity: velocity.into() };
-        self.variable(VariableDraft::new(name, [change]))
+        self.variable(VariableDraft::moving(name, hardpoint, velocity))
     }
 
     /// Adds a point to follow, on a body.
     pub fn point(mut self, name: impl Into<String>, body: impl Into<String>, at: impl Into<Place>) -> Self {
-        self.points.push(PointDraft { name: name.into(), body: body.into(), at: at.into() });
+        self.points.push(PointDraft::new(name, body, at));
         self
     }
 
     /// Adds a measure. A joint's name stands for its only coordinate, `["joint", "coordinate"]` for one of several.
     pub fn measure(mut self, name: impl Into<String>, kind: impl Into<MeasureKindDraft>) -> Self {
-        self.measures.push(MeasureDraft { name: name.into(), kind: kind.into() });
+        self.measures.push(MeasureDraft::new(name, kind));
         self
     }
 
@@ -178,17 +177,57 @@ impl JointDraft {
     }
 }
 
+impl HardpointDraft {
+    /// A named point at a global position, m.
+    pub fn new(name: impl Into<String>, position: impl Into<Vec3>) -> Self {
+        Self { name: name.into(), position: position.into() }
+    }
+}
+
+impl BodyDraft {
+    /// A body with the default frame.
+    pub fn new(name: impl Into<String>) -> Self {
+        Self { name: name.into(), frame: FrameDraft::Default }
+    }
+}
+
+impl DriverDraft {
+    /// A driver. A joint's name stands for its only coordinate, `["joint", "coordinate"]` for one of several.
+    pub fn new(name: impl Into<String>, drives: impl Into<DrivenDraft>, law: Law) -> Self {
+        Self { name: name.into(), drives: drives.into(), law }
+    }
+}
+
+impl PointDraft {
+    /// A point to follow, on a body.
+    pub fn new(name: impl Into<String>, body: impl Into<String>, at: impl Into<Place>) -> Self {
+        Self { name: name.into(), body: body.into(), at: at.into() }
+    }
+}
+
+impl MeasureDraft {
+    /// A measure. A joint's name stands for its only coordinate, `["joint", "coordinate"]` for one of several.
+    pub fn new(name: impl Into<String>, kind: impl Into<MeasureKindDraft>) -> Self {
+        Self { name: name.into(), kind: kind.into() }
+    }
+}
+
 impl VariableDraft {
     /// A design variable with all that changes with it.
     pub fn new(name: impl Into<String>, changes: impl Into<Vec<ChangeDraft>>) -> Self {
         Self { name: name.into(), changes: changes.into(), ..Self::default() }
+    }
+
+    /// One that moves a hardpoint, by this global velocity per unit.
+    pub fn moving(name: impl Into<String>, hardpoint: impl Into<String>, velocity: impl Into<Vec3>) -> Self {
+        Self::new(name, [ChangeDraft::Move { hardpoint: hardpoint.into(), velocity: velocity.into() }])
     }
 }
 
 /// With the default frame.
 impl From<&str> for BodyDraft {
     fn from(name: &str) -> Self {
-        Self { name: name.into(), frame: FrameDraft::Default }
+        Self::new(name)
     }
 }
 

@@ -125,6 +125,98 @@ fn threads_used_memory_and_streams_change_no_bit() {
     assert_eq!(streamed.admissibility, fresh.sensitivities.admissibility);
 }
 
+/// Counts what it gets of some output times.
+#[derive(Default)]
+struct Count {
+    states: usize,
+    sensitivities: usize,
+}
+
+impl hardpoint::Sink for Count {
+    fn state(&mut self, _: usize, _: BodyId, _: &hardpoint::motion::BodyState) {
+        self.states += 1;
+    }
+    fn sensitivity(
+        &mut self,
+        _: usize,
+        _: VariableId,
+        _: BodyId,
+        _: &hardpoint::sensitivity::BodySensitivity,
+    ) {
+        self.sensitivities += 1;
+    }
+}
+
+#[test]
+fn a_request_means_the_same_whatever_way_it_is_run() {
+    let model = Model::from_draft(&reference_draft("macpherson")).unwrap();
+    let analysis = Analysis::new(&model).unwrap();
+    let design = [1e-3, -5e-4, 2e-4];
+    let whole = analysis.solve(Run::new().at(&design));
+    let (steps, moving, variables) = (model.times.len(), model.bodies.len() - 1, model.variables.len());
+    assert!(difference(&whole, &analysis.run()) > 1e-6, "another design");
+
+    // Window by window.
+    let mut seen = Vec::new();
+    analysis.solve_in_windows(Run::new().at(&design), 1, |_, window| seen.extend(bits(window)));
+    assert_eq!(seen, bits(&whole));
+
+    // Among other designs, with what is asked for.
+    let designs = [vec![], design.to_vec(), vec![0.0; variables]];
+    let mut visited = Vec::new();
+    analysis.solve_designs(Run::new(), &designs, |k, solution| {
+        visited.push(k);
+        assert_eq!(solution.measured.outputs.len(), whole.measured.outputs.len());
+        if k == 1 {
+            assert!(difference(solution, &whole) < 1e-10);
+            let at_end = |s: &Solution| s.measured.d(steps - 1, VariableId(0), 0);
+            assert!((at_end(solution)[0] - at_end(&whole)[0]).abs() < 1e-10);
+        }
+    });
+    assert_eq!(visited, [0, 1, 2]);
+    analysis.solve_designs(Run::new().without_sensitivities().without_measures(), &designs, |k, solution| {
+        assert!(solution.measured.outputs.is_empty() && solution.sensitivities.variables == 0);
+        assert!(k != 1 || difference(solution, &whole) < 1e-11);
+    });
+
+    // Into sinks, one design or many.
+    let mut count = Count::default();
+    let streamed = analysis.stream(Run::new().at(&design).without_sensitivities(), &mut count);
+    assert_eq!((count.states, count.sensitivities), (steps * moving, 0));
+    assert!(streamed.admissibility.is_empty() && streamed.stop.is_none());
+    for (run, per_step) in [(Run::new(), true), (Run::new().without_sensitivities(), false)] {
+        let all: usize = (0..variables)
+            .map(|v| (1..=moving).filter(|b| whole.sensitivities.moves(VariableId(v), BodyId(*b))).count())
+            .sum();
+        let mut ended = 0;
+        analysis.stream_designs(
+            run,
+            &designs,
+            |_| Count::default(),
+            |_, count, streamed| {
+                assert_eq!(
+                    (count.states, count.sensitivities),
+                    (steps * moving, if per_step { steps * all } else { 0 })
+                );
+                assert_eq!(streamed.admissibility.len(), if per_step { variables } else { 0 });
+                ended += 1;
+            },
+        );
+        assert_eq!(ended, designs.len());
+    }
+
+    // And each of them may be ended.
+    let told = |p: hardpoint::Progress| {
+        if p.done == 3 { std::ops::ControlFlow::Break(()) } else { std::ops::ControlFlow::Continue(()) }
+    };
+    let windowed = analysis.solve_in_windows(Run::new().progress(told), 1, |_, _| ());
+    let streamed = analysis.stream(Run::new().progress(told), &mut Count::default());
+    for stop in [windowed.stop, streamed.stop] {
+        assert_eq!(stop.unwrap().kind, hardpoint::motion::StopKind::Interrupted);
+    }
+    assert_eq!(streamed.steps, 3);
+}
+
 #[test]
 fn steps_abreast_are_the_same_as_one_by_one() {
     // Times far apart are walked one by one, times close together go eight abreast: common ones must agree.

@@ -157,13 +157,12 @@ pub fn truss(n: usize) -> (Draft, impl Fn(usize) -> [f64; 2]) {
 fn moves(name: &str, k: usize, y: f64) -> VariableDraft {
     let velocity = Vec3::new(0.0, y, 0.0);
     let changes = vec![ChangeDraft::Move { hardpoint: format!("p{k}"), velocity }];
-    VariableDraft { name: name.into(), changes, ..VariableDraft::default() }
+    VariableDraft::new(name, changes)
 }
 
 /// The same with the places of nodes as hardpoints `p0`, `p1`, ..., so that variables may move them.
 fn with_hardpoints(mut draft: Draft, n: usize, place: &dyn Fn(usize) -> [f64; 3]) -> Draft {
-    draft.hardpoints =
-        (0..n).map(|k| HardpointDraft { name: format!("p{k}"), position: place(k).into() }).collect();
+    draft.hardpoints = (0..n).map(|k| HardpointDraft::new(format!("p{k}"), place(k))).collect();
     for at in draft.joints.iter_mut().flat_map(|j| &mut j.at) {
         let Place::At(p) = *at else { continue };
         if let Some(k) = (0..n).find(|&k| Vec3::from(place(k)) == p) {
@@ -385,11 +384,7 @@ fn a_loop_that_rides_on_a_body_which_depends_on_it_is_solved_where_it_stands() {
         times: times(1.0, 5),
         ..Draft::default()
     };
-    draft.points.push(PointDraft {
-        name: "tip".into(),
-        body: "arm".into(),
-        at: Place::At([0.5, 0.0, 0.0].into()),
-    });
+    draft.points.push(PointDraft::new("tip", "arm", [0.5, 0.0, 0.0]));
     let model = Model::from_draft(&draft).unwrap();
     for formulation in [Formulation::Relative, Formulation::Absolute] {
         let solution = Analysis::with(&model, formulation).unwrap().run();

@@ -105,11 +105,7 @@ fn parameters_of_laws_have_second_derivatives_too() {
     draft.drivers[0].law = Law::parse_with("a*sin(w*t)", &[("a", 0.7), ("w", 3.0)]).unwrap();
     for parameter in ["a", "w"] {
         let change = ChangeDraft::Law { driver: "motor".into(), parameter: parameter.into(), rate: 1.0 };
-        draft.design.push(VariableDraft {
-            name: parameter.into(),
-            changes: vec![change],
-            ..VariableDraft::default()
-        });
+        draft.design.push(VariableDraft::new(parameter, [change]));
     }
     let model = Model::from_draft(&draft).unwrap();
     let directions: Vec<Vec<f64>> = (0..2).map(|v| unit(2, v)).collect();
