@@ -4,7 +4,7 @@
 
 use divan::Bencher;
 use divan::counter::ItemsCount;
-use hardpoint::Analysis;
+use hardpoint::{Analysis, Run, Solution};
 
 const MODELS: [&str; 2] = ["slider_crank", "macpherson"];
 
@@ -12,20 +12,27 @@ fn main() {
     divan::main();
 }
 
+/// The bodies alone, without measures.
+fn bodies() -> Run<'static> {
+    Run::new().without_measures()
+}
+
 /// Position, velocity and acceleration of all bodies at all output times.
 #[divan::bench(args = MODELS)]
 fn motion(bencher: Bencher, name: &str) {
     let model = hardpoint_bench::model(name);
-    let analysis = Analysis::new(&model).unwrap().bodies_only();
-    bencher.counter(ItemsCount::new(model.times.len())).bench(|| analysis.run_motion());
+    let analysis = Analysis::new(&model).unwrap();
+    bencher
+        .counter(ItemsCount::new(model.times.len()))
+        .bench(|| analysis.solve(bodies().without_sensitivities()));
 }
 
 /// The same with all sensitivities of all bodies by all design variables.
 #[divan::bench(args = MODELS)]
 fn all_sensitivities(bencher: Bencher, name: &str) {
     let model = hardpoint_bench::model(name);
-    let analysis = Analysis::new(&model).unwrap().bodies_only();
-    bencher.counter(ItemsCount::new(model.times.len())).bench(|| analysis.run());
+    let analysis = Analysis::new(&model).unwrap();
+    bencher.counter(ItemsCount::new(model.times.len())).bench(|| analysis.solve(bodies()));
 }
 
 /// The same with all measures and points, and their sensitivities.
@@ -40,7 +47,12 @@ fn all_sensitivities_and_measures(bencher: Bencher, name: &str) {
 #[divan::bench(args = MODELS)]
 fn eight_designs(bencher: Bencher, name: &str) {
     let model = hardpoint_bench::model(name);
-    let analysis = Analysis::new(&model).unwrap().bodies_only();
+    let analysis = Analysis::new(&model).unwrap();
     let designs: Vec<Vec<f64>> = (0..8).map(|k| vec![1e-5 * f64::from(k); 1]).collect();
-    bencher.counter(ItemsCount::new(8 * model.times.len())).bench(|| analysis.run_designs(&designs));
+    bencher.counter(ItemsCount::new(8 * model.times.len())).bench(|| {
+        let mut all = vec![Solution::default(); designs.len()];
+        let run = bodies().without_sensitivities();
+        analysis.solve_designs(run, &designs, |k, solution| all[k] = std::mem::take(solution));
+        all
+    });
 }

@@ -4,7 +4,7 @@
 
 use divan::Bencher;
 use divan::counter::ItemsCount;
-use hardpoint::Analysis;
+use hardpoint::{Analysis, Run};
 use hardpoint::{draft::Draft, model::Model};
 
 /// Steps after the first output time.
@@ -16,8 +16,10 @@ fn main() {
 
 fn motion(bencher: Bencher<'_, '_>, draft: &Draft) {
     let model = Model::from_draft(draft).unwrap();
-    let analysis = Analysis::new(&model).unwrap().bodies_only();
-    bencher.counter(ItemsCount::new(model.times.len())).bench(|| analysis.run_motion());
+    let analysis = Analysis::new(&model).unwrap();
+    bencher
+        .counter(ItemsCount::new(model.times.len()))
+        .bench(|| analysis.solve(Run::new().without_sensitivities().without_measures()));
 }
 
 fn check_and_plan(bencher: Bencher<'_, '_>, draft: &Draft) {

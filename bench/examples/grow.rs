@@ -5,8 +5,8 @@
 
 use std::time::Instant;
 
-use hardpoint::Analysis;
 use hardpoint::model::Model;
+use hardpoint::{Analysis, Run};
 
 fn main() {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
@@ -30,7 +30,7 @@ fn main() {
     let model = Model::from_draft(&draft).expect("a valid model");
     let checked = before.elapsed();
     let before = Instant::now();
-    let analysis = Analysis::new(&model).unwrap_or_else(|e| panic!("{e}")).bodies_only();
+    let analysis = Analysis::new(&model).unwrap_or_else(|e| panic!("{e}"));
     let planned = before.elapsed();
     let topology = analysis.topology();
     let largest = topology.blocks.iter().map(|b| b.unknowns.len()).max().unwrap_or(0);
@@ -42,7 +42,7 @@ fn main() {
         topology.redundant().count()
     );
     let before = Instant::now();
-    let solution = analysis.run_motion();
+    let solution = analysis.solve(Run::new().without_sensitivities().without_measures());
     let ran = before.elapsed();
     let per_step = 1e6 * ran.as_secs_f64() / solution.motion.len().max(1) as f64;
     println!("checked {checked:.1?}, planned {planned:.1?}, ran {ran:.1?}: {per_step:.1} us per step");

@@ -1,6 +1,8 @@
 //! Runs one model again and again, for profilers and instruction counters:
 //! `repeat MODEL motion|sensitivities|designs TIMES`.
 
+use hardpoint::{Run, Solution};
+
 fn main() {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     let [name, what, times] = arguments.as_slice() else {
@@ -8,28 +10,30 @@ fn main() {
     };
     let model = hardpoint_bench::model(name);
     let analysis = hardpoint_bench::analysis(&model);
+    let bodies = || Run::new().without_measures();
     let designs = vec![vec![1e-5]; 8];
     let mut steps = 0;
-    let mut solution = hardpoint::Solution::default();
+    let mut solution = Solution::default();
     let before = std::time::Instant::now();
     for _ in 0..times.parse().expect("a number of times") {
         steps += match what.as_str() {
             "motion" => {
-                analysis.run_motion_into(&mut solution);
+                solution = analysis.solve(bodies().without_sensitivities().reusing(solution));
                 solution.motion.len()
             }
             "sensitivities" => {
-                analysis.run_into(&mut solution);
+                solution = analysis.solve(bodies().reusing(solution));
                 solution.motion.len()
             }
             _ => {
                 let mut solved = 0;
-                analysis.for_each_design(&designs, |_, solution| solved += solution.motion.len());
+                let run = bodies().without_sensitivities();
+                analysis.solve_designs(run, &designs, |_, solution| solved += solution.motion.len());
                 solved
             }
         };
     }
     let seconds = before.elapsed().as_secs_f64();
-    let iterations = analysis.run_motion().motion.effort;
+    let iterations = analysis.solve(bodies().without_sensitivities()).motion.effort;
     println!("{steps} steps, {:.3} us each; {iterations:?}", 1e6 * seconds / steps as f64);
 }

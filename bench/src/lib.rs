@@ -5,10 +5,7 @@ use hardpoint::law::Law;
 use hardpoint::motion::Execution;
 use hardpoint::space::{Mat3, Pose, Vec3};
 use hardpoint::{
-    draft::{
-        BodyDraft, ChangeDraft, Draft, DrivenDraft, DriverDraft, FrameDraft, HardpointDraft, JointDraft,
-        Line, Place, PointDraft, VariableDraft,
-    },
+    draft::{BodyDraft, Draft, DrivenDraft, FrameDraft, JointDraft, Line, Place},
     model::Model,
 };
 
@@ -33,14 +30,14 @@ pub fn workload_model(name: &str) -> Model {
     hardpoint_file::parse(&workload_text(name), name).unwrap_or_else(|e| panic!("{e}")).model
 }
 
-/// An analysis of the bodies alone, its steps solved as `HARDPOINT_PATH` asks for.
+/// An analysis, its steps solved as `HARDPOINT_PATH` asks for.
 ///
 /// # Panics
 /// If the model cannot be driven.
 pub fn analysis(model: &Model) -> Analysis<'_> {
     let path = std::env::var("HARDPOINT_PATH").ok();
     let execution = path.and_then(|name| Execution::named(&name)).unwrap_or_default();
-    Analysis::new(model).expect("a model that can be driven").bodies_only().executed(execution)
+    Analysis::new(model).expect("a model that can be driven").executed(execution)
 }
 
 /// The text of `bench/models/NAME.toml`.
@@ -52,35 +49,23 @@ pub fn workload_text(name: &str) -> String {
     std::fs::read_to_string(&path).unwrap_or_else(|e| panic!("{path}: {e}"))
 }
 
-fn body(name: String) -> BodyDraft {
-    BodyDraft { name, frame: FrameDraft::Default }
-}
-
 fn body_at(name: String, x: f64, y: f64) -> BodyDraft {
     let pose = Pose { r: Vec3::new(x, y, 0.0), rot: Mat3::IDENTITY };
     BodyDraft { name, frame: FrameDraft::Pose(pose) }
 }
 
-fn joint(name: String, kind: &str, bodies: [&str; 2], at: &[[f64; 2]], axis: Option<[f64; 3]>) -> JointDraft {
-    JointDraft {
-        name,
-        kind: kind.into(),
-        bodies: bodies.map(Into::into),
-        at: at.iter().map(|&[x, y]| Place::At(Vec3::new(x, y, 0.0))).collect(),
-        axis: axis.map(|a| Line::Along(a.into())),
-        ..JointDraft::default()
-    }
+fn flat([x, y]: [f64; 2]) -> [f64; 3] {
+    [x, y, 0.0]
 }
 
 fn driven(name: String, joint: &str, law: &str, steps: usize) -> Draft {
     let law = Law::parse(law).expect("a law");
-    let drives = DrivenDraft::Coordinate { joint: joint.into(), coordinate: None };
-    let driver = DriverDraft { name: "motor".into(), drives, law };
-    let times = (0..=steps).map(|k| k as f64 / 100.0).collect();
-    Draft { name, drivers: vec![driver], times, ..Draft::default() }
+    Draft::new(name).driver("motor", joint, law).times((0..=steps).map(|k| k as f64 / 100.0))
 }
 
-const Z: Option<[f64; 3]> = Some([0.0, 0.0, 1.0]);
+const X: [f64; 3] = [1.0, 0.0, 0.0];
+const Y: [f64; 3] = [0.0, 1.0, 0.0];
+const Z: [f64; 3] = [0.0, 0.0, 1.0];
 
 /// N parallelograms side by side, each driven by the one before: N loops of two unknowns. Every body has its frame
 /// in its middle.
@@ -88,19 +73,18 @@ pub fn chain(n: usize, steps: usize) -> Draft {
     let mut draft = driven(format!("chain of {n}"), "pivot0", "0.5*sin(2*pi*t)", steps);
     for k in 0..=n {
         let (x, bar, coupler) = (k as f64, format!("bar{k}"), format!("coupler{k}"));
-        draft.bodies.push(body_at(bar.clone(), x, 0.5));
-        draft.joints.push(joint(format!("pivot{k}"), "revolute", ["ground", &bar], &[[x, 0.0]], Z));
+        draft = draft.body(body_at(bar.clone(), x, 0.5)).revolute(
+            format!("pivot{k}"),
+            ["ground", &bar],
+            flat([x, 0.0]),
+            Z,
+        );
         if k < n {
-            draft.bodies.push(body_at(coupler.clone(), x + 0.5, 1.0));
             let next = format!("bar{}", k + 1);
-            draft.joints.push(joint(format!("left{k}"), "revolute", [&bar, &coupler], &[[x, 1.0]], Z));
-            draft.joints.push(joint(
-                format!("right{k}"),
-                "revolute",
-                [&coupler, &next],
-                &[[x + 1.0, 1.0]],
-                Z,
-            ));
+            draft = draft
+                .body(body_at(coupler.clone(), x + 0.5, 1.0))
+                .revolute(format!("left{k}"), [&bar, &coupler], flat([x, 1.0]), Z)
+                .revolute(format!("right{k}"), [&coupler, &next], flat([x + 1.0, 1.0]), Z);
         }
     }
     draft
@@ -114,10 +98,7 @@ pub fn chain_with_variables(n: usize, variables: usize, steps: usize) -> Draft {
         let (name, pivot) = (format!("P{k}"), format!("pivot{k}"));
         let joint = draft.joints.iter_mut().find(|j| j.name == pivot).expect("a pivot of the chain");
         joint.at = vec![Place::Hardpoint(name.clone())];
-        let velocity = Vec3::new(1.0, 0.0, 0.0);
-        draft.hardpoints.push(HardpointDraft { name: name.clone(), position: Vec3::new(k as f64, 0.0, 0.0) });
-        let changes = vec![ChangeDraft::Move { hardpoint: name.clone(), velocity }];
-        draft.design.push(VariableDraft { name, changes, ..VariableDraft::default() });
+        draft = draft.hardpoint(&name, [k as f64, 0.0, 0.0]).variable_moving(&name, &name, X);
     }
     draft
 }
@@ -164,28 +145,18 @@ pub fn truss(n: usize, steps: usize) -> Draft {
     let node = |k: usize| if k == 0 { "ground".to_owned() } else { format!("node{k}") };
     for k in 1..n {
         let slider = format!("slider{k}");
-        draft.bodies.extend([slider.clone(), node(k)].map(body));
-        let along = [Some([1.0, 0.0, 0.0]), Some([0.0, 1.0, 0.0])];
-        let this = node(k);
-        let (x, y) = (["ground", slider.as_str()], [slider.as_str(), this.as_str()]);
-        draft.joints.push(joint(format!("x{k}"), "translational", x, &[at(k)], along[0]));
-        draft.joints.push(joint(format!("y{k}"), "translational", y, &[at(k)], along[1]));
+        draft = draft
+            .bodies([slider.as_str(), &node(k)])
+            .translational(format!("x{k}"), ["ground", &slider], flat(at(k)), X)
+            .translational(format!("y{k}"), [&slider, &node(k)], flat(at(k)), Y);
         for other in k.saturating_sub(2)..k {
-            let ends = [node(other), node(k)];
-            let ends = [ends[0].as_str(), ends[1].as_str()];
-            draft.joints.push(joint(format!("rod{other}_{k}"), "distance", ends, &[at(other), at(k)], None));
+            let name = format!("rod{other}_{k}");
+            draft = draft.distance(name, [node(other), node(k)], [at(other), at(k)].map(flat));
         }
     }
     let tip = at(n - 1);
-    let last = node(n - 1);
-    draft.joints.push(joint(
-        "push".into(),
-        "leg",
-        ["ground", &last],
-        &[[tip[0] + 0.3, tip[1] - 1.0], tip],
-        None,
-    ));
-    draft
+    let leg = JointDraft::new("push", "leg", ["ground", &node(n - 1)]);
+    draft.joint(leg.at(flat([tip[0] + 0.3, tip[1] - 1.0])).at(flat(tip)))
 }
 
 /// The truss of [`truss`] with two design variables for each of its nodes but the first, along x and y, and its tip as a point.
@@ -199,19 +170,12 @@ pub fn truss_with_variables(n: usize, steps: usize) -> Draft {
                 *place = Place::Hardpoint(name.clone());
             }
         }
-        for axis in 0..2 {
-            let changes = vec![ChangeDraft::Move { hardpoint: name.clone(), velocity: Vec3::AXES[axis] }];
-            draft.design.push(VariableDraft {
-                name: format!("{name}.{axis}"),
-                changes,
-                ..VariableDraft::default()
-            });
-        }
-        draft.hardpoints.push(HardpointDraft { name, position: at(k) });
+        draft = draft
+            .variable_moving(format!("{name}.0"), &name, X)
+            .variable_moving(format!("{name}.1"), &name, Y)
+            .hardpoint(name, at(k));
     }
-    let tip = Place::Hardpoint(format!("P{}", n - 1));
-    draft.points.push(PointDraft { name: "tip".into(), body: format!("node{}", n - 1), at: tip });
-    draft
+    draft.point("tip", format!("node{}", n - 1), format!("P{}", n - 1).as_str())
 }
 
 /// n x m scissors, pinned to each other at their corners, that open and close together; the first one stands on the ground, and
@@ -230,15 +194,16 @@ pub fn scissors(n: usize, m: usize, at: [usize; 2], steps: usize) -> Draft {
                 at_corner.entry(corner).or_default().push(bar.clone());
             }
             let centre = [i as f64 + 0.5, j as f64 + 0.5];
-            draft.joints.push(joint(format!("cross{i}_{j}"), "revolute", [&up, &down], &[centre], Z));
-            draft.bodies.extend([up, down].map(body));
+            draft = draft
+                .revolute(format!("cross{i}_{j}"), [&up, &down], flat(centre), Z)
+                .bodies([up.as_str(), &down]);
         }
     }
-    draft.joints.push(joint("base".into(), "fixed", ["ground", "up0_0"], &[[0.0, 0.0]], None));
+    draft = draft.joint(JointDraft::new("base", "fixed", ["ground", "up0_0"]).at([0.0; 3]));
     for ((i, j), bars) in at_corner {
         for (k, bar) in bars.iter().enumerate().skip(1) {
             let name = format!("pin{i}_{j}_{k}");
-            draft.joints.push(joint(name, "revolute", [&bars[0], bar], &[[i as f64, j as f64]], Z));
+            draft = draft.revolute(name, [&bars[0], bar], flat([i as f64, j as f64]), Z);
         }
     }
     draft

@@ -13,7 +13,7 @@ use hardpoint::model::{BodyId, GROUND, Model, VariableId};
 use hardpoint::motion::{BodyState, Motion};
 use hardpoint::sensitivity::{BodySensitivity, Sensitivities};
 use hardpoint::space::Vec3;
-use hardpoint::{Analysis, Sink, Solution, Streamed};
+use hardpoint::{Analysis, Run, Sink, Solution, Streamed};
 
 use crate::designs::{DESIGNS, designs};
 
@@ -133,7 +133,8 @@ pub fn measure(workload: Workload, reference: Option<&Path>, once: bool) -> io::
             let model = Model::from_draft(&crate::chain(loops, 200)).expect("a valid chain");
             let analysis = crate::analysis(&model);
             let mut solution = Solution::default();
-            let time = timed(once, || finished(&mut solution, |s| analysis.run_motion_into(s)));
+            let time =
+                timed(once, || finished(&mut solution, |run| analysis.solve(run.without_sensitivities())));
             (per_step(time, model.times.len()), Some(chain_errors(&model, &solution.motion)))
         }
         Workload::Designs { sensitivities: false } => {
@@ -191,12 +192,13 @@ pub fn timed(once: bool, mut f: impl FnMut()) -> Duration {
     times[times.len() / 2]
 }
 
-/// Runs the mechanism to its end.
+/// Runs the mechanism's bodies to its end, into the memory of a solution before.
 ///
 /// # Panics
 /// Where something stops it.
-pub fn finished(solution: &mut Solution, run: impl Fn(&mut Solution)) {
-    run(black_box(solution));
+pub fn finished(solution: &mut Solution, solve: impl Fn(Run<'static>) -> Solution) {
+    let memory = std::mem::take(black_box(&mut *solution));
+    *solution = solve(Run::new().without_measures().reusing(memory));
     assert!(solution.stop.is_none(), "the mechanism stops: {:?}", solution.stop);
 }
 
@@ -214,11 +216,11 @@ fn single(
     let mut solution = Solution::default();
     let (time, errors) = if sensitivities {
         let reference = file(&format!("{reference}S"), states * model.variables.len())?;
-        let time = timed(once, || finished(&mut solution, |s| analysis.run_into(s)));
+        let time = timed(once, || finished(&mut solution, |run| analysis.solve(run)));
         (time, reference.map(|r| sensitivity_errors(&solution.motion, &solution.sensitivities, &r)))
     } else {
         let reference = file(reference, states)?;
-        let time = timed(once, || finished(&mut solution, |s| analysis.run_motion_into(s)));
+        let time = timed(once, || finished(&mut solution, |run| analysis.solve(run.without_sensitivities())));
         (time, reference.map(|r| motion_errors(&solution.motion, &r)))
     };
     Ok((per_step(time, model.times.len()), errors))
@@ -246,8 +248,9 @@ fn moved_designs(reference: Option<&[f64]>, once: bool) -> (Duration, Option<[f6
     let model = strut(&[]);
     let analysis = crate::analysis(&model);
     let designs = designs();
-    let run = |look: &mut dyn FnMut(usize, &Solution)| {
-        analysis.for_each_design(&designs, |k, solution| {
+    let run = |look: &mut (dyn FnMut(usize, &Solution) + Send)| {
+        let motions = Run::new().without_sensitivities().without_measures();
+        analysis.solve_designs(motions, &designs, |k, solution| {
             assert!(solution.stop.is_none(), "design {k} stops: {:?}", solution.stop);
             look(k, solution);
         });
@@ -276,6 +279,7 @@ fn moved_designs_with_sensitivities(reference: Option<&[f64]>, once: bool) -> (D
     let time = timed(once, || {
         let free = RefCell::new(std::mem::take(&mut memory));
         analysis.stream_designs(
+            Run::new(),
             &designs,
             |_| free.borrow_mut().pop().unwrap_or_else(|| OneStep::of(&model)),
             |design, step, streamed| {
@@ -293,7 +297,7 @@ fn moved_designs_with_sensitivities(reference: Option<&[f64]>, once: bool) -> (D
             reference: &reference[design * each..][..each],
             worst: &worst,
         };
-        analysis.stream_designs(&designs[..DESIGNS_COMPARED], compared, |design, _, streamed| {
+        analysis.stream_designs(Run::new(), &designs[..DESIGNS_COMPARED], compared, |design, _, streamed| {
             end(design, streamed)
         });
         worst.get()

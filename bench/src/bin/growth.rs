@@ -17,7 +17,7 @@ use hardpoint::model::{BodyId, Model, VariableId};
 use hardpoint::motion::BodyState;
 use hardpoint::sensitivity::{Admissibility, BodySensitivity};
 use hardpoint::study::Method;
-use hardpoint::{Analysis, Sink, Solution};
+use hardpoint::{Analysis, Run, Sink, Solution};
 use hardpoint_bench::workloads::{finished, timed};
 use hardpoint_bench::{chain_with_variables, truss_with_variables, workload_model};
 use plotters::prelude::*;
@@ -69,7 +69,7 @@ impl Sink for Sum {
 
 fn stream(analysis: &Analysis<'_>) {
     let mut sum = Sum::default();
-    let streamed = analysis.stream(&mut sum);
+    let streamed = analysis.stream(Run::new(), &mut sum);
     assert!(streamed.stop.is_none(), "the mechanism stops: {:?}", streamed.stop);
     let follows = |a: &Admissibility| !matches!(a, Admissibility::CannotFollow { .. });
     assert!(streamed.admissibility.iter().all(follows), "a change that the mechanism cannot follow");
@@ -78,12 +78,12 @@ fn stream(analysis: &Analysis<'_>) {
 
 /// Nanoseconds that the model takes with all of its variables, streamed or stored.
 fn time(model: &Model, stored: bool) -> u128 {
-    let analysis = Analysis::new(model).expect("a mechanism that can be driven").bodies_only();
+    let analysis = Analysis::new(model).expect("a mechanism that can be driven");
     let mut solution = Solution::default();
     // Where every variable of a large chain is followed, one run lasts long enough.
     let once = model.variables.len() * model.bodies.len() > 1_000_000;
     let median = timed(once, || {
-        if stored { finished(&mut solution, |s| analysis.run_into(s)) } else { stream(&analysis) }
+        if stored { finished(&mut solution, |run| analysis.solve(run)) } else { stream(&analysis) }
     });
     median.as_nanos()
 }

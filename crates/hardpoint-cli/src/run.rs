@@ -170,7 +170,7 @@ impl Sample {
     fn analysis<'a>(&'a self, all: &Analysis<'a>, course: &Course) -> Option<Analysis<'a>> {
         let Some(model) = &self.model else { return Some(all.clone()) };
         let analysis = Analysis::with(model, self.formulation).ok()?;
-        let again = analysis.run_motion().motion;
+        let again = analysis.solve(hardpoint::Run::new().without_sensitivities()).motion;
         let kept = &course.kept.motion;
         let near = SAME_MOTION * model.size();
         let same = again.len() == kept.len()

@@ -10,7 +10,7 @@ use std::time::{Duration, Instant};
 
 use hardpoint::motion::Execution;
 use hardpoint::topology::{Formulation, TopologyFault};
-use hardpoint::{Analysis, Footprint, Solution};
+use hardpoint::{Analysis, Footprint, Run, Solution};
 use hardpoint_file::{Diagnostic, ModelFile, ReadError};
 use hardpoint_report::course::{Course, Gathering};
 use hardpoint_report::figures::bytes;
@@ -123,10 +123,10 @@ impl Session {
     /// Solves motion and sensitivities, showing progress; a motion that is studied as a whole ([`Session::fits`]).
     pub fn solve(&self, analysis: &Analysis<'_>) -> Solution {
         let mut meter = Meter::new("solving", "steps");
-        analysis.run_with(|progress| {
+        analysis.solve(Run::new().progress(|progress| {
             meter.show(progress.done, progress.total);
             self.go_on()
-        })
+        }))
     }
 
     /// Solves the motion, with sensitivities or without, however long it is: `each` sees it window by window, and may end it.
@@ -160,18 +160,15 @@ impl Session {
         let mut meter = Meter::new("solving", "steps");
         let mut gathering = Gathering::new(model);
         let goes_on = Cell::new(true);
-        let whole = analysis.run_in_windows(
-            WINDOW_BYTES,
-            sensitivities,
-            |progress| {
-                meter.show(progress.done, progress.total);
-                if goes_on.get() { self.go_on() } else { ControlFlow::Break(()) }
-            },
-            |first, window| {
-                gathering.add(first, window);
-                goes_on.set(each(window) && goes_on.get());
-            },
-        );
+        let run = Run::new().progress(|progress| {
+            meter.show(progress.done, progress.total);
+            if goes_on.get() { self.go_on() } else { ControlFlow::Break(()) }
+        });
+        let run = if sensitivities { run } else { run.without_sensitivities() };
+        let whole = analysis.solve_in_windows(run, WINDOW_BYTES, |first, window| {
+            gathering.add(first, window);
+            goes_on.set(each(window) && goes_on.get());
+        });
         Ok(gathering.end(&whole))
     }
 

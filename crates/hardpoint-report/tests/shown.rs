@@ -43,26 +43,16 @@ fn solved(file: &ModelFile) -> (Solution, Summary) {
 }
 
 fn body(name: &str) -> BodyDraft {
-    BodyDraft { name: name.into(), frame: FrameDraft::Default }
+    BodyDraft::new(name)
 }
 
-fn joint(name: &str, kind: &str, [i, j]: [&str; 2], at: &[[f64; 3]], axis: Option<[f64; 3]>) -> JointDraft {
-    JointDraft {
-        name: name.into(),
-        kind: kind.into(),
-        bodies: [i.into(), j.into()],
-        at: at.iter().map(|p| Place::At((*p).into())).collect(),
-        axis: axis.map(|a| Line::Along(a.into())),
-        ..JointDraft::default()
-    }
+fn joint(name: &str, kind: &str, bodies: [&str; 2], at: &[[f64; 3]], axis: Option<[f64; 3]>) -> JointDraft {
+    let joint = JointDraft { axis: axis.map(Line::from), ..JointDraft::new(name, kind, bodies) };
+    at.iter().fold(joint, |joint, place| joint.at(*place))
 }
 
 fn driver(name: &str, joint: &str, law: Law) -> DriverDraft {
-    DriverDraft {
-        name: name.into(),
-        drives: DrivenDraft::Coordinate { joint: joint.into(), coordinate: None },
-        law,
-    }
+    DriverDraft::new(name, joint, law)
 }
 
 fn law(text: &str) -> Law {
@@ -70,7 +60,7 @@ fn law(text: &str) -> Law {
 }
 
 fn variable(name: &str, change: ChangeDraft) -> VariableDraft {
-    VariableDraft { name: name.into(), changes: vec![change], ..VariableDraft::default() }
+    VariableDraft::new(name, [change])
 }
 
 fn text(tables: &[Table], titles: &[&str]) -> String {
@@ -149,10 +139,10 @@ fn arms() -> Draft {
         let name = format!("arm_{k}");
         joint(&format!("hinge_{k}"), "revolute", ["ground", &name], &[[0.0, 0.1 * k as f64, 0.0]], Y)
     };
-    let drives = |name: &str, drives| DriverDraft { name: name.into(), drives, law: law("0.01*t") };
+    let drives = |name: &str, drives| DriverDraft::new(name, drives, law("0.01*t"));
     Draft {
         name: "arms".into(),
-        hardpoints: vec![HardpointDraft { name: "tip".into(), position: Vec3::new(0.1, 0.2, 0.0) }],
+        hardpoints: vec![HardpointDraft::new("tip", Vec3::new(0.1, 0.2, 0.0))],
         bodies: ["arm_1", "arm_2", "arm_3"].map(body).into(),
         joints: (1..=3).map(arm).collect(),
         drivers: vec![
@@ -340,10 +330,7 @@ fn with_a_rod_of(length: f64) -> Draft {
             variable("swing", law_of("amplitude")),
             variable("frequency", law_of("frequency")),
         ],
-        measures: vec![MeasureDraft {
-            name: "rocker".into(),
-            kind: MeasureKindDraft::Coordinate { joint: "D".into(), coordinate: None },
-        }],
+        measures: vec![MeasureDraft::new("rocker", "D")],
         times: (0..=20).map(|k| 0.1 * f64::from(k)).collect(),
         ..Draft::default()
     }
@@ -404,11 +391,7 @@ fn jumps_of_laws_are_notes_that_name_time_size_and_consequence() {
         bodies: vec![body("arm")],
         joints: vec![joint("hinge", "revolute", ["ground", "arm"], &[[0.0; 3]], Y)],
         drivers: vec![driver("lift", "hinge", law)],
-        points: vec![PointDraft {
-            name: "tip".into(),
-            body: "arm".into(),
-            at: Place::At([0.1, 0.0, 0.0].into()),
-        }],
+        points: vec![PointDraft::new("tip", "arm", [0.1, 0.0, 0.0])],
         times: (0..=10).map(|k| 0.1 * f64::from(k)).collect(),
         ..Draft::default()
     };
@@ -429,10 +412,10 @@ fn jumps_of_laws_are_notes_that_name_time_size_and_consequence() {
 #[test]
 fn a_variable_that_changes_nothing_is_told() {
     let mut draft = four_bars();
-    draft.hardpoints.push(HardpointDraft { name: "spare".into(), position: Vec3::ZERO });
+    draft.hardpoints.push(HardpointDraft::new("spare", Vec3::ZERO));
     let velocity = Vec3::AXES[0];
     let changes = vec![ChangeDraft::Move { hardpoint: "spare".into(), velocity }];
-    draft.design.push(VariableDraft { name: "unused".into(), changes, ..VariableDraft::default() });
+    draft.design.push(VariableDraft::new("unused", changes));
     let file = file(&draft);
     let (solution, summary) = solved(&file);
     insta::assert_snapshot!(told(&diagnose::all(&file, &summary, &Course::of(&file.model, &solution), None)));

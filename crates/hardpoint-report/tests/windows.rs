@@ -1,9 +1,7 @@
 //! A run in windows gives the same numbers as a run in one piece, to the last bit.
 
-use std::ops::ControlFlow;
-
 use hardpoint::model::VariableId;
-use hardpoint::{Analysis, Keep, Kept, Solution};
+use hardpoint::{Analysis, Keep, Kept, Run, Solution};
 
 fn bits(x: [f64; 3]) -> [u64; 3] {
     x.map(f64::to_bits)
@@ -51,18 +49,13 @@ fn windows_of_a_run_are_parts_of_the_whole() {
         let mut kept = Kept::new(Keep { rows: 11, motion: true, sensitivities: true, outputs: None });
         let (mut next, mut windows) = (0, 0);
         // The least there is: one round of the lanes.
-        let end = analysis.run_in_windows(
-            1,
-            true,
-            |_| ControlFlow::Continue(()),
-            |first, window| {
-                assert_eq!(first, next, "{name}");
-                assert_same(&name, &whole, window, first, 1);
-                next += window.motion.len();
-                windows += 1;
-                kept.add(first, window);
-            },
-        );
+        let end = analysis.solve_in_windows(Run::new(), 1, |first, window| {
+            assert_eq!(first, next, "{name}");
+            assert_same(&name, &whole, window, first, 1);
+            next += window.motion.len();
+            windows += 1;
+            kept.add(first, window);
+        });
         assert_eq!(next, steps, "{name}");
         assert!(windows * 8 >= steps, "{name}: {windows} windows of {steps}");
         assert_eq!(end.sensitivities.admissibility, whole.sensitivities.admissibility, "{name}");
@@ -92,6 +85,6 @@ fn turns_are_counted_through_windows() {
             file.model.measures.iter().enumerate().map(|(m, _)| whole.measured.value(400, m)[0].abs());
         assert!(turned.fold(0.0, f64::max) > 8.0 * std::f64::consts::PI, "it turns several times");
         let each = |first: usize, window: &Solution| assert_same(cut, &whole, window, first, 1);
-        analysis.run_in_windows(1, true, |_| ControlFlow::Continue(()), each);
+        analysis.solve_in_windows(Run::new(), 1, each);
     }
 }

@@ -10,46 +10,22 @@
 //! along x; at the design configuration the crank stands upright, so the slider is at x = 4.
 //!
 //! ```
-//! use hardpoint::{Analysis, law::Law, draft::*, model::*, space::Vec3};
+//! use hardpoint::{Analysis, draft::Draft, law::Law, model::Model};
 //!
-//! let body = |name: &str| BodyDraft { name: name.into(), frame: FrameDraft::Default };
-//! let joint = |name: &str, kind: &str, i: &str, j: &str, at: &str, axis: [f64; 3]| JointDraft {
-//!     name: name.into(),
-//!     kind: kind.into(),
-//!     bodies: [i.into(), j.into()],
-//!     at: vec![Place::Hardpoint(at.into())],
-//!     axis: Some(Line::Along(axis.into())),
-//!     ..JointDraft::default()
-//! };
-//! let point = |name: &str, x: f64, y: f64| HardpointDraft { name: name.into(), position: Vec3::new(x, y, 0.0) };
-//! let z = [0.0, 0.0, 1.0];
-//! let draft = Draft {
-//!     name: "slider-crank".into(),
-//!     hardpoints: vec![point("O", 0.0, 0.0), point("A", 0.0, 3.0), point("B", 4.0, 0.0)],
-//!     bodies: vec![body("crank"), body("rod"), body("slider")],
-//!     joints: vec![
-//!         joint("O", "revolute", "ground", "crank", "O", z),
-//!         joint("A", "revolute", "crank", "rod", "A", z),
-//!         joint("B", "revolute", "rod", "slider", "B", z),
-//!         joint("slide", "translational", "ground", "slider", "B", [1.0, 0.0, 0.0]),
-//!     ],
-//!     drivers: vec![DriverDraft {
-//!         name: "motor".into(),
-//!         drives: DrivenDraft::Coordinate { joint: "O".into(), coordinate: None },
-//!         law: Law::parse("-t").unwrap(), // one radian per second, clockwise
-//!     }],
-//!     design: vec![VariableDraft {
-//!         name: "O up".into(),
-//!         changes: vec![ChangeDraft::Move { hardpoint: "O".into(), velocity: Vec3::new(0.0, 1.0, 0.0) }],
-//!         ..VariableDraft::default()
-//!     }],
-//!     measures: vec![MeasureDraft {
-//!         name: "stroke".into(),
-//!         kind: MeasureKindDraft::Coordinate { joint: "slide".into(), coordinate: None },
-//!     }],
-//!     times: vec![0.0, 0.1],
-//!     ..Draft::default()
-//! };
+//! let [x, z] = [[1.0, 0.0, 0.0], [0.0, 0.0, 1.0]];
+//! let draft = Draft::new("slider-crank")
+//!     .hardpoint("O", [0.0, 0.0, 0.0])
+//!     .hardpoint("A", [0.0, 3.0, 0.0])
+//!     .hardpoint("B", [4.0, 0.0, 0.0])
+//!     .bodies(["crank", "rod", "slider"])
+//!     .revolute("O", ["ground", "crank"], "O", z)
+//!     .revolute("A", ["crank", "rod"], "A", z)
+//!     .revolute("B", ["rod", "slider"], "B", z)
+//!     .translational("slide", ["ground", "slider"], "B", x)
+//!     .driver("motor", "O", Law::parse("-t").unwrap()) // one radian per second, clockwise
+//!     .variable_moving("O up", "O", [0.0, 1.0, 0.0])
+//!     .measure("stroke", "slide")
+//!     .times([0.0, 0.1]);
 //! let model = Model::from_draft(&draft).expect("a sound model");
 //! let solution = Analysis::new(&model).expect("one driver for one freedom").run();
 //!
@@ -97,4 +73,4 @@ pub mod space;
 pub mod study;
 pub mod topology;
 
-pub use run::{Analysis, Footprint, Keep, Kept, Progress, Sink, Solution, Streamed};
+pub use run::{Analysis, Footprint, Keep, Kept, Progress, Run, Sink, Solution, Streamed};

@@ -14,7 +14,7 @@ use hardpoint::sensitivity::Admissibility;
 use hardpoint::space::{Mat3, Vec3};
 use hardpoint::study::{VerifyOptions, verify};
 use hardpoint::topology::Formulation;
-use hardpoint::{Analysis, Solution};
+use hardpoint::{Analysis, Run, Solution};
 use hardpoint_file::{ModelFile, read};
 
 /// What is known of a model.
@@ -120,7 +120,8 @@ fn both_formulations_give_the_same_motion() {
     for e in GALLERY {
         let file = model(e.file);
         let [relative, absolute] = [Formulation::Relative, Formulation::Absolute].map(|formulation| {
-            let solution = Analysis::with(&file.model, formulation).unwrap().run_motion();
+            let solution =
+                Analysis::with(&file.model, formulation).unwrap().solve(Run::new().without_sensitivities());
             assert!(solution.stop.is_none(), "{}: {:?}", e.file, solution.stop);
             solution.motion
         });
@@ -178,7 +179,7 @@ struct Solved {
 impl Solved {
     fn new(name: &str) -> Self {
         let file = model(name);
-        let solution = Analysis::new(&file.model).unwrap().run_motion();
+        let solution = Analysis::new(&file.model).unwrap().solve(Run::new().without_sensitivities());
         assert!(solution.stop.is_none(), "{name}: {:?}", solution.stop);
         assert_eq!(solution.motion.len(), file.model.times.len(), "{name}");
         Self { file, solution, compared: Cell::new(0), worst: Cell::new(0.0) }

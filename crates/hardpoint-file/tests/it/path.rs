@@ -5,7 +5,7 @@ use std::path::Path;
 use hardpoint::model::Model;
 use hardpoint::motion::StopKind;
 use hardpoint::space::Vec3;
-use hardpoint::{Analysis, Solution};
+use hardpoint::{Analysis, Run, Solution};
 use hardpoint_file::{parse, read};
 
 /// Numbers of steps in which a run is asked for.
@@ -26,7 +26,7 @@ fn model(text: &str) -> Model {
 
 fn run(model: &Model, times: Vec<f64>) -> Solution {
     let model = Model { times, variables: Vec::new(), metrics: Vec::new(), ..model.clone() };
-    Analysis::new(&model).unwrap().run_motion()
+    Analysis::new(&model).unwrap().solve(Run::new().without_sensitivities())
 }
 
 fn spaced(model: &Model, n: usize) -> Vec<f64> {

@@ -3,7 +3,7 @@
 use hardpoint::model::Model;
 use hardpoint::motion::{BodyState, Execution};
 use hardpoint::sensitivity::BodySensitivity;
-use hardpoint::{Analysis, Solution};
+use hardpoint::{Analysis, Run, Solution};
 
 /// A program fuses and leaves out what the kernel rounds; where a position is ill-conditioned, that is magnified.
 const ROUND_OFF: f64 = 1e-10;
@@ -83,8 +83,11 @@ fn output_times_by_programs_are_those_of_the_kernel() {
     for (name, model) in gallery() {
         let model = resolved(&model);
         let solve = |execution| {
-            let analysis = Analysis::new(&model).unwrap().bodies_only().executed(execution);
-            (analysis.run_motion(), analysis.run())
+            let analysis = Analysis::new(&model).unwrap().executed(execution);
+            (
+                analysis.solve(Run::new().without_measures().without_sensitivities()),
+                analysis.solve(Run::new().without_measures()),
+            )
         };
         let (motion, whole) = solve(Execution::Kernel);
         assert_eq!((motion.motion.effort.by_program, whole.motion.effort.by_program), (0, 0));
@@ -180,8 +183,11 @@ fn designs_by_programs_are_those_of_the_kernel() {
             designs.push((0..model.variables.len()).map(|b| sign(b) * step(b) * k as f64 / 20.0).collect());
         }
         let solve = |execution| {
-            let analysis = Analysis::new(&model).unwrap().bodies_only().executed(execution);
-            analysis.run_designs(&designs)
+            let analysis = Analysis::new(&model).unwrap().executed(execution);
+            let mut all = vec![Solution::default(); designs.len()];
+            let run = Run::new().without_sensitivities().without_measures();
+            analysis.solve_designs(run, &designs, |k, solution| all[k] = std::mem::take(solution));
+            all
         };
         let right = solve(Execution::Kernel);
         for execution in [Execution::Interpreted, Execution::Compiled] {

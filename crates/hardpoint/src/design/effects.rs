@@ -467,47 +467,34 @@ mod tests {
 
     #[test]
     fn formulas_have_exact_second_derivatives_on_duals_of_duals() {
-        let arm = |name: &str| BodyDraft { name: name.into(), frame: FrameDraft::Default };
-        let joint = |name: &str, kind: &str, bodies: [&str; 2], at: &[&str]| JointDraft {
-            name: name.into(),
-            kind: kind.into(),
-            bodies: bodies.map(str::to_owned),
-            at: at.iter().map(|h| Place::Hardpoint((*h).into())).collect(),
-            axis: (kind == "revolute").then_some(Line::Along(Vec3::AXES[2])),
-            ..JointDraft::default()
-        };
-        let texts = [("x", "length*cos(angle)"), ("y", "length*sin(angle)")];
-        let expression = |text: &str| Expression::parse(text).unwrap();
-        let model = Model::from_draft(&Draft {
-            parameters: [("length", 0.3, Quantity::Length), ("angle", 0.8, Quantity::Angle)]
+        let z = Vec3::AXES[2];
+        let parameters = [("length", 0.3, Quantity::Length), ("angle", 0.8, Quantity::Angle)];
+        let texts = ["length*cos(angle)", "length*sin(angle)"].map(|text| Expression::parse(text).unwrap());
+        let formulas = (0..).zip(texts).map(|(axis, expression)| FormulaDraft {
+            of: FormulaOf::Coordinate("B".into(), axis),
+            expression,
+        });
+        let draft = Draft {
+            parameters: parameters
                 .map(|(name, value, quantity)| ParameterDraft { name: name.into(), value, quantity })
                 .into(),
-            formulas: texts
-                .iter()
-                .enumerate()
-                .map(|(axis, (_, text))| FormulaDraft {
-                    of: FormulaOf::Coordinate("B".into(), axis),
-                    expression: expression(text),
-                })
-                .collect(),
-            hardpoints: [("A", 0.0), ("B", 0.0), ("C", 0.5)]
-                .map(|(name, x)| HardpointDraft { name: name.into(), position: Vec3::new(x, 0.0, 0.0) })
-                .into(),
-            bodies: vec![arm("i"), arm("j")],
-            joints: vec![
-                joint("a", "revolute", ["ground", "i"], &["A"]),
-                joint("c", "revolute", ["ground", "j"], &["C"]),
-                joint("rod", "rod", ["i", "j"], &["B", "C"]),
-            ],
-            design: vec![VariableDraft {
-                name: "angle".into(),
-                changes: vec![ChangeDraft::Parameter { parameter: "angle".into(), rate: 1.0 }],
-                ..VariableDraft::default()
-            }],
-            times: vec![0.0],
-            ..Draft::default()
-        })
-        .unwrap();
+            formulas: formulas.collect(),
+            ..Draft::new("two arms and a rod")
+        };
+        let draft = draft
+            .hardpoint("A", [0.0; 3])
+            .hardpoint("B", [0.0; 3])
+            .hardpoint("C", [0.5, 0.0, 0.0])
+            .bodies(["i", "j"])
+            .revolute("a", ["ground", "i"], "A", z)
+            .revolute("c", ["ground", "j"], "C", z)
+            .distance("rod", ["i", "j"], ["B", "C"])
+            .variable(VariableDraft::new(
+                "angle",
+                [ChangeDraft::Parameter { parameter: "angle".into(), rate: 1.0 }],
+            ))
+            .times([0.0]);
+        let model = Model::from_draft(&draft).unwrap();
         let effects = Effects::of(&model);
         for b in [0.0, 0.4] {
             let value = Dual { v: Dual::variable(b), d: Dual::constant(1.0) };

@@ -2,6 +2,7 @@
 //!
 //! [`Model::from_draft`](crate::model::Model::from_draft) checks all of a [`Draft`] at once and gives either a [`Model`](crate::model::Model) or every [`Fault`] that it found.
 
+mod build;
 mod check;
 mod fault;
 mod idle;
@@ -19,7 +20,8 @@ use crate::law::{Law, ParameterKind};
 use crate::model::{End, Side, Take, Vehicle, VehicleEnd};
 use crate::space::{Pose, Vec3};
 
-/// A mechanism as written. Fill it by hand or from a file; [`Model::from_draft`](crate::model::Model::from_draft) checks it.
+/// A mechanism as written. Fill it in code, word by word or field by field, or from a file;
+/// [`Model::from_draft`](crate::model::Model::from_draft) checks it.
 #[derive(Clone, Debug, Default)]
 pub struct Draft {
     /// The mechanism's name.

@@ -639,39 +639,27 @@ mod tests {
 
     /// Nodes on two slides each, tied by rods to the two nodes before; a leg pushes at the last.
     fn truss(n: usize) -> Model {
-        let place = |k: usize| Place::At(Vec3::new(0.5 * k as f64, 0.8 * (k % 2) as f64, 0.0));
+        let place = |k: usize| [0.5 * k as f64, 0.8 * (k % 2) as f64, 0.0];
         let node = |k: usize| if k == 0 { "ground".to_owned() } else { format!("node{k}") };
-        let joint =
-            |name: String, kind: &str, bodies: [String; 2], at: Vec<Place>, axis: Option<usize>| JointDraft {
-                name,
-                kind: kind.into(),
-                bodies,
-                at,
-                axis: axis.map(|k| Line::Along(Vec3::AXES[k])),
-                ..JointDraft::default()
-            };
-        let mut draft = Draft { times: vec![0.0, 0.1, 0.2], ..Draft::default() };
+        let [x, y, _] = Vec3::AXES;
+        let mut draft = Draft::new("truss").times([0.0, 0.1, 0.2]);
         for k in 1..n {
             let slider = format!("slider{k}");
-            for name in [slider.clone(), node(k)] {
-                draft.bodies.push(BodyDraft { name, frame: FrameDraft::Default });
-            }
-            let bodies = ["ground".into(), slider.clone()];
-            draft.joints.push(joint(format!("x{k}"), "translational", bodies, vec![place(k)], Some(0)));
-            let bodies = [slider, node(k)];
-            draft.joints.push(joint(format!("y{k}"), "translational", bodies, vec![place(k)], Some(1)));
+            draft = draft
+                .bodies([slider.as_str(), &node(k)])
+                .translational(format!("x{k}"), ["ground", &slider], place(k), x)
+                .translational(format!("y{k}"), [&slider, &node(k)], place(k), y);
             for other in k.saturating_sub(2)..k {
-                let (ends, at) = ([node(other), node(k)], vec![place(other), place(k)]);
-                draft.joints.push(joint(format!("rod{other}_{k}"), "distance", ends, at, None));
+                let ends = [node(other), node(k)];
+                draft = draft.distance(format!("rod{other}_{k}"), ends, [place(other), place(k)]);
             }
         }
-        let at = vec![Place::At(Vec3::new(0.5 * n as f64, -1.0, 0.3)), place(n - 1)];
-        draft.joints.push(joint("push".into(), "leg", ["ground".into(), node(n - 1)], at, None));
-        draft.drivers.push(DriverDraft {
-            name: "motor".into(),
-            drives: DrivenDraft::Coordinate { joint: "push".into(), coordinate: None },
-            law: Law::parse("0.1*sin(2*pi*t)").unwrap(),
-        });
+        let leg = JointDraft::new("push", "leg", ["ground", &node(n - 1)]);
+        let draft = draft.joint(leg.at([0.5 * n as f64, -1.0, 0.3]).at(place(n - 1))).driver(
+            "motor",
+            "push",
+            Law::parse("0.1*sin(2*pi*t)").unwrap(),
+        );
         Model::from_draft(&draft).unwrap()
     }
 

@@ -4,8 +4,8 @@ use std::ops::Range;
 
 use crate::blocks::Block;
 use crate::model::{BodyId, VariableId};
-use crate::motion::{BodyState, Motion};
-use crate::sensitivity::{BodySensitivity, Sensitivities};
+use crate::motion::BodyState;
+use crate::sensitivity::BodySensitivity;
 
 /// Takes the results of a run as they are found, so that nothing need be stored that is not wanted.
 ///
@@ -42,7 +42,7 @@ pub trait Sink {
 /// Gives the results of wanted bodies, lane by lane, to one of the sinks each, as those of an output time: `of(lane)` says which
 /// sink, and which time. `moved` says which variable moves which body, in the order of the derivatives.
 #[inline(always)]
-pub(crate) fn hand_over<S: Sink>(
+pub(super) fn hand_over<S: Sink>(
     block: &Block<'_>,
     wanted: &[bool],
     moved: impl Iterator<Item = (VariableId, BodyId)>,
@@ -66,25 +66,11 @@ pub(crate) fn hand_over<S: Sink>(
     }
 }
 
-/// Stores everything.
-pub(crate) struct Store<'s> {
-    pub motion: &'s mut Motion,
-    pub sensitivities: &'s mut Sensitivities,
-}
+/// Takes nothing.
+pub(super) struct Nowhere;
 
-impl Sink for Store<'_> {
-    #[inline(always)]
-    fn state(&mut self, k: usize, body: BodyId, state: &BodyState) {
-        self.motion.set(k, body, state);
-    }
+impl Sink for Nowhere {
+    fn state(&mut self, _: usize, _: BodyId, _: &BodyState) {}
 
-    #[inline(always)]
-    fn sensitivity(&mut self, k: usize, variable: VariableId, body: BodyId, derivatives: &BodySensitivity) {
-        self.sensitivities.set(k, variable, body, derivatives);
-    }
-
-    #[inline(always)]
-    fn room(&mut self, k: usize) -> Option<[&mut [[f64; 8]]; 2]> {
-        Some([self.motion.states.block_mut(k), self.sensitivities.derivatives.block_mut(k)])
-    }
+    fn sensitivity(&mut self, _: usize, _: VariableId, _: BodyId, _: &BodySensitivity) {}
 }

@@ -11,10 +11,13 @@ use crate::measure::{self, Before, SlopeValues, Slopes};
 use crate::model::{BodyId, Model, OutputSource, VariableId};
 use crate::motion::margin::Margins;
 use crate::motion::{BodyState, Motion};
-use crate::run::sink::Sink;
 use crate::sensitivity::{Admissibility, BodySensitivity, Sensitivities};
 
-use super::{Analysis, Design, Progress, Solution, Solved, Walk};
+use super::analysis::Analysis;
+use super::request::{Progress, Run};
+use super::sink::Sink;
+use super::solution::Solution;
+use super::walk::{Design, Solved, Walk};
 
 /// What the results of one output time take, in bytes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -55,29 +58,33 @@ impl Footprint {
 }
 
 impl Analysis<'_> {
-    /// As [`Analysis::run_with`], window by window, each of about so many bytes: `each` sees the window's solution, and the
+    /// As [`Analysis::solve`], window by window, each of about so many bytes: `each` sees the window's solution, and the
     /// number of its first output time. What comes back are the facts of the whole run (stop, effort, assembly,
     /// admissibility), with the last window.
     ///
     /// A window knows which variables the mechanism could not follow up to its end. One that resists later has numbers in the
     /// windows before, which mean nothing.
-    pub fn run_in_windows(
+    pub fn solve_in_windows(
         &self,
+        mut run: Run<'_>,
         bytes: usize,
-        sensitivities: bool,
-        mut progress: impl FnMut(Progress) -> ControlFlow<()>,
         mut each: impl FnMut(usize, &Solution),
     ) -> Solution {
-        let design = self.design(&[], sensitivities);
-        let rows = Footprint::of(self.model(), sensitivities).rows(bytes);
-        let mut solution = Solution::default();
-        let first = self.walk(&design, rows, &mut progress, &mut solution, &mut each);
+        let rows = Footprint::of(self.model(), run.scope.sensitivities).rows(bytes);
+        let mut solution = std::mem::take(&mut run.memory);
+        let first = self.walk(
+            &self.prepare(run.design, run.scope),
+            rows,
+            &mut run.progress,
+            &mut solution,
+            &mut each,
+        );
         each(first, &solution);
         solution
     }
 
     /// Solves all output times, so many at a time; the last ones remain. Gives the number of the first of these.
-    pub(crate) fn walk(
+    pub(super) fn walk(
         &self,
         design: &Design,
         rows: usize,
@@ -85,8 +92,8 @@ impl Analysis<'_> {
         solution: &mut Solution,
         each: &mut dyn FnMut(usize, &Solution),
     ) -> usize {
-        let (model, topology, measures) = (self.model(), self.topology(), self.measures);
-        let sensitive = design.has_fields();
+        let (model, topology, measures) = (self.model(), self.topology(), design.scope.measures);
+        let sensitive = !design.fields.is_empty();
         let slopes = || Slopes::new(self.effects(), topology, &design.values, sensitive);
         let mut slopes = measures.then(slopes).flatten();
         let wanted = vec![true; model.bodies.len()];
@@ -114,7 +121,7 @@ impl Analysis<'_> {
         };
         self.make_room(&mut window.motion, rows);
         let mut margins = Margins::new(topology);
-        let stop = walk.all(self, &mut window, progress, |window, solved, count, sensing| {
+        let stop = walk.all(&mut window, progress, |window, solved, count, sensing| {
             let times = &model.times[window.done..window.done + count];
             let k = window.done - window.first;
             window.done += count;
@@ -145,12 +152,11 @@ impl Analysis<'_> {
             }
         });
         window.motion.effort = walk.one.effort;
-        window.motion.solved_by = Some(self.solved_by());
+        window.motion.solved_by = Some(self.solved_by(measures));
         window.motion.assembly = walk.one.assembly.take();
         window.motion.beyond =
-            if self.measures && stop.is_none() && walk.done > 0 { walk.one.beyond() } else { None };
-        window.sensitivities.admissibility =
-            walk.sensing.map_or_else(Vec::new, |s| s.admissibility(&design.opens, walk.done));
+            if measures && stop.is_none() && walk.done > 0 { walk.one.beyond() } else { None };
+        window.sensitivities.admissibility = walk.admissibility(&design.opens);
         window.close(self, design, solution);
         solution.stop = stop;
         window.first

@@ -9,7 +9,7 @@ use crate::motion::Stop;
 use crate::motion::kinematics::State;
 use crate::motion::stepper::Stepper;
 use crate::number::{Dual, Jet, Rates};
-use crate::run::{Analysis, Design, Solution, Walk};
+use crate::run::{Analysis, Design, Run, Solution, Walk};
 use crate::sensitivity::{Adjoint, Admissibility, Load, Resisting, Support, Watch, admissibility};
 use crate::space::{Mat3, Pose, Twist, Vec3, Wrench};
 use crate::topology::Topology;
@@ -88,7 +88,7 @@ impl Analysis<'_> {
         match self.method(asked.len(), method) {
             Method::Direct => self.gradients_direct(design, asked),
             _ => {
-                let design = self.design(design, false);
+                let design = self.design(design);
                 self.gradients_adjoint(&design, asked)
             }
         }
@@ -106,7 +106,7 @@ impl Analysis<'_> {
 
     /// Those of outputs that only a whole run knows.
     fn gradients_of_run(&self, design: &[f64], indices: &[usize], outputs: Vec<Output>) -> Gradients {
-        let Solution { motion, sensitivities, measured, stop } = self.run_at(design);
+        let Solution { motion, sensitivities, measured, stop } = self.solve(Run::new().at(design));
         let variables = self.model().variables.len();
         let of = |k: usize| {
             let measured = &measured;
@@ -124,8 +124,9 @@ impl Analysis<'_> {
     }
 
     fn gradients_direct(&self, design: &[f64], outputs: Vec<Output>) -> Gradients {
-        let Solution { motion, sensitivities, stop, .. } = self.clone().bodies_only().run_at(design);
-        let Design { values, laws, .. } = &self.design(design, false);
+        let Solution { motion, sensitivities, stop, .. } =
+            self.solve(Run::new().at(design).without_measures());
+        let Design { values, laws, .. } = &self.design(design);
         let at = measure::At { model: self.model(), effects: self.effects(), values, laws };
         let more = More { slopes: &SlopeValues::default(), whole_turns: &[] };
         let (asked, variables) = (outputs.len(), self.model().variables.len());
@@ -162,7 +163,7 @@ impl Analysis<'_> {
         let mut resisting: Vec<Resisting> = vec![(Vec::new(), 0.0); variables];
         let mut walk = Walk::new(self, design, vec![false; model.bodies.len()]);
         let mut times = model.times.iter();
-        result.stop = walk.each(self, |one| {
+        result.stop = walk.each(|one| {
             if let Some(&t) = times.next() {
                 tracing.add(one, t, &mut resisting, &mut result);
             }

@@ -28,13 +28,13 @@ impl Analysis<'_> {
     ///
     /// Where the third derivative of a driver's law jumps, it is that on the side which the law itself gives.
     pub fn jerks(&self, design: &[f64]) -> Jerks {
-        let design = self.design(design, false);
+        let design = self.design(design);
         self.jerks_in(&design, usize::MAX, &mut |_| ())
     }
 
     /// As [`Analysis::jerks`] of the nominal design, so many output times at a time: `each` sees them one part after the other.
     pub fn jerks_in_windows(&self, rows: usize, mut each: impl FnMut(&Jerks)) {
-        let design = self.design(&[], false);
+        let design = self.design(&[]);
         let last = self.jerks_in(&design, rows, &mut each);
         each(&last);
     }
@@ -44,7 +44,7 @@ impl Analysis<'_> {
         let mut walk = Walk::new(self, design, vec![false; model.bodies.len()]);
         let mut result = Jerks { bodies: model.bodies.len(), ..Jerks::default() };
         let mut times = model.times.iter();
-        result.stop = walk.each(self, |one| {
+        result.stop = walk.each(|one| {
             if result.times.len() >= rows {
                 each(&result);
                 result.times.clear();

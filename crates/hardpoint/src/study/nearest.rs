@@ -118,7 +118,7 @@ fn conditions(analysis: &Analysis<'_>, scales: &[f64]) -> Vec<Vec<f64>> {
             rows[at][v] = c.value * scales[v] / unit;
         }
     }
-    let design = analysis.design(&[], false);
+    let design = analysis.design(&[]);
     let mut walk = Walk::new(analysis, &design, vec![false; model.bodies.len()]);
     let mut done = 0;
     let every = model.times.len().div_ceil(TIMES).max(1);
@@ -127,7 +127,7 @@ fn conditions(analysis: &Analysis<'_>, scales: &[f64]) -> Vec<Vec<f64>> {
     let mut parts: Vec<_> = fields.iter().map(|f| FieldParts::new(topology, f)).collect();
     if topology.redundant().next().is_some() {
         // A motion that ends early asks for less.
-        let _ = walk.each(analysis, |stepper| {
+        let _ = walk.each(|stepper| {
             if done % every == 0 {
                 stepper.state.finish_wrenches(&stepper.topology);
                 let first = rows.len();

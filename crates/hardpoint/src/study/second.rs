@@ -61,7 +61,7 @@ impl Analysis<'_> {
     /// # Panics
     /// If a pair names a direction that there is not.
     pub fn second(&self, design: &[f64], directions: &[Vec<f64>], pairs: &[[usize; 2]]) -> SecondDerivatives {
-        let design = self.design(design, false);
+        let design = self.design(design);
         let directions: Vec<Vec<f64>> = directions.iter().map(|d| self.model().whole(d)).collect();
         let model = self.model();
         let mut walk = Walk::new(self, &design, vec![false; model.bodies.len()]);
@@ -73,7 +73,7 @@ impl Analysis<'_> {
         };
         let mut bends = Bends::new(self, &design, &directions, pairs);
         let mut times = model.times.iter();
-        result.stop = walk.each(self, |one| {
+        result.stop = walk.each(|one| {
             if let Some(&t) = times.next() {
                 bends.add(one, t, &mut result);
             }

@@ -2,7 +2,7 @@
 
 use crate::joint::Quantity;
 use crate::model::{Change, DesignVariable, Dimension, End, HardpointId, JointId, Model, VariableId};
-use crate::run::{Analysis, Solution};
+use crate::run::{Analysis, Run, Solution};
 use crate::sensitivity::{Admissibility, JointDefect, admissibility_at_design};
 use crate::space::Vec3;
 
@@ -63,7 +63,7 @@ pub fn what_if(analysis: &Analysis<'_>, today: Solution, change: &[f64]) -> What
     let part = |(v, by): (usize, &f64)| by.abs() / model.natural_step(VariableId(v));
     WhatIf {
         part: change.iter().enumerate().map(part).fold(0.0, f64::max),
-        exact: analysis.run_design(&change),
+        exact: analysis.solve(Run::new().at(&change).without_sensitivities()),
         bend: analysis.second(&[], std::slice::from_ref(&change), &[[0, 0]]),
         opens: admissibility_at_design(model, &field),
         cannot_follow,

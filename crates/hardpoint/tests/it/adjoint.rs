@@ -1,11 +1,11 @@
 //! Gradients by the adjoint way against the direct one.
 
-use hardpoint::Analysis;
 use hardpoint::measure::outputs;
 use hardpoint::sensitivity::Admissibility;
 use hardpoint::space::Vec3;
 use hardpoint::study::{Gradients, Method};
 use hardpoint::topology::Formulation;
+use hardpoint::{Analysis, Run};
 use hardpoint::{draft::*, model::*};
 
 use crate::workbench::*;
@@ -70,7 +70,7 @@ fn compare(analysis: &Analysis<'_>, design: &[f64], what: &str) -> f64 {
 fn with_points(mut draft: Draft) -> Draft {
     for (k, b) in draft.bodies.iter().enumerate() {
         let at = Place::At([0.1 + 0.01 * k as f64, -0.2, 0.3].into());
-        draft.points.push(PointDraft { name: format!("point on body {k}"), body: b.name.clone(), at });
+        draft.points.push(PointDraft::new(format!("point on body {k}"), b.name.clone(), at));
     }
     draft
 }
@@ -100,10 +100,10 @@ fn all_measures_of_a_wheel_have_the_same_gradients_where_variables_move_its_own_
     let places =
         [("hub", [0.0, 0.6, 0.2324]), ("low", [0.009, 0.561, 0.141]), ("up", [-0.016, 0.545, 0.324])];
     for (k, (name, position)) in places.into_iter().enumerate() {
-        draft.hardpoints.push(HardpointDraft { name: name.into(), position: position.into() });
+        draft.hardpoints.push(HardpointDraft::new(name, position));
         let velocity = [[0.3, 1.0, 0.2], [1.0, 0.1, 0.4], [0.2, -0.4, 1.0]][k].into();
         let changes = vec![ChangeDraft::Move { hardpoint: name.into(), velocity }];
-        draft.design.push(VariableDraft { name: name.into(), changes, ..VariableDraft::default() });
+        draft.design.push(VariableDraft::new(name, changes));
     }
     let at = |name: &str| Place::Hardpoint(name.into());
     let on_knuckle = |name: &str| PointRef::On { body: "knuckle".into(), at: at(name) };
@@ -118,9 +118,11 @@ fn all_measures_of_a_wheel_have_the_same_gradients_where_variables_move_its_own_
         bump: None,
         end: None,
     });
-    let of_wheel = |&what: &WheelMeasure| MeasureDraft {
-        name: format!("wheel {}", what.name()),
-        kind: MeasureKindDraft::Wheel { wheel: "wheel".into(), what },
+    let of_wheel = |&what: &WheelMeasure| {
+        MeasureDraft::new(
+            format!("wheel {}", what.name()),
+            MeasureKindDraft::Wheel { wheel: "wheel".into(), what },
+        )
     };
     let plain = WheelMeasure::ALL.iter().filter(|m| !m.needs().goes_by_driver());
     draft.measures.extend(plain.map(of_wheel));
@@ -128,7 +130,7 @@ fn all_measures_of_a_wheel_have_the_same_gradients_where_variables_move_its_own_
         from: on_knuckle("hub"),
         to: PointRef::On { body: "uca".into(), at: at("up") },
     };
-    draft.measures.push(MeasureDraft { name: "hub to arm".into(), kind });
+    draft.measures.push(MeasureDraft::new("hub to arm", kind));
     let model = Model::from_draft(&draft).unwrap();
     for formulation in BOTH {
         let analysis = Analysis::with(&model, formulation).unwrap();
@@ -143,13 +145,13 @@ fn gradients_of_what_is_no_matter_of_positions_are_those_of_a_run() {
     let mut draft = reference_draft("double_wishbone");
     let point = || PointRef::On { body: "knuckle".into(), at: Place::At([0.0, 0.6, 0.2].into()) };
     let along: Vec3 = [0.0, 0.0, 1.0].into();
-    let mut add = |name: &str, kind| draft.measures.push(MeasureDraft { name: name.into(), kind });
+    let mut add = |name: &str, kind| draft.measures.push(MeasureDraft::new(name, kind));
     add("height", MeasureKindDraft::Coordinates { point: point(), along });
     add("aside", MeasureKindDraft::Coordinates { point: point(), along: [0.0, 1.0, 0.0].into() });
     add("speed", MeasureKindDraft::Velocity { point: point(), along: Some(along) });
     let driver = Some(draft.drivers[0].name.clone());
     let (of, over) = ("aside".to_owned(), "height".to_owned());
-    let mut add = |name: &str, kind| draft.measures.push(MeasureDraft { name: name.into(), kind });
+    let mut add = |name: &str, kind| draft.measures.push(MeasureDraft::new(name, kind));
     add("slope", MeasureKindDraft::Slope { of, over, driver });
     let expression = hardpoint::expression::Expression::parse("height*aside").unwrap();
     add("product", MeasureKindDraft::Combination { expression });
@@ -186,11 +188,7 @@ fn variables_that_cannot_be_followed_are_found_by_the_adjoint_way_too() {
     draft.design = [tilt, law]
         .into_iter()
         .enumerate()
-        .map(|(k, change)| VariableDraft {
-            name: format!("change {k}"),
-            changes: vec![change],
-            ..VariableDraft::default()
-        })
+        .map(|(k, change)| VariableDraft::new(format!("change {k}"), [change]))
         .collect();
     let model = Model::from_draft(&draft).unwrap();
     for formulation in BOTH {
@@ -228,7 +226,7 @@ fn adjoint_and_direct_gradients_agree_on_random_mechanisms() {
         let model = Model::from_draft(&with_points(draft)).unwrap();
         for formulation in BOTH {
             let Ok(analysis) = Analysis::with(&model, formulation) else { continue };
-            let motion = analysis.run_motion().motion;
+            let motion = analysis.solve(Run::new().without_sensitivities()).motion;
             if motion.least_margin().is_some_and(|(_, m)| m.value > LEAST_MARGIN) {
                 let worst = compare(&analysis, &[], &name);
                 assert!(worst < 100.0 * AGREE, "{name}, {formulation:?}: {worst:e}");
@@ -260,8 +258,7 @@ fn gradients_of_a_motion_that_stops_are_those_up_to_there() {
         position: [1.0, 0.0, 0.0].into(),
         rotation: [0.0; 3].into(),
     };
-    draft.design =
-        vec![VariableDraft { name: "D".into(), changes: vec![change], ..VariableDraft::default() }];
+    draft.design = vec![VariableDraft::new("D", [change])];
     let model = Model::from_draft(&draft).unwrap();
     let analysis = Analysis::new(&model).unwrap();
     let gradients = analysis.gradients(&[], &[0], Method::Adjoint);

@@ -12,8 +12,8 @@ use crate::workbench::*;
 /// A four-bar whose coupler is a rod of a given length; by its hardpoints it is sqrt(0.3^2 + 0.15^2) = 0.3354 long.
 fn with_a_rod_of(length: f64) -> Draft {
     let z = Some([0.0, 0.0, 1.0]);
-    let mut rod = joint("rod", "distance", ["crank", "rocker"], &[[0.0, 0.1, 0.0], [0.3, 0.25, 0.0]], None);
-    rod.length = Some(length);
+    let rod = joint("rod", "distance", ["crank", "rocker"], &[[0.0, 0.1, 0.0], [0.3, 0.25, 0.0]], None)
+        .length(length);
     Draft {
         name: "four-bar with a rod".into(),
         bodies: ["crank", "rocker"].map(body).into(),
@@ -23,16 +23,8 @@ fn with_a_rod_of(length: f64) -> Draft {
             rod,
         ],
         drivers: vec![driver("motor", "A", "0.5*sin(t)")],
-        design: vec![VariableDraft {
-            name: "longer".into(),
-            changes: vec![ChangeDraft::Length { joint: "rod".into(), rate: 1.0 }],
-            ..VariableDraft::default()
-        }],
-        points: vec![PointDraft {
-            name: "C".into(),
-            body: "rocker".into(),
-            at: Place::At([0.3, 0.25, 0.0].into()),
-        }],
+        design: vec![VariableDraft::new("longer", [ChangeDraft::Length { joint: "rod".into(), rate: 1.0 }])],
+        points: vec![PointDraft::new("C", "rocker", [0.3, 0.25, 0.0])],
         times: times(2.0, 20),
         ..Draft::default()
     }

@@ -19,7 +19,7 @@ fn strut_with_hardpoints(design: Vec<VariableDraft>) -> Model {
     d.hardpoints = pivots
         .into_iter()
         .chain([("ball", [0.02794, 0.66294, -0.10414]), ("tie_rod_outer", [-0.2, 0.574803759, -0.00127])])
-        .map(|(name, p)| HardpointDraft { name: name.into(), position: p.into() })
+        .map(|(name, p)| HardpointDraft::new(name, p))
         .collect();
     for j in &mut d.joints {
         match j.name.as_str() {
@@ -37,11 +37,7 @@ fn strut_with_hardpoints(design: Vec<VariableDraft>) -> Model {
 }
 
 fn moves(name: &str, hardpoint: &str, velocity: Vec3) -> VariableDraft {
-    VariableDraft {
-        name: name.into(),
-        changes: vec![ChangeDraft::Move { hardpoint: hardpoint.into(), velocity }],
-        ..VariableDraft::default()
-    }
+    VariableDraft::moving(name, hardpoint, velocity)
 }
 
 #[test]
@@ -188,11 +184,9 @@ fn a_rod_of_fixed_length_is_reassembled_and_one_that_follows_is_admissible() {
 #[test]
 fn a_point_on_a_hardpoint_follows_it_and_a_point_at_coordinates_stays_in_its_body() {
     let mut draft = reference_draft("slider_crank");
-    draft.hardpoints = vec![HardpointDraft { name: "P".into(), position: Vec3::new(0.3, 0.2, 0.05) }];
-    draft.points = vec![
-        PointDraft { name: "on".into(), body: "rod".into(), at: Place::Hardpoint("P".into()) },
-        PointDraft { name: "off".into(), body: "rod".into(), at: Place::At(Vec3::new(0.3, 0.2, 0.05)) },
-    ];
+    draft.hardpoints = vec![HardpointDraft::new("P", Vec3::new(0.3, 0.2, 0.05))];
+    draft.points =
+        vec![PointDraft::new("on", "rod", "P"), PointDraft::new("off", "rod", Vec3::new(0.3, 0.2, 0.05))];
     draft.design = vec![moves("P_y", "P", Vec3::AXES[1])];
     let model = Model::from_draft(&draft).unwrap();
     let solution = Analysis::new(&model).unwrap().run();
@@ -212,11 +206,7 @@ fn a_redundant_mechanism_follows_every_change_of_its_law() {
     draft.drivers[0].law = Law::parse_with("a*sin(w*t)", &[("a", 0.7), ("w", 3.0)]).unwrap();
     for parameter in ["a", "w"] {
         let change = ChangeDraft::Law { driver: "motor".into(), parameter: parameter.into(), rate: 1.0 };
-        draft.design.push(VariableDraft {
-            name: parameter.into(),
-            changes: vec![change],
-            ..VariableDraft::default()
-        });
+        draft.design.push(VariableDraft::new(parameter, [change]));
     }
     let model = Model::from_draft(&draft).unwrap();
     for formulation in [Formulation::Relative, Formulation::Absolute] {
@@ -235,15 +225,16 @@ fn a_redundant_mechanism_follows_every_change_of_its_law() {
 fn the_nearest_admissible_change_keeps_what_it_can_and_never_more_defects() {
     use hardpoint::study::{add_coordinates, add_tilts, nearest_admissible};
     let mut draft = four_bar([[0.0, 0.0], [0.0, 0.1], [0.3, 0.25], [0.3, 0.0]], "t", &times(0.5, 20));
-    let marker = |joint: &str, position: [f64; 3], rotation: [f64; 3]| VariableDraft {
-        name: format!("{joint} alone"),
-        changes: vec![ChangeDraft::Marker {
-            joint: joint.into(),
-            end: End::I,
-            position: position.into(),
-            rotation: rotation.into(),
-        }],
-        ..VariableDraft::default()
+    let marker = |joint: &str, position: [f64; 3], rotation: [f64; 3]| {
+        VariableDraft::new(
+            format!("{joint} alone"),
+            [ChangeDraft::Marker {
+                joint: joint.into(),
+                end: End::I,
+                position: position.into(),
+                rotation: rotation.into(),
+            }],
+        )
     };
     draft.design = vec![marker("B", [0.0, 0.001, 0.0], [0.0; 3]), marker("C", [0.0; 3], [0.3, 0.0, 0.0])];
     let mut model = Model::from_draft(&draft).unwrap();

@@ -3,7 +3,7 @@
 use hardpoint::motion::StopKind;
 use hardpoint::space::Vec3;
 use hardpoint::topology::{Formulation, TopologyFault};
-use hardpoint::{Analysis, draft::*, model::*};
+use hardpoint::{Analysis, Run, draft::*, model::*};
 
 use crate::workbench::*;
 
@@ -163,9 +163,9 @@ fn a_law_that_jumps_between_two_output_times_ends_the_run_there() {
 #[test]
 fn an_interrupted_run_keeps_what_it_has() {
     let model = Model::from_draft(&four_bar(CRANK_ROCKER, "2*pi*t", &times(1.0, 100))).unwrap();
-    let solution = Analysis::new(&model).unwrap().run_with(|p| {
+    let solution = Analysis::new(&model).unwrap().solve(Run::new().progress(|p| {
         if p.done == 10 { std::ops::ControlFlow::Break(()) } else { std::ops::ControlFlow::Continue(()) }
-    });
+    }));
     assert_eq!(solution.motion.len(), 10);
     assert_eq!(solution.stop.unwrap().kind, StopKind::Interrupted);
 }

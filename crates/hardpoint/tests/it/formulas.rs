@@ -2,12 +2,12 @@
 
 use std::ops::ControlFlow;
 
-use hardpoint::Analysis;
 use hardpoint::joint::Quantity;
 use hardpoint::sensitivity::Admissibility;
 use hardpoint::space::Vec3;
 use hardpoint::study::{VerifyOptions, verify};
 use hardpoint::topology::Formulation;
+use hardpoint::{Analysis, Run};
 use hardpoint::{design::Field, draft::*, model::*};
 use hardpoint::{expression::Expression, law::Law};
 
@@ -23,11 +23,9 @@ fn coordinates(hardpoint: &str, texts: [&str; 3]) -> Vec<FormulaDraft> {
 
 fn parameter(draft: &mut Draft, name: &str, value: f64, quantity: Quantity) {
     draft.parameters.push(ParameterDraft { name: name.into(), value, quantity });
-    draft.design.push(VariableDraft {
-        name: name.into(),
-        changes: vec![ChangeDraft::Parameter { parameter: name.into(), rate: 1.0 }],
-        ..VariableDraft::default()
-    });
+    draft
+        .design
+        .push(VariableDraft::new(name, [ChangeDraft::Parameter { parameter: name.into(), rate: 1.0 }]));
 }
 
 /// A crank-rocker with a rod as coupler, given by its lengths and angles; a point of the rocker is written as an expression,
@@ -36,7 +34,7 @@ fn crank_rocker(own_length: bool) -> Draft {
     let law = Law::parse_with("swing*sin(2*t)", &[("swing", 0.5)]).unwrap();
     let mut draft = Draft { times: times(1.0, 8), ..Draft::default() };
     for name in ["A", "B", "C", "D"] {
-        draft.hardpoints.push(HardpointDraft { name: name.into(), position: Vec3::ZERO });
+        draft.hardpoints.push(HardpointDraft::new(name, Vec3::ZERO));
     }
     for (name, value, quantity) in [
         ("ground", 0.4, Quantity::Length),
@@ -57,48 +55,23 @@ fn crank_rocker(own_length: bool) -> Draft {
     draft.formulas.extend(coordinates("B", ["crank*cos(phi)", "crank*sin(phi)", "0"]));
     draft.formulas.push(formula(FormulaOf::Coordinate("D".into(), 0), "A.x + hypot(ground, 0.1)"));
     draft.formulas.push(formula(FormulaOf::Law("motor".into(), "swing".into()), "swing^3 + 0.375"));
-    let body = |name: &str| BodyDraft { name: name.into(), frame: FrameDraft::Default };
-    draft.bodies = vec![body("crank"), body("rocker")];
-    let joint = |name: &str, kind: &str, bodies: [&str; 2], at: Vec<Place>| JointDraft {
-        name: name.into(),
-        kind: kind.into(),
-        bodies: bodies.map(str::to_owned),
-        at,
-        ..JointDraft::default()
-    };
-    let on = |name: &str| Place::Hardpoint(name.into());
-    let z = Some(Line::Along(Vec3::AXES[2]));
+    draft.bodies = ["crank", "rocker"].map(BodyDraft::new).into();
     draft.joints = vec![
-        JointDraft { axis: z.clone(), ..joint("bearing", "revolute", ["ground", "crank"], vec![on("A")]) },
-        JointDraft { axis: z, ..joint("pivot", "revolute", ["ground", "rocker"], vec![on("D")]) },
-        joint("rod", "rod", ["crank", "rocker"], vec![on("B"), on("C")]),
+        JointDraft::new("bearing", "revolute", ["ground", "crank"]).at("A").axis(Vec3::AXES[2]),
+        JointDraft::new("pivot", "revolute", ["ground", "rocker"]).at("D").axis(Vec3::AXES[2]),
+        JointDraft::new("rod", "rod", ["crank", "rocker"]).at("B").at("C"),
     ];
     if own_length {
         draft.joints[2].length = Some(1.0);
         draft.formulas.push(formula(FormulaOf::Length("rod".into()), "1.01*hypot(C.x - B.x, C.y - B.y)"));
     }
-    draft.drivers.push(DriverDraft {
-        name: "motor".into(),
-        drives: DrivenDraft::Coordinate { joint: "bearing".into(), coordinate: None },
-        law,
-    });
+    draft.drivers.push(DriverDraft::new("motor", "bearing", law));
     let place =
         ["C.x/2", "0.02*tanh(stretch)", "max(0.01, C.z)"].map(|text| Expression::parse(text).unwrap());
-    draft.points.push(PointDraft {
-        name: "P".into(),
-        body: "rocker".into(),
-        at: Place::Formula(Box::new(place)),
-    });
-    draft.measures.push(MeasureDraft {
-        name: "angle".into(),
-        kind: MeasureKindDraft::Coordinate { joint: "pivot".into(), coordinate: None },
-    });
+    draft.points.push(PointDraft::new("P", "rocker", Place::Formula(Box::new(place))));
+    draft.measures.push(MeasureDraft::new("angle", "pivot"));
     // A hardpoint that formulas use may be moved as well.
-    draft.design.push(VariableDraft {
-        name: "A_x".into(),
-        changes: vec![ChangeDraft::Move { hardpoint: "A".into(), velocity: Vec3::AXES[0] }],
-        ..VariableDraft::default()
-    });
+    draft.design.push(VariableDraft::moving("A_x", "A", Vec3::AXES[0]));
     draft
 }
 
@@ -192,9 +165,9 @@ fn designs_side_by_side_are_those_one_by_one() {
     let analysis = Analysis::new(&model).unwrap();
     let design = |k: usize| (0..model.variables.len()).map(|v| 1e-3 * (v + k) as f64).collect::<Vec<f64>>();
     let designs: Vec<_> = (0..8).map(design).collect();
-    let together = analysis.run_designs(&designs);
+    let together = designs_of(&analysis, &designs);
     for (k, (design, together)) in designs.iter().zip(&together).enumerate() {
-        let alone = analysis.run_design(design);
+        let alone = analysis.solve(Run::new().at(design).without_sensitivities());
         let angle = alone.measured.index("angle").unwrap();
         for step in 0..alone.motion.len() {
             let (a, b) = (alone.measured.value(step, angle)[0], together.measured.value(step, angle)[0]);

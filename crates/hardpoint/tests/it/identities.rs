@@ -2,7 +2,7 @@
 
 use hardpoint::space::{Mat3, Pose, Vec3};
 use hardpoint::topology::Formulation;
-use hardpoint::{Analysis, Solution};
+use hardpoint::{Analysis, Run, Solution};
 use hardpoint::{draft::*, model::*};
 
 use crate::workbench::*;
@@ -63,28 +63,30 @@ fn bits(s: &Solution) -> Vec<u64> {
 #[test]
 fn threads_used_memory_and_streams_change_no_bit() {
     let model = Model::from_draft(&reference_draft("macpherson")).unwrap();
-    let analysis = Analysis::new(&model).unwrap().bodies_only();
+    let analysis = Analysis::new(&model).unwrap();
     let designs: Vec<Vec<f64>> = (0..21).map(|k| vec![1e-4 * f64::from(k), -2e-5 * f64::from(k)]).collect();
-    let one_by_one: Vec<_> = analysis.run_designs(&designs).iter().map(bits).collect();
-    for threads in [1, 3] {
-        let seen = std::sync::Mutex::new(vec![Vec::new(); designs.len()]);
-        let threads = std::num::NonZero::new(threads).unwrap();
-        analysis.for_each_design_on(threads, &designs, |k, s| seen.lock().unwrap()[k] = bits(s));
-        assert_eq!(seen.into_inner().unwrap(), one_by_one);
-    }
-    let mut visited = 0;
-    analysis.for_each_design(&designs, |k, s| {
-        assert_eq!(bits(s), one_by_one[k]);
-        visited += 1;
+    let motions = || Run::new().without_sensitivities().without_measures();
+    let mut one_by_one = Vec::new();
+    analysis.solve_designs(motions(), &designs, |k, s| {
+        assert_eq!(k, one_by_one.len());
+        one_by_one.push(bits(s));
     });
-    assert_eq!(visited, designs.len());
+    assert_eq!(one_by_one.len(), designs.len());
+    for threads in [1, 3] {
+        let mut seen = vec![Vec::new(); designs.len()];
+        let threads = std::num::NonZero::new(threads).unwrap();
+        // What is taken away is not missed.
+        analysis
+            .solve_designs(motions().threads(threads), &designs, |k, s| seen[k] = bits(&std::mem::take(s)));
+        assert_eq!(seen, one_by_one);
+    }
 
     // Memory of another mechanism's solution.
     let other = Model::from_draft(&reference_draft("slider_crank")).unwrap();
     let mut used = Analysis::new(&other).unwrap().run();
-    let fresh = analysis.run();
+    let fresh = analysis.solve(Run::new().without_measures());
     for _ in 0..2 {
-        analysis.run_into(&mut used);
+        used = analysis.solve(Run::new().without_measures().reusing(used));
         assert_eq!(bits(&used), bits(&fresh));
         assert!(used.motion.states().eq(fresh.motion.states()));
         let derivatives = |s: &Solution| -> Vec<_> {
@@ -117,10 +119,102 @@ fn threads_used_memory_and_streams_change_no_bit() {
         }
     }
     let mut compare = Compare(&fresh, 0);
-    let streamed = analysis.stream(&mut compare);
+    let streamed = analysis.stream(Run::new(), &mut compare);
     assert_eq!(compare.1, model.times.len() * (model.bodies.len() - 2));
     assert_eq!((streamed.steps, streamed.stop), (model.times.len(), None));
     assert_eq!(streamed.admissibility, fresh.sensitivities.admissibility);
+}
+
+/// Counts what it gets of some output times.
+#[derive(Default)]
+struct Count {
+    states: usize,
+    sensitivities: usize,
+}
+
+impl hardpoint::Sink for Count {
+    fn state(&mut self, _: usize, _: BodyId, _: &hardpoint::motion::BodyState) {
+        self.states += 1;
+    }
+    fn sensitivity(
+        &mut self,
+        _: usize,
+        _: VariableId,
+        _: BodyId,
+        _: &hardpoint::sensitivity::BodySensitivity,
+    ) {
+        self.sensitivities += 1;
+    }
+}
+
+#[test]
+fn a_request_means_the_same_whatever_way_it_is_run() {
+    let model = Model::from_draft(&reference_draft("macpherson")).unwrap();
+    let analysis = Analysis::new(&model).unwrap();
+    let design = [1e-3, -5e-4, 2e-4];
+    let whole = analysis.solve(Run::new().at(&design));
+    let (steps, moving, variables) = (model.times.len(), model.bodies.len() - 1, model.variables.len());
+    assert!(difference(&whole, &analysis.run()) > 1e-6, "another design");
+
+    // Window by window.
+    let mut seen = Vec::new();
+    analysis.solve_in_windows(Run::new().at(&design), 1, |_, window| seen.extend(bits(window)));
+    assert_eq!(seen, bits(&whole));
+
+    // Among other designs, with what is asked for.
+    let designs = [vec![], design.to_vec(), vec![0.0; variables]];
+    let mut visited = Vec::new();
+    analysis.solve_designs(Run::new(), &designs, |k, solution| {
+        visited.push(k);
+        assert_eq!(solution.measured.outputs.len(), whole.measured.outputs.len());
+        if k == 1 {
+            assert!(difference(solution, &whole) < 1e-10);
+            let at_end = |s: &Solution| s.measured.d(steps - 1, VariableId(0), 0);
+            assert!((at_end(solution)[0] - at_end(&whole)[0]).abs() < 1e-10);
+        }
+    });
+    assert_eq!(visited, [0, 1, 2]);
+    analysis.solve_designs(Run::new().without_sensitivities().without_measures(), &designs, |k, solution| {
+        assert!(solution.measured.outputs.is_empty() && solution.sensitivities.variables == 0);
+        assert!(k != 1 || difference(solution, &whole) < 1e-11);
+    });
+
+    // Into sinks, one design or many.
+    let mut count = Count::default();
+    let streamed = analysis.stream(Run::new().at(&design).without_sensitivities(), &mut count);
+    assert_eq!((count.states, count.sensitivities), (steps * moving, 0));
+    assert!(streamed.admissibility.is_empty() && streamed.stop.is_none());
+    for (run, per_step) in [(Run::new(), true), (Run::new().without_sensitivities(), false)] {
+        let all: usize = (0..variables)
+            .map(|v| (1..=moving).filter(|b| whole.sensitivities.moves(VariableId(v), BodyId(*b))).count())
+            .sum();
+        let mut ended = 0;
+        analysis.stream_designs(
+            run,
+            &designs,
+            |_| Count::default(),
+            |_, count, streamed| {
+                assert_eq!(
+                    (count.states, count.sensitivities),
+                    (steps * moving, if per_step { steps * all } else { 0 })
+                );
+                assert_eq!(streamed.admissibility.len(), if per_step { variables } else { 0 });
+                ended += 1;
+            },
+        );
+        assert_eq!(ended, designs.len());
+    }
+
+    // And each of them may be ended.
+    let told = |p: hardpoint::Progress| {
+        if p.done == 3 { std::ops::ControlFlow::Break(()) } else { std::ops::ControlFlow::Continue(()) }
+    };
+    let windowed = analysis.solve_in_windows(Run::new().progress(told), 1, |_, _| ());
+    let streamed = analysis.stream(Run::new().progress(told), &mut Count::default());
+    for stop in [windowed.stop, streamed.stop] {
+        assert_eq!(stop.unwrap().kind, hardpoint::motion::StopKind::Interrupted);
+    }
+    assert_eq!(streamed.steps, 3);
 }
 
 #[test]
@@ -163,8 +257,8 @@ fn eight_designs_in_lanes_are_the_same_as_one_by_one() {
                 design
             })
             .collect();
-        for (design, lane) in designs.iter().zip(analysis.run_designs(&designs)) {
-            let single = analysis.run_design(design);
+        for (design, lane) in designs.iter().zip(designs_of(&analysis, &designs)) {
+            let single = analysis.solve(Run::new().at(design).without_sensitivities());
             assert!(lane.stop.is_none() && single.stop.is_none());
             // Round-off differs only where lanes share a pivot order that one design alone would not choose.
             let d = difference(&lane, &single);
@@ -223,10 +317,10 @@ fn sensitivities_of_changed_designs_are_the_same_in_lanes_and_match_resolved_nei
             variables,
         };
         let mut ended = 0;
-        analysis.stream_designs(&designs, keep, |n, kept, streamed| {
+        analysis.stream_designs(Run::new(), &designs, keep, |n, kept, streamed| {
             assert_eq!((n, streamed.steps), (ended, model.times.len()), "{name}: {:?}", streamed.stop);
             ended += 1;
-            let single = analysis.run_at(&designs[n]);
+            let single = analysis.solve(Run::new().at(&designs[n]));
             for (one, lane) in single.sensitivities.admissibility.iter().zip(&streamed.admissibility) {
                 assert_eq!(std::mem::discriminant(one), std::mem::discriminant(lane), "{name}");
             }
@@ -245,7 +339,7 @@ fn sensitivities_of_changed_designs_are_the_same_in_lanes_and_match_resolved_nei
                 for &v in &followed {
                     let h = 1e-5;
                     let around: Vec<Vec<f64>> = [h, -h].map(|h| design(1.5e-3, v, h)).to_vec();
-                    let around = analysis.run_designs(&around);
+                    let around = designs_of(&analysis, &around);
                     for m in 0..single.measured.outputs.len() {
                         let (mut scale, mut worst) = (1e-2, 0.0_f64);
                         for k in 0..model.times.len() {

@@ -1,10 +1,10 @@
 //! Jerk against differences of accelerations, closed forms, and itself in the other coordinates.
 
-use hardpoint::Analysis;
 use hardpoint::law::Law;
 use hardpoint::number::{Dual, Jet, Rates, Real};
 use hardpoint::space::Vec3;
 use hardpoint::topology::Formulation;
+use hardpoint::{Analysis, Run};
 use hardpoint::{draft::*, model::*};
 
 use crate::workbench::*;
@@ -25,7 +25,8 @@ fn jerks_are_the_rates_of_accelerations_on_every_mechanism() {
         let error = |draft: &Draft, h: f64, formulation: Formulation| {
             let model = Model::from_draft(draft).unwrap();
             let analysis = Analysis::with(&model, formulation).unwrap();
-            let (motion, jerks) = (analysis.run_motion().motion, analysis.jerks(&[]));
+            let (motion, jerks) =
+                (analysis.solve(Run::new().without_sensitivities()).motion, analysis.jerks(&[]));
             assert_eq!(jerks.times, draft.times, "{}: {:?}", draft.name, jerks.stop);
             let (mut worst, mut scale) = ([0.0_f64; 2], [0.0_f64; 2]);
             for k in (1..jerks.times.len()).step_by(3) {

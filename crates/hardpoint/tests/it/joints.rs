@@ -3,7 +3,6 @@
 use std::ops::ControlFlow;
 
 use hardpoint::joint::ALL;
-use hardpoint::space::Vec3;
 use hardpoint::study::{VerifyOptions, verify};
 use hardpoint::topology::{Formulation, Role};
 use hardpoint::{Analysis, Solution};
@@ -14,8 +13,6 @@ use crate::workbench::*;
 /// A spatial slider-crank: its slider may turn on its guide, its pin is a ball, and a plate rides on the rod.
 fn slider_on_a_shaft() -> Draft {
     let z = Some([0.0, 0.0, 1.0]);
-    let mut on_plate = joint("weld", "fixed", ["rod", "plate"], &[[0.3, 0.2, 0.1]], None);
-    on_plate.cut = false;
     Draft {
         name: "slider on a shaft".into(),
         bodies: ["crank", "rod", "slider", "plate"].map(body).into(),
@@ -24,7 +21,7 @@ fn slider_on_a_shaft() -> Draft {
             joint("J2", "revolute", ["crank", "rod"], &[[0.12, 0.16, 0.0]], z),
             joint("J3", "spherical", ["rod", "slider"], &[[0.6, 0.05, 0.0]], None),
             joint("J4", "cylindrical", ["ground", "slider"], &[[0.6, 0.0, 0.0]], Some([1.0, 0.0, 0.0])),
-            on_plate,
+            joint("weld", "fixed", ["rod", "plate"], &[[0.3, 0.2, 0.1]], None),
         ],
         drivers: vec![driver("motor", "J1", "sin(2*pi*t)")],
         design: vec![
@@ -33,15 +30,8 @@ fn slider_on_a_shaft() -> Draft {
             marker("J3_y", "J3", [0.0, 1.0, 0.0], [0.0; 3]),
             marker("weld_rz", "weld", [0.0; 3], [0.0, 0.0, 1.0]),
         ],
-        points: vec![PointDraft {
-            name: "corner".into(),
-            body: "plate".into(),
-            at: Place::At([0.4, 0.3, 0.2].into()),
-        }],
-        measures: vec![MeasureDraft {
-            name: "spin".into(),
-            kind: MeasureKindDraft::Coordinate { joint: "J4".into(), coordinate: Some("angle".into()) },
-        }],
+        points: vec![PointDraft::new("corner", "plate", [0.4, 0.3, 0.2])],
+        measures: vec![MeasureDraft::new("spin", ["J4", "angle"])],
         times: times(1.0, 10),
         ..Draft::default()
     }
@@ -52,15 +42,6 @@ fn shaft_train() -> Draft {
     let (s, c) = 30.0_f64.to_radians().sin_cos();
     let shaft = [c, s, 0.0];
     let on_shaft = |x: f64| [x * c, x * s, 0.0];
-    let with_axis2 = |mut j: JointDraft, axis2: [f64; 3]| {
-        j.axis2 = Some(Line::Along(axis2.into()));
-        j
-    };
-    let mut screw = joint("screw", "screw", ["out", "nut"], &[on_shaft(0.2)], Some(shaft));
-    screw.lead = Some(0.02);
-    let mut stay =
-        joint("stay", "distance", ["ground", "follower"], &[[0.1, 0.8, 0.1], [0.3, 0.45, 0.2]], None);
-    stay.length = Some((0.04_f64 + 0.1225 + 0.01).sqrt() + 0.01);
     let drives = |body: &str, about: [f64; 3]| DrivenDraft::Orientation {
         body: body.into(),
         relative_to: None,
@@ -72,13 +53,10 @@ fn shaft_train() -> Draft {
         bodies: ["in", "out", "nut", "follower", "plate", "vane", "arm"].map(body).into(),
         joints: vec![
             joint("bearing", "revolute", ["ground", "in"], &[[-0.3, 0.0, 0.0]], Some([1.0, 0.0, 0.0])),
-            with_axis2(
-                joint("cv", "constant_velocity", ["in", "out"], &[[0.0; 3]], Some([1.0, 0.0, 0.0])),
-                shaft,
-            ),
+            joint("cv", "constant_velocity", ["in", "out"], &[[0.0; 3]], Some([1.0, 0.0, 0.0])).axis2(shaft),
             joint("steady", "inline", ["ground", "out"], &[on_shaft(0.4)], Some(shaft)),
-            screw,
-            with_axis2(joint("key", "dot1", ["ground", "nut"], &[], Some([0.0, 0.0, 1.0])), [-s, c, 0.0]),
+            joint("screw", "screw", ["out", "nut"], &[on_shaft(0.2)], Some(shaft)).lead(0.02),
+            joint("key", "dot1", ["ground", "nut"], &[], Some([0.0, 0.0, 1.0])).axis2([-s, c, 0.0]),
             joint("no_turn", "orientation", ["ground", "follower"], &[], None),
             joint(
                 "link",
@@ -87,12 +65,13 @@ fn shaft_train() -> Draft {
                 &[on_shaft(0.2), [0.3, 0.45, 0.15]],
                 Some([0.1, 0.2, 1.0]),
             ),
-            stay,
+            joint("stay", "distance", ["ground", "follower"], &[[0.1, 0.8, 0.1], [0.3, 0.45, 0.2]], None)
+                .length((0.04_f64 + 0.1225 + 0.01).sqrt() + 0.01),
             joint("upright", "parallel", ["follower", "plate"], &[], Some([0.1, 0.0, 1.0])),
             joint("tie1", "distance", ["ground", "plate"], &[[0.0, 1.0, 0.0], [0.4, 0.6, 0.3]], None),
             joint("tie2", "distance", ["nut", "plate"], &[on_shaft(0.25), [0.5, 0.7, 0.25]], None),
             joint("socket", "spherical", ["ground", "vane"], &[[0.0, -0.3, 0.1]], None),
-            with_axis2(joint("lean", "angle", ["in", "vane"], &[], Some([1.0, 0.3, 0.2])), [0.2, 1.0, 0.4]),
+            joint("lean", "angle", ["in", "vane"], &[], Some([1.0, 0.3, 0.2])).axis2([0.2, 1.0, 0.4]),
             joint(
                 "slab",
                 "dot2",
@@ -102,41 +81,23 @@ fn shaft_train() -> Draft {
             ),
             joint("way", "travel", ["ground", "vane"], &[[0.1, -0.2, 0.3]], Some([0.3, 0.0, 1.0])),
             joint("course", "heading", ["nut", "plate"], &[], Some([0.3, 0.0, 1.0])),
-            with_axis2(
-                joint("cross", "universal", ["out", "arm"], &[on_shaft(0.4)], Some([0.0, 0.0, 1.0])),
-                [-s, c, 0.0],
-            ),
+            joint("cross", "universal", ["out", "arm"], &[on_shaft(0.4)], Some([0.0, 0.0, 1.0]))
+                .axis2([-s, c, 0.0]),
         ],
         drivers: vec![
             driver("motor", "bearing", "1.5*pi*t"),
-            DriverDraft {
-                name: "yaw".into(),
-                drives: drives("plate", [0.2, 0.1, 1.0]),
-                law: law("0.3*sin(3*t)"),
-            },
-            DriverDraft {
-                name: "nod".into(),
-                drives: drives("vane", [0.0, 0.1, 1.0]),
-                law: law("0.2*sin(2*t)"),
-            },
-            DriverDraft {
-                name: "lift".into(),
-                drives: DrivenDraft::Position {
+            DriverDraft::new("yaw", drives("plate", [0.2, 0.1, 1.0]), law("0.3*sin(3*t)")),
+            DriverDraft::new("nod", drives("vane", [0.0, 0.1, 1.0]), law("0.2*sin(2*t)")),
+            DriverDraft::new(
+                "lift",
+                DrivenDraft::Position {
                     point: PointRef::On { body: "plate".into(), at: Place::At([0.5, 0.6, 0.4].into()) },
                     along: Line::Along([0.0, 0.3, 1.0].into()),
                 },
-                law: law("0.02*sin(4*t)"),
-            },
-            DriverDraft {
-                name: "pin1".into(),
-                drives: DrivenDraft::Coordinate { joint: "cross".into(), coordinate: Some("angle".into()) },
-                law: law("0.4*sin(t)"),
-            },
-            DriverDraft {
-                name: "pin2".into(),
-                drives: DrivenDraft::Coordinate { joint: "cross".into(), coordinate: Some("angle2".into()) },
-                law: law("2.5*t"),
-            },
+                law("0.02*sin(4*t)"),
+            ),
+            DriverDraft::new("pin1", ["cross", "angle"], law("0.4*sin(t)")),
+            DriverDraft::new("pin2", ["cross", "angle2"], law("2.5*t")),
         ],
         design: vec![
             marker("cv_y", "cv", [0.0, 1.0, 0.0], [0.0; 3]),
@@ -150,49 +111,17 @@ fn shaft_train() -> Draft {
             marker("lean_rz", "lean", [0.0; 3], [0.0, 0.4, 1.0]),
             marker("slab_y", "slab", [0.0, 1.0, 0.3], [0.2, 0.0, 0.0]),
             marker("cross_rx", "cross", [0.0, 0.1, 0.0], [1.0, 0.0, 0.0]),
-            VariableDraft {
-                name: "stay_longer".into(),
-                changes: vec![ChangeDraft::Length { joint: "stay".into(), rate: 1.0 }],
-                ..VariableDraft::default()
-            },
+            VariableDraft::new("stay_longer", [ChangeDraft::Length { joint: "stay".into(), rate: 1.0 }]),
         ],
         points: ["nut", "plate", "vane", "arm"]
-            .map(|name| PointDraft {
-                name: format!("on {name}"),
-                body: name.into(),
-                at: Place::At([0.1, 0.4, 0.3].into()),
-            })
+            .map(|name| PointDraft::new(format!("on {name}"), name, [0.1, 0.4, 0.3]))
             .into(),
         measures: vec![
-            MeasureDraft {
-                name: "advance".into(),
-                kind: MeasureKindDraft::Coordinate {
-                    joint: "screw".into(),
-                    coordinate: Some("displacement".into()),
-                },
-            },
-            MeasureDraft {
-                name: "turn".into(),
-                kind: MeasureKindDraft::Coordinate {
-                    joint: "screw".into(),
-                    coordinate: Some("angle".into()),
-                },
-            },
-            MeasureDraft {
-                name: "way".into(),
-                kind: MeasureKindDraft::Coordinate { joint: "way".into(), coordinate: None },
-            },
-            MeasureDraft {
-                name: "course".into(),
-                kind: MeasureKindDraft::Coordinate { joint: "course".into(), coordinate: None },
-            },
-            MeasureDraft {
-                name: "pin2".into(),
-                kind: MeasureKindDraft::Coordinate {
-                    joint: "cross".into(),
-                    coordinate: Some("angle2".into()),
-                },
-            },
+            MeasureDraft::new("advance", ["screw", "displacement"]),
+            MeasureDraft::new("turn", ["screw", "angle"]),
+            MeasureDraft::new("way", "way"),
+            MeasureDraft::new("course", "course"),
+            MeasureDraft::new("pin2", ["cross", "angle2"]),
         ],
         times: times(1.0, 10),
         ..Draft::default()
@@ -201,28 +130,20 @@ fn shaft_train() -> Draft {
 
 /// A cam that turns under a roller on a slide, whose arm carries a pin in a slot of a second body.
 pub fn cam_and_slot() -> Draft {
-    let circle = |n: usize, radius: f64, centre: [f64; 2]| -> Vec<Place> {
-        let angle = |k: usize| 2.0 * std::f64::consts::PI * k as f64 / n as f64;
-        (0..n)
-            .map(|k| {
-                let (s, c) = angle(k).sin_cos();
-                Place::At(Vec3::new(centre[0] + radius * c, centre[1] + radius * s, 0.0))
-            })
-            .collect()
-    };
+    let circle = (0..48).map(|k| {
+        let (s, c) = (2.0 * std::f64::consts::PI * k as f64 / 48.0).sin_cos();
+        [0.01 + 0.03 * c, 0.03 * s, 0.0]
+    });
+    let slot = (0..7).map(|k| {
+        let x = 0.02 + 0.02 * k as f64;
+        [x, 0.15 + 0.2 * (x - 0.08) * (x - 0.08), 0.0]
+    });
     let z = Some([0.0, 0.0, 1.0]);
-    let mut cam = joint("cam", "point_on_curve", ["disc", "lifter"], &[[0.0; 3], [0.0, 0.05, 0.01]], z);
-    cam.curve = Some(CurveDraft { points: circle(48, 0.03, [0.01, 0.0]), closed: true });
     // The pitch curve of the roller's centre passes through its place as drawn: sqrt(0.04^2 - 0.01^2) above the axis.
-    cam.at[1] = Place::At([0.0, 0.0015_f64.sqrt(), 0.01].into());
-    let slot: Vec<Place> = (0..7)
-        .map(|k| {
-            let x = 0.02 + 0.02 * k as f64;
-            Place::At(Vec3::new(x, 0.15 + 0.2 * (x - 0.08) * (x - 0.08), 0.0))
-        })
-        .collect();
-    let mut pin = joint("pin", "slot", ["lever", "lifter"], &[[0.0, 0.15, 0.0], [0.08, 0.15, 0.0]], z);
-    pin.curve = Some(CurveDraft { points: slot, closed: false });
+    let roller = [[0.0; 3], [0.0, 0.0015_f64.sqrt(), 0.01]];
+    let cam = joint("cam", "point_on_curve", ["disc", "lifter"], &roller, z).curve(circle, true);
+    let pin = joint("pin", "slot", ["lever", "lifter"], &[[0.0, 0.15, 0.0], [0.08, 0.15, 0.0]], z)
+        .curve(slot, false);
     Draft {
         name: "cam and slot".into(),
         bodies: ["disc", "lifter", "lever"].map(body).into(),
@@ -233,15 +154,12 @@ pub fn cam_and_slot() -> Draft {
             joint("fulcrum", "revolute", ["ground", "lever"], &[[0.0, 0.15, 0.0]], z),
             pin,
         ],
-        drivers: vec![DriverDraft {
-            name: "motor".into(),
-            drives: DrivenDraft::Coordinate { joint: "shaft".into(), coordinate: None },
-            law: hardpoint::law::Law::parse_with(
-                "speed*t + swing*sin(3*t)",
-                &[("speed", 9.0), ("swing", 0.1)],
-            )
-            .unwrap(),
-        }],
+        drivers: vec![DriverDraft::new(
+            "motor",
+            "shaft",
+            hardpoint::law::Law::parse_with("speed*t + swing*sin(3*t)", &[("speed", 9.0), ("swing", 0.1)])
+                .unwrap(),
+        )],
         design: vec![
             marker("shaft_x", "shaft", [1.0, 0.2, 0.0], [0.0; 3]),
             marker("cam_y", "cam", [0.3, 1.0, 0.0], [0.0, 0.0, 0.5]),
@@ -251,31 +169,16 @@ pub fn cam_and_slot() -> Draft {
                 fixed_length: true,
                 ..marker("fulcrum_and_pin", "fulcrum", [0.5, 1.0, 0.0], [0.0; 3])
             },
-            VariableDraft {
-                name: "swing".into(),
-                changes: vec![ChangeDraft::Law {
-                    driver: "motor".into(),
-                    parameter: "swing".into(),
-                    rate: 1.0,
-                }],
-                ..VariableDraft::default()
-            },
-            VariableDraft {
-                name: "speed".into(),
-                changes: vec![ChangeDraft::Law {
-                    driver: "motor".into(),
-                    parameter: "speed".into(),
-                    rate: 1.0,
-                }],
-                ..VariableDraft::default()
-            },
+            VariableDraft::new(
+                "swing",
+                [ChangeDraft::Law { driver: "motor".into(), parameter: "swing".into(), rate: 1.0 }],
+            ),
+            VariableDraft::new(
+                "speed",
+                [ChangeDraft::Law { driver: "motor".into(), parameter: "speed".into(), rate: 1.0 }],
+            ),
         ],
-        measures: ["slide", "fulcrum"]
-            .map(|name| MeasureDraft {
-                name: name.into(),
-                kind: MeasureKindDraft::Coordinate { joint: name.into(), coordinate: None },
-            })
-            .into(),
+        measures: ["slide", "fulcrum"].map(|name| MeasureDraft::new(name, name)).into(),
         times: times(0.9, 18),
         ..Draft::default()
     }
@@ -365,7 +268,7 @@ fn marker(name: &str, joint: &str, position: [f64; 3], rotation: [f64; 3]) -> Va
         position: position.into(),
         rotation: rotation.into(),
     };
-    VariableDraft { name: name.into(), changes: vec![change], ..VariableDraft::default() }
+    VariableDraft::new(name, [change])
 }
 
 pub fn mechanisms() -> Vec<Draft> {
@@ -457,10 +360,7 @@ fn a_spatial_slider_crank_matches_resolved_designs_in_both_formulations() {
 #[test]
 fn angles_are_counted_through_whole_turns_in_the_tree_and_across_a_cut() {
     let mut draft = four_bar([[0.0, 0.0], [0.0, 0.1], [0.3, 0.25], [0.3, 0.0]], "2*pi*t", &times(3.0, 90));
-    let measure = |name: &str| MeasureDraft {
-        name: name.into(),
-        kind: MeasureKindDraft::Coordinate { joint: name.into(), coordinate: None },
-    };
+    let measure = |name: &str| MeasureDraft::new(name, name);
     draft.measures = ["A", "B", "C", "D"].map(measure).into();
     let model = Model::from_draft(&draft).unwrap();
     let turn = 2.0 * std::f64::consts::PI;

@@ -1,10 +1,10 @@
 //! Independent loops are solved one after another.
 
-use hardpoint::Analysis;
 use hardpoint::motion::Execution;
 use hardpoint::space::Vec3;
 use hardpoint::study::{Comparison, Scheme, finite_differences};
 use hardpoint::topology::Formulation;
+use hardpoint::{Analysis, Run};
 use hardpoint::{draft::*, model::*};
 
 use crate::workbench::*;
@@ -91,7 +91,12 @@ fn loops_that_share_their_code_move_as_the_kernel_moves_them() {
     shuffled.bodies.sort_by_key(|b| b.name.trim_matches(char::is_alphabetic).parse::<usize>().unwrap());
     for draft in [draft, shuffled] {
         let model = Model::from_draft(&draft).unwrap();
-        let run = |execution| Analysis::new(&model).unwrap().bodies_only().executed(execution).run_motion();
+        let run = |execution| {
+            Analysis::new(&model)
+                .unwrap()
+                .executed(execution)
+                .solve(Run::new().without_sensitivities().without_measures())
+        };
         let right = run(Execution::Kernel);
         assert!(right.stop.is_none());
         for execution in [Execution::Interpreted, Execution::Compiled] {
@@ -152,13 +157,12 @@ pub fn truss(n: usize) -> (Draft, impl Fn(usize) -> [f64; 2]) {
 fn moves(name: &str, k: usize, y: f64) -> VariableDraft {
     let velocity = Vec3::new(0.0, y, 0.0);
     let changes = vec![ChangeDraft::Move { hardpoint: format!("p{k}"), velocity }];
-    VariableDraft { name: name.into(), changes, ..VariableDraft::default() }
+    VariableDraft::new(name, changes)
 }
 
 /// The same with the places of nodes as hardpoints `p0`, `p1`, ..., so that variables may move them.
 fn with_hardpoints(mut draft: Draft, n: usize, place: &dyn Fn(usize) -> [f64; 3]) -> Draft {
-    draft.hardpoints =
-        (0..n).map(|k| HardpointDraft { name: format!("p{k}"), position: place(k).into() }).collect();
+    draft.hardpoints = (0..n).map(|k| HardpointDraft::new(format!("p{k}"), place(k))).collect();
     for at in draft.joints.iter_mut().flat_map(|j| &mut j.at) {
         let Place::At(p) = *at else { continue };
         if let Some(k) = (0..n).find(|&k| Vec3::from(place(k)) == p) {
@@ -219,7 +223,7 @@ fn ten_thousand_loops_are_planned_in_proportion_and_move_like_one() {
         let entries: usize = t.closures.iter().map(|c| c.entries.len() + c.links.len()).sum();
         let largest = t.blocks.iter().map(|b| b.unknowns.len()).max().unwrap();
         let counts = [t.blocks.len(), t.unknowns(), t.rows.len(), t.redundant().count(), entries];
-        let motion = analysis.bodies_only().run_motion();
+        let motion = analysis.solve(Run::new().without_sensitivities().without_measures());
         assert!(motion.stop.is_none());
         // What is one bar's motion is every bar's; the couplers stay level.
         let states = motion.motion.at(2);
@@ -249,7 +253,9 @@ fn large_blocks_run_as_programs_that_agree_with_the_kernel() {
         ("scissors", scissors(8, 8, [7, 7]), 0.05),
     ] {
         let model = Model::from_draft(&Draft { times: times(end, 80), ..draft }).unwrap();
-        let solve = |execution| Analysis::new(&model).unwrap().bodies_only().executed(execution).run().motion;
+        let solve = |execution| {
+            Analysis::new(&model).unwrap().executed(execution).solve(Run::new().without_measures()).motion
+        };
         let right = solve(Execution::Kernel);
         assert_eq!((right.len(), right.effort.by_program), (81, 0));
         for execution in [Execution::Interpreted, Execution::Compiled] {
@@ -378,11 +384,7 @@ fn a_loop_that_rides_on_a_body_which_depends_on_it_is_solved_where_it_stands() {
         times: times(1.0, 5),
         ..Draft::default()
     };
-    draft.points.push(PointDraft {
-        name: "tip".into(),
-        body: "arm".into(),
-        at: Place::At([0.5, 0.0, 0.0].into()),
-    });
+    draft.points.push(PointDraft::new("tip", "arm", [0.5, 0.0, 0.0]));
     let model = Model::from_draft(&draft).unwrap();
     for formulation in [Formulation::Relative, Formulation::Absolute] {
         let solution = Analysis::with(&model, formulation).unwrap().run();

@@ -82,7 +82,7 @@ impl Case {
                 }
                 other => return Err(format!("driver kind `{other}` is not built yet")),
             };
-            draft.drivers.push(DriverDraft { name: text(d, "name")?, drives, law });
+            draft.drivers.push(DriverDraft::new(text(d, "name")?, drives, law));
         }
         let mut inadmissible = Vec::new();
         let mut admissible_at_design = Vec::new();
@@ -96,11 +96,7 @@ impl Case {
             inadmissible.push(text(v, "name")?);
         }
         for p in list(&json, "points") {
-            draft.points.push(PointDraft {
-                name: text(p, "name")?,
-                body: text(p, "body")?,
-                at: place(&p["location"])?,
-            });
+            draft.points.push(PointDraft::new(text(p, "name")?, text(p, "body")?, place(&p["location"])?));
         }
         for m in list(&json, "measures") {
             draft.measures.push(measure(m)?);
@@ -388,5 +384,5 @@ fn measure(m: &Value) -> Result<MeasureDraft, String> {
         "distance" => MeasureKindDraft::Distance { from: point("i")?, to: point("j")? },
         other => return Err(format!("measure kind `{other}` is not built yet")),
     };
-    Ok(MeasureDraft { name: text(m, "name")?, kind })
+    Ok(MeasureDraft::new(text(m, "name")?, kind))
 }

@@ -1,9 +1,9 @@
 //! Second design derivatives against differences of first ones.
 
-use hardpoint::Analysis;
 use hardpoint::law::Law;
 use hardpoint::space::Vec3;
 use hardpoint::topology::Formulation;
+use hardpoint::{Analysis, Run};
 use hardpoint::{draft::*, model::*};
 
 use crate::workbench::*;
@@ -32,7 +32,7 @@ fn deviation(
             let value = |k: usize| design.get(k).copied().unwrap_or(0.0) + h * directions[w][k];
             (0..variables).map(value).collect()
         };
-        let [ahead, behind] = [h, -h].map(|h| analysis.run_at(&moved(h)));
+        let [ahead, behind] = [h, -h].map(|h| analysis.solve(Run::new().at(&moved(h))));
         assert!(ahead.stop.is_none() && behind.stop.is_none());
         // Lengths in metres, angles in radians: a mechanism of some 0.1 to 1 m.
         let (mut scale, mut most) = (1e-2, 0.0_f64);
@@ -105,11 +105,7 @@ fn parameters_of_laws_have_second_derivatives_too() {
     draft.drivers[0].law = Law::parse_with("a*sin(w*t)", &[("a", 0.7), ("w", 3.0)]).unwrap();
     for parameter in ["a", "w"] {
         let change = ChangeDraft::Law { driver: "motor".into(), parameter: parameter.into(), rate: 1.0 };
-        draft.design.push(VariableDraft {
-            name: parameter.into(),
-            changes: vec![change],
-            ..VariableDraft::default()
-        });
+        draft.design.push(VariableDraft::new(parameter, [change]));
     }
     let model = Model::from_draft(&draft).unwrap();
     let directions: Vec<Vec<f64>> = (0..2).map(|v| unit(2, v)).collect();

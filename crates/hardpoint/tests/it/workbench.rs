@@ -2,6 +2,7 @@
 
 use hardpoint::law::Law;
 use hardpoint::space::Vec3;
+use hardpoint::{Analysis, Run, Solution};
 use hardpoint::{draft::*, model::*};
 
 use crate::reference_case::Case;
@@ -30,7 +31,7 @@ pub const REFERENCES: [&str; 8] = [
 ];
 
 pub fn body(name: &str) -> BodyDraft {
-    BodyDraft { name: name.into(), frame: FrameDraft::Default }
+    BodyDraft::new(name)
 }
 
 pub fn joint(
@@ -40,42 +41,36 @@ pub fn joint(
     at: &[[f64; 3]],
     axis: Option<[f64; 3]>,
 ) -> JointDraft {
-    JointDraft {
-        name: name.into(),
-        kind: kind.into(),
-        bodies: bodies.map(Into::into),
-        at: at.iter().map(|&p| Place::At(p.into())).collect(),
-        axis: axis.map(|a| Line::Along(a.into())),
-        ..JointDraft::default()
-    }
+    let joint = JointDraft { axis: axis.map(Line::from), ..JointDraft::new(name, kind, bodies) };
+    at.iter().fold(joint, |joint, place| joint.at(*place))
 }
 
 pub fn driver(name: &str, joint: &str, law: &str) -> DriverDraft {
     let drives = DrivenDraft::Coordinate { joint: joint.into(), coordinate: None };
-    DriverDraft { name: name.into(), drives, law: Law::parse(law).unwrap() }
+    DriverDraft::new(name, drives, Law::parse(law).unwrap())
 }
 
 /// A planar four-bar of 3D revolutes about z through the points A, B, C, D; the crank A-B is driven.
 pub fn four_bar(points: [[f64; 2]; 4], law: &str, times: &[f64]) -> Draft {
-    let z = Some([0.0, 0.0, 1.0]);
-    let p = points.map(|[x, y]| [x, y, 0.0]);
-    Draft {
-        name: "four-bar".into(),
-        bodies: ["crank", "coupler", "rocker"].map(body).into(),
-        joints: vec![
-            joint("A", "revolute", ["ground", "crank"], &[p[0]], z),
-            joint("B", "revolute", ["crank", "coupler"], &[p[1]], z),
-            joint("C", "revolute", ["coupler", "rocker"], &[p[2]], z),
-            joint("D", "revolute", ["ground", "rocker"], &[p[3]], z),
-        ],
-        drivers: vec![driver("motor", "A", law)],
-        measures: vec![MeasureDraft {
-            name: "rocker".into(),
-            kind: MeasureKindDraft::Coordinate { joint: "D".into(), coordinate: None },
-        }],
-        times: times.to_vec(),
-        ..Draft::default()
-    }
+    let z = [0.0, 0.0, 1.0];
+    let [a, b, c, d] = points.map(|[x, y]| [x, y, 0.0]);
+    Draft::new("four-bar")
+        .bodies(["crank", "coupler", "rocker"])
+        .revolute("A", ["ground", "crank"], a, z)
+        .revolute("B", ["crank", "coupler"], b, z)
+        .revolute("C", ["coupler", "rocker"], c, z)
+        .revolute("D", ["ground", "rocker"], d, z)
+        .driver("motor", "A", Law::parse(law).unwrap())
+        .measure("rocker", "D")
+        .times(times.iter().copied())
+}
+
+/// Motions of designs, with their measures.
+pub fn designs_of(analysis: &Analysis<'_>, designs: &[Vec<f64>]) -> Vec<Solution> {
+    let mut all = vec![Solution::default(); designs.len()];
+    let run = Run::new().without_sensitivities();
+    analysis.solve_designs(run, designs, |k, solution| all[k] = std::mem::take(solution));
+    all
 }
 
 /// Times 0 to `end` in n steps.

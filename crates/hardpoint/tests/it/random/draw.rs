@@ -179,7 +179,7 @@ pub fn train(rng: &mut Rng) -> Option<Draft> {
     d.draft.joints.push(joint);
     let law = d.law_of(1.0, 5.0);
     let drives = DrivenDraft::Coordinate { joint: "shaft".into(), coordinate: None };
-    d.draft.drivers.push(DriverDraft { name: "motor".into(), drives, law });
+    d.draft.drivers.push(DriverDraft::new("motor", drives, law));
     // Joints with an angle, and the body that each turns.
     let mut shafts = vec![("shaft".to_string(), first)];
     for _ in 0..1 + d.rng.below(6) {
@@ -358,7 +358,7 @@ impl<'r> Drawing<'r> {
             return Place::At(position);
         }
         let name = format!("h{}", self.draft.hardpoints.len());
-        self.draft.hardpoints.push(HardpointDraft { name: name.clone(), position });
+        self.draft.hardpoints.push(HardpointDraft::new(name.clone(), position));
         Place::Hardpoint(name)
     }
 
@@ -382,7 +382,7 @@ impl<'r> Drawing<'r> {
         let n = self.draft.hardpoints.len();
         let names = [n, n + 1].map(|k| format!("h{k}"));
         for (name, position) in names.iter().zip([from, to]) {
-            self.draft.hardpoints.push(HardpointDraft { name: name.clone(), position });
+            self.draft.hardpoints.push(HardpointDraft::new(name.clone(), position));
         }
         Line::Through(names[0].clone(), names[1].clone())
     }
@@ -713,7 +713,7 @@ impl<'r> Drawing<'r> {
         let (low, high) = if length { (0.01 * self.size, 0.08 * self.size) } else { (0.05, 0.4) };
         let law = self.law_of(low, high);
         let name = format!("d{}", self.draft.drivers.len());
-        self.draft.drivers.push(DriverDraft { name, drives, law });
+        self.draft.drivers.push(DriverDraft::new(name, drives, law));
     }
 
     /// A smooth law that is zero at t = 0, whatever its parameters.
@@ -774,7 +774,7 @@ impl<'r> Drawing<'r> {
             }
             let at = self.spot();
             let at = self.place(at);
-            let point = PointDraft { name: format!("p{b}"), body: self.name(b), at };
+            let point = PointDraft::new(format!("p{b}"), self.name(b), at);
             self.draft.points.push(point);
         }
         let kinds: Vec<_> =
@@ -826,7 +826,7 @@ impl<'r> Drawing<'r> {
 
     fn measure(&mut self, kind: MeasureKindDraft) {
         let name = format!("m{}", self.draft.measures.len());
-        self.draft.measures.push(MeasureDraft { name, kind });
+        self.draft.measures.push(MeasureDraft::new(name, kind));
     }
 
     fn variable(&mut self) {
@@ -915,7 +915,7 @@ fn spoil(d: &mut Draft, rng: &mut Rng) {
             let body = d.bodies[rng.below(d.bodies.len())].name.clone();
             let about = Line::Along(rng.direction());
             let drives = DrivenDraft::Orientation { body, relative_to: None, about };
-            d.drivers.push(DriverDraft { name: "more".into(), drives, law: Law::constant(0.0) });
+            d.drivers.push(DriverDraft::new("more", drives, Law::constant(0.0)));
         }
         3 => each_place(d, &mut |p| *p = *p * factor),
         4 => each_place(d, &mut |p| p.z = 0.0),

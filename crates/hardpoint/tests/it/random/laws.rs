@@ -7,7 +7,7 @@ use hardpoint::sensitivity::Admissibility;
 use hardpoint::space::{Pose, Vec3};
 use hardpoint::study::{Comparison, Scheme, finite_differences};
 use hardpoint::topology::{Formulation, Role, SetBy};
-use hardpoint::{Analysis, Solution};
+use hardpoint::{Analysis, Run, Solution};
 use hardpoint::{draft::*, model::*};
 
 use super::draw::Rng;
@@ -93,7 +93,7 @@ pub fn used_where_solved(draft: &Draft) -> BTreeSet<String> {
     let mut tally = Tally::default();
     let model = Model::from_draft(draft).unwrap_or_else(|f| panic!("{f:?}"));
     if let Ok(analysis) = Analysis::new(&model)
-        && analysis.run_motion().stop.is_none()
+        && analysis.solve(Run::new().without_sensitivities()).stop.is_none()
     {
         Case { seed: 0, draft, tally: &mut tally }.use_of(&analysis);
     }

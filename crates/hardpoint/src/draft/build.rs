@@ -1,0 +1,302 @@
+//! Drafts written in code: constructors, and a chain of words for what most mechanisms are made of.
+//!
+//! Whatever has no word here is a field: `draft.wheels.push(...)`.
+
+use crate::draft::{
+    BodyDraft, ChangeDraft, CurveDraft, Draft, DrivenDraft, DriverDraft, FrameDraft, HardpointDraft,
+    JointDraft, Line, MeasureDraft, MeasureKindDraft, Place, PointDraft, VariableDraft,
+};
+use crate::law::Law;
+use crate::space::Vec3;
+
+/// What a mechanism is made of, entry by entry. Names may be used before they are given; [`Model::from_draft`](crate::model::Model) checks
+/// them all.
+impl Draft {
+    /// An empty draft of that name.
+    pub fn new(name: impl Into<String>) -> Self {
+        Self { name: name.into(), ..Self::default() }
+    }
+
+    /// Adds a named point at a global position, m.
+    pub fn hardpoint(mut self, name: impl Into<String>, position: impl Into<Vec3>) -> Self {
+        self.hardpoints.push(HardpointDraft::new(name, position));
+        self
+    }
+
+    /// Adds a body. A name alone stands for one with the default frame.
+    pub fn body(mut self, body: impl Into<BodyDraft>) -> Self {
+        self.bodies.push(body.into());
+        self
+    }
+
+    /// Adds several bodies.
+    pub fn bodies(mut self, bodies: impl IntoIterator<Item = impl Into<BodyDraft>>) -> Self {
+        self.bodies.extend(bodies.into_iter().map(Into::into));
+        self
+    }
+
+    /// Adds a joint of any type, as [`JointDraft::new`] begins it.
+    pub fn joint(mut self, joint: JointDraft) -> Self {
+        self.joints.push(joint);
+        self
+    }
+
+    /// Adds a hinge: body j turns on body i about an axis through a place.
+    pub fn revolute(
+        self,
+        name: impl Into<String>,
+        bodies: [impl Into<String>; 2],
+        at: impl Into<Place>,
+        axis: impl Into<Line>,
+    ) -> Self {
+        self.joint(JointDraft::new(name, "revolute", bodies).at(at).axis(axis))
+    }
+
+    /// Adds a slide: body j moves on body i along an axis.
+    pub fn translational(
+        self,
+        name: impl Into<String>,
+        bodies: [impl Into<String>; 2],
+        at: impl Into<Place>,
+        axis: impl Into<Line>,
+    ) -> Self {
+        self.joint(JointDraft::new(name, "translational", bodies).at(at).axis(axis))
+    }
+
+    /// Adds a ball: body j turns on body i about a place.
+    pub fn spherical(
+        self,
+        name: impl Into<String>,
+        bodies: [impl Into<String>; 2],
+        at: impl Into<Place>,
+    ) -> Self {
+        self.joint(JointDraft::new(name, "spherical", bodies).at(at))
+    }
+
+    /// Adds a rod without mass between a place on body i and one on body j, which keeps its length.
+    pub fn distance(
+        self,
+        name: impl Into<String>,
+        bodies: [impl Into<String>; 2],
+        between: [impl Into<Place>; 2],
+    ) -> Self {
+        let [from, to] = between;
+        self.joint(JointDraft::new(name, "distance", bodies).at(from).at(to))
+    }
+
+    /// Adds a driver. A joint's name stands for its only coordinate, `["joint", "coordinate"]` for one of several.
+    pub fn driver(mut self, name: impl Into<String>, drives: impl Into<DrivenDraft>, law: Law) -> Self {
+        self.drivers.push(DriverDraft::new(name, drives, law));
+        self
+    }
+
+    /// Adds a design variable, as [`VariableDraft::new`] makes it.
+    pub fn variable(mut self, variable: VariableDraft) -> Self {
+        self.design.push(variable);
+        self
+    }
+
+    /// Adds a design variable that moves a hardpoint, by this global velocity per unit.
+    pub fn variable_moving(
+        self,
+        name: impl Into<String>,
+        hardpoint: impl Into<String>,
+        velocity: impl Into<Vec3>,
+    ) -> Self {
+        self.variable(VariableDraft::moving(name, hardpoint, velocity))
+    }
+
+    /// Adds a point to follow, on a body.
+    pub fn point(mut self, name: impl Into<String>, body: impl Into<String>, at: impl Into<Place>) -> Self {
+        self.points.push(PointDraft::new(name, body, at));
+        self
+    }
+
+    /// Adds a measure. A joint's name stands for its only coordinate, `["joint", "coordinate"]` for one of several.
+    pub fn measure(mut self, name: impl Into<String>, kind: impl Into<MeasureKindDraft>) -> Self {
+        self.measures.push(MeasureDraft::new(name, kind));
+        self
+    }
+
+    /// Adds output times, s.
+    pub fn times(mut self, times: impl IntoIterator<Item = f64>) -> Self {
+        self.times.extend(times);
+        self
+    }
+}
+
+/// A joint, word by word.
+///
+/// ```
+/// # use hardpoint::draft::*;
+/// // A screw that advances by 20 mm per turn, on the line between two hardpoints, cut rather than carrying the tree.
+/// let screw = JointDraft::new("screw", "screw", ["shaft", "nut"]).at("A").axis(["A", "B"]).lead(0.02).cut();
+/// assert_eq!(screw.axis, Some(Line::Through("A".into(), "B".into())));
+/// ```
+impl JointDraft {
+    /// A joint of one of the types of [`ALL`](crate::joint::ALL), by name, between bodies i and j.
+    pub fn new(name: impl Into<String>, kind: &str, bodies: [impl Into<String>; 2]) -> Self {
+        Self { name: name.into(), kind: kind.into(), bodies: bodies.map(Into::into), ..Self::default() }
+    }
+
+    /// Its place, or the next one of two.
+    pub fn at(mut self, place: impl Into<Place>) -> Self {
+        self.at.push(place.into());
+        self
+    }
+
+    /// Where the markers' z axis points.
+    pub fn axis(self, axis: impl Into<Line>) -> Self {
+        Self { axis: Some(axis.into()), ..self }
+    }
+
+    /// Where the markers' x axis points.
+    pub fn axis2(self, axis: impl Into<Line>) -> Self {
+        Self { axis2: Some(axis.into()), ..self }
+    }
+
+    /// Length of a rod, or a follower's distance from its curve, m.
+    pub fn length(self, length: f64) -> Self {
+        Self { length: Some(length), ..self }
+    }
+
+    /// Advance of a screw, m per turn.
+    pub fn lead(self, lead: f64) -> Self {
+        Self { lead: Some(lead), ..self }
+    }
+
+    /// The curve on body i that a point of body j follows.
+    pub fn curve(self, points: impl IntoIterator<Item = impl Into<Place>>, closed: bool) -> Self {
+        let points = points.into_iter().map(Into::into).collect();
+        Self { curve: Some(CurveDraft { points, closed }), ..self }
+    }
+
+    /// Cut, rather than carrying the tree.
+    pub fn cut(self) -> Self {
+        Self { cut: true, ..self }
+    }
+}
+
+impl HardpointDraft {
+    /// A named point at a global position, m.
+    pub fn new(name: impl Into<String>, position: impl Into<Vec3>) -> Self {
+        Self { name: name.into(), position: position.into() }
+    }
+}
+
+impl BodyDraft {
+    /// A body with the default frame.
+    pub fn new(name: impl Into<String>) -> Self {
+        Self { name: name.into(), frame: FrameDraft::Default }
+    }
+}
+
+impl DriverDraft {
+    /// A driver. A joint's name stands for its only coordinate, `["joint", "coordinate"]` for one of several.
+    pub fn new(name: impl Into<String>, drives: impl Into<DrivenDraft>, law: Law) -> Self {
+        Self { name: name.into(), drives: drives.into(), law }
+    }
+}
+
+impl PointDraft {
+    /// A point to follow, on a body.
+    pub fn new(name: impl Into<String>, body: impl Into<String>, at: impl Into<Place>) -> Self {
+        Self { name: name.into(), body: body.into(), at: at.into() }
+    }
+}
+
+impl MeasureDraft {
+    /// A measure. A joint's name stands for its only coordinate, `["joint", "coordinate"]` for one of several.
+    pub fn new(name: impl Into<String>, kind: impl Into<MeasureKindDraft>) -> Self {
+        Self { name: name.into(), kind: kind.into() }
+    }
+}
+
+impl VariableDraft {
+    /// A design variable with all that changes with it.
+    pub fn new(name: impl Into<String>, changes: impl Into<Vec<ChangeDraft>>) -> Self {
+        Self { name: name.into(), changes: changes.into(), ..Self::default() }
+    }
+
+    /// One that moves a hardpoint, by this global velocity per unit.
+    pub fn moving(name: impl Into<String>, hardpoint: impl Into<String>, velocity: impl Into<Vec3>) -> Self {
+        Self::new(name, [ChangeDraft::Move { hardpoint: hardpoint.into(), velocity: velocity.into() }])
+    }
+}
+
+/// With the default frame.
+impl From<&str> for BodyDraft {
+    fn from(name: &str) -> Self {
+        Self::new(name)
+    }
+}
+
+/// A hardpoint, by name.
+impl From<&str> for Place {
+    fn from(hardpoint: &str) -> Self {
+        Self::Hardpoint(hardpoint.into())
+    }
+}
+
+/// Global coordinates, m.
+impl From<[f64; 3]> for Place {
+    fn from(position: [f64; 3]) -> Self {
+        Self::At(position.into())
+    }
+}
+
+/// Global coordinates, m.
+impl From<Vec3> for Place {
+    fn from(position: Vec3) -> Self {
+        Self::At(position)
+    }
+}
+
+/// Along a global vector of any length.
+impl From<[f64; 3]> for Line {
+    fn from(direction: [f64; 3]) -> Self {
+        Self::Along(direction.into())
+    }
+}
+
+/// Along a global vector of any length.
+impl From<Vec3> for Line {
+    fn from(direction: Vec3) -> Self {
+        Self::Along(direction)
+    }
+}
+
+/// From one named hardpoint to another.
+impl From<[&str; 2]> for Line {
+    fn from([from, to]: [&str; 2]) -> Self {
+        Self::Through(from.into(), to.into())
+    }
+}
+
+/// A joint's only coordinate.
+impl From<&str> for DrivenDraft {
+    fn from(joint: &str) -> Self {
+        Self::Coordinate { joint: joint.into(), coordinate: None }
+    }
+}
+
+/// A joint and one of its coordinates.
+impl From<[&str; 2]> for DrivenDraft {
+    fn from([joint, coordinate]: [&str; 2]) -> Self {
+        Self::Coordinate { joint: joint.into(), coordinate: Some(coordinate.into()) }
+    }
+}
+
+/// A joint's only coordinate.
+impl From<&str> for MeasureKindDraft {
+    fn from(joint: &str) -> Self {
+        Self::Coordinate { joint: joint.into(), coordinate: None }
+    }
+}
+
+/// A joint and one of its coordinates.
+impl From<[&str; 2]> for MeasureKindDraft {
+    fn from([joint, coordinate]: [&str; 2]) -> Self {
+        Self::Coordinate { joint: joint.into(), coordinate: Some(coordinate.into()) }
+    }
+}

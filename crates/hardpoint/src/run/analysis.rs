@@ -1,0 +1,284 @@
+//! A model with its plan, and the ways to run it.
+
+use std::ops::ControlFlow;
+use std::sync::{Arc, OnceLock};
+
+use hardpoint_tape::Number;
+
+use crate::design::Effects;
+use crate::law::Law;
+use crate::measure::{self, Before, Measured, SlopeValues};
+use crate::model::{BodyId, Model};
+use crate::motion::execution::{Cache, Runnable};
+use crate::motion::kinematics::State;
+use crate::motion::parts::Parts;
+use crate::motion::step_program::{Programs, Purpose, Recorded, StepProgram};
+use crate::motion::stepper::Stepper;
+use crate::motion::{BodyState, Execution, Motion, SolvedBy, Stop, StopKind};
+use crate::number::record as recording;
+use crate::sensitivity::{Admissibility, JointDefect, admissibility_at_design, along, record_derivatives};
+use crate::topology::{Formulation, Topology, TopologyFault};
+
+use super::request::Run;
+use super::sink::Sink;
+use super::solution::{Solution, Streamed};
+use super::walk::{Design, Scope, Walk};
+
+/// A model with its plan of solution, ready to be run as often as needed.
+///
+/// ```
+/// # use hardpoint::{Analysis, draft::Draft, law::Law, model::Model};
+/// // A crank of 0.2 m that turns once per second.
+/// let draft = Draft::new("crank")
+///     .body("crank")
+///     .revolute("pivot", ["ground", "crank"], [0.0, 0.0, 0.0], [0.0, 0.0, 1.0])
+///     .driver("motor", "pivot", Law::parse("2*pi*t").unwrap())
+///     .point("tip", "crank", [0.2, 0.0, 0.0])
+///     .times([0.0, 0.25]);
+/// let model = Model::from_draft(&draft).unwrap();
+/// let solution = Analysis::new(&model).unwrap().run();
+/// let tip_y = solution.measured.index("tip.y").unwrap();
+/// let [y, speed, acceleration] = solution.measured.value(1, tip_y);
+/// assert!((y - 0.2).abs() < 1e-12);
+/// assert!(speed.abs() < 1e-12);
+/// assert!((acceleration + 0.2 * (2.0 * std::f64::consts::PI).powi(2)).abs() < 1e-11);
+/// ```
+#[derive(Clone, Debug)]
+pub struct Analysis<'m> {
+    model: &'m Model,
+    topology: Topology,
+    effects: Effects<'m>,
+    /// Per variable, the joints that it opens in the nominal design: worked out when first asked for.
+    opens: OnceLock<Vec<Vec<JointDefect>>>,
+    /// Steps as straight-line programs, recorded when they pay.
+    programs: Arc<Programs>,
+    /// The same of measures.
+    formulas: Arc<Cache<measure::Asked, measure::Program>>,
+}
+
+impl<'m> Analysis<'m> {
+    /// Plans the solution of a model in relative coordinates.
+    ///
+    /// # Errors
+    /// A [`TopologyFault`] where the drivers leave motions free or contradict the joints.
+    pub fn new(model: &'m Model) -> Result<Self, TopologyFault> {
+        Self::with(model, Formulation::Relative)
+    }
+
+    /// Plans the solution of a model in the formulation asked for.
+    ///
+    /// # Errors
+    /// As [`Analysis::new`].
+    pub fn with(model: &'m Model, formulation: Formulation) -> Result<Self, TopologyFault> {
+        let topology = Topology::of(model, formulation)?;
+        let programs = Arc::new(Programs::new(Execution::default()));
+        Ok(Self {
+            model,
+            topology,
+            effects: Effects::of(model),
+            opens: OnceLock::new(),
+            programs,
+            formulas: Arc::default(),
+        })
+    }
+
+    /// The same analysis, its steps solved in this way.
+    pub fn executed(self, execution: Execution) -> Self {
+        Self { programs: Arc::new(Programs::new(execution)), formulas: Arc::default(), ..self }
+    }
+
+    /// The model.
+    pub fn model(&self) -> &'m Model {
+        self.model
+    }
+
+    /// The plan.
+    pub fn topology(&self) -> &Topology {
+        &self.topology
+    }
+
+    /// Solves motion, sensitivities by all design variables, and measures at all output times, for the nominal design.
+    pub fn run(&self) -> Solution {
+        self.solve(Run::new())
+    }
+
+    /// Solves what is asked for, at all output times.
+    pub fn solve(&self, mut run: Run<'_>) -> Solution {
+        let (design, mut solution) = (self.prepare(run.design, run.scope), std::mem::take(&mut run.memory));
+        self.walk(&design, self.model.times.len(), &mut run.progress, &mut solution, &mut |_, _| ());
+        solution
+    }
+
+    /// As [`Analysis::solve`], but nothing is stored: the sink takes every result as it is found.
+    ///
+    /// What 10,000 loops and 1,000 variables give need not fit into memory; measures are not evaluated.
+    pub fn stream(&self, mut run: Run<'_>, sink: &mut impl Sink) -> Streamed {
+        let design = self.prepare(run.design, run.scope);
+        let wanted = self.wanted(std::slice::from_ref(sink));
+        let mut walk = Walk::by_programs(self, &design, wanted, false);
+        let stop = walk.all(sink, &mut run.progress, |_, _, _, _| ());
+        let (steps, effort) = (walk.done, walk.one.effort);
+        Streamed { steps, admissibility: walk.admissibility(&design.opens), effort, stop }
+    }
+
+    /// Whether and how the mechanism follows a change of the nominal design as a whole, in which variable k goes by `change[k]`:
+    /// together, variables may be followed that are not one by one.
+    pub fn admissibility_of(&self, change: &[f64]) -> Admissibility {
+        let mut design = self.design(&[]);
+        let along = along(&self.model.whole(change));
+        let field = self.effects.field_along(&along, &design.values);
+        design.opens = vec![admissibility_at_design(self.model, &field)];
+        design.fields = vec![field];
+        let mut walk = Walk::new(self, &design, vec![false; self.model.bodies.len()]);
+        walk.each(|_| ());
+        walk.admissibility(&design.opens).pop().expect("that of the one field")
+    }
+
+    /// A design that is ready, at all output times.
+    pub(super) fn solve_prepared(&self, design: &Design, solution: &mut Solution) {
+        let progress = &mut |_| ControlFlow::Continue(());
+        self.walk(design, self.model.times.len(), progress, solution, &mut |_, _| ());
+    }
+
+    /// The design with variable k at `design[k]`, without sensitivities.
+    pub(crate) fn design(&self, design: &[f64]) -> Design {
+        self.prepare(design, Scope::of_one(false, true))
+    }
+
+    /// The design with variable k at `design[k]`, and what is asked for of it.
+    pub(super) fn prepare(&self, design: &[f64], scope: Scope) -> Design {
+        let values = self.model.whole(design);
+        let sensitivities = scope.sensitivities;
+        Design {
+            geometry: self.effects.geometry(&values),
+            laws: self.effects.laws(&values),
+            fields: if sensitivities { self.effects.fields(&values) } else { Vec::new() },
+            opens: if sensitivities { self.opens().to_vec() } else { Vec::new() },
+            scope,
+            values,
+        }
+    }
+
+    pub(crate) fn effects(&self) -> &Effects<'m> {
+        &self.effects
+    }
+
+    /// Per variable, the joints that it opens in the nominal design.
+    pub(crate) fn opens(&self) -> &[Vec<JointDefect>] {
+        self.opens.get_or_init(|| {
+            let nominal = self.effects.fields(&self.model.whole(&[]));
+            nominal.iter().map(|field| admissibility_at_design(self.model, field)).collect()
+        })
+    }
+
+    /// How the even steps of the nominal design's motion are solved, with its measures or without.
+    pub(super) fn solved_by(&self, measures: bool) -> SolvedBy {
+        let by_driver = "measures go by a driver that moves alone";
+        let hindrance = StepProgram::hindrance(&self.topology, measures);
+        match hindrance.or((measures && self.goes_by_driver()).then_some(by_driver)) {
+            Some(why) => SolvedBy::Kernel(why.into()),
+            None => self.programs.solved_by(self.model.times.len()),
+        }
+    }
+
+    /// Whether measures go by a driver that moves alone, and need more of a step than programs hand out.
+    pub(super) fn goes_by_driver(&self) -> bool {
+        (0..self.model.measures.len()).any(|k| self.model.goes_by_driver(k))
+    }
+
+    /// What evaluates these laws at many times, if they are those of the nominal design and it pays.
+    pub(super) fn laws_program(&self, laws: &[Law]) -> Option<Arc<Runnable>> {
+        let nominal = self.model.drivers.iter().zip(laws).all(|(driver, law)| driver.law == *law);
+        if nominal { self.programs.laws(self.model) } else { None }
+    }
+
+    /// Whether steps of so many designs are worth a program.
+    pub(super) fn programs_pay(&self, designs: usize) -> bool {
+        self.programs.pay(designs * self.model.times.len())
+    }
+
+    /// Per body, whether any sink wants its results.
+    pub(super) fn wanted<S: Sink>(&self, sinks: &[S]) -> Vec<bool> {
+        (0..self.model.bodies.len()).map(|b| sinks.iter().any(|s| s.wants(BodyId(b)))).collect()
+    }
+
+    /// The stop of a run that was told to end after time t.
+    pub(super) fn interrupted(&self, t: f64) -> Stop {
+        Stop {
+            kind: StopKind::Interrupted,
+            last_time: Some(t),
+            failed_time: t,
+            drivers: self.model.drivers.iter().map(|d| d.law.at(t).value()).collect(),
+            block: None,
+            pivot_ratio: 1.0,
+            joints: Vec::new(),
+            remains: Vec::new(),
+            closed: None,
+        }
+    }
+
+    /// Empties a motion, with room for so many output times.
+    pub(super) fn make_room(&self, motion: &mut Motion, steps: usize) {
+        motion.bodies = self.model.bodies.len();
+        motion.states.shape(BodyState::NUMBERS * (motion.bodies - 1), steps);
+        motion.coordinates.shape(self.topology.coordinates.len(), steps);
+        motion.times.clear();
+        motion.times.reserve(steps);
+        motion.margins.clear();
+        motion.assembly = None;
+        motion.solved_by = None;
+        motion.passed.clear();
+        motion.beyond = None;
+    }
+
+    /// Evaluates the measures of a motion that goes on from what was `before`.
+    pub(super) fn measure(
+        &self,
+        design: &Design,
+        slopes: &SlopeValues,
+        before: Option<&Before>,
+        solution: &mut Solution,
+    ) {
+        let Solution { motion, sensitivities, measured, .. } = solution;
+        if !design.scope.measures {
+            *measured = Measured::default();
+            return;
+        }
+        let Design { values, laws, scope: Scope { of_many, .. }, .. } = design;
+        let at = measure::At { model: self.model, effects: &self.effects, values, laws };
+        let program = self.programs_pay(*of_many).then(|| {
+            let asked = measure::Asked::of(self.model, values, sensitivities);
+            let execution = self.programs.execution();
+            self.formulas.get(asked, |asked| measure::Program::record(&self.effects, asked, execution))
+        });
+        let (program, solved) = (program.flatten(), (&*motion, &*sensitivities));
+        measure::evaluate(&at, &self.topology, solved, slopes, before, program.as_deref(), measured);
+    }
+
+    /// The step of this plan as a program, recorded where the nominal motion begins.
+    pub(super) fn program(&self, purpose: Purpose) -> Option<Arc<StepProgram>> {
+        if StepProgram::hindrance(&self.topology, purpose.margins).is_some() {
+            return None;
+        }
+        self.programs.step(purpose, |execution| {
+            let one = self.started()?;
+            let besides = |plan: &Topology, state: &mut State<Number>, values: &[Number]| {
+                if !purpose.sensitivities {
+                    return Some(Recorded::default());
+                }
+                let fields = recording::strictly(|| self.effects.fields(values));
+                record_derivatives(self.model, &fields, plan, state)
+            };
+            StepProgram::record(&one, &self.effects, purpose, besides, execution)
+        })
+    }
+
+    /// The nominal design where its motion begins.
+    pub(super) fn started(&self) -> Option<Stepper<'m>> {
+        let Design { geometry, laws, .. } = self.design(&[]);
+        let parts = Parts::same(self.model, &self.topology, &geometry, &laws);
+        let mut one = Stepper::new(self.model, &self.topology, parts);
+        one.start(*self.model.times.first()?).ok()?;
+        Some(one)
+    }
+}

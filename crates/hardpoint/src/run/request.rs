@@ -1,0 +1,131 @@
+//! What a run is asked for.
+
+use std::fmt;
+use std::num::NonZero;
+use std::ops::ControlFlow;
+
+use super::solution::Solution;
+use super::walk::Scope;
+
+/// What to solve, and what of it to work out.
+///
+/// Without further words it is everything, for the nominal design: the motion at all output times, its sensitivities by all design
+/// variables, and measures. Not every way to run has a use for every word; what it has no use for changes nothing.
+///
+/// | | [`solve`] | [`solve_in_windows`] | [`solve_designs`] | [`stream`] | [`stream_designs`] |
+/// |---|---|---|---|---|---|
+/// | [`at`](Run::at) | yes | yes | | yes | |
+/// | [`without_sensitivities`](Run::without_sensitivities) | yes | yes | yes | yes | yes |
+/// | [`without_measures`](Run::without_measures) | yes | yes | yes | has none | has none |
+/// | [`progress`](Run::progress) | yes | yes | | yes | |
+/// | [`reusing`](Run::reusing) | yes | yes | by itself | stores nothing | stores nothing |
+/// | [`threads`](Run::threads) | | | yes | | |
+///
+/// [`solve`]: crate::Analysis::solve
+/// [`solve_in_windows`]: crate::Analysis::solve_in_windows
+/// [`solve_designs`]: crate::Analysis::solve_designs
+/// [`stream`]: crate::Analysis::stream
+/// [`stream_designs`]: crate::Analysis::stream_designs
+///
+/// ```
+/// # use hardpoint::{Analysis, Run, draft::*, law::Law, model::Model};
+/// // A crank that turns by one radian per second, and a variable that moves its pivot along x.
+/// let draft = Draft::new("crank")
+///     .hardpoint("O", [0.0, 0.0, 0.0])
+///     .body("crank")
+///     .revolute("pivot", ["ground", "crank"], "O", [0.0, 0.0, 1.0])
+///     .driver("motor", "pivot", Law::parse("t").unwrap())
+///     .variable_moving("O along", "O", [1.0, 0.0, 0.0])
+///     .point("tip", "crank", [0.2, 0.0, 0.0])
+///     .times([0.0, 0.5]);
+/// let model = Model::from_draft(&draft).unwrap();
+/// let analysis = Analysis::new(&model).unwrap();
+///
+/// // The motion alone of the design whose pivot is 0.1 m further on: the tip is 0.1 m from it.
+/// let moved = analysis.solve(Run::new().at(&[0.1]).without_sensitivities());
+/// let tip_y = moved.measured.index("tip.y").unwrap();
+/// assert!((moved.measured.value(1, tip_y)[0] - 0.1 * 0.5_f64.sin()).abs() < 1e-12);
+///
+/// // Again with sensitivities, where the results were written before.
+/// let again = analysis.solve(Run::new().at(&[0.1]).reusing(moved));
+/// assert!((again.measured.d(1, model.variable("O along").unwrap(), tip_y)[0] + 0.5_f64.sin()).abs() < 1e-12);
+/// ```
+#[must_use = "a request is answered by an analysis"]
+pub struct Run<'r> {
+    pub(super) design: &'r [f64],
+    pub(super) scope: Scope,
+    pub(super) threads: NonZero<usize>,
+    pub(super) progress: Box<dyn FnMut(Progress) -> ControlFlow<()> + 'r>,
+    pub(super) memory: Solution,
+}
+
+impl<'r> Run<'r> {
+    /// Everything, for the nominal design.
+    pub fn new() -> Self {
+        Self {
+            design: &[],
+            scope: Scope::of_one(true, true),
+            threads: NonZero::<usize>::MIN,
+            progress: Box::new(|_| ControlFlow::Continue(())),
+            memory: Solution::default(),
+        }
+    }
+
+    /// The changed design with variable k at `design[k]` (m, rad or a plain number; missing entries are 0): its motion, solved exactly,
+    /// and its sensitivities there.
+    ///
+    /// Whether joints open under a further change is answered for the nominal design.
+    pub fn at(self, design: &'r [f64]) -> Self {
+        Self { design, ..self }
+    }
+
+    /// The motion without its sensitivities.
+    pub fn without_sensitivities(self) -> Self {
+        Self { scope: Scope { sensitivities: false, ..self.scope }, ..self }
+    }
+
+    /// The bodies without measures and points: [`Solution::measured`] stays empty.
+    pub fn without_measures(self) -> Self {
+        Self { scope: Scope { measures: false, ..self.scope }, ..self }
+    }
+
+    /// Calls this after every output time. It may end the run, whose stop is then
+    /// [`Interrupted`](crate::motion::StopKind::Interrupted).
+    pub fn progress(self, progress: impl FnMut(Progress) -> ControlFlow<()> + 'r) -> Self {
+        Self { progress: Box::new(progress), ..self }
+    }
+
+    /// Writes the results into the memory of a former solution, of whatever model: fresh pages from the system cost as much as solving.
+    pub fn reusing(self, memory: Solution) -> Self {
+        Self { memory, ..self }
+    }
+
+    /// Solves designs on so many threads. The same designs share their lanes however many there are, so that every solution is the same
+    /// to the last bit.
+    pub fn threads(self, threads: NonZero<usize>) -> Self {
+        Self { threads, ..self }
+    }
+}
+
+impl Default for Run<'_> {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+impl fmt::Debug for Run<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { design, scope, threads, .. } = self;
+        let mut out = f.debug_struct("Run");
+        out.field("design", design).field("scope", scope).field("threads", threads).finish_non_exhaustive()
+    }
+}
+
+/// How far a run is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Progress {
+    /// Output times solved.
+    pub done: usize,
+    /// Output times in all.
+    pub total: usize,
+}

@@ -1,0 +1,39 @@
+//! What runs find.
+
+use crate::measure::Measured;
+use crate::model::BodyId;
+use crate::motion::{BodyState, Effort, Motion, Stop};
+use crate::sensitivity::{Admissibility, Sensitivities};
+
+/// What a run found. Everything that was solved is here, also where something stopped it.
+#[derive(Clone, Debug, Default)]
+pub struct Solution {
+    /// The motion, up to the last output time that was solved.
+    pub motion: Motion,
+    /// Sensitivities of all bodies by all design variables.
+    pub sensitivities: Sensitivities,
+    /// Measures and points, with their sensitivities.
+    pub measured: Measured,
+    /// Why the run ended before the last output time, if it did.
+    pub stop: Option<Stop>,
+}
+
+impl Solution {
+    /// State of a body at output time k.
+    pub fn body(&self, k: usize, body: BodyId) -> BodyState {
+        self.motion.at(k).body(body.0)
+    }
+}
+
+/// What a streamed run says at its end.
+#[derive(Clone, Debug)]
+pub struct Streamed {
+    /// Output times solved.
+    pub steps: usize,
+    /// Per variable: whether and how the mechanism follows the change.
+    pub admissibility: Vec<Admissibility>,
+    /// What it took.
+    pub effort: Effort,
+    /// Why the run ended before the last output time, if it did.
+    pub stop: Option<Stop>,
+}

@@ -1,0 +1,212 @@
+//! The way of one design through all output times.
+
+use std::ops::{ControlFlow, Range};
+
+use hardpoint_tape::LANES;
+
+use crate::design::{Field, Geometry};
+use crate::law::Law;
+use crate::model::BodyId;
+use crate::motion::abreast::Abreast;
+use crate::motion::parts::Parts;
+use crate::motion::step_program::Purpose;
+use crate::motion::stepper::Stepper;
+use crate::motion::tape::Tape;
+use crate::motion::{BodyState, Stop, StopKind};
+use crate::sensitivity::{Admissibility, JointDefect, Sensing};
+
+use super::analysis::Analysis;
+use super::request::Progress;
+use super::sink::{Nowhere, Sink, hand_over};
+
+/// What is asked for of a design.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Scope {
+    pub sensitivities: bool,
+    pub measures: bool,
+    /// How many designs are solved in all, this one included: what is worth a program for all of them.
+    pub of_many: usize,
+}
+
+impl Scope {
+    /// Of a single design, this much.
+    pub fn of_one(sensitivities: bool, measures: bool) -> Self {
+        Self { sensitivities, measures, of_many: 1 }
+    }
+}
+
+/// One design, ready to be analysed.
+pub(crate) struct Design {
+    pub values: Vec<f64>,
+    pub geometry: Geometry,
+    pub laws: Vec<Law>,
+    /// How the variables change it, if that is asked for, and the joints that each opens in the nominal design.
+    pub fields: Vec<Field>,
+    pub opens: Vec<Vec<JointDefect>>,
+    pub scope: Scope,
+}
+
+/// The way through all output times.
+pub(crate) struct Walk<'a> {
+    analysis: &'a Analysis<'a>,
+    pub one: Stepper<'a>,
+    abreast: Abreast<'a>,
+    /// `None` where no sensitivities are asked for.
+    pub sensing: Option<Sensing>,
+    /// Per body: whether its results are wanted.
+    wanted: Vec<bool>,
+    /// Output times solved.
+    pub done: usize,
+}
+
+/// What has just been solved: one output time, or several by a program, in these of its lanes.
+pub(crate) enum Solved<'w, 'a> {
+    One(&'w mut Stepper<'a>),
+    Abreast(&'w Tape, Range<usize>),
+}
+
+impl<'a> Walk<'a> {
+    /// Step by step.
+    pub fn new(analysis: &'a Analysis<'a>, design: &'a Design, wanted: Vec<bool>) -> Self {
+        let (model, topology) = (analysis.model(), analysis.topology());
+        let Design { geometry, laws, fields, .. } = design;
+        Self {
+            analysis,
+            one: Stepper::new(model, topology, Parts::same(model, topology, geometry, laws)),
+            abreast: Abreast::new(None, &[], None),
+            sensing: (!fields.is_empty()).then(|| Sensing::new(model, topology, fields, wanted.clone())),
+            wanted,
+            done: 0,
+        }
+    }
+
+    /// The same by programs, as many output times at once as there are lanes, where that can be done and pays.
+    pub fn by_programs(
+        analysis: &'a Analysis<'a>,
+        design: &'a Design,
+        wanted: Vec<bool>,
+        margins: bool,
+    ) -> Self {
+        let mut walk = Self::new(analysis, design, wanted);
+        if analysis.programs_pay(design.scope.of_many) {
+            let (sensitivities, any_design) =
+                (walk.sensing.is_some(), design.values.iter().any(|v| *v != 0.0));
+            let moved: Vec<_> = walk.sensing.iter().flat_map(Sensing::moved).collect();
+            let program = move |corrections| {
+                let purpose = Purpose { times: true, any_design, corrections, sensitivities, margins };
+                analysis.program(purpose).filter(|program| program.moved == moved)
+            };
+            let laws = analysis.laws_program(&design.laws);
+            walk.abreast = Abreast::new(Some(Box::new(program)), &design.values, laws);
+        }
+        walk
+    }
+
+    /// To the last output time, or to what stops it, for those who take what they want from the stepper: nothing is stored.
+    pub fn each(&mut self, mut then: impl FnMut(&mut Stepper<'a>)) -> Option<Stop> {
+        self.all(&mut Nowhere, &mut |_| ControlFlow::Continue(()), |_, solved, _, _| {
+            if let Solved::One(one) = solved {
+                then(one);
+            }
+        })
+    }
+
+    /// To the last output time, or to what stops it. `then` sees what was solved, how many output times of it count, and what is known
+    /// of the variables.
+    pub fn all<S: Sink>(
+        &mut self,
+        sink: &mut S,
+        progress: &mut dyn FnMut(Progress) -> ControlFlow<()>,
+        mut then: impl FnMut(&mut S, Solved<'_, 'a>, usize, Option<&Sensing>),
+    ) -> Option<Stop> {
+        let times = &self.analysis.model().times;
+        let mut stop = None;
+        while self.done < times.len() && stop.is_none() {
+            let k = self.done;
+            let at_once = match k {
+                0 => 0,
+                _ => self.abreast.advance(&mut self.one, k, times, || sink.room(k)),
+            };
+            let count;
+            let solved = if at_once == 0 {
+                if let Err(failed) = self.step(k) {
+                    return Some(*failed);
+                }
+                (count, stop) = self.tell(1, progress);
+                self.give_one(k, sink);
+                Solved::One(&mut self.one)
+            } else {
+                (count, stop) = self.tell(at_once, progress);
+                let lanes = self.give_abreast(k, count, sink);
+                Solved::Abreast(self.abreast.solved(), lanes)
+            };
+            then(sink, solved, count, self.sensing.as_ref());
+            self.done += count;
+        }
+        stop
+    }
+
+    /// To output time k alone.
+    fn step(&mut self, k: usize) -> Result<(), Box<Stop>> {
+        let t = self.analysis.model().times[k];
+        let step = if k == 0 { self.one.start(t) } else { self.one.advance(t) };
+        step.map_err(|mut stop| {
+            if let (StopKind::DoesNotAssemble, Some(block)) = (stop.kind, stop.block) {
+                stop.remains = self.one.least_gaps(block);
+            }
+            stop
+        })
+    }
+
+    /// Tells the progress of so many output times; how many of them count, and the stop of a run that is told to end.
+    fn tell(
+        &self,
+        solved: usize,
+        progress: &mut dyn FnMut(Progress) -> ControlFlow<()>,
+    ) -> (usize, Option<Stop>) {
+        let times = &self.analysis.model().times;
+        let total = times.len();
+        for count in 1..=solved {
+            let done = self.done + count;
+            if progress(Progress { done, total }).is_break() && done < total {
+                return (count, Some(self.analysis.interrupted(times[done - 1])));
+            }
+        }
+        (solved, None)
+    }
+
+    /// Output time k, where the stepper stands.
+    #[inline(always)]
+    fn give_one<S: Sink>(&mut self, k: usize, sink: &mut S) {
+        for body in (1..self.wanted.len()).filter(|b| self.wanted[*b]) {
+            sink.state(k, BodyId(body), &BodyState::of(&self.one.state, body));
+        }
+        if let Some(sensing) = &mut self.sensing {
+            let t = self.analysis.model().times[k];
+            sensing
+                .step(&mut self.one, t, |variable, body, found| sink.sensitivity(k, variable, body, found));
+        }
+    }
+
+    /// So many output times from k on, as a program has found them; the lanes that they are in.
+    #[inline(always)]
+    fn give_abreast<S: Sink>(&mut self, k: usize, count: usize, sink: &mut S) -> Range<usize> {
+        let first = k % LANES;
+        let lanes = first..first + count;
+        if let Some(block) = self.abreast.own_results() {
+            let moved = self.sensing.iter().flat_map(Sensing::moved);
+            let of = |lane: usize| (0, k + lane - first);
+            hand_over(&block, &self.wanted, moved, std::slice::from_mut(sink), lanes.clone(), of);
+        }
+        if let Some(sensing) = &mut self.sensing {
+            let times = &self.analysis.model().times[k..k + count];
+            sensing.note(self.abreast.solved(), &self.one.topology, times, first);
+        }
+        lanes
+    }
+
+    /// Per variable, whether and how the mechanism follows it, as far as the walk has come.
+    pub fn admissibility(&self, opens: &[Vec<JointDefect>]) -> Vec<Admissibility> {
+        self.sensing.as_ref().map_or_else(Vec::new, |s| s.admissibility(opens, self.done))
+    }
+}
