@@ -36,7 +36,7 @@ macro_rules! in_drafts {
 
         impl ChangeDraft {
             /// What a variable measures that makes this change.
-            pub(super) fn quantity(&self, known: &Known<'_, '_>) -> Quantity {
+            fn quantity(&self, known: &Known<'_, '_>) -> Quantity {
                 match self {
                     $(#[allow(unused_variables, reason = "what it measures follows from some of its fields")]
                     Self::$kind { $($field),* } => { let $known = known; $quantity })*
@@ -50,10 +50,25 @@ macro_rules! in_drafts {
 
 changes!(in_drafts);
 
+impl ChangeDraft {
+    /// What a variable measures that makes these changes, for what a parameter is and for what a driver prescribes by which law; a
+    /// plain number where they measure different things.
+    pub fn quantity_of<'l>(
+        changes: &[Self],
+        parameter: impl Fn(&str) -> Option<Quantity>,
+        driver: impl Fn(&str) -> Option<(&'l Law, Quantity)>,
+    ) -> Quantity {
+        let known = Known { parameter: &parameter, driver: &driver };
+        let mut quantities = changes.iter().map(|change| change.quantity(&known));
+        let first = quantities.next().unwrap_or(Quantity::Number);
+        if quantities.all(|q| q == first) { first } else { Quantity::Number }
+    }
+}
+
 /// What a parameter measures, and what a driver prescribes by which law, as far as that is known.
-pub(super) struct Known<'k, 'l> {
-    pub parameter: &'k dyn Fn(&str) -> Option<Quantity>,
-    pub driver: &'k dyn Fn(&str) -> Option<(&'l Law, Quantity)>,
+struct Known<'k, 'l> {
+    parameter: &'k dyn Fn(&str) -> Option<Quantity>,
+    driver: &'k dyn Fn(&str) -> Option<(&'l Law, Quantity)>,
 }
 
 impl Known<'_, '_> {

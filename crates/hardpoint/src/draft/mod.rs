@@ -8,7 +8,6 @@ mod fault;
 mod idle;
 mod measure;
 
-use change::Known;
 pub use change::{ChangeDraft, ShapeDraft};
 pub use check::{Nominal, NotConstant};
 pub use fault::{Fault, Locus, Section, did_you_mean};
@@ -330,21 +329,6 @@ pub struct VariableDraft {
     pub typical: Option<f64>,
     /// By how much it may be off when it is made, either way.
     pub tolerance: Option<f64>,
-}
-
-impl VariableDraft {
-    /// What it measures, for what a parameter is and for what a driver prescribes by which law; a plain number where its changes
-    /// measure different things.
-    pub fn quantity<'l>(
-        &self,
-        parameter: impl Fn(&str) -> Option<Quantity>,
-        driver: impl Fn(&str) -> Option<(&'l Law, Quantity)>,
-    ) -> Quantity {
-        let known = Known { parameter: &parameter, driver: &driver };
-        let mut quantities = self.changes.iter().map(|change| change.quantity(&known));
-        let first = quantities.next().unwrap_or(Quantity::Number);
-        if quantities.all(|q| q == first) { first } else { Quantity::Number }
-    }
 }
 
 /// A point to follow.

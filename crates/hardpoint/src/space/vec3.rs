@@ -124,6 +124,13 @@ impl<T: Real> Vec3<T> {
         self.dot(self).sqrt()
     }
 
+    /// The mirror image behind a plane with this unit normal: `v - 2 n (n . v)`.
+    #[inline(always)]
+    #[must_use]
+    pub fn mirrored(self, normal: Self) -> Self {
+        self - normal * (self.dot(normal) * 2.0)
+    }
+
     /// The vector in plain values.
     #[inline(always)]
     pub fn value(self) -> Vec3<f64> {

@@ -27,7 +27,7 @@ impl Check<'_> {
                 changes.extend(self.change(change, &v.name, here, k).unwrap_or_default());
             }
             let parameter = |name: &str| Some(draft.parameters[self.number_of("parameter", name)?].quantity);
-            let quantity = v.quantity(parameter, |driver| {
+            let quantity = ChangeDraft::quantity_of(&v.changes, parameter, |driver| {
                 let driver = self.model.drivers.iter().find(|d| d.name == driver)?;
                 Some((&driver.law, self.model.driven(driver).quantity))
             });
