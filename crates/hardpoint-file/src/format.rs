@@ -87,6 +87,7 @@ impl Table {
 /// A table that is one of several kinds.
 pub(crate) struct Kinds {
     pub name: &'static str,
+    /// What it is; `{keys}` stands for the first keys of its kinds.
     pub doc: &'static str,
     /// Whether a key `type` says which kind it is; else the first key of a kind leads it.
     pub typed: bool,
@@ -100,6 +101,13 @@ const TYPE: &[Key] = keys! {
 };
 
 impl Kinds {
+    /// What it is.
+    pub fn doc(&self) -> String {
+        let tables = (self.tables)();
+        let leads: Vec<String> = tables.iter().map(|t| format!("`{}`", t.keys[0].key)).collect();
+        self.doc.replace("{keys}", &leads.join(", "))
+    }
+
     /// The keys of all kinds, each once.
     pub fn keys(&self) -> Vec<&'static Key> {
         let tables = (self.tables)();
@@ -182,9 +190,14 @@ impl Shape {
     }
 }
 
+/// `body` of `a body`.
+fn noun(one: &str) -> &str {
+    one.split_once(' ').map_or(one, |(_, noun)| noun)
+}
+
 /// More than one of them: `a body`, `bodies`.
 fn several(one: &str) -> String {
-    let noun = one.split_once(' ').map_or(one, |(_, noun)| noun);
+    let noun = noun(one);
     noun.strip_suffix('y').map_or_else(|| format!("{noun}s"), |stem| format!("{stem}ies"))
 }
 

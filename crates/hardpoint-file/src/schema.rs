@@ -108,7 +108,7 @@ impl Definitions {
             }
             false => json!({ "anyOf": tables.map(|t| self.table(t)).collect::<Vec<_>>() }),
         };
-        described(of, kinds.doc)
+        described(of, &kinds.doc())
     }
 
     /// A reference to a definition, which is written when it is met first.

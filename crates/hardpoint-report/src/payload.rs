@@ -435,7 +435,7 @@ impl Compose<'_> {
         });
         // A hinge's marker stands at one end of its axis; show what moves at the other end too.
         let far_ends = self.model.variables[variable.0].changes.iter().filter_map(|change| match change {
-            Change::Move { hardpoint, velocity } => Some((*hardpoint, *velocity)),
+            Change::Move(change) => Some((change.hardpoint, change.velocity)),
             _ => None,
         });
         let far_ends = far_ends.flat_map(|(at, velocity)| {

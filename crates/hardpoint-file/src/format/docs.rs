@@ -4,7 +4,7 @@ use hardpoint::joint::Quantity;
 
 use crate::read::tables;
 
-use super::{Key, Kinds, Need, Shape, several};
+use super::{Key, Kinds, Need, Shape, noun, several};
 
 /// A key, what may stand there, what holds where it is left out, and what it means.
 fn row(key: &Key) -> String {
@@ -55,10 +55,6 @@ fn words(shape: Shape) -> String {
             word
         }
     }
-}
-
-fn noun(one: &str) -> &str {
-    one.split_once(' ').map_or(one, |(_, noun)| noun)
 }
 
 fn keys<'k>(keys: impl IntoIterator<Item = &'k Key>) -> String {

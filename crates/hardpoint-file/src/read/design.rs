@@ -18,7 +18,7 @@ use super::Raw;
 
 pub(crate) const VARIABLE: Kinds = Kinds {
     name: "Variable",
-    doc: "A design variable, given by exactly one of `move`, `tilt`, `fields`, `markers`, `length`, `driver`.",
+    doc: "A design variable, given by exactly one of {keys}.",
     typed: false,
     tables: || KINDS.iter().map(|k| &k.0).collect(),
 };
@@ -32,7 +32,7 @@ macro_rules! variable {
     ($($table:tt)*) => { Table { shared: RANGE, ..table! { $($table)* } } };
 }
 
-static KINDS: [(Table, Read); 7] = [
+static KINDS: &[(Table, Read)] = &[
     (
         variable! {
             /// Hardpoints move; all joints, axes and points on them follow. A length.
@@ -106,7 +106,7 @@ static KINDS: [(Table, Read); 7] = [
                     r.table(f.value, &fields.subject("field"), "a table that says how points move")?;
                 let what = format!("`field` of {}", fields.what);
                 let field = r.fields(what, f.value.span(), table, SHAPE_FIELD.keys());
-                let (_, read) = r.led_by(&field, &FIELDS, ["how points move", "this field is given"])?;
+                let (_, read) = r.led_by(&field, FIELDS, ["how points move", "this field is given"])?;
                 read(r, &field, place)
             });
             one(name, ChangeDraft::Shape { bodies: bodies?, field: field? })
@@ -187,7 +187,7 @@ pub(super) const SHAPE_FIELD: Kinds = Kinds {
 };
 type ReadField = fn(&mut Reader<'_>, &Fields<'_>, &mut EntryPlace) -> Option<ShapeDraft>;
 
-static FIELDS: [(Table, ReadField); 5] = [
+static FIELDS: &[(Table, ReadField)] = &[
     (
         table! {
             /// All the same way. A length.
@@ -258,7 +258,7 @@ static FIELDS: [(Table, ReadField); 5] = [
                 .map(|f| {
                     let at = r.name_of(f, "at");
                     let v = r.optional_vector(f, "move");
-                    Some((at?, v?.into()))
+                    Some((at?, v?))
                 })
                 .collect();
             moves.into_iter().collect::<Option<_>>().map(ShapeDraft::Through)
@@ -285,25 +285,27 @@ impl Reader<'_> {
             let fields = self.entry("design variable", &entry, VARIABLE.keys());
             let mut place = EntryPlace::of(&fields);
             let fixed_length = self.flag_of(&fields, "fixed_length");
-            let kind = self.led_by(&fields, &KINDS, ["what it changes", "this variable is given"]);
+            let kind = self.led_by(&fields, KINDS, ["what it changes", "this variable is given"]);
             let variables = kind.and_then(|(_, read)| read(self, &fields, &entry.0, raw, &mut place));
             if variables.is_none() {
                 self.unread.push("name");
             }
-            let mut variables = variables.unwrap_or_else(|| vec![(entry.0.clone(), Vec::new())]);
-            let mut draft = VariableDraft {
-                changes: std::mem::take(&mut variables[0].1),
-                fixed_length: fixed_length.unwrap_or(false),
-                ..VariableDraft::default()
-            };
-            let quantity = draft.quantity(|_| None, |driver| raw.driver(driver));
-            (draft.bounds, [draft.typical, draft.tolerance]) = self.range(&fields, quantity);
-            variables[0].1.clone_from(&draft.changes);
+            let variables = variables.unwrap_or_else(|| vec![(entry.0.clone(), Vec::new())]);
+            let quantity = ChangeDraft::quantity_of(&variables[0].1, |_| None, |driver| raw.driver(driver));
+            let (bounds, [typical, tolerance]) = self.range(&fields, quantity);
+            let fixed_length = fixed_length.unwrap_or(false);
             let unread = std::mem::take(&mut self.unread);
             for (name, changes) in variables {
                 self.unread.clone_from(&unread);
                 self.push(raw, Section::Design, place.clone());
-                raw.draft.design.push(VariableDraft { name, changes, ..draft.clone() });
+                raw.draft.design.push(VariableDraft {
+                    name,
+                    changes,
+                    fixed_length,
+                    bounds,
+                    typical,
+                    tolerance,
+                });
             }
         }
     }
@@ -344,7 +346,7 @@ impl Reader<'_> {
             let velocity = v.unwrap_or(Vec3::ZERO);
             let one = |h: &String| ChangeDraft::Move { hardpoint: h.clone(), velocity };
             let other = mirrored.iter().flat_map(|(normal, names)| {
-                let velocity = velocity - *normal * (2.0 * velocity.dot(*normal));
+                let velocity = velocity.mirrored(*normal);
                 names.iter().map(move |h| ChangeDraft::Move { hardpoint: h.clone(), velocity })
             });
             hardpoints.iter().map(one).chain(other).collect()
@@ -414,47 +416,44 @@ impl Reader<'_> {
             .map(|f| {
                 let [joint, body] = ["joint", "body"].map(|key| self.name_of(f, key));
                 let [v, u] = ["V", "U"].map(|key| self.optional_vector(f, key));
-                Some(ChangeDraft::Field { joint: joint?, body: body?, v: v?.into(), u: u?.into() })
+                Some(ChangeDraft::Field { joint: joint?, body: body?, v: v?, u: u? })
             })
             .collect();
         changes.into_iter().collect()
     }
 
     fn markers(&mut self, fields: &Fields<'_>) -> Option<Vec<ChangeDraft>> {
-        let read: Vec<_> = self
+        let changes: Vec<_> = self
             .tables(fields, "markers", &MARKER)?
             .iter()
             .map(|f| {
                 let joint = self.name_of(f, "joint");
                 let end = self.word_of(f, "on").map(|k| [End::I, End::J, End::Both][k]);
                 let [position, rotation] = ["move", "turn"].map(|key| self.optional_vector(f, key));
-                Some((joint?, end?, position?, rotation?))
+                Some(ChangeDraft::Marker {
+                    joint: joint?,
+                    end: end?,
+                    position: position?,
+                    rotation: rotation?,
+                })
             })
             .collect();
-        let read: Vec<_> = read.into_iter().collect::<Option<_>>()?;
-        // A variable that only moves is a length and one that only turns is an angle: per unit of it the
-        // numbers are directions. One that does both is a plain number, so its velocities have units.
-        let moves = read.iter().any(|m| m.2 != [0.0; 3]);
-        let turns = read.iter().any(|m| m.3 != [0.0; 3]);
-        let (length, angle) = match moves && turns {
-            true => (self.units.to_si(Quantity::Length, 1.0), self.units.to_si(Quantity::Angle, 1.0)),
-            false => (1.0, 1.0),
-        };
-        Some(
-            read.into_iter()
-                .map(|(joint, end, position, rotation)| ChangeDraft::Marker {
-                    joint,
-                    end,
-                    position: Vec3::from(position) * length,
-                    rotation: Vec3::from(rotation) * angle,
-                })
-                .collect(),
-        )
+        let mut changes: Vec<_> = changes.into_iter().collect::<Option<_>>()?;
+        // Per unit of a length or an angle the numbers are directions; those of a plain number have units.
+        if ChangeDraft::quantity_of(&changes, |_| None, |_| None) == Quantity::Number {
+            let [length, angle] = [Quantity::Length, Quantity::Angle].map(|q| self.units.to_si(q, 1.0));
+            for change in &mut changes {
+                if let ChangeDraft::Marker { position, rotation, .. } = change {
+                    (*position, *rotation) = (*position * length, *rotation * angle);
+                }
+            }
+        }
+        Some(changes)
     }
 
     /// Three numbers, as far as declared in SI; zeros where they are left out.
-    fn optional_vector(&mut self, fields: &Fields<'_>, key: &str) -> Option<[f64; 3]> {
+    fn optional_vector(&mut self, fields: &Fields<'_>, key: &str) -> Option<Vec3> {
         let numbers = self.list_of::<3>(fields, key, "three numbers");
-        if fields.get(key).is_none() { Some([0.0; 3]) } else { numbers }
+        if fields.get(key).is_none() { Some(Vec3::ZERO) } else { numbers.map(Vec3::from) }
     }
 }

@@ -19,21 +19,30 @@ pub(crate) const DRIVER: Kinds = Kinds {
 };
 type Read = fn(&mut Reader<'_>, &Fields<'_>, &mut EntryPlace) -> Option<DrivenDraft>;
 
-static FORMS: [(Table, Read); 4] = [
-    (
+/// What is driven: by a law, said as this over time.
+macro_rules! driven {
+    ($over_time:literal; $($table:tt)*) => {
         Table {
             shared: keys! {
-                /// The coordinate over time, in the file's unit of it, counted from the design configuration.
+                #[doc = $over_time]
+                #[doc = ", counted from the design configuration."]
                 must "law": law::LAW, "\"30*sin(2*pi*t)\"";
             },
-            ..table! {
-                /// A joint's coordinate.
-                "DrivenCoordinate":
-                /// The joint's name; not a rod, whose length is constant.
-                must "joint": JOINT, "\"J1\"";
-                /// Which of its coordinates; may be left out where it has only one.
-                may "coordinate": COORDINATE, "\"angle\"";
-            }
+            ..table! { $($table)* }
+        }
+    };
+}
+
+static FORMS: &[(Table, Read)] = &[
+    (
+        driven! {
+            "The coordinate over time, in the file's unit of it";
+            /// A joint's coordinate.
+            "DrivenCoordinate":
+            /// The joint's name; not a rod, whose length is constant.
+            must "joint": JOINT, "\"J1\"";
+            /// Which of its coordinates; may be left out where it has only one.
+            may "coordinate": COORDINATE, "\"angle\"";
         },
         |r, fields, _| {
             let joint = r.name_of(fields, "joint");
@@ -42,19 +51,14 @@ static FORMS: [(Table, Read); 4] = [
         },
     ),
     (
-        Table {
-            shared: keys! {
-                /// The way over time, in the length unit, counted from the design configuration.
-                must "law": law::LAW, "\"30*sin(2*pi*t)\"";
-            },
-            ..table! {
-                /// The way of a point along a global direction, like wheel travel.
-                "DrivenPosition":
-                /// The point.
-                must "point": POINT_REF, "\"P\"";
-                /// The direction, fixed in space.
-                must "along": LINE, "\"z\"";
-            }
+        driven! {
+            "The way over time, in the length unit";
+            /// The way of a point along a global direction, like wheel travel.
+            "DrivenPosition":
+            /// The point.
+            must "point": POINT_REF, "\"P\"";
+            /// The direction, fixed in space.
+            must "along": LINE, "\"z\"";
         },
         |r, fields, place| {
             let point = r.point_of(fields, "point");
@@ -63,19 +67,14 @@ static FORMS: [(Table, Read); 4] = [
         },
     ),
     (
-        Table {
-            shared: keys! {
-                /// The change of their distance over time, in the length unit, counted from the design configuration.
-                must "law": law::LAW, "\"30*sin(2*pi*t)\"";
-            },
-            ..table! {
-                /// The change of the distance between two points, like the stroke of an actuator.
-                "DrivenDistance":
-                /// From this point.
-                must "from": POINT_REF, "\"P\"";
-                /// To this one.
-                must "to": POINT_REF, "\"Q\"";
-            }
+        driven! {
+            "The change of their distance over time, in the length unit";
+            /// The change of the distance between two points, like the stroke of an actuator.
+            "DrivenDistance":
+            /// From this point.
+            must "from": POINT_REF, "\"P\"";
+            /// To this one.
+            must "to": POINT_REF, "\"Q\"";
         },
         |r, fields, _| {
             let [from, to] = ["from", "to"].map(|key| r.point_of(fields, key));
@@ -83,21 +82,16 @@ static FORMS: [(Table, Read); 4] = [
         },
     ),
     (
-        Table {
-            shared: keys! {
-                /// The angle over time, in the angle unit, counted from the design configuration.
-                must "law": law::LAW, "\"30*sin(2*pi*t)\"";
-            },
-            ..table! {
-                /// The angle by which a body has turned, seen along a direction.
-                "DrivenOrientation":
-                /// The body's name.
-                must "body": BODY, "\"crank\"";
-                /// The direction, fixed in the body `relative_to`.
-                must "about": LINE, "\"z\"";
-                /// The body that carries the direction. Default: `ground`.
-                may "relative_to": BODY, "\"ground\"";
-            }
+        driven! {
+            "The angle over time, in the angle unit";
+            /// The angle by which a body has turned, seen along a direction.
+            "DrivenOrientation":
+            /// The body's name.
+            must "body": BODY, "\"crank\"";
+            /// The direction, fixed in the body `relative_to`.
+            must "about": LINE, "\"z\"";
+            /// The body that carries the direction. Default: `ground`.
+            may "relative_to": BODY, "\"ground\"";
         },
         |r, fields, place| {
             let body = r.name_of(fields, "body");
@@ -114,7 +108,7 @@ impl Reader<'_> {
             let fields = self.entry("driver", &entry, DRIVER.keys());
             let mut place = EntryPlace::of(&fields);
             let says = ["what it prescribes", "what this driver prescribes is given"];
-            let form = self.led_by(&fields, &FORMS, says);
+            let form = self.led_by(&fields, FORMS, says);
             let drives = form.and_then(|(_, read)| read(self, &fields, &mut place));
             let law = self.given(&fields, "law", |r, f| r.law(&fields, f));
             let drives = drives.unwrap_or(DrivenDraft::Unread);

@@ -30,7 +30,7 @@ pub(crate) const LAW_TABLE: Kinds =
 /// Reads a law from its fields; the text is what it belongs to.
 type Read = fn(&mut Reader<'_>, &str, &Fields<'_>) -> Option<Law>;
 
-static TYPES: [(Table, Read); 7] = [
+static TYPES: &[(Table, Read)] = &[
     (
         table! {
             /// `offset + amplitude sin(2 pi frequency t + phase)`.
@@ -259,7 +259,7 @@ impl Reader<'_> {
         table: &'a DeTable<'a>,
     ) -> Option<Law> {
         let at = value.span();
-        let (declared, read) = self.kind_of(table, &subject.name, at.clone(), "a law", &TYPES)?;
+        let (declared, read) = self.kind_of(table, &subject.name, at.clone(), "a law", TYPES)?;
         let fields = self.fields(format!("the law of {of}"), at, table, declared.typed_keys());
         read(self, of, &fields)
     }

@@ -162,14 +162,14 @@ fn a_model_is_the_same_in_every_unit() {
     assert_eq!(quantities, [Length, Number, Number, Length, Angle]);
     for (a, b) in mm.variables.iter().zip(&m.variables) {
         match (&a.changes[0], &b.changes[0]) {
-            (Change::Move { velocity: a, .. }, Change::Move { velocity: b, .. }) => near(*a, *b),
-            (Change::Field { v: a, u: p, .. }, Change::Field { v: b, u: q, .. })
-            | (
-                Change::Marker { position: a, rotation: p, .. },
-                Change::Marker { position: b, rotation: q, .. },
-            ) => {
-                near(*a, *b);
-                near(*p, *q);
+            (Change::Move(a), Change::Move(b)) => near(a.velocity, b.velocity),
+            (Change::Field(a), Change::Field(b)) => {
+                near(a.v, b.v);
+                near(a.u, b.u);
+            }
+            (Change::Marker(a), Change::Marker(b)) => {
+                near(a.position, b.position);
+                near(a.rotation, b.rotation);
             }
             other => panic!("{other:?}"),
         }

@@ -2,7 +2,7 @@
 //! `tests/snapshots`. And that what is right means what the documents say.
 
 use hardpoint::joint::Quantity;
-use hardpoint::model::{Change, Model};
+use hardpoint::model::{Change, Model, change};
 use hardpoint_file::{parse, read};
 
 /// Every kind of coupler, driver, law and rare joint once.
@@ -314,12 +314,12 @@ fn variables_are_in_the_units_of_what_they_change() {
         let new = format!("driver = \"{driver}\"\nparameter = \"{parameter}\"");
         let m = valid(&[("driver = \"turn\"\nparameter = \"amplitude\"", &new)]);
         let v = &m.variables[1];
-        let Change::Law { rate: found, .. } = v.changes[0] else { panic!("{v:?}") };
-        assert_eq!((v.quantity, found), (quantity, rate), "{parameter}");
+        let Change::Law(found) = &v.changes[0] else { panic!("{v:?}") };
+        assert_eq!((v.quantity, found.rate), (quantity, rate), "{parameter}");
     }
     let m = valid(&[]);
     assert_eq!(m.variables[0].quantity, Quantity::Length);
-    assert!(matches!(m.variables[0].changes[0], Change::Length { rate: 1.0, .. }));
+    assert!(matches!(m.variables[0].changes[0], Change::Length(change::Length { rate: 1.0, .. })));
     assert_eq!(m.joints.iter().find(|j| j.name == "rod").unwrap().length, Some(0.0505));
 }
 

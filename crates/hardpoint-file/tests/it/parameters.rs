@@ -4,7 +4,7 @@ use std::ops::ControlFlow;
 
 use hardpoint::Analysis;
 use hardpoint::joint::Quantity;
-use hardpoint::model::{Change, VariableId};
+use hardpoint::model::{Change, VariableId, change};
 use hardpoint::space::Vec3;
 use hardpoint::study::{VerifyOptions, verify};
 use hardpoint_file::parse;
@@ -112,7 +112,7 @@ fn parameters_are_design_variables_with_bounds_and_size() {
     assert!(near(droop.bounds, [-30.0, 30.0].map(f64::to_radians)));
     assert_eq!((reach.typical, swing.bounds, both.typical), (Some(0.005), None, Some(0.002)));
     assert_eq!((reach.tolerance, both.tolerance), (Some(0.0003), None));
-    assert!(matches!(reach.changes[..], [Change::Parameter { rate: 1.0, .. }]));
+    assert!(matches!(reach.changes[..], [Change::Parameter(change::Parameter { rate: 1.0, .. })]));
     assert!(m.without_effect().is_empty());
     assert_eq!(file.place(hardpoint::draft::Section::Design, 1), Some((7, 1)));
 }

@@ -2,78 +2,22 @@
 
 use hardpoint::joint::Quantity;
 use hardpoint::law::ParameterKind;
-use hardpoint::model::{Change, DesignVariable, End, Model};
+use hardpoint::model::{Change, DesignVariable, Model};
 use hardpoint::space::Vec3;
 use hardpoint_file::Units;
 
 use crate::figures::{names, number, order_unit, rounded, symbol};
 
-use super::joint_name;
-
 /// What a variable changes, in a few words.
 pub(super) fn change_text(model: &Model, changes: &[Change], fixed_length: bool) -> String {
-    let mut parts: Vec<String> = Vec::new();
-    let mut moves: Vec<(Vec3, Vec<&str>)> = Vec::new();
-    for change in changes {
-        match change {
-            Change::Move { hardpoint, velocity } => {
-                let name = model.hardpoints[hardpoint.0].name.as_str();
-                match moves.iter_mut().find(|(v, _)| v == velocity) {
-                    Some((_, names)) => names.push(name),
-                    None => moves.push((*velocity, vec![name])),
-                }
-            }
-            Change::Marker { joint, end, position, rotation } => {
-                let whose = match end {
-                    End::I => "marker i of ",
-                    End::J => "marker j of ",
-                    End::Both => "",
-                };
-                let name = joint_name(model, *joint);
-                if *position != Vec3::ZERO {
-                    parts.push(format!("moves {whose}`{name}` along {}", direction_text(*position)));
-                }
-                if *rotation != Vec3::ZERO {
-                    parts.push(format!("turns {whose}`{name}` about {}", direction_text(*rotation)));
-                }
-            }
-            Change::Length { joint, rate } => {
-                let name = joint_name(model, *joint);
-                parts.push(match (&model.joints[joint.0].curve, *rate > 0.0) {
-                    (Some(_), true) => format!("moves `{name}` away from its curve{}", times(*rate)),
-                    (Some(_), false) => format!("moves `{name}` towards its curve{}", times(*rate)),
-                    (None, true) => format!("lengthens `{name}`{}", times(*rate)),
-                    (None, false) => format!("shortens `{name}`{}", times(*rate)),
-                });
-            }
-            Change::Parameter { parameter, rate } => {
-                let verb = if *rate > 0.0 { "raises" } else { "lowers" };
-                parts.push(format!("{verb} parameter `{}`", model.parameters[parameter.0].name));
-            }
-            Change::Law { driver, parameter, rate } => {
-                let driver = &model.drivers[driver.0];
-                let verb = if *rate > 0.0 { "raises" } else { "lowers" };
-                let name = &driver.law.parameters()[*parameter].name;
-                parts.push(format!("{verb} `{name}` in the law of `{}`", driver.name));
-            }
-            Change::Field { joint, end, .. } => {
-                let marker = ["i", "j"][*end];
-                parts.push(format!("field of marker {marker} of `{}`", joint_name(model, *joint)));
-            }
-        }
-    }
-    let moved =
-        moves.into_iter().map(|(v, list)| format!("moves {} along {}", names(list), direction_text(v)));
-    let mut text = moved.chain(parts).collect::<Vec<_>>().join("; ");
+    let said = model.describe_changes(changes, &direction_text, &number);
+    let said =
+        said.iter().map(|c| format!("{} {}{}", c.verb, names(c.names.iter().map(String::as_str)), c.how));
+    let mut text = said.collect::<Vec<_>>().join("; ");
     if fixed_length {
         text += "; rods keep their lengths";
     }
     text
-}
-
-/// ` (2 per unit)` and the like, where a rate is not 1.
-fn times(rate: f64) -> String {
-    if rate.abs() == 1.0 { String::new() } else { format!(" ({} per unit)", number(rate.abs())) }
 }
 
 /// The unit of a design variable; `1` for a plain number.
@@ -85,11 +29,11 @@ pub fn variable_unit(model: &Model, units: Units, variable: &DesignVariable) -> 
         return symbol(units, variable.quantity).into();
     }
     let mut found = variable.changes.iter().map(|change| match change {
-        Change::Law { driver, parameter, rate } => {
-            let driver = &model.drivers[driver.0];
+        Change::Law(change) => {
+            let driver = &model.drivers[change.driver.0];
             let quantity = model.driven(driver).quantity;
-            let kind = driver.law.parameters()[*parameter].kind;
-            parameter_unit(units, quantity, kind, rate.abs())
+            let kind = driver.law.parameters()[change.parameter].kind;
+            parameter_unit(units, quantity, kind, change.rate.abs())
         }
         _ => None,
     });

@@ -20,8 +20,9 @@ use crate::model::{
     Model, PointId, Source, Target, VariableId,
 };
 use crate::number::{Dual, Real};
-use crate::space::{Mat3, Pose, Vec3, rotation_from_euler_313};
+use crate::space::{Mat3, Pose, Vec3};
 
+use super::change::Effect;
 use super::formulas::Formulas;
 
 /// What the variables of a model change, by what they change: found once for many designs.
@@ -52,10 +53,11 @@ impl<'m> Effects<'m> {
         };
         for (k, variable) in model.variables.iter().enumerate() {
             for change in &variable.changes {
-                if let Change::Move { hardpoint, velocity } = change {
+                if let Some((hardpoint, velocity)) = change.hardpoint() {
                     // dP/db = V, constant: P = P_o + V b at any b
-                    effects.moves[hardpoint.0].push((k, *velocity));
-                } else if let Some(joint) = change.joint() {
+                    effects.moves[hardpoint.0].push((k, velocity));
+                }
+                if let Some(joint) = change.joint() {
                     effects.changes[joint.0].push((k, change));
                 }
             }
@@ -75,8 +77,7 @@ impl<'m> Effects<'m> {
 
     /// Whether a variable changes the law of a driver.
     pub fn laws_change(&self) -> bool {
-        let changes = self.model.variables.iter().flat_map(|v| &v.changes);
-        changes.into_iter().any(|c| matches!(c, Change::Law { .. }))
+        self.model.variables.iter().flat_map(|v| &v.changes).any(|c| c.law().is_some())
             || self.model.formulas.iter().any(|f| matches!(f.of, Target::Law(..)))
     }
 
@@ -146,14 +147,12 @@ impl<'m> Effects<'m> {
         let mut touched = Touched::default();
         for (variable, by) in along {
             for change in &self.model.variables[variable.0].changes {
-                match change {
-                    Change::Move { hardpoint, .. } => touched.hardpoints.push(hardpoint.0),
-                    Change::Law { driver, parameter, rate } => {
-                        // dp/db, times how fast b goes
-                        touched.laws.push((*driver, *parameter, by * rate));
-                    }
-                    _ => touched.joints.extend(change.joint().map(|j| j.0)),
-                }
+                touched.hardpoints.extend(change.hardpoint().map(|(h, _)| h.0));
+                touched.joints.extend(change.joint().map(|j| j.0));
+                // dp/db, times how fast b goes
+                touched
+                    .laws
+                    .extend(change.law().map(|(driver, parameter, rate)| (driver, parameter, by * rate)));
             }
             // ... and by formulas, directly or through others
             let following = self.formulas.as_ref().map(|f| f.following(self.model, *variable));
@@ -213,11 +212,11 @@ impl<'m> Effects<'m> {
         }
         for (variable, value) in model.variables.iter().zip(values).filter(|(_, value)| **value != 0.0) {
             for change in &variable.changes {
-                if let Change::Law { driver, parameter, rate } = change {
+                if let Some((driver, parameter, rate)) = change.law() {
                     let law = &mut laws[driver.0];
-                    let now = law.parameters()[*parameter].value;
+                    let now = law.parameters()[parameter].value;
                     // p = p_o + (dp/db) b
-                    *law = law.with_parameter(*parameter, now + rate * value);
+                    *law = law.with_parameter(parameter, now + rate * value);
                 }
             }
         }
@@ -356,34 +355,11 @@ impl<'e, T: Real> Design<'e, T> {
 
     /// Marker e of joint j in the design configuration.
     fn marker_in_world(&self, j: usize, e: usize, values: &Values<T>) -> Pose<T> {
-        let joint = &self.effects.model.joints[j];
-        let mut rot = self.followed_frame(joint, e, values);
-        let mut r = self.place(joint.at[e], values);
-        for &(k, change) in self.effects.changes[j].iter().filter(|(k, _)| self.counts[*k]) {
-            let b = values.variables[k];
-            match change {
-                Change::Marker { end, position, rotation, .. } if end.covers(e) => {
-                    // P = P_o + b V,    C = exp(b R U) C_o in the world, (3.4) to first order                               (paper 3.1, 3.4)
-                    r = position.spread().times_plus(b, r);
-                    if let Some(axis) = rotation.unit() {
-                        rot = Mat3::about(axis, b * T::constant(rotation.norm())) * rot;
-                    }
-                }
-                Change::Field { end, v, u, .. } if *end == e => {
-                    let body = self.frame(joint.bodies[e]).rot;
-                    // P = P_o + A (b V)                                                                                   (paper 3.1)
-                    r += body * v.spread() * b;
-                    // theta = theta_o + b U,  C = C(theta) C(theta_o)^-1 C_o in the body's frame                          (paper 3.1, 2.2)
-                    let (theta, c) = self.effects.model.euler_of(joint, e);
-                    let turned = [0, 1, 2].map(|n| T::constant(u[n]).times_plus(b, T::constant(theta[n])));
-                    let turned = rotation_from_euler_313(turned) * c.transpose().spread();
-                    // ... and in the world, A C A^T
-                    rot = body * turned * body.transpose() * rot;
-                }
-                _ => {}
-            }
-        }
-        Pose { rot, r }
+        let model = self.effects.model;
+        let joint = &model.joints[j];
+        let drawn = Pose { rot: self.followed_frame(joint, e, values), r: self.place(joint.at[e], values) };
+        let changes = self.effects.changes[j].iter().filter(|(k, _)| self.counts[*k]);
+        changes.fold(drawn, |marker, &(k, change)| change.marker(model, marker, e, values.variables[k]))
     }
 
     /// The frame of marker e of a joint whose axes follow the hardpoints they pass through.
@@ -418,14 +394,9 @@ impl<'e, T: Real> Design<'e, T> {
         let given = joint.length.map(|length| {
             let formula = self.effects.formulas.as_ref().and_then(|f| f.of_length[j]);
             let given = formula.and_then(|k| self.values.formulas.get(k)).copied();
-            let mut given = given.unwrap_or_else(|| T::constant(length));
-            for &(k, change) in self.effects.changes[j].iter().filter(|(k, _)| self.counts[*k]) {
-                if let Change::Length { rate, .. } = change {
-                    // A length given as a number of its own is L_o + L' b, whatever its ends do.
-                    given = self.values.variables[k].times_plus(T::constant(*rate), given);
-                }
-            }
-            given
+            let given = given.unwrap_or_else(|| T::constant(length));
+            let changes = self.effects.changes[j].iter().filter(|(k, _)| self.counts[*k]);
+            changes.fold(given, |length, &(k, change)| change.length(length, self.values.variables[k]))
         });
         // Markers at one place keep no distance, and it would have no derivative.
         let keeps = joint.kind.is_rod() && d.dot(d).decisive() > 0.0;

@@ -2,6 +2,8 @@
 
 use crate::model::{Change, Model, Source, Target, VariableId};
 
+use super::change::Effect;
+
 /// How formulas follow the variables and each other.
 #[derive(Clone, Debug)]
 pub(super) struct Formulas {
@@ -53,31 +55,29 @@ impl Formulas {
         }
         for (k, variable) in model.variables.iter().enumerate() {
             for change in &variable.changes {
-                if let Change::Parameter { parameter, rate } = change {
-                    f.rates[parameter.0].push((k, *rate));
+                if let Some((parameter, rate)) = change.parameter() {
+                    f.rates[parameter.0].push((k, rate));
                 }
             }
             // If no formula uses what it changes, results stay nominal and need not be worked out.
-            let is_used = variable.changes.iter().any(|change| !f.using(change).is_empty());
+            let is_used = variable.changes.iter().any(|change| f.using(change).next().is_some());
             f.is_used.push(is_used);
         }
         Some(f)
     }
 
     /// The formulas that use what a change moves.
-    fn using(&self, change: &Change) -> &[usize] {
-        match change {
-            Change::Parameter { parameter, .. } => &self.using_parameter[parameter.0],
-            Change::Move { hardpoint, .. } => &self.using_hardpoint[hardpoint.0],
-            _ => &[],
-        }
+    fn using(&self, change: &Change) -> impl Iterator<Item = usize> {
+        let parameter = change.parameter().map(|(p, _)| &self.using_parameter[p.0]);
+        let hardpoint = change.hardpoint().map(|(h, _)| &self.using_hardpoint[h.0]);
+        parameter.into_iter().chain(hardpoint).flatten().copied()
     }
 
     /// The formulas that follow a variable, directly or through others, in order.
     pub fn following(&self, model: &Model, variable: VariableId) -> Vec<usize> {
         let mut seen = vec![false; model.formulas.len()];
         let changes = &model.variables[variable.0].changes;
-        let mut waiting: Vec<usize> = changes.iter().flat_map(|c| self.using(c)).copied().collect();
+        let mut waiting: Vec<usize> = changes.iter().flat_map(|c| self.using(c)).collect();
         // All that can be reached along "is used by", from the parameters and coordinates that the variable itself changes.
         while let Some(k) = waiting.pop() {
             if !std::mem::replace(&mut seen[k], true) {

@@ -8,12 +8,14 @@ use crate::law::Law;
 use crate::model::{Joint, Model, VariableId};
 use crate::space::{Mat3, euler_313_from_rotation, rotation_from_euler_313};
 
+mod change;
 mod effects;
 mod field;
 mod formulas;
 mod geometry;
 mod shape;
 
+pub(crate) use change::Effect;
 pub(crate) use effects::Effects;
 pub use field::{Field, MarkerField};
 pub(crate) use geometry::Fixed;

@@ -3,11 +3,13 @@
 //! [`Model::from_draft`](crate::model::Model::from_draft) checks all of a [`Draft`] at once and gives either a [`Model`](crate::model::Model) or every [`Fault`] that it found.
 
 mod build;
+mod change;
 mod check;
 mod fault;
 mod idle;
 mod measure;
 
+pub use change::{ChangeDraft, ShapeDraft};
 pub use check::{Nominal, NotConstant};
 pub use fault::{Fault, Locus, Section, did_you_mean, some_of};
 pub use measure::{FieldDraft, FieldKind, MeasureField, MeasureKindDraft, MeasureType};
@@ -16,8 +18,8 @@ use std::collections::BTreeMap;
 
 use crate::expression::Expression;
 use crate::joint::Quantity;
-use crate::law::{Law, ParameterKind};
-use crate::model::{End, Side, Take, Vehicle, VehicleEnd};
+use crate::law::Law;
+use crate::model::{Side, Take, Vehicle, VehicleEnd};
 use crate::space::{Pose, Vec3};
 
 /// A mechanism as written. Fill it in code, word by word or field by field, or from a file;
@@ -329,150 +331,6 @@ pub struct VariableDraft {
     pub typical: Option<f64>,
     /// By how much it may be off when it is made, either way.
     pub tolerance: Option<f64>,
-}
-
-/// A part of a design variable; see [`Change`](crate::model::Change).
-#[derive(Clone, Debug)]
-pub enum ChangeDraft {
-    /// A hardpoint moves.
-    Move {
-        /// The hardpoint's name.
-        hardpoint: String,
-        /// Global velocity per unit of the variable.
-        velocity: Vec3,
-    },
-    /// Both markers of a joint turn about a line through their places.
-    Tilt {
-        /// The joint's name.
-        joint: String,
-        /// The line to turn about, by one radian per radian of the variable.
-        about: Line,
-    },
-    /// Markers of a joint move and turn.
-    Marker {
-        /// The joint's name.
-        joint: String,
-        /// Which markers.
-        end: End,
-        /// Global velocity per unit.
-        position: Vec3,
-        /// Global rotation vector rate per unit.
-        rotation: Vec3,
-    },
-    /// The length of a rod that has one grows.
-    Length {
-        /// The joint's name.
-        joint: String,
-        /// m per unit of the variable.
-        rate: f64,
-    },
-    /// A parameter of the model grows, and all that formulas make of it follows.
-    Parameter {
-        /// The parameter's name.
-        parameter: String,
-        /// In the parameter's unit, per unit of the variable.
-        rate: f64,
-    },
-    /// A parameter of a driver's law grows, like its amplitude.
-    Law {
-        /// The driver's name.
-        driver: String,
-        /// The parameter's name.
-        parameter: String,
-        /// In the parameter's own unit, per unit of the variable.
-        rate: f64,
-    },
-    /// Whole bodies change their shape, and everything on them follows: joints with the markers of both bodies, axes, points.
-    Shape {
-        /// The names of the bodies.
-        bodies: Vec<String>,
-        /// How their points move.
-        field: ShapeDraft,
-    },
-    /// The paper's V and U of the marker on one body.
-    Field {
-        /// The joint's name.
-        joint: String,
-        /// The name of the body whose marker it is.
-        body: String,
-        /// V, in the body's frame.
-        v: Vec3,
-        /// U, 3-1-3 Euler angle rates.
-        u: Vec3,
-    },
-}
-
-impl VariableDraft {
-    /// What it measures, for what a parameter is and for what a driver prescribes by which law; a plain number where its changes
-    /// measure different things.
-    pub fn quantity<'l>(
-        &self,
-        parameter: impl Fn(&str) -> Option<Quantity>,
-        driver: impl Fn(&str) -> Option<(&'l Law, Quantity)>,
-    ) -> Quantity {
-        let number = Quantity::Number;
-        let of = |change: &ChangeDraft| match change {
-            ChangeDraft::Move { .. } | ChangeDraft::Length { .. } => Quantity::Length,
-            ChangeDraft::Tilt { .. } => Quantity::Angle,
-            ChangeDraft::Shape { field, .. } => match field {
-                ShapeDraft::Rotate { .. } => Quantity::Angle,
-                ShapeDraft::Scale { .. } => Quantity::Number,
-                _ => Quantity::Length,
-            },
-            ChangeDraft::Marker { position, rotation, .. } => {
-                match (position.norm() > 0.0, rotation.norm() > 0.0) {
-                    (_, false) => Quantity::Length,
-                    (false, true) => Quantity::Angle,
-                    (true, true) => Quantity::Number,
-                }
-            }
-            ChangeDraft::Parameter { parameter: name, .. } => parameter(name).unwrap_or(number),
-            ChangeDraft::Law { driver: name, parameter, .. } => {
-                let Some((law, driven)) = driver(name) else { return number };
-                match law.parameters().into_iter().find(|p| p.name == *parameter).map(|p| p.kind) {
-                    Some(ParameterKind::Value) => driven,
-                    Some(ParameterKind::Angle) => Quantity::Angle,
-                    _ => number,
-                }
-            }
-            ChangeDraft::Field { .. } => number,
-        };
-        let mut quantities = self.changes.iter().map(of);
-        let first = quantities.next().unwrap_or(number);
-        if quantities.all(|q| q == first) { first } else { number }
-    }
-}
-
-/// A velocity field over a body: how each of its points moves in the design configuration. Points are names of hardpoints.
-#[derive(Clone, Debug)]
-pub enum ShapeDraft {
-    /// All the same way, along a direction of any length.
-    Translate(Vec3),
-    /// About a line through a hardpoint.
-    Rotate {
-        /// The line's direction.
-        about: Line,
-        /// The hardpoint.
-        at: String,
-    },
-    /// Away from a hardpoint, in all directions or along one.
-    Scale {
-        /// The hardpoint.
-        from: String,
-        /// The direction.
-        along: Option<Line>,
-    },
-    /// Like a beam that is held at one hardpoint and pushed at another.
-    Bend {
-        /// Held here.
-        from: String,
-        /// Pushed here.
-        to: String,
-        /// In this direction, of any length; only what is square to the beam counts.
-        towards: Vec3,
-    },
-    /// As these hardpoints move, per unit, and smoothly between them.
-    Through(Vec<(String, Vec3)>),
 }
 
 /// A point to follow.

@@ -36,16 +36,19 @@ pub(super) trait Shape: fmt::Display {
     fn find_breaks(&self, _from: f64, _to: f64, _breaks: &mut Vec<Break>) {}
 }
 
+/// The kinds of laws, each a type of a module; those that a caller fills in are public.
 macro_rules! kinds {
-    ($($module:ident::$kind:ident),* $(,)?) => {
-        /// The kinds there are.
+    ($($module:ident: $public:vis $kind:ident),* $(,)?) => {
+        $($public use $module::$kind;)*
+
+        /// A law of one of the kinds.
         #[derive(Clone, PartialEq)]
-        pub(super) enum Kind {
-            $($kind(super::$module::$kind),)*
+        enum Kind {
+            $($kind($kind),)*
         }
 
-        $(impl From<super::$module::$kind> for Kind {
-            fn from(shape: super::$module::$kind) -> Self {
+        $(impl From<$kind> for Kind {
+            fn from(shape: $kind) -> Self {
                 Self::$kind(shape)
             }
         })*
@@ -88,16 +91,7 @@ macro_rules! kinds {
         }
     };
 }
-
-kinds! {
-    formula::Formula,
-    harmonic::Harmonic,
-    speed::ConstantSpeed,
-    polynomial::Polynomial,
-    smooth_step::SmoothStep,
-    table::Spline,
-    sequence::Sequence,
-}
+pub(super) use kinds;
 
 /// The parameters of a law that are fields of it: their names, in this order, and what they measure.
 macro_rules! parameters {

@@ -1,8 +1,7 @@
 //! Laws of motion: what a driver prescribes as a function of the time, with exact time derivatives.
 //!
-//! Each kind of law has a constructor of [`Law`]: an expression in `t` ([`Law::parse`], with named parameters [`Law::parse_with`]),
-//! a value held for ever, a constant speed, a harmonic, a polynomial, a smooth step, a spline through points, laws one after the
-//! other.
+//! Each kind of law has a constructor of [`Law`]; that of an expression in `t` is [`Law::parse`], with named parameters
+//! [`Law::parse_with`].
 //!
 //! The language of expressions is that of [`crate::expression`].
 //!
@@ -28,19 +27,26 @@ mod table;
 use std::fmt;
 
 pub use error::LawError;
-use formula::Formula;
-pub use harmonic::Harmonic;
+use jumps::Break;
 pub use jumps::Jump;
-use kind::{Kind, Shape};
+use kind::{Shape, kinds};
 use parameter::Seed;
 pub use parameter::{Parameter, ParameterKind};
 pub use sequence::Piece;
-pub use smooth_step::SmoothStep;
-pub use speed::ConstantSpeed;
 pub use table::{EndRates, Ends, SplineDegree, Table};
 
 use crate::expression::{self, ExpressionError, Stretch};
 use crate::number::{Dual, Jet, Real};
+
+kinds! {
+    formula: Formula,
+    harmonic: pub Harmonic,
+    speed: pub ConstantSpeed,
+    polynomial: Polynomial,
+    smooth_step: pub SmoothStep,
+    table: Spline,
+    sequence: Sequence,
+}
 
 /// The value of a law and its first three time derivatives at one instant.
 ///

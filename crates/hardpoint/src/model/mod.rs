@@ -3,12 +3,14 @@
 //! [`Model::from_draft`] makes it of a [`Draft`](crate::draft::Draft). A model never changes; a changed design is a
 //! [`Geometry`](crate::design::Geometry) made from it.
 
+pub mod change;
 mod curve;
 mod formula;
 mod measure;
 mod metric;
 mod wheel;
 
+pub use change::{Change, ChangeText, End};
 pub(crate) use curve::Contact;
 pub use curve::{Curve, CurvePoint};
 pub use formula::{Formula, NamedNumber, Source, Target};
@@ -203,98 +205,6 @@ pub struct DesignVariable {
     pub typical: Option<f64>,
     /// By how much b may be off when it is made, either way, in its unit; positive.
     pub tolerance: Option<f64>,
-}
-
-/// Which marker of a joint.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum End {
-    /// Marker on body i.
-    I,
-    /// Marker on body j.
-    J,
-    /// Both markers alike.
-    Both,
-}
-
-impl End {
-    /// Whether marker 0 (i) or 1 (j) is meant.
-    pub fn covers(self, end: usize) -> bool {
-        match self {
-            Self::I => end == 0,
-            Self::J => end == 1,
-            Self::Both => true,
-        }
-    }
-}
-
-/// A part of a design variable's velocity field, per unit of b.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Change {
-    /// The hardpoint moves with this global velocity; markers, axes and points on it follow.
-    Move {
-        /// Which hardpoint.
-        hardpoint: HardpointId,
-        /// Global velocity.
-        velocity: Vec3,
-    },
-    /// The markers of a joint move by `position` and turn by the rotation vector `rotation`, global.
-    Marker {
-        /// Which joint.
-        joint: JointId,
-        /// Which markers.
-        end: End,
-        /// Global velocity of the marker's origin.
-        position: Vec3,
-        /// Global rotation vector rate of the marker's axes, about its origin.
-        rotation: Vec3,
-    },
-    /// The length of a rod that is given by itself grows at this rate.
-    Length {
-        /// Which joint.
-        joint: JointId,
-        /// m per unit.
-        rate: f64,
-    },
-    /// A parameter of the model grows at this rate, and all that formulas make of it follows.
-    Parameter {
-        /// Which parameter.
-        parameter: ParameterId,
-        /// In the parameter's unit, per unit.
-        rate: f64,
-    },
-    /// A parameter of a driver's law grows at this rate.
-    Law {
-        /// Which driver.
-        driver: DriverId,
-        /// Which of its law's parameters.
-        parameter: usize,
-        /// In the parameter's unit, per unit.
-        rate: f64,
-    },
-    /// The paper's design velocity of one marker: V of its place and U of its 3-1-3 Euler angles, both
-    /// in its own body's frame (Eqs. 3.2, 3.3).
-    Field {
-        /// Which joint.
-        joint: JointId,
-        /// Which marker: 0 on body i, 1 on body j.
-        end: usize,
-        /// V = ds'/d(tau), body frame.
-        v: Vec3,
-        /// U = d(theta)/d(tau), rad.
-        u: Vec3,
-    },
-}
-
-impl Change {
-    /// The joint that it changes by itself.
-    pub(crate) fn joint(&self) -> Option<JointId> {
-        match self {
-            Self::Marker { joint, .. } | Self::Field { joint, .. } | Self::Length { joint, .. } => {
-                Some(*joint)
-            }
-            Self::Move { .. } | Self::Parameter { .. } | Self::Law { .. } => None,
-        }
-    }
 }
 
 /// A body, or two that slide on each other, that can spin about a line without moving anything else. The spin is held at

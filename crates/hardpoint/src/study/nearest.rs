@@ -78,9 +78,9 @@ fn weight(model: &Model, asked: &[f64], v: usize) -> f64 {
     let variable = &model.variables[v];
     let is_axis = |u: Vec3| Vec3::AXES.contains(&u);
     let is_simple = match variable.changes.as_slice() {
-        [Change::Move { velocity, .. }] => is_axis(*velocity),
-        [Change::Marker { end: End::Both, position, rotation, .. }] => {
-            *position == Vec3::ZERO && is_axis(*rotation)
+        [Change::Move(change)] => is_axis(change.velocity),
+        [Change::Marker(change)] => {
+            change.end == End::Both && change.position == Vec3::ZERO && is_axis(change.rotation)
         }
         _ => false,
     };

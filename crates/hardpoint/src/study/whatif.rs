@@ -1,7 +1,7 @@
 //! What if the design were changed so: foreseen from the derivatives of today's design, and solved exactly.
 
 use crate::joint::Quantity;
-use crate::model::{Change, DesignVariable, Dimension, End, HardpointId, JointId, Model, VariableId};
+use crate::model::{Change, DesignVariable, Dimension, End, HardpointId, JointId, Model, VariableId, change};
 use crate::run::{Analysis, Run, Solution};
 use crate::sensitivity::{Admissibility, JointDefect, admissibility_at_design};
 use crate::space::Vec3;
@@ -157,13 +157,13 @@ pub fn variable_named(model: &mut Model, name: &str) -> Option<VariableId> {
         if let Some(known) = model.variables.iter().position(same) {
             return Some(VariableId(known));
         }
-        (Quantity::Length, Change::Move { hardpoint, velocity: Vec3::AXES[axis] })
+        (Quantity::Length, change::Move { hardpoint, velocity: Vec3::AXES[axis] }.into())
     } else {
         let axis = axis(part.strip_prefix("tilt_")?)?;
         let joint = model.joints.iter().position(|j| !j.unnamed && j.name == what)?;
         let rotation = Vec3::AXES[axis];
-        let change = Change::Marker { joint: JointId(joint), end: End::Both, position: Vec3::ZERO, rotation };
-        (Quantity::Angle, change)
+        let (joint, position) = (JointId(joint), Vec3::ZERO);
+        (Quantity::Angle, change::Marker { joint, end: End::Both, position, rotation }.into())
     };
     model.variables.push(DesignVariable {
         name: name.into(),
@@ -180,11 +180,11 @@ pub fn variable_named(model: &mut Model, name: &str) -> Option<VariableId> {
 /// The coordinate that a variable is, if it moves one hardpoint along one global axis and does nothing else, and how much of it
 /// a unit is: -1 where the variable goes against the axis.
 fn coordinate_of(variable: &DesignVariable) -> Option<(HardpointId, usize, f64)> {
-    let Change::Move { hardpoint, .. } = *variable.changes.first()? else { return None };
+    let Change::Move(change::Move { hardpoint, .. }) = *variable.changes.first()? else { return None };
     let mut velocity = Vec3::ZERO;
     for change in &variable.changes {
         match change {
-            Change::Move { hardpoint: h, velocity: v } if *h == hardpoint => velocity += *v,
+            Change::Move(m) if m.hardpoint == hardpoint => velocity += m.velocity,
             _ => return None,
         }
     }

@@ -3,7 +3,8 @@
 use std::collections::BTreeSet;
 
 use crate::design::{Interpolation, ShapeField};
-use crate::draft::{ChangeDraft, Line, Section, ShapeDraft, VariableDraft};
+use crate::draft::{ChangeDraft, Line, Locus, Section, ShapeDraft, VariableDraft};
+use crate::model::change::{Field, Law, Length, Marker, Move, Parameter};
 use crate::model::{
     BodyId, Change, DesignVariable, Direction, DriverId, End, HardpointId, JointId, ParameterId,
 };
@@ -23,14 +24,10 @@ impl Check<'_> {
             }
             let mut changes = Vec::new();
             for (k, change) in v.changes.iter().enumerate() {
-                let found = match change {
-                    ChangeDraft::Shape { bodies, field } => self.shape(bodies, field, &v.name, here, k),
-                    _ => self.one_change(change, &v.name, here, k).map(|change| vec![change]),
-                };
-                changes.extend(found.unwrap_or_default());
+                changes.extend(self.change(change, &v.name, here, k).unwrap_or_default());
             }
             let parameter = |name: &str| Some(draft.parameters[self.number_of("parameter", name)?].quantity);
-            let quantity = v.quantity(parameter, |driver| {
+            let quantity = ChangeDraft::quantity_of(&v.changes, parameter, |driver| {
                 let driver = self.model.drivers.iter().find(|d| d.name == driver)?;
                 Some((&driver.law, self.model.driven(driver).quantity))
             });
@@ -108,7 +105,7 @@ impl Check<'_> {
         for h in moved {
             let [velocity, _] = field.at(self.position(HardpointId(h))?);
             if velocity.norm() > SAME_POINT * size.min(1.0) && !self.curve_points.contains(&HardpointId(h)) {
-                changes.push(Change::Move { hardpoint: HardpointId(h), velocity });
+                changes.push(Move { hardpoint: HardpointId(h), velocity }.into());
             }
         }
         for joint in turned {
@@ -116,7 +113,7 @@ impl Check<'_> {
             let [_, rotation] = field.at(self.position(place)?);
             if rotation.norm() > SAME_POINT {
                 let (end, position) = (End::Both, Vec3::ZERO);
-                changes.push(Change::Marker { joint, end, position, rotation });
+                changes.push(Marker { joint, end, position, rotation }.into());
             }
         }
         if changes.is_empty() && !self.joint_ids.contains(&None) {
@@ -185,18 +182,12 @@ impl Check<'_> {
         })
     }
 
-    fn one_change(&mut self, change: &ChangeDraft, owner: &str, here: Here, k: usize) -> Option<Change> {
+    /// What a change means: whether what it names is there and can change so.
+    fn change(&mut self, change: &ChangeDraft, owner: &str, here: Here, k: usize) -> Option<Vec<Change>> {
         let at = here.item("changes", k);
-        let null = |check: &mut Self| {
-            let message = format!("a velocity of design variable `{owner}` is null or not finite");
-            check.fault("HP0217", here.item("changes", k), message);
-        };
-        let is_null =
-            |a: Vec3, b: Vec3| !(a.is_finite() && b.is_finite()) || (a.norm() < 1e-12 && b.norm() < 1e-12);
-        match change {
-            ChangeDraft::Move { hardpoint, velocity } => {
-                let name = hardpoint;
-                let hardpoint = self.hardpoint(hardpoint, at.clone())?;
+        let change = match change {
+            ChangeDraft::Move { hardpoint: name, velocity } => {
+                let hardpoint = self.hardpoint(name, at.clone())?;
                 if self.curve_points.contains(&hardpoint) {
                     let message = format!("design variable `{owner}` moves `{name}`, a point of a curve");
                     self.fault("HP0226", at, message)
@@ -206,28 +197,22 @@ impl Check<'_> {
                         );
                     return None;
                 }
-                if is_null(*velocity, Vec3::ZERO) {
-                    null(self);
-                }
-                Some(Change::Move { hardpoint, velocity: *velocity })
+                self.not_null(vectors(&[*velocity]), owner, at);
+                Move { hardpoint, velocity: *velocity }.into()
             }
             ChangeDraft::Tilt { joint, about } => {
                 let joint = self.joint(joint, at)?;
                 let (_, rotation) = self.line(about, owner, here, "about")?;
-                Some(Change::Marker { joint, end: End::Both, position: Vec3::ZERO, rotation })
+                Marker { joint, end: End::Both, position: Vec3::ZERO, rotation }.into()
             }
             ChangeDraft::Marker { joint, end, position, rotation } => {
-                let joint = self.joint(joint, at)?;
-                if is_null(*position, *rotation) {
-                    null(self);
-                }
-                Some(Change::Marker { joint, end: *end, position: *position, rotation: *rotation })
+                let joint = self.joint(joint, at.clone())?;
+                self.not_null(vectors(&[*position, *rotation]), owner, at);
+                Marker { joint, end: *end, position: *position, rotation: *rotation }.into()
             }
             ChangeDraft::Length { joint, rate } => {
                 let joint = self.joint(joint, at.clone())?;
-                if !(rate.is_finite() && *rate != 0.0) {
-                    null(self);
-                }
+                self.not_null(number(*rate), owner, at.clone());
                 let j = &self.model.joints[joint.0];
                 if j.length.is_none() {
                     let (name, kind) = (j.name.clone(), j.kind.name);
@@ -239,15 +224,13 @@ impl Check<'_> {
                     fault.help(format!("give rod `{name}` a `length`, or move one of its hardpoints"));
                     return None;
                 }
-                Some(Change::Length { joint, rate: *rate })
+                Length { joint, rate: *rate }.into()
             }
             ChangeDraft::Parameter { parameter, rate } => {
                 let names = self.draft.parameters.iter().map(|p| p.name.as_str());
-                let parameter = self.find("parameter", parameter, at, names).map(ParameterId)?;
-                if !(rate.is_finite() && *rate != 0.0) {
-                    null(self);
-                }
-                Some(Change::Parameter { parameter, rate: *rate })
+                let parameter = self.find("parameter", parameter, at.clone(), names).map(ParameterId)?;
+                self.not_null(number(*rate), owner, at);
+                Parameter { parameter, rate: *rate }.into()
             }
             ChangeDraft::Law { driver, parameter, rate } => {
                 let draft = self.draft;
@@ -258,29 +241,21 @@ impl Check<'_> {
                 }
                 let parameters = draft.drivers[k].law.parameters();
                 let names = parameters.iter().map(|p| p.name.as_str());
-                let p = self.find(
-                    &format!("parameter of the law of `{driver}`"),
-                    parameter,
-                    here.key("parameter"),
-                    names,
-                )?;
-                if !(rate.is_finite() && *rate != 0.0) {
-                    null(self);
-                }
+                let what = format!("parameter of the law of `{driver}`");
+                let parameter = self.find(&what, parameter, here.key("parameter"), names)?;
+                self.not_null(number(*rate), owner, at);
                 // A faulty driver has been reported.
                 let driver = self.model.drivers.iter().position(|d| d.name == *driver).map(DriverId)?;
-                Some(Change::Law { driver, parameter: p, rate: *rate })
+                Law { driver, parameter, rate: *rate }.into()
             }
-            ChangeDraft::Shape { .. } => unreachable!("a shape is many changes"),
+            ChangeDraft::Shape { bodies, field } => return self.shape(bodies, field, owner, here, k),
             ChangeDraft::Field { joint, body, v, u } => {
                 let joint = self.joint(joint, at.clone());
                 let body = self.body(body, at.clone());
                 let (joint, body) = (joint?, body?);
-                if is_null(*v, *u) {
-                    null(self);
-                }
+                self.not_null(vectors(&[*v, *u]), owner, at.clone());
                 let bodies = self.model.joints[joint.0].bodies;
-                let Some(end) = bodies.iter().position(|b| *b == body) else {
+                if !bodies.contains(&body) {
                     let names = bodies.map(|b| format!("`{}`", self.model.bodies[b.0].name)).join(" and ");
                     let message = format!(
                         "joint `{}` has no marker on body `{}`",
@@ -288,9 +263,28 @@ impl Check<'_> {
                     );
                     self.fault("HP0218", at, message).note(format!("it connects {names}"));
                     return None;
-                };
-                Some(Change::Field { joint, end, v: *v, u: *u })
+                }
+                Field { joint, body, v: *v, u: *u }.into()
             }
+        };
+        Some(vec![change])
+    }
+
+    /// HP0217: a change that changes nothing.
+    fn not_null(&mut self, does_something: bool, owner: &str, at: Locus) {
+        if !does_something {
+            let message = format!("a velocity of design variable `{owner}` is null or not finite");
+            self.fault("HP0217", at, message);
         }
     }
+}
+
+/// Whether these velocities together are one.
+fn vectors(velocities: &[Vec3]) -> bool {
+    velocities.iter().all(|v| v.is_finite()) && velocities.iter().any(|v| v.norm() >= 1e-12)
+}
+
+/// Whether a rate is one.
+fn number(rate: f64) -> bool {
+    rate.is_finite() && rate != 0.0
 }

@@ -2,12 +2,13 @@
 
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 
+use crate::design::Effect;
 use crate::draft::{ChangeDraft, Draft, FormulaOf, Locus, Section};
 use crate::expression::Expression;
 use crate::joint::Quantity;
 use crate::law::Law;
 use crate::model::{
-    Change, DriverId, Formula, Hardpoint, HardpointId, JointId, NamedNumber, ParameterId, Source, Target,
+    DriverId, Formula, Hardpoint, HardpointId, JointId, NamedNumber, ParameterId, Source, Target,
 };
 use crate::number::Dual;
 use crate::space::Vec3;
@@ -294,13 +295,10 @@ impl<'a> Check<'a> {
     pub(super) fn formulas_that_vary(&mut self) {
         let mut varying: BTreeSet<Source> = BTreeSet::new();
         for change in self.model.variables.iter().flat_map(|v| &v.changes) {
-            match change {
-                Change::Parameter { parameter, .. } => drop(varying.insert(Source::Parameter(*parameter))),
-                Change::Move { hardpoint, velocity } => {
-                    let moved = (0..3).filter(|axis| velocity[*axis] != 0.0);
-                    varying.extend(moved.map(|axis| Source::Coordinate(*hardpoint, axis)));
-                }
-                _ => {}
+            varying.extend(change.parameter().map(|(parameter, _)| Source::Parameter(parameter)));
+            if let Some((hardpoint, velocity)) = change.hardpoint() {
+                let moved = (0..3).filter(|axis| velocity[*axis] != 0.0);
+                varying.extend(moved.map(|axis| Source::Coordinate(hardpoint, axis)));
             }
         }
         for Written { mut formula, at, name } in std::mem::take(&mut self.written) {

@@ -1,0 +1,143 @@
+//! What each kind of change does to a design, over any number.
+
+use crate::model::change::{Change, Field, Law, Length, Marker, Move, Parameter, changes};
+use crate::model::{DriverId, HardpointId, JointId, Model, ParameterId};
+use crate::number::Real;
+use crate::space::{Mat3, Pose, Vec3, rotation_from_euler_313};
+
+/// What a kind of change does to the design with b of its variable. Whatever a kind says nothing of stays as it is.
+pub(crate) trait Effect {
+    /// The hardpoint that moves, and its global velocity.
+    fn hardpoint(&self) -> Option<(HardpointId, Vec3)> {
+        None
+    }
+
+    /// The joint whose markers or length change by themselves.
+    fn joint(&self) -> Option<JointId> {
+        None
+    }
+
+    /// Marker e of that joint in the design configuration, `marker` being where it is without this change.
+    #[inline(always)]
+    fn marker<T: Real>(&self, _model: &Model, marker: Pose<T>, _e: usize, _b: T) -> Pose<T> {
+        marker
+    }
+
+    /// The length that is given to that joint, `length` being what it is without this change.
+    #[inline(always)]
+    fn length<T: Real>(&self, length: T, _b: T) -> T {
+        length
+    }
+
+    /// The parameter of the model that grows, and its rate.
+    fn parameter(&self) -> Option<(ParameterId, f64)> {
+        None
+    }
+
+    /// The parameter of a driver's law that grows, and its rate.
+    fn law(&self) -> Option<(DriverId, usize, f64)> {
+        None
+    }
+}
+
+impl Effect for Move {
+    fn hardpoint(&self) -> Option<(HardpointId, Vec3)> {
+        Some((self.hardpoint, self.velocity))
+    }
+}
+
+impl Effect for Marker {
+    fn joint(&self) -> Option<JointId> {
+        Some(self.joint)
+    }
+
+    #[inline(always)]
+    fn marker<T: Real>(&self, _: &Model, Pose { mut rot, r }: Pose<T>, e: usize, b: T) -> Pose<T> {
+        if !self.end.covers(e) {
+            return Pose { rot, r };
+        }
+        // P = P_o + b V,  C = exp(b R U) C_o in the world                                                  (paper 3.1, 3.4)
+        if let Some(axis) = self.rotation.unit() {
+            rot = Mat3::about(axis, b * T::constant(self.rotation.norm())) * rot;
+        }
+        Pose { rot, r: self.position.spread().times_plus(b, r) }
+    }
+}
+
+impl Effect for Length {
+    fn joint(&self) -> Option<JointId> {
+        Some(self.joint)
+    }
+
+    #[inline(always)]
+    fn length<T: Real>(&self, length: T, b: T) -> T {
+        b.times_plus(T::constant(self.rate), length)
+    }
+}
+
+impl Effect for Parameter {
+    fn parameter(&self) -> Option<(ParameterId, f64)> {
+        Some((self.parameter, self.rate))
+    }
+}
+
+impl Effect for Law {
+    fn law(&self) -> Option<(DriverId, usize, f64)> {
+        Some((self.driver, self.parameter, self.rate))
+    }
+}
+
+impl Effect for Field {
+    fn joint(&self) -> Option<JointId> {
+        Some(self.joint)
+    }
+
+    #[inline(always)]
+    fn marker<T: Real>(&self, model: &Model, marker: Pose<T>, e: usize, b: T) -> Pose<T> {
+        let joint = &model.joints[self.joint.0];
+        if joint.bodies[e] != self.body {
+            return marker;
+        }
+        // s' + b V and C(theta + b U), both in the body's frame (paper, Eqs. 3.2, 3.3)
+        let body = model.bodies[self.body.0].frame.rot.spread();
+        let (theta, c) = model.euler_of(joint, e);
+        let turned = [0, 1, 2].map(|n| T::constant(self.u[n]).times_plus(b, T::constant(theta[n])));
+        let turned = rotation_from_euler_313(turned) * c.transpose().spread();
+        Pose { rot: body * turned * body.transpose() * marker.rot, r: marker.r + body * self.v.spread() * b }
+    }
+}
+
+/// A change does what its kind does.
+macro_rules! in_designs {
+    ($($(#[doc = $doc:literal])* $kind:ident { $($fields:tt)* } |$known:pat_param| $quantity:expr, |$words:pat_param| $says:expr;)*) => {
+        impl Effect for Change {
+            fn hardpoint(&self) -> Option<(HardpointId, Vec3)> {
+                match self { $(Self::$kind(change) => change.hardpoint()),* }
+            }
+
+            fn joint(&self) -> Option<JointId> {
+                match self { $(Self::$kind(change) => change.joint()),* }
+            }
+
+            #[inline(always)]
+            fn marker<T: Real>(&self, model: &Model, marker: Pose<T>, e: usize, b: T) -> Pose<T> {
+                match self { $(Self::$kind(change) => change.marker(model, marker, e, b)),* }
+            }
+
+            #[inline(always)]
+            fn length<T: Real>(&self, length: T, b: T) -> T {
+                match self { $(Self::$kind(change) => change.length(length, b)),* }
+            }
+
+            fn parameter(&self) -> Option<(ParameterId, f64)> {
+                match self { $(Self::$kind(change) => change.parameter()),* }
+            }
+
+            fn law(&self) -> Option<(DriverId, usize, f64)> {
+                match self { $(Self::$kind(change) => change.law()),* }
+            }
+        }
+    };
+}
+
+changes!(in_designs);

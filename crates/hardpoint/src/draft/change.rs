@@ -1,0 +1,129 @@
+//! Changes as written, and what a variable measures that makes them.
+
+use crate::draft::Line;
+use crate::joint::Quantity;
+use crate::law::{Law, ParameterKind};
+use crate::model::End;
+use crate::model::change::changes;
+use crate::space::Vec3;
+
+/// How changes are written.
+macro_rules! in_drafts {
+    ($(
+        $(#[doc = $doc:literal])* $kind:ident {
+            $($(#[doc = $field_doc:literal])* $field:ident: $draft:ty => $type:ty),* $(,)?
+        } |$known:pat_param| $quantity:expr, |$words:pat_param| $says:expr;
+    )*) => {
+        /// A part of a design variable; see [`Change`](crate::model::Change). References are names.
+        #[derive(Clone, Debug)]
+        pub enum ChangeDraft {
+            $($(#[doc = $doc])* $kind { $($(#[doc = $field_doc])* $field: $draft,)* },)*
+            /// Both markers of a joint turn about a line through their places.
+            Tilt {
+                /// The joint's name.
+                joint: String,
+                /// The line to turn about, by one radian per radian of the variable.
+                about: Line,
+            },
+            /// Whole bodies change their shape, and everything on them follows: joints with the markers of both bodies, axes, points.
+            Shape {
+                /// The names of the bodies.
+                bodies: Vec<String>,
+                /// How their points move.
+                field: ShapeDraft,
+            },
+        }
+
+        impl ChangeDraft {
+            /// What a variable measures that makes this change.
+            fn quantity(&self, known: &Known<'_, '_>) -> Quantity {
+                match self {
+                    $(#[allow(unused_variables, reason = "what it measures follows from some of its fields")]
+                    Self::$kind { $($field),* } => { let $known = known; $quantity })*
+                    Self::Tilt { .. } => Quantity::Angle,
+                    Self::Shape { field, .. } => field.quantity(),
+                }
+            }
+        }
+    };
+}
+
+changes!(in_drafts);
+
+impl ChangeDraft {
+    /// What a variable measures that makes these changes, for what a parameter is and for what a driver prescribes by which law; a
+    /// plain number where they measure different things.
+    pub fn quantity_of<'l>(
+        changes: &[Self],
+        parameter: impl Fn(&str) -> Option<Quantity>,
+        driver: impl Fn(&str) -> Option<(&'l Law, Quantity)>,
+    ) -> Quantity {
+        let known = Known { parameter: &parameter, driver: &driver };
+        let mut quantities = changes.iter().map(|change| change.quantity(&known));
+        let first = quantities.next().unwrap_or(Quantity::Number);
+        if quantities.all(|q| q == first) { first } else { Quantity::Number }
+    }
+}
+
+/// What a parameter measures, and what a driver prescribes by which law, as far as that is known.
+struct Known<'k, 'l> {
+    parameter: &'k dyn Fn(&str) -> Option<Quantity>,
+    driver: &'k dyn Fn(&str) -> Option<(&'l Law, Quantity)>,
+}
+
+impl Known<'_, '_> {
+    fn parameter(&self, name: &str) -> Quantity {
+        (self.parameter)(name).unwrap_or(Quantity::Number)
+    }
+
+    fn parameter_of_law(&self, driver: &str, name: &str) -> Quantity {
+        let Some((law, driven)) = (self.driver)(driver) else { return Quantity::Number };
+        match law.parameters().into_iter().find(|p| p.name == name).map(|p| p.kind) {
+            Some(ParameterKind::Value) => driven,
+            Some(ParameterKind::Angle) => Quantity::Angle,
+            _ => Quantity::Number,
+        }
+    }
+}
+
+/// A velocity field over a body: how each of its points moves in the design configuration. Points are names of hardpoints.
+#[derive(Clone, Debug)]
+pub enum ShapeDraft {
+    /// All the same way, along a direction of any length.
+    Translate(Vec3),
+    /// About a line through a hardpoint.
+    Rotate {
+        /// The line's direction.
+        about: Line,
+        /// The hardpoint.
+        at: String,
+    },
+    /// Away from a hardpoint, in all directions or along one.
+    Scale {
+        /// The hardpoint.
+        from: String,
+        /// The direction.
+        along: Option<Line>,
+    },
+    /// Like a beam that is held at one hardpoint and pushed at another.
+    Bend {
+        /// Held here.
+        from: String,
+        /// Pushed here.
+        to: String,
+        /// In this direction, of any length; only what is square to the beam counts.
+        towards: Vec3,
+    },
+    /// As these hardpoints move, per unit, and smoothly between them.
+    Through(Vec<(String, Vec3)>),
+}
+
+impl ShapeDraft {
+    fn quantity(&self) -> Quantity {
+        match self {
+            Self::Rotate { .. } => Quantity::Angle,
+            Self::Scale { .. } => Quantity::Number,
+            Self::Translate(_) | Self::Bend { .. } | Self::Through(_) => Quantity::Length,
+        }
+    }
+}

@@ -1,0 +1,226 @@
+//! The kinds of changes: what a design variable may do to a model, per unit of it.
+
+use crate::model::{BodyId, DriverId, HardpointId, JointId, Model, ParameterId};
+use crate::space::Vec3;
+
+/// Which marker of a joint.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum End {
+    /// Marker on body i.
+    I,
+    /// Marker on body j.
+    J,
+    /// Both markers alike.
+    Both,
+}
+
+impl End {
+    /// Whether marker 0 (i) or 1 (j) is meant.
+    pub fn covers(self, end: usize) -> bool {
+        match self {
+            Self::I => end == 0,
+            Self::J => end == 1,
+            Self::Both => true,
+        }
+    }
+}
+
+/// The kinds of changes: their fields, as written and as they mean in a model; what a variable measures that has it, and how to say
+/// what it does. With its effect (`design/change.rs`) and its check (`draft/check/design.rs`) a kind is complete. The model takes its
+/// half of each line, the draft (`draft/change.rs`) the other, and the design its list.
+macro_rules! changes {
+    ($declare:ident) => { $declare! {
+    /// A hardpoint moves; markers, axes and points on it follow.
+    Move {
+        /// Which hardpoint.
+        hardpoint: String => HardpointId,
+        /// Global velocity.
+        velocity: Vec3 => Vec3,
+    } |_| Quantity::Length,
+        |w| w.say("moves", &w.model.hardpoints[hardpoint.0].name, format!(" along {}", (w.direction)(*velocity)));
+
+    /// Markers of a joint move and turn by themselves.
+    Marker {
+        /// Which joint.
+        joint: String => JointId,
+        /// Which markers.
+        end: End => End,
+        /// Global velocity of the marker's origin.
+        position: Vec3 => Vec3,
+        /// Global rotation vector rate of the marker's axes, about its origin.
+        rotation: Vec3 => Vec3,
+    } |_| match (position.norm() > 0.0, rotation.norm() > 0.0) {
+            (_, false) => Quantity::Length,
+            (false, true) => Quantity::Angle,
+            (true, true) => Quantity::Number,
+        },
+        |w| {
+            let whose = match end {
+                End::I => " marker i of",
+                End::J => " marker j of",
+                End::Both => "",
+            };
+            let name = w.joint(*joint);
+            if *position != Vec3::ZERO {
+                w.say(&format!("moves{whose}"), name, format!(" along {}", (w.direction)(*position)));
+            }
+            if *rotation != Vec3::ZERO {
+                w.say(&format!("turns{whose}"), name, format!(" about {}", (w.direction)(*rotation)));
+            }
+        };
+
+    /// The length of a rod that is given by itself grows.
+    Length {
+        /// Which joint.
+        joint: String => JointId,
+        /// m per unit.
+        rate: f64 => f64,
+    } |_| Quantity::Length,
+        |w| {
+            let times = match rate.abs() {
+                1.0 => String::new(),
+                rate => format!(" ({} per unit)", (w.number)(rate)),
+            };
+            let name = w.joint(*joint);
+            match (&w.model.joints[joint.0].curve, *rate > 0.0) {
+                (Some(_), true) => w.say("moves", name, format!(" away from its curve{times}")),
+                (Some(_), false) => w.say("moves", name, format!(" towards its curve{times}")),
+                (None, true) => w.say("lengthens", name, times),
+                (None, false) => w.say("shortens", name, times),
+            }
+        };
+
+    /// A parameter of the model grows, and all that formulas make of it follows.
+    Parameter {
+        /// Which parameter.
+        parameter: String => ParameterId,
+        /// In the parameter's unit, per unit.
+        rate: f64 => f64,
+    } |known| known.parameter(parameter),
+        |w| w.say(&format!("{} parameter", raises(*rate)), &w.model.parameters[parameter.0].name, String::new());
+
+    /// A parameter of a driver's law grows, like its amplitude.
+    Law {
+        /// Which driver.
+        driver: String => DriverId,
+        /// Which of its law's parameters.
+        parameter: String => usize,
+        /// In the parameter's own unit, per unit.
+        rate: f64 => f64,
+    } |known| known.parameter_of_law(driver, parameter),
+        |w| {
+            let driver = &w.model.drivers[driver.0];
+            let name = &driver.law.parameters()[*parameter].name;
+            w.say(raises(*rate), name, format!(" in the law of `{}`", driver.name));
+        };
+
+    /// The paper's design velocity of one marker: V of its place and U of its 3-1-3 Euler angles, both in its own body's frame
+    /// (Eqs. 3.2, 3.3).
+    Field {
+        /// Which joint.
+        joint: String => JointId,
+        /// The body whose marker it is.
+        body: String => BodyId,
+        /// V = ds'/d(tau), body frame.
+        v: Vec3 => Vec3,
+        /// U = d(theta)/d(tau), rad.
+        u: Vec3 => Vec3,
+    } |_| Quantity::Number,
+        |w| {
+            let marker = if w.model.joints[joint.0].bodies[0] == *body { "i" } else { "j" };
+            w.say(&format!("field of marker {marker} of"), w.joint(*joint), String::new());
+        };
+    }};
+}
+pub(crate) use changes;
+
+/// What changes mean in a model.
+macro_rules! in_models {
+    ($(
+        $(#[doc = $doc:literal])* $kind:ident {
+            $($(#[doc = $field_doc:literal])* $field:ident: $draft:ty => $type:ty),* $(,)?
+        } |$known:pat_param| $quantity:expr, |$words:pat_param| $says:expr;
+    )*) => {
+        /// A part of what a design variable does, per unit of it.
+        #[derive(Clone, Debug, PartialEq)]
+        pub enum Change {
+            $($(#[doc = $doc])* $kind($kind),)*
+        }
+
+        $(
+            $(#[doc = $doc])*
+            #[derive(Clone, Debug, PartialEq)]
+            pub struct $kind {
+                $($(#[doc = $field_doc])* pub $field: $type,)*
+            }
+
+            impl From<$kind> for Change {
+                fn from(change: $kind) -> Self {
+                    Self::$kind(change)
+                }
+            }
+        )*
+
+        impl Words<'_> {
+            fn change(&mut self, change: &Change) {
+                match change {
+                    $(#[allow(unused_variables, reason = "not every field is said")]
+                    Change::$kind($kind { $($field),* }) => { let $words = self; $says })*
+                }
+            }
+        }
+    };
+}
+
+changes!(in_models);
+
+/// What changes do to some parts of a model: `moves` `a` and `b` ` along x`.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ChangeText {
+    /// What is done.
+    pub verb: String,
+    /// The names of those that it is done to.
+    pub names: Vec<String>,
+    /// How; empty, or with a space before.
+    pub how: String,
+}
+
+/// What changes do, in words.
+struct Words<'a> {
+    model: &'a Model,
+    direction: &'a dyn Fn(Vec3) -> String,
+    number: &'a dyn Fn(f64) -> String,
+    said: Vec<ChangeText>,
+}
+
+impl<'a> Words<'a> {
+    /// What is done in the same way is said once.
+    fn say(&mut self, verb: &str, name: &str, how: String) {
+        match self.said.iter_mut().find(|d| d.verb == verb && d.how == how) {
+            Some(text) => text.names.push(name.to_owned()),
+            None => self.said.push(ChangeText { verb: verb.to_owned(), names: vec![name.to_owned()], how }),
+        }
+    }
+
+    fn joint(&self, joint: JointId) -> &'a str {
+        &self.model.joints[joint.0].name
+    }
+}
+
+fn raises(rate: f64) -> &'static str {
+    if rate > 0.0 { "raises" } else { "lowers" }
+}
+
+impl Model {
+    /// What changes do, in words; `direction` says a global direction, `number` a number.
+    pub fn describe_changes(
+        &self,
+        changes: &[Change],
+        direction: &dyn Fn(Vec3) -> String,
+        number: &dyn Fn(f64) -> String,
+    ) -> Vec<ChangeText> {
+        let mut words = Words { model: self, direction, number, said: Vec::new() };
+        changes.iter().for_each(|change| words.change(change));
+        words.said
+    }
+}
