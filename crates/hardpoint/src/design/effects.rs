@@ -364,7 +364,7 @@ impl<'e, T: Real> Design<'e, T> {
             let b = values.variables[k];
             match change {
                 Change::Marker { end, position, rotation, .. } if end.covers(e) => {
-                    // P = P_o + b V,    C = exp(b R U) C_o in the world, (3.4) to first order                               (paper 3.1, 3.4)
+                    // P = P_o + b V,    C = exp(b R U) C_o in the world, to first order (3.4)           (paper 3.1, 3.4)
                     r = position.spread().times_plus(b, r);
                     if let Some(axis) = rotation.unit() {
                         rot = Mat3::about(axis, b * T::constant(rotation.norm())) * rot;
