@@ -1,6 +1,7 @@
 //! A mechanism as somebody wrote it, with names as references, and the check that makes a model of it.
 //!
-//! [`Model::from_draft`](crate::model::Model::from_draft) checks all of a [`Draft`] at once and gives either a [`Model`](crate::model::Model) or every [`Fault`] that it found.
+//! [`Model::from_draft`](crate::model::Model::from_draft) checks all of a [`Draft`] at once and gives either a
+//! [`Model`](crate::model::Model) or every [`Fault`] that it found.
 
 mod build;
 mod change;
@@ -415,8 +416,8 @@ pub struct MeasureDraft {
     pub kind: MeasureKindDraft,
 }
 
-/// A metric; see [`Metric`](crate::model::Metric). Its numbers are in units of which so many make a metre or a radian, since what they measure
-/// follows from the measures.
+/// A metric; see [`Metric`](crate::model::Metric). Its numbers are in units of which so many make a metre or a radian, since what they
+/// measure follows from the measures.
 #[derive(Clone, Debug)]
 pub struct MetricDraft {
     /// Its name.

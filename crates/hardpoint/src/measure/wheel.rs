@@ -176,7 +176,7 @@ impl<T: Real> Carried<T> {
             WheelMeasure::BumpCamber => camber(wheel.spin_axis).d / rise,
             WheelMeasure::BumpRecession => -wheel.centre.x.d / rise,
             WheelMeasure::BumpScrub => side * path.y / rise,
-            // The line from C square to its path (C_y', C_z') meets y = 0 so high above C: C_y C_y' / C_z'; geometric with v in place of C'.
+            // The line from C square to its path (C_y', C_z') meets y = 0 at C_y C_y' / C_z' above C; geometric with v in place of C'.
             WheelMeasure::RollCentreHeight => c.y * path.y / path.z,
             WheelMeasure::RollCentreHeightGeometric => c.y * v.y / v.z,
             // v + w x (P - C) = 0 in y and z at P_x = C_x:  v_y - w_x (P_z - C_z) = 0,  v_z + w_x (P_y - C_y) = 0

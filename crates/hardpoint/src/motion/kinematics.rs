@@ -52,11 +52,15 @@ pub(crate) struct State<T> {
     /// In theory q. and V, q.. and A = dV/dt, q... and B = dA/dt: (9), (10), (21).
     pub motion: Flow<T>,
     /// Per order and coordinate: world unit twist x, and its first two time derivatives.
+    /// `[n][a]`: x_a(n), a column of the Jacobian; rad, and m at the world origin, per unit of the coordinate.
     pub x: [Vec<Twist<T>>; 3],
     /// Per order and row: wrench l, and its first two time derivatives.
+    /// `[n][r]`: l_r(n), a row of it; the rate of the row per unit twist of its body j.
     pub l: [Vec<Wrench<T>>; 3],
     /// Per closure: its markers in the world.
+    /// `X_i M_i` and `X_j M_j`: P_i, a_i and P_j, b_j of the table in theory, section 2.
     pub ends: Vec<Ends<T>>,
+    /// Per block: `P J = L U`, J with rows `selected` and columns `unknowns`, where the position was solved last.
     pub factors: Vec<Factors<T>>,
     /// Right-hand side of a block.
     /// Before a solution what the rows miss, after it the unknowns: dq, q.(n), S(n).
@@ -72,6 +76,7 @@ pub(crate) struct State<T> {
     pub gap: Vec<T>,
     pub gap_left: [f64; 2],
     /// Per curve: where the point that follows it touches.
+    /// u, and C with its derivatives by u.
     pub contacts: Vec<Contact<T>>,
     /// Per block: smallest over largest pivot, and the sign of the determinant.
     pub pivots: Vec<(f64, bool)>,

@@ -110,7 +110,8 @@ impl BlockProgram {
         let corrected = passes.checked_sub(2).and_then(|k| corrections.get(k));
         // Either the last that was applied leaves round-off, or the next one is round-off itself.
         let (last, limit) = match corrected {
-            // dq_0 ... dq_passes-2 were applied. In the last pass none was worked out, the one before being at most 1e-8, or one of at most 1e-14.
+            // dq_0 ... dq_passes-2 were applied. In the last pass none was worked out, the one before being at most 1e-8, or it is
+            // at most 1e-14.
             Some(c) if c.value() <= QUADRATIC => (passes - 2, QUADRATIC),
             _ => (passes - 1, ROUND_OFF),
         };

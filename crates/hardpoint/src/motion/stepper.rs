@@ -61,6 +61,7 @@ pub(crate) struct Stepper<'m> {
     pub topology: Topology,
     pub parts: Parts<f64>,
     pub state: State<f64>,
+    /// Per driver: f, f., f.. by the parameter of the path; rad or m.
     pub drivers: Vec<[f64; 3]>,
     /// The last accepted position.
     pub(super) saved: Saved,
@@ -86,16 +87,19 @@ pub(crate) struct Stepper<'m> {
     pub(super) changes: Vec<f64>,
     pub(super) change_step: f64,
     /// Per driver: how far it moved over that step.
+    /// `abs(f_k - f_k-1) / unit`.
     pub(super) moves: Vec<f64>,
     /// Per driver: how fast it is at most over a stretch of time.
     pub(super) calm: Vec<Calm>,
     /// Per direction: how far it goes at most over the step considered; on a path other than the laws' in these units.
+    /// Du of theory (22), m or rad.
     pub(super) travel: Vec<f64>,
     pub(super) travel_unit: f64,
     pub(super) on_laws: bool,
     /// Scratch of predictions.
     pub(super) predicted: Vec<f64>,
     /// Fastest driver on the present path (rad, or sizes, per unit of its parameter).
+    /// max abs(f.) / unit.
     pub(super) fastest_driver: f64,
     /// By how much the constraints fail at the position tried last.
     pub(super) residuals: Residuals,
@@ -145,6 +149,7 @@ pub(super) enum Ahead {
 /// A position that was accepted.
 #[derive(Clone)]
 pub(super) struct Saved {
+    /// q, q., q.. of the tree, balls' quaternions apart.
     pub q: Vec<f64>,
     pub qd: Vec<f64>,
     pub qdd: Vec<f64>,
@@ -249,6 +254,7 @@ impl<'m> Stepper<'m> {
         for d in 0..self.line.len() {
             self.line[d] = [0.0, self.parts.law(d, t)[0]];
         }
+        // Where all drivers begin at 0 the design configuration is the first position.
         if self.line.iter().any(|[_, to]| to.abs() != 0.0) {
             // q(f = 0), which is drawn, to q(f(t_0)): all drivers straight there together
             let ramp = Path::Line { at: t };
@@ -331,7 +337,7 @@ impl<'m> Stepper<'m> {
             let most = match self.ahead {
                 Ahead::Even => {
                     let moved = (self.drivers[d][0] - self.saved.drivers[d][0]).abs() / unit;
-                    // Over the step h  max abs(f.) <= 2 (larger of the last two moves) / h: between its ends the law does nothing of its own.
+                    // Over the step h  max abs(f.) <= 2 (larger of the last two moves) / h: the law does nothing of its own between.
                     (EVEN * self.moves[d].max(moved)).clamp(RESTS, LONGEST)
                 }
                 _ => LONGEST,
