@@ -355,34 +355,12 @@ impl<'e, T: Real> Design<'e, T> {
 
     /// Marker e of joint j in the design configuration.
     fn marker_in_world(&self, j: usize, e: usize, values: &Values<T>) -> Pose<T> {
-        let joint = &self.effects.model.joints[j];
-        let mut rot = self.followed_frame(joint, e, values);
-        let mut r = self.place(joint.at[e], values);
-        for &(k, change) in self.effects.changes[j].iter().filter(|(k, _)| self.counts[*k]) {
-            let b = values.variables[k];
-            match change {
-                Change::Marker { end, position, rotation, .. } if end.covers(e) => {
-                    // P = P_o + b V,    C = exp(b R U) C_o in the world, to first order (3.4)           (paper 3.1, 3.4)
-                    r = position.spread().times_plus(b, r);
-                    if let Some(axis) = rotation.unit() {
-                        rot = Mat3::about(axis, b * T::constant(rotation.norm())) * rot;
-                    }
-                }
-                Change::Field { end, v, u, .. } if *end == e => {
-                    let body = self.frame(joint.bodies[e]).rot;
-                    // P = P_o + A (b V)                                                                                   (paper 3.1)
-                    r += body * v.spread() * b;
-                    // theta = theta_o + b U,  C = C(theta) C(theta_o)^-1 C_o in the body's frame                          (paper 3.1, 2.2)
-                    let (theta, c) = self.effects.model.euler_of(joint, e);
-                    let turned = [0, 1, 2].map(|n| T::constant(u[n]).times_plus(b, T::constant(theta[n])));
-                    let turned = rotation_from_euler_313(turned) * c.transpose().spread();
-                    // ... and in the world, A C A^T
-                    rot = body * turned * body.transpose() * rot;
-                }
-                _ => {}
-            }
-        }
-        Pose { rot, r }
+        let model = self.effects.model;
+        let joint = &model.joints[j];
+        // The hardpoint and the axes that it follows, then what changes this joint alone (paper 3.1, 3.4; `design/change.rs`).
+        let drawn = Pose { rot: self.followed_frame(joint, e, values), r: self.place(joint.at[e], values) };
+        let changes = self.effects.changes[j].iter().filter(|(k, _)| self.counts[*k]);
+        changes.fold(drawn, |marker, &(k, change)| change.marker(model, marker, e, values.variables[k]))
     }
 
     /// The frame of marker e of a joint whose axes follow the hardpoints they pass through.
