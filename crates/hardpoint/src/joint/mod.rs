@@ -2,7 +2,7 @@
 //!
 //! A joint is data. As a *tree* joint it is a chain of [`Freedom`]s that carries body j from body i;
 //! as a *cut* joint it is a list of elementary constraints ([`Row`]) between its two markers. The
-//! engine knows freedoms and rows, never joints, so a new joint is one file and one line in [`ALL`].
+//! engine knows freedoms and rows, never joints, so a new joint is one file, named here.
 
 mod angle;
 mod constant_velocity;
@@ -29,54 +29,40 @@ mod universal;
 
 use crate::constraint::Row;
 
-pub use angle::ANGLE;
-pub use constant_velocity::CONSTANT_VELOCITY;
-pub use cylindrical::CYLINDRICAL;
-pub use distance::DISTANCE;
-pub use dot1::DOT1;
-pub use dot2::DOT2;
-pub use fixed::FIXED;
-pub use heading::HEADING;
-pub use inline::INLINE;
-pub use inplane::INPLANE;
-pub use leg::LEG;
-pub use orientation::ORIENTATION;
-pub use parallel::PARALLEL;
-pub use planar::PLANAR;
-pub use point_on_curve::POINT_ON_CURVE;
-pub use revolute::REVOLUTE;
-pub use revolute_spherical::REVOLUTE_SPHERICAL;
-pub use screw::SCREW;
-pub use spherical::SPHERICAL;
-pub use translational::TRANSLATIONAL;
-pub use travel::TRAVEL;
-pub use universal::UNIVERSAL;
+/// Exports and lists the types.
+macro_rules! joints {
+    ($($file:ident $TYPE:ident)*) => {
+        $(pub use $file::$TYPE;)*
 
-/// Every joint type that a model may use.
-pub const ALL: &[&JointType] = &[
-    &FIXED,
-    &REVOLUTE,
-    &TRANSLATIONAL,
-    &CYLINDRICAL,
-    &SPHERICAL,
-    &UNIVERSAL,
-    &CONSTANT_VELOCITY,
-    &PLANAR,
-    &SCREW,
-    &INLINE,
-    &INPLANE,
-    &ORIENTATION,
-    &PARALLEL,
-    &DOT1,
-    &DOT2,
-    &ANGLE,
-    &DISTANCE,
-    &REVOLUTE_SPHERICAL,
-    &POINT_ON_CURVE,
-    &LEG,
-    &TRAVEL,
-    &HEADING,
-];
+        /// Every joint type that a model may use.
+        pub const ALL: &[&JointType] = &[$(&$TYPE),*];
+    };
+}
+
+joints! {
+    fixed FIXED
+    revolute REVOLUTE
+    translational TRANSLATIONAL
+    cylindrical CYLINDRICAL
+    spherical SPHERICAL
+    universal UNIVERSAL
+    constant_velocity CONSTANT_VELOCITY
+    planar PLANAR
+    screw SCREW
+    inline INLINE
+    inplane INPLANE
+    orientation ORIENTATION
+    parallel PARALLEL
+    dot1 DOT1
+    dot2 DOT2
+    angle ANGLE
+    distance DISTANCE
+    revolute_spherical REVOLUTE_SPHERICAL
+    point_on_curve POINT_ON_CURVE
+    leg LEG
+    travel TRAVEL
+    heading HEADING
+}
 
 /// What a joint type is: its geometry, its freedoms as a tree joint, its constraints as a cut joint.
 ///

@@ -826,12 +826,7 @@ fn right_by_ackermann<T: Real>(l: T, track_by_wheelbase: T) -> T {
 /// The bodies that measures and named points are fixed in.
 pub(crate) fn bodies_asked_for(model: &Model) -> Vec<usize> {
     let mut bodies: Vec<usize> = model.points.iter().map(|p| p.body.0).collect();
-    for measure in &model.measures {
-        if let MeasureKind::Coordinate { joint, .. } = measure.kind {
-            bodies.extend(model.joints[joint.0].bodies.map(|b| b.0));
-        }
-        bodies.extend(model.directions(measure).iter().flatten().map(|(body, _)| body.0));
-    }
+    bodies.extend(model.measures.iter().flat_map(|m| model.bodies_of(m)).map(|b| b.0));
     bodies.sort_unstable();
     bodies.dedup();
     bodies

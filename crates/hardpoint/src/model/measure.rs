@@ -221,6 +221,15 @@ macro_rules! in_models {
                 }
             }
 
+            /// The bodies that a measure looks at, by what its fields name; other outputs that it uses have their own.
+            pub(crate) fn bodies_of(&self, measure: &Measure) -> Vec<BodyId> {
+                match &measure.kind {
+                    $(MeasureKind::$variant { $($field),* } => [$($field.bodies(self)),*].concat(),)*
+                    MeasureKind::Wheel { wheel, .. } => wheel.bodies(self),
+                    MeasureKind::Axle { axle, .. } => self.axles[axle.0].wheels.map(|w| w.bodies(self)).concat(),
+                }
+            }
+
             /// What a measure is, in words; `direction` says a global direction.
             pub fn describe(&self, measure: &Measure, direction: &dyn Fn(Vec3) -> String) -> String {
                 let words = Words { model: self, direction };
@@ -240,6 +249,54 @@ macro_rules! in_models {
 }
 
 measures!(in_models);
+
+/// The bodies that a field of a measure names, or that carry what it names.
+trait OnBodies {
+    fn bodies(&self, _model: &Model) -> Vec<BodyId> {
+        Vec::new()
+    }
+}
+
+impl OnBodies for BodyId {
+    fn bodies(&self, _: &Model) -> Vec<BodyId> {
+        vec![*self]
+    }
+}
+
+impl OnBodies for JointId {
+    fn bodies(&self, model: &Model) -> Vec<BodyId> {
+        model.joints[self.0].bodies.to_vec()
+    }
+}
+
+impl OnBodies for PointId {
+    fn bodies(&self, model: &Model) -> Vec<BodyId> {
+        vec![model.points[self.0].body]
+    }
+}
+
+impl OnBodies for WheelId {
+    fn bodies(&self, model: &Model) -> Vec<BodyId> {
+        vec![model.wheels[self.0].body]
+    }
+}
+
+impl OnBodies for Ray {
+    fn bodies(&self, model: &Model) -> Vec<BodyId> {
+        match self {
+            Self::Between(points) => points.map(|p| p.bodies(model)).concat(),
+            Self::Fixed { body, .. } => vec![*body],
+        }
+    }
+}
+
+impl OnBodies for usize {}
+impl OnBodies for Vec3 {}
+impl OnBodies for Option<Vec3> {}
+impl OnBodies for Direction {}
+impl OnBodies for DriverId {}
+impl OnBodies for OutputSource {}
+impl OnBodies for Combination {}
 
 /// All of an output that follows from positions is known.
 const POSITIONS: Known = Known { orders: 3, by_position: true };
