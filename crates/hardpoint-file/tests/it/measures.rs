@@ -6,6 +6,7 @@ use std::path::Path;
 
 use hardpoint::model::{Model, VariableId};
 use hardpoint::motion::Execution;
+use hardpoint::space::Vec3;
 use hardpoint::study::{VerifyOptions, verify};
 use hardpoint::{Analysis, Solution};
 use hardpoint_file::{ModelFile, parse};
@@ -31,6 +32,11 @@ about = [0.1, 0, 1]
 type = "velocity"
 point = { body = "FRAMES0", at = "POINTS2" }
 along = [1, 0.5, 0.2]
+
+[measures.omega]
+type = "angular_velocity"
+body = "FRAMES1"
+along = [0.1, 0.2, 1]
 
 [measures.a]
 type = "acceleration"
@@ -77,7 +83,7 @@ fn with_measures((name, bodies, points): &(&str, [&str; 2], [&str; 3])) -> Model
         more = more.replace(&format!("POINTS{}", k + 1), point);
     }
     // Names of their own.
-    for measure in ["mu", "between", "about", "v", "a", "x", "xdot", "turning", "mixed", "power"] {
+    for measure in ["mu", "between", "about", "v", "omega", "a", "x", "xdot", "turning", "mixed", "power"] {
         more = more.replace(&format!("[measures.{measure}]"), &format!("[measures.own_{measure}]"));
         more = more.replace(&format!("of = \"{measure}\""), &format!("of = \"own_{measure}\""));
     }
@@ -126,6 +132,11 @@ fn values_and_rates_are_those_of_what_they_are_made_of() {
             close(value("v", k)[0], xdot, xdot, "velocity");
             close(value("v", k)[1], xddot, xddot, "its rate");
             close(value("a", k)[0], xddot, xddot, "acceleration");
+            let turning = solution.body(k, file.model.body(model.1[1]).unwrap());
+            let n = Vec3::new(0.1, 0.2, 1.0).unit().unwrap();
+            let [omega, alpha, _] = value("omega", k);
+            close(omega, n.dot(turning.omega), omega, "angular velocity");
+            close(alpha, n.dot(turning.alpha), alpha, "angular acceleration");
             close(value("xdot", k)[0], xdot, xdot, "rate of a position");
             close(value("turning", k)[0], value("about", k)[1], value("about", k)[1], "rate of an angle");
             let about = value("about", k)[0];

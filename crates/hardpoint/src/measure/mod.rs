@@ -676,6 +676,7 @@ impl<'a, T: Real> Moment<'a, T> {
             }
             // n . v or abs(v),    n . a or abs(a)
             MeasureKind::Velocity { point, along } => component(self.point(*point).map(T::rate), *along),
+            MeasureKind::AngularVelocity { body, along } => component(self.angular_velocity(*body), *along),
             MeasureKind::Acceleration { point, along } => {
                 component(self.point(*point).map(T::rate).map(T::rate), *along)
             }
@@ -704,6 +705,13 @@ impl<'a, T: Real> Moment<'a, T> {
             MeasureKind::Axle { axle, what } => self.axle(k, self.model.axles[axle.0].wheels, *what),
             MeasureKind::Slope { .. } => unknown(),
         }
+    }
+
+    /// A body's angular velocity, global.
+    fn angular_velocity(&self, body: BodyId) -> Vec3<T> {
+        // a. = omega x a of each axis, so  sum a x a. = 3 omega - sum a (a . omega) = 2 omega
+        let turns = self.poses[body.0].rot.cols.map(|a| a.cross(a.map(T::rate)));
+        (turns[0] + turns[1] + turns[2]) * T::constant(0.5)
     }
 
     /// The directions of an angle, of any length.

@@ -99,6 +99,17 @@ macro_rules! measures {
         along: Option<Vec3> => Option<Vec3>,
     } |_, w| Dimension::LENGTH.rate(1), moving(2), w.component("velocity", *point, *along);
 
+    /// Angular velocity of a body.
+    AngularVelocity "angular_velocity" {
+        /// The body's name.
+        body: String => BodyId,
+        /// The direction of the component, of any length. Default: the magnitude.
+        along: Option<Vec3> => Option<Vec3>,
+    } |_, w| Dimension::ANGLE.rate(1), moving(2), match along {
+        Some(n) => format!("angular velocity of `{}` about {}", w.body(*body), (w.direction)(*n)),
+        None => format!("magnitude of the angular velocity of `{}`", w.body(*body)),
+    };
+
     /// Acceleration of a point.
     Acceleration "acceleration" {
         /// The point.

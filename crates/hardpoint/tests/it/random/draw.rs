@@ -807,6 +807,7 @@ impl<'r> Drawing<'r> {
         let (velocity, acceleration) = (Some(spin), Some(along));
         self.measure(MeasureKindDraft::Velocity { point: moving(), along: velocity });
         self.measure(MeasureKindDraft::Acceleration { point: moving(), along: acceleration });
+        self.measure(MeasureKindDraft::AngularVelocity { body: self.name(body), along: velocity });
         let ray = |body: String, axis: Vec3| RayDraft::Fixed { body, axis: Line::Along(axis) };
         let (from, to) = (ray(self.name(a), spin), ray(self.name(b), along));
         self.measure(MeasureKindDraft::Angle { from, to, about: None });

@@ -759,6 +759,7 @@ fn moved(draft: &Draft, to: Pose) -> Draft {
                 point(p);
                 *along = along.map(|v| to.rot * v);
             }
+            MeasureKindDraft::AngularVelocity { along, .. } => *along = along.map(|v| to.rot * v),
             MeasureKindDraft::Rate { .. }
             | MeasureKindDraft::Slope { .. }
             | MeasureKindDraft::Combination { .. } => {}
