@@ -17,6 +17,7 @@ mod inplane;
 mod leg;
 mod orientation;
 mod parallel;
+mod pin_in_slot;
 mod planar;
 mod point_on_curve;
 mod revolute;
@@ -48,6 +49,7 @@ joints! {
     universal UNIVERSAL
     constant_velocity CONSTANT_VELOCITY
     planar PLANAR
+    pin_in_slot PIN_IN_SLOT
     screw SCREW
     inline INLINE
     inplane INPLANE

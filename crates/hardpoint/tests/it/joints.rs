@@ -228,6 +228,55 @@ fn a_pin_that_reaches_the_end_of_its_slot_stops_there_and_keeps_what_was_solved(
     assert_eq!(stop.kind, hardpoint::motion::StopKind::Limit);
 }
 
+/// A Whitworth quick return: the pin of a crank of 60 mm slides in the slot of an arm whose bearing lies 30 mm below the crank's.
+fn quick_return() -> Draft {
+    let z = [0.0, 0.0, 1.0];
+    Draft::new("quick return")
+        .hardpoint("O", [0.0, 0.03, 0.0])
+        .hardpoint("A", [0.0, 0.0, 0.0])
+        .hardpoint("P", [0.06, 0.03, 0.0])
+        .bodies(["crank", "arm"])
+        .revolute("O", ["ground", "crank"], "O", z)
+        .revolute("A", ["ground", "arm"], "A", z)
+        .joint(JointDraft::new("slot", "pin_in_slot", ["arm", "crank"]).at("P").axis(z).axis2(["A", "P"]))
+        .driver("motor", "O", hardpoint::law::Law::parse("7*t").unwrap())
+        .variable_moving("bearing_y", "O", [0.0, 1.0, 0.0])
+        .variable_moving("pin_x", "P", [1.0, 0.0, 0.0])
+        .variable_moving("arm_x", "A", [1.0, 0.3, 0.0])
+        .variable(marker("slot_rz", "slot", [0.0; 3], z))
+        .measure("arm", "A")
+        .measure("slide", ["slot", "displacement"])
+        .measure("pin", ["slot", "angle"])
+        .times(times(1.3, 26))
+}
+
+#[test]
+fn a_pin_in_a_slot_moves_as_it_must_and_matches_resolved_designs() {
+    let model = Model::from_draft(&quick_return()).unwrap();
+    for formulation in [Formulation::Relative, Formulation::Absolute] {
+        let analysis = Analysis::with(&model, formulation).unwrap();
+        let solution = analysis.run();
+        assert!(solution.stop.is_none(), "{:?}", solution.stop);
+        let report = verify(&analysis, &solution, &VerifyOptions::default(), |_| ControlFlow::Continue(()));
+        for check in &report.checks {
+            let worst = check.worst().unwrap();
+            assert!(worst.error < 5e-8, "{}: {worst:?}", model.variables[check.variable.0].name);
+        }
+        let [arm, slide, pin] = ["arm", "slide", "pin"].map(|m| solution.measured.index(m).unwrap());
+        let place = |angle: f64| (0.06 * angle.cos(), 0.03 + 0.06 * angle.sin());
+        let (far, heading) = (place(0.0).0.hypot(place(0.0).1), place(0.0).1.atan2(place(0.0).0));
+        for k in 0..solution.motion.len() {
+            let angle = 7.0 * solution.motion.times[k];
+            let (x, y) = place(angle);
+            let turned = solution.measured.value(k, arm)[0];
+            // The slot points at the pin: of the arm's whole turns only the sine counts here.
+            assert!((y.atan2(x) - heading - turned).sin().abs() < 1e-10, "t = {}", solution.motion.times[k]);
+            assert!((solution.measured.value(k, slide)[0] - (x.hypot(y) - far)).abs() < 1e-12);
+            assert!((solution.measured.value(k, pin)[0] - (angle - turned)).abs() < 1e-9);
+        }
+    }
+}
+
 #[test]
 fn a_train_of_rare_joints_matches_resolved_designs_in_both_formulations() {
     let model = Model::from_draft(&shaft_train()).unwrap();
@@ -275,7 +324,7 @@ pub fn mechanisms() -> Vec<Draft> {
     REFERENCES
         .iter()
         .map(|n| reference_draft(n))
-        .chain([slider_on_a_shaft(), shaft_train(), cam_and_slot()])
+        .chain([slider_on_a_shaft(), shaft_train(), cam_and_slot(), quick_return()])
         .collect()
 }
 

@@ -1,0 +1,20 @@
+//! Pin in slot: a pin that slides along a straight slot and turns in it.
+
+use crate::constraint::{PARALLEL_Z, Row};
+
+use super::{Freedom, JointType, Need, angle, displacement_along};
+
+/// d along x_i, the slot, and z_j, the pin, parallel to z_i: four constraints, a displacement and an angle. What a block with a hinge
+/// and a slide would be, without the block.
+pub static PIN_IN_SLOT: JointType = JointType {
+    name: "pin_in_slot",
+    aliases: &["slotted_pin"],
+    summary: "a pin of body j, along `axis`, slides along the straight slot `axis2` of body i and turns in it",
+    places: 1,
+    axis: Need::Required,
+    axis2: Need::Required,
+    freedoms: Some(&[Freedom::Slide(0), Freedom::Turn(2)]),
+    tree_rows: &[],
+    rows: &[PARALLEL_Z[0], PARALLEL_Z[1], Row::Dot2(1), Row::Dot2(2)],
+    coordinates: &[displacement_along("displacement", 0, 0), angle(1)],
+};
