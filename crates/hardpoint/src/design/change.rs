@@ -1,6 +1,6 @@
 //! What each kind of change does to a design, over any number.
 
-use crate::model::change::{Change, Field, Law, Length, Marker, Move, Parameter, changes};
+use crate::model::change::{self, Change, changes};
 use crate::model::{DriverId, HardpointId, JointId, Model, ParameterId};
 use crate::number::Real;
 use crate::space::{Mat3, Pose, Vec3, rotation_from_euler_313};
@@ -40,13 +40,13 @@ pub(crate) trait Effect {
     }
 }
 
-impl Effect for Move {
+impl Effect for change::Move {
     fn hardpoint(&self) -> Option<(HardpointId, Vec3)> {
         Some((self.hardpoint, self.velocity))
     }
 }
 
-impl Effect for Marker {
+impl Effect for change::Marker {
     fn joint(&self) -> Option<JointId> {
         Some(self.joint)
     }
@@ -64,7 +64,7 @@ impl Effect for Marker {
     }
 }
 
-impl Effect for Length {
+impl Effect for change::Length {
     fn joint(&self) -> Option<JointId> {
         Some(self.joint)
     }
@@ -75,19 +75,19 @@ impl Effect for Length {
     }
 }
 
-impl Effect for Parameter {
+impl Effect for change::Parameter {
     fn parameter(&self) -> Option<(ParameterId, f64)> {
         Some((self.parameter, self.rate))
     }
 }
 
-impl Effect for Law {
+impl Effect for change::Law {
     fn law(&self) -> Option<(DriverId, usize, f64)> {
         Some((self.driver, self.parameter, self.rate))
     }
 }
 
-impl Effect for Field {
+impl Effect for change::Field {
     fn joint(&self) -> Option<JointId> {
         Some(self.joint)
     }

@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 
 use crate::design::{Interpolation, ShapeField};
 use crate::draft::{ChangeDraft, Line, Locus, Section, ShapeDraft, VariableDraft};
-use crate::model::change::{Field, Law, Length, Marker, Move, Parameter};
+use crate::model::change;
 use crate::model::{
     BodyId, Change, DesignVariable, Direction, DriverId, End, HardpointId, JointId, ParameterId,
 };
@@ -105,7 +105,7 @@ impl Check<'_> {
         for h in moved {
             let [velocity, _] = field.at(self.position(HardpointId(h))?);
             if velocity.norm() > SAME_POINT * size.min(1.0) && !self.curve_points.contains(&HardpointId(h)) {
-                changes.push(Move { hardpoint: HardpointId(h), velocity }.into());
+                changes.push(change::Move { hardpoint: HardpointId(h), velocity }.into());
             }
         }
         for joint in turned {
@@ -113,7 +113,7 @@ impl Check<'_> {
             let [_, rotation] = field.at(self.position(place)?);
             if rotation.norm() > SAME_POINT {
                 let (end, position) = (End::Both, Vec3::ZERO);
-                changes.push(Marker { joint, end, position, rotation }.into());
+                changes.push(change::Marker { joint, end, position, rotation }.into());
             }
         }
         if changes.is_empty() && !self.joint_ids.contains(&None) {
@@ -198,17 +198,17 @@ impl Check<'_> {
                     return None;
                 }
                 self.not_null(vectors(&[*velocity]), owner, at);
-                Move { hardpoint, velocity: *velocity }.into()
+                change::Move { hardpoint, velocity: *velocity }.into()
             }
             ChangeDraft::Tilt { joint, about } => {
                 let joint = self.joint(joint, at)?;
                 let (_, rotation) = self.line(about, owner, here, "about")?;
-                Marker { joint, end: End::Both, position: Vec3::ZERO, rotation }.into()
+                change::Marker { joint, end: End::Both, position: Vec3::ZERO, rotation }.into()
             }
             ChangeDraft::Marker { joint, end, position, rotation } => {
                 let joint = self.joint(joint, at.clone())?;
                 self.not_null(vectors(&[*position, *rotation]), owner, at);
-                Marker { joint, end: *end, position: *position, rotation: *rotation }.into()
+                change::Marker { joint, end: *end, position: *position, rotation: *rotation }.into()
             }
             ChangeDraft::Length { joint, rate } => {
                 let joint = self.joint(joint, at.clone())?;
@@ -224,13 +224,13 @@ impl Check<'_> {
                     fault.help(format!("give rod `{name}` a `length`, or move one of its hardpoints"));
                     return None;
                 }
-                Length { joint, rate: *rate }.into()
+                change::Length { joint, rate: *rate }.into()
             }
             ChangeDraft::Parameter { parameter, rate } => {
                 let names = self.draft.parameters.iter().map(|p| p.name.as_str());
                 let parameter = self.find("parameter", parameter, at.clone(), names).map(ParameterId)?;
                 self.not_null(number(*rate), owner, at);
-                Parameter { parameter, rate: *rate }.into()
+                change::Parameter { parameter, rate: *rate }.into()
             }
             ChangeDraft::Law { driver, parameter, rate } => {
                 let draft = self.draft;
@@ -246,7 +246,7 @@ impl Check<'_> {
                 self.not_null(number(*rate), owner, at);
                 // A faulty driver has been reported.
                 let driver = self.model.drivers.iter().position(|d| d.name == *driver).map(DriverId)?;
-                Law { driver, parameter, rate: *rate }.into()
+                change::Law { driver, parameter, rate: *rate }.into()
             }
             ChangeDraft::Shape { bodies, field } => return self.shape(bodies, field, owner, here, k),
             ChangeDraft::Field { joint, body, v, u } => {
@@ -264,7 +264,7 @@ impl Check<'_> {
                     self.fault("HP0218", at, message).note(format!("it connects {names}"));
                     return None;
                 }
-                Field { joint, body, v: *v, u: *u }.into()
+                change::Field { joint, body, v: *v, u: *u }.into()
             }
         };
         Some(vec![change])
