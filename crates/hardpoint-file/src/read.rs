@@ -16,7 +16,7 @@ use hardpoint::draft::{
     BodyDraft, CurveDraft, Draft, FormulaDraft, FormulaOf, FrameDraft, HardpointDraft, JointDraft, Line,
     Nominal, Place, Section,
 };
-use hardpoint::joint::{self, Quantity};
+use hardpoint::joint::{self, JointType, Quantity};
 use hardpoint::law::Law;
 use hardpoint::space::{Pose, Quat, Vec3, rotation_from_euler_313};
 use toml::de::{DeTable, DeValue};
@@ -714,12 +714,7 @@ fn way(table: &Table) -> String {
 
 static EMPTY: std::sync::OnceLock<DeTable<'static>> = std::sync::OnceLock::new();
 
-/// What a joint's coordinate measures, as far as joint and coordinate are known; the core reports the rest.
-fn coordinate_quantity(raw: &Raw, joint: &str, coordinate: Option<&str>) -> Option<Quantity> {
-    let kind = joint::named(&raw.draft.joints[*raw.joint_numbers.get(joint)?].kind)?;
-    let coordinate = match coordinate {
-        Some(name) => kind.coordinate(name).map(|c| c.1),
-        None => kind.coordinates.first(),
-    };
-    Some(coordinate?.quantity)
+/// The type of a joint, as far as it is known; the core reports the rest.
+fn type_of(raw: &Raw, joint: &str) -> Option<&'static JointType> {
+    joint::named(&raw.draft.joints[*raw.joint_numbers.get(joint)?].kind)
 }

@@ -56,7 +56,7 @@ impl GapFact {
             Closing::Coupler(c) => ("coupler", &model.couplers[c].name),
         };
         // The gap of a direction is a cosine that is 0 when closed: to first order an angle.
-        let of = if gap.is_length { Quantity::Length } else { Quantity::Angle };
+        let of = gap.quantity;
         Self { kind, name: name.clone(), size: units.from_si(of, gap.size), unit: symbol(units, of) }
     }
 

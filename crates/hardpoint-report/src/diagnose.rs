@@ -1,7 +1,6 @@
 //! Why a mechanism cannot be driven, a run ended early, or a variable has no sensitivity: as diagnostics of
 //! the model file, in the user's names and units.
 
-use hardpoint::joint::Quantity;
 use hardpoint::motion::{Closing, Stop, StopKind};
 use hardpoint::topology::TopologyFault;
 use hardpoint::{
@@ -80,8 +79,7 @@ pub fn stop(file: &ModelFile, stop: &Stop, solved: usize, outputs: Option<&str>)
             ),
         });
     }
-    if let StopKind::Locked { joint, residual, is_length } = stop.kind {
-        let of = if is_length { Quantity::Length } else { Quantity::Angle };
+    if let StopKind::Locked { joint, residual, quantity: of } = stop.kind {
         let open = with_unit(units.from_si(of, residual), symbol(units, of));
         d = d.note(format!("`{}` stays open by {open}", joint_name(&joint)));
     }

@@ -7,7 +7,7 @@ use crate::format::{JOINT, Key, Kinds, LENGTH, NUMBER, Shape, TWO_NUMBERS, Table
 use crate::places::EntryPlace;
 use crate::tree::{Fields, Reader};
 
-use super::{COORDINATE, Raw, coordinate_quantity};
+use super::{COORDINATE, Raw, type_of};
 
 pub(crate) const COUPLER: Kinds = Kinds {
     name: "Coupler",
@@ -145,7 +145,7 @@ impl Reader<'_> {
                 let coordinate = self.name_if(term, "coordinate");
                 let coefficient = self.number_of(term, "coefficient");
                 let (joint, coordinate) = (joint?, coordinate?);
-                let quantity = coordinate_quantity(raw, &joint, coordinate.as_deref());
+                let quantity = type_of(raw, &joint).and_then(|kind| kind.quantity_of(coordinate.as_deref()));
                 let per_si = self.units.of(quantity.unwrap_or(Quantity::Number)).1;
                 Some(TermDraft { joint, coordinate, coefficient: coefficient? * per_si })
             })

@@ -9,7 +9,7 @@ use crate::places::EntryPlace;
 use crate::read::results::POINT_REF;
 use crate::tree::{Fields, LINE, Reader};
 
-use super::{COORDINATE, Raw, coordinate_quantity, law};
+use super::{COORDINATE, Raw, law, type_of};
 
 pub(crate) const DRIVER: Kinds = Kinds {
     name: "Driver",
@@ -112,15 +112,8 @@ impl Reader<'_> {
             let drives = form.and_then(|(_, read)| read(self, &fields, &mut place));
             let law = self.given(&fields, "law", |r, f| r.law(&fields, f));
             let drives = drives.unwrap_or(DrivenDraft::Unread);
-            let quantity = match &drives {
-                // The core says what is wrong with a joint or coordinate that is not known.
-                DrivenDraft::Coordinate { joint, coordinate } => {
-                    coordinate_quantity(raw, joint, coordinate.as_deref()).unwrap_or(Quantity::Number)
-                }
-                DrivenDraft::Position { .. } | DrivenDraft::Distance { .. } => Quantity::Length,
-                DrivenDraft::Orientation { .. } => Quantity::Angle,
-                DrivenDraft::Unread => Quantity::Number,
-            };
+            // The core says what is wrong with a joint or coordinate that is not known.
+            let quantity = drives.quantity(|joint| type_of(raw, joint)).unwrap_or(Quantity::Number);
             let law = law.unwrap_or_else(|| Law::constant(0.0)).scaled(self.units.to_si(quantity, 1.0));
             self.push(raw, Section::Drivers, place);
             raw.driven.push(quantity);

@@ -605,7 +605,7 @@ const ROUND_OFF: f64 = 1e-9;
 
 fn defect(model: &Model, units: Units, (by, unit): (Quantity, &str), defect: &JointDefect) -> DefectFact {
     // The defect of a direction is a cosine that is 0 when closed: to first order an angle.
-    let of = if defect.row.is_length() { Quantity::Length } else { Quantity::Angle };
+    let of = Quantity::from(defect.row);
     DefectFact {
         joint: joint_name(model, defect.joint),
         constraint: defect.row.describe(),

@@ -18,7 +18,7 @@ pub use measure::{FieldDraft, FieldKind, MeasureField, MeasureKindDraft, Measure
 use std::collections::BTreeMap;
 
 use crate::expression::Expression;
-use crate::joint::Quantity;
+use crate::joint::{self, JointType, Quantity};
 use crate::law::Law;
 use crate::model::{Side, Take, Vehicle, VehicleEnd};
 use crate::space::{Pose, Vec3};
@@ -315,6 +315,19 @@ pub enum DrivenDraft {
         /// The direction.
         about: Line,
     },
+}
+
+impl DrivenDraft {
+    /// What the driver's values are, as far as that is known; `type_of` gives the type of a joint.
+    pub fn quantity(&self, type_of: impl FnOnce(&str) -> Option<&'static JointType>) -> Option<Quantity> {
+        match self {
+            Self::Unread => None,
+            Self::Coordinate { joint, coordinate } => type_of(joint)?.quantity_of(coordinate.as_deref()),
+            Self::Position { .. } => joint::TRAVEL.quantity_of(None),
+            Self::Distance { .. } => joint::LEG.quantity_of(None),
+            Self::Orientation { .. } => joint::HEADING.quantity_of(None),
+        }
+    }
 }
 
 /// A design variable.

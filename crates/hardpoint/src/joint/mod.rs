@@ -172,6 +172,13 @@ pub enum Quantity {
     Number,
 }
 
+/// What the residual of a constraint is; cosines count as angles.
+impl From<Row> for Quantity {
+    fn from(row: Row) -> Self {
+        if row.is_length() { Self::Length } else { Self::Angle }
+    }
+}
+
 /// The joint type of that name, or with that alias.
 pub fn named(name: &str) -> Option<&'static JointType> {
     ALL.iter().copied().find(|t| t.name == name || t.aliases.contains(&name))
@@ -181,6 +188,15 @@ impl JointType {
     /// The coordinate of that name.
     pub fn coordinate(&self, name: &str) -> Option<(usize, &CoordinateType)> {
         self.coordinates.iter().enumerate().find(|(_, c)| c.name == name)
+    }
+
+    /// What the coordinate of that name measures, or, where none is named, the first one.
+    pub fn quantity_of(&self, coordinate: Option<&str>) -> Option<Quantity> {
+        let coordinate = match coordinate {
+            Some(name) => self.coordinate(name).map(|c| c.1),
+            None => self.coordinates.first(),
+        };
+        Some(coordinate?.quantity)
     }
 
     /// Whether it is a ball and nothing else.

@@ -12,6 +12,7 @@ mod slope;
 mod wheel;
 
 use std::collections::BTreeMap;
+use std::ops::Range;
 
 use bodies::{with_rates, with_sensitivity};
 use hardpoint_tape::LANES;
@@ -245,106 +246,158 @@ pub(crate) fn evaluate(
     program: Option<&Program>,
     measured: &mut Measured,
 ) {
-    let &At { model, effects, values, laws } = design;
-    let outputs = outputs(model);
-    let variables = sensitivities.variables;
-    let layout = program.map_or_else(|| dense(outputs.len(), variables), Program::layout);
-    measured.shape(outputs, variables, layout, motion.len());
-    let cannot_follow =
-        |b: &usize| matches!(sensitivities.admissibility[*b], Admissibility::CannotFollow { .. });
-    measured.forget((0..variables).filter(cannot_follow));
+    let &At { model, values, .. } = design;
+    make_room(model, sensitivities, motion.len(), program, measured);
     let mut run = program.map(|program| Run::new(program, values));
-    let turns = turns(model, topology, &measured.outputs);
-    let bodies = bodies_asked_for(model);
-
-    // What is fixed in the bodies has no rates: they are all in the poses.
-    let fixed = effects.fixed(values).map(Jet::constant);
-    let mut poses = vec![Pose::IDENTITY.spread(); model.bodies.len()];
-    // Formulas are over angles that are counted through turns.
-    let counts = (0..model.measures.len()).any(|m| is_formula(model, m));
-    let mut counted: Vec<f64> = Vec::new();
-    let (mut given, mut whole_turns): (Vec<Rates>, Vec<Rates>) = (Vec::new(), Vec::new());
-    // Blocks of output times, and outputs there, that the formulas themselves are asked for.
-    let mut left: Vec<(usize, usize)> = Vec::new();
+    let mut formulas = Formulas::new(design, topology, (motion, before), slopes, measured);
     for first in (0..motion.len()).step_by(LANES) {
         let times = first..usize::min(first + LANES, motion.len());
-        let begins = left.len();
-        loop {
+        let asked = loop {
             if let Some(run) = &mut run {
                 // Eight output times at once; what the program cannot tell is listed, and asked of the formulas one by one.
                 run.at(first, motion, sensitivities, measured);
             }
-            left.truncate(begins);
-            counted.truncate(first * model.measures.len());
-            let fits = |m: &usize| run.as_ref().is_some_and(|run| run.fits(*m, times.len()));
-            left.extend((0..turns.len()).filter(|m| !fits(m)).map(|m| (first, m)));
-            for k in times.clone() {
-                let place = |poses: &mut [Pose<Rates>]| {
-                    let states = motion.at(k);
-                    bodies.iter().for_each(|&b| poses[b] = with_rates(&states.body(b)));
-                };
-                if left.len() > begins {
-                    place(&mut poses);
-                }
-                given.clear();
-                given.extend(slopes.at(k).iter().map(|x| only(*x)));
-                let moment = Moment { slopes: &given, ..Moment::new(model, &fixed, &poses) };
-                for &(_, m) in &left[begins..] {
-                    measured.set(k, m, moment.output(measured.outputs[m].source).0);
-                }
-                let on_the_way = |m: usize, passed: &Passed| {
-                    let mut poses = poses.clone();
-                    place(&mut poses);
-                    passed.states.iter().for_each(|(body, state)| poses[body.0] = with_rates(state));
-                    // An angle where the path passed between output times
-                    let Jet([angle, rate, _]) = Moment::new(model, &fixed, &poses).measure(m);
-                    [angle, rate]
-                };
-                whole_turns.clear();
-                whole_turns.resize(model.measures.len(), Jet([0.0; 3]));
-                unwrap_angles(laws, (motion, before), k, &turns, measured, on_the_way, |m, whole| {
-                    whole_turns[m].0[0] = whole;
-                });
-                if counts {
-                    // The formula of measures asks for angles with their turns, so these are found first.
-                    counted.extend(whole_turns.iter().map(|turns| turns.0[0]));
-                    let moment = Moment { whole_turns: &whole_turns, ..moment };
-                    for &(_, m) in left[begins..].iter().filter(|(_, m)| is_formula(model, *m)) {
-                        measured.set(k, m, moment.measure(m).0);
-                    }
-                }
-            }
+            let asked = formulas.fill(times.clone(), run.as_ref(), measured);
             // The program went by the turns of the output time before.
-            let Some(run) = &mut run else { break };
-            let mut differ = false;
-            for (m, lanes) in run.turns() {
-                for (lane, to) in lanes.iter_mut().enumerate() {
-                    let k = usize::min(first + lane, times.end - 1);
-                    let now = counted[k * model.measures.len() + m];
-                    // Bit by bit, so that what is no number is the same again.
-                    differ |= now.to_bits() != to.to_bits();
-                    *to = now;
-                }
+            let turns = |m: usize, k: usize| formulas.counted[k * model.measures.len() + m];
+            if !run.as_mut().is_some_and(|run| run.take_turns(times.clone(), turns)) {
+                break asked;
             }
-            if !differ {
-                break;
-            }
-        }
-        measured.by_formula += times.len() * (left.len() - begins);
+        };
+        measured.by_formula += times.len() * asked;
         if let Some(run) = &mut run {
             run.turns().for_each(|(_, lanes)| *lanes = [lanes[LANES - 1]; LANES]);
         }
     }
-
+    let Formulas { left, counted, .. } = formulas;
     let more = More { slopes, whole_turns: &counted };
-    let asked = std::mem::take(&mut measured.outputs);
-    let outputs = asked.len();
-    derivatives(design, &asked, &left, (motion, sensitivities), &more, |k, b, m, numbers| {
-        if let Some(place) = measured.places[b * outputs + m] {
-            measured.d.set(k, place, numbers);
-        }
+    let outputs = measured.outputs.clone();
+    derivatives(design, &outputs, &left, (motion, sensitivities), &more, |k, b, m, numbers| {
+        measured.set_d(k, VariableId(b), m, numbers);
     });
-    measured.outputs = asked;
+}
+
+/// Room for all outputs of a motion of so many steps, as a program lays them out, if there is one.
+fn make_room(
+    model: &Model,
+    sensitivities: &Sensitivities,
+    steps: usize,
+    program: Option<&Program>,
+    measured: &mut Measured,
+) {
+    let outputs = outputs(model);
+    let variables = sensitivities.variables;
+    let layout = program.map_or_else(|| dense(outputs.len(), variables), Program::layout);
+    measured.shape(outputs, variables, layout, steps);
+    let cannot_follow =
+        |b: &usize| matches!(sensitivities.admissibility[*b], Admissibility::CannotFollow { .. });
+    measured.forget((0..variables).filter(cannot_follow));
+}
+
+/// The formulas of the outputs, at work on one motion.
+struct Formulas<'a> {
+    model: &'a Model,
+    laws: &'a [Law],
+    motion: &'a Motion,
+    before: Option<&'a Before>,
+    slopes: &'a SlopeValues,
+    fixed: Fixed<Rates>,
+    /// The bodies that measures name, and where they are.
+    bodies: Vec<usize>,
+    poses: Vec<Pose<Rates>>,
+    /// Per output: what tells its turns, if it is an angle that has any.
+    turns: Vec<Option<Turns>>,
+    /// Whether any measure is a formula over angles that are counted through turns.
+    counts: bool,
+    /// Blocks of output times, and outputs there, that the formulas themselves are asked for.
+    left: Vec<(usize, usize)>,
+    /// By time and measure, where any counts: the whole turns.
+    counted: Vec<f64>,
+    /// Room for the slopes and the whole turns of one output time.
+    given: Vec<Rates>,
+    whole_turns: Vec<Rates>,
+}
+
+impl<'a> Formulas<'a> {
+    fn new(
+        design: &At<'a>,
+        topology: &Topology,
+        (motion, before): (&'a Motion, Option<&'a Before>),
+        slopes: &'a SlopeValues,
+        measured: &Measured,
+    ) -> Self {
+        let &At { model, effects, values, laws } = design;
+        Self {
+            model,
+            laws,
+            motion,
+            before,
+            slopes,
+            // What is fixed in the bodies has no rates: they are all in the poses.
+            fixed: effects.fixed(values).map(Jet::constant),
+            bodies: bodies_asked_for(model),
+            poses: vec![Pose::IDENTITY.spread(); model.bodies.len()],
+            turns: turns(model, topology, &measured.outputs),
+            counts: (0..model.measures.len()).any(|m| is_formula(model, m)),
+            left: Vec::new(),
+            counted: Vec::new(),
+            given: Vec::new(),
+            whole_turns: Vec::new(),
+        }
+    }
+
+    /// Evaluates what a program does not tell at these output times, which are a block of eight, and counts all angles there; says how
+    /// many outputs that are.
+    fn fill(&mut self, times: Range<usize>, run: Option<&Run<'_>>, measured: &mut Measured) -> usize {
+        let first = times.start;
+        let begins = self.left.partition_point(|(block, _)| *block < first);
+        self.left.truncate(begins);
+        self.counted.truncate(first * self.model.measures.len());
+        let fits = |m: &usize| run.is_some_and(|run| run.fits(*m, times.len()));
+        self.left.extend((0..self.turns.len()).filter(|m| !fits(m)).map(|m| (first, m)));
+        times.for_each(|k| self.fill_one(k, begins, measured));
+        self.left.len() - begins
+    }
+
+    /// The same at output time k, for the outputs that are left from `begins` on.
+    fn fill_one(&mut self, k: usize, begins: usize, measured: &mut Measured) {
+        let Self { model, motion, fixed, bodies, poses, left, given, whole_turns, .. } = self;
+        let left = &left[begins..];
+        let place = |poses: &mut [Pose<Rates>]| {
+            let states = motion.at(k);
+            bodies.iter().for_each(|&b| poses[b] = with_rates(&states.body(b)));
+        };
+        if !left.is_empty() {
+            place(poses);
+        }
+        given.clear();
+        given.extend(self.slopes.at(k).iter().map(|x| only(*x)));
+        let moment = Moment { slopes: given, ..Moment::new(model, fixed, poses) };
+        for &(_, m) in left {
+            measured.set(k, m, moment.output(measured.outputs[m].source).0);
+        }
+        let on_the_way = |m: usize, passed: &Passed| {
+            let mut poses = poses.clone();
+            place(&mut poses);
+            passed.states.iter().for_each(|(body, state)| poses[body.0] = with_rates(state));
+            // An angle where the path passed between output times
+            let Jet([angle, rate, _]) = Moment::new(model, fixed, &poses).measure(m);
+            [angle, rate]
+        };
+        whole_turns.clear();
+        whole_turns.resize(model.measures.len(), Jet([0.0; 3]));
+        unwrap_angles(self.laws, (motion, self.before), k, &self.turns, measured, on_the_way, |m, whole| {
+            whole_turns[m].0[0] = whole;
+        });
+        if self.counts {
+            // The formula of measures asks for angles with their turns, so these are found first.
+            self.counted.extend(whole_turns.iter().map(|turns| turns.0[0]));
+            let moment = Moment { whole_turns, ..moment };
+            for &(_, m) in left.iter().filter(|(_, m)| is_formula(model, *m)) {
+                measured.set(k, m, moment.measure(m).0);
+            }
+        }
+    }
 }
 
 /// What outputs may ask for besides the motion.

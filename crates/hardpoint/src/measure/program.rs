@@ -19,6 +19,8 @@
 //!
 //! and a = (dr, pi') with their rates: slides of the frame's origin, turns about it.
 
+use std::ops::Range;
+
 use hardpoint_tape::{LANES, Number, Options, record};
 
 use crate::blocks::{Line, lanes_of};
@@ -440,6 +442,20 @@ impl<'p> Run<'p> {
     pub fn fits(&self, output: usize, lanes: usize) -> bool {
         // Written so that NaN does not.
         self.guards[output].0[..lanes].iter().all(|x| *x <= 0.0)
+    }
+
+    /// Takes the whole turns that `counted(measure, time)` gives at these output times; whether any differs from what they were.
+    pub fn take_turns(&mut self, times: Range<usize>, counted: impl Fn(usize, usize) -> f64) -> bool {
+        let mut differ = false;
+        for (m, lanes) in self.turns() {
+            for (lane, to) in lanes.iter_mut().enumerate() {
+                let now = counted(m, usize::min(times.start + lane, times.end - 1));
+                // Bit by bit, so that what is no number is the same again.
+                differ |= now.to_bits() != to.to_bits();
+                *to = now;
+            }
+        }
+        differ
     }
 
     /// The whole turns, rad, of these measures, that formulas go by.

@@ -5,6 +5,7 @@
 //! branches like those of any motion. So the mechanism closes on the branch that was drawn, and an assembled one stays as
 //! it is. Where the path ends before the gaps are closed, least squares say how near the joints can come.
 
+use crate::joint::Quantity;
 use crate::linalg::Elimination;
 use crate::model::{BodyId, DriverId, JointId};
 use crate::topology::{BlockId, CoordinateId, LoopLink, RowId, Term, Topology};
@@ -39,8 +40,8 @@ pub struct Gap {
     pub of: Closing,
     /// By how much, m or as a cosine.
     pub size: f64,
-    /// Whether that is a length.
-    pub is_length: bool,
+    /// What that is.
+    pub quantity: Quantity,
 }
 
 /// What keeps a mechanism together.
@@ -141,11 +142,11 @@ impl Stepper<'_> {
             if !(size.abs() > least * place.unit) {
                 continue;
             }
-            let is_length = closure.rows[place.index].is_length();
-            match gaps.iter_mut().find(|(g, _)| g.of == of && g.is_length == is_length) {
+            let quantity = closure.rows[place.index].into();
+            match gaps.iter_mut().find(|(g, _)| g.of == of && g.quantity == quantity) {
                 // Of a joint with several open rows the length of all of them together.
                 Some((gap, _)) => gap.size = gap.size.hypot(size),
-                None => gaps.push((Gap { of, size: size.abs(), is_length }, place.unit)),
+                None => gaps.push((Gap { of, size: size.abs(), quantity }, place.unit)),
             }
         }
         gaps.sort_by(|(a, unit_a), (b, unit_b)| (b.size / unit_b).total_cmp(&(a.size / unit_a)));

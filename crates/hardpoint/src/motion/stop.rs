@@ -1,5 +1,6 @@
 //! Why a motion ended before its last output time.
 
+use crate::joint::Quantity;
 use crate::model::{JointId, Model};
 use crate::topology::BlockId;
 
@@ -43,8 +44,8 @@ pub enum StopKind {
         joint: JointId,
         /// By how much, m or as a cosine.
         residual: f64,
-        /// Whether that is a length.
-        is_length: bool,
+        /// What that is.
+        quantity: Quantity,
     },
     /// A driver's law has no finite value (HP0404).
     LawNotFinite {

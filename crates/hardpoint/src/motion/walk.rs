@@ -425,8 +425,8 @@ impl Stepper<'_> {
             // What is left of a row that was not solved with: the constraints agreed as drawn and do not here.
             Refusal::Locked { row, residual } => {
                 let closure = self.topology.closure_of(row);
-                let is_length = self.topology.constraint(row).is_length();
-                (StopKind::Locked { joint: closure.joint, residual, is_length }, closure.block)
+                let quantity = self.topology.constraint(row).into();
+                (StopKind::Locked { joint: closure.joint, residual, quantity }, closure.block)
             }
             Refusal::Law { driver } => (StopKind::LawNotFinite { driver: DriverId(driver) }, None),
             Refusal::TooFar { driver } => (StopKind::TooFar { driver: DriverId(driver) }, None),

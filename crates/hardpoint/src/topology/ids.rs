@@ -4,6 +4,11 @@ use std::ops::{Index, IndexMut, Range};
 
 use super::{Block, Closure, Coordinate, Link, RowPlace, Topology};
 
+/// Ids that follow each other, alone or with what they stand for.
+pub trait Ids<Id>: DoubleEndedIterator<Item = Id> + ExactSizeIterator + Clone {}
+
+impl<Id, I: DoubleEndedIterator<Item = Id> + ExactSizeIterator + Clone> Ids<Id> for I {}
+
 macro_rules! ids {
     ($($(#[$doc:meta])* $name:ident: $list:ident of $what:ident;)*) => {$(
         $(#[$doc])*
@@ -13,13 +18,13 @@ macro_rules! ids {
         impl $name {
             /// Those of a range.
             #[inline(always)]
-            pub fn all(range: Range<usize>) -> impl DoubleEndedIterator<Item = Self> + ExactSizeIterator + Clone {
+            pub fn all(range: Range<usize>) -> impl Ids<Self> {
                 range.map(Self)
             }
 
             /// The entries of a list that has one for each, with their ids.
             #[inline(always)]
-            pub fn each<T>(list: &[T]) -> impl DoubleEndedIterator<Item = (Self, &T)> + ExactSizeIterator + Clone {
+            pub fn each<T>(list: &[T]) -> impl Ids<(Self, &T)> {
                 list.iter().enumerate().map(|(k, x)| (Self(k), x))
             }
         }

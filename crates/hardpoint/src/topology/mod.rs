@@ -15,7 +15,7 @@ mod size;
 mod tree;
 
 pub use fault::TopologyFault;
-pub use ids::{BlockId, ClosureId, CoordinateId, LinkId, RowId};
+pub use ids::{BlockId, ClosureId, CoordinateId, Ids, LinkId, RowId};
 pub use redundancy::Redundancy;
 
 use std::ops::Range;
@@ -209,7 +209,7 @@ impl Closure {
 
     /// Its rows.
     #[inline(always)]
-    pub fn row_ids(&self) -> impl DoubleEndedIterator<Item = RowId> + Clone + use<> {
+    pub fn row_ids(&self) -> impl Ids<RowId> + use<> {
         RowId::all(self.range())
     }
 
@@ -279,7 +279,7 @@ pub struct Block {
 impl Block {
     /// The links that it places.
     #[inline(always)]
-    pub fn link_ids(&self) -> impl DoubleEndedIterator<Item = LinkId> + ExactSizeIterator + Clone + use<> {
+    pub fn link_ids(&self) -> impl Ids<LinkId> + use<> {
         LinkId::all(self.links.clone())
     }
 }
@@ -300,27 +300,25 @@ impl Topology {
 
     /// Links placed by drivers alone.
     #[inline(always)]
-    pub fn driven_links(
-        &self,
-    ) -> impl DoubleEndedIterator<Item = LinkId> + ExactSizeIterator + Clone + use<> {
+    pub fn driven_links(&self) -> impl Ids<LinkId> + use<> {
         LinkId::all(0..self.blocks.first().map_or(self.links.len(), |b| b.links.start))
     }
 
     /// All links.
     #[inline(always)]
-    pub fn link_ids(&self) -> impl DoubleEndedIterator<Item = LinkId> + ExactSizeIterator + Clone + use<> {
+    pub fn link_ids(&self) -> impl Ids<LinkId> + use<> {
         LinkId::all(0..self.links.len())
     }
 
     /// All closures.
     #[inline(always)]
-    pub fn closure_ids(&self) -> impl Iterator<Item = ClosureId> + Clone + use<> {
+    pub fn closure_ids(&self) -> impl Ids<ClosureId> + use<> {
         ClosureId::all(0..self.closures.len())
     }
 
     /// All blocks.
     #[inline(always)]
-    pub fn block_ids(&self) -> impl Iterator<Item = BlockId> + Clone + use<> {
+    pub fn block_ids(&self) -> impl Ids<BlockId> + use<> {
         BlockId::all(0..self.blocks.len())
     }
 
@@ -463,7 +461,7 @@ impl Link {
 impl Step {
     /// Its coordinates: one, or three of a ball.
     #[inline(always)]
-    pub fn coordinates(&self) -> impl Iterator<Item = CoordinateId> + Clone + use<> {
+    pub fn coordinates(&self) -> impl Ids<CoordinateId> + use<> {
         CoordinateId::all(self.first.0..self.first.0 + self.freedom.coordinates())
     }
 

@@ -4,7 +4,9 @@ use std::ops::ControlFlow;
 
 use hardpoint::sensitivity::BodySensitivity;
 use hardpoint::space::Vec3;
-use hardpoint::study::{CheckOutcome, Scheme, Verification, VerifyOptions, verify};
+use hardpoint::study::{
+    CheckOutcome, Comparison, Scheme, Verification, VerifyOptions, finite_differences, verify,
+};
 use hardpoint::{Analysis, Solution};
 use hardpoint::{
     draft::Place,
@@ -123,4 +125,37 @@ fn a_wrong_sensitivity_fails_and_is_named() {
         let failed = report.checks.iter().filter(|c| c.outcome == CheckOutcome::Failed).count();
         assert!(2 * failed > report.checks.len(), "{scheme:?}: {failed} of {}", report.checks.len());
     }
+}
+
+/// A comparison is asked by body and by output, and knows which of its errors those are.
+#[test]
+fn errors_are_found_by_body_and_by_output() {
+    let model = reference("macpherson");
+    let analysis = Analysis::new(&model).unwrap();
+    let solution = analysis.run();
+    let step = (VariableId(0), 1e-3 * model.natural_step(VariableId(0)));
+    let difference = finite_differences(&analysis, &solution, Scheme::Central, &[step]).remove(0).unwrap();
+    let comparison = Comparison::of(&model, &solution, &difference);
+    let error = |name: String| {
+        let found = comparison.errors().iter().find(|e| e.quantity == name);
+        found.unwrap_or_else(|| panic!("nothing is said of {name}")).error
+    };
+    let mut told = 0;
+    for (b, body) in model.bodies.iter().enumerate().skip(1) {
+        let kinds = ["position", "velocity", "acceleration"];
+        let want = kinds.map(|kind| error(format!("{} {kind}", body.name)));
+        assert_eq!(comparison.of_origin(BodyId(b)), want, "{}", body.name);
+        told += 6;
+    }
+    for (m, output) in solution.measured.outputs.iter().enumerate() {
+        let want = [0, 1, 2].map(|order| match order {
+            0 => error(format!("{} value", output.name)),
+            _ if order < output.known.orders => error(output.order_name(order)),
+            _ => 0.0,
+        });
+        assert_eq!(comparison.of_output(m), want, "{}", output.name);
+        told += output.known.orders;
+    }
+    assert_eq!(comparison.errors().len(), told);
+    assert!(comparison.worst().unwrap().error > 0.0);
 }
