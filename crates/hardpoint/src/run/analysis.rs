@@ -102,10 +102,11 @@ impl<'m> Analysis<'m> {
         self.solve(Run::new())
     }
 
-    /// Solves what is asked for, at all output times.
+    /// Solves what is asked for, at all output times. Where something ends the run before, [`Solution::stop`] says what, and all that
+    /// was solved is there.
     pub fn solve(&self, mut run: Run<'_>) -> Solution {
         let (design, mut solution) = (self.prepare(run.design, run.scope), std::mem::take(&mut run.memory));
-        self.walk(&design, self.model.times.len(), &mut run.progress, &mut solution, &mut |_, _| ());
+        self.walk(&design, self.model.times.len(), &mut *run.progress, &mut solution, &mut |_, _| ());
         solution
     }
 
@@ -116,7 +117,7 @@ impl<'m> Analysis<'m> {
         let design = self.prepare(run.design, run.scope);
         let wanted = self.wanted(std::slice::from_ref(sink));
         let mut walk = Walk::by_programs(self, &design, wanted, false);
-        let stop = walk.all(sink, &mut run.progress, |_, _, _, _| ());
+        let stop = walk.all(sink, &mut *run.progress, |_, _, _, _| ());
         let (steps, effort) = (walk.done, walk.one.effort);
         Streamed { steps, admissibility: walk.admissibility(&design.opens), effort, stop }
     }

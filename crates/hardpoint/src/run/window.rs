@@ -72,13 +72,8 @@ impl Analysis<'_> {
     ) -> Solution {
         let rows = Footprint::of(self.model(), run.scope.sensitivities).rows(bytes);
         let mut solution = std::mem::take(&mut run.memory);
-        let first = self.walk(
-            &self.prepare(run.design, run.scope),
-            rows,
-            &mut run.progress,
-            &mut solution,
-            &mut each,
-        );
+        let design = self.prepare(run.design, run.scope);
+        let first = self.walk(&design, rows, &mut *run.progress, &mut solution, &mut each);
         each(first, &solution);
         solution
     }
