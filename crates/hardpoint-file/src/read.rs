@@ -13,8 +13,8 @@ use std::collections::HashMap;
 use std::ops::Range;
 
 use hardpoint::draft::{
-    BodyDraft, CurveDraft, Draft, FormulaDraft, FormulaOf, FrameDraft, HardpointDraft, JointDraft, Line,
-    Nominal, Place, Section,
+    BodyDraft, CurveDraft, Draft, FormulaDraft, FormulaOf, FrameDraft, HardpointDraft, JointDraft, LineDraft,
+    Nominal, PlaceDraft, Section,
 };
 use hardpoint::joint::{self, JointType, Quantity};
 use hardpoint::law::Law;
@@ -484,8 +484,8 @@ impl Reader<'_> {
             let mut place = EntryPlace::at(at);
             place.key("position", value);
             let position = match self.written_place(value, &subject, "three coordinates") {
-                Some(Place::At(position)) => position,
-                Some(Place::Formula(coordinates)) => {
+                Some(PlaceDraft::At(position)) => position,
+                Some(PlaceDraft::Formula(coordinates)) => {
                     for (axis, expression) in coordinates.into_iter().enumerate() {
                         let of = FormulaOf::Coordinate(name.clone(), axis);
                         raw.draft.formulas.push(FormulaDraft { of, expression });
@@ -550,9 +550,9 @@ impl Reader<'_> {
         }
         let position = self.need(&fields, "position");
         let r = position.and_then(|f| match self.fixed_place(f.value, &fields.subject("position"))? {
-            Place::At(r) => Some(r),
-            Place::Hardpoint(name) => self.hardpoint_position(&name, f, raw),
-            Place::Formula(_) => None,
+            PlaceDraft::At(r) => Some(r),
+            PlaceDraft::Hardpoint(name) => self.hardpoint_position(&name, f, raw),
+            PlaceDraft::Formula(_) => None,
         });
         let rot = match (fields.get("euler"), fields.get("quaternion")) {
             (Some(_), other) => {
@@ -646,7 +646,7 @@ impl Reader<'_> {
         f: Field<'_>,
         place: &mut EntryPlace,
         raw: &Raw,
-    ) -> Option<Vec<Place>> {
+    ) -> Option<Vec<PlaceDraft>> {
         let subject = fields.subject("at");
         let is_number = |v: &Value<'_>| matches!(v.get_ref(), DeValue::Integer(_) | DeValue::Float(_));
         let is_hardpoint =
@@ -683,7 +683,7 @@ impl Reader<'_> {
     }
 
     /// A direction; the names in `through` become the items of the key.
-    fn line_of(&mut self, fields: &Fields<'_>, key: &str, place: &mut EntryPlace) -> Option<Line> {
+    fn line_of(&mut self, fields: &Fields<'_>, key: &str, place: &mut EntryPlace) -> Option<LineDraft> {
         self.given(fields, key, |r, f| {
             let (line, items) = r.line(f.value, &fields.subject(f.key))?;
             place.items(f.key, items);
@@ -692,7 +692,7 @@ impl Reader<'_> {
     }
 
     /// A place; coordinates have no items of their own.
-    fn place_of(&mut self, fields: &Fields<'_>, key: &str) -> Option<Place> {
+    fn place_of(&mut self, fields: &Fields<'_>, key: &str) -> Option<PlaceDraft> {
         self.given(fields, key, |r, f| r.place(f.value, &fields.subject(f.key)))
     }
 

@@ -5,7 +5,7 @@
 use std::ops::Range;
 use std::path::Path;
 
-use hardpoint::draft::{Line, Nominal, NotConstant, Place};
+use hardpoint::draft::{LineDraft, Nominal, NotConstant, PlaceDraft};
 use hardpoint::expression::Expression;
 use hardpoint::joint::Quantity;
 use hardpoint::space::Vec3;
@@ -601,27 +601,34 @@ impl Reader<'_> {
     }
 
     /// The name of a hardpoint, or coordinates.
-    pub fn place(&mut self, value: &Value<'_>, subject: &Subject) -> Option<Place> {
+    pub fn place(&mut self, value: &Value<'_>, subject: &Subject) -> Option<PlaceDraft> {
         let expected = "a hardpoint's name or three coordinates";
         match value.get_ref() {
-            DeValue::String(name) => self.short(name, value.span(), &subject.name).map(Place::Hardpoint),
+            DeValue::String(name) => self.short(name, value.span(), &subject.name).map(PlaceDraft::Hardpoint),
             _ => self.written_place(value, subject, expected),
         }
     }
 
     /// As [`place`](Self::place), where no change of the design is felt.
-    pub fn fixed_place(&mut self, value: &Value<'_>, subject: &Subject) -> Option<Place> {
+    pub fn fixed_place(&mut self, value: &Value<'_>, subject: &Subject) -> Option<PlaceDraft> {
         match value.get_ref() {
             DeValue::String(_) => self.place(value, subject),
-            _ => self.coordinates(value, subject, "a hardpoint's name or three coordinates").map(Place::At),
+            _ => self
+                .coordinates(value, subject, "a hardpoint's name or three coordinates")
+                .map(PlaceDraft::At),
         }
     }
 
     /// Global coordinates, each a number or an expression.
-    pub fn written_place(&mut self, value: &Value<'_>, subject: &Subject, expected: &str) -> Option<Place> {
+    pub fn written_place(
+        &mut self,
+        value: &Value<'_>,
+        subject: &Subject,
+        expected: &str,
+    ) -> Option<PlaceDraft> {
         let list = value.get_ref().as_array().filter(|list| list.len() == 3);
         let Some(list) = list.filter(|list| list.iter().any(|v| v.get_ref().is_str())) else {
-            return self.coordinates(value, subject, expected).map(Place::At);
+            return self.coordinates(value, subject, expected).map(PlaceDraft::At);
         };
         let per_metre = self.units.length.per_metre();
         let coordinates = [0, 1, 2].map(|k| {
@@ -632,7 +639,7 @@ impl Reader<'_> {
             }
         });
         let [x, y, z] = coordinates;
-        Some(Place::Formula(Box::new([x?, y?, z?])))
+        Some(PlaceDraft::Formula(Box::new([x?, y?, z?])))
     }
 
     /// A direction by name or vector, of any length.
@@ -659,14 +666,14 @@ impl Reader<'_> {
     }
 
     /// A direction, or `{ through = [...] }`; with the places of the two hardpoints' names.
-    pub fn line(&mut self, value: &Value<'_>, subject: &Subject) -> Option<(Line, Vec<Range<usize>>)> {
+    pub fn line(&mut self, value: &Value<'_>, subject: &Subject) -> Option<(LineDraft, Vec<Range<usize>>)> {
         let Some(table) = value.get_ref().as_table() else {
-            return self.vector(value, subject).map(|v| (Line::Along(v), Vec::new()));
+            return self.vector(value, subject).map(|v| (LineDraft::Along(v), Vec::new()));
         };
         let fields = self.fields(subject.name.clone(), value.span(), table, THROUGH.keys());
         let [a, b] = self.names_of::<2>(&fields, "through")?;
         let items = fields.get("through").and_then(|f| f.value.get_ref().as_array());
-        Some((Line::Through(a, b), items.into_iter().flatten().map(Spanned::span).collect()))
+        Some((LineDraft::Through(a, b), items.into_iter().flatten().map(Spanned::span).collect()))
     }
 }
 

@@ -1,7 +1,7 @@
 //! Metrics: what a whole curve comes to, what moves it, and what a changed design makes of it.
 
 use hardpoint::Solution;
-use hardpoint::model::{Metric, Model, Take};
+use hardpoint::model::{Metric, Model, Reduction};
 use hardpoint::study::{MetricValue, WhatIf, metrics};
 use hardpoint_file::Units;
 use serde::Serialize;
@@ -185,13 +185,13 @@ fn what(model: &Model, units: Units, metric: &Metric) -> String {
     });
     let mean_over = if metric.over.is_some() { format!(" over {over}") } else { String::new() };
     match &metric.take {
-        Take::Least => format!("least {of}{within}"),
-        Take::Greatest => format!("greatest {of}{within}"),
-        Take::Range => format!("greatest less least {of}{within}"),
-        Take::Mean => format!("mean of {of}{mean_over}{within}"),
-        Take::Rms(target) if target.is_empty() => format!("root mean square of {of}{mean_over}{within}"),
-        Take::Rms(_) => format!("root mean square of {of} beyond its target{mean_over}{within}"),
-        Take::Value(at) => format!("{of} where {over} is {}", place(*at)),
-        Take::Slope(at) => format!("slope of {of} over {over} at {}", place(*at)),
+        Reduction::Least => format!("least {of}{within}"),
+        Reduction::Greatest => format!("greatest {of}{within}"),
+        Reduction::Range => format!("greatest less least {of}{within}"),
+        Reduction::Mean => format!("mean of {of}{mean_over}{within}"),
+        Reduction::Rms(target) if target.is_empty() => format!("root mean square of {of}{mean_over}{within}"),
+        Reduction::Rms(_) => format!("root mean square of {of} beyond its target{mean_over}{within}"),
+        Reduction::Value(at) => format!("{of} where {over} is {}", place(*at)),
+        Reduction::Slope(at) => format!("slope of {of} over {over} at {}", place(*at)),
     }
 }

@@ -112,7 +112,7 @@ impl Verdict {
         // One-sided differences fall with the step in any mechanism.
         let parts_later =
             verification.scheme == Scheme::Central && analysis.topology().redundant().next().is_some();
-        let check = |c: &hardpoint::study::Check| {
+        let check = |c: &hardpoint::study::VerifiedValue| {
             let variable = &model.variables[c.variable.0];
             let natural = model.natural_step(c.variable);
             let step = |s: &StepError| StepFact {

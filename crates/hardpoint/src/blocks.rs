@@ -8,17 +8,17 @@ use hardpoint_tape::{LANES, Lanes};
 /// Eight numbers where memory is read and written fastest.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
 #[repr(C, align(64))]
-pub(crate) struct Line(pub Lanes);
+pub(crate) struct AlignedLanes(pub Lanes);
 
 /// Lines as the lanes that they are.
 #[inline(always)]
-pub(crate) fn lanes_of(lines: &mut [Line]) -> &mut [Lanes] {
+pub(crate) fn lanes_of(lines: &mut [AlignedLanes]) -> &mut [Lanes] {
     bytemuck::cast_slice_mut(lines)
 }
 
 /// Results of eight output times, or of eight designs, side by side.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Block<'b> {
+pub(crate) struct ResultBlock<'b> {
     /// Per body but ground 24 numbers: position, columns of the rotation, velocity, angular velocity, acceleration, angular
     /// acceleration.
     pub states: &'b [[f64; 8]],
@@ -30,19 +30,19 @@ pub(crate) struct Block<'b> {
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Blocks {
     width: usize,
-    place: Place,
+    place: BlockLayout,
 }
 
 /// Where the numbers are.
 #[derive(Clone, Debug)]
-enum Place {
+enum BlockLayout {
     /// Output times 8n to 8n + 7 stand side by side, the first numbers of all eight first.
-    Times(Vec<Line>),
+    Times(Vec<AlignedLanes>),
     /// Designs stand side by side, output time after output time; this is one of them.
-    Designs { lines: Arc<Vec<Line>>, lane: usize },
+    Designs { lines: Arc<Vec<AlignedLanes>>, lane: usize },
 }
 
-impl Default for Place {
+impl Default for BlockLayout {
     fn default() -> Self {
         Self::Times(Vec::new())
     }
@@ -50,15 +50,15 @@ impl Default for Place {
 
 impl Blocks {
     /// Those of one of the designs that stand side by side, so many numbers per output time.
-    pub fn of_design(lines: Arc<Vec<Line>>, width: usize, lane: usize) -> Self {
-        Self { width, place: Place::Designs { lines, lane } }
+    pub fn of_design(lines: Arc<Vec<AlignedLanes>>, width: usize, lane: usize) -> Self {
+        Self { width, place: BlockLayout::Designs { lines, lane } }
     }
 
     /// Room for so many numbers at each of so many output times, in the memory that there is; what stands in it means nothing, but zeros
     /// where nothing was written since it had another width.
     pub fn shape(&mut self, width: usize, steps: usize) {
         if self.width != width {
-            self.place = Place::default();
+            self.place = BlockLayout::default();
             self.width = width;
         }
         let lines = self.times_mut();
@@ -68,24 +68,24 @@ impl Blocks {
 
     /// The lines of output times side by side; none where designs were.
     #[inline(always)]
-    fn times_mut(&mut self) -> &mut Vec<Line> {
-        if let Place::Designs { .. } = self.place {
-            self.place = Place::default();
+    fn times_mut(&mut self) -> &mut Vec<AlignedLanes> {
+        if let BlockLayout::Designs { .. } = self.place {
+            self.place = BlockLayout::default();
         }
         match &mut self.place {
-            Place::Times(lines) => lines,
-            Place::Designs { .. } => unreachable!("replaced above"),
+            BlockLayout::Times(lines) => lines,
+            BlockLayout::Designs { .. } => unreachable!("replaced above"),
         }
     }
 
     /// The numbers at output time k.
     #[inline(always)]
-    pub fn row(&self, k: usize) -> Row<'_> {
+    pub fn row(&self, k: usize) -> ResultRow<'_> {
         let (lines, line, lane) = match &self.place {
-            Place::Times(lines) => (&lines[..], k / LANES, k % LANES),
-            Place::Designs { lines, lane } => (&lines[..], k, *lane),
+            BlockLayout::Times(lines) => (&lines[..], k / LANES, k % LANES),
+            BlockLayout::Designs { lines, lane } => (&lines[..], k, *lane),
         };
-        Row { lines: &lines[line * self.width..][..self.width], lane }
+        ResultRow { lines: &lines[line * self.width..][..self.width], lane }
     }
 
     /// Of the eight output times that k is one of.
@@ -94,7 +94,7 @@ impl Blocks {
         let (width, first) = (self.width, k / LANES * self.width);
         let lines = self.times_mut();
         if lines.len() < first + width {
-            lines.resize(first + width, Line::default());
+            lines.resize(first + width, AlignedLanes::default());
         }
         lanes_of(&mut lines[first..first + width])
     }
@@ -104,10 +104,10 @@ impl Blocks {
     pub fn gather(&self, k: usize, first: usize, to: &mut [Lanes]) {
         let from = |line: usize| line * self.width + first;
         match &self.place {
-            Place::Times(lines) => {
+            BlockLayout::Times(lines) => {
                 to.copy_from_slice(bytemuck::cast_slice(&lines[from(k / LANES)..][..to.len()]));
             }
-            Place::Designs { lines, lane } => {
+            BlockLayout::Designs { lines, lane } => {
                 for time in 0..LANES {
                     let there = lines.get(from(k / LANES * LANES + time)..).unwrap_or_default();
                     to.iter_mut().zip(there).for_each(|(to, line)| to[time] = line.0[*lane]);
@@ -143,12 +143,12 @@ impl Blocks {
 
 /// The numbers at one output time.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Row<'b> {
-    lines: &'b [Line],
+pub(crate) struct ResultRow<'b> {
+    lines: &'b [AlignedLanes],
     lane: usize,
 }
 
-impl<'b> Row<'b> {
+impl<'b> ResultRow<'b> {
     #[inline(always)]
     pub fn get(self, column: usize) -> f64 {
         self.lines[column].0[self.lane]
@@ -190,8 +190,8 @@ mod tests {
         kept.set(15, 0, [1.0]);
         assert_eq!((kept.row(15).get(0), kept.block_mut(0).as_ptr()), (1.0, memory));
         // Two numbers of eight designs at three output times.
-        let lines =
-            (0..6).map(|n| Line(std::array::from_fn(|lane| number(n / 2, n % 2) + lane as f64 / 8.0)));
+        let lines = (0..6)
+            .map(|n| AlignedLanes(std::array::from_fn(|lane| number(n / 2, n % 2) + lane as f64 / 8.0)));
         let mut design = Blocks::of_design(Arc::new(lines.collect()), 2, 3);
         assert_eq!(
             design.row(2).all().collect::<Vec<_>>(),

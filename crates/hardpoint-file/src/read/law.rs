@@ -5,7 +5,7 @@ use std::ops::Range;
 use hardpoint::joint::Quantity;
 use hardpoint::{
     expression::Expression,
-    law::{self, EndRates, Ends, Law, LawError, SplineDegree},
+    law::{self, Law, LawError, SplineDegree, SplineEndRates, SplineEnds},
 };
 use toml::de::{DeTable, DeValue};
 
@@ -440,14 +440,14 @@ impl Reader<'_> {
         self.made(fields, f.value.span(), Law::table(&law::Table { times, values, degree, ends }))
     }
 
-    fn ends(&mut self, fields: &Fields<'_>, degree: Option<SplineDegree>) -> Option<Ends> {
+    fn ends(&mut self, fields: &Fields<'_>, degree: Option<SplineDegree>) -> Option<SplineEnds> {
         let kind = self.word_of(fields, "ends")?;
         let keys = ["start_speed", "start_acceleration", "end_speed", "end_acceleration"];
         if kind > 0 {
             for key in keys {
                 self.out_of_place(fields, key, "speeds and accelerations go with `ends = \"clamped\"`");
             }
-            return Some(if kind == 1 { Ends::Natural } else { Ends::Periodic });
+            return Some(if kind == 1 { SplineEnds::Natural } else { SplineEnds::Periodic });
         }
         if degree == Some(SplineDegree::Cubic) {
             for key in [keys[1], keys[3]] {
@@ -457,12 +457,12 @@ impl Reader<'_> {
             }
         }
         let [start, start_rate, end, end_rate] = self.numbers_of(fields, keys)?;
-        let start = EndRates { speed: start, acceleration: start_rate };
-        let end = EndRates { speed: end, acceleration: end_rate };
+        let start = SplineEndRates { speed: start, acceleration: start_rate };
+        let end = SplineEndRates { speed: end, acceleration: end_rate };
         match degree {
             // Said above.
             Some(SplineDegree::Cubic) if start.acceleration != 0.0 || end.acceleration != 0.0 => None,
-            _ => Some(Ends::Clamped { start, end }),
+            _ => Some(SplineEnds::Clamped { start, end }),
         }
     }
 

@@ -3,10 +3,10 @@
 use std::sync::LazyLock;
 
 use hardpoint::draft::{
-    FieldDraft, FieldKind, Line, MeasureDraft, MeasureField, MeasureKindDraft, MeasureType, MetricDraft,
-    Place, PointDraft, PointRef, RayDraft, Section,
+    FieldDraft, FieldKind, LineDraft, MeasureDraft, MeasureField, MeasureKindDraft, MeasureType, MetricDraft,
+    PlaceDraft, PointDraft, PointRef, RayDraft, Section,
 };
-use hardpoint::model::{AxleMeasure, Take, WheelMeasure, WheelNeed};
+use hardpoint::model::{AxleMeasure, Reduction, WheelMeasure, WheelNeed};
 use hardpoint::space::Vec3;
 
 use crate::format::{
@@ -217,7 +217,7 @@ impl Reader<'_> {
             let body = self.name_of(&fields, "body").unwrap_or_default();
             let at = self.place_of(&fields, "at");
             place.items("at", Vec::new());
-            let at = at.unwrap_or(Place::At(Vec3::ZERO));
+            let at = at.unwrap_or(PlaceDraft::At(Vec3::ZERO));
             self.push(raw, Section::Points, place);
             raw.draft.points.push(PointDraft { name: entry.0, body, at });
         }
@@ -318,7 +318,7 @@ impl Reader<'_> {
             }
             _ => {
                 let axis = self.vector(f.value, &subject)?;
-                Some(RayDraft::Fixed { body: "ground".into(), axis: Line::Along(axis) })
+                Some(RayDraft::Fixed { body: "ground".into(), axis: LineDraft::Along(axis) })
             }
         }
     }
@@ -350,8 +350,8 @@ impl Reader<'_> {
     }
 
     /// What a metric takes, in the file's units.
-    fn take(&mut self, fields: &Fields<'_>) -> Option<Take> {
-        let word = Take::NAMES[self.word_of(fields, "take")?];
+    fn take(&mut self, fields: &Fields<'_>) -> Option<Reduction> {
+        let word = Reduction::NAMES[self.word_of(fields, "take")?];
         if word != "rms" {
             self.out_of_place(fields, "target", "only `take = \"rms\"` compares with a target");
         }
@@ -362,16 +362,16 @@ impl Reader<'_> {
             self.need(fields, "at");
         }
         Some(match word {
-            "min" => Take::Least,
-            "max" => Take::Greatest,
-            "range" => Take::Range,
-            "mean" => Take::Mean,
-            "rms" => Take::Rms(match fields.get("target") {
+            "min" => Reduction::Least,
+            "max" => Reduction::Greatest,
+            "range" => Reduction::Range,
+            "mean" => Reduction::Mean,
+            "rms" => Reduction::Rms(match fields.get("target") {
                 Some(f) => self.pairs(f.value, &fields.subject("target"))?,
                 None => Vec::new(),
             }),
-            "value" => Take::Value(self.number_of(fields, "at")?),
-            _ => Take::Slope(self.number_of(fields, "at")?),
+            "value" => Reduction::Value(self.number_of(fields, "at")?),
+            _ => Reduction::Slope(self.number_of(fields, "at")?),
         })
     }
 

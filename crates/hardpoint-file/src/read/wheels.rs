@@ -1,7 +1,8 @@
 //! The vehicle, its road wheels and axles, and the measures that they list.
 
 use hardpoint::draft::{
-    AxleDraft, Line, MeasureDraft, MeasureKindDraft, Place, PointRef, Section, WheelDraft, WheelSpinDraft,
+    AxleDraft, LineDraft, MeasureDraft, MeasureKindDraft, PlaceDraft, PointRef, Section, WheelDraft,
+    WheelSpinDraft,
 };
 use hardpoint::model::{AxleMeasure, Side, Vehicle, VehicleEnd, WheelMeasure, WheelNeed};
 use hardpoint::space::Vec3;
@@ -140,8 +141,8 @@ impl Reader<'_> {
             raw.draft.wheels.push(WheelDraft {
                 name: entry.0,
                 body,
-                centre: centre.unwrap_or(Place::At(Vec3::ZERO)),
-                spin: spin.unwrap_or(WheelSpinDraft::Axis(Line::Along(Vec3::AXES[1]))),
+                centre: centre.unwrap_or(PlaceDraft::At(Vec3::ZERO)),
+                spin: spin.unwrap_or(WheelSpinDraft::Axis(LineDraft::Along(Vec3::AXES[1]))),
                 radius: radius.unwrap_or(1.0),
                 side,
                 kingpin,

@@ -388,9 +388,9 @@ fn why_cut(joint: &Joint, reason: CutReason) -> &'static str {
 fn couplers(model: &Model, units: Units) -> Vec<CouplerFact> {
     let fact = |coupler: &Coupler| {
         // The equation may be multiplied by any number: so that the first coordinate keeps its factor.
-        let inside = |t: &hardpoint::model::Term| units.to_si(model.coupled(t).quantity, 1.0);
+        let inside = |t: &hardpoint::model::CouplerTerm| units.to_si(model.coupled(t).quantity, 1.0);
         let first = inside(&coupler.terms[0]);
-        let term = |t: &hardpoint::model::Term| TermFact {
+        let term = |t: &hardpoint::model::CouplerTerm| TermFact {
             joint: joint_name(model, t.joint),
             coordinate: model.coupled(t).name,
             coefficient: t.coefficient * (inside(t) / first),

@@ -5,18 +5,18 @@
 
 use crate::space::{Real, Wrench};
 
-use super::{EndRates, Ends, axis, direction_rates};
+use super::{MarkerPair, MarkerPairRates, axis, direction_rates};
 
 /// s and c of the angle about z_i: tan(angle) = (y_i . x_j) / (x_i . x_j).
 #[inline(always)]
-fn about_z_i<T: Real>(ends: &Ends<T>) -> [T; 2] {
+fn about_z_i<T: Real>(ends: &MarkerPair<T>) -> [T; 2] {
     let x_j = axis(&ends.j.rot, 0);
     [axis(&ends.i.rot, 1).dot(x_j), axis(&ends.i.rot, 0).dot(x_j)]
 }
 
 /// s and c of the angle about x_j: tan(angle) = (z_i . y_j) / (z_i . z_j).
 #[inline(always)]
-fn about_x_j<T: Real>(ends: &Ends<T>) -> [T; 2] {
+fn about_x_j<T: Real>(ends: &MarkerPair<T>) -> [T; 2] {
     let z_i = axis(&ends.i.rot, 2);
     [z_i.dot(axis(&ends.j.rot, 1)), z_i.dot(axis(&ends.j.rot, 2))]
 }
@@ -39,55 +39,55 @@ fn unwrapped<T: Real>([s, c]: [T; 2], near: T) -> T {
 
 /// The angle about z_i nearest to `near`.
 #[inline(always)]
-pub(super) fn value<T: Real>(ends: &Ends<T>, near: T) -> T {
+pub(super) fn value<T: Real>(ends: &MarkerPair<T>, near: T) -> T {
     unwrapped(about_z_i(ends), near)
 }
 
 /// The angle about x_j nearest to `near`.
 #[inline(always)]
-pub(super) fn value_on_j<T: Real>(ends: &Ends<T>, near: T) -> T {
+pub(super) fn value_on_j<T: Real>(ends: &MarkerPair<T>, near: T) -> T {
     unwrapped(about_x_j(ends), near)
 }
 
 #[inline(always)]
-pub(super) fn residual<T: Real>(ends: &Ends<T>, target: T) -> T {
+pub(super) fn residual<T: Real>(ends: &MarkerPair<T>, target: T) -> T {
     sine_of_difference(about_z_i(ends), target)
 }
 
 /// The moment z_i.
 #[inline(always)]
-pub(super) fn wrench<T: Real>(ends: &Ends<T>) -> Wrench<T> {
+pub(super) fn wrench<T: Real>(ends: &MarkerPair<T>) -> Wrench<T> {
     Wrench::moment(axis(&ends.i.rot, 2))
 }
 
 #[inline(always)]
-pub(super) fn wrench_rates<T: Real>(ends: &Ends<T>, rates: &EndRates<T>) -> [Wrench<T>; 2] {
+pub(super) fn wrench_rates<T: Real>(ends: &MarkerPair<T>, rates: &MarkerPairRates<T>) -> [Wrench<T>; 2] {
     // l = [z_i; 0]
     let [_, z1, z2] = direction_rates(axis(&ends.i.rot, 2), rates.v_i, rates.a_i);
     [Wrench::moment(z1), Wrench::moment(z2)]
 }
 
 #[inline(always)]
-pub(super) fn residual_on_j<T: Real>(ends: &Ends<T>, target: T) -> T {
+pub(super) fn residual_on_j<T: Real>(ends: &MarkerPair<T>, target: T) -> T {
     sine_of_difference(about_x_j(ends), target)
 }
 
 /// The moment x_j.
 #[inline(always)]
-pub(super) fn wrench_on_j<T: Real>(ends: &Ends<T>) -> Wrench<T> {
+pub(super) fn wrench_on_j<T: Real>(ends: &MarkerPair<T>) -> Wrench<T> {
     Wrench::moment(axis(&ends.j.rot, 0))
 }
 
 /// `sin(angle - f)`, the products divided by the length of x_j seen along z_i.
 #[inline(always)]
-pub(super) fn heading_residual<T: Real>(ends: &Ends<T>, target: T) -> T {
+pub(super) fn heading_residual<T: Real>(ends: &MarkerPair<T>, target: T) -> T {
     let [s, c] = about_z_i(ends);
     sine_of_difference([s, c], target) / (s * s + c * c).sqrt()
 }
 
 /// The moment `x_j x (c y_i - s x_i) / (s^2 + c^2)`, the gradient of atan2(s, c).
 #[inline(always)]
-pub(super) fn heading_wrench<T: Real>(ends: &Ends<T>) -> Wrench<T> {
+pub(super) fn heading_wrench<T: Real>(ends: &MarkerPair<T>) -> Wrench<T> {
     // d atan2(s, c) = (c ds - s dc) / (s^2 + c^2),  ds = (x_j x y_i) . (w_j - w_i),  dc = (x_j x x_i) . (w_j - w_i)
     let [s, c] = about_z_i(ends);
     let g = axis(&ends.i.rot, 1) * c - axis(&ends.i.rot, 0) * s;

@@ -5,16 +5,16 @@
 
 use crate::space::{Real, Wrench};
 
-use super::{Ends, dot1};
+use super::{MarkerPair, dot1};
 
 /// `y_i . x_j - x_i . y_j`.
 #[inline(always)]
-pub(super) fn residual<T: Real>(ends: &Ends<T>, target: T) -> T {
+pub(super) fn residual<T: Real>(ends: &MarkerPair<T>, target: T) -> T {
     // R = A_i^T A_j:  R_21 = y_i . x_j,  R_12 = x_i . y_j
     dot1::residual(1, 0, ends, target) - dot1::residual(0, 1, ends, T::zero())
 }
 
 #[inline(always)]
-pub(super) fn wrench<T: Real>(ends: &Ends<T>) -> Wrench<T> {
+pub(super) fn wrench<T: Real>(ends: &MarkerPair<T>) -> Wrench<T> {
     dot1::wrench(1, 0, ends) - dot1::wrench(0, 1, ends)
 }

@@ -2,23 +2,23 @@
 
 use crate::space::{Real, Wrench};
 
-use super::{EndRates, Ends, force_rates, point_rates};
+use super::{MarkerPair, MarkerPairRates, force_rates, point_rates};
 
 #[inline(always)]
-pub(super) fn residual<T: Real>(ends: &Ends<T>, target: T) -> T {
+pub(super) fn residual<T: Real>(ends: &MarkerPair<T>, target: T) -> T {
     (ends.j.r - ends.i.r).norm() - target
 }
 
 /// The unit force u = d / |d| along the rod.
 #[inline(always)]
-pub(super) fn wrench<T: Real>(ends: &Ends<T>) -> Wrench<T> {
+pub(super) fn wrench<T: Real>(ends: &MarkerPair<T>) -> Wrench<T> {
     // d abs(d) = u . (V_j at P_j - V_i at P_i) = u . (V_j at P_j - V_i at P_j), since u is along P_j - P_i
     let d = ends.j.r - ends.i.r;
     Wrench::force(d * (T::one() / d.norm()), ends.j.r)
 }
 
 #[inline(always)]
-pub(super) fn wrench_rates<T: Real>(ends: &Ends<T>, rates: &EndRates<T>) -> [Wrench<T>; 2] {
+pub(super) fn wrench_rates<T: Real>(ends: &MarkerPair<T>, rates: &MarkerPairRates<T>) -> [Wrench<T>; 2] {
     let p_i = point_rates(ends.i.r, rates.v_i, rates.a_i);
     let p_j = point_rates(ends.j.r, rates.v_j, rates.a_j);
     let d = [p_j[0] - p_i[0], p_j[1] - p_i[1], p_j[2] - p_i[2]];

@@ -2,16 +2,16 @@
 
 use crate::space::{Real, Wrench};
 
-use super::{EndRates, Ends, axis, cross_rates, direction_rates};
+use super::{MarkerPair, MarkerPairRates, axis, cross_rates, direction_rates};
 
 #[inline(always)]
-pub(super) fn residual<T: Real>(a: usize, b: usize, ends: &Ends<T>, target: T) -> T {
+pub(super) fn residual<T: Real>(a: usize, b: usize, ends: &MarkerPair<T>, target: T) -> T {
     axis(&ends.i.rot, a).dot(axis(&ends.j.rot, b)) - target
 }
 
 /// The moment `b_j x a_i`.
 #[inline(always)]
-pub(super) fn wrench<T: Real>(a: usize, b: usize, ends: &Ends<T>) -> Wrench<T> {
+pub(super) fn wrench<T: Real>(a: usize, b: usize, ends: &MarkerPair<T>) -> Wrench<T> {
     // d(a . b) = a . (w_j x b) + (w_i x a) . b = (b x a) . (w_j - w_i)
     Wrench::moment(axis(&ends.j.rot, b).cross(axis(&ends.i.rot, a)))
 }
@@ -20,8 +20,8 @@ pub(super) fn wrench<T: Real>(a: usize, b: usize, ends: &Ends<T>) -> Wrench<T> {
 pub(super) fn wrench_rates<T: Real>(
     a: usize,
     b: usize,
-    ends: &Ends<T>,
-    rates: &EndRates<T>,
+    ends: &MarkerPair<T>,
+    rates: &MarkerPairRates<T>,
 ) -> [Wrench<T>; 2] {
     let a = direction_rates(axis(&ends.i.rot, a), rates.v_i, rates.a_i);
     let b = direction_rates(axis(&ends.j.rot, b), rates.v_j, rates.a_j);

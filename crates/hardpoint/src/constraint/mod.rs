@@ -63,7 +63,7 @@ pub(crate) const ON_LINE: [Row; 2] = [Row::Dot2(0), Row::Dot2(1)];
 
 /// The two markers of a joint in the world, and how their bodies move.
 #[derive(Clone, Copy, Debug)]
-pub struct Ends<T> {
+pub struct MarkerPair<T> {
     /// Marker i in the world.
     pub i: Pose<T>,
     /// Marker j in the world.
@@ -75,7 +75,7 @@ pub struct Ends<T> {
 
 /// Twists of the two bodies, and the time derivatives of those twists.
 #[derive(Clone, Copy, Debug)]
-pub struct EndRates<T> {
+pub struct MarkerPairRates<T> {
     /// Twist V of body i.
     pub v_i: Twist<T>,
     /// Twist V of body j.
@@ -86,9 +86,9 @@ pub struct EndRates<T> {
     pub a_j: Twist<T>,
 }
 
-impl<T: Real> Ends<T> {
+impl<T: Real> MarkerPair<T> {
     /// The same with the first two time derivatives of the markers.
-    fn moving(&self, rates: &EndRates<T>) -> Ends<Rates<T>> {
+    fn moving(&self, rates: &MarkerPairRates<T>) -> MarkerPair<Rates<T>> {
         let vector = |[e, d, dd]: [Vec3<T>; 3]| {
             Vec3::new(Jet([e.x, d.x, dd.x]), Jet([e.y, d.y, dd.y]), Jet([e.z, d.z, dd.z]))
         };
@@ -96,7 +96,7 @@ impl<T: Real> Ends<T> {
             rot: Mat3 { cols: rot.cols.map(|e| vector(direction_rates(e, v, a))) },
             r: vector(point_rates(r, v, a)),
         };
-        Ends {
+        MarkerPair {
             i: marker(self.i, rates.v_i, rates.a_i),
             j: marker(self.j, rates.v_j, rates.a_j),
             axes: Mat3 { cols: self.axes.cols.map(|e| e.map(Jet::constant)) },
@@ -113,7 +113,7 @@ impl Row {
 
     /// What it measures: the residual against a target of zero; angles unwrapped to within half a turn of `near`.
     #[inline(never)]
-    pub fn value<T: Real>(self, ends: &Ends<T>, near: T) -> T {
+    pub fn value<T: Real>(self, ends: &MarkerPair<T>, near: T) -> T {
         match self {
             Self::Angle | Self::Heading => angle::value(ends, near),
             Self::AngleOnJ => angle::value_on_j(ends, near),
@@ -139,7 +139,7 @@ impl Row {
     /// By how much the constraint fails; `target` is what it measures at the design configuration (a rod's length),
     /// or the driver's value.
     #[inline(always)]
-    pub fn residual<T: Real>(self, ends: &Ends<T>, target: T) -> T {
+    pub fn residual<T: Real>(self, ends: &MarkerPair<T>, target: T) -> T {
         match self.common() {
             Self::Point(k) => spherical::residual(k, ends),
             Self::PointOnBase(k) => spherical::residual_on_base(k, ends),
@@ -152,7 +152,7 @@ impl Row {
     }
 
     #[inline(never)]
-    fn rare_residual<T: Real>(self, ends: &Ends<T>, target: T) -> T {
+    fn rare_residual<T: Real>(self, ends: &MarkerPair<T>, target: T) -> T {
         match self {
             Self::AngleOnJ => angle::residual_on_j(ends, target),
             Self::Heading => angle::heading_residual(ends, target),
@@ -163,7 +163,7 @@ impl Row {
 
     /// The wrench l.
     #[inline(always)]
-    pub fn wrench<T: Real>(self, ends: &Ends<T>) -> Wrench<T> {
+    pub fn wrench<T: Real>(self, ends: &MarkerPair<T>) -> Wrench<T> {
         match self.common() {
             Self::Point(k) => spherical::wrench(k, ends),
             Self::PointOnBase(k) => spherical::wrench_on_base(k, ends),
@@ -176,7 +176,7 @@ impl Row {
     }
 
     #[inline(never)]
-    fn rare_wrench<T: Real>(self, ends: &Ends<T>) -> Wrench<T> {
+    fn rare_wrench<T: Real>(self, ends: &MarkerPair<T>) -> Wrench<T> {
         match self {
             Self::AngleOnJ => angle::wrench_on_j(ends),
             Self::Heading => angle::heading_wrench(ends),
@@ -187,7 +187,7 @@ impl Row {
 
     /// The first and second time derivatives of the wrench.
     #[inline(always)]
-    pub fn wrench_rates<T: Real>(self, ends: &Ends<T>, rates: &EndRates<T>) -> [Wrench<T>; 2] {
+    pub fn wrench_rates<T: Real>(self, ends: &MarkerPair<T>, rates: &MarkerPairRates<T>) -> [Wrench<T>; 2] {
         match self.common() {
             Self::Point(k) => spherical::wrench_rates(k, ends, rates),
             Self::PointOnBase(k) => spherical::wrench_rates_on_base(k, ends, rates),
@@ -202,7 +202,7 @@ impl Row {
     /// By running the wrench on markers that carry their time derivatives. (The common rows have theirs by hand: that takes fewer
     /// instructions.)
     #[inline(never)]
-    fn rare_wrench_rates<T: Real>(self, ends: &Ends<T>, rates: &EndRates<T>) -> [Wrench<T>; 2] {
+    fn rare_wrench_rates<T: Real>(self, ends: &MarkerPair<T>, rates: &MarkerPairRates<T>) -> [Wrench<T>; 2] {
         let Wrench { m, f } = self.rare_wrench(&ends.moving(rates));
         [1, 2].map(|n| Wrench { m: m.map(|x| x.0[n]), f: f.map(|x| x.0[n]) })
     }
@@ -336,7 +336,7 @@ mod tests {
         Pose { rot: turn * pose.rot, r: p[0] + p[1] * t + p[2] * (0.5 * t * t) }
     }
 
-    fn random_ends(row: Row, next: &mut impl FnMut() -> f64) -> Ends<f64> {
+    fn random_ends(row: Row, next: &mut impl FnMut() -> f64) -> MarkerPair<f64> {
         let mut v = || Vec3::new(next(), next(), next());
         let i = Pose { rot: Mat3::from_rotation_vector(v() * 2.0), r: v() };
         let mut j = Pose { rot: Mat3::from_rotation_vector(v() * 2.0), r: v() };
@@ -353,7 +353,7 @@ mod tests {
             }
             _ => {}
         }
-        Ends { i, j, axes: Mat3::from_rotation_vector(Vec3::new(0.4, -0.7, 0.2)) }
+        MarkerPair { i, j, axes: Mat3::from_rotation_vector(Vec3::new(0.4, -0.7, 0.2)) }
     }
 
     #[test]
@@ -381,7 +381,7 @@ mod tests {
                 let rate = row.wrench(&ends).on(wj - wi);
                 let error = |h: f64| {
                     let at = |h: f64| {
-                        let e = Ends {
+                        let e = MarkerPair {
                             i: moved(ends.i, wi, Twist::ZERO, h),
                             j: moved(ends.j, wj, Twist::ZERO, h),
                             ..ends
@@ -422,9 +422,9 @@ mod tests {
                 let ends = random_ends(row, &mut next);
                 let mut twist =
                     || Twist { w: Vec3::new(next(), next(), next()), v: Vec3::new(next(), next(), next()) };
-                let rates = EndRates { v_i: twist(), v_j: twist(), a_i: twist(), a_j: twist() };
+                let rates = MarkerPairRates { v_i: twist(), v_j: twist(), a_i: twist(), a_j: twist() };
                 let l = |t: f64| {
-                    row.wrench(&Ends {
+                    row.wrench(&MarkerPair {
                         i: moved(ends.i, rates.v_i, rates.a_i, t),
                         j: moved(ends.j, rates.v_j, rates.a_j, t),
                         ..ends

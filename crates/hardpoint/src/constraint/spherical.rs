@@ -3,41 +3,49 @@
 
 use crate::space::{Real, Vec3, Wrench};
 
-use super::{EndRates, Ends, axis, point_rates};
+use super::{MarkerPair, MarkerPairRates, axis, point_rates};
 
 #[inline(always)]
-pub(super) fn residual<T: Real>(k: usize, ends: &Ends<T>) -> T {
+pub(super) fn residual<T: Real>(k: usize, ends: &MarkerPair<T>) -> T {
     ends.j.r[k] - ends.i.r[k]
 }
 
 /// The force e_k through the common point.
 #[inline(always)]
-pub(super) fn wrench<T: Real>(k: usize, ends: &Ends<T>) -> Wrench<T> {
+pub(super) fn wrench<T: Real>(k: usize, ends: &MarkerPair<T>) -> Wrench<T> {
     // l = [P x e_k; e_k],  d(phi) = e_k . (V_j at P - V_i at P);  off the common point wrong by (w_i x d) . e_k, which Newton sees vanish
     Wrench { m: across(ends.j.r, k), f: Vec3::AXES[k].spread() }
 }
 
 #[inline(always)]
-pub(super) fn wrench_rates<T: Real>(k: usize, ends: &Ends<T>, rates: &EndRates<T>) -> [Wrench<T>; 2] {
+pub(super) fn wrench_rates<T: Real>(
+    k: usize,
+    ends: &MarkerPair<T>,
+    rates: &MarkerPairRates<T>,
+) -> [Wrench<T>; 2] {
     // l. = [P. x e_k; 0],    l.. = [P.. x e_k; 0]
     let [_, velocity, acceleration] = point_rates(ends.j.r, rates.v_j, rates.a_j);
     [Wrench::moment(across(velocity, k)), Wrench::moment(across(acceleration, k))]
 }
 
 #[inline(always)]
-pub(super) fn residual_on_base<T: Real>(k: usize, ends: &Ends<T>) -> T {
+pub(super) fn residual_on_base<T: Real>(k: usize, ends: &MarkerPair<T>) -> T {
     axis(&ends.axes, k).dot(ends.j.r - ends.i.r)
 }
 
 #[inline(always)]
-pub(super) fn wrench_on_base<T: Real>(k: usize, ends: &Ends<T>) -> Wrench<T> {
+pub(super) fn wrench_on_base<T: Real>(k: usize, ends: &MarkerPair<T>) -> Wrench<T> {
     Wrench::force(axis(&ends.axes, k), ends.j.r)
 }
 
 /// As if the base stood: the relative velocity of the points vanishes along every axis, so that how these turn has no part in any
 /// rate of the constraint.
 #[inline(always)]
-pub(super) fn wrench_rates_on_base<T: Real>(k: usize, ends: &Ends<T>, rates: &EndRates<T>) -> [Wrench<T>; 2] {
+pub(super) fn wrench_rates_on_base<T: Real>(
+    k: usize,
+    ends: &MarkerPair<T>,
+    rates: &MarkerPairRates<T>,
+) -> [Wrench<T>; 2] {
     let e = axis(&ends.axes, k);
     let [_, velocity, acceleration] = point_rates(ends.j.r, rates.v_j, rates.a_j);
     [Wrench::moment(velocity.cross(e)), Wrench::moment(acceleration.cross(e))]

@@ -6,14 +6,14 @@
 //!
 //! | here | paper | what |
 //! |---|---|---|
-//! | [`Design::place`] | | hardpoint `P = P_o + sum_k v_k b_k`, m, global |
-//! | [`Design::marker`] | s, C of (3.1), (2.2) | marker in its body, `X_body^-1 X_marker` |
+//! | [`PlacedDesign::place`] | | hardpoint `P = P_o + sum_k v_k b_k`, m, global |
+//! | [`PlacedDesign::marker`] | s, C of (3.1), (2.2) | marker in its body, `X_body^-1 X_marker` |
 //! | `position`, `v` of a change | `V_Omega` (3.2) | location design velocity, m per unit |
 //! | `rotation` of a change | `d(xi)/dtau = R U` (3.10) | orientation design velocity as a rotation vector, rad per unit |
 //! | `u` of a change | `U_theta` (3.3) | the same as rates of the 3-1-3 Euler angles, rad per unit |
-//! | [`Effects::field_along`] | `dD/dtau` (5.5) | `d/db` of all of it, by duals `b + eps` |
+//! | [`DesignMap::field_along`] | `dD/dtau` (5.5) | `d/db` of all of it, by duals `b + eps` |
 
-use crate::design::{Field, Fixed, Geometry, Kept, MarkerField};
+use crate::design::{BodyFixed, DesignVelocity, Geometry, JointConstants, MarkerVelocity};
 use crate::law::Law;
 use crate::model::{
     BodyId, Change, DesignVariable, Direction, DriverId, HardpointId, Joint, JointId, Measure, MeasureKind,
@@ -27,7 +27,7 @@ use super::formulas::Formulas;
 
 /// What the variables of a model change, by what they change: found once for many designs.
 #[derive(Clone, Debug)]
-pub(crate) struct Effects<'m> {
+pub(crate) struct DesignMap<'m> {
     pub model: &'m Model,
     /// Per hardpoint: the variables that move it, and its velocity by each.
     moves: Vec<Vec<(usize, Vec3)>>,
@@ -40,7 +40,7 @@ pub(crate) struct Effects<'m> {
     formulas: Option<Formulas>,
 }
 
-impl<'m> Effects<'m> {
+impl<'m> DesignMap<'m> {
     pub fn of(model: &'m Model) -> Self {
         let hardpoints = model.hardpoints.len();
         let mut effects = Self {
@@ -84,7 +84,7 @@ impl<'m> Effects<'m> {
     /// The geometry of the designs whose values these are, variable by variable.
     pub fn geometry<T: Real>(&self, values: &[T]) -> Geometry<T> {
         let model = self.model;
-        let design = Design::new(self, values.to_vec());
+        let design = PlacedDesign::new(self, values.to_vec());
         Geometry {
             markers: (0..model.joints.len()).map(|j| [0, 1].map(|e| design.marker(j, e))).collect(),
             kept: (0..model.joints.len()).map(|j| design.kept(j)).collect(),
@@ -93,13 +93,13 @@ impl<'m> Effects<'m> {
     }
 
     /// What the measures of these designs go by.
-    pub fn fixed<T: Real>(&self, values: &[T]) -> Fixed<T> {
-        let (model, design) = (self.model, Design::new(self, values.to_vec()));
+    pub fn fixed<T: Real>(&self, values: &[T]) -> BodyFixed<T> {
+        let (model, design) = (self.model, PlacedDesign::new(self, values.to_vec()));
         let markers = |m: &Measure| match m.kind {
             MeasureKind::Coordinate { joint, .. } => Some([0, 1].map(|e| design.marker(joint.0, e))),
             _ => None,
         };
-        Fixed {
+        BodyFixed {
             points: (0..model.points.len()).map(|k| design.point(k)).collect(),
             directions: model.measures.iter().map(|m| design.directions(m)).collect(),
             markers: model.measures.iter().map(markers).collect(),
@@ -107,28 +107,29 @@ impl<'m> Effects<'m> {
     }
 
     /// How one variable changes the designs whose values these are.
-    pub fn field<T: Real>(&self, variable: VariableId, values: &[T]) -> Field<T> {
+    pub fn field<T: Real>(&self, variable: VariableId, values: &[T]) -> DesignVelocity<T> {
         self.field_along(&[(variable, 1.0)], values)
     }
 
     /// How the designs whose values these are change along a direction, some variables at once.
     ///
     /// Paper Eqs. 3.1 to 3.10 and 5.5; `docs/theory.md` (8).
-    pub fn field_along<T: Real>(&self, along: &[(VariableId, f64)], values: &[T]) -> Field<T> {
+    pub fn field_along<T: Real>(&self, along: &[(VariableId, f64)], values: &[T]) -> DesignVelocity<T> {
         let mut duals: Vec<Dual<T>> = values.iter().map(|v| Dual::constant(*v)).collect();
         for &(variable, rate) in along {
             // b_k + eps rate_k: what stands at eps of any result is its derivative along the direction
             duals[variable.0].d = T::constant(rate);
         }
-        let design = Design::new(self, duals);
+        let design = PlacedDesign::new(self, duals);
         let touched = self.touched(along);
-        let mut field = Field { laws: self.law_rates(&touched, &design), ..Field::default() };
+        let mut field =
+            DesignVelocity { laws: self.law_rates(&touched, &design), ..DesignVelocity::default() };
         for j in touched.joints {
             for end in 0..2 {
                 // e = [R U; V - (R U) x s], the twist of the marker's pose in its body                                (8)
                 let (_, twist) = design.marker(j, end).split();
                 if !is_null(twist.w) || !is_null(twist.v) {
-                    field.markers.push(MarkerField { joint: JointId(j), end, twist });
+                    field.markers.push(MarkerVelocity { joint: JointId(j), end, twist });
                 }
             }
             // L'
@@ -143,8 +144,8 @@ impl<'m> Effects<'m> {
     }
 
     /// What may change along a direction, some variables at once.
-    pub(super) fn touched(&self, along: &[(VariableId, f64)]) -> Touched {
-        let mut touched = Touched::default();
+    pub(super) fn touched(&self, along: &[(VariableId, f64)]) -> Affected {
+        let mut touched = Affected::default();
         for (variable, by) in along {
             for change in &self.model.variables[variable.0].changes {
                 touched.hardpoints.extend(change.hardpoint().map(|(h, _)| h.0));
@@ -179,8 +180,8 @@ impl<'m> Effects<'m> {
     /// The parameters of laws that change, and their rates.
     fn law_rates<T: Real>(
         &self,
-        touched: &Touched,
-        design: &Design<'_, Dual<T>>,
+        touched: &Affected,
+        design: &PlacedDesign<'_, Dual<T>>,
     ) -> Vec<(DriverId, usize, T)> {
         let mut rates: Vec<_> =
             touched.laws.iter().map(|(d, p, rate)| (*d, *p, T::constant(*rate))).collect();
@@ -202,7 +203,7 @@ impl<'m> Effects<'m> {
         let model = self.model;
         let mut laws: Vec<Law> = model.drivers.iter().map(|d| d.law.clone()).collect();
         if model.formulas.iter().any(|f| matches!(f.of, Target::Law(..))) {
-            let results = Design::new(self, values.to_vec()).values.formulas;
+            let results = PlacedDesign::new(self, values.to_vec()).values.formulas;
             // Without results, no formula follows what is not at 0.
             for (formula, result) in model.formulas.iter().zip(results) {
                 if let Target::Law(driver, parameter) = formula.of {
@@ -224,7 +225,7 @@ impl<'m> Effects<'m> {
     }
 
     /// How every variable changes the designs whose values these are.
-    pub fn fields<T: Real>(&self, values: &[T]) -> Vec<Field<T>> {
+    pub fn fields<T: Real>(&self, values: &[T]) -> Vec<DesignVelocity<T>> {
         (0..values.len()).map(|k| self.field(VariableId(k), values)).collect()
     }
 }
@@ -235,7 +236,7 @@ fn is_null<T: Real>(v: Vec3<T>) -> bool {
 
 /// What may change along a direction: hardpoints, joints, points, parameters of laws at a rate, and formulas of such.
 #[derive(Default)]
-pub(super) struct Touched {
+pub(super) struct Affected {
     pub hardpoints: Vec<usize>,
     pub joints: Vec<usize>,
     pub points: Vec<usize>,
@@ -244,8 +245,8 @@ pub(super) struct Touched {
 }
 
 /// Where everything is with the variables at these values.
-struct Design<'e, T> {
-    effects: &'e Effects<'e>,
+struct PlacedDesign<'e, T> {
+    effects: &'e DesignMap<'e>,
     values: Values<T>,
     /// The same, 0 for variables that keep the lengths of rods: what the lengths are measured with.
     for_lengths: Values<T>,
@@ -260,9 +261,9 @@ struct Values<T> {
     formulas: Vec<T>,
 }
 
-impl<'e, T: Real> Design<'e, T> {
+impl<'e, T: Real> PlacedDesign<'e, T> {
     /// Variables at 0 are left out, unless it is differentiated by them.
-    fn new(effects: &'e Effects<'_>, values: Vec<T>) -> Self {
+    fn new(effects: &'e DesignMap<'_>, values: Vec<T>) -> Self {
         let variables = &effects.model.variables;
         let counts = values.iter().map(|v| !v.vanishes()).collect();
         // With b = 0 for the variables that keep lengths L = abs(d) does not follow them: L' = 0, and the mechanism re-assembles.
@@ -387,7 +388,7 @@ impl<'e, T: Real> Design<'e, T> {
     }
 
     /// What joint j keeps.
-    fn kept(&self, j: usize) -> Kept<T> {
+    fn kept(&self, j: usize) -> JointConstants<T> {
         let (joint, zero) = (&self.effects.model.joints[j], T::zero());
         let [m_i, m_j] = [0, 1].map(|e| self.marker_in_world(j, e, &self.for_lengths));
         // d = P_j - P_i of the design; what a joint keeps is measured on it: L = abs(d), z_i . d, z_i . z_j, the distance from a curve.
@@ -408,7 +409,7 @@ impl<'e, T: Real> Design<'e, T> {
             let sign = || T::constant(f64::signum(drawn.value()));
             given.map_or(drawn, |length| length.abs() * sign())
         });
-        Kept { distance, offset: z_i.dot(d), cosine: z_i.dot(z_j), contact }
+        JointConstants { distance, offset: z_i.dot(d), cosine: z_i.dot(z_j), contact }
     }
 
     /// A point in its body's frame.
@@ -467,7 +468,7 @@ mod tests {
             ))
             .times([0.0]);
         let model = Model::from_draft(&draft).unwrap();
-        let effects = Effects::of(&model);
+        let effects = DesignMap::of(&model);
         for b in [0.0, 0.4] {
             let value = Dual { v: Dual::variable(b), d: Dual::constant(1.0) };
             let rod = effects.geometry(&[value]);

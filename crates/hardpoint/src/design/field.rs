@@ -1,6 +1,6 @@
 //! Design velocity fields of markers, kept values, points and laws: what one variable, or one driver, changes to first order.
 
-use crate::design::Kept;
+use crate::design::JointConstants;
 use crate::model::{DriverId, JointId, PointId};
 use crate::space::{Real, Twist, Vec3};
 
@@ -9,11 +9,11 @@ use crate::space::{Real, Twist, Vec3};
 ///
 /// Every list is in the order of its ids.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Field<T = f64> {
+pub struct DesignVelocity<T = f64> {
     /// The markers that move or turn.
-    pub markers: Vec<MarkerField<T>>,
+    pub markers: Vec<MarkerVelocity<T>>,
     /// The joints whose kept values change, and their rates.
-    pub kept: Vec<(JointId, Kept<T>)>,
+    pub kept: Vec<(JointId, JointConstants<T>)>,
     /// The points that move, and their velocity in the body's frame.
     pub points: Vec<(PointId, Vec3<T>)>,
     /// The drivers whose laws change: the parameter, and its rate.
@@ -24,7 +24,7 @@ pub struct Field<T = f64> {
 
 /// The design velocity of one marker.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct MarkerField<T = f64> {
+pub struct MarkerVelocity<T = f64> {
     /// Which joint.
     pub joint: JointId,
     /// 0 for the marker on body i, 1 for that on body j.
@@ -37,14 +37,14 @@ pub struct MarkerField<T = f64> {
 }
 
 /// Nothing changes.
-impl<T> Default for Field<T> {
+impl<T> Default for DesignVelocity<T> {
     fn default() -> Self {
         let (markers, kept, points) = (Vec::new(), Vec::new(), Vec::new());
         Self { markers, kept, points, laws: Vec::new(), shifts: Vec::new() }
     }
 }
 
-impl<T: Copy> Field<T> {
+impl<T: Copy> DesignVelocity<T> {
     /// The twist of a joint's marker, if it moves.
     pub fn twist_of(&self, joint: JointId, end: usize) -> Option<Twist<T>> {
         // e of (8); null if it is not listed
@@ -53,13 +53,13 @@ impl<T: Copy> Field<T> {
     }
 
     /// Rates of what a joint keeps, if any of it changes.
-    pub fn kept_rate(&self, joint: JointId) -> Option<Kept<T>> {
+    pub fn kept_rate(&self, joint: JointId) -> Option<JointConstants<T>> {
         let found = self.kept.binary_search_by_key(&joint, |k| k.0);
         found.ok().map(|k| self.kept[k].1)
     }
 }
 
-impl<T: Real> Field<T> {
+impl<T: Real> DesignVelocity<T> {
     /// That of a driver which moves by itself: its value shifts by one unit per unit.
     pub(crate) fn of_driver(driver: DriverId) -> Self {
         // L_u = 1 in the driver's row, or S_u = 1 of its coordinate; z = 0 (theory, "One driver alone")
@@ -67,7 +67,7 @@ impl<T: Real> Field<T> {
     }
 }
 
-impl Field {
+impl DesignVelocity {
     /// The same with every parameter of a law once, in the order of drivers and parameters.
     pub(crate) fn with_laws_in_order(mut self) -> Self {
         self.laws.sort_by_key(|(driver, parameter, _)| (*driver, *parameter));

@@ -16,14 +16,14 @@ pub struct Geometry<T = f64> {
     /// Per joint, marker i in body i and marker j in body j.
     pub markers: Vec<[Pose<T>; 2]>,
     /// Per joint, what its constraints may keep of the design configuration.
-    pub kept: Vec<Kept<T>>,
+    pub kept: Vec<JointConstants<T>>,
     /// Per point of the model, its position in its body's frame, m.
     pub points: Vec<Vec3<T>>,
 }
 
 /// What measures go by, fixed in the bodies.
 #[derive(Clone, Debug)]
-pub(crate) struct Fixed<T> {
+pub(crate) struct BodyFixed<T> {
     /// Per point of the model, its position in its body's frame, m.
     pub points: Vec<Vec3<T>>,
     /// Per measure, the directions that it goes by: unit vectors in their bodies' frames.
@@ -32,11 +32,11 @@ pub(crate) struct Fixed<T> {
     pub markers: Vec<Option<[Pose<T>; 2]>>,
 }
 
-impl<T: Copy> Fixed<T> {
+impl<T: Copy> BodyFixed<T> {
     /// The same, number by number.
-    pub fn map<U>(&self, f: impl Fn(T) -> U + Copy) -> Fixed<U> {
+    pub fn map<U>(&self, f: impl Fn(T) -> U + Copy) -> BodyFixed<U> {
         let pose = |p: Pose<T>| Pose { rot: Mat3 { cols: p.rot.cols.map(|c| c.map(f)) }, r: p.r.map(f) };
-        Fixed {
+        BodyFixed {
             points: self.points.iter().map(|p| p.map(f)).collect(),
             directions: self.directions.iter().map(|d| d.map(|d| d.map(|d| d.map(f)))).collect(),
             markers: self.markers.iter().map(|m| m.map(|m| m.map(pose))).collect(),
@@ -46,7 +46,7 @@ impl<T: Copy> Fixed<T> {
 
 /// What a joint can keep of its design configuration, or the rate at which a design variable changes it.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Kept<T = f64> {
+pub struct JointConstants<T = f64> {
     /// Distance between its markers, m: the length of a rod.
     pub distance: T,
     /// Displacement of marker j along z_i, m.
@@ -57,7 +57,7 @@ pub struct Kept<T = f64> {
     pub contact: T,
 }
 
-impl<T: Real> Kept<T> {
+impl<T: Real> JointConstants<T> {
     /// What this constraint keeps; 0 for those that keep nothing.
     pub fn by(&self, row: Row) -> T {
         match row {
@@ -69,8 +69,8 @@ impl<T: Real> Kept<T> {
         }
     }
 
-    pub(super) fn map<U>(self, f: impl Fn(T) -> U) -> Kept<U> {
-        Kept {
+    pub(super) fn map<U>(self, f: impl Fn(T) -> U) -> JointConstants<U> {
+        JointConstants {
             distance: f(self.distance),
             offset: f(self.offset),
             cosine: f(self.cosine),

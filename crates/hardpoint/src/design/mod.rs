@@ -1,7 +1,7 @@
 //! The design: the geometry of any values of the design variables, and how fast it changes with each (the paper's section 3).
 //!
 //! A model never changes. A design is a list of values, one per variable; [`Geometry`] is what they make of the markers, points and
-//! lengths, and a [`Field`] the rate at which one variable, or a direction in the space of them all, changes that: the paper's design
+//! lengths, and a [`DesignVelocity`] the rate at which one variable, or a direction in the space of them all, changes that: the paper's design
 //! velocity field.
 
 use crate::law::Law;
@@ -16,10 +16,10 @@ mod geometry;
 mod shape;
 
 pub(crate) use change::Effect;
-pub(crate) use effects::Effects;
-pub use field::{Field, MarkerField};
-pub(crate) use geometry::Fixed;
-pub use geometry::{Geometry, Kept};
+pub(crate) use effects::DesignMap;
+pub use field::{DesignVelocity, MarkerVelocity};
+pub(crate) use geometry::BodyFixed;
+pub use geometry::{Geometry, JointConstants};
 pub(crate) use shape::{Interpolation, ShapeField};
 
 impl Model {
@@ -27,17 +27,17 @@ impl Model {
     ///
     /// Body frames stay where they are in the design configuration; markers move on their bodies.
     pub fn geometry(&self, design: &[f64]) -> Geometry {
-        Effects::of(self).geometry(&self.whole(design))
+        DesignMap::of(self).geometry(&self.whole(design))
     }
 
     /// The first-order change of the nominal design per unit of one variable.
-    pub fn field(&self, variable: VariableId) -> Field {
-        Effects::of(self).field(variable, &self.whole(&[]))
+    pub fn field(&self, variable: VariableId) -> DesignVelocity {
+        DesignMap::of(self).field(variable, &self.whole(&[]))
     }
 
     /// The first-order changes of a design per unit of each variable.
-    pub fn fields(&self, design: &[f64]) -> Vec<Field> {
-        Effects::of(self).fields(&self.whole(design))
+    pub fn fields(&self, design: &[f64]) -> Vec<DesignVelocity> {
+        DesignMap::of(self).fields(&self.whole(design))
     }
 
     /// The natural step of a variable: the change that moves the farthest marker by the mechanism's size, or turns it by 1 rad. Where
@@ -47,7 +47,7 @@ impl Model {
     pub fn natural_step(&self, variable: VariableId) -> f64 {
         let size = self.size();
         let geometry = self.geometry(&[]);
-        let speed = |m: &MarkerField| {
+        let speed = |m: &MarkerVelocity| {
             let s = geometry.markers[m.joint.0][m.end].r;
             // max(abs(R U), abs(V) / size),  V = e_v + e_w x s
             m.twist.w.norm().max(m.twist.at(s).norm() / size)
@@ -58,7 +58,7 @@ impl Model {
 
     /// The variables whose change changes nothing that the motion or its results depend on.
     pub fn without_effect(&self) -> Vec<VariableId> {
-        let effects = Effects::of(self);
+        let effects = DesignMap::of(self);
         let directions = self.measures.iter().flat_map(|m| self.directions(m)).flatten();
         let seen: Vec<usize> = directions.flat_map(|(_, axis)| axis.hardpoints()).map(|h| h.0).collect();
         let is_idle = |v: &VariableId| {
@@ -86,7 +86,7 @@ impl Model {
 
     /// The drivers' laws in the design with variable k at `design[k]` (missing entries are 0).
     pub fn laws(&self, design: &[f64]) -> Vec<Law> {
-        Effects::of(self).laws(&self.whole(design))
+        DesignMap::of(self).laws(&self.whole(design))
     }
 
     /// 3-1-3 Euler angles of a marker in its body's frame, and their rotation C(theta).

@@ -4,7 +4,7 @@
 
 use crate::draft::{
     BodyDraft, ChangeDraft, CurveDraft, Draft, DrivenDraft, DriverDraft, FrameDraft, HardpointDraft,
-    JointDraft, Line, MeasureDraft, MeasureKindDraft, Place, PointDraft, VariableDraft,
+    JointDraft, LineDraft, MeasureDraft, MeasureKindDraft, PlaceDraft, PointDraft, VariableDraft,
 };
 use crate::law::Law;
 use crate::space::Vec3;
@@ -46,8 +46,8 @@ impl Draft {
         self,
         name: impl Into<String>,
         bodies: [impl Into<String>; 2],
-        at: impl Into<Place>,
-        axis: impl Into<Line>,
+        at: impl Into<PlaceDraft>,
+        axis: impl Into<LineDraft>,
     ) -> Self {
         self.joint(JointDraft::new(name, "revolute", bodies).at(at).axis(axis))
     }
@@ -57,8 +57,8 @@ impl Draft {
         self,
         name: impl Into<String>,
         bodies: [impl Into<String>; 2],
-        at: impl Into<Place>,
-        axis: impl Into<Line>,
+        at: impl Into<PlaceDraft>,
+        axis: impl Into<LineDraft>,
     ) -> Self {
         self.joint(JointDraft::new(name, "translational", bodies).at(at).axis(axis))
     }
@@ -68,7 +68,7 @@ impl Draft {
         self,
         name: impl Into<String>,
         bodies: [impl Into<String>; 2],
-        at: impl Into<Place>,
+        at: impl Into<PlaceDraft>,
     ) -> Self {
         self.joint(JointDraft::new(name, "spherical", bodies).at(at))
     }
@@ -78,7 +78,7 @@ impl Draft {
         self,
         name: impl Into<String>,
         bodies: [impl Into<String>; 2],
-        between: [impl Into<Place>; 2],
+        between: [impl Into<PlaceDraft>; 2],
     ) -> Self {
         let [from, to] = between;
         self.joint(JointDraft::new(name, "distance", bodies).at(from).at(to))
@@ -107,7 +107,12 @@ impl Draft {
     }
 
     /// Adds a point to follow, on a body.
-    pub fn point(mut self, name: impl Into<String>, body: impl Into<String>, at: impl Into<Place>) -> Self {
+    pub fn point(
+        mut self,
+        name: impl Into<String>,
+        body: impl Into<String>,
+        at: impl Into<PlaceDraft>,
+    ) -> Self {
         self.points.push(PointDraft::new(name, body, at));
         self
     }
@@ -131,7 +136,7 @@ impl Draft {
 /// # use hardpoint::draft::*;
 /// // A screw that advances by 20 mm per turn, on the line between two hardpoints, cut rather than carrying the tree.
 /// let screw = JointDraft::new("screw", "screw", ["shaft", "nut"]).at("A").axis(["A", "B"]).lead(0.02).cut();
-/// assert_eq!(screw.axis, Some(Line::Through("A".into(), "B".into())));
+/// assert_eq!(screw.axis, Some(LineDraft::Through("A".into(), "B".into())));
 /// ```
 impl JointDraft {
     /// A joint of one of the types of [`ALL`](crate::joint::ALL), by name, between bodies i and j.
@@ -140,18 +145,18 @@ impl JointDraft {
     }
 
     /// Its place, or the next one of two.
-    pub fn at(mut self, place: impl Into<Place>) -> Self {
+    pub fn at(mut self, place: impl Into<PlaceDraft>) -> Self {
         self.at.push(place.into());
         self
     }
 
     /// Where the markers' z axis points.
-    pub fn axis(self, axis: impl Into<Line>) -> Self {
+    pub fn axis(self, axis: impl Into<LineDraft>) -> Self {
         Self { axis: Some(axis.into()), ..self }
     }
 
     /// Where the markers' x axis points.
-    pub fn axis2(self, axis: impl Into<Line>) -> Self {
+    pub fn axis2(self, axis: impl Into<LineDraft>) -> Self {
         Self { axis2: Some(axis.into()), ..self }
     }
 
@@ -166,7 +171,7 @@ impl JointDraft {
     }
 
     /// The curve on body i that a point of body j follows.
-    pub fn curve(self, points: impl IntoIterator<Item = impl Into<Place>>, closed: bool) -> Self {
+    pub fn curve(self, points: impl IntoIterator<Item = impl Into<PlaceDraft>>, closed: bool) -> Self {
         let points = points.into_iter().map(Into::into).collect();
         Self { curve: Some(CurveDraft { points, closed }), ..self }
     }
@@ -200,7 +205,7 @@ impl DriverDraft {
 
 impl PointDraft {
     /// A point to follow, on a body.
-    pub fn new(name: impl Into<String>, body: impl Into<String>, at: impl Into<Place>) -> Self {
+    pub fn new(name: impl Into<String>, body: impl Into<String>, at: impl Into<PlaceDraft>) -> Self {
         Self { name: name.into(), body: body.into(), at: at.into() }
     }
 }
@@ -232,42 +237,42 @@ impl From<&str> for BodyDraft {
 }
 
 /// A hardpoint, by name.
-impl From<&str> for Place {
+impl From<&str> for PlaceDraft {
     fn from(hardpoint: &str) -> Self {
         Self::Hardpoint(hardpoint.into())
     }
 }
 
 /// Global coordinates, m.
-impl From<[f64; 3]> for Place {
+impl From<[f64; 3]> for PlaceDraft {
     fn from(position: [f64; 3]) -> Self {
         Self::At(position.into())
     }
 }
 
 /// Global coordinates, m.
-impl From<Vec3> for Place {
+impl From<Vec3> for PlaceDraft {
     fn from(position: Vec3) -> Self {
         Self::At(position)
     }
 }
 
 /// Along a global vector of any length.
-impl From<[f64; 3]> for Line {
+impl From<[f64; 3]> for LineDraft {
     fn from(direction: [f64; 3]) -> Self {
         Self::Along(direction.into())
     }
 }
 
 /// Along a global vector of any length.
-impl From<Vec3> for Line {
+impl From<Vec3> for LineDraft {
     fn from(direction: Vec3) -> Self {
         Self::Along(direction)
     }
 }
 
 /// From one named hardpoint to another.
-impl From<[&str; 2]> for Line {
+impl From<[&str; 2]> for LineDraft {
     fn from([from, to]: [&str; 2]) -> Self {
         Self::Through(from.into(), to.into())
     }

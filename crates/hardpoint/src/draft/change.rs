@@ -1,6 +1,6 @@
 //! Changes as written, and what a variable measures that makes them.
 
-use crate::draft::Line;
+use crate::draft::LineDraft;
 use crate::joint::Quantity;
 use crate::law::{Law, ParameterKind};
 use crate::model::End;
@@ -23,7 +23,7 @@ macro_rules! in_drafts {
                 /// The joint's name.
                 joint: String,
                 /// The line to turn about, by one radian per radian of the variable.
-                about: Line,
+                about: LineDraft,
             },
             /// Whole bodies change their shape, and everything on them follows: joints with the markers of both bodies, axes, points.
             Shape {
@@ -94,7 +94,7 @@ pub enum ShapeDraft {
     /// About a line through a hardpoint.
     Rotate {
         /// The line's direction.
-        about: Line,
+        about: LineDraft,
         /// The hardpoint.
         at: String,
     },
@@ -103,7 +103,7 @@ pub enum ShapeDraft {
         /// The hardpoint.
         from: String,
         /// The direction.
-        along: Option<Line>,
+        along: Option<LineDraft>,
     },
     /// Like a beam that is held at one hardpoint and pushed at another.
     Bend {

@@ -13,7 +13,7 @@ pub(super) use measures::MeasureCheck;
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 
 use crate::draft::{
-    Draft, Fault, FormulaOf, FrameDraft, Line, Locus, Place, PointRef, Section, did_you_mean,
+    Draft, Fault, FormulaOf, FrameDraft, LineDraft, Locus, PlaceDraft, PointRef, Section, did_you_mean,
 };
 use crate::expression::Expression;
 use crate::model::{
@@ -48,7 +48,7 @@ impl Model {
     /// assert_eq!(faults[0].message, "the model has no bodies");
     /// ```
     pub fn from_draft(draft: &Draft) -> Result<Self, Vec<Fault>> {
-        let mut c = Check::new(draft);
+        let mut c = Checker::new(draft);
         c.names();
         c.formulas();
         c.bodies();
@@ -92,7 +92,7 @@ impl Here {
     }
 }
 
-struct Check<'a> {
+struct Checker<'a> {
     draft: &'a Draft,
     model: Model,
     faults: Vec<Fault>,
@@ -141,7 +141,7 @@ fn extent_of_joints(draft: &Draft, hardpoints: &[Hardpoint], spoilt: &BTreeSet<S
     let places = draft.joints.iter().flat_map(|j| &j.at);
     let named: BTreeSet<&str> = places
         .filter_map(|place| match place {
-            Place::Hardpoint(name) => Some(name.as_str()),
+            PlaceDraft::Hardpoint(name) => Some(name.as_str()),
             _ => None,
         })
         .collect();
@@ -155,7 +155,7 @@ fn is_known(h: HardpointId, spoilt: &BTreeSet<Source>) -> bool {
     spoilt.is_empty() || (0..3).all(|axis| !spoilt.contains(&Source::Coordinate(h, axis)))
 }
 
-impl<'a> Check<'a> {
+impl<'a> Checker<'a> {
     fn new(draft: &'a Draft) -> Self {
         let model = Model {
             name: draft.name.clone(),
@@ -345,16 +345,16 @@ impl<'a> Check<'a> {
     }
 
     /// A hardpoint for a place; coordinates become an unnamed one.
-    fn place(&mut self, place: &Place, owner: &str, at: Locus) -> Option<HardpointId> {
+    fn place(&mut self, place: &PlaceDraft, owner: &str, at: Locus) -> Option<HardpointId> {
         match place {
-            Place::Hardpoint(name) => self.hardpoint(name, at),
-            Place::At(p) if p.is_finite() => {
+            PlaceDraft::Hardpoint(name) => self.hardpoint(name, at),
+            PlaceDraft::At(p) if p.is_finite() => {
                 self.model.hardpoints.push(Hardpoint { name: owner.into(), position: *p, unnamed: true });
                 self.extent.include(*p);
                 Some(HardpointId(self.model.hardpoints.len() - 1))
             }
-            Place::Formula(coordinates) => self.formula_place(coordinates, owner, at),
-            Place::At(_) => {
+            PlaceDraft::Formula(coordinates) => self.formula_place(coordinates, owner, at),
+            PlaceDraft::At(_) => {
                 self.fault("HP0202", at, format!("a coordinate of `{owner}` is not a finite number"));
                 None
             }
@@ -373,9 +373,15 @@ impl<'a> Check<'a> {
     }
 
     /// A direction, and its unit vector at the design configuration.
-    fn line(&mut self, line: &Line, owner: &str, here: Here, key: &'static str) -> Option<(Direction, Vec3)> {
+    fn line(
+        &mut self,
+        line: &LineDraft,
+        owner: &str,
+        here: Here,
+        key: &'static str,
+    ) -> Option<(Direction, Vec3)> {
         match line {
-            Line::Along(v) => match v.unit() {
+            LineDraft::Along(v) => match v.unit() {
                 Some(u) => Some((Direction::Along(u), u)),
                 None => {
                     self.fault("HP0205", here.key(key), format!("the {key} of `{owner}` has no direction"))
@@ -384,7 +390,7 @@ impl<'a> Check<'a> {
                     None
                 }
             },
-            Line::Through(a, b) => {
+            LineDraft::Through(a, b) => {
                 let a_id = self.hardpoint(a, here.item(key, 0));
                 let b_id = self.hardpoint(b, here.item(key, 1));
                 let (a_id, b_id) = (a_id?, b_id?);
@@ -424,21 +430,21 @@ impl<'a> Check<'a> {
                     frame = *pose;
                 }
                 FrameDraft::Points(origin, x, xy) => {
-                    let mut at = |k: usize, p: &Place| match p {
-                        Place::Formula(_) => {
+                    let mut at = |k: usize, p: &PlaceDraft| match p {
+                        PlaceDraft::Formula(_) => {
                             let message = format!("the frame of body `{}` is given by an expression", b.name);
                             self.fault("HP0230", here.item("frame", k), message)
                                 .help("give numbers: a change of the design leaves frames where they are");
                             None
                         }
-                        Place::At(v) if v.is_finite() => Some(*v),
-                        Place::At(_) => {
+                        PlaceDraft::At(v) if v.is_finite() => Some(*v),
+                        PlaceDraft::At(_) => {
                             let message =
                                 format!("a coordinate of the frame of `{}` is not a finite number", b.name);
                             self.fault("HP0202", here.item("frame", k), message);
                             None
                         }
-                        Place::Hardpoint(name) => {
+                        PlaceDraft::Hardpoint(name) => {
                             self.hardpoint(name, here.item("frame", k)).and_then(|h| self.position(h))
                         }
                     };

@@ -1,6 +1,6 @@
 //! Measures as written, and what their fields mean in a model.
 
-use crate::draft::{Line, PointRef, RayDraft};
+use crate::draft::{LineDraft, PointRef, RayDraft};
 use crate::expression::Expression;
 use crate::model::{
     AxleMeasure, BodyId, Combination, Direction, DriverId, JointId, MeasureKind, OutputSource, PointId, Ray,
@@ -69,7 +69,7 @@ pub enum FieldDraft {
     /// A global direction, of any length.
     Direction(Vec3),
     /// A direction, which may follow hardpoints.
-    Line(Line),
+    Line(LineDraft),
     /// A direction to measure an angle from or to.
     Ray(RayDraft),
     /// An expression.

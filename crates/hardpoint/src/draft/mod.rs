@@ -20,7 +20,7 @@ use std::collections::BTreeMap;
 use crate::expression::Expression;
 use crate::joint::{self, JointType, Quantity};
 use crate::law::Law;
-use crate::model::{Side, Take, Vehicle, VehicleEnd};
+use crate::model::{Reduction, Side, Vehicle, VehicleEnd};
 use crate::space::{Pose, Vec3};
 
 /// A mechanism as written. Fill it in code, word by word or field by field, or from a file;
@@ -140,7 +140,7 @@ pub struct HardpointDraft {
 
 /// Where something is: at a named hardpoint, or at coordinates.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Place {
+pub enum PlaceDraft {
     /// A hardpoint's name.
     Hardpoint(String),
     /// Global coordinates in the design configuration, m.
@@ -151,7 +151,7 @@ pub enum Place {
 
 /// Where an axis points.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Line {
+pub enum LineDraft {
     /// Along a global vector of any length.
     Along(Vec3),
     /// From one named hardpoint to another.
@@ -176,7 +176,7 @@ pub enum FrameDraft {
     /// Position and orientation.
     Pose(Pose),
     /// Origin, a point on the x axis, and a point in the xy plane on the side of +y.
-    Points(Place, Place, Place),
+    Points(PlaceDraft, PlaceDraft, PlaceDraft),
 }
 
 /// A joint.
@@ -191,11 +191,11 @@ pub struct JointDraft {
     /// Its place, or its two places for a rod or leg. May be empty where the axis passes through
     /// hardpoints: then it is the first of them. A joint with one place may be given two that lie apart, on body i and
     /// on body j, for the mechanism to be assembled there.
-    pub at: Vec<Place>,
+    pub at: Vec<PlaceDraft>,
     /// Direction of the markers' z axis.
-    pub axis: Option<Line>,
+    pub axis: Option<LineDraft>,
     /// Direction of the markers' x axis.
-    pub axis2: Option<Line>,
+    pub axis2: Option<LineDraft>,
     /// Length of a rod, or a follower's distance from its curve, m; else it is measured between its places.
     pub length: Option<f64>,
     /// Advance of a screw, m per turn.
@@ -210,7 +210,7 @@ pub struct JointDraft {
 #[derive(Clone, Debug, Default)]
 pub struct CurveDraft {
     /// The points, in order; the curve of a cam is closed and does not repeat the first one.
-    pub points: Vec<Place>,
+    pub points: Vec<PlaceDraft>,
     /// Whether it returns to its first point.
     pub closed: bool,
 }
@@ -297,7 +297,7 @@ pub enum DrivenDraft {
         /// The point.
         point: PointRef,
         /// The direction, of any length.
-        along: Line,
+        along: LineDraft,
     },
     /// The change of the distance between two points.
     Distance {
@@ -313,7 +313,7 @@ pub enum DrivenDraft {
         /// The body that carries the direction; ground if left out.
         relative_to: Option<String>,
         /// The direction.
-        about: Line,
+        about: LineDraft,
     },
 }
 
@@ -355,7 +355,7 @@ pub struct PointDraft {
     /// The name of the body that carries it.
     pub body: String,
     /// Where it is in the design configuration.
-    pub at: Place,
+    pub at: PlaceDraft,
 }
 
 /// A point as a measure names it.
@@ -368,7 +368,7 @@ pub enum PointRef {
         /// The body's name.
         body: String,
         /// The place.
-        at: Place,
+        at: PlaceDraft,
     },
 }
 
@@ -380,7 +380,7 @@ pub struct WheelDraft {
     /// The name of the body that it turns on.
     pub body: String,
     /// Its centre in the design configuration.
-    pub centre: Place,
+    pub centre: PlaceDraft,
     /// How it stands in the design configuration.
     pub spin: WheelSpinDraft,
     /// From the centre to the ground in the wheel's plane, m.
@@ -410,7 +410,7 @@ pub struct AxleDraft {
 #[derive(Clone, Debug, PartialEq)]
 pub enum WheelSpinDraft {
     /// With this spin axis, pointing outboard.
-    Axis(Line),
+    Axis(LineDraft),
     /// At these angles, rad.
     Angles {
         /// Positive for toe-in.
@@ -440,7 +440,7 @@ pub struct MetricDraft {
     /// The same of the abscissa; time where it is left out.
     pub over: Option<String>,
     /// What is taken.
-    pub take: Take,
+    pub take: Reduction,
     /// The part of the curve that counts.
     pub window: Option<[f64; 2]>,
     /// How many units of length make a metre.
@@ -459,6 +459,6 @@ pub enum RayDraft {
         /// The body's name.
         body: String,
         /// Where it points in the design configuration.
-        axis: Line,
+        axis: LineDraft,
     },
 }

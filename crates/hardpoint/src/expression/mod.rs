@@ -27,7 +27,7 @@ pub use parse::ExpressionError;
 pub(crate) use parse::{names, parse, parse_open};
 pub(crate) use program::{Operation, Program};
 pub use range::{Range, Stretch};
-pub(crate) use term::Term;
+pub(crate) use term::ExpressionValue;
 
 use crate::number::Real;
 

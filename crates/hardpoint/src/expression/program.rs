@@ -7,7 +7,7 @@ use std::cmp::Ordering;
 
 use crate::number::{Function, Jet, Real};
 
-use super::term::{Binary, Comparison, Term};
+use super::term::{Binary, Comparison, ExpressionValue};
 
 /// The most operands that may wait for their operation.
 pub(crate) const MAX_WAITING: usize = 256;
@@ -51,7 +51,7 @@ impl Operation {
 
     /// The result for these operands; of an operation that has any.
     #[inline(always)]
-    fn of<V: Term>(self, operands: &[V]) -> V {
+    fn of<V: ExpressionValue>(self, operands: &[V]) -> V {
         match (self, operands) {
             (Self::Neg, &[x]) => -x,
             (Self::One(function), &[x]) => x.function(function),
@@ -200,13 +200,13 @@ impl Program {
 
     /// The program's result at a time, for the given parameters; in whatever the time is given.
     #[inline(always)]
-    pub(crate) fn at<V: Term>(&self, time: V, parameter: impl Fn(usize) -> V) -> V {
+    pub(crate) fn at<V: ExpressionValue>(&self, time: V, parameter: impl Fn(usize) -> V) -> V {
         self.watched(time, parameter, |_, _| ())
     }
 
     /// The same; `watch` sees each operation with its operands first.
     #[inline(always)]
-    fn watched<V: Term>(
+    fn watched<V: ExpressionValue>(
         &self,
         time: V,
         parameter: impl Fn(usize) -> V,
@@ -228,7 +228,7 @@ impl Program {
     /// Apart, so that no other program pays for room on the stack that only this one needs.
     #[cold]
     #[inline(never)]
-    fn with_full_stack<V: Term>(
+    fn with_full_stack<V: ExpressionValue>(
         &self,
         time: V,
         parameter: impl Fn(usize) -> V,
@@ -258,7 +258,7 @@ impl Program {
 
 /// Runs the operations on an empty stack.
 #[inline(always)]
-fn run<V: Term>(
+fn run<V: ExpressionValue>(
     operations: &[Operation],
     time: V,
     parameter: impl Fn(usize) -> V,

@@ -10,7 +10,7 @@ use std::ops::{Add, Div, Mul, Neg, Sub};
 
 use crate::number::Function;
 
-use super::term::{Comparison, Term};
+use super::term::{Comparison, ExpressionValue};
 
 /// All numbers from `low` to `high`. What is undefined anywhere is unbounded.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -238,7 +238,7 @@ impl Stretch {
     }
 }
 
-impl Term for Stretch {
+impl ExpressionValue for Stretch {
     fn number(x: f64) -> Self {
         Self::constant(x)
     }
@@ -446,7 +446,7 @@ fn of_polynomial(coefficients: &[f64], from: f64, to: f64) -> Range {
 
 #[cfg(test)]
 mod tests {
-    use crate::law::{ConstantSpeed, Ends, Harmonic, Law, Piece, SmoothStep, SplineDegree, Table};
+    use crate::law::{ConstantSpeed, Harmonic, Law, Piece, SmoothStep, SplineDegree, SplineEnds, Table};
 
     fn laws() -> Vec<Law> {
         let text = [
@@ -474,9 +474,9 @@ mod tests {
         laws.push(Law::smooth_step(step).unwrap());
         let (times, values) = (vec![-0.1, 0.5, 1.2, 2.5], vec![0.0, 3.0, -1.0, 0.0]);
         for (degree, ends) in [
-            (SplineDegree::Cubic, Ends::default()),
-            (SplineDegree::Quintic, Ends::default()),
-            (SplineDegree::Cubic, Ends::Periodic),
+            (SplineDegree::Cubic, SplineEnds::default()),
+            (SplineDegree::Quintic, SplineEnds::default()),
+            (SplineDegree::Cubic, SplineEnds::Periodic),
         ] {
             let (times, values) = (times.clone(), values.clone());
             laws.push(Law::table(&Table { times, values, degree, ends }).unwrap());
@@ -537,7 +537,7 @@ mod tests {
             times: vec![0.0, 1.0],
             values: vec![0.0, 1.0],
             degree: SplineDegree::Cubic,
-            ends: Ends::default(),
+            ends: SplineEnds::default(),
         };
         assert!(!Law::table(&table).unwrap().over(0.5, 1.5).value.is_bounded());
     }

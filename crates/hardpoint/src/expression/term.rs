@@ -9,7 +9,7 @@ use super::range::Range;
 
 /// What an expression is evaluated in: a number with whatever derivatives it carries; or
 /// [bounds](super::range::Stretch) of one.
-pub(crate) trait Term:
+pub(crate) trait ExpressionValue:
     Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Div<Output = Self> + Neg<Output = Self>
 {
     /// The number `x`, at all times.
@@ -39,7 +39,7 @@ pub(crate) trait Term:
 }
 
 /// Of two sides, that which is active just after the instant.
-impl<T: Real> Term for T {
+impl<T: Real> ExpressionValue for T {
     #[inline(always)]
     fn number(x: f64) -> Self {
         T::constant(x)
@@ -142,7 +142,7 @@ pub(crate) enum Binary {
 
 impl Binary {
     #[inline(always)]
-    pub(crate) fn of<V: Term>(self, x: V, y: V) -> V {
+    pub(crate) fn of<V: ExpressionValue>(self, x: V, y: V) -> V {
         match self {
             Self::Add => x + y,
             Self::Sub => x - y,

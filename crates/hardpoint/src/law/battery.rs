@@ -2,7 +2,7 @@
 
 use super::*;
 
-fn table(times: &[f64], values: &[f64], degree: SplineDegree, ends: Ends) -> Law {
+fn table(times: &[f64], values: &[f64], degree: SplineDegree, ends: SplineEnds) -> Law {
     Law::table(&Table { times: times.to_vec(), values: values.to_vec(), degree, ends }).unwrap()
 }
 
@@ -12,9 +12,9 @@ fn step(start: f64, end: f64, degree: u32) -> Law {
 
 const HARMONIC: Harmonic = Harmonic { amplitude: 2.5, frequency: 0.3, phase: 0.4, offset: -1.0 };
 
-const CLAMPED: Ends = Ends::Clamped {
-    start: EndRates { speed: 0.7, acceleration: 0.0 },
-    end: EndRates { speed: -0.4, acceleration: 0.0 },
+const CLAMPED: SplineEnds = SplineEnds::Clamped {
+    start: SplineEndRates { speed: 0.7, acceleration: 0.0 },
+    end: SplineEndRates { speed: -0.4, acceleration: 0.0 },
 };
 
 /// One law of every kind and variant, named by its text, all smooth about t = 0.7 s and t = 1.9 s.
@@ -30,7 +30,7 @@ fn every_kind() -> Vec<Law> {
         step(0.1, 2.6, 7),
     ];
     for degree in [SplineDegree::Cubic, SplineDegree::Quintic] {
-        for ends in [Ends::Natural, CLAMPED, Ends::Periodic] {
+        for ends in [SplineEnds::Natural, CLAMPED, SplineEnds::Periodic] {
             laws.push(table(&times, &values, degree, ends));
         }
     }
@@ -102,7 +102,7 @@ fn parameter_derivatives_of_every_kind_are_the_limits_of_differences() {
             }
         }
         // Where a sequence starts anew, what went before only shifts the time.
-        let is_sequence = matches!(law.kind, Kind::Sequence(_));
+        let is_sequence = matches!(law.kind, AnyLaw::Sequence(_));
         assert!(is_sequence || is_used.iter().all(|is_used| *is_used), "{law}: {is_used:?}");
     }
 }
@@ -127,7 +127,7 @@ fn parameters_are_named_valued_and_set_one_by_one() {
     assert_eq!(names(Law::harmonic(HARMONIC).unwrap()), ["amplitude", "frequency", "phase", "offset"]);
     assert_eq!(names(step(0.0, 1.0, 5)), ["from", "to", "start", "end"]);
     let points = |degree, ends| names(table(&[0.0, 1.0, 3.0], &[1.0, 2.0, 1.0], degree, ends));
-    assert_eq!(points(SplineDegree::Cubic, Ends::Periodic), ["f[0]", "f[1]"]);
+    assert_eq!(points(SplineDegree::Cubic, SplineEnds::Periodic), ["f[0]", "f[1]"]);
     assert_eq!(points(SplineDegree::Cubic, CLAMPED), ["f[0]", "f[1]", "f[2]", "start_speed", "end_speed"]);
     let pieces = vec![
         Piece::lasting(1.0, Law::polynomial(&[0.0, 1.0]).unwrap()),
@@ -182,7 +182,7 @@ fn a_law_that_is_no_expression_says_what_it_is() {
     let shown = [
         (step(0.5, 2.0, 7), "smooth step of degree 7 from 0.5 at 0.5 s to 3 at 2 s"),
         (
-            table(&[0.0, 1.0, 2.0], &[1.0, 0.0, 1.0], SplineDegree::Quintic, Ends::Periodic),
+            table(&[0.0, 1.0, 2.0], &[1.0, 0.0, 1.0], SplineDegree::Quintic, SplineEnds::Periodic),
             "periodic quintic spline through 3 points",
         ),
         (Law::parse_with("a*t/b", &[("b", 2.0), ("a", 1.5)]).unwrap(), "a*t/b with b = 2, a = 1.5"),
@@ -249,7 +249,7 @@ fn no_evaluation_allocates() {
 
 #[test]
 fn outside_of_its_times_a_law_has_no_value_but_rounding_is_forgiven() {
-    let law = table(&[1.0, 2.0, 3.0], &[0.0, 1.0, 0.0], SplineDegree::Cubic, Ends::default());
+    let law = table(&[1.0, 2.0, 3.0], &[0.0, 1.0, 0.0], SplineDegree::Cubic, SplineEnds::default());
     assert!(law.at(0.99).value().is_nan() && law.at(3.01).value().is_nan());
     assert!(law.at(3.0_f64.next_up()).is_finite() && law.at(1.0_f64.next_down()).is_finite());
     let tenths = (0..10).map(|_| Piece::lasting(0.1, Law::parse("t").unwrap())).collect();

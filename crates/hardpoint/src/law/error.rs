@@ -1,6 +1,6 @@
 //! What can be wrong with the numbers of a law.
 
-use super::kind::Shape;
+use super::kind::LawKind;
 use super::parameter::Parameter;
 
 /// What is wrong with the numbers of a law; for a law's text see [`ExpressionError`](super::ExpressionError).
@@ -21,7 +21,7 @@ impl LawError {
 }
 
 /// That each parameter of a law is finite.
-pub(super) fn check_finite(law: &impl Shape) -> Result<(), LawError> {
+pub(super) fn check_finite(law: &impl LawKind) -> Result<(), LawError> {
     match law.parameters().into_iter().find(|p| !p.value.is_finite()) {
         Some(Parameter { name, value, .. }) => {
             Err(LawError::new(format!("the `{name}` of a law must be a finite number, not {value}"), ""))

@@ -6,12 +6,12 @@ use crate::expression::{self, ExpressionError, Program, Stretch};
 use crate::number::{Jet, Real};
 
 use super::jumps::{Break, find_switches};
-use super::kind::Shape;
+use super::kind::LawKind;
 use super::parameter::{Parameter, ParameterKind, Seed, parameter, seeded};
 
 /// An expression, its parameters, and what evaluates it.
 #[derive(Clone)]
-pub(super) struct Formula {
+pub(super) struct ExpressionLaw {
     text: String,
     names: Vec<String>,
     values: Vec<f64>,
@@ -21,7 +21,7 @@ pub(super) struct Formula {
     program: Program,
 }
 
-impl Formula {
+impl ExpressionLaw {
     pub(super) fn parse(text: &str, parameters: &[(&str, f64)]) -> Result<Self, ExpressionError> {
         let (names, values): (Vec<&str>, Vec<f64>) = parameters.iter().copied().unzip();
         let symbolic = expression::parse(text, &names)?;
@@ -41,7 +41,7 @@ impl Formula {
     }
 }
 
-impl Shape for Formula {
+impl LawKind for ExpressionLaw {
     #[inline(always)]
     fn at<T: Real, const N: usize>(&self, time: Jet<T, N>, seed: Option<Seed<T>>) -> Jet<T, N> {
         let program = if seed.is_some() { &self.symbolic } else { &self.program };
@@ -76,7 +76,7 @@ impl Shape for Formula {
 }
 
 /// The text, and what its parameters are.
-impl fmt::Display for Formula {
+impl fmt::Display for ExpressionLaw {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(&self.text)?;
         for (k, (name, value)) in self.names.iter().zip(&self.values).enumerate() {
@@ -86,7 +86,7 @@ impl fmt::Display for Formula {
     }
 }
 
-impl PartialEq for Formula {
+impl PartialEq for ExpressionLaw {
     fn eq(&self, other: &Self) -> bool {
         self.text == other.text && self.names == other.names && self.values == other.values
     }

@@ -3,12 +3,12 @@
 use std::f64::consts::TAU;
 use std::fmt;
 
-use crate::expression::{Stretch, Term};
+use crate::expression::{ExpressionValue, Stretch};
 use crate::number::{Function, Jet, Real};
 
 use super::Law;
 use super::error::{LawError, check_finite};
-use super::kind::{Shape, parameters, write_sum};
+use super::kind::{LawKind, parameters, write_sum};
 use super::parameter::{Parameter, ParameterKind, Seed, parameter, seeded};
 
 /// A harmonic law: offset + amplitude sin(2π frequency t + phase).
@@ -47,7 +47,7 @@ impl Law {
     }
 }
 
-impl Shape for Harmonic {
+impl LawKind for Harmonic {
     #[inline(always)]
     fn at<T: Real, const N: usize>(&self, time: Jet<T, N>, seed: Option<Seed<T>>) -> Jet<T, N> {
         let number = |value: f64, parameter: usize| seeded(value, parameter, seed);

@@ -4,7 +4,7 @@ use crate::expression::Program;
 use crate::number::Jet;
 
 use super::Law;
-use super::kind::Shape;
+use super::kind::LawKind;
 use super::sequence::backwards;
 
 /// A jump of a law, of its speed or of its acceleration.
@@ -236,8 +236,8 @@ mod tests {
             Law::table(&Table { times, values, degree, ends }).unwrap()
         };
         laws.extend([
-            points(SplineDegree::Cubic, Ends::Periodic),
-            points(SplineDegree::Quintic, Ends::Natural),
+            points(SplineDegree::Cubic, SplineEnds::Periodic),
+            points(SplineDegree::Quintic, SplineEnds::Natural),
         ]);
         let cosine = Law::parse("cos(t)").unwrap();
         laws.push(

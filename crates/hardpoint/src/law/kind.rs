@@ -12,7 +12,7 @@ use super::parameter::{Parameter, ParameterKind, Seed};
 ///
 /// The time is given as a jet. Where it runs backwards (its derivative is -1) a law takes the side that is active just
 /// *before* the instant, so that one-sided limits need no code of their own.
-pub(super) trait Shape: fmt::Display {
+pub(super) trait LawKind: fmt::Display {
     /// f at a time, and its derivatives; with the derivative by one parameter if there is a seed.
     fn at<T: Real, const N: usize>(&self, time: Jet<T, N>, seed: Option<Seed<T>>) -> Jet<T, N>;
 
@@ -43,17 +43,17 @@ macro_rules! kinds {
 
         /// A law of one of the kinds.
         #[derive(Clone, PartialEq)]
-        enum Kind {
+        enum AnyLaw {
             $($kind($kind),)*
         }
 
-        $(impl From<$kind> for Kind {
+        $(impl From<$kind> for AnyLaw {
             fn from(shape: $kind) -> Self {
                 Self::$kind(shape)
             }
         })*
 
-        impl Shape for Kind {
+        impl LawKind for AnyLaw {
             #[inline(always)]
             fn at<T: Real, const N: usize>(&self, time: Jet<T, N>, seed: Option<Seed<T>>) -> Jet<T, N> {
                 match self { $(Self::$kind(shape) => shape.at(time, seed)),* }
@@ -84,7 +84,7 @@ macro_rules! kinds {
             }
         }
 
-        impl fmt::Display for Kind {
+        impl fmt::Display for AnyLaw {
             fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
                 match self { $(Self::$kind(shape) => shape.fmt(f)),* }
             }

@@ -29,17 +29,17 @@ use std::fmt;
 pub use error::LawError;
 use jumps::Break;
 pub use jumps::Jump;
-use kind::{Shape, kinds};
+use kind::{LawKind, kinds};
 use parameter::Seed;
 pub use parameter::{Parameter, ParameterKind};
 pub use sequence::Piece;
-pub use table::{EndRates, Ends, SplineDegree, Table};
+pub use table::{SplineDegree, SplineEndRates, SplineEnds, Table};
 
 use crate::expression::{self, ExpressionError, Stretch};
 use crate::number::{Dual, Jet, Real};
 
 kinds! {
-    formula: Formula,
+    formula: ExpressionLaw,
     harmonic: pub Harmonic,
     speed: pub ConstantSpeed,
     polynomial: Polynomial,
@@ -79,7 +79,7 @@ pub type TimeJet<T = f64> = Jet<T, 4>;
 /// ```
 #[derive(Clone)]
 pub struct Law {
-    kind: Kind,
+    kind: AnyLaw,
     factor: f64,
 }
 
@@ -120,7 +120,7 @@ impl Law {
     /// As [`parse`](Self::parse); and when a parameter has the name of something else, no proper name, no finite value, or
     /// is not used. The place is then all of the text.
     pub fn parse_with(text: &str, parameters: &[(&str, f64)]) -> Result<Self, ExpressionError> {
-        Formula::parse(text, parameters).map(Self::of)
+        ExpressionLaw::parse(text, parameters).map(Self::of)
     }
 
     /// The names in the text of a law that stand for parameters: each once, in order.
@@ -134,10 +134,10 @@ impl Law {
 
     /// The law that holds `value` at all times, in the driver's own unit.
     pub fn constant(value: f64) -> Self {
-        Self::of(Formula::constant(value))
+        Self::of(ExpressionLaw::constant(value))
     }
 
-    fn of(kind: impl Into<Kind>) -> Self {
+    fn of(kind: impl Into<AnyLaw>) -> Self {
         Self { kind: kind.into(), factor: 1.0 }
     }
 

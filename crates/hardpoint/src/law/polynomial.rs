@@ -7,7 +7,7 @@ use crate::number::{Jet, Real};
 
 use super::Law;
 use super::error::{LawError, check_finite};
-use super::kind::{Shape, write_sum};
+use super::kind::{LawKind, write_sum};
 use super::parameter::{Parameter, ParameterKind, Seed, parameter, seeded};
 
 /// c0 + c1 t + c2 t² + ..., with the coefficients for parameters.
@@ -50,7 +50,7 @@ impl Law {
     }
 }
 
-impl Shape for Polynomial {
+impl LawKind for Polynomial {
     #[inline(always)]
     fn at<T: Real, const N: usize>(&self, time: Jet<T, N>, seed: Option<Seed<T>>) -> Jet<T, N> {
         sum_of_powers(time, self.coefficients.len(), |k| seeded(self.coefficients[k], k, seed))

@@ -8,7 +8,7 @@ use crate::number::{Jet, Real};
 use super::Law;
 use super::error::LawError;
 use super::jumps::Break;
-use super::kind::Shape;
+use super::kind::LawKind;
 use super::parameter::{Parameter, ParameterKind, Seed, parameter, seeded};
 use super::table::ROUNDING_OF_TIME;
 
@@ -188,7 +188,7 @@ impl Law {
     }
 }
 
-impl Shape for Sequence {
+impl LawKind for Sequence {
     #[inline(always)]
     fn at<T: Real, const N: usize>(&self, time: Jet<T, N>, seed: Option<Seed<T>>) -> Jet<T, N> {
         let like = time.value();

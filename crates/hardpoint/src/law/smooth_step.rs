@@ -8,7 +8,7 @@ use crate::number::{Jet, Real};
 use super::Law;
 use super::error::{LawError, check_finite};
 use super::jumps::Break;
-use super::kind::{Shape, parameters};
+use super::kind::{LawKind, parameters};
 use super::parameter::{Parameter, ParameterKind, Seed, parameter, seeded};
 use super::polynomial::sum_of_powers;
 
@@ -91,7 +91,7 @@ impl Law {
     }
 }
 
-impl Shape for SmoothStep {
+impl LawKind for SmoothStep {
     #[inline(always)]
     fn at<T: Real, const N: usize>(&self, time: Jet<T, N>, seed: Option<Seed<T>>) -> Jet<T, N> {
         let number = |value: f64, parameter: usize| seeded(value, parameter, seed);

@@ -7,7 +7,7 @@ use crate::number::{Jet, Real};
 
 use super::Law;
 use super::error::{LawError, check_finite};
-use super::kind::{Shape, parameters, write_sum};
+use super::kind::{LawKind, parameters, write_sum};
 use super::parameter::{Parameter, ParameterKind, Seed, parameter, seeded};
 
 /// A law of constant speed: offset + speed t.
@@ -42,7 +42,7 @@ impl Law {
     }
 }
 
-impl Shape for ConstantSpeed {
+impl LawKind for ConstantSpeed {
     #[inline(always)]
     fn at<T: Real, const N: usize>(&self, time: Jet<T, N>, seed: Option<Seed<T>>) -> Jet<T, N> {
         let number = |value: f64, parameter: usize| seeded(value, parameter, seed);

@@ -9,7 +9,7 @@ use crate::number::{Jet, Real};
 
 use super::Law;
 use super::error::LawError;
-use super::kind::Shape;
+use super::kind::LawKind;
 use super::parameter::{Parameter, ParameterKind, Seed, parameter};
 use super::polynomial::sum_of_powers;
 
@@ -30,7 +30,7 @@ pub struct Table {
     /// How smooth the curve is.
     pub degree: SplineDegree,
     /// What is known at the ends.
-    pub ends: Ends,
+    pub ends: SplineEnds,
 }
 
 /// How smooth the spline of a [`Table`] is.
@@ -45,32 +45,32 @@ pub enum SplineDegree {
 
 /// What is known at the ends of a [`Table`].
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Ends {
+pub enum SplineEnds {
     /// Nothing: the curve ends as a thin beam does. The acceleration of a cubic is zero there; of a quintic the jerk and its
     /// rate are.
     Natural,
     /// Speed and acceleration; a cubic takes the speed only.
     Clamped {
         /// At the first point.
-        start: EndRates,
+        start: SplineEndRates,
         /// At the last point.
-        end: EndRates,
+        end: SplineEndRates,
     },
     /// The last point is the first again: the curve repeats for ever, and is as smooth there as elsewhere. The two values
     /// must be equal.
     Periodic,
 }
 
-impl Default for Ends {
+impl Default for SplineEnds {
     /// Clamped, at rest.
     fn default() -> Self {
-        Self::Clamped { start: EndRates::default(), end: EndRates::default() }
+        Self::Clamped { start: SplineEndRates::default(), end: SplineEndRates::default() }
     }
 }
 
 /// Speed and acceleration at an end of a [`Table`]; zero by default.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct EndRates {
+pub struct SplineEndRates {
     /// In the driver's unit per s.
     pub speed: f64,
     /// In the driver's unit per s²; zero for a cubic, whose acceleration follows from the points.
@@ -100,13 +100,13 @@ impl Spline {
         let rates = if table.degree == SplineDegree::Cubic { 1 } else { 2 };
         let mut data = table.values.clone();
         let ends = match table.ends {
-            Ends::Natural => EndKind::Natural,
-            Ends::Clamped { start, end } => {
+            SplineEnds::Natural => EndKind::Natural,
+            SplineEnds::Clamped { start, end } => {
                 data.extend(&[start.speed, start.acceleration][..rates]);
                 data.extend(&[end.speed, end.acceleration][..rates]);
                 EndKind::Clamped
             }
-            Ends::Periodic => {
+            SplineEnds::Periodic => {
                 data.pop();
                 EndKind::Periodic
             }
@@ -169,13 +169,13 @@ impl Table {
             return Err(LawError::new(message, "give one value for every time"));
         }
         let (fewest, what) = match (self.ends, self.degree) {
-            (Ends::Periodic, _) => (3, "a periodic table"),
-            (Ends::Natural, SplineDegree::Quintic) => (3, "a quintic table with natural ends"),
+            (SplineEnds::Periodic, _) => (3, "a periodic table"),
+            (SplineEnds::Natural, SplineDegree::Quintic) => (3, "a quintic table with natural ends"),
             _ => (2, "a table"),
         };
         if points < fewest {
             let help = match self.ends {
-                Ends::Periodic => "the last point counts: it repeats the first one period later",
+                SplineEnds::Periodic => "the last point counts: it repeats the first one period later",
                 _ => "add points, or write the law as a polynomial",
             };
             return Err(LawError::new(format!("{what} needs at least {fewest} points, not {points}"), help));
@@ -198,7 +198,7 @@ impl Table {
             return Err(LawError::new(message, help));
         }
         match self.ends {
-            Ends::Periodic if self.values[0] != self.values[points - 1] => {
+            SplineEnds::Periodic if self.values[0] != self.values[points - 1] => {
                 let (first, last) = (self.values[0], self.values[points - 1]);
                 let message = format!(
                     "a periodic table must end with the value it begins with, but {last} is not {first}"
@@ -208,7 +208,7 @@ impl Table {
                     "add a last point, one period after the first, with the first one's value",
                 ))
             }
-            Ends::Clamped { start, end } => {
+            SplineEnds::Clamped { start, end } => {
                 let rates = [start.speed, start.acceleration, end.speed, end.acceleration];
                 if let Some(rate) = rates.iter().find(|rate| !rate.is_finite()) {
                     let message =
@@ -230,11 +230,11 @@ impl Law {
     /// The smooth curve through the points of a table.
     ///
     /// ```
-    /// use hardpoint::law::{Ends, Law, SplineDegree, Table};
+    /// use hardpoint::law::{SplineEnds, Law, SplineDegree, Table};
     ///
     /// // From rest to rest.
     /// let (times, values) = (vec![0.0, 1.0, 2.0], vec![0.0, 4.0, 0.0]);
-    /// let law = Law::table(&Table { times, values, degree: SplineDegree::Cubic, ends: Ends::default() })?;
+    /// let law = Law::table(&Table { times, values, degree: SplineDegree::Cubic, ends: SplineEnds::default() })?;
     /// assert_eq!(law.at(0.5).value(), 2.0); // by symmetry also at rest in the middle
     /// assert!(law.at(2.5).value().is_nan());
     /// assert_eq!(law.to_string(), "cubic spline through 3 points");
@@ -250,7 +250,7 @@ impl Law {
     }
 }
 
-impl Shape for Spline {
+impl LawKind for Spline {
     #[inline(always)]
     fn at<T: Real, const N: usize>(&self, time: Jet<T, N>, seed: Option<Seed<T>>) -> Jet<T, N> {
         let (now, is_backwards) = (time.value().value(), time.d().value() < 0.0);
@@ -348,7 +348,7 @@ impl PartialEq for Spline {
 mod tests {
     use crate::law::*;
 
-    fn table(times: &[f64], values: &[f64], degree: SplineDegree, ends: Ends) -> Law {
+    fn table(times: &[f64], values: &[f64], degree: SplineDegree, ends: SplineEnds) -> Law {
         Law::table(&Table { times: times.to_vec(), values: values.to_vec(), degree, ends }).unwrap()
     }
 
@@ -361,17 +361,17 @@ mod tests {
         let line = Law::polynomial(&[1.0, -2.0]).unwrap();
         let rates = |law: &Law, t, is_quintic| {
             let at = law.at(t);
-            EndRates { speed: at.d(), acceleration: if is_quintic { at.dd() } else { 0.0 } }
+            SplineEndRates { speed: at.d(), acceleration: if is_quintic { at.dd() } else { 0.0 } }
         };
-        let clamped = |law: &Law, is_quintic| Ends::Clamped {
+        let clamped = |law: &Law, is_quintic| SplineEnds::Clamped {
             start: rates(law, times[0], is_quintic),
             end: rates(law, times[5], is_quintic),
         };
         let cases = [
             (&cubic, SplineDegree::Cubic, clamped(&cubic, false)),
             (&quintic, SplineDegree::Quintic, clamped(&quintic, true)),
-            (&line, SplineDegree::Cubic, Ends::Natural),
-            (&parabola, SplineDegree::Quintic, Ends::Natural),
+            (&line, SplineDegree::Cubic, SplineEnds::Natural),
+            (&parabola, SplineDegree::Quintic, SplineEnds::Natural),
         ];
         for (law, degree, ends) in cases {
             let spline = table(&times, &times.map(|t| law.at(t).value()), degree, ends);
@@ -396,7 +396,7 @@ mod tests {
         for (degree, continuous, accuracy) in
             [(SplineDegree::Cubic, 2, 2e-4), (SplineDegree::Quintic, 3, 2e-6)]
         {
-            let law = table(&times, &values, degree, Ends::Periodic);
+            let law = table(&times, &values, degree, SplineEnds::Periodic);
             let (before, after) = (law.at(1.2 - 1e-10).derivatives(), law.at(1.2 + 1e-10).derivatives());
             for order in 0..=continuous {
                 assert!((after[order] - before[order]).abs() < 1e-4, "{law}, {order}: {before:?}, {after:?}");
@@ -415,9 +415,13 @@ mod tests {
         let times: Vec<f64> = (0..=2000).map(|k| f64::from(k) * 1e-3 + 2e-4 * f64::from(k % 3)).collect();
         let values: Vec<f64> = times.iter().map(|t| t.sin()).collect();
         let end = times[2000];
-        let rate = |t: f64| EndRates { speed: t.cos(), acceleration: -t.sin() };
-        let law =
-            table(&times, &values, SplineDegree::Quintic, Ends::Clamped { start: rate(0.0), end: rate(end) });
+        let rate = |t: f64| SplineEndRates { speed: t.cos(), acceleration: -t.sin() };
+        let law = table(
+            &times,
+            &values,
+            SplineDegree::Quintic,
+            SplineEnds::Clamped { start: rate(0.0), end: rate(end) },
+        );
         let at = law.at(1.23456);
         assert!((at.value() - 1.23456_f64.sin()).abs() < 1e-13);
         assert!((at.d() - 1.23456_f64.cos()).abs() < 1e-10);
@@ -427,15 +431,15 @@ mod tests {
     #[test]
     fn tables_are_refused_with_the_reason() {
         use SplineDegree::{Cubic, Quintic};
-        let at_end = EndRates { speed: 0.0, acceleration: 1.0 };
-        let rising = Ends::Clamped { start: EndRates::default(), end: at_end };
-        type Case<'a> = (&'a [f64], &'a [f64], SplineDegree, Ends, &'a str, &'a str);
+        let at_end = SplineEndRates { speed: 0.0, acceleration: 1.0 };
+        let rising = SplineEnds::Clamped { start: SplineEndRates::default(), end: at_end };
+        type Case<'a> = (&'a [f64], &'a [f64], SplineDegree, SplineEnds, &'a str, &'a str);
         let cases: [Case<'_>; 9] = [
             (
                 &[0.0, 1.0],
                 &[0.0],
                 Cubic,
-                Ends::default(),
+                SplineEnds::default(),
                 "a table has 2 times but 1 values",
                 "give one value for every time",
             ),
@@ -443,7 +447,7 @@ mod tests {
                 &[0.0],
                 &[0.0],
                 Cubic,
-                Ends::default(),
+                SplineEnds::default(),
                 "a table needs at least 2 points, not 1",
                 "add points, or write the law as a polynomial",
             ),
@@ -451,7 +455,7 @@ mod tests {
                 &[0.0, 1.0],
                 &[0.0, 0.0],
                 Quintic,
-                Ends::Natural,
+                SplineEnds::Natural,
                 "a quintic table with natural ends needs at least 3 points, not 2",
                 "add points, or write the law as a polynomial",
             ),
@@ -459,7 +463,7 @@ mod tests {
                 &[0.0, 1.0],
                 &[0.0, 0.0],
                 Cubic,
-                Ends::Periodic,
+                SplineEnds::Periodic,
                 "a periodic table needs at least 3 points, not 2",
                 "the last point counts: it repeats the first one period later",
             ),
@@ -467,7 +471,7 @@ mod tests {
                 &[0.0, 1.0],
                 &[0.0, f64::NAN],
                 Cubic,
-                Ends::default(),
+                SplineEnds::default(),
                 "the value of a table's point 1 is NaN, not a finite number",
                 "points are counted from 0",
             ),
@@ -475,7 +479,7 @@ mod tests {
                 &[0.0, 2.0, 1.0],
                 &[0.0; 3],
                 Cubic,
-                Ends::default(),
+                SplineEnds::default(),
                 "the times of a table must increase, but 1 s follows 2 s (points 1 and 2)",
                 "sort the points by time",
             ),
@@ -483,7 +487,7 @@ mod tests {
                 &[0.0, 2.0, 2.0],
                 &[0.0; 3],
                 Cubic,
-                Ends::default(),
+                SplineEnds::default(),
                 "the times of a table must increase, but 2 s follows 2 s (points 1 and 2)",
                 "remove one of the two points",
             ),
@@ -491,7 +495,7 @@ mod tests {
                 &[0.0, 1.0, 2.0],
                 &[0.0, 1.0, 2.0],
                 Cubic,
-                Ends::Periodic,
+                SplineEnds::Periodic,
                 "a periodic table must end with the value it begins with, but 2 is not 0",
                 "add a last point, one period after the first, with the first one's value",
             ),

@@ -16,20 +16,20 @@ use std::ops::Range;
 
 use bodies::{with_rates, with_sensitivity};
 use hardpoint_tape::LANES;
-use program::Run;
-pub(crate) use program::{Asked, Program, dependences};
+use program::MeasureRun;
+pub(crate) use program::{MeasureProgram, ProgramKey, dependences};
 pub(crate) use slope::{SlopeValues, Slopes};
 use wheel::{WheelAt, camber, toe};
 
 use crate::blocks::Blocks;
 use crate::constraint::Row;
-use crate::design::{Effects, Fixed};
+use crate::design::{BodyFixed, DesignMap};
 use crate::law::Law;
 use crate::model::{
-    AxleMeasure, BodyId, Dimension, DriverId, JointId, Known, MeasureKind, Model, OutputSource, PointId, Ray,
-    Side, VariableId, WheelId,
+    AxleMeasure, BodyId, Dimension, DriverId, JointId, KnownOrders, MeasureKind, Model, OutputSource,
+    PointId, Ray, Side, VariableId, WheelId,
 };
-use crate::motion::{Motion, Passed};
+use crate::motion::{Motion, PassedPlace};
 use crate::number::{Dual, Jet, Rates, Real};
 use crate::sensitivity::{Admissibility, Sensitivities};
 use crate::space::{Pose, Vec3};
@@ -43,7 +43,7 @@ pub struct Output {
     /// What its value measures.
     pub dimension: Dimension,
     /// How much of it can be known.
-    pub known: Known,
+    pub known: KnownOrders,
     /// Where it comes from.
     pub source: OutputSource,
 }
@@ -90,7 +90,7 @@ impl Measured {
 
     /// Value, rate and acceleration of output m at time k.
     ///
-    /// Those beyond [`Known::orders`] are NaN, and so is what has no number at that time: the curvature of a path where its
+    /// Those beyond [`KnownOrders::orders`] are NaN, and so is what has no number at that time: the curvature of a path where its
     /// point rests, the instant centre of a body that does not turn.
     pub fn value(&self, k: usize, m: usize) -> [f64; 3] {
         let row = self.values.row(k);
@@ -218,9 +218,9 @@ pub fn outputs(model: &Model) -> Vec<Output> {
 }
 
 /// The design whose motion is measured.
-pub(crate) struct At<'a> {
+pub(crate) struct MeasuredDesign<'a> {
     pub model: &'a Model,
-    pub effects: &'a Effects<'a>,
+    pub effects: &'a DesignMap<'a>,
     /// The variables' values.
     pub values: &'a [f64],
     /// The drivers' laws.
@@ -229,7 +229,7 @@ pub(crate) struct At<'a> {
 
 /// What a motion goes on from: the output time before its first.
 #[derive(Clone, Debug)]
-pub(crate) struct Before {
+pub(crate) struct PreviousStep {
     pub time: f64,
     /// Values, rates and accelerations of all outputs, angles counted.
     pub values: Vec<[f64; 3]>,
@@ -238,17 +238,17 @@ pub(crate) struct Before {
 /// Evaluates all outputs over a motion, and their derivatives by the variables that it has sensitivities for; by a program, if there
 /// is one, but for what it cannot tell.
 pub(crate) fn evaluate(
-    design: &At<'_>,
+    design: &MeasuredDesign<'_>,
     topology: &Topology,
     (motion, sensitivities): (&Motion, &Sensitivities),
     slopes: &SlopeValues,
-    before: Option<&Before>,
-    program: Option<&Program>,
+    before: Option<&PreviousStep>,
+    program: Option<&MeasureProgram>,
     measured: &mut Measured,
 ) {
-    let &At { model, values, .. } = design;
+    let &MeasuredDesign { model, values, .. } = design;
     make_room(model, sensitivities, motion.len(), program, measured);
-    let mut run = program.map(|program| Run::new(program, values));
+    let mut run = program.map(|program| MeasureRun::new(program, values));
     let mut formulas = Formulas::new(design, topology, (motion, before), slopes, measured);
     for first in (0..motion.len()).step_by(LANES) {
         let times = first..usize::min(first + LANES, motion.len());
@@ -270,7 +270,7 @@ pub(crate) fn evaluate(
         }
     }
     let Formulas { left, counted, .. } = formulas;
-    let more = More { slopes, whole_turns: &counted };
+    let more = Context { slopes, whole_turns: &counted };
     let outputs = measured.outputs.clone();
     derivatives(design, &outputs, &left, (motion, sensitivities), &more, |k, b, m, numbers| {
         measured.set_d(k, VariableId(b), m, numbers);
@@ -282,12 +282,12 @@ fn make_room(
     model: &Model,
     sensitivities: &Sensitivities,
     steps: usize,
-    program: Option<&Program>,
+    program: Option<&MeasureProgram>,
     measured: &mut Measured,
 ) {
     let outputs = outputs(model);
     let variables = sensitivities.variables;
-    let layout = program.map_or_else(|| dense(outputs.len(), variables), Program::layout);
+    let layout = program.map_or_else(|| dense(outputs.len(), variables), MeasureProgram::layout);
     measured.shape(outputs, variables, layout, steps);
     let cannot_follow =
         |b: &usize| matches!(sensitivities.admissibility[*b], Admissibility::CannotFollow { .. });
@@ -299,9 +299,9 @@ struct Formulas<'a> {
     model: &'a Model,
     laws: &'a [Law],
     motion: &'a Motion,
-    before: Option<&'a Before>,
+    before: Option<&'a PreviousStep>,
     slopes: &'a SlopeValues,
-    fixed: Fixed<Rates>,
+    fixed: BodyFixed<Rates>,
     /// The bodies that measures name, and where they are.
     bodies: Vec<usize>,
     poses: Vec<Pose<Rates>>,
@@ -320,13 +320,13 @@ struct Formulas<'a> {
 
 impl<'a> Formulas<'a> {
     fn new(
-        design: &At<'a>,
+        design: &MeasuredDesign<'a>,
         topology: &Topology,
-        (motion, before): (&'a Motion, Option<&'a Before>),
+        (motion, before): (&'a Motion, Option<&'a PreviousStep>),
         slopes: &'a SlopeValues,
         measured: &Measured,
     ) -> Self {
-        let &At { model, effects, values, laws } = design;
+        let &MeasuredDesign { model, effects, values, laws } = design;
         Self {
             model,
             laws,
@@ -348,7 +348,7 @@ impl<'a> Formulas<'a> {
 
     /// Evaluates what a program does not tell at these output times, which are a block of eight, and counts all angles there; says how
     /// many outputs that are.
-    fn fill(&mut self, times: Range<usize>, run: Option<&Run<'_>>, measured: &mut Measured) -> usize {
+    fn fill(&mut self, times: Range<usize>, run: Option<&MeasureRun<'_>>, measured: &mut Measured) -> usize {
         let first = times.start;
         let begins = self.left.partition_point(|(block, _)| *block < first);
         self.left.truncate(begins);
@@ -372,16 +372,16 @@ impl<'a> Formulas<'a> {
         }
         given.clear();
         given.extend(self.slopes.at(k).iter().map(|x| only(*x)));
-        let moment = Moment { slopes: given, ..Moment::new(model, fixed, poses) };
+        let moment = Instant { slopes: given, ..Instant::new(model, fixed, poses) };
         for &(_, m) in left {
             measured.set(k, m, moment.output(measured.outputs[m].source).0);
         }
-        let on_the_way = |m: usize, passed: &Passed| {
+        let on_the_way = |m: usize, passed: &PassedPlace| {
             let mut poses = poses.clone();
             place(&mut poses);
             passed.states.iter().for_each(|(body, state)| poses[body.0] = with_rates(state));
             // An angle where the path passed between output times
-            let Jet([angle, rate, _]) = Moment::new(model, fixed, &poses).measure(m);
+            let Jet([angle, rate, _]) = Instant::new(model, fixed, &poses).measure(m);
             [angle, rate]
         };
         whole_turns.clear();
@@ -392,7 +392,7 @@ impl<'a> Formulas<'a> {
         if self.counts {
             // The formula of measures asks for angles with their turns, so these are found first.
             self.counted.extend(whole_turns.iter().map(|turns| turns.0[0]));
-            let moment = Moment { whole_turns, ..moment };
+            let moment = Instant { whole_turns, ..moment };
             for &(_, m) in left.iter().filter(|(_, m)| is_formula(model, *m)) {
                 measured.set(k, m, moment.measure(m).0);
             }
@@ -401,7 +401,7 @@ impl<'a> Formulas<'a> {
 }
 
 /// What outputs may ask for besides the motion.
-pub(crate) struct More<'a> {
+pub(crate) struct Context<'a> {
     /// Of the measures that go by a driver.
     pub slopes: &'a SlopeValues,
     /// By time and measure: the whole turns of its angle, rad; empty where no formula asks for them.
@@ -418,14 +418,14 @@ fn only(x: f64) -> Rates {
 ///
 /// Variable by variable, so that what is fixed in the bodies is worked out once for each.
 pub(crate) fn derivatives(
-    design: &At<'_>,
+    design: &MeasuredDesign<'_>,
     outputs: &[Output],
     listed: &[(usize, usize)],
     (motion, sensitivities): (&Motion, &Sensitivities),
-    more: &More<'_>,
+    more: &Context<'_>,
     mut out: impl FnMut(usize, usize, usize, [f64; 3]),
 ) {
-    let &At { model, effects, values, .. } = design;
+    let &MeasuredDesign { model, effects, values, .. } = design;
     let bodies = bodies_asked_for(model);
     let mut poses = vec![Pose::IDENTITY.spread(); model.bodies.len()];
     let mut values: Vec<Dual> = values.iter().map(|v| Dual::constant(*v)).collect();
@@ -454,10 +454,10 @@ pub(crate) fn derivatives(
                         .take(model.measures.len())
                         .map(|turns| Dual::constant(Rates::constant(*turns))),
                 );
-                let moment = Moment {
+                let moment = Instant {
                     slopes: &given,
                     whole_turns: &whole_turns,
-                    ..Moment::new(model, &fixed, &poses)
+                    ..Instant::new(model, &fixed, &poses)
                 };
                 for &(_, m) in listed {
                     out(k, b, m, moment.output(outputs[m].source).d.0);
@@ -583,8 +583,8 @@ impl Counted {
 fn along_the_path<'p>(
     last: Option<Counted>,
     begins: Option<f64>,
-    passed: impl Iterator<Item = &'p Passed>,
-    mut measure: impl FnMut(&Passed) -> [f64; 2],
+    passed: impl Iterator<Item = &'p PassedPlace>,
+    mut measure: impl FnMut(&PassedPlace) -> [f64; 2],
     [now, rate, time]: [f64; 3],
 ) -> f64 {
     let (mut counted, first) = (last, last.is_none());
@@ -610,11 +610,11 @@ fn along_the_path<'p>(
 /// Counts angles through whole turns, and says of each what these are.
 fn unwrap_angles(
     laws: &[Law],
-    (motion, before): (&Motion, Option<&Before>),
+    (motion, before): (&Motion, Option<&PreviousStep>),
     k: usize,
     turns: &[Option<Turns>],
     measured: &mut Measured,
-    measure: impl Fn(usize, &Passed) -> [f64; 2] + Copy,
+    measure: impl Fn(usize, &PassedPlace) -> [f64; 2] + Copy,
     mut counted: impl FnMut(usize, f64),
 ) {
     for (m, turns_of) in turns.iter().enumerate() {
@@ -645,9 +645,9 @@ fn unwrap_angles(
 
 /// Everything that a measure can ask for at one time, as numbers that carry whatever derivatives are wanted.
 #[derive(Clone, Copy)]
-pub(crate) struct Moment<'a, T> {
+pub(crate) struct Instant<'a, T> {
     model: &'a Model,
-    fixed: &'a Fixed<T>,
+    fixed: &'a BodyFixed<T>,
     /// Per body: where it is. Only those that measures name count.
     poses: &'a [Pose<T>],
     /// Per measure: its value, where it goes by a driver; empty where these are not known.
@@ -656,9 +656,9 @@ pub(crate) struct Moment<'a, T> {
     whole_turns: &'a [T],
 }
 
-impl<'a, T: Real> Moment<'a, T> {
+impl<'a, T: Real> Instant<'a, T> {
     /// Of bodies at these poses.
-    pub fn new(model: &'a Model, fixed: &'a Fixed<T>, poses: &'a [Pose<T>]) -> Self {
+    pub fn new(model: &'a Model, fixed: &'a BodyFixed<T>, poses: &'a [Pose<T>]) -> Self {
         Self { model, fixed, poses, slopes: &[], whole_turns: &[] }
     }
 

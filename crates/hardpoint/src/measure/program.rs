@@ -7,7 +7,7 @@
 //! what a formula is about does not count: a point knows three ways, a direction two or three.
 //!
 //! What formulas decide by values is recorded as a limit. Where one does not hold, or any number is none, the formulas themselves are
-//! asked again ([`Run::fits`]).
+//! asked again ([`MeasureRun::fits`]).
 //!
 //! With g_k how an output y goes with way k of a body, and a_k how far the body goes that way per unit of a variable b,
 //!
@@ -23,17 +23,17 @@ use std::ops::Range;
 
 use hardpoint_tape::{LANES, Number, Options, record};
 
-use crate::blocks::{Line, lanes_of};
-use crate::design::{Effects, Fixed};
+use crate::blocks::{AlignedLanes, lanes_of};
+use crate::design::{BodyFixed, DesignMap};
 use crate::model::{BodyId, GROUND, MeasureKind, Model, OutputSource, VariableId};
-use crate::motion::execution::{Execution, Room, Runnable, Staged};
+use crate::motion::execution::{Execution, ProgramMemory, Runnable, Staged};
 use crate::motion::{BodyState, Motion};
 use crate::number::{Dual, Jet, Rates, record as recording};
 use crate::sensitivity::{BodySensitivity, Sensitivities};
 use crate::space::{Mat3, Pose, Vec3};
 
 use super::bodies::{moving, pair};
-use super::{Measured, Moment, Output, bodies_asked_for};
+use super::{Instant, Measured, Output, bodies_asked_for};
 
 /// Of more sums of products - one for each output, variable, and body that both have to do with - no program is recorded: it would take
 /// more memory than its results.
@@ -43,11 +43,11 @@ const MOST_SUMS: usize = 20_000;
 const WAYS: usize = 6;
 
 /// A number while it is recorded, with its rates.
-type Recorded = Rates<Number>;
+type RecordedRates = Rates<Number>;
 
 /// What a program is for.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub(crate) struct Asked {
+pub(crate) struct ProgramKey {
     /// Whether the design is an input; else it is the nominal one.
     any_design: bool,
     /// Derivatives by so many variables.
@@ -56,7 +56,7 @@ pub(crate) struct Asked {
     moved: Vec<(usize, usize)>,
 }
 
-impl Asked {
+impl ProgramKey {
     /// By the design with these values and the variables that there are sensitivities for.
     pub fn of(model: &Model, values: &[f64], sensitivities: &Sensitivities) -> Self {
         let bodies = moving_bodies(model);
@@ -71,7 +71,7 @@ impl Asked {
 
 /// The program of all outputs.
 #[derive(Debug)]
-pub(crate) struct Program {
+pub(crate) struct MeasureProgram {
     program: Staged,
     bodies: Vec<usize>,
     moved: Vec<(usize, usize)>,
@@ -86,9 +86,9 @@ pub(crate) struct Program {
     derivatives: usize,
 }
 
-impl Program {
+impl MeasureProgram {
     /// What is asked for, if it can be recorded.
-    pub fn record(effects: &Effects<'_>, asked: &Asked, execution: Execution) -> Option<Self> {
+    pub fn record(effects: &DesignMap<'_>, asked: &ProgramKey, execution: Execution) -> Option<Self> {
         let model = effects.model;
         let (outputs, bodies) = (super::outputs(model), moving_bodies(model));
         let nominal = model.whole(&[]);
@@ -127,7 +127,7 @@ impl Program {
             let nothing = input(0.0);
             let number = if asked.any_design { Number::input } else { Number::constant };
             let values: Vec<Number> = nominal.iter().map(|v| number(*v)).collect();
-            let geometry = Geometry::of(effects, &values, asked.variables, &depends);
+            let geometry = RecordedGeometry::of(effects, &values, asked.variables, &depends);
             let of_design = recording::limits();
             fits = recording::is_arithmetic();
             let recorder = Recorder { model, geometry, poses, whole_turns, ways, asked };
@@ -216,7 +216,7 @@ fn ways_of(
 }
 
 /// A pose that goes one way, and how much of the way that is.
-fn gone(pose: Pose<Recorded>, way: usize, amount: Recorded) -> Pose<Dual<Recorded>> {
+fn gone(pose: Pose<RecordedRates>, way: usize, amount: RecordedRates) -> Pose<Dual<RecordedRates>> {
     // A slide: dr = e_k a;  a turn: d(column) = e_k x column a, with r at rest.
     let axis = Vec3::AXES[way % 3].map(|x| amount.times(Number::constant(x)));
     let still = Vec3::zero();
@@ -230,13 +230,13 @@ fn gone(pose: Pose<Recorded>, way: usize, amount: Recorded) -> Pose<Dual<Recorde
 }
 
 /// What is fixed in the bodies, and the same as it goes with each variable that moves some of it.
-struct Geometry {
-    still: Fixed<Dual<Recorded>>,
-    moved: Vec<Option<Fixed<Dual<Recorded>>>>,
+struct RecordedGeometry {
+    still: BodyFixed<Dual<RecordedRates>>,
+    moved: Vec<Option<BodyFixed<Dual<RecordedRates>>>>,
 }
 
-impl Geometry {
-    fn of(effects: &Effects<'_>, values: &[Number], variables: usize, depends: &[[Vec<usize>; 2]]) -> Self {
+impl RecordedGeometry {
+    fn of(effects: &DesignMap<'_>, values: &[Number], variables: usize, depends: &[[Vec<usize>; 2]]) -> Self {
         let still = recording::strictly(|| effects.fixed(values));
         let moved = |v: usize| {
             depends.iter().any(|[_, moving]| moving.contains(&v)).then(|| {
@@ -254,7 +254,7 @@ impl Geometry {
 }
 
 /// What an output came to.
-struct Given {
+struct RecordedOutput {
     values: [Number; 3],
     /// By variable.
     derivatives: Vec<[Number; 3]>,
@@ -265,17 +265,17 @@ struct Given {
 /// Records outputs.
 struct Recorder<'a> {
     model: &'a Model,
-    geometry: Geometry,
-    poses: Vec<Pose<Recorded>>,
-    whole_turns: Vec<Dual<Recorded>>,
+    geometry: RecordedGeometry,
+    poses: Vec<Pose<RecordedRates>>,
+    whole_turns: Vec<Dual<RecordedRates>>,
     /// Per variable and body that it moves.
     ways: Vec<[[Number; 3]; WAYS]>,
-    asked: &'a Asked,
+    asked: &'a ProgramKey,
 }
 
 impl Recorder<'_> {
     /// An output that depends on these bodies and goes by what these variables move within them; none that is no arithmetic.
-    fn output(&self, output: &Output, [bodies, variables]: &[Vec<usize>; 2]) -> Option<Given> {
+    fn output(&self, output: &Output, [bodies, variables]: &[Vec<usize>; 2]) -> Option<RecordedOutput> {
         if goes_by_driver(self.model, output.source) {
             return None;
         }
@@ -284,11 +284,12 @@ impl Recorder<'_> {
         let is_formula =
             matches!(output.source, OutputSource::Measure(m) if super::is_formula(self.model, m));
         let whole_turns: &[_] = if is_formula { &self.whole_turns } else { &[] };
-        let at = |fixed: &Fixed<Dual<Recorded>>, poses: &[Pose<Dual<Recorded>>]| {
-            Moment { whole_turns, ..Moment::new(self.model, fixed, poses) }.output(output.source)
+        let at = |fixed: &BodyFixed<Dual<RecordedRates>>, poses: &[Pose<Dual<RecordedRates>>]| {
+            Instant { whole_turns, ..Instant::new(self.model, fixed, poses) }.output(output.source)
         };
-        let still = |x: Vec3<Recorded>| x.map(Dual::constant);
-        let stays = |p: &Pose<Recorded>| Pose { rot: Mat3 { cols: p.rot.cols.map(still) }, r: still(p.r) };
+        let still = |x: Vec3<RecordedRates>| x.map(Dual::constant);
+        let stays =
+            |p: &Pose<RecordedRates>| Pose { rot: Mat3 { cols: p.rot.cols.map(still) }, r: still(p.r) };
         let mut poses: Vec<_> = self.poses.iter().map(stays).collect();
         let mut values = at(&self.geometry.still, &poses).v.0;
         let zero = Number::constant(0.0);
@@ -338,7 +339,7 @@ impl Recorder<'_> {
         let is_none =
             |numbers: &[Number; 3]| numbers[..orders].iter().any(|x| x.known().is_some_and(f64::is_nan));
         let is_number = !derivatives.iter().chain([&values]).any(is_none);
-        (is_number && recording::is_arithmetic()).then(|| Given {
+        (is_number && recording::is_arithmetic()).then(|| RecordedOutput {
             values,
             derivatives,
             limits: recording::limits(),
@@ -364,7 +365,7 @@ fn goes_by_driver(model: &Model, output: OutputSource) -> bool {
 /// A derivative that is not a number makes one of everything that depends on it. A formula that took the larger of two
 /// numbers would hide it: measures are smooth.
 pub(crate) fn dependences(
-    effects: &Effects<'_>,
+    effects: &DesignMap<'_>,
     values: &[f64],
     bodies: &[usize],
     outputs: &[Output],
@@ -377,8 +378,8 @@ pub(crate) fn dependences(
         let fixed = effects.fixed(values);
         fixed.map(|x| Dual { v: Jet::constant(x.v), d: Jet::constant(x.d) })
     };
-    let depend = |fixed: &Fixed<Dual<Rates>>, poses: &[Pose<Dual<Rates>>]| -> Vec<bool> {
-        let of = |o: &Output| Moment::new(model, fixed, poses).output(o.source).d.0[0].is_nan();
+    let depend = |fixed: &BodyFixed<Dual<Rates>>, poses: &[Pose<Dual<Rates>>]| -> Vec<bool> {
+        let of = |o: &Output| Instant::new(model, fixed, poses).output(o.source).d.0[0].is_nan();
         outputs.iter().map(of).collect()
     };
     let mut found = vec![[Vec::new(), Vec::new()]; outputs.len()];
@@ -404,27 +405,27 @@ pub(crate) fn dependences(
 }
 
 /// A program at work on one design.
-pub(super) struct Run<'p> {
-    program: &'p Program,
-    room: Room,
-    inputs: Vec<Line>,
-    guards: Vec<Line>,
+pub(super) struct MeasureRun<'p> {
+    program: &'p MeasureProgram,
+    room: ProgramMemory,
+    inputs: Vec<AlignedLanes>,
+    guards: Vec<AlignedLanes>,
 }
 
-impl<'p> Run<'p> {
+impl<'p> MeasureRun<'p> {
     /// On the design with these values.
-    pub fn new(program: &'p Program, values: &[f64]) -> Self {
-        let mut inputs = vec![Line::default(); program.program.step.inputs()];
+    pub fn new(program: &'p MeasureProgram, values: &[f64]) -> Self {
+        let mut inputs = vec![AlignedLanes::default(); program.program.step.inputs()];
         inputs[program.design_at..].iter_mut().zip(values).for_each(|(line, x)| line.0 = [*x; LANES]);
         program.program.take_design(&mut inputs);
-        let guards = vec![Line::default(); program.outputs];
-        Self { program, room: Room::default(), inputs, guards }
+        let guards = vec![AlignedLanes::default(); program.outputs];
+        Self { program, room: ProgramMemory::default(), inputs, guards }
     }
 
     /// Evaluates all outputs at the eight output times that k is one of. The whole turns of measures that are asked for are those that
     /// were [given](Self::turns).
     pub fn at(&mut self, k: usize, motion: &Motion, sensitivities: &Sensitivities, measured: &mut Measured) {
-        let Program { program, bodies, moved, .. } = self.program;
+        let MeasureProgram { program, bodies, moved, .. } = self.program;
         let (of_bodies, rest) =
             lanes_of(&mut self.inputs).split_at_mut(BodyState::NUMBERS * self.program.bodies.len());
         for (b, to) in bodies.iter().zip(of_bodies.chunks_exact_mut(BodyState::NUMBERS)) {

@@ -3,16 +3,16 @@
 //! A driver that moves by itself is a direction like a change of the design (`docs/theory.md`, section 7); how the outcome
 //! changes with the design is the second derivative along both.
 
-use crate::design::{Effects, Fixed};
+use crate::design::{BodyFixed, DesignMap};
 use crate::model::{AxleMeasure, DriverId, GROUND, MeasureKind, Model, VariableId, WheelId};
 use crate::motion::stepper::Stepper;
 use crate::number::{Dual, Real};
-use crate::sensitivity::{Seconds, Way};
+use crate::sensitivity::{PairDirection, Seconds};
 use crate::space::Pose;
 use crate::topology::Topology;
 
-use super::wheel::{Carried, axle_roll_centre};
-use super::{Moment, bodies_asked_for};
+use super::wheel::{TravellingWheel, axle_roll_centre};
+use super::{Instant, bodies_asked_for};
 
 /// Values of the measures that go by a driver, over a motion, and their derivatives by the design variables.
 #[derive(Clone, Debug, Default)]
@@ -50,7 +50,7 @@ pub(crate) struct Slopes<'a> {
     variables: usize,
     seconds: Seconds,
     /// Per variable, what measures go by; the last is that of no change.
-    fixed: Vec<Fixed<Dual<Dual>>>,
+    fixed: Vec<BodyFixed<Dual<Dual>>>,
     asked_for: Vec<usize>,
     /// Per driver.
     poses: Vec<Vec<Pose<Dual<Dual>>>>,
@@ -60,7 +60,7 @@ impl<'a> Slopes<'a> {
     /// For the design with these values, with derivatives by the variables if they are wanted; `None` for a model without
     /// such measures.
     pub fn new(
-        effects: &Effects<'a>,
+        effects: &DesignMap<'a>,
         topology: &Topology,
         values: &[f64],
         sensitivities: bool,
@@ -75,10 +75,12 @@ impl<'a> Slopes<'a> {
         }
         let variables = if sensitivities { model.variables.len() } else { 0 };
         let unit = |v: usize| model.alone(VariableId(v), 1.0);
-        let ways =
-            drivers.iter().map(|d| Way::Driver(*d)).chain((0..variables).map(|v| Way::Design(unit(v))));
+        let ways = drivers
+            .iter()
+            .map(|d| PairDirection::Driver(*d))
+            .chain((0..variables).map(|v| PairDirection::Design(unit(v))));
         // Directions: first the drivers, then unit vectors of the variables; pairs: every driver u with every variable w (15).
-        let ways: Vec<Way> = ways.collect();
+        let ways: Vec<PairDirection> = ways.collect();
         let pairs: Vec<[usize; 2]> = (0..variables)
             .flat_map(|v| (0..drivers.len()).map(move |d| (d, v)))
             .map(|(d, v)| [d, drivers.len() + v])
@@ -116,9 +118,9 @@ impl<'a> Slopes<'a> {
                     };
                 }
             }
-            let alone = Alone {
+            let alone = DriverAlone {
                 drivers: &self.drivers,
-                moments: self.poses.iter().map(|p| Moment::new(self.model, &self.fixed[by], p)).collect(),
+                moments: self.poses.iter().map(|p| Instant::new(self.model, &self.fixed[by], p)).collect(),
             };
             for k in 0..self.model.measures.len() {
                 let x = alone.measure(self.model, k);
@@ -146,12 +148,12 @@ fn driver_of(model: &Model, k: usize) -> Option<[DriverId; 2]> {
 }
 
 /// The same position as often as there are drivers, each time with what happens while that driver alone moves.
-struct Alone<'m, T> {
+struct DriverAlone<'m, T> {
     drivers: &'m [DriverId],
-    moments: Vec<Moment<'m, Dual<T>>>,
+    moments: Vec<Instant<'m, Dual<T>>>,
 }
 
-impl<T: Real> Alone<'_, T> {
+impl<T: Real> DriverAlone<'_, T> {
     /// The value of a measure that goes by a driver; NaN of all others.
     fn measure(&self, model: &Model, k: usize) -> T {
         let unknown = T::constant(f64::NAN);
@@ -159,7 +161,7 @@ impl<T: Real> Alone<'_, T> {
         let [first, second] = drivers.map(|d| {
             &self.moments[self.drivers.binary_search(&d).expect("the drivers of all measures are here")]
         });
-        let wheel = |moment: &Moment<'_, Dual<T>>, d: usize, wheel: WheelId| Carried {
+        let wheel = |moment: &Instant<'_, Dual<T>>, d: usize, wheel: WheelId| TravellingWheel {
             wheel: moment.wheel(k, d, wheel),
             // The twist w, v per unit of q, which is what a pose with `d` along q splits into
             carrier: moment.poses[model.wheels[wheel.0].body.0].split().1,

@@ -8,7 +8,7 @@
 //! | `kingpin` | L, U, k = U - L | lower and upper point, global, m |
 //! | `contact()`, `outboard()`, `forward()` | C, o, f | |
 //! | `off_kingpin(P)` | d(P) | |
-//! | `.d` of a number of [`Carried`], `carrier` | X', w and v | per unit of the driver q, (11) of `docs/theory.md` with `L_u = 1` |
+//! | `.d` of a number of [`TravellingWheel`], `carrier` | X', w and v | per unit of the driver q, (11) of `docs/theory.md` with `L_u = 1` |
 
 use crate::model::{Vehicle, VehicleEnd, WheelMeasure};
 use crate::number::{Dual, Real};
@@ -153,13 +153,13 @@ impl<T: Real> WheelAt<T> {
 }
 
 /// A wheel while the driver that moves it up and down moves alone: derivatives are by that driver.
-pub(super) struct Carried<T> {
+pub(super) struct TravellingWheel<T> {
     pub wheel: WheelAt<Dual<T>>,
     /// The motion of the body that it turns on.
     pub carrier: Twist<T>,
 }
 
-impl<T: Real> Carried<T> {
+impl<T: Real> TravellingWheel<T> {
     /// The value of a measure that goes by this driver.
     pub fn measure(&self, what: WheelMeasure, vehicle: &Vehicle) -> T {
         let wheel = &self.wheel;
@@ -225,7 +225,7 @@ fn support<T: Real>(what: WheelMeasure, vehicle: &Vehicle) -> T {
 
 /// Global y of an axle's roll centre, and its height above the ground midway: where the lines meet that pass in front view
 /// through the contact points, square to their paths.
-pub(super) fn axle_roll_centre<T: Real>(wheels: [Carried<T>; 2]) -> (T, T) {
+pub(super) fn axle_roll_centre<T: Real>(wheels: [TravellingWheel<T>; 2]) -> (T, T) {
     let [(p, a), (q, b)] = wheels.map(|side| {
         let contact = side.wheel.contact();
         // Square to the path (C_y', C_z'): (-C_z', C_y')

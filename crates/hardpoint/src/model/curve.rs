@@ -1,6 +1,6 @@
 //! The curve that a point follows: a smooth line in the x-y plane of a marker.
 
-use crate::law::{Ends, Law, LawError, SplineDegree, Table};
+use crate::law::{Law, LawError, SplineDegree, SplineEnds, Table};
 use crate::space::{Mat3, Pose, Real, Vec3};
 
 /// Newton for the nearest point from a near start takes a few steps; more than this and it is lost.
@@ -96,7 +96,7 @@ impl Curve {
             let chord = (pair[1][0] - pair[0][0]).hypot(pair[1][1] - pair[0][1]);
             times.push(times[times.len() - 1] + chord);
         }
-        let ends = if closed { Ends::Periodic } else { Ends::Natural };
+        let ends = if closed { SplineEnds::Periodic } else { SplineEnds::Natural };
         let law = |axis: usize| {
             let values = points.iter().map(|p| p[axis]).collect();
             Law::table(&Table { times: times.clone(), values, degree: SplineDegree::Quintic, ends })

@@ -157,7 +157,7 @@ macro_rules! measures {
         expression: Expression => Combination,
     } |m, _|
         expression.dimension,
-        expression.sources().map(|s| m.known(s)).fold(POSITIONS, |all, one| Known {
+        expression.sources().map(|s| m.known(s)).fold(POSITIONS, |all, one| KnownOrders {
             orders: all.orders.min(one.orders),
             by_position: all.by_position && one.by_position,
         }),
@@ -168,7 +168,7 @@ macro_rules! measures {
         /// The body that the wheel turns on.
         body: String => BodyId,
         /// The wheel's spin axis in the design configuration, pointing outboard.
-        spin_axis: Line => Direction,
+        spin_axis: LineDraft => Direction,
     } |_, w| Dimension::ANGLE, POSITIONS, w.of_axis("toe", *body, spin_axis);
 
     /// Camber of a left wheel, positive where its top leans outboard.
@@ -176,7 +176,7 @@ macro_rules! measures {
         /// The body that the wheel turns on.
         body: String => BodyId,
         /// The wheel's spin axis in the design configuration, pointing outboard.
-        spin_axis: Line => Direction,
+        spin_axis: LineDraft => Direction,
     } |_, w| Dimension::ANGLE, POSITIONS, w.of_axis("camber", *body, spin_axis);
     } };
 }
@@ -222,7 +222,7 @@ macro_rules! in_models {
             }
 
             /// How much can be known of an output: the motion ends at accelerations.
-            pub fn known(&self, output: OutputSource) -> Known {
+            pub fn known(&self, output: OutputSource) -> KnownOrders {
                 let OutputSource::Measure(k) = output else { return POSITIONS };
                 match &self.measures[k].kind {
                     $(#[allow(unused_variables, reason = "how much is known follows from some of its fields")]
@@ -310,11 +310,11 @@ impl OnBodies for OutputSource {}
 impl OnBodies for Combination {}
 
 /// All of an output that follows from positions is known.
-const POSITIONS: Known = Known { orders: 3, by_position: true };
+const POSITIONS: KnownOrders = KnownOrders { orders: 3, by_position: true };
 
 /// Of what moves, so many of value, rate and acceleration.
-fn moving(orders: usize) -> Known {
-    Known { orders, by_position: false }
+fn moving(orders: usize) -> KnownOrders {
+    KnownOrders { orders, by_position: false }
 }
 
 /// What measures go by, in words.
@@ -471,7 +471,7 @@ impl From<Quantity> for Dimension {
 
 /// How much can be known of an output.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Known {
+pub struct KnownOrders {
     /// How many of value, rate and acceleration.
     pub orders: usize,
     /// Whether it follows from positions alone: then it has second design derivatives, and slopes.

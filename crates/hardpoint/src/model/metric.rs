@@ -12,14 +12,14 @@ pub struct Metric {
     /// Over which output; over time where there is none.
     pub over: Option<OutputSource>,
     /// What is taken.
-    pub take: Take,
+    pub take: Reduction,
     /// The part of the curve that counts: from where to where its abscissa goes, in SI; all of it where there is none.
     pub window: Option<[f64; 2]>,
 }
 
 /// What of a curve a metric takes. Formulas: `docs/measures.md`.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Take {
+pub enum Reduction {
     /// The least value.
     Least,
     /// The greatest value.
@@ -37,7 +37,7 @@ pub enum Take {
     Slope(f64),
 }
 
-impl Take {
+impl Reduction {
     /// The names of all of them, as model files write them.
     pub const NAMES: [&str; 7] = ["min", "max", "range", "mean", "rms", "value", "slope"];
 
@@ -64,6 +64,6 @@ impl Model {
     /// What a metric's value is.
     pub fn metric_dimension(&self, metric: &Metric) -> Dimension {
         let of = self.dimension(metric.of);
-        if let Take::Slope(_) = metric.take { of.over(self.abscissa(metric)) } else { of }
+        if let Reduction::Slope(_) = metric.take { of.over(self.abscissa(metric)) } else { of }
     }
 }

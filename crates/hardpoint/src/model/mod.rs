@@ -15,11 +15,11 @@ pub(crate) use curve::Contact;
 pub use curve::{Curve, CurvePoint};
 pub use formula::{Formula, NamedNumber, Source, Target};
 pub(crate) use measure::measures;
-pub use measure::{Combination, Dimension, Known, Measure, MeasureKind, OutputSource, Ray};
-pub use metric::{Metric, Take};
+pub use measure::{Combination, Dimension, KnownOrders, Measure, MeasureKind, OutputSource, Ray};
+pub use metric::{Metric, Reduction};
 pub use wheel::{Axle, AxleMeasure, Side, Vehicle, VehicleEnd, Wheel, WheelMeasure, WheelNeed};
 
-use crate::constraint::Ends;
+use crate::constraint::MarkerPair;
 use crate::joint::{CoordinateType, JointType, Need, Quantity};
 use crate::law::Law;
 use crate::space::{Mat3, Pose, Vec3};
@@ -161,12 +161,12 @@ pub struct Coupler {
     /// Its name; that of the joint for a screw.
     pub name: String,
     /// Its terms; no coefficient is zero. A change of the design leaves them alone.
-    pub terms: Vec<Term>,
+    pub terms: Vec<CouplerTerm>,
 }
 
 /// A joint coordinate times a number.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Term {
+pub struct CouplerTerm {
     /// Which joint.
     pub joint: JointId,
     /// Which of its type's coordinates.
@@ -244,7 +244,7 @@ impl Model {
     }
 
     /// The joint coordinate of a coupler's term.
-    pub fn coupled(&self, term: &Term) -> &'static CoordinateType {
+    pub fn coupled(&self, term: &CouplerTerm) -> &'static CoordinateType {
         &self.joints[term.joint.0].kind.coordinates[term.coordinate]
     }
 
@@ -255,12 +255,12 @@ impl Model {
     }
 
     /// The markers of a joint in the world, in the design configuration; on a curve next to the point that follows it.
-    pub(crate) fn ends(&self, joint: JointId) -> Ends<f64> {
+    pub(crate) fn ends(&self, joint: JointId) -> MarkerPair<f64> {
         let [mut i, j] = [0, 1].map(|e| self.marker(joint, e));
         if let Some(curve) = &self.joints[joint.0].curve {
             i = i.compose(Contact::at(curve, curve.start()).frame());
         }
-        Ends { i, j, axes: Mat3::IDENTITY }
+        MarkerPair { i, j, axes: Mat3::IDENTITY }
     }
 
     /// Joints that a person wrote.

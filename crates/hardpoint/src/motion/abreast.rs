@@ -8,15 +8,17 @@ use std::sync::Arc;
 
 use hardpoint_tape::{LANES, Lanes};
 
-use crate::blocks::{Block, Line, lanes_of};
+use crate::blocks::{AlignedLanes, ResultBlock, lanes_of};
 
-use super::execution::{Room, Runnable};
+use super::execution::{ProgramMemory, Runnable};
 use super::forecast::{NODES, ORDERS, Weights};
 use super::kinematics::QUADRATIC;
 use super::margin::Margin;
 use super::step_program::{MOST_CORRECTIONS, StepProgram};
-use super::stepper::{Ahead, EVEN, LONGEST, MILD, MILD_CHANGE, RESTS, Saved, Stepper, TRUST_FLOOR};
-use super::tape::{Solved, Tape, all_within, largest};
+use super::stepper::{
+    AcceptedPosition, EVEN, LONGEST, Lookahead, MILD, MILD_CHANGE, RESTS, Stepper, TRUST_FLOOR,
+};
+use super::tape::{SolveQuality, Tape, all_within, largest};
 use super::walk::PART_OF_WAY;
 
 /// The first correction (rad, or sizes) must be within this: a forecast by all positions that fails by more is none.
@@ -32,7 +34,7 @@ const FEWEST: usize = 3;
 pub(crate) type ProgramOf<'p> = Box<dyn Fn(usize) -> Option<Arc<StepProgram>> + 'p>;
 
 /// Takes up to eight steps of a stepper at once.
-pub(crate) struct Abreast<'p> {
+pub(crate) struct TimesAbreast<'p> {
     /// Where a tape may come from.
     programs: Option<ProgramOf<'p>>,
     /// The values of the design's variables.
@@ -44,22 +46,22 @@ pub(crate) struct Abreast<'p> {
     wait: usize,
     pause: usize,
     /// Results, where nobody gives room for them; and whether they are here.
-    own: [Vec<Line>; 2],
+    own: [Vec<AlignedLanes>; 2],
     is_own: bool,
 }
 
 /// The drivers' laws at eight times.
 struct Laws {
     program: Option<Arc<Runnable>>,
-    room: Room,
-    limits: Vec<Line>,
+    room: ProgramMemory,
+    limits: Vec<AlignedLanes>,
 }
 
-impl<'p> Abreast<'p> {
+impl<'p> TimesAbreast<'p> {
     /// By these programs, for a design with these values; `laws` are those of its drivers, if there is a program for them.
     pub fn new(programs: Option<ProgramOf<'p>>, design: &[f64], laws: Option<Arc<Runnable>>) -> Self {
-        let limits = vec![Line::default(); laws.as_ref().map_or(0, |laws| laws.sizes()[1])];
-        let laws = Laws { program: laws, room: Room::default(), limits };
+        let limits = vec![AlignedLanes::default(); laws.as_ref().map_or(0, |laws| laws.sizes()[1])];
+        let laws = Laws { program: laws, room: ProgramMemory::default(), limits };
         Self {
             programs,
             design: design.to_vec(),
@@ -82,9 +84,9 @@ impl<'p> Abreast<'p> {
     }
 
     /// Its results, where there was no room for them elsewhere.
-    pub fn own_results(&self) -> Option<Block<'_>> {
+    pub fn own_results(&self) -> Option<ResultBlock<'_>> {
         let [states, derivatives] = self.own.each_ref().map(|own| bytemuck::cast_slice(own));
-        self.is_own.then_some(Block { states, derivatives })
+        self.is_own.then_some(ResultBlock { states, derivatives })
     }
 
     /// Output time k comes next: moves on from where the stepper stands to as many of the next output times as can be solved at once;
@@ -101,7 +103,7 @@ impl<'p> Abreast<'p> {
         let (first, group) = (k % LANES, k - k % LANES);
         let last = usize::min(times.len() - group, LANES) - 1;
         let count = last + 1 - first;
-        if self.programs.is_none() || count < FEWEST || one.ahead == Ahead::Unknown {
+        if self.programs.is_none() || count < FEWEST || one.ahead == Lookahead::Unknown {
             return 0;
         }
         if self.wait > 0 {
@@ -170,7 +172,7 @@ impl<'p> Abreast<'p> {
         self.is_own = room.is_none();
         let results = room.unwrap_or_else(|| {
             for (own, size) in self.own.iter_mut().zip(tape.sizes()) {
-                own.resize(size, Line::default());
+                own.resize(size, AlignedLanes::default());
             }
             self.own.each_mut().map(|own| lanes_of(own))
         });
@@ -271,7 +273,7 @@ fn laws_are_even(tape: &Tape, one: &mut Stepper<'_>, times: &Lanes, [first, last
         // What was examined must be clear as far as the last of these times.
         (one.moves_ahead[d], one.travel[d]) = (moves, travel * unit * ((to - from) / longest));
     }
-    one.ahead == Ahead::Even || one.around.part_of_way(&one.travel) <= PART_OF_WAY
+    one.ahead == Lookahead::Even || one.around.part_of_way(&one.travel) <= PART_OF_WAY
 }
 
 /// Whether every determinant changes by little from one output time to the next, and about as much as over the step before. Notes
@@ -290,7 +292,7 @@ fn determinants_are_even(
         (beside[k], step) = (next / step, next);
     }
     // The first step of all has none before it.
-    let compared = if one.ahead == Ahead::Even { first } else { first + 1 };
+    let compared = if one.ahead == Lookahead::Even { first } else { first + 1 };
     for b in 0..one.changes.len() {
         let determinants = tape.determinant(b);
         let (mut even, mut before) = (true, one.saved.determinants[b]);
@@ -320,7 +322,7 @@ impl Stepper<'_> {
         tape: &Tape,
         times: &Lanes,
         [first, last]: [usize; 2],
-        Solved { residuals, pivot_ratio }: Solved,
+        SolveQuality { residuals, pivot_ratio }: SolveQuality,
         change_step: f64,
     ) {
         // The forecast goes by the middle and the end of the way.
@@ -338,7 +340,7 @@ impl Stepper<'_> {
         self.changes.copy_from_slice(&self.changes_ahead);
         self.moves.copy_from_slice(&self.moves_ahead);
         self.change_step = change_step;
-        self.ahead = Ahead::Even;
+        self.ahead = Lookahead::Even;
         self.time = times[last];
         let effort = &mut self.effort;
         let count = last + 1 - first;
@@ -353,7 +355,7 @@ impl Stepper<'_> {
     /// Saves the position and the rates that a tape has found in one lane.
     #[inline(always)]
     fn stand_in(&mut self, tape: &Tape, lane: usize) {
-        let Saved { q, qd, qdd, balls, drivers, .. } = &mut self.saved;
+        let AcceptedPosition { q, qd, qdd, balls, drivers, .. } = &mut self.saved;
         for (n, channel) in tape.channels().iter().enumerate() {
             channel.save(tape.channel(n, lane)[0], q, balls);
         }

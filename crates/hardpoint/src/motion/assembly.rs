@@ -30,7 +30,7 @@ pub struct Assembly {
     /// What was open in the drawing, largest gaps first.
     pub gaps: Vec<Gap>,
     /// The bodies that moved, as far as they did.
-    pub moved: Vec<Moved>,
+    pub moved: Vec<AssemblyShift>,
 }
 
 /// A constraint that is open.
@@ -57,7 +57,7 @@ pub enum Closing {
 
 /// How far the assembly moved a body from where it was drawn.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Moved {
+pub struct AssemblyShift {
     /// Which body.
     pub body: BodyId,
     /// By how much its frame's origin moved, m.
@@ -154,11 +154,11 @@ impl Stepper<'_> {
     }
 
     /// How far the bodies are from where they were drawn.
-    fn moved(&self, least: f64) -> Vec<Moved> {
+    fn moved(&self, least: f64) -> Vec<AssemblyShift> {
         let bodies = self.model.bodies.iter().enumerate().skip(1);
         let moved = bodies.map(|(b, body)| {
             let pose = &self.state.pose[b];
-            Moved {
+            AssemblyShift {
                 body: BodyId(b),
                 distance: (pose.r - body.frame.r).norm(),
                 angle: pose.rot.angle_to(body.frame.rot),

@@ -8,15 +8,15 @@ use std::sync::Arc;
 
 use hardpoint_tape::{LANES, Lanes};
 
-use crate::blocks::{Block, Blocks, Line, lanes_of};
+use crate::blocks::{AlignedLanes, Blocks, ResultBlock, lanes_of};
 use crate::model::{BodyId, VariableId};
 
 use super::abreast::ProgramOf;
 use super::forecast::{NODES, ORDERS, Weights};
 use super::kinematics::QUADRATIC;
 use super::step_program::MOST_CORRECTIONS;
-use super::stepper::{Ahead, MILD, MILD_CHANGE, Stepper, TRUST_FLOOR};
-use super::tape::{Solved, Tape};
+use super::stepper::{Lookahead, MILD, MILD_CHANGE, Stepper, TRUST_FLOOR};
+use super::tape::{SolveQuality, Tape};
 use super::walk::Path;
 use super::{Effort, Motion};
 
@@ -33,7 +33,7 @@ struct Drive {
 }
 
 /// Designs on their way through time.
-pub(crate) struct SideBySide<'m> {
+pub(crate) struct DesignsAbreast<'m> {
     /// Of the nominal design, at the first output time.
     nominal: Stepper<'m>,
     /// What the drivers do at every output time, up to the first where they do not go there evenly.
@@ -58,20 +58,20 @@ pub(crate) struct SideBySide<'m> {
     changes: Vec<Lanes>,
     /// Numbers of all bodies, and the coordinates of the tree, output time after output time, or of the last one; the bodies' derivatives
     /// at the last.
-    states: Arc<Vec<Line>>,
-    coordinates: Arc<Vec<Line>>,
-    derivatives: Vec<Line>,
+    states: Arc<Vec<AlignedLanes>>,
+    coordinates: Arc<Vec<AlignedLanes>>,
+    derivatives: Vec<AlignedLanes>,
     keeps: bool,
 }
 
 /// What was found at an output time.
-pub(crate) struct Found<'f> {
+pub(crate) struct FoundAbreast<'f> {
     pub tape: &'f Tape,
     /// The numbers of all bodies but ground, and their derivatives.
-    pub block: Block<'f>,
+    pub block: ResultBlock<'f>,
 }
 
-impl<'m> SideBySide<'m> {
+impl<'m> DesignsAbreast<'m> {
     /// By these programs. None where there is none, and where the nominal design is not as drawn at its first output time, where
     /// `nominal` stands: designs could have gone other ways till there. `keeps` says whether the results of all output times are kept.
     pub fn new(mut nominal: Stepper<'m>, programs: ProgramOf<'m>, keeps: bool) -> Option<Self> {
@@ -84,7 +84,7 @@ impl<'m> SideBySide<'m> {
             return None;
         }
         let channels = first.channels().len();
-        let derivatives = vec![Line::default(); first.sizes()[1]];
+        let derivatives = vec![AlignedLanes::default(); first.sizes()[1]];
         let mut tapes = [const { None }; MOST_CORRECTIONS];
         tapes[MOST_CORRECTIONS - 1] = Some((first, false));
         let (course, drivers) = course(&mut nominal);
@@ -112,7 +112,8 @@ impl<'m> SideBySide<'m> {
 
     /// Gives one of the designs that were solved its results.
     pub fn hand_over(&self, lane: usize, motion: &mut Motion) {
-        let of_design = |lines: &Arc<Vec<Line>>, width| Blocks::of_design(Arc::clone(lines), width, lane);
+        let of_design =
+            |lines: &Arc<Vec<AlignedLanes>>, width| Blocks::of_design(Arc::clone(lines), width, lane);
         motion.states = of_design(&self.states, self.tape().sizes()[0]);
         motion.coordinates = of_design(&self.coordinates, self.nominal.topology.coordinates.len());
     }
@@ -130,7 +131,11 @@ impl<'m> SideBySide<'m> {
 
     /// These designs at all output times, one per lane; `each(k, ...)` sees the results of output time k. None where a step does not go
     /// as expected in some lane.
-    pub fn run(&mut self, designs: &[Vec<f64>], mut each: impl FnMut(usize, &Found<'_>)) -> Option<Effort> {
+    pub fn run(
+        &mut self,
+        designs: &[Vec<f64>],
+        mut each: impl FnMut(usize, &FoundAbreast<'_>),
+    ) -> Option<Effort> {
         let model = self.nominal.model;
         for (_, knows) in self.tapes.iter_mut().flatten() {
             *knows = false;
@@ -142,7 +147,7 @@ impl<'m> SideBySide<'m> {
         for (lines, width) in [&mut self.states, &mut self.coordinates].into_iter().zip(widths) {
             // Who still reads the results of former designs keeps them.
             if Arc::get_mut(lines).is_none_or(|lines| lines.len() != width * steps) {
-                *lines = Arc::new(vec![Line::default(); width * steps]);
+                *lines = Arc::new(vec![AlignedLanes::default(); width * steps]);
             }
         }
         let mut effort = Effort { least_pivot_ratio: f64::INFINITY, ..Effort::default() };
@@ -156,7 +161,7 @@ impl<'m> SideBySide<'m> {
             }
             let states = &self.states[self.states_at(k)];
             let [states, derivatives] = [states, &self.derivatives].map(bytemuck::cast_slice);
-            each(k, &Found { tape: self.tape(), block: Block { states, derivatives } });
+            each(k, &FoundAbreast { tape: self.tape(), block: ResultBlock { states, derivatives } });
             effort.steps += 1;
             effort.by_program += 1;
             effort.iterations += self.tape().passes();
@@ -174,7 +179,7 @@ impl<'m> SideBySide<'m> {
     }
 
     /// All designs at the first output time, from where the nominal one is.
-    fn start(&mut self, t: f64) -> Option<Solved> {
+    fn start(&mut self, t: f64) -> Option<SolveQuality> {
         let saved = &self.nominal.saved;
         for n in 0..self.known.len() {
             let x = self.tape().channels()[n].saved(&saved.q, &saved.balls);
@@ -199,7 +204,7 @@ impl<'m> SideBySide<'m> {
     }
 
     /// All designs at the next output time, k.
-    fn step(&mut self, k: usize, t: f64) -> Option<Solved> {
+    fn step(&mut self, k: usize, t: f64) -> Option<SolveQuality> {
         let ahead = [self.course.get(k)?.h; LANES];
         // abs(dq_0) <= 1e-9 at the last step: by (26) one correction will leave round-off at the next, too.
         let is_good = self.count == NODES && self.missed <= GOOD;
@@ -212,7 +217,7 @@ impl<'m> SideBySide<'m> {
     }
 
     /// Tries the tape with so many corrections at output time k, so long beyond the newest position.
-    fn solve(&mut self, corrections: usize, k: usize, ahead: &Lanes) -> Option<Solved> {
+    fn solve(&mut self, corrections: usize, k: usize, ahead: &Lanes) -> Option<SolveQuality> {
         self.weights.set((self.times.map(|t| t - self.times[0]), self.count), ahead);
         let states_at = self.states_at(k);
         let kept = &mut self.tapes[corrections - 1];
@@ -289,7 +294,7 @@ fn course(nominal: &mut Stepper<'_>) -> (Vec<Drive>, Vec<[f64; ORDERS]>) {
         nominal.fastest_driver = nominal.driver_speed();
         if k > 0 {
             nominal.note_moves();
-            nominal.ahead = Ahead::Even;
+            nominal.ahead = Lookahead::Even;
         }
         nominal.saved.drivers.copy_from_slice(&nominal.drivers);
         nominal.time = t;

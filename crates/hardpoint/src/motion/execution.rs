@@ -7,7 +7,7 @@ use std::sync::{Arc, Mutex};
 use hardpoint_code::{Code, PARTS, Scratch, Width};
 use hardpoint_tape::{Interpreter, LANES, Lanes, Operand, Pieces, PiecesRoom, Program, Shape};
 
-use crate::blocks::{Line, lanes_of};
+use crate::blocks::{AlignedLanes, lanes_of};
 
 /// A program of so many instructions does not stay in the fast memory of a core: where its pieces are alike, they share their code ...
 const LONG: usize = 10_000;
@@ -196,16 +196,16 @@ impl Staged {
     }
 
     /// Works out, behind the inputs that stand in these lines, those of the second part that depend on the design alone.
-    pub fn take_design(&self, inputs: &mut [Line]) {
+    pub fn take_design(&self, inputs: &mut [AlignedLanes]) {
         let (given, found) = inputs.split_at_mut(inputs.len() - self.design.sizes[0]);
         let given = &lanes_of(given)[..self.design.inputs];
-        Room::default().run(&self.design, given, &[], [lanes_of(found), &mut [], &mut []]);
+        ProgramMemory::default().run(&self.design, given, &[], [lanes_of(found), &mut [], &mut []]);
     }
 }
 
 /// What a program works in.
 #[derive(Debug, Default)]
-pub(crate) struct Room {
+pub(crate) struct ProgramMemory {
     scratch: Scratch,
     /// One for every program.
     interpreters: Vec<Option<Interpreter>>,
@@ -214,7 +214,7 @@ pub(crate) struct Room {
     pieces: PiecesRoom,
 }
 
-impl Room {
+impl ProgramMemory {
     #[inline(always)]
     pub fn run(
         &mut self,

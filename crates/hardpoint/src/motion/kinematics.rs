@@ -14,7 +14,7 @@
 //! which is the paper's `phi(Z, D, t) = 0` (5.1) at one time, D standing, and its first two time derivatives. The paper's Z, poses of
 //! bodies, are `pose`; q are the coordinates of the tree, all six of every body in the absolute formulation.
 
-use crate::constraint::{EndRates, Ends};
+use crate::constraint::{MarkerPair, MarkerPairRates};
 use crate::joint::Freedom;
 use crate::linalg::{Factors, LARGEST_DENSE, Watched};
 use crate::model::{Contact, DriverId, GROUND, Model};
@@ -22,7 +22,7 @@ use crate::space::{Pose, Quat, Real, Twist, Wrench};
 use crate::topology::{Block, BlockId, Closure, ClosureId, Entry, LinkId, RowId, Term, Topology};
 
 use super::level::{Flow, Linear, turn_twists};
-use super::parts::Parts;
+use super::parts::PlanGeometry;
 
 /// A correction below this (rad, or sizes) leaves an error of its square, which is round-off.
 pub(super) const QUADRATIC: f64 = 1e-8;
@@ -59,7 +59,7 @@ pub(crate) struct State<T> {
     pub l: [Vec<Wrench<T>>; 3],
     /// Per closure: its markers in the world.
     /// `X_i M_i` and `X_j M_j`: P_i, a_i and P_j, b_j of the table in theory, section 2.
-    pub ends: Vec<Ends<T>>,
+    pub ends: Vec<MarkerPair<T>>,
     /// Per block: `P J = L U`, J with rows `selected` and columns `unknowns`, where the position was solved last.
     pub factors: Vec<Factors<T>>,
     /// Right-hand side of a block.
@@ -127,7 +127,7 @@ impl<T: Real> State<T> {
             motion: Flow::new(topology, bodies, true),
             x: std::array::from_fn(|_| vec![Twist::zero(); n]),
             l: std::array::from_fn(|_| vec![Wrench::zero(); rows]),
-            ends: vec![Ends { i: frame, j: frame, axes: frame.rot }; topology.closures.len()],
+            ends: vec![MarkerPair { i: frame, j: frame, axes: frame.rot }; topology.closures.len()],
             factors: topology.blocks.iter().map(|b| factors_of(topology, b, LARGEST_DENSE)).collect(),
             rhs: vec![o; widest],
             residual: vec![o; rows],
@@ -148,7 +148,7 @@ impl<T: Real> State<T> {
     pub(super) fn place(
         &mut self,
         topology: &Topology,
-        parts: &Parts<T>,
+        parts: &PlanGeometry<T>,
         links: impl Iterator<Item = LinkId>,
     ) {
         for k in links {
@@ -178,7 +178,12 @@ impl<T: Real> State<T> {
 
     /// Poses of the bodies, from the markers that place them.
     #[inline(always)]
-    fn place_bodies(&mut self, topology: &Topology, parts: &Parts<T>, links: impl Iterator<Item = LinkId>) {
+    fn place_bodies(
+        &mut self,
+        topology: &Topology,
+        parts: &PlanGeometry<T>,
+        links: impl Iterator<Item = LinkId>,
+    ) {
         for k in links {
             let child = topology[k].child.0;
             // X_c = (X_p M_p J(q)) M_c^-1                                                                         (4)
@@ -188,7 +193,7 @@ impl<T: Real> State<T> {
 
     /// Markers of a closure in the world.
     #[inline(always)]
-    pub(super) fn place_ends(&mut self, topology: &Topology, parts: &Parts<T>, c: ClosureId) {
+    pub(super) fn place_ends(&mut self, topology: &Topology, parts: &PlanGeometry<T>, c: ClosureId) {
         let [i, j] = topology[c].bodies;
         let (m_i, m_j) = (parts.ends[0][c.0], parts.ends[1][c.0]);
         let ends = &mut self.ends[c.0];
@@ -202,7 +207,7 @@ impl<T: Real> State<T> {
 
     /// The points of a closure's markers alone.
     #[inline(always)]
-    fn place_end_points(&mut self, topology: &Topology, parts: &Parts<T>, c: ClosureId) {
+    fn place_end_points(&mut self, topology: &Topology, parts: &PlanGeometry<T>, c: ClosureId) {
         let [i, j] = topology[c].bodies;
         let (m_i, m_j) = (parts.ends[0][c.0], parts.ends[1][c.0]);
         let ends = &mut self.ends[c.0];
@@ -212,7 +217,7 @@ impl<T: Real> State<T> {
 
     /// The axes of the body on which a closure's loop stands.
     #[inline(always)]
-    fn turn_base(&mut self, topology: &Topology, parts: &Parts<T>, c: ClosureId) {
+    fn turn_base(&mut self, topology: &Topology, parts: &PlanGeometry<T>, c: ClosureId) {
         let Closure { base, base_link, .. } = topology[c];
         if base != GROUND {
             self.ends[c.0].axes = match base_link {
@@ -225,8 +230,8 @@ impl<T: Real> State<T> {
 
     /// Lets marker i of a closure walk along its curve to where it is next to marker j.
     #[inline(never)]
-    fn touch(&mut self, parts: &Parts<T>, c: ClosureId, k: usize) {
-        let Ends { i, j, .. } = self.ends[c.0];
+    fn touch(&mut self, parts: &PlanGeometry<T>, c: ClosureId, k: usize) {
+        let MarkerPair { i, j, .. } = self.ends[c.0];
         // p = P_j as seen from marker i; the foot u of the perpendicular on the curve, (p - C(u)) . C'(u) = 0; marker i goes there,
         // x along C'.
         let p = i.inverse().point(j.r);
@@ -236,8 +241,8 @@ impl<T: Real> State<T> {
 
     /// Rates of a marker i that walks along its curve: those of its body and its own turning.
     #[inline(never)]
-    pub fn walk(&self, c: ClosureId, k: usize, rates: &EndRates<T>) -> EndRates<T> {
-        let Ends { i: foot, j, .. } = &self.ends[c.0];
+    pub fn walk(&self, c: ClosureId, k: usize, rates: &MarkerPairRates<T>) -> MarkerPairRates<T> {
+        let MarkerPair { i: foot, j, .. } = &self.ends[c.0];
         let (v, a, contact) = (rates.v_i, rates.a_i, &self.contacts[k]);
         // The marker that carries the curve, and the follower's motion seen from it.
         let i = foot.compose(contact.frame().inverse());
@@ -260,7 +265,13 @@ impl<T: Real> State<T> {
 
     /// By how much constraint row r fails.
     #[inline(always)]
-    pub(super) fn residual(&self, topology: &Topology, parts: &Parts<T>, drivers: &[[T; 3]], r: RowId) -> T {
+    pub(super) fn residual(
+        &self,
+        topology: &Topology,
+        parts: &PlanGeometry<T>,
+        drivers: &[[T; 3]],
+        r: RowId,
+    ) -> T {
         let place = &topology[r];
         let closure = &topology[place.closure];
         let (row, ends) = (closure.rows[place.index], &self.ends[place.closure.0]);
@@ -276,7 +287,7 @@ impl<T: Real> State<T> {
 
     /// Places everything where the coordinates say, the drivers' own values included.
     #[inline(never)]
-    pub fn stand(&mut self, topology: &Topology, parts: &Parts<T>) {
+    pub fn stand(&mut self, topology: &Topology, parts: &PlanGeometry<T>) {
         self.place(topology, parts, topology.link_ids());
         self.place_bodies(topology, parts, topology.link_ids());
         for c in topology.closure_ids() {
@@ -286,13 +297,19 @@ impl<T: Real> State<T> {
 
     /// [`State::residual`] for callers that are not in a hurry.
     #[inline(never)]
-    pub fn residual_of(&self, topology: &Topology, parts: &Parts<T>, drivers: &[[T; 3]], r: RowId) -> T {
+    pub fn residual_of(
+        &self,
+        topology: &Topology,
+        parts: &PlanGeometry<T>,
+        drivers: &[[T; 3]],
+        r: RowId,
+    ) -> T {
         self.residual(topology, parts, drivers, r)
     }
 
     /// The sum of a coupler's terms. Kept out of the way of the other rows, which are many.
     #[inline(never)]
-    fn coupled(&self, topology: &Topology, parts: &Parts<T>, r: RowId) -> T {
+    fn coupled(&self, topology: &Topology, parts: &PlanGeometry<T>, r: RowId) -> T {
         let mut sum = T::zero();
         for Term { row, factor } in topology.parts_of_row(r) {
             // phi = sum c_k chi_k, each chi_k counted from its design value
@@ -338,7 +355,7 @@ impl<T: Real> State<T> {
     pub(super) fn linearise(
         &mut self,
         topology: &Topology,
-        parts: &Parts<T>,
+        parts: &PlanGeometry<T>,
         drivers: &[[T; 3]],
         b: BlockId,
     ) {
@@ -384,7 +401,7 @@ impl<T: Real> State<T> {
     pub fn solve(
         &mut self,
         topology: &Topology,
-        parts: &Parts<T>,
+        parts: &PlanGeometry<T>,
         drivers: &[[T; 3]],
         trust: f64,
     ) -> Result<(), PositionFailure> {
@@ -416,7 +433,7 @@ impl<T: Real> State<T> {
     fn newton(
         &mut self,
         topology: &Topology,
-        parts: &Parts<T>,
+        parts: &PlanGeometry<T>,
         drivers: &[[T; 3]],
         b: BlockId,
         trust: f64,
@@ -502,7 +519,13 @@ impl<T: Real> State<T> {
 
     /// Velocity and acceleration of the bodies of block b, with the factors that its position left (`docs/theory.md` (9), (10)).
     #[inline(always)]
-    fn rates_of_block(&mut self, topology: &Topology, parts: &Parts<T>, drivers: &[[T; 3]], b: BlockId) {
+    fn rates_of_block(
+        &mut self,
+        topology: &Topology,
+        parts: &PlanGeometry<T>,
+        drivers: &[[T; 3]],
+        b: BlockId,
+    ) {
         let block = &topology[b];
         for &c in &block.closures {
             let closure = &topology[c];
@@ -545,7 +568,7 @@ impl<T: Real> State<T> {
     /// Velocity and acceleration of all bodies where they stand, and first and second rates of all twists and wrenches, for speeds of
     /// the drivers other than those that the position was solved with; those of driven coordinates stand in `motion`.
     #[inline(never)]
-    pub(super) fn all_rates(&mut self, topology: &Topology, parts: &Parts<T>, drivers: &[[T; 3]]) {
+    pub(super) fn all_rates(&mut self, topology: &Topology, parts: &PlanGeometry<T>, drivers: &[[T; 3]]) {
         self.rates_of_driven(topology);
         for b in topology.block_ids() {
             self.rates_of_block(topology, parts, drivers, b);
@@ -602,13 +625,18 @@ impl<T: Real> State<T> {
     }
 
     /// The largest residuals over all rows, left-out ones included.
-    pub fn residuals(&self, topology: &Topology, parts: &Parts<T>, drivers: &[[T; 3]]) -> Residuals {
+    pub fn residuals(&self, topology: &Topology, parts: &PlanGeometry<T>, drivers: &[[T; 3]]) -> Residuals {
         let [largest, scaled] = self.largest_residuals(topology, parts, drivers);
         Residuals { largest: largest.decisive(), scaled: scaled.decisive() }
     }
 
     /// The same as they are: m or rad, and sizes or rad.
-    pub fn largest_residuals(&self, topology: &Topology, parts: &Parts<T>, drivers: &[[T; 3]]) -> [T; 2] {
+    pub fn largest_residuals(
+        &self,
+        topology: &Topology,
+        parts: &PlanGeometry<T>,
+        drivers: &[[T; 3]],
+    ) -> [T; 2] {
         let zero = T::zero();
         let (mut largest, mut scaled) = (zero, zero);
         for (r, place) in RowId::each(&topology.rows) {
@@ -627,7 +655,12 @@ impl<T: Real> State<T> {
     }
 
     /// The row that fails most, and its residual.
-    pub fn worst_row(&self, topology: &Topology, parts: &Parts<T>, drivers: &[[T; 3]]) -> (RowId, f64) {
+    pub fn worst_row(
+        &self,
+        topology: &Topology,
+        parts: &PlanGeometry<T>,
+        drivers: &[[T; 3]],
+    ) -> (RowId, f64) {
         let mut worst = (RowId(0), 0.0, 0.0);
         for (r, place) in RowId::each(&topology.rows).filter(|(_, p)| !p.is_term) {
             let residual = self.residual_of(topology, parts, drivers, r).abs().decisive();
@@ -681,7 +714,7 @@ impl<T: Real> State<T> {
     fn rates_of_wrenches(&mut self, topology: &Topology, c: ClosureId, order: usize) {
         let closure = &topology[c];
         let ([v, a, _], [i, j]) = (&self.motion.twists, closure.bodies);
-        let mut rates = EndRates { v_i: v[i.0], v_j: v[j.0], a_i: a[i.0], a_j: a[j.0] };
+        let mut rates = MarkerPairRates { v_i: v[i.0], v_j: v[j.0], a_i: a[i.0], a_j: a[j.0] };
         if let Some(k) = closure.contact {
             rates = self.walk(c, k, &rates);
         }

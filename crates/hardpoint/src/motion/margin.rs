@@ -1,6 +1,6 @@
 //! How far from a singular position: the conditioning of the Jacobian over time.
 
-use crate::constraint::{Ends, Row};
+use crate::constraint::{MarkerPair, Row};
 use crate::joint::Freedom;
 use crate::linalg::{Elimination, MOST_GROWTH};
 use crate::space::{Real, Twist, Vec3, Wrench};
@@ -208,7 +208,7 @@ fn most_resistance<T: Real>(topology: &Topology, state: &State<T>, r: RowId) -> 
     let scale = 1.0 / topology[r].unit;
     let mut most = T::constant(f64::MIN_POSITIVE);
     for Term { row, factor } in topology.parts_of_row(r) {
-        let Ends { i, j, .. } = &state.ends[topology[row].closure.0];
+        let MarkerPair { i, j, .. } = &state.ends[topology[row].closure.0];
         let l = wrench(topology, state, row);
         for &LoopLink { link, side } in &topology.closure_of(row).links {
             // A rod pulls at either body where it is tied to it; any other force acts at P_j.

@@ -21,7 +21,7 @@ mod stop;
 pub(crate) mod tape;
 mod walk;
 
-pub use assembly::{Assembly, Closing, Gap, Moved};
+pub use assembly::{Assembly, AssemblyShift, Closing, Gap};
 pub use execution::{Execution, SolvedBy};
 pub use jerk::BodyJerk;
 pub use margin::Margin;
@@ -29,7 +29,7 @@ pub use stop::{Stop, StopKind};
 
 use kinematics::State;
 
-use crate::blocks::{Blocks, Row};
+use crate::blocks::{Blocks, ResultRow};
 use crate::model::{BodyId, JointId, Model};
 use crate::space::{Mat3, Quat, Real, Vec3};
 
@@ -139,7 +139,7 @@ pub struct Motion {
     /// The singular position next after its end, if one is near.
     pub beyond: Option<Singular>,
     /// Places that were passed on the way to an output time, by its number, of the bodies whose turns only the path tells.
-    pub(crate) passed: Vec<(usize, Passed)>,
+    pub(crate) passed: Vec<(usize, PassedPlace)>,
     /// What it took.
     pub effort: Effort,
     /// What solved the steps that are even.
@@ -149,7 +149,7 @@ pub struct Motion {
 /// States of all bodies at one output time.
 #[derive(Clone, Copy, Debug)]
 pub struct States<'m> {
-    row: Row<'m>,
+    row: ResultRow<'m>,
     bodies: usize,
 }
 
@@ -187,7 +187,7 @@ pub struct Singular {
 
 /// A place between output times.
 #[derive(Clone, Debug)]
-pub(crate) struct Passed {
+pub(crate) struct PassedPlace {
     /// When, on the path that it belongs to: the time, or from 0 to 1 on a straight one.
     pub time: f64,
     /// Whether another path begins here.

@@ -10,7 +10,7 @@ use crate::topology::{RowPlace, Topology};
 ///
 /// A body is known by the marker of the link that places it: all others are given as seen from that one.
 #[derive(Clone, Debug)]
-pub(crate) struct Parts<T> {
+pub(crate) struct PlanGeometry<T> {
     /// Per link: the marker on the parent.
     ///
     /// `M_c,parent^-1 M_p`: the marker M_p as seen from the marker by which the parent is placed (theory (4)).
@@ -32,7 +32,7 @@ pub(crate) struct Parts<T> {
     laws: Vec<Law>,
 }
 
-impl<T: Real> Parts<T> {
+impl<T: Real> PlanGeometry<T> {
     /// Those of a design, without laws.
     pub fn of(model: &Model, topology: &Topology, design: &Geometry<T>) -> Self {
         let marker = |joint: usize, end: usize| design.markers[joint][end];
@@ -74,7 +74,7 @@ impl<T: Real> Parts<T> {
     }
 }
 
-impl Parts<f64> {
+impl PlanGeometry<f64> {
     /// Those of a design, with the laws of its drivers.
     pub fn same(model: &Model, topology: &Topology, design: &Geometry, laws: &[Law]) -> Self {
         Self { laws: laws.to_vec(), ..Self::of(model, topology, design) }

@@ -19,7 +19,7 @@ use crate::topology::{BlockId, CoordinateId, Topology};
 
 use super::kinematics::State;
 use super::level::Flow;
-use super::parts::Parts;
+use super::parts::PlanGeometry;
 
 /// Loads on the rows. One could miss what is singular; two have not (270 hard cases in the plane and in space).
 const LOADS: usize = 2;
@@ -43,7 +43,7 @@ pub(super) struct Surroundings {
 
 /// A singular position ahead, by the series of one block's response along a direction.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Ahead {
+pub(super) struct SingularityAhead {
     /// The block that becomes singular.
     pub block: BlockId,
     /// How far ahead, in units of the direction; negative where it lies behind.
@@ -54,7 +54,7 @@ pub(super) struct Ahead {
 
 /// Room to work in.
 #[derive(Clone, Debug)]
-pub(super) struct Prober {
+pub(super) struct Workspace {
     /// The motion along a direction, in place of that along the time, and the rates of all twists and wrenches.
     /// `q'`, `q''` of the coordinates and the twists of the bodies, a prime being d/du along a driver u with all others at rest.
     motion: Flow<f64>,
@@ -124,7 +124,7 @@ fn part(travel: f64, per_unit: f64) -> f64 {
     if travel == 0.0 { 0.0 } else { travel * per_unit }
 }
 
-impl Prober {
+impl Workspace {
     pub fn new(topology: &Topology, bodies: usize, drivers: usize) -> Self {
         let (coordinates, rows) = (topology.coordinates.len(), topology.rows.len());
         // Multiples of the golden ratio are spread evenly and never repeat: all loads differ, and none is small.
@@ -160,7 +160,7 @@ impl Prober {
     pub fn examine(
         &mut self,
         topology: &Topology,
-        parts: &Parts<f64>,
+        parts: &PlanGeometry<f64>,
         state: &mut State<f64>,
         gap_rate: f64,
         directions: usize,
@@ -208,16 +208,16 @@ impl Prober {
     pub fn ahead(
         &mut self,
         topology: &Topology,
-        parts: &Parts<f64>,
+        parts: &PlanGeometry<f64>,
         state: &mut State<f64>,
         gap_rate: f64,
         drivers: &[[f64; 3]],
-    ) -> Option<Ahead> {
+    ) -> Option<SingularityAhead> {
         // Along the motion as it goes: f., f.. of all drivers together, so that the distance is a time.
         self.drivers.copy_from_slice(drivers);
         self.swap(state);
         let gap = std::mem::replace(&mut state.gap_left[1], gap_rate);
-        let mut nearest: Option<(f64, Ahead)> = None;
+        let mut nearest: Option<(f64, SingularityAhead)> = None;
         self.rates(topology, parts, state);
         for b in topology.block_ids() {
             for load in 0..LOADS {
@@ -235,7 +235,7 @@ impl Prober {
     }
 
     /// Velocity and acceleration along the drivers' speeds, and all rates of twists and wrenches.
-    fn rates(&mut self, topology: &Topology, parts: &Parts<f64>, state: &mut State<f64>) {
+    fn rates(&mut self, topology: &Topology, parts: &PlanGeometry<f64>, state: &mut State<f64>) {
         for (c, d) in topology.driven_coordinates() {
             [_, state.motion.speeds[0][c.0], state.motion.speeds[1][c.0]] = self.drivers[d.0];
         }
@@ -279,7 +279,7 @@ impl Prober {
 
     /// Where the response would be infinite. With s ~ (u* - u)^-m it is `s'/s = m / (u* - u)` and `s''/s = m (m + 1) / (u* - u)^2`,
     /// read off the unknown that responds most.
-    fn extrapolate(&self, topology: &Topology, b: BlockId) -> Option<Ahead> {
+    fn extrapolate(&self, topology: &Topology, b: BlockId) -> Option<SingularityAhead> {
         let size = |k: CoordinateId| (self.response.speeds[0][k.0] * topology[k].per_unit).abs();
         let unknowns = topology[b].unknowns.iter().copied();
         let most = unknowns.max_by(|&j, &k| size(j).total_cmp(&size(k)))?;
@@ -288,6 +288,6 @@ impl Prober {
         let (first, second) = (c1 / c0, c2 / c0);
         let power = first * first / (second - first * first);
         let distance = power / first;
-        (power.is_finite() && distance.is_finite()).then_some(Ahead { block: b, distance, power })
+        (power.is_finite() && distance.is_finite()).then_some(SingularityAhead { block: b, distance, power })
     }
 }

@@ -14,7 +14,7 @@ use std::sync::{Arc, OnceLock};
 use hardpoint_code::{Code, Unsupported, Width};
 use hardpoint_tape::{Number, Operand, Options, Program, record};
 
-use crate::design::Effects;
+use crate::design::DesignMap;
 use crate::joint::Freedom;
 use crate::law::Law;
 use crate::linalg::{LARGEST_DENSE, MOST_GROWTH};
@@ -28,8 +28,8 @@ use super::execution::{Cache, Execution, Runnable, SolvedBy, Staged};
 use super::forecast::{Channel, NODES, ORDERS};
 use super::kinematics::{CORRECTIONS, QUADRATIC, ROUND_OFF, State};
 use super::margin::Margins;
-use super::parts::Parts;
-use super::stepper::{Saved, Stepper};
+use super::parts::PlanGeometry;
+use super::stepper::{AcceptedPosition, Stepper};
 
 /// Newton's first correction while recording, in units of each coordinate, for programs with one correction and with two: the last
 /// of them leaves round-off.
@@ -60,7 +60,7 @@ pub(crate) struct Purpose {
 
 /// What was recorded besides the motion.
 #[derive(Default)]
-pub(crate) struct Recorded {
+pub(crate) struct RecordedExtras {
     /// Where any of these is positive, the results do not count.
     pub limits: Vec<Number>,
     pub results: Vec<Number>,
@@ -212,9 +212,9 @@ impl StepProgram {
     /// of the design's variables; none where either cannot be recorded.
     pub fn record(
         one: &Stepper<'_>,
-        effects: &Effects<'_>,
+        effects: &DesignMap<'_>,
         purpose: Purpose,
-        besides: impl FnOnce(&Topology, &mut State<Number>, &[Number]) -> Option<Recorded>,
+        besides: impl FnOnce(&Topology, &mut State<Number>, &[Number]) -> Option<RecordedExtras>,
         execution: Execution,
     ) -> Option<Self> {
         let (model, topology) = (one.model, &one.topology);
@@ -235,7 +235,7 @@ impl StepProgram {
             let number = if purpose.any_design { Number::input } else { Number::constant };
             let values: Vec<Number> = nominal.map(number).collect();
             let geometry = recording::strictly(|| effects.geometry(&values));
-            let parts = Parts::of(model, topology, &geometry);
+            let parts = PlanGeometry::of(model, topology, &geometry);
             // (26), (9), (10): as many corrections as recorded here, whatever the numbers are later
             fits = state.solve(topology, &parts, &drivers, f64::INFINITY).is_ok();
             let recorded = (0..topology.blocks.len()).map_while(|b| BlockProgram::of(&state, b));
@@ -416,7 +416,7 @@ fn speeds(
 fn foresee(
     topology: &Topology,
     channels: &[Channel],
-    at: &Saved,
+    at: &AcceptedPosition,
     (offset, times): (f64, bool),
     state: &mut State<Number>,
 ) -> Vec<[Number; CONDITIONS]> {

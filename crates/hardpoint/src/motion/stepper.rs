@@ -13,10 +13,10 @@ use crate::topology::{BlockId, RowId, SetBy, Topology};
 use super::assembly::Assembly;
 use super::forecast::Forecast;
 use super::kinematics::{PositionFailure, Residuals, State, factors_of};
-use super::parts::Parts;
-use super::singularity::{Prober, Surroundings};
+use super::parts::PlanGeometry;
+use super::singularity::{Surroundings, Workspace};
 use super::walk::{PART_OF_WAY, Path};
-use super::{Effort, Passed, Stop};
+use super::{Effort, PassedPlace, Stop};
 
 /// A first correction (rad, or sizes) up to this is accepted whatever the prediction's own length is.
 pub(super) const TRUST_FLOOR: f64 = 0.02;
@@ -59,12 +59,12 @@ pub(crate) struct Stepper<'m> {
     pub(super) model: &'m Model,
     /// Own copy: the selection of independent rows may change on the way.
     pub topology: Topology,
-    pub parts: Parts<f64>,
+    pub parts: PlanGeometry<f64>,
     pub state: State<f64>,
     /// Per driver: f, f., f.. by the parameter of the path; rad or m.
     pub drivers: Vec<[f64; 3]>,
     /// The last accepted position.
-    pub(super) saved: Saved,
+    pub(super) saved: AcceptedPosition,
     pub(super) forecast: Forecast,
     pub(super) time: f64,
     /// What drivers follow on a straight path: from where to where each goes.
@@ -77,11 +77,11 @@ pub(crate) struct Stepper<'m> {
     /// Per driver: 1 rad, or the size of its loop.
     pub(super) driver_units: Vec<f64>,
     /// What is known of the way ahead, and what it is known by.
-    pub(super) ahead: Ahead,
+    pub(super) ahead: Lookahead,
     pub(super) around: Surroundings,
     pub(super) beyond: Surroundings,
     /// Made when first needed: who takes many steps at once examines nothing.
-    pub(super) prober: Option<Box<Prober>>,
+    pub(super) prober: Option<Box<Workspace>>,
     /// Per block: by what part its determinant changed over the last step between output times, and how long that was.
     /// `r_k - 1` of theory (28).
     pub(super) changes: Vec<f64>,
@@ -90,7 +90,7 @@ pub(crate) struct Stepper<'m> {
     /// `abs(f_k - f_k-1) / unit`.
     pub(super) moves: Vec<f64>,
     /// Per driver: how fast it is at most over a stretch of time.
-    pub(super) calm: Vec<Calm>,
+    pub(super) calm: Vec<DriverSpeedBound>,
     /// Per direction: how far it goes at most over the step considered; on a path other than the laws' in these units.
     /// Du of theory (22), m or rad.
     pub(super) travel: Vec<f64>,
@@ -110,7 +110,7 @@ pub(crate) struct Stepper<'m> {
     pub assembly: Option<Assembly>,
     /// The bodies that are watched between output times, and where they were since the last one.
     pub watched: Vec<bool>,
-    pub passed: Vec<Passed>,
+    pub passed: Vec<PassedPlace>,
     /// Room for the changes and moves over output times that are tried at once.
     pub(super) changes_ahead: Vec<f64>,
     pub(super) moves_ahead: Vec<f64>,
@@ -118,16 +118,22 @@ pub(crate) struct Stepper<'m> {
 
 /// How fast a driver is at most over a stretch of time.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Calm {
+pub(super) struct DriverSpeedBound {
     from: f64,
     to: f64,
     fastest: f64,
 }
 
-impl Calm {
+impl DriverSpeedBound {
     /// How fast driver d is at most between two times: as it is known over a longer stretch, up to `ahead`, if that is `enough`.
     #[inline(always)]
-    pub fn fastest(&mut self, parts: &Parts<f64>, d: usize, [from, to, ahead]: [f64; 3], enough: f64) -> f64 {
+    pub fn fastest(
+        &mut self,
+        parts: &PlanGeometry<f64>,
+        d: usize,
+        [from, to, ahead]: [f64; 3],
+        enough: f64,
+    ) -> f64 {
         if !(self.from <= from && to <= self.to) {
             *self = Self { from, to: ahead, fastest: parts.fastest(d, from, ahead) };
         }
@@ -137,7 +143,7 @@ impl Calm {
 
 /// What is known of the way ahead of the saved position.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Ahead {
+pub(super) enum Lookahead {
     /// Nothing.
     Unknown,
     /// How far singular positions are, by [`Stepper::around`].
@@ -148,7 +154,7 @@ pub(super) enum Ahead {
 
 /// A position that was accepted.
 #[derive(Clone)]
-pub(super) struct Saved {
+pub(super) struct AcceptedPosition {
     /// q, q., q.. of the tree, balls' quaternions apart.
     pub q: Vec<f64>,
     pub qd: Vec<f64>,
@@ -188,10 +194,10 @@ pub(super) enum Refusal {
 }
 
 impl<'m> Stepper<'m> {
-    pub fn new(model: &'m Model, topology: &Topology, parts: Parts<f64>) -> Self {
+    pub fn new(model: &'m Model, topology: &Topology, parts: PlanGeometry<f64>) -> Self {
         let mut state = State::new(model, topology);
         state.contacts = parts.curves.iter().map(|c| Contact::at(c, c.start())).collect();
-        let saved = Saved {
+        let saved = AcceptedPosition {
             q: state.q.clone(),
             qd: state.motion.speeds[0].clone(),
             qdd: state.motion.speeds[1].clone(),
@@ -217,14 +223,14 @@ impl<'m> Stepper<'m> {
             try_others: vec![0.0; blocks],
             branch: vec![(true, 0.0); blocks],
             driver_units: driver_units(model, topology),
-            ahead: Ahead::Unknown,
+            ahead: Lookahead::Unknown,
             beyond: around.clone(),
             around,
             prober: None,
             changes: vec![0.0; blocks],
             change_step: 0.0,
             moves: vec![0.0; drivers],
-            calm: vec![Calm { from: 0.0, to: f64::NEG_INFINITY, fastest: 0.0 }; drivers],
+            calm: vec![DriverSpeedBound { from: 0.0, to: f64::NEG_INFINITY, fastest: 0.0 }; drivers],
             travel: vec![0.0; directions],
             travel_unit: 1.0,
             on_laws: false,
@@ -292,7 +298,7 @@ impl<'m> Stepper<'m> {
     /// Goes on to the output time t in one step, if the way there is known to be even; returns whether it did.
     fn glide(&mut self, t: f64) -> bool {
         let h = t - self.time;
-        if self.forecast.known() == 0 || self.ahead == Ahead::Unknown {
+        if self.forecast.known() == 0 || self.ahead == Lookahead::Unknown {
             return false;
         }
         if self.drive(Path::Laws, t).is_err() || !self.is_clear(t, h) {
@@ -311,12 +317,12 @@ impl<'m> Stepper<'m> {
         }
         // Determinants of different rows cannot be compared.
         let even = selections == self.selections && self.note_changes(h);
-        if self.ahead == Ahead::Even && !even {
+        if self.ahead == Lookahead::Even && !even {
             return false;
         }
         self.note_moves();
         self.save(t, h);
-        self.ahead = if even { Ahead::Even } else { Ahead::Unknown };
+        self.ahead = if even { Lookahead::Even } else { Lookahead::Unknown };
         true
     }
 
@@ -335,7 +341,7 @@ impl<'m> Stepper<'m> {
         for d in 0..self.drivers.len() {
             let unit = self.driver_units[d];
             let most = match self.ahead {
-                Ahead::Even => {
+                Lookahead::Even => {
                     let moved = (self.drivers[d][0] - self.saved.drivers[d][0]).abs() / unit;
                     // Over the step h  max abs(f.) <= 2 (larger of the last two moves) / h: the law does nothing of its own between.
                     (EVEN * self.moves[d].max(moved)).clamp(RESTS, LONGEST)
@@ -349,7 +355,7 @@ impl<'m> Stepper<'m> {
             }
             self.travel[d] = travel * unit;
         }
-        self.ahead == Ahead::Even || self.around.part_of_way(&self.travel) <= PART_OF_WAY
+        self.ahead == Lookahead::Even || self.around.part_of_way(&self.travel) <= PART_OF_WAY
     }
 
     /// By what part each determinant has changed since the saved position, a step h before; returns whether that is little, and
@@ -365,7 +371,7 @@ impl<'m> Stepper<'m> {
             // r = det_k / det_k-1 in [0.78, 1.28],    abs((r_k - 1) - (r_k-1 - 1) h_k / h_k-1) <= 0.125           (28)
             let change = ratio - 1.0;
             most = most.larger((ratio - MIDDLE).abs() * (1.0 / REACH));
-            if self.ahead == Ahead::Even {
+            if self.ahead == Lookahead::Even {
                 let bend = (change - self.changes[b] * scale).abs();
                 most = most.larger(bend * (1.0 / MILD_CHANGE));
             }
@@ -537,7 +543,7 @@ impl<'m> Stepper<'m> {
             saved.coupled[r.0] = s.coordinate_of_row(&self.topology, r);
         }
         self.time = t;
-        self.ahead = Ahead::Unknown;
+        self.ahead = Lookahead::Unknown;
     }
 
     /// Puts the coordinates back to the saved position.
@@ -672,7 +678,7 @@ mod tests {
     /// The states of all bodies at the last output time, with blocks up to this size factored densely.
     fn last(model: &Model, topology: &Topology, largest_dense: usize) -> (State<f64>, Vec<bool>) {
         let (design, laws) = (model.geometry(&[]), model.laws(&[]));
-        let mut stepper = Stepper::new(model, topology, Parts::same(model, topology, &design, &laws));
+        let mut stepper = Stepper::new(model, topology, PlanGeometry::same(model, topology, &design, &laws));
         let blocks = topology.blocks.iter();
         stepper.state.factors = blocks.map(|b| factors_of(topology, b, largest_dense)).collect();
         stepper.start(model.times[0]).unwrap();

@@ -4,11 +4,11 @@ use std::sync::Arc;
 
 use hardpoint_tape::{LANES, Lanes};
 
-use crate::blocks::{Line, lanes_of};
+use crate::blocks::{AlignedLanes, lanes_of};
 use crate::model::{BodyId, VariableId};
 use crate::topology::{CoordinateId, RowId, SetBy, Topology};
 
-use super::execution::Room;
+use super::execution::ProgramMemory;
 use super::forecast::{Channel, ORDERS};
 use super::kinematics::Residuals;
 use super::step_program::{CONDITIONS, Inputs, Judged, Outputs, PER_BLOCK, Purpose, StepProgram};
@@ -28,11 +28,11 @@ pub(crate) struct Refused;
 /// A program at work, with what it works in: one design in all lanes, or one in each.
 pub(crate) struct Tape {
     program: Arc<StepProgram>,
-    room: Room,
-    inputs: Vec<Line>,
+    room: ProgramMemory,
+    inputs: Vec<AlignedLanes>,
     /// What is known of the channels, where lanes are output times.
     uniforms: Vec<f64>,
-    outputs: Vec<Line>,
+    outputs: Vec<AlignedLanes>,
     /// Groups of steps that were tried, those that were refused, and those that took more than one run.
     tried: usize,
     refused: usize,
@@ -44,7 +44,7 @@ pub(crate) struct Tape {
 
 /// How well steps were solved.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Solved {
+pub(crate) struct SolveQuality {
     pub residuals: Residuals,
     /// The smallest pivot ratio of all blocks.
     pub pivot_ratio: f64,
@@ -52,11 +52,11 @@ pub(crate) struct Solved {
 
 impl Tape {
     pub fn new(program: Arc<StepProgram>) -> Self {
-        let inputs = vec![Line::default(); program.program.step.inputs()];
-        let outputs = vec![Line::default(); program.outputs.states];
+        let inputs = vec![AlignedLanes::default(); program.program.step.inputs()];
+        let outputs = vec![AlignedLanes::default(); program.outputs.states];
         let uniforms = if program.purpose.times { CONDITIONS * program.channels.len() } else { 0 };
         Self {
-            room: Room::default(),
+            room: ProgramMemory::default(),
             inputs,
             uniforms: vec![0.0; uniforms],
             outputs,
@@ -74,7 +74,7 @@ impl Tape {
         let StepProgram { program, inputs, variables, .. } = &*self.program;
         for v in 0..*variables {
             let of_lane = |k: usize| designs[usize::min(k, designs.len() - 1)][v];
-            self.inputs[inputs.design + v] = Line(std::array::from_fn(of_lane));
+            self.inputs[inputs.design + v] = AlignedLanes(std::array::from_fn(of_lane));
         }
         program.take_design(&mut self.inputs);
     }
@@ -168,7 +168,7 @@ impl Tape {
         &mut self,
         mut trust: f64,
         [states, derivatives]: [&mut [Lanes]; 2],
-    ) -> Result<Solved, Refused> {
+    ) -> Result<SolveQuality, Refused> {
         self.tried += 1;
         self.refused += 1;
         self.runs = 0;
@@ -205,7 +205,7 @@ impl Tape {
         self.refused -= 1;
         self.repeated += usize::from(self.runs > 1);
         let residuals = [Judged::Residual, Judged::ScaledResidual].map(|which| largest(self.judged(which)));
-        Ok(Solved { residuals: Residuals { largest: residuals[0], scaled: residuals[1] }, pivot_ratio })
+        Ok(SolveQuality { residuals: Residuals { largest: residuals[0], scaled: residuals[1] }, pivot_ratio })
     }
 
     /// Foresees the positions that were just found.
@@ -285,7 +285,7 @@ impl Tape {
     }
 
     /// The margins of the blocks, if they are worked out.
-    pub fn margins(&self) -> &[Line] {
+    pub fn margins(&self) -> &[AlignedLanes] {
         let Outputs { margins, defects, .. } = self.program.outputs;
         &self.outputs[margins..defects]
     }

@@ -9,9 +9,9 @@ use crate::model::{BodyId, DriverId};
 use crate::space::Real;
 
 use super::kinematics::PositionFailure;
-use super::singularity::Prober;
-use super::stepper::{Ahead, LOCKED, Refusal, Stepper, TRUST, TRUST_FLOOR};
-use super::{BodyState, Passed, Singular, Stop, StopKind};
+use super::singularity::Workspace;
+use super::stepper::{LOCKED, Lookahead, Refusal, Stepper, TRUST, TRUST_FLOOR};
+use super::{BodyState, PassedPlace, Singular, Stop, StopKind};
 
 /// A step may be this part of the estimated distance to the nearest singular position. The estimate is 0.94 to 2.17 times the true
 /// distance (`docs/theory.md`, section 4), so that no step reaches beyond.
@@ -75,7 +75,7 @@ impl Stepper<'_> {
     pub(super) fn walk(&mut self, path: Path, target: f64) -> Result<(), Box<Stop>> {
         let scale = f64::max(self.time.abs(), target.abs());
         let (mut steps, mut walked) = (0, 0.0);
-        if self.ahead != Ahead::Examined {
+        if self.ahead != Lookahead::Examined {
             self.stand(path).map_err(|r| self.stop(path, self.time, r, true))?;
             self.examine_here(path);
         }
@@ -147,7 +147,7 @@ impl Stepper<'_> {
         }
         let watched = (1..self.watched.len()).filter(|b| self.watched[*b]);
         let states = watched.map(|b| (BodyId(b), BodyState::of(&self.state, b))).collect();
-        self.passed.push(Passed { time: self.time, begins, states });
+        self.passed.push(PassedPlace { time: self.time, begins, states });
     }
 
     /// The driver that goes furthest.
@@ -194,7 +194,7 @@ impl Stepper<'_> {
     pub(super) fn examine_here(&mut self, path: Path) {
         self.examine(path);
         std::mem::swap(&mut self.around, &mut self.beyond);
-        self.ahead = Ahead::Examined;
+        self.ahead = Lookahead::Examined;
     }
 
     /// Finds out how near singular positions are to where the state stands: along each driver alone, or along the whole path where
@@ -204,7 +204,7 @@ impl Stepper<'_> {
         let Self { prober, topology, parts, state, line, beyond, drivers, .. } = self;
         let directions = if path == Path::Laws { drivers.len() } else { 1 };
         let prober =
-            prober.get_or_insert_with(|| Box::new(Prober::new(topology, state.pose.len(), drivers.len())));
+            prober.get_or_insert_with(|| Box::new(Workspace::new(topology, state.pose.len(), drivers.len())));
         // df_d/du: 1 of the driver that goes by itself; the line's f(1) - f(0) of all together; 0 of an assembly, whose gaps go
         let speed = |direction: usize, d: usize| match path {
             Path::Assembly => 0.0,
@@ -286,7 +286,7 @@ impl Stepper<'_> {
         }
         std::mem::swap(&mut self.around, &mut self.beyond);
         self.save(t, h);
-        self.ahead = Ahead::Examined;
+        self.ahead = Lookahead::Examined;
         Ok(())
     }
 
@@ -354,7 +354,7 @@ impl Stepper<'_> {
     }
 
     /// Where the motion becomes singular as it goes on, seen from the saved position; the state must stand there.
-    fn ahead(&mut self, path: Path) -> Option<super::singularity::Ahead> {
+    fn ahead(&mut self, path: Path) -> Option<super::singularity::SingularityAhead> {
         let Self { prober, topology, parts, state, drivers, .. } = self;
         let prober = prober.as_mut()?;
         prober.ahead(topology, parts, state, path.gap_rate(), drivers)

@@ -5,14 +5,14 @@ use std::sync::{Arc, OnceLock};
 
 use hardpoint_tape::Number;
 
-use crate::design::Effects;
+use crate::design::DesignMap;
 use crate::law::Law;
-use crate::measure::{self, Before, Measured, SlopeValues};
+use crate::measure::{self, Measured, PreviousStep, SlopeValues};
 use crate::model::{BodyId, Model};
 use crate::motion::execution::{Cache, Runnable};
 use crate::motion::kinematics::State;
-use crate::motion::parts::Parts;
-use crate::motion::step_program::{Programs, Purpose, Recorded, StepProgram};
+use crate::motion::parts::PlanGeometry;
+use crate::motion::step_program::{Programs, Purpose, RecordedExtras, StepProgram};
 use crate::motion::stepper::Stepper;
 use crate::motion::{BodyState, Execution, Motion, SolvedBy, Stop, StopKind};
 use crate::number::record as recording;
@@ -22,7 +22,7 @@ use crate::topology::{Formulation, Topology, TopologyFault};
 use super::request::Run;
 use super::sink::Sink;
 use super::solution::{Solution, Streamed};
-use super::walk::{Design, Scope, Walk};
+use super::walk::{PreparedDesign, Scope, Walk};
 
 /// A model with its plan of solution, ready to be run as often as needed.
 ///
@@ -47,13 +47,13 @@ use super::walk::{Design, Scope, Walk};
 pub struct Analysis<'m> {
     model: &'m Model,
     topology: Topology,
-    effects: Effects<'m>,
+    effects: DesignMap<'m>,
     /// Per variable, the joints that it opens in the nominal design: worked out when first asked for.
     opens: OnceLock<Vec<Vec<JointDefect>>>,
     /// Steps as straight-line programs, recorded when they pay.
     programs: Arc<Programs>,
     /// The same of measures.
-    formulas: Arc<Cache<measure::Asked, measure::Program>>,
+    formulas: Arc<Cache<measure::ProgramKey, measure::MeasureProgram>>,
 }
 
 impl<'m> Analysis<'m> {
@@ -75,7 +75,7 @@ impl<'m> Analysis<'m> {
         Ok(Self {
             model,
             topology,
-            effects: Effects::of(model),
+            effects: DesignMap::of(model),
             opens: OnceLock::new(),
             programs,
             formulas: Arc::default(),
@@ -136,21 +136,21 @@ impl<'m> Analysis<'m> {
     }
 
     /// A design that is ready, at all output times.
-    pub(super) fn solve_prepared(&self, design: &Design, solution: &mut Solution) {
+    pub(super) fn solve_prepared(&self, design: &PreparedDesign, solution: &mut Solution) {
         let progress = &mut |_| ControlFlow::Continue(());
         self.walk(design, self.model.times.len(), progress, solution, &mut |_, _| ());
     }
 
     /// The design with variable k at `design[k]`, without sensitivities.
-    pub(crate) fn design(&self, design: &[f64]) -> Design {
+    pub(crate) fn design(&self, design: &[f64]) -> PreparedDesign {
         self.prepare(design, Scope::of_one(false, true))
     }
 
     /// The design with variable k at `design[k]`, and what is asked for of it.
-    pub(super) fn prepare(&self, design: &[f64], scope: Scope) -> Design {
+    pub(super) fn prepare(&self, design: &[f64], scope: Scope) -> PreparedDesign {
         let values = self.model.whole(design);
         let sensitivities = scope.sensitivities;
-        Design {
+        PreparedDesign {
             geometry: self.effects.geometry(&values),
             laws: self.effects.laws(&values),
             fields: if sensitivities { self.effects.fields(&values) } else { Vec::new() },
@@ -160,7 +160,7 @@ impl<'m> Analysis<'m> {
         }
     }
 
-    pub(crate) fn effects(&self) -> &Effects<'m> {
+    pub(crate) fn effects(&self) -> &DesignMap<'m> {
         &self.effects
     }
 
@@ -235,9 +235,9 @@ impl<'m> Analysis<'m> {
     /// Evaluates the measures of a motion that goes on from what was `before`.
     pub(super) fn measure(
         &self,
-        design: &Design,
+        design: &PreparedDesign,
         slopes: &SlopeValues,
-        before: Option<&Before>,
+        before: Option<&PreviousStep>,
         solution: &mut Solution,
     ) {
         let Solution { motion, sensitivities, measured, .. } = solution;
@@ -245,12 +245,12 @@ impl<'m> Analysis<'m> {
             *measured = Measured::default();
             return;
         }
-        let Design { values, laws, scope: Scope { of_many, .. }, .. } = design;
-        let at = measure::At { model: self.model, effects: &self.effects, values, laws };
+        let PreparedDesign { values, laws, scope: Scope { of_many, .. }, .. } = design;
+        let at = measure::MeasuredDesign { model: self.model, effects: &self.effects, values, laws };
         let program = self.programs_pay(*of_many).then(|| {
-            let asked = measure::Asked::of(self.model, values, sensitivities);
+            let asked = measure::ProgramKey::of(self.model, values, sensitivities);
             let execution = self.programs.execution();
-            self.formulas.get(asked, |asked| measure::Program::record(&self.effects, asked, execution))
+            self.formulas.get(asked, |asked| measure::MeasureProgram::record(&self.effects, asked, execution))
         });
         let (program, solved) = (program.flatten(), (&*motion, &*sensitivities));
         measure::evaluate(&at, &self.topology, solved, slopes, before, program.as_deref(), measured);
@@ -265,7 +265,7 @@ impl<'m> Analysis<'m> {
             let one = self.started()?;
             let besides = |plan: &Topology, state: &mut State<Number>, values: &[Number]| {
                 if !purpose.sensitivities {
-                    return Some(Recorded::default());
+                    return Some(RecordedExtras::default());
                 }
                 let fields = recording::strictly(|| self.effects.fields(values));
                 record_derivatives(self.model, &fields, plan, state)
@@ -276,8 +276,8 @@ impl<'m> Analysis<'m> {
 
     /// The nominal design where its motion begins.
     pub(super) fn started(&self) -> Option<Stepper<'m>> {
-        let Design { geometry, laws, .. } = self.design(&[]);
-        let parts = Parts::same(self.model, &self.topology, &geometry, &laws);
+        let PreparedDesign { geometry, laws, .. } = self.design(&[]);
+        let parts = PlanGeometry::same(self.model, &self.topology, &geometry, &laws);
         let mut one = Stepper::new(self.model, &self.topology, parts);
         one.start(*self.model.times.first()?).ok()?;
         Some(one)

@@ -7,9 +7,9 @@ use hardpoint_tape::LANES;
 
 use crate::measure::{Measured, SlopeValues};
 use crate::motion::Effort;
-use crate::motion::designs::SideBySide;
+use crate::motion::designs::DesignsAbreast;
 use crate::motion::step_program::Purpose;
-use crate::sensitivity::{Resisting, Sensitivities, admissibility, note_defects};
+use crate::sensitivity::{Resistance, Sensitivities, admissibility, note_defects};
 
 use super::analysis::Analysis;
 use super::request::Run;
@@ -58,7 +58,7 @@ impl Analysis<'_> {
     /// Up to as many designs as there are lanes: side by side, or each on its own.
     fn solve_group(
         &self,
-        beside: &mut Option<SideBySide<'_>>,
+        beside: &mut Option<DesignsAbreast<'_>>,
         designs: &[Vec<f64>],
         scope: Scope,
         solutions: &mut [Solution],
@@ -85,7 +85,7 @@ impl Analysis<'_> {
     /// The motions of all these designs, or nothing where one of them does not go as expected.
     fn solve_side_by_side(
         &self,
-        beside: &mut Option<SideBySide<'_>>,
+        beside: &mut Option<DesignsAbreast<'_>>,
         designs: &[Vec<f64>],
         solutions: &mut [Solution],
     ) -> Option<Effort> {
@@ -139,10 +139,10 @@ impl Analysis<'_> {
     /// All designs to the end, or nothing where one of them does not go as expected.
     fn stream_side_by_side<S: Sink>(
         &self,
-        beside: &mut Option<SideBySide<'_>>,
+        beside: &mut Option<DesignsAbreast<'_>>,
         designs: &[Vec<f64>],
         sinks: &mut [S],
-    ) -> Option<(Effort, Vec<Resisting>)> {
+    ) -> Option<(Effort, Vec<Resistance>)> {
         let beside = beside.as_mut().filter(|_| designs.len() > 1)?;
         let (wanted, moved) = (self.wanted(sinks), beside.moved());
         let variables = self.model().variables.len();
@@ -163,7 +163,7 @@ impl Analysis<'_> {
     }
 
     /// What solves so many designs side by side, where that pays and can be done, and keeps what it finds if that is asked for.
-    fn side_by_side(&self, designs: usize, sensitivities: bool, keeps: bool) -> Option<SideBySide<'_>> {
+    fn side_by_side(&self, designs: usize, sensitivities: bool, keeps: bool) -> Option<DesignsAbreast<'_>> {
         let pays = designs > 1 && self.programs_pay(designs);
         // All designs must have the same laws.
         if !pays || self.effects().laws_change() {
@@ -174,6 +174,6 @@ impl Analysis<'_> {
                 Purpose { times: false, any_design: true, corrections, sensitivities, margins: false };
             self.program(purpose)
         };
-        SideBySide::new(self.started()?, Box::new(program), keeps)
+        DesignsAbreast::new(self.started()?, Box::new(program), keeps)
     }
 }

@@ -14,5 +14,5 @@ pub use analysis::Analysis;
 pub use request::{Progress, Run};
 pub use sink::Sink;
 pub use solution::{Solution, Streamed};
-pub(crate) use walk::{Design, Walk};
+pub(crate) use walk::{PreparedDesign, Walk};
 pub use window::{Footprint, Keep, Kept};

@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use crate::blocks::Block;
+use crate::blocks::ResultBlock;
 use crate::model::{BodyId, VariableId};
 use crate::motion::BodyState;
 use crate::sensitivity::BodySensitivity;
@@ -43,7 +43,7 @@ pub trait Sink {
 /// sink, and which time. `moved` says which variable moves which body, in the order of the derivatives.
 #[inline(always)]
 pub(super) fn hand_over<S: Sink>(
-    block: &Block<'_>,
+    block: &ResultBlock<'_>,
     wanted: &[bool],
     moved: impl Iterator<Item = (VariableId, BodyId)>,
     sinks: &mut [S],

@@ -4,16 +4,16 @@ use std::ops::{ControlFlow, Range};
 
 use hardpoint_tape::LANES;
 
-use crate::design::{Field, Geometry};
+use crate::design::{DesignVelocity, Geometry};
 use crate::law::Law;
 use crate::model::BodyId;
-use crate::motion::abreast::Abreast;
-use crate::motion::parts::Parts;
+use crate::motion::abreast::TimesAbreast;
+use crate::motion::parts::PlanGeometry;
 use crate::motion::step_program::Purpose;
 use crate::motion::stepper::Stepper;
 use crate::motion::tape::Tape;
 use crate::motion::{BodyState, Stop, StopKind};
-use crate::sensitivity::{Admissibility, JointDefect, Sensing};
+use crate::sensitivity::{Admissibility, JointDefect, SensitivitySolver};
 
 use super::analysis::Analysis;
 use super::request::Progress;
@@ -36,12 +36,12 @@ impl Scope {
 }
 
 /// One design, ready to be analysed.
-pub(crate) struct Design {
+pub(crate) struct PreparedDesign {
     pub values: Vec<f64>,
     pub geometry: Geometry,
     pub laws: Vec<Law>,
     /// How the variables change it, if that is asked for, and the joints that each opens in the nominal design.
-    pub fields: Vec<Field>,
+    pub fields: Vec<DesignVelocity>,
     pub opens: Vec<Vec<JointDefect>>,
     pub scope: Scope,
 }
@@ -50,9 +50,9 @@ pub(crate) struct Design {
 pub(crate) struct Walk<'a> {
     analysis: &'a Analysis<'a>,
     pub one: Stepper<'a>,
-    abreast: Abreast<'a>,
+    abreast: TimesAbreast<'a>,
     /// `None` where no sensitivities are asked for.
-    pub sensing: Option<Sensing>,
+    pub sensing: Option<SensitivitySolver>,
     /// Per body: whether its results are wanted.
     wanted: Vec<bool>,
     /// Output times solved.
@@ -60,21 +60,22 @@ pub(crate) struct Walk<'a> {
 }
 
 /// What has just been solved: one output time, or several by a program, in these of its lanes.
-pub(crate) enum Solved<'w, 'a> {
+pub(crate) enum SolvedSteps<'w, 'a> {
     One(&'w mut Stepper<'a>),
     Abreast(&'w Tape, Range<usize>),
 }
 
 impl<'a> Walk<'a> {
     /// Step by step.
-    pub fn new(analysis: &'a Analysis<'a>, design: &'a Design, wanted: Vec<bool>) -> Self {
+    pub fn new(analysis: &'a Analysis<'a>, design: &'a PreparedDesign, wanted: Vec<bool>) -> Self {
         let (model, topology) = (analysis.model(), analysis.topology());
-        let Design { geometry, laws, fields, .. } = design;
+        let PreparedDesign { geometry, laws, fields, .. } = design;
         Self {
             analysis,
-            one: Stepper::new(model, topology, Parts::same(model, topology, geometry, laws)),
-            abreast: Abreast::new(None, &[], None),
-            sensing: (!fields.is_empty()).then(|| Sensing::new(model, topology, fields, wanted.clone())),
+            one: Stepper::new(model, topology, PlanGeometry::same(model, topology, geometry, laws)),
+            abreast: TimesAbreast::new(None, &[], None),
+            sensing: (!fields.is_empty())
+                .then(|| SensitivitySolver::new(model, topology, fields, wanted.clone())),
             wanted,
             done: 0,
         }
@@ -83,7 +84,7 @@ impl<'a> Walk<'a> {
     /// The same by programs, as many output times at once as there are lanes, where that can be done and pays.
     pub fn by_programs(
         analysis: &'a Analysis<'a>,
-        design: &'a Design,
+        design: &'a PreparedDesign,
         wanted: Vec<bool>,
         margins: bool,
     ) -> Self {
@@ -91,13 +92,13 @@ impl<'a> Walk<'a> {
         if analysis.programs_pay(design.scope.of_many) {
             let (sensitivities, any_design) =
                 (walk.sensing.is_some(), design.values.iter().any(|v| *v != 0.0));
-            let moved: Vec<_> = walk.sensing.iter().flat_map(Sensing::moved).collect();
+            let moved: Vec<_> = walk.sensing.iter().flat_map(SensitivitySolver::moved).collect();
             let program = move |corrections| {
                 let purpose = Purpose { times: true, any_design, corrections, sensitivities, margins };
                 analysis.program(purpose).filter(|program| program.moved == moved)
             };
             let laws = analysis.laws_program(&design.laws);
-            walk.abreast = Abreast::new(Some(Box::new(program)), &design.values, laws);
+            walk.abreast = TimesAbreast::new(Some(Box::new(program)), &design.values, laws);
         }
         walk
     }
@@ -105,7 +106,7 @@ impl<'a> Walk<'a> {
     /// To the last output time, or to what stops it, for those who take what they want from the stepper: nothing is stored.
     pub fn each(&mut self, mut then: impl FnMut(&mut Stepper<'a>)) -> Option<Stop> {
         self.all(&mut Nowhere, &mut |_| ControlFlow::Continue(()), |_, solved, _, _| {
-            if let Solved::One(one) = solved {
+            if let SolvedSteps::One(one) = solved {
                 then(one);
             }
         })
@@ -117,7 +118,7 @@ impl<'a> Walk<'a> {
         &mut self,
         sink: &mut S,
         progress: &mut dyn FnMut(Progress) -> ControlFlow<()>,
-        mut then: impl FnMut(&mut S, Solved<'_, 'a>, usize, Option<&Sensing>),
+        mut then: impl FnMut(&mut S, SolvedSteps<'_, 'a>, usize, Option<&SensitivitySolver>),
     ) -> Option<Stop> {
         let times = &self.analysis.model().times;
         let mut stop = None;
@@ -134,11 +135,11 @@ impl<'a> Walk<'a> {
                 }
                 (count, stop) = self.tell(1, progress);
                 self.give_one(k, sink);
-                Solved::One(&mut self.one)
+                SolvedSteps::One(&mut self.one)
             } else {
                 (count, stop) = self.tell(at_once, progress);
                 let lanes = self.give_abreast(k, count, sink);
-                Solved::Abreast(self.abreast.solved(), lanes)
+                SolvedSteps::Abreast(self.abreast.solved(), lanes)
             };
             then(sink, solved, count, self.sensing.as_ref());
             self.done += count;
@@ -194,7 +195,7 @@ impl<'a> Walk<'a> {
         let first = k % LANES;
         let lanes = first..first + count;
         if let Some(block) = self.abreast.own_results() {
-            let moved = self.sensing.iter().flat_map(Sensing::moved);
+            let moved = self.sensing.iter().flat_map(SensitivitySolver::moved);
             let of = |lane: usize| (0, k + lane - first);
             hand_over(&block, &self.wanted, moved, std::slice::from_mut(sink), lanes.clone(), of);
         }

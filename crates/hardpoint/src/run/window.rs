@@ -7,7 +7,7 @@ use std::ops::ControlFlow;
 
 use hardpoint_tape::LANES;
 
-use crate::measure::{self, Before, SlopeValues, Slopes};
+use crate::measure::{self, PreviousStep, SlopeValues, Slopes};
 use crate::model::{BodyId, Model, OutputSource, VariableId};
 use crate::motion::margin::Margins;
 use crate::motion::{BodyState, Motion};
@@ -17,7 +17,7 @@ use super::analysis::Analysis;
 use super::request::{Progress, Run};
 use super::sink::Sink;
 use super::solution::Solution;
-use super::walk::{Design, Solved, Walk};
+use super::walk::{PreparedDesign, SolvedSteps, Walk};
 
 /// What the results of one output time take, in bytes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -81,7 +81,7 @@ impl Analysis<'_> {
     /// Solves all output times, so many at a time; the last ones remain. Gives the number of the first of these.
     pub(super) fn walk(
         &self,
-        design: &Design,
+        design: &PreparedDesign,
         rows: usize,
         progress: &mut dyn FnMut(Progress) -> ControlFlow<()>,
         solution: &mut Solution,
@@ -121,7 +121,7 @@ impl Analysis<'_> {
             let k = window.done - window.first;
             window.done += count;
             match solved {
-                Solved::One(one) => {
+                SolvedSteps::One(one) => {
                     if let Some(found) = &mut slopes {
                         found.add(one, times[0], &mut window.slopes);
                     }
@@ -131,7 +131,7 @@ impl Analysis<'_> {
                         window.motion.margins.push(margins.at(&one.topology, &one.state));
                     }
                 }
-                Solved::Abreast(tape, lanes) => {
+                SolvedSteps::Abreast(tape, lanes) => {
                     tape.coordinates(topology, window.motion.coordinates.block_mut(k));
                     if measures {
                         window.motion.margins.extend(lanes.map(|lane| tape.margin(lane)));
@@ -168,7 +168,7 @@ struct Window {
     sensitivities: Sensitivities,
     slopes: SlopeValues,
     /// The end of the window before.
-    before: Option<Before>,
+    before: Option<PreviousStep>,
 }
 
 impl Sink for Window {
@@ -191,7 +191,7 @@ impl Sink for Window {
 
 impl Window {
     /// Hands over what there is, measured.
-    fn close(&mut self, analysis: &Analysis<'_>, design: &Design, solution: &mut Solution) {
+    fn close(&mut self, analysis: &Analysis<'_>, design: &PreparedDesign, solution: &mut Solution) {
         self.motion.times.extend_from_slice(&analysis.model().times[self.first..self.done]);
         solution.motion = std::mem::take(&mut self.motion);
         solution.sensitivities = std::mem::take(&mut self.sensitivities);
@@ -202,7 +202,7 @@ impl Window {
     fn open(&mut self, analysis: &Analysis<'_>, rows: usize, solution: &mut Solution) {
         let Solution { motion, sensitivities, measured, .. } = solution;
         let last = motion.len() - 1;
-        self.before = Some(Before {
+        self.before = Some(PreviousStep {
             time: motion.times[last],
             values: (0..measured.outputs.len()).map(|m| measured.value(last, m)).collect(),
         });

@@ -13,7 +13,7 @@
 //! | `seen` | t, t., t.. | T as the body of a marker sees it (20) |
 //! | `gradient[v][n]` | dy/db, d(y.)/db, d(y..)/db | (19) and its time derivatives |
 
-use crate::design::Field;
+use crate::design::DesignVelocity;
 use crate::model::{DriverId, GROUND, Model};
 use crate::motion::kinematics::State;
 use crate::motion::level::BINOMIAL;
@@ -22,7 +22,7 @@ use crate::space::{Real, Twist, Wrench};
 use crate::topology::{BlockId, ClosureId, CoordinateId, LinkId, RowId, Term, Topology};
 
 use super::direct::{DEFECT_FLOOR, Defect, FieldParts};
-use super::sensing::{Resisting, note};
+use super::sensing::{Resistance, note};
 
 /// A wrench with its first two time derivatives, about the world origin.
 pub(crate) type Load = [Wrench; 3];
@@ -36,7 +36,7 @@ pub(crate) struct Support {
     blocks: Vec<BlockId>,
     driven_links: Vec<LinkId>,
     /// Markers that some variable moves.
-    places: Vec<Place>,
+    places: Vec<MarkerPlace>,
     /// Per variable and marker that it moves: place, and body-fixed twist with the sign of that end.
     moves: Vec<(usize, usize, Twist)>,
     /// Per variable and kept value that it changes: row and rate.
@@ -47,16 +47,16 @@ pub(crate) struct Support {
 
 /// A marker on a body.
 #[derive(Clone, Copy, Debug)]
-struct Place {
+struct MarkerPlace {
     /// Its number in [`Adjoint::seen`].
     index: usize,
-    joint: Carrier,
+    joint: Transmitter,
     body: usize,
 }
 
 /// What transmits a wrench.
 #[derive(Clone, Copy, Debug)]
-enum Carrier {
+enum Transmitter {
     Link(LinkId),
     Closure(ClosureId),
 }
@@ -122,12 +122,12 @@ impl Support {
         // What a link transmits pushes its child: it works on z_p - z_c; that of a closure pushes j, and works on z_j - z_i.
         for m in field.links.iter().filter(|m| links[m.at.0]) {
             let index = 2 * m.at.0 + m.end;
-            self.places.push(Place { index, joint: Carrier::Link(m.at), body: m.body });
+            self.places.push(MarkerPlace { index, joint: Transmitter::Link(m.at), body: m.body });
             self.moves.push((v, index, if m.end == 0 { m.e } else { -m.e }));
         }
         for m in field.closures.iter().filter(|m| closures[m.at.0]) {
             let index = 2 * (links.len() + m.at.0) + m.end;
-            self.places.push(Place { index, joint: Carrier::Closure(m.at), body: m.body });
+            self.places.push(MarkerPlace { index, joint: Transmitter::Closure(m.at), body: m.body });
             self.moves.push((v, index, if m.end == 1 { m.e } else { -m.e }));
         }
         let kept = field.kept.iter().filter(|(row, _)| closures[topology[*row].closure.0]);
@@ -168,10 +168,10 @@ pub(crate) struct Adjoint {
 
 impl Adjoint {
     /// By the variables with these fields.
-    pub fn new(model: &Model, topology: &Topology, fields: &[Field]) -> Self {
+    pub fn new(model: &Model, topology: &Topology, fields: &[DesignVelocity]) -> Self {
         let none = Wrench::zero();
         let three = |n: usize| std::array::from_fn(|_| vec![none; n]);
-        let parts = |f: &Field| FieldParts::new(topology, &f.clone().with_laws_in_order());
+        let parts = |f: &DesignVelocity| FieldParts::new(topology, &f.clone().with_laws_in_order());
         Self {
             fields: fields.iter().map(parts).collect(),
             load: three(model.bodies.len()),
@@ -298,8 +298,8 @@ impl Adjoint {
         for place in &support.places {
             let (pose, v, a) = (&state.pose[place.body], v[place.body], a[place.body]);
             let of = |n: usize| match place.joint {
-                Carrier::Link(k) => self.links[n][k.0],
-                Carrier::Closure(c) => self.closures[n][c.0],
+                Transmitter::Link(k) => self.links[n][k.0],
+                Transmitter::Closure(c) => self.closures[n][c.0],
             };
             let seen = &mut self.seen[place.index];
             // t   = Ad(X)^T T                                                                                     (20)
@@ -374,9 +374,9 @@ fn pass_on(topology: &Topology, k: LinkId, load: &mut [Wrench], links: &mut [Wre
     load[link.parent.0] += carried;
 }
 
-/// Watches the rows that were left out, as [`Direct::worst_defects`](super::direct::Direct::worst_defects) does: each side
+/// Watches the rows that were left out, as [`DirectDifferentiation::worst_defects`](super::direct::DirectDifferentiation::worst_defects) does: each side
 /// of each row is a load of its own.
-pub(crate) struct Watch {
+pub(crate) struct DefectWatch {
     /// Per body that such a row stands on: what loads on it are felt by.
     supports: Vec<Option<Support>>,
     /// Per variable: the work on one side, the sum of all terms, and the largest of them.
@@ -387,7 +387,7 @@ pub(crate) struct Watch {
     worst: Vec<Option<Defect>>,
 }
 
-impl Watch {
+impl DefectWatch {
     pub fn new(model: &Model, variables: usize) -> Self {
         let zero = 0.0;
         Self {
@@ -406,7 +406,7 @@ impl Watch {
         topology: &Topology,
         state: &mut State<f64>,
         t: f64,
-        resisting: &mut [Resisting],
+        resisting: &mut [Resistance],
     ) {
         self.worst.fill(None);
         for r in topology.redundant() {

@@ -3,8 +3,8 @@
 use std::collections::HashMap;
 
 use crate::constraint::Row;
-use crate::design::Field;
-use crate::model::{JointId, Model, Term};
+use crate::design::DesignVelocity;
+use crate::model::{CouplerTerm, JointId, Model};
 use crate::space::Twist;
 
 /// Whether and how a mechanism follows a design variable.
@@ -56,7 +56,7 @@ pub struct Condition {
 
 /// The conditions of all joints that a variable touches: `l . (z_j - z_i) - L' = 0` for each of their elementary constraints
 /// (`docs/theory.md` (8), paper section 4: Dot-1, Dot-2, spherical, distance).
-pub fn conditions_at_design(model: &Model, field: &Field) -> Vec<Condition> {
+pub fn conditions_at_design(model: &Model, field: &DesignVelocity) -> Vec<Condition> {
     let twists = |k: usize| {
         [0, 1].map(|end| {
             let twist = field.twist_of(JointId(k), end).unwrap_or(Twist::ZERO);
@@ -85,7 +85,7 @@ pub fn conditions_at_design(model: &Model, field: &Field) -> Vec<Condition> {
         conditions.extend(rows.map(|row| Condition { joint, row, value: value(row) }));
     }
     for coupler in &model.couplers {
-        let change = |t: &Term| {
+        let change = |t: &CouplerTerm| {
             let z = twists(t.joint.0);
             // sum c_k l_k . (z_j - z_i), per c_0 so that it is in the unit of the first term
             t.coefficient * model.coupled(t).row.wrench(&model.ends(t.joint)).on(z[1] - z[0])
@@ -99,7 +99,7 @@ pub fn conditions_at_design(model: &Model, field: &Field) -> Vec<Condition> {
 
 /// The joints that a variable opens at the design configuration while all bodies stay, each with the condition that fails
 /// most. None means admissible there.
-pub fn admissibility_at_design(model: &Model, field: &Field) -> Vec<JointDefect> {
+pub fn admissibility_at_design(model: &Model, field: &DesignVelocity) -> Vec<JointDefect> {
     // A joint opens if abs(l . (z_j - z_i) - L') > 1e-7 of the field's largest speed.
     let scale = field.markers.iter().map(|m| m.twist.w.norm().max(m.twist.v.norm())).fold(0.0, f64::max);
     let mut joints: Vec<JointDefect> = Vec::new();

@@ -4,7 +4,7 @@
 //!
 //! | here | theory | paper | what, per unit of the variable b |
 //! |---|---|---|---|
-//! | `Moving::e` | e | V and R U (3.2, 3.3, 3.10), in `dD/dtau` (5.5) | body-fixed twist of a marker, rad and m |
+//! | `MovingMarker::e` | e | V and R U (3.2, 3.3, 3.10), in `dD/dtau` (5.5) | body-fixed twist of a marker, rad and m |
 //! | `z` | z, z., z.. | | the same in the world, with its rates (8) |
 //! | `flow.twists[n]` | W, W., W.. | Y (5.3c): `dr/dtau = W_v + W_w x r`, `dpi/dtau = W_w` | design twist of each body |
 //! | `flow.speeds[n]` | S, S., S.. | | of each coordinate of the tree |
@@ -19,7 +19,7 @@
 //! l . (W_j - W_i)  =  L' - l . (z_j - z_i)                                                     docs/theory.md (11)
 //! ```
 
-use crate::design::Field;
+use crate::design::DesignVelocity;
 use crate::law::Law;
 use crate::model::{DriverId, Model};
 use crate::motion::kinematics::State;
@@ -33,9 +33,9 @@ use crate::topology::{BlockId, ClosureId, LinkId, RowId, Term, Topology};
 #[derive(Clone, Debug)]
 pub(crate) struct FieldParts<T> {
     /// e of the markers that move, by link: they shift and turn what the freedoms start from or end in.
-    pub(super) links: Vec<Moving<T, LinkId>>,
+    pub(super) links: Vec<MovingMarker<T, LinkId>>,
     /// e of the markers that move, by closure: they open its rows.
-    pub(super) closures: Vec<Moving<T, ClosureId>>,
+    pub(super) closures: Vec<MovingMarker<T, ClosureId>>,
     /// Rows whose kept values change, and their rates.
     /// L', ascending by row: m or a cosine per unit of b.
     pub(super) kept: Vec<(RowId, T)>,
@@ -51,12 +51,12 @@ pub(crate) struct FieldParts<T> {
     /// Largest speed in each field: what round-off of a defect is compared with.
     pub(super) scale: T,
     /// How far the change is felt.
-    pub reach: Reach,
+    pub reach: Influence,
 }
 
 /// How far a change of the design is felt: all else stays as it is, and is not even looked at.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Reach {
+pub(crate) struct Influence {
     /// Links placed by drivers alone, whose children move.
     pub driven_links: Vec<LinkId>,
     /// Blocks with anything to make up for.
@@ -67,7 +67,7 @@ pub(crate) struct Reach {
     pub bodies: Vec<usize>,
 }
 
-impl Reach {
+impl Influence {
     /// Of changes at these links and closures, and of these drivers.
     fn new(topology: &Topology, links: &[LinkId], closures: &[ClosureId], drivers: &[DriverId]) -> Self {
         let bodies = 1 + topology.links.iter().map(|l| l.child.0).max().unwrap_or(0);
@@ -115,7 +115,7 @@ impl Reach {
 
 /// A marker that some design velocity moves.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Moving<T, At> {
+pub(super) struct MovingMarker<T, At> {
     /// Which link or closure.
     pub at: At,
     /// Which marker: 0 is the parent's of a link or i of a closure, 1 the child's or j.
@@ -126,7 +126,7 @@ pub(super) struct Moving<T, At> {
     pub e: Twist<T>,
 }
 
-impl<T: Real, At: Copy> Moving<T, At> {
+impl<T: Real, At: Copy> MovingMarker<T, At> {
     /// `z = Ad(X) e`, carried by its body: `z. = ad(V) z, z.. = ad(A) z + ad(V) z.` (`docs/theory.md` (8)).
     #[inline(always)]
     fn carried(&self, state: &State<T>) -> [Twist<T>; 3] {
@@ -140,7 +140,7 @@ impl<T: Real, At: Copy> Moving<T, At> {
 }
 
 impl<T: Real> FieldParts<T> {
-    pub fn new(topology: &Topology, field: &Field<T>) -> Self {
+    pub fn new(topology: &Topology, field: &DesignVelocity<T>) -> Self {
         let (mut links, mut closures, mut kept) = (Vec::new(), Vec::new(), Vec::new());
         for (at, link) in LinkId::each(&topology.links) {
             let Some(joint) = link.joint else { continue };
@@ -148,14 +148,14 @@ impl<T: Real> FieldParts<T> {
                 let marker = if end == 0 { link.parent_end } else { 1 - link.parent_end };
                 // The link runs from its parent's marker to its child's, whichever of them is the joint's i.
                 if let Some(e) = field.twist_of(joint, marker) {
-                    links.push(Moving { at, end, body, e });
+                    links.push(MovingMarker { at, end, body, e });
                 }
             }
         }
         for (at, closure) in ClosureId::each(&topology.closures) {
             for (end, body) in closure.bodies.into_iter().enumerate() {
                 if let Some(e) = field.twist_of(closure.joint, end) {
-                    closures.push(Moving { at, end, body: body.0, e });
+                    closures.push(MovingMarker { at, end, body: body.0, e });
                 }
             }
             let Some(rates) = field.kept_rate(closure.joint) else { continue };
@@ -183,7 +183,7 @@ impl<T: Real> FieldParts<T> {
         let mut changed: Vec<ClosureId> = closures.iter().map(|m| m.at).collect();
         changed.extend(kept.iter().map(|&(row, _)| topology[row].closure));
         changed.sort_unstable();
-        let reach = Reach::new(topology, &moved, &changed, &drivers);
+        let reach = Influence::new(topology, &moved, &changed, &drivers);
         let (laws, shifts) = (field.laws.clone(), field.shifts.clone());
         Self { links, closures, kept, laws, shifts, law_rates, scale, reach }
     }
@@ -254,7 +254,7 @@ impl<T: Real> FieldParts<T> {
 }
 
 /// What the motion does with the design variables, one at a time; nothing is allocated per step.
-pub(crate) struct Direct<T> {
+pub(crate) struct DirectDifferentiation<T> {
     /// Of orders 0, 1, 2: design twists W of the bodies and speeds S of the coordinates, and their time derivatives.
     pub flow: Flow<T>,
     /// Per marker that the field moves at a closure, per order: how.
@@ -287,7 +287,7 @@ impl Defect {
 /// A defect below this part of the field's own speed is zero, even if nothing else stands in the row.
 pub(super) const DEFECT_FLOOR: f64 = 1e-9;
 
-impl<T: Real> Direct<T> {
+impl<T: Real> DirectDifferentiation<T> {
     pub fn new(model: &Model, topology: &Topology) -> Self {
         Self {
             flow: Flow::new(topology, model.bodies.len(), false).with_moves(),

@@ -10,16 +10,16 @@ mod direct;
 mod second;
 mod sensing;
 
-pub(crate) use adjoint::{Adjoint, Load, Support, Watch};
+pub(crate) use adjoint::{Adjoint, DefectWatch, Load, Support};
 pub use admissible::{Admissibility, Condition, JointDefect, admissibility_at_design, conditions_at_design};
-pub(crate) use direct::{Direct, FieldParts};
-pub use second::{BodyCurvature, Way};
+pub(crate) use direct::{DirectDifferentiation, FieldParts};
+pub use second::{BodyCurvature, PairDirection};
 pub(crate) use second::{Seconds, along};
-pub(crate) use sensing::{Resisting, Sensing, admissibility, note_defects, record_derivatives};
+pub(crate) use sensing::{Resistance, SensitivitySolver, admissibility, note_defects, record_derivatives};
 
 use hardpoint_tape::Lanes;
 
-use crate::blocks::{Blocks, Row};
+use crate::blocks::{Blocks, ResultRow};
 use crate::model::{BodyId, VariableId};
 use crate::space::Vec3;
 
@@ -165,7 +165,7 @@ impl Sensitivities {
 /// Sensitivities of all bodies by one variable at one output time.
 #[derive(Clone, Copy, Debug)]
 pub struct Derivatives<'s> {
-    row: Row<'s>,
+    row: ResultRow<'s>,
     places: &'s [Option<usize>],
 }
 

@@ -5,15 +5,15 @@
 //!
 //! | here | theory | what, per unit of a direction (or of both) |
 //! |---|---|---|
-//! | `First::w()` | W_u | design twists of the bodies along one direction (11) |
-//! | `First::direct.flow.speeds[0]` | S_u | of the coordinates |
-//! | `First::links`, `closures` | z_u | of markers, in the world |
+//! | `FirstOrder::w()` | W_u | design twists of the bodies along one direction (11) |
+//! | `FirstOrder::direct.flow.speeds[0]` | S_u | of the coordinates |
+//! | `FirstOrder::links`, `closures` | z_u | of markers, in the world |
 //! | `Pair::z` | z_u^w | how these change along the second direction |
 //! | `Seconds::x`, `l` | x^w, l^w | unit twists and wrenches likewise, in place of their rates in time |
 //! | `Pair::w`, `flow.speeds[1]` | W_uw, S_uw | derivative along w of W_u and S_u |
 
-use crate::constraint::EndRates;
-use crate::design::{Effects, Field};
+use crate::constraint::MarkerPairRates;
+use crate::design::{DesignMap, DesignVelocity};
 use crate::law::Law;
 use crate::model::{DriverId, Model};
 use crate::motion::kinematics::State;
@@ -23,18 +23,18 @@ use crate::number::{Dual, Real};
 use crate::space::{Mat3, Pose, Twist, Vec3, Wrench};
 use crate::topology::{ClosureId, LinkId, SetBy, Topology};
 
-use super::direct::{Direct, FieldParts, Moving};
+use super::direct::{DirectDifferentiation, FieldParts, MovingMarker};
 
 /// A way to go.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Way {
+pub enum PairDirection {
     /// The design changes: how fast each variable goes.
     Design(Vec<f64>),
     /// The design stays, and one driver moves by one unit per unit while the others stand.
     Driver(DriverId),
 }
 
-impl Way {
+impl PairDirection {
     /// How fast the design variables go.
     fn speeds(&self) -> &[f64] {
         match self {
@@ -44,10 +44,10 @@ impl Way {
     }
 
     /// What it changes at the designs with these values.
-    fn field<T: Real>(&self, effects: &Effects<'_>, values: &[T]) -> Field<T> {
+    fn field<T: Real>(&self, effects: &DesignMap<'_>, values: &[T]) -> DesignVelocity<T> {
         match self {
             Self::Design(speeds) => effects.field_along(&along(speeds), values),
-            Self::Driver(driver) => Field::of_driver(*driver),
+            Self::Driver(driver) => DesignVelocity::of_driver(*driver),
         }
     }
 }
@@ -63,19 +63,19 @@ pub struct BodyCurvature {
 }
 
 /// What one direction does at one position, to first order.
-struct First {
+struct FirstOrder {
     field: FieldParts<f64>,
     /// U = W_u, u = S_u, z = z_u, f = L_u.
     /// Order 0 is the direction; order 1 is how a pair changes that.
-    direct: Direct<f64>,
+    direct: DirectDifferentiation<f64>,
     /// Per link, the design twist of its parent's marker; per closure, those of markers i and j.
     links: Vec<Twist>,
     closures: Vec<[Twist; 2]>,
 }
 
-impl First {
+impl FirstOrder {
     fn new(model: &Model, topology: &Topology, field: FieldParts<f64>) -> Self {
-        let mut direct = Direct::new(model, topology);
+        let mut direct = DirectDifferentiation::new(model, topology);
         // Along the design even the axes of joints on ground move: x^w = ad(z_w) x.
         direct.flow.ground_stands = false;
         Self {
@@ -109,10 +109,10 @@ impl First {
     }
 
     /// How the markers of a closure go.
-    fn ends(&self, topology: &Topology, c: ClosureId) -> EndRates<f64> {
+    fn ends(&self, topology: &Topology, c: ClosureId) -> MarkerPairRates<f64> {
         let ([i, j], [z_i, z_j], none) = (topology[c].bodies, self.closures[c.0], Twist::ZERO);
         // D_w = W_w + z_w, in place of V; second rates are not asked for
-        EndRates { v_i: self.w()[i.0] + z_i, v_j: self.w()[j.0] + z_j, a_i: none, a_j: none }
+        MarkerPairRates { v_i: self.w()[i.0] + z_i, v_j: self.w()[j.0] + z_j, a_i: none, a_j: none }
     }
 }
 
@@ -140,7 +140,7 @@ const LAW_STEP: f64 = 1e-4;
 
 /// Second derivatives by pairs of directions.
 pub(crate) struct Seconds {
-    firsts: Vec<First>,
+    firsts: Vec<FirstOrder>,
     pairs: Vec<Pair>,
     /// Per coordinate and row: the derivatives of unit twists and wrenches along a direction.
     x: Vec<Twist>,
@@ -150,16 +150,16 @@ pub(crate) struct Seconds {
 impl Seconds {
     /// For these pairs of directions at the design with these values.
     pub fn new(
-        effects: &Effects<'_>,
+        effects: &DesignMap<'_>,
         topology: &Topology,
         values: &[f64],
-        directions: &[Way],
+        directions: &[PairDirection],
         pairs: &[[usize; 2]],
     ) -> Self {
         let model = effects.model;
         let firsts = directions.iter().map(|d| {
             let field = d.field(effects, values);
-            First::new(model, topology, FieldParts::new(topology, &field.with_laws_in_order()))
+            FirstOrder::new(model, topology, FieldParts::new(topology, &field.with_laws_in_order()))
         });
         let pair = |&[u, w]: &[usize; 2]| {
             let speeds = directions[w].speeds().iter().copied().chain(std::iter::repeat(0.0));
@@ -242,7 +242,7 @@ impl Seconds {
 }
 
 /// The body-fixed twist of a marker that moves, and the derivative of that.
-fn parts<At>(m: &Moving<Dual, At>) -> [Twist; 2] {
+fn parts<At>(m: &MovingMarker<Dual, At>) -> [Twist; 2] {
     let part = |part: fn(Dual) -> f64| Twist { w: m.e.w.map(part), v: m.e.v.map(part) };
     [part(|x| x.v), part(|x| x.d)]
 }
@@ -286,7 +286,7 @@ impl Pair {
     }
 
     /// (24) of `docs/theory.md` with n = 1, but differentiated along w: what u does is known, and changes by `W_uw` and `S_uw` (15).
-    fn solve(&mut self, topology: &Topology, state: &mut State<f64>, firsts: &mut [First]) {
+    fn solve(&mut self, topology: &Topology, state: &mut State<f64>, firsts: &mut [FirstOrder]) {
         let ([u, w], reach) = (self.of, &self.field.reach);
         let first = &firsts[w];
         let in_blocks = reach.blocks.iter().flat_map(|&b| topology[b].link_ids());

@@ -2,39 +2,39 @@
 
 use hardpoint_tape::{Lanes, Number};
 
-use crate::design::Field;
+use crate::design::DesignVelocity;
 use crate::model::{BodyId, DriverId, Model, VariableId};
 use crate::motion::kinematics::State;
 use crate::motion::level::Flow;
-use crate::motion::step_program::Recorded;
+use crate::motion::step_program::RecordedExtras;
 use crate::motion::stepper::Stepper;
 use crate::motion::tape::Tape;
 use crate::space::Real;
 use crate::topology::Topology;
 
-use super::direct::{Defect, Direct, FieldParts};
+use super::direct::{Defect, DirectDifferentiation, FieldParts};
 use super::{Admissibility, BodySensitivity, JointDefect, Sensitivities};
 
 /// Collects the sensitivities of a run.
-pub(crate) struct Sensing {
+pub(crate) struct SensitivitySolver {
     /// Per variable, how it changes the design.
     fields: Vec<FieldParts<f64>>,
-    direct: Direct<f64>,
+    direct: DirectDifferentiation<f64>,
     bodies: usize,
     /// Per body: whether its sensitivities are wanted.
     wanted: Vec<bool>,
-    resisting: Vec<Resisting>,
+    resisting: Vec<Resistance>,
 }
 
 /// The joints that resist a variable, and the time of the largest defect.
-pub(crate) type Resisting = (Vec<JointDefect>, f64);
+pub(crate) type Resistance = (Vec<JointDefect>, f64);
 
-impl Sensing {
+impl SensitivitySolver {
     /// Prepares the sensitivities of the wanted bodies by the variables with these fields.
-    pub fn new(model: &Model, topology: &Topology, fields: &[Field], wanted: Vec<bool>) -> Self {
+    pub fn new(model: &Model, topology: &Topology, fields: &[DesignVelocity], wanted: Vec<bool>) -> Self {
         Self {
             fields: fields.iter().map(|f| FieldParts::new(topology, f)).collect(),
-            direct: Direct::new(model, topology),
+            direct: DirectDifferentiation::new(model, topology),
             bodies: model.bodies.len(),
             wanted,
             resisting: vec![(Vec::new(), 0.0); fields.len()],
@@ -93,10 +93,10 @@ impl Sensing {
 /// What so many steps say of every variable, given the joints that each opens in the nominal design.
 pub(crate) fn admissibility(
     opens: &[Vec<JointDefect>],
-    resisting: Vec<Resisting>,
+    resisting: Vec<Resistance>,
     steps: usize,
 ) -> Vec<Admissibility> {
-    let answer = |(open, (joints, time)): (&Vec<JointDefect>, Resisting)| {
+    let answer = |(open, (joints, time)): (&Vec<JointDefect>, Resistance)| {
         if !joints.is_empty() {
             Admissibility::CannotFollow { joints, time }
         } else if steps == 0 {
@@ -111,7 +111,7 @@ pub(crate) fn admissibility(
 }
 
 /// Keeps in mind which joint resists a variable most, and when.
-pub(super) fn note(resisting: &mut Resisting, topology: &Topology, defect: Defect, t: f64) {
+pub(super) fn note(resisting: &mut Resistance, topology: &Topology, defect: Defect, t: f64) {
     let (joint, row) = (topology.closure_of(defect.row).joint, topology.constraint(defect.row));
     let (joints, time) = resisting;
     // A periodic motion comes back to its largest defect: the first time counts, not round-off.
@@ -153,16 +153,16 @@ fn components<T: Real>(flow: &Flow<T>, state: &State<T>, body: usize) -> [T; Bod
 /// program knows.
 pub(crate) fn record_derivatives(
     model: &Model,
-    fields: &[Field<Number>],
+    fields: &[DesignVelocity<Number>],
     topology: &Topology,
     state: &mut State<Number>,
-) -> Option<Recorded> {
-    let (mut recorded, mut defects) = (Recorded::default(), Vec::new());
+) -> Option<RecordedExtras> {
+    let (mut recorded, mut defects) = (RecordedExtras::default(), Vec::new());
     if fields.is_empty() {
         return Some(recorded);
     }
     state.finish_rates(topology);
-    let mut direct = Direct::new(model, topology);
+    let mut direct = DirectDifferentiation::new(model, topology);
     for (v, field) in fields.iter().enumerate() {
         let mut field = FieldParts::new(topology, field);
         if !field.is_constant() {
@@ -190,7 +190,7 @@ pub(crate) fn note_defects(
     tape: &Tape,
     topology: &Topology,
     (times, first): (&[f64], usize),
-    (resisting, apart): (&mut [Resisting], usize),
+    (resisting, apart): (&mut [Resistance], usize),
 ) {
     // Written so that NaN resists.
     let fails = |[defect, limit]: &[Lanes; 2], lane: usize| !(defect[lane] <= limit[lane]);

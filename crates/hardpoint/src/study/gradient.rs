@@ -2,15 +2,15 @@
 
 use hardpoint_tape::LANES;
 
-use crate::design::{Field, Fixed};
-use crate::measure::{self, Moment, More, Output, SlopeValues, bodies_asked_for, dependences, outputs};
+use crate::design::{BodyFixed, DesignVelocity};
+use crate::measure::{self, Context, Instant, Output, SlopeValues, bodies_asked_for, dependences, outputs};
 use crate::model::{GROUND, MeasureKind, OutputSource, VariableId};
 use crate::motion::Stop;
 use crate::motion::kinematics::State;
 use crate::motion::stepper::Stepper;
 use crate::number::{Dual, Jet, Rates};
-use crate::run::{Analysis, Design, Run, Solution, Walk};
-use crate::sensitivity::{Adjoint, Admissibility, Load, Resisting, Support, Watch, admissibility};
+use crate::run::{Analysis, PreparedDesign, Run, Solution, Walk};
+use crate::sensitivity::{Adjoint, Admissibility, DefectWatch, Load, Resistance, Support, admissibility};
 use crate::space::{Mat3, Pose, Twist, Vec3, Wrench};
 use crate::topology::Topology;
 
@@ -126,9 +126,9 @@ impl Analysis<'_> {
     fn gradients_direct(&self, design: &[f64], outputs: Vec<Output>) -> Gradients {
         let Solution { motion, sensitivities, stop, .. } =
             self.solve(Run::new().at(design).without_measures());
-        let Design { values, laws, .. } = &self.design(design);
-        let at = measure::At { model: self.model(), effects: self.effects(), values, laws };
-        let more = More { slopes: &SlopeValues::default(), whole_turns: &[] };
+        let PreparedDesign { values, laws, .. } = &self.design(design);
+        let at = measure::MeasuredDesign { model: self.model(), effects: self.effects(), values, laws };
+        let more = Context { slopes: &SlopeValues::default(), whole_turns: &[] };
         let (asked, variables) = (outputs.len(), self.model().variables.len());
         let mut d = vec![[f64::NAN; 3]; motion.len() * asked * variables];
         let blocks = (0..motion.len()).step_by(LANES);
@@ -148,7 +148,7 @@ impl Analysis<'_> {
         }
     }
 
-    fn gradients_adjoint(&self, design: &Design, outputs: Vec<Output>) -> Gradients {
+    fn gradients_adjoint(&self, design: &PreparedDesign, outputs: Vec<Output>) -> Gradients {
         let model = self.model();
         let (variables, asked) = (model.variables.len(), outputs.len());
         let fields = self.effects().fields(&design.values);
@@ -159,8 +159,8 @@ impl Analysis<'_> {
             outputs,
             ..Gradients::default()
         };
-        let mut tracing = Tracing::new(self, design, &fields, &result.outputs);
-        let mut resisting: Vec<Resisting> = vec![(Vec::new(), 0.0); variables];
+        let mut tracing = AdjointSolver::new(self, design, &fields, &result.outputs);
+        let mut resisting: Vec<Resistance> = vec![(Vec::new(), 0.0); variables];
         let mut walk = Walk::new(self, design, vec![false; model.bodies.len()]);
         let mut times = model.times.iter();
         result.stop = walk.each(|one| {
@@ -180,22 +180,22 @@ impl Analysis<'_> {
 }
 
 /// What the adjoint way needs besides a stepper.
-struct Tracing<'a> {
+struct AdjointSolver<'a> {
     analysis: &'a Analysis<'a>,
     adjoint: Adjoint,
-    watch: Watch,
-    asked: Vec<Asked>,
+    watch: DefectWatch,
+    asked: Vec<RequestedOutput>,
     /// Bodies that outputs are measured on.
     bodies: Vec<usize>,
     poses: Vec<Pose<Dual<Rates>>>,
     /// What measures go by; and the same as it goes with each variable that moves some of it.
-    fixed: Fixed<Dual<Rates>>,
-    moved: Vec<Option<Fixed<Dual<Rates>>>>,
+    fixed: BodyFixed<Dual<Rates>>,
+    moved: Vec<Option<BodyFixed<Dual<Rates>>>>,
     gradient: Vec<[f64; 3]>,
 }
 
 /// An output, and what it depends on.
-struct Asked {
+struct RequestedOutput {
     output: Output,
     /// Per body that it depends on: how it goes with the body's twist.
     loads: Vec<(usize, Load)>,
@@ -207,24 +207,29 @@ struct Asked {
     derivatives: Vec<[f64; 3]>,
 }
 
-impl<'a> Tracing<'a> {
-    fn new(analysis: &'a Analysis<'_>, design: &Design, fields: &[Field], outputs: &[Output]) -> Self {
+impl<'a> AdjointSolver<'a> {
+    fn new(
+        analysis: &'a Analysis<'_>,
+        design: &PreparedDesign,
+        fields: &[DesignVelocity],
+        outputs: &[Output],
+    ) -> Self {
         let (model, effects) = (analysis.model(), analysis.effects());
         let adjoint = Adjoint::new(model, analysis.topology(), fields);
         let bodies: Vec<usize> = bodies_asked_for(model).into_iter().filter(|b| *b != GROUND.0).collect();
         let depends = dependences(effects, &design.values, &bodies, outputs);
         let none = [Wrench::zero(); 3];
-        let asked = outputs.iter().zip(depends).map(|(output, [on, variables])| Asked {
+        let asked = outputs.iter().zip(depends).map(|(output, [on, variables])| RequestedOutput {
             derivatives: vec![[0.0; 3]; 6 * on.len() + variables.len()],
             output: output.clone(),
             support: adjoint.support(analysis.topology(), &on),
             loads: on.into_iter().map(|b| (b, none)).collect(),
             variables,
         });
-        let asked: Vec<Asked> = asked.collect();
+        let asked: Vec<RequestedOutput> = asked.collect();
         let mut values: Vec<Dual<Rates>> =
             design.values.iter().map(|v| Dual::constant(Rates::constant(*v))).collect();
-        let mut moved: Vec<Option<Fixed<Dual<Rates>>>> = values.iter().map(|_| None).collect();
+        let mut moved: Vec<Option<BodyFixed<Dual<Rates>>>> = values.iter().map(|_| None).collect();
         for &v in asked.iter().flat_map(|a| &a.variables) {
             moved[v].get_or_insert_with(|| {
                 let value = values[v];
@@ -235,7 +240,7 @@ impl<'a> Tracing<'a> {
             });
         }
         Self {
-            watch: Watch::new(model, fields.len()),
+            watch: DefectWatch::new(model, fields.len()),
             poses: vec![Pose::IDENTITY.spread(); model.bodies.len()],
             fixed: effects.fixed(&values),
             gradient: vec![[0.0; 3]; fields.len()],
@@ -252,7 +257,7 @@ impl<'a> Tracing<'a> {
         &mut self,
         stepper: &mut Stepper<'_>,
         t: f64,
-        resisting: &mut [Resisting],
+        resisting: &mut [Resistance],
         result: &mut Gradients,
     ) {
         self.adjoint.set_time(stepper, t);
@@ -271,7 +276,7 @@ impl<'a> Tracing<'a> {
 
     /// The gradient of output m: what its load works on the design, and what variables change in itself.
     fn trace(&mut self, topology: &Topology, state: &mut State<f64>, m: usize) {
-        let Asked { loads, support, variables, derivatives, .. } = &mut self.asked[m];
+        let RequestedOutput { loads, support, variables, derivatives, .. } = &mut self.asked[m];
         let (by_twists, by_variables) = derivatives.split_at(6 * loads.len());
         for ((_, load), by) in loads.iter_mut().zip(by_twists.chunks_exact(6)) {
             for (order, load) in load.iter_mut().enumerate() {
@@ -296,18 +301,18 @@ impl<'a> Tracing<'a> {
         for &b in bodies.iter() {
             poses[b] = still(pose_with_rates(state, b));
         }
-        for Asked { output, loads, variables, derivatives, .. } in asked {
+        for RequestedOutput { output, loads, variables, derivatives, .. } in asked {
             let (by_twists, by_variables) = derivatives.split_at_mut(6 * loads.len());
             for ((b, _), by) in loads.iter().zip(by_twists.chunks_exact_mut(6)) {
                 for (unit, to) in by.iter_mut().enumerate() {
                     move_along(&mut poses[*b], unit);
-                    *to = Moment::new(model, fixed, poses).output(output.source).d.0;
+                    *to = Instant::new(model, fixed, poses).output(output.source).d.0;
                 }
                 stop(&mut poses[*b]);
             }
             for (&v, to) in variables.iter().zip(by_variables) {
                 let fixed = moved[v].as_ref().expect("laid out for every variable of an output");
-                *to = Moment::new(model, fixed, poses).output(output.source).d.0;
+                *to = Instant::new(model, fixed, poses).output(output.source).d.0;
             }
         }
     }

@@ -1,7 +1,7 @@
 //! Jerk over a motion.
 
 use crate::motion::{BodyJerk, Stop};
-use crate::run::{Analysis, Design, Walk};
+use crate::run::{Analysis, PreparedDesign, Walk};
 
 /// Third time derivatives of all bodies over a motion.
 #[derive(Clone, Debug, Default)]
@@ -39,7 +39,7 @@ impl Analysis<'_> {
         each(&last);
     }
 
-    fn jerks_in(&self, design: &Design, rows: usize, each: &mut dyn FnMut(&Jerks)) -> Jerks {
+    fn jerks_in(&self, design: &PreparedDesign, rows: usize, each: &mut dyn FnMut(&Jerks)) -> Jerks {
         let model = self.model();
         let mut walk = Walk::new(self, design, vec![false; model.bodies.len()]);
         let mut result = Jerks { bodies: model.bodies.len(), ..Jerks::default() };

@@ -4,7 +4,7 @@
 //! are the polynomials that have their values, rates and accelerations at both ends.
 
 use crate::measure::Measured;
-use crate::model::{Metric, Model, OutputSource, Take, VariableId};
+use crate::model::{Metric, Model, OutputSource, Reduction, VariableId};
 use crate::number::{Dual, Real};
 use crate::run::Solution;
 
@@ -42,7 +42,7 @@ fn metric_value(model: &Model, solution: &Solution, metric: &Metric) -> MetricVa
     let now = |output: OutputSource| {
         let (m, orders) = column(measured, output)?;
         let values = (0..measured.len()).map(|k| measured.value(k, m)).collect();
-        Some(Curve { times, orders, values })
+        Some(SampledCurve { times, orders, values })
     };
     let curves = || Some((now(metric.of)?, abscissa(metric, now)?));
     let Some((y, x)) = curves() else { return none };
@@ -57,7 +57,7 @@ fn metric_value(model: &Model, solution: &Solution, metric: &Metric) -> MetricVa
                 let (x, d) = (measured.value(k, m), measured.d(k, VariableId(v), m));
                 [0, 1, 2].map(|order| Dual { v: x[order], d: d[order] })
             };
-            Some(Curve { times, orders, values: (0..measured.len()).map(number).collect() })
+            Some(SampledCurve { times, orders, values: (0..measured.len()).map(number).collect() })
         };
         let found = varied(metric.of).zip(abscissa(metric, varied));
         found.and_then(|(y, x)| take(metric, &y, &x)).map_or(f64::NAN, |(value, _)| value.d)
@@ -65,7 +65,7 @@ fn metric_value(model: &Model, solution: &Solution, metric: &Metric) -> MetricVa
     let error = interpolation_error(metric, &y, &x, value, time);
     let finite = || y.values.iter().map(|v| v[0]).filter(|x| x.is_finite());
     let range = match metric.take {
-        Take::Slope(_) => value.abs(),
+        Reduction::Slope(_) => value.abs(),
         _ => finite().fold(f64::NEG_INFINITY, f64::max) - finite().fold(f64::INFINITY, f64::min),
     };
     MetricValue {
@@ -89,13 +89,13 @@ fn abscissa<C>(metric: &Metric, curve: impl Fn(OutputSource) -> Option<C>) -> Op
 }
 
 /// A curve over time: at each time so many of its value, rate and acceleration.
-struct Curve<'t, T> {
+struct SampledCurve<'t, T> {
     times: &'t [f64],
     orders: usize,
     values: Vec<[T; 3]>,
 }
 
-impl<T: Real> Curve<'_, T> {
+impl<T: Real> SampledCurve<'_, T> {
     /// The polynomial of interval k with the values, rates and accelerations that are known at its ends: its coefficients in the
     /// part of the interval that has passed.
     fn coefficients(&self, k: usize) -> [T; 6] {
@@ -189,16 +189,16 @@ fn roots(c: &[f64]) -> Vec<f64> {
 
 /// The polynomial with what is known at the ends of an interval and at the next output time to either side, in Newton's form:
 /// twice the degree of the interval's own. How far the two are apart is how far that may be from the curve.
-struct Wide {
+struct WidePolynomial {
     /// Each time as often as something is known there.
     nodes: Vec<f64>,
     /// Divided differences.
     c: Vec<f64>,
 }
 
-impl Wide {
+impl WidePolynomial {
     /// `None` where nothing is known beside the interval.
-    fn new(y: &Curve<'_, f64>, k: usize) -> Option<Self> {
+    fn new(y: &SampledCurve<'_, f64>, k: usize) -> Option<Self> {
         let known = |i: &usize| y.values[*i][..y.orders].iter().all(|x| x.is_finite());
         // The interval's own ends first.
         let beside = [k.checked_sub(1), Some(k + 2).filter(|i| *i < y.values.len())];
@@ -231,11 +231,11 @@ impl Wide {
 }
 
 /// How far the metric may be from that of the curve itself, because that is interpolated between output times. The curve is taken
-/// for what the polynomials through more output times ([`Wide`]) make of it.
+/// for what the polynomials through more output times ([`WidePolynomial`]) make of it.
 fn interpolation_error(
     metric: &Metric,
-    y: &Curve<'_, f64>,
-    x: &Option<Curve<'_, f64>>,
+    y: &SampledCurve<'_, f64>,
+    x: &Option<SampledCurve<'_, f64>>,
     value: f64,
     time: Option<f64>,
 ) -> Option<f64> {
@@ -244,8 +244,8 @@ fn interpolation_error(
         (y.values.len() > 1).then(|| after.clamp(1, y.values.len() - 1) - 1)
     };
     // Of value and rate at a time, by how much they differ.
-    let apart = |curve: &Curve<'_, f64>, k: usize, t: f64| {
-        let (own, wide) = (curve.at(k, t), Wide::new(curve, k)?.at(t));
+    let apart = |curve: &SampledCurve<'_, f64>, k: usize, t: f64| {
+        let (own, wide) = (curve.at(k, t), WidePolynomial::new(curve, k)?.at(t));
         Some([wide[0] - own[0], wide[1] - own[1]])
     };
     // Where the abscissa decides about the time, its error moves the time, and that the value.
@@ -259,16 +259,17 @@ fn interpolation_error(
         Some(apart(y, k, t)?[0].abs() + late * y.at(k, t)[1].abs())
     };
     match &metric.take {
-        Take::Value(_) => at_place(time?),
-        Take::Slope(_) => {
+        Reduction::Value(_) => at_place(time?),
+        Reduction::Slope(_) => {
             let Some(k) = interval(time?) else { return Some(0.0) };
-            let rate = |curve: &Curve<'_, f64>| Some([curve.at(k, time?)[1], apart(curve, k, time?)?[1]]);
+            let rate =
+                |curve: &SampledCurve<'_, f64>| Some([curve.at(k, time?)[1], apart(curve, k, time?)?[1]]);
             let [dy, wide_dy] = rate(y)?;
             let [dx, wide_dx] = x.as_ref().map_or(Some([1.0, 0.0]), rate)?;
             Some(((dy + wide_dy) / (dx + wide_dx) - dy / dx).abs())
         }
-        Take::Greatest | Take::Least => {
-            let sign = if metric.take == Take::Greatest { 1.0 } else { -1.0 };
+        Reduction::Greatest | Reduction::Least => {
+            let sign = if metric.take == Reduction::Greatest { 1.0 } else { -1.0 };
             let time = time?;
             let (inside, along) = (|at: f64| within_window(metric, at), |k, t| along(x, k, t));
             let cut = x.as_ref().is_some_and(|x| {
@@ -287,7 +288,7 @@ fn interpolation_error(
             // Somewhere else the curve may go beyond.
             let mut beyond: f64 = 0.0;
             for k in 0..y.values.len() - 1 {
-                let Some(wide) = Wide::new(y, k) else { continue };
+                let Some(wide) = WidePolynomial::new(y, k) else { continue };
                 let h = y.times[k + 1] - y.times[k];
                 let places = (1..PLACES).map(|i| y.times[k] + h * f64::from(i) / f64::from(PLACES));
                 for t in places.filter(|t| inside(along(k, *t))) {
@@ -296,15 +297,15 @@ fn interpolation_error(
             }
             Some(here.max(beyond))
         }
-        Take::Range => {
-            let of = |end: Take| {
+        Reduction::Range => {
+            let of = |end: Reduction| {
                 let end = Metric { take: end, ..metric.clone() };
                 let (value, time) = take(&end, y, x)?;
                 interpolation_error(&end, y, x, value, time)
             };
-            Some(of(Take::Greatest)? + of(Take::Least)?)
+            Some(of(Reduction::Greatest)? + of(Reduction::Least)?)
         }
-        Take::Mean | Take::Rms(_) => None,
+        Reduction::Mean | Reduction::Rms(_) => None,
     }
 }
 
@@ -315,29 +316,33 @@ const PLACES: u32 = 8;
 const HALVINGS: usize = 60;
 
 /// What a metric takes, and when.
-fn take<T: Real>(metric: &Metric, y: &Curve<'_, T>, x: &Option<Curve<'_, T>>) -> Option<(T, Option<f64>)> {
+fn take<T: Real>(
+    metric: &Metric,
+    y: &SampledCurve<'_, T>,
+    x: &Option<SampledCurve<'_, T>>,
+) -> Option<(T, Option<f64>)> {
     if y.values.is_empty() {
         return None;
     }
     match &metric.take {
-        Take::Greatest => extreme(metric, y, x, 1.0).map(|(v, t)| (v, Some(t))),
-        Take::Least => extreme(metric, y, x, -1.0).map(|(v, t)| (v, Some(t))),
-        Take::Range => {
+        Reduction::Greatest => extreme(metric, y, x, 1.0).map(|(v, t)| (v, Some(t))),
+        Reduction::Least => extreme(metric, y, x, -1.0).map(|(v, t)| (v, Some(t))),
+        Reduction::Range => {
             let ends = extreme(metric, y, x, 1.0).zip(extreme(metric, y, x, -1.0));
             ends.map(|((most, _), (least, _))| (most - least, None))
         }
-        Take::Value(at) => {
+        Reduction::Value(at) => {
             let (k, t) = reach(y, x, *at)?;
             Some((y.at(k, t)[0], Some(y.within(k, t))))
         }
-        Take::Slope(at) => {
+        Reduction::Slope(at) => {
             let (k, t) = reach(y, x, *at)?;
             // dy/dx = y. / x.
             let by = x.as_ref().map_or(T::one(), |x| x.at(k, t)[1]);
             Some((y.at(k, t)[1] / by, Some(y.within(k, t))))
         }
-        Take::Mean => mean(metric, y, x, |_, value| value).map(|value| (value, None)),
-        Take::Rms(target) => {
+        Reduction::Mean => mean(metric, y, x, |_, value| value).map(|value| (value, None)),
+        Reduction::Rms(target) => {
             let square = |at: T, value: T| {
                 let left = value - on_target(target, at);
                 left * left
@@ -352,7 +357,7 @@ fn take<T: Real>(metric: &Metric, y: &Curve<'_, T>, x: &Option<Curve<'_, T>>) ->
 const THERE: f64 = 1e-9;
 
 /// The interval where the abscissa first is `at`, and the time of that, which moves with the design.
-fn reach<T: Real>(y: &Curve<'_, T>, x: &Option<Curve<'_, T>>, at: f64) -> Option<(usize, T)> {
+fn reach<T: Real>(y: &SampledCurve<'_, T>, x: &Option<SampledCurve<'_, T>>, at: f64) -> Option<(usize, T)> {
     let times = y.times;
     let last = y.values.len().checked_sub(2)?;
     let Some(x) = x else {
@@ -386,15 +391,15 @@ fn within_window(metric: &Metric, at: f64) -> bool {
 }
 
 /// The abscissa at a time of interval k.
-fn along<T: Real>(x: &Option<Curve<'_, T>>, k: usize, t: f64) -> f64 {
+fn along<T: Real>(x: &Option<SampledCurve<'_, T>>, k: usize, t: f64) -> f64 {
     x.as_ref().map_or(t, |x| x.number(k, t))
 }
 
 /// The greatest value (sign 1) or the least (-1) where the abscissa is in the window, and its time.
 fn extreme<T: Real>(
     metric: &Metric,
-    y: &Curve<'_, T>,
-    x: &Option<Curve<'_, T>>,
+    y: &SampledCurve<'_, T>,
+    x: &Option<SampledCurve<'_, T>>,
     sign: f64,
 ) -> Option<(T, f64)> {
     let inside = |at: f64| within_window(metric, at);
@@ -434,8 +439,8 @@ fn extreme<T: Real>(
 /// over the way of the abscissa to and fro.
 fn mean<T: Real>(
     metric: &Metric,
-    y: &Curve<'_, T>,
-    x: &Option<Curve<'_, T>>,
+    y: &SampledCurve<'_, T>,
+    x: &Option<SampledCurve<'_, T>>,
     of: impl Fn(T, T) -> T,
 ) -> Option<T> {
     let at = |k: usize| x.as_ref().map_or(T::constant(y.times[k]), |x| x.values[k][0]);
@@ -474,8 +479,8 @@ mod tests {
     use super::*;
 
     /// x = sin t, y = t^5, at uneven times.
-    fn curves(times: &[f64]) -> [Curve<'_, f64>; 2] {
-        let of = |f: fn(f64) -> [f64; 3]| Curve {
+    fn curves(times: &[f64]) -> [SampledCurve<'_, f64>; 2] {
+        let of = |f: fn(f64) -> [f64; 3]| SampledCurve {
             times,
             orders: 3,
             values: times.iter().map(|t| f(*t)).collect(),

@@ -18,10 +18,10 @@ pub use gradient::{Gradients, Method};
 pub use jerk::Jerks;
 pub use magnitude::Magnitude;
 pub use metric::{MetricValue, metrics};
-pub use nearest::{Nearest, nearest_admissible};
+pub use nearest::{NearestAdmissible, nearest_admissible};
 pub use second::SecondDerivatives;
 pub use validity::{Validity, validity};
-pub use verify::{Check, CheckOutcome, PASS, PASS_ONE_SIDED, Verification, VerifyOptions, verify};
+pub use verify::{CheckOutcome, PASS, PASS_ONE_SIDED, Verification, VerifiedValue, VerifyOptions, verify};
 pub use whatif::{
     Foresight, WhatIf, add_coordinates, add_tilts, repeats_coordinate, variable_named, variable_names,
     what_if,

@@ -3,7 +3,7 @@
 use crate::linalg::{FullPivot, least_squares};
 use crate::model::{Change, End, Model, VariableId};
 use crate::run::{Analysis, Walk};
-use crate::sensitivity::{Direct, FieldParts, conditions_at_design};
+use crate::sensitivity::{DirectDifferentiation, FieldParts, conditions_at_design};
 use crate::space::Vec3;
 
 /// Conditions that the motion adds are taken at so many of its output times, evenly.
@@ -16,7 +16,7 @@ const KEPT: f64 = 1e-9;
 
 /// An admissible change near one that was asked for.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Nearest {
+pub struct NearestAdmissible {
     /// By how much every variable changes, m, rad, or plain.
     pub change: Vec<f64>,
     /// How many independent conditions there are.
@@ -32,7 +32,7 @@ pub struct Nearest {
 /// the model that move one coordinate of a hardpoint or tilt one joint ([`add_coordinates`](super::add_coordinates),
 /// [`add_tilts`](super::add_tilts)), each measured by its [natural step](crate::model::Model::natural_step); what was asked for is kept as long as others can
 /// make up for it.
-pub fn nearest_admissible(analysis: &Analysis<'_>, change: &[f64]) -> Nearest {
+pub fn nearest_admissible(analysis: &Analysis<'_>, change: &[f64]) -> NearestAdmissible {
     let model = analysis.model();
     let change = model.whole(change);
     let scales: Vec<f64> = (0..change.len()).map(|v| model.natural_step(VariableId(v))).collect();
@@ -63,7 +63,7 @@ pub fn nearest_admissible(analysis: &Analysis<'_>, change: &[f64]) -> Nearest {
     }
     let largest = found.iter().fold(0.0_f64, |most, x| most.max(x.abs()));
     let cleaned = |(x, scale): (&f64, &f64)| if x.abs() > MET * largest { x * scale } else { 0.0 };
-    Nearest {
+    NearestAdmissible {
         change: found.iter().zip(&scales).map(cleaned).collect(),
         conditions: a.len(),
         defects: [defect(&asked), defect(&found)],
@@ -123,7 +123,7 @@ fn conditions(analysis: &Analysis<'_>, scales: &[f64]) -> Vec<Vec<f64>> {
     let mut done = 0;
     let every = model.times.len().div_ceil(TIMES).max(1);
     let topology = analysis.topology();
-    let mut direct = Direct::new(model, topology);
+    let mut direct = DirectDifferentiation::new(model, topology);
     let mut parts: Vec<_> = fields.iter().map(|f| FieldParts::new(topology, f)).collect();
     if topology.redundant().next().is_some() {
         // A motion that ends early asks for less.

@@ -1,13 +1,13 @@
 //! Second design derivatives over a motion: Hessians, their products with vectors, and how a curve bends along a change.
 
-use crate::design::Fixed;
-use crate::measure::{Moment, Output, bodies_asked_for, outputs};
+use crate::design::BodyFixed;
+use crate::measure::{Instant, Output, bodies_asked_for, outputs};
 use crate::model::{BodyId, GROUND};
 use crate::motion::Stop;
 use crate::motion::stepper::Stepper;
 use crate::number::Dual;
-use crate::run::{Analysis, Design, Walk};
-use crate::sensitivity::{BodyCurvature, Seconds, Way};
+use crate::run::{Analysis, PreparedDesign, Walk};
+use crate::sensitivity::{BodyCurvature, PairDirection, Seconds};
 use crate::space::Pose;
 
 /// Second derivatives of all bodies' positions and of the values of all outputs, for pairs of directions.
@@ -71,7 +71,7 @@ impl Analysis<'_> {
             bodies: model.bodies.len(),
             ..SecondDerivatives::default()
         };
-        let mut bends = Bends::new(self, &design, &directions, pairs);
+        let mut bends = SecondDerivativeSolver::new(self, &design, &directions, pairs);
         let mut times = model.times.iter();
         result.stop = walk.each(|one| {
             if let Some(&t) = times.next() {
@@ -83,24 +83,24 @@ impl Analysis<'_> {
 }
 
 /// What second derivatives need besides a stepper.
-struct Bends<'a> {
+struct SecondDerivativeSolver<'a> {
     analysis: &'a Analysis<'a>,
     seconds: Seconds,
     /// Per pair, what measures go by.
-    fixed: Vec<Fixed<Dual<Dual>>>,
+    fixed: Vec<BodyFixed<Dual<Dual>>>,
     asked_for: Vec<usize>,
     poses: Vec<Pose<Dual<Dual>>>,
 }
 
-impl<'a> Bends<'a> {
+impl<'a> SecondDerivativeSolver<'a> {
     fn new(
         analysis: &'a Analysis<'_>,
-        design: &Design,
+        design: &PreparedDesign,
         directions: &[Vec<f64>],
         pairs: &[[usize; 2]],
     ) -> Self {
         let (model, effects) = (analysis.model(), analysis.effects());
-        let ways: Vec<Way> = directions.iter().map(|d| Way::Design(d.clone())).collect();
+        let ways: Vec<PairDirection> = directions.iter().map(|d| PairDirection::Design(d.clone())).collect();
         let fixed = |&[u, w]: &[usize; 2]| {
             // b + eps_w w + eps_u u: at eps_w the derivative along w, at eps_u that along u, at both the second one
             let value = |k: usize| Dual {
@@ -128,7 +128,7 @@ impl<'a> Bends<'a> {
             for &b in &self.asked_for {
                 self.poses[b] = self.seconds.pose(state, p, b);
             }
-            let moment = Moment::new(model, &self.fixed[p], &self.poses);
+            let moment = Instant::new(model, &self.fixed[p], &self.poses);
             moment.all(|x| {
                 result.values.push(x.d.d);
                 result.firsts.push(x.v.d);

@@ -57,14 +57,14 @@ pub struct Verification {
     /// Which designs were compared.
     pub scheme: Scheme,
     /// One entry per variable, in the model's order.
-    pub checks: Vec<Check>,
+    pub checks: Vec<VerifiedValue>,
     /// Whether the sweep was ended before all variables were checked.
     pub interrupted: bool,
 }
 
 /// The check of one design variable.
 #[derive(Clone, Debug)]
-pub struct Check {
+pub struct VerifiedValue {
     /// The variable.
     pub variable: VariableId,
     /// What came of it.
@@ -89,7 +89,7 @@ pub enum CheckOutcome {
     NotSolved,
 }
 
-impl Check {
+impl VerifiedValue {
     /// The quantity that agrees worst at its own best step, which decides.
     pub fn worst(&self) -> Option<&StepError> {
         self.quantities.worst()
@@ -134,10 +134,10 @@ fn check_variable(
     solution: &Solution,
     options: &VerifyOptions,
     variable: VariableId,
-) -> Check {
+) -> VerifiedValue {
     if matches!(solution.sensitivities.admissibility[variable.0], Admissibility::CannotFollow { .. }) {
         let (quantities, sweep) = Default::default();
-        return Check { variable, outcome: CheckOutcome::CannotFollow, quantities, sweep };
+        return VerifiedValue { variable, outcome: CheckOutcome::CannotFollow, quantities, sweep };
     }
     let natural = analysis.model().natural_step(variable);
     let steps: Vec<(VariableId, f64)> = options.steps.iter().map(|part| (variable, part * natural)).collect();
@@ -159,5 +159,5 @@ fn check_variable(
         (_, true) => CheckOutcome::Passed,
         (_, false) => CheckOutcome::Failed,
     };
-    Check { variable, outcome, quantities, sweep }
+    VerifiedValue { variable, outcome, quantities, sweep }
 }

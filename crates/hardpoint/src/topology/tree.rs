@@ -73,10 +73,10 @@ pub(super) fn grow(model: &Model, formulation: Formulation) -> Topology {
         }
     }
     // Ground has no link, and depth 0.
-    let mut way = vec![Way { link: LinkId(0), depth: 0 }; model.bodies.len()];
+    let mut way = vec![PathToGround { link: LinkId(0), depth: 0 }; model.bodies.len()];
     for (k, link) in LinkId::each(&topology.links) {
         let depth = depth[link.child.0].expect("every body is placed by now");
-        way[link.child.0] = Way { link: k, depth };
+        way[link.child.0] = PathToGround { link: k, depth };
     }
     let mut add = |joint: usize, driver: Option<DriverId>, coupler: Option<usize>, rows: Vec<Row>| {
         let owner = Owner { joint: JointId(joint), driver, coupler };
@@ -236,14 +236,14 @@ struct Owner {
 
 /// From a body towards ground: the link that places it, and how many links there are to ground.
 #[derive(Clone, Copy)]
-struct Way {
+struct PathToGround {
     link: LinkId,
     depth: usize,
 }
 
 fn add_closure(
     topology: &mut Topology,
-    way: &[Way],
+    way: &[PathToGround],
     Owner { joint, driver, coupler }: Owner,
     bodies: [BodyId; 2],
     rows: Vec<Row>,
@@ -288,10 +288,15 @@ fn add_closure(
 /// Links from j (+1) and from i (-1) down to the body where their ways to ground meet, and that body.
 ///
 /// Neither way is followed further than that: in a chain of loops, the last one is far from ground.
-fn loop_links(topology: &Topology, way: &[Way], [mut i, mut j]: [BodyId; 2]) -> (Vec<LoopLink>, BodyId) {
+fn loop_links(
+    topology: &Topology,
+    way: &[PathToGround],
+    [mut i, mut j]: [BodyId; 2],
+) -> (Vec<LoopLink>, BodyId) {
     let (mut from_i, mut from_j) = (Vec::new(), Vec::new());
     while i != j {
-        let (Way { link: a, depth: depth_i }, Way { link: b, depth: depth_j }) = (way[i.0], way[j.0]);
+        let (PathToGround { link: a, depth: depth_i }, PathToGround { link: b, depth: depth_j }) =
+            (way[i.0], way[j.0]);
         if depth_i >= depth_j {
             from_i.push(LoopLink { link: a, side: -1.0 });
             i = topology[a].parent;

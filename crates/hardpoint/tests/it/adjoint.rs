@@ -69,7 +69,7 @@ fn compare(analysis: &Analysis<'_>, design: &[f64], what: &str) -> f64 {
 /// A point on every body, with the measures that a draft has: no body's motion goes unseen.
 fn with_points(mut draft: Draft) -> Draft {
     for (k, b) in draft.bodies.iter().enumerate() {
-        let at = Place::At([0.1 + 0.01 * k as f64, -0.2, 0.3].into());
+        let at = PlaceDraft::At([0.1 + 0.01 * k as f64, -0.2, 0.3].into());
         draft.points.push(PointDraft::new(format!("point on body {k}"), b.name.clone(), at));
     }
     draft
@@ -105,7 +105,7 @@ fn all_measures_of_a_wheel_have_the_same_gradients_where_variables_move_its_own_
         let changes = vec![ChangeDraft::Move { hardpoint: name.into(), velocity }];
         draft.design.push(VariableDraft::new(name, changes));
     }
-    let at = |name: &str| Place::Hardpoint(name.into());
+    let at = |name: &str| PlaceDraft::Hardpoint(name.into());
     let on_knuckle = |name: &str| PointRef::On { body: "knuckle".into(), at: at(name) };
     draft.wheels.push(WheelDraft {
         name: "wheel".into(),
@@ -143,7 +143,7 @@ fn all_measures_of_a_wheel_have_the_same_gradients_where_variables_move_its_own_
 #[test]
 fn gradients_of_what_is_no_matter_of_positions_are_those_of_a_run() {
     let mut draft = reference_draft("double_wishbone");
-    let point = || PointRef::On { body: "knuckle".into(), at: Place::At([0.0, 0.6, 0.2].into()) };
+    let point = || PointRef::On { body: "knuckle".into(), at: PlaceDraft::At([0.0, 0.6, 0.2].into()) };
     let along: Vec3 = [0.0, 0.0, 1.0].into();
     let mut add = |name: &str, kind| draft.measures.push(MeasureDraft::new(name, kind));
     add("height", MeasureKindDraft::Coordinates { point: point(), along });

@@ -8,7 +8,7 @@ use hardpoint::sensitivity::Admissibility;
 use hardpoint::space::Vec3;
 use hardpoint::study::{VerifyOptions, verify};
 use hardpoint::topology::Formulation;
-use hardpoint::{design::Kept, draft::*, model::*};
+use hardpoint::{design::JointConstants, draft::*, model::*};
 
 use crate::workbench::*;
 
@@ -25,10 +25,10 @@ fn strut_with_hardpoints(design: Vec<VariableDraft>) -> Model {
         match j.name.as_str() {
             "lca_pivot" => {
                 j.at = Vec::new();
-                j.axis = Some(Line::Through("lca_rear".into(), "lca_front".into()));
+                j.axis = Some(LineDraft::Through("lca_rear".into(), "lca_front".into()));
             }
-            "ball_B" => j.at = vec![Place::Hardpoint("ball".into())],
-            "tie_rod" => j.at[0] = Place::Hardpoint("tie_rod_outer".into()),
+            "ball_B" => j.at = vec![PlaceDraft::Hardpoint("ball".into())],
+            "tie_rod" => j.at[0] = PlaceDraft::Hardpoint("tie_rod_outer".into()),
             _ => {}
         }
     }
@@ -82,7 +82,7 @@ fn the_field_is_the_derivative_of_the_geometry_for_every_kind_of_change() {
             "move a rod's end",
             ChangeDraft::Move { hardpoint: "tie_rod_outer".into(), velocity: Vec3::new(0.3, 1.0, 0.2) },
         ),
-        ("tilt", ChangeDraft::Tilt { joint: joint(), about: Line::Along(x[1]) }),
+        ("tilt", ChangeDraft::Tilt { joint: joint(), about: LineDraft::Along(x[1]) }),
         (
             "one marker",
             ChangeDraft::Marker {
@@ -134,8 +134,11 @@ fn the_field_is_the_derivative_of_the_geometry_for_every_kind_of_change() {
                             worst = worst.max((d - w.cross(o.rot.cols[c])).norm());
                         }
                     }
-                    let rate =
-                        field.kept.iter().find(|(k, _)| k.0 == j).map_or(Kept::default(), |(_, kept)| *kept);
+                    let rate = field
+                        .kept
+                        .iter()
+                        .find(|(k, _)| k.0 == j)
+                        .map_or(JointConstants::default(), |(_, kept)| *kept);
                     for (p, m, rate) in [
                         (p.kept[j].distance, m.kept[j].distance, rate.distance),
                         (p.kept[j].offset, m.kept[j].offset, rate.offset),

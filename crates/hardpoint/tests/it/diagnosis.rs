@@ -133,7 +133,7 @@ fn a_rocker_driven_back_and_forth_stays_on_its_branch() {
 #[test]
 fn a_planar_linkage_with_a_tilted_pin_locks() {
     let mut draft = four_bar(CRANK_ROCKER, "2*pi*t", &times(1.0, 50));
-    draft.joints[2].axis = Some(Line::Along([0.0, 0.02, 1.0].into()));
+    draft.joints[2].axis = Some(LineDraft::Along([0.0, 0.02, 1.0].into()));
     let model = Model::from_draft(&draft).unwrap();
     for formulation in [Formulation::Relative, Formulation::Absolute] {
         // Tilted by a degree, it has no motion at all: found already at the design configuration.

@@ -8,7 +8,7 @@ use hardpoint::space::Vec3;
 use hardpoint::study::{VerifyOptions, verify};
 use hardpoint::topology::Formulation;
 use hardpoint::{Analysis, Run};
-use hardpoint::{design::Field, draft::*, model::*};
+use hardpoint::{design::DesignVelocity, draft::*, model::*};
 use hardpoint::{expression::Expression, law::Law};
 
 use crate::workbench::*;
@@ -68,7 +68,7 @@ fn crank_rocker(own_length: bool) -> Draft {
     draft.drivers.push(DriverDraft::new("motor", "bearing", law));
     let place =
         ["C.x/2", "0.02*tanh(stretch)", "max(0.01, C.z)"].map(|text| Expression::parse(text).unwrap());
-    draft.points.push(PointDraft::new("P", "rocker", Place::Formula(Box::new(place))));
+    draft.points.push(PointDraft::new("P", "rocker", PlaceDraft::Formula(Box::new(place))));
     draft.measures.push(MeasureDraft::new("angle", "pivot"));
     // A hardpoint that formulas use may be moved as well.
     draft.design.push(VariableDraft::moving("A_x", "A", Vec3::AXES[0]));
@@ -129,7 +129,7 @@ fn fields_of_formulas_are_the_derivatives_of_the_geometry_at_every_design() {
                     let law: f64 = field.laws.iter().map(|l| l.2).sum();
                     worst.max(((p.1 - m.1) / (2.0 * h) - law).abs())
                 };
-                assert_ne!(*field, Field::default(), "{name}: no field");
+                assert_ne!(*field, DesignVelocity::default(), "{name}: no field");
                 let (coarse, fine, best) = (error(2e-2), error(1e-2), error(1e-6));
                 assert!(best < 1e-8, "{name} at {base:?}: {best:e}");
                 assert!(

@@ -166,3 +166,25 @@ fn unsafe_stands_where_the_safety_argument_says() {
     holding.sort();
     assert_eq!(holding, ["x86_64/memory.rs", "x86_64/mod.rs"]);
 }
+
+/// The words of `docs/glossary.md` name types that there are.
+#[test]
+fn the_glossary_names_what_is_in_the_sources() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let glossary = std::fs::read_to_string(root.join("../../docs/glossary.md")).unwrap();
+    let all: String = sources(&root.join("src")).into_iter().map(|(_, text)| text).collect();
+    let mut named = 0;
+    for line in glossary.lines().filter(|l| l.starts_with("| ")) {
+        let column = line.trim_end_matches([' ', '|']).rsplit('|').next().unwrap();
+        for path in column.split('`').skip(1).step_by(2) {
+            let name = path.rsplit("::").next().unwrap();
+            let is_there = ["struct", "enum", "trait", "const", "mod"].iter().any(|word| {
+                [" ", ":", "<", ";", "("].iter().any(|end| all.contains(&format!("{word} {name}{end}")))
+            });
+            let is_field = all.contains(&format!("    pub {name}: "));
+            assert!(is_there || is_field, "docs/glossary.md names `{path}`, which is not in the core");
+            named += 1;
+        }
+    }
+    assert!(named > 30, "only {named} types are named");
+}

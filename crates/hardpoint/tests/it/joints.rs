@@ -45,7 +45,7 @@ fn shaft_train() -> Draft {
     let drives = |body: &str, about: [f64; 3]| DrivenDraft::Orientation {
         body: body.into(),
         relative_to: None,
-        about: Line::Along(about.into()),
+        about: LineDraft::Along(about.into()),
     };
     let law = |text: &str| hardpoint::law::Law::parse(text).unwrap();
     Draft {
@@ -91,8 +91,8 @@ fn shaft_train() -> Draft {
             DriverDraft::new(
                 "lift",
                 DrivenDraft::Position {
-                    point: PointRef::On { body: "plate".into(), at: Place::At([0.5, 0.6, 0.4].into()) },
-                    along: Line::Along([0.0, 0.3, 1.0].into()),
+                    point: PointRef::On { body: "plate".into(), at: PlaceDraft::At([0.5, 0.6, 0.4].into()) },
+                    along: LineDraft::Along([0.0, 0.3, 1.0].into()),
                 },
                 law("0.02*sin(4*t)"),
             ),

@@ -80,7 +80,7 @@ fn loops_that_share_their_code_move_as_the_kernel_moves_them() {
     for joint in &mut draft.joints {
         let number: usize = joint.name.trim_matches(char::is_alphabetic).parse().unwrap();
         for place in &mut joint.at {
-            let Place::At(at) = place else { unreachable!() };
+            let PlaceDraft::At(at) = place else { unreachable!() };
             let next = number + usize::from(joint.name.starts_with("right"));
             at.x += 0.1 * (next as f64).sin();
             at.y *= 1.0 + 1e-3 * (2.0 * next as f64).cos();
@@ -164,9 +164,9 @@ fn moves(name: &str, k: usize, y: f64) -> VariableDraft {
 fn with_hardpoints(mut draft: Draft, n: usize, place: &dyn Fn(usize) -> [f64; 3]) -> Draft {
     draft.hardpoints = (0..n).map(|k| HardpointDraft::new(format!("p{k}"), place(k))).collect();
     for at in draft.joints.iter_mut().flat_map(|j| &mut j.at) {
-        let Place::At(p) = *at else { continue };
+        let PlaceDraft::At(p) = *at else { continue };
         if let Some(k) = (0..n).find(|&k| Vec3::from(place(k)) == p) {
-            *at = Place::Hardpoint(format!("p{k}"));
+            *at = PlaceDraft::Hardpoint(format!("p{k}"));
         }
     }
     draft

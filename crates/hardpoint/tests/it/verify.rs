@@ -9,7 +9,7 @@ use hardpoint::study::{
 };
 use hardpoint::{Analysis, Solution};
 use hardpoint::{
-    draft::Place,
+    draft::PlaceDraft,
     model::{BodyId, Model, VariableId},
 };
 
@@ -114,7 +114,7 @@ fn a_wrong_sensitivity_fails_and_is_named() {
         // Those of another design.
         let mut other = reference_draft("macpherson");
         for place in &mut other.joints[1].at {
-            let Place::At(place) = place else { panic!("coordinates") };
+            let PlaceDraft::At(place) = place else { panic!("coordinates") };
             place.z += 0.02;
         }
         let other = Model::from_draft(&other).unwrap();

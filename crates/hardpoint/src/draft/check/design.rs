@@ -3,16 +3,16 @@
 use std::collections::BTreeSet;
 
 use crate::design::{Interpolation, ShapeField};
-use crate::draft::{ChangeDraft, Line, Locus, Section, ShapeDraft, VariableDraft};
+use crate::draft::{ChangeDraft, LineDraft, Locus, Section, ShapeDraft, VariableDraft};
 use crate::model::change;
 use crate::model::{
     BodyId, Change, DesignVariable, Direction, DriverId, End, HardpointId, JointId, ParameterId,
 };
 use crate::space::Vec3;
 
-use super::{Check, Here, SAME_POINT, UNPLACED};
+use super::{Checker, Here, SAME_POINT, UNPLACED};
 
-impl Check<'_> {
+impl Checker<'_> {
     pub(super) fn variables(&mut self) {
         let draft = self.draft;
         for (index, v) in draft.design.iter().enumerate() {
@@ -129,7 +129,7 @@ impl Check<'_> {
         let key = || here.key("field");
         Some(match field {
             ShapeDraft::Translate(v) => {
-                let (_, along) = self.line(&Line::Along(*v), owner, here, "field")?;
+                let (_, along) = self.line(&LineDraft::Along(*v), owner, here, "field")?;
                 ShapeField::Translate(along)
             }
             ShapeDraft::Rotate { about, at } => {

@@ -13,7 +13,7 @@ use crate::model::{
 use crate::number::Dual;
 use crate::space::Vec3;
 
-use super::{Check, Here, LISTED_NAMES, extent_of_joints};
+use super::{Checker, Here, LISTED_NAMES, extent_of_joints};
 
 /// A formula, and where it stands.
 pub(super) struct Written {
@@ -23,7 +23,7 @@ pub(super) struct Written {
     name: String,
 }
 
-impl<'a> Check<'a> {
+impl<'a> Checker<'a> {
     /// Parameters, and the formulas that give them and the coordinates of named hardpoints.
     pub(super) fn formulas(&mut self) {
         let draft = self.draft;
@@ -380,7 +380,7 @@ impl Nominal {
     /// What the parameters and hardpoints of a draft are with all design variables at zero. What is faulty is left out:
     /// [`Model::from_draft`](crate::model::Model::from_draft) reports it.
     pub fn of(draft: &Draft) -> Self {
-        let mut c = Check::new(draft);
+        let mut c = Checker::new(draft);
         c.formulas();
         let mut followed: HashMap<&str, String> = HashMap::new();
         for v in &draft.design {

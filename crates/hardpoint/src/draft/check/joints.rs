@@ -1,15 +1,15 @@
 //! Checks of joints: their bodies, places, axes, lengths, leads and curves.
 
 use crate::constraint::Row;
-use crate::draft::{JointDraft, Line, Section};
+use crate::draft::{JointDraft, LineDraft, Section};
 use crate::joint;
 use crate::joint::{JointType, Need};
 use crate::model::{Curve, Direction, GROUND, Hardpoint, HardpointId, Joint, JointId};
 use crate::space::{Mat3, Pose, Vec3};
 
-use super::{Check, Here, SAME_POINT, SQUARE_TOLERANCE, UNPLACED, degrees_between, frame_along};
+use super::{Checker, Here, SAME_POINT, SQUARE_TOLERANCE, UNPLACED, degrees_between, frame_along};
 
-impl Check<'_> {
+impl Checker<'_> {
     pub(super) fn joints(&mut self) {
         let draft = self.draft;
         for (index, j) in draft.joints.iter().enumerate() {
@@ -247,7 +247,7 @@ impl Check<'_> {
             return Some([a, a]);
         }
         // Where the places are, or might be, is not known.
-        let by_axis = matches!(j.axis, Some(Line::Through(..))) || self.unread(here, "axis");
+        let by_axis = matches!(j.axis, Some(LineDraft::Through(..))) || self.unread(here, "axis");
         if self.unread(here, "at") || j.at.is_empty() && kind.places == 1 && by_axis {
             return None;
         }

@@ -2,18 +2,18 @@
 
 use crate::draft::measure::Field;
 use crate::draft::{
-    FieldDraft, FieldKind, Line, Locus, MeasureDraft, MetricDraft, PointRef, RayDraft, Section,
+    FieldDraft, FieldKind, LineDraft, Locus, MeasureDraft, MetricDraft, PointRef, RayDraft, Section,
 };
 use crate::expression::Expression;
 use crate::model::{
-    AxleMeasure, BodyId, Combination, Dimension, Direction, DriverId, JointId, Known, Measure, MeasureKind,
-    Metric, OutputSource, PointId, Ray, Take, WheelMeasure,
+    AxleMeasure, BodyId, Combination, Dimension, Direction, DriverId, JointId, KnownOrders, Measure,
+    MeasureKind, Metric, OutputSource, PointId, Ray, Reduction, WheelMeasure,
 };
 use crate::space::Vec3;
 
-use super::{Check, Here};
+use super::{Checker, Here};
 
-impl Check<'_> {
+impl Checker<'_> {
     pub(super) fn measures(&mut self) {
         let draft = self.draft;
         for (index, m) in draft.measures.iter().enumerate() {
@@ -73,9 +73,11 @@ impl Check<'_> {
         let x = |c: &Self| over.map_or(Dimension::NUMBER, |over| c.model.dimension(over));
         let (x, y) = (x(self), self.model.dimension(of));
         let take = match &m.take {
-            Take::Value(at) => Take::Value(si(x, *at)),
-            Take::Slope(at) => Take::Slope(si(x, *at)),
-            Take::Rms(target) => Take::Rms(target.iter().map(|p| [si(x, p[0]), si(y, p[1])]).collect()),
+            Reduction::Value(at) => Reduction::Value(si(x, *at)),
+            Reduction::Slope(at) => Reduction::Slope(si(x, *at)),
+            Reduction::Rms(target) => {
+                Reduction::Rms(target.iter().map(|p| [si(x, p[0]), si(y, p[1])]).collect())
+            }
             take => take.clone(),
         };
         let rises = |points: &mut dyn Iterator<Item = f64>| {
@@ -89,7 +91,7 @@ impl Check<'_> {
             self.fault("HP0234", here.key("window"), message).help("give the lower and the upper end");
             return None;
         }
-        if let Take::Rms(target) = &take
+        if let Reduction::Rms(target) = &take
             && !(rises(&mut target.iter().map(|p| p[0])) && target.iter().all(|p| p[1].is_finite()))
         {
             let message = format!("the target of metric `{}` does not go on from point to point", m.name);
@@ -97,7 +99,7 @@ impl Check<'_> {
                 .help("list points `[abscissa, value]` in the order of their abscissa");
             return None;
         }
-        if let (Take::Slope(_), Known { orders: 1, .. }) = (&take, self.model.known(of)) {
+        if let (Reduction::Slope(_), KnownOrders { orders: 1, .. }) = (&take, self.model.known(of)) {
             let message = format!("the rate of `{}` is not known, so metric `{}` is not", m.of, m.name);
             self.fault("HP0233", here.key("of"), message)
                 .note("the motion is solved up to accelerations, and slopes over a driver up to their values")
@@ -286,7 +288,7 @@ impl Check<'_> {
 
 /// The check of one measure.
 pub(in crate::draft) struct MeasureCheck<'c, 'd> {
-    check: &'c mut Check<'d>,
+    check: &'c mut Checker<'d>,
     owner: &'c str,
     here: Here,
     /// The joint that it names.
@@ -353,13 +355,13 @@ field!(usize, Coordinate, Name: Option<String>, may |name, _key, c| {
 });
 field!(PointId, Point, Point: PointRef, |point, key, c| c.check.point(point, c.owner, c.here.key(key)));
 field!(Vec3, Direction, Direction: Vec3, |v, key, c| {
-    Some(c.check.line(&Line::Along(*v), c.owner, c.here, key)?.1)
+    Some(c.check.line(&LineDraft::Along(*v), c.owner, c.here, key)?.1)
 });
 field!(Option<Vec3>, Direction, Direction: Option<Vec3>, may |v, key, c| match v {
     Some(v) => Vec3::resolve(v, key, c).map(Some),
     None => Some(None),
 });
-field!(Direction, Line, Line: Line, |line, key, c| Some(c.check.line(line, c.owner, c.here, key)?.0));
+field!(Direction, Line, Line: LineDraft, |line, key, c| Some(c.check.line(line, c.owner, c.here, key)?.0));
 field!(Ray, Ray, Ray: RayDraft, |ray, key, c| c.check.ray(ray, c.owner, c.here, key));
 field!(OutputSource, Output, Name: String, |name, key, c| c.check.output(name, c.here.key(key)));
 field!(BodyId, Body, Name: String, |name, key, c| c.check.body(name, c.here.key(key)));

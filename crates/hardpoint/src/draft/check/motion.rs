@@ -4,19 +4,19 @@ use crate::draft::{CouplerKindDraft, DrivenDraft, DriverDraft, Locus, Section};
 use crate::joint;
 use crate::joint::{CoordinateType, JointType};
 use crate::model::{
-    BodyId, BodyPoint, Coupler, Direction, Driver, DriverId, GROUND, HardpointId, Joint, JointId, Term,
+    BodyId, BodyPoint, Coupler, CouplerTerm, Direction, Driver, DriverId, GROUND, HardpointId, Joint, JointId,
 };
 use crate::space::Mat3;
 
-use super::{Check, Here, frame_along};
+use super::{Checker, Here, frame_along};
 
-impl Check<'_> {
+impl Checker<'_> {
     /// A coordinate of a joint, by name or as its only one.
     pub(super) fn coordinate(&mut self, joint: JointId, name: Option<&str>, here: Here) -> Option<usize> {
         self.coordinate_at(joint, name, [here.key("joint"), here.key("coordinate")])
     }
 
-    /// As [`Check::coordinate`], where the joint and the coordinate are named at these places.
+    /// As [`Checker::coordinate`], where the joint and the coordinate are named at these places.
     pub(super) fn coordinate_at(
         &mut self,
         joint: JointId,
@@ -184,10 +184,10 @@ impl Check<'_> {
                             let joint = self.joint(&t.joint, at.clone())?;
                             let coordinate =
                                 self.coordinate_at(joint, t.coordinate.as_deref(), [at.clone(), at])?;
-                            Some(Term { joint, coordinate, coefficient: t.coefficient })
+                            Some(CouplerTerm { joint, coordinate, coefficient: t.coefficient })
                         })
                         .collect();
-                    terms.into_iter().collect::<Option<Vec<Term>>>()
+                    terms.into_iter().collect::<Option<Vec<CouplerTerm>>>()
                 }
                 CouplerKindDraft::Gears { joints, teeth, internal } => {
                     let sign = if *internal { -1.0 } else { 1.0 };
@@ -229,8 +229,8 @@ impl Check<'_> {
                 let coordinate = |name: &str| joint::SCREW.coordinate(name).expect("a screw has it").0;
                 let per_radian = lead / (2.0 * std::f64::consts::PI);
                 let terms = vec![
-                    Term { joint, coordinate: coordinate("displacement"), coefficient: 1.0 },
-                    Term { joint, coordinate: coordinate("angle"), coefficient: -per_radian },
+                    CouplerTerm { joint, coordinate: coordinate("displacement"), coefficient: 1.0 },
+                    CouplerTerm { joint, coordinate: coordinate("angle"), coefficient: -per_radian },
                 ];
                 self.model.couplers.push(Coupler { name: draft.joints[k].name.clone(), terms });
             }
@@ -244,12 +244,12 @@ impl Check<'_> {
         coordinates: [&str; 2],
         coefficients: [f64; 2],
         here: Here,
-    ) -> Option<Vec<Term>> {
+    ) -> Option<Vec<CouplerTerm>> {
         let terms = [0, 1].map(|k| {
             let at = here.item("joints", k);
             let joint = self.joint(&joints[k], at.clone())?;
             let coordinate = self.coordinate_at(joint, Some(coordinates[k]), [at.clone(), at])?;
-            Some(Term { joint, coordinate, coefficient: coefficients[k] })
+            Some(CouplerTerm { joint, coordinate, coefficient: coefficients[k] })
         });
         terms.into_iter().collect()
     }

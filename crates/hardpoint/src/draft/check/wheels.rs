@@ -7,12 +7,12 @@ use crate::model::{
 };
 use crate::space::Vec3;
 
-use super::{Check, Here, SAME_POINT};
+use super::{Checker, Here, SAME_POINT};
 
 /// A direction nearer to the vertical than this, as a cosine, has no heading, and one nearer to the horizontal no rise.
 const HEADLESS: f64 = 1e-6;
 
-impl Check<'_> {
+impl Checker<'_> {
     pub(super) fn vehicle(&mut self) {
         let v = &self.draft.vehicle;
         let here = Here { section: Section::Vehicle, index: 0 };

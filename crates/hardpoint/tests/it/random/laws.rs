@@ -669,13 +669,13 @@ fn flat(model: &Model, s: &Solution, size: f64, moved: Option<Pose>, anywhere: b
 /// The mechanism with everything in it moved and turned.
 fn moved(draft: &Draft, to: Pose) -> Draft {
     let mut d = draft.clone();
-    let place = |p: &mut Place| {
-        if let Place::At(v) = p {
+    let place = |p: &mut PlaceDraft| {
+        if let PlaceDraft::At(v) = p {
             *v = to.point(*v);
         }
     };
-    let line = |l: &mut Line| {
-        if let Line::Along(v) = l {
+    let line = |l: &mut LineDraft| {
+        if let LineDraft::Along(v) = l {
             *v = to.rot * *v;
         }
     };

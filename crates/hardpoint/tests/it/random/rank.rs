@@ -1,6 +1,6 @@
 //! Counting freedoms without the library's plan: all rows of all joints over six coordinates per body.
 
-use hardpoint::constraint::{Ends, Row};
+use hardpoint::constraint::{MarkerPair, Row};
 use hardpoint::model::*;
 use hardpoint::space::{Mat3, Pose, Twist, Vec3};
 
@@ -99,7 +99,7 @@ pub fn mobility(model: &Model) -> usize {
 fn row_of(model: &Model, k: usize, row: Row, size: f64) -> Vec<f64> {
     let joint = &model.joints[k];
     let marker = |e: usize| Pose { rot: joint.frames[e], r: model.hardpoints[joint.at[e].0].position };
-    let mut ends = Ends { i: marker(0), j: marker(1), axes: Mat3::IDENTITY };
+    let mut ends = MarkerPair { i: marker(0), j: marker(1), axes: Mat3::IDENTITY };
     if let Some(curve) = &joint.curve {
         let [c, d, ..] = curve.at(curve.start());
         let x = Vec3::new(d[0], d[1], 0.0).unit().expect("a curve with a direction");
