@@ -10,6 +10,9 @@ use crate::space::Mat3;
 
 use super::{Checker, Here, frame_along};
 
+/// Accelerations go with the square of a speed, jerks with its cube, and these must have room in a number.
+const LARGEST_RATE: f64 = 1e100;
+
 impl Checker<'_> {
     /// A coordinate of a joint, by name or as its only one.
     pub(super) fn coordinate(&mut self, joint: JointId, name: Option<&str>, here: Here) -> Option<usize> {
@@ -52,13 +55,20 @@ impl Checker<'_> {
         for (index, d) in draft.drivers.iter().enumerate() {
             let here = Here { section: Section::Drivers, index };
             let Some(law) = self.formula_law(&d.name, &d.law, &here.key("law")) else { continue };
-            let finite = |t: f64| law.at(t).derivatives()[..3].iter().all(|x| x.is_finite());
-            if let Some(&t) = draft.times.iter().find(|&&t| !finite(t)) {
+            let all = |t: f64, holds: &dyn Fn(&f64) -> bool| law.at(t).derivatives()[..3].iter().all(holds);
+            if let Some(&t) = draft.times.iter().find(|&&t| !all(t, &|x| x.abs() < LARGEST_RATE)) {
                 let [f, fd, fdd, _] = law.at(t).derivatives();
-                let message = format!("the law of driver `{}` has no finite value at t = {t} s", d.name);
-                self.fault("HP0214", here.key("law"), message)
-                    .note(format!("value {f}, first derivative {fd}, second derivative {fdd} there"))
-                    .help("change the law, or the times, so that all three are finite");
+                let (what, remedy) = match all(t, &|x| x.is_finite()) {
+                    false => ("has no finite value", "are finite".to_owned()),
+                    true => ("is too fast to be solved", format!("are below {LARGEST_RATE:e}")),
+                };
+                self.fault(
+                    "HP0214",
+                    here.key("law"),
+                    format!("the law of driver `{}` {what} at t = {t} s", d.name),
+                )
+                .note(format!("value {f}, first derivative {fd}, second derivative {fdd} there"))
+                .help(format!("change the law, or the times, so that all three {remedy}"));
             }
             let Some((joint, coordinate)) = self.driven(d, here) else { continue };
             self.driver_of.insert((joint, coordinate), DriverId(self.model.drivers.len()));
