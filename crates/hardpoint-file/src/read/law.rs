@@ -93,6 +93,28 @@ static TYPES: &[(Table, Read)] = &[
     ),
     (
         table! {
+            /// From one value to another with constant acceleration, constant speed, constant deceleration; at rest before and after.
+            "trapezoid":
+            /// The value before, in the driver's unit.
+            or("0.0") "from": NUMBER, "0";
+            /// The value after, in the driver's unit.
+            must "to": NUMBER, "40";
+            /// When it begins, in s.
+            must "start": NUMBER, "0.5";
+            /// When it ends, in s.
+            must "end": NUMBER, "1.5";
+            /// How long it speeds up, and slows down, in s; at most half of that time.
+            must "ramp": NUMBER, "0.2";
+        },
+        |r, _, fields| {
+            let [from, to, start, end, ramp] =
+                r.numbers_of(fields, ["from", "to", "start", "end", "ramp"])?;
+            let at = fields.get("ramp").map_or(fields.at.clone(), |f| f.value.span());
+            r.made(fields, at, Law::trapezoid(law::Trapezoid { from, to, start, end, ramp }))
+        },
+    ),
+    (
+        table! {
             /// A spline through points, given here or in a CSV file.
             "table":
             /// Pairs of time in s and value in the driver's unit, in the order of time. Either these or `file`.

@@ -446,7 +446,9 @@ fn of_polynomial(coefficients: &[f64], from: f64, to: f64) -> Range {
 
 #[cfg(test)]
 mod tests {
-    use crate::law::{ConstantSpeed, Harmonic, Law, Piece, SmoothStep, SplineDegree, SplineEnds, Table};
+    use crate::law::{
+        ConstantSpeed, Harmonic, Law, Piece, SmoothStep, SplineDegree, SplineEnds, Table, Trapezoid,
+    };
 
     fn laws() -> Vec<Law> {
         let text = [
@@ -472,6 +474,8 @@ mod tests {
         laws.push(Law::polynomial(&[1.0, -2.0, 0.5, 3.0, -1.0]).unwrap());
         let step = SmoothStep { from: 1.0, to: -2.0, start: 0.3, end: 1.1, degree: 5 };
         laws.push(Law::smooth_step(step).unwrap());
+        let trapezoid = Trapezoid { from: 1.0, to: -2.0, start: 0.3, end: 1.1, ramp: 0.25 };
+        laws.push(Law::trapezoid(trapezoid).unwrap());
         let (times, values) = (vec![-0.1, 0.5, 1.2, 2.5], vec![0.0, 3.0, -1.0, 0.0]);
         for (degree, ends) in [
             (SplineDegree::Cubic, SplineEnds::default()),

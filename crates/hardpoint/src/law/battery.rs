@@ -28,6 +28,7 @@ fn every_kind() -> Vec<Law> {
         step(0.1, 2.6, 3),
         step(0.1, 2.6, 5),
         step(0.1, 2.6, 7),
+        Law::trapezoid(Trapezoid { from: 0.5, to: 3.0, start: 0.1, end: 2.6, ramp: 0.9 }).unwrap(),
     ];
     for degree in [SplineDegree::Cubic, SplineDegree::Quintic] {
         for ends in [SplineEnds::Natural, CLAMPED, SplineEnds::Periodic] {

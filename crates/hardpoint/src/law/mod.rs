@@ -23,6 +23,7 @@ mod sequence;
 mod smooth_step;
 mod speed;
 mod table;
+mod trapezoid;
 
 use std::fmt;
 
@@ -44,6 +45,7 @@ kinds! {
     speed: pub ConstantSpeed,
     polynomial: Polynomial,
     smooth_step: pub SmoothStep,
+    trapezoid: pub Trapezoid,
     table: Spline,
     sequence: Sequence,
 }
