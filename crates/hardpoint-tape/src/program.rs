@@ -25,55 +25,60 @@ pub enum Operand {
     Constant(u32),
 }
 
-/// A function that is not arithmetic: the standard library evaluates it lane by lane.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub enum Call {
-    /// Tangent.
-    Tan,
-    /// Arc sine.
-    Asin,
-    /// Arc cosine.
-    Acos,
-    /// Arc tangent.
-    Atan,
-    /// Hyperbolic sine.
-    Sinh,
-    /// Hyperbolic cosine.
-    Cosh,
-    /// Hyperbolic tangent.
-    Tanh,
-    /// Exponential function.
-    Exp,
-    /// Natural logarithm.
-    Ln,
-    /// Of two: `a.atan2(b)`, the angle of the point (b, a).
-    Atan2,
-    /// Of two: `a.powf(b)`.
-    Pow,
+/// Declares the functions that are not arithmetic: of how many numbers, by what name, and what they are.
+macro_rules! calls {
+    ($($(#[$doc:meta])* $Call:ident $name:literal of $operands:literal |$a:pat_param, $b:pat_param| $value:expr;)*) => {
+        /// A function that is not arithmetic: the standard library evaluates it lane by lane.
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+        pub enum Call {
+            $($(#[$doc])* $Call,)*
+        }
+
+        impl Call {
+            /// All of them.
+            pub const ALL: &[Self] = &[$(Self::$Call),*];
+
+            /// Its name in mathematics.
+            pub fn name(self) -> &'static str {
+                match self { $(Self::$Call => $name),* }
+            }
+
+            /// The function of one scalar, or of two; `b` is ignored by functions of one.
+            pub fn of(self, a: f64, b: f64) -> f64 {
+                match self { $(Self::$Call => { let ($a, $b) = (a, b); $value })* }
+            }
+
+            /// Whether it is a function of two numbers.
+            pub fn is_of_two(self) -> bool {
+                match self { $(Self::$Call => $operands == 2),* }
+            }
+        }
+    };
 }
 
-impl Call {
-    /// The function of one scalar, or of two; `b` is ignored by functions of one.
-    pub fn of(self, a: f64, b: f64) -> f64 {
-        match self {
-            Self::Tan => a.tan(),
-            Self::Asin => a.asin(),
-            Self::Acos => a.acos(),
-            Self::Atan => a.atan(),
-            Self::Sinh => a.sinh(),
-            Self::Cosh => a.cosh(),
-            Self::Tanh => a.tanh(),
-            Self::Exp => a.exp(),
-            Self::Ln => a.ln(),
-            Self::Atan2 => a.atan2(b),
-            Self::Pow => a.powf(b),
-        }
-    }
-
-    /// Whether it is a function of two numbers.
-    pub fn is_of_two(self) -> bool {
-        matches!(self, Self::Atan2 | Self::Pow)
-    }
+calls! {
+    /// Tangent.
+    Tan "tan" of 1 |a, _| a.tan();
+    /// Arc sine.
+    Asin "asin" of 1 |a, _| a.asin();
+    /// Arc cosine.
+    Acos "acos" of 1 |a, _| a.acos();
+    /// Arc tangent.
+    Atan "atan" of 1 |a, _| a.atan();
+    /// Hyperbolic sine.
+    Sinh "sinh" of 1 |a, _| a.sinh();
+    /// Hyperbolic cosine.
+    Cosh "cosh" of 1 |a, _| a.cosh();
+    /// Hyperbolic tangent.
+    Tanh "tanh" of 1 |a, _| a.tanh();
+    /// Exponential function.
+    Exp "exp" of 1 |a, _| a.exp();
+    /// Natural logarithm.
+    Ln "ln" of 1 |a, _| a.ln();
+    /// Of two: `a.atan2(b)`, the angle of the point (b, a).
+    Atan2 "atan2" of 2 |a, b| a.atan2(b);
+    /// Of two: `a.powf(b)`.
+    Pow "pow" of 2 |a, b| a.powf(b);
 }
 
 /// One instruction; its result is the value of its own number.
