@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use crate::expression::Stretch;
+use crate::expression::{Range, Stretch};
 use crate::number::{Jet, Real};
 
 use super::jumps::Break;
@@ -114,6 +114,14 @@ macro_rules! parameters {
     };
 }
 pub(super) use parameters;
+
+/// Bounds of a law that never turns round, and is fastest in the middle of its way.
+pub(super) fn one_way(law: &impl LawKind, middle: f64, from: f64, to: f64) -> Stretch {
+    let at = |t: f64| law.at(Jet::<f64, 4>::time(t), None);
+    let [start, fastest, end] = [at(from), at(middle.clamp(from, to)), at(to)];
+    let rate = Range::between(start.d(), end.d()).or(Range::exactly(fastest.d()));
+    Stretch { value: Range::between(start.value(), end.value()), rate }
+}
 
 /// A sum as one writes it: signs between the terms, no term that is zero, `0` if none is left.
 pub(super) fn write_sum(f: &mut fmt::Formatter<'_>, terms: &[(f64, &str)]) -> fmt::Result {

@@ -2,13 +2,13 @@
 
 use std::fmt;
 
-use crate::expression::{Range, Stretch};
+use crate::expression::Stretch;
 use crate::number::{Jet, Real};
 
 use super::Law;
 use super::error::{LawError, check_finite};
 use super::jumps::Break;
-use super::kind::{LawKind, parameters};
+use super::kind::{LawKind, one_way, parameters};
 use super::parameter::{Parameter, ParameterKind, Seed, parameter, seeded};
 use super::polynomial::sum_of_powers;
 
@@ -114,12 +114,7 @@ impl LawKind for SmoothStep {
     }
 
     fn over(&self, from: f64, to: f64) -> Stretch {
-        // It never turns round, and is fastest in the middle.
-        let at = |t: f64| self.at(Jet::<f64>::time(t), None);
-        let middle = (0.5 * (self.start + self.end)).clamp(from, to);
-        let [start, fastest, end] = [at(from), at(middle), at(to)];
-        let rate = Range::between(start.d(), end.d()).or(Range::exactly(fastest.d()));
-        Stretch { value: Range::between(start.value(), end.value()), rate }
+        one_way(self, 0.5 * (self.start + self.end), from, to)
     }
 
     parameters! {
