@@ -9,8 +9,8 @@ use crate::draft::{
 use crate::law::Law;
 use crate::space::Vec3;
 
-/// What a mechanism is made of, entry by entry. Names may be used before they are given; [`Model::from_draft`](crate::model::Model) checks
-/// them all.
+/// What a mechanism is made of, entry by entry. Names may be used before they are given; [`Model::from_draft`](crate::model::Model::from_draft)
+/// checks them all.
 impl Draft {
     /// An empty draft of that name.
     pub fn new(name: impl Into<String>) -> Self {
