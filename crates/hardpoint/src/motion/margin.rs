@@ -16,8 +16,8 @@ const MOST_UNKNOWNS: usize = 200;
 /// Every constraint is measured by the most that it could resist in any coordinate of its loop if that coordinate's axis
 /// pointed as it should: a force by its lever arm, a moment by itself, a slide by the force. The margin is the least change
 /// of the Jacobian, as a part of that, which makes it singular: `1 / |J^-1|` in the largest-row-sum norm, lengths in sizes of
-/// their loops (`docs/theory.md` (29)). For one unknown it is the sine of the transmission angle. 1 is best, 0 is a singular position, and about
-/// log10(1 / margin) digits of a velocity are lost.
+/// their loops (`docs/theory.md` (29)). For one unknown it is the sine of the transmission angle. 1 is best, 0 is a singular
+/// position, and about log10(1 / margin) digits of a velocity are lost.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Margin {
     /// The least of all blocks.
