@@ -727,7 +727,7 @@ impl<'a, T: Real> Instant<'a, T> {
                 // atan2(abs(a x b), abs(a . b)): between lines, 0 to 90 deg
                 a.cross(b).norm().atan2(a.dot(b).abs())
             }
-            // n . v or abs(v),    n . a or abs(a)
+            // n . v or abs(v),    n . omega or abs(omega),    n . a or abs(a)
             MeasureKind::Velocity { point, along } => component(self.point(*point).map(T::rate), *along),
             MeasureKind::AngularVelocity { body, along } => component(self.angular_velocity(*body), *along),
             MeasureKind::Acceleration { point, along } => {

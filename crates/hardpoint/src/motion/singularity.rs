@@ -48,7 +48,7 @@ pub(super) struct SingularityAhead {
     pub block: BlockId,
     /// How far ahead, in units of the direction; negative where it lies behind.
     pub distance: f64,
-    /// Which power of the distance the response goes with: about -1/2 at a limit, -1 where two motions meet.
+    /// m of (22) and (23): the response goes like distance^-m, with m about 1/2 at a limit, 1 where two motions meet.
     pub power: f64,
 }
 
