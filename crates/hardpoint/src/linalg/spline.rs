@@ -129,7 +129,7 @@ impl Basis {
                 };
                 for column in 0..2 * m {
                     let scaled = if m == 2 { CUBIC[row][column] } else { QUINTIC[row][column] };
-                    // dE/d d_r = sum_c K_rc h^(r + c + 1 - 2m) d_c, r and c counting the derivatives 0, 1, 2
+                    // dE/d d_r / 2 = sum_c K_rc h^(r + c + 1 - 2m) d_c, r and c counting the derivatives 0, 1, 2     (33)
                     let power = (row % m + column % m + 1) as i32 - 2 * m as i32;
                     add(unknown, self.source(k + column / m, column % m), scaled * h.powi(power));
                 }
