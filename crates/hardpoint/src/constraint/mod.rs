@@ -61,7 +61,7 @@ pub(crate) const PARALLEL_FRAMES: [Row; 3] = [Row::Dot1(2, 0), Row::Dot1(2, 1), 
 /// P_j on the line through P_i along z_i.
 pub(crate) const ON_LINE: [Row; 2] = [Row::Dot2(0), Row::Dot2(1)];
 
-/// The two markers of a joint in the world, and how their bodies move.
+/// The two markers of a joint in the world.
 #[derive(Clone, Copy, Debug)]
 pub struct MarkerPair<T> {
     /// Marker i in the world.

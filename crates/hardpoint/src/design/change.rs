@@ -7,7 +7,7 @@ use crate::space::{Mat3, Pose, Vec3, rotation_from_euler_313};
 
 /// What a kind of change does to the design with b of its variable. Whatever a kind says nothing of stays as it is.
 pub(crate) trait Effect {
-    /// The hardpoint that moves, and its global velocity.
+    /// The hardpoint that moves, and its global velocity V, m per unit.
     fn hardpoint(&self) -> Option<(HardpointId, Vec3)> {
         None
     }
@@ -17,24 +17,25 @@ pub(crate) trait Effect {
         None
     }
 
-    /// Marker e of that joint in the design configuration, `marker` being where it is without this change.
+    /// Marker e of that joint in the design configuration, global; `marker` is where it is without this change.
     #[inline(always)]
     fn marker<T: Real>(&self, _model: &Model, marker: Pose<T>, _e: usize, _b: T) -> Pose<T> {
         marker
     }
 
-    /// The length that is given to that joint, `length` being what it is without this change.
+    /// The length that is given to that joint, m; `length` is what it is without this change.
     #[inline(always)]
     fn length<T: Real>(&self, length: T, _b: T) -> T {
         length
     }
 
-    /// The parameter of the model that grows, and its rate.
+    /// The parameter of the model that grows, and its rate, in its own unit per unit.
     fn parameter(&self) -> Option<(ParameterId, f64)> {
         None
     }
 
-    /// The parameter of a driver's law that grows, and its rate.
+    /// The parameter of a driver's law that grows, by its place in [`Law::parameters`](crate::law::Law::parameters), and its rate, in its
+    /// own unit per unit.
     fn law(&self) -> Option<(DriverId, usize, f64)> {
         None
     }
@@ -98,7 +99,8 @@ impl Effect for change::Field {
         if joint.bodies[e] != self.body {
             return marker;
         }
-        // P = P_o + A (b V);  C = C(theta_o + b U) C(theta_o)^-1 C_o in the body's frame, A C A^T in the world     (paper 3.1, 2.2)
+        // P = P_o + A (b V);  the axes turn by R = C(theta_o + b U) C(theta_o)^-1 in the body's frame, A R A^T in the world
+        //                                                                                                  (paper 3.1, 2.2)
         let body = model.bodies[self.body.0].frame.rot.spread();
         let (theta, c) = model.euler_of(joint, e);
         let turned = [0, 1, 2].map(|n| T::constant(self.u[n]).times_plus(b, T::constant(theta[n])));

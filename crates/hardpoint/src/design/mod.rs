@@ -1,8 +1,8 @@
 //! The design: the geometry of any values of the design variables, and how fast it changes with each (the paper's section 3).
 //!
 //! A model never changes. A design is a list of values, one per variable; [`Geometry`] is what they make of the markers, points and
-//! lengths, and a [`DesignVelocity`] the rate at which one variable, or a direction in the space of them all, changes that: the paper's design
-//! velocity field.
+//! lengths, and a [`DesignVelocity`] the rate at which one variable, or a direction in the space of them all, changes that: the
+//! paper's design velocity field.
 
 use crate::law::Law;
 use crate::model::{Joint, Model, VariableId};

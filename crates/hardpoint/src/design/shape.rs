@@ -50,7 +50,7 @@ impl ShapeField {
 fn cantilever(x: f64) -> (f64, f64) {
     match x {
         x if x <= 0.0 => (0.0, 0.0),
-        // y = x^2 (3 - x) / 2, y' = 3 x (2 - x) / 2:  y''(1) = 0, y'''  constant: a force at the free end, no moment there
+        // y = x^2 (3 - x) / 2, y' = 3 x (2 - x) / 2:  y''(1) = 0, y''' constant: a force at the free end, no moment there
         x if x < 1.0 => (0.5 * x * x * (3.0 - x), 1.5 * x * (2.0 - x)),
         x => (1.0 + 1.5 * (x - 1.0), 1.5),
     }

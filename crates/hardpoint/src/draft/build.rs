@@ -9,8 +9,8 @@ use crate::draft::{
 use crate::law::Law;
 use crate::space::Vec3;
 
-/// What a mechanism is made of, entry by entry. Names may be used before they are given; [`Model::from_draft`](crate::model::Model) checks
-/// them all.
+/// What a mechanism is made of, entry by entry. Names may be used before they are given;
+/// [`Model::from_draft`](crate::model::Model::from_draft) checks them all.
 impl Draft {
     /// An empty draft of that name.
     pub fn new(name: impl Into<String>) -> Self {
@@ -73,7 +73,7 @@ impl Draft {
         self.joint(JointDraft::new(name, "spherical", bodies).at(at))
     }
 
-    /// Adds a rod without mass between a place on body i and one on body j, which keeps its length.
+    /// Adds a rod between a place on body i and one on body j, which keeps its length and is no body itself.
     pub fn distance(
         self,
         name: impl Into<String>,
@@ -84,7 +84,8 @@ impl Draft {
         self.joint(JointDraft::new(name, "distance", bodies).at(from).at(to))
     }
 
-    /// Adds a driver. A joint's name stands for its only coordinate, `["joint", "coordinate"]` for one of several.
+    /// Adds a driver. A joint's name stands for its only coordinate, `["joint", "coordinate"]` for one of several. The law is in m or rad
+    /// over s, from 0 in the design configuration.
     pub fn driver(mut self, name: impl Into<String>, drives: impl Into<DrivenDraft>, law: Law) -> Self {
         self.drivers.push(DriverDraft::new(name, drives, law));
         self
@@ -96,7 +97,7 @@ impl Draft {
         self
     }
 
-    /// Adds a design variable that moves a hardpoint, by this global velocity per unit.
+    /// Adds a design variable, in m, that moves a hardpoint: by this global velocity, m per m.
     pub fn variable_moving(
         self,
         name: impl Into<String>,
@@ -139,7 +140,7 @@ impl Draft {
 /// assert_eq!(screw.axis, Some(LineDraft::Through("A".into(), "B".into())));
 /// ```
 impl JointDraft {
-    /// A joint of one of the types of [`ALL`](crate::joint::ALL), by name, between bodies i and j.
+    /// A joint of one of the types of [`ALL`](crate::joint::ALL), by name, between bodies i and j (`ground` is one).
     pub fn new(name: impl Into<String>, kind: &str, bodies: [impl Into<String>; 2]) -> Self {
         Self { name: name.into(), kind: kind.into(), bodies: bodies.map(Into::into), ..Self::default() }
     }
@@ -223,7 +224,7 @@ impl VariableDraft {
         Self { name: name.into(), changes: changes.into(), ..Self::default() }
     }
 
-    /// One that moves a hardpoint, by this global velocity per unit.
+    /// One, in m, that moves a hardpoint: by this global velocity, m per m.
     pub fn moving(name: impl Into<String>, hardpoint: impl Into<String>, velocity: impl Into<Vec3>) -> Self {
         Self::new(name, [ChangeDraft::Move { hardpoint: hardpoint.into(), velocity: velocity.into() }])
     }

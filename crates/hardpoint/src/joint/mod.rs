@@ -168,7 +168,7 @@ pub enum Quantity {
     Length,
     /// Radians inside.
     Angle,
-    /// A plain number: the parameter tau of a velocity field.
+    /// A plain number, like the parameter tau of a velocity field.
     Number,
 }
 

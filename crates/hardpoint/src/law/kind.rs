@@ -48,45 +48,45 @@ macro_rules! kinds {
         }
 
         $(impl From<$kind> for AnyLaw {
-            fn from(shape: $kind) -> Self {
-                Self::$kind(shape)
+            fn from(law: $kind) -> Self {
+                Self::$kind(law)
             }
         })*
 
         impl LawKind for AnyLaw {
             #[inline(always)]
             fn at<T: Real, const N: usize>(&self, time: Jet<T, N>, seed: Option<Seed<T>>) -> Jet<T, N> {
-                match self { $(Self::$kind(shape) => shape.at(time, seed)),* }
+                match self { $(Self::$kind(law) => law.at(time, seed)),* }
             }
 
             fn parameters(&self) -> Vec<Parameter> {
-                match self { $(Self::$kind(shape) => shape.parameters()),* }
+                match self { $(Self::$kind(law) => law.parameters()),* }
             }
 
             fn parameter_count(&self) -> usize {
-                match self { $(Self::$kind(shape) => shape.parameter_count()),* }
+                match self { $(Self::$kind(law) => law.parameter_count()),* }
             }
 
             fn parameter_kind(&self, parameter: usize) -> ParameterKind {
-                match self { $(Self::$kind(shape) => shape.parameter_kind(parameter)),* }
+                match self { $(Self::$kind(law) => law.parameter_kind(parameter)),* }
             }
 
             fn set(&mut self, parameter: usize, value: f64) {
-                match self { $(Self::$kind(shape) => shape.set(parameter, value)),* }
+                match self { $(Self::$kind(law) => law.set(parameter, value)),* }
             }
 
             fn over(&self, from: f64, to: f64) -> Stretch {
-                match self { $(Self::$kind(shape) => shape.over(from, to)),* }
+                match self { $(Self::$kind(law) => law.over(from, to)),* }
             }
 
             fn find_breaks(&self, from: f64, to: f64, breaks: &mut Vec<Break>) {
-                match self { $(Self::$kind(shape) => shape.find_breaks(from, to, breaks)),* }
+                match self { $(Self::$kind(law) => law.find_breaks(from, to, breaks)),* }
             }
         }
 
         impl fmt::Display for AnyLaw {
             fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-                match self { $(Self::$kind(shape) => shape.fmt(f)),* }
+                match self { $(Self::$kind(law) => law.fmt(f)),* }
             }
         }
     };

@@ -22,7 +22,7 @@ pub(crate) enum EndKind {
 /// The gradient of h^(2m-1)/2 ∫ (f⁽ᵐ⁾)² dt by the scaled derivatives h d, h² dd at both ends; rows and columns in the order
 /// value, derivatives, value, derivatives; the rows of the values are not needed.
 ///
-/// E = y^T K y / (2 h^(2m-1)) with y = (f, h d, h^2 dd) at both ends.
+/// That is K of `∫ (f⁽ᵐ⁾)² dt = y^T K y / h^(2m-1)`, y = (f, h d, h² dd) at both ends (`docs/theory.md` (33)).
 const CUBIC: [[f64; 4]; 4] = [[0.0; 4], [6.0, 4.0, -6.0, 2.0], [0.0; 4], [6.0, 2.0, -6.0, 4.0]];
 const QUINTIC: [[f64; 6]; 6] = [
     [0.0; 6],
@@ -129,7 +129,7 @@ impl Basis {
                 };
                 for column in 0..2 * m {
                     let scaled = if m == 2 { CUBIC[row][column] } else { QUINTIC[row][column] };
-                    // dE/d d_r = sum_c K_rc h^(r + c + 1 - 2m) d_c, r and c counting the derivatives 0, 1, 2
+                    // dE/d d_r / 2 = sum_c K_rc h^(r + c + 1 - 2m) d_c, r and c counting the derivatives 0, 1, 2     (33)
                     let power = (row % m + column % m + 1) as i32 - 2 * m as i32;
                     add(unknown, self.source(k + column / m, column % m), scaled * h.powi(power));
                 }

@@ -372,9 +372,9 @@ impl<'a> Formulas<'a> {
         }
         given.clear();
         given.extend(self.slopes.at(k).iter().map(|x| only(*x)));
-        let moment = Instant { slopes: given, ..Instant::new(model, fixed, poses) };
+        let instant = Instant { slopes: given, ..Instant::new(model, fixed, poses) };
         for &(_, m) in left {
-            measured.set(k, m, moment.output(measured.outputs[m].source).0);
+            measured.set(k, m, instant.output(measured.outputs[m].source).0);
         }
         let on_the_way = |m: usize, passed: &PassedPlace| {
             let mut poses = poses.clone();
@@ -392,9 +392,9 @@ impl<'a> Formulas<'a> {
         if self.counts {
             // The formula of measures asks for angles with their turns, so these are found first.
             self.counted.extend(whole_turns.iter().map(|turns| turns.0[0]));
-            let moment = Instant { whole_turns, ..moment };
+            let instant = Instant { whole_turns, ..instant };
             for &(_, m) in left.iter().filter(|(_, m)| is_formula(model, *m)) {
-                measured.set(k, m, moment.measure(m).0);
+                measured.set(k, m, instant.measure(m).0);
             }
         }
     }
@@ -454,13 +454,13 @@ pub(crate) fn derivatives(
                         .take(model.measures.len())
                         .map(|turns| Dual::constant(Rates::constant(*turns))),
                 );
-                let moment = Instant {
+                let instant = Instant {
                     slopes: &given,
                     whole_turns: &whole_turns,
                     ..Instant::new(model, &fixed, &poses)
                 };
                 for &(_, m) in listed {
-                    out(k, b, m, moment.output(outputs[m].source).d.0);
+                    out(k, b, m, instant.output(outputs[m].source).d.0);
                 }
             }
         }
@@ -727,7 +727,7 @@ impl<'a, T: Real> Instant<'a, T> {
                 // atan2(abs(a x b), abs(a . b)): between lines, 0 to 90 deg
                 a.cross(b).norm().atan2(a.dot(b).abs())
             }
-            // n . v or abs(v),    n . a or abs(a)
+            // n . v or abs(v),    n . omega or abs(omega),    n . a or abs(a)
             MeasureKind::Velocity { point, along } => component(self.point(*point).map(T::rate), *along),
             MeasureKind::AngularVelocity { body, along } => component(self.angular_velocity(*body), *along),
             MeasureKind::Acceleration { point, along } => {

@@ -206,8 +206,7 @@ fn ways_of(
     [dr, dpi, dv, domega, da, dalpha]: [Vec3<Number>; 6],
     [omega, alpha]: [Vec3<Number>; 2],
 ) -> [[Number; 3]; WAYS] {
-    // Those of the rotation vector: domega is the rate of dpi and dpi x omega.
-    // (pi')'s rates:  (pi'). = d(omega)/db + omega x pi',    (pi').. = d(alpha)/db + alpha x pi' + omega x (pi').
+    // Of the rotation vector pi':  (pi'). = d(omega)/db + omega x pi',    (pi').. = d(alpha)/db + alpha x pi' + omega x (pi').
     let first = omega.cross_plus(dpi, domega);
     let second = omega.cross_plus(first, alpha.cross_plus(dpi, dalpha));
     let way = |[x, y, z]: [Vec3<Number>; 3]| [[x.x, y.x, z.x], [x.y, y.y, z.y], [x.z, y.z, z.z]];

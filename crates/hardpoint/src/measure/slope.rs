@@ -120,7 +120,7 @@ impl<'a> Slopes<'a> {
             }
             let alone = DriverAlone {
                 drivers: &self.drivers,
-                moments: self.poses.iter().map(|p| Instant::new(self.model, &self.fixed[by], p)).collect(),
+                instants: self.poses.iter().map(|p| Instant::new(self.model, &self.fixed[by], p)).collect(),
             };
             for k in 0..self.model.measures.len() {
                 let x = alone.measure(self.model, k);
@@ -150,7 +150,7 @@ fn driver_of(model: &Model, k: usize) -> Option<[DriverId; 2]> {
 /// The same position as often as there are drivers, each time with what happens while that driver alone moves.
 struct DriverAlone<'m, T> {
     drivers: &'m [DriverId],
-    moments: Vec<Instant<'m, Dual<T>>>,
+    instants: Vec<Instant<'m, Dual<T>>>,
 }
 
 impl<T: Real> DriverAlone<'_, T> {
@@ -159,12 +159,12 @@ impl<T: Real> DriverAlone<'_, T> {
         let unknown = T::constant(f64::NAN);
         let Some(drivers) = driver_of(model, k) else { return unknown };
         let [first, second] = drivers.map(|d| {
-            &self.moments[self.drivers.binary_search(&d).expect("the drivers of all measures are here")]
+            &self.instants[self.drivers.binary_search(&d).expect("the drivers of all measures are here")]
         });
-        let wheel = |moment: &Instant<'_, Dual<T>>, d: usize, wheel: WheelId| TravellingWheel {
-            wheel: moment.wheel(k, d, wheel),
+        let wheel = |instant: &Instant<'_, Dual<T>>, d: usize, wheel: WheelId| TravellingWheel {
+            wheel: instant.wheel(k, d, wheel),
             // The twist w, v per unit of q, which is what a pose with `d` along q splits into
-            carrier: moment.poses[model.wheels[wheel.0].body.0].split().1,
+            carrier: instant.poses[model.wheels[wheel.0].body.0].split().1,
         };
         match model.measures[k].kind {
             // (d of/dq) / (d over/dq), each with its derivative by the variable; the quotient rule is the dual's

@@ -117,7 +117,7 @@ impl<T: Real> WheelAt<T> {
         Vec3::new(self.side * y, -self.side * x, z)
     }
 
-    /// `C - R u`, with u the upward direction in the wheel's plane, `(z - (z.e) e) / abs(..)`.
+    /// The contact point, the lowest of the wheel: from the centre along the direction in its plane that points most downward.
     pub fn contact(&self) -> Vec3<T> {
         let e = self.spin_axis;
         // C = W - R u,    u = (z - (z . e) e) / abs(z - (z . e) e)

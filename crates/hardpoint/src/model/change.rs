@@ -34,7 +34,7 @@ macro_rules! changes {
     Move {
         /// Which hardpoint.
         hardpoint: String => HardpointId,
-        /// Global velocity.
+        /// Global velocity, m per unit.
         velocity: Vec3 => Vec3,
     } |_| Quantity::Length,
         |w| w.say("moves", &w.model.hardpoints[hardpoint.0].name, format!(" along {}", (w.direction)(*velocity)));
@@ -45,9 +45,9 @@ macro_rules! changes {
         joint: String => JointId,
         /// Which markers.
         end: End => End,
-        /// Global velocity of the marker's origin.
+        /// Global velocity of the marker's origin, m per unit.
         position: Vec3 => Vec3,
-        /// Global rotation vector rate of the marker's axes, about its origin.
+        /// Global rotation vector rate of the marker's axes, about its origin, rad per unit.
         rotation: Vec3 => Vec3,
     } |_| match (position.norm() > 0.0, rotation.norm() > 0.0) {
             (_, false) => Quantity::Length,
@@ -121,9 +121,9 @@ macro_rules! changes {
         joint: String => JointId,
         /// The body whose marker it is.
         body: String => BodyId,
-        /// V = ds'/d(tau), body frame.
+        /// V = ds'/d(tau), body frame, m per unit.
         v: Vec3 => Vec3,
-        /// U = d(theta)/d(tau), rad.
+        /// U = d(theta)/d(tau), rad per unit.
         u: Vec3 => Vec3,
     } |_| Quantity::Number,
         |w| {
@@ -212,7 +212,8 @@ fn raises(rate: f64) -> &'static str {
 }
 
 impl Model {
-    /// What changes do, in words; `direction` says a global direction, `number` a number.
+    /// What changes do, in words; `direction` says a global direction, `number` a number (SI, or without unit). Parts of which the same
+    /// is said come as one.
     pub fn describe_changes(
         &self,
         changes: &[Change],

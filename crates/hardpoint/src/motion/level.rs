@@ -215,7 +215,7 @@ impl<T: Real> Flow<T> {
         }
         // With u(n) the same pass gives U(n), on which all selected rows of the block agree.
         self.carry::<N>(topology, block.link_ids(), &x[0], |_| true);
-        // D_j - D_i = U_j - U_i where no marker moves in its body; `Direct` adds z_j - z_i.
+        // D_j - D_i = U_j - U_i where no marker moves in its body; `DirectDifferentiation` adds z_j - z_i.
         if let Some(apart) = self.apart.get_mut(N) {
             for &c in &block.closures {
                 let [i, j] = topology[c].bodies;

@@ -16,8 +16,8 @@ const MOST_UNKNOWNS: usize = 200;
 /// Every constraint is measured by the most that it could resist in any coordinate of its loop if that coordinate's axis
 /// pointed as it should: a force by its lever arm, a moment by itself, a slide by the force. The margin is the least change
 /// of the Jacobian, as a part of that, which makes it singular: `1 / |J^-1|` in the largest-row-sum norm, lengths in sizes of
-/// the mechanism. For one unknown it is the sine of the transmission angle. 1 is best, 0 is a singular position, and about
-/// log10(1 / margin) digits of a velocity are lost.
+/// their loops (`docs/theory.md` (29)). For one unknown it is the sine of the transmission angle. 1 is best, 0 is a singular
+/// position, and about log10(1 / margin) digits of a velocity are lost.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Margin {
     /// The least of all blocks.
@@ -230,8 +230,7 @@ fn most_resistance<T: Real>(topology: &Topology, state: &State<T>, r: RowId) -> 
 /// The most that a force at a point, with its moment, could turn about an axis, whatever way it pointed.
 #[inline(always)]
 fn most_moment<T: Real>(l: &Wrench<T>, point: Vec3<T>, turn: &Twist<T>) -> T {
-    // The axis passes through w x v, its point next to the origin; the arm is seen along it.
-    // x = [w; c x w]:  w x v = w x (c x w) = c - w (w . c),  the axis' point next to the origin
+    // x = [w; c x w]:  w x v = w x (c x w) = c - w (w . c),  the axis' point next to the origin; the arm is seen along the axis
     let between = point - turn.w.cross(turn.v);
     let arm = between - turn.w * turn.w.dot(between);
     // l = [P x f + couple; f];  most = sqrt((abs(f) abs(arm))^2 + abs(couple)^2)

@@ -48,7 +48,7 @@ pub(super) struct SingularityAhead {
     pub block: BlockId,
     /// How far ahead, in units of the direction; negative where it lies behind.
     pub distance: f64,
-    /// Which power of the distance the response goes with: about -1/2 at a limit, -1 where two motions meet.
+    /// m of (22) and (23): the response goes like distance^-m, with m about 1/2 at a limit, 1 where two motions meet.
     pub power: f64,
 }
 
@@ -62,8 +62,7 @@ pub(super) struct Workspace {
     x: [Vec<Twist<f64>>; 2],
     /// l', l''.
     l: [Vec<Wrench<f64>>; 2],
-    /// r of (22): +-(0.5 to 1) of the row's unit.
-    /// Per load and row.
+    /// Per load and row: r of (22), +-(0.5 to 1) of the row's unit.
     loads: [Vec<f64>; LOADS],
     /// The series of the response, of one block at a time: c0, c1 and 2 c2 of its coordinates.
     response: Flow<f64>,

@@ -18,8 +18,9 @@ use super::solution::{Solution, Streamed};
 use super::walk::Scope;
 
 impl Analysis<'_> {
-    /// Solves many designs, each with variable k at its entry k, in the memory of eight solutions for each thread: `visit` sees every
-    /// design's number and its solution, one at a time. What it does not take away (`std::mem::take`) is overwritten by later designs.
+    /// Solves many designs, each with variable k at its entry k (m, rad or a plain number; missing entries are 0), in the memory of
+    /// eight solutions for each thread: `visit` sees every design's number and its solution, one at a time. What it does not take away
+    /// (`std::mem::take`) is overwritten by later designs.
     ///
     /// One thread goes through them in the order given, several ([`Run::threads`]) in no certain order.
     ///

@@ -71,8 +71,8 @@ impl<'r> Run<'r> {
         }
     }
 
-    /// The changed design with variable k at `design[k]` (m, rad or a plain number; missing entries are 0): its motion, solved exactly,
-    /// and its sensitivities there.
+    /// The changed design with variable k at `design[k]` (m, rad or a plain number; missing entries are 0, further ones count for
+    /// nothing): its motion, solved exactly, and its sensitivities there.
     ///
     /// Whether joints open under a further change is answered for the nominal design.
     pub fn at(self, design: &'r [f64]) -> Self {
@@ -89,7 +89,7 @@ impl<'r> Run<'r> {
         Self { scope: Scope { measures: false, ..self.scope }, ..self }
     }
 
-    /// Calls this after every output time. It may end the run, whose stop is then
+    /// Calls this after every output time. `ControlFlow::Break` ends the run, whose stop is then
     /// [`Interrupted`](crate::motion::StopKind::Interrupted).
     pub fn progress(self, progress: impl FnMut(Progress) -> ControlFlow<()> + 'r) -> Self {
         Self { progress: Box::new(progress), ..self }

@@ -374,8 +374,8 @@ fn pass_on(topology: &Topology, k: LinkId, load: &mut [Wrench], links: &mut [Wre
     load[link.parent.0] += carried;
 }
 
-/// Watches the rows that were left out, as [`DirectDifferentiation::worst_defects`](super::direct::DirectDifferentiation::worst_defects) does: each side
-/// of each row is a load of its own.
+/// Watches the rows that were left out, as [`DirectDifferentiation::worst_defect`](super::DirectDifferentiation::worst_defect) does: each
+/// side of each row is a load of its own.
 pub(crate) struct DefectWatch {
     /// Per body that such a row stands on: what loads on it are felt by.
     supports: Vec<Option<Support>>,

@@ -48,7 +48,7 @@ pub(crate) struct FieldParts<T> {
     /// What that adds to the driver's value, speed and acceleration at the time that was set last.
     /// At orders n = 0, 1, 2: `sum over p of df(n)/dp dp/db`.
     law_rates: Vec<(DriverId, [T; 3])>,
-    /// Largest speed in each field: what round-off of a defect is compared with.
+    /// Largest speed in the field: what round-off of a defect is compared with.
     pub(super) scale: T,
     /// How far the change is felt.
     pub reach: Influence,

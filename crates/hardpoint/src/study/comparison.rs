@@ -16,7 +16,7 @@ const NEGLIGIBLE: f64 = 1e-3;
 pub struct StepError {
     /// The step, m, rad, or units of tau.
     pub step: f64,
-    /// Largest relative deviation over all times.
+    /// Largest deviation over all times, relative as [`Comparison::of`] says; infinite where there is no sensitivity.
     pub error: f64,
     /// The quantity: `knuckle acceleration`, `toe rate`, ...
     pub quantity: String,
@@ -24,7 +24,7 @@ pub struct StepError {
     pub time: f64,
 }
 
-/// The largest relative deviation of every quantity: of each body but ground six kinds of motion, of each output its orders.
+/// The largest relative deviation of every quantity at its step: of each body but ground six kinds of motion, of each output its orders.
 #[derive(Clone, Debug, Default)]
 pub struct Comparison {
     /// The six [`KINDS`], each of all bodies but ground; then value, rate and acceleration of every output.
@@ -63,7 +63,7 @@ const KINDS: [Kind; 6] = [
 ];
 
 impl Comparison {
-    /// Compares the sensitivities of a complete solution with a difference; empty where nothing was solved.
+    /// Compares the sensitivities of a complete solution with a difference over the same output times; empty where nothing was solved.
     ///
     /// A deviation is relative to the largest sensitivity of its kind over all bodies and times, or, where
     /// the design hardly matters, to what one natural step would have to change for one part in a thousand of
@@ -93,7 +93,8 @@ impl Comparison {
         [0, 2, 4].map(|kind| self.errors[kind * self.bodies + body.0 - 1].error)
     }
 
-    /// Errors of value, rate and acceleration of output m; 0 for orders that it does not have.
+    /// Errors of value, rate and acceleration of output m, a column of [`Measured`](crate::measure::Measured); 0 for orders that it does
+    /// not have.
     pub fn of_output(&self, m: usize) -> [f64; 3] {
         let first = KINDS.len() * self.bodies + self.orders[..m].iter().sum::<usize>();
         [0, 1, 2].map(|order| if order < self.orders[m] { self.errors[first + order].error } else { 0.0 })

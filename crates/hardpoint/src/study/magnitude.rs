@@ -12,7 +12,7 @@ const NOTHING: f64 = 1e-10;
 pub struct Magnitude {
     /// Size of the mechanism, m.
     size: f64,
-    /// Lengths in sizes, angles in rad.
+    /// Of orders 0, 1 and 2: lengths in sizes, angles in rad, per s to the power of the order.
     orders: [f64; 3],
 }
 
@@ -38,8 +38,8 @@ impl Magnitude {
         }
     }
 
-    /// The same where a motion that stands still, or runs at a steady speed, over so many seconds, is judged as if it made up the order
-    /// before once in that time: its next order is round-off.
+    /// The same, but for orders that are round-off: where a motion stands still or runs at a steady speed all the `span`, s, the next order
+    /// counts as if the one before were gone through once in that time.
     #[must_use]
     pub fn or_once_in(mut self, span: f64) -> Self {
         /// An order that changes the one before it by less than this part during the run is round-off.
@@ -52,7 +52,8 @@ impl Magnitude {
         self
     }
 
-    /// In units of a quantity's time derivative of that order, SI.
+    /// How large a quantity's time derivative of that order is in the motion, SI. Orders above 2 in all, those of the quantity itself
+    /// included, count as 2.
     pub fn of(&self, quantity: Dimension, order: usize) -> f64 {
         let order = (order as i8 - quantity.time).clamp(0, 2) as usize;
         self.orders[order] * self.size.powi(quantity.length.into())

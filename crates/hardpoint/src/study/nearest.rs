@@ -30,8 +30,8 @@ pub struct NearestAdmissible {
 ///
 /// It is the least-squares projection onto the null space of these conditions, over the variables asked for and all others of
 /// the model that move one coordinate of a hardpoint or tilt one joint ([`add_coordinates`](super::add_coordinates),
-/// [`add_tilts`](super::add_tilts)), each measured by its [natural step](crate::model::Model::natural_step); what was asked for is kept as long as others can
-/// make up for it.
+/// [`add_tilts`](super::add_tilts)), each measured by its [natural step](crate::model::Model::natural_step); what was asked for is
+/// kept as long as others can make up for it.
 pub fn nearest_admissible(analysis: &Analysis<'_>, change: &[f64]) -> NearestAdmissible {
     let model = analysis.model();
     let change = model.whole(change);
@@ -49,7 +49,7 @@ pub fn nearest_admissible(analysis: &Analysis<'_>, change: &[f64]) -> NearestAdm
     let a: Vec<&Vec<f64>> = independent.iter().map(|&r| &rows[r]).collect();
     let mut found = asked.clone();
     if !a.is_empty() {
-        // d = x - B (A B)^+ A x    with W = B B: the least change, measured by W, that the conditions leave
+        // d = x - B (A B)^+ A x    with W = B B: the least change, measured by W^-1, that meets them
         // min (d - x)^T W^-1 (d - x)  with  A d = 0,  x what was asked for                                   (35)
         let b: Vec<f64> = weight.iter().map(|w| w.sqrt()).collect();
         let right = a.iter().map(|row| dot(row, &asked)).collect();
@@ -70,7 +70,7 @@ pub fn nearest_admissible(analysis: &Analysis<'_>, change: &[f64]) -> NearestAdm
     }
 }
 
-/// How easily a variable moves.
+/// How easily a variable moves: its entry of W in (35).
 fn weight(model: &Model, asked: &[f64], v: usize) -> f64 {
     if asked[v] != 0.0 {
         return KEPT;

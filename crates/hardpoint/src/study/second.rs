@@ -128,8 +128,8 @@ impl<'a> SecondDerivativeSolver<'a> {
             for &b in &self.asked_for {
                 self.poses[b] = self.seconds.pose(state, p, b);
             }
-            let moment = Instant::new(model, &self.fixed[p], &self.poses);
-            moment.all(|x| {
+            let instant = Instant::new(model, &self.fixed[p], &self.poses);
+            instant.all(|x| {
                 result.values.push(x.d.d);
                 result.firsts.push(x.v.d);
             });

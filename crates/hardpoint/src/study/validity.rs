@@ -22,7 +22,7 @@ const MOST_BYTES: usize = 8 << 20;
 pub struct Validity {
     /// Per output: how far the variable may go, m, rad or plain, before the largest second-order part over the motion is 5 % of the
     /// largest first-order one; infinite where it is exactly linear, `None` where there is no sensitivity to speak of or no second
-    /// derivative ([`Known::by_position`](crate::model::KnownOrders)).
+    /// derivative ([`KnownOrders::by_position`](crate::model::KnownOrders::by_position)).
     pub linear_up_to: Vec<Option<f64>>,
 }
 

@@ -35,7 +35,7 @@ pub struct Foresight {
     /// Largest exact change over the motion, and the index of its time.
     pub change: (f64, usize),
     /// Largest error of the first-order prediction, and of the second-order one, which follows for positions alone
-    /// ([`Known::by_position`](crate::model::KnownOrders)).
+    /// ([`KnownOrders::by_position`](crate::model::KnownOrders::by_position)).
     pub errors: [Option<f64>; 2],
     /// How many times the change could be made before its second-order part is 5 % of the first-order one; infinite where
     /// it is exactly linear, `None` where the first-order part is nothing or the second-order one is not known.

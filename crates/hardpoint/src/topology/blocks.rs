@@ -21,8 +21,8 @@ use super::{
 /// 1e-16 and often 1e-9 of its size; a real constraint that is this weak could not be solved with anyway.
 pub(super) const RANK_TOLERANCE: f64 = 1e-8;
 
-/// A sparse row of the Jacobian at the design configuration: (coordinate, entry), lengths in units of
-/// the mechanism's size.
+/// A sparse row of the Jacobian at the design configuration: (coordinate, entry), lengths in sizes of
+/// their loops.
 pub(super) type SparseRow = Vec<(CoordinateId, f64)>;
 
 /// The Jacobian of all rows of all closures at the design configuration; empty for the further terms of a coupler, which

@@ -1,4 +1,4 @@
-//! What is what in the plan: an id for every list, by which the plan itself is indexed.
+//! Ids of what a plan is made of, one kind for each of its lists: `topology[link]` is the link, and a block's id finds no row.
 
 use std::ops::{Index, IndexMut, Range};
 

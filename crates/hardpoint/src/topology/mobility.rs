@@ -17,7 +17,7 @@ use super::{BlockId, RowId, Topology, fault};
 pub(super) fn examine(model: &Model, topology: &mut Topology) -> Result<(), TopologyFault> {
     let jacobian = design_jacobian(model, topology);
     let drivers = model.drivers.len();
-    // Per coordinate: its speed per unit speed of the drivers that move it, lengths in units of the size.
+    // Per coordinate: its speed per unit speed of the drivers that move it, lengths in sizes of their loops.
     let mut speeds: Vec<Vec<(usize, f64)>> = vec![Vec::new(); topology.coordinates.len()];
     for (c, d) in topology.driven_coordinates() {
         speeds[c.0].push((d.0, 1.0));
