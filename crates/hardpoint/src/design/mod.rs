@@ -9,17 +9,17 @@ use crate::model::{Joint, Model, VariableId};
 use crate::space::{Mat3, euler_313_from_rotation, rotation_from_euler_313};
 
 mod change;
-mod effects;
 mod field;
 mod formulas;
 mod geometry;
+mod map;
 mod shape;
 
 pub(crate) use change::Effect;
-pub(crate) use effects::DesignMap;
 pub use field::{DesignVelocity, MarkerVelocity};
 pub(crate) use geometry::BodyFixed;
 pub use geometry::{Geometry, JointConstants};
+pub(crate) use map::DesignMap;
 pub(crate) use shape::{Interpolation, ShapeField};
 
 impl Model {
@@ -58,15 +58,15 @@ impl Model {
 
     /// The variables whose change changes nothing that the motion or its results depend on.
     pub fn without_effect(&self) -> Vec<VariableId> {
-        let effects = DesignMap::of(self);
+        let design_map = DesignMap::of(self);
         let directions = self.measures.iter().flat_map(|m| self.directions(m)).flatten();
         let seen: Vec<usize> = directions.flat_map(|(_, axis)| axis.hardpoints()).map(|h| h.0).collect();
         let is_idle = |v: &VariableId| {
-            let touched = effects.touched(&[(*v, 1.0)]);
-            let felt = [&touched.joints, &touched.points, &touched.law_formulas];
+            let affected = design_map.affected(&[(*v, 1.0)]);
+            let felt = [&affected.joints, &affected.points, &affected.law_formulas];
             felt.iter().all(|list| list.is_empty())
-                && touched.laws.is_empty()
-                && !touched.hardpoints.iter().any(|h| seen.contains(h))
+                && affected.laws.is_empty()
+                && !affected.hardpoints.iter().any(|h| seen.contains(h))
         };
         (0..self.variables.len()).map(VariableId).filter(is_idle).collect()
     }

@@ -220,7 +220,7 @@ pub fn outputs(model: &Model) -> Vec<Output> {
 /// The design whose motion is measured.
 pub(crate) struct MeasuredDesign<'a> {
     pub model: &'a Model,
-    pub effects: &'a DesignMap<'a>,
+    pub design_map: &'a DesignMap<'a>,
     /// The variables' values.
     pub values: &'a [f64],
     /// The drivers' laws.
@@ -326,7 +326,7 @@ impl<'a> Formulas<'a> {
         slopes: &'a SlopeValues,
         measured: &Measured,
     ) -> Self {
-        let &MeasuredDesign { model, effects, values, laws } = design;
+        let &MeasuredDesign { model, design_map, values, laws } = design;
         Self {
             model,
             laws,
@@ -334,7 +334,7 @@ impl<'a> Formulas<'a> {
             before,
             slopes,
             // What is fixed in the bodies has no rates: they are all in the poses.
-            fixed: effects.fixed(values).map(Jet::constant),
+            fixed: design_map.fixed(values).map(Jet::constant),
             bodies: bodies_asked_for(model),
             poses: vec![Pose::IDENTITY.spread(); model.bodies.len()],
             turns: turns(model, topology, &measured.outputs),
@@ -425,7 +425,7 @@ pub(crate) fn derivatives(
     more: &Context<'_>,
     mut out: impl FnMut(usize, usize, usize, [f64; 3]),
 ) {
-    let &MeasuredDesign { model, effects, values, .. } = design;
+    let &MeasuredDesign { model, design_map, values, .. } = design;
     let bodies = bodies_asked_for(model);
     let mut poses = vec![Pose::IDENTITY.spread(); model.bodies.len()];
     let mut values: Vec<Dual> = values.iter().map(|v| Dual::constant(*v)).collect();
@@ -433,7 +433,7 @@ pub(crate) fn derivatives(
     for b in (0..sensitivities.variables).filter(|_| !listed.is_empty()) {
         // d/db of what is fixed in the bodies; that of the poses is W at this time, by `with_sensitivity`.
         values[b] = Dual::variable(values[b].v);
-        let fixed = effects.fixed(&values);
+        let fixed = design_map.fixed(&values);
         let fixed = fixed.map(|x| Dual { v: Jet::constant(x.v), d: Jet::constant(x.d) });
         values[b] = Dual::constant(values[b].v);
         for listed in listed.chunk_by(|a, b| a.0 == b.0) {

@@ -88,11 +88,11 @@ pub(crate) struct MeasureProgram {
 
 impl MeasureProgram {
     /// What is asked for, if it can be recorded.
-    pub fn record(effects: &DesignMap<'_>, asked: &ProgramKey, execution: Execution) -> Option<Self> {
-        let model = effects.model;
+    pub fn record(design_map: &DesignMap<'_>, asked: &ProgramKey, execution: Execution) -> Option<Self> {
+        let model = design_map.model;
         let (outputs, bodies) = (super::outputs(model), moving_bodies(model));
         let nominal = model.whole(&[]);
-        let depends = dependences(effects, &nominal, &bodies, &outputs);
+        let depends = dependences(design_map, &nominal, &bodies, &outputs);
         let sums = depends.iter().map(|[on, _]| asked.moved.iter().filter(|(_, b)| on.contains(b)).count());
         if sums.sum::<usize>() > MOST_SUMS {
             return None;
@@ -127,7 +127,7 @@ impl MeasureProgram {
             let nothing = input(0.0);
             let number = if asked.any_design { Number::input } else { Number::constant };
             let values: Vec<Number> = nominal.iter().map(|v| number(*v)).collect();
-            let geometry = RecordedGeometry::of(effects, &values, asked.variables, &depends);
+            let geometry = RecordedGeometry::of(design_map, &values, asked.variables, &depends);
             let of_design = recording::limits();
             fits = recording::is_arithmetic();
             let recorder = Recorder { model, geometry, poses, whole_turns, ways, asked };
@@ -235,13 +235,18 @@ struct RecordedGeometry {
 }
 
 impl RecordedGeometry {
-    fn of(effects: &DesignMap<'_>, values: &[Number], variables: usize, depends: &[[Vec<usize>; 2]]) -> Self {
-        let still = recording::strictly(|| effects.fixed(values));
+    fn of(
+        design_map: &DesignMap<'_>,
+        values: &[Number],
+        variables: usize,
+        depends: &[[Vec<usize>; 2]],
+    ) -> Self {
+        let still = recording::strictly(|| design_map.fixed(values));
         let moved = |v: usize| {
             depends.iter().any(|[_, moving]| moving.contains(&v)).then(|| {
                 let mut duals: Vec<Dual<Number>> = values.iter().map(|x| Dual::constant(*x)).collect();
                 duals[v] = Dual::variable(values[v]);
-                let fixed = recording::strictly(|| effects.fixed(&duals));
+                let fixed = recording::strictly(|| design_map.fixed(&duals));
                 fixed.map(|x| Dual { v: Jet::constant(x.v), d: Jet::constant(x.d) })
             })
         };
@@ -364,17 +369,17 @@ fn goes_by_driver(model: &Model, output: OutputSource) -> bool {
 /// A derivative that is not a number makes one of everything that depends on it. A formula that took the larger of two
 /// numbers would hide it: measures are smooth.
 pub(crate) fn dependences(
-    effects: &DesignMap<'_>,
+    design_map: &DesignMap<'_>,
     values: &[f64],
     bodies: &[usize],
     outputs: &[Output],
 ) -> Vec<[Vec<usize>; 2]> {
-    let model = effects.model;
+    let model = design_map.model;
     let unknown = |x: Dual<Rates>| Dual { v: x.v, d: Jet([f64::NAN; 3]) };
     let mut values: Vec<Dual> = values.iter().map(|v| Dual::constant(*v)).collect();
     let mut poses: Vec<Pose<Dual<Rates>>> = model.bodies.iter().map(|b| b.frame.spread()).collect();
     let fixed = |values: &[Dual]| {
-        let fixed = effects.fixed(values);
+        let fixed = design_map.fixed(values);
         fixed.map(|x| Dual { v: Jet::constant(x.v), d: Jet::constant(x.d) })
     };
     let depend = |fixed: &BodyFixed<Dual<Rates>>, poses: &[Pose<Dual<Rates>>]| -> Vec<bool> {

@@ -60,12 +60,12 @@ impl<'a> Slopes<'a> {
     /// For the design with these values, with derivatives by the variables if they are wanted; `None` for a model without
     /// such measures.
     pub fn new(
-        effects: &DesignMap<'a>,
+        design_map: &DesignMap<'a>,
         topology: &Topology,
         values: &[f64],
         sensitivities: bool,
     ) -> Option<Self> {
-        let model = effects.model;
+        let model = design_map.model;
         let mut drivers: Vec<DriverId> =
             (0..model.measures.len()).flat_map(|k| driver_of(model, k)).flatten().collect();
         drivers.sort_unstable();
@@ -89,11 +89,11 @@ impl<'a> Slopes<'a> {
             // With the driver none of it goes (the outer `d` is 0); along the variable what that moves in its body (the inner `d`).
             let value = |k: usize| Dual::constant(Dual { v: values[k], d: f64::from(u8::from(k == by)) });
             let values: Vec<_> = (0..values.len()).map(value).collect();
-            effects.fixed(&values)
+            design_map.fixed(&values)
         };
         Some(Self {
             model,
-            seconds: Seconds::new(effects, topology, values, &ways, &pairs),
+            seconds: Seconds::new(design_map, topology, values, &ways, &pairs),
             fixed: (0..variables).chain([usize::MAX]).map(fixed).collect(),
             asked_for: bodies_asked_for(model).into_iter().filter(|b| *b != GROUND.0).collect(),
             poses: vec![vec![Pose::IDENTITY.spread(); model.bodies.len()]; drivers.len()],

@@ -266,7 +266,8 @@ fn laws_are_even(tape: &Tape, one: &mut Stepper<'_>, times: &Lanes, [first, last
         let [from, to] = [one.time, times[last]];
         // h max abs(f.) <= 2 max abs(f_k - f_k-1), h the longest of the new steps
         let stretch = [from, to, from + CELL * (to - from)];
-        let travel = longest / unit * one.calm[d].fastest(&one.parts, d, stretch, most * unit / longest);
+        let travel =
+            longest / unit * one.speed_bounds[d].fastest(&one.parts, d, stretch, most * unit / longest);
         if !(travel <= most) {
             return false;
         }

@@ -212,7 +212,7 @@ impl StepProgram {
     /// of the design's variables; none where either cannot be recorded.
     pub fn record(
         one: &Stepper<'_>,
-        effects: &DesignMap<'_>,
+        design_map: &DesignMap<'_>,
         purpose: Purpose,
         besides: impl FnOnce(&Topology, &mut State<Number>, &[Number]) -> Option<RecordedExtras>,
         execution: Execution,
@@ -234,7 +234,7 @@ impl StepProgram {
             // b as an input makes the geometry a part of the program; as a constant it is folded.
             let number = if purpose.any_design { Number::input } else { Number::constant };
             let values: Vec<Number> = nominal.map(number).collect();
-            let geometry = recording::strictly(|| effects.geometry(&values));
+            let geometry = recording::strictly(|| design_map.geometry(&values));
             let parts = PlanGeometry::of(model, topology, &geometry);
             // (26), (9), (10): as many corrections as recorded here, whatever the numbers are later
             fits = state.solve(topology, &parts, &drivers, f64::INFINITY).is_ok();

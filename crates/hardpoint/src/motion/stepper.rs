@@ -81,7 +81,7 @@ pub(crate) struct Stepper<'m> {
     pub(super) around: Surroundings,
     pub(super) beyond: Surroundings,
     /// Made when first needed: who takes many steps at once examines nothing.
-    pub(super) prober: Option<Box<Workspace>>,
+    pub(super) workspace: Option<Box<Workspace>>,
     /// Per block: by what part its determinant changed over the last step between output times, and how long that was.
     /// `r_k - 1` of theory (28).
     pub(super) changes: Vec<f64>,
@@ -90,7 +90,7 @@ pub(crate) struct Stepper<'m> {
     /// `abs(f_k - f_k-1) / unit`.
     pub(super) moves: Vec<f64>,
     /// Per driver: how fast it is at most over a stretch of time.
-    pub(super) calm: Vec<DriverSpeedBound>,
+    pub(super) speed_bounds: Vec<DriverSpeedBound>,
     /// Per direction: how far it goes at most over the step considered; on a path other than the laws' in these units.
     /// Du of theory (22), m or rad.
     pub(super) travel: Vec<f64>,
@@ -226,11 +226,11 @@ impl<'m> Stepper<'m> {
             ahead: Lookahead::Unknown,
             beyond: around.clone(),
             around,
-            prober: None,
+            workspace: None,
             changes: vec![0.0; blocks],
             change_step: 0.0,
             moves: vec![0.0; drivers],
-            calm: vec![DriverSpeedBound { from: 0.0, to: f64::NEG_INFINITY, fastest: 0.0 }; drivers],
+            speed_bounds: vec![DriverSpeedBound { from: 0.0, to: f64::NEG_INFINITY, fastest: 0.0 }; drivers],
             travel: vec![0.0; directions],
             travel_unit: 1.0,
             on_laws: false,
@@ -349,7 +349,7 @@ impl<'m> Stepper<'m> {
                 _ => LONGEST,
             };
             let stretch = [self.time, t, self.time + CELL * h];
-            let travel = h / unit * self.calm[d].fastest(&self.parts, d, stretch, most * unit / h);
+            let travel = h / unit * self.speed_bounds[d].fastest(&self.parts, d, stretch, most * unit / h);
             if !(travel <= most) {
                 return false;
             }

@@ -201,10 +201,10 @@ impl Stepper<'_> {
     /// all go together.
     fn examine(&mut self, path: Path) {
         // On the laws' path one direction per driver, f_d' = 1: what is near is near whether a driver hurries or rests.
-        let Self { prober, topology, parts, state, line, beyond, drivers, .. } = self;
+        let Self { workspace, topology, parts, state, line, beyond, drivers, .. } = self;
         let directions = if path == Path::Laws { drivers.len() } else { 1 };
-        let prober =
-            prober.get_or_insert_with(|| Box::new(Workspace::new(topology, state.pose.len(), drivers.len())));
+        let workspace = workspace
+            .get_or_insert_with(|| Box::new(Workspace::new(topology, state.pose.len(), drivers.len())));
         // df_d/du: 1 of the driver that goes by itself; the line's f(1) - f(0) of all together; 0 of an assembly, whose gaps go
         let speed = |direction: usize, d: usize| match path {
             Path::Assembly => 0.0,
@@ -217,7 +217,7 @@ impl Stepper<'_> {
                 }
             }
         };
-        prober.examine(topology, parts, state, path.gap_rate(), directions, speed, beyond);
+        workspace.examine(topology, parts, state, path.gap_rate(), directions, speed, beyond);
     }
 
     /// How far each direction goes at most over a step h of the path.
@@ -355,9 +355,9 @@ impl Stepper<'_> {
 
     /// Where the motion becomes singular as it goes on, seen from the saved position; the state must stand there.
     fn ahead(&mut self, path: Path) -> Option<super::singularity::SingularityAhead> {
-        let Self { prober, topology, parts, state, drivers, .. } = self;
-        let prober = prober.as_mut()?;
-        prober.ahead(topology, parts, state, path.gap_rate(), drivers)
+        let Self { workspace, topology, parts, state, drivers, .. } = self;
+        let workspace = workspace.as_mut()?;
+        workspace.ahead(topology, parts, state, path.gap_rate(), drivers)
     }
 
     /// The singular position that the motion would come to if it went on as it does at the last output time; `None` where none is near

@@ -47,7 +47,7 @@ use super::walk::{PreparedDesign, Scope, Walk};
 pub struct Analysis<'m> {
     model: &'m Model,
     topology: Topology,
-    effects: DesignMap<'m>,
+    design_map: DesignMap<'m>,
     /// Per variable, the joints that it opens in the nominal design: worked out when first asked for.
     opens: OnceLock<Vec<Vec<JointDefect>>>,
     /// Steps as straight-line programs, recorded when they pay.
@@ -75,7 +75,7 @@ impl<'m> Analysis<'m> {
         Ok(Self {
             model,
             topology,
-            effects: DesignMap::of(model),
+            design_map: DesignMap::of(model),
             opens: OnceLock::new(),
             programs,
             formulas: Arc::default(),
@@ -127,7 +127,7 @@ impl<'m> Analysis<'m> {
     pub fn admissibility_of(&self, change: &[f64]) -> Admissibility {
         let mut design = self.design(&[]);
         let along = along(&self.model.whole(change));
-        let field = self.effects.field_along(&along, &design.values);
+        let field = self.design_map.field_along(&along, &design.values);
         design.opens = vec![admissibility_at_design(self.model, &field)];
         design.fields = vec![field];
         let mut walk = Walk::new(self, &design, vec![false; self.model.bodies.len()]);
@@ -151,23 +151,23 @@ impl<'m> Analysis<'m> {
         let values = self.model.whole(design);
         let sensitivities = scope.sensitivities;
         PreparedDesign {
-            geometry: self.effects.geometry(&values),
-            laws: self.effects.laws(&values),
-            fields: if sensitivities { self.effects.fields(&values) } else { Vec::new() },
+            geometry: self.design_map.geometry(&values),
+            laws: self.design_map.laws(&values),
+            fields: if sensitivities { self.design_map.fields(&values) } else { Vec::new() },
             opens: if sensitivities { self.opens().to_vec() } else { Vec::new() },
             scope,
             values,
         }
     }
 
-    pub(crate) fn effects(&self) -> &DesignMap<'m> {
-        &self.effects
+    pub(crate) fn design_map(&self) -> &DesignMap<'m> {
+        &self.design_map
     }
 
     /// Per variable, the joints that it opens in the nominal design.
     pub(crate) fn opens(&self) -> &[Vec<JointDefect>] {
         self.opens.get_or_init(|| {
-            let nominal = self.effects.fields(&self.model.whole(&[]));
+            let nominal = self.design_map.fields(&self.model.whole(&[]));
             nominal.iter().map(|field| admissibility_at_design(self.model, field)).collect()
         })
     }
@@ -246,11 +246,12 @@ impl<'m> Analysis<'m> {
             return;
         }
         let PreparedDesign { values, laws, scope: Scope { of_many, .. }, .. } = design;
-        let at = measure::MeasuredDesign { model: self.model, effects: &self.effects, values, laws };
+        let at = measure::MeasuredDesign { model: self.model, design_map: &self.design_map, values, laws };
         let program = self.programs_pay(*of_many).then(|| {
             let asked = measure::ProgramKey::of(self.model, values, sensitivities);
             let execution = self.programs.execution();
-            self.formulas.get(asked, |asked| measure::MeasureProgram::record(&self.effects, asked, execution))
+            self.formulas
+                .get(asked, |asked| measure::MeasureProgram::record(&self.design_map, asked, execution))
         });
         let (program, solved) = (program.flatten(), (&*motion, &*sensitivities));
         measure::evaluate(&at, &self.topology, solved, slopes, before, program.as_deref(), measured);
@@ -267,10 +268,10 @@ impl<'m> Analysis<'m> {
                 if !purpose.sensitivities {
                     return Some(RecordedExtras::default());
                 }
-                let fields = recording::strictly(|| self.effects.fields(values));
+                let fields = recording::strictly(|| self.design_map.fields(values));
                 record_derivatives(self.model, &fields, plan, state)
             };
-            StepProgram::record(&one, &self.effects, purpose, besides, execution)
+            StepProgram::record(&one, &self.design_map, purpose, besides, execution)
         })
     }
 

@@ -40,12 +40,12 @@ impl Analysis<'_> {
         let (next, visit) = (AtomicUsize::new(0), Mutex::new(visit));
         let work = || {
             let mut solutions: [Solution; LANES] = std::array::from_fn(|_| Solution::default());
-            let mut beside = if alone { None } else { self.side_by_side(designs.len(), false, true) };
+            let mut abreast = if alone { None } else { self.side_by_side(designs.len(), false, true) };
             let firsts = || Some(LANES * next.fetch_add(1, Ordering::Relaxed));
             for first in std::iter::from_fn(firsts).take_while(|first| *first < designs.len()) {
                 let group = &designs[first..usize::min(first + LANES, designs.len())];
                 let solutions = &mut solutions[..group.len()];
-                self.solve_group(&mut beside, group, scope, solutions);
+                self.solve_group(&mut abreast, group, scope, solutions);
                 let mut visit = visit.lock().expect("a visit before has panicked");
                 (first..).zip(solutions).for_each(|(k, solution)| visit(k, solution));
             }
@@ -59,12 +59,12 @@ impl Analysis<'_> {
     /// Up to as many designs as there are lanes: side by side, or each on its own.
     fn solve_group(
         &self,
-        beside: &mut Option<DesignsAbreast<'_>>,
+        abreast: &mut Option<DesignsAbreast<'_>>,
         designs: &[Vec<f64>],
         scope: Scope,
         solutions: &mut [Solution],
     ) {
-        let Some(effort) = self.solve_side_by_side(beside, designs, solutions) else {
+        let Some(effort) = self.solve_side_by_side(abreast, designs, solutions) else {
             for (design, solution) in designs.iter().zip(solutions) {
                 self.solve_prepared(&self.prepare(design, scope), solution);
             }
@@ -86,14 +86,14 @@ impl Analysis<'_> {
     /// The motions of all these designs, or nothing where one of them does not go as expected.
     fn solve_side_by_side(
         &self,
-        beside: &mut Option<DesignsAbreast<'_>>,
+        abreast: &mut Option<DesignsAbreast<'_>>,
         designs: &[Vec<f64>],
         solutions: &mut [Solution],
     ) -> Option<Effort> {
-        let beside = beside.as_mut().filter(|_| designs.len() > 1)?;
+        let abreast = abreast.as_mut().filter(|_| designs.len() > 1)?;
         solutions.iter_mut().for_each(|s| self.make_room(&mut s.motion, 0));
-        let effort = beside.run(&self.whole(designs), |_, _| ())?;
-        solutions.iter_mut().enumerate().for_each(|(lane, s)| beside.hand_over(lane, &mut s.motion));
+        let effort = abreast.run(&self.whole(designs), |_, _| ())?;
+        solutions.iter_mut().enumerate().for_each(|(lane, s)| abreast.hand_over(lane, &mut s.motion));
         Some(effort)
     }
 
@@ -114,12 +114,12 @@ impl Analysis<'_> {
         mut sink: impl FnMut(usize) -> S,
         mut end: impl FnMut(usize, S, Streamed),
     ) {
-        let mut beside = self.side_by_side(designs.len(), run.scope.sensitivities, false);
+        let mut abreast = self.side_by_side(designs.len(), run.scope.sensitivities, false);
         let opens = if run.scope.sensitivities { self.opens() } else { &[] };
         for (group, designs) in designs.chunks(LANES).enumerate() {
             let number = |k: usize| group * LANES + k;
             let mut sinks: Vec<S> = (0..designs.len()).map(|k| sink(number(k))).collect();
-            if let Some((effort, mut resisting)) = self.stream_side_by_side(&mut beside, designs, &mut sinks)
+            if let Some((effort, mut resisting)) = self.stream_side_by_side(&mut abreast, designs, &mut sinks)
             {
                 let steps = self.model().times.len();
                 for (k, sink) in sinks.into_iter().enumerate() {
@@ -140,15 +140,15 @@ impl Analysis<'_> {
     /// All designs to the end, or nothing where one of them does not go as expected.
     fn stream_side_by_side<S: Sink>(
         &self,
-        beside: &mut Option<DesignsAbreast<'_>>,
+        abreast: &mut Option<DesignsAbreast<'_>>,
         designs: &[Vec<f64>],
         sinks: &mut [S],
     ) -> Option<(Effort, Vec<Resistance>)> {
-        let beside = beside.as_mut().filter(|_| designs.len() > 1)?;
-        let (wanted, moved) = (self.wanted(sinks), beside.moved());
+        let abreast = abreast.as_mut().filter(|_| designs.len() > 1)?;
+        let (wanted, moved) = (self.wanted(sinks), abreast.moved());
         let variables = self.model().variables.len();
         let mut resisting = vec![(Vec::new(), 0.0); LANES * variables];
-        let effort = beside.run(&self.whole(designs), |k, found| {
+        let effort = abreast.run(&self.whole(designs), |k, found| {
             let times = [self.model().times[k]; LANES];
             note_defects(
                 found.tape,
@@ -167,7 +167,7 @@ impl Analysis<'_> {
     fn side_by_side(&self, designs: usize, sensitivities: bool, keeps: bool) -> Option<DesignsAbreast<'_>> {
         let pays = designs > 1 && self.programs_pay(designs);
         // All designs must have the same laws.
-        if !pays || self.effects().laws_change() {
+        if !pays || self.design_map().laws_change() {
             return None;
         }
         let program = move |corrections| {

@@ -52,7 +52,7 @@ pub(crate) struct Walk<'a> {
     pub one: Stepper<'a>,
     abreast: TimesAbreast<'a>,
     /// `None` where no sensitivities are asked for.
-    pub sensing: Option<SensitivitySolver>,
+    pub solver: Option<SensitivitySolver>,
     /// Per body: whether its results are wanted.
     wanted: Vec<bool>,
     /// Output times solved.
@@ -74,7 +74,7 @@ impl<'a> Walk<'a> {
             analysis,
             one: Stepper::new(model, topology, PlanGeometry::same(model, topology, geometry, laws)),
             abreast: TimesAbreast::new(None, &[], None),
-            sensing: (!fields.is_empty())
+            solver: (!fields.is_empty())
                 .then(|| SensitivitySolver::new(model, topology, fields, wanted.clone())),
             wanted,
             done: 0,
@@ -91,8 +91,8 @@ impl<'a> Walk<'a> {
         let mut walk = Self::new(analysis, design, wanted);
         if analysis.programs_pay(design.scope.of_many) {
             let (sensitivities, any_design) =
-                (walk.sensing.is_some(), design.values.iter().any(|v| *v != 0.0));
-            let moved: Vec<_> = walk.sensing.iter().flat_map(SensitivitySolver::moved).collect();
+                (walk.solver.is_some(), design.values.iter().any(|v| *v != 0.0));
+            let moved: Vec<_> = walk.solver.iter().flat_map(SensitivitySolver::moved).collect();
             let program = move |corrections| {
                 let purpose = Purpose { times: true, any_design, corrections, sensitivities, margins };
                 analysis.program(purpose).filter(|program| program.moved == moved)
@@ -141,7 +141,7 @@ impl<'a> Walk<'a> {
                 let lanes = self.give_abreast(k, count, sink);
                 SolvedSteps::Abreast(self.abreast.solved(), lanes)
             };
-            then(sink, solved, count, self.sensing.as_ref());
+            then(sink, solved, count, self.solver.as_ref());
             self.done += count;
         }
         stop
@@ -182,10 +182,9 @@ impl<'a> Walk<'a> {
         for body in (1..self.wanted.len()).filter(|b| self.wanted[*b]) {
             sink.state(k, BodyId(body), &BodyState::of(&self.one.state, body));
         }
-        if let Some(sensing) = &mut self.sensing {
+        if let Some(solver) = &mut self.solver {
             let t = self.analysis.model().times[k];
-            sensing
-                .step(&mut self.one, t, |variable, body, found| sink.sensitivity(k, variable, body, found));
+            solver.step(&mut self.one, t, |variable, body, found| sink.sensitivity(k, variable, body, found));
         }
     }
 
@@ -195,19 +194,19 @@ impl<'a> Walk<'a> {
         let first = k % LANES;
         let lanes = first..first + count;
         if let Some(block) = self.abreast.own_results() {
-            let moved = self.sensing.iter().flat_map(SensitivitySolver::moved);
+            let moved = self.solver.iter().flat_map(SensitivitySolver::moved);
             let of = |lane: usize| (0, k + lane - first);
             hand_over(&block, &self.wanted, moved, std::slice::from_mut(sink), lanes.clone(), of);
         }
-        if let Some(sensing) = &mut self.sensing {
+        if let Some(solver) = &mut self.solver {
             let times = &self.analysis.model().times[k..k + count];
-            sensing.note(self.abreast.solved(), &self.one.topology, times, first);
+            solver.note(self.abreast.solved(), &self.one.topology, times, first);
         }
         lanes
     }
 
     /// Per variable, whether and how the mechanism follows it, as far as the walk has come.
     pub fn admissibility(&self, opens: &[Vec<JointDefect>]) -> Vec<Admissibility> {
-        self.sensing.as_ref().map_or_else(Vec::new, |s| s.admissibility(opens, self.done))
+        self.solver.as_ref().map_or_else(Vec::new, |s| s.admissibility(opens, self.done))
     }
 }

@@ -89,7 +89,7 @@ impl Analysis<'_> {
     ) -> usize {
         let (model, topology, measures) = (self.model(), self.topology(), design.scope.measures);
         let sensitive = !design.fields.is_empty();
-        let slopes = || Slopes::new(self.effects(), topology, &design.values, sensitive);
+        let slopes = || Slopes::new(self.design_map(), topology, &design.values, sensitive);
         let mut slopes = measures.then(slopes).flatten();
         let wanted = vec![true; model.bodies.len()];
         // What goes by a driver asks for more than bodies.
@@ -102,8 +102,8 @@ impl Analysis<'_> {
         }
         let rows = usize::min(rows, model.times.len());
         let mut sensitivities = std::mem::take(&mut solution.sensitivities);
-        match &walk.sensing {
-            Some(sensing) => sensing.make_room(&mut sensitivities, rows),
+        match &walk.solver {
+            Some(solver) => solver.make_room(&mut sensitivities, rows),
             None => sensitivities = Sensitivities::default(),
         }
         let mut window = Window {
@@ -116,7 +116,7 @@ impl Analysis<'_> {
         };
         self.make_room(&mut window.motion, rows);
         let mut margins = Margins::new(topology);
-        let stop = walk.all(&mut window, progress, |window, solved, count, sensing| {
+        let stop = walk.all(&mut window, progress, |window, solved, count, solver| {
             let times = &model.times[window.done..window.done + count];
             let k = window.done - window.first;
             window.done += count;
@@ -140,7 +140,7 @@ impl Analysis<'_> {
             }
             if window.done - window.first == rows && window.done < model.times.len() {
                 window.sensitivities.admissibility =
-                    sensing.map_or_else(Vec::new, |s| s.admissibility(&design.opens, window.done));
+                    solver.map_or_else(Vec::new, |s| s.admissibility(&design.opens, window.done));
                 window.close(self, design, solution);
                 each(window.first, solution);
                 window.open(self, rows, solution);

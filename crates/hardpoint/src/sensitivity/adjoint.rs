@@ -21,8 +21,8 @@ use crate::motion::stepper::{LOCKED, Stepper};
 use crate::space::{Real, Twist, Wrench};
 use crate::topology::{BlockId, ClosureId, CoordinateId, LinkId, RowId, Term, Topology};
 
-use super::direct::{DEFECT_FLOOR, Defect, FieldParts};
-use super::sensing::{Resistance, note};
+use super::direct::{DEFECT_FLOOR, Defect, PlanVelocity};
+use super::solver::{Resistance, note};
 
 /// A wrench with its first two time derivatives, about the world origin.
 pub(crate) type Load = [Wrench; 3];
@@ -70,7 +70,7 @@ enum Follower {
 
 impl Support {
     /// Of loads on these bodies; `fields` are those of all variables.
-    fn new(topology: &Topology, fields: &[FieldParts<f64>], loaded: &[usize]) -> Self {
+    fn new(topology: &Topology, fields: &[PlanVelocity<f64>], loaded: &[usize]) -> Self {
         let mut pushed = vec![false; 1 + topology.links.iter().map(|l| l.child.0).max().unwrap_or(0)];
         loaded.iter().for_each(|&b| pushed[b] = true);
         // From the last block to the first: a load on a child goes through its link to the parent, and through the block's closures to
@@ -117,7 +117,7 @@ impl Support {
         topology: &Topology,
         (links, closures): &(Vec<bool>, Vec<bool>),
         v: usize,
-        field: &FieldParts<f64>,
+        field: &PlanVelocity<f64>,
     ) {
         // What a link transmits pushes its child: it works on z_p - z_c; that of a closure pushes j, and works on z_j - z_i.
         for m in field.links.iter().filter(|m| links[m.at.0]) {
@@ -152,7 +152,7 @@ impl Support {
 /// Carries loads to ground; nothing is allocated per step.
 pub(crate) struct Adjoint {
     /// What each variable changes.
-    fields: Vec<FieldParts<f64>>,
+    fields: Vec<PlanVelocity<f64>>,
     /// Per order and body: what still has to be carried.
     load: [Vec<Wrench>; 3],
     /// Per order and link, or closure: the wrench that it transmits.
@@ -171,7 +171,7 @@ impl Adjoint {
     pub fn new(model: &Model, topology: &Topology, fields: &[DesignVelocity]) -> Self {
         let none = Wrench::zero();
         let three = |n: usize| std::array::from_fn(|_| vec![none; n]);
-        let parts = |f: &DesignVelocity| FieldParts::new(topology, &f.clone().with_laws_in_order());
+        let parts = |f: &DesignVelocity| PlanVelocity::new(topology, &f.clone().with_laws_in_order());
         Self {
             fields: fields.iter().map(parts).collect(),
             load: three(model.bodies.len()),

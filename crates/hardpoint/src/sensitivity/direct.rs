@@ -31,7 +31,7 @@ use crate::topology::{BlockId, ClosureId, LinkId, RowId, Term, Topology};
 /// Design velocities of one variable laid out for the plan: body-fixed marker twists by link and
 /// by closure.
 #[derive(Clone, Debug)]
-pub(crate) struct FieldParts<T> {
+pub(crate) struct PlanVelocity<T> {
     /// e of the markers that move, by link: they shift and turn what the freedoms start from or end in.
     pub(super) links: Vec<MovingMarker<T, LinkId>>,
     /// e of the markers that move, by closure: they open its rows.
@@ -139,7 +139,7 @@ impl<T: Real, At: Copy> MovingMarker<T, At> {
     }
 }
 
-impl<T: Real> FieldParts<T> {
+impl<T: Real> PlanVelocity<T> {
     pub fn new(topology: &Topology, field: &DesignVelocity<T>) -> Self {
         let (mut links, mut closures, mut kept) = (Vec::new(), Vec::new(), Vec::new());
         for (at, link) in LinkId::each(&topology.links) {
@@ -297,7 +297,7 @@ impl<T: Real> DirectDifferentiation<T> {
     }
 
     /// W, W. and W.. of all bodies for one variable, where `state` stands with all of its rates.
-    pub fn solve(&mut self, topology: &Topology, state: &mut State<T>, field: &FieldParts<T>) {
+    pub fn solve(&mut self, topology: &Topology, state: &mut State<T>, field: &PlanVelocity<T>) {
         self.set_field(topology, state, field);
         self.solve_order::<0>(topology, state, field);
         self.solve_order::<1>(topology, state, field);
@@ -305,14 +305,14 @@ impl<T: Real> DirectDifferentiation<T> {
     }
 
     /// W alone, where `state` need not know its rates.
-    pub fn solve_position(&mut self, topology: &Topology, state: &mut State<T>, field: &FieldParts<T>) {
+    pub fn solve_position(&mut self, topology: &Topology, state: &mut State<T>, field: &PlanVelocity<T>) {
         self.set_field(topology, state, field);
         self.solve_order::<0>(topology, state, field);
     }
 
     /// The design twists of every marker of the field; all that it does not reach stands.
     #[inline(always)]
-    fn set_field(&mut self, topology: &Topology, state: &State<T>, field: &FieldParts<T>) {
+    fn set_field(&mut self, topology: &Topology, state: &State<T>, field: &PlanVelocity<T>) {
         let (none, Self { flow, z, moved }) = (Twist::zero(), self);
         // W = W. = W.. = 0 of all bodies that this variable does not reach.
         if *moved != field.reach.bodies {
@@ -343,7 +343,7 @@ impl<T: Real> DirectDifferentiation<T> {
         &mut self,
         topology: &Topology,
         state: &mut State<T>,
-        field: &FieldParts<T>,
+        field: &PlanVelocity<T>,
     ) {
         let (reach, Self { flow, z, .. }) = (&field.reach, self);
         // demand = L' + df(n)/dp - l . (z_j(n) - z_i(n)); L' stands still, so it is asked for at order 0 alone. What (12) and (13) have
@@ -377,7 +377,7 @@ impl<T: Real> DirectDifferentiation<T> {
         &self,
         topology: &Topology,
         state: &State<T>,
-        field: &FieldParts<T>,
+        field: &PlanVelocity<T>,
     ) -> Option<Defect> {
         let mut worst = None;
         for (row, defect, limit) in self.judged_defects(topology, state, field) {
@@ -391,7 +391,7 @@ impl<T: Real> DirectDifferentiation<T> {
         &self,
         topology: &Topology,
         state: &State<T>,
-        field: &FieldParts<T>,
+        field: &PlanVelocity<T>,
     ) -> impl Iterator<Item = (RowId, T, T)> {
         field.left_out(topology).map(|r| {
             let (sum, most) = self.row_defect(topology, state, field, r);
@@ -407,14 +407,14 @@ impl<T: Real> DirectDifferentiation<T> {
         &self,
         topology: &Topology,
         state: &State<T>,
-        field: &FieldParts<T>,
+        field: &PlanVelocity<T>,
     ) -> impl Iterator<Item = (RowId, T)> {
         field.left_out(topology).map(|r| (r, self.row_defect(topology, state, field, r).0))
     }
 
     /// By how much row r fails, and the largest of the terms that must cancel.
     #[inline(always)]
-    fn row_defect(&self, topology: &Topology, state: &State<T>, field: &FieldParts<T>, r: RowId) -> (T, T) {
+    fn row_defect(&self, topology: &Topology, state: &State<T>, field: &PlanVelocity<T>, r: RowId) -> (T, T) {
         let zero = T::zero();
         // l . (W_j - W_i) + l . (z_j - z_i) - (L' + df/dp), summed over a coupler's terms: (11) of a row that it was not solved with
         let (mut sum, mut most) = (zero, zero);
@@ -439,7 +439,7 @@ impl<T: Real> DirectDifferentiation<T> {
 }
 
 /// Driven coordinates, in the tree and across cuts, follow the change of their laws.
-fn follow_laws<T: Real>(topology: &Topology, field: &FieldParts<T>, order: usize, flow: &mut Flow<T>) {
+fn follow_laws<T: Real>(topology: &Topology, field: &PlanVelocity<T>, order: usize, flow: &mut Flow<T>) {
     for (c, d) in topology.driven_coordinates() {
         // S(n) = df(n)/dp of a driven coordinate of the tree: it is q = f(t, p) itself.
         flow.speeds[order][c.0] = field.law_rate(d, order);

@@ -8,14 +8,14 @@ mod adjoint;
 mod admissible;
 mod direct;
 mod second;
-mod sensing;
+mod solver;
 
 pub(crate) use adjoint::{Adjoint, DefectWatch, Load, Support};
 pub use admissible::{Admissibility, Condition, JointDefect, admissibility_at_design, conditions_at_design};
-pub(crate) use direct::{DirectDifferentiation, FieldParts};
+pub(crate) use direct::{DirectDifferentiation, PlanVelocity};
 pub use second::{BodyCurvature, PairDirection};
 pub(crate) use second::{Seconds, along};
-pub(crate) use sensing::{Resistance, SensitivitySolver, admissibility, note_defects, record_derivatives};
+pub(crate) use solver::{Resistance, SensitivitySolver, admissibility, note_defects, record_derivatives};
 
 use hardpoint_tape::Lanes;
 

@@ -23,7 +23,7 @@ use crate::number::{Dual, Real};
 use crate::space::{Mat3, Pose, Twist, Vec3, Wrench};
 use crate::topology::{ClosureId, LinkId, SetBy, Topology};
 
-use super::direct::{DirectDifferentiation, FieldParts, MovingMarker};
+use super::direct::{DirectDifferentiation, MovingMarker, PlanVelocity};
 
 /// A way to go.
 #[derive(Clone, Debug, PartialEq)]
@@ -44,9 +44,9 @@ impl PairDirection {
     }
 
     /// What it changes at the designs with these values.
-    fn field<T: Real>(&self, effects: &DesignMap<'_>, values: &[T]) -> DesignVelocity<T> {
+    fn field<T: Real>(&self, design_map: &DesignMap<'_>, values: &[T]) -> DesignVelocity<T> {
         match self {
-            Self::Design(speeds) => effects.field_along(&along(speeds), values),
+            Self::Design(speeds) => design_map.field_along(&along(speeds), values),
             Self::Driver(driver) => DesignVelocity::of_driver(*driver),
         }
     }
@@ -64,7 +64,7 @@ pub struct BodyCurvature {
 
 /// What one direction does at one position, to first order.
 struct FirstOrder {
-    field: FieldParts<f64>,
+    field: PlanVelocity<f64>,
     /// U = W_u, u = S_u, z = z_u, f = L_u.
     /// Order 0 is the direction; order 1 is how a pair changes that.
     direct: DirectDifferentiation<f64>,
@@ -74,7 +74,7 @@ struct FirstOrder {
 }
 
 impl FirstOrder {
-    fn new(model: &Model, topology: &Topology, field: FieldParts<f64>) -> Self {
+    fn new(model: &Model, topology: &Topology, field: PlanVelocity<f64>) -> Self {
         let mut direct = DirectDifferentiation::new(model, topology);
         // Along the design even the axes of joints on ground move: x^w = ad(z_w) x.
         direct.flow.ground_stands = false;
@@ -120,7 +120,7 @@ impl FirstOrder {
 #[derive(Clone, Debug)]
 struct Pair {
     of: [usize; 2],
-    field: FieldParts<Dual>,
+    field: PlanVelocity<Dual>,
     /// Per marker that the field moves at a link, then at a closure: its body-fixed twist, and the derivative of that.
     links: Vec<[Twist; 2]>,
     closures: Vec<[Twist; 2]>,
@@ -150,27 +150,27 @@ pub(crate) struct Seconds {
 impl Seconds {
     /// For these pairs of directions at the design with these values.
     pub fn new(
-        effects: &DesignMap<'_>,
+        design_map: &DesignMap<'_>,
         topology: &Topology,
         values: &[f64],
         directions: &[PairDirection],
         pairs: &[[usize; 2]],
     ) -> Self {
-        let model = effects.model;
+        let model = design_map.model;
         let firsts = directions.iter().map(|d| {
-            let field = d.field(effects, values);
-            FirstOrder::new(model, topology, FieldParts::new(topology, &field.with_laws_in_order()))
+            let field = d.field(design_map, values);
+            FirstOrder::new(model, topology, PlanVelocity::new(topology, &field.with_laws_in_order()))
         });
         let pair = |&[u, w]: &[usize; 2]| {
             let speeds = directions[w].speeds().iter().copied().chain(std::iter::repeat(0.0));
             // b + eps w with eps^2 = 0: e_u + eps de_u/dw, L_u + eps L_uw, and the same of the laws' parameters
             let moving: Vec<Dual> = values.iter().zip(speeds).map(|(v, d)| Dual { v: *v, d }).collect();
-            let field = directions[u].field(effects, &moving);
-            let field = FieldParts::new(topology, &field);
+            let field = directions[u].field(design_map, &moving);
+            let field = PlanVelocity::new(topology, &field);
             let laws = [LAW_STEP, -LAW_STEP].map(|h| {
                 // b + h w and b - h w
                 let moved: Vec<f64> = moving.iter().map(|x| x.v + h * x.d).collect();
-                effects.laws(&moved)
+                design_map.laws(&moved)
             });
             let of_driver = |d: &DriverId| (*d, [laws[0][d.0].clone(), laws[1][d.0].clone()]);
             let drivers: Vec<DriverId> = field.drivers().collect();

@@ -127,7 +127,7 @@ impl Analysis<'_> {
         let Solution { motion, sensitivities, stop, .. } =
             self.solve(Run::new().at(design).without_measures());
         let PreparedDesign { values, laws, .. } = &self.design(design);
-        let at = measure::MeasuredDesign { model: self.model(), effects: self.effects(), values, laws };
+        let at = measure::MeasuredDesign { model: self.model(), design_map: self.design_map(), values, laws };
         let more = Context { slopes: &SlopeValues::default(), whole_turns: &[] };
         let (asked, variables) = (outputs.len(), self.model().variables.len());
         let mut d = vec![[f64::NAN; 3]; motion.len() * asked * variables];
@@ -151,7 +151,7 @@ impl Analysis<'_> {
     fn gradients_adjoint(&self, design: &PreparedDesign, outputs: Vec<Output>) -> Gradients {
         let model = self.model();
         let (variables, asked) = (model.variables.len(), outputs.len());
-        let fields = self.effects().fields(&design.values);
+        let fields = self.design_map().fields(&design.values);
         let mut result = Gradients {
             d: vec![[f64::NAN; 3]; model.times.len() * asked * variables],
             method: Method::Adjoint,
@@ -214,10 +214,10 @@ impl<'a> AdjointSolver<'a> {
         fields: &[DesignVelocity],
         outputs: &[Output],
     ) -> Self {
-        let (model, effects) = (analysis.model(), analysis.effects());
+        let (model, design_map) = (analysis.model(), analysis.design_map());
         let adjoint = Adjoint::new(model, analysis.topology(), fields);
         let bodies: Vec<usize> = bodies_asked_for(model).into_iter().filter(|b| *b != GROUND.0).collect();
-        let depends = dependences(effects, &design.values, &bodies, outputs);
+        let depends = dependences(design_map, &design.values, &bodies, outputs);
         let none = [Wrench::zero(); 3];
         let asked = outputs.iter().zip(depends).map(|(output, [on, variables])| RequestedOutput {
             derivatives: vec![[0.0; 3]; 6 * on.len() + variables.len()],
@@ -234,7 +234,7 @@ impl<'a> AdjointSolver<'a> {
             moved[v].get_or_insert_with(|| {
                 let value = values[v];
                 values[v] = Dual::variable(value.v);
-                let fixed = effects.fixed(&values);
+                let fixed = design_map.fixed(&values);
                 values[v] = value;
                 fixed
             });
@@ -242,7 +242,7 @@ impl<'a> AdjointSolver<'a> {
         Self {
             watch: DefectWatch::new(model, fields.len()),
             poses: vec![Pose::IDENTITY.spread(); model.bodies.len()],
-            fixed: effects.fixed(&values),
+            fixed: design_map.fixed(&values),
             gradient: vec![[0.0; 3]; fields.len()],
             analysis,
             adjoint,

@@ -3,7 +3,7 @@
 use crate::linalg::{FullPivot, least_squares};
 use crate::model::{Change, End, Model, VariableId};
 use crate::run::{Analysis, Walk};
-use crate::sensitivity::{DirectDifferentiation, FieldParts, conditions_at_design};
+use crate::sensitivity::{DirectDifferentiation, PlanVelocity, conditions_at_design};
 use crate::space::Vec3;
 
 /// Conditions that the motion adds are taken at so many of its output times, evenly.
@@ -124,7 +124,7 @@ fn conditions(analysis: &Analysis<'_>, scales: &[f64]) -> Vec<Vec<f64>> {
     let every = model.times.len().div_ceil(TIMES).max(1);
     let topology = analysis.topology();
     let mut direct = DirectDifferentiation::new(model, topology);
-    let mut parts: Vec<_> = fields.iter().map(|f| FieldParts::new(topology, f)).collect();
+    let mut parts: Vec<_> = fields.iter().map(|f| PlanVelocity::new(topology, f)).collect();
     if topology.redundant().next().is_some() {
         // A motion that ends early asks for less.
         let _ = walk.each(|stepper| {

@@ -99,7 +99,7 @@ impl<'a> SecondDerivativeSolver<'a> {
         directions: &[Vec<f64>],
         pairs: &[[usize; 2]],
     ) -> Self {
-        let (model, effects) = (analysis.model(), analysis.effects());
+        let (model, design_map) = (analysis.model(), analysis.design_map());
         let ways: Vec<PairDirection> = directions.iter().map(|d| PairDirection::Design(d.clone())).collect();
         let fixed = |&[u, w]: &[usize; 2]| {
             // b + eps_w w + eps_u u: at eps_w the derivative along w, at eps_u that along u, at both the second one
@@ -108,11 +108,11 @@ impl<'a> SecondDerivativeSolver<'a> {
                 d: Dual::constant(directions[u][k]),
             };
             let values: Vec<_> = (0..model.variables.len()).map(value).collect();
-            effects.fixed(&values)
+            design_map.fixed(&values)
         };
         Self {
             analysis,
-            seconds: Seconds::new(effects, analysis.topology(), &design.values, &ways, pairs),
+            seconds: Seconds::new(design_map, analysis.topology(), &design.values, &ways, pairs),
             fixed: pairs.iter().map(fixed).collect(),
             asked_for: bodies_asked_for(model).into_iter().filter(|b| *b != GROUND.0).collect(),
             poses: vec![Pose::IDENTITY.spread(); model.bodies.len()],

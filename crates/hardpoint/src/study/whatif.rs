@@ -59,7 +59,7 @@ pub fn what_if(analysis: &Analysis<'_>, today: Solution, change: &[f64]) -> What
         Admissibility::CannotFollow { .. } => variables.collect(),
         _ => Vec::new(),
     };
-    let field = analysis.effects().field_along(&crate::sensitivity::along(&change), &model.whole(&[]));
+    let field = analysis.design_map().field_along(&crate::sensitivity::along(&change), &model.whole(&[]));
     let part = |(v, by): (usize, &f64)| by.abs() / model.natural_step(VariableId(v));
     WhatIf {
         part: change.iter().enumerate().map(part).fold(0.0, f64::max),

@@ -12,13 +12,13 @@ use crate::motion::tape::Tape;
 use crate::space::Real;
 use crate::topology::Topology;
 
-use super::direct::{Defect, DirectDifferentiation, FieldParts};
+use super::direct::{Defect, DirectDifferentiation, PlanVelocity};
 use super::{Admissibility, BodySensitivity, JointDefect, Sensitivities};
 
 /// Collects the sensitivities of a run.
 pub(crate) struct SensitivitySolver {
     /// Per variable, how it changes the design.
-    fields: Vec<FieldParts<f64>>,
+    fields: Vec<PlanVelocity<f64>>,
     direct: DirectDifferentiation<f64>,
     bodies: usize,
     /// Per body: whether its sensitivities are wanted.
@@ -33,7 +33,7 @@ impl SensitivitySolver {
     /// Prepares the sensitivities of the wanted bodies by the variables with these fields.
     pub fn new(model: &Model, topology: &Topology, fields: &[DesignVelocity], wanted: Vec<bool>) -> Self {
         Self {
-            fields: fields.iter().map(|f| FieldParts::new(topology, f)).collect(),
+            fields: fields.iter().map(|f| PlanVelocity::new(topology, f)).collect(),
             direct: DirectDifferentiation::new(model, topology),
             bodies: model.bodies.len(),
             wanted,
@@ -164,7 +164,7 @@ pub(crate) fn record_derivatives(
     state.finish_rates(topology);
     let mut direct = DirectDifferentiation::new(model, topology);
     for (v, field) in fields.iter().enumerate() {
-        let mut field = FieldParts::new(topology, field);
+        let mut field = PlanVelocity::new(topology, field);
         if !field.is_constant() {
             return None;
         }

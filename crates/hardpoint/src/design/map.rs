@@ -43,7 +43,7 @@ pub(crate) struct DesignMap<'m> {
 impl<'m> DesignMap<'m> {
     pub fn of(model: &'m Model) -> Self {
         let hardpoints = model.hardpoints.len();
-        let mut effects = Self {
+        let mut design_map = Self {
             model,
             formulas: Formulas::of(model),
             moves: vec![Vec::new(); hardpoints],
@@ -55,24 +55,24 @@ impl<'m> DesignMap<'m> {
             for change in &variable.changes {
                 if let Some((hardpoint, velocity)) = change.hardpoint() {
                     // dP/db = V, constant: P = P_o + V b at any b
-                    effects.moves[hardpoint.0].push((k, velocity));
+                    design_map.moves[hardpoint.0].push((k, velocity));
                 }
                 if let Some(joint) = change.joint() {
-                    effects.changes[joint.0].push((k, change));
+                    design_map.changes[joint.0].push((k, change));
                 }
             }
         }
         // A joint follows the hardpoints that it is at, and those that its axes pass through.
         for (j, joint) in model.joints.iter().enumerate() {
-            joint.at.iter().for_each(|h| effects.joints[h.0].push(j));
+            joint.at.iter().for_each(|h| design_map.joints[h.0].push(j));
             for axis in [joint.axis, joint.axis2].into_iter().flatten() {
-                axis.hardpoints().for_each(|h| effects.joints[h.0].push(j));
+                axis.hardpoints().for_each(|h| design_map.joints[h.0].push(j));
             }
         }
         for (k, point) in model.points.iter().enumerate() {
-            effects.points[point.at.0].push(k);
+            design_map.points[point.at.0].push(k);
         }
-        effects
+        design_map
     }
 
     /// Whether a variable changes the law of a driver.
@@ -121,10 +121,10 @@ impl<'m> DesignMap<'m> {
             duals[variable.0].d = T::constant(rate);
         }
         let design = PlacedDesign::new(self, duals);
-        let touched = self.touched(along);
+        let affected = self.affected(along);
         let mut field =
-            DesignVelocity { laws: self.law_rates(&touched, &design), ..DesignVelocity::default() };
-        for j in touched.joints {
+            DesignVelocity { laws: self.law_rates(&affected, &design), ..DesignVelocity::default() };
+        for j in affected.joints {
             for end in 0..2 {
                 // e = [R U; V - (R U) x s], the twist of the marker's pose in its body                                (8)
                 let (_, twist) = design.marker(j, end).split();
@@ -138,20 +138,20 @@ impl<'m> DesignMap<'m> {
                 field.kept.push((JointId(j), rates));
             }
         }
-        let moved = touched.points.into_iter().map(|k| (PointId(k), design.point(k).map(|x| x.d)));
+        let moved = affected.points.into_iter().map(|k| (PointId(k), design.point(k).map(|x| x.d)));
         field.points = moved.filter(|(_, v)| !is_null(*v)).collect();
         field
     }
 
     /// What may change along a direction, some variables at once.
-    pub(super) fn touched(&self, along: &[(VariableId, f64)]) -> Affected {
-        let mut touched = Affected::default();
+    pub(super) fn affected(&self, along: &[(VariableId, f64)]) -> Affected {
+        let mut affected = Affected::default();
         for (variable, by) in along {
             for change in &self.model.variables[variable.0].changes {
-                touched.hardpoints.extend(change.hardpoint().map(|(h, _)| h.0));
-                touched.joints.extend(change.joint().map(|j| j.0));
+                affected.hardpoints.extend(change.hardpoint().map(|(h, _)| h.0));
+                affected.joints.extend(change.joint().map(|j| j.0));
                 // dp/db, times how fast b goes
-                touched
+                affected
                     .laws
                     .extend(change.law().map(|(driver, parameter, rate)| (driver, parameter, by * rate)));
             }
@@ -160,32 +160,32 @@ impl<'m> DesignMap<'m> {
             for k in following.unwrap_or_default() {
                 match self.model.formulas[k].of {
                     Target::Parameter(_) => {}
-                    Target::Coordinate(h, _) => touched.hardpoints.push(h.0),
-                    Target::Length(j) => touched.joints.push(j.0),
-                    Target::Law(..) => touched.law_formulas.push(k),
+                    Target::Coordinate(h, _) => affected.hardpoints.push(h.0),
+                    Target::Length(j) => affected.joints.push(j.0),
+                    Target::Law(..) => affected.law_formulas.push(k),
                 }
             }
         }
-        for &h in &touched.hardpoints {
-            touched.joints.extend(&self.joints[h]);
-            touched.points.extend(&self.points[h]);
+        for &h in &affected.hardpoints {
+            affected.joints.extend(&self.joints[h]);
+            affected.points.extend(&self.points[h]);
         }
-        for list in [&mut touched.joints, &mut touched.points, &mut touched.law_formulas] {
+        for list in [&mut affected.joints, &mut affected.points, &mut affected.law_formulas] {
             list.sort_unstable();
             list.dedup();
         }
-        touched
+        affected
     }
 
     /// The parameters of laws that change, and their rates.
     fn law_rates<T: Real>(
         &self,
-        touched: &Affected,
+        affected: &Affected,
         design: &PlacedDesign<'_, Dual<T>>,
     ) -> Vec<(DriverId, usize, T)> {
         let mut rates: Vec<_> =
-            touched.laws.iter().map(|(d, p, rate)| (*d, *p, T::constant(*rate))).collect();
-        for &k in &touched.law_formulas {
+            affected.laws.iter().map(|(d, p, rate)| (*d, *p, T::constant(*rate))).collect();
+        for &k in &affected.law_formulas {
             if let Target::Law(driver, parameter) = self.model.formulas[k].of {
                 // dp/db of a parameter of a law that a formula gives
                 let rate = design.values.formulas[k].d;
@@ -246,7 +246,7 @@ pub(super) struct Affected {
 
 /// Where everything is with the variables at these values.
 struct PlacedDesign<'e, T> {
-    effects: &'e DesignMap<'e>,
+    design_map: &'e DesignMap<'e>,
     values: Values<T>,
     /// The same, 0 for variables that keep the lengths of rods: what the lengths are measured with.
     for_lengths: Values<T>,
@@ -263,16 +263,16 @@ struct Values<T> {
 
 impl<'e, T: Real> PlacedDesign<'e, T> {
     /// Variables at 0 are left out, unless it is differentiated by them.
-    fn new(effects: &'e DesignMap<'_>, values: Vec<T>) -> Self {
-        let variables = &effects.model.variables;
+    fn new(design_map: &'e DesignMap<'_>, values: Vec<T>) -> Self {
+        let variables = &design_map.model.variables;
         let counts = values.iter().map(|v| !v.vanishes()).collect();
         // With b = 0 for the variables that keep lengths L = abs(d) does not follow them: L' = 0, and the mechanism re-assembles.
         let follows = |(value, v): (&T, &DesignVariable)| if v.fixed_length { T::zero() } else { *value };
         let for_lengths = values.iter().zip(variables).map(follows).collect();
         let plain = |variables| Values { variables, formulas: Vec::new() };
         let (values, for_lengths) = (plain(values), plain(for_lengths));
-        let mut design = Self { effects, values, for_lengths, counts };
-        if let Some(f) = &effects.formulas
+        let mut design = Self { design_map, values, for_lengths, counts };
+        if let Some(f) = &design_map.formulas
             && f.is_used.iter().zip(&design.counts).any(|(is_used, counts)| *is_used && *counts)
         {
             design.values.formulas = design.solved(f, &design.values.variables);
@@ -286,7 +286,7 @@ impl<'e, T: Real> PlacedDesign<'e, T> {
 
     /// What all formulas give, one after the other.
     fn solved(&self, formulas: &Formulas, variables: &[T]) -> Vec<T> {
-        let model = self.effects.model;
+        let model = self.design_map.model;
         let mut results: Vec<T> = Vec::with_capacity(model.formulas.len());
         for formula in &model.formulas {
             let result = formula.at(|source| {
@@ -296,7 +296,7 @@ impl<'e, T: Real> PlacedDesign<'e, T> {
                     }
                     Source::Coordinate(h, axis) => (
                         formulas.of_hardpoint[h.0][axis],
-                        self.rates(&self.effects.moves[h.0], move |v| v[axis]),
+                        self.rates(&self.design_map.moves[h.0], move |v| v[axis]),
                     ),
                 };
                 let given = given.map_or_else(|| T::constant(model.nominal(source)), |k| results[k]);
@@ -317,13 +317,13 @@ impl<'e, T: Real> PlacedDesign<'e, T> {
 
     /// Global position of a hardpoint.
     fn place(&self, h: HardpointId, values: &Values<T>) -> Vec3<T> {
-        let mut place = self.effects.model.position(h).spread();
-        if let (Some(f), false) = (&self.effects.formulas, values.formulas.is_empty()) {
+        let mut place = self.design_map.model.position(h).spread();
+        if let (Some(f), false) = (&self.design_map.formulas, values.formulas.is_empty()) {
             // P_o, or component by component what its formula gives
             let given = |axis: usize| f.of_hardpoint[h.0][axis].map_or(place[axis], |k| values.formulas[k]);
             place = Vec3::new(given(0), given(1), given(2));
         }
-        for &(k, velocity) in self.effects.moves[h.0].iter().filter(|(k, _)| self.counts[*k]) {
+        for &(k, velocity) in self.design_map.moves[h.0].iter().filter(|(k, _)| self.counts[*k]) {
             // P = P_o + sum_k v_k b_k, with P_o by formulas where these give it
             place = velocity.spread().times_plus(values.variables[k], place);
         }
@@ -344,23 +344,23 @@ impl<'e, T: Real> PlacedDesign<'e, T> {
 
     /// A body's frame, which the design leaves where it is.
     fn frame(&self, body: BodyId) -> Pose<T> {
-        self.effects.model.bodies[body.0].frame.spread()
+        self.design_map.model.bodies[body.0].frame.spread()
     }
 
     /// Marker e of joint j in its body's frame.
     fn marker(&self, j: usize, e: usize) -> Pose<T> {
-        let body = self.effects.model.joints[j].bodies[e];
+        let body = self.design_map.model.joints[j].bodies[e];
         // (s, C) = X_body^-1 X_marker; the body's frame stays where it is (paper, section 2).
         self.frame(body).inverse().compose(self.marker_in_world(j, e, &self.values))
     }
 
     /// Marker e of joint j in the design configuration.
     fn marker_in_world(&self, j: usize, e: usize, values: &Values<T>) -> Pose<T> {
-        let model = self.effects.model;
+        let model = self.design_map.model;
         let joint = &model.joints[j];
         // The hardpoint and the axes that it follows, then what changes this joint alone (paper 3.1, 3.4; `design/change.rs`).
         let drawn = Pose { rot: self.followed_frame(joint, e, values), r: self.place(joint.at[e], values) };
-        let changes = self.effects.changes[j].iter().filter(|(k, _)| self.counts[*k]);
+        let changes = self.design_map.changes[j].iter().filter(|(k, _)| self.counts[*k]);
         changes.fold(drawn, |marker, &(k, change)| change.marker(model, marker, e, values.variables[k]))
     }
 
@@ -389,15 +389,15 @@ impl<'e, T: Real> PlacedDesign<'e, T> {
 
     /// What joint j keeps.
     fn kept(&self, j: usize) -> JointConstants<T> {
-        let (joint, zero) = (&self.effects.model.joints[j], T::zero());
+        let (joint, zero) = (&self.design_map.model.joints[j], T::zero());
         let [m_i, m_j] = [0, 1].map(|e| self.marker_in_world(j, e, &self.for_lengths));
         // d = P_j - P_i of the design; what a joint keeps is measured on it: L = abs(d), z_i . d, z_i . z_j, the distance from a curve.
         let (d, z_i, z_j) = (m_j.r - m_i.r, m_i.rot.cols[2], m_j.rot.cols[2]);
         let given = joint.length.map(|length| {
-            let formula = self.effects.formulas.as_ref().and_then(|f| f.of_length[j]);
+            let formula = self.design_map.formulas.as_ref().and_then(|f| f.of_length[j]);
             let given = formula.and_then(|k| self.values.formulas.get(k)).copied();
             let given = given.unwrap_or_else(|| T::constant(length));
-            let changes = self.effects.changes[j].iter().filter(|(k, _)| self.counts[*k]);
+            let changes = self.design_map.changes[j].iter().filter(|(k, _)| self.counts[*k]);
             changes.fold(given, |length, &(k, change)| change.length(length, self.values.variables[k]))
         });
         // Markers at one place keep no distance, and it would have no derivative.
@@ -414,7 +414,7 @@ impl<'e, T: Real> PlacedDesign<'e, T> {
 
     /// A point in its body's frame.
     fn point(&self, k: usize) -> Vec3<T> {
-        let point = &self.effects.model.points[k];
+        let point = &self.design_map.model.points[k];
         self.frame(point.body).inverse().point(self.place(point.at, &self.values))
     }
 
@@ -424,7 +424,7 @@ impl<'e, T: Real> PlacedDesign<'e, T> {
             // A^T h
             self.frame(body).rot.transpose_mul(self.direction(axis, &self.values))
         };
-        self.effects.model.directions(measure).map(|d| d.map(in_body))
+        self.design_map.model.directions(measure).map(|d| d.map(in_body))
     }
 }
 
@@ -468,10 +468,10 @@ mod tests {
             ))
             .times([0.0]);
         let model = Model::from_draft(&draft).unwrap();
-        let effects = DesignMap::of(&model);
+        let design_map = DesignMap::of(&model);
         for b in [0.0, 0.4] {
             let value = Dual { v: Dual::variable(b), d: Dual::constant(1.0) };
-            let rod = effects.geometry(&[value]);
+            let rod = design_map.geometry(&[value]);
             let place = rod.markers[2][0].r;
             let (s, c) = (0.8_f64 + b).sin_cos();
             for (found, expected) in [
