@@ -27,7 +27,7 @@ use winnow::token::{any, one_of, take_while};
 use crate::number::Function;
 
 use super::program::{MAX_WAITING, Operation, Program};
-use super::term::{Binary, Comparison};
+use super::term::{Binary, Relation};
 
 /// What is wrong with the text of a law.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
@@ -360,7 +360,7 @@ impl<'a> Descent<'a> {
             Call::If => (3, 3),
             Call::Step => (5, 5),
         };
-        let mut comparison = Comparison::Less;
+        let mut comparison = Relation::Less;
         let mut arguments = Vec::new(); // where each begins in the program, and its span
         while self.token != Token::Symbol(")") || !arguments.is_empty() {
             let (first_operation, start) = (self.program.len(), self.span.start);
@@ -407,14 +407,14 @@ impl<'a> Descent<'a> {
     }
 
     /// Reads `a < b`, leaves a and b in the program.
-    fn condition(&mut self) -> Result<Comparison, ExpressionError> {
+    fn condition(&mut self) -> Result<Relation, ExpressionError> {
         let start = self.span.start;
         self.nested(Self::sum)?;
         let comparison = match self.token {
-            Token::Symbol("<") => Comparison::Less,
-            Token::Symbol("<=") => Comparison::LessOrEqual,
-            Token::Symbol(">") => Comparison::Greater,
-            Token::Symbol(">=") => Comparison::GreaterOrEqual,
+            Token::Symbol("<") => Relation::Less,
+            Token::Symbol("<=") => Relation::LessOrEqual,
+            Token::Symbol(">") => Relation::Greater,
+            Token::Symbol(">=") => Relation::GreaterOrEqual,
             Token::Symbol(symbol @ ("=" | "==" | "!=")) => {
                 let message = format!("a law is not compared with `{symbol}`");
                 return Err(error(self.span.clone(), message, Some("use `<`, `<=`, `>` or `>=`")));

@@ -7,7 +7,7 @@ use std::cmp::Ordering;
 
 use crate::number::{Function, Jet, Real};
 
-use super::term::{Binary, Comparison, ExpressionValue};
+use super::term::{Binary, ExpressionValue, Relation};
 
 /// The most operands that may wait for their operation.
 pub(crate) const MAX_WAITING: usize = 256;
@@ -33,7 +33,7 @@ pub(crate) enum Operation {
     /// x, x0, h0, x1, h1
     Step,
     /// Of a, b, x, y: x where the comparison of a with b holds, else y.
-    Select(Comparison),
+    Select(Relation),
     /// The value alone, of what depends on parameters only.
     Settle,
 }

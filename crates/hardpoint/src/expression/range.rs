@@ -10,7 +10,7 @@ use std::ops::{Add, Div, Mul, Neg, Sub};
 
 use crate::number::Function;
 
-use super::term::{Comparison, ExpressionValue};
+use super::term::{ExpressionValue, Relation};
 
 /// All numbers from `low` to `high`. What is undefined anywhere is unbounded.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -354,7 +354,7 @@ impl ExpressionValue for Stretch {
     }
 
     /// As far as it is known which.
-    fn choose(self, comparison: Comparison, b: Self, x: Self, y: Self) -> Self {
+    fn choose(self, comparison: Relation, b: Self, x: Self, y: Self) -> Self {
         match comparison.holds_between(self.value, b.value) {
             Some(true) => x,
             Some(false) => y,

@@ -33,7 +33,7 @@ pub(crate) trait ExpressionValue:
     /// The cubic step in `self` from `h0`, up to `x0`, to `h1`, from `x1` on; `x0 < x1`, else not a number.
     fn step(self, x0: Self, h0: Self, x1: Self, h1: Self) -> Self;
     /// `x` where the comparison of `self` with `b` holds, else `y`; not a number if either is not.
-    fn choose(self, comparison: Comparison, b: Self, x: Self, y: Self) -> Self;
+    fn choose(self, comparison: Relation, b: Self, x: Self, y: Self) -> Self;
     /// What depends on constants only.
     fn settled(self) -> Self;
 }
@@ -101,7 +101,7 @@ impl<T: Real> ExpressionValue for T {
     }
 
     #[inline(never)]
-    fn choose(self, comparison: Comparison, b: Self, x: Self, y: Self) -> Self {
+    fn choose(self, comparison: Relation, b: Self, x: Self, y: Self) -> Self {
         comparison.holds(self.value(), b.value()).map_or(undefined(self), |holds| if holds { x } else { y })
     }
 
@@ -159,14 +159,14 @@ impl Binary {
 
 /// A comparison of two values.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) enum Comparison {
+pub(crate) enum Relation {
     Less,
     LessOrEqual,
     Greater,
     GreaterOrEqual,
 }
 
-impl Comparison {
+impl Relation {
     /// Whether `a` compares with `b` in this way; `None` if either is not a number.
     pub(crate) fn holds(self, a: f64, b: f64) -> Option<bool> {
         let order = a.partial_cmp(&b)?;

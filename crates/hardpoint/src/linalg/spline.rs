@@ -34,7 +34,7 @@ const QUINTIC: [[f64; 6]; 6] = [
 ];
 
 /// Where the value or a derivative at a knot comes from.
-enum Source {
+enum Datum {
     /// From the data that the spline is made for.
     Data(usize),
     /// It is an unknown.
@@ -79,7 +79,7 @@ impl Basis {
     pub(crate) fn segments(&self, data: &[f64]) -> Vec<Segment> {
         let mut unknowns = vec![0.0; self.factor.len()];
         self.for_entries(|row, column, entry| {
-            if let Source::Data(datum) = column {
+            if let Datum::Data(datum) = column {
                 // dE/d(unknown) = 0:  A unknowns = - sum of entry data
                 unknowns[row] -= entry * data[datum];
             }
@@ -87,8 +87,8 @@ impl Basis {
         self.solve(&mut unknowns);
 
         let at = |knot: usize, order: usize| match self.source(knot, order) {
-            Source::Data(datum) => data[datum],
-            Source::Unknown(unknown) => unknowns[unknown],
+            Datum::Data(datum) => data[datum],
+            Datum::Unknown(unknown) => unknowns[unknown],
         };
         let pairs = self.times.windows(2).enumerate();
         pairs.map(|(k, t)| hermite(t[1] - t[0], self.rates, |end, order| at(k + end, order))).collect()
@@ -103,28 +103,28 @@ impl Basis {
         })
     }
 
-    fn source(&self, knot: usize, order: usize) -> Source {
+    fn source(&self, knot: usize, order: usize) -> Datum {
         let last = self.times.len() - 1;
         let knot = if self.ends == EndKind::Periodic { knot % last } else { knot };
         let is_clamped = self.ends == EndKind::Clamped;
         if order == 0 {
-            Source::Data(knot)
+            Datum::Data(knot)
         } else if is_clamped && knot == 0 {
-            Source::Data(last + order)
+            Datum::Data(last + order)
         } else if is_clamped && knot == last {
-            Source::Data(last + self.rates + order)
+            Datum::Data(last + self.rates + order)
         } else {
-            Source::Unknown((knot - usize::from(is_clamped)) * self.rates + order - 1)
+            Datum::Unknown((knot - usize::from(is_clamped)) * self.rates + order - 1)
         }
     }
 
     /// Calls with the row of an unknown, a column, and what a segment adds to the matrix there.
-    fn for_entries(&self, mut add: impl FnMut(usize, Source, f64)) {
+    fn for_entries(&self, mut add: impl FnMut(usize, Datum, f64)) {
         let m = self.rates + 1;
         for (k, t) in self.times.windows(2).enumerate() {
             let h = t[1] - t[0];
             for row in 0..2 * m {
-                let Source::Unknown(unknown) = self.source(k + row / m, row % m) else {
+                let Datum::Unknown(unknown) = self.source(k + row / m, row % m) else {
                     continue;
                 };
                 for column in 0..2 * m {
@@ -141,7 +141,7 @@ impl Basis {
     fn factorised(&self) -> Vec<Vec<f64>> {
         let mut entries = Vec::new();
         self.for_entries(|row, column, entry| match column {
-            Source::Unknown(column) if column <= row => entries.push((row, column, entry)),
+            Datum::Unknown(column) if column <= row => entries.push((row, column, entry)),
             _ => {}
         });
         let mut rows: Vec<Vec<f64>> = Vec::new();

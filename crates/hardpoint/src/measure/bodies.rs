@@ -6,7 +6,7 @@ use crate::sensitivity::BodySensitivity;
 use crate::space::{Mat3, Pose, Vec3};
 
 /// A body's pose with its rates.
-pub(super) fn with_rates(s: &BodyState) -> Pose<Rates> {
+pub(crate) fn with_rates(s: &BodyState) -> Pose<Rates> {
     let [x, y, z] = s.rotation.cols;
     moving([s.r, x, y, z, s.v, s.omega, s.a, s.alpha])
 }

@@ -14,7 +14,8 @@ mod wheel;
 use std::collections::BTreeMap;
 use std::ops::Range;
 
-use bodies::{with_rates, with_sensitivity};
+pub(crate) use bodies::with_rates;
+use bodies::with_sensitivity;
 use hardpoint_tape::LANES;
 use program::MeasureRun;
 pub(crate) use program::{MeasureProgram, ProgramKey, dependences};
@@ -249,7 +250,7 @@ pub(crate) fn evaluate(
     let &MeasuredDesign { model, values, .. } = design;
     make_room(model, sensitivities, motion.len(), program, measured);
     let mut run = program.map(|program| MeasureRun::new(program, values));
-    let mut formulas = Formulas::new(design, topology, (motion, before), slopes, measured);
+    let mut formulas = FormulaEvaluator::new(design, topology, (motion, before), slopes, measured);
     for first in (0..motion.len()).step_by(LANES) {
         let times = first..usize::min(first + LANES, motion.len());
         let asked = loop {
@@ -269,7 +270,7 @@ pub(crate) fn evaluate(
             run.turns().for_each(|(_, lanes)| *lanes = [lanes[LANES - 1]; LANES]);
         }
     }
-    let Formulas { left, counted, .. } = formulas;
+    let FormulaEvaluator { left, counted, .. } = formulas;
     let more = Context { slopes, whole_turns: &counted };
     let outputs = measured.outputs.clone();
     derivatives(design, &outputs, &left, (motion, sensitivities), &more, |k, b, m, numbers| {
@@ -295,7 +296,7 @@ fn make_room(
 }
 
 /// The formulas of the outputs, at work on one motion.
-struct Formulas<'a> {
+struct FormulaEvaluator<'a> {
     model: &'a Model,
     laws: &'a [Law],
     motion: &'a Motion,
@@ -318,7 +319,7 @@ struct Formulas<'a> {
     whole_turns: Vec<Rates>,
 }
 
-impl<'a> Formulas<'a> {
+impl<'a> FormulaEvaluator<'a> {
     fn new(
         design: &MeasuredDesign<'a>,
         topology: &Topology,

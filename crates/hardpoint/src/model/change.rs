@@ -161,7 +161,7 @@ macro_rules! in_models {
             }
         )*
 
-        impl Words<'_> {
+        impl ChangeWords<'_> {
             fn change(&mut self, change: &Change) {
                 match change {
                     $(#[allow(unused_variables, reason = "not every field is said")]
@@ -186,14 +186,14 @@ pub struct ChangeText {
 }
 
 /// What changes do, in words.
-struct Words<'a> {
+struct ChangeWords<'a> {
     model: &'a Model,
     direction: &'a dyn Fn(Vec3) -> String,
     number: &'a dyn Fn(f64) -> String,
     said: Vec<ChangeText>,
 }
 
-impl<'a> Words<'a> {
+impl<'a> ChangeWords<'a> {
     /// What is done in the same way is said once.
     fn say(&mut self, verb: &str, name: &str, how: String) {
         match self.said.iter_mut().find(|d| d.verb == verb && d.how == how) {
@@ -220,7 +220,7 @@ impl Model {
         direction: &dyn Fn(Vec3) -> String,
         number: &dyn Fn(f64) -> String,
     ) -> Vec<ChangeText> {
-        let mut words = Words { model: self, direction, number, said: Vec::new() };
+        let mut words = ChangeWords { model: self, direction, number, said: Vec::new() };
         changes.iter().for_each(|change| words.change(change));
         words.said
     }

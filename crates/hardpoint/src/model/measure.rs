@@ -37,7 +37,7 @@ macro_rules! measures {
         joint: String => JointId,
         /// Which of its coordinates; may be left out where it has only one.
         coordinate: Option<String> => usize,
-    } |m, Words { model, .. }|
+    } |m, MeasureWords { model, .. }|
         m.joints[joint.0].kind.coordinates[*coordinate].quantity.into(),
         POSITIONS,
         {
@@ -243,7 +243,7 @@ macro_rules! in_models {
 
             /// What a measure is, in words; `direction` says a global direction.
             pub fn describe(&self, measure: &Measure, direction: &dyn Fn(Vec3) -> String) -> String {
-                let words = Words { model: self, direction };
+                let words = MeasureWords { model: self, direction };
                 match &measure.kind {
                     $(#[allow(unused_variables, reason = "not every field is said")]
                     MeasureKind::$variant { $($field),* } => { let $words = words; $says })*
@@ -319,12 +319,12 @@ fn moving(orders: usize) -> KnownOrders {
 
 /// What measures go by, in words.
 #[derive(Clone, Copy)]
-struct Words<'a> {
+struct MeasureWords<'a> {
     model: &'a Model,
     direction: &'a dyn Fn(Vec3) -> String,
 }
 
-impl Words<'_> {
+impl MeasureWords<'_> {
     fn point(&self, p: PointId) -> String {
         let p = &self.model.points[p.0];
         let place = &self.model.hardpoints[p.at.0];

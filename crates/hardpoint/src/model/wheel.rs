@@ -143,7 +143,7 @@ impl Side {
     }
 }
 
-macro_rules! measures {
+macro_rules! wheel_measures {
     ($(#[$about:meta])* $name:ident, $need:ident: $of:ty; $(#[doc = $summary:literal] $variant:ident $text:literal $dimension:ident $what:expr;)*) => {
         $(#[$about])*
         #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -188,7 +188,7 @@ const LENGTH: Dimension = Dimension::LENGTH;
 const ANGLE: Dimension = Dimension::ANGLE;
 const ANGLE_PER_LENGTH: Dimension = ANGLE.over(LENGTH);
 
-measures! {
+wheel_measures! {
     /// What can be measured at a wheel. Formulas and signs are in `docs/measures.md`.
     WheelMeasure, needs: WheelNeed;
     /// Heading of the wheel's plane; positive where its front is inboard.
@@ -261,7 +261,7 @@ measures! {
     AntiRise "anti_rise" NUMBER WheelNeed::Driving(VehicleEnd::Front);
 }
 
-measures! {
+wheel_measures! {
     /// What can be measured at an axle. Formulas and signs are in `docs/measures.md`.
     AxleMeasure, goes_by_driver: bool;
     /// Distance of the contact points across the vehicle.

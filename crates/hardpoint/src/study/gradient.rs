@@ -3,12 +3,14 @@
 use hardpoint_tape::LANES;
 
 use crate::design::{BodyFixed, DesignVelocity};
-use crate::measure::{self, Context, Instant, Output, SlopeValues, bodies_asked_for, dependences, outputs};
+use crate::measure::{
+    self, Context, Instant, Output, SlopeValues, bodies_asked_for, dependences, outputs, with_rates,
+};
 use crate::model::{GROUND, MeasureKind, OutputSource, VariableId};
-use crate::motion::Stop;
 use crate::motion::kinematics::State;
 use crate::motion::stepper::Stepper;
-use crate::number::{Dual, Jet, Rates};
+use crate::motion::{BodyState, Stop};
+use crate::number::{Dual, Rates};
 use crate::run::{Analysis, PreparedDesign, Run, Solution, Walk};
 use crate::sensitivity::{Adjoint, Admissibility, DefectWatch, Load, Resistance, Support, admissibility};
 use crate::space::{Mat3, Pose, Twist, Vec3, Wrench};
@@ -299,7 +301,7 @@ impl<'a> AdjointSolver<'a> {
         let Self { analysis, asked, poses, fixed, moved, bodies, .. } = self;
         let model = analysis.model();
         for &b in bodies.iter() {
-            poses[b] = still(pose_with_rates(state, b));
+            poses[b] = still(with_rates(&BodyState::of(state, b)));
         }
         for RequestedOutput { output, loads, variables, derivatives, .. } in asked {
             let (by_twists, by_variables) = derivatives.split_at_mut(6 * loads.len());
@@ -316,25 +318,6 @@ impl<'a> AdjointSolver<'a> {
             }
         }
     }
-}
-
-/// A body's pose, with its first two time derivatives.
-fn pose_with_rates(state: &State<f64>, b: usize) -> Pose<Rates> {
-    let [v, a, _] = &state.motion.twists;
-    let (pose, v, a) = (state.pose[b], v[b], a[b]);
-    let rates = |x: Vec3, first: Vec3, second: Vec3| {
-        let component = |k: usize| Jet([x[k], first[k], second[k]]);
-        Vec3::new(component(0), component(1), component(2))
-    };
-    let column = |e: Vec3| {
-        // e. = omega x e,    e.. = alpha x e + omega x e.
-        let first = v.w.cross(e);
-        rates(e, first, a.w.cross(e) + v.w.cross(first))
-    };
-    // r. = V at r,    r.. = V. at r + omega x r.
-    let velocity = v.at(pose.r);
-    let r = rates(pose.r, velocity, a.at(pose.r) + v.w.cross(velocity));
-    Pose { rot: Mat3 { cols: pose.rot.cols.map(column) }, r }
 }
 
 /// A pose that goes with nothing.
