@@ -115,6 +115,20 @@ macro_rules! parameters {
 }
 pub(super) use parameters;
 
+/// Whether a time is before an instant: at the instant itself if it runs backwards. What is no number is neither before nor after.
+#[inline(always)]
+pub(super) fn is_before<T: Real, const N: usize>(time: &Jet<T, N>, instant: f64) -> bool {
+    let t = time.value().value();
+    t < instant || t == instant && time.d().value() < 0.0
+}
+
+/// Whether it is after the instant: at the instant itself unless it runs backwards.
+#[inline(always)]
+pub(super) fn is_after<T: Real, const N: usize>(time: &Jet<T, N>, instant: f64) -> bool {
+    let t = time.value().value();
+    t > instant || t == instant && !(time.d().value() < 0.0)
+}
+
 /// Bounds of a law that never turns round, and is fastest in the middle of its way.
 pub(super) fn one_way(law: &impl LawKind, middle: f64, from: f64, to: f64) -> Stretch {
     let at = |t: f64| law.at(Jet::<f64, 4>::time(t), None);

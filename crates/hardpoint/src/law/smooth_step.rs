@@ -8,7 +8,7 @@ use crate::number::{Jet, Real};
 use super::Law;
 use super::error::{LawError, check_finite};
 use super::jumps::Break;
-use super::kind::{LawKind, one_way, parameters};
+use super::kind::{LawKind, is_after, is_before, one_way, parameters};
 use super::parameter::{Parameter, ParameterKind, Seed, parameter, seeded};
 use super::polynomial::sum_of_powers;
 
@@ -101,11 +101,10 @@ impl LawKind for SmoothStep {
             return Jet::undefined();
         }
         // What is not a number is neither before nor after, so that the polynomial hands it on.
-        let (t, is_backwards) = (time.value().value(), time.d().value() < 0.0);
-        if t < self.start || t == self.start && is_backwards {
+        if is_before(&time, self.start) {
             return Jet::constant(from);
         }
-        if t > self.end || t == self.end && !is_backwards {
+        if is_after(&time, self.end) {
             return Jet::constant(to);
         }
         // f = from + (to - from) s(u),    u = (t - start) / (end - start)

@@ -8,7 +8,7 @@ use crate::number::{Jet, Real};
 use super::Law;
 use super::error::{LawError, check_finite};
 use super::jumps::Break;
-use super::kind::{LawKind, one_way, parameters};
+use super::kind::{LawKind, is_after, is_before, one_way, parameters};
 use super::parameter::{Parameter, ParameterKind, Seed, parameter, seeded};
 
 /// A law that holds `from` up to `start` and `to` from `end` on; between them its speed is a trapezoid: it rises evenly for `ramp`
@@ -83,21 +83,18 @@ impl LawKind for Trapezoid {
         if !self.has_room() {
             return Jet::undefined();
         }
-        let (t, is_backwards) = (time.value().value(), time.d().value() < 0.0);
-        let before = |x: f64| t < x || t == x && is_backwards;
-        let after = |x: f64| t > x || t == x && !is_backwards;
         // The area of the trapezoid is the way: v (end - start - ramp) = to - from; then a = v / ramp.
         let speed = (to - from) / (end - start - ramp);
         let half = speed / (ramp + ramp);
         // What is no number is neither before nor after, and is handed on by the last of these.
-        if before(self.start) {
+        if is_before(&time, self.start) {
             Jet::constant(from)
-        } else if after(self.end) {
+        } else if is_after(&time, self.end) {
             Jet::constant(to)
-        } else if before(self.start + self.ramp) {
+        } else if is_before(&time, self.start + self.ramp) {
             // from + a/2 (t - start)^2
             time.plus(-start).powi(2).times(half).plus(from)
-        } else if before(self.end - self.ramp) {
+        } else if is_before(&time, self.end - self.ramp) {
             // from + v (t - start - ramp/2)
             time.plus(-start - ramp * T::constant(0.5)).times(speed).plus(from)
         } else {

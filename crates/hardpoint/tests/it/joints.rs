@@ -194,7 +194,11 @@ fn a_cam_and_a_slot_move_as_they_must_and_match_resolved_designs() {
         let report = verify(&analysis, &solution, &VerifyOptions::default(), |_| ControlFlow::Continue(()));
         for check in report.checks.iter().filter(|c| c.worst().is_some()) {
             let worst = check.worst().unwrap();
-            assert!(worst.error < 5e-8, "{}: {worst:?}", model.variables[check.variable.0].name);
+            assert!(
+                worst.error < AS_DIFFERENCES_SEE,
+                "{}: {worst:?}",
+                model.variables[check.variable.0].name
+            );
         }
         assert!(report.checks.iter().filter(|c| c.worst().is_some()).count() >= 6);
         // An eccentric disc of radius 30 mm, 10 mm off its axis, under a roller of 10 mm.
@@ -228,6 +232,18 @@ fn a_pin_that_reaches_the_end_of_its_slot_stops_there_and_keeps_what_was_solved(
     assert_eq!(stop.kind, hardpoint::motion::StopKind::Limit);
 }
 
+/// Positions hold to 1e-13; differences over the best step (1e-5) see that.
+const AS_DIFFERENCES_SEE: f64 = 5e-8;
+
+/// Every variable's sensitivities are those of designs that are solved anew, to this.
+fn assert_as_resolved(analysis: &Analysis<'_>, solution: &Solution, within: f64) {
+    let report = verify(analysis, solution, &VerifyOptions::default(), |_| ControlFlow::Continue(()));
+    for check in &report.checks {
+        let worst = check.worst().unwrap();
+        assert!(worst.error < within, "{}: {worst:?}", analysis.model().variables[check.variable.0].name);
+    }
+}
+
 /// A Whitworth quick return: the pin of a crank of 60 mm slides in the slot of an arm whose bearing lies 30 mm below the crank's.
 fn quick_return() -> Draft {
     let z = [0.0, 0.0, 1.0];
@@ -257,11 +273,7 @@ fn a_pin_in_a_slot_moves_as_it_must_and_matches_resolved_designs() {
         let analysis = Analysis::with(&model, formulation).unwrap();
         let solution = analysis.run();
         assert!(solution.stop.is_none(), "{:?}", solution.stop);
-        let report = verify(&analysis, &solution, &VerifyOptions::default(), |_| ControlFlow::Continue(()));
-        for check in &report.checks {
-            let worst = check.worst().unwrap();
-            assert!(worst.error < 5e-8, "{}: {worst:?}", model.variables[check.variable.0].name);
-        }
+        assert_as_resolved(&analysis, &solution, AS_DIFFERENCES_SEE);
         let [arm, slide, pin] = ["arm", "slide", "pin"].map(|m| solution.measured.index(m).unwrap());
         let place = |angle: f64| (0.06 * angle.cos(), 0.03 + 0.06 * angle.sin());
         let (far, heading) = (place(0.0).0.hypot(place(0.0).1), place(0.0).1.atan2(place(0.0).0));
@@ -286,12 +298,7 @@ fn a_train_of_rare_joints_matches_resolved_designs_in_both_formulations() {
         assert_eq!(analysis.topology().redundant().count(), 0);
         let solution = analysis.run();
         assert!(solution.stop.is_none(), "{:?}", solution.stop);
-        let report = verify(&analysis, &solution, &VerifyOptions::default(), |_| ControlFlow::Continue(()));
-        for check in &report.checks {
-            let worst = check.worst().unwrap();
-            // Positions hold to 1e-13; differences over the best step (1e-5) see that.
-            assert!(worst.error < 5e-8, "{}: {worst:?}", model.variables[check.variable.0].name);
-        }
+        assert_as_resolved(&analysis, &solution, AS_DIFFERENCES_SEE);
         // Homokinetic: the nut, kept from turning about the output shaft, sees the motor's own turns. A screw of 20 mm.
         let [turn, advance, pin2] = ["turn", "advance", "pin2"].map(|m| solution.measured.index(m).unwrap());
         for k in 0..solution.motion.len() {
@@ -391,11 +398,7 @@ fn a_spatial_slider_crank_matches_resolved_designs_in_both_formulations() {
         assert_eq!(analysis.topology().redundant().count(), 0);
         let solution = analysis.run();
         assert!(solution.stop.is_none());
-        let report = verify(&analysis, &solution, &VerifyOptions::default(), |_| ControlFlow::Continue(()));
-        for check in &report.checks {
-            let worst = check.worst().unwrap();
-            assert!(worst.error < 1e-8, "{}: {worst:?}", model.variables[check.variable.0].name);
-        }
+        assert_as_resolved(&analysis, &solution, 1e-8);
         // Turning the guide turns the slider on it: not a planar mechanism any more.
         let spin = solution.measured.index("spin").unwrap();
         let tilt = model.variable("J1_rx").unwrap();
