@@ -63,9 +63,41 @@ bodies: Array<BodyTrack>,
  */
 joints: Array<JointMark>,
 /**
+ * Gears, belts, racks, screws and other relations between the joints' coordinates.
+ */
+couplers: Array<CouplerMark>,
+/**
+ * What is driven.
+ */
+drivers: Array<DriverMark>,
+/**
+ * Road wheels.
+ */
+wheels: Array<WheelMark>,
+/**
+ * Distances that are measured between two bodies: springs and dampers are often given so.
+ */
+distances: Array<DistanceMark>,
+/**
+ * The vehicle's own axes in the world, where the mechanism belongs to one.
+ */
+vehicle: VehicleAxes | null,
+/**
  * What can be plotted over time.
  */
 quantities: Array<Quantity>,
+/**
+ * Single numbers that the design is judged by: metrics, then the static values of measures.
+ */
+values: Array<Value>,
+/**
+ * The quantity that the page opens on, an index into [`Payload::quantities`].
+ */
+first: number | null,
+/**
+ * Other designs over the same motion, to be compared with this one: changed, foreseen, re-solved.
+ */
+designs: Array<Design>,
 /**
  * How far from singular the mechanism is over time, if anything is solved for.
  */
@@ -141,7 +173,37 @@ skeleton: Array<[number, number, number]>,
 /**
  * Names of the hardpoints, in the order of `skeleton`.
  */
-labels: Array<string>, };
+labels: Array<string>,
+/**
+ * What they are there for, in the order of `skeleton`.
+ */
+roles: Array<PointRole>,
+/**
+ * The body's own shape, where the model names a file of it.
+ */
+mesh: Mesh | null, };
+
+/**
+ * What a hardpoint of a body is there for; of several reasons the first.
+ */
+export type PointRole = "joint" | "hinge" | "measured" | "wheel";
+
+/**
+ * A triangle mesh in the body's frame.
+ */
+export type Mesh = {
+/**
+ * Name of the file.
+ */
+file: string,
+/**
+ * Three coordinates per vertex.
+ */
+positions: Curve,
+/**
+ * Three vertices per triangle: numbers below 2^24, which `f32` holds exactly.
+ */
+triangles: Curve, };
 
 /**
  * A joint or constraint between two bodies.
@@ -176,9 +238,193 @@ at_j: [number, number, number],
  */
 axis: [number, number, number] | null,
 /**
+ * The same in the frame of body j; in the design configuration the two agree, but for kinds with an axis on each body.
+ */
+axis_j: [number, number, number] | null,
+/**
+ * Unit vector along the second axis in the frame of the body that carries it (j for a universal joint), where there is one.
+ */
+axis2: [number, number, number] | null,
+/**
+ * The two hardpoints that a hinge's axis passes through, in the frame of body i, where it is given so.
+ */
+hinge: [[number, number, number], [number, number, number]] | null,
+/**
+ * Travel per turn of a screw.
+ */
+lead: number | null,
+/**
+ * The curve that a point of body j follows, as points in the frame of body i.
+ */
+curve: JointCurve | null,
+/**
+ * How it is to be drawn, where the model says so: `coilover`, `spring`, `damper`, `cylinder` or `rod`.
+ */
+draw: string | null,
+/**
  * Whether the joint closes a loop instead of carrying body j.
  */
 cut: boolean, };
+
+/**
+ * A planar curve on a body, sampled finely enough to be drawn.
+ */
+export type JointCurve = {
+/**
+ * Whether its last point is followed by its first.
+ */
+closed: boolean,
+/**
+ * Its points in the frame of the body.
+ */
+points: Array<[number, number, number]>,
+/**
+ * Unit normal of its plane.
+ */
+normal: [number, number, number], };
+
+/**
+ * A linear relation between joint coordinates: `sum of coefficient x coordinate = 0`.
+ */
+export type CouplerMark = {
+/**
+ * The user's name.
+ */
+name: string,
+/**
+ * `gear`, `bevel`, `rack`, `belt`, `screw`, `linear`: as the model file says.
+ */
+kind: string,
+/**
+ * Its terms: of a rack first the rack, then the pinion.
+ */
+terms: Array<CouplerTerm>,
+/**
+ * Teeth of two gears, radii of two pulleys, radius of a rack's pinion (one number): as the model file says.
+ */
+sizes: Array<number>, };
+
+/**
+ * A joint coordinate with its factor.
+ */
+export type CouplerTerm = {
+/**
+ * Index into [`Payload::joints`].
+ */
+joint: number,
+/**
+ * Whether the coordinate is an angle; a length otherwise.
+ */
+turns: boolean,
+/**
+ * Per length unit or per radian of the coordinate.
+ */
+coefficient: number, };
+
+/**
+ * What a driver drives.
+ */
+export type DriverMark = {
+/**
+ * The user's name.
+ */
+name: string,
+/**
+ * What its law is, in words.
+ */
+law: string,
+/**
+ * Index into [`Payload::joints`], where a joint is driven that is drawn.
+ */
+joint: number | null,
+/**
+ * Whether the driven coordinate is an angle; a length otherwise.
+ */
+turns: boolean,
+/**
+ * The body whose point is driven, and the point in its frame, where that is so.
+ */
+point: BodyPlace | null,
+/**
+ * Unit vector in the world along which the point is driven.
+ */
+along: [number, number, number] | null,
+/**
+ * The driven coordinate, `n` steps, in the length unit or in radians, counted from the drawing.
+ */
+travel: Curve, };
+
+/**
+ * A place on a body.
+ */
+export type BodyPlace = {
+/**
+ * Index into [`Payload::bodies`].
+ */
+body: number,
+/**
+ * In the body's frame.
+ */
+at: [number, number, number], };
+
+/**
+ * A road wheel.
+ */
+export type WheelMark = {
+/**
+ * The user's name.
+ */
+name: string,
+/**
+ * Its centre, on the body that carries it.
+ */
+centre: BodyPlace,
+/**
+ * Unit vector along its spin axis, outboard, in that body's frame.
+ */
+axis: [number, number, number],
+/**
+ * From the centre to the ground.
+ */
+radius: number,
+/**
+ * Lower and upper point of the axis that it steers about, where there is one.
+ */
+kingpin: [BodyPlace, BodyPlace] | null, };
+
+/**
+ * A distance that is measured between two places.
+ */
+export type DistanceMark = {
+/**
+ * Name of the measure.
+ */
+name: string,
+/**
+ * From where.
+ */
+from: BodyPlace,
+/**
+ * To where.
+ */
+to: BodyPlace,
+/**
+ * How it is to be drawn, where the model says so; see [`JointMark::draw`].
+ */
+draw: string | null, };
+
+/**
+ * Unit vectors in the world.
+ */
+export type VehicleAxes = {
+/**
+ * Direction of travel.
+ */
+forward: [number, number, number],
+/**
+ * Upwards.
+ */
+up: [number, number, number], };
 
 /**
  * Something that can be plotted over time, with its two time derivatives.
@@ -204,6 +450,106 @@ accel_unit: string,
  * Heading under which it is offered: `measure`, `point`, `body` or `joint`.
  */
 group: string,
+/**
+ * The quantity, `n` steps.
+ */
+value: Curve,
+/**
+ * Its first time derivative.
+ */
+rate: Curve,
+/**
+ * Its second time derivative.
+ */
+accel: Curve, };
+
+/**
+ * A single number that the design is judged by.
+ */
+export type Value = {
+/**
+ * The user's name of the metric or measure.
+ */
+name: string,
+/**
+ * What it is, in a few words: `static`, `at the start`, `range`, `largest`, ...
+ */
+what: string,
+/**
+ * Its unit.
+ */
+unit: string,
+/**
+ * The number, where the motion reaches it.
+ */
+value: number | null,
+/**
+ * When it is taken, where it is taken at one time.
+ */
+time: number | null,
+/**
+ * The quantity that it is taken of, an index into [`Payload::quantities`].
+ */
+quantity: number | null,
+/**
+ * Least and largest value that is wanted, where the model says so.
+ */
+target: [number | null, number | null] | null,
+/**
+ * Its derivatives by every design variable, in the order of [`Payload::variables`]; none where one cannot be followed.
+ */
+sensitivities: Array<number | null>, };
+
+/**
+ * Another design over the same output times. What is not known of it is empty.
+ */
+export type Design = {
+/**
+ * What it is called on the page: `changed`, `foreseen to first order`, ...
+ */
+name: string,
+/**
+ * How it was found.
+ */
+kind: DesignKind,
+/**
+ * By how much each variable is changed, in the order of [`Payload::variables`], in their units.
+ */
+change: Array<number>,
+/**
+ * A sentence on how the mechanism follows; may be empty.
+ */
+note: string,
+/**
+ * Poses of its bodies, as in [`BodyTrack::poses`].
+ */
+poses: Array<Curve>,
+/**
+ * Its hardpoints in the bodies' frames, as in [`BodyTrack::skeleton`].
+ */
+skeletons: Array<Array<[number, number, number]>>,
+/**
+ * Its quantities, in the order of [`Payload::quantities`].
+ */
+quantities: Array<DesignCurves | null>,
+/**
+ * Its values, in the order of [`Payload::values`].
+ */
+values: Array<number | null>,
+/**
+ * Its distance from singular positions.
+ */
+margin: Curve | null, };
+
+/**
+ * How another design was found.
+ */
+export type DesignKind = "exact" | "first_order" | "second_order";
+
+/**
+ * A quantity of another design with its two time derivatives; what is not known is empty.
+ */
+export type DesignCurves = {
 /**
  * The quantity, `n` steps.
  */
@@ -258,6 +604,18 @@ note: string,
  * The design velocity at the hardpoints it moves.
  */
 arrows: Array<Arrow>,
+/**
+ * By how much it is typically changed, where the model says so.
+ */
+typical: number | null,
+/**
+ * By how much it may be made wrong, either way, where the model says so.
+ */
+tolerance: number | null,
+/**
+ * Least and largest change that is allowed, counted from the drawing, where the model says so.
+ */
+bounds: [number | null, number | null] | null,
 /**
  * Per body, how it moves with the variable: six numbers per step, dx dy dz in the length unit and a rotation vector in rad,
  * per unit of the variable; empty where that is not shown.

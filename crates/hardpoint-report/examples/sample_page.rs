@@ -97,6 +97,8 @@ fn track(
         poses: poses.collect(),
         skeleton: points.iter().map(|&(_, point)| point).collect(),
         labels: points.iter().map(|&(label, _)| label.into()).collect(),
+        roles: vec![PointRole::Joint; points.len()],
+        mesh: None,
     }
 }
 
@@ -128,6 +130,12 @@ fn joints() -> Vec<JointMark> {
         at_i,
         at_j,
         axis: Some(axis),
+        axis_j: Some(axis),
+        axis2: None,
+        hinge: None,
+        lead: None,
+        curve: None,
+        draw: None,
         cut,
     };
     let (z, x) = ([0.0, 0.0, 1.0], [1.0, 0.0, 0.0]);
@@ -172,6 +180,9 @@ fn variables(times: &[f64]) -> Vec<Variable> {
         admissibility: Admissibility::Admissible,
         note: String::new(),
         arrows: vec![Arrow { body, at, v, turn }],
+        typical: None,
+        tolerance: None,
+        bounds: None,
         shifts: vec![],
         sensitivities: (QUANTITIES.iter().enumerate())
             .map(|(quantity, &(.., formula))| sensitivity(times, quantity, formula, index))
@@ -278,7 +289,23 @@ fn main() -> Result<(), Box<dyn Error>> {
         notes: vec!["3 redundant constraints among `crank_pin`, `guide` and `wrist_pin`".into()],
         bodies: bodies(&times),
         joints: joints(),
+        couplers: vec![],
+        drivers: vec![DriverMark {
+            name: "motor".into(),
+            law: "pi*t".into(),
+            joint: Some(0),
+            turns: true,
+            point: None,
+            along: None,
+            travel: times.iter().map(|t| TAU * t / DURATION).collect(),
+        }],
+        wheels: vec![],
+        distances: vec![],
+        vehicle: None,
         quantities: quantities(&times),
+        values: vec![],
+        first: Some(0),
+        designs: vec![],
         margin: Some(Margin {
             value: times.iter().map(|t| 0.2 - 0.15 * (TAU * t / DURATION).cos()).collect(),
             note: "The least margin is 0.05 at t = 0 s: about one of 16 digits is lost there.".into(),

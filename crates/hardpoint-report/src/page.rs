@@ -70,8 +70,24 @@ pub struct Payload {
     pub bodies: Vec<BodyTrack>,
     /// Joints and constraints that have a place to be drawn at.
     pub joints: Vec<JointMark>,
+    /// Gears, belts, racks, screws and other relations between the joints' coordinates.
+    pub couplers: Vec<CouplerMark>,
+    /// What is driven.
+    pub drivers: Vec<DriverMark>,
+    /// Road wheels.
+    pub wheels: Vec<WheelMark>,
+    /// Distances that are measured between two bodies: springs and dampers are often given so.
+    pub distances: Vec<DistanceMark>,
+    /// The vehicle's own axes in the world, where the mechanism belongs to one.
+    pub vehicle: Option<VehicleAxes>,
     /// What can be plotted over time.
     pub quantities: Vec<Quantity>,
+    /// Single numbers that the design is judged by: metrics, then the static values of measures.
+    pub values: Vec<Value>,
+    /// The quantity that the page opens on, an index into [`Payload::quantities`].
+    pub first: Option<usize>,
+    /// Other designs over the same motion, to be compared with this one: changed, foreseen, re-solved.
+    pub designs: Vec<Design>,
     /// How far from singular the mechanism is over time, if anything is solved for.
     pub margin: Option<Margin>,
     /// Design variables with their sensitivities.
@@ -124,6 +140,37 @@ pub struct BodyTrack {
     pub skeleton: Vec<[f64; 3]>,
     /// Names of the hardpoints, in the order of `skeleton`.
     pub labels: Vec<String>,
+    /// What they are there for, in the order of `skeleton`.
+    pub roles: Vec<PointRole>,
+    /// The body's own shape, where the model names a file of it.
+    pub mesh: Option<Mesh>,
+}
+
+/// What a hardpoint of a body is there for; of several reasons the first.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[cfg_attr(test, derive(TS))]
+#[serde(rename_all = "snake_case")]
+pub enum PointRole {
+    /// A joint is there.
+    Joint,
+    /// It lies on the axis of a hinge.
+    Hinge,
+    /// It is measured, or driven by its place in the world.
+    Measured,
+    /// It belongs to a wheel: its centre, or where it touches the ground.
+    Wheel,
+}
+
+/// A triangle mesh in the body's frame.
+#[derive(Clone, Debug, Serialize)]
+#[cfg_attr(test, derive(TS))]
+pub struct Mesh {
+    /// Name of the file.
+    pub file: String,
+    /// Three coordinates per vertex.
+    pub positions: Curve,
+    /// Three vertices per triangle: numbers below 2^24, which `f32` holds exactly.
+    pub triangles: Curve,
 }
 
 /// A joint or constraint between two bodies.
@@ -144,8 +191,199 @@ pub struct JointMark {
     pub at_j: [f64; 3],
     /// Unit vector along the joint's axis in the frame of body i, where the kind has one.
     pub axis: Option<[f64; 3]>,
+    /// The same in the frame of body j; in the design configuration the two agree, but for kinds with an axis on each body.
+    pub axis_j: Option<[f64; 3]>,
+    /// Unit vector along the second axis in the frame of the body that carries it (j for a universal joint), where there is one.
+    pub axis2: Option<[f64; 3]>,
+    /// The two hardpoints that a hinge's axis passes through, in the frame of body i, where it is given so.
+    pub hinge: Option<[[f64; 3]; 2]>,
+    /// Travel per turn of a screw.
+    pub lead: Option<f64>,
+    /// The curve that a point of body j follows, as points in the frame of body i.
+    pub curve: Option<JointCurve>,
+    /// How it is to be drawn, where the model says so: `coilover`, `spring`, `damper`, `cylinder` or `rod`.
+    pub draw: Option<String>,
     /// Whether the joint closes a loop instead of carrying body j.
     pub cut: bool,
+}
+
+/// A planar curve on a body, sampled finely enough to be drawn.
+#[derive(Clone, Debug, Serialize)]
+#[cfg_attr(test, derive(TS))]
+pub struct JointCurve {
+    /// Whether its last point is followed by its first.
+    pub closed: bool,
+    /// Its points in the frame of the body.
+    pub points: Vec<[f64; 3]>,
+    /// Unit normal of its plane.
+    pub normal: [f64; 3],
+}
+
+/// A linear relation between joint coordinates: `sum of coefficient x coordinate = 0`.
+#[derive(Clone, Debug, Serialize)]
+#[cfg_attr(test, derive(TS))]
+pub struct CouplerMark {
+    /// The user's name.
+    pub name: String,
+    /// `gear`, `bevel`, `rack`, `belt`, `screw`, `linear`: as the model file says.
+    pub kind: String,
+    /// Its terms: of a rack first the rack, then the pinion.
+    pub terms: Vec<CouplerTerm>,
+    /// Teeth of two gears, radii of two pulleys, radius of a rack's pinion (one number): as the model file says.
+    pub sizes: Vec<f64>,
+}
+
+/// A joint coordinate with its factor.
+#[derive(Clone, Copy, Debug, Serialize)]
+#[cfg_attr(test, derive(TS))]
+pub struct CouplerTerm {
+    /// Index into [`Payload::joints`].
+    pub joint: usize,
+    /// Whether the coordinate is an angle; a length otherwise.
+    pub turns: bool,
+    /// Per length unit or per radian of the coordinate.
+    pub coefficient: f64,
+}
+
+/// What a driver drives.
+#[derive(Clone, Debug, Serialize)]
+#[cfg_attr(test, derive(TS))]
+pub struct DriverMark {
+    /// The user's name.
+    pub name: String,
+    /// What its law is, in words.
+    pub law: String,
+    /// Index into [`Payload::joints`], where a joint is driven that is drawn.
+    pub joint: Option<usize>,
+    /// Whether the driven coordinate is an angle; a length otherwise.
+    pub turns: bool,
+    /// The body whose point is driven, and the point in its frame, where that is so.
+    pub point: Option<BodyPlace>,
+    /// Unit vector in the world along which the point is driven.
+    pub along: Option<[f64; 3]>,
+    /// The driven coordinate, `n` steps, in the length unit or in radians, counted from the drawing.
+    pub travel: Curve,
+}
+
+/// A place on a body.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[cfg_attr(test, derive(TS))]
+pub struct BodyPlace {
+    /// Index into [`Payload::bodies`].
+    pub body: usize,
+    /// In the body's frame.
+    pub at: [f64; 3],
+}
+
+/// A road wheel.
+#[derive(Clone, Debug, Serialize)]
+#[cfg_attr(test, derive(TS))]
+pub struct WheelMark {
+    /// The user's name.
+    pub name: String,
+    /// Its centre, on the body that carries it.
+    pub centre: BodyPlace,
+    /// Unit vector along its spin axis, outboard, in that body's frame.
+    pub axis: [f64; 3],
+    /// From the centre to the ground.
+    pub radius: f64,
+    /// Lower and upper point of the axis that it steers about, where there is one.
+    pub kingpin: Option<[BodyPlace; 2]>,
+}
+
+/// A distance that is measured between two places.
+#[derive(Clone, Debug, Serialize)]
+#[cfg_attr(test, derive(TS))]
+pub struct DistanceMark {
+    /// Name of the measure.
+    pub name: String,
+    /// From where.
+    pub from: BodyPlace,
+    /// To where.
+    pub to: BodyPlace,
+    /// How it is to be drawn, where the model says so; see [`JointMark::draw`].
+    pub draw: Option<String>,
+}
+
+/// Unit vectors in the world.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[cfg_attr(test, derive(TS))]
+pub struct VehicleAxes {
+    /// Direction of travel.
+    pub forward: [f64; 3],
+    /// Upwards.
+    pub up: [f64; 3],
+}
+
+/// A single number that the design is judged by.
+#[derive(Clone, Debug, Serialize)]
+#[cfg_attr(test, derive(TS))]
+pub struct Value {
+    /// The user's name of the metric or measure.
+    pub name: String,
+    /// What it is, in a few words: `static`, `at the start`, `range`, `largest`, ...
+    pub what: String,
+    /// Its unit.
+    pub unit: String,
+    /// The number, where the motion reaches it.
+    pub value: Option<f64>,
+    /// When it is taken, where it is taken at one time.
+    pub time: Option<f64>,
+    /// The quantity that it is taken of, an index into [`Payload::quantities`].
+    pub quantity: Option<usize>,
+    /// Least and largest value that is wanted, where the model says so.
+    pub target: Option<[Option<f64>; 2]>,
+    /// Its derivatives by every design variable, in the order of [`Payload::variables`]; none where one cannot be followed.
+    pub sensitivities: Vec<Option<f64>>,
+}
+
+/// Another design over the same output times. What is not known of it is empty.
+#[derive(Clone, Debug, Serialize)]
+#[cfg_attr(test, derive(TS))]
+pub struct Design {
+    /// What it is called on the page: `changed`, `foreseen to first order`, ...
+    pub name: String,
+    /// How it was found.
+    pub kind: DesignKind,
+    /// By how much each variable is changed, in the order of [`Payload::variables`], in their units.
+    pub change: Vec<f64>,
+    /// A sentence on how the mechanism follows; may be empty.
+    pub note: String,
+    /// Poses of its bodies, as in [`BodyTrack::poses`].
+    pub poses: Vec<Curve>,
+    /// Its hardpoints in the bodies' frames, as in [`BodyTrack::skeleton`].
+    pub skeletons: Vec<Vec<[f64; 3]>>,
+    /// Its quantities, in the order of [`Payload::quantities`].
+    pub quantities: Vec<Option<DesignCurves>>,
+    /// Its values, in the order of [`Payload::values`].
+    pub values: Vec<Option<f64>>,
+    /// Its distance from singular positions.
+    pub margin: Option<Curve>,
+}
+
+/// How another design was found.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[cfg_attr(test, derive(TS))]
+#[serde(rename_all = "snake_case")]
+pub enum DesignKind {
+    /// Solved anew.
+    Exact,
+    /// By sensitivities.
+    FirstOrder,
+    /// By first and second derivatives.
+    SecondOrder,
+}
+
+/// A quantity of another design with its two time derivatives; what is not known is empty.
+#[derive(Clone, Debug, Serialize)]
+#[cfg_attr(test, derive(TS))]
+pub struct DesignCurves {
+    /// The quantity, `n` steps.
+    pub value: Curve,
+    /// Its first time derivative.
+    pub rate: Curve,
+    /// Its second time derivative.
+    pub accel: Curve,
 }
 
 /// Something that can be plotted over time, with its two time derivatives.
@@ -196,6 +434,12 @@ pub struct Variable {
     pub note: String,
     /// The design velocity at the hardpoints it moves.
     pub arrows: Vec<Arrow>,
+    /// By how much it is typically changed, where the model says so.
+    pub typical: Option<f64>,
+    /// By how much it may be made wrong, either way, where the model says so.
+    pub tolerance: Option<f64>,
+    /// Least and largest change that is allowed, counted from the drawing, where the model says so.
+    pub bounds: Option<[Option<f64>; 2]>,
     /// Per body, how it moves with the variable: six numbers per step, dx dy dz in the length unit and a rotation vector in rad,
     /// per unit of the variable; empty where that is not shown.
     pub shifts: Vec<Curve>,
@@ -341,7 +585,15 @@ mod tests {
             times: Curve::default(),
             bodies: vec![],
             joints: vec![],
+            couplers: vec![],
+            drivers: vec![],
+            wheels: vec![],
+            distances: vec![],
+            vehicle: None,
             quantities: vec![],
+            values: vec![],
+            first: None,
+            designs: vec![],
             margin: None,
             variables: vec![],
             checks: vec![],
@@ -387,8 +639,9 @@ mod tests {
             )* };
         }
         declare!(
-            Curve Payload Units Status Fact BodyTrack JointMark Quantity Margin Variable Admissibility Arrow
-            Sensitivity FiniteDifference Table
+            Curve Payload Units Status Fact BodyTrack PointRole Mesh JointMark JointCurve CouplerMark CouplerTerm
+            DriverMark BodyPlace WheelMark DistanceMark VehicleAxes Quantity Value Design DesignKind DesignCurves
+            Margin Variable Admissibility Arrow Sensitivity FiniteDifference Table
         );
         let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../web/src/payload.ts");
         if fs::read_to_string(&path).ok().as_deref() != Some(&expected) {

@@ -23,8 +23,8 @@ use crate::facts::{Answer, Facts, held_spins, written_kind};
 use crate::figures::{error, number, order_unit, rounded, seconds, symbol};
 use crate::metric::MetricFact;
 use crate::page::{
-    Admissibility, Arrow, BodyTrack, Curve, Fact, FiniteDifference, JointMark, Margin, Payload, Quantity,
-    Sensitivity, Status, Units as PageUnits, Variable,
+    Admissibility, Arrow, BodyTrack, Curve, Fact, FiniteDifference, JointMark, Margin, Payload, PointRole,
+    Quantity, Sensitivity, Status, Units as PageUnits, Variable,
 };
 use crate::summary::{RunStatus, Summary};
 use crate::validity::ValidityFact;
@@ -73,7 +73,15 @@ pub fn payload(
         times: compose.curve(|k| solution.motion.times[k]),
         bodies: compose.bodies(),
         joints: compose.joints(),
+        couplers: Vec::new(),
+        drivers: Vec::new(),
+        wheels: Vec::new(),
+        distances: Vec::new(),
+        vehicle: None,
         quantities: compose.quantities(),
+        values: Vec::new(),
+        first: None,
+        designs: Vec::new(),
         margin: summary.margin.as_ref().map(|m| Margin {
             value: compose.curve(|k| m.series.get(k).copied().unwrap_or(f64::NAN)),
             note: m.sentence(),
@@ -290,8 +298,16 @@ impl Compose<'_> {
                 let [qw, qx, qy, qz] = s.quaternion();
                 [x, y, z, qw, qx, qy, qz]
             });
+            let roles = vec![PointRole::Joint; points.len()];
             let (skeleton, labels) = points.into_iter().map(|(p, label)| (self.length(p), label)).unzip();
-            BodyTrack { name: self.model.bodies[b].name.clone(), poses: poses.collect(), skeleton, labels }
+            BodyTrack {
+                name: self.model.bodies[b].name.clone(),
+                poses: poses.collect(),
+                skeleton,
+                labels,
+                roles,
+                mesh: None,
+            }
         };
         points.into_iter().enumerate().map(track).collect()
     }
@@ -333,6 +349,12 @@ impl Compose<'_> {
                 at_i: self.length(i.r),
                 at_j: self.length(k.r),
                 axis: joint.axis.map(|_| i.rot.cols[2].to_array()),
+                axis_j: joint.axis.map(|_| k.rot.cols[2].to_array()),
+                axis2: None,
+                hinge: None,
+                lead: None,
+                curve: None,
+                draw: None,
                 cut: matches!(roles[j], Role::Cut(_)),
             }
         };
@@ -388,6 +410,9 @@ impl Compose<'_> {
                 },
                 note: fact.note(),
                 arrows: self.arrows(VariableId(b)),
+                typical: None,
+                tolerance: None,
+                bounds: None,
                 shifts: if known && self.detail.bodies { self.shifts(b) } else { Vec::new() },
                 sensitivities: if known { self.sensitivities(b, difference) } else { Vec::new() },
             }
