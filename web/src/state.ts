@@ -16,6 +16,8 @@ export interface Choice {
   selected?: Part
   /** Body and hardpoint whose path is drawn. */
   trace?: [body: number, point: number]
+  /** The measured distance whose value is pointed at, an index into the report's distances. */
+  distance?: number
 }
 
 /** What the reader chose and the moment shown; the views listen, and change it only through its methods. */

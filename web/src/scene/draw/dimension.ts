@@ -1,9 +1,9 @@
 import { Group, Vector3 } from 'three'
-import { above, ABOVE, straightArrow } from './arrow'
-import type { Drawn, Frame } from './drawn'
-import { square } from './flat'
-import { type Kit, place, stretch } from './kit'
-import type { Mechanism } from './mechanism'
+import { above, ABOVE, straightArrow } from '../arrow'
+import type { Draw, Frame } from '../drawn'
+import { square } from '../flat'
+import { place, stretch } from '../kit'
+import type { Mechanism } from '../mechanism'
 
 /** How far beside the two places the line stands, its heads, how far its ends reach over, in units. */
 const BESIDE = 7
@@ -12,8 +12,9 @@ const OVER = 1
 /** Width of the line, px. */
 const LINE = 1.6
 
-/** A measured distance as a dashed dimension line beside its two places. */
-export function dimension(mechanism: Mechanism, kit: Kit, index: number): Drawn[] {
+/** The measured distance that is pointed at, as a dashed dimension line beside its two places. */
+export const dimension: Draw = (mechanism, kit, { distance: index }) => {
+  if (index === undefined) return []
   const { name, from, to } = mechanism.report.distances[index]
   const s = kit.unit
   const { label: colour } = kit.palette

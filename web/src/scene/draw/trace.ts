@@ -1,17 +1,9 @@
 import { Group, InstancedMesh, Matrix4, SphereGeometry, Vector3 } from 'three'
-import { stepAt } from '../curve'
-import { roundBelow } from '../format'
-import { above, ABOVE, over } from './arrow'
-import type { Drawn, Frame } from './drawn'
-import type { Kit } from './kit'
-import type { Mechanism } from './mechanism'
-
-/** A point of a body. */
-export interface Traced {
-  body: number
-  /** Index into the body's hardpoints. */
-  point: number
-}
+import { stepAt } from '../../curve'
+import { roundBelow } from '../../format'
+import { above, ABOVE, over } from '../arrow'
+import type { Draw, Frame } from '../drawn'
+import type { Kit } from '../kit'
 
 /** Width of the line, px; of the former design's. */
 const LINE = 2.2
@@ -22,8 +14,10 @@ const PRESENT = 1.05
 /** At least so many equal times are marked. */
 const DOTS = 12
 
-/** The path of a point, with dots at equal times, which show its speed, and a larger one where it is; gaps where there is no solution. */
-export function trace(mechanism: Mechanism, kit: Kit, { body, point }: Traced): Drawn[] {
+/** The path of the chosen point, with dots at equal times, which show its speed, and a larger one where it is; gaps where there is no solution. */
+export const trace: Draw = (mechanism, kit, choice) => {
+  if (!choice.trace) return []
+  const [body, point] = choice.trace
   const track = mechanism.report.bodies[body]
   const place = new Vector3(...track.skeleton[point])
   const { trace: colour, former } = kit.palette
