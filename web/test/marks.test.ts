@@ -103,7 +103,7 @@ describe('a mesh', () => {
     const today = new Mechanism({ ...report, bodies })
     const changed = new Mechanism({ ...report, bodies: bodies.map((body, k) => (k === 1 ? { ...body, skeleton: [[0, 0, 0], [300, 0, 0]] } : body)) }, today, today)
     const draw = (mechanism: Mechanism) =>
-      matter.flatMap((draw) => draw(mechanism, new Kit(mechanism, PALETTE), CHOICE)).filter(({ part }) => part.about === 'crank.stl')
+      matter.flatMap((draw) => draw(mechanism, new Kit(mechanism, PALETTE), CHOICE)).filter(({ part }) => part.name === 'crank')
     expect(boxOf(today, draw(today)[0]).max.x).toBeCloseTo(200)
     expect(boxOf(changed, draw(changed)[0]).max.x).toBeCloseTo(300)
   })

@@ -3,6 +3,7 @@ import { decode } from '../../curve'
 import { deformed } from '../deform'
 import type { Draw, Drawn } from '../drawn'
 import type { Mechanism } from '../mechanism'
+import { bodyPart } from '../part'
 
 /** Sharper edges than this are drawn, degrees. */
 const EDGES = 35
@@ -11,7 +12,7 @@ const MANY = 60_000
 
 /** Bodies with a shape of their own, which goes with the hardpoints when the design changes. */
 export const meshes: Draw = (mechanism, kit) =>
-  mechanism.report.bodies.flatMap(({ name, mesh }, body): Drawn[] => {
+  mechanism.report.bodies.flatMap(({ mesh }, body): Drawn[] => {
     if (!mesh) return []
     const triangles = Uint32Array.from(decode(mesh.triangles))
     const positions = decode(mesh.positions)
@@ -20,7 +21,7 @@ export const meshes: Draw = (mechanism, kit) =>
     geometry.setIndex(new BufferAttribute(triangles, 1))
     geometry.computeVertexNormals()
     const finish = { open: true, facets: true, edges: triangles.length < 3 * MANY ? EDGES : undefined }
-    return [{ body, object: kit.mesh(geometry, kit.body(body), finish), part: { kind: 'body', index: body, name, about: mesh.file } }]
+    return [{ body, object: kit.mesh(geometry, kit.body(body), finish), part: bodyPart(mechanism, body) }]
   })
 
 /** The file has the shape as loaded; a changed design has it gone with its hardpoints. */
