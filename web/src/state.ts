@@ -1,4 +1,5 @@
 import { valueAt, stepAt } from './curve'
+import type { Part } from './scene/drawn'
 import { groups, type Order, type Quantity, type Report } from './report'
 
 export interface Choice {
@@ -11,8 +12,12 @@ export interface Choice {
   over?: number
   /** Plot the sensitivities to all variables of the unit, not just the largest. */
   all: boolean
+  /** What is selected in the view: a body, a joint, a wheel, ... */
+  selected?: Part
   /** Body and hardpoint whose path is drawn. */
   trace?: [body: number, point: number]
+  /** The measured distance whose value is pointed at, an index into the report's distances. */
+  distance?: number
 }
 
 /** What the reader chose and the moment shown; the views listen, and change it only through its methods. */

@@ -1,0 +1,106 @@
+import { Vector3 } from 'three'
+import { type Curve, decode } from '../curve'
+import type { BodyPlace, Design, JointMark } from '../payload'
+import type { Report, Variable } from '../report'
+import type { Choice } from '../state'
+import { Mechanism } from './mechanism'
+import { poseAt, shifted } from './poses'
+
+type Place = [number, number, number]
+type Move = (body: number, at: Place) => Place
+
+/** How far places may be apart, as a part of the size, to be the same hardpoint. */
+const SAME = 1e-6
+
+/**
+ * The design drawn solid: as loaded, as the change of the chosen variable makes it to first order, or another exact design
+ * that the report brings. Its `former` is the design drawn dashed, where there is one.
+ */
+export function present(today: Mechanism, choice: Choice): Mechanism {
+  const { report } = today
+  const variable = report.variables[choice.variable]
+  if (choice.change !== 0 && variable) return new Mechanism(foreseen(report, variable, choice.change, today.size), today, today)
+  const design = report.designs.find(({ kind, poses }) => kind === 'exact' && poses.length === report.bodies.length)
+  return design ? new Mechanism(solved(report, design, today.size), today, today) : today
+}
+
+/** A report as the change of a variable makes it to first order. */
+export function foreseen(report: Report, variable: Variable, change: number, size: number): Report {
+  const poses = report.bodies.map((body, b) => (variable.shifts[b]?.length ? moved(body.poses, variable.shifts[b], change) : body.poses))
+  const arrowAt = (body: number, at: Place) =>
+    variable.arrows.find((arrow) => arrow.body === body && apart(arrow.at, at) <= SAME * size)
+  const move: Move = (body, at) => {
+    const arrow = arrowAt(body, at)
+    return arrow ? added(at, arrow.v, change) : at
+  }
+  const turn = (body: number, at: Place, axis: Place): Place => {
+    const arrow = arrowAt(body, at)
+    if (!arrow) return axis
+    const unit = new Vector3(...axis)
+    return unit.addScaledVector(new Vector3(...arrow.turn).cross(unit), change).normalize().toArray()
+  }
+  const redrawn = redraw(report, poses, move)
+  const joints = redrawn.joints.map((joint, k) => {
+    const { body_i, body_j, at_i, at_j } = report.joints[k]
+    const { axis, axis_j, hinge } = joint
+    return {
+      ...joint,
+      axis: axis && !hinge ? turn(body_i, at_i, axis) : axis,
+      axis_j: axis_j ? turn(body_j, at_j, axis_j) : axis_j,
+    }
+  })
+  return { ...redrawn, joints }
+}
+
+/** A report as a re-solved design has it. */
+export function solved(report: Report, design: Design, size: number): Report {
+  const move: Move = (body, at) => {
+    const k = report.bodies[body].skeleton.findIndex((point) => apart(point, at) <= SAME * size)
+    return design.skeletons[body]?.[k] ?? at
+  }
+  return redraw(report, design.poses.map(decode), move)
+}
+
+function redraw(report: Report, poses: Curve[], move: Move): Report {
+  const place = ({ body, at }: BodyPlace): BodyPlace => ({ body, at: move(body, at) })
+  return {
+    ...report,
+    bodies: report.bodies.map((body, b) => ({ ...body, poses: poses[b], skeleton: body.skeleton.map((point) => move(b, point)) })),
+    joints: report.joints.map((joint) => ({ ...joint, at_j: move(joint.body_j, joint.at_j), ...onBodyI(joint, move) })),
+    wheels: report.wheels.map((wheel) => ({
+      ...wheel,
+      centre: place(wheel.centre),
+      kingpin: wheel.kingpin && [place(wheel.kingpin[0]), place(wheel.kingpin[1])],
+    })),
+    distances: report.distances.map((distance) => ({ ...distance, from: place(distance.from), to: place(distance.to) })),
+    drivers: report.drivers.map((driver) => ({ ...driver, point: driver.point && place(driver.point) })),
+  }
+}
+
+/** Place and axis on body i; of a hinge given by two hardpoints the place keeps its share of the way between them. */
+function onBodyI({ body_i, at_i, axis, hinge }: JointMark, move: Move): Pick<JointMark, 'at_i' | 'axis' | 'hinge'> {
+  if (!hinge) return { at_i: move(body_i, at_i), axis, hinge }
+  const [a, b] = hinge
+  const [c, d] = [move(body_i, a), move(body_i, b)]
+  const [before, after] = [minus(b, a), minus(d, c)]
+  const length = before.lengthSq()
+  if (length === 0 || after.lengthSq() === 0 || !axis) return { at_i: move(body_i, at_i), axis, hinge: [c, d] }
+  const share = minus(at_i, a).dot(before) / length
+  const sense = Math.sign(before.dot(new Vector3(...axis))) || 1
+  return { at_i: added(c, after.toArray(), share), axis: after.normalize().multiplyScalar(sense).toArray(), hinge: [c, d] }
+}
+
+function moved(poses: Curve, shifts: Curve, change: number): Curve {
+  const out = Float32Array.from(poses)
+  for (let step = 0; step * 7 < poses.length; step++) {
+    const pose = poseAt(poses, step)
+    if (!pose) continue
+    const { place, turn } = shifted(pose, shifts, step, change)
+    out.set([place.x, place.y, place.z, turn.w, turn.x, turn.y, turn.z], step * 7)
+  }
+  return out
+}
+
+const apart = (a: Place, b: Place) => Math.hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2])
+const minus = (a: Place, b: Place) => new Vector3(a[0] - b[0], a[1] - b[1], a[2] - b[2])
+const added = (a: Place, v: Place, share: number): Place => [a[0] + share * v[0], a[1] + share * v[1], a[2] + share * v[2]]
