@@ -1,6 +1,7 @@
 import { valueAt, stepAt, type Curve } from './curve'
 import { effects, firstQuantity } from './effect'
 import type { Design, Order, Report } from './report'
+import type { Part } from './scene/drawn'
 
 export interface Choice {
   quantity: number
@@ -10,6 +11,10 @@ export interface Choice {
   order: Order
   /** The quantity that curves are drawn over; time where there is none. */
   over?: number
+  /** Plot the sensitivities to all variables of the unit, not just the largest. */
+  all: boolean
+  /** What is selected in the view: a body, a joint, a wheel, ... */
+  selected?: Part
   /** Body and hardpoint whose path is drawn. */
   trace?: [body: number, point: number]
   /** Whether hardpoints are named in the view. */
@@ -36,7 +41,7 @@ export class State {
     const variable = effects(report, quantity, 0)[0]?.variable.index ?? report.variables.find(({ sensitivities }) => sensitivities.size > 0)?.index ?? 0
     const exact = report.designs.find(({ kind }) => kind === 'exact')
     this.changes = report.variables.map((_, index) => exact?.change[index] ?? 0)
-    this.choice = { quantity, variable, change: this.changes[variable] ?? 0, order: 0, labels: false }
+    this.choice = { quantity, variable, change: this.changes[variable] ?? 0, order: 0, all: false, labels: false }
   }
 
   get lastStep(): number {
