@@ -1,0 +1,71 @@
+import { readdirSync, readFileSync } from 'node:fs'
+import { join } from 'node:path'
+import { describe, expect, test } from 'vitest'
+import { BLINDNESS, contrast, distance } from './colour'
+
+const SOURCES = join(import.meta.dirname, '../src')
+const sheet = readdirSync(SOURCES, { recursive: true, encoding: 'utf8' })
+  .filter((path) => path.endsWith('.css'))
+  .map((path) => readFileSync(join(SOURCES, path), 'utf8'))
+  .join('\n')
+
+/** The colours of a style sheet's part, by the names of their custom properties. */
+const colours = (css: string) => Object.fromEntries([...css.matchAll(/--([\w-]+):\s*(#[0-9a-f]{6})\b/g)].map(([, name, hex]) => [name, hex]))
+
+/** The parts of a style sheet between the braces that follow `head`, those within them included. */
+function blocks(css: string, head: string): string[] {
+  return css.split(head).slice(1).map((rest) => {
+    let depth = 0
+    for (let at = rest.indexOf('{'); at < rest.length; at++) {
+      depth += Number(rest[at] === '{') - Number(rest[at] === '}')
+      if (depth === 0) return rest.slice(0, at)
+    }
+    throw new Error(`a block after ${head} does not end`)
+  })
+}
+
+const DARK = '@media (prefers-color-scheme: dark)'
+const dark = blocks(sheet, DARK)
+const light = colours(dark.reduce((css, block) => css.replace(block, ''), sheet))
+const schemes = { light, dark: { ...light, ...colours(dark.join('\n')) } }
+
+/** Every pair of these colours. */
+const pairs = (names: string[]) => names.flatMap((a, k) => names.slice(0, k).map((b) => [a, b] as const))
+
+const BODIES = ['body-0', 'body-1', 'body-2', 'body-3', 'body-4', 'body-5']
+const MARKS = ['driver', 'chosen', 'trace']
+
+describe.each(Object.entries(schemes))('in the %s scheme', (_, palette) => {
+  // Distances at which two colours beside each other are told apart without doubt.
+  test.each([
+    ['bodies', BODIES, 16],
+    ['marks', MARKS, 19],
+  ])('the colours of %s differ', (_, names, least) => {
+    for (const [a, b] of pairs(names)) expect(distance(palette[a], palette[b]), `${a} and ${b}`).toBeGreaterThan(least)
+  })
+
+  test.each(Object.entries(BLINDNESS))('with %s as well', (_, blindness) => {
+    for (const [a, b] of [...pairs(BODIES), ...pairs(MARKS)])
+      expect(distance(palette[a], palette[b], blindness), `${a} and ${b}`).toBeGreaterThan(11)
+  })
+
+  // Less than between bodies, because what is fixed is hatched as well.
+  test('bodies differ from what is fixed', () => {
+    for (const name of BODIES) expect(distance(palette[name], palette.ground), name).toBeGreaterThan(7)
+  })
+
+  // 3 is what the accessibility guidelines ask of things that carry meaning, 4.5 of text.
+  test('marks stand out from the view', () => {
+    for (const name of MARKS) expect(contrast(palette[name], palette.view), name).toBeGreaterThan(3)
+  })
+
+  test('labels can be read on the view', () => {
+    expect(contrast(palette.label, palette.view)).toBeGreaterThan(4.5)
+  })
+})
+
+test('distances are those of the colour space: black to white is 100', () => {
+  expect(distance('#000000', '#ffffff')).toBeCloseTo(100, 1)
+  expect(distance('#6c7fb8', '#6c7fb8')).toBe(0)
+  expect(contrast('#000000', '#ffffff')).toBeCloseTo(21)
+})
