@@ -5,6 +5,9 @@ const BORDER = 3
 /** How much a channel of 255 may differ and still be the same colour: rounding, and the smoothing of thin lines. */
 const ROUNDING = 10
 
+/** How much the greys of a scheme lean to blue, of 255. */
+const LEAN = 18
+
 /** Greys of a view without a mechanism, from 0 to 255. */
 export interface Paper {
   darkest: number
@@ -58,8 +61,32 @@ export function examine(desk: Page, png: Buffer, { darkest, lightest }: Paper): 
       const reach = Math.max((seen.right - seen.left) / width, (seen.bottom - seen.top) / height)
       return { drawn: seen.drawn / (width * height), border: seen.border, reach }
     },
-    // The greys of a scheme lean to blue by up to 18 of 255.
-    { data: png.toString('base64'), low: darkest - ROUNDING, high: lightest + ROUNDING, spread: 18 + ROUNDING, border: BORDER },
+    { data: png.toString('base64'), low: darkest - ROUNDING, high: lightest + ROUNDING, spread: LEAN + ROUNDING, border: BORDER },
+  )
+}
+
+/** Some places of a PNG where the mechanism is, each well within something drawn. */
+export function places(desk: Page, png: Buffer, { darkest, lightest }: Paper): Promise<{ x: number; y: number }[]> {
+  return desk.evaluate(
+    async ({ data, low, high, spread }) => {
+      const bitmap = await createImageBitmap(await (await fetch(`data:image/png;base64,${data}`)).blob())
+      const { width, height } = bitmap
+      const context = new OffscreenCanvas(width, height).getContext('2d')!
+      context.drawImage(bitmap, 0, 0)
+      const { data: pixels } = context.getImageData(0, 0, width, height)
+      const inked = (x: number, y: number) => {
+        const [r, g, b] = pixels.subarray(4 * (y * width + x))
+        const [least, most] = [Math.min(r, g, b), Math.max(r, g, b)]
+        return least < low || most > high || most - least > spread
+      }
+      const found: { x: number; y: number }[] = []
+      for (let y = 4; y < height - 4; y++)
+        for (let x = 4; x < width - 4; x++)
+          if ([-2, 0, 2].every((right) => [-2, 0, 2].every((down) => inked(x + right, y + down)))) found.push({ x, y })
+      const count = 20
+      return found.filter((_, k) => k % Math.ceil(found.length / count) === 0)
+    },
+    { data: png.toString('base64'), low: darkest - ROUNDING, high: lightest + ROUNDING, spread: LEAN + ROUNDING },
   )
 }
 
