@@ -22,6 +22,8 @@ export interface Seen {
   border: number
   /** Share of the picture's width or height, whichever is larger, that is covered. */
   reach: number
+  /** Some places well within what is drawn, in pixels. */
+  places: { x: number; y: number }[]
 }
 
 /** The greys between the background, the lines of the floor, and the shadow on both. */
@@ -38,55 +40,39 @@ export function paper(page: Page): Promise<Paper> {
 /** What is to be seen in a PNG; worked out in a page, because Node does not decode pictures. */
 export function examine(desk: Page, png: Buffer, { darkest, lightest }: Paper): Promise<Seen> {
   return desk.evaluate(
-    async ({ data, low, high, spread, border }) => {
+    async ({ data, low, high, spread, band, within, sample }) => {
       const bitmap = await createImageBitmap(await (await fetch(`data:image/png;base64,${data}`)).blob())
       const { width, height } = bitmap
       const context = new OffscreenCanvas(width, height).getContext('2d')!
       context.drawImage(bitmap, 0, 0)
-      const { data: pixels } = context.getImageData(0, 0, width, height)
-      const seen = { drawn: 0, border: 0, left: width, right: 0, top: height, bottom: 0 }
-      for (let y = 0; y < height; y++) {
-        for (let x = 0; x < width; x++) {
-          const [r, g, b] = pixels.subarray(4 * (y * width + x))
-          const [least, most] = [Math.min(r, g, b), Math.max(r, g, b)]
-          if (least >= low && most <= high && most - least <= spread) continue
-          seen.drawn++
-          if (x < border || y < border || x >= width - border || y >= height - border) seen.border++
-          seen.left = Math.min(seen.left, x)
-          seen.right = Math.max(seen.right, x)
-          seen.top = Math.min(seen.top, y)
-          seen.bottom = Math.max(seen.bottom, y)
-        }
-      }
-      const reach = Math.max((seen.right - seen.left) / width, (seen.bottom - seen.top) / height)
-      return { drawn: seen.drawn / (width * height), border: seen.border, reach }
-    },
-    { data: png.toString('base64'), low: darkest - ROUNDING, high: lightest + ROUNDING, spread: LEAN + ROUNDING, border: BORDER },
-  )
-}
-
-/** Some places of a PNG where the mechanism is, each well within something drawn. */
-export function places(desk: Page, png: Buffer, { darkest, lightest }: Paper): Promise<{ x: number; y: number }[]> {
-  return desk.evaluate(
-    async ({ data, low, high, spread }) => {
-      const bitmap = await createImageBitmap(await (await fetch(`data:image/png;base64,${data}`)).blob())
-      const { width, height } = bitmap
-      const context = new OffscreenCanvas(width, height).getContext('2d')!
-      context.drawImage(bitmap, 0, 0)
-      const { data: pixels } = context.getImageData(0, 0, width, height)
+      const pixels = context.getImageData(0, 0, width, height).data
       const inked = (x: number, y: number) => {
         const [r, g, b] = pixels.subarray(4 * (y * width + x))
         const [least, most] = [Math.min(r, g, b), Math.max(r, g, b)]
         return least < low || most > high || most - least > spread
       }
-      const found: { x: number; y: number }[] = []
-      for (let y = 4; y < height - 4; y++)
-        for (let x = 4; x < width - 4; x++)
-          if ([-2, 0, 2].every((right) => [-2, 0, 2].every((down) => inked(x + right, y + down)))) found.push({ x, y })
-      const count = 20
-      return found.filter((_, k) => k % Math.ceil(found.length / count) === 0)
+      const solid = (x: number, y: number) => within.every((right) => within.every((down) => inked(x + right, y + down)))
+      const all: { x: number; y: number }[] = []
+      for (let y = 0; y < height; y++) for (let x = 0; x < width; x++) if (inked(x, y)) all.push({ x, y })
+      const inner = all.filter(({ x, y }) => x >= band && y >= band && x < width - band && y < height - band)
+      const places = inner.filter(({ x, y }) => solid(x, y))
+      const range = (values: number[]) => values.reduce((a, b) => Math.max(a, b), 0) - values.reduce((a, b) => Math.min(a, b), Infinity)
+      return {
+        drawn: all.length / (width * height),
+        border: all.length - inner.length,
+        reach: Math.max(range(all.map(({ x }) => x)) / width, range(all.map(({ y }) => y)) / height),
+        places: places.filter((_, k) => k % Math.ceil(places.length / sample) === 0),
+      }
     },
-    { data: png.toString('base64'), low: darkest - ROUNDING, high: lightest + ROUNDING, spread: LEAN + ROUNDING },
+    {
+      data: png.toString('base64'),
+      low: darkest - ROUNDING,
+      high: lightest + ROUNDING,
+      spread: LEAN + ROUNDING,
+      band: BORDER,
+      within: [-2, 0, 2],
+      sample: 20,
+    },
   )
 }
 

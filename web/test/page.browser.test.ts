@@ -1,10 +1,10 @@
 import type { Browser, Page } from 'playwright-core'
 import { afterAll, beforeAll, describe, expect, inject, test } from 'vitest'
-import { launch, NO_3D, visit, type Visit } from './browser'
-import { examine, paper, places } from './desk'
+import { launch, visit, type Visit } from './browser'
+import { examine, paper } from './desk'
 import { curve, drawn, frames, picture, scrub, slide, text, VIEW } from './person'
 
-const { whole, partial, changed, models } = inject('samples')
+const { models } = inject('samples')
 
 let browser: Browser
 beforeAll(async () => {
@@ -151,7 +151,7 @@ describe.each(['slider_crank', 'macpherson'])('a reader of %s', (name) => {
 
   test('points at the mechanism: what is there is named; a click selects it', async () => {
     const desk = await browser.newPage()
-    const [first] = await places(desk, await picture(page), await paper(page))
+    const [first] = (await examine(desk, await picture(page), await paper(page))).places
     await desk.context().close()
     const view = (await page.locator(VIEW).boundingBox())!
     await page.mouse.move(view.x + first.x, view.y + first.y)
