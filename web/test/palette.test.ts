@@ -1,33 +1,6 @@
-import { readdirSync, readFileSync } from 'node:fs'
-import { join } from 'node:path'
 import { describe, expect, test } from 'vitest'
 import { BLINDNESS, contrast, distance } from './colour'
-
-const SOURCES = join(import.meta.dirname, '../src')
-const sheet = readdirSync(SOURCES, { recursive: true, encoding: 'utf8' })
-  .filter((path) => path.endsWith('.css'))
-  .map((path) => readFileSync(join(SOURCES, path), 'utf8'))
-  .join('\n')
-
-/** The colours of a style sheet's part, by the names of their custom properties. */
-const colours = (css: string) => Object.fromEntries([...css.matchAll(/--([\w-]+):\s*(#[0-9a-f]{6})\b/g)].map(([, name, hex]) => [name, hex]))
-
-/** The parts of a style sheet between the braces that follow `head`, those within them included. */
-function blocks(css: string, head: string): string[] {
-  return css.split(head).slice(1).map((rest) => {
-    let depth = 0
-    for (let at = rest.indexOf('{'); at < rest.length; at++) {
-      depth += Number(rest[at] === '{') - Number(rest[at] === '}')
-      if (depth === 0) return rest.slice(0, at)
-    }
-    throw new Error(`a block after ${head} does not end`)
-  })
-}
-
-const DARK = '@media (prefers-color-scheme: dark)'
-const dark = blocks(sheet, DARK)
-const light = colours(dark.reduce((css, block) => css.replace(block, ''), sheet))
-const schemes = { light, dark: { ...light, ...colours(dark.join('\n')) } }
+import { schemes } from './schemes'
 
 /** Every pair of these colours. */
 const pairs = (names: string[]) => names.flatMap((a, k) => names.slice(0, k).map((b) => [a, b] as const))
