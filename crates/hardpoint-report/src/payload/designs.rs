@@ -5,7 +5,7 @@
 use std::iter;
 
 use hardpoint::joint::Quantity as Kind;
-use hardpoint::model::{BodyId, Dimension, VariableId};
+use hardpoint::model::{BodyId, Dimension, Direction, VariableId};
 use hardpoint::space::Vec3;
 use hardpoint::study::{WhatIf, metrics};
 
@@ -261,8 +261,11 @@ impl Beside<'_> {
             for (end, body) in joint.bodies.iter().enumerate() {
                 moved[body.0].push([&today, &changed].map(|g| g.markers[j][end].r));
                 let in_body = model.bodies[body.0].frame.inverse();
-                let hinge = self.today.hinge_points(joint);
-                moved[body.0].extend(hinge.map(|h| [0, 1].map(|of| in_body.point(places[of][h.0]))));
+                let ends = [joint.axis, joint.axis2].into_iter().flatten().filter_map(|axis| match axis {
+                    Direction::Through(a, b) => Some([a, b]),
+                    Direction::Along(_) => None,
+                });
+                moved[body.0].extend(ends.flatten().map(|h| [0, 1].map(|of: usize| in_body.point(places[of][h.0]))));
             }
         }
         for (p, point) in model.points.iter().enumerate() {
