@@ -158,7 +158,11 @@ fn facts_text(facts: &WhatIfFacts, wanted: &dyn Fn(&str) -> bool) -> String {
         out += &metrics.map_or(String::new(), |table| format!("\n{}", text::table(&table)));
     }
     for measure in facts.ranked().into_iter().filter(|m| wanted(m)) {
-        out += &format!("\n{}", text::table(&facts.ranking(measure, SHOWN)));
+        let ranking = facts.ranking(measure, SHOWN);
+        out += &match ranking.rows.is_empty() {
+            true => format!("\n{}\n  {}\n", ranking.title, ranking.note),
+            false => format!("\n{}", text::table(&ranking)),
+        };
     }
     out
 }

@@ -172,8 +172,7 @@ impl Course {
 
     /// The levels below which sensitivities are round-off.
     pub(crate) fn round_off(&self, model: &Model) -> RoundOff {
-        let natural = (0..model.variables.len()).map(|b| model.natural_step(VariableId(b))).collect();
-        RoundOff { magnitude: self.magnitude, natural }
+        RoundOff::new(model, self.magnitude)
     }
 }
 
@@ -216,6 +215,12 @@ pub(crate) struct RoundOff {
 }
 
 impl RoundOff {
+    /// Those of a motion of that magnitude.
+    pub fn new(model: &Model, magnitude: Magnitude) -> Self {
+        let natural = (0..model.variables.len()).map(|b| model.natural_step(VariableId(b))).collect();
+        Self { magnitude, natural }
+    }
+
     /// For a quantity's derivative by variable b, SI.
     pub fn of(&self, b: usize, of: Dimension, order: usize) -> f64 {
         self.change(of, order) / self.natural[b]

@@ -6,14 +6,14 @@ use std::io::Write;
 use csv::WriterBuilder;
 use hardpoint::Solution;
 use hardpoint::model::{Model, OutputSource, VariableId};
-use hardpoint::study::{WhatIf, repeats_coordinate};
+use hardpoint::study::{Magnitude, WhatIf, repeats_coordinate};
 use hardpoint::topology::Topology;
 use hardpoint_file::{Diagnostic, ModelFile, Units};
 use serde::Serialize;
 
 use crate::GENERATOR;
 use crate::columns::Column;
-use crate::course::MarginCourse;
+use crate::course::{MarginCourse, RoundOff};
 use crate::csv::{no_formula, numbers};
 use crate::diagnose::out_of_bounds;
 use crate::facts::variable_unit;
@@ -260,10 +260,10 @@ impl WhatIfFacts {
         }
     }
 
-    /// The variables that move a measure most, the strongest first; so many of each unit.
+    /// The variables that move a measure most, the strongest first; so many of each unit, and none that does not move it.
     pub fn ranking(&self, measure: &str, shown: usize) -> Table {
         let mut units: Vec<&str> = Vec::new();
-        let of_measure = || self.influence.iter().filter(|i| i.measure == measure);
+        let of_measure = || self.influence.iter().filter(|i| i.measure == measure && i.largest != 0.0);
         of_measure().for_each(|i| {
             if !units.contains(&i.per.as_str()) {
                 units.push(&i.per);
@@ -281,7 +281,7 @@ impl WhatIfFacts {
         }
         Table {
             title: format!("What moves {measure} most"),
-            note: String::new(),
+            note: if rows.is_empty() { "No variable moves it.".into() } else { String::new() },
             header: ["rank", "by variable", "largest", "at t", "by a typical change", "by its tolerance"]
                 .map(String::from)
                 .to_vec(),
@@ -389,9 +389,6 @@ const CURVES: [&str; 4] = ["today", "first order", "second order", "exact"];
 /// So many variables of each unit does the page's ranking of a measure show.
 const MOST_RANKED: usize = 10;
 
-/// Against the strongest variable of a measure, less than this is nothing.
-const ROUND_OFF: f64 = 1e-11;
-
 /// Whether and how the mechanism follows a change.
 pub(crate) fn follows(model: &Model, what_if: &WhatIf) -> String {
     if !what_if.cannot_follow.is_empty() {
@@ -406,15 +403,16 @@ pub(crate) fn follows(model: &Model, what_if: &WhatIf) -> String {
 }
 
 /// Every measure (or every point, where there are no measures) by every variable, the strongest first within each. What goes by
-/// two names is ranked once.
+/// two names is ranked once, and what moves a measure by round-off only does not move it.
 fn influence(model: &Model, units: Units, today: &Solution) -> Vec<InfluenceFact> {
     let measured = &today.measured;
     let mut facts = Vec::new();
     let counts =
         |source: &OutputSource| model.measures.is_empty() || matches!(source, OutputSource::Measure(_));
     let measures = measured.outputs.iter().enumerate().filter(|(_, o)| counts(&o.source));
-    let repeated: Vec<bool> =
-        (0..model.variables.len()).map(|v| repeats_coordinate(model, VariableId(v))).collect();
+    let variables = || (0..model.variables.len()).map(VariableId);
+    let repeated: Vec<bool> = variables().map(|v| repeats_coordinate(model, v)).collect();
+    let round_off = RoundOff::new(model, Magnitude::of_motion(model, &today.motion));
     for (m, output) in measures {
         let first = facts.len();
         for (v, variable) in model.variables.iter().enumerate() {
@@ -424,22 +422,20 @@ fn influence(model: &Model, units: Units, today: &Solution) -> Vec<InfluenceFact
             let at = |k: &usize| measured.d(*k, VariableId(v), m)[0];
             let known = (0..measured.len()).filter(|k| at(k).is_finite());
             let Some(k) = known.max_by(|a, b| at(a).abs().total_cmp(&at(b).abs())) else { continue };
+            let moves = at(&k).abs() > round_off.of(v, output.dimension, 0);
+            let most = if moves { at(&k) } else { 0.0 };
             let by = variable_unit(model, units, variable);
             facts.push(InfluenceFact {
                 measure: output.name.clone(),
                 variable: variable.name.clone(),
-                largest: units.derivative_from_si(output.dimension, variable.quantity, at(&k)),
+                largest: units.derivative_from_si(output.dimension, variable.quantity, most),
                 time: today.motion.times[k],
                 unit: per(&unit(units, output.dimension), &by),
                 per: by,
                 of: unit(units, output.dimension),
-                typical: variable.typical.map(|t| units.from_si(output.dimension, t * at(&k))),
-                tolerance: variable.tolerance.map(|t| units.from_si(output.dimension, (t * at(&k)).abs())),
+                typical: variable.typical.map(|t| units.from_si(output.dimension, t * most)),
+                tolerance: variable.tolerance.map(|t| units.from_si(output.dimension, (t * most).abs())),
             });
-        }
-        let strongest = facts[first..].iter().map(|i| i.largest.abs()).fold(0.0, f64::max);
-        for i in facts[first..].iter_mut().filter(|i| i.largest.abs() < ROUND_OFF * strongest) {
-            (i.largest, i.typical, i.tolerance) = (0.0, i.typical.map(|_| 0.0), i.tolerance.map(|_| 0.0));
         }
         facts[first..].sort_by(|a, b| b.largest.abs().total_cmp(&a.largest.abs()));
     }

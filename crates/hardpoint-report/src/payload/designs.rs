@@ -5,7 +5,7 @@
 use std::iter;
 
 use hardpoint::joint::Quantity as Kind;
-use hardpoint::model::{BodyId, Dimension, VariableId};
+use hardpoint::model::{BodyId, Dimension, Direction, VariableId};
 use hardpoint::space::Vec3;
 use hardpoint::study::{WhatIf, metrics};
 
@@ -32,7 +32,7 @@ impl Compose<'_> {
         let beside = Beside { today: self, what_if, stride };
         let mut designs = vec![beside.exact(bodies, values)];
         if what_if.cannot_follow.is_empty() && beside.solved() > 0 {
-            designs.extend([beside.first_order(values), beside.second_order()]);
+            designs.extend([beside.first_order(values), beside.second_order(values)]);
         }
         designs
     }
@@ -86,6 +86,32 @@ impl Beside<'_> {
         (0..outputs).map(output).chain(origins.map(|(b, axis)| origin(b, axis))).collect()
     }
 
+    /// The values that the design is judged by, in the order of today's: first the metrics, then the measures at one time.
+    fn values(
+        &self,
+        today: &[Value],
+        metric: impl Fn(usize) -> Option<f64>,
+        static_value: impl Fn(usize, usize) -> Option<f64>,
+    ) -> Vec<Option<f64>> {
+        let (model, units) = (self.today.model, self.today.units);
+        let times = &self.what_if.today.motion.times[..self.solved()];
+        let value = |(i, of): (usize, &Value)| {
+            let (dimension, found) = match model.metrics.get(i) {
+                Some(known) => (model.metric_dimension(known), metric(i)?),
+                None => {
+                    let (m, t) = (of.quantity?, of.time?);
+                    let k = times.iter().position(|time| *time == t)?;
+                    (self.what_if.today.measured.outputs[m].dimension, static_value(k, m)?)
+                }
+            };
+            let shown = units.from_si(dimension, found);
+            let least = units.from_si(dimension, self.today.round_off.change(dimension, 0));
+            let same = |now: &f64| (shown - now).abs() <= least;
+            shown.is_finite().then(|| of.value.filter(same).unwrap_or(shown))
+        };
+        today.iter().enumerate().map(value).collect()
+    }
+
     /// As it is when solved again.
     fn exact(&self, bodies: &[BodyTrack], values: &[Value]) -> Design {
         let (what_if, units) = (self.what_if, self.today.units);
@@ -109,14 +135,8 @@ impl Beside<'_> {
         };
         let margins = &exact.motion.margins;
         let model = self.today.model;
-        let found = [today, exact].map(|s| metrics(model, s));
-        let known = |of: &Value| {
-            let metric = model.metrics.iter().position(|m| m.name == of.name)?;
-            let dimension = model.metric_dimension(&model.metrics[metric]);
-            let [now, other] = [0, 1].map(|design: usize| found[design][metric].value);
-            let other = other.map(|x| now.map_or(x, |now| self.settled(dimension, 0, now, x)));
-            other.map(|x| units.from_si(dimension, x))
-        };
+        let found = metrics(model, exact);
+        let static_value = |k: usize, m: usize| Some(what_if.exact(k, m));
         let mut note = sentence(&follows(model, what_if));
         if exact.stop.is_some() {
             let last = exact.motion.times.last();
@@ -129,7 +149,7 @@ impl Beside<'_> {
             poses: self.poses(),
             skeletons: self.skeletons(bodies),
             quantities: self.quantities(output, origin),
-            values: values.iter().map(known).collect(),
+            values: self.values(values, |metric| found[metric].value, static_value),
             margin: (!margins.is_empty())
                 .then(|| self.curve(|k| margins.get(k).map_or(f64::NAN, |m| m.value))),
             ..self.design("changed", DesignKind::Exact, note)
@@ -184,7 +204,7 @@ impl Beside<'_> {
     }
 
     /// As today's first and second derivatives foresee it: of positions alone.
-    fn second_order(&self) -> Design {
+    fn second_order(&self, values: &[Value]) -> Design {
         let (what_if, units) = (self.what_if, self.today.units);
         let output = |m: usize| {
             let output = &what_if.today.measured.outputs[m];
@@ -197,9 +217,13 @@ impl Beside<'_> {
             };
             output.known.by_position.then(|| self.curves(1, value))
         };
+        let static_value = |k: usize, m: usize| {
+            what_if.today.measured.outputs[m].known.by_position.then(|| what_if.foreseen(k, m)[1])
+        };
         let note = "Foreseen from today's first and second derivatives, without solving again.".to_owned();
         Design {
             quantities: self.quantities(output, |_, _| None),
+            values: self.values(values, |_| None, static_value),
             ..self.design("foreseen to second order", DesignKind::SecondOrder, note)
         }
     }
@@ -261,8 +285,12 @@ impl Beside<'_> {
             for (end, body) in joint.bodies.iter().enumerate() {
                 moved[body.0].push([&today, &changed].map(|g| g.markers[j][end].r));
                 let in_body = model.bodies[body.0].frame.inverse();
-                let hinge = self.today.hinge_points(joint).into_iter().flatten();
-                moved[body.0].extend(hinge.map(|h| [0, 1].map(|of| in_body.point(places[of][h.0]))));
+                let ends = [joint.axis, joint.axis2].into_iter().flatten().filter_map(|axis| match axis {
+                    Direction::Through(a, b) => Some([a, b]),
+                    Direction::Along(_) => None,
+                });
+                moved[body.0]
+                    .extend(ends.flatten().map(|h| [0, 1].map(|of: usize| in_body.point(places[of][h.0]))));
             }
         }
         for (p, point) in model.points.iter().enumerate() {

@@ -1,0 +1,242 @@
+//! The page of a changed design: its curves are the solver's numbers, and round-off is no change.
+
+use std::collections::HashSet;
+use std::path::Path;
+
+use hardpoint::model::{Dimension, VariableId};
+use hardpoint::study::{Magnitude, WhatIf, add_coordinates, what_if};
+use hardpoint::{Analysis, Run, Solution};
+use hardpoint_file::{ModelFile, Units};
+use hardpoint_report::course::Course;
+use hardpoint_report::page::{Curve, Design, DesignKind, Payload};
+use hardpoint_report::payload::{payload, payload_beside};
+use hardpoint_report::summary::Summary;
+use hardpoint_report::whatif::WhatIfFacts;
+use serde::Serialize;
+
+fn gallery(name: &str) -> ModelFile {
+    hardpoint_file::read(&Path::new(env!("CARGO_MANIFEST_DIR")).join("../../models").join(name)).unwrap()
+}
+
+/// A change of these variables, in the file's units.
+fn change(file: &ModelFile, of: &[(&str, f64)]) -> Vec<f64> {
+    let mut change = vec![0.0; file.model.variables.len()];
+    for (name, by) in of {
+        let VariableId(v) = file.model.variable(name).unwrap();
+        change[v] = file.units.to_si(file.model.variables[v].quantity, *by);
+    }
+    change
+}
+
+/// The page as the command makes it, and what it is made of.
+struct Changed<'f> {
+    analysis: Analysis<'f>,
+    found: WhatIf,
+    facts: WhatIfFacts,
+    page: Payload,
+}
+
+fn changed<'f>(file: &'f ModelFile, of: &[(&str, f64)]) -> Changed<'f> {
+    let analysis = Analysis::new(&file.model).unwrap();
+    let today = analysis.run();
+    let course = Course::of(&file.model, &today);
+    let summary = Summary::new(file, analysis.topology(), &course);
+    let facts = WhatIfFacts::of_today(file, analysis.topology(), &today);
+    let found = what_if(&analysis, today, &change(file, of));
+    let facts = facts.changed(file, analysis.topology(), &found);
+    let page = payload_beside(file, &analysis, &course, &[], &summary, Some(&found));
+    Changed { analysis, found, facts, page }
+}
+
+/// What the page holds of curves, whatever their encoding.
+fn text(curve: &impl Serialize) -> String {
+    serde_json::to_string(curve).unwrap()
+}
+
+fn design(page: &Payload, kind: DesignKind) -> &Design {
+    page.designs.iter().find(|d| d.kind == kind).unwrap()
+}
+
+/// The output times that the page shows: every so many of those that were solved.
+fn shown_steps(page: &Payload, today: &Solution) -> impl Iterator<Item = usize> + use<> {
+    let times = &today.motion.times;
+    let shown = |stride: &usize| {
+        text(&times.iter().copied().step_by(*stride).collect::<Curve>()) == text(&page.times)
+    };
+    let stride = (1..times.len()).find(shown).unwrap();
+    (0..times.len()).step_by(stride)
+}
+
+/// A curve of a changed design: in the user's units, and today's number where the two differ by round-off.
+fn expected(
+    (units, of, order): (Units, Dimension, usize),
+    magnitude: Magnitude,
+    pairs: impl Iterator<Item = [f64; 2]>,
+) -> String {
+    let settled = |[now, other]: [f64; 2]| {
+        let same = (now - other).abs() <= magnitude.round_off(of, order);
+        units.from_si(of, if same { now } else { other })
+    };
+    text(&pairs.map(settled).collect::<Curve>())
+}
+
+#[test]
+fn curves_of_the_changed_design_are_those_of_the_solver() {
+    let file = gallery("macpherson.toml");
+    let (model, units) = (&file.model, file.units);
+    let Changed { analysis, found, page, .. } =
+        changed(&file, &[("tie_rod_inner_z", 20.0), ("lca_tilt", -0.5)]);
+    let today: &Solution = &found.today;
+    let exact = analysis.solve(Run::new().at(&found.change).without_sensitivities());
+    let magnitude = Magnitude::of_motion(model, &today.motion);
+    let steps = || shown_steps(&page, today);
+    let kinds: Vec<DesignKind> = page.designs.iter().map(|d| d.kind).collect();
+    assert_eq!(kinds, [DesignKind::Exact, DesignKind::FirstOrder, DesignKind::SecondOrder]);
+    assert!(page.designs.iter().all(|d| d.quantities.len() == page.quantities.len()));
+
+    for (m, output) in today.measured.outputs.iter().enumerate() {
+        let curves = |kind| design(&page, kind).quantities[m].as_ref();
+        let now = |k: usize, order: usize| today.measured.value(k, m)[order];
+        let foreseen = |k: usize, order: usize| {
+            let changes = found.change.iter().enumerate().filter(|(_, by)| **by != 0.0);
+            now(k, order)
+                + changes.map(|(v, by)| by * today.measured.d(k, VariableId(v), m)[order]).sum::<f64>()
+        };
+        let [anew, first] = [DesignKind::Exact, DesignKind::FirstOrder].map(|kind| curves(kind).unwrap());
+        for (order, [anew, first]) in
+            [[&anew.value, &first.value], [&anew.rate, &first.rate], [&anew.accel, &first.accel]]
+                .into_iter()
+                .enumerate()
+                .take(output.known.orders)
+        {
+            let as_is = (units, output.dimension, order);
+            let solved = steps().map(|k| [now(k, order), exact.measured.value(k, m)[order]]);
+            assert_eq!(text(anew), expected(as_is, magnitude, solved), "{} {order}", output.name);
+            // The value comes along the whole change at once, the rates variable by variable.
+            let linear = steps().map(|k| {
+                [now(k, order), if order == 0 { found.foreseen(k, m)[0] } else { foreseen(k, order) }]
+            });
+            assert_eq!(text(first), expected(as_is, magnitude, linear), "{} {order}", output.name);
+        }
+        let second = curves(DesignKind::SecondOrder);
+        assert_eq!(second.is_some(), output.known.by_position, "{}", output.name);
+        if let Some(second) = second {
+            let bent = steps().map(|k| [now(k, 0), found.foreseen(k, m)[1]]);
+            assert_eq!(text(&second.value), expected((units, output.dimension, 0), magnitude, bent));
+            assert_eq!(text(&second.rate), text(&Curve::default()));
+        }
+        let shown = &page.quantities[m];
+        assert_eq!(
+            text(&shown.value),
+            text(&steps().map(|k| units.from_si(output.dimension, now(k, 0))).collect::<Curve>())
+        );
+        let moves = output.name != "lca_angle" || text(&anew.value) != text(&shown.value);
+        assert!(moves, "the comparison is not of a curve with itself");
+    }
+}
+
+#[test]
+fn what_a_change_leaves_alone_has_todays_numbers() {
+    let file = gallery("macpherson.toml");
+    let Changed { page, .. } = changed(&file, &[("tie_rod_inner_z", 20.0)]);
+    let body = |name: &str| page.bodies.iter().position(|b| b.name == name).unwrap();
+    let angle = page.quantities.iter().position(|q| q.name == "lca_angle").unwrap();
+    for design in &page.designs {
+        let curves = design.quantities[angle].as_ref().unwrap();
+        assert_eq!(text(&curves.value), text(&page.quantities[angle].value), "{}", design.name);
+    }
+    let exact = design(&page, DesignKind::Exact);
+    for name in ["ground", "lca", "rack"] {
+        assert_eq!(text(&exact.poses[body(name)]), text(&page.bodies[body(name)].poses), "{name}");
+    }
+    assert_ne!(text(&exact.poses[body("knuckle")]), text(&page.bodies[body("knuckle")].poses));
+
+    // Of all hardpoints, the inner end of the tie rod moves, 20 mm up.
+    for (b, (track, changed)) in page.bodies.iter().zip(&exact.skeletons).enumerate() {
+        for ((label, now), other) in track.labels.iter().zip(&track.skeleton).zip(changed) {
+            let up = if b == body("rack") && label == "tie_rod_inner" { 20.0 } else { 0.0 };
+            let apart = (0..3).map(|axis| other[axis] - now[axis] - [0.0, 0.0, up][axis]);
+            assert!(apart.map(f64::abs).fold(0.0, f64::max) < 1e-9, "{} {label}", track.name);
+        }
+    }
+}
+
+/// Metrics, and measures at one time: as solved, and by today's derivatives.
+#[test]
+fn values_of_the_changed_design_are_those_of_its_curves() {
+    let file = gallery("macpherson.toml");
+    let Changed { found, page, .. } = changed(&file, &[("tie_rod_inner_z", 20.0), ("lca_tilt", -0.5)]);
+    assert!(page.designs.iter().all(|d| d.values.len() == page.values.len()));
+    let exact = design(&page, DesignKind::Exact);
+    for (value, found_value) in page.values.iter().zip(&exact.values).skip(file.model.metrics.len()) {
+        let (m, t) = (value.quantity.unwrap(), value.time.unwrap());
+        let k = found.today.motion.times.iter().position(|time| *time == t).unwrap();
+        let solved = file.units.from_si(found.today.measured.outputs[m].dimension, found.exact(k, m));
+        assert!((found_value.unwrap() - solved).abs() < 1e-6, "{}", value.name);
+        for kind in [DesignKind::FirstOrder, DesignKind::SecondOrder] {
+            let at = page.values.iter().position(|v| v.name == value.name && v.what == value.what).unwrap();
+            let Some(foreseen) = design(&page, kind).values[at] else { continue };
+            let order = usize::from(kind == DesignKind::SecondOrder);
+            let linear =
+                file.units.from_si(found.today.measured.outputs[m].dimension, found.foreseen(k, m)[order]);
+            assert!((foreseen - linear).abs() < 1e-6, "{} {kind:?}", value.name);
+        }
+    }
+}
+
+#[test]
+fn nothing_is_foreseen_of_what_cannot_be_followed() {
+    let file = gallery("four_bar.toml");
+    let file = {
+        let mut file = file;
+        hardpoint::study::add_tilts(&mut file.model);
+        file
+    };
+    let tilt = file.model.variables.iter().map(|v| v.name.clone()).find(|v| v.ends_with(".tilt_x")).unwrap();
+    let Changed { found, page, .. } = changed(&file, &[(&tilt, 1.0)]);
+    let foreseen = page.designs.iter().filter(|d| d.kind != DesignKind::Exact).count();
+    assert_eq!(foreseen == 0, !found.cannot_follow.is_empty(), "{tilt}");
+}
+
+#[test]
+fn the_page_opens_on_what_is_asked_for_and_ranks_each_variable_once() {
+    let mut file = gallery("macpherson.toml");
+    add_coordinates(&mut file.model);
+    let Changed { facts, page, .. } = changed(&file, &[("tie_rod_inner_z", 20.0)]);
+    let asked = ["camber", "toe"].map(String::from);
+    let page = facts.page(page, &asked, Some("wheel_travel"), &|name| asked.iter().any(|a| a == name));
+    let quantity = |name: &str| page.quantities.iter().position(|q| q.name == name);
+    assert_eq!((page.first, page.over), (quantity("camber"), quantity("wheel_travel")));
+    let titles: Vec<&str> = page.checks.iter().map(|t| t.title.as_str()).collect();
+    let told =
+        ["The change", "What if tie_rod_inner_z by 20 mm", "What moves toe most", "What moves camber most"];
+    assert_eq!(titles[..4], told);
+    assert!(!titles.contains(&"What moves half_track most") && titles.contains(&"Design variables"));
+    let measures: Vec<&str> = page.checks[1].rows.iter().map(|row| row[0].as_str()).collect();
+    assert_eq!(measures, ["toe", "camber"]);
+
+    let mut seen = HashSet::new();
+    assert!(facts.influence.iter().all(|i| seen.insert((&i.measure, &i.variable))));
+    // The coordinate that the model's variable is already is not ranked besides.
+    assert!(!facts.influence.iter().any(|i| i.variable == "tie_rod_inner.z"));
+    // What does not move it is not in the ranking.
+    let ranked = facts.ranking("lca_angle", usize::MAX);
+    assert!(ranked.rows.len() > 3 && !ranked.rows.iter().any(|row| row[1].starts_with("tie_rod")));
+}
+
+#[test]
+fn without_a_change_it_is_the_page_of_today_with_the_ranking() {
+    let file = gallery("four_bar.toml");
+    let analysis = Analysis::new(&file.model).unwrap();
+    let today = analysis.run();
+    let course = Course::of(&file.model, &today);
+    let summary = Summary::new(&file, analysis.topology(), &course);
+    let of_run = payload(&file, &analysis, &course, &[], &summary);
+    let facts = WhatIfFacts::of_today(&file, analysis.topology(), &today);
+    let page = facts.page(of_run.clone(), &[], None, &|_| true);
+    assert!(page.designs.is_empty() && page.over.is_none() && page.first == of_run.first);
+    let measures = file.model.measures.len();
+    assert_eq!(page.checks.len(), of_run.checks.len() + measures);
+    assert_eq!(text(&page.checks[measures..].to_vec()), text(&of_run.checks));
+    assert_eq!(page.checks[2].note, "No variable moves it.", "{}", page.checks[2].title);
+}
