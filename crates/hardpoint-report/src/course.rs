@@ -170,7 +170,7 @@ impl Course {
         self.peaks[(m * 3 + order) * self.variables + b].near.first().copied()
     }
 
-    /// The levels below which sensitivities are round-off.
+    /// The levels below which values and sensitivities are round-off.
     pub(crate) fn round_off(&self, model: &Model) -> RoundOff {
         let natural = (0..model.variables.len()).map(|b| model.natural_step(VariableId(b))).collect();
         RoundOff { magnitude: self.magnitude, natural }
@@ -209,7 +209,7 @@ impl Peak {
     }
 }
 
-/// The levels below which sensitivities are round-off and are shown as 0.
+/// The levels below which what is found is round-off and is shown as 0.
 pub(crate) struct RoundOff {
     magnitude: Magnitude,
     natural: Vec<f64>,
@@ -218,6 +218,11 @@ pub(crate) struct RoundOff {
 impl RoundOff {
     /// For a quantity's derivative by variable b, SI.
     pub fn of(&self, b: usize, of: Dimension, order: usize) -> f64 {
-        self.magnitude.round_off(of, order) / self.natural[b]
+        self.value(of, order) / self.natural[b]
+    }
+
+    /// For a quantity's time derivative of that order itself, SI.
+    pub fn value(&self, of: Dimension, order: usize) -> f64 {
+        self.magnitude.round_off(of, order)
     }
 }

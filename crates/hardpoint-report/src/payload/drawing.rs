@@ -1,6 +1,7 @@
 //! What a drawing of the mechanism needs: its bodies with their hardpoints, joints, couplers, drivers and wheels, all from the
 //! model and none of it from names.
 
+use hardpoint::constraint::Row;
 use hardpoint::joint::{Freedom, Need, Quantity as Kind};
 use hardpoint::model::{
     BodyId, Change, Coupler, Curve as PlanarCurve, Direction, Driver, HardpointId, Joint, JointId, Measure,
@@ -145,8 +146,11 @@ impl Compose<'_> {
         let spins = held_spins(self.model);
         let mark = |(j, joint): (usize, &Joint)| {
             let [i, k] = &geometry.markers[j];
+            // Of a cross the second pin is the x axis of body j: z_i . x_j = 0.
+            let crosses = joint.kind.rows.contains(&Row::Dot1(2, 0));
             let axis2 = joint.axis2.map(|_| match joint.kind.axis2 {
                 Need::OnBodyJ => k.rot.cols[2],
+                _ if crosses => k.rot.cols[0],
                 _ => i.rot.cols[0],
             });
             let ends = self.hinge_points(joint);
