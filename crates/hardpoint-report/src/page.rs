@@ -203,7 +203,7 @@ pub struct JointMark {
     /// Unit vector along the second axis, where there is one: in the frame of body j for `universal`, `constant_velocity`, `dot1` and
     /// `angle`, in that of body i for others.
     pub axis2: Option<[f64; 3]>,
-    /// The two hardpoints that a hinge's axis passes through, in the frame of body i, where it is given so.
+    /// The two hardpoints that the axis passes through in the design configuration, in the frame of body i, where it is given so.
     pub hinge: Option<[[f64; 3]; 2]>,
     /// Travel per turn of a screw.
     pub lead: Option<f64>,

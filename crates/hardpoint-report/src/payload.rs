@@ -17,7 +17,7 @@ use hardpoint::sensitivity::BodySensitivity;
 use hardpoint::space::Vec3;
 use hardpoint::study::{Comparison, Difference};
 use hardpoint::{Analysis, Solution};
-use hardpoint_file::{ModelFile, Units};
+use hardpoint_file::{Drawing, ModelFile, Units};
 
 use crate::course::{Course, RoundOff};
 use crate::facts::{Answer, Facts};
@@ -56,8 +56,16 @@ pub fn payload(
     };
     let detail = Detail::that_fits(size, course.has_bodies());
     let steps: Vec<usize> = (0..solution.motion.len()).step_by(detail.stride).collect();
-    let compose =
-        Compose { model, units, analysis, solution, steps, detail, round_off: course.round_off(model) };
+    let compose = Compose {
+        model,
+        looks: &file.drawing,
+        units,
+        analysis,
+        solution,
+        steps,
+        detail,
+        round_off: course.round_off(model),
+    };
     Payload {
         title: model.name.clone(),
         description: file.description.clone().unwrap_or_default(),
@@ -234,6 +242,7 @@ fn headline(summary: &Summary) -> Vec<Fact> {
 
 struct Compose<'a> {
     model: &'a Model,
+    looks: &'a Drawing,
     units: Units,
     analysis: &'a Analysis<'a>,
     solution: &'a Solution,
