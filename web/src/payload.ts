@@ -246,7 +246,8 @@ axis: [number, number, number] | null,
  */
 axis_j: [number, number, number] | null,
 /**
- * Unit vector along the second axis in the frame of the body that carries it (j for a universal joint), where there is one.
+ * Unit vector along the second axis, where there is one: in the frame of body j for `universal`, `constant_velocity`, `dot1` and
+ * `angle`, in that of body i for others.
  */
 axis2: [number, number, number] | null,
 /**

@@ -31,6 +31,7 @@
 //! What is not here: includes, and coordinates of hardpoints in expressions that no change of the design moves.
 
 mod diagnostic;
+mod drawing;
 mod format;
 mod places;
 mod read;
@@ -47,6 +48,7 @@ use hardpoint::{
 use toml::de::DeTable;
 
 pub use diagnostic::{Diagnostic, Diagnostics, Severity};
+pub use drawing::{Drawing, Form};
 pub use schema::schema;
 pub use units::{AngleUnit, LengthUnit, Units};
 
@@ -70,6 +72,8 @@ pub struct ModelFile {
     pub units: Units,
     /// What the file says about itself.
     pub description: Option<String>,
+    /// What it says of how the mechanism is to be drawn.
+    pub drawing: Drawing,
     /// What the reader has to tell although nothing is wrong: warnings and notes, in the order of the text.
     pub remarks: Vec<Diagnostic>,
     source: Source,
@@ -298,8 +302,8 @@ fn parse_in(folder: Option<&Path>, text: &str, file_name: &str) -> Result<ModelF
     drop(document);
     match model {
         Some(model) if found.is_empty() => {
-            let (description, places) = (raw.description, raw.places);
-            Ok(ModelFile { model, units, description, remarks, source, places })
+            let (description, drawing, places) = (raw.description, raw.drawing, raw.places);
+            Ok(ModelFile { model, units, description, drawing, remarks, source, places })
         }
         _ => Err(Diagnostics::new(source, found)),
     }

@@ -16,17 +16,20 @@ use hardpoint::draft::{
     BodyDraft, CurveDraft, Draft, FormulaDraft, FormulaOf, FrameDraft, HardpointDraft, JointDraft, LineDraft,
     Nominal, PlaceDraft, Section,
 };
-use hardpoint::joint::{self, JointType, Quantity};
+use hardpoint::joint::{self, Freedom, JointType, Quantity};
 use hardpoint::law::Law;
 use hardpoint::space::{Pose, Quat, Vec3, rotation_from_euler_313};
 use toml::de::{DeTable, DeValue};
 
 use crate::diagnostic::{closest, shown};
+use crate::drawing::{Drawing, FORMS, Form};
 use crate::format::{self, ANGLE, Key, Kinds, LENGTH, NUMBER, Need, Shape, Table, table};
 use crate::places::{EntryPlace, Places};
 use crate::tree::{Field, Fields, LINE, MOST_ENTRIES, PLACE, Reader, Subject, Value, above_tables, quoted};
 use crate::units::{AngleUnit, LengthUnit};
 
+/// The axis of a marker that a joint's `axis` is.
+const ALONG_AXIS: usize = 2;
 /// The file as a whole.
 pub(crate) const MODEL: Table = table! {
     /// A mechanism for Hardpoint.
@@ -148,7 +151,11 @@ const JOINT: Table = table! {
     may "curve": Shape::Table(&CURVE), "{ points = [\"A\", \"B\", \"C\"] }";
     /// Whether loops should be cut at this joint rather than elsewhere. It changes the effort, not the results.
     or("false") "cut": Shape::Flag, "true";
+    /// What it is drawn as, for a rod, a leg, or a joint that slides along its axis. It changes no result. Default: a leg is a cylinder.
+    may "draw": DRAW, "\"coilover\"";
 };
+/// What something that has a length is drawn as.
+pub(crate) const DRAW: Shape = Shape::Any("Draw", "", &[Shape::Words(FORMS)]);
 const CURVE: Table = table! {
     /// A smooth curve through points in the design configuration, in the plane square to the joint's axis.
     "Curve":
@@ -225,6 +232,7 @@ pub(crate) fn tables() -> [(&'static str, Shape); 20] {
 pub(crate) struct Raw {
     pub draft: Draft,
     pub description: Option<String>,
+    pub drawing: Drawing,
     pub places: Places,
     /// Which number a hardpoint and a joint have; of equal names, the first. Only looked up, never walked.
     hardpoint_numbers: HashMap<String, usize>,
@@ -604,6 +612,9 @@ impl Reader<'_> {
             let lead = self.number_of(&fields, "lead");
             let curve = self.given(&fields, "curve", |r, f| r.curve(&fields, f, &mut place));
             let cut = self.flag_of(&fields, "cut");
+            if let Some(form) = self.form_of_joint(&fields, kind.as_deref()) {
+                raw.drawing.joints.insert(raw.draft.joints.len(), form);
+            }
             self.push(raw, Section::Joints, place);
             raw.joint_numbers.entry(entry.0.clone()).or_insert(raw.draft.joints.len());
             raw.draft.joints.push(JointDraft {
@@ -619,6 +630,24 @@ impl Reader<'_> {
                 cut: cut.unwrap_or(false),
             });
         }
+    }
+
+    /// What something is drawn as.
+    fn form_of(&mut self, fields: &Fields<'_>) -> Option<Form> {
+        self.word_of(fields, "draw").map(|k| Form::ALL[k])
+    }
+
+    /// What a joint is drawn as; HP0107 for one that has no length.
+    fn form_of_joint(&mut self, fields: &Fields<'_>, kind: Option<&str>) -> Option<Form> {
+        if let Some(kind) = kind.and_then(joint::named) {
+            let slides = kind.freedoms.is_some_and(|f| f.contains(&Freedom::Slide(ALONG_AXIS)));
+            if !kind.is_rod() && !slides {
+                let why = "it is for what has a length: a rod, a leg, a joint that slides along its axis";
+                self.out_of_place(fields, "draw", format!("{why}; this is a {} joint", kind.name));
+                return None;
+            }
+        }
+        self.form_of(fields)
     }
 
     /// The length of a rod: a number, or an expression that the core evaluates.

@@ -170,7 +170,7 @@ impl Course {
         self.peaks[(m * 3 + order) * self.variables + b].near.first().copied()
     }
 
-    /// The levels below which sensitivities are round-off.
+    /// The levels below which values and sensitivities are round-off.
     pub(crate) fn round_off(&self, model: &Model) -> RoundOff {
         RoundOff::new(model, self.magnitude)
     }
@@ -208,7 +208,7 @@ impl Peak {
     }
 }
 
-/// The levels below which sensitivities are round-off and are shown as 0.
+/// The levels below which what is found is round-off and is shown as 0.
 pub(crate) struct RoundOff {
     magnitude: Magnitude,
     natural: Vec<f64>,
@@ -223,11 +223,11 @@ impl RoundOff {
 
     /// For a quantity's derivative by variable b, SI.
     pub fn of(&self, b: usize, of: Dimension, order: usize) -> f64 {
-        self.change(of, order) / self.natural[b]
+        self.value(of, order) / self.natural[b]
     }
 
-    /// For the difference of a quantity between two designs, SI.
-    pub fn change(&self, of: Dimension, order: usize) -> f64 {
+    /// For a quantity or its time derivative itself, and for what they differ by between two designs, SI.
+    pub fn value(&self, of: Dimension, order: usize) -> f64 {
         self.magnitude.round_off(of, order)
     }
 }

@@ -25,6 +25,13 @@ use ts_rs::TS;
 #[cfg_attr(test, derive(TS), ts(type = "string"))]
 pub struct Curve(Vec<f32>);
 
+impl Curve {
+    /// Its numbers.
+    pub fn values(&self) -> &[f32] {
+        &self.0
+    }
+}
+
 impl From<&[f64]> for Curve {
     fn from(values: &[f64]) -> Self {
         values.iter().copied().collect()
@@ -195,9 +202,10 @@ pub struct JointMark {
     pub axis: Option<[f64; 3]>,
     /// The same in the frame of body j; in the design configuration the two agree, but for kinds with an axis on each body.
     pub axis_j: Option<[f64; 3]>,
-    /// Unit vector along the second axis in the frame of the body that carries it (j for a universal joint), where there is one.
+    /// Unit vector along the second axis, where there is one: in the frame of body j for `universal`, `constant_velocity`, `dot1` and
+    /// `angle`, in that of body i for others.
     pub axis2: Option<[f64; 3]>,
-    /// The two hardpoints that a hinge's axis passes through, in the frame of body i, where it is given so.
+    /// The two hardpoints that the axis passes through in the design configuration, in the frame of body i, where it is given so.
     pub hinge: Option<[[f64; 3]; 2]>,
     /// Travel per turn of a screw.
     pub lead: Option<f64>,

@@ -7,6 +7,8 @@
 
 mod designs;
 mod drawing;
+mod first;
+mod values;
 
 use std::path::Path;
 
@@ -16,7 +18,7 @@ use hardpoint::sensitivity::BodySensitivity;
 use hardpoint::space::Vec3;
 use hardpoint::study::{Comparison, Difference, WhatIf};
 use hardpoint::{Analysis, Solution};
-use hardpoint_file::{ModelFile, Units};
+use hardpoint_file::{Drawing, ModelFile, Units};
 
 use crate::course::{Course, RoundOff};
 use crate::facts::{Answer, Facts};
@@ -68,9 +70,17 @@ pub fn payload_beside(
     };
     let detail = Detail::that_fits(size, course.has_bodies());
     let steps: Vec<usize> = (0..solution.motion.len()).step_by(detail.stride).collect();
-    let compose =
-        Compose { model, units, analysis, solution, steps, detail, round_off: course.round_off(model) };
-    let (bodies, values) = (compose.bodies(), Vec::new());
+    let compose = Compose {
+        model,
+        looks: &file.drawing,
+        units,
+        analysis,
+        solution,
+        steps,
+        detail,
+        round_off: course.round_off(model),
+    };
+    let (bodies, values) = (compose.bodies(), compose.values(summary));
     let designs =
         changed.map_or_else(Vec::new, |what_if| compose.designs(what_if, course.stride, &bodies, &values));
     Payload {
@@ -96,7 +106,7 @@ pub fn payload_beside(
         vehicle: compose.vehicle(),
         quantities: compose.quantities(),
         values,
-        first: None,
+        first: compose.first(course),
         over: None,
         designs,
         margin: summary.margin.as_ref().map(|m| Margin {
@@ -252,6 +262,7 @@ fn headline(summary: &Summary) -> Vec<Fact> {
 
 struct Compose<'a> {
     model: &'a Model,
+    looks: &'a Drawing,
     units: Units,
     analysis: &'a Analysis<'a>,
     solution: &'a Solution,
@@ -259,6 +270,32 @@ struct Compose<'a> {
     steps: Vec<usize>,
     detail: Detail,
     round_off: RoundOff,
+}
+
+/// From the least to the greatest value of a curve.
+#[derive(Clone, Copy, Debug)]
+struct Span {
+    least: f64,
+    greatest: f64,
+}
+
+impl Span {
+    fn of(values: impl Iterator<Item = f64>) -> Self {
+        let none = Self { least: f64::INFINITY, greatest: f64::NEG_INFINITY };
+        values.fold(none, |s, x| Self { least: s.least.min(x), greatest: s.greatest.max(x) })
+    }
+
+    /// Negative where there is no value.
+    fn range(self) -> f64 {
+        self.greatest - self.least
+    }
+
+    /// A value of the curve without round-off: 0 where it is no more than that, and a constant where the curve varies by no more.
+    fn shown(self, x: f64, round_off: f64) -> f64 {
+        let x =
+            if x.is_finite() && self.range() <= round_off { 0.5 * (self.least + self.greatest) } else { x };
+        if x.abs() <= round_off { 0.0 } else { x }
+    }
 }
 
 /// Orders of time derivative of a body's origin.
@@ -283,7 +320,7 @@ impl Compose<'_> {
     fn quantities(&self) -> Vec<Quantity> {
         let measured = &self.solution.measured;
         let outputs = measured.outputs.iter().enumerate().map(|(m, output)| {
-            let value = |k, order: usize| self.units.from_si(output.dimension, measured.value(k, m)[order]);
+            let value = |k, order: usize| measured.value(k, m)[order];
             let group = if matches!(output.source, OutputSource::Measure(_)) { "measure" } else { "point" };
             self.quantity(&output.name, output.dimension, output.known.orders, group, value)
         });
@@ -292,24 +329,28 @@ impl Compose<'_> {
             let name = format!("{}.{}", self.model.bodies[b].name, AXES[axis]);
             let value = |k, order: usize| {
                 let s = &self.solution.motion.at(k).body(b);
-                self.length([s.r, s.v, s.a][order])[axis]
+                [s.r, s.v, s.a][order].to_array()[axis]
             };
-            self.quantity(&name, Kind::Length, 3, "body", value)
+            self.quantity(&name, Dimension::LENGTH, 3, "body", value)
         });
         outputs.chain(origins).collect()
     }
 
+    /// A quantity by its value in SI at a step and order.
     fn quantity(
         &self,
         name: &str,
-        kind: impl Into<Dimension>,
+        kind: Dimension,
         orders: usize,
         group: &str,
         value: impl Fn(usize, usize) -> f64,
     ) -> Quantity {
-        let kind = kind.into();
         let [unit, rate_unit, accel_unit] = [0, 1, 2].map(|order| order_unit(self.units, kind, order));
-        let [value, rate, accel] = self.curves(orders, value);
+        let spans = [0, 1, 2].map(|order| Span::of((0..self.solution.motion.len()).map(|k| value(k, order))));
+        let [value, rate, accel] = self.curves(orders, |k, order| {
+            let shown = spans[order].shown(value(k, order), self.round_off.value(kind, order));
+            self.units.from_si(kind, shown)
+        });
         Quantity { name: name.into(), unit, rate_unit, accel_unit, group: group.into(), value, rate, accel }
     }
 

@@ -15,7 +15,7 @@ use crate::format::{
 use crate::places::EntryPlace;
 use crate::tree::{DIRECTION, Field, Fields, LINE, PLACE, Reader, Subject, Value};
 
-use super::{COORDINATE, Raw};
+use super::{COORDINATE, DRAW, Raw};
 
 /// More output times than this are surely a slip.
 const MOST_TIMES: u32 = 1_000_000;
@@ -134,6 +134,12 @@ const AXLE: &[Key] = keys! {
     /// The axle's name.
     must "axle": Shape::Name("an axle"), "\"front\"";
 };
+/// The measure that may be drawn.
+const DISTANCE: &str = "distance";
+const DRAWN: &[Key] = keys! {
+    /// What it is drawn as: springs and dampers are often given so. It changes no result.
+    may "draw": DRAW, "\"coilover\"";
+};
 pub(super) const WHEEL_MEASURE: Shape = Shape::Any(
     "WheelMeasure",
     "",
@@ -175,7 +181,8 @@ impl MeasureOf {
 static MEASURES: LazyLock<Vec<(Table, MeasureOf)>> = LazyLock::new(|| {
     let own = MeasureType::ALL.iter().map(|own| {
         let keys: Vec<Key> = own.fields.iter().map(key).collect();
-        let table = Table::new(own.name, own.summary, keys.leak());
+        let shared = if own.name == DISTANCE { DRAWN } else { &[] };
+        let table = Table { shared, ..Table::new(own.name, own.summary, keys.leak()) };
         match WheelMeasure::named(own.name) {
             Some(what) => (Table { instead: WHEEL, ..table }, MeasureOf::Either(own, what)),
             None => (table, MeasureOf::Own(own)),
@@ -230,6 +237,11 @@ impl Reader<'_> {
                     let fields = self.entry("measure", &entry, table.typed_keys());
                     let mut place = EntryPlace::of(&fields);
                     let kind = self.measure(*of, &fields, &mut place);
+                    if table.name == DISTANCE
+                        && let Some(form) = self.form_of(&fields)
+                    {
+                        raw.drawing.measures.insert(raw.draft.measures.len(), form);
+                    }
                     (place, kind)
                 }
                 None => (EntryPlace::at(entry.1.clone()), None),

@@ -70,7 +70,7 @@ impl Beside<'_> {
 
     /// The other design's number; today's, where the two differ by round-off.
     fn settled(&self, of: impl Into<Dimension>, order: usize, today: f64, other: f64) -> f64 {
-        let same = (other - today).abs() <= self.today.round_off.change(of.into(), order);
+        let same = (other - today).abs() <= self.today.round_off.value(of.into(), order);
         if same { today } else { other }
     }
 
@@ -105,7 +105,7 @@ impl Beside<'_> {
                 }
             };
             let shown = units.from_si(dimension, found);
-            let least = units.from_si(dimension, self.today.round_off.change(dimension, 0));
+            let least = units.from_si(dimension, self.today.round_off.value(dimension, 0));
             let same = |now: &f64| (shown - now).abs() <= least;
             shown.is_finite().then(|| of.value.filter(same).unwrap_or(shown))
         };
@@ -251,8 +251,7 @@ impl Beside<'_> {
 
     /// Where the bodies of the changed design are. A body that stands as today has today's numbers.
     fn poses(&self) -> Vec<Curve> {
-        let [far, turned] =
-            [Dimension::LENGTH, Dimension::ANGLE].map(|of| self.today.round_off.change(of, 0));
+        let [far, turned] = [Dimension::LENGTH, Dimension::ANGLE].map(|of| self.today.round_off.value(of, 0));
         let pose = |k: usize, b: usize| {
             let [now, other] = [&self.what_if.today, &self.what_if.exact].map(|s| s.motion.at(k).body(b));
             let [p, mut q] = [now.quaternion(), other.quaternion()];

@@ -1,6 +1,7 @@
 //! What a drawing of the mechanism needs: its bodies with their hardpoints, joints, couplers, drivers and wheels, all from the
 //! model and none of it from names.
 
+use hardpoint::constraint::Row;
 use hardpoint::joint::{Freedom, Need, Quantity as Kind};
 use hardpoint::model::{
     BodyId, Change, Coupler, Curve as PlanarCurve, Direction, Driver, HardpointId, Joint, JointId, Measure,
@@ -145,11 +146,17 @@ impl Compose<'_> {
         let spins = held_spins(self.model);
         let mark = |(j, joint): (usize, &Joint)| {
             let [i, k] = &geometry.markers[j];
+            // Of a cross the second pin is the x axis of body j: z_i . x_j = 0.
+            let crosses = joint.kind.rows.contains(&Row::Dot1(2, 0));
             let axis2 = joint.axis2.map(|_| match joint.kind.axis2 {
                 Need::OnBodyJ => k.rot.cols[2],
+                _ if crosses => k.rot.cols[0],
                 _ => i.rot.cols[0],
             });
-            let ends = self.hinge_points(joint);
+            let ends = match joint.axis {
+                Some(Direction::Through(a, b)) => Some([a, b]),
+                _ => None,
+            };
             JointMark {
                 name: joint.name.clone(),
                 kind: written_kind(joint, spins.contains(&JointId(j))).into(),
@@ -163,7 +170,7 @@ impl Compose<'_> {
                 hinge: ends.map(|ends| ends.map(|h| self.length(self.in_body(joint.bodies[0], h)))),
                 lead: self.lead(JointId(j)),
                 curve: joint.curve.as_ref().map(|curve| self.joint_curve(curve, *i)),
-                draw: None,
+                draw: self.looks.joints.get(&j).map(|form| form.name().into()),
                 cut: matches!(roles[j], Role::Cut(_)),
             }
         };
@@ -301,16 +308,16 @@ impl Compose<'_> {
 
     /// Distances that are measured.
     pub(super) fn distances(&self) -> Vec<DistanceMark> {
-        let mark = |measure: &Measure| match measure.kind {
+        let mark = |(m, measure): (usize, &Measure)| match measure.kind {
             MeasureKind::Distance { from, to } => Some(DistanceMark {
                 name: measure.name.clone(),
                 from: self.place(from),
                 to: self.place(to),
-                draw: None,
+                draw: self.looks.measures.get(&m).map(|form| form.name().into()),
             }),
             _ => None,
         };
-        self.model.measures.iter().filter_map(mark).collect()
+        self.model.measures.iter().enumerate().filter_map(mark).collect()
     }
 
     /// The design velocity of every marker and named point that the variable moves, in its body's frame.

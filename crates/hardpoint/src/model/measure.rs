@@ -488,7 +488,7 @@ impl Model {
     }
 
     /// Whether a measure says what happens while one driver alone moves, rather than in the course of time.
-    pub(crate) fn goes_by_driver(&self, measure: usize) -> bool {
+    pub fn goes_by_driver(&self, measure: usize) -> bool {
         match self.measures[measure].kind {
             MeasureKind::Slope { .. } => true,
             MeasureKind::Wheel { what, .. } => what.needs().goes_by_driver(),

@@ -1,0 +1,46 @@
+//! How the mechanism is to be drawn: what a file says of its looks, which the model does not need to know.
+
+use std::collections::BTreeMap;
+
+/// What a file says of the looks of its mechanism, by places in the lists of the [`Model`](hardpoint::model::Model).
+#[derive(Clone, Debug, Default)]
+pub struct Drawing {
+    /// The forms of joints.
+    pub joints: BTreeMap<usize, Form>,
+    /// The forms of distances that are measured.
+    pub measures: BTreeMap<usize, Form>,
+}
+
+/// What something that has a length is drawn as.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Form {
+    /// A damper with a spring round it.
+    Coilover,
+    /// A coil spring.
+    Spring,
+    /// A damper.
+    Damper,
+    /// A hydraulic or pneumatic cylinder.
+    Cylinder,
+    /// A plain rod.
+    Rod,
+}
+
+impl Form {
+    /// All of them, in the order of [`FORMS`].
+    pub const ALL: [Self; 5] = [Self::Coilover, Self::Spring, Self::Damper, Self::Cylinder, Self::Rod];
+
+    /// As model files write it.
+    pub fn name(self) -> &'static str {
+        FORMS[self as usize].0
+    }
+}
+
+/// How model files write them, and what they are.
+pub(crate) const FORMS: &[(&str, &str)] = &[
+    ("coilover", "A damper with a spring round it."),
+    ("spring", "A coil spring."),
+    ("damper", "A damper."),
+    ("cylinder", "A hydraulic or pneumatic cylinder."),
+    ("rod", "A plain rod."),
+];

@@ -1,0 +1,86 @@
+//! The single numbers that a design is judged by.
+
+use hardpoint::model::{Dimension, Driver, OutputSource, VariableId};
+
+use crate::facts::Answer;
+use crate::figures::order_unit;
+use crate::metric::MetricFact;
+use crate::page::Value;
+use crate::summary::Summary;
+
+use super::Compose;
+
+/// A driver stands where it was drawn if it is no farther from there than this part of the mechanism's size, or of a radian.
+const AS_DRAWN: f64 = 1e-9;
+
+impl Compose<'_> {
+    /// Metrics, then the static values of all measures.
+    pub(super) fn values(&self, summary: &Summary) -> Vec<Value> {
+        let metrics = summary.metrics.iter().enumerate().map(|(k, fact)| self.metric_value(k, fact));
+        let outputs = self.solution.measured.outputs.iter().enumerate();
+        let measures = outputs.filter(|(_, o)| matches!(o.source, OutputSource::Measure(_))).map(|(m, _)| m);
+        let at = self.static_step();
+        let statics = measures.filter_map(|m| Some(self.static_value(summary, m, at?)));
+        metrics.chain(statics).collect()
+    }
+
+    fn metric_value(&self, metric: usize, fact: &MetricFact) -> Value {
+        let metric = &self.model.metrics[metric];
+        let dimension = self.model.metric_dimension(metric);
+        let by_variable = self.model.variables.iter().enumerate().map(|(b, variable)| {
+            let found = fact.sensitivities.iter().find(|s| s.variable == variable.name)?.value;
+            let least = self.round_off.of(b, dimension, 0);
+            let least = self.units.derivative_from_si(dimension, variable.quantity, least);
+            Some(if found.abs() <= least { 0.0 } else { found })
+        });
+        let outputs = &self.solution.measured.outputs;
+        Value {
+            name: fact.name.clone(),
+            what: fact.what.clone(),
+            unit: fact.unit.clone(),
+            value: fact.value,
+            time: fact.time,
+            quantity: outputs.iter().position(|o| o.source == metric.of),
+            target: None,
+            sensitivities: by_variable.collect(),
+        }
+    }
+
+    /// The step at which the mechanism stands as it was drawn, or else that at which it starts, and what that is called.
+    fn static_step(&self) -> Option<(usize, &'static str)> {
+        let times = &self.solution.motion.times;
+        let size = self.model.size();
+        let as_drawn = |driver: &Driver, t: f64| {
+            let dimension = Dimension::from(self.model.driven(driver).quantity);
+            driver.law.at(t).value().abs() <= AS_DRAWN * size.powi(dimension.length.into())
+        };
+        let drawn = times.iter().position(|&t| self.model.drivers.iter().all(|d| as_drawn(d, t)));
+        match drawn {
+            Some(step) => Some((step, "static")),
+            None => (!times.is_empty()).then_some((0, "at the start")),
+        }
+    }
+
+    fn static_value(&self, summary: &Summary, m: usize, (step, what): (usize, &str)) -> Value {
+        let measured = &self.solution.measured;
+        let output = &measured.outputs[m];
+        let shown = |x: f64, round_off: f64| if x.abs() <= round_off { 0.0 } else { x };
+        let value = shown(measured.value(step, m)[0], self.round_off.value(output.dimension, 0));
+        let sensitivity = |b: usize| {
+            let known = matches!(summary.model.variables[b].answer, Answer::Admissible | Answer::Reassembled);
+            let d = known.then(|| measured.d(step, VariableId(b), m)[0]).filter(|d| d.is_finite())?;
+            let d = shown(d, self.round_off.of(b, output.dimension, 0));
+            Some(self.units.derivative_from_si(output.dimension, self.model.variables[b].quantity, d))
+        };
+        Value {
+            name: output.name.clone(),
+            what: what.into(),
+            unit: order_unit(self.units, output.dimension, 0),
+            value: value.is_finite().then(|| self.units.from_si(output.dimension, value)),
+            time: Some(self.solution.motion.times[step]),
+            quantity: Some(m),
+            target: None,
+            sensitivities: (0..self.model.variables.len()).map(sensitivity).collect(),
+        }
+    }
+}
