@@ -1,6 +1,7 @@
-import { type Curve, decode, peak } from './curve'
+import { type Curve, extreme, spread } from './curve'
 import { per } from './format'
 import type * as wire from './payload'
+import type { Decode } from './unpack'
 
 /** 0 the quantity itself, 1 its velocity, 2 its acceleration. */
 export type Order = 0 | 1 | 2
@@ -24,6 +25,8 @@ export interface Quantity {
 
 export interface Sensitivity {
   curves: ByOrder<Curve>
+  /** The value that is largest in magnitude over time, with its sign. */
+  extremes: ByOrder<number>
   /** Largest magnitude over time. */
   peaks: ByOrder<number>
   differences?: { curves: ByOrder<Curve>; worst: ByOrder<number>; step: number; unit: string }
@@ -51,7 +54,8 @@ export interface Report extends Omit<wire.Payload, 'times' | 'bodies' | 'quantit
   variables: Variable[]
 }
 
-export function read(payload: wire.Payload): Report {
+export function read(payload: wire.Payload, decode: Decode): Report {
+  const steps = decode(payload.times).length
   return {
     ...payload,
     times: decode(payload.times),
@@ -61,31 +65,37 @@ export function read(payload: wire.Payload): Report {
       name: quantity.name,
       group: quantity.group,
       units: [quantity.unit, quantity.rate_unit, quantity.accel_unit],
-      curves: curves(quantity),
+      curves: curves(quantity, decode),
     })),
     margin: payload.margin ? { curve: decode(payload.margin.value), note: payload.margin.note } : undefined,
     variables: payload.variables.map((variable, index) => ({
       ...variable,
       index,
       shifts: variable.shifts.map(decode),
-      sensitivities: new Map(variable.sensitivities.map((item) => [item.quantity, sensitivity(item)])),
+      sensitivities: new Map(variable.sensitivities.map((item) => [item.quantity, sensitivity(item, steps, decode)])),
     })),
   }
 }
 
-function curves(item: Curves): ByOrder<Curve> {
+function curves(item: Curves, decode: Decode): ByOrder<Curve> {
   return [decode(item.value), decode(item.rate), decode(item.accel)]
 }
 
-function sensitivity(item: wire.Sensitivity): Sensitivity {
-  const analytic = curves(item)
+function sensitivity(item: wire.Sensitivity, steps: number, decode: Decode): Sensitivity {
+  const analytic = curves(item, decode)
+  const [value, rate, accel] = analytic.map(extreme)
   return {
     curves: analytic,
-    peaks: [peak(analytic[0]), peak(analytic[1]), peak(analytic[2])],
-    differences: item.fd
-      ? { curves: curves(item.fd), worst: item.fd.worst, step: item.fd.step, unit: item.fd.step_unit }
-      : undefined,
+    extremes: [value, rate, accel],
+    peaks: [Math.abs(value), Math.abs(rate), Math.abs(accel)],
+    differences: item.fd ? differences(item.fd, steps, decode) : undefined,
   }
+}
+
+/** The differences at their own steps, gaps between. */
+function differences(fd: wire.FiniteDifference, steps: number, decode: Decode): Sensitivity['differences'] {
+  const [value, rate, accel] = curves(fd, decode).map((curve) => spread(curve, fd.stride, steps))
+  return { curves: [value, rate, accel], worst: fd.worst, step: fd.step, unit: fd.step_unit }
 }
 
 /** `toe`, `toe velocity`. */
@@ -118,7 +128,8 @@ export function ranking(report: Report, quantity: Quantity, order: Order): Map<s
   const byUnit = new Map<string, Ranked[]>()
   for (const variable of report.variables) {
     const sensitivity = variable.sensitivities.get(quantity.index)
-    if (!sensitivity) continue
+    // Of body origins, velocities and accelerations may be left out.
+    if (!sensitivity || sensitivity.curves[order].length === 0) continue
     const peers = byUnit.get(variable.unit) ?? []
     byUnit.set(variable.unit, peers)
     peers.push({ variable, sensitivity, peak: sensitivity.peaks[order], share: 0 })
