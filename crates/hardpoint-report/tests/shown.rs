@@ -101,14 +101,16 @@ fn gears() -> Draft {
         couplers: vec![
             CouplerDraft {
                 name: "mesh".into(),
-                kind: CouplerKindDraft::Gears { joints: pair, teeth: [20.0, 40.0], internal: false },
+                kind: CouplerKindDraft::Pair {
+                    by: Transmission::Gears { teeth: [20.0, 40.0], internal: false, bevel: false },
+                    joints: pair,
+                },
             },
             CouplerDraft {
                 name: "teeth".into(),
-                kind: CouplerKindDraft::Rack {
-                    rack: "way".into(),
-                    pinion: "pinion_axle".into(),
-                    radius: 0.02,
+                kind: CouplerKindDraft::Pair {
+                    by: Transmission::Rack { radius: 0.02 },
+                    joints: ["way", "pinion_axle"].map(String::from),
                 },
             },
         ],

@@ -80,6 +80,12 @@ export function path(poses: Curve, point: Vector3, stride = 1): Vector3[] {
   return places
 }
 
+/** A direction of a body in the world, or nothing where the motion was not solved. */
+export function alongAt(poses: Curve, direction: Vector3, step: number): Vector3 | undefined {
+  const pose = poseAt(poses, step)
+  return pose && direction.clone().applyQuaternion(pose.turn)
+}
+
 /** Enough steps to bound the motion without walking through every one of a long run. */
 const SAMPLES = 64
 

@@ -1,0 +1,4 @@
+import type { Draw } from '../drawn'
+
+/** Every kind of thing that is drawn, one file each. */
+export const draws: Draw[] = []

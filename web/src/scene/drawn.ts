@@ -1,0 +1,47 @@
+import type { Object3D, Vector3 } from 'three'
+import type { Kit } from './kit'
+import type { Mechanism } from './mechanism'
+
+/** What the pointer finds. */
+export interface Part {
+  kind: 'body' | 'joint' | 'coupler' | 'driver' | 'wheel' | 'distance' | 'mark'
+  /** Index into the report's list of its kind. */
+  index: number
+  name: string
+  /** What it is, in a few words: the second line of the tip. */
+  about: string
+}
+
+/**
+ * One thing drawn: an object in a body's frame (0 is ground), or in the world and put in its place for every frame.
+ * Its meshes of one colour are outlined as one.
+ */
+export interface Drawn {
+  /** The body whose frame it is in; in the world where there is none. */
+  body?: number
+  object: Object3D
+  part: Part
+  /** Called before each picture of another moment. */
+  follow?: (frame: Frame) => void
+  /** Drawn after everything else and without outlines: arrows, traces, ghosts. */
+  overlay?: boolean
+}
+
+/** The mechanism at one moment. */
+export interface Frame {
+  step: number
+  /** A point of a body in the world. */
+  at(body: number, point: Vector3): Vector3
+  /** A direction of a body in the world. */
+  along(body: number, direction: Vector3): Vector3
+  /** Whether the motion was solved at this moment. */
+  visible(body: number): boolean
+}
+
+/** How a kind of thing is drawn. */
+export type Draw = (mechanism: Mechanism, kit: Kit) => Drawn[]
+
+/** Whether two are the same thing, drawn of several objects. */
+export function samePart(a: Part | undefined, b: Part | undefined): boolean {
+  return a !== undefined && b !== undefined && a.kind === b.kind && a.index === b.index
+}

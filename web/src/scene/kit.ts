@@ -1,0 +1,344 @@
+import {
+  BoxGeometry,
+  BufferGeometry,
+  CanvasTexture,
+  CylinderGeometry,
+  DoubleSide,
+  EdgesGeometry,
+  ExtrudeGeometry,
+  Float32BufferAttribute,
+  FrontSide,
+  Group,
+  LatheGeometry,
+  LineBasicMaterial,
+  LineSegments,
+  type Material,
+  Matrix4,
+  Mesh,
+  MeshBasicMaterial,
+  MeshLambertMaterial,
+  type Object3D,
+  Path,
+  Quaternion,
+  RepeatWrapping,
+  Shape,
+  SphereGeometry,
+  SRGBColorSpace,
+  Vector2,
+  Vector3,
+} from 'three'
+import { Line2 } from 'three/addons/lines/Line2.js'
+import { LineGeometry } from 'three/addons/lines/LineGeometry.js'
+import { LineMaterial } from 'three/addons/lines/LineMaterial.js'
+import { LineSegments2 } from 'three/addons/lines/LineSegments2.js'
+import { LineSegmentsGeometry } from 'three/addons/lines/LineSegmentsGeometry.js'
+import { across, type Basis, type Flat, square } from './flat'
+import type { Mechanism } from './mechanism'
+import type { Palette } from './palette'
+
+/** How a mesh is drawn, where it is not a plain solid. */
+export interface Finish {
+  /** Translucent things have no outline and cast no shadow. */
+  opacity?: number
+  /** Draws the edges that are sharper than this angle, in degrees. */
+  edges?: number
+  /** Seen from both sides. */
+  open?: boolean
+  /** Flat faces instead of a round look. */
+  facets?: boolean
+}
+
+/** How a line is drawn. */
+export interface Stroke {
+  dashed?: boolean
+  opacity?: number
+  /** Over everything else. */
+  over?: boolean
+}
+
+/** Dashes and gaps in units. */
+const DASH = { on: 1.4, off: 1.1 }
+/** How strongly edges within a part are drawn. */
+const EDGE = 0.55
+const Y = new Vector3(0, 1, 0)
+
+/** What everything is built of, in the frame that the places are given in; frees what the graphics card holds. */
+export class Kit {
+  /** What things are measured in. */
+  readonly unit: number
+  #materials = new Map<string, Material>()
+  #geometries: BufferGeometry[] = []
+  #shared = new Map<string, BufferGeometry>()
+  #hatch?: CanvasTexture
+
+  constructor(
+    readonly mechanism: Mechanism,
+    readonly palette: Palette,
+  ) {
+    this.unit = mechanism.unit
+  }
+
+  /** Colour of a body; ground's own for ground. */
+  body(body: number): string {
+    const tint = this.mechanism.colourOf(body)
+    return tint < 0 ? this.palette.ground : this.palette.bodies[tint]
+  }
+
+  /** A lit material; one per colour and finish. */
+  solid(colour: string, { opacity = 1, open = false, facets = false }: Finish = {}): Material {
+    return this.#material(`solid ${colour} ${opacity} ${open} ${facets}`, () => {
+      const clear = opacity < 1
+      return new MeshLambertMaterial({
+        color: colour,
+        transparent: clear,
+        opacity,
+        depthWrite: !clear,
+        side: clear || open ? DoubleSide : FrontSide,
+        flatShading: facets,
+        polygonOffset: true,
+        polygonOffsetFactor: 1,
+        polygonOffsetUnits: 1,
+      })
+    })
+  }
+
+  /** A material without light, for marks; `over` draws it over everything else. */
+  flat(colour: string, { over = false, opacity = 1 }: { over?: boolean; opacity?: number } = {}): Material {
+    return this.#material(
+      `flat ${colour} ${over} ${opacity}`,
+      () => new MeshBasicMaterial({ color: colour, transparent: true, opacity, depthTest: !over, depthWrite: !over }),
+    )
+  }
+
+  /** Any geometry as a part's mesh. */
+  mesh(geometry: BufferGeometry, colour: string, finish: Finish = {}): Mesh {
+    return this.#mesh(this.#keep(geometry), colour, finish)
+  }
+
+  /** A round bar; `r2` is the radius at `to`. */
+  cylinder(from: Vector3, to: Vector3, r1: number, r2: number, colour: string, finish: Finish = {}): Mesh {
+    const along = to.clone().sub(from)
+    const length = along.length()
+    const straight = r1 === r2
+    const geometry = straight ? this.#unit('rod', () => new CylinderGeometry(1, 1, 1, 20)) : this.#keep(new CylinderGeometry(r2, r1, 1, 20))
+    const mesh = this.#mesh(geometry, colour, finish)
+    if (straight) mesh.scale.set(r1, 1, r1)
+    mesh.scale.y = length
+    mesh.visible = length > 0
+    return place(mesh, from.clone().addScaledVector(along, 0.5), length > 0 ? along : Y)
+  }
+
+  ball(at: Vector3, radius: number, colour: string, finish: Finish = {}): Mesh {
+    const mesh = this.#mesh(this.#unit('ball', () => new SphereGeometry(1, 20, 14)), colour, finish)
+    mesh.scale.setScalar(radius)
+    mesh.position.copy(at)
+    return mesh
+  }
+
+  /** A round plate or pin of height `height` about its middle. */
+  disc(at: Vector3, axis: Vector3, radius: number, height: number, colour: string, finish: Finish = {}): Mesh {
+    const mesh = this.#mesh(this.#unit('disc', () => new CylinderGeometry(1, 1, 1, 36)), colour, finish)
+    mesh.scale.set(radius, height, radius)
+    return place(mesh, at, axis)
+  }
+
+  /** A sleeve about its middle. */
+  tube(at: Vector3, axis: Vector3, outer: number, inner: number, height: number, colour: string, finish: Finish = {}): Mesh {
+    const half = height / 2
+    return this.lathe(at, axis, [[inner, -half], [outer, -half], [outer, half], [inner, half], [inner, -half]], colour, { open: true, ...finish })
+  }
+
+  /** A body of revolution about `axis` through `at`; the profile as radius and height along the axis. */
+  lathe(at: Vector3, axis: Vector3, profile: Flat[], colour: string, finish: Finish = {}): Mesh {
+    const geometry = this.#keep(new LatheGeometry(profile.map(([r, h]) => new Vector2(r, h)), 48))
+    return place(this.#mesh(geometry, colour, finish), at, axis)
+  }
+
+  /** A box with its sides along x, y (made square to x) and their normal. */
+  brick(at: Vector3, x: Vector3, y: Vector3, sides: [number, number, number], colour: string, finish: Finish = { edges: 30 }): Mesh {
+    const unit = x.clone().normalize()
+    const up = square(y, unit)
+    const geometry = new BoxGeometry(...sides).applyMatrix4(new Matrix4().makeBasis(unit, up, unit.clone().cross(up)).setPosition(at))
+    return this.mesh(geometry, colour, finish)
+  }
+
+  /** A plate of the given outline, its middle in the plane of the basis. */
+  slab(outline: Flat[], basis: Basis, thickness: number, colour: string, holes: Flat[][] = [], finish: Finish = {}): Mesh {
+    const shape = new Shape(outline.map(([x, y]) => new Vector2(x, y)))
+    for (const hole of holes) shape.holes.push(new Path(hole.map(([x, y]) => new Vector2(x, y))))
+    const geometry = new ExtrudeGeometry(shape, { depth: thickness, bevelEnabled: false })
+    return this.mesh(geometry.translate(0, 0, -thickness / 2).applyMatrix4(basis.matrix()), colour, finish)
+  }
+
+  /** Triangles given by their corners, three by three. */
+  triangles(corners: Vector3[], colour: string, finish: Finish = {}): Mesh {
+    const geometry = new BufferGeometry()
+    geometry.setAttribute('position', new Float32BufferAttribute(corners.flatMap((corner) => corner.toArray()), 3))
+    geometry.computeVertexNormals()
+    return this.mesh(geometry, colour, finish)
+  }
+
+  /** A line of some pixels' width through points. */
+  line(points: Vector3[], colour: string, width: number, stroke: Stroke = {}): Line2 {
+    const geometry = this.#keep(new LineGeometry().setFromPoints(points))
+    const line = new Line2(geometry, this.#stroke(colour, width, stroke))
+    if (stroke.dashed) line.computeLineDistances()
+    return line
+  }
+
+  /** Separate lines, each from an even point to the odd one after it. */
+  lines(points: Vector3[], colour: string, width: number, stroke: Stroke = {}): LineSegments2 {
+    const geometry = this.#keep(new LineSegmentsGeometry().setPositions(points.flatMap((point) => point.toArray())))
+    const lines = new LineSegments2(geometry, this.#stroke(colour, width, stroke))
+    if (stroke.dashed) lines.computeLineDistances()
+    return lines
+  }
+
+  /** The hatched line of ISO 3952 from a to b: strokes on the side of `outwards`, one every 1.25 r. */
+  hatchLine(a: Vector3, b: Vector3, outwards: Vector3, r: number): Object3D {
+    const along = b.clone().sub(a)
+    const count = Math.max(3, Math.round(along.length() / (1.25 * r)))
+    const step = along.divideScalar(count)
+    const away = outwards.clone().normalize().multiplyScalar(1.3 * r)
+    const strokes = Array.from({ length: count }, (_, k) => a.clone().addScaledVector(step, k + 1))
+    return new Group().add(
+      this.line([a, b], this.palette.hatch, 2),
+      this.lines(strokes.flatMap((foot) => [foot, foot.clone().addScaledVector(step, -0.9).add(away)]), this.palette.hatch, 1.2),
+    )
+  }
+
+  /** A hatched plate of ground, its face square to `down`, one side along `axis` where that is given. */
+  footPlate(at: Vector3, down: Vector3, axis: Vector3 | undefined, size: number): Mesh {
+    const up = down.clone().normalize().negate()
+    return this.hatched(at, square(axis ?? across(up), up).cross(up), up, [size, 0.14 * size, 0.8 * size])
+  }
+
+  /** A hatched box of ground, as `brick`. */
+  hatched(at: Vector3, x: Vector3, y: Vector3, sides: [number, number, number]): Mesh {
+    const geometry = new BoxGeometry(...sides)
+    const { uv, normal } = geometry.attributes
+    // Two strokes or so per 2.5 units on every face, whatever its size.
+    const scale = 1 / (2.5 * this.unit)
+    for (let k = 0; k < uv.count; k++) {
+      const [nx, ny] = [Math.abs(normal.getX(k)), Math.abs(normal.getY(k))]
+      const width = nx > 0.5 ? sides[2] : sides[0]
+      const height = ny > 0.5 ? sides[2] : sides[1]
+      uv.setXY(k, uv.getX(k) * width * scale, uv.getY(k) * height * scale)
+    }
+    const unit = x.clone().normalize()
+    const up = square(y, unit)
+    geometry.applyMatrix4(new Matrix4().makeBasis(unit, up, unit.clone().cross(up)).setPosition(at))
+    const mesh = this.mesh(geometry, this.palette.ground)
+    mesh.material = this.#material('hatched', () => new MeshLambertMaterial({ map: this.#hatching(), polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1 }))
+    return mesh
+  }
+
+  /** Frees what the graphics card holds. */
+  dispose(): void {
+    for (const one of [...this.#materials.values(), ...this.#geometries, ...this.#shared.values()]) one.dispose()
+    this.#hatch?.dispose()
+    this.#materials.clear()
+    this.#shared.clear()
+    this.#geometries = []
+  }
+
+  #mesh(geometry: BufferGeometry, colour: string, finish: Finish): Mesh {
+    const mesh = new Mesh(geometry, this.solid(colour, finish))
+    mesh.castShadow = (finish.opacity ?? 1) >= 1
+    if (finish.edges) {
+      const edges = new LineSegments(this.#keep(new EdgesGeometry(geometry, finish.edges)), this.#edge())
+      edges.raycast = () => {}
+      mesh.add(edges)
+    }
+    return mesh
+  }
+
+  #edge(): Material {
+    return this.#material('edge', () => new LineBasicMaterial({ color: this.palette.outline, transparent: true, opacity: EDGE }))
+  }
+
+  #stroke(colour: string, width: number, { dashed = false, opacity = 1, over = false }: Stroke): LineMaterial {
+    return this.#material(`line ${colour} ${width} ${dashed} ${opacity} ${over}`, () =>
+      new LineMaterial({
+        color: colour,
+        linewidth: width,
+        dashed,
+        dashSize: DASH.on * this.unit,
+        gapSize: DASH.off * this.unit,
+        transparent: opacity < 1 || over,
+        opacity,
+        depthTest: !over,
+        depthWrite: !over,
+      }),
+    ) as LineMaterial
+  }
+
+  #hatching(): CanvasTexture {
+    if (this.#hatch) return this.#hatch
+    const canvas = document.createElement('canvas')
+    const side = (canvas.width = canvas.height = 32)
+    const brush = canvas.getContext('2d')!
+    brush.fillStyle = this.palette.ground
+    brush.fillRect(0, 0, side, side)
+    brush.strokeStyle = this.palette.view
+    brush.lineWidth = 7
+    for (let k = -side; k < 2 * side; k += side / 2) {
+      brush.beginPath()
+      brush.moveTo(k, side + 2)
+      brush.lineTo(k + side + 4, -2)
+      brush.stroke()
+    }
+    this.#hatch = new CanvasTexture(canvas)
+    this.#hatch.wrapS = this.#hatch.wrapT = RepeatWrapping
+    this.#hatch.colorSpace = SRGBColorSpace
+    this.#hatch.anisotropy = 4
+    return this.#hatch
+  }
+
+  #material(key: string, make: () => Material): Material {
+    const known = this.#materials.get(key)
+    if (known) return known
+    const made = make()
+    this.#materials.set(key, made)
+    return made
+  }
+
+  #unit(key: string, make: () => BufferGeometry): BufferGeometry {
+    const known = this.#shared.get(key)
+    if (known) return known
+    const made = make()
+    this.#shared.set(key, made)
+    return made
+  }
+
+  #keep<T extends BufferGeometry>(geometry: T): T {
+    this.#geometries.push(geometry)
+    return geometry
+  }
+}
+
+/** Puts an object made along y in its place, along `axis`. */
+export function place<T extends Object3D>(object: T, at: Vector3, axis?: Vector3): T {
+  object.position.copy(at)
+  if (axis) object.quaternion.setFromUnitVectors(Y, axis.clone().normalize())
+  return object
+}
+
+/** Puts an object of length 1 along y, its middle at the origin, between two points; hides it where there is no length. */
+export function stretch<T extends Object3D>(object: T, from: Vector3, to: Vector3): T {
+  const along = to.clone().sub(from)
+  const length = along.length()
+  object.visible = length > 0
+  if (!object.visible) return object
+  object.scale.y = length
+  return place(object, from.clone().addScaledVector(along, 0.5), along)
+}
+
+/** Puts an object made along y at a place so that y is along `axis` and z along the part of `towards` that is square to it. */
+export function orient<T extends Object3D>(object: T, at: Vector3, axis: Vector3, towards: Vector3): T {
+  const y = axis.clone().normalize()
+  const z = square(towards, y)
+  object.position.copy(at)
+  object.quaternion.copy(new Quaternion().setFromRotationMatrix(new Matrix4().makeBasis(y.clone().cross(z), y, z)))
+  return object
+}

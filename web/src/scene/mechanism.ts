@@ -1,0 +1,253 @@
+import { Box3, Quaternion, Vector3 } from 'three'
+import type { JointMark } from '../payload'
+import type { Report } from '../report'
+import type { Frame } from './drawn'
+import { layers } from './layers'
+import { planeOf } from './plane'
+import { type Pose, poseAt } from './poses'
+import { type Slide, slideOf } from './slide'
+import { tints } from './tints'
+
+/** Enough moments to bound the motion without walking through every one of a long run. */
+const SAMPLES = 64
+/** Two places nearer to one another than this part of the size are one. */
+const SAME = 1e-4
+/** More bodies than this are drawn without details. */
+const MANY = 40
+/** The unit as a part of the distance between hardpoints, and its least and largest part of the size. */
+const UNIT = { ofDistance: 0.16, least: 0.0012, most: 0.0125 }
+/** Thickness of a planar link, and from one layer to the next, in units. */
+const THICKNESS = 1
+const PITCH = 1.15
+/** A glyph's radius as a part of the distance to the nearest other joint, and its least in units. */
+const GLYPH = { ofDistance: 0.3, least: 0.35 }
+
+type Place = readonly [number, number, number]
+
+/**
+ * A report as it is drawn: sizes, places, colours and layers, worked out once. A changed design takes sizes, colours and
+ * layers from the one that it is a change of, so that only what differs is seen to differ.
+ */
+export class Mechanism {
+  /** Steps at which the motion is sampled, where its extent matters. */
+  readonly moments: number[]
+  /** Every place that a hardpoint or joint visits. */
+  readonly sweep: Vector3[]
+  readonly box: Box3
+  readonly centre: Vector3
+  /** Diagonal of the box round the sweep. */
+  readonly size: number
+  /** What glyphs are measured in: a rod has this radius or so. */
+  readonly unit: number
+  /** Normal of a planar mechanism, towards the reader. */
+  readonly plane?: Vector3
+  readonly up: Vector3
+  readonly vehicle?: { forward: Vector3; up: Vector3 }
+  readonly large: boolean
+  readonly topLayer: number
+  #places: Vector3[][]
+  #layers: number[]
+  #tints: number[]
+  #slides: (Slide | undefined)[]
+
+  /** `base`: the design that this is a change of. `former`: the design drawn dashed beside this one. */
+  constructor(
+    readonly report: Report,
+    base?: Mechanism,
+    readonly former?: Mechanism,
+  ) {
+    const last = Math.max(0, report.times.length - 1)
+    const stride = Math.max(1, Math.floor(last / SAMPLES))
+    this.moments = [...Array.from({ length: Math.ceil(last / stride) }, (_, k) => k * stride), last]
+    const joined: Vector3[][] = report.bodies.map(() => [])
+    for (const joint of report.joints) {
+      joined[joint.body_i].push(new Vector3(...joint.at_i))
+      joined[joint.body_j].push(new Vector3(...joint.at_j))
+    }
+    this.sweep = this.#visited(joined)
+    this.box = new Box3().setFromPoints(this.sweep)
+    if (this.box.isEmpty()) this.box.expandByPoint(new Vector3())
+    this.centre = this.box.getCenter(new Vector3())
+    this.size = base?.size ?? (this.box.getSize(new Vector3()).length() || 1)
+    this.#places = joined.map((places) => this.distinct(places))
+    this.unit = base?.unit ?? this.#unit()
+    this.plane = base ? base.plane : planeOf(report, this.sweep, this.size)
+    const { vehicle } = report
+    this.vehicle = vehicle ? { forward: new Vector3(...vehicle.forward), up: new Vector3(...vehicle.up) } : undefined
+    this.up = this.plane && Math.abs(this.plane.z) > 0.5 ? new Vector3(0, 1, 0) : (this.vehicle?.up ?? new Vector3(0, 0, 1))
+    this.large = report.bodies.length > MANY + 1
+    this.#tints = base ? base.#tints : tints(this)
+    this.#layers = base ? base.#layers : this.plane ? this.#stack() : report.bodies.map(() => 0)
+    this.topLayer = Math.max(0, ...this.#layers)
+    this.#slides = report.joints.map((joint) => slideOf(this, joint))
+  }
+
+  /** Layer of a body of a planar mechanism; ground's is 0, the lowest. */
+  layerOf(body: number): number {
+    return this.#layers[body]
+  }
+
+  /** Index of a body's colour; -1 for ground. */
+  colourOf(body: number): number {
+    return this.#tints[body]
+  }
+
+  /** Thickness of a planar link. */
+  get thickness(): number {
+    return THICKNESS * this.unit
+  }
+
+  /** From one layer of a planar mechanism to the next. */
+  get pitch(): number {
+    return PITCH * this.unit
+  }
+
+  /** From the plane of the hardpoints to a layer, in a body's frame; nothing for a spatial mechanism. */
+  lift(body: number, layer = this.#layers[body]): Vector3 {
+    return this.plane ? this.into(body, this.plane).multiplyScalar(layer * this.pitch) : new Vector3()
+  }
+
+  /** Joint places of a body in its frame, each once. */
+  placesOf(body: number): Vector3[] {
+    return this.#places[body]
+  }
+
+  /** The slide of a joint, where it is one. */
+  slideOf(joint: number): Slide | undefined {
+    return this.#slides[joint]
+  }
+
+  /** Joints of a body, with the place on it and their axis in its frame. */
+  jointsOf(body: number): { joint: JointMark; index: number; at: Vector3; axis?: Vector3 }[] {
+    return this.report.joints.flatMap((joint, index) => {
+      if (joint.body_i !== body && joint.body_j !== body) return []
+      const here = joint.body_i === body
+      const axis = here ? joint.axis : (joint.axis_j ?? undefined)
+      return [{ joint, index, at: new Vector3(...(here ? joint.at_i : joint.at_j)), axis: axis ? new Vector3(...axis) : undefined }]
+    })
+  }
+
+  /** The points that shape a body, in its frame: measured points only while there are fewer than three others. */
+  shapePoints(body: number): Vector3[] {
+    const { skeleton, roles } = this.report.bodies[body]
+    const point = (k: number) => new Vector3(...skeleton[k])
+    const indices = skeleton.map((_, k) => k)
+    const carried = indices.filter((k) => roles[k] === 'joint' || roles[k] === 'hinge').map(point)
+    const slotted = this.plane
+      ? this.#slides.flatMap((slide) => (slide && slide.rail === body && body > 0 ? ends(slide) : []))
+      : []
+    const held = this.distinct([...carried, ...this.#places[body], ...slotted])
+    if (held.length > 2) return held
+    return this.distinct([...held, ...indices.filter((k) => roles[k] === 'measured').map(point)])
+  }
+
+  /** Radius of a glyph at a joint's place on a body, so that none hides a link. */
+  radiusAt(body: number, at: Vector3): number {
+    const others = this.#places[body].filter((place) => !this.same(place, at)).map((place) => place.distanceTo(at))
+    return Math.max(Math.min(this.unit, GLYPH.ofDistance * Math.min(...others, Infinity)), GLYPH.least * this.unit)
+  }
+
+  /** The same for both bodies of a joint. */
+  radiusOf(joint: JointMark): number {
+    return Math.min(
+      this.radiusAt(joint.body_i, new Vector3(...joint.at_i)),
+      this.radiusAt(joint.body_j, new Vector3(...joint.at_j)),
+    )
+  }
+
+  /** A body's pose, or nothing where the motion was not solved. */
+  poseAt(body: number, step: number): Pose | undefined {
+    return poseAt(this.report.bodies[body].poses, step)
+  }
+
+  /** A point of a body in the world; NaN where the motion was not solved. */
+  worldAt(body: number, point: Vector3, step: number): Vector3 {
+    const pose = this.poseAt(body, step)
+    return pose ? point.clone().applyQuaternion(pose.turn).add(pose.place) : new Vector3(NaN, NaN, NaN)
+  }
+
+  /** A direction of a body in the world; NaN where the motion was not solved. */
+  alongAt(body: number, direction: Vector3, step: number): Vector3 {
+    const pose = this.poseAt(body, step)
+    return pose ? direction.clone().applyQuaternion(pose.turn) : new Vector3(NaN, NaN, NaN)
+  }
+
+  /** A direction of the world in a body's frame, in the first position where none is given. */
+  into(body: number, direction: Vector3, step = 0): Vector3 {
+    const turn = this.poseAt(body, step)?.turn ?? new Quaternion()
+    return direction.clone().applyQuaternion(turn.clone().invert())
+  }
+
+  /** A place of the world in a body's frame, in the first position where none is given. */
+  placeInto(body: number, place: Vector3, step = 0): Vector3 {
+    const pose = this.poseAt(body, step)
+    return pose ? this.into(body, place.clone().sub(pose.place), step) : place.clone()
+  }
+
+  /** The mechanism at one moment. */
+  frame(step: number): Frame {
+    const poses = this.report.bodies.map((_, body) => this.poseAt(body, step))
+    return {
+      step,
+      at: (body, point) => {
+        const pose = poses[body]
+        return pose ? point.clone().applyQuaternion(pose.turn).add(pose.place) : new Vector3(NaN, NaN, NaN)
+      },
+      along: (body, direction) => {
+        const pose = poses[body]
+        return pose ? direction.clone().applyQuaternion(pose.turn) : new Vector3(NaN, NaN, NaN)
+      },
+      visible: (body) => poses[body] !== undefined,
+    }
+  }
+
+  same(a: Vector3, b: Vector3): boolean {
+    return a.distanceTo(b) < SAME * this.size
+  }
+
+  distinct(points: Vector3[]): Vector3[] {
+    return points.filter((point, k) => points.findIndex((other) => this.same(other, point)) === k)
+  }
+
+  #visited(joined: Vector3[][]): Vector3[] {
+    return this.report.bodies.flatMap(({ skeleton, roles }, body) => {
+      const marked = skeleton.filter((_, k) => roles[k] !== 'wheel').map((point: Place) => new Vector3(...point))
+      const points = [...marked, ...joined[body]]
+      return (body === 0 ? [0] : this.moments).flatMap((step) => {
+        const pose = this.poseAt(body, step)
+        return pose ? points.map((point) => point.clone().applyQuaternion(pose.turn).add(pose.place)) : []
+      })
+    })
+  }
+
+  /** From the lower quartile of the distances from a moving body's joints to its nearest other hardpoint. */
+  #unit(): number {
+    const distances = this.#places.slice(1).flatMap((places, k) => {
+      const all = [...places, ...this.report.bodies[k + 1].skeleton.map((point) => new Vector3(...point))]
+      return places.flatMap((place) => {
+        const others = all.filter((other) => !this.same(other, place)).map((other) => other.distanceTo(place))
+        return others.length > 0 ? [Math.min(...others)] : []
+      })
+    })
+    distances.sort((a, b) => a - b)
+    const quartile = distances[Math.floor(distances.length / 4)] ?? this.size
+    return Math.min(Math.max(UNIT.ofDistance * quartile, UNIT.least * this.size), UNIT.most * this.size)
+  }
+
+  #stack(): number[] {
+    const { report } = this
+    const lengths = report.bodies.map(({ skeleton }) => {
+      const points = skeleton.map((point) => new Vector3(...point))
+      return Math.max(0, ...points.flatMap((a) => points.map((b) => a.distanceTo(b))))
+    })
+    const pins = report.joints.flatMap((joint) => [
+      { at: this.worldAt(joint.body_i, new Vector3(...joint.at_i), 0), bodies: [joint.body_i, joint.body_j] },
+      { at: this.worldAt(joint.body_j, new Vector3(...joint.at_j), 0), bodies: [joint.body_i, joint.body_j] },
+    ])
+    const massless = (joint: JointMark) => joint.kind === 'distance' || joint.kind === 'leg'
+    const held = pins.filter((_, k) => !massless(report.joints[Math.floor(k / 2)]))
+    return layers(lengths, held, 1e-3 * this.size)
+  }
+}
+
+const ends = ({ place, axis, low, high }: Slide) => (low <= high ? [low, high].map((t) => place.clone().addScaledVector(axis, t)) : [])

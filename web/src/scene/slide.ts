@@ -1,0 +1,52 @@
+import { Vector3 } from 'three'
+import type { JointMark } from '../payload'
+import { across } from './flat'
+import type { Mechanism } from './mechanism'
+
+/** A joint in which one body slides along another: which is the rail, and how far the other travels on it in this motion. */
+export interface Slide {
+  rail: number
+  block: number
+  /** Unit vector in the rail's frame. */
+  axis: Vector3
+  /** Where travel is counted from, in the rail's frame. */
+  place: Vector3
+  /** The joint's place on the block, in its frame. */
+  blockPlace: Vector3
+  low: number
+  high: number
+}
+
+const SLIDES = ['translational', 'cylindrical', 'inplane']
+
+/** The slide of a joint; ground is the rail, else the body that is longer along the axis. */
+export function slideOf(mechanism: Mechanism, joint: JointMark): Slide | undefined {
+  if (!SLIDES.includes(joint.kind) || !joint.axis) return undefined
+  let slide = {
+    rail: joint.body_i,
+    block: joint.body_j,
+    axis: new Vector3(...joint.axis),
+    place: new Vector3(...joint.at_i),
+    blockPlace: new Vector3(...joint.at_j),
+  }
+  if (joint.kind === 'inplane') {
+    const normal = slide.axis
+    slide.axis = mechanism.plane ? mechanism.into(slide.rail, mechanism.plane).cross(normal).normalize() : across(normal)
+  } else {
+    const axis = mechanism.into(slide.block, mechanism.alongAt(slide.rail, slide.axis, 0))
+    const grounded = slide.rail === 0 || slide.block === 0
+    const longer = length(mechanism, slide.block, axis) > length(mechanism, slide.rail, slide.axis)
+    if (grounded ? slide.block === 0 : longer)
+      slide = { rail: slide.block, block: slide.rail, axis, place: slide.blockPlace, blockPlace: slide.place }
+  }
+  const { rail, block } = slide
+  const travelled = mechanism.moments
+    .map((step) => mechanism.into(rail, mechanism.worldAt(block, slide.blockPlace, step).sub(mechanism.worldAt(rail, slide.place, step)), step).dot(slide.axis))
+    .filter(Number.isFinite)
+  return { ...slide, low: Math.min(...travelled, Infinity), high: Math.max(...travelled, -Infinity) }
+}
+
+function length(mechanism: Mechanism, body: number, axis: Vector3): number {
+  const along = mechanism.report.bodies[body].skeleton.map((point) => new Vector3(...point).dot(axis))
+  return along.length > 0 ? Math.max(...along) - Math.min(...along) : 0
+}
