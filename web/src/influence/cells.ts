@@ -18,14 +18,21 @@ export interface Grid {
   quantities: Quantity[]
 }
 
-/** Variables by unit and quantities of a group; of either those that the words name, where they name any. */
-export function grid(report: Report, group: string, words: string): Grid {
+/** The groups with quantities that some sensitivity is known of. */
+export function knownGroups(report: Report): [name: string, members: Quantity[]][] {
+  const known = new Set(report.variables.flatMap(({ sensitivities }) => [...sensitivities.keys()]))
+  const members = groups(report).map(([name, all]): [string, Quantity[]] => [name, all.filter(({ index }) => known.has(index))])
+  return members.filter(([, found]) => found.length > 0)
+}
+
+/** Variables by unit and the quantities offered; of either those that the words name, where they name any. */
+export function grid(report: Report, offered: Quantity[], words: string): Grid {
   const wanted = words.toLowerCase().split(/\s+/).filter(Boolean)
   const named = <T extends { name: string }>(things: T[]) => {
     const found = things.filter(({ name }) => wanted.some((word) => name.toLowerCase().includes(word)))
     return found.length > 0 ? found : things
   }
-  const quantities = named(groups(report).find(([name]) => name === group)?.[1] ?? [])
+  const quantities = named(offered)
   const variables = named(report.variables.filter(({ sensitivities }) => sensitivities.size > 0))
   const units = [...new Set(variables.map(({ unit }) => unit))]
   const rows = units.flatMap((unit): Row[] => [

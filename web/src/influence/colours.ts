@@ -4,7 +4,7 @@ type Rgb = readonly [number, number, number]
 
 /** Shades to either side of nothing. */
 const SHADES = 64
-/** Canvases are cleared to black before a colour is read back from them. */
+/** Side of the canvas that a colour is read back from, px. */
 const PIXEL = 1
 
 /** Colours from the least (blue) over nothing to the greatest (orange), for what is drawn on a canvas. */

@@ -1,9 +1,9 @@
 import './influence.css'
 import { css, el, onSchemeChange } from '../dom'
 import { number, pretty } from '../format'
-import { derivativeUnit, groups, ORDERS } from '../report'
+import { derivativeUnit, ORDERS, type Quantity } from '../report'
 import type { State } from '../state'
-import { Cells, grid, type Grid } from './cells'
+import { Cells, grid, knownGroups, type Grid } from './cells'
 import { Scale, strong } from './colours'
 
 /** Height of a row and least and most width of a column, px. */
@@ -13,6 +13,9 @@ const COLUMN = { least: 24, most: 72 }
 const ROOMY = 46
 /** Of the names beside the rows and above the columns, px. */
 const NAMES = { width: 176, height: 112 }
+/** Of the window: at most so high, and room for a scroll bar under a map that is not, px. */
+const HIGHEST = 460
+const SPARE = 18
 const FONT = '12px system-ui, sans-serif'
 const SMALL = '11px system-ui, sans-serif'
 
@@ -37,6 +40,7 @@ class HeatMap {
   readonly #window: HTMLElement
   readonly #group: HTMLSelectElement
   readonly #filter: HTMLInputElement
+  readonly #offered: [name: string, members: Quantity[]][]
   #grid: Grid = { rows: [], quantities: [] }
   #cells: Cells
   #scale?: Scale
@@ -48,10 +52,11 @@ class HeatMap {
   #frame = 0
 
   constructor(private readonly state: State) {
-    const offered = groups(state.report)
+    const known = knownGroups(state.report)
+    this.#offered = known.length > 1 ? [...known, ['all', known.flatMap(([, members]) => members)]] : known
     this.#cells = new Cells(state.report, state.choice.order)
     const layOut = () => this.#layOut()
-    const options = offered.map(([name]) => el('option', { value: name }, name))
+    const options = this.#offered.map(([name]) => el('option', { value: name }, name))
     this.#group = el('select', { 'aria-label': 'quantities shown', onchange: layOut }, ...options)
     this.#filter = el('input', { type: 'search', placeholder: 'names', 'aria-label': 'filter by names', oninput: layOut })
     this.#window = el(
@@ -61,7 +66,7 @@ class HeatMap {
         tabindex: 0,
         role: 'application',
         'aria-label': 'sensitivity map: arrow keys read cells, Enter chooses',
-        onscroll: () => this.#scrolled(),
+        onscroll: () => this.#draw(),
         onpointermove: (event: PointerEvent) => this.#point(this.#under(event)),
         onpointerleave: () => this.#point(undefined),
         onclick: (event: PointerEvent) => this.#choose(this.#under(event)),
@@ -78,7 +83,7 @@ class HeatMap {
       el(
         'div',
         { class: 'bar' },
-        offered.length > 1 && el('label', { class: 'field' }, el('span', {}, 'Quantities'), this.#group),
+        known.length > 1 && el('label', { class: 'field' }, el('span', {}, 'Quantities'), this.#group),
         el('label', { class: 'field' }, el('span', {}, 'Filter'), this.#filter),
         el('span', { class: 'legend' }, el('span', { class: 'ramp' }), this.#legend),
       ),
@@ -106,19 +111,17 @@ class HeatMap {
   /** Rows and columns anew; sizes are those that the observer told. */
   #layOut(): void {
     const { report, choice } = this.state
-    this.#grid = grid(report, this.#group.value, this.#filter.value)
+    const offered = this.#offered.find(([name]) => name === this.#group.value)?.[1] ?? []
+    this.#grid = grid(report, offered, this.#filter.value)
     const { rows, quantities } = this.#grid
     const room = (this.#size.width - NAMES.width) / Math.max(1, quantities.length)
     this.#column = Math.floor(Math.min(Math.max(room, COLUMN.least), COLUMN.most))
-    this.#extent.style.width = `${NAMES.width + quantities.length * this.#column}px`
-    this.#extent.style.height = `${NAMES.height + rows.length * ROW}px`
+    const [width, height] = [NAMES.width + quantities.length * this.#column, NAMES.height + rows.length * ROW]
+    Object.assign(this.#extent.style, { width: `${width}px`, height: `${height}px` })
+    this.#window.style.height = `${Math.min(height + SPARE, HIGHEST)}px`
     this.#title.textContent = choice.order === 0 ? '' : ` (${ORDERS[choice.order]})`
     if (this.#pointed && (this.#pointed.row >= rows.length || this.#pointed.column >= quantities.length)) this.#pointed = undefined
     this.#read()
-    this.#draw()
-  }
-
-  #scrolled(): void {
     this.#draw()
   }
 
