@@ -10,9 +10,22 @@ export const ORDERS = ['value', 'velocity', 'acceleration'] as const
 type ByOrder<T> = readonly [T, T, T]
 type Curves = { value: wire.Curve; rate: wire.Curve; accel: wire.Curve }
 
-export interface Body extends Omit<wire.BodyTrack, 'poses'> {
+export interface Body extends Omit<wire.BodyTrack, 'poses' | 'mesh'> {
   /** 7 numbers per step: x y z, quaternion w x y z. */
   poses: Curve
+  mesh: Mesh | null
+}
+
+/** A triangle mesh in the body's frame: three coordinates per vertex, three vertices per triangle. */
+export interface Mesh {
+  file: string
+  positions: Curve
+  triangles: Curve
+}
+
+export interface Driver extends Omit<wire.DriverMark, 'travel'> {
+  /** The driven coordinate, one number per step. */
+  travel: Curve
 }
 
 export interface Quantity {
@@ -45,13 +58,23 @@ export interface Margin {
   note: string
 }
 
+/** Another design over the same times; what is not known of it is empty or missing. */
+export interface Design extends Omit<wire.Design, 'poses' | 'quantities' | 'margin'> {
+  poses: Curve[]
+  /** By the quantity's index. */
+  quantities: (ByOrder<Curve> | undefined)[]
+  margin?: Curve
+}
+
 /** The payload with its curves decoded. */
-export interface Report extends Omit<wire.Payload, 'times' | 'bodies' | 'quantities' | 'margin' | 'variables'> {
+export interface Report extends Omit<wire.Payload, 'times' | 'bodies' | 'drivers' | 'quantities' | 'margin' | 'variables' | 'designs'> {
   times: Curve
   bodies: Body[]
+  drivers: Driver[]
   quantities: Quantity[]
   margin?: Margin
   variables: Variable[]
+  designs: Design[]
 }
 
 export function read(payload: wire.Payload, decode: Decode): Report {
@@ -59,7 +82,8 @@ export function read(payload: wire.Payload, decode: Decode): Report {
   return {
     ...payload,
     times: decode(payload.times),
-    bodies: payload.bodies.map((body) => ({ ...body, poses: decode(body.poses) })),
+    bodies: payload.bodies.map((body) => ({ ...body, poses: decode(body.poses), mesh: mesh(body.mesh, decode) })),
+    drivers: payload.drivers.map((driver) => ({ ...driver, travel: decode(driver.travel) })),
     quantities: payload.quantities.map((quantity, index) => ({
       index,
       name: quantity.name,
@@ -74,7 +98,17 @@ export function read(payload: wire.Payload, decode: Decode): Report {
       shifts: variable.shifts.map(decode),
       sensitivities: new Map(variable.sensitivities.map((item) => [item.quantity, sensitivity(item, steps, decode)])),
     })),
+    designs: payload.designs.map((design) => ({
+      ...design,
+      poses: design.poses.map(decode),
+      quantities: design.quantities.map((item) => (item ? curves(item, decode) : undefined)),
+      margin: design.margin ? decode(design.margin) : undefined,
+    })),
   }
+}
+
+function mesh(item: wire.Mesh | null, decode: Decode): Mesh | null {
+  return item && { file: item.file, positions: decode(item.positions), triangles: decode(item.triangles) }
 }
 
 function curves(item: Curves, decode: Decode): ByOrder<Curve> {

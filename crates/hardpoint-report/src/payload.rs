@@ -5,6 +5,7 @@
 //! Where that is too much for a page that opens at once, the bodies lose their comparison, the motion is thinned, and at last the
 //! bodies lose their sensitivities: the CSV files hold everything.
 
+mod designs;
 mod drawing;
 
 use std::path::Path;
@@ -13,7 +14,7 @@ use hardpoint::joint::Quantity as Kind;
 use hardpoint::model::{BodyId, Dimension, Model, OutputSource, VariableId};
 use hardpoint::sensitivity::BodySensitivity;
 use hardpoint::space::Vec3;
-use hardpoint::study::{Comparison, Difference};
+use hardpoint::study::{Comparison, Difference, WhatIf};
 use hardpoint::{Analysis, Solution};
 use hardpoint_file::{ModelFile, Units};
 
@@ -47,6 +48,18 @@ pub fn payload(
     differences: &[Option<Difference>],
     summary: &Summary,
 ) -> Payload {
+    payload_beside(file, analysis, course, differences, summary, None)
+}
+
+/// The same with a changed design beside today's, where one is given; `course` is what was gathered of today's whole solution.
+pub fn payload_beside(
+    file: &ModelFile,
+    analysis: &Analysis<'_>,
+    course: &Course,
+    differences: &[Option<Difference>],
+    summary: &Summary,
+    changed: Option<&WhatIf>,
+) -> Payload {
     let (model, solution) = (&file.model, &course.kept);
     let size = Size {
         steps: solution.motion.len(),
@@ -54,8 +67,9 @@ pub fn payload(
         variables: model.variables.len(),
         outputs: solution.measured.outputs.len(),
         compared: differences.iter().any(Option::is_some),
+        designs: changed.map_or(0, |_| designs::MOST),
     };
-    let compose = |detail: Detail| composed(file, analysis, course, differences, summary, detail);
+    let compose = |detail: Detail| composed(file, analysis, course, differences, summary, changed, detail);
     let levels = Detail::levels(size, course.has_bodies());
     let (last, levels) = levels.split_last().expect("there is always a least level");
     for level in levels {
@@ -78,12 +92,16 @@ fn composed(
     course: &Course,
     differences: &[Option<Difference>],
     summary: &Summary,
+    changed: Option<&WhatIf>,
     detail: Detail,
 ) -> Payload {
     let (model, units, solution) = (&file.model, file.units, &course.kept);
     let steps: Vec<usize> = (0..solution.motion.len()).step_by(detail.stride).collect();
     let compose =
         Compose { model, units, analysis, solution, steps, detail, round_off: course.round_off(model) };
+    let (bodies, values) = (compose.bodies(), Vec::new());
+    let designs =
+        changed.map_or_else(Vec::new, |what_if| compose.designs(what_if, course.stride, &bodies, &values));
     Payload {
         title: model.name.clone(),
         description: file.description.clone().unwrap_or_default(),
@@ -98,7 +116,7 @@ fn composed(
         summary: headline(summary),
         notes: summary.model.all_notes(),
         times: compose.curve(|k| solution.motion.times[k]),
-        bodies: compose.bodies(),
+        bodies,
         joints: compose.joints(),
         couplers: compose.couplers(),
         drivers: compose.drivers(),
@@ -106,9 +124,10 @@ fn composed(
         distances: compose.distances(),
         vehicle: compose.vehicle(),
         quantities: compose.quantities(),
-        values: Vec::new(),
+        values,
         first: None,
-        designs: Vec::new(),
+        over: None,
+        designs,
         margin: summary.margin.as_ref().map(|m| Margin {
             value: compose.curve(|k| m.series.get(k).copied().unwrap_or(f64::NAN)),
             note: m.sentence(),
@@ -148,6 +167,8 @@ struct Size {
     outputs: usize,
     /// Whether there are differences to compare with.
     compared: bool,
+    /// Other designs that are shown beside this one.
+    designs: usize,
 }
 
 impl Detail {
@@ -184,8 +205,8 @@ impl Detail {
         let rates = if self.body_rates { 2 * origins } else { 0 };
         let compared = size.outputs + if self.body_differences { origins } else { 0 };
         let marks = if size.compared { 3 * compared * MARKS.min(steps) } else { 0 };
-        ((motion + size.variables * (3 * size.outputs + bodies + rates)) * steps + size.variables * marks)
-            as f64
+        ((motion * (1 + size.designs) + size.variables * (3 * size.outputs + bodies + rates)) * steps
+            + size.variables * marks) as f64
     }
 }
 
@@ -461,7 +482,8 @@ impl Compose<'_> {
 mod tests {
     use super::*;
 
-    const STRUT: Size = Size { steps: 501, bodies: 4, variables: 16, outputs: 13, compared: true };
+    const STRUT: Size =
+        Size { steps: 501, bodies: 4, variables: 16, outputs: 13, compared: true, designs: 0 };
 
     #[test]
     fn a_suspension_is_shown_with_all_that_there_is() {

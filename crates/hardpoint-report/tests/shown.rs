@@ -10,7 +10,7 @@ use hardpoint::{draft::*, model::*};
 use hardpoint_file::{Diagnostic, ModelFile};
 use hardpoint_report::course::Course;
 use hardpoint_report::diagnose;
-use hardpoint_report::facts::{Facts, outline};
+use hardpoint_report::facts::outline;
 use hardpoint_report::page::Table;
 use hardpoint_report::payload::payload;
 use hardpoint_report::summary::Summary;
@@ -35,8 +35,7 @@ fn file(draft: &Draft) -> ModelFile {
 fn solved(file: &ModelFile) -> (Solution, Summary) {
     let analysis = Analysis::new(&file.model).unwrap();
     let solution = analysis.run();
-    let facts = Facts::new(file, analysis.topology(), Some(&solution));
-    let summary = Summary::new(file, analysis.topology(), facts, &Course::of(&file.model, &solution));
+    let summary = Summary::new(file, analysis.topology(), &Course::of(&file.model, &solution));
     let page = payload(file, &analysis, &Course::of(&file.model, &solution), &[], &summary);
     assert_eq!(page.margin.is_some(), summary.margin.is_some());
     (solution, summary)

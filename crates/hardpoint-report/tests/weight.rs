@@ -8,7 +8,6 @@ use hardpoint::study::{Difference, Scheme, finite_differences};
 use hardpoint::{Analysis, Solution};
 use hardpoint_file::ModelFile;
 use hardpoint_report::course::Course;
-use hardpoint_report::facts::Facts;
 use hardpoint_report::page::{Payload, html};
 use hardpoint_report::payload::payload;
 use hardpoint_report::summary::Summary;
@@ -19,8 +18,7 @@ fn page(file: &ModelFile, compared: bool) -> Payload {
     let solution = analysis.run();
     assert!(solution.stop.is_none(), "{:?}", solution.stop);
     let course = Course::of(&file.model, &solution);
-    let facts = Facts::new(file, analysis.topology(), Some(&solution));
-    let summary = Summary::new(file, analysis.topology(), facts, &course);
+    let summary = Summary::new(file, analysis.topology(), &course);
     let differences = if compared { differences(file, &analysis, &solution) } else { Vec::new() };
     payload(file, &analysis, &course, &differences, &summary)
 }

@@ -1,4 +1,5 @@
 import type { Object3D, Vector3 } from 'three'
+import type { Choice } from '../state'
 import type { Kit } from './kit'
 import type { Mechanism } from './mechanism'
 
@@ -38,8 +39,8 @@ export interface Frame {
   visible(body: number): boolean
 }
 
-/** How a kind of thing is drawn. */
-export type Draw = (mechanism: Mechanism, kit: Kit) => Drawn[]
+/** How a kind of thing is drawn; what is chosen matters to marks only. */
+export type Draw = (mechanism: Mechanism, kit: Kit, choice: Choice) => Drawn[]
 
 /** Whether two are the same thing, drawn of several objects. */
 export function samePart(a: Part | undefined, b: Part | undefined): boolean {

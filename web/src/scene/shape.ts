@@ -1,0 +1,123 @@
+import { Vector3 } from 'three'
+import type { Curve } from '../curve'
+import type { Arrow, BodyPlace, JointMark } from '../payload'
+import type { Design, Report } from '../report'
+import type { State } from '../state'
+import { Mechanism } from './mechanism'
+import { poseAt, shifted } from './poses'
+
+type Place = [number, number, number]
+type Move = (body: number, at: Place) => Place
+
+/** How far places may be apart, as a part of the size, to be the same hardpoint. */
+const SAME = 1e-6
+
+/**
+ * The design drawn solid: as loaded, as the changes of variables make it to first order, or another exact design
+ * that the report brings. Its `former` is the design drawn dashed, where there is one.
+ */
+export function present(today: Mechanism, state: State): Mechanism {
+  const { report, size } = today
+  const known = (design?: Design) => (design && design.poses.length === report.bodies.length ? design : undefined)
+  const exact = known(state.present)
+  const other = known(state.former)
+  const former = other ? new Mechanism(solved(report, other, size), today) : today
+  if (exact) return new Mechanism(solved(report, exact, size), today, former)
+  if (state.changed) return new Mechanism(foreseen(report, state.changes, size), today, former)
+  return other ? new Mechanism(report, today, former) : today
+}
+
+/** A report as changes of its variables make it to first order. */
+export function foreseen(report: Report, changes: number[], size: number): Report {
+  const changed = report.variables.filter(({ index }) => changes[index])
+  const poses = report.bodies.map((body, b) => {
+    const shifts = sum(changed.map((variable) => ({ curve: variable.shifts[b], by: changes[variable.index] })))
+    return shifts ? moved(body.poses, shifts, 1) : body.poses
+  })
+  const arrowsAt = (body: number, at: Place): { arrow: Arrow; by: number }[] =>
+    changed.flatMap(({ index, arrows }) =>
+      arrows.filter((arrow) => arrow.body === body && apart(arrow.at, at) <= SAME * size).slice(0, 1).map((arrow) => ({ arrow, by: changes[index] })),
+    )
+  const move: Move = (body, at) => arrowsAt(body, at).reduce((place, { arrow, by }) => added(place, arrow.v, by), at)
+  const turn = (body: number, at: Place, axis: Place): Place => {
+    const unit = new Vector3(...axis)
+    const turned = unit.clone()
+    for (const { arrow, by } of arrowsAt(body, at)) turned.addScaledVector(new Vector3(...arrow.turn).cross(unit), by)
+    return turned.normalize().toArray()
+  }
+  const redrawn = redraw(report, poses, move)
+  const joints = redrawn.joints.map((joint, k) => {
+    const { body_i, body_j, at_i, at_j } = report.joints[k]
+    const { axis, axis_j, hinge } = joint
+    return {
+      ...joint,
+      axis: axis && !hinge ? turn(body_i, at_i, axis) : axis,
+      axis_j: axis_j ? turn(body_j, at_j, axis_j) : axis_j,
+    }
+  })
+  return { ...redrawn, joints }
+}
+
+/** Shifts of several variables together, to first order; none where there are none. */
+function sum(items: { curve: Curve | undefined; by: number }[]): Curve | undefined {
+  let total: Curve | undefined
+  for (const { curve, by } of items) {
+    if (!curve || curve.length === 0) continue
+    total ??= new Float32Array(curve.length)
+    for (let k = 0; k < curve.length; k++) total[k] += by * curve[k]
+  }
+  return total
+}
+
+/** A report as a re-solved design has it. */
+export function solved(report: Report, design: Design, size: number): Report {
+  const move: Move = (body, at) => {
+    const k = report.bodies[body].skeleton.findIndex((point) => apart(point, at) <= SAME * size)
+    return design.skeletons[body]?.[k] ?? at
+  }
+  return redraw(report, design.poses, move)
+}
+
+function redraw(report: Report, poses: Curve[], move: Move): Report {
+  const place = ({ body, at }: BodyPlace): BodyPlace => ({ body, at: move(body, at) })
+  return {
+    ...report,
+    bodies: report.bodies.map((body, b) => ({ ...body, poses: poses[b], skeleton: body.skeleton.map((point) => move(b, point)) })),
+    joints: report.joints.map((joint) => ({ ...joint, at_j: move(joint.body_j, joint.at_j), ...onBodyI(joint, move) })),
+    wheels: report.wheels.map((wheel) => ({
+      ...wheel,
+      centre: place(wheel.centre),
+      kingpin: wheel.kingpin && [place(wheel.kingpin[0]), place(wheel.kingpin[1])],
+    })),
+    distances: report.distances.map((distance) => ({ ...distance, from: place(distance.from), to: place(distance.to) })),
+    drivers: report.drivers.map((driver) => ({ ...driver, point: driver.point && place(driver.point) })),
+  }
+}
+
+/** Place and axis on body i; of a hinge given by two hardpoints the place keeps its share of the way between them. */
+function onBodyI({ body_i, at_i, axis, hinge }: JointMark, move: Move): Pick<JointMark, 'at_i' | 'axis' | 'hinge'> {
+  if (!hinge) return { at_i: move(body_i, at_i), axis, hinge }
+  const [a, b] = hinge
+  const [c, d] = [move(body_i, a), move(body_i, b)]
+  const [before, after] = [minus(b, a), minus(d, c)]
+  const length = before.lengthSq()
+  if (length === 0 || after.lengthSq() === 0 || !axis) return { at_i: move(body_i, at_i), axis, hinge: [c, d] }
+  const share = minus(at_i, a).dot(before) / length
+  const sense = Math.sign(before.dot(new Vector3(...axis))) || 1
+  return { at_i: added(c, after.toArray(), share), axis: after.normalize().multiplyScalar(sense).toArray(), hinge: [c, d] }
+}
+
+function moved(poses: Curve, shifts: Curve, change: number): Curve {
+  const out = Float32Array.from(poses)
+  for (let step = 0; step * 7 < poses.length; step++) {
+    const pose = poseAt(poses, step)
+    if (!pose) continue
+    const { place, turn } = shifted(pose, shifts, step, change)
+    out.set([place.x, place.y, place.z, turn.w, turn.x, turn.y, turn.z], step * 7)
+  }
+  return out
+}
+
+const apart = (a: Place, b: Place) => Math.hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2])
+const minus = (a: Place, b: Place) => new Vector3(a[0] - b[0], a[1] - b[1], a[2] - b[2])
+const added = (a: Place, v: Place, share: number): Place => [a[0] + share * v[0], a[1] + share * v[1], a[2] + share * v[2]]
