@@ -1,26 +1,30 @@
 /** One number per step; NaN where there is none. */
 export type Curve = Float32Array
 
-/** Decodes base64 of little-endian f32; a browser's own order is little-endian too. */
-export function decode(base64: string): Curve {
-  const text = atob(base64)
-  // A plain loop: a large report holds ten thousand curves, and Uint8Array.from is ten times slower.
-  const bytes = new Uint8Array(text.length)
-  for (let k = 0; k < text.length; k++) bytes[k] = text.charCodeAt(k)
-  return new Float32Array(bytes.buffer)
+/** The value that is largest in magnitude, 0 for a curve without any value. */
+export function extreme(curve: Curve): number {
+  let largest = 0
+  for (const value of curve) if (Math.abs(value) > Math.abs(largest)) largest = value
+  return largest
 }
 
 /** Largest magnitude over time, 0 for a curve without any value. */
 export function peak(curve: Curve): number {
-  let largest = 0
-  for (const value of curve) if (Math.abs(value) > largest) largest = Math.abs(value)
-  return largest
+  return Math.abs(extreme(curve))
 }
 
 /** Every `stride`-th value, the rest left out, so that marks do not hide the line they are compared with. */
 export function thinned(curve: Curve, marks: number): (number | null)[] {
   const stride = Math.max(1, Math.round(curve.length / marks))
   return Array.from(curve, (value, k) => (k % stride === 0 && !Number.isNaN(value) ? value : null))
+}
+
+/** Values of every `stride`-th step in their places, gaps between; nothing for a curve without values. */
+export function spread(curve: Curve, stride: number, steps: number): Curve {
+  if (curve.length === 0) return curve
+  const whole = new Float32Array(steps).fill(NaN)
+  curve.forEach((value, k) => (whole[k * stride] = value))
+  return whole
 }
 
 /** As uPlot wants it: null is a gap. */

@@ -1,16 +1,17 @@
 import './style.css'
 import { checks, header } from './document'
 import { el } from './dom'
-import { heatMap, rankingTable } from './influence'
-import type { Payload } from './payload'
+import { heatMap } from './influence/heatmap'
+import { rankingTable } from './influence/table'
 import { plots } from './plots'
 import { read } from './report'
 import { stage } from './stage'
 import { State } from './state'
+import { unpack } from './unpack'
 import { variables } from './variables'
 
-const payload: Payload = JSON.parse(document.getElementById('payload')!.textContent!)
-const state = new State(read(payload))
+const { payload, decode } = await unpack(document.getElementById('payload')!.textContent!)
+const state = new State(read(payload, decode))
 const { report } = state
 const hasQuantities = report.quantities.length > 0
 const hasVariables = report.variables.length > 0
@@ -22,3 +23,6 @@ document.getElementById('page')!.append(
   ...(hasQuantities && hasVariables ? [el('div', { class: 'influence' }, rankingTable(state), heatMap(state))] : []),
   checks(report.checks),
 )
+
+// The frame after the next one shows what the views have drawn in the next.
+requestAnimationFrame(() => requestAnimationFrame(() => performance.mark('ready')))

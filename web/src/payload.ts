@@ -1,18 +1,19 @@
 // Written by the tests of `crates/hardpoint-report/src/page.rs`; change the structs there.
 
 /**
- * One number per output step, stored as `f32`; NaN means "no value at this step" and is drawn as a gap.
+ * One number per output step, kept as `f32`; NaN means "no value at this step" and is drawn as a gap.
  *
- * Serialised as base64 of little-endian `f32`: a third of the size of decimal text, and the page
- * shows no more digits than that.
+ * In the page it is a list of tracks of the packed block, whose values follow each other in turn: see [`crate::encoding`].
+ * It cannot be serialised before it is packed.
  *
  * ```
  * use hardpoint_report::page::Curve;
  * let curve = Curve::from(&[1.0, -2.0][..]);
- * assert_eq!(serde_json::to_string(&curve).unwrap(), r#""AACAPwAAAMA=""#);
+ * assert_eq!(curve.values(), [1.0, -2.0]);
+ * assert!(serde_json::to_string(&curve).is_err());
  * ```
  */
-export type Curve = string;
+export type Curve = Array<number>;
 
 /**
  * Everything one report shows. Lengths, angles and times are in [`Payload::units`].
@@ -687,7 +688,11 @@ fd: FiniteDifference | null, };
  */
 export type FiniteDifference = {
 /**
- * Difference quotient of the quantity, `n` steps.
+ * The curves hold every so many of the `n` steps, from the first: they are drawn as a few marks.
+ */
+stride: number,
+/**
+ * Difference quotient of the quantity.
  */
 value: Curve,
 /**

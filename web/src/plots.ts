@@ -1,4 +1,4 @@
-import { atFixedAbscissa, slope, thinned, type Curve } from './curve'
+import { atFixedAbscissa, slope, withGaps, type Curve } from './curve'
 import { el, hue, HUES, css, onSchemeChange } from './dom'
 import { figure, number, pretty } from './format'
 import { Plot, type Content, type Line } from './plot'
@@ -7,7 +7,6 @@ import type { State } from './state'
 
 /** How many sensitivities are drawn before the reader asks for all: one per colour. */
 const FEW = HUES
-const MARKS = 36
 
 /** The quantity, its sensitivities side by side, and the selected one against finite differences. */
 export function plots(state: State): HTMLElement {
@@ -162,7 +161,7 @@ function checkContent(state: State): Content {
   const title = derivativeName(quantity, order, variable)
   const sensitivity = variable.sensitivities.get(quantity.index)
   const unit = derivativeUnit(quantity, order, variable)
-  if (!sensitivity) return { title, unit, lines: [], message: variable.note || `There is no ${title}.` }
+  if (!sensitivity?.curves[order].length) return { title, unit, lines: [], message: variable.note || `There is no ${title}.` }
   const seen = shift(state)
   if (quantity.curves[order].length === 0) return { title, unit, lines: [], message: unknown(orderedName(quantity, order)) }
   if (typeof seen === 'string') return { title, unit, lines: [], message: seen }
@@ -171,7 +170,7 @@ function checkContent(state: State): Content {
   const { differences } = sensitivity
   if (!differences) return { title, unit, lines, caption: 'Not compared with finite differences in this run.' }
   const curve = seen(differences.curves[order], variable.index, true)
-  lines.push({ label: 'finite difference', color: css('--ink'), curve, marks: thinned(curve, MARKS) })
+  lines.push({ label: 'finite difference', color: css('--ink'), curve, marks: withGaps(curve) })
   const caption =
     `Designs re-solved ±${figure(Number(differences.step.toPrecision(2)), differences.unit)} away; ` +
     `largest relative disagreement ${number(differences.worst[order], 2)}.`

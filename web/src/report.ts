@@ -1,6 +1,7 @@
-import { type Curve, decode, peak } from './curve'
+import { type Curve, extreme, spread } from './curve'
 import { per } from './format'
 import type * as wire from './payload'
+import type { Decode } from './unpack'
 
 /** 0 the quantity itself, 1 its velocity, 2 its acceleration. */
 export type Order = 0 | 1 | 2
@@ -9,9 +10,22 @@ export const ORDERS = ['value', 'velocity', 'acceleration'] as const
 type ByOrder<T> = readonly [T, T, T]
 type Curves = { value: wire.Curve; rate: wire.Curve; accel: wire.Curve }
 
-export interface Body extends Omit<wire.BodyTrack, 'poses'> {
+export interface Body extends Omit<wire.BodyTrack, 'poses' | 'mesh'> {
   /** 7 numbers per step: x y z, quaternion w x y z. */
   poses: Curve
+  mesh: Mesh | null
+}
+
+/** A triangle mesh in the body's frame: three coordinates per vertex, three vertices per triangle. */
+export interface Mesh {
+  file: string
+  positions: Curve
+  triangles: Curve
+}
+
+export interface Driver extends Omit<wire.DriverMark, 'travel'> {
+  /** The driven coordinate, one number per step. */
+  travel: Curve
 }
 
 export interface Quantity {
@@ -24,6 +38,8 @@ export interface Quantity {
 
 export interface Sensitivity {
   curves: ByOrder<Curve>
+  /** The value that is largest in magnitude over time, with its sign. */
+  extremes: ByOrder<number>
   /** Largest magnitude over time. */
   peaks: ByOrder<number>
   differences?: { curves: ByOrder<Curve>; worst: ByOrder<number>; step: number; unit: string }
@@ -51,56 +67,69 @@ export interface Design extends Omit<wire.Design, 'poses' | 'quantities' | 'marg
 }
 
 /** The payload with its curves decoded. */
-export interface Report extends Omit<wire.Payload, 'times' | 'bodies' | 'quantities' | 'margin' | 'variables' | 'designs'> {
+export interface Report extends Omit<wire.Payload, 'times' | 'bodies' | 'drivers' | 'quantities' | 'margin' | 'variables' | 'designs'> {
   times: Curve
   bodies: Body[]
+  drivers: Driver[]
   quantities: Quantity[]
   margin?: Margin
   variables: Variable[]
   designs: Design[]
 }
 
-export function read(payload: wire.Payload): Report {
+export function read(payload: wire.Payload, decode: Decode): Report {
+  const steps = decode(payload.times).length
   return {
     ...payload,
     times: decode(payload.times),
-    bodies: payload.bodies.map((body) => ({ ...body, poses: decode(body.poses) })),
+    bodies: payload.bodies.map((body) => ({ ...body, poses: decode(body.poses), mesh: mesh(body.mesh, decode) })),
+    drivers: payload.drivers.map((driver) => ({ ...driver, travel: decode(driver.travel) })),
     quantities: payload.quantities.map((quantity, index) => ({
       index,
       name: quantity.name,
       group: quantity.group,
       units: [quantity.unit, quantity.rate_unit, quantity.accel_unit],
-      curves: curves(quantity),
+      curves: curves(quantity, decode),
     })),
     margin: payload.margin ? { curve: decode(payload.margin.value), note: payload.margin.note } : undefined,
     variables: payload.variables.map((variable, index) => ({
       ...variable,
       index,
       shifts: variable.shifts.map(decode),
-      sensitivities: new Map(variable.sensitivities.map((item) => [item.quantity, sensitivity(item)])),
+      sensitivities: new Map(variable.sensitivities.map((item) => [item.quantity, sensitivity(item, steps, decode)])),
     })),
     designs: payload.designs.map((design) => ({
       ...design,
       poses: design.poses.map(decode),
-      quantities: design.quantities.map((item) => (item ? curves(item) : undefined)),
+      quantities: design.quantities.map((item) => (item ? curves(item, decode) : undefined)),
       margin: design.margin ? decode(design.margin) : undefined,
     })),
   }
 }
 
-function curves(item: Curves): ByOrder<Curve> {
+function mesh(item: wire.Mesh | null, decode: Decode): Mesh | null {
+  return item && { file: item.file, positions: decode(item.positions), triangles: decode(item.triangles) }
+}
+
+function curves(item: Curves, decode: Decode): ByOrder<Curve> {
   return [decode(item.value), decode(item.rate), decode(item.accel)]
 }
 
-function sensitivity(item: wire.Sensitivity): Sensitivity {
-  const analytic = curves(item)
+function sensitivity(item: wire.Sensitivity, steps: number, decode: Decode): Sensitivity {
+  const analytic = curves(item, decode)
+  const [value, rate, accel] = analytic.map(extreme)
   return {
     curves: analytic,
-    peaks: [peak(analytic[0]), peak(analytic[1]), peak(analytic[2])],
-    differences: item.fd
-      ? { curves: curves(item.fd), worst: item.fd.worst, step: item.fd.step, unit: item.fd.step_unit }
-      : undefined,
+    extremes: [value, rate, accel],
+    peaks: [Math.abs(value), Math.abs(rate), Math.abs(accel)],
+    differences: item.fd ? differences(item.fd, steps, decode) : undefined,
   }
+}
+
+/** The differences at their own steps, gaps between. */
+function differences(fd: wire.FiniteDifference, steps: number, decode: Decode): Sensitivity['differences'] {
+  const [value, rate, accel] = curves(fd, decode).map((curve) => spread(curve, fd.stride, steps))
+  return { curves: [value, rate, accel], worst: fd.worst, step: fd.step, unit: fd.step_unit }
 }
 
 /** `toe`, `toe velocity`. */
@@ -133,7 +162,8 @@ export function ranking(report: Report, quantity: Quantity, order: Order): Map<s
   const byUnit = new Map<string, Ranked[]>()
   for (const variable of report.variables) {
     const sensitivity = variable.sensitivities.get(quantity.index)
-    if (!sensitivity) continue
+    // Of body origins, velocities and accelerations may be left out.
+    if (!sensitivity || sensitivity.curves[order].length === 0) continue
     const peers = byUnit.get(variable.unit) ?? []
     byUnit.set(variable.unit, peers)
     peers.push({ variable, sensitivity, peak: sensitivity.peaks[order], share: 0 })

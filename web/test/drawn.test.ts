@@ -11,8 +11,8 @@ import { paletteOf, schemes } from './schemes'
 const { models } = inject('samples')
 
 /** Everything that is drawn of a model as it opens. */
-function drawing(address: string): { mechanism: Mechanism; drawn: Drawn[] } {
-  const report = reportOf(address)
+async function drawing(address: string): Promise<{ mechanism: Mechanism; drawn: Drawn[] }> {
+  const report = await reportOf(address)
   const mechanism = new Mechanism(report)
   const kit = new Kit(mechanism, paletteOf(schemes.light))
   return { mechanism, drawn: DRAWS.flatMap((draw) => draw(mechanism, kit, new State(report).choice)) }
@@ -30,8 +30,8 @@ function vertices(object: Object3D): Vector3[] {
   return found
 }
 
-describe.each(Object.entries(models))('of %s', (_, address) => {
-  const { mechanism, drawn } = drawing(address)
+describe.each(Object.entries(models))('of %s', async (_, address) => {
+  const { mechanism, drawn } = await drawing(address)
   const { report } = mechanism
   const count = (kind: Part['kind'], index: number) => drawn.filter(({ part }) => part.kind === kind && part.index === index).length
 
@@ -93,7 +93,7 @@ const PLANAR = [
   'three_rrr', 'watt_six_bar',
 ]
 
-test('planar models are known to be planar, and no others', () => {
-  const planar = Object.entries(models).filter(([, address]) => new Mechanism(reportOf(address)).plane)
-  expect(planar.map(([name]) => name)).toEqual(PLANAR)
+test('planar models are known to be planar, and no others', async () => {
+  const reports = await Promise.all(Object.values(models).map(reportOf))
+  expect(Object.keys(models).filter((_, k) => new Mechanism(reports[k]).plane)).toEqual(PLANAR)
 })

@@ -14,7 +14,7 @@ import type { Palette } from '../src/scene/palette'
 import { directions } from '../src/scene/triad'
 import { arcOf, atLeast } from '../src/scene/travel'
 import type { Choice } from '../src/state'
-import { crank, encoded } from './mechanisms'
+import { crank } from './mechanisms'
 
 const PALETTE: Palette = {
   ...{ view: '#f6f7f9', outline: '#2a323a', label: '#1c2126', bodies: Array(6).fill('#6c7fb8'), steel: '#f4f6f8', rod: '#8b96a1' },
@@ -97,7 +97,7 @@ describe('a mesh', () => {
   })
 
   test('is drawn in place of our shape, changed with the design', () => {
-    const mesh = { file: 'crank.stl', positions: encoded(Float32Array.from([0, 0, 0, 200, 0, 0, 0, 50, 0])), triangles: encoded(Float32Array.from([0, 1, 2])) }
+    const mesh = { file: 'crank.stl', positions: Float32Array.from([0, 0, 0, 200, 0, 0, 0, 50, 0]), triangles: Float32Array.from([0, 1, 2]) }
     const report = crank()
     const bodies = report.bodies.map((body, k) => (k === 1 ? { ...body, mesh } : body))
     const today = new Mechanism({ ...report, bodies })
@@ -134,7 +134,7 @@ describe('travel', () => {
     const report = crank()
     // A quarter turn only.
     const travel = Float32Array.from([0, Math.PI / 2, NaN, NaN, NaN])
-    const mechanism = new Mechanism({ ...report, drivers: report.drivers.map((driver) => ({ ...driver, travel: encoded(travel) })) })
+    const mechanism = new Mechanism({ ...report, drivers: report.drivers.map((driver) => ({ ...driver, travel })) })
     const [arrow] = drawn(mechanism)
     const { min, max } = boxOf(mechanism, arrow)
     const s = mechanism.unit
@@ -148,14 +148,14 @@ describe('travel', () => {
 
   test('of nothing solved is not drawn', () => {
     const report = crank()
-    const nothing = encoded(new Float32Array(5).fill(NaN))
+    const nothing = new Float32Array(5).fill(NaN)
     expect(drawn(new Mechanism({ ...report, drivers: report.drivers.map((driver) => ({ ...driver, travel: nothing })) }))).toEqual([])
   })
 
   test('of a point goes along its line', () => {
     const report = crank()
     const travel = Float32Array.from([0, 200, 0, -200, 0])
-    const point = { ...report.drivers[0], joint: null, turns: false, point: { body: 1, at: [200, 0, 0] as [number, number, number] }, along: [0, 1, 0] as [number, number, number], travel: encoded(travel) }
+    const point = { ...report.drivers[0], joint: null, turns: false, point: { body: 1, at: [200, 0, 0] as [number, number, number] }, along: [0, 1, 0] as [number, number, number], travel }
     const mechanism = new Mechanism({ ...report, drivers: [point] })
     const [arrow] = drawn(mechanism)
     for (const step of [0, 1]) {

@@ -27,22 +27,18 @@ export function crank(changes: Partial<Report> = {}): Report {
     ],
     joints: [{ name: 'hinge', ...hinge, axis2: null, hinge: null, lead: null, curve: null, draw: null, cut: false } as Report['joints'][number]],
     couplers: [],
-    drivers: [{ name: 'motor', law: 'one turn', joint: 0, turns: true, point: null, along: null, travel: encoded(travel) }],
+    drivers: [{ name: 'motor', law: 'one turn', joint: 0, turns: true, point: null, along: null, travel }],
     wheels: [],
     distances: [],
     vehicle: null,
     quantities: [],
     values: [],
     first: null,
+    over: null,
     designs: [],
     margin: undefined,
     variables: [],
     checks: [],
     ...changes,
   }
-}
-
-/** As the payload holds a curve. */
-export function encoded(curve: Float32Array): string {
-  return btoa(String.fromCharCode(...new Uint8Array(curve.buffer)))
 }

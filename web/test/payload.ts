@@ -1,11 +1,12 @@
 import { readFileSync } from 'node:fs'
-import type { Payload } from '../src/payload'
 import { read, type Report } from '../src/report'
+import { unpack } from '../src/unpack'
 
 /** What a page is about, as the page itself reads it. */
-export function reportOf(address: string): Report {
+export async function reportOf(address: string): Promise<Report> {
   const html = readFileSync(new URL(address), 'utf8')
   const [, text] = html.match(/<script[^>]*id="payload"[^>]*>([^]*?)<\/script>/) ?? []
   if (text === undefined) throw new Error(`${address} holds no payload`)
-  return read(JSON.parse(text) as Payload)
+  const { payload, decode } = await unpack(text)
+  return read(payload, decode)
 }

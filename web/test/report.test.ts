@@ -1,8 +1,10 @@
 import { expect, test } from 'vitest'
-import type { Payload, Variable } from '../src/payload'
+import type { Curve, Payload, Variable } from '../src/payload'
 import { derivativeName, derivativeUnit, groups, ranking, read } from '../src/report'
 
-const encode = (...values: number[]) => Buffer.from(Float32Array.from(values).buffer).toString('base64')
+const stored: Float32Array[] = []
+const encode = (...values: number[]) => [stored.push(Float32Array.from(values)) - 1]
+const decode = (curve: Curve) => (curve.length > 0 ? stored[curve[0]] : new Float32Array())
 const curves = (scale: number) => ({ value: encode(scale, -2 * scale), rate: encode(0, 0), accel: encode(0, scale) })
 
 const variable = (name: string, unit: string, scale?: number): Variable => ({
@@ -42,12 +44,13 @@ const payload: Payload = {
   quantities: [quantity('hub.x', 'point'), quantity('toe', 'measure')],
   values: [],
   first: null,
+  over: null,
   designs: [],
   margin: { value: encode(0.5, 0.25), note: '' },
   variables: [variable('small', 'mm', 1), variable('tilt', 'deg', 5), variable('large', 'mm', -4), variable('stuck', 'mm')],
   checks: [],
 }
-const report = read(payload)
+const report = read(payload, decode)
 const [hub] = report.quantities
 
 test('variables are ranked by their largest magnitude within one unit', () => {
@@ -74,5 +77,5 @@ test('derivatives are named and measured by what they divide', () => {
 
 test('the margin is decoded, and may be missing', () => {
   expect([...report.margin!.curve]).toEqual([0.5, 0.25])
-  expect(read({ ...payload, margin: null }).margin).toBeUndefined()
+  expect(read({ ...payload, margin: null }, decode).margin).toBeUndefined()
 })

@@ -77,8 +77,15 @@ fn sensitivity(times: &[f64], quantity: usize, formula: Formula, variable: usize
     let [value, rate, accel] = curves(times, exact);
     let [fd_value, fd_rate, fd_accel] = curves(times, difference);
     let step_unit = if variable == 2 { "deg" } else { "mm" }.into();
-    let fd =
-        FiniteDifference { value: fd_value, rate: fd_rate, accel: fd_accel, step: FD_STEP, step_unit, worst };
+    let fd = FiniteDifference {
+        stride: 1,
+        value: fd_value,
+        rate: fd_rate,
+        accel: fd_accel,
+        step: FD_STEP,
+        step_unit,
+        worst,
+    };
     Sensitivity { quantity, value, rate, accel, fd: Some(fd) }
 }
 

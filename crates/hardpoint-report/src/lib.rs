@@ -13,7 +13,7 @@
 //! | [`whatif`] | `whatif.json`, `.csv` and `.html`: a changed design, foreseen and exact |
 //! | [`columns`] | what stands in which column of the files of results |
 //! | [`csv`], [`npy`] | `motion`, `sensitivity` and `jerk` as text, or as arrays |
-//! | [`payload`], [`page`] | `report.html` |
+//! | [`payload`], [`page`], [`encoding`] | `report.html` |
 //! | [`diagnose`] | why a run is impossible or ended early, as diagnostics of the model file |
 //! | [`figures`] | numbers and units as text |
 
@@ -22,6 +22,7 @@ pub mod columns;
 pub mod course;
 pub mod csv;
 pub mod diagnose;
+pub mod encoding;
 pub mod facts;
 pub mod figures;
 pub mod margin;

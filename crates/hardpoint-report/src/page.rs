@@ -5,25 +5,42 @@
 //! The page itself is TypeScript under `web/`; its built bundle is kept in this crate's `page/` folder, so
 //! building the crate needs no JavaScript tools. `web/src/payload.ts` is written by a test in this file.
 
-use base64::{Engine, prelude::BASE64_STANDARD};
-use serde::{Serialize, Serializer};
+use serde::{Serialize, Serializer, ser::Error as _};
+
+use crate::encoding::{base64, packed};
 
 #[cfg(test)]
 use ts_rs::TS;
 
-/// One number per output step, stored as `f32`; NaN means "no value at this step" and is drawn as a gap.
+/// One number per output step, kept as `f32`; NaN means "no value at this step" and is drawn as a gap.
 ///
-/// Serialised as base64 of little-endian `f32`: a third of the size of decimal text, and the page
-/// shows no more digits than that.
+/// In the page it is a list of tracks of the packed block, whose values follow each other in turn: see [`crate::encoding`].
+/// It cannot be serialised before it is packed.
 ///
 /// ```
 /// use hardpoint_report::page::Curve;
 /// let curve = Curve::from(&[1.0, -2.0][..]);
-/// assert_eq!(serde_json::to_string(&curve).unwrap(), r#""AACAPwAAAMA=""#);
+/// assert_eq!(curve.values(), [1.0, -2.0]);
+/// assert!(serde_json::to_string(&curve).is_err());
 /// ```
 #[derive(Clone, Debug, Default, PartialEq)]
-#[cfg_attr(test, derive(TS), ts(type = "string"))]
-pub struct Curve(Vec<f32>);
+#[cfg_attr(test, derive(TS), ts(type = "Array<number>"))]
+pub struct Curve {
+    values: Vec<f32>,
+    tracks: Vec<u32>,
+}
+
+impl Curve {
+    /// Its values.
+    pub fn values(&self) -> &[f32] {
+        &self.values
+    }
+
+    /// The same values as tracks of a packed block.
+    pub(crate) fn in_tracks(self, tracks: Vec<u32>) -> Self {
+        Self { tracks, ..self }
+    }
+}
 
 impl Curve {
     /// Its numbers.
@@ -40,14 +57,16 @@ impl From<&[f64]> for Curve {
 
 impl FromIterator<f64> for Curve {
     fn from_iter<I: IntoIterator<Item = f64>>(values: I) -> Self {
-        Self(values.into_iter().map(|value| value as f32).collect())
+        Self { values: values.into_iter().map(|value| value as f32).collect(), tracks: Vec::new() }
     }
 }
 
 impl Serialize for Curve {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        let bytes: Vec<u8> = self.0.iter().flat_map(|value| value.to_le_bytes()).collect();
-        serializer.serialize_str(&BASE64_STANDARD.encode(bytes))
+        if self.tracks.is_empty() && !self.values.is_empty() {
+            return Err(S::Error::custom("a curve of the page was not packed"));
+        }
+        self.tracks.serialize(serializer)
     }
 }
 
@@ -504,7 +523,9 @@ pub struct Sensitivity {
 #[derive(Clone, Debug, Serialize)]
 #[cfg_attr(test, derive(TS))]
 pub struct FiniteDifference {
-    /// Difference quotient of the quantity, `n` steps.
+    /// The curves hold every so many of the `n` steps, from the first: they are drawn as a few marks.
+    pub stride: usize,
+    /// Difference quotient of the quantity.
     pub value: Curve,
     /// Difference quotient of its first time derivative.
     pub rate: Curve,
@@ -547,15 +568,12 @@ impl Table {
 /// # Errors
 /// When the payload does not serialise, which plain numbers and strings never do.
 pub fn html(payload: &Payload) -> Result<String, serde_json::Error> {
-    // An HTML parser ends a script element at the first `</script`, wherever it stands; in JSON and in
-    // JavaScript strings the escaped forms mean the same.
-    let data = serde_json::to_string(payload)?.replace('<', "\\u003c");
-    let code = include_str!("../page/app.js").replace("</script", "<\\/script");
+    let data = base64(&packed(payload)?);
     Ok(fill(include_str!("../page/report.html"), |slot| match slot {
         "title" => escape_text(&payload.title),
         "style" => include_str!("../page/app.css").to_owned(),
         "payload" => data.clone(),
-        "code" => code.clone(),
+        "code" => include_str!(concat!(env!("OUT_DIR"), "/app.js.txt")).to_owned(),
         _ => panic!("the report template names an unknown slot `{slot}`"),
     }))
 }
@@ -578,11 +596,11 @@ pub(crate) fn escape_text(text: &str) -> String {
 }
 
 #[cfg(test)]
-mod tests {
+pub(crate) mod tests {
     use super::*;
     use std::{fs, path::Path};
 
-    fn payload(title: &str) -> Payload {
+    pub(crate) fn payload(title: &str) -> Payload {
         Payload {
             title: title.into(),
             description: String::new(),
@@ -612,26 +630,21 @@ mod tests {
     }
 
     #[test]
-    fn curve_is_little_endian_f32_and_keeps_gaps() {
-        let text = serde_json::to_value(Curve::from(&[0.5, f64::NAN][..])).unwrap();
-        let bytes = BASE64_STANDARD.decode(text.as_str().unwrap()).unwrap();
-        assert_eq!(bytes[..4], 0.5_f32.to_le_bytes());
-        assert!(f32::from_le_bytes(bytes[4..].try_into().unwrap()).is_nan());
-    }
-
-    #[test]
     fn text_of_the_model_cannot_end_the_script_or_name_a_slot() {
         let page = html(&payload("</script><b>{{code}}")).unwrap();
         assert!(page.contains("<title>&lt;/script&gt;&lt;b&gt;{{code}}</title>"));
-        assert!(page.contains(r#""title":"\u003c/script>\u003cb>{{code}}""#));
-        assert_eq!(page.matches("</script").count(), 2, "one end for the payload, one for the code");
+        assert!(!page.contains("<b>"));
+        assert_eq!(page.matches("</script").count(), 3, "ends of the payload, the code and what starts it");
     }
 
     #[test]
     fn page_asks_the_network_for_nothing() {
         let page = html(&payload("sample")).unwrap();
-        let markup = &page[..page.find("<style>").unwrap()];
-        assert!(!markup.contains("src=") && !markup.contains("href="));
+        let (head, rest) = page.split_once("<style>").unwrap();
+        let (_, body) = rest.split_once("</style>").unwrap();
+        for markup in [head, body] {
+            assert!(!markup.contains("src=") && !markup.contains("href=") && !markup.contains("import("));
+        }
         assert!(!include_str!("../page/app.css").contains("url("));
         assert!(!include_str!("../page/app.js").contains("import("));
     }

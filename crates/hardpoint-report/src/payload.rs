@@ -2,8 +2,8 @@
 //!
 //! All measures and named points, and the origins of all bodies, are offered as quantities with their
 //! sensitivities; each is compared with central differences of re-solved designs where the caller has them.
-//! A long motion is thinned and, where that is not enough, the bodies lose their sensitivities, so that the
-//! page stays small enough to open at once: the CSV files hold everything.
+//! Where that is too much for a page that opens at once, the bodies lose their comparison, the motion is thinned, and at last the
+//! bodies lose their sensitivities: the CSV files hold everything.
 
 mod designs;
 mod drawing;
@@ -21,6 +21,7 @@ use hardpoint::{Analysis, Solution};
 use hardpoint_file::{Drawing, ModelFile, Units};
 
 use crate::course::{Course, RoundOff};
+use crate::encoding::packed_size;
 use crate::facts::{Answer, Facts};
 use crate::figures::{error, number, order_unit, rounded, seconds, symbol};
 use crate::metric::MetricFact;
@@ -33,10 +34,12 @@ use crate::validity::ValidityFact;
 
 /// The page shows at most about this many output times.
 const MOST_STEPS: usize = 1000;
-/// All curves together take at most about this many bytes of the page.
-const MOST_BYTES: usize = 4 << 20;
-/// A value of a curve in the page: 4 bytes in base64.
-const BYTES_PER_VALUE: f64 = 16.0 / 3.0;
+/// Everything but the page's code takes at most this many bytes of it.
+const MOST_BYTES: usize = 8 << 20;
+/// A value of a smooth curve takes between so many bytes of the page; measured where that leaves it open whether all fits.
+const BYTES_PER_VALUE: [f64; 2] = [0.2, 3.0];
+/// Differences are drawn as so many marks beside the curve that they are compared with.
+const MARKS: usize = 36;
 const AXES: [&str; 3] = ["x", "y", "z"];
 
 /// Everything that the page shows of a run. `differences[b]` are those of variable b, where there are any.
@@ -59,7 +62,7 @@ pub fn payload_beside(
     summary: &Summary,
     changed: Option<&WhatIf>,
 ) -> Payload {
-    let (model, units, solution) = (&file.model, file.units, &course.kept);
+    let (model, solution) = (&file.model, &course.kept);
     let size = Size {
         steps: solution.motion.len(),
         bodies: model.bodies.len() - 1,
@@ -68,7 +71,33 @@ pub fn payload_beside(
         compared: differences.iter().any(Option::is_some),
         designs: changed.map_or(0, |_| designs::MOST),
     };
-    let detail = Detail::that_fits(size, course.has_bodies());
+    let compose = |detail: Detail| composed(file, analysis, course, differences, summary, changed, detail);
+    let levels = Detail::levels(size, course.has_bodies());
+    let (last, levels) = levels.split_last().expect("there is always a least level");
+    for level in levels {
+        let [least, most] = BYTES_PER_VALUE.map(|bytes| level.values(size) * bytes);
+        if least > MOST_BYTES as f64 {
+            continue;
+        }
+        let payload = compose(*level);
+        if most <= MOST_BYTES as f64 || packed_size(&payload).is_ok_and(|bytes| bytes <= MOST_BYTES) {
+            return payload;
+        }
+    }
+    compose(*last)
+}
+
+/// The page in so much detail.
+fn composed(
+    file: &ModelFile,
+    analysis: &Analysis<'_>,
+    course: &Course,
+    differences: &[Option<Difference>],
+    summary: &Summary,
+    changed: Option<&WhatIf>,
+    detail: Detail,
+) -> Payload {
+    let (model, units, solution) = (&file.model, file.units, &course.kept);
     let steps: Vec<usize> = (0..solution.motion.len()).step_by(detail.stride).collect();
     let compose = Compose {
         model,
@@ -130,9 +159,11 @@ struct Detail {
     stride: usize,
     /// Curves of body origins.
     origins: bool,
-    /// Sensitivities of body origins.
+    /// How bodies move with the variables, and with that the sensitivities of their origins.
     bodies: bool,
-    /// Their comparison with differences.
+    /// Sensitivities of the velocities and accelerations of body origins.
+    body_rates: bool,
+    /// Comparison of the sensitivities of body origins with differences.
     body_differences: bool,
 }
 
@@ -151,40 +182,41 @@ struct Size {
 }
 
 impl Detail {
-    /// All that there is, or as much of it as keeps the page small.
-    fn that_fits(size: Size, bodies: bool) -> Self {
+    /// From all that there is to what is always shown.
+    fn levels(size: Size, bodies: bool) -> Vec<Self> {
         let stride = size.steps.div_ceil(MOST_STEPS).max(1);
-        let all = Self { stride, origins: true, bodies: true, body_differences: true };
-        let exact_bodies = Self { body_differences: false, ..all };
-        let least = Self { bodies: false, ..exact_bodies };
+        let all = Self { stride, origins: true, bodies: true, body_rates: true, body_differences: true };
+        let exact = Self { body_differences: false, ..all };
+        let places = Self { body_rates: false, ..exact };
+        let none = Self { bodies: false, ..places };
         // Fewer steps first, as long as curves stay smooth; then the bodies lose their sensitivities, by which a changed design
         // is drawn; then fewer steps still.
         let coarser = |detail: Self, least: usize| {
             let strides = (stride..).map(move |stride| Self { stride, ..detail });
             strides.take_while(move |d| d.stride == stride || size.steps.div_ceil(d.stride) >= least)
         };
-        let with_bodies = std::iter::once(all).chain(coarser(exact_bodies, MOST_STEPS / 4));
-        let without = || coarser(least, MOST_STEPS / 10);
+        let smooth = MOST_STEPS / 4;
+        let with_bodies = [all].into_iter().chain(coarser(exact, smooth)).chain(coarser(places, smooth));
+        let mut levels: Vec<Self> = with_bodies.filter(|_| bodies).collect();
+        levels.extend(coarser(none, MOST_STEPS / 10));
         // In a model of very many bodies, their own curves would be most of the page.
-        let coarsest = without().last().map_or(least, |d| Self { origins: false, ..d });
-        let mut levels = with_bodies.filter(|_| bodies).chain(without());
-        levels.find(|d| d.bytes(size) <= MOST_BYTES as f64).unwrap_or(coarsest)
+        levels.extend(levels.last().map(|d| Self { origins: false, ..*d }));
+        levels
     }
 
-    /// What the curves of the page take.
-    fn bytes(self, size: Size) -> f64 {
-        let both = if size.compared { 2 } else { 1 };
+    /// How many values the curves of the page have.
+    fn values(self, size: Size) -> f64 {
+        let steps = size.steps.div_ceil(self.stride);
         let origins = 3 * size.bodies;
-        // With the two curves, of place and turn, by which a changed design is drawn.
-        let of_origins = match (self.bodies, self.body_differences) {
-            (true, true) => origins * both + 2 * size.bodies,
-            (true, false) => origins + 2 * size.bodies,
-            (false, _) => 0,
-        };
         let shown = if self.origins { origins } else { 0 };
         let motion = 3 * (size.outputs + shown) + 7 * (size.bodies + 1);
-        let curves = motion * (1 + size.designs) + 3 * size.variables * (size.outputs * both + of_origins);
-        (curves * size.steps.div_ceil(self.stride)) as f64 * BYTES_PER_VALUE
+        // A body's place and turn; the sensitivity of its origin's place is the same numbers.
+        let bodies = if self.bodies { 2 * origins } else { 0 };
+        let rates = if self.body_rates { 2 * origins } else { 0 };
+        let compared = size.outputs + if self.body_differences { origins } else { 0 };
+        let marks = if size.compared { 3 * compared * MARKS.min(steps) } else { 0 };
+        ((motion * (1 + size.designs) + size.variables * (3 * size.outputs + bodies + rates)) * steps
+            + size.variables * marks) as f64
     }
 }
 
@@ -210,6 +242,9 @@ fn status(summary: &Summary, detail: Detail) -> Status {
             " This page shows every {} step, {shown} in all; the tables hold all of them.",
             ordinal(stride)
         );
+    }
+    if detail.bodies && !detail.body_rates && !summary.model.variables.is_empty() {
+        message += " Of body origins the sensitivities of velocities and accelerations are not shown; `run --bodies` writes them.";
     }
     if !detail.bodies && summary.model.counts.bodies > 0 && !summary.model.variables.is_empty() {
         message += " Sensitivities of body origins are not shown; `run --bodies` writes them.";
@@ -384,12 +419,14 @@ impl Compose<'_> {
     /// How every body moves with a variable, to first order.
     fn shifts(&self, b: usize) -> Vec<Curve> {
         let by = self.model.variables[b].quantity;
+        let least_turn = self.round_off.of(b, Kind::Angle.into(), 0);
         let of_body = |body: usize| {
             let at = |&k: &usize| {
                 let shift = self.solution.sensitivities.at(k, b).map(|s| s.body(body));
                 let shift = shift.unwrap_or(BodySensitivity::ZERO);
-                let dr = shift.dr.to_array().map(|x| self.units.derivative_from_si(Kind::Length, by, x));
-                let turn = shift.dpi.to_array().map(|x| self.units.derivative_from_si(Kind::Number, by, x));
+                let dr = shift.dr.to_array().map(|x| self.shown(b, Dimension::LENGTH, 0, x));
+                let dpi = shift.dpi.to_array().map(|x| if x.abs() <= least_turn { 0.0 } else { x });
+                let turn = dpi.map(|x| self.units.derivative_from_si(Kind::Number, by, x));
                 dr.into_iter().chain(turn)
             };
             self.steps.iter().flat_map(at).collect()
@@ -430,12 +467,13 @@ impl Compose<'_> {
             let exact = |k: usize, order: usize| {
                 self.solution.sensitivities.at(k, b).map_or(f64::NAN, |s| of(&s.body(body), order))
             };
-            list.push(self.sensitivity(list.len(), (Dimension::LENGTH, 3), b, exact, overlay));
+            let orders = if self.detail.body_rates { 3 } else { 1 };
+            list.push(self.sensitivity(list.len(), (Dimension::LENGTH, orders), b, exact, overlay));
         }
         list
     }
 
-    /// One sensitivity, with the comparison where there is one; round-off becomes 0.
+    /// One sensitivity, with the comparison where there is one.
     fn sensitivity<F: Fn(usize, usize) -> f64>(
         &self,
         quantity: usize,
@@ -444,18 +482,40 @@ impl Compose<'_> {
         exact: impl Fn(usize, usize) -> f64,
         overlay: Option<(&Difference, [f64; 3], F)>,
     ) -> Sensitivity {
-        let by = self.model.variables[b].quantity;
-        let least = [0, 1, 2].map(|order| self.round_off.of(b, kind, order));
-        let shown = |x: f64, order: usize| {
-            if x.abs() <= least[order] { 0.0 } else { self.units.derivative_from_si(kind, by, x) }
-        };
-        let [value, rate, accel] = self.curves(orders, |k, order| shown(exact(k, order), order));
+        let [value, rate, accel] =
+            self.curves(orders, |k, order| self.shown(b, kind, order, exact(k, order)));
         let fd = overlay.map(|(d, worst, difference)| {
-            let [value, rate, accel] = self.curves(orders, |k, order| shown(difference(k, order), order));
+            // Rounded, so that the marks are nearest to the number that is wanted.
+            let stride = ((self.steps.len() + MARKS / 2) / MARKS).max(1);
+            let marks = |order: usize| {
+                let of = |&k: &usize| self.shown(b, kind, order, difference(k, order));
+                let steps = self.steps.iter().step_by(stride).filter(|_| order < orders);
+                steps.map(of).collect::<Curve>()
+            };
+            let [value, rate, accel] = [0, 1, 2].map(marks);
+            let by = self.model.variables[b].quantity;
             let step = self.units.from_si(by, d.step);
-            FiniteDifference { value, rate, accel, step, step_unit: symbol(self.units, by).into(), worst }
+            FiniteDifference {
+                stride,
+                value,
+                rate,
+                accel,
+                step,
+                step_unit: symbol(self.units, by).into(),
+                worst,
+            }
         });
         Sensitivity { quantity, value, rate, accel, fd }
+    }
+
+    /// A derivative by variable b in the user's units; round-off becomes 0.
+    fn shown(&self, b: usize, kind: Dimension, order: usize, x: f64) -> f64 {
+        let by = self.model.variables[b].quantity;
+        if x.abs() <= self.round_off.of(b, kind, order) {
+            0.0
+        } else {
+            self.units.derivative_from_si(kind, by, x)
+        }
     }
 }
 
@@ -467,35 +527,36 @@ mod tests {
         Size { steps: 501, bodies: 4, variables: 16, outputs: 13, compared: true, designs: 0 };
 
     #[test]
-    fn a_suspension_keeps_the_sensitivities_of_its_bodies() {
-        let detail = Detail::that_fits(STRUT, true);
-        assert_eq!(detail, Detail { stride: 2, origins: true, bodies: true, body_differences: false });
-        assert!(detail.bytes(STRUT) <= MOST_BYTES as f64);
-        let short = Size { steps: 201, ..STRUT };
-        let detail = Detail::that_fits(short, true);
-        assert_eq!(detail, Detail { stride: 1, origins: true, bodies: true, body_differences: true });
+    fn a_suspension_is_shown_with_all_that_there_is() {
+        let all = Detail::levels(STRUT, true)[0];
+        assert_eq!(
+            all,
+            Detail { stride: 1, origins: true, bodies: true, body_rates: true, body_differences: true }
+        );
+        assert!(all.values(STRUT) * BYTES_PER_VALUE[1] <= MOST_BYTES as f64);
         // What is not there cannot be shown.
-        assert!(!Detail::that_fits(short, false).bodies);
+        assert!(Detail::levels(STRUT, false).iter().all(|d| !d.bodies));
     }
 
     #[test]
     fn a_long_motion_is_thinned() {
         let long = Size { steps: 100_001, ..STRUT };
-        let detail = Detail::that_fits(long, true);
-        assert!(detail.bodies && (101..=400).contains(&detail.stride), "{detail:?}");
-        assert!(detail.bytes(long) <= MOST_BYTES as f64);
+        let all = Detail::levels(long, true)[0];
+        assert!(all.body_differences && all.stride == 101, "{all:?}");
     }
 
     #[test]
-    fn many_variables_cost_the_bodies_their_curves() {
-        let many = Size { variables: 30, bodies: 12, ..STRUT };
-        let detail = Detail::that_fits(many, true);
-        assert!(detail.origins && !detail.bodies && !detail.body_differences, "{detail:?}");
-        assert!(detail.bytes(many) <= MOST_BYTES as f64);
-        // However much there is, a hundred steps remain.
-        let huge = Detail::that_fits(Size { variables: 5000, ..STRUT }, true);
-        assert!(!huge.bodies && huge.stride <= 5);
-        let wide = Detail::that_fits(Size { variables: 0, bodies: 2000, ..STRUT }, true);
-        assert!(!wide.origins, "{wide:?}");
+    fn levels_show_less_and_less_and_a_hundred_steps_remain() {
+        for size in
+            [STRUT, Size { steps: 7, ..STRUT }, Size { steps: 30_000, bodies: 80, variables: 240, ..STRUT }]
+        {
+            let levels = Detail::levels(size, true);
+            assert!(levels.is_sorted_by(|a, b| !b.bodies || a.bodies), "bodies go and do not come back");
+            let last = levels.last().unwrap();
+            assert!(
+                !last.origins && size.steps.div_ceil(last.stride) >= size.steps.min(MOST_STEPS / 10),
+                "{last:?}"
+            );
+        }
     }
 }

@@ -1,6 +1,6 @@
 import { Vector3 } from 'three'
-import { type Curve, decode } from '../curve'
-import type { DriverMark } from '../payload'
+import type { Curve } from '../curve'
+import type { Driver } from '../report'
 
 /** The least and largest of what is driven, and whether it ends above where it begins. */
 export interface Travel {
@@ -11,8 +11,8 @@ export interface Travel {
 }
 
 /** The travel of a driver in this motion; none where nothing was solved. */
-export function travelOf(driver: DriverMark): Travel | undefined {
-  const curve = decode(driver.travel)
+export function travelOf(driver: Driver): Travel | undefined {
+  const curve = driver.travel
   const solved = curve.filter(Number.isFinite)
   if (solved.length === 0) return undefined
   return { curve, low: solved.reduce((a, b) => Math.min(a, b)), high: solved.reduce((a, b) => Math.max(a, b)), onwards: solved[solved.length - 1] >= solved[0] }

@@ -1,6 +1,7 @@
 import { Group, Vector3 } from 'three'
 import { valueAt } from '../../curve'
-import type { DriverMark, JointMark } from '../../payload'
+import type { JointMark } from '../../payload'
+import type { Driver } from '../../report'
 import { above, ABOVE, arcHead, arcPoints, straightArrow } from '../arrow'
 import type { Draw, Drawn, Frame } from '../drawn'
 import { across, Basis, square } from '../flat'
@@ -35,7 +36,7 @@ export const drivers: Draw = (mechanism, kit) =>
 
 type Arrow = Pick<Drawn, 'body' | 'object' | 'follow'>
 
-function arrowOf(mechanism: Mechanism, kit: Kit, driver: DriverMark, travel: Travel): Arrow | undefined {
+function arrowOf(mechanism: Mechanism, kit: Kit, driver: Driver, travel: Travel): Arrow | undefined {
   if (driver.joint === null) return driver.point ? pointArrow(mechanism, kit, driver, travel) : undefined
   const joint = mechanism.report.joints[driver.joint]
   if (driver.turns) return joint.axis ? hingeArrow(mechanism, kit, joint, travel) : undefined
@@ -118,7 +119,7 @@ function legArrow(mechanism: Mechanism, kit: Kit, joint: JointMark, { low, high 
 }
 
 /** A double arrow beside a driven point, in the world; outboard where the body carries a wheel. */
-function pointArrow(mechanism: Mechanism, kit: Kit, driver: DriverMark, { curve, low, high }: Travel): Arrow | undefined {
+function pointArrow(mechanism: Mechanism, kit: Kit, driver: Driver, { curve, low, high }: Travel): Arrow | undefined {
   const { body, at } = driver.point!
   if (!driver.along) return undefined
   const along = new Vector3(...driver.along)

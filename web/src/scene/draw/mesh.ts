@@ -1,5 +1,4 @@
 import { BufferAttribute, BufferGeometry, Float32BufferAttribute, Vector3 } from 'three'
-import { decode } from '../../curve'
 import { deformed } from '../deform'
 import type { Draw, Drawn } from '../drawn'
 import type { Mechanism } from '../mechanism'
@@ -14,10 +13,9 @@ const MANY = 60_000
 export const meshes: Draw = (mechanism, kit) =>
   mechanism.report.bodies.flatMap(({ mesh }, body): Drawn[] => {
     if (!mesh) return []
-    const triangles = Uint32Array.from(decode(mesh.triangles))
-    const positions = decode(mesh.positions)
+    const triangles = Uint32Array.from(mesh.triangles)
     const geometry = new BufferGeometry()
-    geometry.setAttribute('position', new Float32BufferAttribute(asDesigned(mechanism, body, positions), 3))
+    geometry.setAttribute('position', new Float32BufferAttribute(asDesigned(mechanism, body, mesh.positions), 3))
     geometry.setIndex(new BufferAttribute(triangles, 1))
     geometry.computeVertexNormals()
     const finish = { open: true, facets: true, edges: triangles.length < 3 * MANY ? EDGES : undefined }

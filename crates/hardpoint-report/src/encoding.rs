@@ -1,0 +1,398 @@
+//! How a page's data is packed: its JSON and all its curves as one deflated block in base64.
+//!
+//! A curve is one or more *tracks*: a curve that holds several numbers per step, such as the seven of a pose, has a track for each.
+//! What the page computes with is kept to the last bit of its `f32`; what it only draws and ranks, the sensitivities, to
+//! [`ERROR`] of the track's own range. Either way a track is a list of whole numbers. Curves are smooth, so of their differences
+//! of first to fourth order one has small numbers; these are written byte by byte (all lowest bytes first), which deflate takes to
+//! about half a byte per value. Zeros stay zeros and gaps stay gaps; a constant takes no values; equal tracks are written once.
+//!
+//! The inflated block, little-endian:
+//!
+//! | what | type | number |
+//! |---|---|---|
+//! | bytes of the JSON, tracks `t`, gaps `g`, residuals `r` | u32 | 4 |
+//! | JSON | UTF-8 | |
+//! | form: 0 constant, 8 + order for numbers times the scale, 16 + order for bits of `f32` | u8 | t |
+//! | length, gaps and all | u32 | t |
+//! | scale, or the constant | f32 | t |
+//! | how many gaps it has | u32 | t |
+//! | first step and length of each gap | u32 | 2 g |
+//! | residuals: signs folded in (0, -1, 1, -2, ...), lowest bytes of all first | u8 | 4 r |
+
+use std::collections::HashMap;
+use std::io::Write;
+
+use base64::{Engine, prelude::BASE64_STANDARD};
+use flate2::{Compression, write::DeflateEncoder};
+
+use crate::page::{Curve, Payload};
+
+/// How far a value that is only drawn may be from its own, in parts of the range of its track.
+pub const ERROR: f64 = 1e-5;
+/// Steps of the grid within the range: half a step is 0.83e-5 of it, which leaves some of [`ERROR`] for the rounding to `f32`.
+const STEPS: f64 = 60_000.0;
+/// Where values are larger than so many ranges, the rounding to `f32` would take the rest of [`ERROR`].
+const LARGEST: f64 = 25.0;
+/// Highest order of differences: beyond it the rounding grows faster than the curve's own part shrinks.
+const MOST_DIFFERENCES: u8 = 4;
+/// Whole numbers below this are exact as `f32`.
+const WHOLE: f32 = 16_777_216.0;
+const CONSTANT: u8 = 0;
+const SCALED: u8 = 8;
+const BITS: u8 = 16;
+
+/// How well the values of a curve are kept.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Precision {
+    /// To the last bit of their `f32`.
+    Full,
+    /// To [`ERROR`].
+    Drawn,
+}
+
+/// The payload, deflated.
+///
+/// # Errors
+/// When the payload does not serialise, which plain numbers and strings always do.
+pub(crate) fn packed(payload: &Payload) -> Result<Vec<u8>, serde_json::Error> {
+    Ok(deflated(&block(payload)?))
+}
+
+/// How many bytes of the page the payload takes.
+pub(crate) fn packed_size(payload: &Payload) -> Result<usize, serde_json::Error> {
+    Ok(packed(payload)?.len().div_ceil(3) * 4)
+}
+
+/// As it stands in the page.
+pub(crate) fn base64(bytes: &[u8]) -> String {
+    BASE64_STANDARD.encode(bytes)
+}
+
+fn deflated(bytes: &[u8]) -> Vec<u8> {
+    let mut deflated = DeflateEncoder::new(Vec::new(), Compression::default());
+    deflated.write_all(bytes).and_then(|()| deflated.finish()).expect("a vector takes all that is written")
+}
+
+/// The payload before it is deflated.
+fn block(payload: &Payload) -> Result<Vec<u8>, serde_json::Error> {
+    let mut payload = payload.clone();
+    let mut tracks = Tracks::default();
+    each_curve(&mut payload, &mut |curve, precision, parts| {
+        let tracks = tracks.add(curve.values(), precision, parts);
+        *curve = std::mem::take(curve).in_tracks(tracks);
+    });
+    Ok(tracks.block(&serde_json::to_vec(&payload)?))
+}
+
+/// Every curve of the payload, with how well it is kept and how many numbers it holds per step.
+fn each_curve(payload: &mut Payload, visit: &mut impl FnMut(&mut Curve, Precision, usize)) {
+    use Precision::{Drawn, Full};
+    visit(&mut payload.times, Full, 1);
+    for body in &mut payload.bodies {
+        visit(&mut body.poses, Full, 7);
+        if let Some(mesh) = &mut body.mesh {
+            visit(&mut mesh.positions, Full, 3);
+            visit(&mut mesh.triangles, Full, 3);
+        }
+    }
+    for driver in &mut payload.drivers {
+        visit(&mut driver.travel, Full, 1);
+    }
+    for q in &mut payload.quantities {
+        [&mut q.value, &mut q.rate, &mut q.accel].into_iter().for_each(|curve| visit(curve, Full, 1));
+    }
+    for design in &mut payload.designs {
+        design.poses.iter_mut().for_each(|poses| visit(poses, Full, 7));
+        for q in design.quantities.iter_mut().flatten() {
+            [&mut q.value, &mut q.rate, &mut q.accel].into_iter().for_each(|curve| visit(curve, Full, 1));
+        }
+        design.margin.iter_mut().for_each(|margin| visit(margin, Full, 1));
+    }
+    if let Some(margin) = &mut payload.margin {
+        // It is drawn over decades.
+        visit(&mut margin.value, Full, 1);
+    }
+    for variable in &mut payload.variables {
+        variable.shifts.iter_mut().for_each(|shifts| visit(shifts, Drawn, 6));
+        for s in &mut variable.sensitivities {
+            [&mut s.value, &mut s.rate, &mut s.accel].into_iter().for_each(|curve| visit(curve, Drawn, 1));
+            if let Some(d) = &mut s.fd {
+                [&mut d.value, &mut d.rate, &mut d.accel]
+                    .into_iter()
+                    .for_each(|curve| visit(curve, Drawn, 1));
+            }
+        }
+    }
+}
+
+/// The tracks of a block, each once.
+#[derive(Default)]
+struct Tracks {
+    list: Vec<Track>,
+    known: HashMap<Track, u32>,
+}
+
+impl Tracks {
+    /// The tracks of a curve with so many numbers per step.
+    fn add(&mut self, values: &[f32], precision: Precision, parts: usize) -> Vec<u32> {
+        if values.is_empty() {
+            return Vec::new();
+        }
+        let part = |k: usize| values.iter().skip(k).step_by(parts).copied().collect::<Vec<f32>>();
+        (0..parts).map(|k| self.index(Track::of(&part(k), precision))).collect()
+    }
+
+    fn index(&mut self, track: Track) -> u32 {
+        let next = u32::try_from(self.list.len()).expect("fewer than 2^32 tracks");
+        let list = &mut self.list;
+        *self.known.entry(track).or_insert_with_key(|track| {
+            list.push(track.clone());
+            next
+        })
+    }
+
+    fn block(&self, json: &[u8]) -> Vec<u8> {
+        let list = &self.list;
+        let gaps: Vec<[u32; 2]> = list.iter().flat_map(|t| &t.gaps).copied().collect();
+        let residuals: Vec<u32> = list.iter().flat_map(|t| &t.residuals).copied().collect();
+        let counts = [json.len(), list.len(), gaps.len(), residuals.len()];
+        let mut bytes = Vec::with_capacity(json.len() + 16 * list.len() + 4 * residuals.len());
+        bytes.extend(counts.map(|n| n as u32).iter().flat_map(|n| n.to_le_bytes()));
+        bytes.extend(json);
+        bytes.extend(list.iter().map(|t| t.form));
+        bytes.extend(list.iter().flat_map(|t| t.length.to_le_bytes()));
+        bytes.extend(list.iter().flat_map(|t| t.scale.to_le_bytes()));
+        bytes.extend(list.iter().flat_map(|t| (t.gaps.len() as u32).to_le_bytes()));
+        bytes.extend(gaps.iter().flatten().flat_map(|n| n.to_le_bytes()));
+        for byte in 0..4 {
+            bytes.extend(residuals.iter().map(|r| r.to_le_bytes()[byte]));
+        }
+        bytes
+    }
+}
+
+/// One number per step, as it is written.
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
+struct Track {
+    form: u8,
+    length: u32,
+    /// Bits of the `f32`.
+    scale: u32,
+    /// First step and length of each.
+    gaps: Vec<[u32; 2]>,
+    residuals: Vec<u32>,
+}
+
+impl Track {
+    fn of(values: &[f32], precision: Precision) -> Self {
+        let length = values.len() as u32;
+        let known: Vec<f32> = values.iter().copied().filter(|v| !v.is_nan()).collect();
+        let constant = known.first().copied().unwrap_or(f32::NAN);
+        let gaps = if known.is_empty() { Vec::new() } else { gaps(values) };
+        if known.iter().all(|v| *v == constant) {
+            return Self { form: CONSTANT, length, scale: constant.to_bits(), gaps, residuals: Vec::new() };
+        }
+        let (kind, scale, numbers) = match scale(&known, precision) {
+            Some(scale) => (SCALED, scale, known.iter().map(|v| multiple(*v, scale)).collect()),
+            None => (BITS, 0.0, known.iter().map(|v| in_order(*v)).collect()),
+        };
+        let (order, residuals) = differences(numbers);
+        Self { form: kind + order, length, scale: scale.to_bits(), gaps, residuals }
+    }
+}
+
+/// Runs of steps without a value.
+fn gaps(values: &[f32]) -> Vec<[u32; 2]> {
+    let mut gaps: Vec<[u32; 2]> = Vec::new();
+    for k in (0..values.len()).filter(|k| values[*k].is_nan()).map(|k| k as u32) {
+        match gaps.last_mut() {
+            Some([first, length]) if *first + *length == k => *length += 1,
+            _ => gaps.push([k, 1]),
+        }
+    }
+    gaps
+}
+
+/// What the values are near enough multiples of; `None` where nothing but their bits will do.
+fn scale(values: &[f32], precision: Precision) -> Option<f32> {
+    if values.iter().all(|v| v.fract() == 0.0 && v.abs() < WHOLE) {
+        return Some(1.0);
+    }
+    let least = values.iter().copied().fold(f32::INFINITY, f32::min);
+    let most = values.iter().copied().fold(f32::NEG_INFINITY, f32::max);
+    let range = f64::from(most) - f64::from(least);
+    let scale = (range / STEPS) as f32;
+    let near = f64::from(most.max(-least)) <= LARGEST * range;
+    (precision == Precision::Drawn && near && scale.is_normal()).then_some(scale)
+}
+
+fn multiple(value: f32, scale: f32) -> i32 {
+    (f64::from(value) / f64::from(scale)).round() as i32
+}
+
+/// The bits of a number as one that grows with it.
+fn in_order(value: f32) -> i32 {
+    let bits = value.to_bits() as i32;
+    if bits < 0 { -(bits & i32::MAX) } else { bits }
+}
+
+/// Of the differences of all orders those with the smallest numbers, signs folded in; the first are from zero.
+fn differences(mut numbers: Vec<i32>) -> (u8, Vec<u32>) {
+    let mut best = (u64::MAX, 0, Vec::new());
+    for order in 0..=MOST_DIFFERENCES {
+        let folded: Vec<u32> = numbers.iter().map(|r| ((r << 1) ^ (r >> 31)) as u32).collect();
+        // The bits of a floating point number grow as its logarithm does.
+        let cost = folded.iter().map(|r| u64::from((f64::from(*r) + 1.0).to_bits() >> 32)).sum();
+        if cost < best.0 {
+            best = (cost, order, folded);
+        }
+        for k in (1..numbers.len()).rev() {
+            numbers[k] = numbers[k].wrapping_sub(numbers[k - 1]);
+        }
+    }
+    (best.1, best.2)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::{fs, io::Read, path::Path};
+
+    use flate2::read::DeflateDecoder;
+    use proptest::prelude::*;
+
+    use crate::page::{Margin, tests::payload};
+
+    /// What the page makes of a track.
+    fn read(track: &Track) -> Vec<f32> {
+        let missing = |k: u32| track.gaps.iter().any(|[first, length]| (*first..first + length).contains(&k));
+        let mut numbers: Vec<i32> =
+            track.residuals.iter().map(|r| (r >> 1) as i32 ^ -((r & 1) as i32)).collect();
+        for _ in 0..track.form % 8 {
+            for k in 1..numbers.len() {
+                numbers[k] = numbers[k].wrapping_add(numbers[k - 1]);
+            }
+        }
+        let mut numbers = numbers.into_iter();
+        let scale = f32::from_bits(track.scale);
+        let mut next = || match track.form & !7 {
+            CONSTANT => scale,
+            SCALED => (f64::from(numbers.next().unwrap()) * f64::from(scale)) as f32,
+            _ => {
+                let n = numbers.next().unwrap();
+                f32::from_bits(if n < 0 { n.wrapping_neg() as u32 | 1 << 31 } else { n as u32 })
+            }
+        };
+        (0..track.length).map(|k| if missing(k) { f32::NAN } else { next() }).collect()
+    }
+
+    fn same(a: f32, b: f32) -> bool {
+        a == b || a.is_nan() && b.is_nan()
+    }
+
+    fn any_values() -> impl Strategy<Value = Vec<f32>> {
+        let value = prop_oneof![
+            8 => -1e3f32..1e3,
+            1 => any::<f32>(),
+            2 => Just(0.0f32),
+            2 => Just(f32::NAN),
+        ];
+        (prop::collection::vec(value, 1..60), -1e4f32..1e4, prop::bool::ANY).prop_map(
+            |(values, offset, moved)| {
+                values.into_iter().map(|v| if moved { v + offset } else { v }).collect()
+            },
+        )
+    }
+
+    proptest! {
+        #[test]
+        fn full_precision_comes_back_to_the_bit(values in any_values()) {
+            let back = read(&Track::of(&values, Precision::Full));
+            prop_assert!(back.len() == values.len() && values.iter().zip(&back).all(|(a, b)| same(*a, *b)));
+        }
+
+        #[test]
+        fn what_is_drawn_comes_back_within_its_error(values in any_values()) {
+            let back = read(&Track::of(&values, Precision::Drawn));
+            let known = || values.iter().copied().filter(|v| !v.is_nan()).map(f64::from);
+            let range = known().fold(f64::NEG_INFINITY, f64::max) - known().fold(f64::INFINITY, f64::min);
+            prop_assert_eq!(values.len(), back.len());
+            for (a, b) in values.iter().zip(&back) {
+                prop_assert_eq!(a.is_nan(), b.is_nan());
+                prop_assert!(*a != 0.0 || *b == 0.0, "zero became {}", b);
+                prop_assert!(same(*a, *b) || (f64::from(*a) - f64::from(*b)).abs() <= ERROR * range, "{} {}", a, b);
+            }
+        }
+    }
+
+    #[test]
+    fn a_smooth_curve_takes_a_byte_a_value_and_a_constant_none() {
+        let wave: Vec<f32> = (0..400).map(|k| (k as f32 * 0.02).sin()).collect();
+        let track = Track::of(&wave, Precision::Drawn);
+        assert!(track.residuals[4..].iter().all(|r| *r < 256), "{track:?}");
+        let constant = Track::of(&[f32::NAN, 2.5, 2.5], Precision::Drawn);
+        assert!(constant.residuals.is_empty() && constant.gaps == [[0, 1]]);
+    }
+
+    #[test]
+    fn equal_tracks_are_written_once() {
+        let mut tracks = Tracks::default();
+        let wave: Vec<f32> = (0..9).map(|k| (k as f32).cos()).collect();
+        assert_eq!(tracks.add(&wave, Precision::Full, 1), [0]);
+        let twice: Vec<f32> = wave.iter().flat_map(|v| [*v, 3.0]).collect();
+        assert_eq!(tracks.add(&twice, Precision::Full, 2), [0, 1]);
+        assert!(tracks.add(&[], Precision::Full, 7).is_empty());
+    }
+
+    /// A page with a curve of every form, whose block the tests of the page read.
+    fn sample() -> Payload {
+        let mut sample = payload("packed");
+        sample.times = (0..40).map(|k| 0.1 * f64::from(k)).collect();
+        let wave = |k: i32| if (3..5).contains(&k) { f64::NAN } else { (0.1 * f64::from(k)).sin() };
+        sample.margin = Some(Margin { value: (0..40).map(wave).collect(), note: String::new() });
+        sample.bodies = vec![crate::page::BodyTrack {
+            name: "ground".into(),
+            poses: (0..40).flat_map(|k| [f64::from(k), 0.0, 0.0, 1.0, 0.0, 0.0, 0.0]).collect(),
+            skeleton: vec![],
+            labels: vec![],
+            roles: vec![],
+            mesh: None,
+        }];
+        let mut variable = crate::page::Variable {
+            name: "x".into(),
+            description: String::new(),
+            unit: "mm".into(),
+            admissibility: crate::page::Admissibility::Admissible,
+            note: String::new(),
+            arrows: vec![],
+            typical: None,
+            tolerance: None,
+            bounds: None,
+            shifts: vec![],
+            sensitivities: vec![],
+        };
+        variable.sensitivities.push(crate::page::Sensitivity {
+            quantity: 0,
+            value: (0..40).map(|k| (0.1 * f64::from(k)).cos()).collect(),
+            rate: (0..40).map(|_| f64::NAN).collect(),
+            accel: Curve::default(),
+            fd: None,
+        });
+        sample.variables = vec![variable];
+        sample
+    }
+
+    #[test]
+    fn the_page_is_tested_with_a_block_as_it_is_written() {
+        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../web/test/packed.txt");
+        let expected = block(&sample()).unwrap();
+        let written = fs::read_to_string(&path).unwrap_or_default();
+        let mut found = Vec::new();
+        let bytes = BASE64_STANDARD.decode(written.trim()).unwrap_or_default();
+        let read = DeflateDecoder::new(&bytes[..]).read_to_end(&mut found);
+        if read.is_err() || found != expected {
+            fs::write(&path, base64(&deflated(&expected)) + "\n").unwrap();
+            panic!("web/test/packed.txt was out of date and has been rewritten: commit it");
+        }
+    }
+}
