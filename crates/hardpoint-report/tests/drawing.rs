@@ -5,7 +5,6 @@ use std::path::{Path, PathBuf};
 use hardpoint::Analysis;
 use hardpoint_file::ModelFile;
 use hardpoint_report::course::Course;
-use hardpoint_report::facts::Facts;
 use hardpoint_report::page::Payload;
 use hardpoint_report::payload::payload;
 use hardpoint_report::summary::Summary;
