@@ -104,3 +104,8 @@ export function stepAt(times: Curve, time: number): number {
   }
   return low + (time - times[low]) / (times[high] - times[low])
 }
+
+/** Changes of a quantity of this size up to which they are rounding and not a signal. */
+export function noise(size: number): number {
+  return RESOLUTION * size
+}

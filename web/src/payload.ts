@@ -95,6 +95,10 @@ values: Array<Value>,
  */
 first: number | null,
 /**
+ * The quantity over which the page draws that one at first, an index into [`Payload::quantities`]; over time where there is none.
+ */
+over: number | null,
+/**
  * Other designs over the same motion, to be compared with this one: changed, foreseen, re-solved.
  */
 designs: Array<Design>,

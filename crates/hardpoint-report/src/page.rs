@@ -86,6 +86,8 @@ pub struct Payload {
     pub values: Vec<Value>,
     /// The quantity that the page opens on, an index into [`Payload::quantities`].
     pub first: Option<usize>,
+    /// The quantity over which the page draws that one at first, an index into [`Payload::quantities`]; over time where there is none.
+    pub over: Option<usize>,
     /// Other designs over the same motion, to be compared with this one: changed, foreseen, re-solved.
     pub designs: Vec<Design>,
     /// How far from singular the mechanism is over time, if anything is solved for.
@@ -593,6 +595,7 @@ mod tests {
             quantities: vec![],
             values: vec![],
             first: None,
+            over: None,
             designs: vec![],
             margin: None,
             variables: vec![],

@@ -5,6 +5,7 @@
 //! A long motion is thinned and, where that is not enough, the bodies lose their sensitivities, so that the
 //! page stays small enough to open at once: the CSV files hold everything.
 
+mod designs;
 mod drawing;
 
 use std::path::Path;
@@ -13,7 +14,7 @@ use hardpoint::joint::Quantity as Kind;
 use hardpoint::model::{BodyId, Dimension, Model, OutputSource, VariableId};
 use hardpoint::sensitivity::BodySensitivity;
 use hardpoint::space::Vec3;
-use hardpoint::study::{Comparison, Difference};
+use hardpoint::study::{Comparison, Difference, WhatIf};
 use hardpoint::{Analysis, Solution};
 use hardpoint_file::{ModelFile, Units};
 
@@ -44,6 +45,18 @@ pub fn payload(
     differences: &[Option<Difference>],
     summary: &Summary,
 ) -> Payload {
+    payload_beside(file, analysis, course, differences, summary, None)
+}
+
+/// The same with a changed design beside today's, where one is given; `course` is what was gathered of today's whole solution.
+pub fn payload_beside(
+    file: &ModelFile,
+    analysis: &Analysis<'_>,
+    course: &Course,
+    differences: &[Option<Difference>],
+    summary: &Summary,
+    changed: Option<&WhatIf>,
+) -> Payload {
     let (model, units, solution) = (&file.model, file.units, &course.kept);
     let size = Size {
         steps: solution.motion.len(),
@@ -51,11 +64,15 @@ pub fn payload(
         variables: model.variables.len(),
         outputs: solution.measured.outputs.len(),
         compared: differences.iter().any(Option::is_some),
+        designs: changed.map_or(0, |_| designs::MOST),
     };
     let detail = Detail::that_fits(size, course.has_bodies());
     let steps: Vec<usize> = (0..solution.motion.len()).step_by(detail.stride).collect();
     let compose =
         Compose { model, units, analysis, solution, steps, detail, round_off: course.round_off(model) };
+    let (bodies, values) = (compose.bodies(), Vec::new());
+    let designs =
+        changed.map_or_else(Vec::new, |what_if| compose.designs(what_if, course.stride, &bodies, &values));
     Payload {
         title: model.name.clone(),
         description: file.description.clone().unwrap_or_default(),
@@ -70,7 +87,7 @@ pub fn payload(
         summary: headline(summary),
         notes: summary.model.all_notes(),
         times: compose.curve(|k| solution.motion.times[k]),
-        bodies: compose.bodies(),
+        bodies,
         joints: compose.joints(),
         couplers: compose.couplers(),
         drivers: compose.drivers(),
@@ -78,9 +95,10 @@ pub fn payload(
         distances: compose.distances(),
         vehicle: compose.vehicle(),
         quantities: compose.quantities(),
-        values: Vec::new(),
+        values,
         first: None,
-        designs: Vec::new(),
+        over: None,
+        designs,
         margin: summary.margin.as_ref().map(|m| Margin {
             value: compose.curve(|k| m.series.get(k).copied().unwrap_or(f64::NAN)),
             note: m.sentence(),
@@ -118,6 +136,8 @@ struct Size {
     outputs: usize,
     /// Whether there are differences to compare with.
     compared: bool,
+    /// Other designs that are shown beside this one.
+    designs: usize,
 }
 
 impl Detail {
@@ -153,7 +173,7 @@ impl Detail {
         };
         let shown = if self.origins { origins } else { 0 };
         let motion = 3 * (size.outputs + shown) + 7 * (size.bodies + 1);
-        let curves = motion + 3 * size.variables * (size.outputs * both + of_origins);
+        let curves = motion * (1 + size.designs) + 3 * size.variables * (size.outputs * both + of_origins);
         (curves * size.steps.div_ceil(self.stride)) as f64 * BYTES_PER_VALUE
     }
 }
@@ -402,7 +422,8 @@ impl Compose<'_> {
 mod tests {
     use super::*;
 
-    const STRUT: Size = Size { steps: 501, bodies: 4, variables: 16, outputs: 13, compared: true };
+    const STRUT: Size =
+        Size { steps: 501, bodies: 4, variables: 16, outputs: 13, compared: true, designs: 0 };
 
     #[test]
     fn a_suspension_keeps_the_sensitivities_of_its_bodies() {

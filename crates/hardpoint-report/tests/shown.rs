@@ -35,8 +35,7 @@ fn file(draft: &Draft) -> ModelFile {
 fn solved(file: &ModelFile) -> (Solution, Summary) {
     let analysis = Analysis::new(&file.model).unwrap();
     let solution = analysis.run();
-    let facts = Facts::new(file, analysis.topology(), Some(&solution));
-    let summary = Summary::new(file, analysis.topology(), facts, &Course::of(&file.model, &solution));
+    let summary = Summary::new(file, analysis.topology(), &Course::of(&file.model, &solution));
     let page = payload(file, &analysis, &Course::of(&file.model, &solution), &[], &summary);
     assert_eq!(page.margin.is_some(), summary.margin.is_some());
     (solution, summary)

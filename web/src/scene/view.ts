@@ -1,13 +1,16 @@
 import { PCFShadowMap, Scene, Vector3, WebGLRenderer } from 'three'
 import { OrbitControls } from 'three/addons/controls/OrbitControls.js'
 import { el, onSchemeChange } from '../dom'
+import { motionGltf } from '../export/gltf'
+import { viewSvg } from '../export/view_svg'
 import { number } from '../format'
-import type { Choice, State } from '../state'
+import type { State } from '../state'
 import { Assembly } from './assembly'
 import { cameraFor, fit, type Look, looksOf, pixelsPerLength, shapeTo } from './camera'
 import { marks, matter } from './draw'
 import { type Part, samePart } from './drawn'
 import { Floor } from './floor'
+import { hardpointLabels, LabelLayer, partLabels } from './label_layer'
 import { Mechanism } from './mechanism'
 import { type Emphasis, Outlines, OVER } from './outlines'
 import { Overview } from './overview'
@@ -42,7 +45,10 @@ export class View {
   #outlines = new Outlines()
   #controls: OrbitControls
   #pointer: Pointer
-  #triad = new Triad()
+  #triad: Triad
+  #labels = new LabelLayer()
+  /** Whether every hardpoint is named. */
+  #named = false
   #paper = el('canvas', { class: 'paper' })
   #scale = el('span', { class: 'scale' })
   #lost = el('p', { class: 'message', hidden: true }, 'The graphics were lost; the view comes back when the browser gives them back.')
@@ -51,7 +57,8 @@ export class View {
   #marks: Assembly
   #floor: Floor
   #overview?: Overview
-  #drawn: Pick<Choice, 'change' | 'variable'>
+  /** The design that is drawn, by what makes it. */
+  #drawn: string
   #look: Look
   /** Whether the reader turned or moved the view since it was fitted. */
   #turned = false
@@ -61,6 +68,7 @@ export class View {
 
   constructor(private readonly state: State) {
     this.today = new Mechanism(state.report)
+    this.#triad = new Triad(this.today.vehicle)
     this.looks = looksOf(this.today)
     this.#look = this.looks[0]
     this.camera = cameraFor(this.today)
@@ -82,12 +90,12 @@ export class View {
       () => this.#emphasise(),
       (selected) => state.choose({ selected }),
     )
-    this.element = el('div', { class: 'view' }, this.canvas, this.#paper, this.#lost, this.#pointer.tip, this.#scale)
+    this.element = el('div', { class: 'view' }, this.canvas, this.#labels.element, this.#paper, this.#lost, this.#pointer.tip, this.#scale)
     this.element.append(this.#triad.element)
     this.#overview = Overview.of(this.today, this.#look, (place) => this.#visit(place))
     if (this.#overview) this.element.append(this.#overview.element)
 
-    this.#drawn = { ...state.choice }
+    this.#drawn = this.#design()
     this.#matter = this.#assembleMatter()
     this.#marks = this.#assembleMarks()
     this.#floor = this.#lay()
@@ -168,6 +176,26 @@ export class View {
     this.#draw()
   }
 
+  /** Names every hardpoint, or only those of what is pointed at or selected. */
+  nameAll(named: boolean): void {
+    this.#named = named
+    this.#draw()
+  }
+
+  /** The picture as vectors. */
+  vectors(): Blob {
+    const { clientWidth: width, clientHeight: height } = this.element
+    const { view, ground, outline, label } = this.#palette
+    const groups = [...this.#matter.groups, ...this.#marks.groups]
+    const title = this.state.report.title
+    return viewSvg(groups, this.camera, { width, height, title, view, ground, outline, label, labels: this.#labels.placed })
+  }
+
+  /** The whole motion as a binary glTF file. */
+  motion(): Promise<Blob> {
+    return motionGltf(this.mechanism, this.#matter.drawn, this.state.step)
+  }
+
   /** The picture as a PNG file, so many pixels for each of the page's. */
   async picture(scale: number): Promise<Blob> {
     const usual = this.#renderer.getPixelRatio()
@@ -181,7 +209,7 @@ export class View {
   }
 
   #assembleMatter(): Assembly {
-    const assembly = new Assembly(present(this.today, this.state.choice), this.#palette, this.state.choice, matter, this.#outlines, 0)
+    const assembly = new Assembly(present(this.today, this.state), this.#palette, this.state.choice, matter, this.#outlines, 0)
     this.scene.add(...assembly.groups)
     return assembly
   }
@@ -222,10 +250,9 @@ export class View {
   #update(): void {
     if (!this.#stale) return
     this.#stale = false
-    const { change, variable } = this.state.choice
-    const changed = change !== this.#drawn.change || (change !== 0 && variable !== this.#drawn.variable)
-    this.#drawn = { change, variable }
-    if (changed) {
+    const design = this.#design()
+    if (design !== this.#drawn) {
+      this.#drawn = design
       this.#matter.dispose()
       this.#matter = this.#assembleMatter()
     }
@@ -233,6 +260,10 @@ export class View {
     this.#marks = this.#assembleMarks()
     this.#moved = true
     this.#emphasise()
+  }
+
+  #design(): string {
+    return [this.state.choice.compared, ...this.state.changes].join(' ')
   }
 
   #emphasise(): void {
@@ -280,6 +311,15 @@ export class View {
     layers.set(0)
     this.#overview?.draw(this.#renderer, this.scene, width, height)
     this.#triad.update(this.camera)
+    this.#label()
+  }
+
+  #label(): void {
+    const { clientWidth: width, clientHeight: height } = this.element
+    const frame = this.mechanism.frame(this.state.step)
+    const parts = [this.state.choice.selected, this.#pointer.hovered].filter((part) => part !== undefined)
+    const labels = this.#named ? hardpointLabels(this.mechanism, frame) : parts.flatMap((part) => partLabels(this.mechanism, frame, part))
+    this.#labels.show(labels, this.camera, this.mechanism.centre, width, height)
   }
 
   /** Prints a copy: a printer does not wait for the frame in which a WebGL canvas would show its new picture. */
@@ -308,8 +348,10 @@ export class View {
   #key(event: KeyboardEvent): void {
     const target = event.target as HTMLElement
     const modified = event.ctrlKey || event.metaKey || event.altKey
-    if (modified || event.key !== 'f' || target.closest('select, textarea, input:not([type=range])')) return
-    this.fit()
+    if (modified || target.closest('select, textarea, input:not([type=range])')) return
+    if (event.key === 'f') this.fit()
+    else if (event.key === 'l') this.nameAll(!this.#named)
+    else return
     event.preventDefault()
   }
 }

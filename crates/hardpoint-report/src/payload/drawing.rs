@@ -109,7 +109,7 @@ impl Compose<'_> {
     }
 
     /// The two hardpoints that a hinge's axis passes through: both lie on both of its bodies.
-    fn hinge_points(&self, joint: &Joint) -> Option<[HardpointId; 2]> {
+    pub(super) fn hinge_points(&self, joint: &Joint) -> Option<[HardpointId; 2]> {
         let turns = joint.kind.freedoms.is_some_and(|f| f.iter().all(|f| matches!(f, Freedom::Turn(_))));
         match joint.axis {
             Some(Direction::Through(a, b)) if turns && joint.axis2.is_none() => Some([a, b]),
