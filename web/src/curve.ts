@@ -41,6 +41,19 @@ export function decades(low: number | null, high: number | null): [number, numbe
   return [10 ** Math.min(bottom, top - 1), 10 ** top]
 }
 
+/** A curve that varies less than this share of its size is drawn as the constant that it is. */
+const RESOLUTION = 1e-5
+
+/** What an axis shows of values from `low` to `high`: they, and a little on both sides. */
+export function padded(low: number | null, high: number | null): [number, number] {
+  if (low === null || high === null) return [-1, 1]
+  const size = Math.max(Math.abs(low), Math.abs(high))
+  const least = size > 0 ? RESOLUTION * size : 2
+  const middle = (low + high) / 2
+  const half = 0.56 * Math.max(high - low, least)
+  return [middle - half, middle + half]
+}
+
 /** Below this part of its largest, a rate is that of a turning point. */
 const TURNS = 1e-4
 
@@ -90,4 +103,9 @@ export function stepAt(times: Curve, time: number): number {
     else high = middle
   }
   return low + (time - times[low]) / (times[high] - times[low])
+}
+
+/** Changes of a quantity of this size up to which they are rounding and not a signal. */
+export function noise(size: number): number {
+  return RESOLUTION * size
 }

@@ -2,7 +2,7 @@ import uPlot from 'uplot'
 import 'uplot/dist/uPlot.min.css'
 import { css, el, keepFocus, prose } from './dom'
 import { number, pretty, titled } from './format'
-import { decades, nearestStep, positive, valueAt, type Curve, withGaps } from './curve'
+import { decades, nearestStep, padded, positive, valueAt, type Curve, withGaps } from './curve'
 import type { State } from './state'
 
 const HEIGHT = 190
@@ -10,8 +10,6 @@ const HEIGHT = 190
 const AXIS = 66
 /** With more powers of ten than this along an axis, every other one has a number. */
 const MOST_POWERS = 6
-/** A curve that varies less than this share of its size is drawn as the constant that it is. */
-const RESOLUTION = 1e-5
 
 export interface Line {
   label: string
@@ -214,13 +212,4 @@ function powers(_: uPlot, splits: number[]): string[] {
 function isPower(value: number): boolean {
   const power = Math.log10(value)
   return Math.abs(power - Math.round(power)) < 1e-9
-}
-
-function padded(low: number | null, high: number | null): [number, number] {
-  if (low === null || high === null) return [-1, 1]
-  const size = Math.max(Math.abs(low), Math.abs(high))
-  const least = size > 0 ? RESOLUTION * size : 2
-  const middle = (low + high) / 2
-  const half = 0.56 * Math.max(high - low, least)
-  return [middle - half, middle + half]
 }

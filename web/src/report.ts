@@ -42,13 +42,22 @@ export interface Margin {
   note: string
 }
 
+/** Another design over the same times; what is not known of it is empty or missing. */
+export interface Design extends Omit<wire.Design, 'poses' | 'quantities' | 'margin'> {
+  poses: Curve[]
+  /** By the quantity's index. */
+  quantities: (ByOrder<Curve> | undefined)[]
+  margin?: Curve
+}
+
 /** The payload with its curves decoded. */
-export interface Report extends Omit<wire.Payload, 'times' | 'bodies' | 'quantities' | 'margin' | 'variables'> {
+export interface Report extends Omit<wire.Payload, 'times' | 'bodies' | 'quantities' | 'margin' | 'variables' | 'designs'> {
   times: Curve
   bodies: Body[]
   quantities: Quantity[]
   margin?: Margin
   variables: Variable[]
+  designs: Design[]
 }
 
 export function read(payload: wire.Payload): Report {
@@ -69,6 +78,12 @@ export function read(payload: wire.Payload): Report {
       index,
       shifts: variable.shifts.map(decode),
       sensitivities: new Map(variable.sensitivities.map((item) => [item.quantity, sensitivity(item)])),
+    })),
+    designs: payload.designs.map((design) => ({
+      ...design,
+      poses: design.poses.map(decode),
+      quantities: design.quantities.map((item) => (item ? curves(item) : undefined)),
+      margin: design.margin ? decode(design.margin) : undefined,
     })),
   }
 }

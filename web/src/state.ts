@@ -1,11 +1,12 @@
-import { valueAt, stepAt } from './curve'
+import { valueAt, stepAt, type Curve } from './curve'
+import { effects, firstQuantity } from './effect'
+import type { Design, Order, Report } from './report'
 import type { Part } from './scene/drawn'
-import { groups, type Order, type Quantity, type Report } from './report'
 
 export interface Choice {
   quantity: number
   variable: number
-  /** By how much the selected variable is changed in the view, in its unit. */
+  /** By how much the selected variable is changed, in its unit; see [`State.changes`]. */
   change: number
   order: Order
   /** The quantity that curves are drawn over; time where there is none. */
@@ -16,11 +17,19 @@ export interface Choice {
   selected?: Part
   /** Body and hardpoint whose path is drawn. */
   trace?: [body: number, point: number]
+  /** The measured distance whose value is pointed at, an index into the report's distances. */
+  distance?: number
+  /** Whether hardpoints are named in the view. */
+  labels: boolean
+  /** The design that the present one is compared with; the one as loaded where there is none. */
+  compared?: number
 }
 
 /** What the reader chose and the moment shown; the views listen, and change it only through its methods. */
 export class State {
   choice: Choice
+  /** By how much each variable is changed from the model as loaded, in its unit. */
+  readonly changes: number[]
   /** Fractional index into the times. */
   step = 0
   playing = false
@@ -30,11 +39,11 @@ export class State {
   #onTime: (() => void)[] = []
 
   constructor(readonly report: Report) {
-    const offered = groups(report).flatMap(([, members]) => members)
-    const moved = ({ index }: Quantity) => report.variables.some(({ sensitivities }) => (sensitivities.get(index)?.peaks[0] ?? 0) > 0)
-    const first = offered.find(moved) ?? offered[0]
-    const able = report.variables.find((variable) => variable.sensitivities.size > 0)
-    this.choice = { quantity: first?.index ?? 0, variable: able?.index ?? 0, change: 0, order: 0, all: false }
+    const quantity = firstQuantity(report)
+    const variable = effects(report, quantity, 0)[0]?.variable.index ?? report.variables.find(({ sensitivities }) => sensitivities.size > 0)?.index ?? 0
+    const exact = report.designs.find(({ kind }) => kind === 'exact')
+    this.changes = report.variables.map((_, index) => exact?.change[index] ?? 0)
+    this.choice = { quantity, variable, change: this.changes[variable] ?? 0, order: 0, all: false, labels: false }
   }
 
   get lastStep(): number {
@@ -45,6 +54,55 @@ export class State {
     return valueAt(this.report.times, this.step)
   }
 
+  /** The solved design that the changes make; none where they are foreseen, or there are none. */
+  get present(): Design | undefined {
+    return this.report.designs.find(({ kind, change }) => kind === 'exact' && this.changes.every((by, index) => by === (change[index] ?? 0)))
+  }
+
+  /** The design that the present one is compared with; the one as loaded where there is none. */
+  get former(): Design | undefined {
+    return this.choice.compared === undefined ? undefined : this.report.designs[this.choice.compared]
+  }
+
+  /** Whether the present design differs from the one that it is compared with. */
+  get compares(): boolean {
+    return this.former ? this.former !== this.present : this.present !== undefined || this.changed
+  }
+
+  /** Whether any variable is changed from the model as loaded. */
+  get changed(): boolean {
+    return this.changes.some((by) => by !== 0)
+  }
+
+  /** Whether the present design is foreseen to first order instead of solved. */
+  get foreseen(): boolean {
+    return this.changed && !this.present
+  }
+
+  /** A quantity of the present design, solved or foreseen to first order. */
+  curve(quantity: number, order: Order): Curve {
+    const loaded = this.report.quantities[quantity].curves[order]
+    const { present } = this
+    if (present) return present.quantities[quantity]?.[order] ?? new Float32Array()
+    if (!this.changed) return loaded
+    const curve = loaded.slice()
+    for (const { index, sensitivities } of this.report.variables) {
+      const by = this.changes[index]
+      const slope = sensitivities.get(quantity)?.curves[order]
+      if (by !== 0 && slope) for (let k = 0; k < curve.length; k++) curve[k] += by * (slope[k] ?? NaN)
+    }
+    return curve
+  }
+
+  /** A value of the present design, where it is known. */
+  value(index: number): number | null {
+    const { value, sensitivities } = this.report.values[index]
+    const { present } = this
+    if (present) return present.values[index] ?? null
+    if (value === null) return null
+    return this.changes.reduce((sum: number | null, by, k) => (by === 0 ? sum : sum === null || sensitivities[k] == null ? null : sum + by * sensitivities[k]), value)
+  }
+
   onChoice(listener: () => void): void {
     this.#onChoice.push(listener)
   }
@@ -53,10 +111,22 @@ export class State {
     this.#onTime.push(listener)
   }
 
-  choose(change: Partial<Choice>): void {
-    // Another variable has not been changed yet.
-    Object.assign(this.choice, change.variable === undefined ? {} : { change: 0 }, change)
+  choose(choice: Partial<Choice>): void {
+    Object.assign(this.choice, choice)
+    if (choice.change !== undefined) this.changes[this.choice.variable] = choice.change
+    this.choice.change = this.changes[this.choice.variable] ?? 0
     for (const listener of this.#onChoice) listener()
+  }
+
+  /** Changes one variable, which thereby is the selected one. */
+  change(variable: number, change: number): void {
+    this.choose({ variable, change })
+  }
+
+  /** Takes every change back. */
+  reset(): void {
+    this.changes.fill(0)
+    this.choose({})
   }
 
   goToStep(step: number): void {
@@ -79,6 +149,7 @@ export class State {
   }
 
   toggle(): void {
+    if (this.lastStep === 0) return
     this.playing = !this.playing
     if (this.playing) {
       if (this.step >= this.lastStep) this.step = 0

@@ -1,8 +1,8 @@
 import { Vector3 } from 'three'
-import { type Curve, decode } from '../curve'
-import type { BodyPlace, Design, JointMark } from '../payload'
-import type { Report, Variable } from '../report'
-import type { Choice } from '../state'
+import type { Curve } from '../curve'
+import type { Arrow, BodyPlace, JointMark } from '../payload'
+import type { Design, Report } from '../report'
+import type { State } from '../state'
 import { Mechanism } from './mechanism'
 import { poseAt, shifted } from './poses'
 
@@ -13,31 +13,37 @@ type Move = (body: number, at: Place) => Place
 const SAME = 1e-6
 
 /**
- * The design drawn solid: as loaded, as the change of the chosen variable makes it to first order, or another exact design
+ * The design drawn solid: as loaded, as the changes of variables make it to first order, or another exact design
  * that the report brings. Its `former` is the design drawn dashed, where there is one.
  */
-export function present(today: Mechanism, choice: Choice): Mechanism {
-  const { report } = today
-  const variable = report.variables[choice.variable]
-  if (choice.change !== 0 && variable) return new Mechanism(foreseen(report, variable, choice.change, today.size), today, today)
-  const design = report.designs.find(({ kind, poses }) => kind === 'exact' && poses.length === report.bodies.length)
-  return design ? new Mechanism(solved(report, design, today.size), today, today) : today
+export function present(today: Mechanism, state: State): Mechanism {
+  const { report, size } = today
+  const known = (design?: Design) => (design && design.poses.length === report.bodies.length ? design : undefined)
+  const exact = known(state.present)
+  const other = known(state.former)
+  const former = other ? new Mechanism(solved(report, other, size), today) : today
+  if (exact) return new Mechanism(solved(report, exact, size), today, former)
+  if (state.changed) return new Mechanism(foreseen(report, state.changes, size), today, former)
+  return other ? new Mechanism(report, today, former) : today
 }
 
-/** A report as the change of a variable makes it to first order. */
-export function foreseen(report: Report, variable: Variable, change: number, size: number): Report {
-  const poses = report.bodies.map((body, b) => (variable.shifts[b]?.length ? moved(body.poses, variable.shifts[b], change) : body.poses))
-  const arrowAt = (body: number, at: Place) =>
-    variable.arrows.find((arrow) => arrow.body === body && apart(arrow.at, at) <= SAME * size)
-  const move: Move = (body, at) => {
-    const arrow = arrowAt(body, at)
-    return arrow ? added(at, arrow.v, change) : at
-  }
+/** A report as changes of its variables make it to first order. */
+export function foreseen(report: Report, changes: number[], size: number): Report {
+  const changed = report.variables.filter(({ index }) => changes[index])
+  const poses = report.bodies.map((body, b) => {
+    const shifts = sum(changed.map((variable) => ({ curve: variable.shifts[b], by: changes[variable.index] })))
+    return shifts ? moved(body.poses, shifts, 1) : body.poses
+  })
+  const arrowsAt = (body: number, at: Place): { arrow: Arrow; by: number }[] =>
+    changed.flatMap(({ index, arrows }) =>
+      arrows.filter((arrow) => arrow.body === body && apart(arrow.at, at) <= SAME * size).slice(0, 1).map((arrow) => ({ arrow, by: changes[index] })),
+    )
+  const move: Move = (body, at) => arrowsAt(body, at).reduce((place, { arrow, by }) => added(place, arrow.v, by), at)
   const turn = (body: number, at: Place, axis: Place): Place => {
-    const arrow = arrowAt(body, at)
-    if (!arrow) return axis
     const unit = new Vector3(...axis)
-    return unit.addScaledVector(new Vector3(...arrow.turn).cross(unit), change).normalize().toArray()
+    const turned = unit.clone()
+    for (const { arrow, by } of arrowsAt(body, at)) turned.addScaledVector(new Vector3(...arrow.turn).cross(unit), by)
+    return turned.normalize().toArray()
   }
   const redrawn = redraw(report, poses, move)
   const joints = redrawn.joints.map((joint, k) => {
@@ -52,13 +58,24 @@ export function foreseen(report: Report, variable: Variable, change: number, siz
   return { ...redrawn, joints }
 }
 
+/** Shifts of several variables together, to first order; none where there are none. */
+function sum(items: { curve: Curve | undefined; by: number }[]): Curve | undefined {
+  let total: Curve | undefined
+  for (const { curve, by } of items) {
+    if (!curve || curve.length === 0) continue
+    total ??= new Float32Array(curve.length)
+    for (let k = 0; k < curve.length; k++) total[k] += by * curve[k]
+  }
+  return total
+}
+
 /** A report as a re-solved design has it. */
 export function solved(report: Report, design: Design, size: number): Report {
   const move: Move = (body, at) => {
     const k = report.bodies[body].skeleton.findIndex((point) => apart(point, at) <= SAME * size)
     return design.skeletons[body]?.[k] ?? at
   }
-  return redraw(report, design.poses.map(decode), move)
+  return redraw(report, design.poses, move)
 }
 
 function redraw(report: Report, poses: Curve[], move: Move): Report {

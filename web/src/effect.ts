@@ -1,0 +1,52 @@
+import { noise, peak } from './curve'
+import { groups, type Order, type Report, type Sensitivity, type Variable } from './report'
+
+/** How a variable acts on the selected quantity. */
+export interface Effect {
+  variable: Variable
+  sensitivity: Sensitivity
+  /** The sensitivity where it is largest in size, with its sign. */
+  extreme: number
+  /** Size of the effect relative to the largest among variables of the same unit, or of all typical changes; 0 to 1. */
+  share: number
+}
+
+/** Below this share of the largest, a sensitivity is rounding noise and not an influence. */
+const NOISE = 1e-9
+
+/**
+ * Variables with a sensitivity of the quantity, largest effect first: by their typical changes where all of them have one,
+ * else by peak over time within each unit, units in the order of their first variable.
+ */
+export function effects(report: Report, quantity: number, order: Order): Effect[] {
+  const found: Effect[] = []
+  for (const variable of report.variables) {
+    const sensitivity = variable.sensitivities.get(quantity)
+    if (sensitivity) found.push({ variable, sensitivity, extreme: extreme(sensitivity.curves[order], sensitivity.peaks[order]), share: 0 })
+  }
+  const typical = found.length > 0 && found.every(({ variable }) => variable.typical !== null)
+  const size = ({ variable, extreme }: Effect) => Math.abs(extreme) * (typical ? Math.abs(variable.typical ?? 0) : 1)
+  const kind = ({ variable }: Effect) => (typical ? '' : variable.unit)
+  const kinds = [...new Set(found.map(kind))]
+  const largest = new Map(kinds.map((name) => [name, Math.max(...found.filter((item) => kind(item) === name).map(size))]))
+  for (const item of found) {
+    const most = largest.get(kind(item)) ?? 0
+    item.share = most > 0 ? size(item) / most : 0
+    if (item.share < NOISE) item.share = 0
+  }
+  return found.sort((a, b) => kinds.indexOf(kind(a)) - kinds.indexOf(kind(b)) || b.share - a.share || a.variable.index - b.variable.index)
+}
+
+function extreme(curve: Float32Array, largest: number): number {
+  return curve.find((value) => Math.abs(value) === largest) ?? 0
+}
+
+/** The quantity that the page opens on: the one given, else the first that varies, measures first. */
+export function firstQuantity(report: Report): number {
+  const offered = groups(report).flatMap(([, members]) => members)
+  const varies = ({ curves }: { curves: readonly [Float32Array, Float32Array, Float32Array] }) => {
+    const [value] = curves
+    return value.some((x) => Math.abs(x - value[0]) > noise(peak(value)))
+  }
+  return report.first ?? (offered.find(varies) ?? offered[0])?.index ?? 0
+}

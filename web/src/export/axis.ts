@@ -1,0 +1,53 @@
+import { number } from '../format'
+
+/** From values to pixels, with round numbers on the way. */
+export interface Axis {
+  /** Where a value is; NaN for what a logarithmic axis cannot show. */
+  at(value: number): number
+  ticks: { value: number; text: string }[]
+}
+
+/** More than so many powers of ten, and every other one has a number. */
+const MOST_POWERS = 6
+
+/** An axis from `low` at `from` to `high` at `to` with about `count` round numbers. */
+export function linearAxis([low, high]: [number, number], from: number, to: number, count: number): Axis {
+  const at = (value: number) => from + ((value - low) / (high - low)) * (to - from)
+  const step = roundStep((high - low) / count)
+  const first = Math.ceil(low / step - 1e-9)
+  const last = Math.floor(high / step + 1e-9)
+  const ticks = Array.from({ length: Math.max(0, last - first + 1) }, (_, k) => {
+    const value = (first + k) * step
+    return { value, text: number(value, 6) }
+  })
+  return { at, ticks }
+}
+
+/** An axis over whole powers of ten. */
+export function logarithmicAxis([low, high]: [number, number], from: number, to: number): Axis {
+  const [bottom, top] = [Math.log10(low), Math.log10(high)]
+  const at = (value: number) => (value > 0 ? from + ((Math.log10(value) - bottom) / (top - bottom)) * (to - from) : NaN)
+  const powers = Array.from({ length: Math.round(top - bottom) + 1 }, (_, k) => Math.round(bottom) + k)
+  const few = powers.length <= MOST_POWERS
+  return { at, ticks: powers.map((power) => ({ value: 10 ** power, text: few || power % 2 === 0 ? number(10 ** power) : '' })) }
+}
+
+/** The nearest of 1, 2 and 5 times a power of ten that is not below. */
+function roundStep(least: number): number {
+  const power = 10 ** Math.floor(Math.log10(least))
+  return ([1, 2, 5].find((lead) => lead * power >= least * (1 - 1e-9)) ?? 10) * power
+}
+
+/** Least and largest of the numbers; none where there is no number. */
+export function extent(lists: ArrayLike<number | null>[], positive = false): [number, number] | undefined {
+  let [low, high] = [Infinity, -Infinity]
+  for (const list of lists) {
+    for (let k = 0; k < list.length; k++) {
+      const value = list[k]
+      if (value === null || !Number.isFinite(value) || (positive && value <= 0)) continue
+      if (value < low) low = value
+      if (value > high) high = value
+    }
+  }
+  return low <= high ? [low, high] : undefined
+}
