@@ -12,7 +12,7 @@ const OPENING = 0.52
 const BOOT = { rings: 4, radius: 2.75, less: 0.45, thickness: 0.75, apart: 1.15, from: 0.9 }
 /** Of a drive shaft: the bell's radius as a part of the wheel's, and at most this part of the distance to the next joint. */
 const OF_WHEEL = 0.15
-const OF_DISTANCE = 0.25
+const OF_DISTANCE = 0.45
 
 /** A bell on body i and a boot on body j. */
 export const constantVelocity: DrawJoint = (mechanism, kit, joint) => {

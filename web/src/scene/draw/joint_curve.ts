@@ -9,12 +9,12 @@ import { type DrawJoint, type Piece, piece } from './joint'
 /** Radii of the roller on a cam and of the one in a groove, at most. */
 const ROLLER = { cam: 4.2, groove: 1.6 }
 /** Heights in the thickness of a planar link: cam, roller, its pin. */
-const HEIGHT = { cam: 1.4, roller: 1.5, pin: 4 }
+const HEIGHT = { cam: 1, roller: 1.3, pin: 3 }
 const PIN = 1.1
 /** A groove is a little wider than its roller, and its band this much wider again. */
 const GROOVE = { play: 1.06, band: 1.5 }
 /** A dot that shows a cam's turning, at this part of the way to its curve. */
-const DOT = { radius: 0.8, height: 1.7, part: 0.5 }
+const DOT = { radius: 0.8, height: 1.3, part: 0.5 }
 /** Dashed line of the pitch curve in px. */
 const LINE = 1.2
 /** Radii of the struts from a groove to the joints of its body. */
@@ -44,7 +44,7 @@ function cam(mechanism: Mechanism, kit: Kit, joint: JointMark, curve: JointCurve
   const body = joint.body_i
   const hinge = mechanism.jointsOf(body).find((other) => other.joint.kind === 'revolute')
   const centre = basis.to(hinge?.at ?? new Vector3(...joint.at_i))
-  const above = (point: Flat) => basis.from(point, 0.75 * HEIGHT.cam * t)
+  const above = (point: Flat) => basis.from(point, 0.9 * t)
   const first = points[0]
   const dot = basis.from([centre[0] + DOT.part * (first[0] - centre[0]), centre[1] + DOT.part * (first[1] - centre[1])])
   return piece(
