@@ -27,7 +27,11 @@ export const translational: DrawJoint = (mechanism, kit, joint, index) => {
   const form = formOf(joint.draw)
   if (form && form !== 'rod' && !mechanism.plane) return [slidingStrut(mechanism, kit, slide, form)]
   if (mechanism.plane) return inPlane(mechanism, kit, slide)
-  return isBar(mechanism, slide) || rackJoints(mechanism.report).has(index) ? inTube(mechanism, kit, slide) : onRail(mechanism, kit, slide)
+  const { rail, block, place, blockPlace } = slide
+  if (isBar(mechanism, slide, block, blockPlace) || rackJoints(mechanism.report).has(index)) return inTube(mechanism, kit, rail, place, slide.axis)
+  // A slider on a body that is a bar is a sleeve round it.
+  if (rail > 0 && isBar(mechanism, slide, rail, place)) return inTube(mechanism, kit, block, blockPlace, mechanism.into(block, mechanism.alongAt(rail, slide.axis, 0)))
+  return onRail(mechanism, kit, slide)
 }
 
 function inPlane(mechanism: Mechanism, kit: Kit, slide: Slide): Piece[] {
@@ -48,13 +52,13 @@ function inPlane(mechanism: Mechanism, kit: Kit, slide: Slide): Piece[] {
   return grounded ? [piece(0, ...hatchedRails(mechanism, kit, slide, LINE.aside, LINE.room + (carries ? 2 : 0))), piece(block, body)] : [piece(block, body)]
 }
 
-/** Whether the slider lies along the slide. */
-function isBar(mechanism: Mechanism, { rail, block, blockPlace, axis }: Slide): boolean {
-  const along = mechanism.into(block, mechanism.alongAt(rail, axis, 0))
-  return mechanism.shapePoints(block).filter((point) => point.clone().sub(blockPlace).cross(along).length() < 0.02 * mechanism.size).length > 1
+/** Whether a body lies along the slide at a place of it. */
+function isBar(mechanism: Mechanism, { rail, axis }: Slide, body: number, at: Vector3): boolean {
+  const along = mechanism.into(body, mechanism.alongAt(rail, axis, 0))
+  return mechanism.shapePoints(body).filter((point) => point.clone().sub(at).cross(along).length() < 0.02 * mechanism.size).length > 1
 }
 
-function inTube(mechanism: Mechanism, kit: Kit, { rail, place, axis }: Slide): Piece[] {
+function inTube(mechanism: Mechanism, kit: Kit, rail: number, place: Vector3, axis: Vector3): Piece[] {
   const s = kit.unit
   const length = (rail === 0 ? TUBE.onGround : TUBE.onBody) * s
   const pieces: Object3D[] = [kit.tube(place, axis, TUBE.outer * s, TUBE.inner * s, length, kit.body(rail))]
