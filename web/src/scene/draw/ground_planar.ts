@@ -13,7 +13,7 @@ const SMALL = 0.8
 export function planarFoot(mechanism: Mechanism, kit: Kit, { at, radius, front }: Foot): Object3D[] {
   const { plane, up, pitch, topLayer, large, unit } = mechanism
   const r = radius * (large ? SMALL : 1)
-  const height = front ? (topLayer + 0.2) * pitch : -0.4 * unit
+  const height = front ? (topLayer + 1) * pitch : -0.4 * unit
   const basis = new Basis(at.clone().addScaledVector(plane!, height), plane!, up.clone().cross(plane!))
   const [h, w, head] = [TRIANGLE.height * r, TRIANGLE.width * r, TRIANGLE.head * r]
   const outline: Flat[] = [[-head, 0], [-w, -h], [w, -h], [head, 0]]
