@@ -3,6 +3,8 @@ import type { Drawn } from '../drawn'
 import type { Kit } from '../kit'
 import type { Mechanism } from '../mechanism'
 import { bodyPart } from '../part'
+import { hingePlaces } from '../hinge'
+import { shaftJoints } from '../shafts'
 import { planarFoot } from './ground_planar'
 import { ballFoot, hingeFoot } from './ground_spatial'
 
@@ -34,14 +36,9 @@ export function ground(mechanism: Mechanism, kit: Kit): Drawn[] {
   })
 }
 
-/** Joints of ground that couplers turn: their shafts have bearings of their own. */
-function shafts({ report }: Mechanism): Set<number> {
-  return new Set(report.couplers.flatMap(({ terms }) => terms.map(({ joint }) => joint)))
-}
-
 function feet(mechanism: Mechanism): Foot[] {
   const { report } = mechanism
-  const turning = shafts(mechanism)
+  const turning = shaftJoints(mechanism.report)
   const front = (body: number) => report.joints.some(({ curve, body_i }) => curve && body_i === body)
   const joints = report.joints.flatMap((joint, index): Foot[] => {
     const { body_i, body_j, kind } = joint
@@ -55,7 +52,7 @@ function feet(mechanism: Mechanism): Foot[] {
     const axis = hinge && joint.axis ? mechanism.alongAt(joint.body_i, new Vector3(...joint.axis), 0).normalize() : undefined
     const radius = mechanism.radiusAt(body, held)
     const rod = kind === 'distance' || kind === 'leg'
-    const spots = joint.hinge && axis && !mechanism.plane ? joint.hinge.map((point) => mechanism.worldAt(body_i, new Vector3(...point), 0)) : [at]
+    const spots = axis ? hingePlaces(mechanism, joint).map((point) => mechanism.worldAt(body_i, point, 0)) : [at]
     const aside = mechanism
       .shapePoints(body)
       .map((point) => mechanism.worldAt(body, point, 0))

@@ -1,16 +1,21 @@
 import type { Draw } from '../drawn'
 import { bodies } from './body'
+import { couplers } from './coupler'
 import { designVelocity } from './design_velocity'
 import { dimension } from './dimension'
+import { distances } from './distance'
 import { drivers } from './driver'
 import { formerDesign } from './former'
 import { ground } from './ground'
 import { fixedLink } from './ground_link'
+import { joints } from './joint'
 import { meshes } from './mesh'
+import { motors } from './motor'
 import { trace } from './trace'
+import { wheels } from './wheel'
 
 /** Every kind of thing that a mechanism is made of, one file each. */
-export const matter: Draw[] = [bodies, meshes, ground, fixedLink]
+export const matter: Draw[] = [bodies, meshes, ground, fixedLink, joints, couplers, wheels, distances, motors]
 
 /** What is drawn to say something about it; made anew with every choice. `mechanism.former` is the design drawn dashed. */
 export const marks: Draw[] = [formerDesign, trace, drivers, dimension, designVelocity]

@@ -1,0 +1,56 @@
+import { Group, type Object3D } from 'three'
+import type { JointMark } from '../../payload'
+import type { Drawn } from '../drawn'
+import type { Kit } from '../kit'
+import type { Mechanism } from '../mechanism'
+import { jointPart } from '../part'
+import { constantVelocity } from './joint_constant_velocity'
+import { pointOnCurve } from './joint_curve'
+import { cylindrical } from './joint_cylindrical'
+import { hinge } from './joint_hinge'
+import { onLine } from './joint_line'
+import { otherJoint } from './joint_other'
+import { onPlane } from './joint_plane'
+import { massless } from './joint_rod'
+import { screw } from './joint_screw'
+import { pinInSlot } from './joint_slot'
+import { spherical } from './joint_spherical'
+import { translational } from './joint_translational'
+import { universal } from './joint_universal'
+
+/** An object in a body's frame; in the world where there is no body. */
+export type Piece = Omit<Drawn, 'part'>
+/** How a kind of joint is drawn. */
+export type DrawJoint = (mechanism: Mechanism, kit: Kit, joint: JointMark, index: number) => Piece[]
+
+const KINDS: Record<string, DrawJoint> = {
+  revolute: hinge,
+  spherical,
+  universal,
+  constant_velocity: constantVelocity,
+  cylindrical,
+  translational,
+  planar: onPlane,
+  inplane: onPlane,
+  inline: onLine,
+  pin_in_slot: pinInSlot,
+  point_on_curve: pointOnCurve,
+  screw,
+  distance: massless,
+  leg: massless,
+  revolute_spherical: massless,
+}
+
+/** Every joint by its kind; one of a kind that is not known has a neutral mark. */
+export function joints(mechanism: Mechanism, kit: Kit): Drawn[] {
+  return mechanism.report.joints.flatMap((joint, index) => {
+    const draw = Object.hasOwn(KINDS, joint.kind) ? KINDS[joint.kind] : otherJoint
+    const part = jointPart(mechanism, index)
+    return draw(mechanism, kit, joint, index).map((piece) => ({ ...piece, part }))
+  })
+}
+
+/** Objects in a body's frame as one piece. */
+export function piece(body: number, ...objects: Object3D[]): Piece {
+  return { body, object: objects.length === 1 ? objects[0] : new Group().add(...objects) }
+}

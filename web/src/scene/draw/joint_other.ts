@@ -1,0 +1,14 @@
+import { OctahedronGeometry } from 'three'
+import { carried } from '../hinge'
+import { type DrawJoint, piece } from './joint'
+
+/** Radius of the mark. */
+const MARK = 1.6
+
+/** A neutral mark for what has no look of its own: angles, headings, orientations held. */
+export const otherJoint: DrawJoint = (mechanism, kit, joint) => {
+  const { body, at } = carried(mechanism, joint)
+  const mark = kit.mesh(new OctahedronGeometry(MARK * mechanism.radiusOf(joint)), kit.palette.steel, { edges: 20 })
+  mark.position.copy(at).add(mechanism.lift(body, mechanism.topLayer + 1))
+  return [piece(body, mark)]
+}

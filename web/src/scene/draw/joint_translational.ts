@@ -1,0 +1,113 @@
+import { Group, type Object3D, Vector3 } from 'three'
+import type { Kit } from '../kit'
+import type { Mechanism } from '../mechanism'
+import { rackJoints } from '../shafts'
+import type { Slide } from '../slide'
+import { type DrawJoint, type Piece, piece } from './joint'
+import { hatchedRails } from './rails'
+import { type Form, formOf, strut } from './strut'
+
+/** Sides of a block: along the slide, across, and height in space; in a link's slot; of one that carries another slide. */
+const BLOCK = { length: 5.2, across: 3.2, height: 3, width: 3.8 }
+const SLOTTED = { length: 4.6, across: 2.9 }
+const CARRIAGE = 9.5
+/** From the middle of a slide to its hatched lines, and how far these reach beyond the travel. */
+const LINE = { aside: 1.75, room: 3.9 }
+/** A tube round a bar: outer and inner radius, length on ground and on a body. */
+const TUBE = { outer: 1.9, inner: 1.35, onGround: 9, onBody: 7 }
+/** Its foot: down to the plate, radius, side of the plate. */
+const FOOT = { down: 4.2, radius: 1.2, plate: 6 }
+/** Rail in space: room beyond the travel; bars on a body: distance from the middle and radius. */
+const RAIL = { room: 4.2, aside: 1.6, bar: 0.55 }
+
+/** A block on a rail or in a slot; a bar in a tube where the slider is a bar; a spring strut where the model says so. */
+export const translational: DrawJoint = (mechanism, kit, joint, index) => {
+  const slide = mechanism.slideOf(index)
+  if (!slide) return []
+  const form = formOf(joint.draw)
+  if (form && form !== 'rod' && !mechanism.plane) return [slidingStrut(mechanism, kit, slide, form)]
+  if (mechanism.plane) return inPlane(mechanism, kit, slide)
+  return isBar(mechanism, slide) || rackJoints(mechanism.report).has(index) ? inTube(mechanism, kit, slide) : onRail(mechanism, kit, slide)
+}
+
+function inPlane(mechanism: Mechanism, kit: Kit, slide: Slide): Piece[] {
+  const { rail, block, blockPlace, axis } = slide
+  const s = kit.unit
+  const normal = mechanism.into(block, mechanism.plane!)
+  const along = mechanism.into(block, mechanism.alongAt(rail, axis, 0))
+  const grounded = rail === 0
+  const [length, width] = grounded ? [BLOCK.length, BLOCK.across] : [SLOTTED.length, SLOTTED.across]
+  const carries = mechanism.report.joints.some((_, k) => {
+    const other = mechanism.slideOf(k)
+    return other !== undefined && other.rail === block && mechanism.same(other.place, blockPlace)
+  })
+  // A carriage is seen on both sides of the slot in it, and lies behind that.
+  const layer = carries ? mechanism.layerOf(block) - 0.6 : grounded ? mechanism.layerOf(block) : mechanism.layerOf(rail) + 0.3
+  const middle = blockPlace.clone().add(mechanism.lift(block, layer))
+  const body = kit.brick(middle, along, normal.clone().cross(along), [(carries ? CARRIAGE : length) * s, width * s, 1.05 * mechanism.thickness], kit.body(block))
+  return grounded ? [piece(0, ...hatchedRails(mechanism, kit, slide, LINE.aside, LINE.room + (carries ? 2 : 0))), piece(block, body)] : [piece(block, body)]
+}
+
+/** Whether the slider lies along the slide. */
+function isBar(mechanism: Mechanism, { rail, block, blockPlace, axis }: Slide): boolean {
+  const along = mechanism.into(block, mechanism.alongAt(rail, axis, 0))
+  return mechanism.shapePoints(block).filter((point) => point.clone().sub(blockPlace).cross(along).length() < 0.02 * mechanism.size).length > 1
+}
+
+function inTube(mechanism: Mechanism, kit: Kit, { rail, place, axis }: Slide): Piece[] {
+  const s = kit.unit
+  const length = (rail === 0 ? TUBE.onGround : TUBE.onBody) * s
+  const pieces: Object3D[] = [kit.tube(place, axis, TUBE.outer * s, TUBE.inner * s, length, kit.body(rail))]
+  if (rail === 0) {
+    const down = below(mechanism, axis)
+    const foot = place.clone().addScaledVector(down, FOOT.down * s)
+    pieces.push(
+      kit.cylinder(place.clone().addScaledVector(down, TUBE.outer * s * 0.9), foot, FOOT.radius * s, FOOT.radius * s, kit.palette.ground),
+      kit.footPlate(foot, down, axis, FOOT.plate * s),
+    )
+  }
+  return [piece(rail, ...pieces)]
+}
+
+function onRail(mechanism: Mechanism, kit: Kit, slide: Slide): Piece[] {
+  const { rail, block, place, blockPlace, axis } = slide
+  const s = kit.unit
+  const down = mechanism.into(rail, below(mechanism, mechanism.alongAt(rail, axis, 0)))
+  const side = axis.clone().cross(down).normalize()
+  const [low, high] = slide.low <= slide.high ? [slide.low, slide.high] : [0, 0]
+  const [from, to] = [low - RAIL.room * s, high + RAIL.room * s].map((t) => place.clone().addScaledVector(axis, t))
+  const middle = from.clone().lerp(to, 0.5)
+  const length = from.distanceTo(to)
+  const way =
+    rail === 0
+      ? [
+          kit.brick(middle.clone().addScaledVector(down, 1.9 * s), axis, down, [length, s, 2.2 * s], kit.palette.ground),
+          kit.hatched(middle.clone().addScaledVector(down, 2.6 * s), axis, down, [length, 0.5 * s, 5 * s]),
+        ]
+      : [-1, 1].map((sign) => {
+          const aside = side.clone().multiplyScalar(sign * RAIL.aside * s)
+          return kit.cylinder(from.clone().add(aside), to.clone().add(aside), RAIL.bar * s, RAIL.bar * s, kit.body(rail))
+        })
+  const own = (direction: Vector3) => mechanism.into(block, mechanism.alongAt(rail, direction, 0))
+  return [piece(rail, ...way), piece(block, kit.brick(blockPlace, own(axis), own(down), [BLOCK.length * s, BLOCK.height * s, BLOCK.width * s], kit.body(block)))]
+}
+
+/** From the slide's place on the rail to the far end of the slider. */
+function slidingStrut(mechanism: Mechanism, kit: Kit, { rail, block, place, blockPlace, axis }: Slide, form: Form): Piece {
+  const along = mechanism.into(block, mechanism.alongAt(rail, axis, 0))
+  const top = mechanism
+    .shapePoints(block)
+    .filter((point) => point.clone().sub(blockPlace).cross(along).length() < 0.05 * mechanism.size)
+    .reduce((far, point) => (point.distanceTo(blockPlace) > far.distanceTo(blockPlace) ? point : far), blockPlace.clone())
+  const length = mechanism.worldAt(block, top, 0).distanceTo(mechanism.worldAt(rail, place, 0))
+  const { object, span } = strut(kit, form, length)
+  return { object: new Group().add(object), follow: (frame) => span(frame.at(block, top), frame.at(rail, place)) }
+}
+
+/** The axis of the world that is most downwards and square to a slide. */
+function below(mechanism: Mechanism, axis: Vector3): Vector3 {
+  const down = mechanism.up.clone().negate()
+  const ways = [0, 1, 2].flatMap((k) => [1, -1].map((sign) => new Vector3().setComponent(k, sign)))
+  const best = ways.filter((way) => Math.abs(way.dot(axis)) < 0.6).reduce((a, b) => (b.dot(down) > a.dot(down) + 1e-9 ? b : a))
+  return best.addScaledVector(axis, -best.dot(axis)).normalize()
+}

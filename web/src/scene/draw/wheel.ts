@@ -1,0 +1,42 @@
+import { Group, LatheGeometry, Mesh, MeshBasicMaterial, Vector2, Vector3 } from 'three'
+import type { WheelMark } from '../../payload'
+import type { Drawn } from '../drawn'
+import { Basis } from '../flat'
+import { type Kit, place } from '../kit'
+import type { Mechanism } from '../mechanism'
+import { HALF_WIDTH, RIM, tyreSection } from '../shapes/wheel'
+
+/** Circles on both sides: radius and width as parts of the wheel's radius and half width, line in px, how opaque. */
+const CIRCLES = [
+  { radius: 1, side: 0.62, line: 1.1, opacity: 0.55 },
+  { radius: RIM, side: 1, line: 1.3, opacity: 0.7 },
+  { radius: 0.9, side: 1.04, line: 0.8, opacity: 0.35 },
+]
+/** Spokes: how many, from where to the rim, how far outboard in half widths, line in px, how opaque. */
+const SPOKES = { count: 5, from: 0.2, side: 0.25, line: 2.2, opacity: 0.28 }
+
+/** Road wheels: a tyre that casts a shadow and hides nothing. */
+export function wheels(mechanism: Mechanism, kit: Kit): Drawn[] {
+  return mechanism.report.wheels.map((wheel, index) => ({
+    body: wheel.centre.body,
+    object: tyre(kit, wheel, mechanism.into(wheel.centre.body, mechanism.up)),
+    part: { kind: 'wheel', index, name: wheel.name, about: 'road wheel' },
+  }))
+}
+
+function tyre(kit: Kit, { centre, axis, radius }: WheelMark, up: Vector3): Group {
+  const { palette } = kit
+  const half = HALF_WIDTH * radius
+  const basis = new Basis(new Vector3(...centre.at), new Vector3(...axis), up)
+  const on = (r: number, angle: number, side: number) => basis.from([r * radius * Math.cos(angle), r * radius * Math.sin(angle)], side * half)
+  const section = tyreSection(radius)
+  const rubber = kit.lathe(basis.origin, basis.normal, section, palette.tyre, { opacity: palette.glass })
+  const caster = new Mesh(new LatheGeometry(section.map(([r, h]) => new Vector2(r, h)), 48), new MeshBasicMaterial({ colorWrite: false, depthWrite: false, transparent: true }))
+  caster.castShadow = true
+  caster.raycast = () => {}
+  const circles = CIRCLES.flatMap(({ radius: r, side, line, opacity }) =>
+    [-side, side].map((height) => kit.line(Array.from({ length: 97 }, (_, k) => on(r, (k * Math.PI) / 48, height)), palette.tyre, line, { opacity })),
+  )
+  const spokes = Array.from({ length: SPOKES.count }, (_, k) => (2 * Math.PI * k) / SPOKES.count).flatMap((angle) => [on(SPOKES.from, angle, SPOKES.side), on(RIM, angle, SPOKES.side)])
+  return new Group().add(rubber, place(caster, basis.origin, basis.normal), ...circles, kit.lines(spokes, palette.tyre, SPOKES.line, { opacity: SPOKES.opacity }))
+}
