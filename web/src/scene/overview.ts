@@ -9,7 +9,7 @@ const LONG = 6
 /** Height of the whole's strip, as a part of the view and in pixels at most. */
 const STRIP = { share: 0.22, most: 110 }
 /** The part below is so many heights long, for every one that the view is wider than high. */
-const PART = 2.4
+const PART = 4
 
 /** The whole of a long mechanism in a strip at the top of the view; a click there moves the part seen below. */
 export class Overview {
@@ -52,7 +52,8 @@ export class Overview {
   /** Of some points those that the view is to show round a place. */
   part(points: Vector3[], place: Vector3, aspect: number): Vector3[] {
     const reach = (PART * this.#height * aspect) / 2
-    const middle = place.dot(this.#along)
+    const [low, high] = [-1, 1].map((sign) => sign * points.reduce((most, point) => Math.max(most, sign * point.dot(this.#along)), -Infinity))
+    const middle = Math.max(low + reach, Math.min(high - reach, place.dot(this.#along)))
     const near = points.filter((point) => Math.abs(point.dot(this.#along) - middle) <= reach)
     return near.length > 0 ? near : points
   }

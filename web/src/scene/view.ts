@@ -317,7 +317,9 @@ export class View {
   #label(): void {
     const { clientWidth: width, clientHeight: height } = this.element
     const frame = this.mechanism.frame(this.state.step)
-    const parts = [this.state.choice.selected, this.#pointer.hovered].filter((part) => part !== undefined)
+    const { selected } = this.state.choice
+    const { hovered } = this.#pointer
+    const parts = [selected, samePart(selected, hovered) ? undefined : hovered].filter((part) => part !== undefined)
     const labels = this.#named ? hardpointLabels(this.mechanism, frame) : parts.flatMap((part) => partLabels(this.mechanism, frame, part))
     this.#labels.show(labels, this.camera, this.mechanism.centre, width, height)
   }
