@@ -42,13 +42,6 @@ impl Curve {
     }
 }
 
-impl Curve {
-    /// Its numbers.
-    pub fn values(&self) -> &[f32] {
-        &self.0
-    }
-}
-
 impl From<&[f64]> for Curve {
     fn from(values: &[f64]) -> Self {
         values.iter().copied().collect()
