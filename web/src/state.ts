@@ -15,6 +15,8 @@ export interface Choice {
   selected?: Part
   /** Body and hardpoint whose path is drawn. */
   trace?: [body: number, point: number]
+  /** The measured distance that is selected, an index into the report's distances. */
+  distance?: number
   /** Whether hardpoints are named in the view. */
   labels: boolean
   /** The design that the present one is compared with; the one as loaded where there is none. */
@@ -39,7 +41,7 @@ export class State {
     const variable = effects(report, quantity, 0)[0]?.variable.index ?? report.variables.find(({ sensitivities }) => sensitivities.size > 0)?.index ?? 0
     const exact = report.designs.find(({ kind }) => kind === 'exact')
     this.changes = report.variables.map((_, index) => exact?.change[index] ?? 0)
-    this.choice = { quantity, variable, change: this.changes[variable] ?? 0, order: 0, labels: false }
+    this.choice = { quantity, variable, change: this.changes[variable] ?? 0, order: 0, over: report.over ?? undefined, labels: false }
   }
 
   get lastStep(): number {
@@ -109,9 +111,17 @@ export class State {
 
   choose(choice: Partial<Choice>): void {
     Object.assign(this.choice, choice)
+    this.choice.distance = this.#distance()
     if (choice.change !== undefined) this.changes[this.choice.variable] = choice.change
     this.choice.change = this.changes[this.choice.variable] ?? 0
     for (const listener of this.#onChoice) listener()
+  }
+
+  /** The measured distance that the selected quantity is, where it is one. */
+  #distance(): number | undefined {
+    const { report, choice } = this
+    const found = report.distances.findIndex(({ name }) => name === report.quantities[choice.quantity]?.name)
+    return found < 0 ? undefined : found
   }
 
   /** Changes one variable, which thereby is the selected one. */

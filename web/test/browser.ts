@@ -1,6 +1,6 @@
 import { existsSync } from 'node:fs'
 import { delimiter, join } from 'node:path'
-import { type Browser, type BrowserContext, chromium, type LaunchOptions } from 'playwright-core'
+import { type Browser, type BrowserContext, type BrowserContextOptions, chromium, type LaunchOptions } from 'playwright-core'
 
 /** Playwright's word for no time limit of its own: that of the test ends what hangs. */
 const NO_LIMIT = 0
@@ -31,15 +31,15 @@ export function launch(graphics: string[] = SOFTWARE_3D, options: LaunchOptions 
 
 export interface Visit {
   page: Awaited<ReturnType<BrowserContext['newPage']>>
-  /** Console errors, uncaught exceptions and requests to anything but the file itself. */
+  /** Anything on the console, uncaught exceptions, and requests to anything but the file itself. */
   complaints: string[]
 }
 
-export async function visit(browser: Browser, url: string, options = {}): Promise<Visit> {
+export async function visit(browser: Browser, url: string, options: BrowserContextOptions = {}): Promise<Visit> {
   const page = await browser.newPage({ viewport: { width: 1400, height: 900 }, ...options })
   page.setDefaultTimeout(NO_LIMIT)
   const complaints: string[] = []
-  page.on('console', (message) => message.type() === 'error' && complaints.push(`console: ${message.text()}`))
+  page.on('console', (message) => complaints.push(`console: ${message.text()}`))
   page.on('pageerror', (error) => complaints.push(`exception: ${error.message}`))
   page.on('request', (request) => request.url() !== url && complaints.push(`request: ${request.url()}`))
   await page.goto(url)

@@ -1,84 +1,60 @@
-import { pathToFileURL } from 'node:url'
 import type { Browser, Page } from 'playwright-core'
 import { afterAll, beforeAll, describe, expect, inject, test } from 'vitest'
-import { launch, NO_3D, visit, type Visit } from './browser'
+import { launch, visit, type Visit } from './browser'
+import { examine, paper } from './desk'
+import { curve, drawn, frames, picture, scrub, slide, text, VIEW } from './person'
 
-// HARDPOINT_REPORT names a report to test in place of the sample; what is expected here holds for every report
-// that has at least two quantities and two variables with sensitivities.
-const samples = inject('samples')
-const given = process.env.HARDPOINT_REPORT
-const url = pathToFileURL(given ?? samples.whole).href
+const { models } = inject('samples')
 
-/** Number of different colours on a canvas, and a sum that changes with its picture. */
-function look(page: Page, selector: string): Promise<{ colours: number; picture: number }> {
-  // Two frames: one to draw, one to be sure that it was drawn.
-  return page.evaluate(async (selector) => {
-    for (let k = 0; k < 2; k++) await new Promise(requestAnimationFrame)
-    const source = document.querySelector<HTMLCanvasElement>(selector)!
-    const copy = new OffscreenCanvas(source.width, source.height)
-    const context = copy.getContext('2d')!
-    context.drawImage(source, 0, 0)
-    const pixels = new Uint32Array(context.getImageData(0, 0, copy.width, copy.height).data.buffer)
-    let picture = 0
-    for (const pixel of pixels) picture = (Math.imul(picture, 31) + pixel) | 0
-    return { colours: new Set(pixels).size, picture }
-  }, selector)
-}
+let browser: Browser
+beforeAll(async () => {
+  browser = await launch()
+})
+afterAll(() => browser?.close())
 
-/** Lets so many frames pass. */
-function frames(page: Page, count: number): Promise<void> {
-  return page.evaluate(async (count) => {
-    for (let k = 0; k < count; k++) await new Promise(requestAnimationFrame)
-  }, count)
-}
+const step = (page: Page) => page.getByTestId('scrub').inputValue()
+/** Rows of the variables, the selected one, and one that is not. */
+const rows = (page: Page) => page.getByTestId('variables').locator('[data-testid^=variable-]:has(.name)')
+const selected = (page: Page) => rows(page).and(page.locator('[aria-current=true]'))
+const other = (page: Page) => rows(page).and(page.locator(':not([aria-current=true])')).first()
+/** The selected variable's slider. */
+const CHANGE = '[data-testid^=variable-][aria-current=true] [data-testid=change]'
 
-const VIEW = '[data-testid=view-canvas]'
-const plot = (name: string) => `[data-testid=plot-${name}] canvas`
-const text = (page: Page, id: string) => page.getByTestId(id).innerText()
-
-const scrub = (page: Page, step: number) =>
-  page.getByTestId('scrub').evaluate((slider: HTMLInputElement, step) => {
-    slider.value = String(step)
-    slider.dispatchEvent(new Event('input'))
-  }, step)
-
-describe('the report', () => {
-  let browser: Browser
+// Both of the paper's examples: a planar mechanism, and a spatial one that belongs to a vehicle.
+describe.each(['slider_crank', 'macpherson'])('a reader of %s', (name) => {
   let visited: Visit
   let page: Page
 
   beforeAll(async () => {
-    browser = await launch()
-    visited = await visit(browser, url)
+    visited = await visit(browser, models[name])
     page = visited.page
   })
-  afterAll(() => browser?.close())
+  afterAll(() => page?.context().close())
 
-  test('draws the mechanism and four plots', async () => {
-    expect((await look(page, VIEW)).colours).toBeGreaterThan(50)
-    for (const name of ['value', 'peers', 'check', 'margin']) expect((await look(page, plot(name))).colours).toBeGreaterThan(10)
+  test('finds the mechanism, a curve and the variables, the one with the largest effect selected', async () => {
+    expect((await curve(page, 'plot-0')).colours).toBeGreaterThan(10)
+    expect(await rows(page).count()).toBeGreaterThan(1)
+    expect(await rows(page).first().getAttribute('aria-current')).toBe('true')
   })
 
-  test('scrubbing moves the time, the mechanism and the readings', async () => {
-    const before = { time: await text(page, 'time'), view: await look(page, VIEW), value: await text(page, 'plot-value') }
-    const margin = await text(page, 'plot-margin')
+  test('scrubs: time, mechanism and readings go with it', async () => {
+    const before = { time: await text(page, 'time'), view: await picture(page), readings: await text(page, 'plot-0') }
     await scrub(page, 7)
-    expect(await text(page, 'plot-margin')).not.toBe(margin)
     expect(await text(page, 'time')).not.toBe(before.time)
-    expect((await look(page, VIEW)).picture).not.toBe(before.view.picture)
-    expect(await text(page, 'plot-value')).not.toBe(before.value)
+    expect(await text(page, 'plot-0')).not.toBe(before.readings)
+    expect((await picture(page)).equals(before.view)).toBe(false)
   })
 
-  test('a click in a plot moves the time to where it was clicked', async () => {
-    const area = (await page.locator('[data-testid=plot-value] .u-over').boundingBox())!
+  test('clicks in a curve: the time moves to that place', async () => {
+    const area = (await page.getByTestId('plot-0').locator('.u-over').boundingBox())!
     const last = Number(await page.getByTestId('scrub').getAttribute('max'))
     await page.mouse.click(area.x + area.width - 1, area.y + area.height / 2)
-    expect(Number(await page.getByTestId('scrub').inputValue())).toBeGreaterThan(last * 0.9)
+    expect(Number(await step(page))).toBeGreaterThan(last * 0.9)
     await page.mouse.click(area.x + 1, area.y + area.height / 2)
-    expect(Number(await page.getByTestId('scrub').inputValue())).toBeLessThan(last / 10)
+    expect(Number(await step(page))).toBeLessThan(last / 10)
   })
 
-  test('play advances until it is paused', async () => {
+  test('plays until it is paused', async () => {
     const start = await text(page, 'time')
     await page.getByTestId('play').click()
     await expect.poll(() => text(page, 'time')).not.toBe(start)
@@ -89,132 +65,154 @@ describe('the report', () => {
     expect(await text(page, 'time')).toBe(stopped)
   })
 
-  test('arrow keys step and space plays', async () => {
+  test('steps with the arrow keys and plays with space', async () => {
     await scrub(page, 3)
     await page.locator('h1').click()
     await page.keyboard.press('ArrowRight')
-    expect(await page.getByTestId('scrub').inputValue()).toBe('4')
+    expect(await step(page)).toBe('4')
     await page.keyboard.press('Space')
     await expect.poll(() => page.getByTestId('play').getAttribute('aria-label')).toBe('pause')
     await page.keyboard.press('ArrowLeft')
     expect(await page.getByTestId('play').getAttribute('aria-label')).toBe('play')
-  })
-
-  test('choosing another quantity changes every plot and the ranking', async () => {
-    const names = ['value', 'peers', 'check']
-    const before = await Promise.all(names.map((name) => look(page, plot(name))))
-    const ranking = await text(page, 'ranking')
-    const select = page.getByTestId('quantity')
-    const first = await select.inputValue()
-    const values = await select.locator('option').evaluateAll((all) => all.map((one) => (one as HTMLOptionElement).value))
-    await select.selectOption(values.find((value) => value !== first)!)
-    const after = await Promise.all(names.map((name) => look(page, plot(name))))
-    names.forEach((_, k) => expect(after[k].picture).not.toBe(before[k].picture))
-    expect(await text(page, 'ranking')).not.toBe(ranking)
-    await select.selectOption(first)
-  })
-
-  test('choosing an order changes the unit', async () => {
-    await page.getByTestId('order-acceleration').check({ force: true })
-    expect(await page.locator('[data-testid=plot-value] h3').innerText()).toMatch(/acceleration \[.*²\]/)
-    await page.getByTestId('order-value').check({ force: true })
-  })
-
-  test('curves over another quantity have its name along the axis, and dragging there moves the time', async () => {
-    const first = await page.getByTestId('over').locator('option').nth(1).innerText()
-    const before = await look(page, plot('value'))
-    await page.getByTestId('over').selectOption({ label: first })
-    expect((await look(page, plot('value'))).picture).not.toBe(before.picture)
-    expect(await page.getByTestId('plot-value').getByRole('img').getAttribute('aria-label')).toContain(`over ${first}`)
-    const time = await text(page, 'time')
-    await page.locator('[data-testid=plot-value] .u-over').click({ position: { x: 60, y: 40 } })
-    expect(await text(page, 'time')).not.toBe(time)
-    await page.getByTestId('over').selectOption({ label: 'time' })
     await scrub(page, 0)
   })
 
-  test('choosing another variable in the ranking changes the comparison', async () => {
-    const heading = page.locator('[data-testid=plot-check] h3')
-    const before = await heading.innerText()
-    await page.locator('[data-testid=ranking] tbody tr[aria-current=false]').first().click()
-    expect(await heading.innerText()).not.toBe(before)
-    expect(await page.locator('[data-testid=ranking] tr[aria-current=true]').count()).toBe(1)
+  test('chooses another quantity: the curve and the effects change', async () => {
+    const select = page.getByTestId('plot-0').getByTestId('quantity')
+    const first = await select.inputValue()
+    const before = { curve: await curve(page, 'plot-0'), variables: await text(page, 'variables') }
+    const values = await select.locator('option').evaluateAll((all) => all.map((one) => (one as HTMLOptionElement).value))
+    await select.selectOption(values.find((value) => value !== first)!)
+    expect((await curve(page, 'plot-0')).sum).not.toBe(before.curve.sum)
+    expect(await text(page, 'variables')).not.toBe(before.variables)
+    await select.selectOption(first)
+    expect((await curve(page, 'plot-0')).sum).toBe(before.curve.sum)
   })
 
-  test('a change of the selected variable is drawn over the mechanism and says that it is foreseen', async () => {
-    const before = await look(page, VIEW)
-    await page.getByTestId('change').evaluate((slider: HTMLInputElement) => {
-      slider.value = slider.max
-      slider.dispatchEvent(new Event('input'))
-    })
-    expect((await look(page, VIEW)).picture).not.toBe(before.picture)
-    expect(await page.getByTestId('change').locator('xpath=..').innerText()).toContain('foreseen to first order')
-    await page.getByTestId('change').evaluate((slider: HTMLInputElement) => {
-      slider.value = '0'
-      slider.dispatchEvent(new Event('input'))
-    })
-    expect((await look(page, VIEW)).picture).toBe(before.picture)
+  test('chooses the acceleration: its unit is shown', async () => {
+    const order = page.getByTestId('plot-0').getByTestId('order')
+    await order.selectOption('2')
+    expect(await text(page, 'plot-0')).toMatch(/\/s²/)
+    await order.selectOption('0')
   })
 
-  test('choosing by keyboard keeps the focus where it was', async () => {
-    const row = page.locator('[data-testid=ranking] tbody tr[aria-current=false]').first()
-    const name = await row.locator('button').innerText()
-    await row.locator('button').press('Enter')
-    expect(await page.evaluate(() => document.activeElement!.textContent)).toBe(name)
-    expect(await page.locator('[data-testid=ranking] tr[aria-current=true] button').innerText()).toBe(name)
+  test('draws a curve over another quantity, and clicks there', async () => {
+    const over = page.getByTestId('plot-0').getByTestId('over')
+    const name = await over.locator('option').nth(1).innerText()
+    const before = await curve(page, 'plot-0')
+    await over.selectOption({ index: 1 })
+    expect((await curve(page, 'plot-0')).sum).not.toBe(before.sum)
+    expect(await page.getByTestId('plot-0').getByRole('img').first().getAttribute('aria-label')).toContain(`over ${name}`)
+    const time = await text(page, 'time')
+    await page.getByTestId('plot-0').locator('.u-over').click({ position: { x: 60, y: 40 } })
+    expect(await text(page, 'time')).not.toBe(time)
+    await over.selectOption({ index: 0 })
+    await scrub(page, 0)
   })
 
-  test('keeps to a narrow screen', async () => {
-    await page.setViewportSize({ width: 400, height: 800 })
-    expect(await page.evaluate(() => document.documentElement.scrollWidth)).toBe(400)
-    await page.setViewportSize({ width: 1400, height: 900 })
+  test('adds a curve and removes it', async () => {
+    const plots = page.getByTestId('curves').locator('figure')
+    const count = await plots.count()
+    await page.getByTestId('add-curve').click()
+    expect(await plots.count()).toBe(count + 1)
+    await plots.last().getByTestId('remove').click()
+    expect(await plots.count()).toBe(count)
   })
 
-  test('asks for nothing but itself and reports no error', () => {
+  test('chooses another variable: its arrows are drawn and its row is marked', async () => {
+    const before = await picture(page)
+    const name = await other(page).locator('.name').innerText()
+    await other(page).locator('.name').click()
+    expect(await selected(page).locator('.name').innerText()).toBe(name)
+    expect(await selected(page).count()).toBe(1)
+    expect((await picture(page)).equals(before)).toBe(false)
+    await rows(page).first().locator('.name').click()
+  })
+
+  test('changes a variable with its slider, sees what is foreseen, and takes it back', async () => {
+    const before = { view: await picture(page), curve: await curve(page, 'plot-0') }
+    await slide(page, CHANGE, await page.locator(CHANGE).getAttribute('max').then(Number))
+    expect((await picture(page)).equals(before.view)).toBe(false)
+    expect((await curve(page, 'plot-0')).sum).not.toBe(before.curve.sum)
+    expect(await page.locator('body').innerText()).toContain('foreseen')
+    await selected(page).getByTestId('reset').click()
+    expect((await picture(page)).equals(before.view)).toBe(true)
+    expect((await curve(page, 'plot-0')).sum).toBe(before.curve.sum)
+  })
+
+  test('types a change and takes all changes back', async () => {
+    const before = await curve(page, 'plot-0')
+    await selected(page).getByTestId('change-value').fill('0.01')
+    await selected(page).getByTestId('change-value').press('Enter')
+    expect((await curve(page, 'plot-0')).sum).not.toBe(before.sum)
+    await page.getByTestId('reset-all').click()
+    expect((await curve(page, 'plot-0')).sum).toBe(before.sum)
+  })
+
+  test('points at the mechanism: what is there is named; a click selects it', async () => {
+    const desk = await browser.newPage()
+    const [first] = (await examine(desk, await picture(page), await paper(page))).places
+    await desk.context().close()
+    const view = (await page.locator(VIEW).boundingBox())!
+    await page.mouse.move(view.x + first.x, view.y + first.y)
+    await drawn(page)
+    expect((await page.locator('.tip:visible').innerText()).split('\n').length).toBeGreaterThan(1)
+    await page.mouse.move(view.x + 2, view.y + view.height - 2)
+    await drawn(page)
+    expect(await page.locator('.tip:visible').count()).toBe(0)
+    const before = await picture(page)
+    await page.mouse.click(view.x + first.x, view.y + first.y)
+    expect((await picture(page)).equals(before)).toBe(false)
+    await page.keyboard.press('Escape')
+  })
+
+  test('asks for names of hardpoints with a key', async () => {
+    const before = await page.locator(VIEW).locator('xpath=..').screenshot()
+    await page.locator('h1').click()
+    await page.keyboard.press('l')
+    await drawn(page)
+    expect((await page.locator(VIEW).locator('xpath=..').screenshot()).equals(before)).toBe(false)
+    await page.keyboard.press('l')
+    await drawn(page)
+    expect((await page.locator(VIEW).locator('xpath=..').screenshot()).equals(before)).toBe(true)
+  })
+
+  test('looks from every standard side, turns the wheel, and fits again', async () => {
+    const looks = page.locator('[data-testid^=look-]')
+    const seen = [await picture(page)]
+    for (const look of (await looks.all()).slice(1)) {
+      await look.click()
+      seen.push(await picture(page))
+      expect(seen.slice(0, -1).some((picture) => picture.equals(seen.at(-1)!))).toBe(false)
+    }
+    await looks.first().click()
+    expect((await picture(page)).equals(seen[0])).toBe(true)
+    await page.locator(VIEW).hover()
+    await page.mouse.wheel(0, -400)
+    await expect.poll(async () => (await picture(page)).equals(seen[0])).toBe(false)
+    await page.getByTestId('fit').click()
+    await expect.poll(async () => (await picture(page)).equals(seen[0])).toBe(true)
+  })
+
+  test('reads the keys on the page itself', async () => {
+    await page.locator('h1').click()
+    await page.keyboard.press('?')
+    expect(await page.getByTestId('keys').isVisible()).toBe(true)
+    expect(await text(page, 'keys')).toMatch(/space/i)
+    await page.keyboard.press('Escape')
+    expect(await page.getByTestId('keys').isVisible()).toBe(false)
+  })
+
+  test('finds figures of the solver under checks, not before', async () => {
+    expect(await page.getByTestId('summary').isVisible()).toBe(false)
+    await page.getByTestId('tab-checks').click()
+    expect(await page.getByTestId('summary').isVisible()).toBe(true)
+    expect((await curve(page, 'plot-margin')).colours).toBeGreaterThan(10)
+    await page.getByTestId('tab-table').click()
+    expect(await page.getByTestId('heat').isVisible()).toBe(true)
+  })
+
+  test('was asked for nothing else, and told nothing on the console', () => {
     expect(visited.complaints).toEqual([])
-  })
-})
-
-test('without WebGL the plots and tables still work', async () => {
-  const browser = await launch(NO_3D)
-  try {
-    const { page, complaints } = await visit(browser, url)
-    expect(await text(page, 'no-webgl')).toContain('no WebGL')
-    expect((await look(page, plot('value'))).colours).toBeGreaterThan(10)
-    const before = await text(page, 'plot-value')
-    await scrub(page, 7)
-    expect(await text(page, 'plot-value')).not.toBe(before)
-    expect(await page.locator('[data-testid=heat] tbody td').count()).toBeGreaterThan(0)
-    expect(complaints).toEqual([])
-  } finally {
-    await browser.close()
-  }
-})
-
-describe.skipIf(given)('the sample', () => {
-  test('strikes out what cannot be followed and says why', async () => {
-    const browser = await launch()
-    try {
-      const { page } = await visit(browser, url)
-      const button = page.getByTestId('variable-crank_pin_tilt')
-      const decoration = button.locator('.name').evaluate((name) => getComputedStyle(name).textDecorationLine)
-      expect(await decoration).toBe('line-through')
-      await button.click()
-      expect(await text(page, 'plot-check')).toContain('No motion closes crank_pin')
-      expect(await page.locator(plot('check')).count()).toBe(0)
-    } finally {
-      await browser.close()
-    }
-  })
-
-  test('of a motion that stops says so in a banner', async () => {
-    const browser = await launch()
-    try {
-      const { page, complaints } = await visit(browser, pathToFileURL(samples.partial).href)
-      expect(await page.getByRole('status').first().innerText()).toContain('It stops at t = 1.2 s')
-      expect(complaints).toEqual([])
-    } finally {
-      await browser.close()
-    }
   })
 })

@@ -1,41 +1,71 @@
 import { type StdioOptions, execFileSync } from 'node:child_process'
-import { mkdtempSync, rmSync } from 'node:fs'
+import { mkdtempSync, readdirSync, rmSync } from 'node:fs'
 import { tmpdir } from 'node:os'
-import { join } from 'node:path'
+import { basename, join } from 'node:path'
+import { pathToFileURL } from 'node:url'
 import type { TestProject } from 'vitest/node'
+
+/** Addresses of pages made before the first test. */
+export interface Samples {
+  /** A slider-crank from its closed form, with a variable that cannot be followed. */
+  whole: string
+  /** The same, stopping on its way. */
+  partial: string
+  /** The strut with one end of its tie rod moved: today's design, the exact changed one and what was foreseen. */
+  changed: string
+  /** The report of every model of the repository, by the name of its file. */
+  models: Record<string, string>
+}
 
 declare module 'vitest' {
   export interface ProvidedContext {
-    /** Reports of the sample mechanism: of its whole motion, and of one that stops. */
-    samples: { whole: string; partial: string }
+    samples: Samples
   }
 }
 
+const ROOT = join(import.meta.dirname, '../..')
+const MODELS = join(ROOT, 'models')
+
 /**
- * Builds and writes the sample reports once, before any test. A global set-up has no time limit, so that compiling may
+ * Builds and writes the sample pages once, before any test. A global set-up has no time limit, so that compiling may
  * take as long as the machine needs.
  */
 export default function setup(project: TestProject): () => void {
   const folder = mkdtempSync(join(tmpdir(), 'hardpoint-page-'))
-  const samples = { whole: join(folder, 'sample.html'), partial: join(folder, 'partial.html') }
-  project.provide('samples', samples)
-  // With a report to test in place of the sample there is nothing to build.
-  if (!process.env.HARDPOINT_REPORT) {
-    const program = build()
-    execFileSync(program, [samples.whole])
-    execFileSync(program, [samples.partial, '--partial'])
-  }
+  const page = (...names: string[]) => pathToFileURL(join(folder, ...names)).href
+  const { hardpoint, sample_page: sample } = build()
+  execFileSync(sample, [join(folder, 'sample.html')])
+  execFileSync(sample, [join(folder, 'partial.html'), '--partial'])
+
+  const quietly: { stdio: StdioOptions } = { stdio: ['ignore', 'ignore', 'inherit'] }
+  const files = readdirSync(MODELS).filter((file) => file.endsWith('.toml')).sort()
+  const models = files.map((file) => {
+    const name = basename(file, '.toml')
+    execFileSync(hardpoint, ['run', join(MODELS, file), '-o', join(folder, name)], quietly)
+    return [name, page(name, 'report.html')]
+  })
+  const change = ['--set', 'tie_rod_outer.z=+6mm', '-o', join(folder, 'changed')]
+  execFileSync(hardpoint, ['whatif', join(MODELS, 'macpherson.toml'), ...change], quietly)
+
+  project.provide('samples', {
+    whole: page('sample.html'),
+    partial: page('partial.html'),
+    changed: page('changed', 'whatif.html'),
+    models: Object.fromEntries(models),
+  })
   return () => rmSync(folder, { recursive: true })
 }
 
-/** The built program: with the whole workspace, as `cargo test` builds it, so that after that there is nothing left to compile. */
-function build(): string {
-  const command = ['build', '--workspace', '--example', 'sample_page', '--message-format', 'json']
+/** The built programs: with the whole workspace, as `cargo test` builds it, so that after that there is nothing left to compile. */
+function build(): Record<'hardpoint' | 'sample_page', string> {
+  const command = ['build', '--workspace', '--bin', 'hardpoint', '--example', 'sample_page', '--message-format', 'json']
   const stdio: StdioOptions = ['ignore', 'pipe', 'inherit']
-  const options = { cwd: join(import.meta.dirname, '../..'), maxBuffer: Infinity, stdio }
-  const messages = execFileSync('cargo', command, options).toString().trim().split('\n')
-  const programs = messages.map((line) => JSON.parse(line).executable as string | null | undefined)
-  const program = programs.find((name) => name)
-  if (!program) throw new Error('cargo built no sample_page')
-  return program
+  const messages = execFileSync('cargo', command, { cwd: ROOT, maxBuffer: Infinity, stdio }).toString().trim().split('\n')
+  const built = messages.map((line) => JSON.parse(line) as { executable?: string | null; target?: { name: string } })
+  const program = (name: string) => {
+    const path = built.find(({ executable, target }) => executable && target?.name === name)?.executable
+    if (!path) throw new Error(`cargo built no ${name}`)
+    return path
+  }
+  return { hardpoint: program('hardpoint'), sample_page: program('sample_page') }
 }

@@ -25,7 +25,7 @@ export class Curves {
 
   #add(shown: Shown, quantity?: number): Figure {
     const number = this.#made++
-    const figure = new Figure(this.state, { quantity, shown, testId: number === 0 ? 'plot-value' : `plot-${number}`, leads: number === 0 }, (gone) => this.#remove(gone))
+    const figure = new Figure(this.state, { quantity, shown, testId: `plot-${number}`, leads: number === 0 }, (gone) => this.#remove(gone))
     this.figures.push(figure)
     this.#list.append(figure.plot.element)
     return figure

@@ -1,0 +1,99 @@
+import { Box3, type Object3D, Vector3 } from 'three'
+import { describe, expect, inject, test } from 'vitest'
+import { DRAWS } from '../src/scene/draw'
+import type { Drawn, Part } from '../src/scene/drawn'
+import { Kit } from '../src/scene/kit'
+import { Mechanism } from '../src/scene/mechanism'
+import { State } from '../src/state'
+import { reportOf } from './payload'
+import { paletteOf, schemes } from './schemes'
+
+const { models } = inject('samples')
+
+/** Everything that is drawn of a model as it opens. */
+function drawing(address: string): { mechanism: Mechanism; drawn: Drawn[] } {
+  const report = reportOf(address)
+  const mechanism = new Mechanism(report)
+  const kit = new Kit(mechanism, paletteOf(schemes.light))
+  return { mechanism, drawn: DRAWS.flatMap((draw) => draw(mechanism, kit, new State(report).choice)) }
+}
+
+/** Vertices of an object, as it is placed. */
+function vertices(object: Object3D): Vector3[] {
+  object.updateMatrixWorld(true)
+  const found: Vector3[] = []
+  object.traverse((one) => {
+    const { geometry } = one as { geometry?: { attributes: Record<string, { count: number; getX(k: number): number; getY(k: number): number; getZ(k: number): number }> } }
+    const { position } = geometry?.attributes ?? {}
+    for (let k = 0; k < (position?.count ?? 0); k++) found.push(new Vector3(position.getX(k), position.getY(k), position.getZ(k)).applyMatrix4(one.matrixWorld))
+  })
+  return found
+}
+
+describe.each(Object.entries(models))('of %s', (_, address) => {
+  const { mechanism, drawn } = drawing(address)
+  const { report } = mechanism
+  const count = (kind: Part['kind'], index: number) => drawn.filter(({ part }) => part.kind === kind && part.index === index).length
+
+  test('every body, joint, coupler, driver and wheel is drawn', () => {
+    const missing = (kind: Part['kind'], list: { name: string }[]) => list.filter((_, index) => count(kind, index) === 0).map(({ name }) => `${kind} ${name}`)
+    expect([
+      ...missing('body', report.bodies),
+      ...missing('joint', report.joints),
+      ...missing('coupler', report.couplers),
+      ...missing('driver', report.drivers),
+      ...missing('wheel', report.wheels),
+    ]).toEqual([])
+  })
+
+  test('everything drawn has a name and says what it is', () => {
+    for (const { part } of drawn) {
+      expect(part.name, part.kind).not.toBe('')
+      expect(part.about, part.name).not.toBe('')
+    }
+  })
+
+  test('everything stays finite and near the mechanism at every moment', () => {
+    // Four times the mechanism's own size round its middle: wheels, arrows and rails reach beyond hardpoints, but not far.
+    const room = new Box3().setFromCenterAndSize(mechanism.centre, new Vector3(4, 4, 4).multiplyScalar(mechanism.size))
+    for (const { object, part } of drawn) {
+      const points = vertices(object)
+      expect(points.every(({ x, y, z }) => Number.isFinite(x + y + z)), part.name).toBe(true)
+    }
+    for (const step of [0, Math.floor(report.times.length / 3), report.times.length - 1]) {
+      const frame = mechanism.frame(step)
+      for (const { object, part, body, follow } of drawn) {
+        follow?.(frame)
+        if (!object.visible || (body !== undefined && !frame.visible(body))) continue
+        const outside = vertices(object).find((point) => !room.containsPoint(body === undefined ? point : frame.at(body, point)))
+        expect(outside, `${part.kind} ${part.name} at step ${step}`).toBeUndefined()
+      }
+    }
+  })
+
+  test('two bodies that a joint joins have two colours, and what is fixed has its own', () => {
+    expect(mechanism.colourOf(0)).toBe(-1)
+    for (const { name, body_i, body_j } of report.joints) expect(mechanism.colourOf(body_i), name).not.toBe(mechanism.colourOf(body_j))
+  })
+
+  test('glyphs are no larger than the grammar allows', () => {
+    expect(mechanism.unit).toBeGreaterThanOrEqual(0.0012 * mechanism.size)
+    expect(mechanism.unit).toBeLessThanOrEqual(0.0125 * mechanism.size)
+    for (const joint of report.joints) expect(mechanism.radiusOf(joint), joint.name).toBeLessThanOrEqual(mechanism.unit)
+  })
+
+  test.skipIf(!mechanism.plane)('links of one pin lie in different layers', () => {
+    for (const { name, kind, body_i, body_j } of report.joints)
+      if (kind === 'revolute') expect(mechanism.layerOf(body_i), name).not.toBe(mechanism.layerOf(body_j))
+  })
+})
+
+const PLANAR = [
+  'cam', 'dwell', 'excavator', 'four_bar_by_lengths', 'jansen', 'klann', 'pantograph', 'peaucellier', 'quick_return', 'scissor_lift', 'slider_crank',
+  'three_rrr', 'watt_six_bar',
+]
+
+test('planar models are known to be planar, and no others', () => {
+  const planar = Object.entries(models).filter(([, address]) => new Mechanism(reportOf(address)).plane)
+  expect(planar.map(([name]) => name)).toEqual(PLANAR)
+})

@@ -1,0 +1,212 @@
+import type { Browser, Page } from 'playwright-core'
+import { afterAll, beforeAll, describe, expect, inject, test } from 'vitest'
+import { launch, NO_3D, visit } from './browser'
+import { curve, drawn, picture, scrub, text } from './person'
+
+const { whole, partial, models } = inject('samples')
+
+let browser: Browser
+beforeAll(async () => {
+  browser = await launch()
+})
+afterAll(() => browser?.close())
+
+/** The areas of the page; none may lie on another. */
+const AREAS = ['title', 'values', 'view-canvas', 'scrub', 'curves', 'variables', 'ranking', 'checks']
+/** Areas may share a border line. */
+const LINE = 1
+/** Visible controls that lie outside their screen's width cannot be reached by a reader. */
+const CONTROLS = 'button:visible, select:visible, input:visible, summary:visible'
+
+/** Visible areas with their boxes. */
+async function boxes(page: Page) {
+  const found = await Promise.all(
+    AREAS.map(async (name) => {
+      const area = page.getByTestId(name).first()
+      return { name, box: (await area.isVisible()) ? (await area.boundingBox())! : undefined }
+    }),
+  )
+  return found.flatMap(({ name, box }) => (box ? [{ name, ...box }] : []))
+}
+
+describe.each([
+  [390, 844],
+  [1024, 768],
+  [1440, 900],
+  [2560, 1440],
+])('on a screen of %d by %d', (width, height) => {
+  let page: Page
+  beforeAll(async () => {
+    page = (await visit(browser, models.macpherson, { viewport: { width, height } })).page
+    await drawn(page)
+  })
+  afterAll(() => page?.context().close())
+
+  test('nothing reaches beyond the side', async () => {
+    expect(await page.evaluate(() => document.documentElement.scrollWidth)).toBe(width)
+  })
+
+  test('view, curves or variables, and time are seen without scrolling, and no area lies on another', async () => {
+    const areas = await boxes(page)
+    const names = areas.map(({ name }) => name)
+    expect(names).toEqual(expect.arrayContaining(['title', 'view-canvas', 'scrub']))
+    expect(names.some((name) => name === 'curves' || name === 'variables')).toBe(true)
+    for (const [k, a] of areas.entries()) {
+      for (const b of areas.slice(0, k)) {
+        const apart =
+          a.x + a.width <= b.x + LINE || b.x + b.width <= a.x + LINE || a.y + a.height <= b.y + LINE || b.y + b.height <= a.y + LINE
+        expect(apart, `${a.name} beside ${b.name}`).toBe(true)
+      }
+    }
+    for (const name of ['view-canvas', 'scrub']) {
+      const { y, height: tall } = areas.find((area) => area.name === name)!
+      expect(y + tall, `${name} ends on the screen`).toBeLessThanOrEqual(height)
+    }
+  })
+
+  test('every area can be brought up', async () => {
+    if (width < 600) {
+      for (const name of ['curves', 'variables', 'values', 'table', 'checks']) {
+        await page.getByTestId(`nav-${name}`).click()
+        expect(await page.evaluate(() => document.documentElement.scrollWidth)).toBe(width)
+        expect(await page.getByTestId('view-canvas').isVisible(), 'view stays').toBe(true)
+        expect(await page.getByTestId('scrub').isVisible(), 'time stays').toBe(true)
+        const shown = { curves: 'curves', variables: 'variables', values: 'values', table: 'ranking', checks: 'checks' }[name]!
+        expect(await page.getByTestId(shown).isVisible(), name).toBe(true)
+      }
+    } else {
+      await page.getByTestId('tab-checks').click()
+      expect(await page.getByTestId('checks').isVisible()).toBe(true)
+      await page.getByTestId('tab-table').click()
+      expect(await page.getByTestId('ranking').isVisible()).toBe(true)
+    }
+  })
+})
+
+describe('with the keyboard only', () => {
+  test('every control is reached, shows that it has the focus, and can be left', async () => {
+    const { page, complaints } = await visit(browser, models.macpherson, { viewport: { width: 1440, height: 900 } })
+    // One of a set of tabs or of radio buttons takes the focus for all of them.
+    const expected = await page.locator(CONTROLS).evaluateAll((all) => {
+      const stops = all.filter((one) => (one as HTMLElement).tabIndex >= 0 && !(one as HTMLButtonElement).disabled)
+      stops.forEach((one, k) => (one.id ||= `stop-${k}`))
+      return stops.map(({ id }) => id)
+    })
+    const reached = new Set<string>()
+    const unseen: string[] = []
+    for (let k = 0; k < 3 * expected.length; k++) {
+      await page.keyboard.press('Tab')
+      const { id, name, seen } = await page.evaluate(() => {
+        const one = document.activeElement as HTMLElement
+        const { outlineStyle, boxShadow } = getComputedStyle(one)
+        const name = one.dataset.testid ?? one.getAttribute('aria-label') ?? one.innerText
+        return { id: one.id, name, seen: one === document.body || outlineStyle !== 'none' || boxShadow !== 'none' }
+      })
+      if (!seen) unseen.push(name)
+      if (id) reached.add(id)
+    }
+    expect(unseen).toEqual([])
+    const missed = await page.evaluate((ids) => ids.map((id) => document.getElementById(id)?.outerHTML.slice(0, 120)), expected.filter((id) => !reached.has(id)))
+    expect(missed).toEqual([])
+    expect(complaints).toEqual([])
+    await page.context().close()
+  })
+
+  test('a variable is chosen and changed, a view taken, the time moved, a file asked for', async () => {
+    const { page } = await visit(browser, models.macpherson, { viewport: { width: 1440, height: 900 } })
+    const row = page.getByTestId('variables').locator('[data-testid^=variable-]:has(.name)').nth(1)
+    const name = await row.locator('.name').innerText()
+    await row.locator('.name').focus()
+    await page.keyboard.press('Enter')
+    expect(await page.locator('[data-testid^=variable-][aria-current=true] .name').innerText()).toBe(name)
+    // The focus stays where it was, so that a reader goes on from there.
+    expect(await page.evaluate(() => document.activeElement!.textContent)).toBe(name)
+    const before = await picture(page)
+    await page.locator('[data-testid^=variable-][aria-current=true] [data-testid=change]').focus()
+    await page.keyboard.press('End')
+    const changed = await picture(page)
+    expect(changed.equals(before)).toBe(false)
+    await page.locator('h1').click()
+    await page.keyboard.press('2')
+    expect((await picture(page)).equals(changed)).toBe(false)
+    await page.keyboard.press('1')
+    await page.keyboard.press('ArrowRight')
+    expect(await page.getByTestId('scrub').inputValue()).toBe('1')
+    await page.getByTestId('export').focus()
+    await page.keyboard.press('Enter')
+    expect(await page.getByTestId('export-menu').isVisible()).toBe(true)
+    await page.keyboard.press('Escape')
+    expect(await page.getByTestId('export-menu').isVisible()).toBe(false)
+    await page.context().close()
+  })
+})
+
+describe('printed', () => {
+  test('the report is a few pages with its picture, curves, values and variables', async () => {
+    const { page, complaints } = await visit(browser, models.macpherson, { colorScheme: 'dark' })
+    const pdf = await page.pdf({ format: 'A4', printBackground: true })
+    const pages = pdf.toString('latin1').match(/\/Type\s*\/Page\b/g)!.length
+    expect(pages).toBeLessThanOrEqual(6)
+    await page.emulateMedia({ media: 'print' })
+    for (const name of ['title', 'values', 'plot-0', 'variables', 'summary']) expect(await page.getByTestId(name).isVisible(), name).toBe(true)
+    // Buttons are of no use on paper.
+    for (const name of ['export', 'help', 'play', 'scrub']) expect(await page.getByTestId(name).isVisible(), name).toBe(false)
+    // Paper is white, whatever the screen is.
+    expect(await page.evaluate(() => getComputedStyle(document.body).backgroundColor)).toMatch(/^rgb\(255, 255, 255\)$|^rgba\(0, 0, 0, 0\)$/)
+    expect(complaints).toEqual([])
+    await page.context().close()
+  })
+})
+
+describe('for readers who want no motion', () => {
+  test('nothing moves by itself, a change of view is there at once, and play still plays', async () => {
+    const { page, complaints } = await visit(browser, models.macpherson, { reducedMotion: 'reduce' })
+    expect(await page.evaluate(() => document.getAnimations().length)).toBe(0)
+    const start = await picture(page)
+    await page.locator('[data-testid^=look-]').nth(1).click()
+    const turned = await picture(page)
+    expect(turned.equals(start)).toBe(false)
+    expect((await picture(page)).equals(turned)).toBe(true)
+    await page.getByTestId('play').click()
+    await expect.poll(() => page.getByTestId('scrub').inputValue()).not.toBe('0')
+    expect(complaints).toEqual([])
+    await page.context().close()
+  })
+})
+
+describe('without WebGL', () => {
+  test('curves, variables and tables still work', async () => {
+    const browser = await launch(NO_3D)
+    try {
+      const { page, complaints } = await visit(browser, whole)
+      expect(await text(page, 'no-webgl')).toContain('no WebGL')
+      expect((await curve(page, 'plot-0')).colours).toBeGreaterThan(10)
+      const before = await text(page, 'plot-0')
+      await scrub(page, 7)
+      expect(await text(page, 'plot-0')).not.toBe(before)
+      await page.getByTestId('tab-table').click()
+      expect(await page.getByTestId('heat').isVisible()).toBe(true)
+      expect(complaints).toEqual([])
+    } finally {
+      await browser.close()
+    }
+  })
+})
+
+describe('what went wrong', () => {
+  test('a variable that no motion follows is struck out and says why', async () => {
+    const { page } = await visit(browser, whole)
+    const row = page.getByTestId('variable-crank_pin_tilt')
+    expect(await row.locator('.name').evaluate((name) => getComputedStyle(name).textDecorationLine)).toBe('line-through')
+    await row.locator('.name').click()
+    expect(await page.locator('body').innerText()).toContain('No motion closes crank_pin')
+    await page.context().close()
+  })
+
+  test('a motion that stops says so in a banner', async () => {
+    const { page, complaints } = await visit(browser, partial)
+    expect(await page.getByRole('status').first().innerText()).toContain('It stops at t = 1.2 s')
+    expect(complaints).toEqual([])
+    await page.context().close()
+  })
+})

@@ -1,0 +1,49 @@
+import type { Page } from 'playwright-core'
+
+/** The canvas of the 3D view. */
+export const VIEW = '[data-testid=view-canvas]'
+
+/** For pictures of the view alone, without the buttons and names over it. */
+const ONLY_THE_VIEW = `.view > :not(${VIEW}) { visibility: hidden !important }`
+
+/** Lets so many frames pass. */
+export function frames(page: Page, count: number): Promise<void> {
+  return page.evaluate(async (count) => {
+    for (let k = 0; k < count; k++) await new Promise(requestAnimationFrame)
+  }, count)
+}
+
+/** Waits until what was asked for is on the screen: one frame to draw, one to be sure that it was drawn. */
+export const drawn = (page: Page) => frames(page, 2)
+
+/** What the view draws at this moment, as a PNG. */
+export async function picture(page: Page): Promise<Buffer> {
+  await drawn(page)
+  return page.locator(VIEW).screenshot({ style: ONLY_THE_VIEW })
+}
+
+/** What a curve's canvas shows: how many colours, and a sum that changes with its picture. */
+export async function curve(page: Page, id: string): Promise<{ colours: number; sum: number }> {
+  await drawn(page)
+  return page.getByTestId(id).locator('canvas').first().evaluate((canvas: HTMLCanvasElement) => {
+    const copy = new OffscreenCanvas(canvas.width, canvas.height).getContext('2d')!
+    copy.drawImage(canvas, 0, 0)
+    const pixels = new Uint32Array(copy.getImageData(0, 0, canvas.width, canvas.height).data.buffer)
+    return { colours: new Set(pixels).size, sum: pixels.reduce((sum, pixel) => (Math.imul(sum, 31) + pixel) | 0, 0) }
+  })
+}
+
+/** What a reader of one part of the page sees. */
+export const text = (page: Page, id: string) => page.getByTestId(id).innerText()
+
+/** Moves a slider to a value, as a drag does. */
+export function slide(page: Page, selector: string, value: number | string): Promise<void> {
+  return page.locator(selector).evaluate((slider: HTMLInputElement, value) => {
+    slider.value = value
+    slider.dispatchEvent(new Event('input', { bubbles: true }))
+    slider.dispatchEvent(new Event('change', { bubbles: true }))
+  }, String(value))
+}
+
+/** Moves the time to a step. */
+export const scrub = (page: Page, step: number) => slide(page, '[data-testid=scrub]', step)
