@@ -120,5 +120,6 @@ const NOTHING = 1e-9
 /** A curve without what is nothing but rounding next to `scale`, the largest of its kind. */
 export function quiet(curve: Curve, scale: number): Curve {
   const floor = NOTHING * Math.max(scale, 1)
-  return peak(curve) > floor ? curve : curve.map((value) => value * 0)
+  const least = Math.max(NOTHING * peak(curve), peak(curve) > floor ? 0 : floor)
+  return curve.map((value) => (Math.abs(value) <= least ? 0 : value))
 }

@@ -14,7 +14,7 @@ export function bar(state: State, { find, exports, help }: Offers): HTMLElement 
   const { title, file } = state.report
   return el(
     'header',
-    { class: 'bar' },
+    { class: 'topbar' },
     el('h1', { 'data-testid': 'title', title }, title),
     el('span', { class: 'file muted' }, file),
     el('span', { class: 'space' }),

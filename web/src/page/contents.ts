@@ -1,4 +1,4 @@
-import { atFixedAbscissa, peak, quiet, slope, thinned, type Curve } from '../curve'
+import { atFixedAbscissa, peak, quiet, slope, thinned, withGaps, type Curve } from '../curve'
 import { css, hue } from '../dom'
 import { effects } from '../effect'
 import { figure, number } from '../format'
@@ -83,14 +83,20 @@ export function sensitivityContent(state: State, subject: Subject): Content {
   content.lines.push(...content.lines.splice(first, 1))
   const { differences } = own.sensitivity
   const left = peers.length - shown.length
-  const rest = left > 0 ? `The ${shown.length} largest of ${peers.length}.` : ''
+  const rest = left > 0 ? `${shown.length} of ${peers.length}.` : ''
   if (!differences) return overOther(state, subject.over, { ...content, caption: rest })
   const curve = seen(differences.curves[order], selected.index, true)
-  content.lines.push({ label: 'finite differences', color: css('--ink'), curve, marks: thinned(curve, MARKS) })
+  content.lines.push({ label: 'finite differences', color: css('--ink'), curve, marks: marked(curve) })
   const caption =
-    `${rest} Rings: designs re-solved ±${figure(Number(differences.step.toPrecision(2)), differences.unit)} away, ` +
-    `which differ by ${number(differences.worst[order], 2)} of the largest at most.`
+    `${rest} Rings: re-solved ±${figure(Number(differences.step.toPrecision(2)), differences.unit)} away, ` +
+    `disagreement at most ${number(differences.worst[order], 2)}.`
   return overOther(state, subject.over, { ...content, caption: caption.trimStart() })
+}
+
+/** Few enough values to be told apart as rings. */
+function marked(curve: Curve): (number | null)[] {
+  const values = curve.reduce((count, value) => count + Number(!Number.isNaN(value)), 0)
+  return values > 2 * MARKS ? thinned(curve, MARKS) : withGaps(curve)
 }
 
 /** The largest size among quantities of the same unit: what is nothing beside it is rounding. */

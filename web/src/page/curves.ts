@@ -12,8 +12,7 @@ export class Curves {
   #made = 0
 
   constructor(private readonly state: State) {
-    const add = el('button', { type: 'button', class: 'add', 'data-testid': 'add-curve', onclick: () => this.#addNext() }, '+ add a curve')
-    this.element = el('section', { class: 'curves', 'aria-label': 'Curves', 'data-testid': 'curves' }, this.#list, add)
+    this.element = el('section', { class: 'curves', 'aria-label': 'Curves', 'data-testid': 'curves' }, this.#list)
     this.#add('value')
     const { quantity } = state.choice
     if (effects(state.report, quantity, 0).length > 0) this.#add('sensitivity')
@@ -25,7 +24,7 @@ export class Curves {
 
   #add(shown: Shown, quantity?: number): Figure {
     const number = this.#made++
-    const figure = new Figure(this.state, { quantity, shown, testId: `plot-${number}`, leads: number === 0 }, (gone) => this.#remove(gone))
+    const figure = new Figure(this.state, { quantity, shown, testId: `plot-${number}`, leads: number === 0 }, { onRemove: (gone) => this.#remove(gone), onAdd: () => this.#addNext() })
     this.figures.push(figure)
     this.#list.append(figure.plot.element)
     return figure

@@ -17,7 +17,13 @@ export function exports(state: State, figures: Figure[], view: View | undefined)
   const name = report.file.replace(/\.[^.]*$/, '') || 'report'
   const drawn = figures.filter(({ plot }) => plot.canvas)
   return [
-    ...(view ? [{ name: 'View as PNG', testId: 'export-view-png', run: async () => save(await view.picture(SHARP), `${name} view.png`) }] : []),
+    ...(view
+      ? [
+          { name: 'View as PNG', testId: 'export-view-png', run: async () => save(await view.picture(SHARP), `${name} view.png`) },
+          { name: 'View as SVG', testId: 'export-view-svg', run: () => save(view.vectors(), `${name} view.svg`) },
+          { name: 'Motion as glTF', testId: 'export-gltf', run: async () => save(await view.motion(), `${name}.glb`) },
+        ]
+      : []),
     ...drawn.flatMap(({ plot }) => {
       const { title } = plot.content
       return [

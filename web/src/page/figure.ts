@@ -27,7 +27,7 @@ export class Figure {
   constructor(
     private readonly state: State,
     private readonly wish: Wish,
-    onRemove: (figure: Figure) => void,
+    { onRemove, onAdd }: { onRemove: (figure: Figure) => void; onAdd: () => void },
   ) {
     this.#quantity = wish.quantity
     this.#shown = wish.shown
@@ -47,13 +47,17 @@ export class Figure {
       'd / d variable',
     )
     const remove = el('button', { type: 'button', class: 'icon', 'data-testid': 'remove', title: 'Take this curve away', 'aria-label': 'Take this curve away', onclick: () => onRemove(this) }, '×')
-    const controls = el('div', { class: 'controls' }, quantity, over, order, able ? shown : undefined, wish.leads ? undefined : remove)
+    const add = el('button', { type: 'button', class: 'icon', 'data-testid': 'add-curve', title: 'Add a curve', 'aria-label': 'Add a curve', onclick: onAdd }, '+')
+    const controls = el('div', { class: 'controls' }, quantity, over, order, able ? shown : undefined, wish.leads ? add : remove)
     this.plot = new Plot(state, wish.testId, [controls])
+    this.plot.element.classList.toggle('leads', wish.leads)
     this.show = () => {
       const subject = this.subject
       quantity.value = this.#follows && !wish.leads ? '' : String(subject.quantity)
       over.value = subject.over === undefined ? '' : String(subject.over)
       order.value = String(subject.order)
+      // The field beside it names the quantity already.
+      this.plot.element.classList.toggle('untitled', !this.#follows || wish.leads ? this.#shown === 'value' : false)
       shown.setAttribute('aria-pressed', String(this.#shown === 'sensitivity'))
       this.plot.show(this.#shown === 'value' ? valueContent(state, subject) : sensitivityContent(state, subject))
     }
