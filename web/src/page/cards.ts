@@ -6,6 +6,8 @@ import type { State } from '../state'
 
 type Target = [low: number | null, high: number | null]
 
+/** In the reader's units smaller numbers are rounding. */
+const ROUNDING = 1e-9
 /** Digits of a number on a card. */
 const DIGITS = 4
 
@@ -37,7 +39,7 @@ function card(state: State, value: Value, index: number): { element: HTMLElement
   const show = () => {
     const now = state.value(index)
     const before = state.former ? (state.former.values[index] ?? null) : value.value
-    figure.textContent = now === null ? '–' : number(now, DIGITS)
+    figure.textContent = now === null ? '–' : number(Math.abs(now) < ROUNDING ? 0 : now, DIGITS)
     const by = now === null || before === null ? null : now - before
     const known = state.compares && by !== null
     change.hidden = !known
@@ -58,7 +60,7 @@ function select(state: State, { quantity, time }: Value): void {
 
 /** Better and worse are said only against a target, by colour and arrow. */
 function showChange(change: HTMLElement, now: number, by: number, target: Target | null): void {
-  if (Math.abs(by) <= noise(Math.abs(now))) {
+  if (Math.abs(by) <= Math.max(noise(Math.abs(now)), ROUNDING)) {
     change.textContent = '±0'
     return
   }
