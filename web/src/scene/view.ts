@@ -4,15 +4,16 @@ import { el, onSchemeChange } from '../dom'
 import { motionGltf } from '../export/gltf'
 import { viewSvg } from '../export/view_svg'
 import { number } from '../format'
-import type { Choice, State } from '../state'
+import type { State } from '../state'
 import { Assembly } from './assembly'
-import { cameraFor, fit, type Look, looksOf, shapeTo } from './camera'
+import { cameraFor, fit, type Look, looksOf, pixelsPerLength, shapeTo } from './camera'
 import { marks, matter } from './draw'
 import { type Part, samePart } from './drawn'
 import { Floor } from './floor'
 import { hardpointLabels, LabelLayer, partLabels } from './label_layer'
 import { Mechanism } from './mechanism'
 import { type Emphasis, Outlines, OVER } from './outlines'
+import { Overview } from './overview'
 import { palette } from './palette'
 import { Pointer } from './pointer'
 import { present } from './shape'
@@ -46,8 +47,6 @@ export class View {
   #pointer: Pointer
   #triad: Triad
   #labels = new LabelLayer()
-  /** Whether every hardpoint is named. */
-  #named = false
   #paper = el('canvas', { class: 'paper' })
   #scale = el('span', { class: 'scale' })
   #lost = el('p', { class: 'message', hidden: true }, 'The graphics were lost; the view comes back when the browser gives them back.')
@@ -55,7 +54,8 @@ export class View {
   #matter: Assembly
   #marks: Assembly
   #floor: Floor
-  #drawn: Pick<Choice, 'change' | 'variable'>
+  #overview?: Overview
+  #drawn: string
   #look: Look
   /** Whether the reader turned or moved the view since it was fitted. */
   #turned = false
@@ -89,8 +89,10 @@ export class View {
     )
     this.element = el('div', { class: 'view' }, this.canvas, this.#labels.element, this.#paper, this.#lost, this.#pointer.tip, this.#scale)
     this.element.append(this.#triad.element)
+    this.#overview = Overview.of(this.today, this.#look, (place) => this.#visit(place))
+    if (this.#overview) this.element.append(this.#overview.element)
 
-    this.#drawn = { ...state.choice }
+    this.#drawn = designOf(state)
     this.#matter = this.#assembleMatter()
     this.#marks = this.#assembleMarks()
     this.#floor = this.#lay()
@@ -140,15 +142,11 @@ export class View {
       ...this.#matter.corners(),
       ...this.#marks.corners(),
     ]
-    this.#controls.target.copy(fit(this.camera, points, this.today.size, this.#look, width, height))
+    this.#overview?.resize(points, width, height)
+    const seen = this.#overview?.part(points, this.#focus(), width / height) ?? points
+    this.#controls.target.copy(fit(this.camera, seen, this.today.size, this.#look, width, height, this.#overview?.strip(height)))
     this.#controls.update()
     this.#turned = false
-    this.#draw()
-  }
-
-  /** Names every hardpoint, or only those of what is pointed at or selected. */
-  nameAll(named: boolean): void {
-    this.#named = named
     this.#draw()
   }
 
@@ -166,6 +164,29 @@ export class View {
     return motionGltf(this.mechanism, this.#matter.drawn, this.state.step)
   }
 
+  /** Where the part of a long mechanism is that is looked at: at what is selected, else where the chosen variable moves something. */
+  #focus(): Vector3 {
+    const { selected, variable } = this.state.choice
+    const { report, sweep } = this.today
+    const joint = selected?.kind === 'joint' ? report.joints[selected.index] : undefined
+    const arrow = report.variables[variable]?.arrows[0]
+    if (selected?.kind === 'body' && selected.index > 0) return this.today.worldAt(selected.index, this.today.shapePoints(selected.index)[0] ?? new Vector3(), 0)
+    if (joint) return this.today.worldAt(joint.body_i, new Vector3(...joint.at_i), 0)
+    if (arrow) return this.today.worldAt(arrow.body, new Vector3(...arrow.at), 0)
+    return sweep[0] ?? new Vector3()
+  }
+
+  /** Moves the view so that a place is in its middle from left to right. */
+  #visit(place: Vector3): void {
+    const right = new Vector3().setFromMatrixColumn(this.camera.matrixWorld, 0)
+    const by = right.multiplyScalar(place.clone().sub(this.#controls.target).dot(right))
+    this.#controls.target.add(by)
+    this.camera.position.add(by)
+    this.#turned = true
+    this.#controls.update()
+    this.#draw()
+  }
+
   /** The picture as a PNG file, so many pixels for each of the page's. */
   async picture(scale: number): Promise<Blob> {
     const usual = this.#renderer.getPixelRatio()
@@ -179,7 +200,7 @@ export class View {
   }
 
   #assembleMatter(): Assembly {
-    const assembly = new Assembly(present(this.today, this.state.choice), this.#palette, this.state.choice, matter, this.#outlines, 0)
+    const assembly = new Assembly(present(this.today, this.state), this.#palette, this.state.choice, matter, this.#outlines, 0)
     this.scene.add(...assembly.groups)
     return assembly
   }
@@ -220,10 +241,9 @@ export class View {
   #update(): void {
     if (!this.#stale) return
     this.#stale = false
-    const { change, variable } = this.state.choice
-    const changed = change !== this.#drawn.change || (change !== 0 && variable !== this.#drawn.variable)
-    this.#drawn = { change, variable }
-    if (changed) {
+    const design = designOf(this.state)
+    if (design !== this.#drawn) {
+      this.#drawn = design
       this.#matter.dispose()
       this.#matter = this.#assembleMatter()
     }
@@ -266,6 +286,8 @@ export class View {
       this.#renderer.shadowMap.needsUpdate = true
       this.#moved = false
     }
+    const { clientWidth: width, clientHeight: height } = this.element
+    if (this.#matter.refine(pixelsPerLength(this.camera, this.#controls.target, height))) this.#renderer.shadowMap.needsUpdate = true
     const { layers } = this.camera
     layers.set(0)
     this.#renderer.clear()
@@ -274,6 +296,7 @@ export class View {
     layers.set(OVER)
     this.#renderer.render(this.scene, this.camera)
     layers.set(0)
+    this.#overview?.draw(this.#renderer, this.scene, width, height)
     this.#triad.update(this.camera)
     this.#label()
   }
@@ -282,7 +305,7 @@ export class View {
     const { clientWidth: width, clientHeight: height } = this.element
     const frame = this.mechanism.frame(this.state.step)
     const parts = [this.state.choice.selected, this.#pointer.hovered].filter((part) => part !== undefined)
-    const labels = this.#named ? hardpointLabels(this.mechanism, frame) : parts.flatMap((part) => partLabels(this.mechanism, frame, part))
+    const labels = this.state.choice.labels ? hardpointLabels(this.mechanism, frame) : parts.flatMap((part) => partLabels(this.mechanism, frame, part))
     this.#labels.show(labels, this.camera, this.mechanism.centre, width, height)
   }
 
@@ -312,10 +335,13 @@ export class View {
   #key(event: KeyboardEvent): void {
     const target = event.target as HTMLElement
     const modified = event.ctrlKey || event.metaKey || event.altKey
-    if (modified || target.closest('select, textarea, input:not([type=range])')) return
-    if (event.key === 'f') this.fit()
-    else if (event.key === 'l') this.nameAll(!this.#named)
-    else return
+    if (modified || event.key !== 'f' || target.closest('select, textarea, input:not([type=range])')) return
+    this.fit()
     event.preventDefault()
   }
+}
+
+/** What tells the design drawn, and the one that it is compared with, from others. */
+function designOf({ changes, choice }: State): string {
+  return JSON.stringify([changes, choice.compared])
 }
