@@ -12,7 +12,6 @@ export function crank(changes: Partial<Report> = {}): Report {
   const travel = Float32Array.from({ length: STEPS }, (_, k) => k * QUARTER)
   const hinge = { kind: 'revolute', body_i: 0, body_j: 1, at_i: [0, 0, 0], at_j: [0, 0, 0], axis: [0, 0, 1], axis_j: [0, 0, 1] }
   return {
-    over: null,
     title: 'one turn of a crank',
     description: '',
     file: 'crank.toml',
@@ -35,6 +34,7 @@ export function crank(changes: Partial<Report> = {}): Report {
     quantities: [],
     values: [],
     first: null,
+    over: null,
     designs: [],
     margin: undefined,
     variables: [],

@@ -6,6 +6,9 @@ import type { Mechanism } from './mechanism'
 import { OVER, type Outlines } from './outlines'
 import type { Palette } from './palette'
 
+/** Half the least number of pixels that a detail is drawn with. */
+const DETAIL = 1
+
 /** Everything that some `Draw`s made of a mechanism, in groups that move with the bodies. */
 export class Assembly {
   /** One per body, then what is in the world. */
@@ -58,6 +61,18 @@ export class Assembly {
       group.quaternion.copy(pose.turn)
     })
     for (const { follow } of this.drawn) follow?.(frame)
+  }
+
+  /** Leaves out details that are smaller than some pixels; true where that changes the picture. */
+  refine(pixelsPerLength: number): boolean {
+    let changed = false
+    for (const { object, detail } of this.drawn) {
+      if (detail === undefined) continue
+      const seen = detail * pixelsPerLength >= DETAIL
+      changed ||= seen !== object.visible
+      object.visible = seen
+    }
+    return changed
   }
 
   /** Corners of the boxes round everything drawn. */

@@ -63,15 +63,15 @@ export function cameraFor({ plane, up, size }: Mechanism): Camera {
   return camera
 }
 
-/** Puts the camera where all points fill the picture but for its top; the point in their middle, to be turned about. */
-export function fit(camera: Camera, points: Vector3[], size: number, { direction }: Look, width: number, height: number): Vector3 {
+/** Puts the camera where all points fill the picture but for so many pixels at its top; the point in their middle, to be turned about. */
+export function fit(camera: Camera, points: Vector3[], size: number, { direction }: Look, width: number, height: number, top = TOP): Vector3 {
   camera.position.copy(direction)
   camera.lookAt(0, 0, 0)
   camera.updateMatrixWorld()
   const [right, up, back] = [0, 1, 2].map((k) => new Vector3().setFromMatrixColumn(camera.matrixWorld, k))
   const aspect = width / height
   // How far the picture may be filled upwards: -1 to 1 is all of it.
-  const ceiling = 1 - (2 * TOP) / height
+  const ceiling = 1 - (2 * top) / height
   const bound = (measure: (x: number, y: number, z: number) => number) =>
     points.reduce((most, point) => Math.max(most, measure(point.dot(right), point.dot(up), point.dot(back))), -Infinity)
   const middle = (bound((_, __, z) => z) - bound((_, __, z) => -z)) / 2
@@ -95,6 +95,12 @@ export function fit(camera: Camera, points: Vector3[], size: number, { direction
   camera.position.copy(target).addScaledVector(back, distance - middle)
   shapeTo(camera, aspect)
   return target
+}
+
+/** Pixels of the page per length at the place that the view turns about. */
+export function pixelsPerLength(camera: Camera, target: Vector3, height: number): number {
+  if (camera instanceof OrthographicCamera) return (height * camera.zoom) / (camera.top - camera.bottom)
+  return height / (2 * Math.tan((camera.fov * Math.PI) / 360) * camera.position.distanceTo(target))
 }
 
 /** Follows a new shape of the picture without moving the camera. */

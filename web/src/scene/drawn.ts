@@ -26,6 +26,8 @@ export interface Drawn {
   follow?: (frame: Frame) => void
   /** Drawn after everything else and without outlines: arrows, traces, ghosts. */
   overlay?: boolean
+  /** Its size, where it is a detail that is left out when it is seen smaller than a few pixels. */
+  detail?: number
 }
 
 /** The mechanism at one moment. */

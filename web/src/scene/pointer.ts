@@ -65,7 +65,7 @@ export class Pointer {
     this.tip.hidden = !part
     this.canvas.style.cursor = part ? 'pointer' : ''
     if (!part) return
-    this.tip.replaceChildren(el('strong', {}, part.name), el('span', {}, part.about))
+    this.tip.replaceChildren(el('strong', {}, part.name), el('div', {}, part.about))
     const { clientWidth: width, clientHeight: height } = this.canvas
     // To the left of the pointer in the right half, above it in the lower, so that the text never leaves the view.
     const [toLeft, toTop] = [x > width / 2, y > height / 2]

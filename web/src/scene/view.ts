@@ -6,13 +6,14 @@ import { viewSvg } from '../export/view_svg'
 import { number } from '../format'
 import type { State } from '../state'
 import { Assembly } from './assembly'
-import { cameraFor, fit, type Look, looksOf, shapeTo } from './camera'
+import { cameraFor, fit, type Look, looksOf, pixelsPerLength, shapeTo } from './camera'
 import { marks, matter } from './draw'
 import { type Part, samePart } from './drawn'
 import { Floor } from './floor'
 import { hardpointLabels, LabelLayer, partLabels } from './label_layer'
 import { Mechanism } from './mechanism'
 import { type Emphasis, Outlines, OVER } from './outlines'
+import { Overview } from './overview'
 import { palette } from './palette'
 import { Pointer } from './pointer'
 import { present } from './shape'
@@ -53,8 +54,8 @@ export class View {
   #matter: Assembly
   #marks: Assembly
   #floor: Floor
-  /** The changes and the design compared with that the matter was made for. */
-  #drawn = ''
+  #overview?: Overview
+  #drawn: string
   #look: Look
   /** Whether the reader turned or moved the view since it was fitted. */
   #turned = false
@@ -88,8 +89,10 @@ export class View {
     )
     this.element = el('div', { class: 'view' }, this.canvas, this.#labels.element, this.#paper, this.#lost, this.#pointer.tip, this.#scale)
     this.element.append(this.#triad.element)
+    this.#overview = Overview.of(this.today, this.#look, (place) => this.#visit(place))
+    if (this.#overview) this.element.append(this.#overview.element)
 
-    this.#drawn = this.#design
+    this.#drawn = designOf(state)
     this.#matter = this.#assembleMatter()
     this.#marks = this.#assembleMarks()
     this.#floor = this.#lay()
@@ -138,7 +141,9 @@ export class View {
       ...this.#matter.corners(),
       ...this.#marks.corners(),
     ]
-    this.#controls.target.copy(fit(this.camera, points, this.today.size, this.#look, width, height))
+    this.#overview?.resize(points, width, height)
+    const seen = this.#overview?.part(points, this.#focus(), width / height) ?? points
+    this.#controls.target.copy(fit(this.camera, seen, this.today.size, this.#look, width, height, this.#overview?.strip(height)))
     this.#controls.update()
     this.#turned = false
     this.#draw()
@@ -156,6 +161,29 @@ export class View {
   /** The whole motion as a binary glTF file. */
   motion(): Promise<Blob> {
     return motionGltf(this.mechanism, this.#matter.drawn, this.state.step)
+  }
+
+  /** Where the part of a long mechanism is that is looked at: at what is selected, else where the chosen variable moves something. */
+  #focus(): Vector3 {
+    const { selected, variable } = this.state.choice
+    const { report, sweep } = this.today
+    const joint = selected?.kind === 'joint' ? report.joints[selected.index] : undefined
+    const arrow = report.variables[variable]?.arrows[0]
+    if (selected?.kind === 'body' && selected.index > 0) return this.today.worldAt(selected.index, this.today.shapePoints(selected.index)[0] ?? new Vector3(), 0)
+    if (joint) return this.today.worldAt(joint.body_i, new Vector3(...joint.at_i), 0)
+    if (arrow) return this.today.worldAt(arrow.body, new Vector3(...arrow.at), 0)
+    return sweep[0] ?? new Vector3()
+  }
+
+  /** Moves the view so that a place is in its middle from left to right. */
+  #visit(place: Vector3): void {
+    const right = new Vector3().setFromMatrixColumn(this.camera.matrixWorld, 0)
+    const by = right.multiplyScalar(place.clone().sub(this.#controls.target).dot(right))
+    this.#controls.target.add(by)
+    this.camera.position.add(by)
+    this.#turned = true
+    this.#controls.update()
+    this.#draw()
   }
 
   /** The picture as a PNG file, so many pixels for each of the page's. */
@@ -208,17 +236,13 @@ export class View {
     this.#render()
   }
 
-  /** What tells one pair of designs from another. */
-  get #design(): string {
-    return [...this.state.changes, this.state.choice.compared].join()
-  }
-
   /** Makes anew what the last choice changed. */
   #update(): void {
     if (!this.#stale) return
     this.#stale = false
-    if (this.#design !== this.#drawn) {
-      this.#drawn = this.#design
+    const design = designOf(this.state)
+    if (design !== this.#drawn) {
+      this.#drawn = design
       this.#matter.dispose()
       this.#matter = this.#assembleMatter()
     }
@@ -261,6 +285,8 @@ export class View {
       this.#renderer.shadowMap.needsUpdate = true
       this.#moved = false
     }
+    const { clientWidth: width, clientHeight: height } = this.element
+    if (this.#matter.refine(pixelsPerLength(this.camera, this.#controls.target, height))) this.#renderer.shadowMap.needsUpdate = true
     const { layers } = this.camera
     layers.set(0)
     this.#renderer.clear()
@@ -269,6 +295,7 @@ export class View {
     layers.set(OVER)
     this.#renderer.render(this.scene, this.camera)
     layers.set(0)
+    this.#overview?.draw(this.#renderer, this.scene, width, height)
     this.#triad.update(this.camera)
     this.#label()
   }
@@ -303,4 +330,9 @@ export class View {
     this.#renderer.setSize(width, height, false)
     this.#outlines.resize(width, height, ratio)
   }
+}
+
+/** What tells the design drawn, and the one that it is compared with, from others. */
+function designOf({ changes, choice }: State): string {
+  return JSON.stringify([changes, choice.compared])
 }

@@ -30,7 +30,7 @@ export function ground(mechanism: Mechanism, kit: Kit): Drawn[] {
   for (const foot of feet(mechanism)) if (!kept.some(({ at }) => at.distanceTo(foot.at) < 1e-3 * mechanism.size)) kept.push(foot)
   return kept.map((foot) => {
     const pieces = mechanism.plane ? planarFoot(mechanism, kit, foot) : foot.axis ? hingeFoot(mechanism, kit, foot) : ballFoot(mechanism, kit, foot)
-    return { body: 0, object: new Group().add(...pieces), part }
+    return { body: 0, object: new Group().add(...pieces), part, detail: foot.radius }
   })
 }
 
