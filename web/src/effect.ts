@@ -22,7 +22,8 @@ export function effects(report: Report, quantity: number, order: Order): Effect[
   const found: Effect[] = []
   for (const variable of report.variables) {
     const sensitivity = variable.sensitivities.get(quantity)
-    if (sensitivity) found.push({ variable, sensitivity, extreme: extreme(sensitivity.curves[order], sensitivity.peaks[order]), share: 0 })
+    // Of body origins, velocities and accelerations may be left out.
+    if (sensitivity?.curves[order].length) found.push({ variable, sensitivity, extreme: extreme(sensitivity.curves[order], sensitivity.peaks[order]), share: 0 })
   }
   const typical = found.length > 0 && found.every(({ variable }) => variable.typical !== null)
   const size = ({ variable, extreme }: Effect) => Math.abs(extreme) * (typical ? Math.abs(variable.typical ?? 0) : 1)
@@ -41,12 +42,14 @@ function extreme(curve: Float32Array, largest: number): number {
   return curve.find((value) => Math.abs(value) === largest) ?? 0
 }
 
-/** The quantity that the page opens on: the one given, else the first that varies, measures first. */
+/** The quantity that the page opens on: the one given, else the first that varies and can be influenced, measures first. */
 export function firstQuantity(report: Report): number {
   const offered = groups(report).flatMap(([, members]) => members)
   const varies = ({ curves }: { curves: readonly [Float32Array, Float32Array, Float32Array] }) => {
     const [value] = curves
     return value.some((x) => Math.abs(x - value[0]) > noise(peak(value)))
   }
-  return report.first ?? (offered.find(varies) ?? offered[0])?.index ?? 0
+  const moved = ({ index }: { index: number }) => report.variables.some(({ sensitivities }) => (sensitivities.get(index)?.peaks[0] ?? 0) > 0)
+  const varying = offered.filter(varies)
+  return report.first ?? (varying.find(moved) ?? varying[0] ?? offered[0])?.index ?? 0
 }

@@ -11,13 +11,11 @@ export interface Choice {
   order: Order
   /** The quantity that curves are drawn over; time where there is none. */
   over?: number
-  /** Plot the sensitivities to all variables of the unit, not just the largest. */
-  all: boolean
   /** What is selected in the view: a body, a joint, a wheel, ... */
   selected?: Part
   /** Body and hardpoint whose path is drawn. */
   trace?: [body: number, point: number]
-  /** The measured distance whose value is pointed at, an index into the report's distances. */
+  /** The measured distance that is selected, an index into the report's distances. */
   distance?: number
   /** Whether hardpoints are named in the view. */
   labels: boolean
@@ -43,7 +41,7 @@ export class State {
     const variable = effects(report, quantity, 0)[0]?.variable.index ?? report.variables.find(({ sensitivities }) => sensitivities.size > 0)?.index ?? 0
     const exact = report.designs.find(({ kind }) => kind === 'exact')
     this.changes = report.variables.map((_, index) => exact?.change[index] ?? 0)
-    this.choice = { quantity, variable, change: this.changes[variable] ?? 0, order: 0, all: false, labels: false }
+    this.choice = { quantity, variable, change: this.changes[variable] ?? 0, order: 0, over: report.over ?? undefined, labels: false }
   }
 
   get lastStep(): number {
@@ -113,9 +111,17 @@ export class State {
 
   choose(choice: Partial<Choice>): void {
     Object.assign(this.choice, choice)
+    this.choice.distance = this.#distance()
     if (choice.change !== undefined) this.changes[this.choice.variable] = choice.change
     this.choice.change = this.changes[this.choice.variable] ?? 0
     for (const listener of this.#onChoice) listener()
+  }
+
+  /** The measured distance that the selected quantity is, where it is one. */
+  #distance(): number | undefined {
+    const { report, choice } = this
+    const found = report.distances.findIndex(({ name }) => name === report.quantities[choice.quantity]?.name)
+    return found < 0 ? undefined : found
   }
 
   /** Changes one variable, which thereby is the selected one. */

@@ -5,6 +5,8 @@ import type { Mechanism } from './mechanism'
 const REACH = 28
 /** From the tip to the middle of a letter; of a word, beside the tip as well. */
 const GAP = 8
+/** A word beside the box is about so wide, px. */
+const WORD = 28
 /** An axis along a direction of the vehicle has at least this cosine with it. */
 const ALONG = 0.99
 
@@ -29,6 +31,7 @@ export class Triad {
     })
     // Words reach beyond the box of the letters.
     this.element.style.overflow = 'visible'
+    if (vehicle) this.element.style.left = `${WORD}px`
   }
 
   update(camera: Camera): void {

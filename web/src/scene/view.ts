@@ -47,8 +47,6 @@ export class View {
   #pointer: Pointer
   #triad: Triad
   #labels = new LabelLayer()
-  /** Whether every hardpoint is named. */
-  #named = false
   #paper = el('canvas', { class: 'paper' })
   #scale = el('span', { class: 'scale' })
   #lost = el('p', { class: 'message', hidden: true }, 'The graphics were lost; the view comes back when the browser gives them back.')
@@ -95,7 +93,7 @@ export class View {
     this.#overview = Overview.of(this.today, this.#look, (place) => this.#visit(place))
     if (this.#overview) this.element.append(this.#overview.element)
 
-    this.#drawn = this.#design()
+    this.#drawn = designOf(state)
     this.#matter = this.#assembleMatter()
     this.#marks = this.#assembleMarks()
     this.#floor = this.#lay()
@@ -108,7 +106,6 @@ export class View {
     onSchemeChange(() => this.#repaint())
     addEventListener('beforeprint', () => this.#still())
     new ResizeObserver(() => this.#resize()).observe(this.element)
-    document.addEventListener('keydown', (event) => this.#key(event))
     this.canvas.addEventListener('webglcontextlost', () => (this.#lost.hidden = false))
     this.canvas.addEventListener('webglcontextrestored', () => {
       this.#lost.hidden = true
@@ -153,6 +150,20 @@ export class View {
     this.#draw()
   }
 
+  /** The picture as vectors. */
+  vectors(): Blob {
+    const { clientWidth: width, clientHeight: height } = this.element
+    const { view, ground, outline, label } = this.#palette
+    const groups = [...this.#matter.groups, ...this.#marks.groups]
+    const title = this.state.report.title
+    return viewSvg(groups, this.camera, { width, height, title, view, ground, outline, label, labels: this.#labels.placed })
+  }
+
+  /** The whole motion as a binary glTF file. */
+  motion(): Promise<Blob> {
+    return motionGltf(this.mechanism, this.#matter.drawn, this.state.step)
+  }
+
   /** Where the part of a long mechanism is that is looked at: at what is selected, else where the chosen variable moves something. */
   #focus(): Vector3 {
     const { selected, variable } = this.state.choice
@@ -174,26 +185,6 @@ export class View {
     this.#turned = true
     this.#controls.update()
     this.#draw()
-  }
-
-  /** Names every hardpoint, or only those of what is pointed at or selected. */
-  nameAll(named: boolean): void {
-    this.#named = named
-    this.#draw()
-  }
-
-  /** The picture as vectors. */
-  vectors(): Blob {
-    const { clientWidth: width, clientHeight: height } = this.element
-    const { view, ground, outline, label } = this.#palette
-    const groups = [...this.#matter.groups, ...this.#marks.groups]
-    const title = this.state.report.title
-    return viewSvg(groups, this.camera, { width, height, title, view, ground, outline, label, labels: this.#labels.placed })
-  }
-
-  /** The whole motion as a binary glTF file. */
-  motion(): Promise<Blob> {
-    return motionGltf(this.mechanism, this.#matter.drawn, this.state.step)
   }
 
   /** The picture as a PNG file, so many pixels for each of the page's. */
@@ -250,7 +241,7 @@ export class View {
   #update(): void {
     if (!this.#stale) return
     this.#stale = false
-    const design = this.#design()
+    const design = designOf(this.state)
     if (design !== this.#drawn) {
       this.#drawn = design
       this.#matter.dispose()
@@ -260,10 +251,6 @@ export class View {
     this.#marks = this.#assembleMarks()
     this.#moved = true
     this.#emphasise()
-  }
-
-  #design(): string {
-    return [this.state.choice.compared, ...this.state.changes].join(' ')
   }
 
   #emphasise(): void {
@@ -320,7 +307,7 @@ export class View {
     const { selected } = this.state.choice
     const { hovered } = this.#pointer
     const parts = [selected, samePart(selected, hovered) ? undefined : hovered].filter((part) => part !== undefined)
-    const labels = this.#named ? hardpointLabels(this.mechanism, frame) : parts.flatMap((part) => partLabels(this.mechanism, frame, part))
+    const labels = this.state.choice.labels ? hardpointLabels(this.mechanism, frame) : parts.flatMap((part) => partLabels(this.mechanism, frame, part))
     this.#labels.show(labels, this.camera, this.mechanism.centre, width, height)
   }
 
@@ -346,14 +333,9 @@ export class View {
     this.#renderer.setSize(width, height, false)
     this.#outlines.resize(width, height, ratio)
   }
+}
 
-  #key(event: KeyboardEvent): void {
-    const target = event.target as HTMLElement
-    const modified = event.ctrlKey || event.metaKey || event.altKey
-    if (modified || target.closest('select, textarea, input:not([type=range])')) return
-    if (event.key === 'f') this.fit()
-    else if (event.key === 'l') this.nameAll(!this.#named)
-    else return
-    event.preventDefault()
-  }
+/** What tells the design drawn, and the one that it is compared with, from others. */
+function designOf({ changes, choice }: State): string {
+  return JSON.stringify([changes, choice.compared])
 }
