@@ -95,6 +95,10 @@ values: Array<Value>,
  */
 first: number | null,
 /**
+ * The quantity over which the page draws that one at first, an index into [`Payload::quantities`]; over time where there is none.
+ */
+over: number | null,
+/**
  * Other designs over the same motion, to be compared with this one: changed, foreseen, re-solved.
  */
 designs: Array<Design>,
@@ -186,7 +190,7 @@ mesh: Mesh | null, };
 /**
  * What a hardpoint of a body is there for; of several reasons the first.
  */
-export type PointRole = "joint" | "hinge" | "measured" | "wheel";
+export type PointRole = "joint" | "hinge" | "wheel" | "measured";
 
 /**
  * A triangle mesh in the body's frame.
@@ -300,7 +304,7 @@ kind: string,
  */
 terms: Array<CouplerTerm>,
 /**
- * Teeth of two gears, radii of two pulleys, radius of a rack's pinion (one number): as the model file says.
+ * Teeth of two gears, radii of two pulleys, radius of a rack's pinion, lead of a screw: as the model file says.
  */
 sizes: Array<number>, };
 
@@ -346,7 +350,7 @@ turns: boolean,
  */
 point: BodyPlace | null,
 /**
- * Unit vector in the world along which the point is driven.
+ * Unit vector in the world along which the point is driven, or about which the body is turned at it.
  */
 along: [number, number, number] | null,
 /**

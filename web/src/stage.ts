@@ -1,17 +1,9 @@
 import { el, HUES } from './dom'
 import { figure } from './format'
-import { Extent, type Look } from './scene/camera'
-import { visibleChange, visited } from './scene/poses'
+import { visibleChange } from './scene/poses'
 import { hasWebGL, View } from './scene/view'
 import type { State } from './state'
 import { transport } from './transport'
-
-const LOOKS: [look: Look, title: string][] = [
-  ['iso', 'seen from the front corner'],
-  ['x', 'seen along x'],
-  ['y', 'seen along y'],
-  ['z', 'seen along z'],
-]
 
 /** The 3D view with its playback, buttons and key to the colours, or a plain message where there is no WebGL. */
 export function stage(state: State): HTMLElement[] {
@@ -20,18 +12,15 @@ export function stage(state: State): HTMLElement[] {
     return [el('div', { class: 'view', 'data-testid': 'no-webgl' }, el('p', { class: 'message' }, message)), transport(state)]
   }
   const view = new View(state)
-  const looks = LOOKS.map(([look, title]) =>
-    el('button', { type: 'button', title, onclick: () => view.look(look) }, look === 'iso' ? 'corner' : look),
-  )
+  const looks = view.looks.map(({ name, title }) => el('button', { type: 'button', title, onclick: () => view.look(name) }, name))
   view.element.append(el('div', { class: 'looks' }, ...looks))
-  return [view.element, transport(state), el('div', { class: 'under' }, key(state), tracer(state), changer(state))]
+  return [view.element, transport(state), el('div', { class: 'under' }, key(state), tracer(state), changer(state, view.today.size))]
 }
 
 const STEPS = 50
 
 /** Changes the selected variable in the view. */
-function changer(state: State): HTMLElement {
-  const size = new Extent(visited(state.report)).size
+function changer(state: State, size: number): HTMLElement {
   const output = el('output')
   const slider = el('input', {
     type: 'range',

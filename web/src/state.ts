@@ -21,6 +21,8 @@ export interface Choice {
   labels: boolean
   /** The design that the present one is compared with; the one as loaded where there is none. */
   compared?: number
+  /** The measured distance whose value is pointed at, an index into the report's distances. */
+  distance?: number
 }
 
 /** What the reader chose and the moment shown; the views listen, and change it only through its methods. */

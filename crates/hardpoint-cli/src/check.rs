@@ -5,7 +5,7 @@ use std::time::Instant;
 use hardpoint::Analysis;
 use hardpoint_file::ModelFile;
 use hardpoint_report::diagnose;
-use hardpoint_report::facts::{Facts, outline};
+use hardpoint_report::facts::outline;
 use hardpoint_report::summary::{RunStatus, Summary};
 
 use crate::args::Check;
@@ -32,8 +32,7 @@ fn check_in(session: &Session, options: &Check) -> Result<Outcome, Outcome> {
     session.patient(true);
     let course = session.solve_in_windows(&analysis, true, |_| true)?;
     session.patient(false);
-    let facts = Facts::new(&file, analysis.topology(), Some(&course.kept));
-    let mut summary = Summary::new(&file, analysis.topology(), facts, &course);
+    let mut summary = Summary::new(&file, analysis.topology(), &course);
     summary.timings.read = read;
     summary.timings.solve = started.elapsed().as_secs_f64();
     summary.timings.total = session.seconds();

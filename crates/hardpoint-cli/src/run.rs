@@ -12,7 +12,6 @@ use hardpoint_file::ModelFile;
 use hardpoint_report::columns::Columns;
 use hardpoint_report::course::Course;
 use hardpoint_report::csv::JerkCsv;
-use hardpoint_report::facts::Facts;
 use hardpoint_report::figures::{error, number, seconds, some_of, with_unit};
 use hardpoint_report::metric::MetricFact;
 use hardpoint_report::page::Table;
@@ -79,8 +78,7 @@ fn run_in(session: &Session, options: &Run) -> Result<Outcome, Outcome> {
         session.solve_in_windows(&analysis, !options.no_sensitivities, |window| tables.add(window))?;
     let solve = started.elapsed().as_secs_f64();
     let solution = &course.kept;
-    let facts = Facts::new(&file, analysis.topology(), Some(solution));
-    let mut summary = Summary::new(&file, analysis.topology(), facts, &course);
+    let mut summary = Summary::new(&file, analysis.topology(), &course);
     (summary.timings.read, summary.timings.solve) = (read, solve);
     let outputs = format!("the files in `{}`", path.display());
     summary.diagnostics = diagnose::all(&file, &summary, &course, Some(&outputs));
@@ -180,7 +178,7 @@ impl Sample {
 }
 
 /// How far the sensitivities can be trusted, as far as the user has patience.
-fn trusted(
+pub fn trusted(
     session: &Session,
     file: &ModelFile,
     analysis: &Analysis<'_>,

@@ -9,15 +9,17 @@ use hardpoint::study::{
 };
 use hardpoint::{draft::did_you_mean, model::Model};
 use hardpoint_file::{AngleUnit, LengthUnit, ModelFile, Units};
-use hardpoint_report::diagnose;
-use hardpoint_report::figures::number;
-use hardpoint_report::margin::MarginFact;
+use hardpoint_report::course::Course;
 use hardpoint_report::metric::MetricChange;
+use hardpoint_report::payload::payload_beside;
+use hardpoint_report::summary::Summary;
 use hardpoint_report::whatif::{ChangeFact, WhatIfFacts};
+use hardpoint_report::{diagnose, page};
 
 use crate::args::Whatif;
 use crate::folder::Folder;
 use crate::outcome::Outcome;
+use crate::run::trusted;
 use crate::session::{Session, json_text};
 use crate::text;
 
@@ -81,15 +83,20 @@ fn whatif_in(session: &Session, options: &Whatif) -> Result<Outcome, Outcome> {
         return Err(if session.interrupted() { Outcome::Interrupted } else { Outcome::Stopped });
     }
     let mut outcome = today.stop.as_ref().map_or(Outcome::Done, |stop| early(stop, today.motion.len()));
-    let facts = if settings.is_empty() {
-        WhatIfFacts::of_today(&file, analysis.topology(), &today)
-    } else {
-        let studied = what_if(&analysis, today, &change);
-        if let Some(stop) = &studied.exact.stop {
-            outcome = early(stop, studied.exact.motion.len());
+    let gathered = folder.as_ref().map(|_| {
+        let course = Course::of(&file.model, &today);
+        let mut summary = Summary::new(&file, analysis.topology(), &course);
+        summary.validity = trusted(session, &file, &analysis, &today);
+        (course, summary)
+    });
+    let mut facts = WhatIfFacts::of_today(&file, analysis.topology(), &today);
+    let changed = (!settings.is_empty()).then(|| what_if(&analysis, today, &change));
+    if let Some(changed) = &changed {
+        if let Some(stop) = &changed.exact.stop {
+            outcome = early(stop, changed.exact.motion.len());
         }
-        WhatIfFacts { nearest, ..WhatIfFacts::new(&file, analysis.topology(), &studied) }
-    };
+        facts = WhatIfFacts { nearest, ..facts.changed(&file, analysis.topology(), changed) };
+    }
 
     session.tell(&file, &facts.diagnostics);
 
@@ -99,9 +106,10 @@ fn whatif_in(session: &Session, options: &Whatif) -> Result<Outcome, Outcome> {
         false => names.iter().any(|n| n == name),
     };
     let mut written = None;
-    if let Some(mut folder) = folder {
-        let html = facts.html(options.over.as_deref(), &wanted);
-        let html = html.map_err(|why| session.misunderstood(&why))?;
+    if let Some((mut folder, (course, summary))) = folder.zip(gathered) {
+        let page = payload_beside(&file, &analysis, &course, &[], &summary, changed.as_ref());
+        let page = facts.page(page, names, options.over.as_deref(), &wanted);
+        let html = page::html(&page).expect("a payload is plain data");
         let json = json_text(&facts);
         let result = folder
             .write("whatif.html", |out| out.write_all(html.as_bytes()))
@@ -144,19 +152,8 @@ fn taken_over(model: &mut Model, of: &Model, change: &[f64]) -> Vec<f64> {
 fn facts_text(facts: &WhatIfFacts, wanted: &dyn Fn(&str) -> bool) -> String {
     let mut out = format!("{}\n", text::bold(&facts.name));
     if !facts.change.is_empty() {
-        let margin = |m: &Option<MarginFact>| m.as_ref().map_or("-".into(), |m| number(m.least));
-        let [today, changed] = [0, 1].map(|k| margin(&facts.margins[k]));
-        let mut rows = vec![
-            ("change", facts.change_line()),
-            ("it is", facts.follows.clone()),
-            ("least margin", format!("{today} today, {changed} changed")),
-        ];
-        if !facts.nearest.is_empty() {
-            let near = ChangeFact::line(&facts.nearest);
-            rows.push(("nearest admissible", format!("{near}; `--admissible` makes this change instead")));
-        }
         let table = facts.table(wanted);
-        out += &format!("{}\n{}  {}\n", text::pairs(&rows), text::table(&table), table.note);
+        out += &format!("{}\n{}  {}\n", text::pairs(&facts.change_rows()), text::table(&table), table.note);
         let metrics = MetricChange::table(&facts.metrics);
         out += &metrics.map_or(String::new(), |table| format!("\n{}", text::table(&table)));
     }

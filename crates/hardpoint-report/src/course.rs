@@ -218,6 +218,11 @@ pub(crate) struct RoundOff {
 impl RoundOff {
     /// For a quantity's derivative by variable b, SI.
     pub fn of(&self, b: usize, of: Dimension, order: usize) -> f64 {
-        self.magnitude.round_off(of, order) / self.natural[b]
+        self.change(of, order) / self.natural[b]
+    }
+
+    /// For the difference of a quantity between two designs, SI.
+    pub fn change(&self, of: Dimension, order: usize) -> f64 {
+        self.magnitude.round_off(of, order)
     }
 }

@@ -86,6 +86,8 @@ pub struct Payload {
     pub values: Vec<Value>,
     /// The quantity that the page opens on, an index into [`Payload::quantities`].
     pub first: Option<usize>,
+    /// The quantity over which the page draws that one at first, an index into [`Payload::quantities`]; over time where there is none.
+    pub over: Option<usize>,
     /// Other designs over the same motion, to be compared with this one: changed, foreseen, re-solved.
     pub designs: Vec<Design>,
     /// How far from singular the mechanism is over time, if anything is solved for.
@@ -147,7 +149,7 @@ pub struct BodyTrack {
 }
 
 /// What a hardpoint of a body is there for; of several reasons the first.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 #[cfg_attr(test, derive(TS))]
 #[serde(rename_all = "snake_case")]
 pub enum PointRole {
@@ -155,10 +157,10 @@ pub enum PointRole {
     Joint,
     /// It lies on the axis of a hinge.
     Hinge,
-    /// It is measured, or driven by its place in the world.
-    Measured,
     /// It belongs to a wheel: its centre, or where it touches the ground.
     Wheel,
+    /// It is measured, or driven by its place in the world.
+    Measured,
 }
 
 /// A triangle mesh in the body's frame.
@@ -229,7 +231,7 @@ pub struct CouplerMark {
     pub kind: String,
     /// Its terms: of a rack first the rack, then the pinion.
     pub terms: Vec<CouplerTerm>,
-    /// Teeth of two gears, radii of two pulleys, radius of a rack's pinion (one number): as the model file says.
+    /// Teeth of two gears, radii of two pulleys, radius of a rack's pinion, lead of a screw: as the model file says.
     pub sizes: Vec<f64>,
 }
 
@@ -259,7 +261,7 @@ pub struct DriverMark {
     pub turns: bool,
     /// The body whose point is driven, and the point in its frame, where that is so.
     pub point: Option<BodyPlace>,
-    /// Unit vector in the world along which the point is driven.
+    /// Unit vector in the world along which the point is driven, or about which the body is turned at it.
     pub along: Option<[f64; 3]>,
     /// The driven coordinate, `n` steps, in the length unit or in radians, counted from the drawing.
     pub travel: Curve,
@@ -593,6 +595,7 @@ mod tests {
             quantities: vec![],
             values: vec![],
             first: None,
+            over: None,
             designs: vec![],
             margin: None,
             variables: vec![],

@@ -5,26 +5,26 @@
 //! A long motion is thinned and, where that is not enough, the bodies lose their sensitivities, so that the
 //! page stays small enough to open at once: the CSV files hold everything.
 
+mod designs;
+mod drawing;
+
 use std::path::Path;
 
-use hardpoint::joint::{Freedom, Quantity as Kind};
-use hardpoint::model::{
-    BodyId, Change, Dimension, Direction, HardpointId, Joint, JointId, Model, OutputSource, VariableId,
-};
+use hardpoint::joint::Quantity as Kind;
+use hardpoint::model::{BodyId, Dimension, Model, OutputSource, VariableId};
 use hardpoint::sensitivity::BodySensitivity;
 use hardpoint::space::Vec3;
-use hardpoint::study::{Comparison, Difference};
-use hardpoint::topology::Role;
+use hardpoint::study::{Comparison, Difference, WhatIf};
 use hardpoint::{Analysis, Solution};
 use hardpoint_file::{ModelFile, Units};
 
 use crate::course::{Course, RoundOff};
-use crate::facts::{Answer, Facts, held_spins, written_kind};
+use crate::facts::{Answer, Facts};
 use crate::figures::{error, number, order_unit, rounded, seconds, symbol};
 use crate::metric::MetricFact;
 use crate::page::{
-    Admissibility, Arrow, BodyTrack, Curve, Fact, FiniteDifference, JointMark, Margin, Payload, PointRole,
-    Quantity, Sensitivity, Status, Units as PageUnits, Variable,
+    Admissibility, Curve, Fact, FiniteDifference, Margin, Payload, Quantity, Sensitivity, Status,
+    Units as PageUnits, Variable,
 };
 use crate::summary::{RunStatus, Summary};
 use crate::validity::ValidityFact;
@@ -45,6 +45,18 @@ pub fn payload(
     differences: &[Option<Difference>],
     summary: &Summary,
 ) -> Payload {
+    payload_beside(file, analysis, course, differences, summary, None)
+}
+
+/// The same with a changed design beside today's, where one is given; `course` is what was gathered of today's whole solution.
+pub fn payload_beside(
+    file: &ModelFile,
+    analysis: &Analysis<'_>,
+    course: &Course,
+    differences: &[Option<Difference>],
+    summary: &Summary,
+    changed: Option<&WhatIf>,
+) -> Payload {
     let (model, units, solution) = (&file.model, file.units, &course.kept);
     let size = Size {
         steps: solution.motion.len(),
@@ -52,11 +64,15 @@ pub fn payload(
         variables: model.variables.len(),
         outputs: solution.measured.outputs.len(),
         compared: differences.iter().any(Option::is_some),
+        designs: changed.map_or(0, |_| designs::MOST),
     };
     let detail = Detail::that_fits(size, course.has_bodies());
     let steps: Vec<usize> = (0..solution.motion.len()).step_by(detail.stride).collect();
     let compose =
         Compose { model, units, analysis, solution, steps, detail, round_off: course.round_off(model) };
+    let (bodies, values) = (compose.bodies(), Vec::new());
+    let designs =
+        changed.map_or_else(Vec::new, |what_if| compose.designs(what_if, course.stride, &bodies, &values));
     Payload {
         title: model.name.clone(),
         description: file.description.clone().unwrap_or_default(),
@@ -71,17 +87,18 @@ pub fn payload(
         summary: headline(summary),
         notes: summary.model.all_notes(),
         times: compose.curve(|k| solution.motion.times[k]),
-        bodies: compose.bodies(),
+        bodies,
         joints: compose.joints(),
-        couplers: Vec::new(),
-        drivers: Vec::new(),
-        wheels: Vec::new(),
-        distances: Vec::new(),
-        vehicle: None,
+        couplers: compose.couplers(),
+        drivers: compose.drivers(),
+        wheels: compose.wheels(),
+        distances: compose.distances(),
+        vehicle: compose.vehicle(),
         quantities: compose.quantities(),
-        values: Vec::new(),
+        values,
         first: None,
-        designs: Vec::new(),
+        over: None,
+        designs,
         margin: summary.margin.as_ref().map(|m| Margin {
             value: compose.curve(|k| m.series.get(k).copied().unwrap_or(f64::NAN)),
             note: m.sentence(),
@@ -119,6 +136,8 @@ struct Size {
     outputs: usize,
     /// Whether there are differences to compare with.
     compared: bool,
+    /// Other designs that are shown beside this one.
+    designs: usize,
 }
 
 impl Detail {
@@ -154,7 +173,7 @@ impl Detail {
         };
         let shown = if self.origins { origins } else { 0 };
         let motion = 3 * (size.outputs + shown) + 7 * (size.bodies + 1);
-        let curves = motion + 3 * size.variables * (size.outputs * both + of_origins);
+        let curves = motion * (1 + size.designs) + 3 * size.variables * (size.outputs * both + of_origins);
         (curves * size.steps.div_ceil(self.stride)) as f64 * BYTES_PER_VALUE
     }
 }
@@ -260,107 +279,6 @@ impl Compose<'_> {
         v.to_array().map(|x| self.units.from_si(Kind::Length, x))
     }
 
-    fn bodies(&self) -> Vec<BodyTrack> {
-        let geometry = self.model.geometry(&[]);
-        let mut points: Vec<Vec<(Vec3, String)>> = vec![Vec::new(); self.model.bodies.len()];
-        let same = 1e-9 * self.model.size();
-        let mut add = |body: BodyId, at: Vec3, label: &str| {
-            let near = |p: &Vec3| (*p - at).norm() <= same;
-            let list = &mut points[body.0];
-            match list.iter_mut().find(|(p, _)| near(p)) {
-                Some((_, labels)) if labels.split(", ").any(|l| l == label) => {}
-                Some((_, labels)) => *labels += &format!(", {label}"),
-                None => list.push((at, label.into())),
-            }
-        };
-        for (j, joint) in self.model.joints.iter().enumerate() {
-            // A driven point is none of the body that its direction belongs to.
-            let ends = if joint.unnamed && joint.kind.places != 2 { 1..2 } else { 0..2 };
-            for end in ends {
-                add(joint.bodies[end], geometry.markers[j][end].r, self.label(joint.at[end], &joint.name));
-                for at in self.hinge_points(joint) {
-                    add(
-                        joint.bodies[end],
-                        self.in_body(joint.bodies[end], at),
-                        &self.model.hardpoints[at.0].name,
-                    );
-                }
-            }
-        }
-        for (p, point) in self.model.points.iter().enumerate().filter(|(_, p)| !p.unnamed) {
-            add(point.body, geometry.points[p], &point.name);
-        }
-        let states = &self.solution.motion;
-        let track = |(b, points): (usize, Vec<(Vec3, String)>)| {
-            let poses = self.steps.iter().flat_map(|&k| {
-                let s = &states.at(k).body(b);
-                let [x, y, z] = self.length(s.r);
-                let [qw, qx, qy, qz] = s.quaternion();
-                [x, y, z, qw, qx, qy, qz]
-            });
-            let roles = vec![PointRole::Joint; points.len()];
-            let (skeleton, labels) = points.into_iter().map(|(p, label)| (self.length(p), label)).unzip();
-            BodyTrack {
-                name: self.model.bodies[b].name.clone(),
-                poses: poses.collect(),
-                skeleton,
-                labels,
-                roles,
-                mesh: None,
-            }
-        };
-        points.into_iter().enumerate().map(track).collect()
-    }
-
-    /// The two hardpoints that a hinge's axis passes through: both lie on both of its bodies.
-    fn hinge_points(&self, joint: &Joint) -> impl Iterator<Item = HardpointId> + use<> {
-        let turns = joint.kind.freedoms.is_some_and(|f| f.iter().all(|f| matches!(f, Freedom::Turn(_))));
-        let ends = match joint.axis {
-            Some(Direction::Through(a, b)) if turns && joint.axis2.is_none() => Some([a, b]),
-            _ => None,
-        };
-        ends.into_iter().flatten()
-    }
-
-    /// Where a hardpoint of the design configuration is in a body's frame.
-    fn in_body(&self, body: BodyId, at: HardpointId) -> Vec3 {
-        self.model.bodies[body.0].frame.inverse().point(self.model.hardpoints[at.0].position)
-    }
-
-    /// The hardpoint's name, or that of the joint whose coordinates were written in its place.
-    fn label<'m>(&'m self, at: HardpointId, joint: &'m str) -> &'m str {
-        let hardpoint = &self.model.hardpoints[at.0];
-        if hardpoint.unnamed { joint } else { &hardpoint.name }
-    }
-
-    fn joints(&self) -> Vec<JointMark> {
-        let geometry = self.model.geometry(&[]);
-        let roles = &self.analysis.topology().roles;
-        let spins = held_spins(self.model);
-        // A driven distance is drawn like a leg; a driven point or orientation has nothing to draw.
-        let shown = |joint: &Joint| !joint.unnamed || joint.kind.places == 2;
-        let mark = |(j, joint): (usize, &Joint)| {
-            let [i, k] = &geometry.markers[j];
-            JointMark {
-                name: joint.name.clone(),
-                kind: written_kind(joint, spins.contains(&JointId(j))).into(),
-                body_i: joint.bodies[0].0,
-                body_j: joint.bodies[1].0,
-                at_i: self.length(i.r),
-                at_j: self.length(k.r),
-                axis: joint.axis.map(|_| i.rot.cols[2].to_array()),
-                axis_j: joint.axis.map(|_| k.rot.cols[2].to_array()),
-                axis2: None,
-                hinge: None,
-                lead: None,
-                curve: None,
-                draw: None,
-                cut: matches!(roles[j], Role::Cut(_)),
-            }
-        };
-        self.model.joints.iter().enumerate().filter(|(_, j)| shown(j)).map(mark).collect()
-    }
-
     /// All outputs, then x, y and z of every body's origin.
     fn quantities(&self) -> Vec<Quantity> {
         let measured = &self.solution.measured;
@@ -398,6 +316,8 @@ impl Compose<'_> {
     fn variables(&self, facts: &Facts, differences: &[Option<Difference>]) -> Vec<Variable> {
         let variable = |(b, fact): (usize, &crate::facts::VariableFact)| {
             let known = matches!(fact.answer, Answer::Admissible | Answer::Reassembled);
+            let of = &self.model.variables[b];
+            let shown = |x: f64| self.units.from_si(of.quantity, x);
             let difference = differences.get(b).and_then(Option::as_ref);
             Variable {
                 name: fact.name.clone(),
@@ -410,9 +330,9 @@ impl Compose<'_> {
                 },
                 note: fact.note(),
                 arrows: self.arrows(VariableId(b)),
-                typical: None,
-                tolerance: None,
-                bounds: None,
+                typical: of.typical.map(shown),
+                tolerance: of.tolerance.map(shown),
+                bounds: of.bounds.map(|ends| ends.map(|x| x.is_finite().then(|| shown(x)))),
                 shifts: if known && self.detail.bodies { self.shifts(b) } else { Vec::new() },
                 sensitivities: if known { self.sensitivities(b, difference) } else { Vec::new() },
             }
@@ -434,46 +354,6 @@ impl Compose<'_> {
             self.steps.iter().flat_map(at).collect()
         };
         (0..self.model.bodies.len()).map(of_body).collect()
-    }
-
-    /// The design velocity of every marker and named point that the variable moves, in its body's frame.
-    fn arrows(&self, variable: VariableId) -> Vec<Arrow> {
-        let geometry = self.model.geometry(&[]);
-        let field = self.model.field(variable);
-        let by = self.model.variables[variable.0].quantity;
-        let speed = |v: Vec3| v.to_array().map(|x| self.units.derivative_from_si(Kind::Length, by, x));
-        let markers = field.markers.iter().map(|m| {
-            let JointId(j) = m.joint;
-            let s = geometry.markers[j][m.end].r;
-            Arrow {
-                body: self.model.joints[j].bodies[m.end].0,
-                at: self.length(s),
-                v: speed(m.twist.at(s)),
-                turn: m.twist.w.to_array().map(|x| self.units.derivative_from_si(Kind::Angle, by, x)),
-            }
-        });
-        let points = field.points.iter().map(|(p, v)| Arrow {
-            body: self.model.points[p.0].body.0,
-            at: self.length(geometry.points[p.0]),
-            v: speed(*v),
-            turn: [0.0; 3],
-        });
-        // A hinge's marker stands at one end of its axis; show what moves at the other end too.
-        let far_ends = self.model.variables[variable.0].changes.iter().filter_map(|change| match change {
-            Change::Move(change) => Some((change.hardpoint, change.velocity)),
-            _ => None,
-        });
-        let far_ends = far_ends.flat_map(|(at, velocity)| {
-            let hinges = self.model.joints.iter().filter(move |j| j.at[0] != at);
-            let hinges = hinges.filter(move |j| self.hinge_points(j).any(|end| end == at));
-            hinges.flat_map(|j| j.bodies).map(move |body| Arrow {
-                body: body.0,
-                at: self.length(self.in_body(body, at)),
-                v: speed(self.model.bodies[body.0].frame.rot.transpose_mul(velocity)),
-                turn: [0.0; 3],
-            })
-        });
-        markers.chain(points).chain(far_ends).collect()
     }
 
     fn sensitivities(&self, b: usize, difference: Option<&Difference>) -> Vec<Sensitivity> {
@@ -542,7 +422,8 @@ impl Compose<'_> {
 mod tests {
     use super::*;
 
-    const STRUT: Size = Size { steps: 501, bodies: 4, variables: 16, outputs: 13, compared: true };
+    const STRUT: Size =
+        Size { steps: 501, bodies: 4, variables: 16, outputs: 13, compared: true, designs: 0 };
 
     #[test]
     fn a_suspension_keeps_the_sensitivities_of_its_bodies() {

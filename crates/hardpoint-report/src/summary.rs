@@ -180,7 +180,7 @@ pub struct Timings {
 
 impl Summary {
     /// The summary of a run, without files.
-    pub fn new(file: &ModelFile, topology: &Topology, facts: Facts, course: &Course) -> Self {
+    pub fn new(file: &ModelFile, topology: &Topology, course: &Course) -> Self {
         let (model, solution) = (&file.model, &course.kept);
         let effort = solution.motion.effort;
         Self {
@@ -190,7 +190,7 @@ impl Summary {
                 Some(s) if s.kind == StopKind::Interrupted => RunStatus::Interrupted,
                 Some(_) => RunStatus::Stopped,
             },
-            model: facts,
+            model: Facts::new(file, topology, Some(solution)),
             steps: Steps {
                 solved: course.steps,
                 asked: model.times.len(),

@@ -1,8 +1,6 @@
 //! `whatif.json`, `whatif.csv` and `whatif.html`: a changed design as it is foreseen and as it is, and which variable moves
 //! which measure most.
 
-mod draw;
-
 use std::io::Write;
 
 use csv::WriterBuilder;
@@ -22,7 +20,7 @@ use crate::facts::variable_unit;
 use crate::figures::{names, number, per, rounded, unit, with_unit};
 use crate::margin::MarginFact;
 use crate::metric::MetricChange;
-use crate::page::Table;
+use crate::page::{Payload, Table};
 
 /// Everything that `whatif.json` holds. Figures are in the model's units, times in s.
 #[derive(Clone, Debug, Serialize)]
@@ -137,8 +135,8 @@ pub struct InfluenceFact {
 }
 
 impl WhatIfFacts {
-    /// The facts of a changed design.
-    pub fn new(file: &ModelFile, topology: &Topology, what_if: &WhatIf) -> Self {
+    /// With what a change does to the design that these are the facts of.
+    pub fn changed(self, file: &ModelFile, topology: &Topology, what_if: &WhatIf) -> Self {
         let (model, units) = (&file.model, file.units);
         let change = ChangeFact::all(model, units, &what_if.change);
         let margin = |s: &Solution| {
@@ -152,7 +150,7 @@ impl WhatIfFacts {
             metrics: MetricChange::all(model, units, what_if),
             times: what_if.today.motion.times[..what_if.len()].to_vec(),
             diagnostics: [file.remarks.clone(), out_of_bounds(file, &what_if.change)].concat(),
-            ..Self::of_today(file, topology, &what_if.today)
+            ..self
         };
         for (m, output) in measured.outputs.iter().enumerate() {
             let shown = |x: f64| units.from_si(output.dimension, x);
@@ -326,12 +324,55 @@ impl WhatIfFacts {
         Ok(())
     }
 
-    /// The page: tables, curves over time or over another measure, and the heat map.
-    ///
-    /// # Errors
-    /// If a curve cannot be drawn.
-    pub fn html(&self, over: Option<&str>, wanted: &dyn Fn(&str) -> bool) -> Result<String, String> {
-        draw::html(self, over, wanted)
+    /// The page of today's design becomes that of the changed one: what is told here comes first among its checks, and it opens
+    /// on the first of the `asked` measures, drawn over another one.
+    pub fn page(
+        &self,
+        mut page: Payload,
+        asked: &[String],
+        over: Option<&str>,
+        wanted: &dyn Fn(&str) -> bool,
+    ) -> Payload {
+        let quantity = |name: &str| page.quantities.iter().position(|q| q.name == name);
+        page.first = asked.first().and_then(|name| quantity(name)).or(page.first);
+        page.over = over.and_then(quantity);
+        let mut checks = self.changed_tables(wanted);
+        checks.extend(self.ranked().into_iter().filter(|m| wanted(m)).map(|m| self.ranking(m, MOST_RANKED)));
+        checks.append(&mut page.checks);
+        Payload { checks, ..page }
+    }
+
+    /// What the change is, what it makes of the measures and of the metrics; nothing where the design is not changed.
+    fn changed_tables(&self, wanted: &dyn Fn(&str) -> bool) -> Vec<Table> {
+        if self.change.is_empty() {
+            return Vec::new();
+        }
+        let rows = self.change_rows().into_iter().map(|(what, is)| vec![what.into(), is]).collect();
+        let change = Table {
+            title: "The change".into(),
+            note: String::new(),
+            header: ["", "is"].map(String::from).to_vec(),
+            rows,
+        };
+        let metrics = MetricChange::table(&self.metrics)
+            .map(|t| Table { title: "Metrics, today and changed".into(), ..t });
+        [change, self.table(wanted)].into_iter().chain(metrics).collect()
+    }
+
+    /// The change, whether the mechanism follows, and how far it stays from singular positions: each with its label.
+    pub fn change_rows(&self) -> Vec<(&'static str, String)> {
+        let margin = |m: &Option<MarginFact>| m.as_ref().map_or("-".into(), |m| number(m.least));
+        let [today, changed] = [0, 1].map(|k| margin(&self.margins[k]));
+        let mut rows = vec![
+            ("change", self.change_line()),
+            ("it is", self.follows.clone()),
+            ("least margin", format!("{today} today, {changed} changed")),
+        ];
+        if !self.nearest.is_empty() {
+            let near = ChangeFact::line(&self.nearest);
+            rows.push(("nearest admissible", format!("{near}; `--admissible` makes this change instead")));
+        }
+        rows
     }
 }
 
@@ -345,11 +386,14 @@ impl MeasureFact {
 
 const CURVES: [&str; 4] = ["today", "first order", "second order", "exact"];
 
+/// So many variables of each unit does the page's ranking of a measure show.
+const MOST_RANKED: usize = 10;
+
 /// Against the strongest variable of a measure, less than this is nothing.
 const ROUND_OFF: f64 = 1e-11;
 
 /// Whether and how the mechanism follows a change.
-fn follows(model: &Model, what_if: &WhatIf) -> String {
+pub(crate) fn follows(model: &Model, what_if: &WhatIf) -> String {
     if !what_if.cannot_follow.is_empty() {
         let which = what_if.cannot_follow.iter().map(|v| model.variables[v.0].name.as_str());
         return format!("the mechanism cannot follow {}: nothing is foreseen", names(which));

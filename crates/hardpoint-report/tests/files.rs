@@ -122,8 +122,7 @@ fn sensitivity_file_converts_numerator_and_denominator() {
 fn solved(file: &ModelFile) -> (Analysis<'_>, Solution, Summary) {
     let analysis = Analysis::new(&file.model).unwrap();
     let solution = analysis.run();
-    let facts = Facts::new(file, analysis.topology(), Some(&solution));
-    let summary = Summary::new(file, analysis.topology(), facts, &Course::of(&file.model, &solution));
+    let summary = Summary::new(file, analysis.topology(), &Course::of(&file.model, &solution));
     (analysis, solution, summary)
 }
 

@@ -35,8 +35,7 @@ fn file(draft: &Draft) -> ModelFile {
 fn solved(file: &ModelFile) -> (Solution, Summary) {
     let analysis = Analysis::new(&file.model).unwrap();
     let solution = analysis.run();
-    let facts = Facts::new(file, analysis.topology(), Some(&solution));
-    let summary = Summary::new(file, analysis.topology(), facts, &Course::of(&file.model, &solution));
+    let summary = Summary::new(file, analysis.topology(), &Course::of(&file.model, &solution));
     let page = payload(file, &analysis, &Course::of(&file.model, &solution), &[], &summary);
     assert_eq!(page.margin.is_some(), summary.margin.is_some());
     (solution, summary)
@@ -101,14 +100,16 @@ fn gears() -> Draft {
         couplers: vec![
             CouplerDraft {
                 name: "mesh".into(),
-                kind: CouplerKindDraft::Gears { joints: pair, teeth: [20.0, 40.0], internal: false },
+                kind: CouplerKindDraft::Pair {
+                    by: Transmission::Gears { teeth: [20.0, 40.0], internal: false, bevel: false },
+                    joints: pair,
+                },
             },
             CouplerDraft {
                 name: "teeth".into(),
-                kind: CouplerKindDraft::Rack {
-                    rack: "way".into(),
-                    pinion: "pinion_axle".into(),
-                    radius: 0.02,
+                kind: CouplerKindDraft::Pair {
+                    by: Transmission::Rack { radius: 0.02 },
+                    joints: ["way", "pinion_axle"].map(String::from),
                 },
             },
         ],

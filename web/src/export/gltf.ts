@@ -51,7 +51,7 @@ export function motionScene(mechanism: Mechanism, drawn: Drawn[], step: number):
   const scene = named(new Group().add(...bodies, loose), report.title)
   scene.rotation.x = -Math.PI / 2
   scene.scale.setScalar(METRES[report.units.length] ?? 1)
-  return { scene: named(new Group().add(scene), report.title), clip }
+  return { scene: new Group().add(scene), clip }
 }
 
 function named<T extends Object3D>(object: T, name: string): T {

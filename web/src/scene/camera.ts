@@ -1,72 +1,100 @@
-import { Box3, OrthographicCamera, PerspectiveCamera, Vector3 } from 'three'
-
-/** A motion whose extent along z is below this share of its whole extent is looked at as planar. */
-const FLAT = 1e-3
-const MARGIN = 1.18
-
-export type Look = 'iso' | 'x' | 'y' | 'z'
-
-/** Where everything is that has to be seen. */
-export class Extent {
-  readonly centre = new Vector3()
-  /** Length of the diagonal; everything drawn is scaled by it. */
-  readonly size: number
-  readonly lowest: number
-  readonly planar: boolean
-
-  constructor(readonly points: Vector3[]) {
-    const box = new Box3().setFromPoints(points)
-    if (box.isEmpty()) box.expandByPoint(this.centre)
-    box.getCenter(this.centre)
-    const sides = box.getSize(new Vector3())
-    this.size = sides.length() || 1
-    this.lowest = box.min.z
-    this.planar = sides.z < FLAT * this.size
-  }
-}
+import { OrthographicCamera, PerspectiveCamera, Vector3 } from 'three'
+import type { Mechanism } from './mechanism'
 
 export type Camera = PerspectiveCamera | OrthographicCamera
 
+/** A standard view. */
+export interface Look {
+  name: string
+  title: string
+  /** From the mechanism to the eye. */
+  direction: Vector3
+}
+
+/** Vertical opening of the perspective, in degrees. */
+const OPENING = 22
+/** Air round the picture, and what the buttons at its top take, in pixels. */
+const MARGIN = 1.06
+const TOP = 34
+/** Straight along `up` there is no telling left from right: a hair beside it there is. */
+const HAIR = 1e-4
+
+/** The views offered, the first of them at the start. */
+export function looksOf(mechanism: Mechanism): Look[] {
+  const { plane, up, vehicle, report } = mechanism
+  if (plane) {
+    const right = up.clone().cross(plane)
+    const tilt = plane.clone().addScaledVector(up, 0.45).addScaledVector(right, 0.55)
+    return [look('straight', 'seen straight on', plane.clone()), look('tilt', 'seen from the side and above', tilt)]
+  }
+  if (vehicle) {
+    const { forward } = vehicle
+    const left = up.clone().cross(forward)
+    const from = (ahead: number, aside: number, above: number) =>
+      forward.clone().multiplyScalar(ahead).addScaledVector(left, aside).addScaledVector(up, above)
+    const wheels = report.wheels.map(({ centre }) => mechanism.worldAt(centre.body, new Vector3(...centre.at), 0).dot(left))
+    // With one wheel from inboard, so that it stands behind what carries it.
+    const outboard = wheels.length === 1 ? Math.sign(wheels[0]) || 1 : 1
+    const corner = wheels.length > 1 ? from(0.95, -0.62, 0.5) : from(0.85, -0.8 * outboard, 0.42)
+    return [
+      look('corner', 'seen from the front corner', corner),
+      look('front', 'seen from ahead', from(1, 0, HAIR)),
+      look('side', outboard > 0 ? 'seen from its left' : 'seen from its right', from(0, outboard, HAIR)),
+      look('top', 'seen from above, ahead is up', from(-HAIR, 0, 1)),
+      look('rear', 'seen from behind', from(-1, 0, HAIR)),
+    ]
+  }
+  return [
+    look('corner', 'seen from the corner', new Vector3(0.75, -1, 0.55)),
+    look('front', 'seen along y', new Vector3(0, -1, HAIR)),
+    look('side', 'seen against x', new Vector3(1, 0, HAIR)),
+    look('top', 'seen from above', new Vector3(0, -HAIR, 1)),
+  ]
+}
+
+const look = (name: string, title: string, direction: Vector3): Look => ({ name, title, direction: direction.normalize() })
+
 /** Parallel projection for planar mechanisms, where lengths should compare; perspective for spatial ones. */
-export function cameraFor(extent: Extent): Camera {
-  const camera = extent.planar ? new OrthographicCamera() : new PerspectiveCamera(22)
-  camera.up.set(0, extent.planar ? 1 : 0, extent.planar ? 0 : 1)
-  camera.near = extent.size * 0.01
-  camera.far = extent.size * 40
+export function cameraFor({ plane, up, size }: Mechanism): Camera {
+  const camera = plane ? new OrthographicCamera() : new PerspectiveCamera(OPENING)
+  camera.up.copy(up)
+  camera.near = size * 0.02
+  camera.far = size * 60
   return camera
 }
 
-/** From the mechanism to the eye. Straight along `up` there is no telling left from right: a hair beside it there is. */
-const HAIR = 1e-4
-const DIRECTIONS: Record<Look, Vector3> = {
-  iso: new Vector3(0.75, -1, 0.55).normalize(),
-  x: new Vector3(1, 0, 0),
-  y: new Vector3(0, -1, HAIR),
-  z: new Vector3(0, -HAIR, 1),
-}
-
-/** Puts the camera where the whole motion fills the picture. */
-export function fit(camera: Camera, extent: Extent, look: Look, aspect: number): void {
-  const backward = DIRECTIONS[look]
-  camera.position.copy(extent.centre).add(backward)
-  camera.lookAt(extent.centre)
+/** Puts the camera where all points fill the picture but for its top; the point in their middle, to be turned about. */
+export function fit(camera: Camera, points: Vector3[], size: number, { direction }: Look, width: number, height: number): Vector3 {
+  camera.position.copy(direction)
+  camera.lookAt(0, 0, 0)
   camera.updateMatrixWorld()
-  const eye = camera.quaternion.clone().invert()
-  const seen = extent.points.map((point) => point.clone().sub(extent.centre).applyQuaternion(eye))
+  const [right, up, back] = [0, 1, 2].map((k) => new Vector3().setFromMatrixColumn(camera.matrixWorld, k))
+  const aspect = width / height
+  // How far the picture may be filled upwards: -1 to 1 is all of it.
+  const ceiling = 1 - (2 * TOP) / height
+  const bound = (measure: (x: number, y: number, z: number) => number) =>
+    points.reduce((most, point) => Math.max(most, measure(point.dot(right), point.dot(up), point.dot(back))), -Infinity)
+  const middle = (bound((_, __, z) => z) - bound((_, __, z) => -z)) / 2
+  const tangent = camera instanceof PerspectiveCamera ? Math.tan((camera.fov * Math.PI) / 360) : 0
+  const [sides, above, below] = [(tangent * aspect) / MARGIN, (tangent * ceiling) / MARGIN, tangent / MARGIN]
+  const [east, west] = [bound((x, _, z) => x + sides * z), bound((x, _, z) => -x + sides * z)]
+  const [north, south] = [bound((_, y, z) => y + above * z), bound((_, y, z) => -y + below * z)]
+  let centre: [x: number, y: number]
+  let distance: number
   if (camera instanceof PerspectiveCamera) {
-    const tangent = Math.tan((camera.fov * Math.PI) / 360)
-    const distance = seen.reduce(
-      (far, at) => Math.max(far, at.z + (MARGIN * Math.max(Math.abs(at.y), Math.abs(at.x) / aspect)) / tangent),
-      extent.size * 0.2,
-    )
-    camera.position.copy(extent.centre).addScaledVector(backward, distance)
+    distance = Math.max((east + west) / (2 * sides), (north + south) / (above + below), middle + 0.2 * size)
+    centre = [(east - west) / 2, (north - above * distance + below * distance - south) / 2]
   } else {
-    const half = seen.reduce((most, at) => Math.max(most, Math.abs(at.y), Math.abs(at.x) / aspect), extent.size * 0.05)
+    const half = Math.max((north + south) / (1 + ceiling), (east + west) / 2 / aspect, 0.02 * size) * MARGIN
     camera.zoom = 1
-    camera.userData.half = half * MARGIN
-    camera.position.copy(extent.centre).addScaledVector(backward, extent.size * 4)
+    camera.userData.half = half
+    distance = middle + 4 * size
+    centre = [(east - west) / 2, (north - south) / 2 + ((1 - ceiling) / 2) * half]
   }
+  const target = new Vector3().addScaledVector(right, centre[0]).addScaledVector(up, centre[1]).addScaledVector(back, middle)
+  camera.position.copy(target).addScaledVector(back, distance - middle)
   shapeTo(camera, aspect)
+  return target
 }
 
 /** Follows a new shape of the picture without moving the camera. */
@@ -80,4 +108,5 @@ export function shapeTo(camera: Camera, aspect: number): void {
     camera.right = half * aspect
   }
   camera.updateProjectionMatrix()
+  camera.updateMatrixWorld()
 }

@@ -50,10 +50,10 @@ export class Mechanism {
   #tints: number[]
   #slides: (Slide | undefined)[]
 
-  /** `base`: the design that this is a change of. `former`: the design drawn dashed beside this one. */
+  /** `base`: the design as loaded, where this is a change of it. `former`: the design drawn dashed beside this one. */
   constructor(
     readonly report: Report,
-    base?: Mechanism,
+    readonly base?: Mechanism,
     readonly former?: Mechanism,
   ) {
     const last = Math.max(0, report.times.length - 1)

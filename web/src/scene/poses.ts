@@ -2,7 +2,7 @@ import { Quaternion, Vector3 } from 'three'
 import type { Curve } from '../curve'
 import { roundBelow } from '../format'
 import type { Arrow } from '../payload'
-import type { Report, Variable } from '../report'
+import type { Variable } from '../report'
 
 const STRIDE = 7
 
@@ -84,18 +84,4 @@ export function path(poses: Curve, point: Vector3, stride = 1): Vector3[] {
 export function alongAt(poses: Curve, direction: Vector3, step: number): Vector3 | undefined {
   const pose = poseAt(poses, step)
   return pose && direction.clone().applyQuaternion(pose.turn)
-}
-
-/** Enough steps to bound the motion without walking through every one of a long run. */
-const SAMPLES = 64
-
-/** Every place that a hardpoint or joint visits. */
-export function visited(report: Report): Vector3[] {
-  const points = report.bodies.map((body) => body.skeleton.map((point) => new Vector3(...point)))
-  for (const joint of report.joints) {
-    points[joint.body_i].push(new Vector3(...joint.at_i))
-    points[joint.body_j].push(new Vector3(...joint.at_j))
-  }
-  const stride = Math.max(1, Math.floor(report.times.length / SAMPLES))
-  return report.bodies.flatMap((body, index) => points[index].flatMap((point) => path(body.poses, point, stride)))
 }

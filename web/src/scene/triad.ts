@@ -1,30 +1,63 @@
 import { type Camera, Vector3 } from 'three'
 import { svg } from '../dom'
+import type { Mechanism } from './mechanism'
 
-const REACH = 30
+const REACH = 28
+/** From the tip to the middle of a letter; of a word, beside the tip as well. */
+const GAP = 8
+/** An axis along a direction of the vehicle has at least this cosine with it. */
+const ALONG = 0.99
 
-/** The world's axes in a corner of the view, turned as the camera is. */
+/** A direction that the triad shows. */
+interface Direction {
+  unit: Vector3
+  name: string
+}
+
+/** The world's axes in a corner of the view, turned as the camera is; in words where they are those of a vehicle. */
 export class Triad {
   readonly element = svg('svg', { class: 'triad', viewBox: '-45 -45 90 90', 'aria-hidden': 'true' })
-  #axes = (['x', 'y', 'z'] as const).map((name, k) => {
-    const line = svg('line', { x1: 0, y1: 0 })
-    const text = svg('text')
-    text.textContent = name
-    const group = svg('g', { class: `axis-${name}` }, line, text)
-    this.element.append(group)
-    return { unit: new Vector3().setComponent(k, 1), line, text }
-  })
+  #axes: (Direction & { line: SVGLineElement; text: SVGTextElement })[]
+
+  constructor(vehicle?: Mechanism['vehicle']) {
+    this.#axes = directions(vehicle).map((direction, k) => {
+      const line = svg('line', { x1: 0, y1: 0 })
+      const text = svg('text')
+      text.textContent = direction.name
+      this.element.append(svg('g', { class: `axis-${'xyz'[k]}` }, line, text))
+      return { ...direction, line, text }
+    })
+    // Words reach beyond the box of the letters.
+    this.element.style.overflow = 'visible'
+  }
 
   update(camera: Camera): void {
     const inverse = camera.quaternion.clone().invert()
-    for (const { unit, line, text } of this.#axes) {
+    for (const { unit, name, line, text } of this.#axes) {
       const seen = unit.clone().applyQuaternion(inverse)
       line.setAttribute('x2', String(seen.x * REACH))
       line.setAttribute('y2', String(-seen.y * REACH))
-      text.setAttribute('x', String(seen.x * (REACH + 8)))
-      text.setAttribute('y', String(-seen.y * (REACH + 8)))
-      // An axis that points at the reader has no direction on the screen; its letter would sit on the origin.
+      const word = name.length > 1
+      text.setAttribute('x', String(seen.x * (REACH + (word ? 3 : GAP))))
+      text.setAttribute('y', String(-seen.y * (REACH + GAP)))
+      text.style.textAnchor = word && Math.abs(seen.x) > 0.4 ? (seen.x > 0 ? 'start' : 'end') : 'middle'
+      // An axis that points at the reader has no direction on the screen; its name would sit on the origin.
       text.style.opacity = Math.hypot(seen.x, seen.y) < 0.15 ? '0' : '1'
     }
   }
+}
+
+/** The directions along x, y and z: of a vehicle front, left and up, the way they point. */
+export function directions(vehicle?: Mechanism['vehicle']): Direction[] {
+  const words: Direction[] = vehicle
+    ? [
+        { unit: vehicle.forward.clone(), name: 'front' },
+        { unit: vehicle.up.clone().cross(vehicle.forward), name: 'left' },
+        { unit: vehicle.up.clone(), name: 'up' },
+      ]
+    : []
+  return ['x', 'y', 'z'].map((name, k) => {
+    const unit = new Vector3().setComponent(k, 1)
+    return words.find((word) => Math.abs(word.unit.dot(unit)) > ALONG) ?? { unit, name }
+  })
 }

@@ -1,203 +1,250 @@
-import {
-  AmbientLight,
-  Color,
-  DirectionalLight,
-  GridHelper,
-  Group,
-  type Material,
-  type Mesh,
-  type Object3D,
-  Raycaster,
-  Scene,
-  Vector2,
-  Vector3,
-  WebGLRenderer,
-} from 'three'
-import { Line2 } from 'three/addons/lines/Line2.js'
-import { LineGeometry } from 'three/addons/lines/LineGeometry.js'
-import { LineMaterial } from 'three/addons/lines/LineMaterial.js'
+import { PCFShadowMap, Scene, Vector3, WebGLRenderer } from 'three'
 import { OrbitControls } from 'three/addons/controls/OrbitControls.js'
-import { css, el, hue, onSchemeChange } from '../dom'
-import { number, roundBelow } from '../format'
-import type { State } from '../state'
-import { cameraFor, Extent, fit, type Look, shapeTo } from './camera'
-import { glyph, isRod, jointName } from './joints'
-import { arrow, bar, groundMarks, named, overlay, ringArrow, skeleton, solid, stretch } from './parts'
-import { path, poseAt, reshaped, shifted, visited } from './poses'
+import { el, onSchemeChange } from '../dom'
+import { motionGltf } from '../export/gltf'
+import { viewSvg } from '../export/view_svg'
+import { number } from '../format'
+import type { Choice, State } from '../state'
+import { Assembly } from './assembly'
+import { cameraFor, fit, type Look, looksOf, shapeTo } from './camera'
+import { marks, matter } from './draw'
+import { type Part, samePart } from './drawn'
+import { Floor } from './floor'
+import { hardpointLabels, LabelLayer, partLabels } from './label_layer'
+import { Mechanism } from './mechanism'
+import { type Emphasis, Outlines, OVER } from './outlines'
+import { palette } from './palette'
+import { Pointer } from './pointer'
+import { present } from './shape'
 import { Triad } from './triad'
 
-/** How opaque a changed design is drawn over today's. */
-const GHOST = 0.45
+/** Room round every place that the motion visits, in units. */
+const ROOM = 2
+/** Numbers of marks start here, far above those of matter. */
+const MARK_NUMBERS = 1 << 15
 
 export function hasWebGL(): boolean {
-  return document.createElement('canvas').getContext('webgl2') !== null
+  const context = document.createElement('canvas').getContext('webgl2')
+  // Browsers keep only so many contexts.
+  context?.getExtension('WEBGL_lose_context')?.loseContext()
+  return context !== null
 }
 
 /** The mechanism in 3D. Draws only when something changed, so that an idle page costs nothing. */
 export class View {
   readonly element: HTMLElement
+  readonly canvas: HTMLCanvasElement
+  /** The standard views offered; the first is that of the start. */
+  readonly looks: readonly Look[]
+  readonly scene = new Scene()
+  readonly camera
+  /** The design as loaded. */
+  readonly today: Mechanism
   #renderer = new WebGLRenderer({ antialias: true, preserveDrawingBuffer: true })
-  #scene = new Scene()
-  #extent: Extent
-  #camera
+  #outlines = new Outlines()
   #controls: OrbitControls
-  #triad = new Triad()
+  #pointer: Pointer
+  #triad: Triad
+  #labels = new LabelLayer()
+  /** Whether every hardpoint is named. */
+  #named = false
   #paper = el('canvas', { class: 'paper' })
-  #tip = el('div', { class: 'tip', hidden: true })
   #scale = el('span', { class: 'scale' })
-  #bodies: Group[] = []
-  #rods: { mesh: Mesh; from: [number, Vector3]; to: [number, Vector3] }[] = []
-  #arrows: Group[] = []
-  #ghosts: { body: number; group: Group }[] = []
-  #trace?: Line2
+  #lost = el('p', { class: 'message', hidden: true }, 'The graphics were lost; the view comes back when the browser gives them back.')
+  #palette = palette()
+  #matter: Assembly
+  #marks: Assembly
+  #floor: Floor
+  #drawn: Pick<Choice, 'change' | 'variable'>
+  #look: Look
+  /** Whether the reader turned or moved the view since it was fitted. */
+  #turned = false
+  #stale = false
+  #moved = true
   #pending = false
-  #aspect?: number
 
   constructor(private readonly state: State) {
-    this.#extent = new Extent(visited(state.report))
-    this.#camera = cameraFor(this.#extent)
-    const { domElement: canvas } = this.#renderer
-    canvas.setAttribute('data-testid', 'view-canvas')
-    canvas.setAttribute('role', 'img')
-    canvas.setAttribute('aria-label', `3D view of ${state.report.title}`)
-    this.#controls = new OrbitControls(this.#camera, canvas)
+    this.today = new Mechanism(state.report)
+    this.#triad = new Triad(this.today.vehicle)
+    this.looks = looksOf(this.today)
+    this.#look = this.looks[0]
+    this.camera = cameraFor(this.today)
+    this.canvas = this.#renderer.domElement
+    this.canvas.setAttribute('data-testid', 'view-canvas')
+    this.canvas.setAttribute('role', 'img')
+    this.canvas.setAttribute('aria-label', `3D view of ${state.report.title}`)
+    this.#renderer.autoClear = false
+    this.#renderer.shadowMap.enabled = this.today.plane === undefined
+    this.#renderer.shadowMap.type = PCFShadowMap
+    this.#renderer.shadowMap.autoUpdate = false
+    this.#controls = new OrbitControls(this.camera, this.canvas)
     this.#controls.addEventListener('change', () => this.#draw())
-    this.element = el('div', { class: 'view' }, canvas, this.#paper, this.#tip, this.#scale)
+    this.#controls.addEventListener('start', () => (this.#turned = true))
+    this.#pointer = new Pointer(
+      this.canvas,
+      this.camera,
+      () => [...this.#marks.groups, ...this.#matter.groups],
+      () => this.#emphasise(),
+      (selected) => state.choose({ selected }),
+    )
+    this.element = el('div', { class: 'view' }, this.canvas, this.#labels.element, this.#paper, this.#lost, this.#pointer.tip, this.#scale)
     this.element.append(this.#triad.element)
 
-    this.#build()
-    state.onTime(() => this.#draw())
-    state.onChoice(() => this.#annotate())
-    onSchemeChange(() => {
-      this.#build()
-      this.#render()
+    this.#drawn = { ...state.choice }
+    this.#matter = this.#assembleMatter()
+    this.#marks = this.#assembleMarks()
+    this.#floor = this.#lay()
+    this.#emphasise()
+    state.onTime(() => this.#move())
+    state.onChoice(() => {
+      this.#stale = true
+      this.#draw()
     })
+    onSchemeChange(() => this.#repaint())
     addEventListener('beforeprint', () => this.#still())
     new ResizeObserver(() => this.#resize()).observe(this.element)
-    canvas.addEventListener('pointermove', (event) => this.#hover(event))
-    canvas.addEventListener('pointerleave', () => (this.#tip.hidden = true))
-  }
-
-  look(look: Look): void {
-    this.#controls.target.copy(this.#extent.centre)
-    fit(this.#camera, this.#extent, look, this.#aspect ?? 1)
-    this.#controls.update()
-    this.#draw()
-  }
-
-  /** Everything whose colour the scheme decides, which is everything. */
-  #build(): void {
-    const { report } = this.state
-    const size = this.#extent.size
-    dispose(this.#scene)
-    this.#scene.clear()
-    this.#scene.background = new Color(css('--view'))
-    this.#scene.add(new AmbientLight(0xffffff, 1.7), this.#grid())
-    const lamp = new DirectionalLight(0xffffff, 1.9)
-    lamp.position.set(-0.5, -0.3, 1)
-    const fill = new DirectionalLight(0xffffff, 0.7)
-    fill.position.set(1, -1, -0.2)
-    this.#scene.add(lamp, fill)
-
-    this.#bodies = report.bodies.map((body, index) =>
-      index === 0 ? groundMarks(body, size, css('--ground')) : skeleton(body, size, hue(index - 1)),
-    )
-    this.#scene.add(...this.#bodies)
-
-    this.#rods = []
-    for (const joint of report.joints) {
-      const color = css(joint.cut ? '--cut-joint' : '--tree-joint')
-      if (isRod(joint)) {
-        const mesh = named(bar(size * 0.0055, solid(color)), jointName(joint))
-        this.#rods.push({
-          mesh,
-          from: [joint.body_i, new Vector3(...joint.at_i)],
-          to: [joint.body_j, new Vector3(...joint.at_j)],
-        })
-        this.#scene.add(mesh)
-      } else {
-        this.#bodies[joint.body_i].add(glyph(joint, size, color))
-      }
-    }
-    this.#annotate()
-  }
-
-  #grid(): GridHelper {
-    const { size, centre, lowest } = this.#extent
-    const cell = roundBelow(size / 6)
-    const cells = 2 * Math.ceil((0.75 * size) / cell)
-    const grid = new GridHelper(cells * cell, cells, css('--grid-main'), css('--grid'))
-    // The lines fall on round coordinates.
-    const round = (value: number) => Math.round(value / cell) * cell
-    grid.position.set(round(centre.x), round(centre.y), lowest - 0.05 * size)
-    // GridHelper lies in xz.
-    grid.rotation.x = Math.PI / 2
-    this.#scale.textContent = `grid ${number(cell)} ${this.state.report.units.length}`
-    return grid
-  }
-
-  /** The selected variable's design velocity and the chosen path. */
-  #annotate(): void {
-    const { report, choice } = this.state
-    const size = this.#extent.size
-    const ghosts = this.#ghosts.map(({ group }) => group)
-    for (const part of [...this.#arrows, ...ghosts, ...(this.#trace ? [this.#trace] : [])]) {
-      dispose(part)
-      part.removeFromParent()
-    }
-    this.#arrows = []
-    this.#ghosts = []
-    this.#trace = undefined
-    if (choice.change !== 0) this.#reshape()
-
-    const material = overlay(css('--accent'))
-    const arrows = report.variables[choice.variable]?.arrows ?? []
-    const longest = Math.max(...arrows.map(({ v }) => Math.hypot(...v)), 0)
-    for (const { body, at, v, turn } of arrows) {
-      const group = new Group()
-      const place = new Vector3(...at)
-      const along = new Vector3(...v)
-      const axis = new Vector3(...turn)
-      if (along.length() > 1e-9 * longest) {
-        group.add(arrow(place, along.multiplyScalar((0.14 * size) / longest), size * 0.005, material))
-      }
-      if (axis.length() > 0) group.add(ringArrow(place, axis, size * 0.06, size * 0.005, material))
-      group.traverse((part) => {
-        part.renderOrder = 10
-        named(part, `design velocity of ${report.variables[choice.variable].name}`)
-      })
-      this.#bodies[body].add(group)
-      this.#arrows.push(group)
-    }
-
-    if (choice.trace) {
-      const [body, point] = choice.trace
-      const track = report.bodies[body]
-      const places = path(track.poses, new Vector3(...track.skeleton[point]))
-      const color = body === 0 ? css('--ground') : hue(body - 1)
-      this.#trace = new Line2(new LineGeometry().setFromPoints(places), new LineMaterial({ color, linewidth: 2 }))
-      this.#scene.add(this.#trace)
-    }
-    this.#draw()
-  }
-
-  /** The bodies as the change of the selected variable makes them. */
-  #reshape(): void {
-    const { report, choice } = this.state
-    const variable = report.variables[choice.variable]
-    const size = this.#extent.size
-    report.bodies.forEach((body, index) => {
-      if (index === 0) return
-      const points = reshaped(body.skeleton, variable.arrows, index, choice.change, size)
-      const group = skeleton({ ...body, skeleton: points }, size, css('--accent'))
-      group.traverse((part) => {
-        const { material } = part as Partial<Mesh>
-        if (material) Object.assign(material, { transparent: true, opacity: GHOST, depthWrite: false })
-        if (part.userData.name) named(part, `${part.userData.name}, ${variable.name} changed`)
-      })
-      this.#ghosts.push({ body: index, group })
-      this.#scene.add(group)
+    document.addEventListener('keydown', (event) => this.#key(event))
+    this.canvas.addEventListener('webglcontextlost', () => (this.#lost.hidden = false))
+    this.canvas.addEventListener('webglcontextrestored', () => {
+      this.#lost.hidden = true
+      this.#move()
     })
+  }
+
+  /** The design drawn solid; its `former` is the one drawn dashed. */
+  get mechanism(): Mechanism {
+    return this.#matter.mechanism
+  }
+
+  /** What is drawn of the mechanism itself, in groups that move with the bodies. */
+  get assembly(): Assembly {
+    return this.#matter
+  }
+
+  /** Shows a standard view by its name. */
+  look(name: string): void {
+    this.#look = this.looks.find((look) => look.name === name) ?? this.looks[0]
+    this.fit()
+  }
+
+  /** Fits the whole motion into the picture, seen from the standard view of the moment or from where the reader turned it. */
+  fit(): void {
+    const { clientWidth: width, clientHeight: height } = this.element
+    if (width === 0 || height === 0) return
+    this.#update()
+    const room = ROOM * this.today.unit
+    const padded = [0, 1, 2].flatMap((k) => [-room, room].map((by) => new Vector3().setComponent(k, by)))
+    const swept = [...this.today.sweep, ...(this.mechanism === this.today ? [] : this.mechanism.sweep)]
+    const points = [
+      ...swept.flatMap((point) => padded.map((by) => point.clone().add(by))),
+      ...this.#matter.corners(),
+      ...this.#marks.corners(),
+    ]
+    this.#controls.target.copy(fit(this.camera, points, this.today.size, this.#look, width, height))
+    this.#controls.update()
+    this.#turned = false
+    this.#draw()
+  }
+
+  /** Names every hardpoint, or only those of what is pointed at or selected. */
+  nameAll(named: boolean): void {
+    this.#named = named
+    this.#draw()
+  }
+
+  /** The picture as vectors. */
+  vectors(): Blob {
+    const { clientWidth: width, clientHeight: height } = this.element
+    const { view, ground, outline, label } = this.#palette
+    const groups = [...this.#matter.groups, ...this.#marks.groups]
+    const title = this.state.report.title
+    return viewSvg(groups, this.camera, { width, height, title, view, ground, outline, label, labels: this.#labels.placed })
+  }
+
+  /** The whole motion as a binary glTF file. */
+  motion(): Promise<Blob> {
+    return motionGltf(this.mechanism, this.#matter.drawn, this.state.step)
+  }
+
+  /** The picture as a PNG file, so many pixels for each of the page's. */
+  async picture(scale: number): Promise<Blob> {
+    const usual = this.#renderer.getPixelRatio()
+    this.#size(scale)
+    this.#render()
+    const blob = await new Promise<Blob | null>((done) => this.canvas.toBlob(done, 'image/png'))
+    this.#size(usual)
+    this.#render()
+    if (!blob) throw new Error('the browser gave no picture of the view')
+    return blob
+  }
+
+  #assembleMatter(): Assembly {
+    const assembly = new Assembly(present(this.today, this.state.choice), this.#palette, this.state.choice, matter, this.#outlines, 0)
+    this.scene.add(...assembly.groups)
+    return assembly
+  }
+
+  #assembleMarks(): Assembly {
+    const assembly = new Assembly(this.#matter.mechanism, this.#palette, this.state.choice, marks, this.#outlines, MARK_NUMBERS)
+    this.scene.add(...assembly.groups)
+    return assembly
+  }
+
+  #lay(): Floor {
+    const { up, report } = this.today
+    this.#matter.pose(this.mechanism.frame(this.state.step))
+    const heights = [...this.#matter.corners(), ...this.today.sweep].map((corner) => corner.dot(up))
+    const floor = new Floor(this.today, this.#palette, heights.length > 0 ? heights.reduce((a, b) => Math.min(a, b)) : 0)
+    this.scene.add(floor.object)
+    this.#scale.textContent = `${report.wheels.length > 0 ? 'road, ' : ''}grid ${number(floor.cell)} ${report.units.length}`
+    this.#outlines.colour(this.#palette)
+    this.#renderer.setClearColor(this.#palette.view)
+    return floor
+  }
+
+  /** Everything anew: there is nothing whose colour the scheme does not decide. */
+  #repaint(): void {
+    this.#palette = palette()
+    for (const one of [this.#matter, this.#marks]) one.dispose()
+    this.#floor.object.removeFromParent()
+    this.#floor.dispose()
+    this.#matter = this.#assembleMatter()
+    this.#marks = this.#assembleMarks()
+    this.#floor = this.#lay()
+    this.#emphasise()
+    this.#moved = true
+    this.#render()
+  }
+
+  /** Makes anew what the last choice changed. */
+  #update(): void {
+    if (!this.#stale) return
+    this.#stale = false
+    const { change, variable } = this.state.choice
+    const changed = change !== this.#drawn.change || (change !== 0 && variable !== this.#drawn.variable)
+    this.#drawn = { change, variable }
+    if (changed) {
+      this.#matter.dispose()
+      this.#matter = this.#assembleMatter()
+    }
+    this.#marks.dispose()
+    this.#marks = this.#assembleMarks()
+    this.#moved = true
+    this.#emphasise()
+  }
+
+  #emphasise(): void {
+    const { selected } = this.state.choice
+    const level = (part: Part): Emphasis =>
+      samePart(part, selected) ? 'chosen' : samePart(part, this.#pointer.hovered) ? 'hovered' : 'none'
+    const parts = [...this.#matter.numbers, ...this.#marks.numbers]
+    this.#outlines.emphasise(new Map(parts.map(({ part, number }) => [number, level(part)] as const).filter(([, to]) => to !== 'none')))
+    this.#draw()
+  }
+
+  #move(): void {
+    this.#moved = true
+    this.#draw()
   }
 
   #draw(): void {
@@ -210,79 +257,65 @@ export class View {
   }
 
   #render(): void {
-    this.#pose()
-    this.#renderer.render(this.#scene, this.#camera)
-    this.#triad.update(this.#camera)
+    this.#update()
+    if (this.#moved) {
+      const frame = this.mechanism.frame(this.state.step)
+      this.#matter.pose(frame)
+      this.#marks.pose(frame)
+      // Shadows stay where they are while only the reader moves.
+      this.#renderer.shadowMap.needsUpdate = true
+      this.#moved = false
+    }
+    const { layers } = this.camera
+    layers.set(0)
+    this.#renderer.clear()
+    this.#renderer.render(this.scene, this.camera)
+    this.#outlines.draw(this.#renderer, this.scene, this.camera)
+    layers.set(OVER)
+    this.#renderer.render(this.scene, this.camera)
+    layers.set(0)
+    this.#triad.update(this.camera)
+    this.#label()
   }
 
-  #pose(): void {
-    const { report, step, choice } = this.state
-    this.#bodies.forEach((group, index) => {
-      const pose = poseAt(report.bodies[index].poses, step)
-      group.visible = pose !== undefined
-      if (!pose) return
-      group.position.copy(pose.place)
-      group.quaternion.copy(pose.turn)
-      group.updateMatrixWorld()
-    })
-    const shifts = report.variables[choice.variable]?.shifts
-    for (const { body, group } of this.#ghosts) {
-      const pose = poseAt(report.bodies[body].poses, step)
-      group.visible = pose !== undefined
-      if (!pose) continue
-      const { place, turn } = shifted(pose, shifts?.[body], step, choice.change)
-      group.position.copy(place)
-      group.quaternion.copy(turn)
-    }
-    for (const { mesh, from, to } of this.#rods) {
-      const [a, b] = [from, to].map(([body, point]) => this.#bodies[body].localToWorld(point.clone()))
-      stretch(mesh, a, b)
-      mesh.visible &&= this.#bodies[from[0]].visible && this.#bodies[to[0]].visible
-    }
+  #label(): void {
+    const { clientWidth: width, clientHeight: height } = this.element
+    const frame = this.mechanism.frame(this.state.step)
+    const parts = [this.state.choice.selected, this.#pointer.hovered].filter((part) => part !== undefined)
+    const labels = this.#named ? hardpointLabels(this.mechanism, frame) : parts.flatMap((part) => partLabels(this.mechanism, frame, part))
+    this.#labels.show(labels, this.camera, this.mechanism.centre, width, height)
   }
 
   /** Prints a copy: a printer does not wait for the frame in which a WebGL canvas would show its new picture. */
   #still(): void {
-    const { domElement: canvas } = this.#renderer
-    this.#paper.width = canvas.width
-    this.#paper.height = canvas.height
-    this.#paper.getContext('2d')!.drawImage(canvas, 0, 0)
+    this.#paper.width = this.canvas.width
+    this.#paper.height = this.canvas.height
+    this.#paper.getContext('2d')!.drawImage(this.canvas, 0, 0)
   }
 
   #resize(): void {
     const { clientWidth: width, clientHeight: height } = this.element
     if (width === 0 || height === 0) return
-    const first = this.#aspect === undefined
-    this.#aspect = width / height
-    this.#renderer.setPixelRatio(Math.min(devicePixelRatio, 2))
+    this.#size(Math.min(devicePixelRatio, 2))
+    if (this.#turned) shapeTo(this.camera, width / height)
+    else this.fit()
+    this.#render()
+  }
+
+  #size(ratio: number): void {
+    const { clientWidth: width, clientHeight: height } = this.element
+    this.#renderer.setPixelRatio(ratio)
     this.#renderer.setSize(width, height, false)
-    shapeTo(this.#camera, this.#aspect)
-    if (first) this.look(this.#extent.planar ? 'z' : 'iso')
-    this.#draw()
+    this.#outlines.resize(width, height, ratio)
   }
 
-  #hover(event: PointerEvent): void {
-    const { left, top, width, height } = this.element.getBoundingClientRect()
-    const [x, y] = [event.clientX - left, event.clientY - top]
-    const ray = new Raycaster()
-    ray.setFromCamera(new Vector2((2 * x) / width - 1, 1 - (2 * y) / height), this.#camera)
-    const hit = ray.intersectObjects(this.#scene.children).find(({ object }) => object.userData.name && object.visible)
-    this.#tip.hidden = !hit
-    if (!hit) return
-    this.#tip.textContent = hit.object.userData.name
-    // To the left of the pointer in the right half, so that the text never leaves the view.
-    const toLeft = x > width / 2
-    this.#tip.style.left = toLeft ? 'auto' : `${x + 14}px`
-    this.#tip.style.right = toLeft ? `${width - x + 14}px` : 'auto'
-    this.#tip.style.top = `${y + 10}px`
+  #key(event: KeyboardEvent): void {
+    const target = event.target as HTMLElement
+    const modified = event.ctrlKey || event.metaKey || event.altKey
+    if (modified || target.closest('select, textarea, input:not([type=range])')) return
+    if (event.key === 'f') this.fit()
+    else if (event.key === 'l') this.nameAll(!this.#named)
+    else return
+    event.preventDefault()
   }
-}
-
-/** Frees what the graphics card holds. */
-function dispose(root: Object3D): void {
-  root.traverse((object) => {
-    const { geometry, material } = object as Partial<Mesh>
-    geometry?.dispose()
-    for (const one of [material ?? []].flat() as Material[]) one.dispose()
-  })
 }

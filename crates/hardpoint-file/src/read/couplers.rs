@@ -2,6 +2,7 @@
 
 use hardpoint::draft::{CouplerDraft, CouplerKindDraft, Section, TermDraft};
 use hardpoint::joint::Quantity;
+use hardpoint::model::Transmission;
 
 use crate::format::{JOINT, Key, Kinds, LENGTH, NUMBER, Shape, TWO_NUMBERS, Table, keys, table};
 use crate::places::EntryPlace;
@@ -24,14 +25,14 @@ static TYPES: [(Table, Read); 6] = [
             /// Two gears: `teeth[0] angle[0] + teeth[1] angle[1] = 0`, or minus for an internal gear.
             "gear", GEARS
         },
-        |r, fields, _, _| r.gears(fields),
+        |r, fields, _, _| r.gears(fields, false),
     ),
     (
         table! {
             /// Two bevel gears, with the same relation as `gear`.
             "bevel", GEARS
         },
-        |r, fields, _, _| r.gears(fields),
+        |r, fields, _, _| r.gears(fields, true),
     ),
     (
         table! {
@@ -113,11 +114,12 @@ impl Reader<'_> {
         }
     }
 
-    fn gears(&mut self, fields: &Fields<'_>) -> Option<CouplerKindDraft> {
+    fn gears(&mut self, fields: &Fields<'_>, bevel: bool) -> Option<CouplerKindDraft> {
         let joints = self.names_of(fields, "joints");
         let teeth = self.list_of(fields, "teeth", "two numbers of teeth");
         let internal = self.flag_of(fields, "internal");
-        Some(CouplerKindDraft::Gears { joints: joints?, teeth: teeth?, internal: internal? })
+        let by = Transmission::Gears { teeth: teeth?, internal: internal?, bevel };
+        Some(CouplerKindDraft::Pair { by, joints: joints? })
     }
 
     fn rack(&mut self, fields: &Fields<'_>, place: &mut EntryPlace) -> Option<CouplerKindDraft> {
@@ -125,14 +127,16 @@ impl Reader<'_> {
         let radius = self.number_of(fields, "radius");
         let named = ["rack", "pinion"].iter().filter_map(|key| fields.get(key));
         place.items("joints", named.map(|f| f.value.span()).collect());
-        Some(CouplerKindDraft::Rack { rack: rack?, pinion: pinion?, radius: radius? })
+        let by = Transmission::Rack { radius: radius? };
+        Some(CouplerKindDraft::Pair { by, joints: [rack?, pinion?] })
     }
 
     fn belt(&mut self, fields: &Fields<'_>) -> Option<CouplerKindDraft> {
         let joints = self.names_of(fields, "joints");
         let radii = self.list_of(fields, "radii", "two radii");
         let crossed = self.flag_of(fields, "crossed");
-        Some(CouplerKindDraft::Belt { joints: joints?, radii: radii?, crossed: crossed? })
+        let by = Transmission::Belt { radii: radii?, crossed: crossed? };
+        Some(CouplerKindDraft::Pair { by, joints: joints? })
     }
 
     /// The file's sum of `coefficient x coordinate` is zero in the file's units; so it must be in SI.

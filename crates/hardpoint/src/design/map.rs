@@ -92,6 +92,12 @@ impl<'m> DesignMap<'m> {
         }
     }
 
+    /// Where the hardpoints of the designs whose values these are stand, global.
+    pub fn places<T: Real>(&self, values: &[T]) -> Vec<Vec3<T>> {
+        let design = PlacedDesign::new(self, values.to_vec());
+        (0..self.model.hardpoints.len()).map(|h| design.place(HardpointId(h), &design.values)).collect()
+    }
+
     /// What the measures of these designs go by.
     pub fn fixed<T: Real>(&self, values: &[T]) -> BodyFixed<T> {
         let (model, design) = (self.model, PlacedDesign::new(self, values.to_vec()));

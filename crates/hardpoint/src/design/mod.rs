@@ -6,7 +6,7 @@
 
 use crate::law::Law;
 use crate::model::{Joint, Model, VariableId};
-use crate::space::{Mat3, euler_313_from_rotation, rotation_from_euler_313};
+use crate::space::{Mat3, Vec3, euler_313_from_rotation, rotation_from_euler_313};
 
 mod change;
 mod field;
@@ -28,6 +28,11 @@ impl Model {
     /// Body frames stay where they are in the design configuration; markers move on their bodies.
     pub fn geometry(&self, design: &[f64]) -> Geometry {
         DesignMap::of(self).geometry(&self.whole(design))
+    }
+
+    /// Where the hardpoints of such a design are in the design configuration, m, global.
+    pub fn hardpoint_places(&self, design: &[f64]) -> Vec<Vec3> {
+        DesignMap::of(self).places(&self.whole(design))
     }
 
     /// The first-order change of the nominal design per unit of one variable.

@@ -20,7 +20,7 @@ use std::collections::BTreeMap;
 use crate::expression::Expression;
 use crate::joint::{self, JointType, Quantity};
 use crate::law::Law;
-use crate::model::{Reduction, Side, Vehicle, VehicleEnd};
+use crate::model::{Reduction, Side, Transmission, Vehicle, VehicleEnd};
 use crate::space::{Pose, Vec3};
 
 /// A mechanism as written. Fill it in code, word by word or field by field, or from a file;
@@ -229,32 +229,12 @@ pub struct CouplerDraft {
 pub enum CouplerKindDraft {
     /// `sum of coefficient x coordinate = 0`.
     Linear(Vec<TermDraft>),
-    /// Two gears, spur or bevel: `teeth_1 angle_1 + teeth_2 angle_2 = 0`, or minus for an internal gear.
-    Gears {
-        /// The joints that carry the gears.
+    /// Two joints, each with the coordinate that the transmission couples.
+    Pair {
+        /// What couples them.
+        by: Transmission,
+        /// The joints' names.
         joints: [String; 2],
-        /// Teeth, or any two numbers in their ratio.
-        teeth: [f64; 2],
-        /// Whether one of them is an internal gear, so that both turn the same way.
-        internal: bool,
-    },
-    /// `displacement = radius x angle`.
-    Rack {
-        /// The joint on which the rack slides.
-        rack: String,
-        /// The joint on which the pinion turns.
-        pinion: String,
-        /// Pitch radius, m; negative where the rack passes the pinion's other side.
-        radius: f64,
-    },
-    /// `radius_1 angle_1 = radius_2 angle_2`, or minus for a crossed belt.
-    Belt {
-        /// The joints that carry the pulleys.
-        joints: [String; 2],
-        /// Their radii, m.
-        radii: [f64; 2],
-        /// Whether the belt crosses between them.
-        crossed: bool,
     },
 }
 

@@ -19,6 +19,7 @@ pub struct Curve {
     /// Length of the chords, m: the parameter u runs from 0 to it.
     length: f64,
     points: usize,
+    closed: bool,
     /// The parameter next to the point that follows, in the design configuration.
     start: f64,
 }
@@ -102,7 +103,7 @@ impl Curve {
             Law::table(&Table { times: times.clone(), values, degree: SplineDegree::Quintic, ends })
         };
         let length = times[times.len() - 1];
-        let mut curve = Self { x: law(0)?, y: law(1)?, length, points: points.len(), start: 0.0 };
+        let mut curve = Self { x: law(0)?, y: law(1)?, length, points: points.len(), closed, start: 0.0 };
         curve.start = curve.search(follower);
         Ok(curve)
     }
@@ -111,6 +112,16 @@ impl Curve {
     pub fn at(&self, u: f64) -> CurvePoint {
         let (x, y) = (self.x.at(u).derivatives(), self.y.at(u).derivatives());
         std::array::from_fn(|k| [x[k], y[k]])
+    }
+
+    /// Whether its end is its beginning.
+    pub fn is_closed(&self) -> bool {
+        self.closed
+    }
+
+    /// Where the parameter ends, which begins at 0, m: the length of the chords between its points.
+    pub fn length(&self) -> f64 {
+        self.length
     }
 
     /// The parameter next to the follower in the design configuration.

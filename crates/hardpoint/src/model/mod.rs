@@ -4,6 +4,7 @@
 //! [`Geometry`](crate::design::Geometry) made from it.
 
 pub mod change;
+mod coupler;
 mod curve;
 mod formula;
 mod measure;
@@ -11,6 +12,7 @@ mod metric;
 mod wheel;
 
 pub use change::{Change, ChangeText, End};
+pub use coupler::{Coupler, CouplerTerm, Transmission};
 pub(crate) use curve::Contact;
 pub use curve::{Curve, CurvePoint};
 pub use formula::{Formula, NamedNumber, Source, Target};
@@ -152,27 +154,6 @@ pub struct Joint {
     pub cut: bool,
     /// Whether it only carries a driver on something that is no joint's coordinate; it has the driver's name.
     pub unnamed: bool,
-}
-
-/// A linear relation between joint coordinates, each counted from the design configuration and through whole turns:
-/// `sum of coefficient x coordinate = 0`. Gears, racks, belts and screws are such relations.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Coupler {
-    /// Its name; that of the joint for a screw.
-    pub name: String,
-    /// Its terms; no coefficient is zero. A change of the design leaves them alone.
-    pub terms: Vec<CouplerTerm>,
-}
-
-/// A joint coordinate times a number.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct CouplerTerm {
-    /// Which joint.
-    pub joint: JointId,
-    /// Which of its type's coordinates.
-    pub coordinate: usize,
-    /// The factor, per m or per rad of the coordinate.
-    pub coefficient: f64,
 }
 
 /// A prescribed motion of one joint coordinate, measured from the design configuration.

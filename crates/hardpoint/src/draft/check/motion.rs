@@ -4,7 +4,8 @@ use crate::draft::{CouplerKindDraft, DrivenDraft, DriverDraft, Locus, Section};
 use crate::joint;
 use crate::joint::{CoordinateType, JointType};
 use crate::model::{
-    BodyId, BodyPoint, Coupler, CouplerTerm, Direction, Driver, DriverId, GROUND, HardpointId, Joint, JointId,
+    BodyId, BodyPoint, Coupler, CouplerTerm, Direction, Driver, DriverId, GROUND, HardpointId, Joint,
+    JointId, Transmission,
 };
 use crate::space::Mat3;
 
@@ -184,7 +185,7 @@ impl Checker<'_> {
         let draft = self.draft;
         for (index, c) in draft.couplers.iter().enumerate() {
             let here = Here { section: Section::Couplers, index };
-            let terms = match &c.kind {
+            let (transmission, terms) = match &c.kind {
                 CouplerKindDraft::Linear(terms) => {
                     let terms: Vec<_> = terms
                         .iter()
@@ -197,27 +198,17 @@ impl Checker<'_> {
                             Some(CouplerTerm { joint, coordinate, coefficient: t.coefficient })
                         })
                         .collect();
-                    terms.into_iter().collect::<Option<Vec<CouplerTerm>>>()
+                    (None, terms.into_iter().collect::<Option<Vec<CouplerTerm>>>())
                 }
-                CouplerKindDraft::Gears { joints, teeth, internal } => {
-                    let sign = if *internal { -1.0 } else { 1.0 };
-                    self.pair(joints, ["angle"; 2], [teeth[0], sign * teeth[1]], here)
-                }
-                CouplerKindDraft::Belt { joints, radii, crossed } => {
-                    let sign = if *crossed { 1.0 } else { -1.0 };
-                    self.pair(joints, ["angle"; 2], [radii[0], sign * radii[1]], here)
-                }
-                CouplerKindDraft::Rack { rack, pinion, radius } => {
-                    let joints = [rack.clone(), pinion.clone()];
-                    self.pair(&joints, ["displacement", "angle"], [1.0, -radius], here)
-                }
+                CouplerKindDraft::Pair { by, joints } => (Some(*by), self.pair(joints, *by, here)),
             };
             let Some(terms) = terms else { continue };
-            let (joints, ratios) = match &c.kind {
-                CouplerKindDraft::Linear(_) => ("terms", "terms"),
-                CouplerKindDraft::Gears { .. } => ("joints", "teeth"),
-                CouplerKindDraft::Rack { .. } => ("rack", "radius"),
-                CouplerKindDraft::Belt { .. } => ("joints", "radii"),
+            let (joints, ratios) = match transmission {
+                None => ("terms", "terms"),
+                Some(Transmission::Gears { .. }) => ("joints", "teeth"),
+                Some(Transmission::Rack { .. }) => ("rack", "radius"),
+                Some(Transmission::Belt { .. }) => ("joints", "radii"),
+                Some(Transmission::Screw { .. }) => ("joints", "lead"),
             };
             if !terms.iter().all(|t| t.coefficient.is_finite() && t.coefficient != 0.0) {
                 let message = format!("coupler `{}` has a ratio that is zero or not finite", c.name);
@@ -232,34 +223,33 @@ impl Checker<'_> {
                 self.fault("HP0224", here.key(joints), message)
                     .help("name two joints, or two coordinates of one joint");
             }
-            self.model.couplers.push(Coupler { name: c.name.clone(), terms });
+            self.model.couplers.push(Coupler { name: c.name.clone(), transmission, terms });
         }
         for k in 0..draft.joints.len() {
             if let (Some(joint), Some(lead)) = (self.joint_ids[k], draft.joints[k].lead) {
+                let by = Transmission::Screw { lead };
                 let coordinate = |name: &str| joint::SCREW.coordinate(name).expect("a screw has it").0;
-                let per_radian = lead / (2.0 * std::f64::consts::PI);
-                let terms = vec![
-                    CouplerTerm { joint, coordinate: coordinate("displacement"), coefficient: 1.0 },
-                    CouplerTerm { joint, coordinate: coordinate("angle"), coefficient: -per_radian },
-                ];
-                self.model.couplers.push(Coupler { name: draft.joints[k].name.clone(), terms });
+                let term = |(name, coefficient): (&str, f64)| CouplerTerm {
+                    joint,
+                    coordinate: coordinate(name),
+                    coefficient,
+                };
+                let terms = by.relation().map(term).into();
+                let name = draft.joints[k].name.clone();
+                self.model.couplers.push(Coupler { name, transmission: Some(by), terms });
             }
         }
     }
 
     /// The terms of two joints.
-    fn pair(
-        &mut self,
-        joints: &[String; 2],
-        coordinates: [&str; 2],
-        coefficients: [f64; 2],
-        here: Here,
-    ) -> Option<Vec<CouplerTerm>> {
+    fn pair(&mut self, joints: &[String; 2], by: Transmission, here: Here) -> Option<Vec<CouplerTerm>> {
+        let relation = by.relation();
         let terms = [0, 1].map(|k| {
+            let (name, coefficient) = relation[k];
             let at = here.item("joints", k);
             let joint = self.joint(&joints[k], at.clone())?;
-            let coordinate = self.coordinate_at(joint, Some(coordinates[k]), [at.clone(), at])?;
-            Some(CouplerTerm { joint, coordinate, coefficient: coefficients[k] })
+            let coordinate = self.coordinate_at(joint, Some(name), [at.clone(), at])?;
+            Some(CouplerTerm { joint, coordinate, coefficient })
         });
         terms.into_iter().collect()
     }

@@ -195,20 +195,16 @@ pub fn train(rng: &mut Rng) -> Option<Draft> {
                 joint.cut = d.rng.chance(0.2);
                 d.draft.joints.push(joint);
                 let ratio = [d.rng.between(0.5, 2.0), d.rng.between(0.5, 2.0)];
-                let kind = if d.rng.chance(0.5) {
-                    CouplerKindDraft::Gears {
-                        joints,
+                let by = if d.rng.chance(0.5) {
+                    Transmission::Gears {
                         teeth: ratio.map(|r| (20.0 * r).round()),
                         internal: d.rng.chance(0.3),
+                        bevel: false,
                     }
                 } else {
-                    CouplerKindDraft::Belt {
-                        joints,
-                        radii: ratio.map(|r| 0.1 * r * d.size),
-                        crossed: d.rng.chance(0.3),
-                    }
+                    Transmission::Belt { radii: ratio.map(|r| 0.1 * r * d.size), crossed: d.rng.chance(0.3) }
                 };
-                d.coupler(kind);
+                d.coupler(CouplerKindDraft::Pair { by, joints });
                 shafts.push((name, body));
             }
             2 => {
@@ -217,7 +213,8 @@ pub fn train(rng: &mut Rng) -> Option<Draft> {
                 joint.cut = d.rng.chance(0.2);
                 d.draft.joints.push(joint);
                 let radius = d.rng.signed(0.01, 0.05) * d.size;
-                d.coupler(CouplerKindDraft::Rack { rack: name, pinion: from, radius });
+                let by = Transmission::Rack { radius };
+                d.coupler(CouplerKindDraft::Pair { by, joints: [name, from] });
             }
             3 => {
                 // A nut that turns with a shaft.
@@ -546,14 +543,12 @@ impl<'r> Drawing<'r> {
         let are =
             |names: [&str; 2]| (0..2).all(|k| coordinates[k].2.name == names[k]) && joints[0] != joints[1];
         let kind = if are(["angle", "angle"]) && self.rng.chance(0.5) {
-            CouplerKindDraft::Gears {
-                joints,
-                teeth: [self.rng.between(10.0, 40.0), 21.0],
-                internal: self.rng.chance(0.5),
-            }
+            let teeth = [self.rng.between(10.0, 40.0), 21.0];
+            let by = Transmission::Gears { teeth, internal: self.rng.chance(0.5), bevel: false };
+            CouplerKindDraft::Pair { by, joints }
         } else if are(["displacement", "angle"]) {
             let radius = self.rng.signed(0.1, 0.5) * self.size;
-            CouplerKindDraft::Rack { rack: joints[0].clone(), pinion: joints[1].clone(), radius }
+            CouplerKindDraft::Pair { by: Transmission::Rack { radius }, joints }
         } else {
             let n = usize::min(coordinates.len(), 2 + self.rng.below(2));
             let term = |k: usize, x: f64| TermDraft {
@@ -964,9 +959,12 @@ fn spoil(d: &mut Draft, rng: &mut Rng) {
             for c in &mut d.couplers {
                 match &mut c.kind {
                     CouplerKindDraft::Linear(terms) => terms[0].coefficient = any(rng),
-                    CouplerKindDraft::Gears { teeth, .. } => teeth[1] = any(rng),
-                    CouplerKindDraft::Belt { radii, .. } => radii[0] = any(rng),
-                    CouplerKindDraft::Rack { radius, .. } => *radius = any(rng),
+                    CouplerKindDraft::Pair { by, .. } => match by {
+                        Transmission::Gears { teeth, .. } => teeth[1] = any(rng),
+                        Transmission::Belt { radii, .. } => radii[0] = any(rng),
+                        Transmission::Rack { radius } => *radius = any(rng),
+                        Transmission::Screw { lead } => *lead = any(rng),
+                    },
                 }
             }
         }

@@ -785,9 +785,7 @@ pub fn describe(d: &Draft) -> String {
                 terms.iter().map(|t| format!("{}.{}", t.joint, t.coordinate.as_deref().unwrap_or("")));
             format!("{} linear {}", c.name, terms.collect::<Vec<_>>().join(" "))
         }
-        CouplerKindDraft::Gears { joints, .. } => format!("{} gears {joints:?}", c.name),
-        CouplerKindDraft::Belt { joints, .. } => format!("{} belt {joints:?}", c.name),
-        CouplerKindDraft::Rack { rack, pinion, .. } => format!("{} rack {rack} {pinion}", c.name),
+        CouplerKindDraft::Pair { by, joints } => format!("{} {} {joints:?}", c.name, by.name()),
     });
     let drivers = d.drivers.iter().map(|x| match &x.drives {
         DrivenDraft::Coordinate { joint, coordinate } => {

@@ -1,0 +1,287 @@
+//! A changed design beside today's: as it is when solved again, and as today's derivatives foresee it.
+//!
+//! What differs from today by round-off only is today's number, so that the page draws it in the same place.
+
+use std::iter;
+
+use hardpoint::joint::Quantity as Kind;
+use hardpoint::model::{BodyId, Dimension, VariableId};
+use hardpoint::space::Vec3;
+use hardpoint::study::{WhatIf, metrics};
+
+use crate::page::{BodyTrack, Curve, Design, DesignCurves, DesignKind, Value};
+use crate::whatif::follows;
+
+use super::{Compose, ORIGIN};
+
+/// At most so many other designs are shown beside today's.
+pub(super) const MOST: usize = 3;
+/// Hardpoints of a body that are nearer to each other than this part of the mechanism's size are one.
+const SAME: f64 = 1e-9;
+
+impl Compose<'_> {
+    /// The changed design, then how it is foreseen. Today's solution is kept at every `stride`-th output time; `bodies`
+    /// and `values` are today's.
+    pub(super) fn designs(
+        &self,
+        what_if: &WhatIf,
+        stride: usize,
+        bodies: &[BodyTrack],
+        values: &[Value],
+    ) -> Vec<Design> {
+        let beside = Beside { today: self, what_if, stride };
+        let mut designs = vec![beside.exact(bodies, values)];
+        if what_if.cannot_follow.is_empty() && beside.solved() > 0 {
+            designs.extend([beside.first_order(values), beside.second_order()]);
+        }
+        designs
+    }
+}
+
+struct Beside<'a> {
+    today: &'a Compose<'a>,
+    what_if: &'a WhatIf,
+    /// Of so many output times that were solved, today's solution keeps one.
+    stride: usize,
+}
+
+impl Beside<'_> {
+    /// Output times that both designs were solved for.
+    fn solved(&self) -> usize {
+        self.what_if.today.motion.len().min(self.what_if.exact.motion.len())
+    }
+
+    /// A curve over the output times that are shown; `value` is asked for those that both designs were solved for.
+    fn curve(&self, value: impl Fn(usize) -> f64) -> Curve {
+        let solved = self.solved();
+        self.whole_steps().map(|k| if k < solved { value(k) } else { f64::NAN }).collect()
+    }
+
+    /// The output times that are shown, counted among all that were solved.
+    fn whole_steps(&self) -> impl Iterator<Item = usize> + '_ {
+        self.today.steps.iter().map(|k| k * self.stride)
+    }
+
+    /// Of value, rate and acceleration so many; the others are empty.
+    fn curves(&self, orders: usize, value: impl Fn(usize, usize) -> f64) -> DesignCurves {
+        let curve = |order| if order < orders { self.curve(|k| value(k, order)) } else { Curve::default() };
+        DesignCurves { value: curve(0), rate: curve(1), accel: curve(2) }
+    }
+
+    /// The other design's number; today's, where the two differ by round-off.
+    fn settled(&self, of: impl Into<Dimension>, order: usize, today: f64, other: f64) -> f64 {
+        let same = (other - today).abs() <= self.today.round_off.change(of.into(), order);
+        if same { today } else { other }
+    }
+
+    /// The curves of all quantities: those of the outputs, then x, y and z of every body's origin.
+    fn quantities(
+        &self,
+        output: impl Fn(usize) -> Option<DesignCurves>,
+        origin: impl Fn(usize, usize) -> Option<DesignCurves>,
+    ) -> Vec<Option<DesignCurves>> {
+        let (outputs, model) = (self.what_if.today.measured.outputs.len(), self.today.model);
+        let bodies = if self.today.detail.origins { model.bodies.len() } else { 1 };
+        let origins = (1..bodies).flat_map(|b| (0..3).map(move |axis| (b, axis)));
+        (0..outputs).map(output).chain(origins.map(|(b, axis)| origin(b, axis))).collect()
+    }
+
+    /// As it is when solved again.
+    fn exact(&self, bodies: &[BodyTrack], values: &[Value]) -> Design {
+        let (what_if, units) = (self.what_if, self.today.units);
+        let (today, exact) = (&what_if.today, &what_if.exact);
+        let output = |m: usize| {
+            let output = &today.measured.outputs[m];
+            let value = |k: usize, order: usize| {
+                let now = today.measured.value(k, m)[order];
+                let other = if order == 0 { what_if.exact(k, m) } else { exact.measured.value(k, m)[order] };
+                units.from_si(output.dimension, self.settled(output.dimension, order, now, other))
+            };
+            Some(self.curves(output.known.orders, value))
+        };
+        let origin = |b: usize, axis: usize| {
+            let value = |k: usize, order: usize| {
+                let [now, other] = [today, exact].map(|s| s.body(k, BodyId(b)));
+                let [now, other] = [now, other].map(|s| [s.r, s.v, s.a][order].to_array()[axis]);
+                units.from_si(Kind::Length, self.settled(Kind::Length, order, now, other))
+            };
+            Some(self.curves(3, value))
+        };
+        let margins = &exact.motion.margins;
+        let model = self.today.model;
+        let found = [today, exact].map(|s| metrics(model, s));
+        let known = |of: &Value| {
+            let metric = model.metrics.iter().position(|m| m.name == of.name)?;
+            let dimension = model.metric_dimension(&model.metrics[metric]);
+            let [now, other] = [0, 1].map(|design: usize| found[design][metric].value);
+            let other = other.map(|x| now.map_or(x, |now| self.settled(dimension, 0, now, x)));
+            other.map(|x| units.from_si(dimension, x))
+        };
+        let mut note = sentence(&follows(model, what_if));
+        if exact.stop.is_some() {
+            let last = exact.motion.times.last();
+            note += &match last {
+                Some(t) => format!(" It was solved up to t = {} s.", crate::figures::number(*t)),
+                None => " It could not be solved.".to_owned(),
+            };
+        }
+        Design {
+            poses: self.poses(),
+            skeletons: self.skeletons(bodies),
+            quantities: self.quantities(output, origin),
+            values: values.iter().map(known).collect(),
+            margin: (!margins.is_empty())
+                .then(|| self.curve(|k| margins.get(k).map_or(f64::NAN, |m| m.value))),
+            ..self.design("changed", DesignKind::Exact, note)
+        }
+    }
+
+    /// As today's sensitivities foresee it.
+    fn first_order(&self, values: &[Value]) -> Design {
+        let (what_if, units) = (self.what_if, self.today.units);
+        let today = &what_if.today;
+        let changed = || what_if.change.iter().enumerate().filter(|(_, by)| **by != 0.0);
+        // Together, variables may be followed that are not one by one: then rates are not known.
+        let one_by_one = changed().all(|(v, _)| today.sensitivities.at(0, v).is_some());
+        let output = |m: usize| {
+            let output = &today.measured.outputs[m];
+            let value = |k: usize, order: usize| {
+                let now = today.measured.value(k, m)[order];
+                let rise = || {
+                    changed().map(|(v, by)| by * today.measured.d(k, VariableId(v), m)[order]).sum::<f64>()
+                };
+                let other = if order == 0 { what_if.foreseen(k, m)[0] } else { now + rise() };
+                units.from_si(output.dimension, self.settled(output.dimension, order, now, other))
+            };
+            let known = one_by_one || output.known.by_position;
+            let orders = if one_by_one { output.known.orders } else { 1 };
+            known.then(|| self.curves(orders, value))
+        };
+        let origin = |b: usize, axis: usize| {
+            let value = |k: usize, order: usize| {
+                let state = today.body(k, BodyId(b));
+                let now = [state.r, state.v, state.a][order].to_array()[axis];
+                let rise = changed().map(|(v, by)| {
+                    let s = today.sensitivities.at(k, v).map(|s| s.body(b));
+                    by * s.map_or(f64::NAN, |s| ORIGIN[order](&s).to_array()[axis])
+                });
+                units.from_si(Kind::Length, self.settled(Kind::Length, order, now, now + rise.sum::<f64>()))
+            };
+            one_by_one.then(|| self.curves(3, value))
+        };
+        let change = self.change();
+        let foreseen = |of: &Value| {
+            let rise = change.iter().zip(&of.sensitivities).filter(|(by, _)| **by != 0.0);
+            let rise: Option<f64> = rise.map(|(by, d)| d.map(|d| by * d)).sum();
+            Some(of.value? + rise.filter(|_| !of.sensitivities.is_empty())?)
+        };
+        let note = "Foreseen from today's sensitivities, without solving again.".to_owned();
+        Design {
+            quantities: self.quantities(output, origin),
+            values: values.iter().map(foreseen).collect(),
+            ..self.design("foreseen to first order", DesignKind::FirstOrder, note)
+        }
+    }
+
+    /// As today's first and second derivatives foresee it: of positions alone.
+    fn second_order(&self) -> Design {
+        let (what_if, units) = (self.what_if, self.today.units);
+        let output = |m: usize| {
+            let output = &what_if.today.measured.outputs[m];
+            let value = |k: usize, _| {
+                let now = what_if.today.measured.value(k, m)[0];
+                units.from_si(
+                    output.dimension,
+                    self.settled(output.dimension, 0, now, what_if.foreseen(k, m)[1]),
+                )
+            };
+            output.known.by_position.then(|| self.curves(1, value))
+        };
+        let note = "Foreseen from today's first and second derivatives, without solving again.".to_owned();
+        Design {
+            quantities: self.quantities(output, |_, _| None),
+            ..self.design("foreseen to second order", DesignKind::SecondOrder, note)
+        }
+    }
+
+    /// A design of which nothing is known yet.
+    fn design(&self, name: &str, kind: DesignKind, note: String) -> Design {
+        Design {
+            name: name.into(),
+            kind,
+            change: self.change(),
+            note,
+            poses: Vec::new(),
+            skeletons: Vec::new(),
+            quantities: Vec::new(),
+            values: Vec::new(),
+            margin: None,
+        }
+    }
+
+    /// By how much every variable is changed, in its unit.
+    fn change(&self) -> Vec<f64> {
+        let variables = self.today.model.variables.iter().zip(&self.what_if.change);
+        variables.map(|(v, by)| self.today.units.from_si(v.quantity, *by)).collect()
+    }
+
+    /// Where the bodies of the changed design are. A body that stands as today has today's numbers.
+    fn poses(&self) -> Vec<Curve> {
+        let [far, turned] =
+            [Dimension::LENGTH, Dimension::ANGLE].map(|of| self.today.round_off.change(of, 0));
+        let pose = |k: usize, b: usize| {
+            let [now, other] = [&self.what_if.today, &self.what_if.exact].map(|s| s.motion.at(k).body(b));
+            let [p, mut q] = [now.quaternion(), other.quaternion()];
+            if iter::zip(p, q).map(|(p, q)| p * q).sum::<f64>() < 0.0 {
+                // Both signs are the same orientation.
+                q = q.map(|x| -x);
+            }
+            let apart = iter::zip(p, q).map(|(p, q)| (p - q) * (p - q)).sum::<f64>().sqrt();
+            let same = (now.r - other.r).norm() <= far && apart <= turned;
+            let [x, y, z] = self.today.length(if same { now.r } else { other.r });
+            let [qw, qx, qy, qz] = if same { p } else { q };
+            [x, y, z, qw, qx, qy, qz]
+        };
+        let solved = self.solved();
+        let track = |b: usize| {
+            let at = |k: usize| if k < solved { pose(k, b) } else { [f64::NAN; 7] };
+            self.whole_steps().flat_map(at).collect()
+        };
+        (0..self.today.model.bodies.len()).map(track).collect()
+    }
+
+    /// The hardpoints of the changed design in its bodies' frames, in the order of today's.
+    fn skeletons(&self, bodies: &[BodyTrack]) -> Vec<Vec<[f64; 3]>> {
+        let model = self.today.model;
+        let same = self.today.units.from_si(Kind::Length, SAME * model.size());
+        let mut moved: Vec<Vec<[Vec3; 2]>> = vec![Vec::new(); model.bodies.len()];
+        let [today, changed] = [&[][..], &self.what_if.change].map(|design| model.geometry(design));
+        let places = [&[][..], &self.what_if.change].map(|design| model.hardpoint_places(design));
+        for (j, joint) in model.joints.iter().enumerate() {
+            for (end, body) in joint.bodies.iter().enumerate() {
+                moved[body.0].push([&today, &changed].map(|g| g.markers[j][end].r));
+                let in_body = model.bodies[body.0].frame.inverse();
+                let hinge = self.today.hinge_points(joint).into_iter().flatten();
+                moved[body.0].extend(hinge.map(|h| [0, 1].map(|of| in_body.point(places[of][h.0]))));
+            }
+        }
+        for (p, point) in model.points.iter().enumerate() {
+            moved[point.body.0].push([&today, &changed].map(|g| g.points[p]));
+        }
+        let near = |p: [f64; 3], q: [f64; 3]| iter::zip(p, q).all(|(p, q)| (p - q).abs() <= same);
+        let at = |body: usize, place: [f64; 3]| {
+            let candidates = moved[body].iter().map(|pair| pair.map(|p| self.today.length(p)));
+            let mut found = candidates.filter(|[now, other]| near(*now, place) && !near(*other, place));
+            found.next().map_or(place, |[_, other]| other)
+        };
+        let of_body = |(b, body): (usize, &BodyTrack)| body.skeleton.iter().map(|p| at(b, *p)).collect();
+        bodies.iter().enumerate().map(of_body).collect()
+    }
+}
+
+/// With a capital and a full stop.
+fn sentence(text: &str) -> String {
+    let mut letters = text.chars();
+    let first = letters.next().map(|c| c.to_uppercase().to_string()).unwrap_or_default();
+    format!("{first}{}.", letters.as_str())
+}

@@ -1,0 +1,145 @@
+import { EdgesGeometry, type Object3D, ShapeGeometry, Shape, Vector2, Vector3 } from 'three'
+import { ConvexGeometry } from 'three/addons/geometries/ConvexGeometry.js'
+import { Basis, farthest, hull, square } from '../flat'
+import type { Kit } from '../kit'
+import type { Mechanism } from '../mechanism'
+
+/** Points nearer to a line, and to a plane, than these parts of a body's length are in it. */
+const STRAIGHT = 0.02
+const FLAT = 0.03
+/** Radius of a single point's disc. */
+const POINT = 2.4
+/** Radii of a rod at its ends, and the greatest as a part of its length. */
+const ROD = { thick: 1.15, thin: 0.98, slender: 0.12 }
+/** A flat bar: half width, half thickness, how much narrower in the middle, its eyes. */
+const BAR = { width: 1.45, thickness: 0.62, waist: 0.28, eye: 1.75, height: 1.9, end: 1.3, sections: 16 }
+/** Tubes of a plate: at free corners, at the hinge, along the hinge; how opaque its web is with three corners and with more. */
+const PLATE = { corner: 0.85, hinge: 1.15, along: 0.75, web: 0.38, platform: 0.6 }
+/** Edges and corners of a hull, and how opaque it is. */
+const HULL = { edge: 0.55, corner: 0.95, opacity: 0.45 }
+
+/** A body of a spatial mechanism by its points: disc, rod or bar, plate, hull. */
+export function spatialBody(mechanism: Mechanism, kit: Kit, body: number): Object3D[] {
+  const points = mechanism.shapePoints(body)
+  if (points.length === 0) return []
+  if (points.length === 1) return single(mechanism, kit, body, points[0])
+  const [a, b] = farthest(points, (p, q) => p.distanceTo(q))
+  const along = b.clone().sub(a)
+  const length = along.length()
+  along.divideScalar(length)
+  const aside = (p: Vector3) => p.clone().sub(a).cross(along)
+  const widest = points.reduce((most, p) => (aside(p).length() > aside(most).length() ? p : most))
+  if (aside(widest).length() < STRAIGHT * length) return straight(mechanism, kit, body, a, b)
+  const normal = aside(widest).normalize()
+  if (points.every((p) => Math.abs(p.clone().sub(a).dot(normal)) < FLAT * length)) return plate(mechanism, kit, body, points, normal)
+  return solid(kit, body, points)
+}
+
+function single(mechanism: Mechanism, kit: Kit, body: number, point: Vector3): Object3D[] {
+  const { report } = mechanism
+  const held = report.joints.flatMap((_, k) => (mechanism.slideOf(k)?.block === body ? [k] : []))
+  const coupled = report.couplers.some(({ terms }) => terms.some(({ joint }) => [report.joints[joint].body_i, report.joints[joint].body_j].includes(body)))
+  if (held.length > 0 || coupled) return []
+  const axis = axisAt(mechanism, body, point) ?? mechanism.into(body, mechanism.up)
+  return [kit.disc(point, axis, POINT * kit.unit, 0.8 * POINT * kit.unit, kit.body(body))]
+}
+
+/** Axis of the hinge at a place of a body. */
+function axisAt(mechanism: Mechanism, body: number, at: Vector3): Vector3 | undefined {
+  const hinges = mechanism.jointsOf(body).filter(({ joint }) => joint.kind === 'revolute' || joint.kind === 'cylindrical')
+  return hinges.find((hinge) => hinge.axis && mechanism.same(hinge.at, at))?.axis
+}
+
+/** A tapered rod; with a hinge square to it at an end a flat bar, twisted from one hinge's axis to the other's. */
+function straight(mechanism: Mechanism, kit: Kit, body: number, a: Vector3, b: Vector3): Object3D[] {
+  const s = kit.unit
+  const colour = kit.body(body)
+  const length = a.distanceTo(b)
+  const unit = b.clone().sub(a).divideScalar(length)
+  const hinge = (at: Vector3) => {
+    const axis = axisAt(mechanism, body, at)
+    return axis && Math.abs(axis.dot(unit)) < 0.5 * axis.length() ? square(axis, unit) : undefined
+  }
+  const [first, last] = [hinge(a), hinge(b)]
+  if (!first && !last) {
+    const thick = Math.min(ROD.thick * s, ROD.slender * length)
+    const thin = (ROD.thin / ROD.thick) * thick
+    return [kit.cylinder(a, b, thick, thin, colour), kit.ball(a, thick, colour), kit.ball(b, thin, colour)]
+  }
+  const from = first ?? last!
+  const to = (last ?? first!).clone()
+  // A bar turns by less than a quarter either way: an axis has no sense.
+  if (from.dot(to) < 0) to.negate()
+  const section = (t: number) => {
+    const thick = from.clone().lerp(to, t).normalize()
+    const wide = thick.clone().cross(unit)
+    const waist = BAR.width * s * (1 - BAR.waist * Math.sin(Math.PI * t))
+    return [[-1, -1], [1, -1], [1, 1], [-1, 1]].map(([x, y]) =>
+      a.clone().addScaledVector(unit, t * length).addScaledVector(wide, x * waist).addScaledVector(thick, y * BAR.thickness * s),
+    )
+  }
+  const sections = Array.from({ length: BAR.sections + 1 }, (_, k) => section(k / BAR.sections))
+  const faces = sections.slice(1).flatMap((end, k) =>
+    [0, 1, 2, 3].flatMap((i) => {
+      const [start, j] = [sections[k], (i + 1) % 4]
+      return [start[i], end[j], start[j], start[i], end[i], end[j]]
+    }),
+  )
+  const eye = (at: Vector3, axis: Vector3 | undefined) =>
+    axis ? kit.disc(at, axis, BAR.eye * s, BAR.height * s, colour) : kit.ball(at, BAR.end * s, colour)
+  const edges = [0, 1, 2, 3].map((i) => kit.line(sections.map((corners) => corners[i]), kit.palette.outline, 0.9, { opacity: 0.45 }))
+  return [kit.triangles(faces, colour, { open: true, facets: true }), ...edges, eye(a, axisAt(mechanism, body, a)), eye(b, axisAt(mechanism, body, b))]
+}
+
+/** Tubes round a web; the edge on a hinge is straight, the others taper away from it. */
+function plate(mechanism: Mechanism, kit: Kit, body: number, points: Vector3[], normal: Vector3): Object3D[] {
+  const s = kit.unit
+  const colour = kit.body(body)
+  const basis = new Basis(points[0], normal)
+  const flat = points.map((point) => basis.to(point))
+  const outline = hull(flat)
+  const corners = outline.map((corner) => points[flat.indexOf(corner)])
+  const onHinge = hinged(mechanism, body, points)
+  const pieces = corners.flatMap((a, k): Object3D[] => {
+    const b = corners[(k + 1) % corners.length]
+    const both = onHinge.includes(a) && onHinge.includes(b)
+    const radius = (p: Vector3) => (both ? PLATE.along : onHinge.includes(p) ? PLATE.hinge : PLATE.corner) * s
+    return [kit.cylinder(a, b, radius(a), radius(b), colour), kit.ball(a, PLATE.hinge * s, colour)]
+  })
+  const inner = points.filter((point) => !corners.includes(point))
+  const middle = corners.reduce((sum, p) => sum.add(p), new Vector3()).divideScalar(corners.length)
+  const held = inner.flatMap((point) => {
+    const nearest = [...corners].sort((p, q) => p.distanceTo(point) - q.distanceTo(point)).slice(0, 2)
+    const lean = point.distanceTo(middle) < 2 * s ? [] : nearest
+    return [...lean.map((corner) => kit.cylinder(point, corner, 0.75 * s, 0.75 * s, colour)), kit.ball(point, PLATE.hinge * s, colour)]
+  })
+  const web = new ShapeGeometry(new Shape(outline.map(([x, y]) => new Vector2(x, y)))).applyMatrix4(basis.matrix())
+  return [...pieces, ...held, kit.mesh(web, colour, { opacity: outline.length > 3 ? PLATE.platform : PLATE.web })]
+}
+
+/** The points of a body that lie on one of its hinges, where that is two or more. */
+function hinged(mechanism: Mechanism, body: number, points: Vector3[]): Vector3[] {
+  const near = 2e-3 * mechanism.size
+  const lists = mechanism
+    .jointsOf(body)
+    .filter(({ joint, axis }) => joint.kind === 'revolute' && axis)
+    .map(({ at, axis }) => points.filter((point) => point.clone().sub(at).cross(axis!).length() < near))
+  return lists.find((list) => list.length > 1) ?? []
+}
+
+/** A convex hull with edges and corners. */
+function solid(kit: Kit, body: number, points: Vector3[]): Object3D[] {
+  const s = kit.unit
+  const colour = kit.body(body)
+  const geometry = new ConvexGeometry(points)
+  const ends = new EdgesGeometry(geometry, 1)
+  const { position } = ends.attributes
+  const corner = (k: number) => new Vector3().fromBufferAttribute(position, k)
+  const edges = Array.from({ length: position.count / 2 }, (_, k) => kit.cylinder(corner(2 * k), corner(2 * k + 1), HULL.edge * s, HULL.edge * s, colour))
+  ends.dispose()
+  return [
+    kit.mesh(geometry, colour, { opacity: HULL.opacity, facets: true }),
+    ...edges,
+    ...points.map((point) => kit.ball(point, HULL.corner * s, colour)),
+  ]
+}

@@ -1,0 +1,77 @@
+import { Vector3 } from 'three'
+import type { Arrow } from '../../payload'
+import type { Variable } from '../../report'
+import { ABOVE, ringArrow, straightArrow } from '../arrow'
+import type { Draw, Drawn } from '../drawn'
+import type { Mechanism } from '../mechanism'
+
+/** The longest arrow as a part of the mechanism's size. */
+const LONGEST = 0.11
+/** Radius of the shaft, length of the head, radius of a ring, in units. */
+const SHAFT = 0.5
+const HEAD = 3.4
+const RING = 5
+/** A shorter arrow than this part of the longest is round-off. */
+const NOTHING = 1e-9
+/** Two places nearer than this part of the size show one arrow. */
+const ONE = 1e-3
+
+/** How the hardpoints go with the chosen variable: arrows in proportion, one per place, rings where a body is turned. */
+export const designVelocity: Draw = (mechanism, kit, choice) => {
+  const variable = mechanism.report.variables[choice.variable]
+  if (!variable) return []
+  const part = { kind: 'mark' as const, index: variable.index, name: variable.name, about: 'design velocity' }
+  const { chosen } = kit.palette
+  const size = { head: HEAD * kit.unit, shaft: { radius: SHAFT * kit.unit } }
+  const straight = moving(mechanism, variable).map(({ body, from, to }): Drawn => {
+    const lift = mechanism.lift(body, mechanism.topLayer + 3)
+    return { body, object: straightArrow(kit, from.add(lift), to.add(lift), size, chosen, ABOVE.velocity), part, overlay: true }
+  })
+  const most = longest(variable.arrows.map(({ turn }) => turn))
+  const turning = variable.arrows.filter(({ turn }) => Math.hypot(...turn) > NOTHING * most)
+  const rings = onePerPlace(mechanism, turning).map(({ body, at, turn }): Drawn => {
+    const place = placeOf(mechanism, body, at).add(mechanism.lift(body, mechanism.topLayer + 3))
+    const ring = ringArrow(kit, place, new Vector3(...turn), RING * kit.unit, HEAD * kit.unit, SHAFT * kit.unit, chosen, ABOVE.velocity)
+    return { body, object: ring, part, overlay: true }
+  })
+  return [...straight, ...rings]
+}
+
+/** Tips of the arrows in the first position, which a fitted picture shows too. */
+export function velocityTips(mechanism: Mechanism, variable: Variable): Vector3[] {
+  return moving(mechanism, variable).map(({ body, to }) => mechanism.worldAt(body, to, 0))
+}
+
+function moving(mechanism: Mechanism, { arrows }: Variable): { body: number; from: Vector3; to: Vector3 }[] {
+  const most = longest(arrows.map(({ v }) => v))
+  const going = arrows.filter(({ v }) => Math.hypot(...v) > NOTHING * most)
+  return onePerPlace(mechanism, going).map(({ body, at, v }) => {
+    const velocity = new Vector3(...v)
+    const from = placeOf(mechanism, body, at)
+    return { body, from, to: from.clone().addScaledVector(velocity, (LONGEST * mechanism.size) / most) }
+  })
+}
+
+/** A hardpoint given as loaded, where the design drawn has it. */
+function placeOf({ base, report }: Mechanism, body: number, at: Arrow['at']): Vector3 {
+  const place = new Vector3(...at)
+  if (!base) return place
+  const point = base.report.bodies[body].skeleton.findIndex((one) => base.same(new Vector3(...one), place))
+  return point < 0 ? place : new Vector3(...report.bodies[body].skeleton[point])
+}
+
+function longest(vectors: [number, number, number][]): number {
+  return Math.max(0, ...vectors.map((vector) => Math.hypot(...vector)))
+}
+
+/** A joint's place is a hardpoint of both its bodies; arrows that differ there are both shown. */
+function onePerPlace(mechanism: Mechanism, arrows: Arrow[]): Arrow[] {
+  const seen: { place: Vector3; v: Vector3; turn: Vector3 }[] = []
+  return arrows.filter(({ body, at, v, turn }) => {
+    const one = { place: mechanism.worldAt(body, new Vector3(...at), 0), v: mechanism.alongAt(body, new Vector3(...v), 0), turn: mechanism.alongAt(body, new Vector3(...turn), 0) }
+    const same = (a: Vector3, b: Vector3) => a.distanceTo(b) <= ONE * a.length()
+    if (seen.some(({ place, v, turn }) => place.distanceTo(one.place) < ONE * mechanism.size && same(v, one.v) && same(turn, one.turn))) return false
+    seen.push(one)
+    return true
+  })
+}

@@ -1,0 +1,90 @@
+import { Group, Vector3 } from 'three'
+import type { Drawn } from '../drawn'
+import type { Kit } from '../kit'
+import type { Mechanism } from '../mechanism'
+import { bodyPart } from '../part'
+import { planarFoot } from './ground_planar'
+import { ballFoot, hingeFoot } from './ground_spatial'
+
+/** A place that ground holds something at. */
+export interface Foot {
+  /** In the world. */
+  at: Vector3
+  /** Axis of the hinge there; a ball or the like where there is none. */
+  axis?: Vector3
+  /** Where to the rest of what is held is, in the world. */
+  towards: Vector3
+  radius: number
+  /** In front of a cam that would cover it. */
+  front: boolean
+}
+
+/** Kinds that stand on a foot; rails and shafts bring their own. */
+const HINGES = ['revolute', 'inline', 'cylindrical']
+const BALLS = ['spherical', 'universal', 'constant_velocity', 'distance', 'leg', 'point_coincident']
+
+/** What is fixed: the feet of all joints with ground, each place once. */
+export function ground(mechanism: Mechanism, kit: Kit): Drawn[] {
+  const part = bodyPart(mechanism, 0)
+  const kept: Foot[] = []
+  for (const foot of feet(mechanism)) if (!kept.some(({ at }) => at.distanceTo(foot.at) < 1e-3 * mechanism.size)) kept.push(foot)
+  return kept.map((foot) => {
+    const pieces = mechanism.plane ? planarFoot(mechanism, kit, foot) : foot.axis ? hingeFoot(mechanism, kit, foot) : ballFoot(mechanism, kit, foot)
+    return { body: 0, object: new Group().add(...pieces), part }
+  })
+}
+
+/** Joints of ground that couplers turn: their shafts have bearings of their own. */
+function shafts({ report }: Mechanism): Set<number> {
+  return new Set(report.couplers.flatMap(({ terms }) => terms.map(({ joint }) => joint)))
+}
+
+function feet(mechanism: Mechanism): Foot[] {
+  const { report } = mechanism
+  const turning = shafts(mechanism)
+  const front = (body: number) => report.joints.some(({ curve, body_i }) => curve && body_i === body)
+  const joints = report.joints.flatMap((joint, index): Foot[] => {
+    const { body_i, body_j, kind } = joint
+    if ((body_i !== 0 && body_j !== 0) || turning.has(index)) return []
+    const hinge = HINGES.includes(kind)
+    if (!hinge && !BALLS.includes(kind)) return []
+    if (kind === 'cylindrical' && !mechanism.plane) return []
+    const [body, place, own] = body_i === 0 ? [body_j, joint.at_i, joint.at_j] : [body_i, joint.at_j, joint.at_i]
+    const at = mechanism.worldAt(0, new Vector3(...place), 0)
+    const held = new Vector3(...own)
+    const axis = hinge && joint.axis ? mechanism.alongAt(joint.body_i, new Vector3(...joint.axis), 0).normalize() : undefined
+    const radius = mechanism.radiusAt(body, held)
+    const rod = kind === 'distance' || kind === 'leg'
+    const spots = joint.hinge && axis && !mechanism.plane ? joint.hinge.map((point) => mechanism.worldAt(body_i, new Vector3(...point), 0)) : [at]
+    const aside = mechanism
+      .shapePoints(body)
+      .map((point) => mechanism.worldAt(body, point, 0))
+      .filter((point) => !axis || point.clone().sub(at).cross(axis).length() > 2e-3 * mechanism.size)
+    return spots.map((spot) => ({ at: spot, axis, radius, front: front(body), towards: rod ? mechanism.worldAt(body, held, 0) : mean(aside, spot) }))
+  })
+  const distances = report.wheels.length === 0 ? [] : report.distances.flatMap(({ from, to }): Foot[] => {
+    if (from.body !== 0 && to.body !== 0) return []
+    const [fixed, other] = from.body === 0 ? [from, to] : [to, from]
+    const [at, towards] = [fixed, other].map((place) => mechanism.worldAt(place.body, new Vector3(...place.at), 0))
+    return [{ at, towards, radius: mechanism.unit, front: false }]
+  })
+  return [...joints, ...distances]
+}
+
+const mean = (points: Vector3[], none: Vector3) =>
+  points.length > 0 ? points.reduce((sum, point) => sum.add(point), new Vector3()).divideScalar(points.length) : none.clone()
+
+/** How much better downwards is than another way away from what is held. */
+const DOWNWARDS = 0.25
+
+/** The axis of the world that points away from what is held, downwards preferred, never along the hinge. */
+export function downwards(mechanism: Mechanism, { at, axis, towards }: Foot): Vector3 {
+  const away = at.clone().sub(towards)
+  if (away.length() < 1e-6 * mechanism.size) away.copy(mechanism.up).negate()
+  away.normalize()
+  const ways = [0, 1, 2].flatMap((k) => [1, -1].map((sign) => new Vector3().setComponent(k, sign)))
+  const worth = (way: Vector3) => way.dot(away) + (way.dot(mechanism.up) < -0.5 ? DOWNWARDS : 0)
+  const free = ways.filter((way) => !axis || Math.abs(way.dot(axis)) < 0.6)
+  const best = free.reduce((a, b) => (worth(b) > worth(a) ? b : a))
+  return axis ? best.addScaledVector(axis, -best.dot(axis)).normalize() : best
+}

@@ -1,0 +1,36 @@
+import { Group, Vector3 } from 'three'
+import type { Drawn } from '../drawn'
+import { Basis, hull, round } from '../flat'
+import type { Kit } from '../kit'
+import type { Mechanism } from '../mechanism'
+import { bodyPart } from '../part'
+
+/** How far places may be out of a plane, as a part of the size, for a plate through them. */
+const FLAT = 0.01
+/** The plate: how far round the places, how thick, how opaque. */
+const PLATE = { round: 2.5, thickness: 0.6, opacity: 0.28 }
+
+/** The fixed link of a spatial mechanism that is no vehicle: a dashed line between two places, a plate through more. */
+export function fixedLink(mechanism: Mechanism, kit: Kit): Drawn[] {
+  const { report, plane, vehicle } = mechanism
+  if (plane || vehicle || report.wheels.length > 0 || report.couplers.length > 0) return []
+  const places = mechanism.placesOf(0)
+  if (places.length < 2) return []
+  const { ground } = kit.palette
+  const drawn = (...pieces: Parameters<Group['add']>): Drawn => ({ body: 0, object: new Group().add(...pieces), part: bodyPart(mechanism, 0) })
+  if (places.length === 2) return [drawn(kit.line(places, ground, 2, { dashed: true }))]
+  const [a, b] = [places[1].clone().sub(places[0]), places.slice(2).map((place) => place.clone().sub(places[0]))]
+  const widest = b.map((side) => a.clone().cross(side)).reduce((most, one) => (one.length() > most.length() ? one : most), new Vector3())
+  if (widest.length() < FLAT * mechanism.size * a.length()) return [drawn(kit.line(places, ground, 2, { dashed: true }))]
+  const basis = new Basis(places[0], widest)
+  if (places.some((place) => Math.abs(place.clone().sub(places[0]).dot(basis.normal)) > FLAT * mechanism.size)) return []
+  const corners = hull(places.map((place) => basis.to(place)))
+  const outline = round(corners.map(([x, y]) => [x, y, PLATE.round * kit.unit]))
+  const edge = [...corners, corners[0]].map((corner) => basis.from(corner))
+  return [
+    drawn(
+      kit.slab(outline, basis, PLATE.thickness * kit.unit, ground, [], { opacity: PLATE.opacity }),
+      kit.line(edge, ground, 1.5, { dashed: true }),
+    ),
+  ]
+}

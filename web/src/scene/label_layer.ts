@@ -1,0 +1,81 @@
+import './labels.css'
+import { type Camera, Vector3 } from 'three'
+import { svg } from '../dom'
+import type { Part, Frame } from './drawn'
+import { type Placed, placeLabels } from './labels'
+import type { Mechanism } from './mechanism'
+
+/** A text at a place of the world. */
+export interface Label {
+  at: Vector3
+  text: string
+}
+
+/** Room for the title and the buttons, px. */
+const TOP = 34
+/** The letters' font, as the style sheet has it. */
+const FONT = '11px system-ui, sans-serif'
+/** More labels than this cover the mechanism that they name. */
+const MOST = 60
+
+/** Names over the view, with leaders to their places. */
+export class LabelLayer {
+  readonly element = svg('svg', { class: 'labels', 'aria-hidden': 'true' })
+  /** What stands where, for a picture of the view. */
+  placed: Placed[] = []
+  #brush = document.createElement('canvas').getContext('2d')
+  #widths = new Map<string, number>()
+
+  /** Shows these labels, most important first; none of them, and there is nothing. */
+  show(labels: Label[], camera: Camera, middle: Vector3, width: number, height: number): void {
+    const onScreen = (place: Vector3) => {
+      const { x, y, z } = place.clone().project(camera)
+      return { x: ((x + 1) * width) / 2, y: ((1 - y) * height) / 2, seen: Math.abs(z) <= 1 && Math.abs(x) <= 1 && Math.abs(y) <= 1 }
+    }
+    const spots = labels.flatMap(({ at, text }) => {
+      const { x, y, seen } = onScreen(at)
+      return seen ? [{ x, y, text }] : []
+    })
+    this.placed = placeLabels(spots.slice(0, MOST), { width, height, top: TOP }, onScreen(middle), (text) => this.#wide(text))
+    this.element.setAttribute('viewBox', `0 0 ${width} ${height}`)
+    this.element.replaceChildren(
+      ...this.placed.map(({ spot, x, y }) => svg('line', { x1: spot.x, y1: spot.y, x2: x, y2: y })),
+      ...this.placed.map(({ spot, x, y, width, height }) => {
+        const text = svg('text', { x, y })
+        text.textContent = spot.text
+        return svg('g', {}, svg('rect', { x: x - width / 2, y: y - height / 2, width, height, rx: 4 }), text)
+      }),
+    )
+  }
+
+  #wide(text: string): number {
+    const known = this.#widths.get(text)
+    if (known !== undefined || !this.#brush) return known ?? 0
+    this.#brush.font = FONT
+    const width = this.#brush.measureText(text).width
+    this.#widths.set(text, width)
+    return width
+  }
+}
+
+/** Names of the hardpoints, each place once: of one body, or of all; ground's first, since they are what a reader looks for. */
+export function hardpointLabels(mechanism: Mechanism, frame: Frame, only?: number): Label[] {
+  const labels: Label[] = []
+  mechanism.report.bodies.forEach(({ skeleton, labels: names }, body) => {
+    if ((only !== undefined && only !== body) || !frame.visible(body)) return
+    skeleton.forEach((point, k) => {
+      const text = names[k]?.split(', ')[0]
+      const at = frame.at(body, new Vector3(...point))
+      if (text && !labels.some((other) => mechanism.same(other.at, at))) labels.push({ at, text })
+    })
+  })
+  return labels
+}
+
+/** Names for what is hovered or chosen: a body with its hardpoints, a joint at its place. */
+export function partLabels(mechanism: Mechanism, frame: Frame, part: Part): Label[] {
+  if (part.kind === 'body') return part.index === 0 ? [] : hardpointLabels(mechanism, frame, part.index)
+  if (part.kind !== 'joint') return []
+  const { name, body_i, at_i } = mechanism.report.joints[part.index]
+  return frame.visible(body_i) ? [{ at: frame.at(body_i, new Vector3(...at_i)), text: name }] : []
+}

@@ -1,0 +1,55 @@
+import { Vector3 } from 'three'
+import { type Curve, decode } from '../curve'
+import type { DriverMark } from '../payload'
+
+/** The least and largest of what is driven, and whether it ends above where it begins. */
+export interface Travel {
+  curve: Curve
+  low: number
+  high: number
+  onwards: boolean
+}
+
+/** The travel of a driver in this motion; none where nothing was solved. */
+export function travelOf(driver: DriverMark): Travel | undefined {
+  const curve = decode(driver.travel)
+  const solved = curve.filter(Number.isFinite)
+  if (solved.length === 0) return undefined
+  return { curve, low: solved.reduce((a, b) => Math.min(a, b)), high: solved.reduce((a, b) => Math.max(a, b)), onwards: solved[solved.length - 1] >= solved[0] }
+}
+
+/** A whole turn less this is drawn as a whole turn, rad. */
+const NEARLY = 0.2
+/** Of a whole turn so much is drawn, so that there is a beginning and an end, rad. */
+const WHOLE = 4.9
+
+/** An arc as it is drawn: from one angle to another, with a head where it ends, or at both ends. */
+export interface Arc {
+  radius: number
+  from: number
+  to: number
+  heads: 'first' | 'last' | 'both'
+}
+
+/** The arc of a hinge's travel: at least `least` long, as narrow as that allows. Whole turns have one head, in the sense of the turn. */
+export function arcOf(low: number, high: number, onwards: boolean, least: number, [narrow, wide]: [number, number]): Arc {
+  const swept = high - low
+  if (swept > 2 * Math.PI - NEARLY) {
+    return { radius: narrow, from: 0.5, to: 0.5 + WHOLE, heads: onwards ? 'last' : 'first' }
+  }
+  const radius = Math.min(Math.max(narrow, swept > 0 ? least / swept : wide), wide)
+  const grow = Math.max(0, (least / radius - swept) / 2)
+  return { radius, from: low - grow, to: high + grow, heads: 'both' }
+}
+
+/** A range that is lengthened to both sides until it can be seen. */
+export function atLeast(low: number, high: number, least: number): [number, number] {
+  const grow = Math.max(0, (least - (high - low)) / 2)
+  return [low - grow, high + grow]
+}
+
+/** The part of `direction` that is square to an axis, of length 1; none where there is nothing left. */
+export function offAxis(direction: Vector3, axis: Vector3, least: number): Vector3 | undefined {
+  const rest = direction.clone().addScaledVector(axis, -direction.dot(axis))
+  return rest.length() > least ? rest.normalize() : undefined
+}

@@ -1,0 +1,48 @@
+import type { Report } from '../src/report'
+
+/** Turns about z by which the crank goes on from one step to the next. */
+const QUARTER = Math.PI / 2
+const STEPS = 5
+
+/** A crank that goes once round the origin in the plane xy, driven at its hinge to ground, in millimetres. */
+export function crank(changes: Partial<Report> = {}): Report {
+  const turn = (k: number) => [0, 0, 0, Math.cos((k * QUARTER) / 2), 0, 0, Math.sin((k * QUARTER) / 2)]
+  const still = () => [0, 0, 0, 1, 0, 0, 0]
+  const poses = (pose: (k: number) => number[]) => Float32Array.from(Array.from({ length: STEPS }, (_, k) => pose(k)).flat())
+  const travel = Float32Array.from({ length: STEPS }, (_, k) => k * QUARTER)
+  const hinge = { kind: 'revolute', body_i: 0, body_j: 1, at_i: [0, 0, 0], at_j: [0, 0, 0], axis: [0, 0, 1], axis_j: [0, 0, 1] }
+  return {
+    title: 'one turn of a crank',
+    description: '',
+    file: 'crank.toml',
+    generator: 'test',
+    units: { length: 'mm', angle: 'deg', time: 's' },
+    status: { complete: true, message: '' },
+    summary: [],
+    notes: [],
+    times: Float32Array.from({ length: STEPS }, (_, k) => 1 + 0.5 * k),
+    bodies: [
+      { name: 'ground', poses: poses(still), skeleton: [[0, 0, 0]], labels: ['pivot'], roles: ['joint'], mesh: null },
+      { name: 'crank', poses: poses(turn), skeleton: [[0, 0, 0], [200, 0, 0]], labels: ['pivot', 'pin'], roles: ['joint', 'joint'], mesh: null },
+    ],
+    joints: [{ name: 'hinge', ...hinge, axis2: null, hinge: null, lead: null, curve: null, draw: null, cut: false } as Report['joints'][number]],
+    couplers: [],
+    drivers: [{ name: 'motor', law: 'one turn', joint: 0, turns: true, point: null, along: null, travel: encoded(travel) }],
+    wheels: [],
+    distances: [],
+    vehicle: null,
+    quantities: [],
+    values: [],
+    first: null,
+    designs: [],
+    margin: undefined,
+    variables: [],
+    checks: [],
+    ...changes,
+  }
+}
+
+/** As the payload holds a curve. */
+export function encoded(curve: Float32Array): string {
+  return btoa(String.fromCharCode(...new Uint8Array(curve.buffer)))
+}
