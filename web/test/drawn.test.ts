@@ -1,6 +1,6 @@
 import { Box3, type Object3D, Vector3 } from 'three'
 import { describe, expect, inject, test } from 'vitest'
-import { DRAWS } from '../src/scene/draw'
+import { marks, matter } from '../src/scene/draw'
 import type { Drawn, Part } from '../src/scene/drawn'
 import { Kit } from '../src/scene/kit'
 import { Mechanism } from '../src/scene/mechanism'
@@ -15,7 +15,7 @@ function drawing(address: string): { mechanism: Mechanism; drawn: Drawn[] } {
   const report = reportOf(address)
   const mechanism = new Mechanism(report)
   const kit = new Kit(mechanism, paletteOf(schemes.light))
-  return { mechanism, drawn: DRAWS.flatMap((draw) => draw(mechanism, kit, new State(report).choice)) }
+  return { mechanism, drawn: [...matter, ...marks].flatMap((draw) => draw(mechanism, kit, new State(report).choice)) }
 }
 
 /** Vertices of an object, as it is placed. */

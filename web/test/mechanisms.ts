@@ -34,6 +34,7 @@ export function crank(changes: Partial<Report> = {}): Report {
     quantities: [],
     values: [],
     first: null,
+    over: null,
     designs: [],
     margin: undefined,
     variables: [],

@@ -42,6 +42,7 @@ const payload: Payload = {
   quantities: [quantity('hub.x', 'point'), quantity('toe', 'measure')],
   values: [],
   first: null,
+  over: null,
   designs: [],
   margin: { value: encode(0.5, 0.25), note: '' },
   variables: [variable('small', 'mm', 1), variable('tilt', 'deg', 5), variable('large', 'mm', -4), variable('stuck', 'mm')],

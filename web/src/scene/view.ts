@@ -179,7 +179,7 @@ export class View {
   }
 
   #assembleMatter(): Assembly {
-    const assembly = new Assembly(present(this.today, this.state.choice), this.#palette, this.state.choice, matter, this.#outlines, 0)
+    const assembly = new Assembly(present(this.today, this.state), this.#palette, this.state.choice, matter, this.#outlines, 0)
     this.scene.add(...assembly.groups)
     return assembly
   }
