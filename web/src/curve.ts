@@ -44,11 +44,15 @@ export function decades(low: number | null, high: number | null): [number, numbe
 /** A curve that varies less than this share of its size is drawn as the constant that it is. */
 const RESOLUTION = 1e-5
 
+/** Of the size of a constant, what the axis shows round it. */
+const FLAT = 0.2
+
 /** What an axis shows of values from `low` to `high`: they, and a little on both sides. */
 export function padded(low: number | null, high: number | null): [number, number] {
   if (low === null || high === null) return [-1, 1]
   const size = Math.max(Math.abs(low), Math.abs(high))
-  const least = size > 0 ? RESOLUTION * size : 2
+  const flat = high - low <= RESOLUTION * size
+  const least = size > 0 ? (flat ? FLAT : RESOLUTION) * size : 2
   const middle = (low + high) / 2
   const half = 0.56 * Math.max(high - low, least)
   return [middle - half, middle + half]
@@ -108,4 +112,13 @@ export function stepAt(times: Curve, time: number): number {
 /** Changes of a quantity of this size up to which they are rounding and not a signal. */
 export function noise(size: number): number {
   return RESOLUTION * size
+}
+
+/** Sizes in the reader's units below this are rounding, whatever they are of. */
+const NOTHING = 1e-9
+
+/** A curve without what is nothing but rounding next to `scale`, the largest of its kind. */
+export function quiet(curve: Curve, scale: number): Curve {
+  const floor = NOTHING * Math.max(scale, 1)
+  return peak(curve) > floor ? curve : curve.map((value) => value * 0)
 }

@@ -2,10 +2,12 @@ import uPlot from 'uplot'
 import 'uplot/dist/uPlot.min.css'
 import { css, el, keepFocus, prose } from './dom'
 import { number, pretty, titled } from './format'
-import { decades, nearestStep, padded, positive, valueAt, type Curve, withGaps } from './curve'
+import { decades, nearestStep, padded, positive, stepAt, valueAt, type Curve, withGaps } from './curve'
 import type { State } from './state'
 
-const HEIGHT = 190
+/** What a plot is at least high, and on paper wide and high, px. */
+const LEAST = 120
+const PAPER = { width: 330, height: 190 }
 /** Wide enough for `−1.234e-5`, and the same for all plots, so that their time axes line up. */
 const AXIS = 66
 /** With more powers of ten than this along an axis, every other one has a number. */
@@ -32,54 +34,83 @@ export interface Content {
   /** What the curves are drawn over instead of time. */
   over?: { label: string; unit: string; curve: Curve }
   caption?: string
+  /** What is wanted of the values: at one abscissa, or everywhere. */
+  wanted?: { low: number | null; high: number | null; at?: number }[]
   /** Shown in place of the plot. */
   message?: string
 }
 
-/** Curves over time or over another quantity, with a legend that reads the values at the moment shown; dragging moves the time. */
+/**
+ * Curves over time or over another quantity, with a legend above that reads the values under the pointer, or at the moment shown;
+ * dragging moves the time.
+ */
 export class Plot {
   readonly element: HTMLElement
+  readonly area = el('div', { class: 'area' })
+  /** What is shown. */
+  content: Content = { title: '', unit: '', lines: [] }
   #title = el('h3')
-  #area = el('div', { class: 'area' })
   #legend = el('ul', { class: 'legend' })
   #caption = el('p', { class: 'caption' })
+  #moment = el('li', { class: 'moment' })
   #marker = el('div', { class: 'now' })
+  #pointer = el('div', { class: 'pointer', hidden: true })
   #uplot?: uPlot
   #readings: { curve: Curve; output: HTMLElement }[] = []
-  #over?: Curve
+  #pointed?: number
 
   constructor(
     private readonly state: State,
     testId: string,
-    ...extras: HTMLElement[]
+    head: HTMLElement[] = [],
   ) {
-    const head = el('figcaption', {}, this.#title, ...extras)
-    this.element = el('figure', { class: 'plot', 'data-testid': testId }, head, this.#area, this.#legend, this.#caption)
-    new ResizeObserver(() => this.#uplot?.setSize({ width: this.#area.clientWidth, height: HEIGHT })).observe(this.#area)
+    const caption = el('figcaption', {}, this.#title, ...head)
+    this.element = el('figure', { class: 'plot', 'data-testid': testId }, caption, this.#legend, this.area, this.#caption)
+    new ResizeObserver(() => this.#uplot?.setSize(this.#size())).observe(this.area)
     state.onTime(() => this.#showTime())
+  }
+
+  /** The canvas of the curves, where there are any. */
+  get canvas(): HTMLCanvasElement | undefined {
+    return this.#uplot?.ctx.canvas
   }
 
   show(content: Content): void {
     this.#uplot?.destroy()
     this.#uplot = undefined
+    this.content = content
+    this.#pointed = undefined
     this.#title.textContent = titled(content.title, content.message ? '' : content.unit)
     this.#caption.replaceChildren(...prose(content.caption ?? ''))
-    this.#area.replaceChildren()
-    this.#area.setAttribute('role', 'img')
-    this.#area.setAttribute('aria-label', content.message ?? `${titled(content.title, content.unit)} over ${content.over?.label ?? 'time'}`)
+    this.area.replaceChildren()
+    this.area.setAttribute('role', 'img')
+    this.area.setAttribute('aria-label', content.message ?? `${titled(content.title, content.unit)} over ${content.over?.label ?? 'time'}`)
     this.#readings = []
-    this.#over = content.over?.curve
     if (content.message) {
       this.#legend.replaceChildren()
-      this.#area.append(el('p', { class: 'message' }, ...prose(content.message)))
+      this.area.append(el('p', { class: 'message' }, ...prose(content.message)))
       return
     }
-    keepFocus(this.#legend, () => this.#legend.replaceChildren(...content.lines.map((line) => this.#entry(line))))
+    const entries = content.lines.map((line) => this.#entry(line))
+    keepFocus(this.#legend, () => this.#legend.replaceChildren(this.#moment, ...entries))
     const all = content.over ? faceted(content.over.curve, content) : data(this.state, content)
-    this.#uplot = new uPlot(this.#options(content), all, this.#area)
-    this.#uplot.over.append(this.#marker)
-    this.#scrub(this.#uplot)
+    this.#uplot = new uPlot(this.#options(content), all, this.area)
+    this.#uplot.over.append(this.#marker, this.#pointer)
+    this.#follow(this.#uplot)
     this.#showTime()
+  }
+
+  /** Takes no further part in the page. */
+  remove(): void {
+    this.#uplot?.destroy()
+    this.#uplot = undefined
+    this.element.remove()
+  }
+
+  #size(): { width: number; height: number } {
+    if (document.documentElement.classList.contains('printing')) return PAPER
+    const { clientWidth, clientHeight } = this.area
+    return { width: clientWidth || 400, height: Math.max(clientHeight, LEAST) }
   }
 
   #options(content: Content): uPlot.Options {
@@ -92,16 +123,11 @@ export class Plot {
     const abscissa = over ? titled(over.label, over.unit) : titled('time', units.time)
     return {
       mode: over ? 2 : 1,
-      hooks: { draw: [() => this.#showTime()] },
-      width: this.#area.clientWidth || 400,
-      height: HEIGHT,
+      hooks: { drawClear: [(u: uPlot) => drawWanted(u, content)], draw: [() => this.#showTime()] },
+      ...this.#size(),
       legend: { show: false },
-      cursor: {
-        drag: { x: false, y: false, setScale: false },
-        ...(over ? { show: false } : { sync: { key: 'time' } }),
-        points: { size: 6 },
-      },
-      scales: { x: { time: false, ...(over && { range: (_: uPlot, low: number, high: number) => padded(low, high) }) }, y: content.logarithmic ? DECADES : { range: (_, low, high) => padded(low, high) } },
+      cursor: { show: false, drag: { x: false, y: false, setScale: false } },
+      scales: { x: { time: false, ...(over && { range: (_: uPlot, low: number, high: number) => padded(low, high) }) }, y: content.logarithmic ? DECADES : { range: (_, low, high) => padded(...reaching(low, high, content)) } },
       axes: [
         { ...axis, values, size: 30, label: abscissa, labelSize: 18, labelGap: 0, gap: 3 },
         {
@@ -120,7 +146,8 @@ export class Plot {
   #entry(line: Line): HTMLElement {
     const output = el('output')
     this.#readings.push({ curve: line.curve, output })
-    const swatch = el('span', { class: line.marks ? 'swatch ring' : 'swatch', style: `--swatch: ${line.color}` })
+    const kind = line.marks ? 'ring' : !line.dash ? '' : line.dash[0] < 3 ? 'dotted' : 'dashed'
+    const swatch = el('span', { class: `swatch ${kind}`, style: `--swatch: ${line.color}` })
     const parts = [swatch, el('span', { class: 'label' }, line.label), output]
     const selected = line.pick && (line.width ?? 0) > 2
     return el('li', {}, line.pick
@@ -128,29 +155,82 @@ export class Plot {
       : el('span', {}, ...parts))
   }
 
-  #scrub(uplot: uPlot): void {
-    const move = (event: PointerEvent) => {
-      if (event.buttons !== 1) return
-      this.state.pause()
-      const x = uplot.posToVal(event.clientX - uplot.over.getBoundingClientRect().left, 'x')
-      if (this.#over) this.state.goToStep(nearestStep(this.#over, x, this.state.step))
-      else this.state.goToTime(x)
-    }
-    uplot.over.addEventListener('pointerdown', (event) => {
-      uplot.over.setPointerCapture(event.pointerId)
-      move(event)
+  /** The pointer reads the curves; pressed, it moves the time. */
+  #follow({ over }: uPlot): void {
+    over.addEventListener('pointerdown', (event) => {
+      over.setPointerCapture(event.pointerId)
+      this.#move(event)
     })
-    uplot.over.addEventListener('pointermove', move)
+    over.addEventListener('pointermove', (event) => this.#move(event))
+    over.addEventListener('pointerleave', () => {
+      this.#pointed = undefined
+      this.#showTime()
+    })
+  }
+
+  #move(event: PointerEvent): void {
+    if (!this.#uplot) return
+    const x = this.#uplot.posToVal(event.clientX - this.#uplot.over.getBoundingClientRect().left, 'x')
+    const { over } = this.content
+    const { times } = this.state.report
+    const step = over ? nearestStep(over.curve, x, this.state.step) : stepAt(times, x)
+    this.#pointed = event.buttons === 1 ? undefined : step
+    if (event.buttons === 1) {
+      this.state.pause()
+      this.state.goToStep(step)
+    } else this.#showTime()
   }
 
   #showTime(): void {
     if (!this.#uplot) return
-    const now = this.#over ? valueAt(this.#over, this.state.step) : this.state.time
-    this.#marker.style.left = `${this.#uplot.valToPos(now, 'x')}px`
-    for (const { curve, output } of this.#readings) {
-      output.textContent = number(valueAt(curve, this.state.step), 4)
-    }
+    const { over, unit } = this.content
+    const at = (step: number) => (over ? valueAt(over.curve, step) : valueAt(this.state.report.times, step))
+    const place = (element: HTMLElement, step: number) => (element.style.left = `${this.#uplot!.valToPos(at(step), 'x')}px`)
+    place(this.#marker, this.state.step)
+    this.#pointer.hidden = this.#pointed === undefined
+    if (this.#pointed !== undefined) place(this.#pointer, this.#pointed)
+    const step = this.#pointed ?? this.state.step
+    this.#moment.textContent = over ? `${over.label} ${figure4(at(step), over.unit)}` : figure4(at(step), this.state.report.units.time)
+    this.#moment.classList.toggle('pointed', this.#pointed !== undefined)
+    for (const { curve, output } of this.#readings) output.textContent = figure4(valueAt(curve, step), unit)
   }
+}
+
+/** Four digits with the unit. */
+function figure4(value: number, unit: string): string {
+  return `${number(value, 4)} ${pretty(unit)}`.trimEnd()
+}
+
+/** The part of an axis' range that what is wanted makes larger. */
+function reaching(low: number | null, high: number | null, { wanted = [] }: Content): [number | null, number | null] {
+  if (low === null || high === null) return [low, high]
+  const ends = wanted.flatMap((band) => [band.low, band.high]).filter((end) => end !== null)
+  // A target far away must not flatten the curve.
+  const room = 2 * (high - low)
+  const near = ends.filter((end) => end > low - room && end < high + room)
+  return [Math.min(low, ...near), Math.max(high, ...near)]
+}
+
+/** Width of what is wanted at one abscissa, px. */
+const GATE = 10
+
+/** Bands of what is wanted, behind the curves. */
+function drawWanted(u: uPlot, { wanted = [] }: Content): void {
+  const { ctx, bbox } = u
+  ctx.save()
+  ctx.beginPath()
+  ctx.rect(bbox.left, bbox.top, bbox.width, bbox.height)
+  ctx.clip()
+  ctx.fillStyle = css('--good')
+  for (const { low, high, at } of wanted) {
+    const top = high === null ? bbox.top : u.valToPos(high, 'y', true)
+    const bottom = low === null ? bbox.top + bbox.height : u.valToPos(low, 'y', true)
+    const half = (GATE / 2) * devicePixelRatio
+    const [left, width] = at === undefined ? [bbox.left, bbox.width] : [u.valToPos(at, 'x', true) - half, 2 * half]
+    ctx.globalAlpha = at === undefined ? 0.12 : 0.35
+    ctx.fillRect(left, top, width, Math.max(bottom - top, 2))
+  }
+  ctx.restore()
 }
 
 function series(line: Line): uPlot.Series {

@@ -11,8 +11,6 @@ export interface Choice {
   order: Order
   /** The quantity that curves are drawn over; time where there is none. */
   over?: number
-  /** Plot the sensitivities to all variables of the unit, not just the largest. */
-  all: boolean
   /** What is selected in the view: a body, a joint, a wheel, ... */
   selected?: Part
   /** Body and hardpoint whose path is drawn. */
@@ -43,7 +41,7 @@ export class State {
     const variable = effects(report, quantity, 0)[0]?.variable.index ?? report.variables.find(({ sensitivities }) => sensitivities.size > 0)?.index ?? 0
     const exact = report.designs.find(({ kind }) => kind === 'exact')
     this.changes = report.variables.map((_, index) => exact?.change[index] ?? 0)
-    this.choice = { quantity, variable, change: this.changes[variable] ?? 0, order: 0, all: false, labels: false }
+    this.choice = { quantity, variable, change: this.changes[variable] ?? 0, order: 0, labels: false }
   }
 
   get lastStep(): number {

@@ -1,6 +1,6 @@
-import { el, svg } from './dom'
-import { number, pretty, roundBelow } from './format'
-import type { State } from './state'
+import { el, svg } from '../dom'
+import { number, pretty, roundBelow } from '../format'
+import type { State } from '../state'
 
 /** Seconds that one pass takes at the speed first offered. */
 const PASS = 6
@@ -8,16 +8,18 @@ const PASS = 6
 const TRIANGLE = 'M2 1v10l9-5z'
 const BARS = 'M2 1h3v10h-3zM7 1h3v10h-3z'
 
-/** Play, scrub, speed, and the keys that do the same. */
+/** Play, scrub and speed, with the moment shown. */
 export function transport(state: State): HTMLElement {
   const { report } = state
   const time = pretty(report.units.time)
-  const play = el('button', { type: 'button', class: 'play', 'data-testid': 'play', onclick: () => state.toggle() })
+  const still = state.lastStep === 0
+  const play = el('button', { type: 'button', class: 'play', 'data-testid': 'play', disabled: still, onclick: () => state.toggle() })
   const slider = el('input', {
     type: 'range',
     min: 0,
     max: state.lastStep,
     step: 1,
+    disabled: still,
     'aria-label': 'time',
     'data-testid': 'scrub',
     oninput: () => {
@@ -33,7 +35,7 @@ export function transport(state: State): HTMLElement {
   const speeds = [0.1, 0.2, 0.5, 1, 2, 5].map((factor) => Number((usual * factor).toPrecision(3)))
   const speed = el(
     'select',
-    { 'aria-label': 'playback speed', onchange: () => (state.speed = Number(speed.value)) },
+    { 'aria-label': 'playback speed', 'data-testid': 'speed', onchange: () => (state.speed = Number(speed.value)) },
     ...speeds.map((value) => el('option', { value, selected: value === usual }, `${number(value)}×`)),
   )
 
@@ -47,19 +49,5 @@ export function transport(state: State): HTMLElement {
   }
   state.onTime(show)
   show()
-  document.addEventListener('keydown', (event) => onKey(event, state))
-  return el('div', { class: 'transport' }, play, slider, readout, speed)
-}
-
-function onKey(event: KeyboardEvent, state: State): void {
-  const target = event.target as HTMLElement
-  const modified = event.ctrlKey || event.metaKey || event.altKey
-  // Controls keep the keys that mean something to them; the slider steps by itself but knows no space.
-  if (modified || target.closest('select, input:not([type=range])')) return
-  if (event.key === ' ' && !target.closest('button, summary')) state.toggle()
-  else if (target.closest('input')) return
-  else if (event.key === 'ArrowLeft') state.nudge(-1)
-  else if (event.key === 'ArrowRight') state.nudge(1)
-  else return
-  event.preventDefault()
+  return el('div', { class: 'transport', role: 'group', 'aria-label': 'Time' }, play, slider, readout, speed)
 }

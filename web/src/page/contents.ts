@@ -1,0 +1,126 @@
+import { atFixedAbscissa, peak, quiet, slope, thinned, type Curve } from '../curve'
+import { css, hue } from '../dom'
+import { effects } from '../effect'
+import { figure, number } from '../format'
+import type { Content, Line } from '../plot'
+import { derivativeName, derivativeUnit, orderedName, type Order } from '../report'
+import type { State } from '../state'
+
+/** What one figure draws. */
+export interface Subject {
+  quantity: number
+  order: Order
+  /** The quantity that it is drawn over; time where there is none. */
+  over?: number
+}
+
+/** How many sensitivities are drawn beside that of the selected variable. */
+const FEW = 5
+const MARKS = 36
+const DASHED = [7, 5]
+const DOTTED = [2, 4]
+
+/** The quantity of the present design, the one that it is compared with, what was foreseen, and what is wanted. */
+export function valueContent(state: State, { quantity: index, order, over }: Subject): Content {
+  const { report, former, present } = state
+  const quantity = report.quantities[index]
+  const title = orderedName(quantity, order)
+  const content: Content = { title, unit: quantity.units[order], lines: [] }
+  const scale = largest(state, index, order)
+  const own = quantity.curves[order]
+  if (own.length === 0) return { ...content, message: unknown(title) }
+  const label = state.foreseen ? 'foreseen to first order' : (present?.name ?? (state.compares ? 'present design' : title))
+  content.lines.push({ label, color: css('--trace'), curve: quiet(state.curve(index, order), scale), width: 2.4 })
+  if (state.compares) {
+    const curve = former ? (former.quantities[index]?.[order] ?? new Float32Array()) : own
+    content.lines.push({ label: former?.name ?? 'as loaded', color: css('--former'), curve: quiet(curve, scale), width: 1.8, dash: DASHED })
+  }
+  const foreseen = present ? report.designs.filter((design) => design.kind !== 'exact' && design !== former) : []
+  foreseen.forEach((design, k) => {
+    const curve = design.quantities[index]?.[order]
+    if (curve?.length) content.lines.push({ label: design.name, color: hue(k + 1), curve: quiet(curve, scale), width: 1.8, dash: DOTTED })
+  })
+  content.lines = content.lines.filter(({ curve }) => curve.length > 0)
+  if (order === 0 && over === undefined) {
+    content.wanted = report.values
+      .filter(({ quantity, target, time }) => quantity === index && target && time !== null)
+      .map(({ target, time }) => ({ low: target![0], high: target![1], at: time! }))
+  }
+  return overOther(state, over, content)
+}
+
+/** The sensitivities of the quantity: the largest of the selected variable's unit, its own, and finite differences of it. */
+export function sensitivityContent(state: State, subject: Subject): Content {
+  const { report, choice } = state
+  const { order } = subject
+  const quantity = report.quantities[subject.quantity]
+  const selected = report.variables[choice.variable]
+  const name = orderedName(quantity, order)
+  const all = effects(report, subject.quantity, order)
+  const own = all.find(({ variable }) => variable === selected)
+  const title = own ? derivativeName(quantity, order, selected) : `d ${name}`
+  const content: Content = { title, unit: derivativeUnit(quantity, order, selected), lines: [] }
+  if (quantity.curves[order].length === 0) return { ...content, unit: '', message: unknown(name) }
+  if (!own) return { ...content, unit: '', message: selected.note || `How ${selected.name} acts on ${name} is not known.` }
+  const seen = atAbscissa(state, subject)
+  if (typeof seen === 'string') return { ...content, message: seen }
+  const peers = all.filter(({ variable }) => variable.unit === selected.unit)
+  const scale = Math.max(...peers.map(({ sensitivity }) => sensitivity.peaks[order]))
+  const shown = peers.filter(({ variable, share }, rank) => variable === selected || (rank < FEW && share > 0))
+  let k = 0
+  content.lines = shown.map(({ variable, sensitivity }): Line => {
+    const chosen = variable === selected
+    return {
+      label: variable.name,
+      color: chosen ? css('--chosen') : hue(k++),
+      curve: quiet(seen(sensitivity.curves[order], variable.index, false), scale),
+      width: chosen ? 2.6 : 1.3,
+      pick: () => state.choose({ variable: variable.index }),
+    }
+  })
+  // Drawn last, the selected one lies above the others.
+  const first = content.lines.findIndex(({ width }) => width === 2.6)
+  content.lines.push(...content.lines.splice(first, 1))
+  const { differences } = own.sensitivity
+  const left = peers.length - shown.length
+  const rest = left > 0 ? `The ${shown.length} largest of ${peers.length}.` : ''
+  if (!differences) return overOther(state, subject.over, { ...content, caption: rest })
+  const curve = seen(differences.curves[order], selected.index, true)
+  content.lines.push({ label: 'finite differences', color: css('--ink'), curve, marks: thinned(curve, MARKS) })
+  const caption =
+    `${rest} Rings: designs re-solved ±${figure(Number(differences.step.toPrecision(2)), differences.unit)} away, ` +
+    `which differ by ${number(differences.worst[order], 2)} of the largest at most.`
+  return overOther(state, subject.over, { ...content, caption: caption.trimStart() })
+}
+
+/** The largest size among quantities of the same unit: what is nothing beside it is rounding. */
+function largest({ report }: State, index: number, order: Order): number {
+  const unit = report.quantities[index].units[order]
+  return Math.max(...report.quantities.filter(({ units }) => units[order] === unit).map(({ curves }) => peak(curves[order])))
+}
+
+function unknown(title: string): string {
+  return `There is no ${title}: the motion is solved up to accelerations, and what goes by a driver up to its value.`
+}
+
+function overOther({ report }: State, over: number | undefined, content: Content): Content {
+  if (over === undefined || content.message) return content
+  const { name, units, curves } = report.quantities[over]
+  return { ...content, over: { label: name, unit: units[0], curve: curves[0] } }
+}
+
+/** How the sensitivities of the quantity are shown: as they are, or at a fixed abscissa; or why that cannot be. */
+function atAbscissa({ report }: State, { quantity, order, over }: Subject): ((curve: Curve, variable: number, differences: boolean) => Curve) | string {
+  if (over === undefined) return (curve) => curve
+  const [y, x] = [report.quantities[quantity], report.quantities[over]]
+  if (order > 0) return 'Over another quantity, sensitivities are those of values; choose the value, or time.'
+  if ([y, x].some(({ curves }) => curves[1].length === 0 || curves[2].length === 0)) {
+    return `How ${y.name} goes with ${x.name} is not known along the motion, for one of them has no rate; choose time.`
+  }
+  const along = slope(y.curves, x.curves)
+  return (curve, variable, differences) => {
+    const of = report.variables[variable].sensitivities.get(x.index)
+    const dx = differences ? of?.differences?.curves[0] : of?.curves[0]
+    return dx ? atFixedAbscissa(curve, dx, along) : curve
+  }
+}

@@ -1,0 +1,46 @@
+import { css } from '../dom'
+import { csvOf, type Column } from '../export/csv'
+import { plotPng } from '../export/png'
+import { plotSvg } from '../export/plot_svg'
+import { save } from '../export/save'
+import type { View } from '../scene/view'
+import type { State } from '../state'
+import type { Figure } from './figure'
+import type { Item } from './menu'
+
+/** Pixels of an exported picture per pixel of the page. */
+const SHARP = 2
+
+/** What can be exported of what is shown now. */
+export function exports(state: State, figures: Figure[], view: View | undefined): Item[] {
+  const { report } = state
+  const name = report.file.replace(/\.[^.]*$/, '') || 'report'
+  const drawn = figures.filter(({ plot }) => plot.canvas)
+  return [
+    ...(view ? [{ name: 'View as PNG', testId: 'export-view-png', run: async () => save(await view.picture(SHARP), `${name} view.png`) }] : []),
+    ...drawn.flatMap(({ plot }) => {
+      const { title } = plot.content
+      return [
+        { name: `${title} as PNG`, testId: 'export-plot-png', run: async () => save(await plotPng(plot.canvas!, title, { page: css('--page'), text: css('--ink') }), `${name} ${title}.png`) },
+        { name: `${title} as SVG`, testId: 'export-plot-svg', run: () => save(plotSvg(plot.content, report.times, report.units.time, paper()), `${name} ${title}.svg`) },
+      ]
+    }),
+    ...(drawn.length > 0 ? [{ name: 'Curves shown as CSV', testId: 'export-csv', run: () => save(csvOf(columns(state, drawn)), `${name} curves.csv`) }] : []),
+    { name: 'Print or PDF', testId: 'export-print', run: () => print() },
+  ]
+}
+
+function paper() {
+  return { page: css('--page'), text: css('--ink'), muted: css('--muted'), rule: css('--rule') }
+}
+
+/** Time, what the curves are over, and every curve once. */
+function columns({ report }: State, figures: Figure[]): Column[] {
+  const contents = figures.map(({ plot }) => plot.content)
+  const overs = new Map(contents.flatMap(({ over }) => (over ? [[over.label, over] as const] : [])))
+  return [
+    { label: 'time', unit: report.units.time, curve: report.times },
+    ...[...overs.values()].map(({ label, unit, curve }) => ({ label, unit, curve })),
+    ...contents.flatMap(({ title, unit, lines }) => lines.map(({ label, curve }) => ({ label: label === title ? label : `${title}: ${label}`, unit, curve }))),
+  ]
+}

@@ -1,0 +1,101 @@
+import { el, onSchemeChange } from '../dom'
+import { Plot } from '../plot'
+import { groups, ORDERS, type Order } from '../report'
+import type { State } from '../state'
+import { sensitivityContent, valueContent, type Subject } from './contents'
+
+export type Shown = 'value' | 'sensitivity'
+
+/** What a figure is made with. */
+export interface Wish {
+  /** Fixed quantity; the selected one where there is none. */
+  quantity?: number
+  shown: Shown
+  testId: string
+  /** The first figure chooses what is selected; others may follow it, and be taken away. */
+  leads: boolean
+}
+
+/** A plot with what it is of, over what, and whether values or sensitivities are drawn. */
+export class Figure {
+  readonly plot: Plot
+  #quantity?: number
+  #order: Order = 0
+  #over?: number
+  #shown: Shown
+
+  constructor(
+    private readonly state: State,
+    private readonly wish: Wish,
+    onRemove: (figure: Figure) => void,
+  ) {
+    this.#quantity = wish.quantity
+    this.#shown = wish.shown
+    const { report } = state
+    const first = wish.leads ? [] : [el('option', { value: '' }, 'selected quantity')]
+    const quantity = select('quantity', 'Quantity', () => this.#pick(quantity.value), ...first, ...offered(state))
+    const over = select('over', 'Over', () => this.#choose({ over: over.value === '' ? undefined : Number(over.value) }), el('option', { value: '' }, 'over time'),
+      ...groups(report).flatMap(([, members]) => members.map(({ index, name }) => el('option', { value: index }, `over ${name}`))))
+    const order = select('order', 'Order', () => this.#choose({ order: Number(order.value) as Order }), ...ORDERS.map((name, k) => el('option', { value: k }, name)))
+    const able = report.variables.some(({ sensitivities }) => sensitivities.size > 0)
+    const shown = el(
+      'button',
+      { type: 'button', class: 'switch', 'data-testid': 'shown', title: 'Draw the sensitivities to the design variables', onclick: () => {
+        this.#shown = this.#shown === 'value' ? 'sensitivity' : 'value'
+        this.show()
+      } },
+      'd / d variable',
+    )
+    const remove = el('button', { type: 'button', class: 'icon', 'data-testid': 'remove', title: 'Take this curve away', 'aria-label': 'Take this curve away', onclick: () => onRemove(this) }, '×')
+    const controls = el('div', { class: 'controls' }, quantity, over, order, able ? shown : undefined, wish.leads ? undefined : remove)
+    this.plot = new Plot(state, wish.testId, [controls])
+    this.show = () => {
+      const subject = this.subject
+      quantity.value = this.#follows && !wish.leads ? '' : String(subject.quantity)
+      over.value = subject.over === undefined ? '' : String(subject.over)
+      order.value = String(subject.order)
+      shown.setAttribute('aria-pressed', String(this.#shown === 'sensitivity'))
+      this.plot.show(this.#shown === 'value' ? valueContent(state, subject) : sensitivityContent(state, subject))
+    }
+    onSchemeChange(() => this.show())
+  }
+
+  readonly show: () => void
+
+  /** What is drawn. */
+  get subject(): Subject {
+    const { quantity, order, over } = this.state.choice
+    return this.#follows ? { quantity, order, over } : { quantity: this.#quantity!, order: this.#order, over: this.#over }
+  }
+
+  get #follows(): boolean {
+    return this.#quantity === undefined
+  }
+
+  #pick(value: string): void {
+    if (this.wish.leads) return this.state.choose({ quantity: Number(value) })
+    const { order, over } = this.subject
+    this.#quantity = value === '' ? undefined : Number(value)
+    this.#order = order
+    this.#over = over
+    this.show()
+  }
+
+  #choose(part: { order?: Order; over?: number }): void {
+    if (this.#follows) return this.state.choose(part)
+    if ('order' in part) this.#order = part.order!
+    else this.#over = part.over
+    this.show()
+  }
+}
+
+function select(testId: string, label: string, onchange: () => void, ...options: HTMLElement[]): HTMLSelectElement {
+  return el('select', { 'data-testid': testId, 'aria-label': label, title: label, onchange }, ...options)
+}
+
+function offered(state: State): HTMLElement[] {
+  const plural = (group: string) => (group === 'body' ? 'bodies' : `${group}s`)
+  return groups(state.report).map(([name, members]) =>
+    el('optgroup', { label: plural(name) }, ...members.map(({ index, name }) => el('option', { value: index }, name))),
+  )
+}

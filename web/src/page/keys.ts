@@ -1,0 +1,57 @@
+import type { State } from '../state'
+
+/** What the keys act on beside the state; a part that is not on the page is left out. */
+export interface Targets {
+  fit?: () => void
+  /** Takes the standard view of this number, from 0. */
+  look?: (index: number) => void
+  find?: () => void
+  help: () => void
+}
+
+/** Keys that work wherever the focus is, but for controls to which they mean something else. */
+export function listenToKeys(state: State, targets: Targets): void {
+  document.addEventListener('keydown', (event) => {
+    const target = event.target as HTMLElement
+    if (event.ctrlKey || event.metaKey || event.altKey || event.defaultPrevented) return
+    if (target.closest('select, textarea, input:not([type=range]), dialog, [role=menu]')) return
+    const action = actionOf(event, target, state, targets)
+    if (!action) return
+    event.preventDefault()
+    action()
+  })
+}
+
+function actionOf({ key }: KeyboardEvent, target: HTMLElement, state: State, targets: Targets): (() => void) | undefined {
+  const digit = Number(key)
+  if (key !== ' ' && Number.isInteger(digit) && digit >= 1) return targets.look && (() => targets.look!(digit - 1))
+  switch (key) {
+    case ' ':
+      return target.closest('button, summary') ? undefined : () => state.toggle()
+    case 'f':
+    case 'F':
+      return targets.fit
+    case 'l':
+    case 'L':
+      return () => state.choose({ labels: !state.choice.labels })
+    case '/':
+      return targets.find
+    case '?':
+      return targets.help
+    case 'Escape':
+      return state.choice.selected ? () => state.choose({ selected: undefined }) : undefined
+  }
+  // A slider and a list of tabs step by themselves.
+  if (target.closest('input, [role=tablist]')) return undefined
+  switch (key) {
+    case 'ArrowLeft':
+      return () => state.nudge(-1)
+    case 'ArrowRight':
+      return () => state.nudge(1)
+    case 'Home':
+      return () => state.nudge(-state.lastStep)
+    case 'End':
+      return () => state.nudge(state.lastStep)
+  }
+  return undefined
+}

@@ -1,0 +1,51 @@
+import { el } from '../dom'
+
+/** An entry of a menu. */
+export interface Item {
+  name: string
+  testId: string
+  run: () => void | Promise<void>
+}
+
+/** A button that opens a list of things to do; what goes wrong is said in the list's place. */
+export function menu(title: string, testId: string, items: () => Item[]): HTMLElement {
+  const list = el('div', { class: 'menu', role: 'menu', 'aria-label': title, 'data-testid': `${testId}-menu`, hidden: true })
+  const failure = el('p', { class: 'failure', role: 'alert', hidden: true })
+  const button = el('button', { type: 'button', 'aria-haspopup': 'menu', 'aria-expanded': 'false', 'data-testid': testId, onclick: () => (list.hidden ? open() : close()) }, `${title} ▾`)
+  const element = el('div', { class: 'dropdown' }, button, list, failure)
+  const open = () => {
+    failure.hidden = true
+    list.replaceChildren(...items().map((item) => el('button', { type: 'button', role: 'menuitem', tabindex: -1, 'data-testid': item.testId, onclick: () => run(item) }, item.name)))
+    list.hidden = false
+    button.setAttribute('aria-expanded', 'true')
+    ;(list.firstElementChild as HTMLElement | null)?.focus()
+  }
+  const close = () => {
+    list.hidden = true
+    button.setAttribute('aria-expanded', 'false')
+  }
+  const run = async ({ name, run }: Item) => {
+    close()
+    button.focus()
+    try {
+      await run()
+    } catch (error) {
+      failure.textContent = `${name}: ${error instanceof Error ? error.message : String(error)}`
+      failure.hidden = false
+    }
+  }
+  element.addEventListener('keydown', (event) => {
+    const entries = [...list.children] as HTMLElement[]
+    const at = entries.indexOf(document.activeElement as HTMLElement)
+    const to = { ArrowDown: at + 1, ArrowUp: at - 1, Home: 0, End: -1 }[event.key]
+    if (list.hidden) return
+    if (event.key === 'Escape') close(), button.focus()
+    else if (to !== undefined) entries.at(to % entries.length)?.focus()
+    else return
+    event.preventDefault()
+  })
+  element.addEventListener('focusout', (event) => {
+    if (!element.contains(event.relatedTarget as Node | null)) close()
+  })
+  return element
+}

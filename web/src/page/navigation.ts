@@ -1,0 +1,14 @@
+import { el } from '../dom'
+
+/** On a narrow screen one section at a time, chosen by a bar at the bottom. */
+export function navigation(sections: { name: string; element: HTMLElement }[]): HTMLElement {
+  const buttons = sections.map(({ name }, index) =>
+    el('button', { type: 'button', 'data-testid': `nav-${name}`, onclick: () => show(index) }, name),
+  )
+  const show = (chosen: number) => {
+    sections.forEach(({ element }, index) => element.classList.toggle('behind', index !== chosen))
+    buttons.forEach((button, index) => button.setAttribute('aria-pressed', String(index === chosen)))
+  }
+  show(0)
+  return el('nav', { class: 'navigation', 'aria-label': 'Sections' }, ...buttons)
+}

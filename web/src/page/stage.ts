@@ -1,0 +1,72 @@
+import { el } from '../dom'
+import { hasWebGL, View } from '../scene/view'
+import type { State } from '../state'
+
+/** The view with its buttons; without WebGL a message, and no view. */
+export interface Stage {
+  element: HTMLElement
+  view?: View
+  /** Takes the standard view of this number, from 0. */
+  look?: (index: number) => void
+}
+
+/** The mechanism in 3D with its standard views, or a plain message where there is no WebGL. */
+export function stage(state: State): Stage {
+  if (!hasWebGL()) {
+    const message = 'This browser offers no WebGL, so the 3D view is left out. Curves and tables are complete.'
+    return { element: el('div', { class: 'view', 'data-testid': 'no-webgl' }, el('p', { class: 'message' }, message)) }
+  }
+  const view = new View(state)
+  const buttons = view.looks.map(({ name, title }, index) => el('button', { type: 'button', title, 'data-testid': `look-${name}`, onclick: () => look(index) }, name))
+  const look = (index: number) => {
+    const chosen = view.looks[index]
+    if (!chosen) return
+    view.look(chosen.name)
+    buttons.forEach((button, k) => button.setAttribute('aria-pressed', String(k === index)))
+  }
+  buttons.forEach((button, k) => button.setAttribute('aria-pressed', String(k === 0)))
+  const labels = el('button', { type: 'button', title: 'Names of hardpoints (L)', 'data-testid': 'labels', onclick: () => state.choose({ labels: !state.choice.labels }) }, 'labels')
+  const sync = () => labels.setAttribute('aria-pressed', String(state.choice.labels))
+  state.onChoice(sync)
+  sync()
+  const fit = el('button', { type: 'button', title: 'Fit (F)', 'data-testid': 'fit', onclick: () => view.fit() }, 'fit')
+  view.element.append(
+    el('div', { class: 'looks', role: 'toolbar', 'aria-label': 'Standard views' }, ...buttons, fit, labels, tracer(state)),
+    ghostKey(state),
+  )
+  return { element: view.element, view, look }
+}
+
+/** Says which design is drawn dashed. */
+function ghostKey(state: State): HTMLElement {
+  const name = el('span')
+  const element = el('p', { class: 'ghost-key' }, el('span', { class: 'swatch dashed', style: '--swatch: var(--former)' }), name)
+  const sync = () => {
+    element.hidden = !state.compares
+    name.textContent = `${state.former?.name ?? 'as loaded'}${state.foreseen ? '; solid: foreseen to first order' : ''}`
+  }
+  state.onChoice(sync)
+  sync()
+  return element
+}
+
+/** Chooses the hardpoint whose path is drawn. */
+function tracer(state: State): HTMLElement {
+  const select = el(
+    'select',
+    {
+      'data-testid': 'trace',
+      'aria-label': 'Path of a hardpoint',
+      title: 'Path of a hardpoint',
+      onchange: () => {
+        const [body, point] = select.value.split(' ').map(Number)
+        state.choose({ trace: select.value ? [body, point] : undefined })
+      },
+    },
+    el('option', { value: '' }, 'no path'),
+    ...state.report.bodies.slice(1).map((body, index) =>
+      el('optgroup', { label: body.name }, ...body.labels.map((label, point) => el('option', { value: `${index + 1} ${point}` }, `path of ${label}`))),
+    ),
+  )
+  return select
+}

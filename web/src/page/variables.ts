@@ -1,0 +1,156 @@
+import { el, prose } from '../dom'
+import { effects, type Effect } from '../effect'
+import { figure, number, pretty, roundBelow } from '../format'
+import { derivativeUnit, orderedName, type Variable } from '../report'
+import type { State } from '../state'
+import { badge } from '../variables'
+import { reach } from './reach'
+
+/** With more variables than this they can be searched. */
+const MANY = 12
+/** Steps of a slider to either side. */
+const STEPS = 50
+
+interface Row {
+  variable: Variable
+  element: HTMLElement
+  /** Shows the change, and whether the row is the selected one. */
+  sync: () => void
+  /** Shows what the variable does to the selected quantity. */
+  rank: (effect: Effect | undefined, unit: string) => void
+  focus: () => void
+}
+
+/** The design variables, largest effect on the selected quantity first, each with its change. */
+export function variables(state: State): HTMLElement {
+  const { report, choice } = state
+  const list = el('ul', { 'aria-label': 'Design variables' })
+  const about = el('span', { class: 'muted' })
+  const resetAll = el('button', { type: 'button', class: 'plain', 'data-testid': 'reset-all', onclick: () => state.reset() }, 'reset all')
+  const search = el('input', { type: 'search', placeholder: 'find a variable', 'aria-label': 'Find a variable', 'data-testid': 'variable-search', oninput: () => filter() })
+  search.hidden = report.variables.length <= MANY
+  const note = el('p', { class: 'note', 'data-testid': 'variable-note', 'aria-live': 'polite' })
+  const rows = report.variables.map((variable) => row(state, variable))
+  let order = rows
+
+  const filter = () => {
+    const wanted = search.value.trim().toLowerCase()
+    for (const { variable, element } of rows) {
+      element.hidden = wanted !== '' && !`${variable.name} ${variable.description}`.toLowerCase().includes(wanted)
+    }
+  }
+  let ranked = ''
+  const arrange = () => {
+    const key = `${choice.quantity} ${choice.order}`
+    if (key === ranked) return
+    ranked = key
+    const quantity = report.quantities[choice.quantity]
+    const all = quantity ? effects(report, choice.quantity, choice.order) : []
+    about.textContent = quantity ? `by effect on ${orderedName(quantity, choice.order)}` : ''
+    const place = new Map(all.map(({ variable }, rank) => [variable.index, rank]))
+    for (const item of rows) {
+      const effect = all[place.get(item.variable.index) ?? -1]
+      item.rank(effect, quantity ? derivativeUnit(quantity, choice.order, item.variable) : '')
+    }
+    const rank = ({ variable }: Row) => place.get(variable.index) ?? rows.length + Number(variable.admissibility === 'cannot_follow')
+    order = [...rows].sort((a, b) => rank(a) - rank(b) || a.variable.index - b.variable.index)
+    list.replaceChildren(...order.map(({ element }) => element))
+    list.scrollTop = 0
+  }
+  let shown = -1
+  const sync = () => {
+    arrange()
+    for (const item of rows) item.sync()
+    resetAll.hidden = !state.changed
+    const variable = report.variables[choice.variable]
+    const foreseen = state.foreseen ? 'Changes are foreseen to first order. ' : ''
+    note.replaceChildren(...prose(foreseen + (variable?.note || variable?.description || '')))
+    if (choice.variable === shown) return
+    shown = choice.variable
+    const { element } = rows[shown]
+    // Not scrollIntoView, which would move the whole page on a phone.
+    if (element.offsetTop < list.scrollTop || element.offsetTop + element.offsetHeight > list.scrollTop + list.clientHeight) {
+      list.scrollTop = element.offsetTop - list.clientHeight / 3
+    }
+  }
+  list.addEventListener('keydown', (event) => {
+    const by = { ArrowDown: 1, ArrowUp: -1 }[event.key]
+    if (!by || (event.target as HTMLElement).closest('input')) return
+    event.preventDefault()
+    const visible = order.filter(({ element }) => !element.hidden)
+    const next = visible[visible.findIndex(({ variable }) => variable.index === choice.variable) + by]
+    if (!next) return
+    state.choose({ variable: next.variable.index })
+    next.focus()
+  })
+  state.onChoice(sync)
+  sync()
+  const head = el('div', { class: 'head' }, el('h2', {}, 'Variables'), about, search, resetAll)
+  return el('section', { class: 'variables', 'aria-label': 'Variables', 'data-testid': 'variables' }, head, list, note)
+}
+
+function row(state: State, variable: Variable): Row {
+  const { index, name, unit, admissibility } = variable
+  const able = admissibility !== 'cannot_follow'
+  const [low, high] = able ? reach(state.report, variable) : [0, 0]
+  const step = high > low ? roundBelow((high - low) / (2 * STEPS)) : 0
+  let pending: number | undefined
+  const change = (by: number) => {
+    // A slider reports more often than a frame can be drawn.
+    if (pending === undefined) requestAnimationFrame(() => {
+      const last = pending!
+      pending = undefined
+      state.change(index, last)
+    })
+    pending = by
+  }
+  const button = el('button', { type: 'button', class: 'name', name, title: variable.description || name, onclick: () => state.choose({ variable: index }) }, name)
+  const slider = el('input', { type: 'range', min: low, max: high, step, value: 0, 'data-testid': 'change', 'aria-label': `change of ${name}`, oninput: () => change(Number(slider.value)) })
+  const field = el('input', { type: 'number', step, value: 0, 'data-testid': 'change-value', 'aria-label': `change of ${name} in ${pretty(unit) || 'its unit'}`, onchange: () => state.change(index, limited(Number(field.value), variable)) })
+  const reset = el('button', { type: 'button', class: 'icon', title: `reset ${name}`, 'aria-label': `reset ${name}`, 'data-testid': 'reset', onclick: () => state.change(index, 0) }, '↺')
+  const bar = el('span', { class: 'bar-of', 'aria-hidden': 'true' })
+  const size = el('span', { class: 'size' })
+  const effect = el('span', { class: 'effect', 'data-testid': 'effect' }, bar, size)
+  const controls = step > 0 ? [slider, el('span', { class: 'amount' }, field, el('span', { class: 'unit' }, pretty(unit)))] : []
+  const element = el(
+    'li',
+    { class: `${admissibility} ${controls.length > 0 ? '' : 'fixed'}`, 'data-testid': `variable-${name}` },
+    el('span', { class: 'who' }, button, able ? badge(variable) : undefined),
+    ...controls,
+    able ? effect : el('span', { class: 'why', title: variable.note }, ...prose(variable.note || 'the mechanism cannot follow')),
+    controls.length > 0 && reset,
+  )
+  // A press anywhere in the row selects it; buttons and fields do what they do besides.
+  element.addEventListener('pointerdown', (event) => {
+    if (!(event.target as HTMLElement).closest('button') && state.choice.variable !== index) state.choose({ variable: index })
+  })
+  const digits = step > 0 ? Math.max(0, -Math.floor(Math.log10(step))) : 0
+  return {
+    variable,
+    element,
+    sync: () => {
+      const chosen = state.choice.variable === index
+      const by = state.changes[index]
+      element.setAttribute('aria-current', String(chosen))
+      button.tabIndex = chosen ? 0 : -1
+      slider.tabIndex = field.tabIndex = reset.tabIndex = chosen ? 0 : -1
+      if (Number(slider.value) !== by) slider.value = String(by)
+      if (document.activeElement !== field || Number(field.value) !== by) field.value = String(Number(by.toFixed(Math.max(digits, 3))))
+      slider.setAttribute('aria-valuetext', figure(by, unit))
+      reset.classList.toggle('away', by === 0)
+      element.classList.toggle('changed', by !== 0)
+    },
+    rank: (found, symbol) => {
+      bar.style.setProperty('--share', String(found?.share ?? 0))
+      bar.classList.toggle('negative', (found?.extreme ?? 0) < 0)
+      const sign = (found?.extreme ?? 0) > 0 ? '+' : ''
+      size.textContent = !found ? 'not known' : found.share === 0 ? '≈ 0' : `${sign}${number(found.extreme, 3)} ${symbol}`
+    },
+    focus: () => button.focus(),
+  }
+}
+
+function limited(by: number, { bounds }: Variable): number {
+  if (!Number.isFinite(by)) return 0
+  return Math.min(Math.max(by, bounds?.[0] ?? -Infinity), bounds?.[1] ?? Infinity)
+}
