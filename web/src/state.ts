@@ -15,12 +15,12 @@ export interface Choice {
   selected?: Part
   /** Body and hardpoint whose path is drawn. */
   trace?: [body: number, point: number]
+  /** The measured distance whose value is pointed at, an index into the report's distances. */
+  distance?: number
   /** Whether hardpoints are named in the view. */
   labels: boolean
   /** The design that the present one is compared with; the one as loaded where there is none. */
   compared?: number
-  /** The measured distance whose value is pointed at, an index into the report's distances. */
-  distance?: number
 }
 
 /** What the reader chose and the moment shown; the views listen, and change it only through its methods. */

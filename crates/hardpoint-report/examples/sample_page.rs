@@ -305,6 +305,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         quantities: quantities(&times),
         values: vec![],
         first: Some(0),
+        over: None,
         designs: vec![],
         margin: Some(Margin {
             value: times.iter().map(|t| 0.2 - 0.15 * (TAU * t / DURATION).cos()).collect(),

@@ -10,7 +10,7 @@ use hardpoint::{draft::*, model::*};
 use hardpoint_file::{Diagnostic, ModelFile};
 use hardpoint_report::course::Course;
 use hardpoint_report::diagnose;
-use hardpoint_report::facts::{Facts, outline};
+use hardpoint_report::facts::outline;
 use hardpoint_report::page::Table;
 use hardpoint_report::payload::payload;
 use hardpoint_report::summary::Summary;
