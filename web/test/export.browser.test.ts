@@ -1,10 +1,13 @@
 import { readFileSync } from 'node:fs'
 import type { Browser, Page } from 'playwright-core'
 import { GLTFLoader, type GLTF } from 'three/addons/loaders/GLTFLoader.js'
-import { afterAll, beforeAll, describe, expect, inject, test } from 'vitest'
+import { afterAll, beforeAll, describe, expect, inject, test, vi } from 'vitest'
 import { launch, visit, type Visit } from './browser'
 import { VIEW } from './person'
 import { motionBeside, table } from './table'
+
+// The loader looks for the window under its other name.
+vi.stubGlobal('self', globalThis)
 
 const { models } = inject('samples')
 
