@@ -16,7 +16,7 @@ describe('a changed design beside the one as loaded', () => {
   })
   afterAll(() => browser?.close())
 
-  const lines = () => text(page, 'plot-value')
+  const lines = () => text(page, 'plot-0')
 
   test('is drawn solid, the one as loaded dashed, and both have a curve', async () => {
     expect(await page.locator('.ghost-key').innerText()).toContain('as loaded')
@@ -29,12 +29,12 @@ describe('a changed design beside the one as loaded', () => {
   })
 
   test('can be compared with what was foreseen: the dashed curve and the dashed mechanism follow', async () => {
-    const before = { view: await picture(page), curve: await curve(page, 'plot-value') }
+    const before = { view: await picture(page), curve: await curve(page, 'plot-0') }
     const options = page.getByTestId('compare').locator('option')
     const foreseen = (await options.allInnerTexts()).findIndex((name) => name.includes('first order'))
     expect(foreseen).toBeGreaterThan(0)
     await page.getByTestId('compare').selectOption({ index: foreseen })
-    expect((await curve(page, 'plot-value')).sum).not.toBe(before.curve.sum)
+    expect((await curve(page, 'plot-0')).sum).not.toBe(before.curve.sum)
     expect(await page.locator('.ghost-key').innerText()).toContain('first order')
     await page.getByTestId('compare').selectOption({ index: 0 })
     expect((await picture(page)).equals(before.view)).toBe(true)

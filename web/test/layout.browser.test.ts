@@ -148,7 +148,7 @@ describe('printed', () => {
     const pages = pdf.toString('latin1').match(/\/Type\s*\/Page\b/g)!.length
     expect(pages).toBeLessThanOrEqual(6)
     await page.emulateMedia({ media: 'print' })
-    for (const name of ['title', 'values', 'plot-value', 'variables', 'summary']) expect(await page.getByTestId(name).isVisible(), name).toBe(true)
+    for (const name of ['title', 'values', 'plot-0', 'variables', 'summary']) expect(await page.getByTestId(name).isVisible(), name).toBe(true)
     // Buttons are of no use on paper.
     for (const name of ['export', 'help', 'play', 'scrub']) expect(await page.getByTestId(name).isVisible(), name).toBe(false)
     // Paper is white, whatever the screen is.
@@ -180,10 +180,10 @@ describe('without WebGL', () => {
     try {
       const { page, complaints } = await visit(browser, whole)
       expect(await text(page, 'no-webgl')).toContain('no WebGL')
-      expect((await curve(page, 'plot-value')).colours).toBeGreaterThan(10)
-      const before = await text(page, 'plot-value')
+      expect((await curve(page, 'plot-0')).colours).toBeGreaterThan(10)
+      const before = await text(page, 'plot-0')
       await scrub(page, 7)
-      expect(await text(page, 'plot-value')).not.toBe(before)
+      expect(await text(page, 'plot-0')).not.toBe(before)
       await page.getByTestId('tab-table').click()
       expect(await page.getByTestId('heat').isVisible()).toBe(true)
       expect(complaints).toEqual([])

@@ -32,21 +32,21 @@ describe.each(['slider_crank', 'macpherson'])('a reader of %s', (name) => {
   afterAll(() => page?.context().close())
 
   test('finds the mechanism, a curve and the variables, the one with the largest effect selected', async () => {
-    expect((await curve(page, 'plot-value')).colours).toBeGreaterThan(10)
+    expect((await curve(page, 'plot-0')).colours).toBeGreaterThan(10)
     expect(await rows(page).count()).toBeGreaterThan(1)
     expect(await rows(page).first().getAttribute('aria-current')).toBe('true')
   })
 
   test('scrubs: time, mechanism and readings go with it', async () => {
-    const before = { time: await text(page, 'time'), view: await picture(page), readings: await text(page, 'plot-value') }
+    const before = { time: await text(page, 'time'), view: await picture(page), readings: await text(page, 'plot-0') }
     await scrub(page, 7)
     expect(await text(page, 'time')).not.toBe(before.time)
-    expect(await text(page, 'plot-value')).not.toBe(before.readings)
+    expect(await text(page, 'plot-0')).not.toBe(before.readings)
     expect((await picture(page)).equals(before.view)).toBe(false)
   })
 
   test('clicks in a curve: the time moves to that place', async () => {
-    const area = (await page.getByTestId('plot-value').locator('.u-over').boundingBox())!
+    const area = (await page.getByTestId('plot-0').locator('.u-over').boundingBox())!
     const last = Number(await page.getByTestId('scrub').getAttribute('max'))
     await page.mouse.click(area.x + area.width - 1, area.y + area.height / 2)
     expect(Number(await step(page))).toBeGreaterThan(last * 0.9)
@@ -78,33 +78,33 @@ describe.each(['slider_crank', 'macpherson'])('a reader of %s', (name) => {
   })
 
   test('chooses another quantity: the curve and the effects change', async () => {
-    const select = page.getByTestId('plot-value').getByTestId('quantity')
+    const select = page.getByTestId('plot-0').getByTestId('quantity')
     const first = await select.inputValue()
-    const before = { curve: await curve(page, 'plot-value'), variables: await text(page, 'variables') }
+    const before = { curve: await curve(page, 'plot-0'), variables: await text(page, 'variables') }
     const values = await select.locator('option').evaluateAll((all) => all.map((one) => (one as HTMLOptionElement).value))
     await select.selectOption(values.find((value) => value !== first)!)
-    expect((await curve(page, 'plot-value')).sum).not.toBe(before.curve.sum)
+    expect((await curve(page, 'plot-0')).sum).not.toBe(before.curve.sum)
     expect(await text(page, 'variables')).not.toBe(before.variables)
     await select.selectOption(first)
-    expect((await curve(page, 'plot-value')).sum).toBe(before.curve.sum)
+    expect((await curve(page, 'plot-0')).sum).toBe(before.curve.sum)
   })
 
   test('chooses the acceleration: its unit is shown', async () => {
-    const order = page.getByTestId('plot-value').getByTestId('order')
+    const order = page.getByTestId('plot-0').getByTestId('order')
     await order.selectOption('2')
-    expect(await text(page, 'plot-value')).toMatch(/\/s²/)
+    expect(await text(page, 'plot-0')).toMatch(/\/s²/)
     await order.selectOption('0')
   })
 
   test('draws a curve over another quantity, and clicks there', async () => {
-    const over = page.getByTestId('plot-value').getByTestId('over')
+    const over = page.getByTestId('plot-0').getByTestId('over')
     const name = (await over.locator('option').nth(1).innerText()).replace('over ', '')
-    const before = await curve(page, 'plot-value')
+    const before = await curve(page, 'plot-0')
     await over.selectOption({ index: 1 })
-    expect((await curve(page, 'plot-value')).sum).not.toBe(before.sum)
-    expect(await page.getByTestId('plot-value').getByRole('img').first().getAttribute('aria-label')).toContain(`over ${name}`)
+    expect((await curve(page, 'plot-0')).sum).not.toBe(before.sum)
+    expect(await page.getByTestId('plot-0').getByRole('img').first().getAttribute('aria-label')).toContain(`over ${name}`)
     const time = await text(page, 'time')
-    await page.getByTestId('plot-value').locator('.u-over').click({ position: { x: 60, y: 40 } })
+    await page.getByTestId('plot-0').locator('.u-over').click({ position: { x: 60, y: 40 } })
     expect(await text(page, 'time')).not.toBe(time)
     await over.selectOption({ index: 0 })
     await scrub(page, 0)
@@ -130,23 +130,23 @@ describe.each(['slider_crank', 'macpherson'])('a reader of %s', (name) => {
   })
 
   test('changes a variable with its slider, sees what is foreseen, and takes it back', async () => {
-    const before = { view: await picture(page), curve: await curve(page, 'plot-value') }
+    const before = { view: await picture(page), curve: await curve(page, 'plot-0') }
     await slide(page, CHANGE, await page.locator(CHANGE).getAttribute('max').then(Number))
     expect((await picture(page)).equals(before.view)).toBe(false)
-    expect((await curve(page, 'plot-value')).sum).not.toBe(before.curve.sum)
+    expect((await curve(page, 'plot-0')).sum).not.toBe(before.curve.sum)
     expect(await page.locator('body').innerText()).toContain('foreseen')
     await selected(page).getByTestId('reset').click()
     expect((await picture(page)).equals(before.view)).toBe(true)
-    expect((await curve(page, 'plot-value')).sum).toBe(before.curve.sum)
+    expect((await curve(page, 'plot-0')).sum).toBe(before.curve.sum)
   })
 
   test('types a change and takes all changes back', async () => {
-    const before = await curve(page, 'plot-value')
+    const before = await curve(page, 'plot-0')
     await selected(page).getByTestId('change-value').fill('0.01')
     await selected(page).getByTestId('change-value').press('Enter')
-    expect((await curve(page, 'plot-value')).sum).not.toBe(before.sum)
+    expect((await curve(page, 'plot-0')).sum).not.toBe(before.sum)
     await page.getByTestId('reset-all').click()
-    expect((await curve(page, 'plot-value')).sum).toBe(before.sum)
+    expect((await curve(page, 'plot-0')).sum).toBe(before.sum)
   })
 
   test('points at the mechanism: what is there is named; a click selects it', async () => {
