@@ -1,5 +1,5 @@
 import { Box3, type Object3D, Vector3 } from 'three'
-import { describe, expect, inject, test } from 'vitest'
+import { describe, expect, inject, test, vi } from 'vitest'
 import { marks, matter } from '../src/scene/draw'
 import type { Drawn, Part } from '../src/scene/drawn'
 import { Kit } from '../src/scene/kit'
@@ -9,6 +9,10 @@ import { reportOf } from './payload'
 import { paletteOf, schemes } from './schemes'
 
 const { models } = inject('samples')
+
+// A hatch is painted on a canvas, which Node has not; what is counted here is geometry.
+const brush = new Proxy({}, { get: () => () => undefined })
+vi.stubGlobal('document', { createElement: () => ({ getContext: () => brush }) })
 
 /** Everything that is drawn of a model as it opens. */
 async function drawing(address: string): Promise<{ mechanism: Mechanism; drawn: Drawn[] }> {

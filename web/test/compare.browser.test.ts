@@ -1,0 +1,52 @@
+import type { Browser, Page } from 'playwright-core'
+import { afterAll, beforeAll, describe, expect, inject, test } from 'vitest'
+import { launch, visit, type Visit } from './browser'
+import { curve, picture, text } from './person'
+
+const { changed } = inject('samples')
+
+describe('a changed design beside the one as loaded', () => {
+  let browser: Browser
+  let visited: Visit
+  let page: Page
+  beforeAll(async () => {
+    browser = await launch()
+    visited = await visit(browser, changed)
+    page = visited.page
+  })
+  afterAll(() => browser?.close())
+
+  const lines = () => text(page, 'plot-0')
+
+  test('is drawn solid, the one as loaded dashed, and both have a curve', async () => {
+    expect(await page.locator('.ghost-key').innerText()).toContain('as loaded')
+    expect(await lines()).toMatch(/changed/)
+    expect(await lines()).toMatch(/as loaded/)
+  })
+
+  test('has the changed variables in its rows', async () => {
+    expect(Number(await page.getByTestId('variable-tie_rod_outer_z').getByTestId('change-value').inputValue())).toBe(6)
+  })
+
+  test('can be compared with what was foreseen: the dashed curve and the dashed mechanism follow', async () => {
+    const before = { view: await picture(page), curve: await curve(page, 'plot-0') }
+    const options = page.getByTestId('compare').locator('option')
+    const foreseen = (await options.allInnerTexts()).findIndex((name) => name.includes('first order'))
+    expect(foreseen).toBeGreaterThan(0)
+    await page.getByTestId('compare').selectOption({ index: foreseen })
+    expect((await curve(page, 'plot-0')).sum).not.toBe(before.curve.sum)
+    expect(await page.locator('.ghost-key').innerText()).toContain('first order')
+    await page.getByTestId('compare').selectOption({ index: 0 })
+    expect((await picture(page)).equals(before.view)).toBe(true)
+  })
+
+  test('gives way to the design as loaded when all changes are taken back', async () => {
+    await page.getByTestId('reset-all').click()
+    expect(await page.locator('.ghost-key').isVisible()).toBe(false)
+    expect(await lines()).not.toMatch(/as loaded/)
+  })
+
+  test('was asked for nothing else, and told nothing on the console', () => {
+    expect(visited.complaints).toEqual([])
+  })
+})

@@ -1,0 +1,105 @@
+import { readFileSync } from 'node:fs'
+import type { Browser, Page } from 'playwright-core'
+import { GLTFLoader, type GLTF } from 'three/addons/loaders/GLTFLoader.js'
+import { afterAll, beforeAll, describe, expect, inject, test, vi } from 'vitest'
+import { launch, visit, type Visit } from './browser'
+import { VIEW } from './person'
+import { motionBeside, table } from './table'
+
+// The loader looks for the window under its other name.
+vi.stubGlobal('self', globalThis)
+
+const { models } = inject('samples')
+
+/** Bytes of a PNG's head: its signature, and where its width and height stand. */
+const PNG = { signature: '89504e470d0a1a0a', width: 16, height: 20 }
+/** Pixels of an exported picture per pixel of the page. */
+const SHARP = 2
+/** The page holds single precision. */
+const SINGLE = 1e-6
+
+describe('what a reader takes away', () => {
+  let browser: Browser
+  let visited: Visit
+  let page: Page
+  beforeAll(async () => {
+    browser = await launch()
+    visited = await visit(browser, models.slider_crank)
+    page = visited.page
+  })
+  afterAll(() => browser?.close())
+
+  /** The file that an entry of the menu gives. */
+  async function taken(entry: string): Promise<Buffer> {
+    await page.getByTestId('export').click()
+    const [download] = await Promise.all([page.waitForEvent('download'), page.getByTestId(entry).first().click()])
+    return readFileSync(await download.path())
+  }
+
+  const sizeOf = (png: Buffer) => {
+    expect(png.subarray(0, 8).toString('hex')).toBe(PNG.signature)
+    return { width: png.readUInt32BE(PNG.width), height: png.readUInt32BE(PNG.height) }
+  }
+
+  /** Elements of an SVG, which has to be well-formed. */
+  const elements = (svg: Buffer, selector: string) =>
+    page.evaluate(
+      ({ svg, selector }) => {
+        const parsed = new DOMParser().parseFromString(svg, 'image/svg+xml')
+        return { errors: parsed.querySelectorAll('parsererror').length, root: parsed.documentElement.localName, found: parsed.querySelectorAll(selector).length }
+      },
+      { svg: svg.toString(), selector },
+    )
+
+  test('the view as PNG is twice as large as on the screen', async () => {
+    const { width, height } = (await page.locator(VIEW).boundingBox())!
+    const size = sizeOf(await taken('export-view-png'))
+    expect(Math.abs(size.width - SHARP * width)).toBeLessThanOrEqual(SHARP)
+    expect(Math.abs(size.height - SHARP * height)).toBeLessThanOrEqual(SHARP)
+  })
+
+  test('a curve as PNG is a picture', async () => {
+    expect(sizeOf(await taken('export-plot-png')).width).toBeGreaterThan(100)
+  })
+
+  test('a curve as SVG is well-formed and has curves and words', async () => {
+    const svg = await taken('export-plot-svg')
+    expect(await elements(svg, 'path, polyline')).toMatchObject({ errors: 0, root: 'svg' })
+    expect((await elements(svg, 'path, polyline')).found).toBeGreaterThan(0)
+    expect((await elements(svg, 'text')).found).toBeGreaterThan(3)
+  })
+
+  test('the view as SVG is well-formed and has faces or lines', async () => {
+    const svg = await taken('export-view-svg')
+    expect(await elements(svg, 'path, polygon, polyline, line')).toMatchObject({ errors: 0, root: 'svg' })
+    expect((await elements(svg, 'path, polygon, polyline, line')).found).toBeGreaterThan(10)
+  })
+
+  test('the curves as CSV are the numbers that the command wrote', async () => {
+    const columns = table((await taken('export-csv')).toString())
+    const motion = motionBeside(models.slider_crank)
+    const names = [...columns.keys()].map((heading) => heading.replace(/ \[[^\]]*\]$/, ''))
+    const shared = names.filter((name) => motion.has(name))
+    expect(shared.length).toBeGreaterThan(0)
+    for (const name of shared) {
+      const ours = columns.get([...columns.keys()][names.indexOf(name)])!
+      const theirs = motion.get(name)!
+      const scale = Math.max(...theirs.map(Math.abs))
+      expect(ours.length).toBe(theirs.length)
+      for (const [k, value] of ours.entries()) expect(Math.abs(value - theirs[k]), `${name}, row ${k}`).toBeLessThanOrEqual(SINGLE * scale)
+    }
+  })
+
+  test('the motion as glTF loads again and moves', async () => {
+    const bytes = await taken('export-gltf')
+    const data = new Uint8Array(bytes).buffer
+    const loaded = await new Promise<GLTF>((done, failed) => new GLTFLoader().parse(data, '', done, failed))
+    expect(loaded.animations).toHaveLength(1)
+    const times = motionBeside(models.slider_crank).get('t')!
+    expect(loaded.animations[0].duration).toBeCloseTo(times.at(-1)! - times[0], 4)
+  })
+
+  test('nothing of it asks the network or speaks on the console', () => {
+    expect(visited.complaints.filter((line) => !line.startsWith('request: blob:'))).toEqual([])
+  })
+})
