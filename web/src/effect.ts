@@ -16,7 +16,7 @@ const NOISE = 1e-9
 
 /**
  * Variables with a sensitivity of the quantity, largest effect first: by their typical changes where all of them have one,
- * else by peak over time within each unit, units in the order of their first variable.
+ * else by peak over time within each unit, units in the order of their first variable. Those without effect come last.
  */
 export function effects(report: Report, quantity: number, order: Order): Effect[] {
   const found: Effect[] = []
@@ -35,7 +35,7 @@ export function effects(report: Report, quantity: number, order: Order): Effect[
     item.share = most > 0 ? size(item) / most : 0
     if (item.share < NOISE) item.share = 0
   }
-  return found.sort((a, b) => kinds.indexOf(kind(a)) - kinds.indexOf(kind(b)) || b.share - a.share || a.variable.index - b.variable.index)
+  return found.sort((a, b) => Number(a.share === 0) - Number(b.share === 0) || kinds.indexOf(kind(a)) - kinds.indexOf(kind(b)) || b.share - a.share || a.variable.index - b.variable.index)
 }
 
 function extreme(curve: Float32Array, largest: number): number {

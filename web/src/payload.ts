@@ -252,7 +252,7 @@ axis_j: [number, number, number] | null,
  */
 axis2: [number, number, number] | null,
 /**
- * The two hardpoints that a hinge's axis passes through, in the frame of body i, where it is given so.
+ * The two hardpoints that the axis passes through in the design configuration, in the frame of body i, where it is given so.
  */
 hinge: [[number, number, number], [number, number, number]] | null,
 /**

@@ -1,4 +1,5 @@
 import { Group, type Object3D, Vector3 } from 'three'
+import type { JointMark } from '../../payload'
 import type { Kit } from '../kit'
 import type { Mechanism } from '../mechanism'
 import { rackJoints } from '../shafts'
@@ -25,7 +26,7 @@ export const translational: DrawJoint = (mechanism, kit, joint, index) => {
   const slide = mechanism.slideOf(index)
   if (!slide) return []
   const form = formOf(joint.draw)
-  if (form && form !== 'rod' && !mechanism.plane) return [slidingStrut(mechanism, kit, slide, form)]
+  if (form && form !== 'rod' && !mechanism.plane) return [slidingStrut(mechanism, kit, joint, slide, form)]
   if (mechanism.plane) return inPlane(mechanism, kit, slide)
   const { rail, block, place, blockPlace } = slide
   if (isBar(mechanism, slide, block, blockPlace) || rackJoints(mechanism.report).has(index)) return inTube(mechanism, kit, rail, place, slide.axis)
@@ -96,16 +97,41 @@ function onRail(mechanism: Mechanism, kit: Kit, slide: Slide): Piece[] {
   return [piece(rail, ...way), piece(block, kit.brick(blockPlace, own(axis), own(down), [BLOCK.length * s, BLOCK.height * s, BLOCK.width * s], kit.body(block)))]
 }
 
-/** From the slide's place on the rail to the far end of the slider. */
-function slidingStrut(mechanism: Mechanism, kit: Kit, { rail, block, place, blockPlace, axis }: Slide, form: Form): Piece {
+/** A member between the far ends of the two bodies. */
+function slidingStrut(mechanism: Mechanism, kit: Kit, joint: JointMark, { rail, block, place, blockPlace, axis }: Slide, form: Form): Piece {
   const along = mechanism.into(block, mechanism.alongAt(rail, axis, 0))
-  const top = mechanism
-    .shapePoints(block)
-    .filter((point) => point.clone().sub(blockPlace).cross(along).length() < 0.05 * mechanism.size)
-    .reduce((far, point) => (point.distanceTo(blockPlace) > far.distanceTo(blockPlace) ? point : far), blockPlace.clone())
-  const length = mechanism.worldAt(block, top, 0).distanceTo(mechanism.worldAt(rail, place, 0))
+  const [one, other] = farthest(mechanism, endsOf(mechanism, joint, rail, place, axis), endsOf(mechanism, joint, block, blockPlace, along))
+  const high = ({ body, at }: End) => mechanism.worldAt(body, at, 0).dot(mechanism.up)
+  const [upper, lower] = high(one) > high(other) ? [one, other] : [other, one]
+  const length = mechanism.worldAt(upper.body, upper.at, 0).distanceTo(mechanism.worldAt(lower.body, lower.at, 0))
   const { object, span } = strut(kit, form, length)
-  return { object: new Group().add(object), follow: (frame) => span(frame.at(block, top), frame.at(rail, place)) }
+  return { object: new Group().add(object), follow: (frame) => span(frame.at(upper.body, upper.at), frame.at(lower.body, lower.at)) }
+}
+
+/** A hardpoint on the axis of a slide. */
+interface End {
+  body: number
+  at: Vector3
+  /** Whether another joint holds the body there. */
+  held: boolean
+}
+
+/** So near to the axis a hardpoint is on it, as a part of the mechanism's size. */
+const ON_AXIS = 1e-3
+
+function endsOf(mechanism: Mechanism, joint: JointMark, body: number, place: Vector3, axis: Vector3): End[] {
+  const others = mechanism.jointsOf(body).filter((other) => other.joint !== joint)
+  const points = mechanism.report.bodies[body].skeleton.map((point) => new Vector3(...point))
+  const onAxis = points.filter((point) => point.clone().sub(place).cross(axis).length() < ON_AXIS * mechanism.size)
+  return (onAxis.length > 0 ? onAxis : [place]).map((at) => ({ body, at, held: others.some((other) => mechanism.same(other.at, at)) }))
+}
+
+/** The two ends that other joints hold; where that leaves a choice, those farthest apart. */
+function farthest(mechanism: Mechanism, some: End[], others: End[]): [End, End] {
+  const far = ([a, b]: [End, End]) => mechanism.worldAt(a.body, a.at, 0).distanceTo(mechanism.worldAt(b.body, b.at, 0))
+  const rank = (pair: [End, End]) => (Number(pair[0].held) + Number(pair[1].held)) * 2 * mechanism.size + far(pair)
+  const pairs = some.flatMap((a) => others.map((b): [End, End] => [a, b]))
+  return pairs.reduce((best, pair) => (rank(pair) > rank(best) ? pair : best))
 }
 
 /** The axis of the world that is most downwards and square to a slide. */
