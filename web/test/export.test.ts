@@ -11,7 +11,9 @@ import {
   Vector3,
 } from 'three'
 import { GLTFLoader } from 'three/addons/loaders/GLTFLoader.js'
-import { describe, expect, test } from 'vitest'
+import { Line2 } from 'three/addons/lines/Line2.js'
+import { LineGeometry } from 'three/addons/lines/LineGeometry.js'
+import { describe, expect, test, vi } from 'vitest'
 import { decimal, csvText, noFormula } from '../src/export/csv'
 import { motionGltf } from '../src/export/gltf'
 import { escaped } from '../src/export/markup'
@@ -169,6 +171,7 @@ describe('glTF of the motion', () => {
   const mechanism = new Mechanism(crank())
   const block = () => new Mesh(new BoxGeometry(1, 1, 1), new MeshLambertMaterial({ color: '#57b893' }))
   const rod = block()
+  rod.add(new Line2(new LineGeometry().setFromPoints([new Vector3(), new Vector3(1, 0, 0)])))
   const drawn: Drawn[] = [
     { body: 1, object: block(), part: { kind: 'body', index: 1, name: 'crank', about: '' } },
     {
@@ -180,7 +183,9 @@ describe('glTF of the motion', () => {
   ]
 
   test('loads again with every body at its pose at any time', async () => {
+    const words = vi.spyOn(console, 'warn')
     const blob = await motionGltf(mechanism, drawn, 0)
+    expect(words).not.toHaveBeenCalled()
     const { scene, animations } = await new GLTFLoader().parseAsync(await blob.arrayBuffer(), '')
     expect(animations).toHaveLength(1)
     const { times } = mechanism.report

@@ -5,10 +5,10 @@ import {
   Float32BufferAttribute,
   Group,
   type KeyframeTrack,
-  LineBasicMaterial,
   LineSegments,
   type Material,
   Mesh,
+  MeshBasicMaterial,
   MeshStandardMaterial,
   type Object3D,
   QuaternionKeyframeTrack,
@@ -89,7 +89,8 @@ function strokes({ geometry, material }: LineSegments2): LineSegments {
   const places: number[] = []
   for (let k = 0; k < start.count; k++) places.push(start.getX(k), start.getY(k), start.getZ(k), end.getX(k), end.getY(k), end.getZ(k))
   const lines = new BufferGeometry().setAttribute('position', new Float32BufferAttribute(places, 3))
-  return new LineSegments(lines, new LineBasicMaterial({ color: material.color }))
+  // The exporter has a word on the console about any other material without light.
+  return new LineSegments(lines, new MeshBasicMaterial({ color: material.color }))
 }
 
 function matt(material: Material): Material {

@@ -23,8 +23,10 @@ const FOLD = Math.cos((40 * Math.PI) / 180)
 /** Two vertices nearer to one another than this part of the geometry's size are one. */
 const SAME = 1e-5
 /** From above, a little from the reader's left, and how dark the other side is. */
-const LIGHT = new Vector3(-0.35, 0.8, 0.6).normalize()
-const DARKEST = 0.66
+const LIGHT = new Vector3(-0.35, 0.7, 0.75).normalize()
+const DARKEST = 0.62
+/** Faces nearer to the light than this cosine have their full colour: those that face the reader, too. */
+const BRIGHT = 0.6
 /** So many shades are told apart. */
 const SHADES = 12
 /** Width of outlines, px. */
@@ -227,7 +229,7 @@ const hex = (color: Color) => `#${color.getHexString()}`
 
 /** A colour in the light of `cosine` between the face and the light. */
 function shaded(colour: string, cosine: number): string {
-  const step = Math.round(SHADES * Math.max(0, (cosine + 1) / 2)) / SHADES
+  const step = Math.round(SHADES * Math.min(1, Math.max(0, (cosine + 1) / (BRIGHT + 1)))) / SHADES
   const share = DARKEST + (1 - DARKEST) * step
   const parts = [1, 3, 5].map((k) => Math.round(share * parseInt(colour.slice(k, k + 2), 16)))
   return `#${parts.map((part) => part.toString(16).padStart(2, '0')).join('')}`
