@@ -1,8 +1,11 @@
 //! A folder of its own for every test, and the command in it.
 
+use std::io::Read;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
+use base64::{Engine, prelude::BASE64_STANDARD};
+use flate2::read::DeflateDecoder;
 use tempfile::TempDir;
 
 /// A folder with a model.
@@ -36,6 +39,18 @@ impl Bench {
 
     pub fn json(&self, name: &str) -> serde_json::Value {
         serde_json::from_str(&self.text(name)).unwrap()
+    }
+
+    /// What a page knows. A curve in it is a list of tracks; equal curves have the same.
+    pub fn page(&self, name: &str) -> serde_json::Value {
+        let html = self.text(name);
+        let (_, data) = html.split_once("id=\"payload\">").unwrap();
+        let (data, _) = data.split_once("</script>").unwrap();
+        let mut block = Vec::new();
+        DeflateDecoder::new(&*BASE64_STANDARD.decode(data.trim()).unwrap()).read_to_end(&mut block).unwrap();
+        // The block begins with four numbers, the first of which is the length of the JSON behind them.
+        let length = u32::from_le_bytes(block[..4].try_into().unwrap()) as usize;
+        serde_json::from_slice(&block[16..16 + length]).unwrap()
     }
 
     /// The names in a folder, sorted.

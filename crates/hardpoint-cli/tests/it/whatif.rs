@@ -23,13 +23,6 @@ fn curve(measure: &Value, which: &str) -> Vec<f64> {
     measure[which].as_array().unwrap().iter().map(|x| x.as_f64().unwrap()).collect()
 }
 
-/// What the page knows.
-fn payload(html: &str) -> Value {
-    let (_, data) = html.split_once("id=\"payload\">").unwrap();
-    let (data, _) = data.split_once("</script>").unwrap();
-    serde_json::from_str(data).unwrap()
-}
-
 fn spread(curve: &[f64]) -> f64 {
     let least = curve.iter().copied().fold(f64::INFINITY, f64::min);
     curve.iter().copied().fold(f64::NEG_INFINITY, f64::max) - least
@@ -58,7 +51,7 @@ fn the_tutorial_takes_the_bump_steer_out() {
     let (first, second) = (error(&first), error(&second));
     assert!(first < 0.02 && second < first / 20.0, "{first} {second}");
     assert!(document["follows"].as_str().unwrap().starts_with("admissible"));
-    let page = payload(&bench.text("out/whatif.html"));
+    let page = bench.page("out/whatif.html");
     let quantities = page["quantities"].as_array().unwrap();
     let quantity = |name: &str| quantities.iter().position(|q| q["name"] == name).unwrap();
     assert_eq!(page["over"], quantity("wheel_travel"));
@@ -79,7 +72,7 @@ fn the_tutorial_takes_the_bump_steer_out() {
     assert_eq!(page["checks"][1]["title"], "What if tie_rod_inner_z by 32 mm");
     let asked = bench.run(&["whatif", "ride.toml", "--measure", "camber", "-o", "today"]);
     assert_eq!(asked.status.code(), Some(0));
-    let page = payload(&bench.text("today/whatif.html"));
+    let page = bench.page("today/whatif.html");
     assert_eq!(page["first"], quantity("camber"));
     assert!(page["designs"].as_array().unwrap().is_empty() && page["over"].is_null());
     assert_eq!(page["checks"][0]["title"], "What moves camber most");
