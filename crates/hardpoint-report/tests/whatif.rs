@@ -66,15 +66,16 @@ fn shown_steps(page: &Payload, today: &Solution) -> impl Iterator<Item = usize> 
     (0..times.len()).step_by(stride)
 }
 
-/// A curve of a changed design: in the user's units, and today's number where the two differ by round-off.
+/// A curve of a changed design: in the user's units, today's number where the two differ by round-off, and 0 where it is no more.
 fn expected(
     (units, of, order): (Units, Dimension, usize),
     magnitude: Magnitude,
     pairs: impl Iterator<Item = [f64; 2]>,
 ) -> String {
     let settled = |[now, other]: [f64; 2]| {
-        let same = (now - other).abs() <= magnitude.round_off(of, order);
-        units.from_si(of, if same { now } else { other })
+        let round_off = magnitude.round_off(of, order);
+        let settled = if (now - other).abs() <= round_off { now } else { other };
+        units.from_si(of, if settled.abs() <= round_off { 0.0 } else { settled })
     };
     text(&pairs.map(settled).collect::<Curve>())
 }
@@ -127,7 +128,7 @@ fn curves_of_the_changed_design_are_those_of_the_solver() {
         let shown = &page.quantities[m];
         assert_eq!(
             text(&shown.value),
-            text(&steps().map(|k| units.from_si(output.dimension, now(k, 0))).collect::<Curve>())
+            expected((units, output.dimension, 0), magnitude, steps().map(|k| [now(k, 0); 2]))
         );
         let moves = output.name != "lca_angle" || text(&anew.value) != text(&shown.value);
         assert!(moves, "the comparison is not of a curve with itself");

@@ -68,10 +68,11 @@ impl Beside<'_> {
         DesignCurves { value: curve(0), rate: curve(1), accel: curve(2) }
     }
 
-    /// The other design's number; today's, where the two differ by round-off.
+    /// The other design's number; today's, where the two differ by round-off, and 0 where it is no more than that.
     fn settled(&self, of: impl Into<Dimension>, order: usize, today: f64, other: f64) -> f64 {
-        let same = (other - today).abs() <= self.today.round_off.value(of.into(), order);
-        if same { today } else { other }
+        let round_off = self.today.round_off.value(of.into(), order);
+        let settled = if (other - today).abs() <= round_off { today } else { other };
+        if settled.abs() <= round_off { 0.0 } else { settled }
     }
 
     /// The curves of all quantities: those of the outputs, then x, y and z of every body's origin.

@@ -32,8 +32,8 @@ impl Compose<'_> {
                 return None;
             }
             let bends = |b: usize| {
-                let bent = over_time(&|k| measured.d(k, VariableId(b), m)[0]);
-                course.follows(b) && bent > self.round_off.of(b, output.dimension, 0)
+                let bent = || over_time(&|k| measured.d(k, VariableId(b), m)[0]);
+                course.follows(b) && bent() > self.round_off.of(b, output.dimension, 0)
             };
             Some(Rank {
                 follows_design: (0..self.model.variables.len()).any(bends),
