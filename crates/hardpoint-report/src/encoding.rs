@@ -242,7 +242,7 @@ fn differences(mut numbers: Vec<i32>) -> (u8, Vec<u32>) {
     for order in 0..=MOST_DIFFERENCES {
         let folded: Vec<u32> = numbers.iter().map(|r| ((r << 1) ^ (r >> 31)) as u32).collect();
         // The bits of a floating point number grow as its logarithm does.
-        let cost = folded.iter().map(|r| u64::from((f64::from(*r) + 1.0).to_bits() >> 32)).sum();
+        let cost = folded.iter().map(|r| (f64::from(*r) + 1.0).to_bits() >> 32).sum();
         if cost < best.0 {
             best = (cost, order, folded);
         }
