@@ -72,7 +72,7 @@ fn rockers(stages: usize) -> String {
             points,
             "{pivot} = [{x}, 0, 0]\n{near} = [{}, 80, 0]\n{far} = [{}, {}, 0]",
             x - 90,
-            x - lean as usize,
+            x - lean,
             80 + lean
         )
         .unwrap();
