@@ -111,7 +111,7 @@ describe.each(['slider_crank', 'macpherson'])('a reader of %s', (name) => {
   })
 
   test('adds a curve and removes it', async () => {
-    const plots = page.getByTestId('curves').locator('figure')
+    const plots = page.getByTestId('curves').locator('[data-testid^=plot-]')
     const count = await plots.count()
     await page.getByTestId('add-curve').click()
     expect(await plots.count()).toBe(count + 1)
@@ -156,7 +156,7 @@ describe.each(['slider_crank', 'macpherson'])('a reader of %s', (name) => {
     const view = (await page.locator(VIEW).boundingBox())!
     await page.mouse.move(view.x + first.x, view.y + first.y)
     await drawn(page)
-    for (const line of ['strong', 'span']) expect(await page.getByTestId('tip').locator(line).innerText()).not.toBe('')
+    for (const line of ['strong', 'div']) expect(await page.getByTestId('tip').locator(line).innerText()).not.toBe('')
     expect(await page.getByTestId('tip').isVisible()).toBe(true)
     await page.mouse.move(view.x + 2, view.y + view.height - 2)
     await drawn(page)

@@ -16,6 +16,8 @@ const OPENING = 22
 /** Air round the picture, and what the buttons at its top take, in pixels. */
 const MARGIN = 1.06
 const TOP = 34
+/** The eye stays so far before the nearest point, as a part of the mechanism's size. */
+const AHEAD = 0.2
 /** Straight along `up` there is no telling left from right: a hair beside it there is. */
 const HAIR = 1e-4
 
@@ -74,7 +76,8 @@ export function fit(camera: Camera, points: Vector3[], size: number, { direction
   const ceiling = 1 - (2 * top) / height
   const bound = (measure: (x: number, y: number, z: number) => number) =>
     points.reduce((most, point) => Math.max(most, measure(point.dot(right), point.dot(up), point.dot(back))), -Infinity)
-  const middle = (bound((_, __, z) => z) - bound((_, __, z) => -z)) / 2
+  const nearest = bound((_, __, z) => z)
+  const middle = (nearest - bound((_, __, z) => -z)) / 2
   const tangent = camera instanceof PerspectiveCamera ? Math.tan((camera.fov * Math.PI) / 360) : 0
   const [sides, above, below] = [(tangent * aspect) / MARGIN, (tangent * ceiling) / MARGIN, tangent / MARGIN]
   const [east, west] = [bound((x, _, z) => x + sides * z), bound((x, _, z) => -x + sides * z)]
@@ -82,7 +85,7 @@ export function fit(camera: Camera, points: Vector3[], size: number, { direction
   let centre: [x: number, y: number]
   let distance: number
   if (camera instanceof PerspectiveCamera) {
-    distance = Math.max((east + west) / (2 * sides), (north + south) / (above + below), middle + 0.2 * size)
+    distance = Math.max((east + west) / (2 * sides), (north + south) / (above + below), nearest + AHEAD * size)
     centre = [(east - west) / 2, (north - above * distance + below * distance - south) / 2]
   } else {
     const half = Math.max((north + south) / (1 + ceiling), (east + west) / 2 / aspect, 0.02 * size) * MARGIN
