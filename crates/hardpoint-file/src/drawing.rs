@@ -2,14 +2,51 @@
 
 use std::collections::BTreeMap;
 
+use hardpoint::space::Vec3;
+
 /// What a file says of the looks of its mechanism, by places in the lists of the [`Model`](hardpoint::model::Model).
 #[derive(Clone, Debug, Default)]
 pub struct Drawing {
+    /// The shapes of bodies.
+    pub bodies: BTreeMap<usize, Mesh>,
     /// The forms of joints.
     pub joints: BTreeMap<usize, Form>,
     /// The forms of distances that are measured.
     pub measures: BTreeMap<usize, Form>,
 }
+
+/// The shape of a body as triangles, each place once.
+#[derive(Clone, Debug)]
+pub struct Mesh {
+    /// The file that it was read from, as the model names it.
+    pub file: String,
+    /// What the vertices count from.
+    pub frame: MeshFrame,
+    /// Its vertices, m.
+    pub vertices: Vec<Vec3>,
+    /// Three vertices each.
+    pub triangles: Vec<[u32; 3]>,
+}
+
+/// What the coordinates of a mesh count from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum MeshFrame {
+    /// The origin and axes of the hardpoints, in the design configuration.
+    World,
+    /// The frame of its body.
+    Body,
+}
+
+impl MeshFrame {
+    /// Both, in the order of [`MESH_FRAMES`].
+    pub(crate) const ALL: [Self; 2] = [Self::World, Self::Body];
+}
+
+/// How model files write them, and what they are.
+pub(crate) const MESH_FRAMES: &[(&str, &str)] = &[
+    ("world", "The origin and axes of the hardpoints, in the design configuration."),
+    ("body", "The frame of its body."),
+];
 
 /// What something that has a length is drawn as.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -26,7 +26,8 @@
 //!   not TOML is not looked at further.
 //! * No text makes this crate panic, and none keeps it busy for long: names, tables and lists have limits
 //!   far above any mechanism.
-//! * A driver's table may lie in a CSV file in the model's folder; that is all that is read besides the model file.
+//! * A driver's table may lie in a CSV file in the model's folder, and a body's shape in a file of triangles; that is all that is
+//!   read besides the model file.
 //!
 //! What is not here: includes, and coordinates of hardpoints in expressions that no change of the design moves.
 
@@ -48,7 +49,7 @@ use hardpoint::{
 use toml::de::DeTable;
 
 pub use diagnostic::{Diagnostic, Diagnostics, Severity};
-pub use drawing::{Drawing, Form};
+pub use drawing::{Drawing, Form, Mesh, MeshFrame};
 pub use schema::schema;
 pub use units::{AngleUnit, LengthUnit, Units};
 
@@ -260,7 +261,7 @@ fn neighbours(path: &Path, extension: &str) -> (Option<String>, Option<String>) 
 }
 
 /// Reads and checks the text of a model file; `file_name` is for the diagnostics only. A text has no folder, so
-/// the laws in it may not name data files; [`read`] reads those too.
+/// the laws and bodies in it may not name files; [`read`] reads those too.
 ///
 /// # Errors
 /// Everything that is wrong with it, in the order of the text.

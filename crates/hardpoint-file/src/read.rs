@@ -5,6 +5,7 @@ mod data;
 mod design;
 mod drivers;
 mod law;
+mod mesh;
 mod parameters;
 mod results;
 mod wheels;
@@ -100,6 +101,8 @@ const BODY: Table = table! {
     /// Its reference frame in the design configuration. Default: origin at the mean of the body's joint places, axes parallel
     /// to the global ones. Only results expressed in the frame depend on it.
     may "frame": Shape::Kinds(&FRAME), "{ position = [0, 0, 0] }";
+    /// Its shape, for the drawing: a file of triangles in the model's folder or below it, STL, OBJ or glTF. It changes no result.
+    may "mesh": mesh::MESH, "\"knuckle.stl\"";
 };
 const FRAME: Kinds = Kinds {
     name: "Frame",
@@ -202,10 +205,11 @@ fn coordinates() -> Vec<(&'static str, String)> {
 
 /// The tables that `docs/file-format.md` shows, by their names there.
 #[cfg(test)]
-pub(crate) fn tables() -> [(&'static str, Shape); 20] {
+pub(crate) fn tables() -> [(&'static str, Shape); 21] {
     [
         ("parameters", Shape::Table(&parameters::PARAMETER_TABLE)),
         ("frames", Shape::Kinds(&FRAME)),
+        ("meshes", Shape::Table(&mesh::MESH_TABLE)),
         ("joints", Shape::Table(&JOINT)),
         ("curves", Shape::Table(&CURVE)),
         ("couplers", Shape::Kinds(&couplers::COUPLER)),
@@ -527,6 +531,10 @@ impl Reader<'_> {
             let fields = self.entry("body", &entry, BODY.keys());
             let mut place = EntryPlace::of(&fields);
             let frame = self.given(&fields, "frame", |r, f| r.frame(&fields, f, &mut place, raw));
+            if let Some(mesh) = self.given(&fields, "mesh", |r, f| r.mesh(&fields, f)) {
+                // Ground comes first in the model.
+                raw.drawing.bodies.insert(raw.draft.bodies.len() + 1, mesh);
+            }
             self.push(raw, Section::Bodies, place);
             raw.draft.bodies.push(BodyDraft { name: entry.0, frame: frame.unwrap_or_default() });
         }

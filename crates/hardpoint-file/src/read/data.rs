@@ -1,4 +1,4 @@
-//! Data files beside the model file: two columns of a CSV file, a time and a value.
+//! Files beside the model file, and two columns of a CSV file, a time and a value.
 
 use std::path::{Component, Path};
 
@@ -30,7 +30,7 @@ pub(super) struct DataError {
 
 impl DataError {
     /// HP0111: the file cannot be read.
-    fn unreadable(message: impl Into<String>, help: &str) -> Self {
+    pub(super) fn unreadable(message: impl Into<String>, help: &str) -> Self {
         Self {
             code: "HP0111",
             message: message.into(),
@@ -55,7 +55,7 @@ impl DataError {
         Self { of_columns: true, ..self }
     }
 
-    fn note(mut self, note: impl Into<String>) -> Self {
+    pub(super) fn note(mut self, note: impl Into<String>) -> Self {
         self.notes.push(note.into());
         self
     }
@@ -71,13 +71,47 @@ pub(super) fn points(
     parse(text.strip_prefix('\u{feff}').unwrap_or(&text), &shown(name), columns)
 }
 
+/// What messages say of a file that is wanted.
+pub(super) struct Wanted<'a> {
+    /// What it is for.
+    pub purpose: &'a str,
+    /// What it is, with its article.
+    pub kind: &'a str,
+    /// How its name ends, for what else is in the folder.
+    pub ending: &'a str,
+    /// A name as it might be.
+    pub example: &'a str,
+    /// What to do where the model has no folder.
+    pub without_folder: &'a str,
+    /// What to do where it is too large.
+    pub too_large: &'a str,
+}
+
+/// Of a table's file.
+const TABLE: Wanted<'static> = Wanted {
+    purpose: "table",
+    kind: "a CSV file",
+    ending: "csv",
+    example: "data/travel.csv",
+    without_folder: "write the table as `points = [[0, 0], [1, 5]]`, or read the model from a file",
+    too_large: "keep every tenth row, or as few as show the curve",
+};
+
 fn text_of(folder: Option<&Path>, name: &str) -> Result<String, DataError> {
-    let path = inside(name)?;
+    String::from_utf8(bytes_of(folder, name, &TABLE)?).map_err(|_| {
+        let message = format!("the file `{}` is not a text in UTF-8", shown(name));
+        DataError::unreadable(message, "save it as UTF-8 text")
+    })
+}
+
+/// What is in a file that lies in the model's folder or below it.
+pub(super) fn bytes_of(folder: Option<&Path>, name: &str, wanted: &Wanted<'_>) -> Result<Vec<u8>, DataError> {
+    let path = inside(name, wanted)?;
     let name = shown(name);
     let Some(folder) = folder else {
         return Err(DataError::unreadable(
             format!("the file `{name}` cannot be read: this model is a text without a folder"),
-            "write the table as `points = [[0, 0], [1, 5]]`, or read the model from a file",
+            wanted.without_folder,
         ));
     };
     let folder = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
@@ -86,7 +120,7 @@ fn text_of(folder: Option<&Path>, name: &str) -> Result<String, DataError> {
             let message = format!("there is no file `{name}` beside the model file");
             let mut error =
                 DataError::unreadable(message, "the path counts from the folder of the model file");
-            let (note, close) = neighbours(&folder.join(path), "csv");
+            let (note, close) = neighbours(&folder.join(path), wanted.ending);
             error.notes.extend(note);
             // The model names it without the folder that the reader was given.
             let prefix = folder.join("").display().to_string();
@@ -98,33 +132,31 @@ fn text_of(folder: Option<&Path>, name: &str) -> Result<String, DataError> {
     };
     let full = folder.join(path).canonicalize().map_err(failed)?;
     if !full.starts_with(folder.canonicalize().map_err(failed)?) {
-        return Err(leaves(&name).note("it is a link to a place outside"));
+        return Err(leaves(&name, wanted).note("it is a link to a place outside"));
     }
     let meta = std::fs::metadata(&full).map_err(failed)?;
     if !meta.is_file() {
         let message = format!("`{name}` is not a file");
-        return Err(DataError::unreadable(message, "name a CSV file in the model's folder"));
+        return Err(DataError::unreadable(message, &format!("name {} in the model's folder", wanted.kind)));
     }
     if meta.len() > LARGEST_FILE {
-        let message = format!("the file `{name}` is too large for a table");
-        return Err(DataError::unreadable(message, "keep every tenth row, or as few as show the curve")
+        let message = format!("the file `{name}` is too large for a {}", wanted.purpose);
+        return Err(DataError::unreadable(message, wanted.too_large)
             .note(format!("at most {} MiB are read", LARGEST_FILE >> 20)));
     }
-    let bytes = std::fs::read(&full).map_err(failed)?;
-    String::from_utf8(bytes).map_err(|_| {
-        DataError::unreadable(format!("the file `{name}` is not a text in UTF-8"), "save it as UTF-8 text")
-    })
+    std::fs::read(&full).map_err(failed)
 }
 
 /// The path, if it says a place in the model's folder, alike on all systems.
-fn inside(name: &str) -> Result<&Path, DataError> {
+fn inside<'n>(name: &'n str, wanted: &Wanted<'_>) -> Result<&'n Path, DataError> {
     let path = Path::new(name);
     if name.trim().is_empty() {
-        return Err(DataError::unreadable("the name of the table's file is empty", "name a CSV file"));
+        let message = format!("the name of the {}'s file is empty", wanted.purpose);
+        return Err(DataError::unreadable(message, &format!("name {}", wanted.kind)));
     }
     let is_absolute = path.has_root() || name.starts_with('\\') || name.as_bytes().get(1) == Some(&b':');
     if is_absolute || path.components().any(|c| c == Component::ParentDir) || name.contains("..\\") {
-        return Err(leaves(&shown(name)));
+        return Err(leaves(&shown(name), wanted));
     }
     if name.contains('\\') {
         let message = format!("the path `{}` has a `\\`", shown(name));
@@ -133,10 +165,11 @@ fn inside(name: &str) -> Result<&Path, DataError> {
     Ok(path)
 }
 
-fn leaves(name: &str) -> DataError {
+fn leaves(name: &str, wanted: &Wanted<'_>) -> DataError {
+    let help = "put it beside the model file, or in a folder there, and name it from there, like";
     DataError::unreadable(
         format!("the file `{name}` is not in the model's folder"),
-        "put it beside the model file, or in a folder there, and name it from there, like `data/travel.csv`",
+        &format!("{help} `{}`", wanted.example),
     )
 }
 

@@ -6,6 +6,7 @@ mod docs;
 mod gallery;
 mod gallery_models;
 mod measures;
+mod meshes;
 mod metrics;
 mod models;
 mod motions;

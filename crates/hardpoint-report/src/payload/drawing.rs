@@ -9,12 +9,13 @@ use hardpoint::model::{
 };
 use hardpoint::space::{Pose, Vec3};
 use hardpoint::topology::Role;
+use hardpoint_file::MeshFrame;
 
 use crate::facts::{held_spins, written_kind};
 use crate::figures::symbol;
 use crate::page::{
     Arrow, BodyPlace, BodyTrack, CouplerMark, CouplerTerm, DistanceMark, DriverMark, JointCurve, JointMark,
-    PointRole, VehicleAxes, WheelMark,
+    Mesh, PointRole, VehicleAxes, WheelMark,
 };
 
 use super::Compose;
@@ -57,10 +58,25 @@ impl Compose<'_> {
                 skeleton: points.iter().map(|p| self.length(p.at)).collect(),
                 labels: points.iter().map(|p| p.labels.join(", ")).collect(),
                 roles: points.iter().map(|p| p.role).collect(),
-                mesh: None,
+                mesh: self.mesh(b),
             }
         };
         self.skeletons().into_iter().enumerate().map(track).collect()
+    }
+
+    /// The body's own shape, in its frame.
+    fn mesh(&self, body: usize) -> Option<Mesh> {
+        let mesh = self.looks.bodies.get(&body)?;
+        let body_from_file = match mesh.frame {
+            MeshFrame::World => self.model.bodies[body].frame.inverse(),
+            MeshFrame::Body => Pose::IDENTITY,
+        };
+        let vertices = mesh.vertices.iter();
+        Some(Mesh {
+            file: mesh.file.clone(),
+            positions: vertices.flat_map(|&v| self.length(body_from_file.point(v))).collect(),
+            triangles: mesh.triangles.iter().flatten().map(|&vertex| f64::from(vertex)).collect(),
+        })
     }
 
     /// The hardpoints of every body, each place once.

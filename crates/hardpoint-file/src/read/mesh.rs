@@ -1,0 +1,162 @@
+//! Shapes of bodies: files of triangles beside the model file. What they look like otherwise (materials, colours, normals) is not read.
+
+mod gltf;
+mod obj;
+mod stl;
+
+use std::collections::HashMap;
+use std::path::Path;
+
+use hardpoint::space::Vec3;
+
+use crate::diagnostic::shown;
+use crate::drawing::{MESH_FRAMES, Mesh, MeshFrame};
+use crate::format::{NUMBER, Shape, Table, table};
+use crate::tree::{Field, Fields, Reader};
+
+use super::data::{DataError, Wanted, bytes_of};
+
+/// More triangles than this make a page slow to open and to turn, and show no more.
+const MOST_TRIANGLES: usize = 200_000;
+
+pub(super) const MESH: Shape = Shape::Any("Mesh", "", &[Shape::Text, Shape::Table(&MESH_TABLE)]);
+pub(super) const MESH_TABLE: Table = table! {
+    /// The shape of a body.
+    "MeshFile":
+    /// A file of triangles in the model's folder or below it: `.stl`, `.obj`, `.glb` or `.gltf`. Of a glTF file the transforms of
+    /// its nodes are applied, its axes are taken as they are, and its data has to be in the file itself.
+    must "file": Shape::Text, "\"knuckle.stl\"";
+    /// What its coordinates count from.
+    or("\"world\"") "frame": Shape::Words(MESH_FRAMES), "\"body\"";
+    /// The unit of its coordinates, in the model's length unit: 0.001 for a file in mm beside a model in m.
+    or("1.0") "scale": NUMBER, "0.001";
+};
+
+/// Reads the triangles of a file.
+type Load = fn(&[u8], &mut Triangles) -> Result<(), String>;
+
+/// The kinds of files, by the endings of their names.
+const KINDS: [(&str, &str, Load); 4] = [
+    ("stl", "an STL file", stl::load),
+    ("obj", "an OBJ file", obj::load),
+    ("glb", "a glTF file", gltf::load),
+    ("gltf", "a glTF file", gltf::load),
+];
+
+/// Triangles as they are read; equal places become one vertex.
+#[derive(Default)]
+struct Triangles {
+    places: HashMap<[u64; 3], u32>,
+    vertices: Vec<[f64; 3]>,
+    triangles: Vec<[u32; 3]>,
+    /// How many there are in the file, kept or not.
+    count: usize,
+}
+
+impl Triangles {
+    /// The next triangle. Beyond the most that are drawn it is only counted; without extent it is left out.
+    fn push(&mut self, corners: [[f64; 3]; 3]) -> Result<(), String> {
+        self.count += 1;
+        if let Some(corner) = corners.iter().find(|c| c.iter().any(|x| !x.is_finite())) {
+            return Err(format!("triangle {} has a corner at {corner:?}, which is not finite", self.count));
+        }
+        if self.count > MOST_TRIANGLES {
+            return Ok(());
+        }
+        let triangle = corners.map(|at| {
+            // Zeros are the same place whatever their signs.
+            let at = at.map(|x| x + 0.0);
+            let next = self.vertices.len() as u32;
+            let vertex = *self.places.entry(at.map(f64::to_bits)).or_insert(next);
+            if vertex == next {
+                self.vertices.push(at);
+            }
+            vertex
+        });
+        let [a, b, c] = triangle;
+        if a != b && b != c && c != a {
+            self.triangles.push(triangle);
+        }
+        Ok(())
+    }
+}
+
+/// HP0115: what the file holds is no shape to draw.
+fn unfit(message: String, help: &str) -> DataError {
+    DataError { code: "HP0115", ..DataError::unreadable(message, help) }
+}
+
+/// The triangles of a file that lies in the model's folder or below it.
+fn triangles_of(folder: Option<&Path>, name: &str) -> Result<Triangles, DataError> {
+    let ending = Path::new(name).extension().and_then(|e| e.to_str()).unwrap_or_default();
+    let kind = KINDS.iter().find(|kind| kind.0.eq_ignore_ascii_case(ending));
+    let wanted = Wanted {
+        purpose: "mesh",
+        kind: kind.map_or("an STL, OBJ or glTF file", |kind| kind.1),
+        ending: kind.map_or("stl", |kind| kind.0),
+        example: "shapes/knuckle.stl",
+        without_folder: "leave `mesh` out, or read the model from a file",
+        too_large: "reduce the number of its triangles (decimate it) before it is exported",
+    };
+    let bytes = bytes_of(folder, name, &wanted)?;
+    let name = shown(name);
+    let Some((_, kind, load)) = kind else {
+        let message = format!("of `{name}` it is not known how to read it");
+        return Err(unfit(message, "name a `.stl`, `.obj`, `.glb` or `.gltf` file"));
+    };
+    let mut triangles = Triangles::default();
+    if let Err(why) = load(&bytes, &mut triangles) {
+        let message = format!("`{name}` cannot be read as {kind}");
+        return Err(unfit(message, "export the body again, as triangles").note(why));
+    }
+    let count = triangles.count;
+    if count > MOST_TRIANGLES {
+        let message = format!("`{name}` has {count} triangles; at most {MOST_TRIANGLES} are drawn");
+        return Err(unfit(message, "reduce their number (decimate the mesh) before it is exported"));
+    }
+    if triangles.triangles.is_empty() {
+        let message = format!("`{name}` has no triangles");
+        return Err(unfit(message, "export the body as triangles"));
+    }
+    Ok(triangles)
+}
+
+impl Reader<'_> {
+    /// The shape of a body: a file's name, or a table with it.
+    pub(super) fn mesh(&mut self, body: &Fields<'_>, f: Field<'_>) -> Option<Mesh> {
+        let (name, at, frame, scale) = if f.value.get_ref().is_str() {
+            (self.text(body, f)?, f.value.span(), MeshFrame::World, 1.0)
+        } else {
+            let subject = body.subject(f.key);
+            let table = self.table(f.value, &subject, "the name of a file, or a table with it")?;
+            let what = format!("the mesh of {}", body.what);
+            let fields = self.fields(what, f.value.span(), table, MESH_TABLE.keys());
+            let frame = self.word_of(&fields, "frame").map(|k| MeshFrame::ALL[k]);
+            let scale = self.number_of(&fields, "scale");
+            let file = self.need(&fields, "file");
+            let name = file.and_then(|file| self.text(&fields, file));
+            if let (Some(x), Some(f)) = (scale.filter(|x| !(*x > 0.0)), fields.get("scale")) {
+                let message = format!("{} cannot be {x}", fields.subject("scale").name);
+                self.senseless(f.value.span(), message).help = Some(
+                    "write what one unit of the file is in the model's length unit, like `0.001`".into(),
+                );
+                return None;
+            }
+            (name?, file?.value.span(), frame?, scale?)
+        };
+        match triangles_of(self.folder, &name) {
+            Ok(found) => {
+                let metres = |x: f64| self.units.length.metres(x * scale);
+                let vertex = |&[x, y, z]: &[f64; 3]| Vec3::new(x, y, z).map(metres);
+                let vertices = found.vertices.iter().map(vertex).collect();
+                Some(Mesh { file: name, frame, vertices, triangles: found.triangles })
+            }
+            Err(e) => {
+                let d = self.report(e.code, at, e.message);
+                d.notes = e.notes;
+                d.help = e.help;
+                None
+            }
+        }
+    }
+}
