@@ -3,7 +3,7 @@ import { join } from 'node:path'
 import type { Palette } from '../src/scene/palette'
 
 const SOURCES = join(import.meta.dirname, '../src')
-const DARK = '@media (prefers-color-scheme: dark)'
+const DARK = '@media screen and (prefers-color-scheme: dark)'
 
 const sheet = readdirSync(SOURCES, { recursive: true, encoding: 'utf8' })
   .filter((path) => path.endsWith('.css'))
