@@ -14,7 +14,7 @@ export interface Look {
 /** Vertical opening of the perspective, in degrees. */
 const OPENING = 22
 /** Air round the picture, and what the buttons at its top take, in pixels. */
-const MARGIN = 1.06
+const MARGIN = 1.28
 const TOP = 34
 /** The eye stays so far before the nearest point, as a part of the mechanism's size. */
 const AHEAD = 0.2

@@ -136,7 +136,7 @@ export class View {
     this.#update()
     const room = ROOM * this.today.unit
     const padded = [0, 1, 2].flatMap((k) => [-room, room].map((by) => new Vector3().setComponent(k, by)))
-    const swept = [...this.today.sweep, ...(this.mechanism === this.today ? [] : this.mechanism.sweep)]
+    const swept = [...this.today.sweep, ...this.today.ways(), ...(this.mechanism === this.today ? [] : this.mechanism.sweep)]
     const points = [
       ...swept.flatMap((point) => padded.map((by) => point.clone().add(by))),
       ...this.#matter.corners(),
