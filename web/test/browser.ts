@@ -43,6 +43,6 @@ export async function visit(browser: Browser, url: string, options: BrowserConte
   page.on('pageerror', (error) => complaints.push(`exception: ${error.message}`))
   page.on('request', (request) => request.url() !== url && complaints.push(`request: ${request.url()}`))
   await page.goto(url)
-  await page.waitForSelector('.uplot')
+  await page.waitForFunction(() => performance.getEntriesByName('ready').length > 0)
   return { page, complaints }
 }
