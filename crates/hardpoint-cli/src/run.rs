@@ -15,7 +15,7 @@ use hardpoint_report::csv::JerkCsv;
 use hardpoint_report::figures::{error, number, seconds, some_of, with_unit};
 use hardpoint_report::metric::MetricFact;
 use hardpoint_report::page::Table;
-use hardpoint_report::payload::payload;
+use hardpoint_report::payload::{Request, payload};
 use hardpoint_report::summary::{RunStatus, Summary};
 use hardpoint_report::validity::ValidityFact;
 use hardpoint_report::{diagnose, page};
@@ -255,7 +255,10 @@ impl Results<'_> {
     fn write(&self, folder: &mut Folder, summary: &mut Summary, session: &Session) -> Result<(), NotWritten> {
         let started = Instant::now();
         let _working = Meter::working("writing");
-        let payload = payload(self.file, self.analysis, self.course, self.differences, summary);
+        let payload = payload(&Request {
+            differences: self.differences,
+            ..Request::of(self.file, self.analysis, self.course, summary)
+        });
         let html = page::html(&payload).expect("a payload is plain data");
         folder.write("report.html", |out| out.write_all(html.as_bytes()))?;
         let names = ["report.html", "summary.json"];

@@ -10,13 +10,15 @@ mod drawing;
 mod first;
 mod values;
 
+pub use designs::Changed;
+
 use std::path::Path;
 
 use hardpoint::joint::Quantity as Kind;
 use hardpoint::model::{BodyId, Dimension, Model, OutputSource, VariableId};
 use hardpoint::sensitivity::BodySensitivity;
 use hardpoint::space::Vec3;
-use hardpoint::study::{Comparison, Difference, WhatIf};
+use hardpoint::study::{Comparison, Difference};
 use hardpoint::{Analysis, Solution};
 use hardpoint_file::{Drawing, ModelFile, Units};
 
@@ -42,61 +44,64 @@ const BYTES_PER_VALUE: [f64; 2] = [0.2, 3.0];
 const MARKS: usize = 36;
 const AXES: [&str; 3] = ["x", "y", "z"];
 
-/// Everything that the page shows of a run. `differences[b]` are those of variable b, where there are any.
-pub fn payload(
-    file: &ModelFile,
-    analysis: &Analysis<'_>,
-    course: &Course,
-    differences: &[Option<Difference>],
-    summary: &Summary,
-) -> Payload {
-    payload_beside(file, analysis, course, differences, summary, None)
+/// What a page is made of: a run, and what is shown beside it. [`Request::of`] asks for the run alone; what a study has besides, it sets.
+#[derive(Clone, Debug)]
+pub struct Request<'a> {
+    /// The model file.
+    pub file: &'a ModelFile,
+    /// The plan that the model was solved by.
+    pub analysis: &'a Analysis<'a>,
+    /// What was gathered of the whole motion.
+    pub course: &'a Course,
+    /// Its facts.
+    pub summary: &'a Summary,
+    /// `differences[b]` are those of variable b, where there are any; of no variable where this is empty.
+    pub differences: &'a [Option<Difference>],
+    /// Another design over the same motion.
+    pub changed: Option<Changed<'a>>,
 }
 
-/// The same with a changed design beside today's, where one is given; `course` is what was gathered of today's whole solution.
-pub fn payload_beside(
-    file: &ModelFile,
-    analysis: &Analysis<'_>,
-    course: &Course,
-    differences: &[Option<Difference>],
-    summary: &Summary,
-    changed: Option<&WhatIf>,
-) -> Payload {
-    let (model, solution) = (&file.model, &course.kept);
+impl<'a> Request<'a> {
+    /// A run by itself.
+    pub fn of(
+        file: &'a ModelFile,
+        analysis: &'a Analysis<'a>,
+        course: &'a Course,
+        summary: &'a Summary,
+    ) -> Self {
+        Self { file, analysis, course, summary, differences: &[], changed: None }
+    }
+}
+
+/// Everything that the page shows.
+pub fn payload(request: &Request<'_>) -> Payload {
+    let (model, solution) = (&request.file.model, &request.course.kept);
     let size = Size {
         steps: solution.motion.len(),
         bodies: model.bodies.len() - 1,
         variables: model.variables.len(),
         outputs: solution.measured.outputs.len(),
-        compared: differences.iter().any(Option::is_some),
-        designs: changed.map_or(0, |_| designs::MOST),
+        compared: request.differences.iter().any(Option::is_some),
+        designs: request.changed.as_ref().map_or(0, Changed::designs),
     };
-    let compose = |detail: Detail| composed(file, analysis, course, differences, summary, changed, detail);
-    let levels = Detail::levels(size, course.has_bodies());
+    let levels = Detail::levels(size, request.course.has_bodies());
     let (last, levels) = levels.split_last().expect("there is always a least level");
     for level in levels {
         let [least, most] = BYTES_PER_VALUE.map(|bytes| level.values(size) * bytes);
         if least > MOST_BYTES as f64 {
             continue;
         }
-        let payload = compose(*level);
+        let payload = composed(request, *level);
         if most <= MOST_BYTES as f64 || packed_size(&payload).is_ok_and(|bytes| bytes <= MOST_BYTES) {
             return payload;
         }
     }
-    compose(*last)
+    composed(request, *last)
 }
 
 /// The page in so much detail.
-fn composed(
-    file: &ModelFile,
-    analysis: &Analysis<'_>,
-    course: &Course,
-    differences: &[Option<Difference>],
-    summary: &Summary,
-    changed: Option<&WhatIf>,
-    detail: Detail,
-) -> Payload {
+fn composed(request: &Request<'_>, detail: Detail) -> Payload {
+    let &Request { file, analysis, course, summary, differences, ref changed } = request;
     let (model, units, solution) = (&file.model, file.units, &course.kept);
     let steps: Vec<usize> = (0..solution.motion.len()).step_by(detail.stride).collect();
     let compose = Compose {
@@ -110,8 +115,9 @@ fn composed(
         round_off: course.round_off(model),
     };
     let (bodies, values) = (compose.bodies(), compose.values(summary));
-    let designs =
-        changed.map_or_else(Vec::new, |what_if| compose.designs(what_if, course.stride, &bodies, &values));
+    let designs = changed
+        .as_ref()
+        .map_or_else(Vec::new, |changed| compose.designs(changed, course.stride, &bodies, &values));
     Payload {
         title: model.name.clone(),
         description: file.description.clone().unwrap_or_default(),

@@ -9,7 +9,7 @@ use hardpoint::{Analysis, Solution};
 use hardpoint_file::ModelFile;
 use hardpoint_report::course::Course;
 use hardpoint_report::page::{Payload, html};
-use hardpoint_report::payload::payload;
+use hardpoint_report::payload::{Request, payload};
 use hardpoint_report::summary::Summary;
 
 /// The page of a run that compares with differences where `compared`.
@@ -20,7 +20,7 @@ fn page(file: &ModelFile, compared: bool) -> Payload {
     let course = Course::of(&file.model, &solution);
     let summary = Summary::new(file, analysis.topology(), &course);
     let differences = if compared { differences(file, &analysis, &solution) } else { Vec::new() };
-    payload(file, &analysis, &course, &differences, &summary)
+    payload(&Request { differences: &differences, ..Request::of(file, &analysis, &course, &summary) })
 }
 
 fn differences(file: &ModelFile, analysis: &Analysis<'_>, solution: &Solution) -> Vec<Option<Difference>> {
