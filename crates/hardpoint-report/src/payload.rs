@@ -22,7 +22,7 @@ use hardpoint::study::{Comparison, Difference};
 use hardpoint::{Analysis, Solution};
 use hardpoint_file::{Drawing, ModelFile, Units};
 
-use crate::course::{Course, RoundOff};
+use crate::course::{Course, RoundOff, settled};
 use crate::encoding::packed_size;
 use crate::facts::{Answer, Facts};
 use crate::figures::{error, number, order_unit, rounded, seconds, symbol};
@@ -335,7 +335,7 @@ impl Span {
     fn shown(self, x: f64, round_off: f64) -> f64 {
         let x =
             if x.is_finite() && self.range() <= round_off { 0.5 * (self.least + self.greatest) } else { x };
-        if x.abs() <= round_off { 0.0 } else { x }
+        settled(x, round_off)
     }
 }
 
@@ -431,7 +431,7 @@ impl Compose<'_> {
                 let shift = self.solution.sensitivities.at(k, b).map(|s| s.body(body));
                 let shift = shift.unwrap_or(BodySensitivity::ZERO);
                 let dr = shift.dr.to_array().map(|x| self.shown(b, Dimension::LENGTH, 0, x));
-                let dpi = shift.dpi.to_array().map(|x| if x.abs() <= least_turn { 0.0 } else { x });
+                let dpi = shift.dpi.to_array().map(|x| settled(x, least_turn));
                 let turn = dpi.map(|x| self.units.derivative_from_si(Kind::Number, by, x));
                 dr.into_iter().chain(turn)
             };
@@ -517,11 +517,7 @@ impl Compose<'_> {
     /// A derivative by variable b in the user's units; round-off becomes 0.
     fn shown(&self, b: usize, kind: Dimension, order: usize, x: f64) -> f64 {
         let by = self.model.variables[b].quantity;
-        if x.abs() <= self.round_off.of(b, kind, order) {
-            0.0
-        } else {
-            self.units.derivative_from_si(kind, by, x)
-        }
+        self.units.derivative_from_si(kind, by, settled(x, self.round_off.of(b, kind, order)))
     }
 }
 

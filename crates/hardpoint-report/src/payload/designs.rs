@@ -10,6 +10,7 @@ use hardpoint::model::{BodyId, Dimension, Direction, Model, VariableId};
 use hardpoint::space::Vec3;
 use hardpoint::study::{WhatIf, metrics, value_beside};
 
+use crate::course::settled;
 use crate::page::{BodyTrack, Curve, Design, DesignCurves, DesignKind, Value};
 use crate::whatif::follows;
 
@@ -110,10 +111,9 @@ impl Beside<'_> {
     }
 
     /// The other design's number; today's, where the two differ by round-off, and 0 where it is no more than that.
-    fn settled(&self, of: impl Into<Dimension>, order: usize, today: f64, other: f64) -> f64 {
+    fn beside(&self, of: impl Into<Dimension>, order: usize, today: f64, other: f64) -> f64 {
         let round_off = self.today.round_off.value(of.into(), order);
-        let settled = if (other - today).abs() <= round_off { today } else { other };
-        if settled.abs() <= round_off { 0.0 } else { settled }
+        settled(if (other - today).abs() <= round_off { today } else { other }, round_off)
     }
 
     /// The curves of all quantities: those of the outputs, then x, y and z of every body's origin.
@@ -163,7 +163,7 @@ impl Beside<'_> {
             let value = |k: usize, order: usize| {
                 let now = today.measured.value(k, m)[order];
                 let other = if order == 0 { changed.value(k, m) } else { exact.measured.value(k, m)[order] };
-                units.from_si(output.dimension, self.settled(output.dimension, order, now, other))
+                units.from_si(output.dimension, self.beside(output.dimension, order, now, other))
             };
             Some(self.curves(output.known.orders, value))
         };
@@ -171,7 +171,7 @@ impl Beside<'_> {
             let value = |k: usize, order: usize| {
                 let [now, other] = [today, exact].map(|s| s.body(k, BodyId(b)));
                 let [now, other] = [now, other].map(|s| [s.r, s.v, s.a][order].to_array()[axis]);
-                units.from_si(Kind::Length, self.settled(Kind::Length, order, now, other))
+                units.from_si(Kind::Length, self.beside(Kind::Length, order, now, other))
             };
             Some(self.curves(3, value))
         };
@@ -212,7 +212,7 @@ impl Beside<'_> {
                     changed().map(|(v, by)| by * today.measured.d(k, VariableId(v), m)[order]).sum::<f64>()
                 };
                 let other = if order == 0 { what_if.foreseen(k, m)[0] } else { now + rise() };
-                units.from_si(output.dimension, self.settled(output.dimension, order, now, other))
+                units.from_si(output.dimension, self.beside(output.dimension, order, now, other))
             };
             let known = one_by_one || output.known.by_position;
             let orders = if one_by_one { output.known.orders } else { 1 };
@@ -226,7 +226,7 @@ impl Beside<'_> {
                     let s = today.sensitivities.at(k, v).map(|s| s.body(b));
                     by * s.map_or(f64::NAN, |s| ORIGIN[order](&s).to_array()[axis])
                 });
-                units.from_si(Kind::Length, self.settled(Kind::Length, order, now, now + rise.sum::<f64>()))
+                units.from_si(Kind::Length, self.beside(Kind::Length, order, now, now + rise.sum::<f64>()))
             };
             one_by_one.then(|| self.curves(3, value))
         };
@@ -253,7 +253,7 @@ impl Beside<'_> {
                 let now = what_if.today.measured.value(k, m)[0];
                 units.from_si(
                     output.dimension,
-                    self.settled(output.dimension, 0, now, what_if.foreseen(k, m)[1]),
+                    self.beside(output.dimension, 0, now, what_if.foreseen(k, m)[1]),
                 )
             };
             output.known.by_position.then(|| self.curves(1, value))
