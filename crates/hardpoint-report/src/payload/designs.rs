@@ -325,10 +325,7 @@ impl Beside<'_> {
             for (end, body) in joint.bodies.iter().enumerate() {
                 moved[body.0].push([&today, &changed].map(|g| g.markers[j][end].r));
                 let in_body = model.bodies[body.0].frame.inverse();
-                let ends = [joint.axis, joint.axis2].into_iter().flatten().filter_map(|axis| match axis {
-                    Direction::Through(a, b) => Some([a, b]),
-                    Direction::Along(_) => None,
-                });
+                let ends = [joint.axis, joint.axis2].into_iter().flatten().filter_map(Direction::hardpoints);
                 moved[body.0]
                     .extend(ends.flatten().map(|h| [0, 1].map(|of: usize| in_body.point(places[of][h.0]))));
             }
