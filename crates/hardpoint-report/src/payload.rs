@@ -23,12 +23,12 @@ use hardpoint::{Analysis, Solution};
 use hardpoint_file::{Drawing, ModelFile, Units};
 
 use crate::course::{Course, RoundOff, settled};
-use crate::encoding::packed_size;
+use crate::encoding::{packed, size_in_page};
 use crate::facts::{Answer, Facts};
 use crate::figures::{error, number, order_unit, rounded, seconds, symbol};
 use crate::metric::MetricFact;
 use crate::page::{
-    Admissibility, Curve, Fact, FiniteDifference, Margin, Payload, Quantity, Sensitivity, Status,
+    self, Admissibility, Curve, Fact, FiniteDifference, Margin, Payload, Quantity, Sensitivity, Status,
     Units as PageUnits, Variable,
 };
 use crate::summary::{RunStatus, Summary};
@@ -73,8 +73,26 @@ impl<'a> Request<'a> {
     }
 }
 
-/// Everything that the page shows.
+/// Everything that the page shows of a run.
 pub fn payload(request: &Request<'_>) -> Payload {
+    fitted(request, &|payload| payload).0
+}
+
+/// The page as one self-contained HTML file; `finish` is what a study makes of the payload.
+///
+/// # Errors
+/// When the payload does not serialise, which plain numbers and strings never do.
+pub fn report(
+    request: &Request<'_>,
+    finish: &dyn Fn(Payload) -> Payload,
+) -> Result<String, serde_json::Error> {
+    let (payload, weighed) = fitted(request, finish);
+    let data = weighed.map_or_else(|| packed(&payload), Ok)?;
+    Ok(page::file(&payload.title, &data))
+}
+
+/// All that fits into a page, finished; packed already where it had to be weighed.
+fn fitted(request: &Request<'_>, finish: &dyn Fn(Payload) -> Payload) -> (Payload, Option<Vec<u8>>) {
     let (model, solution) = (&request.file.model, &request.course.kept);
     let size = Size {
         steps: solution.motion.len(),
@@ -84,6 +102,7 @@ pub fn payload(request: &Request<'_>) -> Payload {
         compared: request.differences.iter().any(Option::is_some),
         designs: request.changed.as_ref().map_or(0, Changed::designs),
     };
+    let compose = |detail: Detail| finish(composed(request, detail));
     let levels = Detail::levels(size, request.course.has_bodies());
     let (last, levels) = levels.split_last().expect("there is always a least level");
     for level in levels {
@@ -91,12 +110,15 @@ pub fn payload(request: &Request<'_>) -> Payload {
         if least > MOST_BYTES as f64 {
             continue;
         }
-        let payload = composed(request, *level);
-        if most <= MOST_BYTES as f64 || packed_size(&payload).is_ok_and(|bytes| bytes <= MOST_BYTES) {
-            return payload;
+        let payload = compose(*level);
+        if most <= MOST_BYTES as f64 {
+            return (payload, None);
+        }
+        if let Some(data) = packed(&payload).ok().filter(|data| size_in_page(data) <= MOST_BYTES) {
+            return (payload, Some(data));
         }
     }
-    composed(request, *last)
+    (compose(*last), None)
 }
 
 /// The page in so much detail.
