@@ -248,6 +248,12 @@ impl Detail {
     }
 }
 
+/// Of so many output times that are shown, differences are drawn at each of these, rounded, so that the marks are nearest to the number
+/// that is wanted.
+fn stride_of_marks(steps: usize) -> usize {
+    ((steps + MARKS / 2) / MARKS).max(1)
+}
+
 fn file_name(file: &str) -> String {
     Path::new(file).file_name().map_or_else(|| file.into(), |n| n.to_string_lossy().into_owned())
 }
@@ -513,8 +519,7 @@ impl Compose<'_> {
         let [value, rate, accel] =
             self.curves(orders, |k, order| self.shown(b, kind, order, exact(k, order)));
         let fd = overlay.map(|(d, worst, difference)| {
-            // Rounded, so that the marks are nearest to the number that is wanted.
-            let stride = ((self.steps.len() + MARKS / 2) / MARKS).max(1);
+            let stride = stride_of_marks(self.steps.len());
             let marks = |order: usize| {
                 let of = |&k: &usize| self.shown(b, kind, order, difference(k, order));
                 let steps = self.steps.iter().step_by(stride).filter(|_| order < orders);
@@ -560,6 +565,14 @@ mod tests {
         assert!(all.values(STRUT) * BYTES_PER_VALUE[1] <= MOST_BYTES as f64);
         // What is not there cannot be shown.
         assert!(Detail::levels(STRUT, false).iter().all(|d| !d.bodies));
+    }
+
+    #[test]
+    fn marks_are_told_apart_and_are_not_few() {
+        for steps in 1..=2 * MOST_STEPS {
+            let marks = steps.div_ceil(stride_of_marks(steps));
+            assert!(marks >= steps.min(2 * MARKS / 3) && 2 * marks <= 3 * MARKS, "{marks} of {steps}");
+        }
     }
 
     #[test]
