@@ -150,7 +150,11 @@ fn composed(request: &Request<'_>, detail: Detail) -> Payload {
             angle: units.angle.symbol().into(),
             time: "s".into(),
         },
-        status: status(summary, Detail { stride: detail.stride * course.stride, ..detail }),
+        status: status(
+            summary,
+            changed.as_ref().and_then(|changed| changed.stopped(file)),
+            Detail { stride: detail.stride * course.stride, ..detail },
+        ),
         summary: headline(summary),
         notes: summary.model.all_notes(),
         times: compose.curve(|k| solution.motion.times[k]),
@@ -258,9 +262,11 @@ fn file_name(file: &str) -> String {
     Path::new(file).file_name().map_or_else(|| file.into(), |n| n.to_string_lossy().into_owned())
 }
 
-fn status(summary: &Summary, detail: Detail) -> Status {
+/// How the run ended, and the sentence on the changed design where that stopped early.
+fn status(summary: &Summary, changed: Option<String>, detail: Detail) -> Status {
     let steps = &summary.steps;
-    let mut message = match (&summary.stop, summary.status) {
+    let complete = summary.status == RunStatus::Complete && changed.is_none();
+    let today = match (&summary.stop, summary.status) {
         (Some(stop), RunStatus::Stopped) => {
             let (code, what) = (stop.code, &stop.message);
             format!("Solved {} of {} steps; then {what} ({code}).", steps.solved, steps.asked)
@@ -269,6 +275,10 @@ fn status(summary: &Summary, detail: Detail) -> Status {
             format!("Solved {} of {} steps; then the run was interrupted.", steps.solved, steps.asked)
         }
         _ => format!("All {} steps were solved.", steps.asked),
+    };
+    let mut message = match changed {
+        Some(changed) => format!("{changed} Today's design: {}", uncapitalised(&today)),
+        None => today,
     };
     if detail.stride > 1 {
         let (shown, stride) = (summary.steps.solved.div_ceil(detail.stride), detail.stride);
@@ -283,7 +293,12 @@ fn status(summary: &Summary, detail: Detail) -> Status {
     if !detail.bodies && summary.model.counts.bodies > 0 && !summary.model.variables.is_empty() {
         message += " Sensitivities of body origins are not shown; `run --bodies` writes them.";
     }
-    Status { complete: summary.status == RunStatus::Complete, message }
+    Status { complete, message }
+}
+
+fn uncapitalised(sentence: &str) -> String {
+    let mut letters = sentence.chars();
+    letters.next().map_or_else(String::new, |first| first.to_lowercase().to_string() + letters.as_str())
 }
 
 /// `2nd`, `4th`, `32nd`.

@@ -17,7 +17,7 @@ pub use difference::{Difference, Scheme, finite_differences};
 pub use gradient::{Gradients, Method};
 pub use jerk::Jerks;
 pub use magnitude::Magnitude;
-pub use metric::{MetricValue, metrics};
+pub use metric::{MetricValue, metrics, metrics_beside};
 pub use nearest::{NearestAdmissible, nearest_admissible};
 pub use second::SecondDerivatives;
 pub use validity::{Validity, validity};
