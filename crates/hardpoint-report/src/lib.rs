@@ -30,6 +30,7 @@ pub mod metric;
 pub mod npy;
 pub mod page;
 pub mod payload;
+mod shifts;
 pub mod summary;
 pub mod validity;
 pub mod verdict;

@@ -103,7 +103,7 @@ fn fitted(request: &Request<'_>, finish: &dyn Fn(Payload) -> Payload) -> (Payloa
         designs: request.changed.as_ref().map_or(0, Changed::designs),
     };
     let compose = |detail: Detail| finish(composed(request, detail));
-    let levels = Detail::levels(size, request.course.has_bodies());
+    let levels = Detail::levels(size, Bodies::of(request.course));
     let (last, levels) = levels.split_last().expect("there is always a least level");
     for level in levels {
         let [least, most] = BYTES_PER_VALUE.map(|bytes| level.values(size) * bytes);
@@ -131,6 +131,7 @@ fn composed(request: &Request<'_>, detail: Detail) -> Payload {
         looks: &file.drawing,
         units,
         analysis,
+        course,
         solution,
         steps,
         detail,
@@ -199,6 +200,27 @@ struct Detail {
     body_differences: bool,
 }
 
+/// What was kept of how bodies move with the variables.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Bodies {
+    /// All orders.
+    Whole,
+    /// Places and turns, at each of so many output times.
+    Places(usize),
+    /// Nothing.
+    Nothing,
+}
+
+impl Bodies {
+    fn of(course: &Course) -> Self {
+        match course.shift_stride() {
+            _ if course.has_bodies() => Self::Whole,
+            Some(stride) => Self::Places(stride),
+            None => Self::Nothing,
+        }
+    }
+}
+
 /// How much there is to show.
 #[derive(Clone, Copy, Debug)]
 struct Size {
@@ -215,7 +237,7 @@ struct Size {
 
 impl Detail {
     /// From all that there is to what is always shown.
-    fn levels(size: Size, bodies: bool) -> Vec<Self> {
+    fn levels(size: Size, bodies: Bodies) -> Vec<Self> {
         let stride = size.steps.div_ceil(MOST_STEPS).max(1);
         let all = Self { stride, origins: true, bodies: true, body_rates: true, body_differences: true };
         let exact = Self { body_differences: false, ..all };
@@ -223,14 +245,21 @@ impl Detail {
         let none = Self { bodies: false, ..places };
         // Fewer steps first, as long as curves stay smooth; then the bodies lose their sensitivities, by which a changed design
         // is drawn; then fewer steps still.
-        let coarser = |detail: Self, least: usize| {
-            let strides = (stride..).map(move |stride| Self { stride, ..detail });
-            strides.take_while(move |d| d.stride == stride || size.steps.div_ceil(d.stride) >= least)
+        let coarser = |detail: Self, every: usize, least: usize| {
+            let first = stride.next_multiple_of(every);
+            let strides = (first..).step_by(every).map(move |stride| Self { stride, ..detail });
+            strides.take_while(move |d| d.stride == first || size.steps.div_ceil(d.stride) >= least)
         };
         let smooth = MOST_STEPS / 4;
-        let with_bodies = [all].into_iter().chain(coarser(exact, smooth)).chain(coarser(places, smooth));
-        let mut levels: Vec<Self> = with_bodies.filter(|_| bodies).collect();
-        levels.extend(coarser(none, MOST_STEPS / 10));
+        let mut levels: Vec<Self> = match bodies {
+            Bodies::Whole => {
+                let exact = [all].into_iter().chain(coarser(exact, 1, smooth));
+                exact.chain(coarser(places, 1, smooth)).collect()
+            }
+            Bodies::Places(every) => coarser(places, every, smooth).collect(),
+            Bodies::Nothing => Vec::new(),
+        };
+        levels.extend(coarser(none, 1, MOST_STEPS / 10));
         // In a model of very many bodies, their own curves would be most of the page.
         levels.extend(levels.last().map(|d| Self { origins: false, ..*d }));
         levels
@@ -349,6 +378,8 @@ struct Compose<'a> {
     looks: &'a Drawing,
     units: Units,
     analysis: &'a Analysis<'a>,
+    course: &'a Course,
+    /// What the course keeps.
     solution: &'a Solution,
     /// The output times that are shown.
     steps: Vec<usize>,
@@ -471,12 +502,11 @@ impl Compose<'_> {
         let least_turn = self.round_off.of(b, Kind::Angle.into(), 0);
         let of_body = |body: usize| {
             let at = |&k: &usize| {
-                let shift = self.solution.sensitivities.at(k, b).map(|s| s.body(body));
-                let shift = shift.unwrap_or(BodySensitivity::ZERO);
-                let dr = shift.dr.to_array().map(|x| self.shown(b, Dimension::LENGTH, 0, x));
-                let dpi = shift.dpi.to_array().map(|x| settled(x, least_turn));
-                let turn = dpi.map(|x| self.units.derivative_from_si(Kind::Number, by, x));
-                dr.into_iter().chain(turn)
+                let [x, y, z, turn @ ..] = self.course.shift(k, b, body).unwrap_or_default();
+                let place = [x, y, z].map(|x| self.shown(b, Dimension::LENGTH, 0, x));
+                let turn =
+                    turn.map(|x| self.units.derivative_from_si(Kind::Number, by, settled(x, least_turn)));
+                place.into_iter().chain(turn)
             };
             self.steps.iter().flat_map(at).collect()
         };
@@ -513,8 +543,9 @@ impl Compose<'_> {
                     of(&d.bodies[k * bodies + body], order)
                 })
             });
-            let exact = |k: usize, order: usize| {
-                self.solution.sensitivities.at(k, b).map_or(f64::NAN, |s| of(&s.body(body), order))
+            let exact = |k: usize, order: usize| match order {
+                0 => self.course.shift(k, b, body).map_or(f64::NAN, |s| s[axis]),
+                _ => self.solution.sensitivities.at(k, b).map_or(f64::NAN, |s| of(&s.body(body), order)),
             };
             let orders = if self.detail.body_rates { 3 } else { 1 };
             list.push(self.sensitivity(list.len(), (Dimension::LENGTH, orders), b, exact, overlay));
@@ -572,14 +603,14 @@ mod tests {
 
     #[test]
     fn a_suspension_is_shown_with_all_that_there_is() {
-        let all = Detail::levels(STRUT, true)[0];
+        let all = Detail::levels(STRUT, Bodies::Whole)[0];
         assert_eq!(
             all,
             Detail { stride: 1, origins: true, bodies: true, body_rates: true, body_differences: true }
         );
         assert!(all.values(STRUT) * BYTES_PER_VALUE[1] <= MOST_BYTES as f64);
         // What is not there cannot be shown.
-        assert!(Detail::levels(STRUT, false).iter().all(|d| !d.bodies));
+        assert!(Detail::levels(STRUT, Bodies::Nothing).iter().all(|d| !d.bodies));
     }
 
     #[test]
@@ -593,7 +624,7 @@ mod tests {
     #[test]
     fn a_long_motion_is_thinned() {
         let long = Size { steps: 100_001, ..STRUT };
-        let all = Detail::levels(long, true)[0];
+        let all = Detail::levels(long, Bodies::Whole)[0];
         assert!(all.body_differences && all.stride == 101, "{all:?}");
     }
 
@@ -602,7 +633,7 @@ mod tests {
         for size in
             [STRUT, Size { steps: 7, ..STRUT }, Size { steps: 30_000, bodies: 80, variables: 240, ..STRUT }]
         {
-            let levels = Detail::levels(size, true);
+            let levels = Detail::levels(size, Bodies::Whole);
             assert!(levels.is_sorted_by(|a, b| !b.bodies || a.bodies), "bodies go and do not come back");
             let last = levels.last().unwrap();
             assert!(
