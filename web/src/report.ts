@@ -92,12 +92,17 @@ export function read(payload: wire.Payload, decode: Decode): Report {
       curves: curves(quantity, decode),
     })),
     margin: payload.margin ? { curve: decode(payload.margin.value), note: payload.margin.note } : undefined,
-    variables: payload.variables.map((variable, index) => ({
-      ...variable,
-      index,
-      shifts: variable.shifts.map(decode),
-      sensitivities: new Map(variable.sensitivities.map((item) => [item.quantity, sensitivity(item, steps, decode)])),
-    })),
+    variables: payload.variables.map((variable, index) => {
+      const shifts = once(() => variable.shifts.map(decode))
+      return {
+        ...variable,
+        index,
+        get shifts() {
+          return shifts()
+        },
+        sensitivities: new Map(variable.sensitivities.map((item) => [item.quantity, sensitivity(item, steps, decode)])),
+      }
+    }),
     designs: payload.designs.map((design) => ({
       ...design,
       poses: design.poses.map(decode),
@@ -115,15 +120,36 @@ function curves(item: Curves, decode: Decode): ByOrder<Curve> {
   return [decode(item.value), decode(item.rate), decode(item.accel)]
 }
 
+/** Its curves are decoded when they are asked for: of a large model, most never are. */
 function sensitivity(item: wire.Sensitivity, steps: number, decode: Decode): Sensitivity {
-  const analytic = curves(item, decode)
-  const [value, rate, accel] = analytic.map(extreme)
+  const analytic = once(() => curves(item, decode))
+  const extremes = once((): ByOrder<number> => byOrder(analytic().map(extreme)))
+  const peaks = once((): ByOrder<number> => byOrder(extremes().map(Math.abs)))
+  const compared = once(() => (item.fd ? differences(item.fd, steps, decode) : undefined))
   return {
-    curves: analytic,
-    extremes: [value, rate, accel],
-    peaks: [Math.abs(value), Math.abs(rate), Math.abs(accel)],
-    differences: item.fd ? differences(item.fd, steps, decode) : undefined,
+    get curves() {
+      return analytic()
+    },
+    get extremes() {
+      return extremes()
+    },
+    get peaks() {
+      return peaks()
+    },
+    get differences() {
+      return compared()
+    },
   }
+}
+
+function byOrder<T>([value, rate, accel]: T[]): ByOrder<T> {
+  return [value, rate, accel]
+}
+
+/** What a function gives, found when it is first asked for. */
+function once<T>(find: () => T): () => T {
+  let found: { it: T } | undefined
+  return () => (found ??= { it: find() }).it
 }
 
 /** The differences at their own steps, gaps between. */

@@ -79,3 +79,16 @@ test('the margin is decoded, and may be missing', () => {
   expect([...report.margin!.curve]).toEqual([0.5, 0.25])
   expect(read({ ...payload, margin: null }, decode).margin).toBeUndefined()
 })
+
+test('curves of sensitivities and shifts are decoded once, and not before they are asked for', () => {
+  const asked: number[] = []
+  const counted = (curve: Curve) => (asked.push(...curve), decode(curve))
+  const moving = { ...variable('moving', 'mm', 3), shifts: [encode(1, 2, 3, 4, 5, 6)] }
+  const { variables } = read({ ...payload, variables: [moving] }, counted)
+  const [sensitivity, shifts] = [moving.sensitivities[0].value[0], moving.shifts[0][0]]
+  expect(asked).not.toContain(sensitivity)
+  expect(asked).not.toContain(shifts)
+  const { shifts: found, sensitivities } = variables[0]
+  expect([...found[0], ...sensitivities.get(0)!.peaks, ...variables[0].shifts[0]]).toEqual([1, 2, 3, 4, 5, 6, 6, 0, 3, 1, 2, 3, 4, 5, 6])
+  expect(asked.filter((track) => track === shifts || track === sensitivity).sort()).toEqual([sensitivity, shifts].sort())
+})
