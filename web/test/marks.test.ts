@@ -22,7 +22,7 @@ const PALETTE: Palette = {
   ...{ trace: '#0b62b8', former: '#2a323a', grid: '#e4e8ec', gridMain: '#d2d8dd', axes: { x: '#d55e00', y: '#009e73', z: '#0072b2' } },
   ...{ light: { sky: 2, earth: '#c2cad2', sun: 1, shadow: 0.16 }, glass: 0.13 },
 }
-const CHOICE: Choice = { quantity: 0, variable: 0, change: 0, order: 0, labels: false }
+const CHOICE: Choice = { quantity: 0, variable: 0, order: 0, labels: false }
 
 function drawn(mechanism: Mechanism, choice: Partial<Choice> = {}): Drawn[] {
   return marks.flatMap((draw) => draw(mechanism, new Kit(mechanism, PALETTE), { ...CHOICE, ...choice }))
