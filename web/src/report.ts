@@ -146,7 +146,7 @@ export function derivativeUnit(quantity: Quantity, order: Order, variable: { uni
   return per(quantity.units[order], variable.unit)
 }
 
-export interface Ranked {
+interface Ranked {
   variable: Variable
   sensitivity: Sensitivity
   peak: number

@@ -1,8 +1,5 @@
 import { Quaternion, Vector3 } from 'three'
 import type { Curve } from '../curve'
-import { roundBelow } from '../format'
-import type { Arrow } from '../payload'
-import type { Variable } from '../report'
 
 const STRIDE = 7
 
@@ -47,27 +44,6 @@ export function shifted(pose: Pose, shifts: Curve | undefined, step: number, cha
   const place = pose.place.clone().add(new Vector3(x, y, z))
   if (angle === 0) return { place, turn: pose.turn }
   return { place, turn: new Quaternion().setFromAxisAngle(turn.divideScalar(angle), angle).multiply(pose.turn) }
-}
-
-/** How far the points of a body are from one another, as a part of the whole, for them to be the same. */
-const SAME = 1e-6
-
-/** The points of a body, gone with the design velocity of the variable. */
-export function reshaped(points: [number, number, number][], arrows: Arrow[], body: number, change: number, size: number) {
-  return points.map((point): [number, number, number] => {
-    const moves = arrows.find((arrow) => arrow.body === body && arrow.at.every((x, k) => Math.abs(x - point[k]) < SAME * size))
-    return moves ? [0, 1, 2].map((k) => point[k] + change * moves.v[k]) as [number, number, number] : point
-  })
-}
-
-/** A change of a variable that moves something by about a tenth of the mechanism. */
-export function visibleChange(variable: Variable, size: number): number {
-  const moves = variable.arrows.map(({ v }) => Math.hypot(...v))
-  for (const shifts of variable.shifts) {
-    for (let k = 0; k < shifts.length; k += SHIFT) moves.push(Math.hypot(...shifts.subarray(k, k + 3)))
-  }
-  const most = Math.max(...moves.filter(Number.isFinite), 0)
-  return most > 0 ? roundBelow((0.1 * size) / most) : 0
 }
 
 /** The path of a body-fixed point through the whole motion. */

@@ -37,11 +37,6 @@ export const designVelocity: Draw = (mechanism, kit, choice) => {
   return [...straight, ...rings]
 }
 
-/** Tips of the arrows in the first position, which a fitted picture shows too. */
-export function velocityTips(mechanism: Mechanism, variable: Variable): Vector3[] {
-  return moving(mechanism, variable).map(({ body, to }) => mechanism.worldAt(body, to, 0))
-}
-
 function moving(mechanism: Mechanism, { arrows }: Variable): { body: number; from: Vector3; to: Vector3 }[] {
   const most = longest(arrows.map(({ v }) => v))
   const going = arrows.filter(({ v }) => Math.hypot(...v) > NOTHING * most)
