@@ -1,4 +1,4 @@
-import { Box3, type BufferGeometry, type Object3D, Vector3 } from 'three'
+import { Box3, type BufferGeometry, type EventDispatcher, type Mesh, type Object3D, Vector3 } from 'three'
 import { describe, expect, inject, test, vi } from 'vitest'
 import { marks, matter } from '../src/scene/draw'
 import type { Drawn, Part } from '../src/scene/drawn'
@@ -15,11 +15,11 @@ const brush = new Proxy({}, { get: () => () => undefined })
 vi.stubGlobal('document', { createElement: () => ({ getContext: () => brush }) })
 
 /** Everything that is drawn of a model as it opens. */
-async function drawing(address: string): Promise<{ mechanism: Mechanism; drawn: Drawn[] }> {
+async function drawing(address: string): Promise<{ mechanism: Mechanism; kit: Kit; drawn: Drawn[] }> {
   const report = await reportOf(address)
   const mechanism = new Mechanism(report)
   const kit = new Kit(mechanism, paletteOf(schemes.light))
-  return { mechanism, drawn: [...matter, ...marks].flatMap((draw) => draw(mechanism, kit, new State(report).choice)) }
+  return { mechanism, kit, drawn: [...matter, ...marks].flatMap((draw) => draw(mechanism, kit, new State(report).choice)) }
 }
 
 /** Vertices of an object, as it is placed. */
@@ -38,7 +38,7 @@ function vertices(object: Object3D): Vector3[] {
 }
 
 describe.each(Object.entries(models))('of %s', async (_, address) => {
-  const { mechanism, drawn } = await drawing(address)
+  const { mechanism, kit, drawn } = await drawing(address)
   const { report } = mechanism
   const count = (kind: Part['kind'], index: number) => drawn.filter(({ part }) => part.kind === kind && part.index === index).length
 
@@ -91,6 +91,20 @@ describe.each(Object.entries(models))('of %s', async (_, address) => {
     expect(mechanism.unit).toBeGreaterThanOrEqual(0.0012 * mechanism.size)
     expect(mechanism.unit).toBeLessThanOrEqual(0.0125 * mechanism.size)
     for (const joint of report.joints) expect(mechanism.radiusOf(joint), joint.name).toBeLessThanOrEqual(mechanism.unit)
+  })
+
+  test('nothing drawn stays on the graphics card when its kit is freed', () => {
+    const kept = new Map<EventDispatcher<{ dispose: object }>, string>()
+    for (const { object, part } of drawn) {
+      object.traverse((one) => {
+        const { geometry, material } = one as Partial<Mesh>
+        for (const held of [geometry, material].flat()) if (held) kept.set(held, `${held.type} of ${part.name}`)
+      })
+    }
+    for (const held of kept.keys()) held.addEventListener('dispose', () => kept.delete(held))
+    expect(kept.size).toBeGreaterThan(0)
+    kit.dispose()
+    expect([...kept.values()]).toEqual([])
   })
 
   test.skipIf(!mechanism.plane)('links of one pin lie in different layers', () => {
