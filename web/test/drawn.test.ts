@@ -1,14 +1,20 @@
 import { Box3, type BufferGeometry, type EventDispatcher, type Mesh, type Object3D, Vector3 } from 'three'
 import { describe, expect, inject, test, vi } from 'vitest'
+import { Assembly } from '../src/scene/assembly'
+import { cameraFor, fit, looksOf } from '../src/scene/camera'
 import { marks, matter } from '../src/scene/draw'
 import type { Drawn, Part } from '../src/scene/drawn'
 import { Kit } from '../src/scene/kit'
 import { Mechanism } from '../src/scene/mechanism'
+import { Outlines } from '../src/scene/outlines'
 import { State } from '../src/state'
 import { reportOf } from './payload'
 import { paletteOf, schemes } from './schemes'
 
 const { models } = inject('samples')
+
+/** Pixels of a view. */
+const [WIDTH, HEIGHT] = [860, 600]
 
 // A hatch is painted on a canvas, which Node has not; what is counted here is geometry.
 const brush = new Proxy({}, { get: () => () => undefined })
@@ -91,6 +97,27 @@ describe.each(Object.entries(models))('of %s', async (_, address) => {
     expect(mechanism.unit).toBeGreaterThanOrEqual(0.0012 * mechanism.size)
     expect(mechanism.unit).toBeLessThanOrEqual(0.0125 * mechanism.size)
     for (const joint of report.joints) expect(mechanism.radiusOf(joint), joint.name).toBeLessThanOrEqual(mechanism.unit)
+  })
+
+  test('a fitted picture shows everything at every moment, and little else', () => {
+    const assemblies = [matter, marks].map((draws) => new Assembly(mechanism, paletteOf(schemes.light), new State(report).choice, draws, new Outlines(), 0))
+    const camera = cameraFor(mechanism)
+    fit(camera, assemblies.flatMap(({ reach }) => reach), mechanism.size, looksOf(mechanism)[0], WIDTH, HEIGHT)
+    const seen = new Box3()
+    const last = report.times.length - 1
+    for (const step of [0, 1, 2, 3, 4, 5].map((k) => Math.round((k * last) / 5))) {
+      for (const assembly of assemblies) {
+        assembly.pose(mechanism.frame(step))
+        for (const group of assembly.groups.filter(({ visible }) => visible)) for (const point of vertices(group)) seen.expandByPoint(point.project(camera))
+      }
+    }
+    expect(seen.max.x).toBeLessThan(1)
+    expect(seen.min.x).toBeGreaterThan(-1)
+    expect(seen.min.y).toBeGreaterThan(-1)
+    // Below the buttons.
+    expect(seen.max.y).toBeLessThan(1 - (2 * 34) / HEIGHT)
+    // From side to side or from top to bottom; what is nearest to the eye at another moment leaves some air at this one.
+    expect(Math.max((seen.max.x - seen.min.x) / 2, (seen.max.y - seen.min.y) / (2 - (2 * 34) / HEIGHT))).toBeGreaterThan(0.85)
   })
 
   test('nothing drawn stays on the graphics card when its kit is freed', () => {

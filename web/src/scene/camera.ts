@@ -16,7 +16,7 @@ export const READER = new Vector3(0.75, -1, 0.55)
 /** Vertical opening of the perspective, in degrees. */
 const OPENING = 22
 /** Air round the picture, and what the buttons at its top take, in pixels. */
-const MARGIN = 1.28
+const MARGIN = 1.06
 const TOP = 34
 /** The eye stays so far before the nearest point, as a part of the mechanism's size. */
 const AHEAD = 0.2

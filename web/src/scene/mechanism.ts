@@ -8,8 +8,6 @@ import { type Pose, poseAt } from './poses'
 import { type Slide, slideOf } from './slide'
 import { tints } from './tints'
 
-/** So far a way reaches beyond the travel on it, in units. */
-const WAY = 6
 /** Enough moments to bound the motion without walking through every one of a long run. */
 const SAMPLES = 64
 /** Two places nearer to one another than this part of the size are one. */
@@ -82,16 +80,6 @@ export class Mechanism {
     this.#layers = base ? base.#layers : this.plane ? this.#stack() : report.bodies.map(() => 0)
     this.topLayer = Math.max(0, ...this.#layers)
     this.#slides = report.joints.map((joint) => slideOf(this, joint))
-  }
-
-  /** Both ends of all ways in bodies over the whole motion: a link with a slot reaches beyond its hardpoints. */
-  ways(): Vector3[] {
-    const reach = WAY * this.unit
-    return this.#slides.flatMap((slide) => {
-      if (!slide || slide.rail === 0 || slide.low > slide.high) return []
-      const ends = [slide.low - reach, slide.high + reach].map((t) => slide.place.clone().addScaledVector(slide.axis, t))
-      return this.moments.flatMap((step) => ends.map((end) => this.worldAt(slide.rail, end, step))).filter(({ x }) => Number.isFinite(x))
-    })
   }
 
   /** Layer of a body of a planar mechanism; ground's is 0, the lowest. */

@@ -136,11 +136,11 @@ export class View {
     this.#update()
     const room = ROOM * this.today.unit
     const padded = [0, 1, 2].flatMap((k) => [-room, room].map((by) => new Vector3().setComponent(k, by)))
-    const swept = [...this.today.sweep, ...this.today.ways(), ...(this.mechanism === this.today ? [] : this.mechanism.sweep)]
+    const swept = this.mechanism === this.today ? this.today.sweep : [...this.today.sweep, ...this.mechanism.sweep]
     const points = [
       ...swept.flatMap((point) => padded.map((by) => point.clone().add(by))),
-      ...this.#matter.corners(),
-      ...this.#marks.corners(),
+      ...this.#matter.reach,
+      ...this.#marks.reach,
     ]
     this.#overview?.resize(points, width, height)
     const seen = this.#overview?.part(points, this.#focus(), width / height) ?? points
@@ -213,8 +213,7 @@ export class View {
 
   #lay(): Floor {
     const { up, report } = this.today
-    this.#matter.pose(this.mechanism.frame(this.state.step))
-    const heights = [...this.#matter.corners(), ...this.today.sweep].map((corner) => corner.dot(up))
+    const heights = [...this.#matter.reach, ...this.today.sweep].map((point) => point.dot(up))
     const floor = new Floor(this.today, this.#palette, heights.length > 0 ? heights.reduce((a, b) => Math.min(a, b)) : 0)
     this.scene.add(floor.object)
     this.#scale.textContent = `${report.wheels.length > 0 ? 'road, ' : ''}grid ${number(floor.cell)} ${report.units.length}`
