@@ -7,12 +7,14 @@ import type { Drawn, Part } from '../src/scene/drawn'
 import { Kit } from '../src/scene/kit'
 import { Mechanism } from '../src/scene/mechanism'
 import { Outlines } from '../src/scene/outlines'
+import { paletteOf } from '../src/scene/palette'
 import { State } from '../src/state'
 import { reportOf } from './payload'
-import { paletteOf, schemes } from './schemes'
+import { schemes } from './schemes'
 
 const { models } = inject('samples')
 
+const LIGHT = paletteOf((name) => schemes.light[name])
 /** Pixels of a view. */
 const [WIDTH, HEIGHT] = [860, 600]
 
@@ -24,7 +26,7 @@ vi.stubGlobal('document', { createElement: () => ({ getContext: () => brush }) }
 async function drawing(address: string): Promise<{ mechanism: Mechanism; kit: Kit; drawn: Drawn[] }> {
   const report = await reportOf(address)
   const mechanism = new Mechanism(report)
-  const kit = new Kit(mechanism, paletteOf(schemes.light))
+  const kit = new Kit(mechanism, LIGHT)
   return { mechanism, kit, drawn: [...matter, ...marks].flatMap((draw) => draw(mechanism, kit, new State(report).choice)) }
 }
 
@@ -100,7 +102,7 @@ describe.each(Object.entries(models))('of %s', async (_, address) => {
   })
 
   test('a fitted picture shows everything at every moment, and little else', () => {
-    const assemblies = [matter, marks].map((draws) => new Assembly(mechanism, paletteOf(schemes.light), new State(report).choice, draws, new Outlines(), 0))
+    const assemblies = [matter, marks].map((draws) => new Assembly(mechanism, LIGHT, new State(report).choice, draws, new Outlines(), 0))
     const camera = cameraFor(mechanism)
     fit(camera, assemblies.flatMap(({ reach }) => reach), mechanism.size, looksOf(mechanism)[0], WIDTH, HEIGHT)
     const seen = new Box3()

@@ -14,7 +14,7 @@ import { hardpointLabels, LabelLayer, partLabels } from './label_layer'
 import { Mechanism } from './mechanism'
 import { type Emphasis, Outlines, OVER } from './outlines'
 import { Overview } from './overview'
-import { palette } from './palette'
+import { paletteOf } from './palette'
 import { Pointer } from './pointer'
 import { present } from './shape'
 import { Triad } from './triad'
@@ -50,7 +50,7 @@ export class View {
   #paper = el('canvas', { class: 'paper' })
   #scale = el('span', { class: 'scale' })
   #lost = el('p', { class: 'message', hidden: true }, 'The graphics were lost; the view comes back when the browser gives them back.')
-  #palette = palette()
+  #palette = paletteOf()
   #matter: Assembly
   #marks: Assembly
   #floor: Floor
@@ -224,7 +224,7 @@ export class View {
 
   /** Everything anew: there is nothing whose colour the scheme does not decide. */
   #repaint(): void {
-    this.#palette = palette()
+    this.#palette = paletteOf()
     for (const one of [this.#matter, this.#marks]) one.dispose()
     this.#floor.object.removeFromParent()
     this.#floor.dispose()
