@@ -46,18 +46,22 @@ export function shifted(pose: Pose, shifts: Curve | undefined, step: number, cha
   return { place, turn: new Quaternion().setFromAxisAngle(turn.divideScalar(angle), angle).multiply(pose.turn) }
 }
 
+/** A body-fixed point in the world; NaN where the body has no pose. */
+export function placed(pose: Pose | undefined, point: Vector3): Vector3 {
+  return pose ? point.clone().applyQuaternion(pose.turn).add(pose.place) : new Vector3(NaN, NaN, NaN)
+}
+
+/** A body-fixed direction in the world; NaN where the body has no pose. */
+export function turned(pose: Pose | undefined, direction: Vector3): Vector3 {
+  return pose ? direction.clone().applyQuaternion(pose.turn) : new Vector3(NaN, NaN, NaN)
+}
+
 /** The path of a body-fixed point through the whole motion. */
 export function path(poses: Curve, point: Vector3, stride = 1): Vector3[] {
   const places: Vector3[] = []
   for (let step = 0; step < poses.length / STRIDE; step += stride) {
     const pose = poseAt(poses, step)
-    if (pose) places.push(point.clone().applyQuaternion(pose.turn).add(pose.place))
+    if (pose) places.push(placed(pose, point))
   }
   return places
-}
-
-/** A direction of a body in the world, or nothing where the motion was not solved. */
-export function alongAt(poses: Curve, direction: Vector3, step: number): Vector3 | undefined {
-  const pose = poseAt(poses, step)
-  return pose && direction.clone().applyQuaternion(pose.turn)
 }
