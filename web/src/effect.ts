@@ -1,4 +1,5 @@
 import { groups, type Order, type Report, type Sensitivity, type Variable } from './report'
+import { rounded } from './rounding'
 
 /** How a variable acts on the selected quantity. */
 export interface Effect {
@@ -9,9 +10,6 @@ export interface Effect {
   /** Size of the effect relative to the largest among variables of the same unit, or of all typical changes; 0 to 1. */
   share: number
 }
-
-/** Below this share of the largest, a sensitivity is rounding noise and not an influence. */
-const NOISE = 1e-9
 
 /**
  * Variables with a sensitivity of the quantity, largest effect first: by their typical changes where all of them have one,
@@ -31,8 +29,7 @@ export function effects(report: Report, quantity: number, order: Order): Effect[
   const largest = new Map(kinds.map((name) => [name, Math.max(...found.filter((item) => kind(item) === name).map(size))]))
   for (const item of found) {
     const most = largest.get(kind(item)) ?? 0
-    item.share = most > 0 ? size(item) / most : 0
-    if (item.share < NOISE) item.share = 0
+    item.share = most > 0 ? rounded(size(item) / most) : 0
   }
   return found.sort((a, b) => Number(a.share === 0) - Number(b.share === 0) || kinds.indexOf(kind(a)) - kinds.indexOf(kind(b)) || b.share - a.share || a.variable.index - b.variable.index)
 }

@@ -1,6 +1,7 @@
 import { type Curve, extreme, spread } from './curve'
 import { per } from './format'
 import type * as wire from './payload'
+import { rounded } from './rounding'
 import type { Decode } from './unpack'
 
 /** 0 the quantity itself, 1 its velocity, 2 its acceleration. */
@@ -154,9 +155,6 @@ interface Ranked {
   share: number
 }
 
-/** Below this share of the largest, a sensitivity is rounding noise and not an influence. */
-const NOISE = 1e-9
-
 /** Variables with a sensitivity of the quantity, largest first within each unit. */
 export function ranking(report: Report, quantity: Quantity, order: Order): Map<string, Ranked[]> {
   const byUnit = new Map<string, Ranked[]>()
@@ -172,8 +170,7 @@ export function ranking(report: Report, quantity: Quantity, order: Order): Map<s
     peers.sort((a, b) => b.peak - a.peak || a.variable.index - b.variable.index)
     const largest = peers[0].peak
     for (const item of peers) {
-      item.share = largest > 0 ? item.peak / largest : 0
-      if (item.share < NOISE) item.share = 0
+      item.share = largest > 0 ? rounded(item.peak / largest) : 0
     }
   }
   return byUnit
