@@ -1,3 +1,5 @@
+import { RESOLUTION, rounded } from './rounding'
+
 /** One number per step; NaN where there is none. */
 export type Curve = Float32Array
 
@@ -38,9 +40,6 @@ export function decades(low: number | null, high: number | null): [number, numbe
   const top = Math.ceil(Math.log10(high) - 1e-9)
   return [10 ** Math.min(bottom, top - 1), 10 ** top]
 }
-
-/** A curve that varies less than this share of its size is drawn as the constant that it is. */
-const RESOLUTION = 1e-5
 
 /** Of the size of a constant, what the axis shows round it. */
 const FLAT = 0.2
@@ -107,17 +106,8 @@ export function stepAt(times: Curve, time: number): number {
   return low + (time - times[low]) / (times[high] - times[low])
 }
 
-/** Changes of a quantity of this size up to which they are rounding and not a signal. */
-export function noise(size: number): number {
-  return RESOLUTION * size
-}
-
-/** Sizes in the reader's units below this are rounding, whatever they are of. */
-const NOTHING = 1e-9
-
 /** A curve without what is nothing but rounding next to `scale`, the largest of its kind. */
 export function quiet(curve: Curve, scale: number): Curve {
-  const floor = NOTHING * Math.max(scale, 1)
-  const least = Math.max(NOTHING * peak(curve), peak(curve) > floor ? 0 : floor)
-  return curve.map((value) => (Math.abs(value) <= least ? 0 : value))
+  const largest = rounded(peak(curve), Math.max(scale, 1)) || Math.max(scale, 1)
+  return curve.map((value) => rounded(value, largest))
 }

@@ -1,6 +1,7 @@
 import { type Curve, extreme, spread } from './curve'
 import { per } from './format'
 import type * as wire from './payload'
+import { rounded } from './rounding'
 import type { Decode } from './unpack'
 
 /** 0 the quantity itself, 1 its velocity, 2 its acceleration. */
@@ -172,16 +173,13 @@ export function derivativeUnit(quantity: Quantity, order: Order, variable: { uni
   return per(quantity.units[order], variable.unit)
 }
 
-export interface Ranked {
+interface Ranked {
   variable: Variable
   sensitivity: Sensitivity
   peak: number
   /** Peak relative to the largest among variables of the same unit, 0 to 1. */
   share: number
 }
-
-/** Below this share of the largest, a sensitivity is rounding noise and not an influence. */
-const NOISE = 1e-9
 
 /** Variables with a sensitivity of the quantity, largest first within each unit. */
 export function ranking(report: Report, quantity: Quantity, order: Order): Map<string, Ranked[]> {
@@ -198,8 +196,7 @@ export function ranking(report: Report, quantity: Quantity, order: Order): Map<s
     peers.sort((a, b) => b.peak - a.peak || a.variable.index - b.variable.index)
     const largest = peers[0].peak
     for (const item of peers) {
-      item.share = largest > 0 ? item.peak / largest : 0
-      if (item.share < NOISE) item.share = 0
+      item.share = largest > 0 ? rounded(item.peak / largest) : 0
     }
   }
   return byUnit

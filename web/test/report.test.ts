@@ -1,6 +1,7 @@
 import { expect, test } from 'vitest'
 import type { Curve, Payload, Variable } from '../src/payload'
 import { derivativeName, derivativeUnit, groups, ranking, read } from '../src/report'
+import { EMPTY } from './mechanisms'
 
 const stored: Float32Array[] = []
 const encode = (...values: number[]) => [stored.push(Float32Array.from(values)) - 1]
@@ -25,30 +26,11 @@ const quantity = (name: string, group: string) =>
   ({ name, group, unit: 'deg', rate_unit: 'deg/s', accel_unit: 'deg/s^2', ...curves(1) })
 
 const payload: Payload = {
-  title: '',
-  file: '',
-  description: '',
-  generator: '',
-  units: { length: 'mm', angle: 'deg', time: 's' },
-  status: { complete: true, message: '' },
-  summary: [],
-  notes: [],
+  ...EMPTY,
   times: encode(0, 1),
-  bodies: [],
-  joints: [],
-  couplers: [],
-  drivers: [],
-  wheels: [],
-  distances: [],
-  vehicle: null,
   quantities: [quantity('hub.x', 'point'), quantity('toe', 'measure')],
-  values: [],
-  first: null,
-  over: null,
-  designs: [],
   margin: { value: encode(0.5, 0.25), note: '' },
   variables: [variable('small', 'mm', 1), variable('tilt', 'deg', 5), variable('large', 'mm', -4), variable('stuck', 'mm')],
-  checks: [],
 }
 const report = read(payload, decode)
 const [hub] = report.quantities
