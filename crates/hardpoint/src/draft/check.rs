@@ -179,6 +179,8 @@ impl<'a> Checker<'a> {
             metrics: Vec::new(),
             idle: Vec::new(),
             times: draft.times.clone(),
+            cases: Vec::new(),
+            optimization: None,
         };
         let ground = ["ground"].into_iter();
         let numbers = HashMap::from([

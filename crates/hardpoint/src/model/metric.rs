@@ -1,6 +1,6 @@
 //! Metrics: one number for a whole curve.
 
-use super::{Dimension, Model, OutputSource};
+use super::{CaseId, Dimension, Model, OutputSource};
 
 /// One number that sums an output up over the motion.
 #[derive(Clone, Debug, PartialEq)]
@@ -15,6 +15,8 @@ pub struct Metric {
     pub take: Reduction,
     /// The part of the curve that counts: from where to where its abscissa goes, in SI; all of it where there is none.
     pub window: Option<[f64; 2]>,
+    /// Of which motion; of each where there is none.
+    pub case: Option<CaseId>,
 }
 
 /// What of a curve a metric takes. Formulas: `docs/measures.md`.

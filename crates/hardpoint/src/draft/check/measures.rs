@@ -116,7 +116,7 @@ impl Checker<'_> {
             return None;
         }
         let window = m.window.map(|w| w.map(|end| si(x, end)));
-        Some(Metric { name: m.name.clone(), of, over, take, window })
+        Some(Metric { name: m.name.clone(), of, over, take, window, case: None })
     }
 
     /// A direction that an angle is measured from or to.

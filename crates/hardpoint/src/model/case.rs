@@ -1,0 +1,52 @@
+//! Cases: several motions of one mechanism.
+
+use crate::law::Law;
+
+use super::{CaseId, Model, Target};
+
+/// A motion of the mechanism under laws and at times of its own: a car in bump with the rack held, or steered at one ride height.
+#[derive(Clone, Debug)]
+pub struct Case {
+    /// Its name.
+    pub name: String,
+    /// Per driver, the law that it follows in this case; where there is none, that of the driver itself.
+    pub laws: Vec<Option<Law>>,
+    /// Output times, s, increasing.
+    pub times: Vec<f64>,
+}
+
+impl Model {
+    /// The case of that name.
+    pub fn case(&self, name: &str) -> Option<CaseId> {
+        self.cases.iter().position(|c| c.name == name).map(CaseId)
+    }
+
+    /// The mechanism in one of its cases: a model with that motion and no other, and with the metrics that are taken of it.
+    ///
+    /// All but [`metrics`](Self::metrics) and what follows the laws keep their places.
+    ///
+    /// # Panics
+    /// If there is no such case.
+    pub fn in_case(&self, case: CaseId) -> Self {
+        let Case { name, laws, times } = &self.cases[case.0];
+        let mut model = Self { times: times.clone(), cases: Vec::new(), optimization: None, ..self.clone() };
+        model.name = format!("{}, {name}", self.name);
+        for (driver, law) in model.drivers.iter_mut().zip(laws) {
+            if let Some(law) = law {
+                driver.law = law.clone();
+            }
+        }
+        model.formulas.retain(|f| !matches!(f.of, Target::Law(d, _) if laws[d.0].is_some()));
+        model.metrics.retain(|m| m.case.is_none_or(|of| of == case));
+        model.metrics.iter_mut().for_each(|m| m.case = None);
+        model
+    }
+
+    /// The motions of the mechanism: one model for each case, or this one alone where there is none.
+    pub fn motions(&self) -> Vec<Self> {
+        match self.cases.len() {
+            0 => vec![self.clone()],
+            n => (0..n).map(|k| self.in_case(CaseId(k))).collect(),
+        }
+    }
+}
