@@ -8,6 +8,7 @@ mod gallery_models;
 mod measures;
 mod meshes;
 mod metrics;
+mod optimize;
 mod models;
 mod motions;
 mod parameters;
