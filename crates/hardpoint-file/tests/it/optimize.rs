@@ -33,7 +33,9 @@ fn four_bar_inverse() {
     let target = |name: &str| {
         let m = solution.measured.index(name).unwrap();
         let points: Vec<String> = (0..solution.measured.len())
-            .map(|k| format!("[{:?}, {:?}]", solution.motion.times[k], 1e3 * solution.measured.value(k, m)[0]))
+            .map(|k| {
+                format!("[{:?}, {:?}]", solution.motion.times[k], 1e3 * solution.measured.value(k, m)[0])
+            })
             .collect();
         points.join(", ")
     };
@@ -72,7 +74,127 @@ fn four_bar_inverse() {
     };
     let found = optimized(&file, &asked);
     for (k, s) in found.searches.iter().enumerate() {
-        let d = s.found.as_ref().map(|f| (0..8).map(|v| 1e3 * f.design[v] + f64::from(start[v])).collect::<Vec<_>>());
-        println!("{k} {:?} {:?} kkt {:.1e} designs {} refused {} {:.3?} {:?}", s.status, s.found.as_ref().map(|f| f.objective), s.optimality.residual, s.cost.designs, s.refused.len(), d, s.refused.first().map(|r| &r.why));
+        let d = s
+            .found
+            .as_ref()
+            .map(|f| (0..8).map(|v| 1e3 * f.design[v] + f64::from(start[v])).collect::<Vec<_>>());
+        println!(
+            "{k} {:?} {:?} kkt {:.1e} designs {} refused {} {:.3?} {:?}",
+            s.status,
+            s.found.as_ref().map(|f| f.objective),
+            s.optimality.residual,
+            s.cost.designs,
+            s.refused.len(),
+            d,
+            s.refused.first().map(|r| &r.why)
+        );
+    }
+}
+
+#[test]
+fn strut_trial() {
+    use hardpoint::law::Law;
+    use hardpoint::model::{Case, CaseId, Limit, Limited};
+    let text = std::fs::read_to_string("../../models/macpherson.toml").unwrap();
+    let mut text = text.replace(
+        "[wheels.front_left]",
+        "[measures.rack]\ntype = \"coordinate\"\njoint = \"rack_slide\"\n[wheels.front_left]",
+    );
+    for v in ["tie_rod_outer_y", "tie_rod_outer_z", "tie_rod_inner_y", "tie_rod_inner_z"] {
+        text = text.replace(&format!("[design.{v}]\n"), &format!("[design.{v}]\nbounds = [-15, 15]\n"));
+    }
+    text += "
+[metrics.toe_error]
+of = \"toe\"
+over = \"wheel_travel\"
+take = \"rms\"
+target = [[-40, 0.3], [0, 0.2], [40, 0.0]]
+[metrics.ackermann]
+of = \"toe\"
+over = \"rack\"
+take = \"mean\"
+[metrics.most]
+of = \"toe\"
+take = \"max\"
+[metrics.spread]
+of = \"toe\"
+take = \"range\"
+";
+    let mut file = hardpoint_file::parse(&text, "strut.toml").unwrap_or_else(|e| panic!("{e}"));
+    let times: Vec<f64> = (0..=100).map(|k| 0.01 * f64::from(k)).collect();
+    let case = |name: &str, laws: [&str; 2]| Case {
+        name: name.into(),
+        laws: laws.map(|l| Some(Law::parse(l).unwrap())).to_vec(),
+        times: times.clone(),
+    };
+    file.model.cases = vec![case("bump", ["0", "0.04*(2*t-1)"]), case("steer", ["0.03*(2*t-1)", "0"])];
+    file.model.metrics[0].case = Some(CaseId(0));
+    file.model.metrics[1].case = Some(CaseId(1));
+    file.model.metrics[2].case = Some(CaseId(0));
+    file.model.metrics[3].case = Some(CaseId(0));
+    let v = |n: &str| file.model.variable(n).unwrap();
+    let variables =
+        vec![v("tie_rod_outer_y"), v("tie_rod_outer_z"), v("tie_rod_inner_y"), v("tie_rod_inner_z")];
+    let deg = 180.0 / std::f64::consts::PI;
+    let goal = |metric: usize| Goal { name: String::new(), metric, target: None, weight: deg };
+    let drawn = {
+        let models = file.model.motions();
+        let m = Motions::of(&models, Formulation::Relative).unwrap();
+        let e = m.evaluate(&[], &mut Default::default(), &|| true).unwrap();
+        println!("{:?}", e.metrics.iter().flatten().map(|m| m.value.map(|v| v * deg)).collect::<Vec<_>>());
+        e.metrics[1][0].value.unwrap()
+    };
+    let limit =
+        |of: Limited, least: Option<f64>, most: Option<f64>| Limit { name: String::new(), of, least, most };
+    let base = Optimization {
+        variables,
+        goals: vec![goal(0)],
+        limits: vec![],
+        margin: None,
+        starts: 1,
+        iterations: 100,
+    };
+    let h = |n: &str| {
+        hardpoint::model::HardpointId(file.model.hardpoints.iter().position(|h| h.name == n).unwrap())
+    };
+    for (what, goals, limits) in [
+        ("free", vec![goal(0)], vec![]),
+        ("ackermann", vec![goal(0)], vec![limit(Limited::Metric(1), Some(drawn), None)]),
+        ("ackermann better", vec![goal(0)], vec![limit(Limited::Metric(1), Some(drawn + 0.3 / deg), None)]),
+        (
+            "equal",
+            vec![goal(0)],
+            vec![limit(Limited::Metric(1), Some(drawn + 0.3 / deg), Some(drawn + 0.3 / deg))],
+        ),
+        ("max", vec![goal(2)], vec![]),
+        ("range", vec![goal(3)], vec![]),
+        (
+            "range, limited",
+            vec![goal(3)],
+            vec![
+                limit(Limited::Metric(1), Some(drawn + 0.1 / deg), None),
+                limit(Limited::Distance(h("tie_rod_inner"), h("tie_rod_outer")), None, Some(0.36)),
+            ],
+        ),
+        (
+            "plain",
+            vec![Goal { weight: -deg, ..goal(1) }],
+            vec![limit(Limited::Metric(3), None, Some(0.1 / deg))],
+        ),
+        ("impossible", vec![goal(0)], vec![limit(Limited::Metric(1), Some(drawn + 9.0 / deg), None)]),
+    ] {
+        println!("== {what}");
+        let asked = Optimization { goals, limits, ..base.clone() };
+        let o = optimized(&file, &asked);
+        for s in &o.searches {
+            println!(
+                "{:?} {:#?} {:?} designs {} {:?}",
+                s.status,
+                s.found,
+                s.optimality,
+                s.cost.designs,
+                s.refused.first()
+            );
+        }
     }
 }

@@ -36,6 +36,10 @@ const AGAIN: usize = 3;
 const NO_LESS: f64 = 1e-14;
 /// ... and so has one whose step is less than this part of the bounds.
 const RESTING: f64 = 1e-13;
+/// The first solver has done its work where a step gains less than this part of the objective: others make an end of it.
+const HARDLY_LESS: f64 = 1e-6;
+/// A start that cannot be judged is drawn nearer so many times.
+const HALVINGS: i32 = 8;
 /// Low-discrepancy points have so many coordinates; further variables start where they are drawn.
 const MOST_DIMENSIONS: usize = 256;
 
@@ -253,9 +257,19 @@ fn search(
 ) -> Search {
     let memory = Memory::new(problem, more);
     let n = start.len();
-    let point = memory.at(start, |found| found.as_ref().ok().cloned());
+    // A start that cannot be judged is drawn nearer to the design as drawn, half of the way each time.
+    let drawn = problem.parts(&vec![0.0; problem.model.variables.len()]);
+    let nearer = |halvings: i32| -> Vec<f64> {
+        let part = 0.5_f64.powi(halvings);
+        drawn.iter().zip(start).map(|(drawn, start)| drawn + part * (start - drawn)).collect()
+    };
+    let tries = if start == drawn { 1 } else { HALVINGS };
+    let starts = (0..tries).map(nearer).take_while(|_| !memory.interrupted());
+    let judged_start =
+        |start: Vec<f64>| memory.at(&start, |found| found.as_ref().ok().cloned()).map(|p| (start, p));
+    let point = starts.into_iter().find_map(judged_start);
     let mut search = Search {
-        start: problem.design(start),
+        start: problem.design(point.as_ref().map_or(start, |(start, _)| start)),
         status: if memory.interrupted() { Status::Interrupted } else { Status::NoStart },
         found: None,
         optimality: Optimality { residual: f64::INFINITY, binding: Vec::new() },
@@ -264,8 +278,8 @@ fn search(
         refused: Vec::new(),
         cost: Cost::default(),
     };
-    if let Some(point) = point {
-        let mut run = Descent::new(problem, &memory, start, point);
+    if let Some((start, point)) = point {
+        let mut run = Descent::new(problem, &memory, &start, point);
         run.go(&mut search, tell);
         search.found = Some(judged(problem, &run.best, &run.scales));
         search.optimality = run.optimality(&run.best);
@@ -324,10 +338,10 @@ impl<'p> Descent<'p> {
         }
     }
 
-    /// The solver that is made for goals and limits like these, from where the search stands.
-    fn solver(&self) -> Option<Box<dyn Solver + 'p>> {
-        let Point { plain, peaks, limits, .. } = &self.here;
-        if plain.values.is_empty() && peaks.is_empty() && limits.is_empty() {
+    /// The solver that is made for goals and limits like these, from where the search stands. Least squares come near to bounds from
+    /// within, slowly: what they leave is left to sequential programming.
+    fn solver(&self, squares: bool) -> Option<Box<dyn Solver + 'p>> {
+        if squares {
             TrustRegion::new(self.memory, &self.at, &self.here).map(|s| Box::new(s) as Box<dyn Solver + 'p>)
         } else {
             let found = Sequential::new(self.memory, &self.at, &self.here, &self.scales);
@@ -337,11 +351,11 @@ impl<'p> Descent<'p> {
 
     fn go(&mut self, search: &mut Search, tell: &mut dyn FnMut(&Iteration)) {
         self.note(search, None, tell);
-        for _ in 0..=AGAIN {
+        for run in 0..=AGAIN {
             let before = (self.best.objective(), self.violation(&self.best));
-            self.descend(search, tell);
+            self.descend(run == 0, search, tell);
             let after = (self.best.objective(), self.violation(&self.best));
-            let gained = before.0 - after.0 > NO_LESS * before.0.abs() || after.1 < before.1;
+            let gained = run == 0 || before.0 - after.0 > NO_LESS * before.0.abs() || after.1 < before.1;
             let sharp = self.optimality(&self.best).residual < SHARP && after.1 <= KEPT;
             if sharp || !gained || self.ran_out || self.memory.interrupted() {
                 return;
@@ -353,8 +367,9 @@ impl<'p> Descent<'p> {
     }
 
     /// Lets a solver run to its end.
-    fn descend(&mut self, search: &mut Search, tell: &mut dyn FnMut(&Iteration)) {
-        let Some(mut solver) = self.solver() else { return };
+    fn descend(&mut self, first: bool, search: &mut Search, tell: &mut dyn FnMut(&Iteration)) {
+        let squares = first && self.here.is_squares();
+        let Some(mut solver) = self.solver(squares) else { return };
         loop {
             if search.iterations.len() > self.problem.asked.iterations {
                 self.ran_out = true;
@@ -376,9 +391,11 @@ impl<'p> Descent<'p> {
             let Some([former, last]) = search.iterations.last_chunk::<2>() else {
                 continue;
             };
-            let still = (former.objective - last.objective).abs() <= NO_LESS * last.objective.abs()
+            let change = (former.objective - last.objective).abs();
+            let still = change <= if squares { HARDLY_LESS } else { NO_LESS } * last.objective.abs()
                 && last.violation <= KEPT;
-            if last.step <= RESTING || still {
+            let sharp = || last.violation <= KEPT && self.optimality(&self.here).residual < SHARP;
+            if last.step <= RESTING || still || sharp() {
                 return;
             }
         }

@@ -9,7 +9,7 @@
 
 use crate::linalg::least_squares;
 
-use super::problem::{Point, Problem};
+use super::problem::{Point, Problem, Rows};
 
 /// What is nearer than this to its end, as a part of its scale, binds.
 const BINDS: f64 = 1e-7;
@@ -46,6 +46,14 @@ struct Row {
     binding: Option<(Binding, f64)>,
 }
 
+/// The derivatives of those that are greatest.
+fn at_peak(rows: &Rows) -> Vec<&Vec<f64>> {
+    let most = rows.greatest();
+    let least = rows.values.iter().copied().fold(f64::INFINITY, f64::min);
+    let all = rows.values.iter().zip(&rows.d);
+    all.filter(|(value, _)| **value >= most - BINDS * (most - least)).map(|(_, d)| d).collect()
+}
+
 impl Optimality {
     pub(super) fn of(problem: &Problem<'_>, point: &Point, limit_scales: &[f64], steepest: f64) -> Self {
         let n = problem.bounds.len();
@@ -73,17 +81,25 @@ impl Optimality {
                 let motion = taken.map(|t| t.motion);
                 let binding =
                     if row.upper { Binding::Most(limit, motion) } else { Binding::Least(limit, motion) };
-                let d = by_parts(&row.d).iter().map(|d| d / scale).collect();
-                rows.push(Row { d, peak: None, equal: row.equal, binding: Some((binding, scale)) });
+                let mut push = |d: &[f64]| {
+                    let d = by_parts(d).iter().map(|d| d / scale).collect();
+                    rows.push(Row { d, peak: None, equal: row.equal, binding: Some((binding, scale)) });
+                };
+                let spread = point.spreads.iter().find(|s| row.spread && s.of == row.of);
+                // Of a range, every pair of a highest and a lowest place.
+                let [high, low] =
+                    spread.map_or([Vec::new(), Vec::new()], |s| [&s.ends[0], &s.ends[1]].map(at_peak));
+                for (a, b) in high.iter().flat_map(|a| low.iter().map(move |b| (a, b))) {
+                    push(&a.iter().zip(*b).map(|(a, b)| a + b).collect::<Vec<_>>());
+                }
+                if spread.is_none() {
+                    push(&row.d);
+                }
             }
         }
         for (group, values) in point.peaks.iter().enumerate() {
-            let most = values.greatest();
-            let least = values.values.iter().copied().fold(f64::INFINITY, f64::min);
-            for (value, d) in values.values.iter().zip(&values.d) {
-                if *value >= most - BINDS * (most - least) {
-                    rows.push(Row { d: by_parts(d), peak: Some(group), equal: false, binding: None });
-                }
+            for d in at_peak(values) {
+                rows.push(Row { d: by_parts(d), peak: Some(group), equal: false, binding: None });
             }
         }
         // Rows whose multipliers come out negative do not bind: the most negative one is let go, until none is.

@@ -62,6 +62,8 @@ pub(super) struct Point {
     pub peaks: Vec<Rows>,
     /// Per row of a limit: which limit it belongs to, and by how much it is exceeded, in its unit.
     pub limits: Vec<LimitRow>,
+    /// Of limits on how far a curve may range: all that may be its ends.
+    pub spreads: Vec<Spread>,
     /// Per goal taken, its value; per limit taken, likewise.
     pub goal_values: Vec<f64>,
     pub limit_values: Vec<f64>,
@@ -78,6 +80,18 @@ pub(super) struct LimitRow {
     pub equal: bool,
     /// Whether it is the upper one.
     pub upper: bool,
+    /// Whether there is a [`Spread`] of it, which says more of how it goes with the design.
+    pub spread: bool,
+}
+
+/// How far a curve ranges, and how far it may: by its greatest value less its least one.
+#[derive(Clone, Debug)]
+pub(super) struct Spread {
+    /// Its place in [`Problem::limits`].
+    pub of: usize,
+    pub most: f64,
+    /// All that may be the greatest value, and all that may be the least one, negative.
+    pub ends: [Rows; 2],
 }
 
 /// A design that cannot be judged.
@@ -96,6 +110,11 @@ impl Point {
         let squares: f64 = self.misfits.values.iter().map(|r| r * r).sum();
         let plain: f64 = self.plain.values.iter().sum();
         squares + plain + self.peaks.iter().map(Rows::greatest).sum::<f64>()
+    }
+
+    /// Whether all goals are squares, and nothing but bounds limits the design.
+    pub fn is_squares(&self) -> bool {
+        self.plain.values.is_empty() && self.peaks.is_empty() && self.limits.is_empty()
     }
 
     /// Its derivative by every searched variable, where it has one.
@@ -271,7 +290,7 @@ impl<'m> Problem<'m> {
         point.limit_values.push(value);
         let negative = |d: &[f64]| d.iter().map(|d| -d).collect::<Vec<_>>();
         let mut push = |exceeds: f64, d: Vec<f64>, equal: bool, upper: bool| {
-            point.limits.push(LimitRow { of: place, exceeds, d, equal, upper });
+            point.limits.push(LimitRow { of: place, exceeds, d, equal, upper, spread: false });
         };
         if let (Some(least), Some(most)) = (asked.least, asked.most)
             && least == most
@@ -280,17 +299,14 @@ impl<'m> Problem<'m> {
             return Ok(());
         }
         // What is greatest changes its place from design to design: all that may be it are kept within the limit.
-        let all = |sign: f64| {
+        let parts = |asked: Reduction, sign: f64| {
             let taken = taken?;
             let (model, solution) = (self.motions.model(taken.motion), &found.solutions[taken.motion]);
             let metric = &model.metrics[taken.metric];
-            let bounded = match metric.take {
-                Reduction::Greatest => sign > 0.0,
-                Reduction::Least => sign < 0.0,
-                _ => false,
-            };
-            if bounded { peaks(model, solution, metric, sign) } else { None }
+            let has = metric.take == asked && solution.motion.len() > 1;
+            if has { peaks(model, solution, metric, sign) } else { None }
         };
+        let all = |sign: f64| parts(if sign > 0.0 { Reduction::Greatest } else { Reduction::Least }, sign);
         for (end, sign) in [(asked.most, 1.0), (asked.least, -1.0)] {
             let Some(end) = end else { continue };
             match all(sign) {
@@ -305,6 +321,17 @@ impl<'m> Problem<'m> {
                     let d = if sign < 0.0 { negative(&d) } else { d.clone() };
                     push(sign * (value - end), d, false, sign > 0.0);
                 }
+            }
+        }
+        let ends = parts(Reduction::Range, 1.0).zip(parts(Reduction::Range, -1.0));
+        if let (Some(most), Some((high, low))) = (asked.most, ends) {
+            let rows = |parts: MetricParts, sign: f64| Rows {
+                values: parts.values.iter().map(|x| sign * x).collect(),
+                d: parts.d.iter().map(|d| self.searched(d).iter().map(|d| sign * d).collect()).collect(),
+            };
+            point.spreads.push(Spread { of: place, most, ends: [rows(high, 1.0), rows(low, -1.0)] });
+            if let Some(row) = point.limits.iter_mut().rfind(|row| row.of == place && row.upper) {
+                row.spread = true;
             }
         }
         Ok(())

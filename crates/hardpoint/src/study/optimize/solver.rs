@@ -12,7 +12,7 @@ use basin::{
 
 use crate::study::evaluation::Cost;
 
-use super::problem::{Point, Problem, Refusal};
+use super::problem::{LimitRow, Point, Problem, Refusal, Rows};
 
 /// The sequential solver takes objective, limits and design for settled where they change by less than this, with all of them scaled to
 /// the order of one.
@@ -24,11 +24,14 @@ const FLAT: f64 = 1e-4;
 /// A first step without any known curvature goes so far along the bounds.
 const FIRST_STEP: f64 = 0.1;
 
+/// What is found at a design.
+type Found = Result<Point, Refusal>;
+
 /// Designs that a search looked at: the last of them with their values, and all that were refused.
 pub(super) struct Memory<'p> {
     pub problem: &'p Problem<'p>,
     more: &'p (dyn Fn() -> bool + Sync),
-    recent: RefCell<Vec<(Vec<f64>, Result<Point, Refusal>)>>,
+    recent: RefCell<Vec<(Vec<f64>, Found)>>,
     pub refused: RefCell<Vec<(Vec<f64>, Refusal)>>,
     pub cost: RefCell<Cost>,
 }
@@ -48,7 +51,7 @@ impl<'p> Memory<'p> {
     }
 
     /// What is found at a design, given as parts of the bounds.
-    pub fn at<X>(&self, parts: &[f64], of: impl FnOnce(&Result<Point, Refusal>) -> X) -> X {
+    pub fn at<X>(&self, parts: &[f64], of: impl FnOnce(&Found) -> X) -> X {
         let known = self.recent.borrow().iter().any(|(x, _)| x == parts);
         if !known {
             let design = self.problem.design(parts);
@@ -187,8 +190,11 @@ where
 /// ```text
 /// x = x0 + T z,   T = (2 J^T J + mu I)^-1/2        J: the misfits by x at the start
 ///
-/// min  squares(x) + plain(x) + sum of t    so that    peak_k(x) <= t,  limits(x) <= 0,  0 <= x <= 1
+/// min  squares(x) + plain(x) + sum of t    so that    peak_k(x) <= t,  limits(x) <= 0,  0 <= x <= 1,
+///                                                     high_k(x) <= u,  -low_k(x) <= v,  u + v <= most
 /// ```
+///
+/// The last line is a limit on how far a curve ranges.
 pub(super) struct Programming<'p> {
     memory: &'p Memory<'p>,
     spans: Vec<f64>,
@@ -198,8 +204,9 @@ pub(super) struct Programming<'p> {
     /// What the objective, and every limit, is multiplied by.
     scale: f64,
     limit_scales: Vec<f64>,
-    /// Of the start: how many peaks there are in each group, and limits of each kind.
-    peaks: Vec<usize>,
+    /// How many groups of peaks and limited ranges there are, and how many rows of each kind: the same for every design.
+    peaks: usize,
+    spreads: usize,
     equal: usize,
     inequal: usize,
 }
@@ -223,19 +230,36 @@ impl Programming<'_> {
     /// A gradient by z, and zeros for the peaks.
     fn by_z(&self, by_parts: &[f64]) -> Vec<f64> {
         let column = |t: &Vec<f64>| t.iter().zip(by_parts).map(|(t, g)| t * g).sum::<f64>();
-        self.t.iter().map(column).chain(self.peaks.iter().map(|_| 0.0)).collect()
+        self.t.iter().map(column).chain(self.none()).collect()
     }
 
-    /// The inequalities `c <= 0`, in order: lower bounds, upper bounds, limits, peaks.
+    /// Zeros for t, u and v.
+    fn none(&self) -> impl Iterator<Item = f64> {
+        std::iter::repeat_n(0.0, self.peaks + 2 * self.spreads)
+    }
+
+    /// The place of u of a limited range; v is the next.
+    fn ends(&self, spread: usize) -> usize {
+        self.searched() + self.peaks + 2 * spread
+    }
+
+    /// The inequalities `c <= 0`, in order: lower bounds, upper bounds, limits, peaks, limited ranges.
     fn inequalities(&self, y: &[f64], point: &Point) -> Vec<f64> {
         let n = self.searched();
         let along = |i: usize| self.x0[i] + (0..n).map(|j| self.t[j][i] * y[j]).sum::<f64>();
         let mut c: Vec<f64> = (0..n).map(|i| -along(i)).chain((0..n).map(|i| along(i) - 1.0)).collect();
-        for row in point.limits.iter().filter(|row| !row.equal) {
+        for row in point.limits.iter().filter(|row| !row.equal && !row.spread) {
             c.push(self.limit_scales[row.of] * row.exceeds);
         }
         for (group, rows) in point.peaks.iter().enumerate() {
             c.extend(rows.values.iter().map(|v| self.scale * v - y[n + group]));
+        }
+        for (k, spread) in point.spreads.iter().enumerate() {
+            let (scale, ends) = (self.limit_scales[spread.of], self.ends(k));
+            for (end, rows) in spread.ends.iter().enumerate() {
+                c.extend(rows.values.iter().map(|v| scale * v - y[ends + end]));
+            }
+            c.push(y[ends] + y[ends + 1] - scale * spread.most);
         }
         c
     }
@@ -264,7 +288,7 @@ impl CostFunction for Programming<'_> {
             Ok(Point { misfits, plain, .. }) => {
                 let squares: f64 = misfits.values.iter().map(|r| r * r).sum();
                 let plain: f64 = plain.values.iter().sum();
-                self.scale * (squares + plain) + y[n..].iter().sum::<f64>()
+                self.scale * (squares + plain) + y[n..n + self.peaks].iter().sum::<f64>()
             }
             Err(_) => f64::INFINITY,
         }))
@@ -280,7 +304,7 @@ impl Gradient for Programming<'_> {
                 let smooth = Point { peaks: Vec::new(), ..point.clone() };
                 let mut g = self.by_z(&self.by_parts(&smooth.gradient(n)));
                 g.iter_mut().for_each(|g| *g *= self.scale);
-                g[n..].fill(1.0);
+                g[n..n + self.peaks].fill(1.0);
                 g
             }
             Err(_) => vec![f64::NAN; y.len()],
@@ -325,7 +349,7 @@ impl basin::ConstraintJacobian for Programming<'_> {
             let Ok(point) = found else {
                 return DenseMatrix::from_fn(self.equal + self.inequal, y.len(), |_, _| f64::NAN);
             };
-            let limit = |row: &super::problem::LimitRow| {
+            let limit = |row: &LimitRow| {
                 let scale = self.limit_scales[row.of];
                 let d: Vec<f64> = self.by_parts(&row.d).iter().map(|d| scale * d).collect();
                 self.by_z(&d)
@@ -334,17 +358,30 @@ impl basin::ConstraintJacobian for Programming<'_> {
             for sign in [-1.0, 1.0] {
                 for i in 0..n {
                     let by_z = (0..n).map(|j| sign * self.t[j][i]);
-                    rows.push(by_z.chain(self.peaks.iter().map(|_| 0.0)).collect());
+                    rows.push(by_z.chain(self.none()).collect());
                 }
             }
-            rows.extend(point.limits.iter().filter(|r| !r.equal).map(limit));
-            for (group, peaks) in point.peaks.iter().enumerate() {
-                for d in &peaks.d {
-                    let d: Vec<f64> = self.by_parts(d).iter().map(|d| self.scale * d).collect();
+            rows.extend(point.limits.iter().filter(|r| !r.equal && !r.spread).map(limit));
+            let below = |scale: f64, all: &Rows, end: usize| -> Vec<Vec<f64>> {
+                let row = |d: &Vec<f64>| {
+                    let d: Vec<f64> = self.by_parts(d).iter().map(|d| scale * d).collect();
                     let mut row = self.by_z(&d);
-                    row[n + group] = -1.0;
-                    rows.push(row);
+                    row[end] = -1.0;
+                    row
+                };
+                all.d.iter().map(row).collect()
+            };
+            for (k, peaks) in point.peaks.iter().enumerate() {
+                rows.extend(below(self.scale, peaks, n + k));
+            }
+            for (k, spread) in point.spreads.iter().enumerate() {
+                let (scale, ends) = (self.limit_scales[spread.of], self.ends(k));
+                for (end, all) in spread.ends.iter().enumerate() {
+                    rows.extend(below(scale, all, ends + end));
                 }
+                let mut row = vec![0.0; y.len()];
+                row[ends..ends + 2].fill(1.0);
+                rows.push(row);
             }
             DenseMatrix::from_fn(rows.len(), y.len(), |row, v| rows[row][v])
         }))
@@ -380,14 +417,18 @@ impl<'p> Sequential<'p> {
             true => inverse_root(n, |i, j| scale * curved(i, j) + if i == j { FLAT } else { 0.0 }),
             false => (0..n).map(|j| (0..n).map(|i| f64::from(u8::from(i == j))).collect()).collect(),
         };
-        let peaks: Vec<usize> = point.peaks.iter().map(|rows| rows.values.len()).collect();
-        let equal = point.limits.iter().filter(|row| row.equal).count();
-        let inequal = 2 * n + point.limits.len() - equal + peaks.iter().sum::<usize>();
+        let limit_scales: Vec<f64> = limit_scales.iter().map(|s| 1.0 / s).collect();
         let mut y = vec![0.0; n];
         y.extend(point.peaks.iter().map(|rows| scale * rows.greatest()));
-        let limit_scales = limit_scales.iter().map(|s| 1.0 / s).collect();
+        for spread in &point.spreads {
+            y.extend(spread.ends.iter().map(|rows| limit_scales[spread.of] * rows.greatest()));
+        }
+        let equal = point.limits.iter().filter(|row| row.equal).count();
         let (x0, t_too) = (start.to_vec(), t.clone());
-        let problem = Programming { memory, spans, x0, t, scale, limit_scales, peaks, equal, inequal };
+        let (peaks, spreads) = (point.peaks.len(), point.spreads.len());
+        let mut problem =
+            Programming { memory, spans, x0, t, scale, limit_scales, peaks, spreads, equal, inequal: 0 };
+        problem.inequal = problem.inequalities(&y, point).len();
         let solver = Slsqp::new().with_absolute_accuracy_tolerance(SETTLED);
         let run = Executor::new(problem, solver, SelectedFirstOrderState::new(y));
         let stepper = run.into_stepper().ok()?;
