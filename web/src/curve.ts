@@ -13,12 +13,6 @@ export function peak(curve: Curve): number {
   return Math.abs(extreme(curve))
 }
 
-/** Every `stride`-th value, the rest left out, so that marks do not hide the line they are compared with. */
-export function thinned(curve: Curve, marks: number): (number | null)[] {
-  const stride = Math.max(1, Math.round(curve.length / marks))
-  return Array.from(curve, (value, k) => (k % stride === 0 && !Number.isNaN(value) ? value : null))
-}
-
 /** Values of every `stride`-th step in their places, gaps between; nothing for a curve without values. */
 export function spread(curve: Curve, stride: number, steps: number): Curve {
   if (curve.length === 0) return curve

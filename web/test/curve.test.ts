@@ -8,7 +8,6 @@ import {
   slope,
   spread,
   stepAt,
-  thinned,
   valueAt,
   withGaps,
 } from '../src/curve'
@@ -22,11 +21,6 @@ test('NaN becomes a gap', () => {
 test('peak is the largest magnitude and passes over gaps', () => {
   expect(peak(curve(1, NaN, -3))).toBe(3)
   expect(peak(curve(NaN))).toBe(0)
-})
-
-test('thinning keeps every stride-th value in its place', () => {
-  expect(thinned(curve(0, 1, 2, 3, 4, 5), 3)).toEqual([0, null, 2, null, 4, null])
-  expect(thinned(curve(7, NaN), 9)).toEqual([7, null])
 })
 
 test('values of every few steps are put in their places', () => {

@@ -12,13 +12,13 @@ use hardpoint_file::ModelFile;
 use hardpoint_report::columns::Columns;
 use hardpoint_report::course::Course;
 use hardpoint_report::csv::JerkCsv;
+use hardpoint_report::diagnose;
 use hardpoint_report::figures::{error, number, seconds, some_of, with_unit};
 use hardpoint_report::metric::MetricFact;
 use hardpoint_report::page::Table;
-use hardpoint_report::payload::payload;
+use hardpoint_report::payload::{Request, report};
 use hardpoint_report::summary::{RunStatus, Summary};
 use hardpoint_report::validity::ValidityFact;
-use hardpoint_report::{diagnose, page};
 
 use crate::args::Run;
 use crate::folder::{Folder, NotWritten};
@@ -255,8 +255,9 @@ impl Results<'_> {
     fn write(&self, folder: &mut Folder, summary: &mut Summary, session: &Session) -> Result<(), NotWritten> {
         let started = Instant::now();
         let _working = Meter::working("writing");
-        let payload = payload(self.file, self.analysis, self.course, self.differences, summary);
-        let html = page::html(&payload).expect("a payload is plain data");
+        let run = Request::of(self.file, self.analysis, self.course, summary);
+        let html = report(&Request { differences: self.differences, ..run }, &|payload| payload)
+            .expect("a payload is plain data");
         folder.write("report.html", |out| out.write_all(html.as_bytes()))?;
         let names = ["report.html", "summary.json"];
         summary.files.extend(names.map(|name| folder.path_of(name).display().to_string()));

@@ -10,11 +10,11 @@ use hardpoint::study::{
 use hardpoint::{draft::did_you_mean, model::Model};
 use hardpoint_file::{AngleUnit, LengthUnit, ModelFile, Units};
 use hardpoint_report::course::Course;
+use hardpoint_report::diagnose;
 use hardpoint_report::metric::MetricChange;
-use hardpoint_report::payload::payload_beside;
+use hardpoint_report::payload::{Changed, Request, report};
 use hardpoint_report::summary::Summary;
 use hardpoint_report::whatif::{ChangeFact, WhatIfFacts};
-use hardpoint_report::{diagnose, page};
 
 use crate::args::Whatif;
 use crate::folder::Folder;
@@ -107,9 +107,10 @@ fn whatif_in(session: &Session, options: &Whatif) -> Result<Outcome, Outcome> {
     };
     let mut written = None;
     if let Some((mut folder, (course, summary))) = folder.zip(gathered) {
-        let page = payload_beside(&file, &analysis, &course, &[], &summary, changed.as_ref());
-        let page = facts.page(page, names, options.over.as_deref(), &wanted);
-        let html = page::html(&page).expect("a payload is plain data");
+        let beside = changed.as_ref().map(|changed| Changed::of(&file.model, changed));
+        let request = Request { changed: beside, ..Request::of(&file, &analysis, &course, &summary) };
+        let finish = |payload| facts.page(payload, names, options.over.as_deref(), &wanted);
+        let html = report(&request, &finish).expect("a payload is plain data");
         let json = json_text(&facts);
         let result = folder
             .write("whatif.html", |out| out.write_all(html.as_bytes()))

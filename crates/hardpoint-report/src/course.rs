@@ -214,6 +214,11 @@ pub(crate) struct RoundOff {
     natural: Vec<f64>,
 }
 
+/// What remains of a number without round-off: 0 where it is no more than that.
+pub(crate) fn settled(x: f64, round_off: f64) -> f64 {
+    if x.abs() <= round_off { 0.0 } else { x }
+}
+
 impl RoundOff {
     /// Those of a motion of that magnitude.
     pub fn new(model: &Model, magnitude: Magnitude) -> Self {

@@ -58,9 +58,9 @@ pub(crate) fn packed(payload: &Payload) -> Result<Vec<u8>, serde_json::Error> {
     Ok(deflated(&block(payload)?))
 }
 
-/// How many bytes of the page the payload takes.
-pub(crate) fn packed_size(payload: &Payload) -> Result<usize, serde_json::Error> {
-    Ok(packed(payload)?.len().div_ceil(3) * 4)
+/// How many bytes of the page a packed payload takes.
+pub(crate) fn size_in_page(packed: &[u8]) -> usize {
+    packed.len().div_ceil(3) * 4
 }
 
 /// As it stands in the page.

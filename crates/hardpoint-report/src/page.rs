@@ -561,14 +561,18 @@ impl Table {
 /// # Errors
 /// When the payload does not serialise, which plain numbers and strings never do.
 pub fn html(payload: &Payload) -> Result<String, serde_json::Error> {
-    let data = base64(&packed(payload)?);
-    Ok(fill(include_str!("../page/report.html"), |slot| match slot {
-        "title" => escape_text(&payload.title),
+    Ok(file(&payload.title, &packed(payload)?))
+}
+
+/// The file of a packed payload.
+pub(crate) fn file(title: &str, packed: &[u8]) -> String {
+    fill(include_str!("../page/report.html"), |slot| match slot {
+        "title" => escape_text(title),
         "style" => include_str!("../page/app.css").to_owned(),
-        "payload" => data.clone(),
+        "payload" => base64(packed),
         "code" => include_str!(concat!(env!("OUT_DIR"), "/app.js.txt")).to_owned(),
         _ => panic!("the report template names an unknown slot `{slot}`"),
-    }))
+    })
 }
 
 /// Replaces every `{{slot}}` of the template; what is put in is never searched for slots again.

@@ -10,23 +10,25 @@ mod drawing;
 mod first;
 mod values;
 
+pub use designs::Changed;
+
 use std::path::Path;
 
 use hardpoint::joint::Quantity as Kind;
 use hardpoint::model::{BodyId, Dimension, Model, OutputSource, VariableId};
 use hardpoint::sensitivity::BodySensitivity;
 use hardpoint::space::Vec3;
-use hardpoint::study::{Comparison, Difference, WhatIf};
+use hardpoint::study::{Comparison, Difference};
 use hardpoint::{Analysis, Solution};
 use hardpoint_file::{Drawing, ModelFile, Units};
 
-use crate::course::{Course, RoundOff};
-use crate::encoding::packed_size;
+use crate::course::{Course, RoundOff, settled};
+use crate::encoding::{packed, size_in_page};
 use crate::facts::{Answer, Facts};
 use crate::figures::{error, number, order_unit, rounded, seconds, symbol};
 use crate::metric::MetricFact;
 use crate::page::{
-    Admissibility, Curve, Fact, FiniteDifference, Margin, Payload, Quantity, Sensitivity, Status,
+    self, Admissibility, Curve, Fact, FiniteDifference, Margin, Payload, Quantity, Sensitivity, Status,
     Units as PageUnits, Variable,
 };
 use crate::summary::{RunStatus, Summary};
@@ -42,37 +44,66 @@ const BYTES_PER_VALUE: [f64; 2] = [0.2, 3.0];
 const MARKS: usize = 36;
 const AXES: [&str; 3] = ["x", "y", "z"];
 
-/// Everything that the page shows of a run. `differences[b]` are those of variable b, where there are any.
-pub fn payload(
-    file: &ModelFile,
-    analysis: &Analysis<'_>,
-    course: &Course,
-    differences: &[Option<Difference>],
-    summary: &Summary,
-) -> Payload {
-    payload_beside(file, analysis, course, differences, summary, None)
+/// What a page is made of: a run, and what is shown beside it. [`Request::of`] asks for the run alone; what a study has besides, it sets.
+#[derive(Clone, Debug)]
+pub struct Request<'a> {
+    /// The model file.
+    pub file: &'a ModelFile,
+    /// The plan that the model was solved by.
+    pub analysis: &'a Analysis<'a>,
+    /// What was gathered of the whole motion.
+    pub course: &'a Course,
+    /// Its facts.
+    pub summary: &'a Summary,
+    /// `differences[b]` are those of variable b, where there are any; of no variable where this is empty.
+    pub differences: &'a [Option<Difference>],
+    /// Another design over the same motion.
+    pub changed: Option<Changed<'a>>,
 }
 
-/// The same with a changed design beside today's, where one is given; `course` is what was gathered of today's whole solution.
-pub fn payload_beside(
-    file: &ModelFile,
-    analysis: &Analysis<'_>,
-    course: &Course,
-    differences: &[Option<Difference>],
-    summary: &Summary,
-    changed: Option<&WhatIf>,
-) -> Payload {
-    let (model, solution) = (&file.model, &course.kept);
+impl<'a> Request<'a> {
+    /// A run by itself.
+    pub fn of(
+        file: &'a ModelFile,
+        analysis: &'a Analysis<'a>,
+        course: &'a Course,
+        summary: &'a Summary,
+    ) -> Self {
+        Self { file, analysis, course, summary, differences: &[], changed: None }
+    }
+}
+
+/// Everything that the page shows of a run.
+pub fn payload(request: &Request<'_>) -> Payload {
+    fitted(request, &|payload| payload).0
+}
+
+/// The page as one self-contained HTML file; `finish` is what a study makes of the payload.
+///
+/// # Errors
+/// When the payload does not serialise, which plain numbers and strings never do.
+pub fn report(
+    request: &Request<'_>,
+    finish: &dyn Fn(Payload) -> Payload,
+) -> Result<String, serde_json::Error> {
+    let (payload, weighed) = fitted(request, finish);
+    let data = weighed.map_or_else(|| packed(&payload), Ok)?;
+    Ok(page::file(&payload.title, &data))
+}
+
+/// All that fits into a page, finished; packed already where it had to be weighed.
+fn fitted(request: &Request<'_>, finish: &dyn Fn(Payload) -> Payload) -> (Payload, Option<Vec<u8>>) {
+    let (model, solution) = (&request.file.model, &request.course.kept);
     let size = Size {
         steps: solution.motion.len(),
         bodies: model.bodies.len() - 1,
         variables: model.variables.len(),
         outputs: solution.measured.outputs.len(),
-        compared: differences.iter().any(Option::is_some),
-        designs: changed.map_or(0, |_| designs::MOST),
+        compared: request.differences.iter().any(Option::is_some),
+        designs: request.changed.as_ref().map_or(0, Changed::designs),
     };
-    let compose = |detail: Detail| composed(file, analysis, course, differences, summary, changed, detail);
-    let levels = Detail::levels(size, course.has_bodies());
+    let compose = |detail: Detail| finish(composed(request, detail));
+    let levels = Detail::levels(size, request.course.has_bodies());
     let (last, levels) = levels.split_last().expect("there is always a least level");
     for level in levels {
         let [least, most] = BYTES_PER_VALUE.map(|bytes| level.values(size) * bytes);
@@ -80,23 +111,19 @@ pub fn payload_beside(
             continue;
         }
         let payload = compose(*level);
-        if most <= MOST_BYTES as f64 || packed_size(&payload).is_ok_and(|bytes| bytes <= MOST_BYTES) {
-            return payload;
+        if most <= MOST_BYTES as f64 {
+            return (payload, None);
+        }
+        if let Some(data) = packed(&payload).ok().filter(|data| size_in_page(data) <= MOST_BYTES) {
+            return (payload, Some(data));
         }
     }
-    compose(*last)
+    (compose(*last), None)
 }
 
 /// The page in so much detail.
-fn composed(
-    file: &ModelFile,
-    analysis: &Analysis<'_>,
-    course: &Course,
-    differences: &[Option<Difference>],
-    summary: &Summary,
-    changed: Option<&WhatIf>,
-    detail: Detail,
-) -> Payload {
+fn composed(request: &Request<'_>, detail: Detail) -> Payload {
+    let &Request { file, analysis, course, summary, differences, ref changed } = request;
     let (model, units, solution) = (&file.model, file.units, &course.kept);
     let steps: Vec<usize> = (0..solution.motion.len()).step_by(detail.stride).collect();
     let compose = Compose {
@@ -110,8 +137,9 @@ fn composed(
         round_off: course.round_off(model),
     };
     let (bodies, values) = (compose.bodies(), compose.values(summary));
-    let designs =
-        changed.map_or_else(Vec::new, |what_if| compose.designs(what_if, course.stride, &bodies, &values));
+    let designs = changed
+        .as_ref()
+        .map_or_else(Vec::new, |changed| compose.designs(changed, course.stride, &bodies, &values));
     Payload {
         title: model.name.clone(),
         description: file.description.clone().unwrap_or_default(),
@@ -218,6 +246,12 @@ impl Detail {
         ((motion * (1 + size.designs) + size.variables * (3 * size.outputs + bodies + rates)) * steps
             + size.variables * marks) as f64
     }
+}
+
+/// Of so many output times that are shown, differences are drawn at each of these, rounded, so that the marks are nearest to the number
+/// that is wanted.
+fn stride_of_marks(steps: usize) -> usize {
+    ((steps + MARKS / 2) / MARKS).max(1)
 }
 
 fn file_name(file: &str) -> String {
@@ -329,7 +363,7 @@ impl Span {
     fn shown(self, x: f64, round_off: f64) -> f64 {
         let x =
             if x.is_finite() && self.range() <= round_off { 0.5 * (self.least + self.greatest) } else { x };
-        if x.abs() <= round_off { 0.0 } else { x }
+        settled(x, round_off)
     }
 }
 
@@ -425,7 +459,7 @@ impl Compose<'_> {
                 let shift = self.solution.sensitivities.at(k, b).map(|s| s.body(body));
                 let shift = shift.unwrap_or(BodySensitivity::ZERO);
                 let dr = shift.dr.to_array().map(|x| self.shown(b, Dimension::LENGTH, 0, x));
-                let dpi = shift.dpi.to_array().map(|x| if x.abs() <= least_turn { 0.0 } else { x });
+                let dpi = shift.dpi.to_array().map(|x| settled(x, least_turn));
                 let turn = dpi.map(|x| self.units.derivative_from_si(Kind::Number, by, x));
                 dr.into_iter().chain(turn)
             };
@@ -485,8 +519,7 @@ impl Compose<'_> {
         let [value, rate, accel] =
             self.curves(orders, |k, order| self.shown(b, kind, order, exact(k, order)));
         let fd = overlay.map(|(d, worst, difference)| {
-            // Rounded, so that the marks are nearest to the number that is wanted.
-            let stride = ((self.steps.len() + MARKS / 2) / MARKS).max(1);
+            let stride = stride_of_marks(self.steps.len());
             let marks = |order: usize| {
                 let of = |&k: &usize| self.shown(b, kind, order, difference(k, order));
                 let steps = self.steps.iter().step_by(stride).filter(|_| order < orders);
@@ -511,11 +544,7 @@ impl Compose<'_> {
     /// A derivative by variable b in the user's units; round-off becomes 0.
     fn shown(&self, b: usize, kind: Dimension, order: usize, x: f64) -> f64 {
         let by = self.model.variables[b].quantity;
-        if x.abs() <= self.round_off.of(b, kind, order) {
-            0.0
-        } else {
-            self.units.derivative_from_si(kind, by, x)
-        }
+        self.units.derivative_from_si(kind, by, settled(x, self.round_off.of(b, kind, order)))
     }
 }
 
@@ -536,6 +565,14 @@ mod tests {
         assert!(all.values(STRUT) * BYTES_PER_VALUE[1] <= MOST_BYTES as f64);
         // What is not there cannot be shown.
         assert!(Detail::levels(STRUT, false).iter().all(|d| !d.bodies));
+    }
+
+    #[test]
+    fn marks_are_told_apart_and_are_not_few() {
+        for steps in 1..=2 * MOST_STEPS {
+            let marks = steps.div_ceil(stride_of_marks(steps));
+            assert!(marks >= steps.min(2 * MARKS / 3) && 2 * marks <= 3 * MARKS, "{marks} of {steps}");
+        }
     }
 
     #[test]

@@ -6,7 +6,7 @@ use hardpoint::Analysis;
 use hardpoint_file::ModelFile;
 use hardpoint_report::course::Course;
 use hardpoint_report::page::Payload;
-use hardpoint_report::payload::payload;
+use hardpoint_report::payload::{Request, payload};
 use hardpoint_report::summary::Summary;
 
 fn gallery() -> Vec<PathBuf> {
@@ -28,7 +28,7 @@ fn page_of(file: &ModelFile) -> Payload {
     let solution = analysis.run();
     let course = Course::of(&file.model, &solution);
     let summary = Summary::new(file, analysis.topology(), &course);
-    payload(file, &analysis, &course, &[], &summary)
+    payload(&Request::of(file, &analysis, &course, &summary))
 }
 
 fn close(found: f64, expected: f64) -> bool {

@@ -12,7 +12,7 @@ use hardpoint_report::course::Course;
 use hardpoint_report::csv::{MotionCsv, SensitivityCsv};
 use hardpoint_report::facts::{Answer, Facts};
 use hardpoint_report::page;
-use hardpoint_report::payload::payload;
+use hardpoint_report::payload::{Request, payload};
 use hardpoint_report::summary::Summary;
 use serde_json::Value;
 
@@ -194,7 +194,8 @@ fn page_holds_all_quantities_and_their_comparison() {
         .collect();
     differences.push(None);
     let course = Course::of(&file.model, &solution);
-    let payload = payload(&file, &analysis, &course, &differences, &summary);
+    let payload =
+        payload(&Request { differences: &differences, ..Request::of(&file, &analysis, &course, &summary) });
     // 2 measures, 1 point, 3 bodies.
     assert_eq!(payload.quantities.len(), 2 + 3 + 9);
     assert_eq!(payload.file, "slider.toml", "no folders of this machine");

@@ -3,7 +3,7 @@
 use hardpoint::Analysis;
 use hardpoint_report::course::Course;
 use hardpoint_report::page::Payload;
-use hardpoint_report::payload::payload;
+use hardpoint_report::payload::{Request, payload};
 use hardpoint_report::summary::Summary;
 
 const MODEL: &str = r#"
@@ -28,7 +28,7 @@ fn page_of(mesh: &str) -> Payload {
     let solution = analysis.run();
     let course = Course::of(&file.model, &solution);
     let summary = Summary::new(&file, analysis.topology(), &course);
-    payload(&file, &analysis, &course, &[], &summary)
+    payload(&Request::of(&file, &analysis, &course, &summary))
 }
 
 #[test]

@@ -12,7 +12,7 @@ use hardpoint_report::course::Course;
 use hardpoint_report::diagnose;
 use hardpoint_report::facts::outline;
 use hardpoint_report::page::Table;
-use hardpoint_report::payload::payload;
+use hardpoint_report::payload::{Request, payload};
 use hardpoint_report::summary::Summary;
 
 /// In mm and degrees; the model is replaced.
@@ -35,8 +35,9 @@ fn file(draft: &Draft) -> ModelFile {
 fn solved(file: &ModelFile) -> (Solution, Summary) {
     let analysis = Analysis::new(&file.model).unwrap();
     let solution = analysis.run();
-    let summary = Summary::new(file, analysis.topology(), &Course::of(&file.model, &solution));
-    let page = payload(file, &analysis, &Course::of(&file.model, &solution), &[], &summary);
+    let course = Course::of(&file.model, &solution);
+    let summary = Summary::new(file, analysis.topology(), &course);
+    let page = payload(&Request::of(file, &analysis, &course, &summary));
     assert_eq!(page.margin.is_some(), summary.margin.is_some());
     (solution, summary)
 }

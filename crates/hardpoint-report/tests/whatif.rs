@@ -9,7 +9,7 @@ use hardpoint::{Analysis, Run, Solution};
 use hardpoint_file::{ModelFile, Units};
 use hardpoint_report::course::Course;
 use hardpoint_report::page::{Curve, Design, DesignKind, Payload, Table};
-use hardpoint_report::payload::{payload, payload_beside};
+use hardpoint_report::payload::{Changed as Beside, Request, payload};
 use hardpoint_report::summary::Summary;
 use hardpoint_report::whatif::WhatIfFacts;
 
@@ -43,7 +43,8 @@ fn changed<'f>(file: &'f ModelFile, of: &[(&str, f64)]) -> Changed<'f> {
     let facts = WhatIfFacts::of_today(file, analysis.topology(), &today);
     let found = what_if(&analysis, today, &change(file, of));
     let facts = facts.changed(file, analysis.topology(), &found);
-    let page = payload_beside(file, &analysis, &course, &[], &summary, Some(&found));
+    let beside = Some(Beside::of(&file.model, &found));
+    let page = payload(&Request { changed: beside, ..Request::of(file, &analysis, &course, &summary) });
     Changed { analysis, found, facts, page }
 }
 
@@ -231,7 +232,7 @@ fn without_a_change_it_is_the_page_of_today_with_the_ranking() {
     let today = analysis.run();
     let course = Course::of(&file.model, &today);
     let summary = Summary::new(&file, analysis.topology(), &course);
-    let of_run = payload(&file, &analysis, &course, &[], &summary);
+    let of_run = payload(&Request::of(&file, &analysis, &course, &summary));
     let facts = WhatIfFacts::of_today(&file, analysis.topology(), &today);
     let page = facts.page(of_run.clone(), &[], None, &|_| true);
     assert!(page.designs.is_empty() && page.over.is_none() && page.first == of_run.first);

@@ -1,4 +1,4 @@
-import { atFixedAbscissa, peak, quiet, slope, thinned, withGaps, type Curve } from '../curve'
+import { atFixedAbscissa, peak, quiet, slope, withGaps, type Curve } from '../curve'
 import { css, hue } from '../dom'
 import { effects } from '../effect'
 import { figure, number } from '../format'
@@ -16,7 +16,6 @@ export interface Subject {
 
 /** How many sensitivities are drawn beside that of the selected variable. */
 const FEW = 5
-const MARKS = 36
 const DASHED = [7, 5]
 const DOTTED = [2, 4]
 
@@ -86,17 +85,11 @@ export function sensitivityContent(state: State, subject: Subject): Content {
   const rest = left > 0 ? `${shown.length} of ${peers.length}.` : ''
   if (!differences) return overOther(state, subject.over, { ...content, caption: rest })
   const curve = seen(differences.curves[order], selected.index, true)
-  content.lines.push({ label: 'finite differences', color: css('--ink'), curve, marks: marked(curve) })
+  content.lines.push({ label: 'finite differences', color: css('--ink'), curve, marks: withGaps(curve) })
   const caption =
     `${rest} Rings: re-solved ±${figure(Number(differences.step.toPrecision(2)), differences.unit)} away, ` +
     `disagreement at most ${number(differences.worst[order], 2)}.`
   return overOther(state, subject.over, { ...content, caption: caption.trimStart() })
-}
-
-/** Few enough values to be told apart as rings. */
-function marked(curve: Curve): (number | null)[] {
-  const values = curve.reduce((count, value) => count + Number(!Number.isNaN(value)), 0)
-  return values > 2 * MARKS ? thinned(curve, MARKS) : withGaps(curve)
 }
 
 /** The largest size among quantities of the same unit: what is nothing beside it is rounding. */

@@ -4,35 +4,82 @@
 
 use std::iter;
 
+use hardpoint::Solution;
 use hardpoint::joint::Quantity as Kind;
-use hardpoint::model::{BodyId, Dimension, Direction, VariableId};
+use hardpoint::model::{BodyId, Dimension, Direction, Model, VariableId};
 use hardpoint::space::Vec3;
-use hardpoint::study::{WhatIf, metrics};
+use hardpoint::study::{WhatIf, metrics, value_beside};
 
+use crate::course::settled;
 use crate::page::{BodyTrack, Curve, Design, DesignCurves, DesignKind, Value};
 use crate::whatif::follows;
 
 use super::{Compose, ORIGIN};
 
-/// At most so many other designs are shown beside today's.
-pub(super) const MOST: usize = 3;
 /// Hardpoints of a body that are nearer to each other than this part of the mechanism's size are one.
 const SAME: f64 = 1e-9;
+
+/// A design beside today's, solved over the same output times.
+#[derive(Clone, Debug)]
+pub struct Changed<'a> {
+    /// What it is called on the page.
+    pub name: String,
+    /// How it came about and whether the mechanism follows, in a sentence; may be empty.
+    pub note: String,
+    /// By how much every variable is changed, m, rad, or plain.
+    pub change: &'a [f64],
+    /// Today's design, all output times that were solved.
+    pub today: &'a Solution,
+    /// The changed design.
+    pub exact: &'a Solution,
+    /// The study that foresees the changed design from today's derivatives, where that is of interest.
+    pub foreseen: Option<&'a WhatIf>,
+}
+
+impl<'a> Changed<'a> {
+    /// The design of a what-if, solved and foreseen.
+    pub fn of(model: &Model, what_if: &'a WhatIf) -> Self {
+        Self {
+            name: "changed".into(),
+            note: sentence(&follows(model, what_if)),
+            change: &what_if.change,
+            today: &what_if.today,
+            exact: &what_if.exact,
+            foreseen: Some(what_if),
+        }
+    }
+
+    /// At most so many designs it is on the page: solved, and foreseen to first and to second order.
+    pub(super) fn designs(&self) -> usize {
+        if self.foreseen.is_some() { 3 } else { 1 }
+    }
+
+    /// Output times that both designs were solved for.
+    fn solved(&self) -> usize {
+        self.today.motion.len().min(self.exact.motion.len())
+    }
+
+    /// The value of output m at time k.
+    fn value(&self, k: usize, m: usize) -> f64 {
+        value_beside(self.today, self.exact, k, m)
+    }
+}
 
 impl Compose<'_> {
     /// The changed design, then how it is foreseen. Today's solution is kept at every `stride`-th output time; `bodies`
     /// and `values` are today's.
     pub(super) fn designs(
         &self,
-        what_if: &WhatIf,
+        changed: &Changed<'_>,
         stride: usize,
         bodies: &[BodyTrack],
         values: &[Value],
     ) -> Vec<Design> {
-        let beside = Beside { today: self, what_if, stride };
+        let beside = Beside { today: self, changed, stride };
         let mut designs = vec![beside.exact(bodies, values)];
-        if what_if.cannot_follow.is_empty() && beside.solved() > 0 {
-            designs.extend([beside.first_order(values), beside.second_order(values)]);
+        let follows = |what_if: &&WhatIf| what_if.cannot_follow.is_empty() && changed.solved() > 0;
+        if let Some(what_if) = changed.foreseen.filter(follows) {
+            designs.extend([beside.first_order(what_if, values), beside.second_order(what_if, values)]);
         }
         designs
     }
@@ -40,20 +87,15 @@ impl Compose<'_> {
 
 struct Beside<'a> {
     today: &'a Compose<'a>,
-    what_if: &'a WhatIf,
+    changed: &'a Changed<'a>,
     /// Of so many output times that were solved, today's solution keeps one.
     stride: usize,
 }
 
 impl Beside<'_> {
-    /// Output times that both designs were solved for.
-    fn solved(&self) -> usize {
-        self.what_if.today.motion.len().min(self.what_if.exact.motion.len())
-    }
-
     /// A curve over the output times that are shown; `value` is asked for those that both designs were solved for.
     fn curve(&self, value: impl Fn(usize) -> f64) -> Curve {
-        let solved = self.solved();
+        let solved = self.changed.solved();
         self.whole_steps().map(|k| if k < solved { value(k) } else { f64::NAN }).collect()
     }
 
@@ -69,10 +111,9 @@ impl Beside<'_> {
     }
 
     /// The other design's number; today's, where the two differ by round-off, and 0 where it is no more than that.
-    fn settled(&self, of: impl Into<Dimension>, order: usize, today: f64, other: f64) -> f64 {
+    fn beside(&self, of: impl Into<Dimension>, order: usize, today: f64, other: f64) -> f64 {
         let round_off = self.today.round_off.value(of.into(), order);
-        let settled = if (other - today).abs() <= round_off { today } else { other };
-        if settled.abs() <= round_off { 0.0 } else { settled }
+        settled(if (other - today).abs() <= round_off { today } else { other }, round_off)
     }
 
     /// The curves of all quantities: those of the outputs, then x, y and z of every body's origin.
@@ -81,7 +122,7 @@ impl Beside<'_> {
         output: impl Fn(usize) -> Option<DesignCurves>,
         origin: impl Fn(usize, usize) -> Option<DesignCurves>,
     ) -> Vec<Option<DesignCurves>> {
-        let (outputs, model) = (self.what_if.today.measured.outputs.len(), self.today.model);
+        let (outputs, model) = (self.changed.today.measured.outputs.len(), self.today.model);
         let bodies = if self.today.detail.origins { model.bodies.len() } else { 1 };
         let origins = (1..bodies).flat_map(|b| (0..3).map(move |axis| (b, axis)));
         (0..outputs).map(output).chain(origins.map(|(b, axis)| origin(b, axis))).collect()
@@ -95,14 +136,14 @@ impl Beside<'_> {
         static_value: impl Fn(usize, usize) -> Option<f64>,
     ) -> Vec<Option<f64>> {
         let (model, units) = (self.today.model, self.today.units);
-        let times = &self.what_if.today.motion.times[..self.solved()];
+        let times = &self.changed.today.motion.times[..self.changed.solved()];
         let value = |(i, of): (usize, &Value)| {
             let (dimension, found) = match model.metrics.get(i) {
                 Some(known) => (model.metric_dimension(known), metric(i)?),
                 None => {
                     let (m, t) = (of.quantity?, of.time?);
                     let k = times.iter().position(|time| *time == t)?;
-                    (self.what_if.today.measured.outputs[m].dimension, static_value(k, m)?)
+                    (self.changed.today.measured.outputs[m].dimension, static_value(k, m)?)
                 }
             };
             let shown = units.from_si(dimension, found);
@@ -115,14 +156,14 @@ impl Beside<'_> {
 
     /// As it is when solved again.
     fn exact(&self, bodies: &[BodyTrack], values: &[Value]) -> Design {
-        let (what_if, units) = (self.what_if, self.today.units);
-        let (today, exact) = (&what_if.today, &what_if.exact);
+        let (changed, units) = (self.changed, self.today.units);
+        let (today, exact) = (changed.today, changed.exact);
         let output = |m: usize| {
             let output = &today.measured.outputs[m];
             let value = |k: usize, order: usize| {
                 let now = today.measured.value(k, m)[order];
-                let other = if order == 0 { what_if.exact(k, m) } else { exact.measured.value(k, m)[order] };
-                units.from_si(output.dimension, self.settled(output.dimension, order, now, other))
+                let other = if order == 0 { changed.value(k, m) } else { exact.measured.value(k, m)[order] };
+                units.from_si(output.dimension, self.beside(output.dimension, order, now, other))
             };
             Some(self.curves(output.known.orders, value))
         };
@@ -130,15 +171,14 @@ impl Beside<'_> {
             let value = |k: usize, order: usize| {
                 let [now, other] = [today, exact].map(|s| s.body(k, BodyId(b)));
                 let [now, other] = [now, other].map(|s| [s.r, s.v, s.a][order].to_array()[axis]);
-                units.from_si(Kind::Length, self.settled(Kind::Length, order, now, other))
+                units.from_si(Kind::Length, self.beside(Kind::Length, order, now, other))
             };
             Some(self.curves(3, value))
         };
         let margins = &exact.motion.margins;
-        let model = self.today.model;
-        let found = metrics(model, exact);
-        let static_value = |k: usize, m: usize| Some(what_if.exact(k, m));
-        let mut note = sentence(&follows(model, what_if));
+        let found = metrics(self.today.model, exact);
+        let static_value = |k: usize, m: usize| Some(changed.value(k, m));
+        let mut note = changed.note.clone();
         if exact.stop.is_some() {
             let last = exact.motion.times.last();
             note += &match last {
@@ -153,13 +193,13 @@ impl Beside<'_> {
             values: self.values(values, |metric| found[metric].value, static_value),
             margin: (!margins.is_empty())
                 .then(|| self.curve(|k| margins.get(k).map_or(f64::NAN, |m| m.value))),
-            ..self.design("changed", DesignKind::Exact, note)
+            ..self.design(&changed.name, DesignKind::Exact, note)
         }
     }
 
     /// As today's sensitivities foresee it.
-    fn first_order(&self, values: &[Value]) -> Design {
-        let (what_if, units) = (self.what_if, self.today.units);
+    fn first_order(&self, what_if: &WhatIf, values: &[Value]) -> Design {
+        let units = self.today.units;
         let today = &what_if.today;
         let changed = || what_if.change.iter().enumerate().filter(|(_, by)| **by != 0.0);
         // Together, variables may be followed that are not one by one: then rates are not known.
@@ -172,7 +212,7 @@ impl Beside<'_> {
                     changed().map(|(v, by)| by * today.measured.d(k, VariableId(v), m)[order]).sum::<f64>()
                 };
                 let other = if order == 0 { what_if.foreseen(k, m)[0] } else { now + rise() };
-                units.from_si(output.dimension, self.settled(output.dimension, order, now, other))
+                units.from_si(output.dimension, self.beside(output.dimension, order, now, other))
             };
             let known = one_by_one || output.known.by_position;
             let orders = if one_by_one { output.known.orders } else { 1 };
@@ -186,7 +226,7 @@ impl Beside<'_> {
                     let s = today.sensitivities.at(k, v).map(|s| s.body(b));
                     by * s.map_or(f64::NAN, |s| ORIGIN[order](&s).to_array()[axis])
                 });
-                units.from_si(Kind::Length, self.settled(Kind::Length, order, now, now + rise.sum::<f64>()))
+                units.from_si(Kind::Length, self.beside(Kind::Length, order, now, now + rise.sum::<f64>()))
             };
             one_by_one.then(|| self.curves(3, value))
         };
@@ -205,15 +245,15 @@ impl Beside<'_> {
     }
 
     /// As today's first and second derivatives foresee it: of positions alone.
-    fn second_order(&self, values: &[Value]) -> Design {
-        let (what_if, units) = (self.what_if, self.today.units);
+    fn second_order(&self, what_if: &WhatIf, values: &[Value]) -> Design {
+        let units = self.today.units;
         let output = |m: usize| {
             let output = &what_if.today.measured.outputs[m];
             let value = |k: usize, _| {
                 let now = what_if.today.measured.value(k, m)[0];
                 units.from_si(
                     output.dimension,
-                    self.settled(output.dimension, 0, now, what_if.foreseen(k, m)[1]),
+                    self.beside(output.dimension, 0, now, what_if.foreseen(k, m)[1]),
                 )
             };
             output.known.by_position.then(|| self.curves(1, value))
@@ -246,7 +286,7 @@ impl Beside<'_> {
 
     /// By how much every variable is changed, in its unit.
     fn change(&self) -> Vec<f64> {
-        let variables = self.today.model.variables.iter().zip(&self.what_if.change);
+        let variables = self.today.model.variables.iter().zip(self.changed.change);
         variables.map(|(v, by)| self.today.units.from_si(v.quantity, *by)).collect()
     }
 
@@ -254,7 +294,7 @@ impl Beside<'_> {
     fn poses(&self) -> Vec<Curve> {
         let [far, turned] = [Dimension::LENGTH, Dimension::ANGLE].map(|of| self.today.round_off.value(of, 0));
         let pose = |k: usize, b: usize| {
-            let [now, other] = [&self.what_if.today, &self.what_if.exact].map(|s| s.motion.at(k).body(b));
+            let [now, other] = [self.changed.today, self.changed.exact].map(|s| s.motion.at(k).body(b));
             let [p, mut q] = [now.quaternion(), other.quaternion()];
             if iter::zip(p, q).map(|(p, q)| p * q).sum::<f64>() < 0.0 {
                 // Both signs are the same orientation.
@@ -266,7 +306,7 @@ impl Beside<'_> {
             let [qw, qx, qy, qz] = if same { p } else { q };
             [x, y, z, qw, qx, qy, qz]
         };
-        let solved = self.solved();
+        let solved = self.changed.solved();
         let track = |b: usize| {
             let at = |k: usize| if k < solved { pose(k, b) } else { [f64::NAN; 7] };
             self.whole_steps().flat_map(at).collect()
@@ -279,16 +319,13 @@ impl Beside<'_> {
         let model = self.today.model;
         let same = self.today.units.from_si(Kind::Length, SAME * model.size());
         let mut moved: Vec<Vec<[Vec3; 2]>> = vec![Vec::new(); model.bodies.len()];
-        let [today, changed] = [&[][..], &self.what_if.change].map(|design| model.geometry(design));
-        let places = [&[][..], &self.what_if.change].map(|design| model.hardpoint_places(design));
+        let [today, changed] = [&[][..], self.changed.change].map(|design| model.geometry(design));
+        let places = [&[][..], self.changed.change].map(|design| model.hardpoint_places(design));
         for (j, joint) in model.joints.iter().enumerate() {
             for (end, body) in joint.bodies.iter().enumerate() {
                 moved[body.0].push([&today, &changed].map(|g| g.markers[j][end].r));
                 let in_body = model.bodies[body.0].frame.inverse();
-                let ends = [joint.axis, joint.axis2].into_iter().flatten().filter_map(|axis| match axis {
-                    Direction::Through(a, b) => Some([a, b]),
-                    Direction::Along(_) => None,
-                });
+                let ends = [joint.axis, joint.axis2].into_iter().flatten().filter_map(Direction::hardpoints);
                 moved[body.0]
                     .extend(ends.flatten().map(|h| [0, 1].map(|of: usize| in_body.point(places[of][h.0]))));
             }

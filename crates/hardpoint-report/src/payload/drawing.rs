@@ -128,10 +128,7 @@ impl Compose<'_> {
     /// The two hardpoints that a hinge's axis passes through: both lie on both of its bodies.
     pub(super) fn hinge_points(&self, joint: &Joint) -> Option<[HardpointId; 2]> {
         let turns = joint.kind.freedoms.is_some_and(|f| f.iter().all(|f| matches!(f, Freedom::Turn(_))));
-        match joint.axis {
-            Some(Direction::Through(a, b)) if turns && joint.axis2.is_none() => Some([a, b]),
-            _ => None,
-        }
+        joint.axis.filter(|_| turns && joint.axis2.is_none())?.hardpoints()
     }
 
     /// Where a hardpoint of the design configuration is in a body's frame.
@@ -169,10 +166,7 @@ impl Compose<'_> {
                 _ if crosses => k.rot.cols[0],
                 _ => i.rot.cols[0],
             });
-            let ends = match joint.axis {
-                Some(Direction::Through(a, b)) => Some([a, b]),
-                _ => None,
-            };
+            let ends = joint.axis.and_then(Direction::hardpoints);
             JointMark {
                 name: joint.name.clone(),
                 kind: written_kind(joint, spins.contains(&JointId(j))).into(),

@@ -2,6 +2,7 @@
 
 use hardpoint::model::{Dimension, Driver, OutputSource, VariableId};
 
+use crate::course::settled;
 use crate::facts::Answer;
 use crate::figures::order_unit;
 use crate::metric::MetricFact;
@@ -31,7 +32,7 @@ impl Compose<'_> {
             let found = fact.sensitivities.iter().find(|s| s.variable == variable.name)?.value;
             let least = self.round_off.of(b, dimension, 0);
             let least = self.units.derivative_from_si(dimension, variable.quantity, least);
-            Some(if found.abs() <= least { 0.0 } else { found })
+            Some(settled(found, least))
         });
         let outputs = &self.solution.measured.outputs;
         Value {
@@ -64,12 +65,11 @@ impl Compose<'_> {
     fn static_value(&self, summary: &Summary, m: usize, (step, what): (usize, &str)) -> Value {
         let measured = &self.solution.measured;
         let output = &measured.outputs[m];
-        let shown = |x: f64, round_off: f64| if x.abs() <= round_off { 0.0 } else { x };
-        let value = shown(measured.value(step, m)[0], self.round_off.value(output.dimension, 0));
+        let value = settled(measured.value(step, m)[0], self.round_off.value(output.dimension, 0));
         let sensitivity = |b: usize| {
             let known = matches!(summary.model.variables[b].answer, Answer::Admissible | Answer::Reassembled);
             let d = known.then(|| measured.d(step, VariableId(b), m)[0]).filter(|d| d.is_finite())?;
-            let d = shown(d, self.round_off.of(b, output.dimension, 0));
+            let d = settled(d, self.round_off.of(b, output.dimension, 0));
             Some(self.units.derivative_from_si(output.dimension, self.model.variables[b].quantity, d))
         };
         Value {

@@ -66,7 +66,7 @@ impl<'m> DesignMap<'m> {
         for (j, joint) in model.joints.iter().enumerate() {
             joint.at.iter().for_each(|h| design_map.joints[h.0].push(j));
             for axis in [joint.axis, joint.axis2].into_iter().flatten() {
-                axis.hardpoints().for_each(|h| design_map.joints[h.0].push(j));
+                axis.hardpoints().into_iter().flatten().for_each(|h| design_map.joints[h.0].push(j));
             }
         }
         for (k, point) in model.points.iter().enumerate() {

@@ -65,7 +65,8 @@ impl Model {
     pub fn without_effect(&self) -> Vec<VariableId> {
         let design_map = DesignMap::of(self);
         let directions = self.measures.iter().flat_map(|m| self.directions(m)).flatten();
-        let seen: Vec<usize> = directions.flat_map(|(_, axis)| axis.hardpoints()).map(|h| h.0).collect();
+        let seen: Vec<usize> =
+            directions.filter_map(|(_, axis)| axis.hardpoints()).flatten().map(|h| h.0).collect();
         let is_idle = |v: &VariableId| {
             let affected = design_map.affected(&[(*v, 1.0)]);
             let felt = [&affected.joints, &affected.points, &affected.law_formulas];

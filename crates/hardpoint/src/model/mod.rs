@@ -299,13 +299,12 @@ impl Model {
 }
 
 impl Direction {
-    /// The hardpoints that it follows.
-    pub(crate) fn hardpoints(self) -> impl Iterator<Item = HardpointId> {
-        let through = match self {
+    /// The hardpoints that it follows, from one to the other.
+    pub fn hardpoints(self) -> Option<[HardpointId; 2]> {
+        match self {
             Self::Along(_) => None,
             Self::Through(a, b) => Some([a, b]),
-        };
-        through.into_iter().flatten()
+        }
     }
 }
 

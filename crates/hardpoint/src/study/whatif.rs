@@ -106,12 +106,7 @@ impl WhatIf {
 
     /// The exact value; an angle that is counted through turns is counted through the same ones as today's.
     pub fn exact(&self, k: usize, m: usize) -> f64 {
-        const TURN: f64 = 2.0 * std::f64::consts::PI;
-        let (x, now) = (self.exact.measured.value(k, m)[0], self.today.measured.value(k, m)[0]);
-        match self.today.measured.outputs[m].dimension {
-            Dimension::ANGLE => x - TURN * ((x - now) / TURN).round(),
-            _ => x,
-        }
+        value_beside(&self.today, &self.exact, k, m)
     }
 
     /// How well output m was foreseen over the motion; `None` where nothing was foreseen or solved.
@@ -139,6 +134,17 @@ impl WhatIf {
         };
         let linear_up_to = (bends && first > 0.0).then(|| natural(first, second));
         Some(Foresight { change, errors, linear_up_to })
+    }
+}
+
+/// The value of output m at time k of another design; an angle that is counted through turns is counted through the same ones as
+/// today's.
+pub fn value_beside(today: &Solution, other: &Solution, k: usize, m: usize) -> f64 {
+    const TURN: f64 = 2.0 * std::f64::consts::PI;
+    let [x, now] = [other, today].map(|s| s.measured.value(k, m)[0]);
+    match today.measured.outputs[m].dimension {
+        Dimension::ANGLE => x - TURN * ((x - now) / TURN).round(),
+        _ => x,
     }
 }
 

@@ -93,7 +93,7 @@ impl Checker<'_> {
             }
             moved.extend(joint.at.iter().filter(|h| **h != UNPLACED).map(|h| h.0));
             let axes = [joint.axis, joint.axis2].into_iter().flatten();
-            moved.extend(axes.clone().flat_map(Direction::hardpoints).map(|h| h.0));
+            moved.extend(axes.clone().filter_map(Direction::hardpoints).flatten().map(|h| h.0));
             if axes.clone().any(|a| matches!(a, Direction::Along(_))) {
                 turned.push(JointId(j));
             }
