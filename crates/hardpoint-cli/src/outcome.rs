@@ -8,8 +8,8 @@ use std::process::ExitCode;
 pub enum Outcome {
     /// All was done.
     Done = 0,
-    /// A sensitivity does not agree with re-solved designs.
-    Disagrees = 1,
+    /// A sensitivity does not agree with re-solved designs, or a search ended short of an optimum.
+    FellShort = 1,
     /// The command line cannot be understood.
     Misunderstood = 2,
     /// The model file has errors or cannot be read.

@@ -69,7 +69,7 @@ fn verify_in(session: &Session, options: &Verify) -> Result<Outcome, Outcome> {
     Ok(match (verdict.passed, verdict.interrupted) {
         (_, true) => Outcome::Interrupted,
         (true, _) => Outcome::Done,
-        (false, _) => Outcome::Disagrees,
+        (false, _) => Outcome::FellShort,
     })
 }
 

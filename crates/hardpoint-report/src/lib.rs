@@ -28,6 +28,7 @@ pub mod figures;
 pub mod margin;
 pub mod metric;
 pub mod npy;
+pub mod optimize;
 pub mod page;
 pub mod payload;
 pub mod summary;

@@ -5,15 +5,17 @@ use std::ops::ControlFlow;
 
 use hardpoint::Analysis;
 use hardpoint::model::{Goal, Optimization, VariableId};
-use hardpoint::study::{Iteration, Motions, Optimized, Searching, optimize};
+use hardpoint::study::{Motions, Optimized, Progress, Searching, optimize};
 use hardpoint::topology::Formulation;
 use hardpoint_file::ModelFile;
 
 pub fn optimized(file: &ModelFile, asked: &Optimization) -> Optimized {
     let models = file.model.motions();
     let motions = Motions::of(&models, Formulation::Relative).unwrap();
-    let mut progress = |k: usize, i: &Iteration| {
-        if std::env::var("SHOW").is_ok() {
+    let mut progress = |k: usize, told: Progress<'_>| {
+        if let Progress::Iteration(i) = told
+            && std::env::var("SHOW").is_ok()
+        {
             println!(
                 "{k} {:3} f {:.6e} v {:.1e} step {:.1e} designs {}",
                 i.number, i.objective, i.violation, i.step, i.designs

@@ -23,7 +23,7 @@ pub use magnitude::Magnitude;
 pub use metric::{MetricParts, MetricValue, metrics, misfits, peaks};
 pub use nearest::{NearestAdmissible, nearest_admissible};
 pub use optimize::{
-    Binding, Iteration, Judged, Optimality, Optimized, Refused, Search, Searching, Status, optimize,
+    Binding, Iteration, Judged, Optimality, Optimized, Progress, Refused, Search, Searching, Status, optimize,
 };
 pub use second::SecondDerivatives;
 pub use validity::{Validity, validity};

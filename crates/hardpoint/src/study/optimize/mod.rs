@@ -141,10 +141,19 @@ pub struct Refused {
     pub why: String,
 }
 
+/// What is told of a search under way.
+#[derive(Clone, Copy, Debug)]
+pub enum Progress<'s> {
+    /// It did an iteration.
+    Iteration(&'s Iteration),
+    /// It ended.
+    End(&'s Search),
+}
+
 /// How an optimisation is done, besides what is asked for.
 pub struct Searching<'w> {
-    /// Is told of every iteration of every search, and may end them all.
-    pub progress: &'w mut (dyn FnMut(usize, &Iteration) -> ControlFlow<()> + Send),
+    /// Is told of every iteration and of the end of every search, by its number, and may end them all.
+    pub progress: &'w mut (dyn FnMut(usize, Progress<'_>) -> ControlFlow<()> + Send),
     /// Is asked at every output time of every motion whether to go on.
     pub more: &'w (dyn Fn() -> bool + Sync),
     /// Searches run on so many threads; what they find does not depend on it.
@@ -169,13 +178,14 @@ pub fn optimize(
     let more = || !ended.load(Ordering::Relaxed) && more();
     let work = || {
         while let Some(k) = Some(next.fetch_add(1, Ordering::Relaxed)).filter(|k| *k < starts.len()) {
-            let mut tell = |iteration: &Iteration| {
-                let told = (progress.lock().expect("no telling before has panicked"))(k, iteration);
+            let tell = |of: Progress<'_>| {
+                let told = (progress.lock().expect("no telling before has panicked"))(k, of);
                 if told.is_break() {
                     ended.store(true, Ordering::Relaxed);
                 }
             };
-            let search = search(&problem, &starts[k], &mut tell, &more);
+            let search = search(&problem, &starts[k], &mut |i| tell(Progress::Iteration(i)), &more);
+            tell(Progress::End(&search));
             searches.lock().expect("no search before has panicked")[k] = Some(search);
         }
     };
