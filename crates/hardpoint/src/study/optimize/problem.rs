@@ -373,3 +373,168 @@ impl<'m> Problem<'m> {
         Err(Refusal { motion: Some(motion), why, interrupted: false })
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::draft::{Draft, JointDraft};
+    use crate::law::Law;
+    use crate::model::{CaseId, Goal, HardpointId, JointId, Metric, OutputSource, PointId};
+    use crate::topology::Formulation;
+
+    /// Central differences of a smooth function at this step, as a part of the bounds, hold to this part of the largest number:
+    /// `step^2` of the third derivative, and round-off by the step.
+    const STEP: f64 = 1e-5;
+    const AGREES: f64 = 1e-7;
+
+    /// A crank-rocker, its coupler with a point, its rod a distance joint, in two cases, and metrics of every kind.
+    fn four_bar() -> Model {
+        let rod = JointDraft::new("rod", "distance", ["crank", "rocker"]).at("B").at("C");
+        let mut draft = Draft::new("four-bar")
+            .hardpoint("A", [0.0, 0.0, 0.0])
+            .hardpoint("B", [0.04, 0.2, 0.0])
+            .hardpoint("C", [0.36, 0.6, 0.0])
+            .hardpoint("D", [0.5, 0.0, 0.0])
+            .bodies(["crank", "rocker"])
+            .revolute("bearing", ["ground", "crank"], "A", [0.0, 0.0, 1.0])
+            .revolute("pivot", ["ground", "rocker"], "D", [0.0, 0.0, 1.0])
+            .joint(rod)
+            .driver("motor", "bearing", Law::parse("2*t").unwrap())
+            .point("tip", "rocker", [0.3, 0.5, 0.0])
+            .times((0..=40).map(|k| 0.05 * f64::from(k)));
+        for (k, name) in ["A", "B", "C", "D"].into_iter().enumerate() {
+            draft = draft.variable_moving(name, name, [1.0, 0.3 * k as f64, 0.0]);
+        }
+        let mut model = Model::from_draft(&draft).unwrap();
+        model.variables.iter_mut().for_each(|v| v.bounds = Some([-0.02, 0.03]));
+        let of = |k: usize| OutputSource::Point(PointId(0), k);
+        let metric = |name: &str, take: Reduction, over: Option<usize>| Metric {
+            name: name.into(),
+            of: of(0),
+            over: over.map(of),
+            take,
+            window: None,
+            case: None,
+        };
+        model.metrics = vec![
+            metric("fit", Reduction::Rms(vec![[0.0, 0.2], [2.0, 0.4]]), None),
+            metric("path", Reduction::Rms(vec![[0.3, 0.2], [0.6, 0.4]]), Some(1)),
+            metric("most", Reduction::Greatest, None),
+            metric("least", Reduction::Least, None),
+            metric("range", Reduction::Range, None),
+            metric("mean", Reduction::Mean, None),
+            metric("at", Reduction::Value(0.73), None),
+            metric("slope", Reduction::Slope(0.31), None),
+        ];
+        let case = |name: &str, law: &str| crate::model::Case {
+            name: name.into(),
+            laws: vec![Some(Law::parse(law).unwrap())],
+            times: model.times.clone(),
+        };
+        model.cases = vec![case("slow", "t"), case("fast", "3*t")];
+        model.metrics[6].case = Some(CaseId(1));
+        model
+    }
+
+    fn everything() -> Optimization {
+        let goal =
+            |metric: usize, target: Option<f64>| Goal { name: String::new(), metric, target, weight: 1.7 };
+        let limit = |of: Limited, least: f64, most: f64| Limit {
+            name: String::new(),
+            of,
+            least: Some(least),
+            most: Some(most),
+        };
+        Optimization {
+            variables: (0..4).map(VariableId).collect(),
+            goals: (0..8)
+                .map(|k| goal(k, None))
+                .chain([goal(2, Some(0.1)), goal(4, Some(0.2)), goal(7, Some(0.3))])
+                .collect(),
+            limits: (2..8)
+                .map(|k| limit(Limited::Metric(k), -0.4, 0.7))
+                .chain([
+                    limit(Limited::Coordinate(HardpointId(1), 0), 0.0, 0.1),
+                    limit(Limited::Distance(HardpointId(1), HardpointId(3)), 0.1, 0.2),
+                    limit(Limited::Length(JointId(2)), 0.4, 0.4),
+                ])
+                .collect(),
+            margin: None,
+            starts: 1,
+            iterations: 1,
+        }
+    }
+
+    /// All numbers of a point with their derivatives.
+    fn numbers(point: &Point) -> Vec<(f64, Vec<f64>)> {
+        let rows = |rows: &Rows| rows.values.iter().copied().zip(rows.d.iter().cloned()).collect::<Vec<_>>();
+        let mut all = rows(&point.misfits);
+        all.extend(rows(&point.plain));
+        all.extend(point.peaks.iter().flat_map(rows));
+        all.extend(point.limits.iter().map(|l| (l.exceeds, l.d.clone())));
+        all.extend(point.spreads.iter().flat_map(|s| &s.ends).flat_map(rows));
+        all
+    }
+
+    #[test]
+    fn every_kind_of_goal_and_limit_has_the_derivatives_of_differences() {
+        let (model, asked) = (four_bar(), everything());
+        let models = model.motions();
+        let motions = Motions::of(&models, Formulation::Relative).unwrap();
+        let problem = Problem::new(&model, &motions, &asked);
+        let at = |parts: &[f64]| problem.at(problem.design(parts), &mut Cost::default(), &|| true).unwrap();
+        let parts = [0.37, 0.52, 0.61, 0.44];
+        let here = numbers(&at(&parts));
+        assert!(here.len() > 300, "{} numbers", here.len());
+        for v in 0..4 {
+            let moved = |sign: f64| {
+                let mut parts = parts;
+                parts[v] += sign * STEP;
+                numbers(&at(&parts))
+            };
+            let (more, less) = (moved(1.0), moved(-1.0));
+            assert_eq!([more.len(), less.len()], [here.len(); 2], "as many numbers for every design");
+            let span = 0.05;
+            let largest = here.iter().map(|(_, d)| (d[v] * span).abs()).fold(0.0, f64::max);
+            for (k, (_, d)) in here.iter().enumerate() {
+                let difference = (more[k].0 - less[k].0) / (2.0 * STEP);
+                let error = (d[v] * span - difference).abs();
+                assert!(
+                    error <= AGREES * largest.max(1.0),
+                    "number {k} by variable {v}: {} and {difference}",
+                    d[v] * span
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn the_parts_of_a_metric_are_all_of_it() {
+        let (model, asked) = (four_bar(), everything());
+        let models = model.motions();
+        let motions = Motions::of(&models, Formulation::Relative).unwrap();
+        let found = motions.evaluate(&[], &mut Cost::default(), &|| true).unwrap();
+        let (solution, one) = (&found.solutions[0], motions.model(0));
+        let value = |name: &str| {
+            let k = one.metrics.iter().position(|m| m.name == name).unwrap();
+            (&one.metrics[k], found.metrics[0][k].value.unwrap())
+        };
+        for name in ["fit", "path"] {
+            let (metric, rms) = value(name);
+            let parts = misfits(one, solution, metric).unwrap();
+            let sum: f64 = parts.values.iter().map(|r| r * r).sum();
+            assert!((sum.sqrt() - rms).abs() <= 4.0 * f64::EPSILON * rms, "{name}");
+        }
+        let (most, greatest) = value("most");
+        let parts = peaks(one, solution, most, 1.0).unwrap();
+        assert_eq!(parts.values.iter().copied().fold(f64::NEG_INFINITY, f64::max), greatest);
+        let (least, lowest) = value("least");
+        let parts = peaks(one, solution, least, -1.0).unwrap();
+        assert_eq!(parts.values.iter().copied().fold(f64::INFINITY, f64::min), lowest);
+        // A metric of one case is taken there alone, any other in each.
+        let problem = Problem::new(&model, &motions, &asked);
+        let taken =
+            |goal: usize| problem.goals.iter().filter(|t| t.of == goal).map(|t| t.motion).collect::<Vec<_>>();
+        assert_eq!((taken(0), taken(6)), (vec![0, 1], vec![1]));
+    }
+}
