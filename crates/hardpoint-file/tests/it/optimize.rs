@@ -125,6 +125,7 @@ take = \"range\"
     let mut file = hardpoint_file::parse(&text, "strut.toml").unwrap_or_else(|e| panic!("{e}"));
     let times: Vec<f64> = (0..=100).map(|k| 0.01 * f64::from(k)).collect();
     let case = |name: &str, laws: [&str; 2]| Case {
+        formulas: Vec::new(),
         name: name.into(),
         laws: laws.map(|l| Some(Law::parse(l).unwrap())).to_vec(),
         times: times.clone(),

@@ -21,6 +21,7 @@ pub use curve::{Curve, CurvePoint};
 pub use formula::{Formula, NamedNumber, Source, Target};
 pub(crate) use measure::measures;
 pub use measure::{Combination, Dimension, KnownOrders, Measure, MeasureKind, OutputSource, Ray};
+pub(crate) use metric::on_target;
 pub use metric::{Metric, Reduction};
 pub use optimization::{Goal, Limit, Limited, Optimization};
 pub use wheel::{Axle, AxleMeasure, Side, Vehicle, VehicleEnd, Wheel, WheelMeasure, WheelNeed};

@@ -4,7 +4,7 @@
 //! are the polynomials that have their values, rates and accelerations at both ends.
 
 use crate::measure::Measured;
-use crate::model::{Metric, Model, OutputSource, Reduction, VariableId};
+use crate::model::{Metric, Model, OutputSource, Reduction, VariableId, on_target};
 use crate::number::{Dual, Real};
 use crate::run::Solution;
 
@@ -586,19 +586,6 @@ fn weights<T: Real>(
 /// The abscissa at an output time.
 fn abscissa_at<T: Real>(y: &SampledCurve<'_, T>, x: &Option<SampledCurve<'_, T>>, k: usize) -> T {
     x.as_ref().map_or(T::constant(y.times[k]), |x| x.values[k][0])
-}
-
-/// The target at an abscissa.
-fn on_target<T: Real>(target: &[[f64; 2]], at: T) -> T {
-    match target {
-        [] => T::zero(),
-        [[_, only]] => T::constant(*only),
-        _ => {
-            let k = target[1..target.len() - 1].iter().take_while(|p| p[0] < at.value()).count();
-            let ([x0, y0], [x1, y1]) = (target[k], target[k + 1]);
-            T::constant(y0) + (at - T::constant(x0)) * T::constant((y1 - y0) / (x1 - x0))
-        }
-    }
 }
 
 #[cfg(test)]

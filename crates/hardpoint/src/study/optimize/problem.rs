@@ -427,6 +427,7 @@ mod tests {
             metric("slope", Reduction::Slope(0.31), None),
         ];
         let case = |name: &str, law: &str| crate::model::Case {
+            formulas: Vec::new(),
             name: name.into(),
             laws: vec![Some(Law::parse(law).unwrap())],
             times: model.times.clone(),
