@@ -21,11 +21,6 @@ export function prose(text: string): (Node | string)[] {
   return text.split('`').map((part, k) => (k % 2 === 1 ? el('code', {}, part) : part))
 }
 
-/** A name that may be broken after each of its words. */
-export function breakable(name: string): (Node | string)[] {
-  return name.split(/(?<=[_.])/).flatMap((part, k) => (k === 0 ? [part] : [el('wbr'), part]))
-}
-
 /** Renders anew and gives the focus back to the button of the same name. */
 export function keepFocus(container: HTMLElement, render: () => void): void {
   const focused = container.querySelector<HTMLButtonElement>('button:focus')
@@ -63,7 +58,7 @@ export function onSchemeChange(callback: () => void): void {
 }
 
 /** Categorical colours that colour-blind readers can tell apart (Okabe and Ito), tuned per scheme in the style sheet. */
-export const HUES = 8
+const HUES = 8
 
 export function hue(index: number): string {
   return css(`--hue-${index % HUES}`)

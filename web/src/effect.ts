@@ -1,5 +1,5 @@
-import { noise, peak } from './curve'
 import { groups, type Order, type Report, type Sensitivity, type Variable } from './report'
+import { rounded } from './rounding'
 
 /** How a variable acts on the selected quantity. */
 export interface Effect {
@@ -11,9 +11,6 @@ export interface Effect {
   share: number
 }
 
-/** Below this share of the largest, a sensitivity is rounding noise and not an influence. */
-const NOISE = 1e-9
-
 /**
  * Variables with a sensitivity of the quantity, largest effect first: by their typical changes where all of them have one,
  * else by peak over time within each unit, units in the order of their first variable. Those without effect come last.
@@ -23,7 +20,7 @@ export function effects(report: Report, quantity: number, order: Order): Effect[
   for (const variable of report.variables) {
     const sensitivity = variable.sensitivities.get(quantity)
     // Of body origins, velocities and accelerations may be left out.
-    if (sensitivity?.curves[order].length) found.push({ variable, sensitivity, extreme: extreme(sensitivity.curves[order], sensitivity.peaks[order]), share: 0 })
+    if (sensitivity?.curves[order].length) found.push({ variable, sensitivity, extreme: sensitivity.extremes[order], share: 0 })
   }
   const typical = found.length > 0 && found.every(({ variable }) => variable.typical !== null)
   const size = ({ variable, extreme }: Effect) => Math.abs(extreme) * (typical ? Math.abs(variable.typical ?? 0) : 1)
@@ -32,24 +29,12 @@ export function effects(report: Report, quantity: number, order: Order): Effect[
   const largest = new Map(kinds.map((name) => [name, Math.max(...found.filter((item) => kind(item) === name).map(size))]))
   for (const item of found) {
     const most = largest.get(kind(item)) ?? 0
-    item.share = most > 0 ? size(item) / most : 0
-    if (item.share < NOISE) item.share = 0
+    item.share = most > 0 ? rounded(size(item) / most) : 0
   }
   return found.sort((a, b) => Number(a.share === 0) - Number(b.share === 0) || kinds.indexOf(kind(a)) - kinds.indexOf(kind(b)) || b.share - a.share || a.variable.index - b.variable.index)
 }
 
-function extreme(curve: Float32Array, largest: number): number {
-  return curve.find((value) => Math.abs(value) === largest) ?? 0
-}
-
-/** The quantity that the page opens on: the one given, else the first that varies and can be influenced, measures first. */
+/** The quantity that the page opens on: the one given, else the first offered, measures first. */
 export function firstQuantity(report: Report): number {
-  const offered = groups(report).flatMap(([, members]) => members)
-  const varies = ({ curves }: { curves: readonly [Float32Array, Float32Array, Float32Array] }) => {
-    const [value] = curves
-    return value.some((x) => Math.abs(x - value[0]) > noise(peak(value)))
-  }
-  const moved = ({ index }: { index: number }) => report.variables.some(({ sensitivities }) => (sensitivities.get(index)?.peaks[0] ?? 0) > 0)
-  const varying = offered.filter(varies)
-  return report.first ?? (varying.find(moved) ?? varying[0] ?? offered[0])?.index ?? 0
+  return report.first ?? groups(report)[0]?.[1][0].index ?? 0
 }

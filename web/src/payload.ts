@@ -138,7 +138,7 @@ time: string, };
  */
 export type Status = {
 /**
- * False when the motion stops before its last step; the page then says so in a banner.
+ * False when the motion, or that of a design beside it, stops before its last step; the page then says so in a banner.
  */
 complete: boolean,
 /**

@@ -1,6 +1,7 @@
 import { type Curve, extreme, spread } from './curve'
 import { per } from './format'
 import type * as wire from './payload'
+import { rounded } from './rounding'
 import type { Decode } from './unpack'
 
 /** 0 the quantity itself, 1 its velocity, 2 its acceleration. */
@@ -95,12 +96,17 @@ export function read(payload: wire.Payload, decode: Decode): Report {
       wanted: decode(quantity.wanted),
     })),
     margin: payload.margin ? { curve: decode(payload.margin.value), note: payload.margin.note } : undefined,
-    variables: payload.variables.map((variable, index) => ({
-      ...variable,
-      index,
-      shifts: variable.shifts.map(decode),
-      sensitivities: new Map(variable.sensitivities.map((item) => [item.quantity, sensitivity(item, steps, decode)])),
-    })),
+    variables: payload.variables.map((variable, index) => {
+      const shifts = once(() => variable.shifts.map(decode))
+      return {
+        ...variable,
+        index,
+        get shifts() {
+          return shifts()
+        },
+        sensitivities: new Map(variable.sensitivities.map((item) => [item.quantity, sensitivity(item, steps, decode)])),
+      }
+    }),
     designs: payload.designs.map((design) => ({
       ...design,
       poses: design.poses.map(decode),
@@ -118,15 +124,36 @@ function curves(item: Curves, decode: Decode): ByOrder<Curve> {
   return [decode(item.value), decode(item.rate), decode(item.accel)]
 }
 
+/** Its curves are decoded when they are asked for: of a large model, most never are. */
 function sensitivity(item: wire.Sensitivity, steps: number, decode: Decode): Sensitivity {
-  const analytic = curves(item, decode)
-  const [value, rate, accel] = analytic.map(extreme)
+  const analytic = once(() => curves(item, decode))
+  const extremes = once((): ByOrder<number> => byOrder(analytic().map(extreme)))
+  const peaks = once((): ByOrder<number> => byOrder(extremes().map(Math.abs)))
+  const compared = once(() => (item.fd ? differences(item.fd, steps, decode) : undefined))
   return {
-    curves: analytic,
-    extremes: [value, rate, accel],
-    peaks: [Math.abs(value), Math.abs(rate), Math.abs(accel)],
-    differences: item.fd ? differences(item.fd, steps, decode) : undefined,
+    get curves() {
+      return analytic()
+    },
+    get extremes() {
+      return extremes()
+    },
+    get peaks() {
+      return peaks()
+    },
+    get differences() {
+      return compared()
+    },
   }
+}
+
+function byOrder<T>([value, rate, accel]: T[]): ByOrder<T> {
+  return [value, rate, accel]
+}
+
+/** What a function gives, found when it is first asked for. */
+function once<T>(find: () => T): () => T {
+  let found: { it: T } | undefined
+  return () => (found ??= { it: find() }).it
 }
 
 /** The differences at their own steps, gaps between. */
@@ -149,16 +176,13 @@ export function derivativeUnit(quantity: Quantity, order: Order, variable: { uni
   return per(quantity.units[order], variable.unit)
 }
 
-export interface Ranked {
+interface Ranked {
   variable: Variable
   sensitivity: Sensitivity
   peak: number
   /** Peak relative to the largest among variables of the same unit, 0 to 1. */
   share: number
 }
-
-/** Below this share of the largest, a sensitivity is rounding noise and not an influence. */
-const NOISE = 1e-9
 
 /** Variables with a sensitivity of the quantity, largest first within each unit. */
 export function ranking(report: Report, quantity: Quantity, order: Order): Map<string, Ranked[]> {
@@ -175,8 +199,7 @@ export function ranking(report: Report, quantity: Quantity, order: Order): Map<s
     peers.sort((a, b) => b.peak - a.peak || a.variable.index - b.variable.index)
     const largest = peers[0].peak
     for (const item of peers) {
-      item.share = largest > 0 ? item.peak / largest : 0
-      if (item.share < NOISE) item.share = 0
+      item.share = largest > 0 ? rounded(item.peak / largest) : 0
     }
   }
   return byUnit

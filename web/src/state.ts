@@ -6,8 +6,6 @@ import type { Part } from './scene/drawn'
 export interface Choice {
   quantity: number
   variable: number
-  /** By how much the selected variable is changed, in its unit; see [`State.changes`]. */
-  change: number
   order: Order
   /** The quantity that curves are drawn over; time where there is none. */
   over?: number
@@ -41,7 +39,7 @@ export class State {
     const variable = effects(report, quantity, 0)[0]?.variable.index ?? report.variables.find(({ sensitivities }) => sensitivities.size > 0)?.index ?? 0
     const exact = report.designs.find(({ kind }) => kind === 'exact')
     this.changes = report.variables.map((_, index) => exact?.change[index] ?? 0)
-    this.choice = { quantity, variable, change: this.changes[variable] ?? 0, order: 0, over: report.over ?? undefined, labels: false }
+    this.choice = { quantity, variable, order: 0, over: report.over ?? undefined, labels: false }
   }
 
   get lastStep(): number {
@@ -112,8 +110,6 @@ export class State {
   choose(choice: Partial<Choice>): void {
     Object.assign(this.choice, choice)
     this.choice.distance = this.#distance()
-    if (choice.change !== undefined) this.changes[this.choice.variable] = choice.change
-    this.choice.change = this.changes[this.choice.variable] ?? 0
     for (const listener of this.#onChoice) listener()
   }
 
@@ -126,7 +122,8 @@ export class State {
 
   /** Changes one variable, which thereby is the selected one. */
   change(variable: number, change: number): void {
-    this.choose({ variable, change })
+    this.changes[variable] = change
+    this.choose({ variable })
   }
 
   /** Takes every change back. */

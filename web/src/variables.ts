@@ -1,5 +1,4 @@
 import { el } from './dom'
-import { pretty } from './format'
 import type { Admissibility } from './payload'
 import type { Variable } from './report'
 
@@ -7,11 +6,6 @@ const BADGES: Record<Admissibility, string> = {
   admissible: '',
   reassembled: 're-assembled',
   cannot_follow: 'cannot follow',
-}
-
-/** The variable's unit in words. */
-export function unitOf(variable: Variable): HTMLElement {
-  return el('span', { class: 'unit' }, pretty(variable.unit) || 'pure number')
 }
 
 /** How the mechanism follows a variable, where that is not simply so. */

@@ -1,25 +1,33 @@
-import { Box3, type BufferGeometry, type Object3D, Vector3 } from 'three'
+import { Box3, type BufferGeometry, type EventDispatcher, type Mesh, type Object3D, Vector3 } from 'three'
 import { describe, expect, inject, test, vi } from 'vitest'
+import { Assembly } from '../src/scene/assembly'
+import { cameraFor, fit, looksOf } from '../src/scene/camera'
 import { marks, matter } from '../src/scene/draw'
 import type { Drawn, Part } from '../src/scene/drawn'
 import { Kit } from '../src/scene/kit'
 import { Mechanism } from '../src/scene/mechanism'
+import { Outlines } from '../src/scene/outlines'
+import { paletteOf } from '../src/scene/palette'
 import { State } from '../src/state'
 import { reportOf } from './payload'
-import { paletteOf, schemes } from './schemes'
+import { schemes } from './schemes'
 
 const { models } = inject('samples')
+
+const LIGHT = paletteOf((name) => schemes.light[name])
+/** Pixels of a view. */
+const [WIDTH, HEIGHT] = [860, 600]
 
 // A hatch is painted on a canvas, which Node has not; what is counted here is geometry.
 const brush = new Proxy({}, { get: () => () => undefined })
 vi.stubGlobal('document', { createElement: () => ({ getContext: () => brush }) })
 
 /** Everything that is drawn of a model as it opens. */
-async function drawing(address: string): Promise<{ mechanism: Mechanism; drawn: Drawn[] }> {
+async function drawing(address: string): Promise<{ mechanism: Mechanism; kit: Kit; drawn: Drawn[] }> {
   const report = await reportOf(address)
   const mechanism = new Mechanism(report)
-  const kit = new Kit(mechanism, paletteOf(schemes.light))
-  return { mechanism, drawn: [...matter, ...marks].flatMap((draw) => draw(mechanism, kit, new State(report).choice)) }
+  const kit = new Kit(mechanism, LIGHT)
+  return { mechanism, kit, drawn: [...matter, ...marks].flatMap((draw) => draw(mechanism, kit, new State(report).choice)) }
 }
 
 /** Vertices of an object, as it is placed. */
@@ -38,7 +46,7 @@ function vertices(object: Object3D): Vector3[] {
 }
 
 describe.each(Object.entries(models))('of %s', async (_, address) => {
-  const { mechanism, drawn } = await drawing(address)
+  const { mechanism, kit, drawn } = await drawing(address)
   const { report } = mechanism
   const count = (kind: Part['kind'], index: number) => drawn.filter(({ part }) => part.kind === kind && part.index === index).length
 
@@ -91,6 +99,41 @@ describe.each(Object.entries(models))('of %s', async (_, address) => {
     expect(mechanism.unit).toBeGreaterThanOrEqual(0.0012 * mechanism.size)
     expect(mechanism.unit).toBeLessThanOrEqual(0.0125 * mechanism.size)
     for (const joint of report.joints) expect(mechanism.radiusOf(joint), joint.name).toBeLessThanOrEqual(mechanism.unit)
+  })
+
+  test('a fitted picture shows everything at every moment, and little else', () => {
+    const assemblies = [matter, marks].map((draws) => new Assembly(mechanism, LIGHT, new State(report).choice, draws, new Outlines(), 0))
+    const camera = cameraFor(mechanism)
+    fit(camera, assemblies.flatMap(({ reach }) => reach), mechanism.size, looksOf(mechanism)[0], WIDTH, HEIGHT)
+    const seen = new Box3()
+    const last = report.times.length - 1
+    for (const step of [0, 1, 2, 3, 4, 5].map((k) => Math.round((k * last) / 5))) {
+      for (const assembly of assemblies) {
+        assembly.pose(mechanism.frame(step))
+        for (const group of assembly.groups.filter(({ visible }) => visible)) for (const point of vertices(group)) seen.expandByPoint(point.project(camera))
+      }
+    }
+    expect(seen.max.x).toBeLessThan(1)
+    expect(seen.min.x).toBeGreaterThan(-1)
+    expect(seen.min.y).toBeGreaterThan(-1)
+    // Below the buttons.
+    expect(seen.max.y).toBeLessThan(1 - (2 * 34) / HEIGHT)
+    // From side to side or from top to bottom; what is nearest to the eye at another moment leaves some air at this one.
+    expect(Math.max((seen.max.x - seen.min.x) / 2, (seen.max.y - seen.min.y) / (2 - (2 * 34) / HEIGHT))).toBeGreaterThan(0.85)
+  })
+
+  test('nothing drawn stays on the graphics card when its kit is freed', () => {
+    const kept = new Map<EventDispatcher<{ dispose: object }>, string>()
+    for (const { object, part } of drawn) {
+      object.traverse((one) => {
+        const { geometry, material } = one as Partial<Mesh>
+        for (const held of [geometry, material].flat()) if (held) kept.set(held, `${held.type} of ${part.name}`)
+      })
+    }
+    for (const held of kept.keys()) held.addEventListener('dispose', () => kept.delete(held))
+    expect(kept.size).toBeGreaterThan(0)
+    kit.dispose()
+    expect([...kept.values()]).toEqual([])
   })
 
   test.skipIf(!mechanism.plane)('links of one pin lie in different layers', () => {

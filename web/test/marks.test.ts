@@ -4,7 +4,6 @@ import type { Drawn } from '../src/scene/drawn'
 import { centreLines } from '../src/scene/centre_lines'
 import { deformed } from '../src/scene/deform'
 import { marks, matter } from '../src/scene/draw'
-import { velocityTips } from '../src/scene/draw/design_velocity'
 import { equalTimes, pieces } from '../src/scene/draw/trace'
 import { Kit } from '../src/scene/kit'
 import { hardpointLabels, partLabels } from '../src/scene/label_layer'
@@ -22,7 +21,7 @@ const PALETTE: Palette = {
   ...{ trace: '#0b62b8', former: '#2a323a', grid: '#e4e8ec', gridMain: '#d2d8dd', axes: { x: '#d55e00', y: '#009e73', z: '#0072b2' } },
   ...{ light: { sky: 2, earth: '#c2cad2', sun: 1, shadow: 0.16 }, glass: 0.13 },
 }
-const CHOICE: Choice = { quantity: 0, variable: 0, change: 0, order: 0, labels: false }
+const CHOICE: Choice = { quantity: 0, variable: 0, order: 0, labels: false }
 
 function drawn(mechanism: Mechanism, choice: Partial<Choice> = {}): Drawn[] {
   return marks.flatMap((draw) => draw(mechanism, new Kit(mechanism, PALETTE), { ...CHOICE, ...choice }))
@@ -177,7 +176,7 @@ describe('design velocities', () => {
     const velocities = drawn(mechanism)
     expect(velocities).toHaveLength(2)
     expect(boxOf(mechanism, velocities[1]).max.x).toBeCloseTo(200 + 0.11 * mechanism.size, 3)
-    expect(velocityTips(mechanism, mechanism.report.variables[0])[0].y).toBeCloseTo(0.055 * mechanism.size, 3)
+    expect(boxOf(mechanism, velocities[0]).max.y).toBeCloseTo(0.055 * mechanism.size, 3)
   })
 
   test('of a turn are rings; of none, nothing', () => {

@@ -1,4 +1,33 @@
+import type { Payload } from '../src/payload'
 import type { Report } from '../src/report'
+
+/** What a page is about, when it is about nothing. */
+export const EMPTY: Payload = {
+  title: '',
+  description: '',
+  file: '',
+  generator: 'test',
+  units: { length: 'mm', angle: 'deg', time: 's' },
+  status: { complete: true, message: '' },
+  summary: [],
+  notes: [],
+  times: [],
+  bodies: [],
+  joints: [],
+  couplers: [],
+  drivers: [],
+  wheels: [],
+  distances: [],
+  vehicle: null,
+  quantities: [],
+  values: [],
+  first: null,
+  over: null,
+  designs: [],
+  margin: null,
+  variables: [],
+  checks: [],
+}
 
 /** Turns about z by which the crank goes on from one step to the next. */
 const QUARTER = Math.PI / 2
@@ -12,33 +41,20 @@ export function crank(changes: Partial<Report> = {}): Report {
   const travel = Float32Array.from({ length: STEPS }, (_, k) => k * QUARTER)
   const hinge = { kind: 'revolute', body_i: 0, body_j: 1, at_i: [0, 0, 0], at_j: [0, 0, 0], axis: [0, 0, 1], axis_j: [0, 0, 1] }
   return {
+    ...EMPTY,
     title: 'one turn of a crank',
-    description: '',
     file: 'crank.toml',
-    generator: 'test',
-    units: { length: 'mm', angle: 'deg', time: 's' },
-    status: { complete: true, message: '' },
-    summary: [],
-    notes: [],
     times: Float32Array.from({ length: STEPS }, (_, k) => 1 + 0.5 * k),
     bodies: [
       { name: 'ground', poses: poses(still), skeleton: [[0, 0, 0]], labels: ['pivot'], roles: ['joint'], mesh: null },
       { name: 'crank', poses: poses(turn), skeleton: [[0, 0, 0], [200, 0, 0]], labels: ['pivot', 'pin'], roles: ['joint', 'joint'], mesh: null },
     ],
     joints: [{ name: 'hinge', ...hinge, axis2: null, hinge: null, lead: null, curve: null, draw: null, cut: false } as Report['joints'][number]],
-    couplers: [],
     drivers: [{ name: 'motor', law: 'one turn', joint: 0, turns: true, point: null, along: null, travel }],
-    wheels: [],
-    distances: [],
-    vehicle: null,
     quantities: [],
-    values: [],
-    first: null,
-    over: null,
     designs: [],
     margin: undefined,
     variables: [],
-    checks: [],
     ...changes,
   }
 }

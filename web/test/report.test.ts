@@ -1,6 +1,7 @@
 import { expect, test } from 'vitest'
 import type { Curve, Payload, Variable } from '../src/payload'
 import { derivativeName, derivativeUnit, groups, ranking, read } from '../src/report'
+import { EMPTY } from './mechanisms'
 
 const stored: Float32Array[] = []
 const encode = (...values: number[]) => [stored.push(Float32Array.from(values)) - 1]
@@ -25,30 +26,11 @@ const quantity = (name: string, group: string) =>
   ({ name, group, unit: 'deg', rate_unit: 'deg/s', accel_unit: 'deg/s^2', wanted: [], ...curves(1) })
 
 const payload: Payload = {
-  title: '',
-  file: '',
-  description: '',
-  generator: '',
-  units: { length: 'mm', angle: 'deg', time: 's' },
-  status: { complete: true, message: '' },
-  summary: [],
-  notes: [],
+  ...EMPTY,
   times: encode(0, 1),
-  bodies: [],
-  joints: [],
-  couplers: [],
-  drivers: [],
-  wheels: [],
-  distances: [],
-  vehicle: null,
   quantities: [quantity('hub.x', 'point'), quantity('toe', 'measure')],
-  values: [],
-  first: null,
-  over: null,
-  designs: [],
   margin: { value: encode(0.5, 0.25), note: '' },
   variables: [variable('small', 'mm', 1), variable('tilt', 'deg', 5), variable('large', 'mm', -4), variable('stuck', 'mm')],
-  checks: [],
 }
 const report = read(payload, decode)
 const [hub] = report.quantities
@@ -78,4 +60,17 @@ test('derivatives are named and measured by what they divide', () => {
 test('the margin is decoded, and may be missing', () => {
   expect([...report.margin!.curve]).toEqual([0.5, 0.25])
   expect(read({ ...payload, margin: null }, decode).margin).toBeUndefined()
+})
+
+test('curves of sensitivities and shifts are decoded once, and not before they are asked for', () => {
+  const asked: number[] = []
+  const counted = (curve: Curve) => (asked.push(...curve), decode(curve))
+  const moving = { ...variable('moving', 'mm', 3), shifts: [encode(1, 2, 3, 4, 5, 6)] }
+  const { variables } = read({ ...payload, variables: [moving] }, counted)
+  const [sensitivity, shifts] = [moving.sensitivities[0].value[0], moving.shifts[0][0]]
+  expect(asked).not.toContain(sensitivity)
+  expect(asked).not.toContain(shifts)
+  const { shifts: found, sensitivities } = variables[0]
+  expect([...found[0], ...sensitivities.get(0)!.peaks, ...variables[0].shifts[0]]).toEqual([1, 2, 3, 4, 5, 6, 6, 0, 3, 1, 2, 3, 4, 5, 6])
+  expect(asked.filter((track) => track === shifts || track === sensitivity).sort()).toEqual([sensitivity, shifts].sort())
 })

@@ -1,7 +1,7 @@
 import { OrthographicCamera, PerspectiveCamera, Vector3 } from 'three'
 import { describe, expect, test } from 'vitest'
 import { fit } from '../src/scene/camera'
-import { path, poseAt, reshaped, shifted } from '../src/scene/poses'
+import { path, poseAt, shifted } from '../src/scene/poses'
 
 const QUARTER = Math.SQRT1_2
 /** At the origin, then at (2, 0, 0) and turned by 90° about z, then not solved. */
@@ -22,12 +22,6 @@ test('a changed design shifts and turns a body in proportion', () => {
   // A quarter turn further than the pose's own.
   close(new Vector3(1, 0, 0).applyQuaternion(turn), -1, 0, 0)
   close(shifted(poseAt(poses, 0)!, shifts, 0.5, 1).place, 0, 0, 2)
-})
-
-test('points of a changed body go with the design velocity that stands there, the others stay', () => {
-  const arrows = [{ body: 1, at: [1, 0, 0], v: [0, 0, 2], turn: [0, 0, 0] }] as Parameters<typeof reshaped>[1]
-  expect(reshaped([[0, 0, 0], [1, 0, 0]], arrows, 1, 0.5, 1)).toEqual([[0, 0, 0], [1, 0, 1]])
-  expect(reshaped([[1, 0, 0]], arrows, 2, 0.5, 1)).toEqual([[1, 0, 0]])
 })
 
 test('between two steps the body is half way and half turned', () => {

@@ -1,6 +1,5 @@
 import { readdirSync, readFileSync } from 'node:fs'
 import { join } from 'node:path'
-import type { Palette } from '../src/scene/palette'
 
 const SOURCES = join(import.meta.dirname, '../src')
 const DARK = '@media screen and (prefers-color-scheme: dark)'
@@ -30,29 +29,3 @@ const light = properties(dark.reduce((css, block) => css.replace(block, ''), she
 
 /** Custom properties of the page's style sheets in both schemes. */
 export const schemes: Record<'light' | 'dark', Record<string, string>> = { light, dark: { ...light, ...properties(dark.join('\n')) } }
-
-/** The colours of the drawing, as the page reads them where there is a document. */
-export function paletteOf(scheme: Record<string, string>): Palette {
-  const at = (name: string) => scheme[name]
-  return {
-    view: at('view'),
-    outline: at('outline'),
-    label: at('label'),
-    bodies: [0, 1, 2, 3, 4, 5].map((k) => at(`body-${k}`)),
-    steel: at('steel'),
-    rod: at('rod'),
-    ground: at('ground'),
-    hatch: at('hatch'),
-    rubber: at('rubber'),
-    tyre: at('tyre'),
-    driver: at('driver'),
-    chosen: at('chosen'),
-    trace: at('trace'),
-    former: at('former'),
-    grid: at('grid'),
-    gridMain: at('grid-main'),
-    axes: { x: at('axis-x'), y: at('axis-y'), z: at('axis-z') },
-    light: { sky: Number(at('sky')), earth: at('earth'), sun: Number(at('sun')), shadow: Number(at('shadow')) },
-    glass: Number(at('glass')),
-  }
-}

@@ -8,7 +8,7 @@ use hardpoint::study::{
     add_coordinates, add_tilts, nearest_admissible, variable_named, variable_names, what_if,
 };
 use hardpoint::{draft::did_you_mean, model::Model};
-use hardpoint_file::{AngleUnit, LengthUnit, ModelFile, Units};
+use hardpoint_file::{AngleUnit, Diagnostic, LengthUnit, ModelFile, Units};
 use hardpoint_report::course::Course;
 use hardpoint_report::diagnose;
 use hardpoint_report::metric::MetricChange;
@@ -74,15 +74,16 @@ fn whatif_in(session: &Session, options: &Whatif) -> Result<Outcome, Outcome> {
     let analysis = session.plan(&file, options.common.formulation())?;
 
     let today = session.solve(&analysis);
-    let early = |stop: &hardpoint::motion::Stop, steps: usize| {
-        session.tell(&file, &[diagnose::stop(&file, stop, steps, None)]);
+    let early = |diagnostic: Diagnostic| {
+        session.tell(&file, &[diagnostic]);
         if session.interrupted() { Outcome::Interrupted } else { Outcome::Stopped }
     };
     if let Some(stop) = today.stop.as_ref().filter(|_| today.motion.is_empty() || session.interrupted()) {
         session.fail(&file, &[diagnose::stop(&file, stop, today.motion.len(), None)]);
         return Err(if session.interrupted() { Outcome::Interrupted } else { Outcome::Stopped });
     }
-    let mut outcome = today.stop.as_ref().map_or(Outcome::Done, |stop| early(stop, today.motion.len()));
+    let of_today = |stop| diagnose::stop(&file, stop, today.motion.len(), None);
+    let mut outcome = today.stop.as_ref().map(of_today).map_or(Outcome::Done, early);
     let gathered = folder.as_ref().map(|_| {
         let course = Course::of(&file.model, &today);
         let mut summary = Summary::new(&file, analysis.topology(), &course);
@@ -93,7 +94,7 @@ fn whatif_in(session: &Session, options: &Whatif) -> Result<Outcome, Outcome> {
     let changed = (!settings.is_empty()).then(|| what_if(&analysis, today, &change));
     if let Some(changed) = &changed {
         if let Some(stop) = &changed.exact.stop {
-            outcome = early(stop, changed.exact.motion.len());
+            outcome = early(diagnose::stop_of_changed(&file, stop, changed.exact.motion.len()));
         }
         facts = WhatIfFacts { nearest, ..facts.changed(&file, analysis.topology(), changed) };
     }

@@ -3,8 +3,11 @@
 use hardpoint::model::{Dimension, Model, OutputSource, VariableId};
 use hardpoint::motion::{Margin, Motion};
 use hardpoint::sensitivity::Admissibility;
+use hardpoint::space::Vec3;
 use hardpoint::study::Magnitude;
 use hardpoint::{Footprint, Keep, Kept, Solution};
+
+use crate::shifts::Shifts;
 
 /// What is kept of a run for the page and what is compared afterwards: so many bytes.
 const KEPT_BYTES: usize = 64 << 20;
@@ -26,6 +29,8 @@ pub struct Gathering {
     kept: Kept,
     /// Where what is kept for the page is too coarse for metrics.
     curves: Option<Kept>,
+    /// Where sensitivities of bodies are not kept.
+    shifts: Option<Shifts>,
 }
 
 /// What a whole run comes to.
@@ -43,6 +48,8 @@ pub struct Course {
     pub stride: usize,
     /// The curves of the metrics, where they are not taken from what is kept.
     curves: Option<Solution>,
+    /// How bodies move with the variables, where that is kept apart.
+    shifts: Option<Shifts>,
     /// Of so many output times, metrics are taken from each.
     pub metric_stride: usize,
     /// Of the motion.
@@ -96,7 +103,8 @@ impl Gathering {
             variables,
             ..Course::default()
         };
-        Self { course, orders, kept: Kept::new(keep(rows, true, None)), curves }
+        let shifts = (!bodies && variables > 0).then(|| Shifts::new(KEPT_BYTES));
+        Self { course, orders, kept: Kept::new(keep(rows, true, None)), curves, shifts }
     }
 
     /// Takes a window that begins with output time `first`.
@@ -112,6 +120,9 @@ impl Gathering {
             }
         }
         self.kept.add(first, window);
+        if let Some(shifts) = self.shifts.as_mut().filter(|_| window.sensitivities.variables > 0) {
+            shifts.add(first, window, self.kept.stride());
+        }
         if let Some(curves) = &mut self.curves {
             curves.add(first, window);
         }
@@ -136,6 +147,7 @@ impl Gathering {
         course.metric_stride = self.curves.as_ref().map_or(course.stride, Kept::stride);
         course.curves = self.curves.map(|curves| curves.end(whole));
         course.kept = self.kept.end(whole);
+        course.shifts = self.shifts;
         course
     }
 }
@@ -151,6 +163,30 @@ impl Course {
     /// What metrics are taken from.
     pub fn curves(&self) -> &Solution {
         self.curves.as_ref().unwrap_or(&self.kept)
+    }
+
+    /// How bodies move with the variables was kept at each of so many output times of those that are kept; `None` where it was not.
+    pub(crate) fn shift_stride(&self) -> Option<usize> {
+        if self.has_bodies() {
+            return Some(1);
+        }
+        Some(self.shifts.as_ref()?.stride(self.steps)? / self.stride)
+    }
+
+    /// Place and turn of body i by variable b, to first order, SI, at an output time of those that are kept; `None` where the mechanism
+    /// cannot follow.
+    ///
+    /// # Panics
+    /// Where that was not kept ([`shift_stride`](Self::shift_stride)).
+    pub(crate) fn shift(&self, k: usize, b: usize, i: usize) -> Option<[f64; 6]> {
+        match &self.shifts {
+            Some(shifts) => self.follows(b).then(|| shifts.at(k * self.stride, b, i)),
+            None => {
+                let of = self.kept.sensitivities.at(k, b)?.body(i);
+                let [[x, y, z], [rx, ry, rz]] = [of.dr, of.dpi].map(Vec3::to_array);
+                Some([x, y, z, rx, ry, rz])
+            }
+        }
     }
 
     /// Whether sensitivities of bodies were kept.

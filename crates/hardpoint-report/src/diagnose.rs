@@ -47,6 +47,27 @@ pub fn topology_fault(file: &ModelFile, fault: &TopologyFault) -> Diagnostic {
 
 /// A run ended before its last output time; `outputs` names what was written of the solved part.
 pub fn stop(file: &ModelFile, stop: &Stop, solved: usize, outputs: Option<&str>) -> Diagnostic {
+    let asked = file.model.times.len();
+    let left = match outputs {
+        _ if solved == 0 => "nothing was solved, so there is nothing to write".into(),
+        Some(outputs) => format!("{outputs} hold the part that was solved: {solved} of {asked} steps"),
+        None => format!("{solved} of {asked} steps were solved"),
+    };
+    ended(file, stop, "", left)
+}
+
+/// The motion of a changed design ended before its last output time.
+pub fn stop_of_changed(file: &ModelFile, stop: &Stop, solved: usize) -> Diagnostic {
+    let asked = file.model.times.len();
+    ended(
+        file,
+        stop,
+        "the changed design: ",
+        format!("{solved} of {asked} steps of the changed design were solved"),
+    )
+}
+
+fn ended(file: &ModelFile, stop: &Stop, who: &str, left: String) -> Diagnostic {
     let (model, units) = (&file.model, file.units);
     let joint_name = |j: &JointId| model.joints[j.0].name.as_str();
     let place = match stop.kind {
@@ -61,7 +82,7 @@ pub fn stop(file: &ModelFile, stop: &Stop, solved: usize, outputs: Option<&str>)
         _ => stop.joints.first().map(|j| (Section::Joints, j.0)),
     };
     let severity = if stop.kind == StopKind::Interrupted { Severity::Warning } else { Severity::Error };
-    let mut headline = stop.headline(model);
+    let mut headline = who.to_owned() + &stop.headline(model);
     if let (StopKind::DoesNotAssemble, Some(gap)) = (stop.kind, stop.remains.first()) {
         headline += &format!(" by {} at best", GapFact::new(model, units, gap).size_text());
     }
@@ -92,12 +113,7 @@ pub fn stop(file: &ModelFile, stop: &Stop, solved: usize, outputs: Option<&str>)
             rounded(stop.pivot_ratio, 2)
         ));
     }
-    let asked = model.times.len();
-    d = d.note(match outputs {
-        _ if solved == 0 => "nothing was solved, so there is nothing to write".into(),
-        Some(outputs) => format!("{outputs} hold the part that was solved: {solved} of {asked} steps"),
-        None => format!("{solved} of {asked} steps were solved"),
-    });
+    d = d.note(left);
     match stop.help() {
         Some(help) => d.help(help),
         None => d.help("run it again for the rest"),

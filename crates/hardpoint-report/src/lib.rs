@@ -31,6 +31,7 @@ pub mod npy;
 pub mod optimize;
 pub mod page;
 pub mod payload;
+mod shifts;
 pub mod summary;
 pub mod validity;
 pub mod verdict;

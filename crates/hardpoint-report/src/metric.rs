@@ -2,7 +2,7 @@
 
 use hardpoint::Solution;
 use hardpoint::model::{Metric, Model, Reduction};
-use hardpoint::study::{MetricValue, WhatIf, metrics};
+use hardpoint::study::{MetricValue, WhatIf, metrics, metrics_beside};
 use hardpoint_file::Units;
 use serde::Serialize;
 
@@ -139,7 +139,8 @@ impl MetricFact {
 impl MetricChange {
     /// Those of a changed design.
     pub fn all(model: &Model, units: Units, what_if: &WhatIf) -> Vec<Self> {
-        let (today, exact) = (metrics(model, &what_if.today), metrics(model, &what_if.exact));
+        let (now, other) = (&what_if.today, &what_if.exact);
+        let (today, exact) = (metrics(model, now), metrics_beside(model, now, other));
         let change = |(k, metric): (usize, &Metric)| {
             let dimension = model.metric_dimension(metric);
             let shown = |x: Option<f64>| x.map(|x| units.from_si(dimension, x));
@@ -150,7 +151,7 @@ impl MetricChange {
                 unit: unit(units, dimension),
                 today: shown(today[k].value),
                 first: shown(today[k].value.map(|now| now + first).filter(|x| x.is_finite())),
-                exact: shown(exact[k].value),
+                exact: shown(exact[k]),
             }
         };
         model.metrics.iter().enumerate().map(change).collect()

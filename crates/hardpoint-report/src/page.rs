@@ -133,7 +133,7 @@ pub struct Units {
 #[derive(Clone, Debug, Serialize)]
 #[cfg_attr(test, derive(TS))]
 pub struct Status {
-    /// False when the motion stops before its last step; the page then says so in a banner.
+    /// False when the motion, or that of a design beside it, stops before its last step; the page then says so in a banner.
     pub complete: bool,
     /// One sentence.
     pub message: String,

@@ -103,7 +103,7 @@ fn fitted(request: &Request<'_>, finish: &dyn Fn(Payload) -> Payload) -> (Payloa
         designs: request.changed.as_ref().map_or(0, Changed::designs),
     };
     let compose = |detail: Detail| finish(composed(request, detail));
-    let levels = Detail::levels(size, request.course.has_bodies());
+    let levels = Detail::levels(size, Bodies::of(request.course));
     let (last, levels) = levels.split_last().expect("there is always a least level");
     for level in levels {
         let [least, most] = BYTES_PER_VALUE.map(|bytes| level.values(size) * bytes);
@@ -131,6 +131,7 @@ fn composed(request: &Request<'_>, detail: Detail) -> Payload {
         looks: &file.drawing,
         units,
         analysis,
+        course,
         solution,
         steps,
         detail,
@@ -150,7 +151,11 @@ fn composed(request: &Request<'_>, detail: Detail) -> Payload {
             angle: units.angle.symbol().into(),
             time: "s".into(),
         },
-        status: status(summary, Detail { stride: detail.stride * course.stride, ..detail }),
+        status: status(
+            summary,
+            changed.as_ref().and_then(|changed| changed.stopped(file)),
+            Detail { stride: detail.stride * course.stride, ..detail },
+        ),
         summary: headline(summary),
         notes: summary.model.all_notes(),
         times: compose.curve(|k| solution.motion.times[k]),
@@ -195,6 +200,27 @@ struct Detail {
     body_differences: bool,
 }
 
+/// What was kept of how bodies move with the variables.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Bodies {
+    /// All orders.
+    Whole,
+    /// Places and turns, at each of so many output times.
+    Places(usize),
+    /// Nothing.
+    Nothing,
+}
+
+impl Bodies {
+    fn of(course: &Course) -> Self {
+        match course.shift_stride() {
+            _ if course.has_bodies() => Self::Whole,
+            Some(stride) => Self::Places(stride),
+            None => Self::Nothing,
+        }
+    }
+}
+
 /// How much there is to show.
 #[derive(Clone, Copy, Debug)]
 struct Size {
@@ -211,7 +237,7 @@ struct Size {
 
 impl Detail {
     /// From all that there is to what is always shown.
-    fn levels(size: Size, bodies: bool) -> Vec<Self> {
+    fn levels(size: Size, bodies: Bodies) -> Vec<Self> {
         let stride = size.steps.div_ceil(MOST_STEPS).max(1);
         let all = Self { stride, origins: true, bodies: true, body_rates: true, body_differences: true };
         let exact = Self { body_differences: false, ..all };
@@ -219,14 +245,21 @@ impl Detail {
         let none = Self { bodies: false, ..places };
         // Fewer steps first, as long as curves stay smooth; then the bodies lose their sensitivities, by which a changed design
         // is drawn; then fewer steps still.
-        let coarser = |detail: Self, least: usize| {
-            let strides = (stride..).map(move |stride| Self { stride, ..detail });
-            strides.take_while(move |d| d.stride == stride || size.steps.div_ceil(d.stride) >= least)
+        let coarser = |detail: Self, every: usize, least: usize| {
+            let first = stride.next_multiple_of(every);
+            let strides = (first..).step_by(every).map(move |stride| Self { stride, ..detail });
+            strides.take_while(move |d| d.stride == first || size.steps.div_ceil(d.stride) >= least)
         };
         let smooth = MOST_STEPS / 4;
-        let with_bodies = [all].into_iter().chain(coarser(exact, smooth)).chain(coarser(places, smooth));
-        let mut levels: Vec<Self> = with_bodies.filter(|_| bodies).collect();
-        levels.extend(coarser(none, MOST_STEPS / 10));
+        let mut levels: Vec<Self> = match bodies {
+            Bodies::Whole => {
+                let exact = [all].into_iter().chain(coarser(exact, 1, smooth));
+                exact.chain(coarser(places, 1, smooth)).collect()
+            }
+            Bodies::Places(every) => coarser(places, every, smooth).collect(),
+            Bodies::Nothing => Vec::new(),
+        };
+        levels.extend(coarser(none, 1, MOST_STEPS / 10));
         // In a model of very many bodies, their own curves would be most of the page.
         levels.extend(levels.last().map(|d| Self { origins: false, ..*d }));
         levels
@@ -258,9 +291,11 @@ fn file_name(file: &str) -> String {
     Path::new(file).file_name().map_or_else(|| file.into(), |n| n.to_string_lossy().into_owned())
 }
 
-fn status(summary: &Summary, detail: Detail) -> Status {
+/// How the run ended, and the sentence on the changed design where that stopped early.
+fn status(summary: &Summary, changed: Option<String>, detail: Detail) -> Status {
     let steps = &summary.steps;
-    let mut message = match (&summary.stop, summary.status) {
+    let complete = summary.status == RunStatus::Complete && changed.is_none();
+    let today = match (&summary.stop, summary.status) {
         (Some(stop), RunStatus::Stopped) => {
             let (code, what) = (stop.code, &stop.message);
             format!("Solved {} of {} steps; then {what} ({code}).", steps.solved, steps.asked)
@@ -269,6 +304,10 @@ fn status(summary: &Summary, detail: Detail) -> Status {
             format!("Solved {} of {} steps; then the run was interrupted.", steps.solved, steps.asked)
         }
         _ => format!("All {} steps were solved.", steps.asked),
+    };
+    let mut message = match changed {
+        Some(changed) => format!("{changed} Today's design: {}", uncapitalised(&today)),
+        None => today,
     };
     if detail.stride > 1 {
         let (shown, stride) = (summary.steps.solved.div_ceil(detail.stride), detail.stride);
@@ -283,7 +322,12 @@ fn status(summary: &Summary, detail: Detail) -> Status {
     if !detail.bodies && summary.model.counts.bodies > 0 && !summary.model.variables.is_empty() {
         message += " Sensitivities of body origins are not shown; `run --bodies` writes them.";
     }
-    Status { complete: summary.status == RunStatus::Complete, message }
+    Status { complete, message }
+}
+
+fn uncapitalised(sentence: &str) -> String {
+    let mut letters = sentence.chars();
+    letters.next().map_or_else(String::new, |first| first.to_lowercase().to_string() + letters.as_str())
 }
 
 /// `2nd`, `4th`, `32nd`.
@@ -334,6 +378,8 @@ struct Compose<'a> {
     looks: &'a Drawing,
     units: Units,
     analysis: &'a Analysis<'a>,
+    course: &'a Course,
+    /// What the course keeps.
     solution: &'a Solution,
     /// The output times that are shown.
     steps: Vec<usize>,
@@ -468,12 +514,11 @@ impl Compose<'_> {
         let least_turn = self.round_off.of(b, Kind::Angle.into(), 0);
         let of_body = |body: usize| {
             let at = |&k: &usize| {
-                let shift = self.solution.sensitivities.at(k, b).map(|s| s.body(body));
-                let shift = shift.unwrap_or(BodySensitivity::ZERO);
-                let dr = shift.dr.to_array().map(|x| self.shown(b, Dimension::LENGTH, 0, x));
-                let dpi = shift.dpi.to_array().map(|x| settled(x, least_turn));
-                let turn = dpi.map(|x| self.units.derivative_from_si(Kind::Number, by, x));
-                dr.into_iter().chain(turn)
+                let [x, y, z, turn @ ..] = self.course.shift(k, b, body).unwrap_or_default();
+                let place = [x, y, z].map(|x| self.shown(b, Dimension::LENGTH, 0, x));
+                let turn =
+                    turn.map(|x| self.units.derivative_from_si(Kind::Number, by, settled(x, least_turn)));
+                place.into_iter().chain(turn)
             };
             self.steps.iter().flat_map(at).collect()
         };
@@ -510,8 +555,9 @@ impl Compose<'_> {
                     of(&d.bodies[k * bodies + body], order)
                 })
             });
-            let exact = |k: usize, order: usize| {
-                self.solution.sensitivities.at(k, b).map_or(f64::NAN, |s| of(&s.body(body), order))
+            let exact = |k: usize, order: usize| match order {
+                0 => self.course.shift(k, b, body).map_or(f64::NAN, |s| s[axis]),
+                _ => self.solution.sensitivities.at(k, b).map_or(f64::NAN, |s| of(&s.body(body), order)),
             };
             let orders = if self.detail.body_rates { 3 } else { 1 };
             list.push(self.sensitivity(list.len(), (Dimension::LENGTH, orders), b, exact, overlay));
@@ -569,14 +615,14 @@ mod tests {
 
     #[test]
     fn a_suspension_is_shown_with_all_that_there_is() {
-        let all = Detail::levels(STRUT, true)[0];
+        let all = Detail::levels(STRUT, Bodies::Whole)[0];
         assert_eq!(
             all,
             Detail { stride: 1, origins: true, bodies: true, body_rates: true, body_differences: true }
         );
         assert!(all.values(STRUT) * BYTES_PER_VALUE[1] <= MOST_BYTES as f64);
         // What is not there cannot be shown.
-        assert!(Detail::levels(STRUT, false).iter().all(|d| !d.bodies));
+        assert!(Detail::levels(STRUT, Bodies::Nothing).iter().all(|d| !d.bodies));
     }
 
     #[test]
@@ -590,7 +636,7 @@ mod tests {
     #[test]
     fn a_long_motion_is_thinned() {
         let long = Size { steps: 100_001, ..STRUT };
-        let all = Detail::levels(long, true)[0];
+        let all = Detail::levels(long, Bodies::Whole)[0];
         assert!(all.body_differences && all.stride == 101, "{all:?}");
     }
 
@@ -599,7 +645,7 @@ mod tests {
         for size in
             [STRUT, Size { steps: 7, ..STRUT }, Size { steps: 30_000, bodies: 80, variables: 240, ..STRUT }]
         {
-            let levels = Detail::levels(size, true);
+            let levels = Detail::levels(size, Bodies::Whole);
             assert!(levels.is_sorted_by(|a, b| !b.bodies || a.bodies), "bodies go and do not come back");
             let last = levels.last().unwrap();
             assert!(

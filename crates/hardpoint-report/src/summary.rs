@@ -126,6 +126,36 @@ pub struct StopFact {
     pub closed: Option<f64>,
 }
 
+impl StopFact {
+    /// Of a solution that stopped early.
+    pub(crate) fn of(file: &ModelFile, solution: &Solution) -> Option<Self> {
+        let (model, units) = (&file.model, file.units);
+        let stop = solution.stop.as_ref()?;
+        let drivers = model.drivers.iter().zip(&stop.drivers).map(|(driver, value)| {
+            let quantity = model.driven(driver).quantity;
+            DriverValue {
+                name: driver.name.clone(),
+                value: units.from_si(quantity, *value),
+                unit: symbol(units, quantity),
+            }
+        });
+        Some(Self {
+            code: stop.code(),
+            message: match stop.kind {
+                StopKind::DoesNotAssemble => stop.headline(model),
+                _ => format!("{}{}", stop.headline(model), driver_values(file, stop)),
+            },
+            last_time: stop.last_time,
+            failed_time: stop.failed_time,
+            drivers: drivers.collect(),
+            pivot_ratio: stop.pivot_ratio,
+            joints: named(model, &stop.joints),
+            remains: stop.remains.iter().map(|g| GapFact::new(model, units, g)).collect(),
+            closed: stop.closed,
+        })
+    }
+}
+
 /// A driver's value.
 #[derive(Clone, Debug, Serialize)]
 pub struct DriverValue {
@@ -211,7 +241,7 @@ impl Summary {
             },
             margin: MarginFact::new(model, file.units, topology, &course.margins, &solution.motion),
             assembly: solution.motion.assembly.as_ref().map(|a| AssemblyFact::new(model, file.units, a)),
-            stop: stop_fact(file, solution),
+            stop: StopFact::of(file, solution),
             validity: Vec::new(),
             metrics: MetricFact::all(model, file.units, course.curves()),
             sensitivities: rankings(model, file.units, course),
@@ -221,33 +251,6 @@ impl Summary {
             diagnostics: Vec::new(),
         }
     }
-}
-
-fn stop_fact(file: &ModelFile, solution: &Solution) -> Option<StopFact> {
-    let (model, units) = (&file.model, file.units);
-    let stop = solution.stop.as_ref()?;
-    let drivers = model.drivers.iter().zip(&stop.drivers).map(|(driver, value)| {
-        let quantity = model.driven(driver).quantity;
-        DriverValue {
-            name: driver.name.clone(),
-            value: units.from_si(quantity, *value),
-            unit: symbol(units, quantity),
-        }
-    });
-    Some(StopFact {
-        code: stop.code(),
-        message: match stop.kind {
-            StopKind::DoesNotAssemble => stop.headline(model),
-            _ => format!("{}{}", stop.headline(model), driver_values(file, stop)),
-        },
-        last_time: stop.last_time,
-        failed_time: stop.failed_time,
-        drivers: drivers.collect(),
-        pivot_ratio: stop.pivot_ratio,
-        joints: named(model, &stop.joints),
-        remains: stop.remains.iter().map(|g| GapFact::new(model, units, g)).collect(),
-        closed: stop.closed,
-    })
 }
 
 fn rankings(model: &Model, units: Units, course: &Course) -> Vec<Ranking> {

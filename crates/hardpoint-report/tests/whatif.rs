@@ -1,6 +1,7 @@
 //! The page of a changed design: its curves are the solver's numbers, and round-off is no change.
 
 use std::collections::HashSet;
+use std::fs;
 use std::path::Path;
 
 use hardpoint::model::{Dimension, VariableId};
@@ -8,7 +9,8 @@ use hardpoint::study::{Magnitude, WhatIf, add_coordinates, what_if};
 use hardpoint::{Analysis, Run, Solution};
 use hardpoint_file::{ModelFile, Units};
 use hardpoint_report::course::Course;
-use hardpoint_report::page::{Curve, Design, DesignKind, Payload, Table};
+use hardpoint_report::diagnose;
+use hardpoint_report::page::{Curve, Design, DesignKind, Payload, Table, html};
 use hardpoint_report::payload::{Changed as Beside, Request, payload};
 use hardpoint_report::summary::Summary;
 use hardpoint_report::whatif::WhatIfFacts;
@@ -241,4 +243,90 @@ fn without_a_change_it_is_the_page_of_today_with_the_ranking() {
     let tables = |checks: &[Table]| serde_json::to_string(checks).unwrap();
     assert_eq!(tables(&page.checks[measures..]), tables(&of_run.checks));
     assert_eq!(page.checks[2].note, "No variable moves it.", "{}", page.checks[2].title);
+}
+
+/// The four-bar with a metric of each sort: of the whole curve, and at one place of it.
+fn four_bar_with_metrics() -> ModelFile {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../models/four_bar.toml");
+    let metrics = "
+[metrics.swing]
+of = \"rocker_angle\"
+take = \"range\"
+[metrics.quarter]
+of = \"rocker_angle\"
+over = \"crank_angle\"
+take = \"value\"
+at = 90
+";
+    let text = fs::read_to_string(path).unwrap() + metrics;
+    hardpoint_file::parse(&text, "four_bar.toml").unwrap_or_else(|e| panic!("{}", e.render(false)))
+}
+
+/// Which values of a curve are there, of so many numbers per step.
+fn known(curve: &Curve, parts: usize) -> Vec<bool> {
+    curve.values().chunks(parts).map(|step| step.iter().all(|x| x.is_finite())).collect()
+}
+
+#[test]
+fn a_changed_design_that_locks_has_gaps_and_the_page_says_why() {
+    let file = four_bar_with_metrics();
+    // With its pivots 250 mm apart, the crank no longer turns round.
+    let Changed { found, facts, page, .. } = changed(&file, &[("D_x", -150.0)]);
+    let (solved, all) = (found.exact.motion.len(), found.today.motion.len());
+    assert!(0 < solved && solved < all && page.times.values().len() == all, "{solved} of {all}");
+    let there: Vec<bool> = (0..all).map(|k| k < solved).collect();
+    assert_eq!(page.designs.len(), 3);
+    for design in &page.designs {
+        for (curves, quantity) in design.quantities.iter().zip(&page.quantities) {
+            let Some(curves) = curves else { continue };
+            for curve in [&curves.value, &curves.rate, &curves.accel] {
+                assert!(
+                    curve.values().is_empty() || known(curve, 1) == there,
+                    "{} {}",
+                    design.name,
+                    quantity.name
+                );
+            }
+            assert_eq!(known(&quantity.value, 1), vec![true; all], "{}", quantity.name);
+        }
+        assert!(design.poses.iter().all(|poses| known(poses, 7) == there));
+        assert!(design.margin.iter().all(|margin| known(margin, 1) == there));
+    }
+    assert!(!page.status.complete);
+    let told = format!(
+        "The changed design was solved for {solved} of {all} steps: the mechanism cannot move beyond t = 0.720265 s, with `motor` at 259.3 deg (HP0401). Today's design: all {all} steps were solved."
+    );
+    assert_eq!(page.status.message, told);
+
+    // The range of a part of the curve is not that of the whole; where the crank is at 90 deg, both designs were solved.
+    let exact = design(&page, DesignKind::Exact);
+    let value = |name: &str| exact.values[page.values.iter().position(|v| v.name == name).unwrap()];
+    assert_eq!(value("swing"), None);
+    let quarter = value("quarter").unwrap();
+    let metric = |name: &str| facts.metrics.iter().find(|m| m.name == name).unwrap();
+    assert_eq!((metric("swing").exact, metric("quarter").exact), (None, Some(quarter)));
+    assert!(metric("swing").today.is_some() && (quarter - metric("quarter").today.unwrap()).abs() > 1.0);
+}
+
+#[test]
+fn of_a_changed_design_that_cannot_be_assembled_the_page_has_nothing_but_the_reason() {
+    let file = gallery("double_wishbone.toml");
+    let Changed { found, facts, page, .. } = changed(&file, &[("tie_rod_outer_y_fixed_length", 1000.0)]);
+    assert!(found.exact.motion.is_empty() && found.is_empty());
+    let [exact] = &page.designs[..] else { panic!("nothing is foreseen of what is not there") };
+    let nothing = |curve: &Curve, parts: usize| !known(curve, parts).contains(&true);
+    assert!(exact.poses.iter().all(|poses| nothing(poses, 7)));
+    assert!(exact.quantities.iter().flatten().all(|q| nothing(&q.value, 1) && nothing(&q.rate, 1)));
+    assert!(exact.values.iter().all(Option::is_none));
+    assert!(!page.status.complete);
+    let why = "The changed design could not be solved: the mechanism does not assemble: joint `tie_rod` stays open (HP0406).";
+    assert!(page.status.message.starts_with(why), "{}", page.status.message);
+    let page = facts.page(page, &[], None, &|_| true);
+    assert!(html(&page).is_ok());
+
+    // Today's design is written all the same.
+    let stop = found.exact.stop.as_ref().unwrap();
+    let told = diagnose::stop_of_changed(&file, stop, 0);
+    assert!(told.message.starts_with("the changed design: the mechanism does not assemble"), "{told:?}");
+    assert!(told.notes.contains(&"0 of 401 steps of the changed design were solved".to_owned()), "{told:?}");
 }

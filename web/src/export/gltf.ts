@@ -34,7 +34,7 @@ export async function motionGltf(mechanism: Mechanism, drawn: Drawn[], step: num
 }
 
 /** What is written: the things drawn with materials that glTF knows, and their motion. */
-export function motionScene(mechanism: Mechanism, drawn: Drawn[], step: number): { scene: Object3D; clip: AnimationClip } {
+function motionScene(mechanism: Mechanism, drawn: Drawn[], step: number): { scene: Object3D; clip: AnimationClip } {
   const { report } = mechanism
   const materials = new Map<Material, Material>()
   const matter = drawn.filter(({ overlay }) => !overlay)

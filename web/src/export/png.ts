@@ -1,5 +1,5 @@
 /** What is drawn on a canvas, as a file. */
-export function canvasPng(canvas: HTMLCanvasElement): Promise<Blob> {
+function canvasPng(canvas: HTMLCanvasElement): Promise<Blob> {
   return new Promise((resolve, reject) =>
     canvas.toBlob((blob) => (blob ? resolve(blob) : reject(new Error('the picture is too large for this browser'))), 'image/png'),
   )

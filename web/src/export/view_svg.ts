@@ -4,7 +4,7 @@ import type { Placed } from '../scene/labels'
 import { escaped, round, svgFile, tag } from './markup'
 
 /** How a picture of the view is drawn. */
-export interface Picture {
+interface Picture {
   width: number
   height: number
   title: string

@@ -5,7 +5,7 @@ import { figure } from '../format'
 export type Row = { unit: string; variable?: Variable }
 
 /** What the map says of a quantity and a variable. */
-export interface Cell {
+interface Cell {
   /** The value that is largest in magnitude over time, with its sign. */
   extreme: number
   /** The same as part of the column's largest among variables of one unit, -1 to 1. */

@@ -1,13 +1,11 @@
-import { noise } from '../curve'
 import { el } from '../dom'
 import { number, pretty } from '../format'
 import type { Value } from '../payload'
+import { noise, rounded } from '../rounding'
 import type { State } from '../state'
 
 type Target = [low: number | null, high: number | null]
 
-/** In the reader's units smaller numbers are rounding. */
-const ROUNDING = 1e-9
 /** Digits of a number on a card. */
 const DIGITS = 4
 
@@ -39,7 +37,7 @@ function card(state: State, value: Value, index: number): { element: HTMLElement
   const show = () => {
     const now = state.value(index)
     const before = state.former ? (state.former.values[index] ?? null) : value.value
-    figure.textContent = now === null ? '–' : number(Math.abs(now) < ROUNDING ? 0 : now, DIGITS)
+    figure.textContent = now === null ? '–' : number(rounded(now), DIGITS)
     const by = now === null || before === null ? null : now - before
     const known = state.compares && by !== null
     change.hidden = !known
@@ -60,7 +58,7 @@ function select(state: State, { quantity, time }: Value): void {
 
 /** Better and worse are said only against a target, by colour and arrow. */
 function showChange(change: HTMLElement, now: number, by: number, target: Target | null): void {
-  if (Math.abs(by) <= Math.max(noise(Math.abs(now)), ROUNDING)) {
+  if (Math.abs(by) <= noise(now)) {
     change.textContent = '±0'
     return
   }

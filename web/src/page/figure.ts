@@ -7,7 +7,7 @@ import { sensitivityContent, valueContent, type Subject } from './contents'
 export type Shown = 'value' | 'sensitivity'
 
 /** What a figure is made with. */
-export interface Wish {
+interface Wish {
   /** Fixed quantity; the selected one where there is none. */
   quantity?: number
   shown: Shown

@@ -1,7 +1,7 @@
 import type { State } from '../state'
 
 /** What the keys act on beside the state; a part that is not on the page is left out. */
-export interface Targets {
+interface Targets {
   fit?: () => void
   /** Takes the standard view of this number, from 0. */
   look?: (index: number) => void

@@ -3,7 +3,7 @@ import { hasWebGL, View } from '../scene/view'
 import type { State } from '../state'
 
 /** The view with its buttons; without WebGL a message, and no view. */
-export interface Stage {
+interface Stage {
   element: HTMLElement
   view?: View
   /** Takes the standard view of this number, from 0. */

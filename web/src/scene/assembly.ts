@@ -1,5 +1,6 @@
-import { Box3, Group, type Material, type Mesh, type Object3D, Vector3 } from 'three'
+import { Group, type Material, type Mesh, type Vector3 } from 'three'
 import type { Choice } from '../state'
+import { bounds, outermost } from './bounds'
 import type { Draw, Drawn, Frame } from './drawn'
 import { Kit } from './kit'
 import type { Mechanism } from './mechanism'
@@ -17,6 +18,8 @@ export class Assembly {
   /** Which numbers a part has in the picture of part numbers. */
   readonly numbers: { part: Drawn['part']; number: number }[] = []
   #kit: Kit
+  #frame?: Frame
+  #reach?: Vector3[]
 
   /** Numbers start after `first`, so that those of two assemblies differ. */
   constructor(
@@ -52,6 +55,7 @@ export class Assembly {
 
   /** Puts everything where it is at a moment. */
   pose(frame: Frame): void {
+    this.#frame = frame
     this.mechanism.report.bodies.forEach((_, body) => {
       const group = this.groups[body]
       group.visible = frame.visible(body)
@@ -75,27 +79,32 @@ export class Assembly {
     return changed
   }
 
-  /** Corners of the boxes round everything drawn. */
-  corners(): Vector3[] {
-    return this.groups.flatMap((group) => {
-      group.updateMatrixWorld()
-      const found: Vector3[] = []
-      group.traverseVisible((object) => found.push(...cornersOf(object)))
-      return found
-    })
+  /** Points that bound everything drawn over the whole motion. */
+  get reach(): Vector3[] {
+    return (this.#reach ??= this.#bounded())
   }
 
   dispose(): void {
     for (const group of this.groups) group.removeFromParent()
     this.#kit.dispose()
   }
-}
 
-function cornersOf(object: Object3D): Vector3[] {
-  const { geometry } = object as Partial<Mesh>
-  if (!geometry) return []
-  if (!geometry.boundingBox) geometry.computeBoundingBox()
-  const { min, max } = geometry.boundingBox ?? new Box3()
-  const corners = [min.x, max.x].flatMap((x) => [min.y, max.y].flatMap((y) => [min.z, max.z].map((z) => new Vector3(x, y, z))))
-  return corners.map((corner) => corner.applyMatrix4(object.matrixWorld)).filter(({ x, y, z }) => Number.isFinite(x + y + z))
+  #bounded(): Vector3[] {
+    const { mechanism, drawn } = this
+    const world = this.groups.length - 1
+    const still = this.groups.map((_, k) => outermost(drawn.filter(({ body = world, follow }) => body === k && !follow).flatMap(({ object }) => bounds(object))))
+    const followed = drawn.filter(({ follow }) => follow)
+    const found = mechanism.moments.flatMap((step) => {
+      const frame = mechanism.frame(step)
+      const into = (body: number | undefined, points: Vector3[]) => (body === undefined ? points : points.map((point) => frame.at(body, point)))
+      const carried = mechanism.report.bodies.flatMap((_, body) => (body > 0 || step === 0 ? into(body, still[body]) : []))
+      const following = followed.flatMap(({ body, object, follow }) => {
+        follow!(frame)
+        return object.visible ? into(body, bounds(object)) : []
+      })
+      return [...carried, ...following]
+    })
+    if (this.#frame) this.pose(this.#frame)
+    return [...still[world], ...found].filter(({ x, y, z }) => Number.isFinite(x + y + z))
+  }
 }

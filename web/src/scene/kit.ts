@@ -154,6 +154,18 @@ export class Kit {
     return place(this.#mesh(geometry, colour, finish), at, axis)
   }
 
+  /** The shadow of a mesh that casts none itself, because it is translucent. */
+  shadowOf({ geometry, position, quaternion, scale }: Mesh): Mesh {
+    const material = this.#material('shadow', () => new MeshBasicMaterial({ colorWrite: false, depthWrite: false, transparent: true }))
+    const caster = new Mesh(geometry, material)
+    caster.position.copy(position)
+    caster.quaternion.copy(quaternion)
+    caster.scale.copy(scale)
+    caster.castShadow = true
+    caster.raycast = () => {}
+    return caster
+  }
+
   /** A box with its sides along x, y (made square to x) and their normal. */
   brick(at: Vector3, x: Vector3, y: Vector3, sides: [number, number, number], colour: string, finish: Finish = { edges: 30 }): Mesh {
     const unit = x.clone().normalize()

@@ -4,12 +4,10 @@ import type { Report } from '../report'
 import type { Frame } from './drawn'
 import { layers } from './layers'
 import { planeOf } from './plane'
-import { type Pose, poseAt } from './poses'
+import { placed, type Pose, poseAt, turned } from './poses'
 import { type Slide, slideOf } from './slide'
 import { tints } from './tints'
 
-/** So far a way reaches beyond the travel on it, in units. */
-const WAY = 6
 /** Enough moments to bound the motion without walking through every one of a long run. */
 const SAMPLES = 64
 /** Two places nearer to one another than this part of the size are one. */
@@ -82,16 +80,6 @@ export class Mechanism {
     this.#layers = base ? base.#layers : this.plane ? this.#stack() : report.bodies.map(() => 0)
     this.topLayer = Math.max(0, ...this.#layers)
     this.#slides = report.joints.map((joint) => slideOf(this, joint))
-  }
-
-  /** Both ends of all ways in bodies over the whole motion: a link with a slot reaches beyond its hardpoints. */
-  ways(): Vector3[] {
-    const reach = WAY * this.unit
-    return this.#slides.flatMap((slide) => {
-      if (!slide || slide.rail === 0 || slide.low > slide.high) return []
-      const ends = [slide.low - reach, slide.high + reach].map((t) => slide.place.clone().addScaledVector(slide.axis, t))
-      return this.moments.flatMap((step) => ends.map((end) => this.worldAt(slide.rail, end, step))).filter(({ x }) => Number.isFinite(x))
-    })
   }
 
   /** Layer of a body of a planar mechanism; ground's is 0, the lowest. */
@@ -174,14 +162,12 @@ export class Mechanism {
 
   /** A point of a body in the world; NaN where the motion was not solved. */
   worldAt(body: number, point: Vector3, step: number): Vector3 {
-    const pose = this.poseAt(body, step)
-    return pose ? point.clone().applyQuaternion(pose.turn).add(pose.place) : new Vector3(NaN, NaN, NaN)
+    return placed(this.poseAt(body, step), point)
   }
 
   /** A direction of a body in the world; NaN where the motion was not solved. */
   alongAt(body: number, direction: Vector3, step: number): Vector3 {
-    const pose = this.poseAt(body, step)
-    return pose ? direction.clone().applyQuaternion(pose.turn) : new Vector3(NaN, NaN, NaN)
+    return turned(this.poseAt(body, step), direction)
   }
 
   /** A direction of the world in a body's frame, in the first position where none is given. */
@@ -201,14 +187,8 @@ export class Mechanism {
     const poses = this.report.bodies.map((_, body) => this.poseAt(body, step))
     return {
       step,
-      at: (body, point) => {
-        const pose = poses[body]
-        return pose ? point.clone().applyQuaternion(pose.turn).add(pose.place) : new Vector3(NaN, NaN, NaN)
-      },
-      along: (body, direction) => {
-        const pose = poses[body]
-        return pose ? direction.clone().applyQuaternion(pose.turn) : new Vector3(NaN, NaN, NaN)
-      },
+      at: (body, point) => placed(poses[body], point),
+      along: (body, direction) => turned(poses[body], direction),
       visible: (body) => poses[body] !== undefined,
     }
   }
@@ -227,7 +207,7 @@ export class Mechanism {
       const points = [...marked, ...joined[body]]
       return (body === 0 ? [0] : this.moments).flatMap((step) => {
         const pose = this.poseAt(body, step)
-        return pose ? points.map((point) => point.clone().applyQuaternion(pose.turn).add(pose.place)) : []
+        return pose ? points.map((point) => placed(pose, point)) : []
       })
     })
   }

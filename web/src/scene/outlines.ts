@@ -17,7 +17,7 @@ import type { Camera } from './camera'
 import type { Palette } from './palette'
 
 /** What is in the picture of part numbers, and what is drawn over everything. */
-export const PARTS = 1
+const PARTS = 1
 export const OVER = 2
 
 /** How a part's outline is drawn. */

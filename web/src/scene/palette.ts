@@ -47,27 +47,27 @@ export interface Palette {
   glass: number
 }
 
-/** Reads the style sheet. */
-export function palette(): Palette {
+/** The palette of a scheme, by what gives the style sheet's custom properties: on the page, those of the moment. */
+export function paletteOf(read = (name: string) => css(`--${name}`)): Palette {
   return {
-    view: css('--view'),
-    outline: css('--outline'),
-    label: css('--label'),
-    bodies: Array.from({ length: TINTS }, (_, k) => css(`--body-${k}`)),
-    steel: css('--steel'),
-    rod: css('--rod'),
-    ground: css('--ground'),
-    hatch: css('--hatch'),
-    rubber: css('--rubber'),
-    tyre: css('--tyre'),
-    driver: css('--driver'),
-    chosen: css('--chosen'),
-    trace: css('--trace'),
-    former: css('--former'),
-    grid: css('--grid'),
-    gridMain: css('--grid-main'),
-    axes: { x: css('--axis-x'), y: css('--axis-y'), z: css('--axis-z') },
-    light: { sky: Number(css('--sky')), earth: css('--earth'), sun: Number(css('--sun')), shadow: Number(css('--shadow')) },
-    glass: Number(css('--glass')),
+    view: read('view'),
+    outline: read('outline'),
+    label: read('label'),
+    bodies: Array.from({ length: TINTS }, (_, k) => read(`body-${k}`)),
+    steel: read('steel'),
+    rod: read('rod'),
+    ground: read('ground'),
+    hatch: read('hatch'),
+    rubber: read('rubber'),
+    tyre: read('tyre'),
+    driver: read('driver'),
+    chosen: read('chosen'),
+    trace: read('trace'),
+    former: read('former'),
+    grid: read('grid'),
+    gridMain: read('grid-main'),
+    axes: { x: read('axis-x'), y: read('axis-y'), z: read('axis-z') },
+    light: { sky: Number(read('sky')), earth: read('earth'), sun: Number(read('sun')), shadow: Number(read('shadow')) },
+    glass: Number(read('glass')),
   }
 }

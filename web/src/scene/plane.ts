@@ -1,6 +1,6 @@
 import { Box3, Vector3 } from 'three'
 import type { Report } from '../report'
-import { alongAt } from './poses'
+import { poseAt, turned } from './poses'
 
 /** A mechanism whose points leave a plane by less than this part of its size is planar. */
 const FLAT = 2e-3
@@ -12,7 +12,8 @@ export function planeOf(report: Report, sweep: Vector3[], size: number): Vector3
   if (report.wheels.length > 0 || report.vehicle) return undefined
   const hinges = report.joints
     .filter((joint) => joint.kind === 'revolute' && joint.axis)
-    .flatMap((joint) => alongAt(report.bodies[joint.body_i].poses, new Vector3(...joint.axis!), 0) ?? [])
+    .map((joint) => turned(poseAt(report.bodies[joint.body_i].poses, 0), new Vector3(...joint.axis!)))
+    .filter(({ x }) => Number.isFinite(x))
   const normal = hinges[0]?.clone().normalize()
   if (!normal || !hinges.every((axis) => Math.abs(axis.dot(normal)) > PARALLEL)) return undefined
   const heights = new Box3().setFromPoints(sweep.map((point) => new Vector3(point.dot(normal), 0, 0)))

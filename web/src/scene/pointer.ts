@@ -79,7 +79,7 @@ export class Pointer {
 }
 
 /** The part that an object belongs to. */
-export function partOf(object: Object3D | undefined): Part | undefined {
+function partOf(object: Object3D | undefined): Part | undefined {
   for (let at = object ?? null; at; at = at.parent) if (at.userData.part) return at.userData.part as Part
   return undefined
 }

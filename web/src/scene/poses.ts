@@ -1,8 +1,5 @@
 import { Quaternion, Vector3 } from 'three'
 import type { Curve } from '../curve'
-import { roundBelow } from '../format'
-import type { Arrow } from '../payload'
-import type { Variable } from '../report'
 
 const STRIDE = 7
 
@@ -49,25 +46,14 @@ export function shifted(pose: Pose, shifts: Curve | undefined, step: number, cha
   return { place, turn: new Quaternion().setFromAxisAngle(turn.divideScalar(angle), angle).multiply(pose.turn) }
 }
 
-/** How far the points of a body are from one another, as a part of the whole, for them to be the same. */
-const SAME = 1e-6
-
-/** The points of a body, gone with the design velocity of the variable. */
-export function reshaped(points: [number, number, number][], arrows: Arrow[], body: number, change: number, size: number) {
-  return points.map((point): [number, number, number] => {
-    const moves = arrows.find((arrow) => arrow.body === body && arrow.at.every((x, k) => Math.abs(x - point[k]) < SAME * size))
-    return moves ? [0, 1, 2].map((k) => point[k] + change * moves.v[k]) as [number, number, number] : point
-  })
+/** A body-fixed point in the world; NaN where the body has no pose. */
+export function placed(pose: Pose | undefined, point: Vector3): Vector3 {
+  return pose ? point.clone().applyQuaternion(pose.turn).add(pose.place) : new Vector3(NaN, NaN, NaN)
 }
 
-/** A change of a variable that moves something by about a tenth of the mechanism. */
-export function visibleChange(variable: Variable, size: number): number {
-  const moves = variable.arrows.map(({ v }) => Math.hypot(...v))
-  for (const shifts of variable.shifts) {
-    for (let k = 0; k < shifts.length; k += SHIFT) moves.push(Math.hypot(...shifts.subarray(k, k + 3)))
-  }
-  const most = Math.max(...moves.filter(Number.isFinite), 0)
-  return most > 0 ? roundBelow((0.1 * size) / most) : 0
+/** A body-fixed direction in the world; NaN where the body has no pose. */
+export function turned(pose: Pose | undefined, direction: Vector3): Vector3 {
+  return pose ? direction.clone().applyQuaternion(pose.turn) : new Vector3(NaN, NaN, NaN)
 }
 
 /** The path of a body-fixed point through the whole motion. */
@@ -75,13 +61,7 @@ export function path(poses: Curve, point: Vector3, stride = 1): Vector3[] {
   const places: Vector3[] = []
   for (let step = 0; step < poses.length / STRIDE; step += stride) {
     const pose = poseAt(poses, step)
-    if (pose) places.push(point.clone().applyQuaternion(pose.turn).add(pose.place))
+    if (pose) places.push(placed(pose, point))
   }
   return places
-}
-
-/** A direction of a body in the world, or nothing where the motion was not solved. */
-export function alongAt(poses: Curve, direction: Vector3, step: number): Vector3 | undefined {
-  const pose = poseAt(poses, step)
-  return pose && direction.clone().applyQuaternion(pose.turn)
 }

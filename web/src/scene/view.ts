@@ -14,7 +14,7 @@ import { hardpointLabels, LabelLayer, partLabels } from './label_layer'
 import { Mechanism } from './mechanism'
 import { type Emphasis, Outlines, OVER } from './outlines'
 import { Overview } from './overview'
-import { palette } from './palette'
+import { paletteOf } from './palette'
 import { Pointer } from './pointer'
 import { present } from './shape'
 import { Triad } from './triad'
@@ -50,7 +50,7 @@ export class View {
   #paper = el('canvas', { class: 'paper' })
   #scale = el('span', { class: 'scale' })
   #lost = el('p', { class: 'message', hidden: true }, 'The graphics were lost; the view comes back when the browser gives them back.')
-  #palette = palette()
+  #palette = paletteOf()
   #matter: Assembly
   #marks: Assembly
   #floor: Floor
@@ -136,11 +136,11 @@ export class View {
     this.#update()
     const room = ROOM * this.today.unit
     const padded = [0, 1, 2].flatMap((k) => [-room, room].map((by) => new Vector3().setComponent(k, by)))
-    const swept = [...this.today.sweep, ...this.today.ways(), ...(this.mechanism === this.today ? [] : this.mechanism.sweep)]
+    const swept = this.mechanism === this.today ? this.today.sweep : [...this.today.sweep, ...this.mechanism.sweep]
     const points = [
       ...swept.flatMap((point) => padded.map((by) => point.clone().add(by))),
-      ...this.#matter.corners(),
-      ...this.#marks.corners(),
+      ...this.#matter.reach,
+      ...this.#marks.reach,
     ]
     this.#overview?.resize(points, width, height)
     const seen = this.#overview?.part(points, this.#focus(), width / height) ?? points
@@ -213,8 +213,7 @@ export class View {
 
   #lay(): Floor {
     const { up, report } = this.today
-    this.#matter.pose(this.mechanism.frame(this.state.step))
-    const heights = [...this.#matter.corners(), ...this.today.sweep].map((corner) => corner.dot(up))
+    const heights = [...this.#matter.reach, ...this.today.sweep].map((point) => point.dot(up))
     const floor = new Floor(this.today, this.#palette, heights.length > 0 ? heights.reduce((a, b) => Math.min(a, b)) : 0)
     this.scene.add(floor.object)
     this.#scale.textContent = `${report.wheels.length > 0 ? 'road, ' : ''}grid ${number(floor.cell)} ${report.units.length}`
@@ -225,7 +224,7 @@ export class View {
 
   /** Everything anew: there is nothing whose colour the scheme does not decide. */
   #repaint(): void {
-    this.#palette = palette()
+    this.#palette = paletteOf()
     for (const one of [this.#matter, this.#marks]) one.dispose()
     this.#floor.object.removeFromParent()
     this.#floor.dispose()

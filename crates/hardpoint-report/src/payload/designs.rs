@@ -8,10 +8,12 @@ use hardpoint::Solution;
 use hardpoint::joint::Quantity as Kind;
 use hardpoint::model::{BodyId, Dimension, Direction, Model, VariableId};
 use hardpoint::space::Vec3;
-use hardpoint::study::{WhatIf, metrics, value_beside};
+use hardpoint::study::{WhatIf, metrics_beside, value_beside};
+use hardpoint_file::ModelFile;
 
 use crate::course::settled;
 use crate::page::{BodyTrack, Curve, Design, DesignCurves, DesignKind, Value};
+use crate::summary::StopFact;
 use crate::whatif::follows;
 
 use super::{Compose, ORIGIN};
@@ -52,6 +54,17 @@ impl<'a> Changed<'a> {
     /// At most so many designs it is on the page: solved, and foreseen to first and to second order.
     pub(super) fn designs(&self) -> usize {
         if self.foreseen.is_some() { 3 } else { 1 }
+    }
+
+    /// Why it has no values at the end of the motion, in a sentence, where its motion stopped early.
+    pub(super) fn stopped(&self, file: &ModelFile) -> Option<String> {
+        let stop = StopFact::of(file, self.exact)?;
+        let (name, solved, asked) = (&self.name, self.exact.motion.len(), file.model.times.len());
+        let solved = match solved {
+            0 => "could not be solved".to_owned(),
+            _ => format!("was solved for {solved} of {asked} steps"),
+        };
+        Some(format!("The {name} design {solved}: {} ({}).", stop.message, stop.code))
     }
 
     /// Output times that both designs were solved for.
@@ -176,24 +189,16 @@ impl Beside<'_> {
             Some(self.curves(3, value))
         };
         let margins = &exact.motion.margins;
-        let found = metrics(self.today.model, exact);
+        let found = metrics_beside(self.today.model, today, exact);
         let static_value = |k: usize, m: usize| Some(changed.value(k, m));
-        let mut note = changed.note.clone();
-        if exact.stop.is_some() {
-            let last = exact.motion.times.last();
-            note += &match last {
-                Some(t) => format!(" It was solved up to t = {} s.", crate::figures::number(*t)),
-                None => " It could not be solved.".to_owned(),
-            };
-        }
         Design {
             poses: self.poses(),
             skeletons: self.skeletons(bodies),
             quantities: self.quantities(output, origin),
-            values: self.values(values, |metric| found[metric].value, static_value),
+            values: self.values(values, |metric| found[metric], static_value),
             margin: (!margins.is_empty())
                 .then(|| self.curve(|k| margins.get(k).map_or(f64::NAN, |m| m.value))),
-            ..self.design(&changed.name, DesignKind::Exact, note)
+            ..self.design(&changed.name, DesignKind::Exact, changed.note.clone())
         }
     }
 

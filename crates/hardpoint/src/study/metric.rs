@@ -30,6 +30,15 @@ pub fn metrics(model: &Model, solution: &Solution) -> Vec<MetricValue> {
     model.metrics.iter().map(|metric| metric_value(model, solution, metric)).collect()
 }
 
+/// The values of another design's metrics, to be compared with today's. Where its motion ends before today's, what a metric takes of the
+/// whole curve is not known: a part of the curve says nothing of the rest.
+pub fn metrics_beside(model: &Model, today: &Solution, other: &Solution) -> Vec<Option<f64>> {
+    let whole = other.motion.len() >= today.motion.len();
+    let known = |metric: &Metric| whole || matches!(metric.take, Reduction::Value(_) | Reduction::Slope(_));
+    let values = model.metrics.iter().zip(metrics(model, other));
+    values.map(|(metric, found)| found.value.filter(|_| known(metric))).collect()
+}
+
 fn metric_value(model: &Model, solution: &Solution, metric: &Metric) -> MetricValue {
     let none = MetricValue {
         value: None,

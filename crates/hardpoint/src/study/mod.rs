@@ -20,7 +20,7 @@ pub use evaluation::{Cost, Evaluated, Motions, Rejection};
 pub use gradient::{Gradients, Method};
 pub use jerk::Jerks;
 pub use magnitude::Magnitude;
-pub use metric::{MetricParts, MetricValue, metrics, misfits, peaks};
+pub use metric::{MetricParts, MetricValue, metrics, metrics_beside, misfits, peaks};
 pub use nearest::{NearestAdmissible, nearest_admissible};
 pub use optimize::{
     Binding, Iteration, Judged, Optimality, Optimized, Progress, Refused, Search, Searching, Status, optimize,

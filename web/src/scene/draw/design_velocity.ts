@@ -1,6 +1,7 @@
 import { Vector3 } from 'three'
 import type { Arrow } from '../../payload'
 import type { Variable } from '../../report'
+import { rounded } from '../../rounding'
 import { ABOVE, ringArrow, straightArrow } from '../arrow'
 import type { Draw, Drawn } from '../drawn'
 import type { Mechanism } from '../mechanism'
@@ -11,8 +12,6 @@ const LONGEST = 0.11
 const SHAFT = 0.5
 const HEAD = 3.4
 const RING = 5
-/** A shorter arrow than this part of the longest is round-off. */
-const NOTHING = 1e-9
 /** Two places nearer than this part of the size show one arrow. */
 const ONE = 1e-3
 
@@ -28,7 +27,7 @@ export const designVelocity: Draw = (mechanism, kit, choice) => {
     return { body, object: straightArrow(kit, from.add(lift), to.add(lift), size, chosen, ABOVE.velocity), part, overlay: true }
   })
   const most = longest(variable.arrows.map(({ turn }) => turn))
-  const turning = variable.arrows.filter(({ turn }) => Math.hypot(...turn) > NOTHING * most)
+  const turning = variable.arrows.filter(({ turn }) => rounded(Math.hypot(...turn), most) > 0)
   const rings = onePerPlace(mechanism, turning).map(({ body, at, turn }): Drawn => {
     const place = placeOf(mechanism, body, at).add(mechanism.lift(body, mechanism.topLayer + 3))
     const ring = ringArrow(kit, place, new Vector3(...turn), RING * kit.unit, HEAD * kit.unit, SHAFT * kit.unit, chosen, ABOVE.velocity)
@@ -37,14 +36,9 @@ export const designVelocity: Draw = (mechanism, kit, choice) => {
   return [...straight, ...rings]
 }
 
-/** Tips of the arrows in the first position, which a fitted picture shows too. */
-export function velocityTips(mechanism: Mechanism, variable: Variable): Vector3[] {
-  return moving(mechanism, variable).map(({ body, to }) => mechanism.worldAt(body, to, 0))
-}
-
 function moving(mechanism: Mechanism, { arrows }: Variable): { body: number; from: Vector3; to: Vector3 }[] {
   const most = longest(arrows.map(({ v }) => v))
-  const going = arrows.filter(({ v }) => Math.hypot(...v) > NOTHING * most)
+  const going = arrows.filter(({ v }) => rounded(Math.hypot(...v), most) > 0)
   return onePerPlace(mechanism, going).map(({ body, at, v }) => {
     const velocity = new Vector3(...v)
     const from = placeOf(mechanism, body, at)

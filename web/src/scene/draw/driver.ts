@@ -3,6 +3,7 @@ import { valueAt } from '../../curve'
 import type { JointMark } from '../../payload'
 import type { Driver } from '../../report'
 import { above, ABOVE, arcHead, arcPoints, straightArrow } from '../arrow'
+import { READER } from '../camera'
 import type { Draw, Drawn, Frame } from '../drawn'
 import { across, Basis, square } from '../flat'
 import { type Kit, place } from '../kit'
@@ -21,8 +22,6 @@ const BESIDE = { slide: 4.2, jack: 5.4, leg: 3.6, point: 3.6, hinge: 3.2 }
 const OUTBOARD = 0.36
 /** Where along a leg its arrow stands. */
 const ALONG_LEG = 0.55
-/** The side that a reader looks from at first. */
-const READER = new Vector3(0.75, -1, 0.55)
 
 /** What is driven, as an arrow that is the travel of this motion. */
 export const drivers: Draw = (mechanism, kit) =>

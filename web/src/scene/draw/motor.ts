@@ -1,4 +1,5 @@
-import { Group, Vector3 } from 'three'
+import { Group } from 'three'
+import { READER } from '../camera'
 import type { Drawn } from '../drawn'
 import { carried, hingePlaces, restOf } from '../hinge'
 import type { Kit } from '../kit'
@@ -9,8 +10,6 @@ import { shaftJoints } from '../shafts'
 /** From the pin to the can, its radius and length, and of the ring in the driver's colour. */
 const CAN = { from: 2.2, radius: 2.5, length: 5.4 }
 const RING = { at: 2.6, radius: 2.65, height: 0.8 }
-/** Where mechanisms in space are first seen from. */
-const READER = new Vector3(0.75, -1, 0.55)
 
 /** A motor on every driven hinge of ground in space, on the side where it hides least; shafts have theirs at an end. */
 export function motors(mechanism: Mechanism, kit: Kit): Drawn[] {

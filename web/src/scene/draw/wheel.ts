@@ -1,8 +1,8 @@
-import { Group, LatheGeometry, Mesh, MeshBasicMaterial, Vector2, Vector3 } from 'three'
+import { Group, Vector3 } from 'three'
 import type { WheelMark } from '../../payload'
 import type { Drawn } from '../drawn'
 import { Basis } from '../flat'
-import { type Kit, place } from '../kit'
+import type { Kit } from '../kit'
 import type { Mechanism } from '../mechanism'
 import { HALF_WIDTH, RIM, tyreSection } from '../shapes/wheel'
 
@@ -29,14 +29,10 @@ function tyre(kit: Kit, { centre, axis, radius }: WheelMark, up: Vector3): Group
   const half = HALF_WIDTH * radius
   const basis = new Basis(new Vector3(...centre.at), new Vector3(...axis), up)
   const on = (r: number, angle: number, side: number) => basis.from([r * radius * Math.cos(angle), r * radius * Math.sin(angle)], side * half)
-  const section = tyreSection(radius)
-  const rubber = kit.lathe(basis.origin, basis.normal, section, palette.tyre, { opacity: palette.glass })
-  const caster = new Mesh(new LatheGeometry(section.map(([r, h]) => new Vector2(r, h)), 48), new MeshBasicMaterial({ colorWrite: false, depthWrite: false, transparent: true }))
-  caster.castShadow = true
-  caster.raycast = () => {}
+  const rubber = kit.lathe(basis.origin, basis.normal, tyreSection(radius), palette.tyre, { opacity: palette.glass })
   const circles = CIRCLES.flatMap(({ radius: r, side, line, opacity }) =>
     [-side, side].map((height) => kit.line(Array.from({ length: 97 }, (_, k) => on(r, (k * Math.PI) / 48, height)), palette.tyre, line, { opacity })),
   )
   const spokes = Array.from({ length: SPOKES.count }, (_, k) => (2 * Math.PI * k) / SPOKES.count).flatMap((angle) => [on(SPOKES.from, angle, SPOKES.side), on(RIM, angle, SPOKES.side)])
-  return new Group().add(rubber, place(caster, basis.origin, basis.normal), ...circles, kit.lines(spokes, palette.tyre, SPOKES.line, { opacity: SPOKES.opacity }))
+  return new Group().add(rubber, kit.shadowOf(rubber), ...circles, kit.lines(spokes, palette.tyre, SPOKES.line, { opacity: SPOKES.opacity }))
 }
