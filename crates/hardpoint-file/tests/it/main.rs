@@ -16,6 +16,8 @@ mod parameters;
 mod path;
 mod published;
 mod robustness;
+mod searches;
 mod shapes;
+mod studies;
 mod tape;
 mod wheels;

@@ -1,203 +1,125 @@
-//! Designs found for goals, against designs that are known.
+//! What a file says it is to be optimised for, in SI.
 
-use std::num::NonZero;
-use std::ops::ControlFlow;
+use hardpoint::model::{Goal, Limit, Limited, Reduction};
+use hardpoint_file::{parse, read};
 
-use hardpoint::Analysis;
-use hardpoint::model::{Goal, Optimization, VariableId};
-use hardpoint::study::{Motions, Optimized, Progress, Searching, optimize};
-use hardpoint::topology::Formulation;
-use hardpoint_file::ModelFile;
+/// A slider-crank with a rod, a target to follow, and two strokes.
+const MODEL: &str = r#"
+name = "slider-crank"
+units = { length = "mm", angle = "deg" }
+parameters.reach = { value = 300, unit = "length", bounds = [250, 320] }
+parameters.high = { value = "reach/10", unit = "length" }
+hardpoints = { O = [0, 0, 0], A = [100, 0, 0], B = ["reach", 0, "high"] }
+bodies = { crank = {}, slider = {} }
+joints.pivot = { type = "revolute", bodies = ["ground", "crank"], at = "O", axis = "z" }
+joints.slide = { type = "translational", bodies = ["ground", "slider"], at = "B", axis = "x" }
+joints.rod = { type = "distance", bodies = ["crank", "slider"], at = ["A", "B"] }
+drivers.motor = { joint = "pivot" }
+design.A = { move = "A", along = "xyz", bounds = [-5, 10] }
+design.O_x = { move = "O", along = "x" }
+points.B = { body = "slider", at = "B" }
+measures.turn = { type = "coordinate", joint = "pivot" }
+metrics.path = { of = "B.x", over = "turn", take = "rms", target = [[0, 300], [90, 250]] }
+metrics.steepest = { of = "B.x", over = "turn", take = "slope", at = 45, case = "slow" }
+metrics.angle = { of = "turn", take = "range" }
+time = { end = 1.0, steps = 20 }
+cases.slow = { laws = { motor = "45*t" } }
+cases.fast = { laws = { motor = "90*t" } }
 
-pub fn optimized(file: &ModelFile, asked: &Optimization) -> Optimized {
-    let models = file.model.motions();
-    let motions = Motions::of(&models, Formulation::Relative).unwrap();
-    let mut progress = |k: usize, told: Progress<'_>| {
-        if let Progress::Iteration(i) = told
-            && std::env::var("SHOW").is_ok()
-        {
-            println!(
-                "{k} {:3} f {:.6e} v {:.1e} step {:.1e} designs {}",
-                i.number, i.objective, i.violation, i.step, i.designs
-            );
+[optimize]
+starts = 5
+margin = 0.03
+[optimize.goals]
+path = { weight = 10 }
+steep = { metric = "steepest", target = 2, weight = 3 }
+[optimize.limits]
+angle = { metric = "angle", equal = 45 }
+room = { hardpoint = "A", x = [95, 105], z = { max = 5 } }
+apart = { between = ["O", "A"], min = 80, max = 120 }
+rod = { length = "rod", min = 150 }
+top = { hardpoint = "B", z = [20, 40] }
+"#;
+
+#[test]
+fn goals_and_limits_are_read_in_si() {
+    let file = parse(MODEL, "optimize.toml").unwrap_or_else(|e| panic!("{e}"));
+    let model = &file.model;
+    let o = model.optimization.as_ref().unwrap();
+    let names: Vec<&str> = o.variables.iter().map(|v| model.variables[v.0].name.as_str()).collect();
+    // All that have bounds, in the order of the file's variables.
+    assert_eq!(names, ["reach", "A_x", "A_y", "A_z"]);
+    assert_eq!((o.starts, o.iterations, o.margin), (5, 100, Some(0.03)));
+    let degree = 1_f64.to_radians();
+    let near = |a: f64, b: f64| (a - b).abs() <= 1e-12 * b.abs();
+    // 10 per mm is 10000 per m; 2 mm per deg is 2e-3/degree m per rad, and 3 per (mm per deg) 3e3*degree.
+    let [Goal { name, metric: 0, target: None, weight }, steep] = &o.goals[..] else {
+        panic!("{:?}", o.goals)
+    };
+    assert!(name == "path" && near(*weight, 1e4), "{weight}");
+    assert!(steep.name == "steep" && steep.metric == 1);
+    assert!(near(steep.target.unwrap(), 2e-3 / degree) && near(steep.weight, 3e3 * degree), "{steep:?}");
+    let id = |name: &str| {
+        hardpoint::model::HardpointId(model.hardpoints.iter().position(|h| h.name == name).unwrap())
+    };
+    let expected: [(&str, Limited, Option<f64>, Option<f64>); 6] = [
+        ("angle", Limited::Metric(2), Some(45.0 * degree), Some(45.0 * degree)),
+        ("room.x", Limited::Coordinate(id("A"), 0), Some(0.095), Some(0.105)),
+        ("room.z", Limited::Coordinate(id("A"), 2), None, Some(0.005)),
+        ("apart", Limited::Distance(id("O"), id("A")), Some(0.08), Some(0.12)),
+        ("rod", Limited::Length(hardpoint::model::JointId(2)), Some(0.15), None),
+        ("top.z", Limited::Coordinate(id("B"), 2), Some(0.02), Some(0.04)),
+    ];
+    assert_eq!(o.limits.len(), expected.len());
+    for (Limit { name, of, least, most }, (named, put_on, low, high)) in o.limits.iter().zip(expected) {
+        assert_eq!((name.as_str(), *of), (named, put_on));
+        for (found, expected) in [(least, low), (most, high)] {
+            let alike = match (found, expected) {
+                (Some(a), Some(b)) => near(*a, b),
+                (a, b) => a.is_none() && b.is_none(),
+            };
+            assert!(alike, "{name}: {found:?} {expected:?}");
         }
-        ControlFlow::Continue(())
-    };
-    let searching = Searching { progress: &mut progress, more: &|| true, threads: NonZero::<usize>::MIN };
-    optimize(&file.model, &motions, asked, searching)
+    }
+    // A case has no optimisation of its own: it is the model's.
+    assert!(model.motions().iter().all(|m| m.optimization.is_none()));
 }
 
+/// A target in a file is the one that is written in the model.
 #[test]
-fn four_bar_inverse() {
-    let text = std::fs::read_to_string("../../models/four_bar.toml").unwrap();
-    let known = hardpoint_file::parse(&text, "four_bar.toml").unwrap();
-    let solution = Analysis::new(&known.model).unwrap().run();
-    let target = |name: &str| {
-        let m = solution.measured.index(name).unwrap();
-        let points: Vec<String> = (0..solution.measured.len())
-            .map(|k| {
-                format!("[{:?}, {:?}]", solution.motion.times[k], 1e3 * solution.measured.value(k, m)[0])
-            })
-            .collect();
-        points.join(", ")
+fn a_target_may_lie_in_a_file() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("model.toml");
+    std::fs::create_dir(folder.path().join("data")).unwrap();
+    std::fs::write(folder.path().join("data/path.csv"), "# of a drawing\nx;turn;wanted\n7;0;300\n7;90;250\n")
+        .unwrap();
+    std::fs::write(folder.path().join("path.csv"), "0, 300\n90, 250\n").unwrap();
+    let inline = "[[0, 300], [90, 250]]";
+    let target = |text: &str| {
+        std::fs::write(&path, text).unwrap();
+        let file = read(&path).unwrap_or_else(|e| panic!("{e}"));
+        match &file.model.metrics[0].take {
+            Reduction::Rms(points) => points.clone(),
+            other => panic!("{other:?}"),
+        }
     };
-    let text = text
-        .replace("A = [0, 0, 0]", "A = [-45, 45, 0]")
-        .replace("B = [40, 200, 0]", "B = [65, 260, 0]")
-        .replace("C = [360, 600, 0]", "C = [300, 500, 0]")
-        .replace("D = [400, 0, 0]", "D = [515, -85, 0]")
-        .replace("at = [200, 400, 0]", "at = [\"(B.x + C.x)/2\", \"(B.y + C.y)/2\", 0]");
-    let bounds = [[-50, 50], [-50, 50], [20, 80], [180, 280], [240, 380], [400, 620], [180, 520], [-100, 20]];
-    let start = [-45, 45, 65, 260, 300, 500, 515, -85];
-    let names = ["A_x", "A_y", "B_x", "B_y", "C_x", "C_y", "D_x", "D_y"];
-    let mut text = text;
-    for k in 0..8 {
-        let b = bounds[k].map(|b| b - start[k]);
-        let (p, a) = names[k].split_once('_').unwrap();
-        text = text.replace(
-            &format!("{} = {{ move = \"{p}\", along = \"{a}\" }}", names[k]),
-            &format!("{} = {{ move = \"{p}\", along = \"{a}\", bounds = [{}, {}] }}", names[k], b[0], b[1]),
-        );
-    }
-    text += &format!(
-        "\n[metrics]\nx = {{ of = \"midpoint_x\", take = \"rms\", target = [{}] }}\ny = {{ of = \"midpoint_y\", take = \"rms\", target = [{}] }}\n",
-        target("midpoint_x"),
-        target("midpoint_y")
-    );
-    let file = hardpoint_file::parse(&text, "inverse.toml").unwrap_or_else(|e| panic!("{e}"));
-    let goal = |metric: usize| Goal { name: String::new(), metric, target: None, weight: 1.0 };
-    let asked = Optimization {
-        variables: (0..8).map(VariableId).collect(),
-        goals: vec![goal(0), goal(1)],
-        limits: vec![],
-        margin: None,
-        starts: std::env::var("STARTS").map_or(1, |s| s.parse().unwrap()),
-        iterations: 100,
-    };
-    let found = optimized(&file, &asked);
-    for (k, s) in found.searches.iter().enumerate() {
-        let d = s
-            .found
-            .as_ref()
-            .map(|f| (0..8).map(|v| 1e3 * f.design[v] + f64::from(start[v])).collect::<Vec<_>>());
-        println!(
-            "{k} {:?} {:?} kkt {:.1e} designs {} refused {} {:.3?} {:?}",
-            s.status,
-            s.found.as_ref().map(|f| f.objective),
-            s.optimality.residual,
-            s.cost.designs,
-            s.refused.len(),
-            d,
-            s.refused.first().map(|r| &r.why)
-        );
-    }
-}
-
-#[test]
-fn strut_trial() {
-    use hardpoint::law::Law;
-    use hardpoint::model::{Case, CaseId, Limit, Limited};
-    let text = std::fs::read_to_string("../../models/macpherson.toml").unwrap();
-    let mut text = text.replace(
-        "[wheels.front_left]",
-        "[measures.rack]\ntype = \"coordinate\"\njoint = \"rack_slide\"\n[wheels.front_left]",
-    );
-    for v in ["tie_rod_outer_y", "tie_rod_outer_z", "tie_rod_inner_y", "tie_rod_inner_z"] {
-        text = text.replace(&format!("[design.{v}]\n"), &format!("[design.{v}]\nbounds = [-15, 15]\n"));
-    }
-    text += "
-[metrics.toe_error]
-of = \"toe\"
-over = \"wheel_travel\"
-take = \"rms\"
-target = [[-40, 0.3], [0, 0.2], [40, 0.0]]
-[metrics.ackermann]
-of = \"toe\"
-over = \"rack\"
-take = \"mean\"
-[metrics.most]
-of = \"toe\"
-take = \"max\"
-[metrics.spread]
-of = \"toe\"
-take = \"range\"
-";
-    let mut file = hardpoint_file::parse(&text, "strut.toml").unwrap_or_else(|e| panic!("{e}"));
-    let times: Vec<f64> = (0..=100).map(|k| 0.01 * f64::from(k)).collect();
-    let case = |name: &str, laws: [&str; 2]| Case {
-        formulas: Vec::new(),
-        name: name.into(),
-        laws: laws.map(|l| Some(Law::parse(l).unwrap())).to_vec(),
-        times: times.clone(),
-    };
-    file.model.cases = vec![case("bump", ["0", "0.04*(2*t-1)"]), case("steer", ["0.03*(2*t-1)", "0"])];
-    file.model.metrics[0].case = Some(CaseId(0));
-    file.model.metrics[1].case = Some(CaseId(1));
-    file.model.metrics[2].case = Some(CaseId(0));
-    file.model.metrics[3].case = Some(CaseId(0));
-    let v = |n: &str| file.model.variable(n).unwrap();
-    let variables =
-        vec![v("tie_rod_outer_y"), v("tie_rod_outer_z"), v("tie_rod_inner_y"), v("tie_rod_inner_z")];
-    let deg = 180.0 / std::f64::consts::PI;
-    let goal = |metric: usize| Goal { name: String::new(), metric, target: None, weight: deg };
-    let drawn = {
-        let models = file.model.motions();
-        let m = Motions::of(&models, Formulation::Relative).unwrap();
-        let e = m.evaluate(&[], &mut Default::default(), &|| true).unwrap();
-        println!("{:?}", e.metrics.iter().flatten().map(|m| m.value.map(|v| v * deg)).collect::<Vec<_>>());
-        e.metrics[1][0].value.unwrap()
-    };
-    let limit =
-        |of: Limited, least: Option<f64>, most: Option<f64>| Limit { name: String::new(), of, least, most };
-    let base = Optimization {
-        variables,
-        goals: vec![goal(0)],
-        limits: vec![],
-        margin: None,
-        starts: 1,
-        iterations: 100,
-    };
-    let h = |n: &str| {
-        hardpoint::model::HardpointId(file.model.hardpoints.iter().position(|h| h.name == n).unwrap())
-    };
-    for (what, goals, limits) in [
-        ("free", vec![goal(0)], vec![]),
-        ("ackermann", vec![goal(0)], vec![limit(Limited::Metric(1), Some(drawn), None)]),
-        ("ackermann better", vec![goal(0)], vec![limit(Limited::Metric(1), Some(drawn + 0.3 / deg), None)]),
-        (
-            "equal",
-            vec![goal(0)],
-            vec![limit(Limited::Metric(1), Some(drawn + 0.3 / deg), Some(drawn + 0.3 / deg))],
-        ),
-        ("max", vec![goal(2)], vec![]),
-        ("range", vec![goal(3)], vec![]),
-        (
-            "range, limited",
-            vec![goal(3)],
-            vec![
-                limit(Limited::Metric(1), Some(drawn + 0.1 / deg), None),
-                limit(Limited::Distance(h("tie_rod_inner"), h("tie_rod_outer")), None, Some(0.36)),
-            ],
-        ),
-        (
-            "plain",
-            vec![Goal { weight: -deg, ..goal(1) }],
-            vec![limit(Limited::Metric(3), None, Some(0.1 / deg))],
-        ),
-        ("impossible", vec![goal(0)], vec![limit(Limited::Metric(1), Some(drawn + 9.0 / deg), None)]),
+    let expected = target(MODEL);
+    assert_eq!(expected.len(), 2);
+    for written in [
+        "\"path.csv\"",
+        "{ file = \"path.csv\" }",
+        "{ file = \"data/path.csv\", columns = [\"turn\", \"wanted\"] }",
+        "{ file = \"data/path.csv\", columns = [2, 3] }",
     ] {
-        println!("== {what}");
-        let asked = Optimization { goals, limits, ..base.clone() };
-        let o = optimized(&file, &asked);
-        for s in &o.searches {
-            println!(
-                "{:?} {:#?} {:?} designs {} {:?}",
-                s.status,
-                s.found,
-                s.optimality,
-                s.cost.designs,
-                s.refused.first()
-            );
-        }
+        assert_eq!(target(&MODEL.replacen(inline, written, 1)), expected, "{written}");
     }
+}
+
+/// The variables that are named, in their order.
+#[test]
+fn variables_may_be_chosen() {
+    let text = MODEL.replacen("starts = 5", "variables = [\"A_z\", \"reach\", \"A_x\"]", 1);
+    let model = parse(&text, "optimize.toml").unwrap_or_else(|e| panic!("{e}")).model;
+    let o = model.optimization.as_ref().unwrap();
+    let names: Vec<&str> = o.variables.iter().map(|v| model.variables[v.0].name.as_str()).collect();
+    assert_eq!((names, o.starts), (vec!["A_z", "reach", "A_x"], 1));
 }
