@@ -1,4 +1,5 @@
-import { readFileSync } from 'node:fs'
+import { readFileSync, writeFileSync } from 'node:fs'
+import { join } from 'node:path'
 import type { Browser, Page } from 'playwright-core'
 import { GLTFLoader, type GLTF } from 'three/addons/loaders/GLTFLoader.js'
 import { afterAll, beforeAll, describe, expect, inject, test, vi } from 'vitest'
@@ -10,6 +11,9 @@ import { motionBeside, table } from './table'
 vi.stubGlobal('self', globalThis)
 
 const { models } = inject('samples')
+
+/** Where pictures for readers go, when the tests are asked to make them anew. */
+const IMAGES = process.env.UPDATE_DOCS && join(import.meta.dirname, '../../docs/images')
 
 /** Bytes of a PNG's head: its signature, and where its width and height stand. */
 const PNG = { signature: '89504e470d0a1a0a', width: 16, height: 20 }
@@ -30,9 +34,9 @@ describe('what a reader takes away', () => {
   afterAll(() => browser?.close())
 
   /** The file that an entry of the menu gives. */
-  async function taken(entry: string): Promise<Buffer> {
-    await page.getByTestId('export').click()
-    const [download] = await Promise.all([page.waitForEvent('download'), page.getByTestId(entry).first().click()])
+  async function taken(entry: string, from = page): Promise<Buffer> {
+    await from.getByTestId('export').click()
+    const [download] = await Promise.all([from.waitForEvent('download'), from.getByTestId(entry).first().click()])
     return readFileSync(await download.path())
   }
 
@@ -50,6 +54,9 @@ describe('what a reader takes away', () => {
       },
       { svg: svg.toString(), selector },
     )
+
+  const wordsOf = (svg: Buffer) =>
+    page.evaluate((svg) => new DOMParser().parseFromString(svg, 'image/svg+xml').documentElement.textContent, svg.toString())
 
   test('the view as PNG is twice as large as on the screen', async () => {
     const { width, height } = (await page.locator(VIEW).boundingBox())!
@@ -88,6 +95,15 @@ describe('what a reader takes away', () => {
       expect(ours.length).toBe(theirs.length)
       for (const [k, value] of ours.entries()) expect(Math.abs(value - theirs[k]), `${name}, row ${k}`).toBeLessThanOrEqual(SINGLE * scale)
     }
+  })
+
+  test('the picture of the tutorial is a curve as SVG', async () => {
+    const tutorial = await visit(browser, inject('samples').tutorial)
+    const svg = await taken('export-plot-svg', tutorial.page)
+    const words = await wordsOf(svg)
+    for (const word of ['toe', 'wheel_travel', 'changed', 'as loaded', 'foreseen']) expect(words).toContain(word)
+    if (IMAGES) writeFileSync(join(IMAGES, 'tutorial.svg'), svg)
+    await tutorial.page.context().close()
   })
 
   test('the motion as glTF loads again and moves', async () => {

@@ -222,6 +222,15 @@ describe('the former design', () => {
     expect(drawn(new Mechanism(crank({ drivers: [] }), today, today))).toEqual([])
   })
 
+  test('of a body that one hardpoint stands for has no line', () => {
+    const block = (x: number) => {
+      const report = crank({ drivers: [] })
+      return { ...report, bodies: report.bodies.map((body, k) => (k === 1 ? { ...body, skeleton: [[x, 0, 0] as [number, number, number]], labels: ['pin'], roles: ['joint' as const] } : body)) }
+    }
+    const today = new Mechanism(block(0))
+    expect(drawn(new Mechanism(block(40), today, today))).toEqual([])
+  })
+
   test('has every line once', () => {
     const report = crank()
     const square = [[0, 0, 0], [200, 0, 0], [200, 200, 0], [0, 200, 0], [80, 90, 0]] as [number, number, number][]

@@ -1,5 +1,5 @@
 import { type StdioOptions, execFileSync } from 'node:child_process'
-import { mkdtempSync, readdirSync, rmSync } from 'node:fs'
+import { mkdtempSync, readdirSync, readFileSync, rmSync, writeFileSync } from 'node:fs'
 import { tmpdir } from 'node:os'
 import { basename, join } from 'node:path'
 import { pathToFileURL } from 'node:url'
@@ -13,6 +13,8 @@ export interface Samples {
   partial: string
   /** The strut with one end of its tie rod moved: today's design, the exact changed one and what was foreseen. */
   changed: string
+  /** The tutorial's: the strut whose rack is held, with its rack higher. */
+  tutorial: string
   /** The report of every model of the repository, by the name of its file. */
   models: Record<string, string>
 }
@@ -47,13 +49,26 @@ export default function setup(project: TestProject): () => void {
   const change = ['--set', 'tie_rod_outer.z=+6mm', '-o', join(folder, 'changed')]
   execFileSync(hardpoint, ['whatif', join(MODELS, 'macpherson.toml'), ...change], quietly)
 
+  const ride = join(folder, 'ride.toml')
+  writeFileSync(ride, ridden(readFileSync(join(MODELS, 'macpherson.toml'), 'utf8')))
+  const higher = ['--set', 'tie_rod_inner.z=+32mm', '--measure', 'toe', '--measure', 'camber', '--measure', 'half_track']
+  execFileSync(hardpoint, ['whatif', ride, ...higher, '--over', 'wheel_travel', '-o', join(folder, 'tutorial')], quietly)
+
   project.provide('samples', {
     whole: page('sample.html'),
     partial: page('partial.html'),
     changed: page('changed', 'whatif.html'),
+    tutorial: page('tutorial', 'whatif.html'),
     models: Object.fromEntries(models),
   })
   return () => rmSync(folder, { recursive: true })
+}
+
+/** The strut as the tutorial has it: its rack is held. */
+function ridden(strut: string): string {
+  const text = strut.replace(/(\[drivers\.rack_drive\][^[]*law = )"[^"]*"/, '$1"0"')
+  if (text === strut) throw new Error('the strut has no law of its rack where the tutorial finds it')
+  return text
 }
 
 /** The built programs: with the whole workspace, as `cargo test` builds it, so that after that there is nothing left to compile. */

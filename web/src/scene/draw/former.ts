@@ -19,7 +19,11 @@ export const formerDesign: Draw = (mechanism, kit) => {
   const least = SAME * mechanism.size
   const bodies = report.bodies.flatMap(({ name }, body): Drawn[] => {
     if (body === 0 || !differs(mechanism, former, body, least)) return []
-    const object = kitBodies(kit, former, body)
+    const lines = centreLines(former, body)
+    // A block that one hardpoint stands for has none.
+    if (lines.length === 0) return []
+    const lift = former.lift(body, former.topLayer + 2)
+    const object = new Group().add(...lines.flatMap(([a, b]) => dashes(kit, a.clone().add(lift), b.clone().add(lift))))
     const follow = ({ step }: Frame) => {
       const pose = former.poseAt(body, step)
       object.visible = pose !== undefined
@@ -34,11 +38,6 @@ export const formerDesign: Draw = (mechanism, kit) => {
     return [{ object, follow, part: { kind: 'mark', index, name: joint.name, about: 'former design' }, overlay: true }]
   })
   return [...bodies, ...rods]
-}
-
-function kitBodies(kit: Kit, former: Mechanism, body: number): Group {
-  const lift = former.lift(body, former.topLayer + 2)
-  return new Group().add(...centreLines(former, body).flatMap(([a, b]) => dashes(kit, a.clone().add(lift), b.clone().add(lift))))
 }
 
 function formerRod(kit: Kit, former: Mechanism, joint: JointMark): Pick<Drawn, 'object' | 'follow'> {
