@@ -1,5 +1,6 @@
-import { OrthographicCamera, PerspectiveCamera, Vector3 } from 'three'
+import { BoxGeometry, Group, Mesh, OrthographicCamera, PerspectiveCamera, SphereGeometry, Vector3 } from 'three'
 import { describe, expect, test } from 'vitest'
+import { bounds, outermost } from '../src/scene/bounds'
 import { fit } from '../src/scene/camera'
 import { path, poseAt, shifted } from '../src/scene/poses'
 
@@ -34,6 +35,24 @@ test('steps that were not solved have no pose and leave no path', () => {
   expect(poseAt(poses, 2)).toBeUndefined()
   expect(poseAt(poses, 1.5)).toBeUndefined()
   expect(path(poses, new Vector3())).toHaveLength(2)
+})
+
+test('few points bound a ball, but for 2 % of its radius', () => {
+  const ball = new SphereGeometry(1, 200, 100)
+  const few = bounds(new Mesh(ball))
+  expect(few.length).toBeLessThanOrEqual(200)
+  const places = ball.getAttribute('position')
+  const ways = Array.from({ length: places.count }, (_, k) => new Vector3().fromBufferAttribute(places, k))
+  expect(Math.min(...ways.map((way) => Math.max(...few.map((point) => point.dot(way)))))).toBeGreaterThan(0.98)
+})
+
+test('bounds stand where the object does, and keep every point of a few', () => {
+  const object = new Group().add(new Mesh(new BoxGeometry(2, 2, 2)))
+  object.position.set(10, 0, 0)
+  object.children[0].scale.setScalar(2)
+  expect(bounds(object)).toHaveLength(24)
+  for (const { x, y } of bounds(object)) expect([Math.abs(x - 10), Math.abs(y)]).toEqual([2, 2])
+  expect(outermost([new Vector3(1, 2, 3)])).toEqual([new Vector3(1, 2, 3)])
 })
 
 describe('the camera', () => {
