@@ -157,7 +157,10 @@ impl Study<'_> {
             foreseen: None,
         };
         let request = Request { changed: Some(changed), ..Request::of(&file, analysis, &course, &summary) };
-        Some(report(&request, &|page| facts.page(page)).expect("a payload is plain data"))
+        Some(
+            report(&request, &|page| facts.page(page, &file.model, &today.measured.outputs))
+                .expect("a payload is plain data"),
+        )
     }
 }
 

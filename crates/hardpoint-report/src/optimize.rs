@@ -1,7 +1,8 @@
 //! What an optimisation comes to: goals, limits and variables before and after, in the model's units.
 
 use hardpoint::joint::Quantity;
-use hardpoint::model::{Dimension, Limited, Model, Optimization, Reduction};
+use hardpoint::measure::Output;
+use hardpoint::model::{Dimension, Limited, Model, Optimization, OutputSource, Reduction};
 use hardpoint::study::{Binding, Iteration, Judged, Optimized, Refused, Search, Status};
 use hardpoint_file::{Diagnostic, ModelFile, Units};
 use serde::Serialize;
@@ -513,8 +514,15 @@ impl OptimizeFacts {
                 .is_some_and(|(value, objective)| squares(value, objective))
     }
 
-    /// The page of the design as drawn becomes that of the search: what is told here comes first among its checks.
-    pub fn page(&self, mut page: Payload) -> Payload {
+    /// The page of the design as drawn becomes that of the search: what is told here comes first among its checks, and it opens on what
+    /// the first goal of this motion is taken of, drawn over its abscissa.
+    pub fn page(&self, mut page: Payload, model: &Model, outputs: &[Output]) -> Payload {
+        let place = |of: OutputSource| outputs.iter().position(|o| o.source == of);
+        let goal = |g: &GoalFact| model.metrics.iter().find(|m| m.name == g.metric);
+        if let Some(metric) = self.goals.iter().find_map(goal) {
+            page.first = place(metric.of).or(page.first);
+            page.over = metric.over.and_then(place);
+        }
         let rows = self.rows().into_iter().map(|(what, is)| vec![what.into(), is]).collect();
         let result = Table {
             title: "The search".into(),

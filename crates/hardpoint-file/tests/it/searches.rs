@@ -1,203 +1,152 @@
-//! Designs found for goals, against designs that are known.
+//! Designs that are searched for: those that are known are found, and what is found is an optimum.
 
 use std::num::NonZero;
 use std::ops::ControlFlow;
+use std::path::Path;
 
-use hardpoint::Analysis;
-use hardpoint::model::{Goal, Optimization, VariableId};
-use hardpoint::study::{Motions, Optimized, Progress, Searching, optimize};
+use hardpoint::model::{Limit, Limited, Optimization};
+use hardpoint::study::{Binding, Cost, Motions, Optimized, Progress, Search, Searching, Status, optimize};
 use hardpoint::topology::Formulation;
 use hardpoint_file::ModelFile;
 
-pub fn optimized(file: &ModelFile, asked: &Optimization) -> Optimized {
+/// What is left of the gradient at an optimum, as a part of that at the start.
+const OPTIMAL: f64 = 1e-8;
+
+fn model(name: &str) -> ModelFile {
+    let models = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../models");
+    hardpoint_file::read(&models.join(name)).unwrap_or_else(|e| panic!("{e}"))
+}
+
+fn searched_on(threads: usize, file: &ModelFile, asked: &Optimization) -> Optimized {
     let models = file.model.motions();
     let motions = Motions::of(&models, Formulation::Relative).unwrap();
-    let mut progress = |k: usize, told: Progress<'_>| {
-        if let Progress::Iteration(i) = told
-            && std::env::var("SHOW").is_ok()
-        {
-            println!(
-                "{k} {:3} f {:.6e} v {:.1e} step {:.1e} designs {}",
-                i.number, i.objective, i.violation, i.step, i.designs
-            );
-        }
-        ControlFlow::Continue(())
-    };
-    let searching = Searching { progress: &mut progress, more: &|| true, threads: NonZero::<usize>::MIN };
-    optimize(&file.model, &motions, asked, searching)
+    let mut progress = |_: usize, _: Progress<'_>| ControlFlow::Continue(());
+    let threads = NonZero::new(threads).unwrap();
+    optimize(&file.model, &motions, asked, Searching { progress: &mut progress, more: &|| true, threads })
+}
+
+fn searched(file: &ModelFile, asked: &Optimization) -> Optimized {
+    searched_on(1, file, asked)
+}
+
+fn asked(file: &ModelFile) -> Optimization {
+    file.model.optimization.clone().expect("the file says what is wanted")
+}
+
+fn best(found: &Optimized) -> &Search {
+    &found.searches[found.best.expect("something is found")]
+}
+
+/// The hardpoints of the four-bar whose motion is given, and how near they are found: parts of the crank's length.
+const KNOWN: [[f64; 2]; 4] = [[0.0, 0.0], [0.04, 0.2], [0.36, 0.6], [0.4, 0.0]];
+const FOUND: f64 = 1e-6 * 0.204;
+/// The published search ends after so many iterations, each with a motion and its derivatives at least, and is 47 mm off.
+const PUBLISHED: usize = 16;
+
+fn is_known(file: &ModelFile, search: &Search) -> bool {
+    let Some(found) = &search.found else { return false };
+    let places = file.model.hardpoint_places(&found.design);
+    KNOWN.iter().zip(&places).all(|([x, y], p)| (p.x - x).abs() <= FOUND && (p.y - y).abs() <= FOUND)
 }
 
 #[test]
-fn four_bar_inverse() {
-    let text = std::fs::read_to_string("../../models/four_bar.toml").unwrap();
-    let known = hardpoint_file::parse(&text, "four_bar.toml").unwrap();
-    let solution = Analysis::new(&known.model).unwrap().run();
-    let target = |name: &str| {
-        let m = solution.measured.index(name).unwrap();
-        let points: Vec<String> = (0..solution.measured.len())
-            .map(|k| {
-                format!("[{:?}, {:?}]", solution.motion.times[k], 1e3 * solution.measured.value(k, m)[0])
-            })
-            .collect();
-        points.join(", ")
-    };
-    let text = text
-        .replace("A = [0, 0, 0]", "A = [-45, 45, 0]")
-        .replace("B = [40, 200, 0]", "B = [65, 260, 0]")
-        .replace("C = [360, 600, 0]", "C = [300, 500, 0]")
-        .replace("D = [400, 0, 0]", "D = [515, -85, 0]")
-        .replace("at = [200, 400, 0]", "at = [\"(B.x + C.x)/2\", \"(B.y + C.y)/2\", 0]");
-    let bounds = [[-50, 50], [-50, 50], [20, 80], [180, 280], [240, 380], [400, 620], [180, 520], [-100, 20]];
-    let start = [-45, 45, 65, 260, 300, 500, 515, -85];
-    let names = ["A_x", "A_y", "B_x", "B_y", "C_x", "C_y", "D_x", "D_y"];
-    let mut text = text;
-    for k in 0..8 {
-        let b = bounds[k].map(|b| b - start[k]);
-        let (p, a) = names[k].split_once('_').unwrap();
-        text = text.replace(
-            &format!("{} = {{ move = \"{p}\", along = \"{a}\" }}", names[k]),
-            &format!("{} = {{ move = \"{p}\", along = \"{a}\", bounds = [{}, {}] }}", names[k], b[0], b[1]),
-        );
-    }
-    text += &format!(
-        "\n[metrics]\nx = {{ of = \"midpoint_x\", take = \"rms\", target = [{}] }}\ny = {{ of = \"midpoint_y\", take = \"rms\", target = [{}] }}\n",
-        target("midpoint_x"),
-        target("midpoint_y")
-    );
-    let file = hardpoint_file::parse(&text, "inverse.toml").unwrap_or_else(|e| panic!("{e}"));
-    let goal = |metric: usize| Goal { name: String::new(), metric, target: None, weight: 1.0 };
-    let asked = Optimization {
-        variables: (0..8).map(VariableId).collect(),
-        goals: vec![goal(0), goal(1)],
-        limits: vec![],
-        margin: None,
-        starts: std::env::var("STARTS").map_or(1, |s| s.parse().unwrap()),
-        iterations: 100,
-    };
-    let found = optimized(&file, &asked);
-    for (k, s) in found.searches.iter().enumerate() {
-        let d = s
-            .found
-            .as_ref()
-            .map(|f| (0..8).map(|v| 1e3 * f.design[v] + f64::from(start[v])).collect::<Vec<_>>());
-        println!(
-            "{k} {:?} {:?} kkt {:.1e} designs {} refused {} {:.3?} {:?}",
-            s.status,
-            s.found.as_ref().map(|f| f.objective),
-            s.optimality.residual,
-            s.cost.designs,
-            s.refused.len(),
-            d,
-            s.refused.first().map(|r| &r.why)
-        );
-    }
+fn the_four_bar_of_a_known_motion_is_found() {
+    let file = model("four_bar_inverse.toml");
+    let found = searched(&file, &asked(&file));
+    let search = best(&found);
+    assert_eq!(search.status, Status::Optimal);
+    assert!(is_known(&file, search), "{:?}", search.found);
+    assert!(search.cost.designs < PUBLISHED, "{} designs", search.cost.designs);
+    assert!(search.optimality.residual <= OPTIMAL, "{:e}", search.optimality.residual);
+    assert!(search.optimality.binding.is_empty(), "{:?}", search.optimality.binding);
+    // The work of all variables is the whole change, but for the bend of the way.
+    let objective = |k: usize| search.iterations[k].objective;
+    let change = objective(search.iterations.len() - 1) - objective(0);
+    assert!((search.work.iter().sum::<f64>() / change - 1.0).abs() < 0.5, "{:?} of {change}", search.work);
 }
 
 #[test]
-fn strut_trial() {
-    use hardpoint::law::Law;
-    use hardpoint::model::{Case, CaseId, Limit, Limited};
-    let text = std::fs::read_to_string("../../models/macpherson.toml").unwrap();
-    let mut text = text.replace(
-        "[wheels.front_left]",
-        "[measures.rack]\ntype = \"coordinate\"\njoint = \"rack_slide\"\n[wheels.front_left]",
-    );
-    for v in ["tie_rod_outer_y", "tie_rod_outer_z", "tie_rod_inner_y", "tie_rod_inner_z"] {
-        text = text.replace(&format!("[design.{v}]\n"), &format!("[design.{v}]\nbounds = [-15, 15]\n"));
+fn it_is_found_from_everywhere_within_the_bounds_on_any_number_of_threads() {
+    let file = model("four_bar_inverse.toml");
+    let many = Optimization { starts: 13, ..asked(&file) };
+    let found = searched(&file, &many);
+    for (k, search) in found.searches.iter().enumerate() {
+        assert!(is_known(&file, search), "start {k}: {:?}, {:?}", search.status, search.found);
     }
-    text += "
-[metrics.toe_error]
-of = \"toe\"
-over = \"wheel_travel\"
-take = \"rms\"
-target = [[-40, 0.3], [0, 0.2], [40, 0.0]]
-[metrics.ackermann]
-of = \"toe\"
-over = \"rack\"
-take = \"mean\"
-[metrics.most]
-of = \"toe\"
-take = \"max\"
-[metrics.spread]
-of = \"toe\"
-take = \"range\"
-";
-    let mut file = hardpoint_file::parse(&text, "strut.toml").unwrap_or_else(|e| panic!("{e}"));
-    let times: Vec<f64> = (0..=100).map(|k| 0.01 * f64::from(k)).collect();
-    let case = |name: &str, laws: [&str; 2]| Case {
-        formulas: Vec::new(),
-        name: name.into(),
-        laws: laws.map(|l| Some(Law::parse(l).unwrap())).to_vec(),
-        times: times.clone(),
-    };
-    file.model.cases = vec![case("bump", ["0", "0.04*(2*t-1)"]), case("steer", ["0.03*(2*t-1)", "0"])];
-    file.model.metrics[0].case = Some(CaseId(0));
-    file.model.metrics[1].case = Some(CaseId(1));
-    file.model.metrics[2].case = Some(CaseId(0));
-    file.model.metrics[3].case = Some(CaseId(0));
-    let v = |n: &str| file.model.variable(n).unwrap();
-    let variables =
-        vec![v("tie_rod_outer_y"), v("tie_rod_outer_z"), v("tie_rod_inner_y"), v("tie_rod_inner_z")];
-    let deg = 180.0 / std::f64::consts::PI;
-    let goal = |metric: usize| Goal { name: String::new(), metric, target: None, weight: deg };
-    let drawn = {
-        let models = file.model.motions();
-        let m = Motions::of(&models, Formulation::Relative).unwrap();
-        let e = m.evaluate(&[], &mut Default::default(), &|| true).unwrap();
-        println!("{:?}", e.metrics.iter().flatten().map(|m| m.value.map(|v| v * deg)).collect::<Vec<_>>());
-        e.metrics[1][0].value.unwrap()
-    };
-    let limit =
-        |of: Limited, least: Option<f64>, most: Option<f64>| Limit { name: String::new(), of, least, most };
-    let base = Optimization {
-        variables,
-        goals: vec![goal(0)],
-        limits: vec![],
-        margin: None,
-        starts: 1,
-        iterations: 100,
-    };
-    let h = |n: &str| {
-        hardpoint::model::HardpointId(file.model.hardpoints.iter().position(|h| h.name == n).unwrap())
-    };
-    for (what, goals, limits) in [
-        ("free", vec![goal(0)], vec![]),
-        ("ackermann", vec![goal(0)], vec![limit(Limited::Metric(1), Some(drawn), None)]),
-        ("ackermann better", vec![goal(0)], vec![limit(Limited::Metric(1), Some(drawn + 0.3 / deg), None)]),
-        (
-            "equal",
-            vec![goal(0)],
-            vec![limit(Limited::Metric(1), Some(drawn + 0.3 / deg), Some(drawn + 0.3 / deg))],
-        ),
-        ("max", vec![goal(2)], vec![]),
-        ("range", vec![goal(3)], vec![]),
-        (
-            "range, limited",
-            vec![goal(3)],
-            vec![
-                limit(Limited::Metric(1), Some(drawn + 0.1 / deg), None),
-                limit(Limited::Distance(h("tie_rod_inner"), h("tie_rod_outer")), None, Some(0.36)),
-            ],
-        ),
-        (
-            "plain",
-            vec![Goal { weight: -deg, ..goal(1) }],
-            vec![limit(Limited::Metric(3), None, Some(0.1 / deg))],
-        ),
-        ("impossible", vec![goal(0)], vec![limit(Limited::Metric(1), Some(drawn + 9.0 / deg), None)]),
-    ] {
-        println!("== {what}");
-        let asked = Optimization { goals, limits, ..base.clone() };
-        let o = optimized(&file, &asked);
-        for s in &o.searches {
-            println!(
-                "{:?} {:#?} {:?} designs {} {:?}",
-                s.status,
-                s.found,
-                s.optimality,
-                s.cost.designs,
-                s.refused.first()
-            );
-        }
+    // Most linkages within these bounds cannot turn: their starts are drawn nearer until they do.
+    assert!(found.searches.iter().any(|s| !s.refused.is_empty()));
+    let again = searched_on(3, &file, &many);
+    let ends = |o: &Optimized| o.searches.iter().map(|s| s.found.clone().unwrap().design).collect::<Vec<_>>();
+    assert_eq!(ends(&found), ends(&again));
+}
+
+/// Between what is found and the target, over the whole travel, rad.
+const WITHIN: f64 = 0.02 * std::f64::consts::PI / 180.0;
+
+#[test]
+fn the_strut_gets_its_toe_curve_and_steers_no_worse() {
+    let file = model("strut_toe.toml");
+    let asked = asked(&file);
+    let found = searched(&file, &asked);
+    let search = best(&found);
+    assert_eq!(search.status, Status::Optimal);
+    assert!(search.cost.designs < 20, "{} designs", search.cost.designs);
+    assert!(search.optimality.residual <= OPTIMAL, "{:e}", search.optimality.residual);
+    let judged = search.found.as_ref().unwrap();
+    assert_eq!(judged.violation, 0.0);
+    let drawn = found.drawn.as_ref().unwrap();
+    assert!(judged.limits[0].2 > drawn.limits[0].2, "the inner wheel steers no less");
+    let models = file.model.motions();
+    let motions = Motions::of(&models, Formulation::Relative).unwrap();
+    let solved = motions.evaluate(&judged.design, &mut Cost::default(), &|| true).unwrap();
+    let (measured, bump) = (&solved.solutions[0].measured, &models[0]);
+    let [toe, travel] = ["toe", "wheel_travel"].map(|name| measured.index(name).unwrap());
+    for k in 0..measured.len() {
+        let wanted = bump.metrics[0].target_at(measured.value(k, travel)[0]).unwrap();
+        let off = measured.value(k, toe)[0] - wanted;
+        assert!(off.abs() <= WITHIN, "{off} rad at step {k}");
     }
+}
+
+/// A limit on what a goal of the strut is taken of, in SI.
+fn limit(of: Limited, least: Option<f64>, most: Option<f64>) -> Limit {
+    Limit { name: "limit".into(), of, least, most }
+}
+
+#[test]
+fn what_binds_is_worth_what_giving_way_gains() {
+    // The multiplier of a limit against two searches with the limit moved either way.
+    const MOVED: f64 = 1e-5;
+    const AGREES: f64 = 1e-3;
+    let file = model("strut_toe.toml");
+    let at = |least: f64| {
+        let limits = vec![limit(Limited::Metric(1), Some(least), None)];
+        searched(&file, &Optimization { limits, ..asked(&file) })
+    };
+    let deg = std::f64::consts::PI / 180.0;
+    let least = 0.145 * deg;
+    let middle = at(least);
+    let search = best(&middle);
+    assert_eq!(search.status, Status::Optimal, "{:?}", search.iterations);
+    let binding = &search.optimality.binding;
+    let worth =
+        binding.iter().find(|(what, _)| matches!(what, Binding::Least(0, Some(1)))).expect("it binds").1;
+    let objective = |found: &Optimized| best(found).found.as_ref().unwrap().objective;
+    let gained =
+        (objective(&at(least + MOVED * deg)) - objective(&at(least - MOVED * deg))) / (2.0 * MOVED * deg);
+    assert!((gained / worth - 1.0).abs() < AGREES, "{gained} and {worth}");
+}
+
+#[test]
+fn limits_that_contradict_each_other_and_designs_that_lock_are_told() {
+    let file = model("strut_toe.toml");
+    let far = Optimization { limits: vec![limit(Limited::Metric(1), Some(0.5), None)], ..asked(&file) };
+    let found = searched(&file, &far);
+    assert_eq!(best(&found).status, Status::LimitsNotKept);
+    assert!(best(&found).found.as_ref().unwrap().violation > 0.0);
+    // No design keeps so far from singular positions: none can be judged, and each says why.
+    let file = model("four_bar_inverse.toml");
+    let found = searched(&file, &Optimization { margin: Some(0.99), ..asked(&file) });
+    assert_eq!((found.best, found.searches[0].status), (None, Status::NoStart));
+    assert!(found.drawn_refused.unwrap().why.contains("margin"));
 }
