@@ -13,6 +13,8 @@ use super::Raw;
 /// More starts, and more iterations, than these are surely a slip.
 const MOST_STARTS: u32 = 100_000;
 const MOST_ITERATIONS: u32 = 100_000;
+/// More variables by name than these are surely a slip.
+const MOST_VARIABLES: usize = 10_000;
 pub(crate) const OPTIMIZE: Table = table! {
     /// What the design is to be optimised for, and within which limits.
     "Optimize":
@@ -272,6 +274,11 @@ impl Reader<'_> {
     fn variables_of(&mut self, fields: &Fields<'_>, f: Field<'_>) -> Option<Vec<String>> {
         let (subject, expected) = (fields.subject(f.key), "a list of names of design variables");
         let list = self.list(f.value, &subject, expected)?;
+        if list.len() > MOST_VARIABLES {
+            self.senseless(f.value.span(), format!("{} has {} entries", subject.name, list.len())).help =
+                Some(format!("name at most {MOST_VARIABLES}, or leave it out for all that have bounds"));
+            return None;
+        }
         let names: Vec<_> = list.into_iter().map(|v| self.name(v, &subject, expected)).collect();
         names.into_iter().collect()
     }

@@ -2,8 +2,6 @@
 
 use crate::law::Law;
 
-use crate::design::Effect;
-
 use super::{CaseId, Change, Formula, Model, Target};
 
 /// A motion of the mechanism under laws and at times of its own: a car in bump with the rack held, or steered at one ride height.
@@ -43,7 +41,8 @@ impl Model {
         }
         model.formulas.retain(|f| !matches!(f.of, Target::Law(d, _) if laws[d.0].is_some()));
         model.formulas.extend_from_slice(formulas);
-        let is_replaced = |change: &Change| change.law().is_some_and(|(d, ..)| laws[d.0].is_some());
+        let is_replaced =
+            |change: &Change| matches!(change, Change::Law(law) if laws[law.driver.0].is_some());
         model.variables.iter_mut().for_each(|v| v.changes.retain(|change| !is_replaced(change)));
         model.metrics.retain(|m| m.case.is_none_or(|of| of == case));
         model.metrics.iter_mut().for_each(|m| m.case = None);
