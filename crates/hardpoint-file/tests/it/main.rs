@@ -3,6 +3,7 @@
 
 mod diagnostics;
 mod docs;
+mod edit;
 mod gallery;
 mod gallery_models;
 mod measures;
