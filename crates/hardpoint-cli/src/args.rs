@@ -82,6 +82,14 @@ pub struct Common {
     pub json: bool,
 }
 
+/// Which motions of a model file a command is done for.
+#[derive(Args, Debug)]
+pub struct Motions {
+    /// Do one case of the model file only [default: all of them, one after the other]
+    #[arg(long, value_name = "NAME")]
+    pub case: Option<String>,
+}
+
 impl Common {
     /// The coordinates asked for.
     pub fn formulation(&self) -> Formulation {
@@ -97,7 +105,8 @@ Writes into the folder, each file whole or not at all:
   sensitivity.csv  derivatives of measures and points by every design variable
                    (of bodies where the model has neither, and is small)
   summary.json     the model, how the run went, the largest sensitivities
-What stands in which column: docs/results.md. Files of an earlier run that this one
+Of a model with cases, each case gets a folder of its own there, and summary.json says how
+each of them went. What stands in which column: docs/results.md. Files of an earlier run that this one
 does not write are removed. Ctrl-C while it solves writes the part that was solved;
 while it writes, the files of the earlier run stay.
 
@@ -105,6 +114,7 @@ Examples:
   hardpoint run models/slider_crank.toml
   hardpoint run models/macpherson.toml -o results/baseline --bodies
   hardpoint run models/macpherson.toml --format npy
+  hardpoint run models/strut_toe.toml --case bump
   hardpoint run models/macpherson.toml --json | jq '.sensitivities[0]'";
 
 /// How tables are written.
@@ -132,6 +142,8 @@ impl Format {
 pub struct Run {
     #[command(flatten)]
     pub common: Common,
+    #[command(flatten)]
+    pub motions: Motions,
     /// The folder for the results [default: results/NAME for NAME.toml]
     #[arg(short, long, value_name = "DIR")]
     pub output: Option<PathBuf>,
@@ -167,6 +179,8 @@ Example:
 pub struct Check {
     #[command(flatten)]
     pub common: Common,
+    #[command(flatten)]
+    pub motions: Motions,
 }
 
 const AFTER_VERIFY: &str = "\
@@ -191,6 +205,8 @@ Examples:
 pub struct Verify {
     #[command(flatten)]
     pub common: Common,
+    #[command(flatten)]
+    pub motions: Motions,
     /// Also show the deviation at every step
     #[arg(long)]
     pub sweep: bool,
@@ -241,7 +257,8 @@ in mm, cm, m, in, deg or rad, or in the unit of the file where none is given.
 Examples:
   hardpoint whatif models/macpherson.toml --measure toe
   hardpoint whatif models/macpherson.toml --set tie_rod_outer.z=+2mm --set lca_pivot.tilt_y=0.5deg
-  hardpoint whatif models/macpherson.toml --set tie_rod_inner.z=-3mm --measure toe --over wheel_travel -o results/higher_rack";
+  hardpoint whatif models/macpherson.toml --set tie_rod_inner.z=-3mm --measure toe --over wheel_travel -o results/higher_rack
+  hardpoint whatif models/macpherson.toml --set tie_rod_outer.z=+2mm --save strut_2.toml";
 
 /// `hardpoint whatif`.
 #[derive(Args, Debug)]
@@ -249,6 +266,8 @@ Examples:
 pub struct Whatif {
     #[command(flatten)]
     pub common: Common,
+    #[command(flatten)]
+    pub motions: Motions,
     /// A change of the design; may be given several times
     #[arg(long, value_name = "NAME=CHANGE")]
     pub set: Vec<String>,
@@ -264,6 +283,9 @@ pub struct Whatif {
     /// Write whatif.html, whatif.csv and whatif.json into this folder
     #[arg(short, long, value_name = "DIR")]
     pub output: Option<PathBuf>,
+    /// Write the model file with the changed design, its comments and layout kept
+    #[arg(long, value_name = "FILE", requires = "set")]
+    pub save: Option<PathBuf>,
 }
 
 const AFTER_OPTIMIZE: &str = "\

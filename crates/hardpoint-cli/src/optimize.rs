@@ -15,7 +15,7 @@ use hardpoint_report::payload::{Changed, Request, report};
 use hardpoint_report::summary::Summary;
 
 use crate::args::Optimize;
-use crate::folder::{Folder, NotWritten};
+use crate::folder::{Folder, NotWritten, file_name};
 use crate::outcome::Outcome;
 use crate::session::{Session, json_text};
 use crate::text;
@@ -29,6 +29,7 @@ pub fn run(options: &Optimize) -> Outcome {
 fn optimize_in(session: &Session, options: &Optimize) -> Result<Outcome, Outcome> {
     let file = session.read(&options.common.model)?;
     let asked = asked(session, &file, options)?;
+    session.may_save(&options.common.model, options.save.as_deref())?;
     let models = file.model.motions();
     let motions = Motions::of(&models, options.common.formulation());
     let motions = motions.map_err(|(_, fault)| session.cannot_be_driven(&file, &fault))?;
@@ -41,6 +42,12 @@ fn optimize_in(session: &Session, options: &Optimize) -> Result<Outcome, Outcome
     facts.seconds = session.seconds();
     let best = found.best.and_then(|k| found.searches[k].found.as_ref());
 
+    let mut saved = None;
+    if let (Some(to), Some(best)) = (&options.save, best) {
+        session.save(&file, &best.design, to)?;
+        facts.files.push(to.display().to_string());
+        saved = Some(to);
+    }
     let mut written = None;
     if let (Some(mut folder), Some(best)) = (folder, best) {
         let study = Study { file: &file, motions: &motions, design: &best.design };
@@ -54,6 +61,7 @@ fn optimize_in(session: &Session, options: &Optimize) -> Result<Outcome, Outcome
         text::print(&facts_text(&facts));
         let written = written.map_or(String::new(), |path| format!("\nwritten: {}\n", path.display()));
         text::print(&written);
+        text::print(&saved.map_or(String::new(), |path| format!("saved: {}\n", path.display())));
     }
     Ok(match facts.status {
         "interrupted" => Outcome::Interrupted,
@@ -124,7 +132,7 @@ impl Study<'_> {
     fn write(&self, folder: &mut Folder, facts: &mut OptimizeFacts) -> Result<(), NotWritten> {
         for (k, analysis) in self.motions.analyses().iter().enumerate() {
             let name = match case_name(&self.file.model, k) {
-                Some(case) => format!("report-{case}.html"),
+                Some(case) => format!("report-{}.html", file_name(&case)),
                 None => "report.html".into(),
             };
             let Some(html) = self.page(analysis, facts) else { continue };

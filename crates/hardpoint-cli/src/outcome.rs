@@ -24,6 +24,13 @@ pub enum Outcome {
     Interrupted = 130,
 }
 
+impl Outcome {
+    /// Of two, that of the whole: what went worst, as exit codes go up.
+    pub fn and(self, other: Self) -> Self {
+        if other as u8 > self as u8 { other } else { self }
+    }
+}
+
 impl From<Outcome> for ExitCode {
     fn from(outcome: Outcome) -> Self {
         Self::from(outcome as u8)

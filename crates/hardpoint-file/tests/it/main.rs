@@ -4,6 +4,7 @@
 mod cases;
 mod diagnostics;
 mod docs;
+mod edit;
 mod gallery;
 mod gallery_models;
 mod measures;
