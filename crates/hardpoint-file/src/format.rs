@@ -207,6 +207,7 @@ pub(crate) const ANGLE: Shape = Shape::Number(Quantity::Angle);
 pub(crate) const TWO_NUMBERS: Shape = Shape::exactly(2, &NUMBER);
 pub(crate) const THREE_NUMBERS: Shape = Shape::exactly(3, &NUMBER);
 pub(crate) const BODY: Shape = Shape::Name("a body");
+pub(crate) const CASE: Shape = Shape::Name("a case");
 pub(crate) const DRIVER: Shape = Shape::Name("a driver");
 pub(crate) const HARDPOINT: Shape = Shape::Name("a hardpoint");
 pub(crate) const JOINT: Shape = Shape::Name("a joint");

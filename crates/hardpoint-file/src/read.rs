@@ -1,5 +1,6 @@
 //! The tables of a model file, one function each, into a draft.
 
+mod cases;
 mod couplers;
 mod data;
 mod design;
@@ -69,8 +70,10 @@ pub(crate) const MODEL: Table = table! {
     may "measures": Shape::Entries(&results::MEASURE), "{}";
     /// Numbers that sum measures up over the motion, with their sensitivities.
     may "metrics": Shape::Entries(&Shape::Table(&results::METRIC)), "{}";
-    /// The output times.
-    must "time": Shape::Kinds(&results::TIME), "{ end = 1.0, steps = 100 }";
+    /// The output times. Where every case has its own, they may be left out.
+    may "time": Shape::Kinds(&results::TIME), "{ end = 1.0, steps = 100 }";
+    /// Several motions of the mechanism, in place of the one that the drivers' own laws make.
+    may "cases": Shape::Entries(&Shape::Table(&cases::CASE)), "{}";
 };
 const UNITS: Table = table! {
     /// The units of all numbers in the file.
@@ -205,7 +208,7 @@ fn coordinates() -> Vec<(&'static str, String)> {
 
 /// The tables that `docs/file-format.md` shows, by their names there.
 #[cfg(test)]
-pub(crate) fn tables() -> [(&'static str, Shape); 21] {
+pub(crate) fn tables() -> [(&'static str, Shape); 22] {
     [
         ("parameters", Shape::Table(&parameters::PARAMETER_TABLE)),
         ("frames", Shape::Kinds(&FRAME)),
@@ -228,6 +231,7 @@ pub(crate) fn tables() -> [(&'static str, Shape); 21] {
         ("measures", Shape::Kinds(&results::OWN_MEASURE)),
         ("metrics", Shape::Table(&results::METRIC)),
         ("time", Shape::Kinds(&results::TIME)),
+        ("cases", Shape::Table(&cases::CASE)),
     ]
 }
 
@@ -243,6 +247,8 @@ pub(crate) struct Raw {
     joint_numbers: HashMap<String, usize>,
     /// What each driver of the draft prescribes.
     driven: Vec<Quantity>,
+    /// The drivers that leave their laws to the cases, by their places in the draft.
+    without_law: Vec<usize>,
 }
 
 impl Raw {
@@ -283,6 +289,7 @@ impl Reader<'_> {
         self.axles(&fields, &mut raw);
         self.metrics(&fields, &mut raw);
         self.time(&fields, &mut raw);
+        self.cases(&fields, &mut raw);
         raw
     }
 

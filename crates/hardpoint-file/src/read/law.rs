@@ -191,7 +191,7 @@ impl Reader<'_> {
     }
 
     /// A law; `of` is what it belongs to.
-    fn law_in(&mut self, of: &str, subject: &Subject, value: &Value<'_>) -> Option<Law> {
+    pub(super) fn law_in(&mut self, of: &str, subject: &Subject, value: &Value<'_>) -> Option<Law> {
         match value.get_ref() {
             DeValue::String(_) => self.law_text(of, value, &[]),
             DeValue::Integer(_) | DeValue::Float(_) => self.number(value, subject).map(Law::constant),
