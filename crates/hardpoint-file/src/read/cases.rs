@@ -1,6 +1,6 @@
 //! Cases: several motions of one mechanism.
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 
 use hardpoint::draft::{CaseDraft, FormulaDraft, FormulaOf, Rest, Section};
 use hardpoint::joint::Quantity;
@@ -73,8 +73,9 @@ impl Reader<'_> {
 
     /// HP0104: drivers that have no laws to follow in this case.
     fn laws_of_their_own(&mut self, fields: &Fields<'_>, laws: &[(String, Law)], raw: &Raw) {
+        let named: HashSet<&str> = laws.iter().map(|law| law.0.as_str()).collect();
         let without = raw.without_law.iter().map(|k| &raw.draft.drivers[*k].name);
-        let without: Vec<&String> = without.filter(|name| !laws.iter().any(|law| law.0 == **name)).collect();
+        let without: Vec<&String> = without.filter(|name| !named.contains(name.as_str())).collect();
         let Some(first) = without.first() else { return };
         let names: Vec<String> = without.iter().map(|name| format!("`{}`", shown(name))).collect();
         let names = hardpoint::draft::some_of(&names, ", ", 12);

@@ -47,8 +47,8 @@ static FORMS: &[(Table, Read)] = &[
         },
         |r, fields, _| {
             let joint = r.name_of(fields, "joint");
-            let coordinate = r.name_of(fields, "coordinate");
-            Some(DrivenDraft::Coordinate { joint: joint?, coordinate })
+            let coordinate = r.name_if(fields, "coordinate");
+            Some(DrivenDraft::Coordinate { joint: joint?, coordinate: coordinate? })
         },
     ),
     (

@@ -17,5 +17,6 @@ mod path;
 mod published;
 mod robustness;
 mod shapes;
+mod studies;
 mod tape;
 mod wheels;

@@ -6,6 +6,7 @@ mod formulas;
 mod joints;
 mod measures;
 mod motion;
+mod optimization;
 mod wheels;
 
 pub use formulas::{Nominal, NotConstant};
@@ -68,6 +69,7 @@ impl Model {
         c.variables();
         c.formulas_that_vary();
         c.times();
+        c.optimization();
         c.faults.retain(|f| !draft.unread.has(f.at.section, f.at.index, f.at.key));
         if !c.faults.is_empty() || !draft.unread.is_empty() {
             return Err(c.faults);
@@ -127,7 +129,7 @@ struct Checker<'a> {
 }
 
 /// The tables that names of a kind stand in.
-const TABLES: [(&str, &str); 12] = [
+const TABLES: [(&str, &str); 13] = [
     ("parameter", "parameters"),
     ("hardpoint", "hardpoints"),
     ("body", "bodies"),
@@ -139,6 +141,7 @@ const TABLES: [(&str, &str); 12] = [
     ("measure", "measures"),
     ("metric", "metrics"),
     ("case", "cases"),
+    ("design variable", "design"),
     ("vehicle", "vehicle"),
 ];
 

@@ -89,6 +89,11 @@ impl Unread {
         self.0.contains_key(&(section, index))
     }
 
+    /// Whether any field of any entry of a list could not be read.
+    pub(crate) fn any_of(&self, section: Section) -> bool {
+        self.0.range((section, 0)..=(section, usize::MAX)).next().is_some()
+    }
+
     /// Whether that field could not be read of any entry of a list.
     pub(crate) fn anywhere(&self, section: Section, field: &str) -> bool {
         self.0.iter().any(|((s, _), fields)| *s == section && fields.contains(&field))

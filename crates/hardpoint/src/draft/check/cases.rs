@@ -86,7 +86,11 @@ impl Checker<'_> {
             .collect();
         let fault = self.fault("HP0235", here.key("name"), message);
         if !held.is_empty() && c.rest == Rest::Held {
-            fault.note(format!("it names no law for {}, so they are held as drawn", held.join(", ")));
+            let [are, them] = if held.len() == 1 { ["is", "it"] } else { ["are", "them"] };
+            fault.note(format!(
+                "{} {are} held as drawn, since the case gives no law for {them}",
+                held.join(", ")
+            ));
         }
         let example = draft.drivers.first().map_or("DRIVER", |d| d.name.as_str());
         fault.help(format!(

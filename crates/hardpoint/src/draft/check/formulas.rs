@@ -381,11 +381,11 @@ impl<'a> Checker<'a> {
 }
 
 /// The coordinates of a hardpoint, as expressions name them.
-const AXES: [&str; 3] = ["x", "y", "z"];
+pub(super) const AXES: [&str; 3] = ["x", "y", "z"];
 
 impl Formula {
     /// What others may use of it.
-    fn gives(&self) -> Option<Source> {
+    pub(super) fn gives(&self) -> Option<Source> {
         match self.of {
             Target::Parameter(p) => Some(Source::Parameter(p)),
             Target::Coordinate(h, axis) => Some(Source::Coordinate(h, axis)),
