@@ -429,6 +429,7 @@ mod tests {
         let case = |name: &str, law: &str| crate::model::Case {
             name: name.into(),
             laws: vec![Some(Law::parse(law).unwrap())],
+            formulas: Vec::new(),
             times: model.times.clone(),
         };
         model.cases = vec![case("slow", "t"), case("fast", "3*t")];
