@@ -18,5 +18,6 @@ mod published;
 mod robustness;
 mod shapes;
 mod studies;
+mod synthesis;
 mod tape;
 mod wheels;
