@@ -20,5 +20,6 @@ mod robustness;
 mod searches;
 mod shapes;
 mod studies;
+mod synthesis;
 mod tape;
 mod wheels;

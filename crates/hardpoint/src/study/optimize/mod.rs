@@ -29,13 +29,17 @@ const KEPT: f64 = 1e-8;
 /// A design this near to optimal is an optimum.
 const OPTIMAL: f64 = 1e-6;
 /// A search that came to rest short of this starts again where it stands ...
-const SHARP: f64 = 1e-9;
+const SHARP: f64 = 5e-9;
 /// ... as often as this.
 const AGAIN: usize = 3;
 /// A search that finds no less than before, to this part of the objective, has come to rest.
 const NO_LESS: f64 = 1e-14;
 /// ... and so has one whose step is less than this part of the bounds.
 const RESTING: f64 = 1e-13;
+/// Objectives that differ by less than this part are the same but for round-off: of such designs the one nearer to optimal is the better.
+const THE_SAME: f64 = 1e-12;
+/// A run that takes away so much of what kept the design from an optimum was worth it, whatever it did to the objective.
+const NEARER: f64 = 0.5;
 /// The first solver has done its work where a step gains less than this part of the objective: others make an end of it.
 const HARDLY_LESS: f64 = 1e-6;
 /// A start that cannot be judged is drawn nearer so many times.
@@ -228,7 +232,14 @@ fn best(searches: &[Search]) -> Option<usize> {
         let ([a, b], [x, y]) = ([rank(a).0, rank(b).0], [rank(a).1, rank(b).1]);
         a.cmp(&b).then(x.total_cmp(&y))
     };
-    (0..searches.len()).filter(|k| found(k).is_some()).min_by(order)
+    let least = (0..searches.len()).filter(|k| found(k).is_some()).min_by(order)?;
+    let (exceeds, value) = rank(&least);
+    let as_good = |k: &usize| {
+        let same = |(e, v): (bool, f64)| e == exceeds && v - value <= THE_SAME * value.abs();
+        found(k).is_some() && same(rank(k))
+    };
+    let residual = |k: &usize| searches[*k].optimality.residual;
+    (0..searches.len()).filter(as_good).min_by(|a, b| residual(a).total_cmp(&residual(b)))
 }
 
 fn refused(design: Vec<f64>, Refusal { motion, why, .. }: Refusal) -> Refused {
@@ -342,7 +353,14 @@ impl<'p> Descent<'p> {
     fn is_better(&self, one: &Point, other: &Point) -> bool {
         let [a, b] = [one, other].map(|p| self.violation(p));
         match [a <= KEPT, b <= KEPT] {
-            [true, true] => one.objective() < other.objective(),
+            [true, true] => {
+                let [a, b] = [one, other].map(Point::objective);
+                if (a - b).abs() <= THE_SAME * b.abs() {
+                    self.optimality(one).residual < self.optimality(other).residual
+                } else {
+                    a < b
+                }
+            }
             [false, false] => a < b,
             [kept, _] => kept,
         }
@@ -361,13 +379,22 @@ impl<'p> Descent<'p> {
 
     fn go(&mut self, search: &mut Search, tell: &mut dyn FnMut(&Iteration)) {
         self.note(search, None, tell);
+        let squares = self.here.is_squares();
+        let mut idle = 0;
         for run in 0..=AGAIN {
-            let before = (self.best.objective(), self.violation(&self.best));
-            self.descend(run == 0, search, tell);
-            let after = (self.best.objective(), self.violation(&self.best));
-            let gained = run == 0 || before.0 - after.0 > NO_LESS * before.0.abs() || after.1 < before.1;
-            let sharp = self.optimality(&self.best).residual < SHARP && after.1 <= KEPT;
-            if sharp || !gained || self.ran_out || self.memory.interrupted() {
+            let stands = |run: &Self| {
+                (run.best.objective(), run.violation(&run.best), run.optimality(&run.best).residual)
+            };
+            let before = stands(self);
+            self.descend(run, search, tell);
+            let after = stands(self);
+            let less = before.0 - after.0 > THE_SAME * before.0.abs() || after.1 < before.1;
+            let gained = run == 0 || less || after.2 < NEARER * before.2;
+            let sharp = after.2 < SHARP && after.1 <= KEPT;
+            idle = if gained { 0 } else { idle + 1 };
+            // Where there are two solvers, what one cannot improve is left to the other.
+            let at_rest = idle > usize::from(squares);
+            if sharp || at_rest || self.ran_out || self.memory.interrupted() {
                 return;
             }
             // From the best that was found, with what is known of the curvature there.
@@ -376,9 +403,9 @@ impl<'p> Descent<'p> {
         }
     }
 
-    /// Lets a solver run to its end.
-    fn descend(&mut self, first: bool, search: &mut Search, tell: &mut dyn FnMut(&Iteration)) {
-        let squares = first && self.here.is_squares();
+    /// Lets a solver run to its end; the first time, least squares only as long as they gain much.
+    fn descend(&mut self, run: usize, search: &mut Search, tell: &mut dyn FnMut(&Iteration)) {
+        let squares = run.is_multiple_of(2) && self.here.is_squares();
         let Some(mut solver) = self.solver(squares) else { return };
         loop {
             if search.iterations.len() > self.problem.asked.iterations {
@@ -402,7 +429,8 @@ impl<'p> Descent<'p> {
                 continue;
             };
             let change = (former.objective - last.objective).abs();
-            let still = change <= if squares { HARDLY_LESS } else { NO_LESS } * last.objective.abs()
+            let still = change
+                <= if squares && run == 0 { HARDLY_LESS } else { NO_LESS } * last.objective.abs()
                 && last.violation <= KEPT;
             let sharp = || last.violation <= KEPT && self.optimality(&self.here).residual < SHARP;
             if last.step <= RESTING || still || sharp() {

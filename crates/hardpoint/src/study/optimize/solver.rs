@@ -14,9 +14,9 @@ use crate::study::evaluation::Cost;
 
 use super::problem::{LimitRow, Point, Problem, Refusal, Rows};
 
-/// The sequential solver takes objective, limits and design for settled where they change by less than this, with all of them scaled to
-/// the order of one.
-const SETTLED: f64 = 1e-15;
+/// The sequential solver takes objective and limits for settled where they change by less than this, with curvatures scaled to the order
+/// of one: the square of how near to stationary a design shall be. What round-off leaves of that is for the search to see.
+const SETTLED: f64 = 1e-30;
 /// So near to stationary, as a part of the gradient at the start, nothing is left to find.
 const STATIONARY: f64 = 1e-13;
 /// The least curvature that is assumed in any direction, as a part of the largest.
