@@ -68,7 +68,7 @@ impl EntryPlace {
     }
 }
 
-const SECTIONS: [Section; 15] = [
+const SECTIONS: [Section; 19] = [
     Section::Model,
     Section::Parameters,
     Section::Hardpoints,
@@ -84,6 +84,10 @@ const SECTIONS: [Section; 15] = [
     Section::Measures,
     Section::Metrics,
     Section::Time,
+    Section::Cases,
+    Section::Optimize,
+    Section::Goals,
+    Section::Limits,
 ];
 
 /// The places of all entries, by section and place in the draft's list.

@@ -1,6 +1,7 @@
 //! Model files as their authors meet them: what is read, what is refused and how that is said, and the models of the gallery
 //! solved and held against what is known of them.
 
+mod cases;
 mod diagnostics;
 mod docs;
 mod gallery;
@@ -11,10 +12,12 @@ mod metrics;
 mod models;
 mod motions;
 mod optimize;
+mod optimize_format;
 mod parameters;
 mod path;
 mod published;
 mod robustness;
 mod shapes;
+mod studies;
 mod tape;
 mod wheels;

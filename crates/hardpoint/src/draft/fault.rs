@@ -63,6 +63,14 @@ pub enum Section {
     Metrics,
     /// [`super::Draft::times`].
     Time,
+    /// [`super::Draft::cases`].
+    Cases,
+    /// [`super::Draft::optimization`].
+    Optimize,
+    /// [`super::OptimizationDraft::goals`].
+    Goals,
+    /// [`super::OptimizationDraft::limits`].
+    Limits,
 }
 
 /// A place in a draft.
@@ -96,6 +104,10 @@ impl fmt::Display for Section {
             Self::Measures => "measures",
             Self::Metrics => "metrics",
             Self::Time => "time",
+            Self::Cases => "cases",
+            Self::Optimize => "optimize",
+            Self::Goals => "goals",
+            Self::Limits => "limits",
         })
     }
 }

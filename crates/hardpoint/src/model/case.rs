@@ -2,7 +2,9 @@
 
 use crate::law::Law;
 
-use super::{CaseId, Model, Target};
+use crate::design::Effect;
+
+use super::{CaseId, Change, Formula, Model, Target};
 
 /// A motion of the mechanism under laws and at times of its own: a car in bump with the rack held, or steered at one ride height.
 #[derive(Clone, Debug)]
@@ -11,6 +13,8 @@ pub struct Case {
     pub name: String,
     /// Per driver, the law that it follows in this case; where there is none, that of the driver itself.
     pub laws: Vec<Option<Law>>,
+    /// What of these laws follows the design variables.
+    pub formulas: Vec<Formula>,
     /// Output times, s, increasing.
     pub times: Vec<f64>,
 }
@@ -23,12 +27,13 @@ impl Model {
 
     /// The mechanism in one of its cases: a model with that motion and no other, and with the metrics that are taken of it.
     ///
-    /// All but [`metrics`](Self::metrics) and what follows the laws keep their places.
+    /// All but [`metrics`](Self::metrics) and what follows the laws keep their places. A design variable that changes the law that a
+    /// driver has of its own changes nothing in a case that gives it another.
     ///
     /// # Panics
     /// If there is no such case.
     pub fn in_case(&self, case: CaseId) -> Self {
-        let Case { name, laws, times } = &self.cases[case.0];
+        let Case { name, laws, formulas, times } = &self.cases[case.0];
         let mut model = Self { times: times.clone(), cases: Vec::new(), optimization: None, ..self.clone() };
         model.name = format!("{}, {name}", self.name);
         for (driver, law) in model.drivers.iter_mut().zip(laws) {
@@ -37,6 +42,9 @@ impl Model {
             }
         }
         model.formulas.retain(|f| !matches!(f.of, Target::Law(d, _) if laws[d.0].is_some()));
+        model.formulas.extend_from_slice(formulas);
+        let is_replaced = |change: &Change| change.law().is_some_and(|(d, ..)| laws[d.0].is_some());
+        model.variables.iter_mut().for_each(|v| v.changes.retain(|change| !is_replaced(change)));
         model.metrics.retain(|m| m.case.is_none_or(|of| of == case));
         model.metrics.iter_mut().for_each(|m| m.case = None);
         model
