@@ -14,6 +14,7 @@ use hardpoint_report::course::Course;
 use hardpoint_report::csv::JerkCsv;
 use hardpoint_report::diagnose;
 use hardpoint_report::figures::{error, number, seconds, some_of, with_unit};
+use hardpoint_report::maps::MapFact;
 use hardpoint_report::metric::MetricFact;
 use hardpoint_report::page::Table;
 use hardpoint_report::payload::{Request, report};
@@ -22,6 +23,7 @@ use hardpoint_report::validity::ValidityFact;
 
 use crate::args::Run;
 use crate::folder::{Folder, NotWritten};
+use crate::maps;
 use crate::outcome::Outcome;
 use crate::session::{Meter, Session, json_text};
 use crate::tables::Plan;
@@ -43,13 +45,16 @@ const TOO_MANY: &str = "the sensitivities were not compared with re-solved desig
 const JERK_ROWS: usize = 256;
 
 /// All files that a run may write; the last one vouches for the others.
-const FILES: [&str; 8] = [
+const FILES: [&str; 11] = [
     "motion.csv",
     "sensitivity.csv",
     "motion.npy",
     "sensitivity.npy",
     "columns.json",
     "jerk.csv",
+    "maps.csv",
+    "map_sensitivity.csv",
+    "maps.json",
     "report.html",
     "summary.json",
 ];
@@ -107,6 +112,7 @@ fn run_in(session: &Session, options: &Run) -> Result<Outcome, Outcome> {
     }
 
     let report = folder.path_of("report.html");
+    let mut tables_of_maps = Vec::new();
     if solution.motion.is_empty() {
         summary.timings.total = session.seconds();
     } else {
@@ -119,6 +125,9 @@ fn run_in(session: &Session, options: &Run) -> Result<Outcome, Outcome> {
             write_jerk(session, &file, &analysis, &mut folder).map_err(|e| session.not_written(&e))?;
             summary.files.push(folder.path_of("jerk.csv").display().to_string());
         }
+        let maps = maps::solved(session, &file, options.common.formulation());
+        maps::write(&maps, &mut folder, &mut summary).map_err(|e| session.not_written(&e))?;
+        tables_of_maps = MapFact::table(&maps);
         let results =
             Results { file: &file, analysis: &analysis, course: &course, differences: &differences };
         results.write(&mut folder, &mut summary, session).map_err(|e| session.not_written(&e))?;
@@ -134,6 +143,9 @@ fn run_in(session: &Session, options: &Run) -> Result<Outcome, Outcome> {
         session.print_json(&summary);
     } else {
         text::print(&summary_text(&summary));
+        for table in &tables_of_maps {
+            text::print(&format!("\n{}", text::table(table)));
+        }
         if !solution.motion.is_empty() {
             let partial = if summary.status == RunStatus::Complete { "" } else { " (partial)" };
             text::print(&format!("\nreport: {}{partial}\n", report.display()));

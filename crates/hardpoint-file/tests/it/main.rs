@@ -6,6 +6,7 @@ mod diagnostics;
 mod docs;
 mod gallery;
 mod gallery_models;
+mod grids;
 mod measures;
 mod meshes;
 mod metrics;

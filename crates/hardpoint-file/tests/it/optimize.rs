@@ -127,6 +127,7 @@ take = \"range\"
     let case = |name: &str, laws: [&str; 2]| Case {
         name: name.into(),
         laws: laws.map(|l| Some(Law::parse(l).unwrap())).to_vec(),
+        formulas: Vec::new(),
         times: times.clone(),
     };
     file.model.cases = vec![case("bump", ["0", "0.04*(2*t-1)"]), case("steer", ["0.03*(2*t-1)", "0"])];

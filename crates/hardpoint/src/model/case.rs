@@ -4,7 +4,7 @@ use crate::law::Law;
 
 use crate::design::Effect;
 
-use super::{CaseId, Change, Formula, Model, Target};
+use super::{CaseId, Change, DriverId, Formula, Model, Target};
 
 /// A motion of the mechanism under laws and at times of its own: a car in bump with the rack held, or steered at one ride height.
 #[derive(Clone, Debug)]
@@ -17,6 +17,20 @@ pub struct Case {
     pub formulas: Vec<Formula>,
     /// Output times, s, increasing.
     pub times: Vec<f64>,
+}
+
+/// A case of two drivers, each of which stands wherever the other does: toe over wheel travel and steer. All other drivers are held as
+/// drawn.
+///
+/// It is no motion but positions, and none of the [motions](Model::motions) of the mechanism.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Grid {
+    /// Its name.
+    pub name: String,
+    /// The two drivers.
+    pub drivers: [DriverId; 2],
+    /// Where each of them stands, counted from the drawing, m or rad, increasing.
+    pub values: [Vec<f64>; 2],
 }
 
 impl Model {
@@ -34,7 +48,8 @@ impl Model {
     /// If there is no such case.
     pub fn in_case(&self, case: CaseId) -> Self {
         let Case { name, laws, formulas, times } = &self.cases[case.0];
-        let mut model = Self { times: times.clone(), cases: Vec::new(), optimization: None, ..self.clone() };
+        let mut model = Self { times: times.clone(), cases: Vec::new(), ..self.clone() };
+        (model.grids, model.optimization) = (Vec::new(), None);
         model.name = format!("{}, {name}", self.name);
         for (driver, law) in model.drivers.iter_mut().zip(laws) {
             if let Some(law) = law {
