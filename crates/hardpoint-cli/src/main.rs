@@ -3,6 +3,7 @@
 mod args;
 mod check;
 mod folder;
+mod maps;
 mod optimize;
 mod outcome;
 mod run;

@@ -15,6 +15,7 @@ use hardpoint_report::course::Course;
 use hardpoint_report::csv::JerkCsv;
 use hardpoint_report::diagnose;
 use hardpoint_report::figures::{error, number, seconds, some_of, with_unit};
+use hardpoint_report::maps::MapFact;
 use hardpoint_report::metric::MetricFact;
 use hardpoint_report::page::Table;
 use hardpoint_report::payload::{Request, report};
@@ -24,6 +25,7 @@ use serde::Serialize;
 
 use crate::args::Run;
 use crate::folder::{Folder, NotWritten, of_case};
+use crate::maps;
 use crate::outcome::Outcome;
 use crate::session::{Meter, Session, json_text};
 use crate::tables::Plan;
@@ -45,13 +47,16 @@ const TOO_MANY: &str = "the sensitivities were not compared with re-solved desig
 const JERK_ROWS: usize = 256;
 
 /// All files that a run may write; the last one vouches for the others.
-const FILES: [&str; 8] = [
+const FILES: [&str; 11] = [
     "motion.csv",
     "sensitivity.csv",
     "motion.npy",
     "sensitivity.npy",
     "columns.json",
     "jerk.csv",
+    "maps.csv",
+    "map_sensitivity.csv",
+    "maps.json",
     "report.html",
     "summary.json",
 ];
@@ -61,12 +66,14 @@ pub fn run(options: &Run) -> Outcome {
     let session = Session::begin(options.common.json);
     let whole = options.output.clone().unwrap_or_else(|| default_folder(&options.common.model));
     let mut done: Vec<CaseDone> = Vec::new();
+    let mut whole_file = None;
     let each = |file: ModelFile, case: Option<&str>| {
         let path = of_case(&whole, case);
-        let outcome = run_in(&session, options, &file, &path);
+        let outcome = run_in(&session, options, &file, case, &path);
         if let Some(case) = case {
             let (Ok(ended) | Err(ended)) = outcome;
             let folder = path.file_name().map(|name| name.to_string_lossy().into_owned());
+            whole_file.get_or_insert(file);
             done.push(CaseDone {
                 case: case.into(),
                 folder: folder.unwrap_or_default(),
@@ -77,10 +84,13 @@ pub fn run(options: &Run) -> Outcome {
     };
     let outcome = session.for_motions(&options.common.model, &options.motions, each);
     let outcome = outcome.unwrap_or_else(|outcome| outcome);
-    if done.is_empty() {
-        return outcome;
+    let Some(file) = whole_file else { return outcome };
+    let maps = maps::solved(&session, &file, options.common.formulation());
+    if !options.common.json {
+        MapFact::table(&maps).iter().for_each(|table| text::print(&format!("\n{}", text::table(table))));
     }
     let written = Folder::open(&whole).and_then(|mut folder| {
+        maps::write(&maps, &mut folder)?;
         let json = json_text(&serde_json::json!({ "generator": GENERATOR, "cases": done }));
         folder.write("summary.json", |out| out.write_all(json.as_bytes()))?;
         folder.commit(&[])
@@ -96,7 +106,13 @@ struct CaseDone {
     exit_code: u8,
 }
 
-fn run_in(session: &Session, options: &Run, file: &ModelFile, path: &Path) -> Result<Outcome, Outcome> {
+fn run_in(
+    session: &Session,
+    options: &Run,
+    file: &ModelFile,
+    case: Option<&str>,
+    path: &Path,
+) -> Result<Outcome, Outcome> {
     let analysis = session.plan(file, options.common.formulation())?;
     let read = session.seconds();
     let mut folder = Folder::open(path).map_err(|e| session.not_written(&e))?;
@@ -141,6 +157,7 @@ fn run_in(session: &Session, options: &Run, file: &ModelFile, path: &Path) -> Re
     }
 
     let report = folder.path_of("report.html");
+    let mut tables_of_maps = Vec::new();
     if solution.motion.is_empty() {
         summary.timings.total = session.seconds();
     } else {
@@ -152,6 +169,14 @@ fn run_in(session: &Session, options: &Run, file: &ModelFile, path: &Path) -> Re
         if options.jerk && !stopped_before {
             write_jerk(session, file, &analysis, &mut folder).map_err(|e| session.not_written(&e))?;
             summary.files.push(folder.path_of("jerk.csv").display().to_string());
+        }
+        // Of a file with cases, the maps are those of the whole.
+        if case.is_none() {
+            let maps = maps::solved(session, file, options.common.formulation());
+            maps::note(&maps, &mut summary);
+            let names = maps::write(&maps, &mut folder).map_err(|e| session.not_written(&e))?;
+            summary.files.extend(names.iter().map(|name| folder.path_of(name).display().to_string()));
+            tables_of_maps = MapFact::table(&maps);
         }
         let results = Results { file, analysis: &analysis, course: &course, differences: &differences };
         results.write(&mut folder, &mut summary, session).map_err(|e| session.not_written(&e))?;
@@ -167,6 +192,9 @@ fn run_in(session: &Session, options: &Run, file: &ModelFile, path: &Path) -> Re
         session.print_json(&summary);
     } else {
         text::print(&summary_text(&summary));
+        for table in &tables_of_maps {
+            text::print(&format!("\n{}", text::table(table)));
+        }
         if !solution.motion.is_empty() {
             let partial = if summary.status == RunStatus::Complete { "" } else { " (partial)" };
             text::print(&format!("\nreport: {}{partial}\n", report.display()));

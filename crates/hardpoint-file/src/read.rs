@@ -211,7 +211,7 @@ fn coordinates() -> Vec<(&'static str, String)> {
 
 /// The tables that `docs/file-format.md` shows, by their names there.
 #[cfg(test)]
-pub(crate) fn tables() -> [(&'static str, Shape); 26] {
+pub(crate) fn tables() -> [(&'static str, Shape); 27] {
     [
         ("parameters", Shape::Table(&parameters::PARAMETER_TABLE)),
         ("frames", Shape::Kinds(&FRAME)),
@@ -235,6 +235,7 @@ pub(crate) fn tables() -> [(&'static str, Shape); 26] {
         ("metrics", Shape::Table(&results::METRIC)),
         ("time", Shape::Kinds(&results::TIME)),
         ("cases", Shape::Table(&cases::CASE)),
+        ("grids", Shape::Kinds(&cases::SWEEP)),
         ("targets in files", Shape::Table(&results::TARGET_FILE)),
         ("optimize", Shape::Table(&optimize::OPTIMIZE)),
         ("goals", Shape::Table(&optimize::GOAL)),

@@ -3,6 +3,7 @@
 mod cases;
 mod design;
 mod formulas;
+mod grids;
 mod joints;
 mod measures;
 mod motion;
@@ -61,6 +62,7 @@ impl Model {
         c.points();
         c.drivers();
         c.cases();
+        c.grids();
         c.vehicle();
         c.wheels();
         c.axles();
@@ -191,6 +193,7 @@ impl<'a> Checker<'a> {
             idle: Vec::new(),
             times: draft.times.clone(),
             cases: Vec::new(),
+            grids: Vec::new(),
             optimization: None,
         };
         let ground = ["ground"].into_iter();
@@ -253,7 +256,7 @@ impl<'a> Checker<'a> {
     /// HP0201: empty and duplicate names; HP0202: coordinates that are not finite.
     fn names(&mut self) {
         let d = self.draft;
-        let lists: [(Section, &str, Vec<&str>); 15] = [
+        let lists: [(Section, &str, Vec<&str>); 16] = [
             (Section::Parameters, "parameter", d.parameters.iter().map(|x| x.name.as_str()).collect()),
             (Section::Hardpoints, "hardpoint", d.hardpoints.iter().map(|x| x.name.as_str()).collect()),
             (Section::Bodies, "body", d.bodies.iter().map(|x| x.name.as_str()).collect()),
@@ -267,6 +270,7 @@ impl<'a> Checker<'a> {
             (Section::Measures, "measure", d.measures.iter().map(|x| x.name.as_str()).collect()),
             (Section::Metrics, "metric", d.metrics.iter().map(|x| x.name.as_str()).collect()),
             (Section::Cases, "case", d.cases.iter().map(|x| x.name.as_str()).collect()),
+            (Section::Grids, "case", d.grids.iter().map(|x| x.name.as_str()).collect()),
             (
                 Section::Goals,
                 "goal",

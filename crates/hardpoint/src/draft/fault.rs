@@ -65,6 +65,8 @@ pub enum Section {
     Time,
     /// [`super::Draft::cases`].
     Cases,
+    /// [`super::Draft::grids`].
+    Grids,
     /// [`super::Draft::optimization`].
     Optimize,
     /// [`super::OptimizationDraft::goals`].
@@ -104,7 +106,7 @@ impl fmt::Display for Section {
             Self::Measures => "measures",
             Self::Metrics => "metrics",
             Self::Time => "time",
-            Self::Cases => "cases",
+            Self::Cases | Self::Grids => "cases",
             Self::Optimize => "optimize",
             Self::Goals => "goals",
             Self::Limits => "limits",

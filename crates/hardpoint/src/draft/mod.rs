@@ -61,6 +61,8 @@ pub struct Draft {
     pub times: Vec<f64>,
     /// Several motions, in place of the one that the drivers' own laws and these times make.
     pub cases: Vec<CaseDraft>,
+    /// Cases that sweep two drivers over a grid.
+    pub grids: Vec<GridDraft>,
     /// What the design is to be optimised for.
     pub optimization: Option<OptimizationDraft>,
     /// What of all this could not be read.
@@ -467,6 +469,15 @@ pub struct CaseDraft {
     pub rest: Rest,
     /// Its output times, s; those of the draft where they are left out.
     pub times: Option<Vec<f64>>,
+}
+
+/// A case that sweeps two drivers over a grid; see [`Grid`](crate::model::Grid).
+#[derive(Clone, Debug, Default)]
+pub struct GridDraft {
+    /// Its name.
+    pub name: String,
+    /// The names of two drivers, and where each of them stands, counted from the drawing, in m or rad.
+    pub sweeps: Vec<(String, Vec<f64>)>,
 }
 
 /// What the drivers do that a case does not name.

@@ -2,7 +2,7 @@
 
 use crate::law::Law;
 
-use super::{CaseId, Change, Formula, Model, Target};
+use super::{CaseId, Change, DriverId, Formula, Model, Target};
 
 /// A motion of the mechanism under laws and at times of its own: a car in bump with the rack held, or steered at one ride height.
 #[derive(Clone, Debug)]
@@ -15,6 +15,20 @@ pub struct Case {
     pub formulas: Vec<Formula>,
     /// Output times, s, increasing.
     pub times: Vec<f64>,
+}
+
+/// A case of two drivers, each of which stands wherever the other does: toe over wheel travel and steer. All other drivers are held as
+/// drawn.
+///
+/// It is no motion but positions, and none of the [motions](Model::motions) of the mechanism.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Grid {
+    /// Its name.
+    pub name: String,
+    /// The two drivers.
+    pub drivers: [DriverId; 2],
+    /// Where each of them stands, counted from the drawing, m or rad, increasing.
+    pub values: [Vec<f64>; 2],
 }
 
 impl Model {

@@ -13,7 +13,7 @@ mod metric;
 mod optimization;
 mod wheel;
 
-pub use case::Case;
+pub use case::{Case, Grid};
 pub use change::{Change, ChangeText, End};
 pub use coupler::{Coupler, CouplerTerm, Transmission};
 pub(crate) use curve::Contact;
@@ -106,6 +106,8 @@ pub struct Model {
     pub times: Vec<f64>,
     /// Its motions, in the order of the file; where there are none, that of the drivers' own laws at `times` is the only one.
     pub cases: Vec<Case>,
+    /// Cases that sweep two drivers over a grid, in the order of the file.
+    pub grids: Vec<Grid>,
     /// What the design is to be optimised for, if that is known.
     pub optimization: Option<Optimization>,
 }

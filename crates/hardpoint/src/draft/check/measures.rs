@@ -128,6 +128,12 @@ impl Checker<'_> {
     /// The case of that name.
     fn case(&mut self, name: &str, at: Locus) -> Option<CaseId> {
         let draft = self.draft;
+        if draft.grids.iter().any(|g| g.name == name) {
+            self.fault("HP0204", at, format!("case `{name}` has a grid, and no motion to take a metric of")).help(
+                "name a case with `laws`; `run` writes every measure of a grid with its derivatives into `maps.json`",
+            );
+            return None;
+        }
         let found = self.find("case", name, at, draft.cases.iter().map(|c| c.name.as_str()));
         if found.is_none() && draft.cases.is_empty() && !self.lost("case") {
             let fault = self.faults.last_mut().expect("just reported");
