@@ -114,7 +114,7 @@ Examples:
   hardpoint run models/slider_crank.toml
   hardpoint run models/macpherson.toml -o results/baseline --bodies
   hardpoint run models/macpherson.toml --format npy
-  hardpoint run models/strut_toe.toml --case bump
+  hardpoint run models/studies/strut_toe.toml --case bump
   hardpoint run models/macpherson.toml --json | jq '.sensitivities[0]'";
 
 /// How tables are written.

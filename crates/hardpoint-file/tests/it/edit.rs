@@ -42,6 +42,20 @@ fn apart(size: f64, a: &Solution, b: &Solution) -> f64 {
     worst
 }
 
+/// The text as a file in a folder of its own, with the data files that lie beside the model.
+fn read_again(path: &Path, text: &str) -> Result<ModelFile, hardpoint_file::ReadError> {
+    let folder = tempfile::tempdir().unwrap();
+    for entry in std::fs::read_dir(path.parent().unwrap()).unwrap() {
+        let data = entry.unwrap().path();
+        if data.extension().is_some_and(|e| e == "csv") {
+            std::fs::copy(&data, folder.path().join(data.file_name().unwrap())).unwrap();
+        }
+    }
+    let saved = folder.path().join("saved.toml");
+    std::fs::write(&saved, text).unwrap();
+    read(&saved)
+}
+
 fn refused(file: &ModelFile, design: &[f64]) -> Option<String> {
     file.edit(design).err().map(|d| d.list()[0].message.clone())
 }
@@ -65,8 +79,13 @@ fn a_saved_design_moves_as_the_changed_one_and_changes_no_other_line() {
                 }
             };
             saved += 1;
-            let again = parse(&text, file.file_name()).unwrap_or_else(|e| panic!("{what}: {e}"));
-            let (before, after) = (solved(&file, &design), solved(&again, &[]));
+            let again = read_again(&path, &text).unwrap_or_else(|e| panic!("{what}: {e}"));
+            let before = solved(&file, &design);
+            // What the changed design cannot move, the saved one need not.
+            if before.motion.is_empty() {
+                continue;
+            }
+            let after = solved(&again, &[]);
             let off = apart(file.model.size(), &before, &after);
             assert!(off < SAME_MOTION, "{what}: {off:e}");
             let lines: Vec<_> = file.text().lines().zip(text.lines()).filter(|(a, b)| a != b).collect();
@@ -142,7 +161,13 @@ fn numbers_are_those_that_a_person_would_write() {
     assert!(apart(0.4, &solved(&file, &design), &solved(&again, &[])) < SAME_MOTION);
     let back =
         again.edit(&of(&again, &[("B_y", -0.0052), ("reach", -0.0001), ("swing", -0.1_f64.to_radians())]));
-    assert_eq!(back.unwrap(), ROD);
+    // A number that had a point keeps it.
+    let points = [
+        ("value = 300,", "value = 300.0,"),
+        ("amplitude = 10,", "amplitude = 10.0,"),
+        ("[-10, 5.5]", "[-10.0, 5.5]"),
+    ];
+    assert_eq!(back.unwrap(), points.iter().fold(ROD.to_owned(), |text, (old, new)| text.replace(old, new)));
 }
 
 #[test]

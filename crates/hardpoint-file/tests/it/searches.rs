@@ -85,7 +85,7 @@ const WITHIN: f64 = 0.02 * std::f64::consts::PI / 180.0;
 
 #[test]
 fn the_strut_gets_its_toe_curve_and_steers_no_worse() {
-    let file = model("strut_toe.toml");
+    let file = model("studies/strut_toe.toml");
     let asked = asked(&file);
     let found = searched(&file, &asked);
     let search = best(&found);
@@ -118,7 +118,7 @@ fn what_binds_is_worth_what_giving_way_gains() {
     // The multiplier of a limit against two searches with the limit moved either way.
     const MOVED: f64 = 1e-5;
     const AGREES: f64 = 1e-3;
-    let file = model("strut_toe.toml");
+    let file = model("studies/strut_toe.toml");
     let at = |least: f64| {
         let limits = vec![limit(Limited::Metric(1), Some(least), None)];
         searched(&file, &Optimization { limits, ..asked(&file) })
@@ -139,7 +139,7 @@ fn what_binds_is_worth_what_giving_way_gains() {
 
 #[test]
 fn limits_that_contradict_each_other_and_designs_that_lock_are_told() {
-    let file = model("strut_toe.toml");
+    let file = model("studies/strut_toe.toml");
     let far = Optimization { limits: vec![limit(Limited::Metric(1), Some(0.5), None)], ..asked(&file) };
     let found = searched(&file, &far);
     assert_eq!(best(&found).status, Status::LimitsNotKept);

@@ -430,7 +430,6 @@ mod tests {
             formulas: Vec::new(),
             name: name.into(),
             laws: vec![Some(Law::parse(law).unwrap())],
-            formulas: Vec::new(),
             times: model.times.clone(),
         };
         model.cases = vec![case("slow", "t"), case("fast", "3*t")];
