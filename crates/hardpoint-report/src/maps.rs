@@ -32,7 +32,7 @@ pub struct MapFact {
     pub gaps: Vec<MapGap>,
     /// Per position, which of these ended its row before; `null` where it was reached or not tried.
     pub gap: Vec<Vec<Option<usize>>>,
-    /// The measures; of a model without any, its points.
+    /// The measures that follow from positions, or go by a driver; of a model without any measures, its points.
     pub measures: Vec<MapMeasure>,
 }
 
@@ -120,7 +120,7 @@ impl MapFact {
             message: stop.stop.happened(model),
         };
         let measured = |o: &Output| model.measures.is_empty() || matches!(o.source, OutputSource::Measure(_));
-        let outputs = map.outputs.iter().enumerate().filter(|(_, o)| measured(o));
+        let outputs = map.outputs.iter().enumerate().filter(|(m, o)| measured(o) && map.has(*m));
         Self {
             name: map.grid.name.clone(),
             drivers,

@@ -62,6 +62,12 @@ fn toe_over_travel_and_steer_is_that_of_single_runs_with_all_its_sensitivities()
             }
         }
     }
+    // What is measured of a motion has no number where there is none.
+    let hop = map.outputs.iter().position(|o| o.name == "left_hop").unwrap();
+    assert!(!map.has(hop) && map.has(toe) && map.has(bump_steer));
+    assert!(map.places().all(|place| {
+        map.is_solved(place) && map.value(place, hop).is_none() && map.d(place, VariableId(0), hop).is_none()
+    }));
     // It is a map of something: the wheel steers by degrees, and the tie rod turns it by degrees per 10 mm.
     assert!(most > 0.1 && moved > 1.0, "{most} {moved}");
 }

@@ -4,7 +4,7 @@ use std::ops::ControlFlow;
 
 use crate::law::Law;
 use crate::measure::Output;
-use crate::model::{Case, CaseId, Grid, Model, VariableId};
+use crate::model::{Case, CaseId, Grid, Model, OutputSource, VariableId};
 use crate::motion::{Stop, StopKind};
 use crate::run::{Analysis, Run, Solution};
 use crate::topology::{Formulation, TopologyFault};
@@ -18,6 +18,8 @@ pub struct GridMap {
     pub grid: Grid,
     /// What was measured.
     pub outputs: Vec<Output>,
+    /// Which of them have numbers where nothing moves.
+    still: Vec<bool>,
     /// Per position, what was found there.
     positions: Vec<Position>,
     /// How many design variables there are.
@@ -68,9 +70,12 @@ impl GridMap {
         more: &(dyn Fn() -> bool + Sync),
     ) -> Result<Self, TopologyFault> {
         let [first, second] = &grid.values;
+        let outputs = crate::measure::outputs(model);
+        let by_driver = |source| matches!(source, OutputSource::Measure(k) if model.goes_by_driver(k));
         let mut map = Self {
             grid: grid.clone(),
-            outputs: crate::measure::outputs(model),
+            still: outputs.iter().map(|o| o.known.by_position || by_driver(o.source)).collect(),
+            outputs,
             positions: vec![Position::NotTried; first.len() * second.len()],
             variables: model.variables.len(),
             stops: Vec::new(),
@@ -125,13 +130,20 @@ impl GridMap {
 
     fn row_of(&self, solution: &Solution, k: usize) -> Vec<f64> {
         let (measured, outputs) = (&solution.measured, 0..self.outputs.len());
-        let mut numbers: Vec<f64> = outputs.clone().map(|m| measured.value(k, m)[0]).collect();
+        let known = |m: usize, x: f64| if self.still[m] { x } else { f64::NAN };
+        let mut numbers: Vec<f64> = outputs.clone().map(|m| known(m, measured.value(k, m)[0])).collect();
         for b in 0..self.variables {
             let followed = solution.sensitivities.at(k, b).is_some();
-            let d = |m: usize| if followed { measured.d(k, VariableId(b), m)[0] } else { f64::NAN };
+            let d = |m: usize| if followed { known(m, measured.d(k, VariableId(b), m)[0]) } else { f64::NAN };
             numbers.extend(outputs.clone().map(d));
         }
         numbers
+    }
+
+    /// Whether output m has numbers in a map: what follows from positions, or from what happens while one driver alone moves. Velocities,
+    /// accelerations and what follows from them are those of a motion, and there is none.
+    pub fn has(&self, m: usize) -> bool {
+        self.still[m]
     }
 
     /// Output m where the first driver stands at its value i, the second at its value j; `None` where that was not reached, or where
