@@ -14,7 +14,6 @@ mod metrics;
 mod models;
 mod motions;
 mod optimize;
-mod optimize_format;
 mod parameters;
 mod path;
 mod published;
