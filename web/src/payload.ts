@@ -467,7 +467,11 @@ rate: Curve,
 /**
  * Its second time derivative.
  */
-accel: Curve, };
+accel: Curve,
+/**
+ * What a metric wants it to be, `n` steps; empty where none does.
+ */
+wanted: Curve, };
 
 /**
  * A single number that the design is judged by.

@@ -35,6 +35,8 @@ export interface Quantity {
   group: string
   units: ByOrder<string>
   curves: ByOrder<Curve>
+  /** What a metric wants its value to be, one number per step; empty where none does. */
+  wanted: Curve
 }
 
 export interface Sensitivity {
@@ -91,6 +93,7 @@ export function read(payload: wire.Payload, decode: Decode): Report {
       group: quantity.group,
       units: [quantity.unit, quantity.rate_unit, quantity.accel_unit],
       curves: curves(quantity, decode),
+      wanted: decode(quantity.wanted),
     })),
     margin: payload.margin ? { curve: decode(payload.margin.value), note: payload.margin.note } : undefined,
     variables: payload.variables.map((variable, index) => {

@@ -23,7 +23,7 @@ const variable = (name: string, unit: string, scale?: number): Variable => ({
 })
 
 const quantity = (name: string, group: string) =>
-  ({ name, group, unit: 'deg', rate_unit: 'deg/s', accel_unit: 'deg/s^2', ...curves(1) })
+  ({ name, group, unit: 'deg', rate_unit: 'deg/s', accel_unit: 'deg/s^2', wanted: [], ...curves(1) })
 
 const payload: Payload = {
   ...EMPTY,

@@ -1,5 +1,6 @@
 //! What can be typed after `hardpoint`.
 
+use std::num::NonZero;
 use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
@@ -13,10 +14,12 @@ Examples:
   hardpoint run models/macpherson.toml -o results/macpherson
   hardpoint verify models/macpherson.toml --sweep
   hardpoint whatif models/macpherson.toml --set tie_rod_outer.z=+2mm --measure toe
+  hardpoint optimize models/four_bar_inverse.toml --save found.toml
 
 Exit codes:
     0  done; for verify: every variable passed
-    1  verify: a sensitivity and its re-solved designs disagree
+    1  verify: a sensitivity and its re-solved designs disagree;
+       optimize: the search ended short of an optimum, or limits are not kept
     2  the command line cannot be understood
     3  the model file cannot be read, or has errors
     4  the mechanism cannot be driven as it is written
@@ -51,6 +54,8 @@ pub enum Command {
     Verify(Verify),
     /// Change the design: today's curves, predicted ones and exact ones; and which variable moves which measure most
     Whatif(Whatif),
+    /// Search for the design that serves the goals of the model file best, within its bounds and limits
+    Optimize(Optimize),
     /// Print the JSON Schema of model files, for editors
     #[command(after_help = "Example:\n  hardpoint schema > hardpoint.schema.json")]
     Schema,
@@ -77,6 +82,14 @@ pub struct Common {
     pub json: bool,
 }
 
+/// Which motions of a model file a command is done for.
+#[derive(Args, Debug)]
+pub struct Motions {
+    /// Do one case of the model file only [default: all of them, one after the other]
+    #[arg(long, value_name = "NAME")]
+    pub case: Option<String>,
+}
+
 impl Common {
     /// The coordinates asked for.
     pub fn formulation(&self) -> Formulation {
@@ -92,7 +105,8 @@ Writes into the folder, each file whole or not at all:
   sensitivity.csv  derivatives of measures and points by every design variable
                    (of bodies where the model has neither, and is small)
   summary.json     the model, how the run went, the largest sensitivities
-What stands in which column: docs/results.md. Files of an earlier run that this one
+Of a model with cases, each case gets a folder of its own there, and summary.json says how
+each of them went. What stands in which column: docs/results.md. Files of an earlier run that this one
 does not write are removed. Ctrl-C while it solves writes the part that was solved;
 while it writes, the files of the earlier run stay.
 
@@ -100,6 +114,7 @@ Examples:
   hardpoint run models/slider_crank.toml
   hardpoint run models/macpherson.toml -o results/baseline --bodies
   hardpoint run models/macpherson.toml --format npy
+  hardpoint run models/studies/strut_toe.toml --case bump
   hardpoint run models/macpherson.toml --json | jq '.sensitivities[0]'";
 
 /// How tables are written.
@@ -127,6 +142,8 @@ impl Format {
 pub struct Run {
     #[command(flatten)]
     pub common: Common,
+    #[command(flatten)]
+    pub motions: Motions,
     /// The folder for the results [default: results/NAME for NAME.toml]
     #[arg(short, long, value_name = "DIR")]
     pub output: Option<PathBuf>,
@@ -162,6 +179,8 @@ Example:
 pub struct Check {
     #[command(flatten)]
     pub common: Common,
+    #[command(flatten)]
+    pub motions: Motions,
 }
 
 const AFTER_VERIFY: &str = "\
@@ -186,6 +205,8 @@ Examples:
 pub struct Verify {
     #[command(flatten)]
     pub common: Common,
+    #[command(flatten)]
+    pub motions: Motions,
     /// Also show the deviation at every step
     #[arg(long)]
     pub sweep: bool,
@@ -236,7 +257,8 @@ in mm, cm, m, in, deg or rad, or in the unit of the file where none is given.
 Examples:
   hardpoint whatif models/macpherson.toml --measure toe
   hardpoint whatif models/macpherson.toml --set tie_rod_outer.z=+2mm --set lca_pivot.tilt_y=0.5deg
-  hardpoint whatif models/macpherson.toml --set tie_rod_inner.z=-3mm --measure toe --over wheel_travel -o results/higher_rack";
+  hardpoint whatif models/macpherson.toml --set tie_rod_inner.z=-3mm --measure toe --over wheel_travel -o results/higher_rack
+  hardpoint whatif models/macpherson.toml --set tie_rod_outer.z=+2mm --save strut_2.toml";
 
 /// `hardpoint whatif`.
 #[derive(Args, Debug)]
@@ -244,6 +266,8 @@ Examples:
 pub struct Whatif {
     #[command(flatten)]
     pub common: Common,
+    #[command(flatten)]
+    pub motions: Motions,
     /// A change of the design; may be given several times
     #[arg(long, value_name = "NAME=CHANGE")]
     pub set: Vec<String>,
@@ -259,6 +283,49 @@ pub struct Whatif {
     /// Write whatif.html, whatif.csv and whatif.json into this folder
     #[arg(short, long, value_name = "DIR")]
     pub output: Option<PathBuf>,
+    /// Write the model file with the changed design, its comments and layout kept
+    #[arg(long, value_name = "FILE", requires = "set")]
+    pub save: Option<PathBuf>,
+}
+
+const AFTER_OPTIMIZE: &str = "\
+The model file says what is wanted: `[optimize.goals]` names metrics that are to
+be small or to meet a target, `[optimize.limits]` what must hold, and every
+variable that may change has `bounds` (docs/file-format.md). Every iteration is a
+line: the objective, whether limits are kept, and the variable that moved most.
+A design whose motion does not assemble, locks or reaches a dead point is a step
+that is not taken. Ctrl-C ends the search with the best design so far.
+
+With --output it writes into the folder:
+  report.html   the design found beside the one as drawn (report-CASE.html for each case)
+  summary.json  all that is printed, with every variable's start and end
+
+Examples:
+  hardpoint optimize models/four_bar_inverse.toml
+  hardpoint optimize models/four_bar_inverse.toml --starts 100 --json | jq '.starts[].status'
+  hardpoint optimize models/four_bar_inverse.toml -o results/found --save found.toml";
+
+/// `hardpoint optimize`.
+#[derive(Args, Debug)]
+#[command(after_help = AFTER_OPTIMIZE)]
+pub struct Optimize {
+    #[command(flatten)]
+    pub common: Common,
+    /// Write a report and summary.json into this folder
+    #[arg(short, long, value_name = "DIR")]
+    pub output: Option<PathBuf>,
+    /// Write the model file with the design found, its comments and layout kept
+    #[arg(long, value_name = "FILE")]
+    pub save: Option<PathBuf>,
+    /// Start from so many designs, the one as drawn and others spread within the bounds [default: as the file says, or 1]
+    #[arg(long, value_name = "N")]
+    pub starts: Option<NonZero<usize>>,
+    /// End a search after so many iterations [default: as the file says, or 100]
+    #[arg(long, value_name = "N")]
+    pub iterations: Option<NonZero<usize>>,
+    /// Search from several starts on so many threads; what is found does not depend on it [default: one for each core]
+    #[arg(long, value_name = "N")]
+    pub threads: Option<NonZero<usize>>,
 }
 
 fn step(text: &str) -> Result<f64, String> {

@@ -16,32 +16,32 @@ use crate::text;
 /// Examines a model and prints what it found.
 pub fn check(options: &Check) -> Outcome {
     let session = Session::begin(options.common.json);
-    check_in(&session, options).unwrap_or_else(|outcome| outcome)
+    let each = |file: ModelFile, _: Option<&str>| check_in(&session, options, &file);
+    session.for_motions(&options.common.model, &options.motions, each).unwrap_or_else(|outcome| outcome)
 }
 
-fn check_in(session: &Session, options: &Check) -> Result<Outcome, Outcome> {
-    let file = session.read(&options.common.model)?;
+fn check_in(session: &Session, options: &Check, file: &ModelFile) -> Result<Outcome, Outcome> {
     let analysis = Analysis::with(&file.model, options.common.formulation()).map_err(|fault| {
         if !session.is_json() {
-            text::print(&outline_text(&file));
+            text::print(&outline_text(file));
         }
-        session.cannot_be_driven(&file, &fault)
+        session.cannot_be_driven(file, &fault)
     })?;
     let read = session.seconds();
     let started = Instant::now();
     session.patient(true);
     let course = session.solve_in_windows(&analysis, true, |_| true)?;
     session.patient(false);
-    let mut summary = Summary::new(&file, analysis.topology(), &course);
+    let mut summary = Summary::new(file, analysis.topology(), &course);
     summary.timings.read = read;
     summary.timings.solve = started.elapsed().as_secs_f64();
     summary.timings.total = session.seconds();
-    summary.diagnostics = diagnose::all(&file, &summary, &course, None);
+    summary.diagnostics = diagnose::all(file, &summary, &course, None);
     if options.common.json {
         session.print_json(&summary);
     } else {
         text::print(&facts_text(&summary));
-        session.tell(&file, &summary.diagnostics);
+        session.tell(file, &summary.diagnostics);
     }
     Ok(match summary.status {
         RunStatus::Complete => Outcome::Done,

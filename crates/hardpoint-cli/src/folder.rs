@@ -146,6 +146,19 @@ fn is_absent(error: &io::Error) -> bool {
     error.kind() == io::ErrorKind::NotFound
 }
 
+/// Where the results of a case go: a folder of its own name.
+pub fn of_case(whole: &Path, case: Option<&str>) -> PathBuf {
+    let Some(case) = case else { return whole.to_owned() };
+    whole.join(file_name(case))
+}
+
+/// A name as part of a file's name: what not every system allows there as `%` and its number, so that no two names become one.
+pub fn file_name(name: &str) -> String {
+    let allowed = |c: char| c.is_alphanumeric() || matches!(c, '-' | '_' | '+');
+    let part = |c: char| if allowed(c) { c.to_string() } else { format!("%{:02X}", u32::from(c)) };
+    name.chars().map(part).collect()
+}
+
 /// Removes all files under way, for a program that has to end at once.
 pub fn abandon() {
     under_way(|list| {

@@ -3,6 +3,8 @@
 mod args;
 mod check;
 mod folder;
+mod maps;
+mod optimize;
 mod outcome;
 mod run;
 mod session;
@@ -37,6 +39,7 @@ fn main() -> ExitCode {
         Command::Check(options) => check::check(&options),
         Command::Verify(options) => verify::verify(&options),
         Command::Whatif(options) => whatif::whatif(&options),
+        Command::Optimize(options) => optimize::run(&options),
         Command::Schema => {
             text::print(&hardpoint_file::schema());
             Outcome::Done

@@ -8,8 +8,8 @@ use std::process::ExitCode;
 pub enum Outcome {
     /// All was done.
     Done = 0,
-    /// A sensitivity does not agree with re-solved designs.
-    Disagrees = 1,
+    /// A sensitivity does not agree with re-solved designs, or a search ended short of an optimum.
+    FellShort = 1,
     /// The command line cannot be understood.
     Misunderstood = 2,
     /// The model file has errors or cannot be read.
@@ -22,6 +22,13 @@ pub enum Outcome {
     NotWritten = 6,
     /// The user ended it: 128 + SIGINT, as shells have it.
     Interrupted = 130,
+}
+
+impl Outcome {
+    /// Of two, that of the whole: what went worst, as exit codes go up.
+    pub fn and(self, other: Self) -> Self {
+        if other as u8 > self as u8 { other } else { self }
+    }
 }
 
 impl From<Outcome> for ExitCode {

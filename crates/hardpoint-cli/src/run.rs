@@ -9,19 +9,23 @@ use hardpoint::study::{Difference, Scheme, finite_differences, validity};
 use hardpoint::topology::Formulation;
 use hardpoint::{Analysis, Solution};
 use hardpoint_file::ModelFile;
+use hardpoint_report::GENERATOR;
 use hardpoint_report::columns::Columns;
 use hardpoint_report::course::Course;
 use hardpoint_report::csv::JerkCsv;
 use hardpoint_report::diagnose;
 use hardpoint_report::figures::{error, number, seconds, some_of, with_unit};
+use hardpoint_report::maps::MapFact;
 use hardpoint_report::metric::MetricFact;
 use hardpoint_report::page::Table;
 use hardpoint_report::payload::{Request, report};
 use hardpoint_report::summary::{RunStatus, Summary};
 use hardpoint_report::validity::ValidityFact;
+use serde::Serialize;
 
 use crate::args::Run;
-use crate::folder::{Folder, NotWritten};
+use crate::folder::{Folder, NotWritten, of_case};
+use crate::maps;
 use crate::outcome::Outcome;
 use crate::session::{Meter, Session, json_text};
 use crate::tables::Plan;
@@ -43,13 +47,16 @@ const TOO_MANY: &str = "the sensitivities were not compared with re-solved desig
 const JERK_ROWS: usize = 256;
 
 /// All files that a run may write; the last one vouches for the others.
-const FILES: [&str; 8] = [
+const FILES: [&str; 11] = [
     "motion.csv",
     "sensitivity.csv",
     "motion.npy",
     "sensitivity.npy",
     "columns.json",
     "jerk.csv",
+    "maps.csv",
+    "map_sensitivity.csv",
+    "maps.json",
     "report.html",
     "summary.json",
 ];
@@ -57,16 +64,59 @@ const FILES: [&str; 8] = [
 /// Solves, writes, and prints the summary.
 pub fn run(options: &Run) -> Outcome {
     let session = Session::begin(options.common.json);
-    run_in(&session, options).unwrap_or_else(|outcome| outcome)
+    let whole = options.output.clone().unwrap_or_else(|| default_folder(&options.common.model));
+    let mut done: Vec<CaseDone> = Vec::new();
+    let mut whole_file = None;
+    let each = |file: ModelFile, case: Option<&str>| {
+        let path = of_case(&whole, case);
+        let outcome = run_in(&session, options, &file, case, &path);
+        if let Some(case) = case {
+            let (Ok(ended) | Err(ended)) = outcome;
+            let folder = path.file_name().map(|name| name.to_string_lossy().into_owned());
+            whole_file.get_or_insert(file);
+            done.push(CaseDone {
+                case: case.into(),
+                folder: folder.unwrap_or_default(),
+                exit_code: ended as u8,
+            });
+        }
+        outcome
+    };
+    let outcome = session.for_motions(&options.common.model, &options.motions, each);
+    let outcome = outcome.unwrap_or_else(|outcome| outcome);
+    let Some(file) = whole_file else { return outcome };
+    let maps = maps::solved(&session, &file, options.common.formulation());
+    if !options.common.json {
+        MapFact::table(&maps).iter().for_each(|table| text::print(&format!("\n{}", text::table(table))));
+    }
+    let written = Folder::open(&whole).and_then(|mut folder| {
+        maps::write(&maps, &mut folder)?;
+        let json = json_text(&serde_json::json!({ "generator": GENERATOR, "cases": done }));
+        folder.write("summary.json", |out| out.write_all(json.as_bytes()))?;
+        folder.commit(&[])
+    });
+    written.map_or_else(|e| session.not_written(&e), |()| outcome)
 }
 
-fn run_in(session: &Session, options: &Run) -> Result<Outcome, Outcome> {
-    let file = session.read(&options.common.model)?;
-    let analysis = session.plan(&file, options.common.formulation())?;
+/// How a case went, for the summary of all.
+#[derive(Serialize)]
+struct CaseDone {
+    case: String,
+    folder: String,
+    exit_code: u8,
+}
+
+fn run_in(
+    session: &Session,
+    options: &Run,
+    file: &ModelFile,
+    case: Option<&str>,
+    path: &Path,
+) -> Result<Outcome, Outcome> {
+    let analysis = session.plan(file, options.common.formulation())?;
     let read = session.seconds();
-    let path = options.output.clone().unwrap_or_else(|| default_folder(&options.common.model));
-    let mut folder = Folder::open(&path).map_err(|e| session.not_written(&e))?;
-    let plan = Plan::new(&file, options);
+    let mut folder = Folder::open(path).map_err(|e| session.not_written(&e))?;
+    let plan = Plan::new(file, options);
     if let Some(announcement) = plan.announcement(&path.display().to_string()) {
         session.remark(&announcement);
     }
@@ -78,10 +128,10 @@ fn run_in(session: &Session, options: &Run) -> Result<Outcome, Outcome> {
         session.solve_in_windows(&analysis, !options.no_sensitivities, |window| tables.add(window))?;
     let solve = started.elapsed().as_secs_f64();
     let solution = &course.kept;
-    let mut summary = Summary::new(&file, analysis.topology(), &course);
+    let mut summary = Summary::new(file, analysis.topology(), &course);
     (summary.timings.read, summary.timings.solve) = (read, solve);
     let outputs = format!("the files in `{}`", path.display());
-    summary.diagnostics = diagnose::all(&file, &summary, &course, Some(&outputs));
+    summary.diagnostics = diagnose::all(file, &summary, &course, Some(&outputs));
     let written = tables.end(&mut folder, &solution.sensitivities.admissibility, session.for_a_moment());
     let written = written.map_err(|e| session.not_written(&e))?;
     summary.left_out.extend(plan.left_out());
@@ -90,14 +140,14 @@ fn run_in(session: &Session, options: &Run) -> Result<Outcome, Outcome> {
     let mut differences = Vec::new();
     if !session.interrupted() && !solution.motion.is_empty() {
         let started = Instant::now();
-        let sample = Sample::of(&file, options.common.formulation(), &course);
+        let sample = Sample::of(file, options.common.formulation(), &course);
         let studied = sample.analysis(&analysis, &course);
         if let Some(studied) = studied.as_ref().filter(|_| !options.no_compare && course.has_bodies()) {
             differences = compare(session, studied, solution);
         }
         summary.timings.compare = started.elapsed().as_secs_f64();
         if let Some(studied) = &studied {
-            summary.validity = trusted(session, &file, studied, solution);
+            summary.validity = trusted(session, file, studied, solution);
         } else {
             summary.left_out.push(NOT_THE_SAME.into());
         }
@@ -107,6 +157,7 @@ fn run_in(session: &Session, options: &Run) -> Result<Outcome, Outcome> {
     }
 
     let report = folder.path_of("report.html");
+    let mut tables_of_maps = Vec::new();
     if solution.motion.is_empty() {
         summary.timings.total = session.seconds();
     } else {
@@ -116,24 +167,34 @@ fn run_in(session: &Session, options: &Run) -> Result<Outcome, Outcome> {
         }
         summary.files.extend(written.names.iter().map(|name| folder.path_of(name).display().to_string()));
         if options.jerk && !stopped_before {
-            write_jerk(session, &file, &analysis, &mut folder).map_err(|e| session.not_written(&e))?;
+            write_jerk(session, file, &analysis, &mut folder).map_err(|e| session.not_written(&e))?;
             summary.files.push(folder.path_of("jerk.csv").display().to_string());
         }
-        let results =
-            Results { file: &file, analysis: &analysis, course: &course, differences: &differences };
+        // Of a file with cases, the maps are those of the whole.
+        if case.is_none() {
+            let maps = maps::solved(session, file, options.common.formulation());
+            maps::note(&maps, &mut summary);
+            let names = maps::write(&maps, &mut folder).map_err(|e| session.not_written(&e))?;
+            summary.files.extend(names.iter().map(|name| folder.path_of(name).display().to_string()));
+            tables_of_maps = MapFact::table(&maps);
+        }
+        let results = Results { file, analysis: &analysis, course: &course, differences: &differences };
         results.write(&mut folder, &mut summary, session).map_err(|e| session.not_written(&e))?;
         if session.interrupted() && !stopped_before {
-            session.ended_while_writing(&path);
+            session.ended_while_writing(path);
             return Err(Outcome::Interrupted);
         }
         folder.commit(&FILES).map_err(|e| session.not_written(&e))?;
     }
 
-    session.tell(&file, &summary.diagnostics);
+    session.tell(file, &summary.diagnostics);
     if options.common.json {
         session.print_json(&summary);
     } else {
         text::print(&summary_text(&summary));
+        for table in &tables_of_maps {
+            text::print(&format!("\n{}", text::table(table)));
+        }
         if !solution.motion.is_empty() {
             let partial = if summary.status == RunStatus::Complete { "" } else { " (partial)" };
             text::print(&format!("\nreport: {}{partial}\n", report.display()));

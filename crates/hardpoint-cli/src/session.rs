@@ -2,23 +2,27 @@
 //! went wrong, as text or as JSON.
 
 use std::cell::Cell;
+use std::io::Write;
 use std::ops::ControlFlow;
 use std::path::Path;
-use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 
+use hardpoint::draft::did_you_mean;
+use hardpoint::model::CaseId;
 use hardpoint::motion::Execution;
 use hardpoint::topology::{Formulation, TopologyFault};
 use hardpoint::{Analysis, Footprint, Run, Solution};
 use hardpoint_file::{Diagnostic, ModelFile, ReadError};
 use hardpoint_report::course::{Course, Gathering};
-use hardpoint_report::figures::bytes;
+use hardpoint_report::figures::{bytes, some_of};
 use hardpoint_report::{GENERATOR, diagnose};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use serde_json::json;
 
-use crate::folder::{self, NotWritten};
+use crate::args::Motions;
+use crate::folder::{self, Folder, NotWritten};
 use crate::outcome::Outcome;
 use crate::text;
 
@@ -28,6 +32,8 @@ pub struct Session {
     started: Instant,
     interrupted: Arc<AtomicBool>,
     patient: Arc<AtomicBool>,
+    /// The documents of the cases that were done, while there are several.
+    cases: Mutex<Option<Vec<serde_json::Value>>>,
 }
 
 /// Results of so many bytes are held at once while a motion is solved: little enough to be written in no time.
@@ -63,7 +69,7 @@ impl Session {
                 std::process::exit(Outcome::Interrupted as i32);
             }
         });
-        Self { json, started: Instant::now(), interrupted, patient }
+        Self { json, started: Instant::now(), interrupted, patient, cases: Mutex::new(None) }
     }
 
     /// Whether what is done now ends by itself soon after a request to stop, and has something to save. What is not patient is
@@ -93,6 +99,102 @@ impl Session {
             }
             Outcome::BadModel
         })
+    }
+
+    /// Reads the model and does a command for its motion; of a model with cases, for one case or for each of them, one after the
+    /// other. `each` is told the case where there are several.
+    ///
+    /// # Errors
+    /// Where nothing could be begun. What one case comes to does not keep the others from being done.
+    pub fn for_motions(
+        &self,
+        path: &Path,
+        motions: &Motions,
+        mut each: impl FnMut(ModelFile, Option<&str>) -> Result<Outcome, Outcome>,
+    ) -> Result<Outcome, Outcome> {
+        let file = self.read(path)?;
+        let cases: Vec<&str> = file.model.cases.iter().map(|c| c.name.as_str()).collect();
+        let of_case = |id: CaseId| {
+            let mut one = file.clone();
+            one.model = file.model.in_case(id);
+            one
+        };
+        if let Some(name) = &motions.case {
+            let Some(id) = file.model.case(name) else {
+                let has = match &cases[..] {
+                    [] => "the model has no cases".to_owned(),
+                    _ => match did_you_mean(name, cases.iter().copied()) {
+                        Some(near) => format!("did you mean `{near}`?"),
+                        None => format!("its cases are {}", some_of(&cases, ", ")),
+                    },
+                };
+                return Err(self.misunderstood(&format!("`--case {name}`: there is no such case; {has}")));
+            };
+            return each(of_case(id), None);
+        }
+        if cases.is_empty() {
+            return each(file, None);
+        }
+        *self.documents() = Some(Vec::new());
+        let mut outcome = Outcome::Done;
+        for (k, case) in cases.iter().enumerate() {
+            let before = self.documents().as_ref().map_or(0, Vec::len);
+            outcome = outcome.and(each(of_case(CaseId(k)), Some(case)).unwrap_or_else(|outcome| outcome));
+            for document in self.documents().iter_mut().flatten().skip(before) {
+                *document = json!({ "case": case, "result": document });
+            }
+            if self.interrupted() {
+                break;
+            }
+        }
+        let documents = self.documents().take();
+        if self.json {
+            self.print_json(&json!({ "generator": GENERATOR, "cases": documents }));
+        }
+        Ok(outcome)
+    }
+
+    fn documents(&self) -> MutexGuard<'_, Option<Vec<serde_json::Value>>> {
+        self.cases.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// Writes the model file with a changed design, whole or not at all.
+    ///
+    /// # Errors
+    /// Where the text cannot say the changed design, or the file cannot be written.
+    pub fn save(&self, file: &ModelFile, design: &[f64], to: &Path) -> Result<(), Outcome> {
+        let text = file.edit(design).map_err(|diagnostics| {
+            self.fail(file, diagnostics.list());
+            Outcome::Misunderstood
+        })?;
+        let parent = to.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
+        let name = to.file_name().map(|n| n.to_string_lossy().into_owned());
+        let written = Folder::open(parent).and_then(|mut folder| {
+            folder.write(&name.unwrap_or_default(), |out| out.write_all(text.as_bytes()))?;
+            folder.commit(&[])
+        });
+        written.map_err(|e| self.not_written(&e))
+    }
+
+    /// That a file to save to is not the model that it is made from.
+    ///
+    /// # Errors
+    /// Where it is.
+    pub fn may_save(&self, model: &Path, to: Option<&Path>) -> Result<(), Outcome> {
+        let same = |a: &Path, b: &Path| {
+            a.canonicalize().ok().is_some_and(|a| b.canonicalize().is_ok_and(|b| a == b))
+        };
+        match to {
+            Some(to) if same(model, to) => {
+                let why =
+                    format!("`--save {}` is the model file itself; save under another name", to.display());
+                Err(self.misunderstood(&why))
+            }
+            Some(to) if to.file_name().is_none() => {
+                Err(self.misunderstood(&format!("`--save {}` names no file", to.display())))
+            }
+            _ => Ok(()),
+        }
     }
 
     /// Plans the solution, or tells why the mechanism cannot be driven.
@@ -277,6 +379,10 @@ impl Session {
 
     /// Prints a JSON document.
     pub fn print_json(&self, document: &impl serde::Serialize) {
+        if let Some(cases) = self.documents().as_mut() {
+            cases.push(serde_json::to_value(document).expect("results are plain data"));
+            return;
+        }
         text::print(&json_text(document));
     }
 

@@ -4,13 +4,14 @@ use std::io::Write;
 use std::time::Instant;
 
 use hardpoint::study::{VerifyOptions, verify as verify_designs};
+use hardpoint_file::ModelFile;
 use hardpoint_report::diagnose;
 use hardpoint_report::facts::Facts;
 use hardpoint_report::figures::{count, error, seconds};
 use hardpoint_report::verdict::{Differences, Outcome as Agrees, Verdict};
 
 use crate::args::Verify;
-use crate::folder::Folder;
+use crate::folder::{Folder, of_case};
 use crate::outcome::Outcome;
 use crate::session::{Meter, Session, json_text};
 use crate::text;
@@ -18,14 +19,19 @@ use crate::text;
 /// Re-solves moved designs and prints how well they agree.
 pub fn verify(options: &Verify) -> Outcome {
     let session = Session::begin(options.common.json);
-    verify_in(&session, options).unwrap_or_else(|outcome| outcome)
+    let each = |file: ModelFile, case: Option<&str>| verify_in(&session, options, file, case);
+    session.for_motions(&options.common.model, &options.motions, each).unwrap_or_else(|outcome| outcome)
 }
 
-fn verify_in(session: &Session, options: &Verify) -> Result<Outcome, Outcome> {
-    let mut file = session.read(&options.common.model)?;
+fn verify_in(
+    session: &Session,
+    options: &Verify,
+    mut file: ModelFile,
+    case: Option<&str>,
+) -> Result<Outcome, Outcome> {
     session.fits(&mut file);
     let analysis = session.plan(&file, options.common.formulation())?;
-    let folder = options.output.as_ref().map(|path| Folder::open(path));
+    let folder = options.output.as_ref().map(|path| Folder::open(&of_case(path, case)));
     let folder = folder.transpose().map_err(|e| session.not_written(&e))?;
 
     let solution = session.solve(&analysis);
@@ -69,7 +75,7 @@ fn verify_in(session: &Session, options: &Verify) -> Result<Outcome, Outcome> {
     Ok(match (verdict.passed, verdict.interrupted) {
         (_, true) => Outcome::Interrupted,
         (true, _) => Outcome::Done,
-        (false, _) => Outcome::Disagrees,
+        (false, _) => Outcome::FellShort,
     })
 }
 

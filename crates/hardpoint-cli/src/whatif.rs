@@ -17,7 +17,7 @@ use hardpoint_report::summary::Summary;
 use hardpoint_report::whatif::{ChangeFact, WhatIfFacts};
 
 use crate::args::Whatif;
-use crate::folder::Folder;
+use crate::folder::{Folder, of_case};
 use crate::outcome::Outcome;
 use crate::run::trusted;
 use crate::session::{Session, json_text};
@@ -36,11 +36,16 @@ const NEARER: f64 = 1e3;
 /// Changes the design and prints what that does, or ranks the variables.
 pub fn whatif(options: &Whatif) -> Outcome {
     let session = Session::begin(options.common.json);
-    whatif_in(&session, options).unwrap_or_else(|outcome| outcome)
+    let each = |file: ModelFile, case: Option<&str>| whatif_in(&session, options, file, case);
+    session.for_motions(&options.common.model, &options.motions, each).unwrap_or_else(|outcome| outcome)
 }
 
-fn whatif_in(session: &Session, options: &Whatif) -> Result<Outcome, Outcome> {
-    let mut file = session.read(&options.common.model)?;
+fn whatif_in(
+    session: &Session,
+    options: &Whatif,
+    mut file: ModelFile,
+    case: Option<&str>,
+) -> Result<Outcome, Outcome> {
     let mut settings = Vec::new();
     for text in &options.set {
         let (variable, by) = setting(&mut file, text).map_err(|why| session.misunderstood(&why))?;
@@ -68,8 +73,15 @@ fn whatif_in(session: &Session, options: &Whatif) -> Result<Outcome, Outcome> {
     for name in options.measure.iter().chain(&options.over) {
         measure(&file.model, name).map_err(|why| session.misunderstood(&why))?;
     }
-    let folder = options.output.as_ref().map(|path| Folder::open(path));
+    let folder = options.output.as_ref().map(|path| Folder::open(&of_case(path, case)));
     let folder = folder.transpose().map_err(|e| session.not_written(&e))?;
+    if let Some(to) = &options.save {
+        session.may_save(&options.common.model, Some(to))?;
+        // The design is one for all cases, and the file says them all.
+        let mut whole = session.read(&options.common.model)?;
+        whole.model.variables.clone_from(&file.model.variables);
+        session.save(&whole, &change, to)?;
+    }
     session.fits(&mut file);
     let analysis = session.plan(&file, options.common.formulation())?;
 
@@ -125,6 +137,8 @@ fn whatif_in(session: &Session, options: &Whatif) -> Result<Outcome, Outcome> {
     } else {
         text::print(&facts_text(&facts, &wanted));
         text::print(&written.map_or(String::new(), |path| format!("\nwritten: {}\n", path.display())));
+        let saved = options.save.as_ref();
+        text::print(&saved.map_or(String::new(), |path| format!("\nsaved: {}\n", path.display())));
     }
     Ok(outcome)
 }

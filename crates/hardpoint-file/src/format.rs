@@ -6,6 +6,8 @@
 #[cfg(test)]
 mod docs;
 
+use std::collections::BTreeSet;
+
 use hardpoint::joint::Quantity;
 
 /// A key of a table.
@@ -113,6 +115,8 @@ impl Kinds {
         let tables = (self.tables)();
         let mut keys: Vec<&'static Key> = tables.iter().flat_map(|t| t.keys).collect();
         keys.extend(tables.first().into_iter().flat_map(|t| t.shared));
+        let mut seen = BTreeSet::new();
+        keys.retain(|key| seen.insert(key.key));
         keys
     }
 }
@@ -207,7 +211,10 @@ pub(crate) const ANGLE: Shape = Shape::Number(Quantity::Angle);
 pub(crate) const TWO_NUMBERS: Shape = Shape::exactly(2, &NUMBER);
 pub(crate) const THREE_NUMBERS: Shape = Shape::exactly(3, &NUMBER);
 pub(crate) const BODY: Shape = Shape::Name("a body");
+pub(crate) const CASE: Shape = Shape::Name("a case");
 pub(crate) const DRIVER: Shape = Shape::Name("a driver");
 pub(crate) const HARDPOINT: Shape = Shape::Name("a hardpoint");
 pub(crate) const JOINT: Shape = Shape::Name("a joint");
+pub(crate) const METRIC: Shape = Shape::Name("a metric");
+pub(crate) const VARIABLE: Shape = Shape::Name("a design variable");
 pub(crate) const OUTPUT: Shape = Shape::Name("a measure");

@@ -33,6 +33,7 @@
 
 mod diagnostic;
 mod drawing;
+mod edit;
 mod format;
 mod places;
 mod read;

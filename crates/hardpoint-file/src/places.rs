@@ -60,7 +60,7 @@ impl EntryPlace {
         }
     }
 
-    fn find(&self, key: &str, item: Option<usize>) -> Range<usize> {
+    pub fn find(&self, key: &str, item: Option<usize>) -> Range<usize> {
         match self.keys.iter().find(|k| k.key == key) {
             Some(k) => item.and_then(|i| k.items.get(i)).unwrap_or(&k.value).clone(),
             None => self.name.clone(),
@@ -68,7 +68,7 @@ impl EntryPlace {
     }
 }
 
-const SECTIONS: [Section; 15] = [
+const SECTIONS: [Section; 20] = [
     Section::Model,
     Section::Parameters,
     Section::Hardpoints,
@@ -84,6 +84,11 @@ const SECTIONS: [Section; 15] = [
     Section::Measures,
     Section::Metrics,
     Section::Time,
+    Section::Cases,
+    Section::Grids,
+    Section::Optimize,
+    Section::Goals,
+    Section::Limits,
 ];
 
 /// The places of all entries, by section and place in the draft's list.

@@ -1,11 +1,13 @@
 //! The tables of a model file, one function each, into a draft.
 
+mod cases;
 mod couplers;
 mod data;
 mod design;
 mod drivers;
 mod law;
 mod mesh;
+mod optimize;
 mod parameters;
 mod results;
 mod wheels;
@@ -69,8 +71,12 @@ pub(crate) const MODEL: Table = table! {
     may "measures": Shape::Entries(&results::MEASURE), "{}";
     /// Numbers that sum measures up over the motion, with their sensitivities.
     may "metrics": Shape::Entries(&Shape::Table(&results::METRIC)), "{}";
-    /// The output times.
-    must "time": Shape::Kinds(&results::TIME), "{ end = 1.0, steps = 100 }";
+    /// The output times. Where every case has its own, they may be left out.
+    may "time": Shape::Kinds(&results::TIME), "{ end = 1.0, steps = 100 }";
+    /// Several motions of the mechanism, in place of the one that the drivers' own laws make.
+    may "cases": Shape::Entries(&Shape::Table(&cases::CASE)), "{}";
+    /// What the design is to be optimised for, and within which limits.
+    may "optimize": Shape::Table(&optimize::OPTIMIZE), "{ goals = { toe = { metric = \"toe_error\" } } }";
 };
 const UNITS: Table = table! {
     /// The units of all numbers in the file.
@@ -205,7 +211,7 @@ fn coordinates() -> Vec<(&'static str, String)> {
 
 /// The tables that `docs/file-format.md` shows, by their names there.
 #[cfg(test)]
-pub(crate) fn tables() -> [(&'static str, Shape); 21] {
+pub(crate) fn tables() -> [(&'static str, Shape); 27] {
     [
         ("parameters", Shape::Table(&parameters::PARAMETER_TABLE)),
         ("frames", Shape::Kinds(&FRAME)),
@@ -228,6 +234,12 @@ pub(crate) fn tables() -> [(&'static str, Shape); 21] {
         ("measures", Shape::Kinds(&results::OWN_MEASURE)),
         ("metrics", Shape::Table(&results::METRIC)),
         ("time", Shape::Kinds(&results::TIME)),
+        ("cases", Shape::Table(&cases::CASE)),
+        ("grids", Shape::Kinds(&cases::SWEEP)),
+        ("targets in files", Shape::Table(&results::TARGET_FILE)),
+        ("optimize", Shape::Table(&optimize::OPTIMIZE)),
+        ("goals", Shape::Table(&optimize::GOAL)),
+        ("limits", Shape::Kinds(&optimize::LIMIT)),
     ]
 }
 
@@ -243,6 +255,8 @@ pub(crate) struct Raw {
     joint_numbers: HashMap<String, usize>,
     /// What each driver of the draft prescribes.
     driven: Vec<Quantity>,
+    /// The drivers that leave their laws to the cases, by their places in the draft.
+    without_law: Vec<usize>,
 }
 
 impl Raw {
@@ -283,6 +297,8 @@ impl Reader<'_> {
         self.axles(&fields, &mut raw);
         self.metrics(&fields, &mut raw);
         self.time(&fields, &mut raw);
+        self.cases(&fields, &mut raw);
+        self.optimize(&fields, &mut raw);
         raw
     }
 
@@ -333,10 +349,21 @@ impl Reader<'_> {
         key: &'static str,
         one: &str,
     ) -> Vec<(String, Range<usize>, &'a Value<'a>)> {
-        let Some(f) = model.get(key) else { return Vec::new() };
+        self.entries_below(model, "", key, one)
+    }
+
+    /// The same of a table `below` another, like `optimize.`.
+    fn entries_below<'a>(
+        &mut self,
+        table: &Fields<'a>,
+        below: &str,
+        key: &'static str,
+        one: &str,
+    ) -> Vec<(String, Range<usize>, &'a Value<'a>)> {
+        let Some(f) = table.get(key) else { return Vec::new() };
         let expected = format!("a table with one entry for each {one}");
-        let mut subject = model.subject(key);
-        subject.example = format!("write `[{key}.NAME]` above the keys of a {one}");
+        let mut subject = table.subject(key);
+        subject.example = format!("write `[{below}{key}.NAME]` above the keys of a {one}");
         let Some(table) = self.table(f.value, &subject, &expected) else { return Vec::new() };
         if table.len() > MOST_ENTRIES {
             self.too_many(f.value.span(), &format!("`{key}`"), table.len());

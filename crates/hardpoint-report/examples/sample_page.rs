@@ -177,6 +177,7 @@ fn quantities(times: &[f64]) -> Vec<Quantity> {
             value,
             rate,
             accel,
+            wanted: Curve::default(),
         }
     };
     QUANTITIES.iter().map(quantity).collect()

@@ -99,7 +99,9 @@ fn each_curve(payload: &mut Payload, visit: &mut impl FnMut(&mut Curve, Precisio
         visit(&mut driver.travel, Full, 1);
     }
     for q in &mut payload.quantities {
-        [&mut q.value, &mut q.rate, &mut q.accel].into_iter().for_each(|curve| visit(curve, Full, 1));
+        [&mut q.value, &mut q.rate, &mut q.accel, &mut q.wanted]
+            .into_iter()
+            .for_each(|curve| visit(curve, Full, 1));
     }
     for design in &mut payload.designs {
         design.poses.iter_mut().for_each(|poses| visit(poses, Full, 7));

@@ -11,6 +11,7 @@
 //! | [`assembly`] | what was open in the drawing, and how it closed |
 //! | [`verdict`] | `verify.json`: sensitivities against re-solved designs |
 //! | [`whatif`] | `whatif.json`, `.csv` and `.html`: a changed design, foreseen and exact |
+//! | [`maps`] | `maps.csv`, `map_sensitivity.csv`, `maps.json`: measures over grids of two drivers |
 //! | [`columns`] | what stands in which column of the files of results |
 //! | [`csv`], [`npy`] | `motion`, `sensitivity` and `jerk` as text, or as arrays |
 //! | [`payload`], [`page`], [`encoding`] | `report.html` |
@@ -25,9 +26,11 @@ pub mod diagnose;
 pub mod encoding;
 pub mod facts;
 pub mod figures;
+pub mod maps;
 pub mod margin;
 pub mod metric;
 pub mod npy;
+pub mod optimize;
 pub mod page;
 pub mod payload;
 mod shifts;

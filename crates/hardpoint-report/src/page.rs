@@ -428,6 +428,8 @@ pub struct Quantity {
     pub rate: Curve,
     /// Its second time derivative.
     pub accel: Curve,
+    /// What a metric wants it to be, `n` steps; empty where none does.
+    pub wanted: Curve,
 }
 
 /// How far the mechanism is from singular: 1 is best, 0 is a singular position.

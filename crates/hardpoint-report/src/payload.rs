@@ -15,7 +15,7 @@ pub use designs::Changed;
 use std::path::Path;
 
 use hardpoint::joint::Quantity as Kind;
-use hardpoint::model::{BodyId, Dimension, Model, OutputSource, VariableId};
+use hardpoint::model::{BodyId, Dimension, Metric, Model, OutputSource, Reduction, VariableId};
 use hardpoint::sensitivity::BodySensitivity;
 use hardpoint::space::Vec3;
 use hardpoint::study::{Comparison, Difference};
@@ -437,7 +437,8 @@ impl Compose<'_> {
         let outputs = measured.outputs.iter().enumerate().map(|(m, output)| {
             let value = |k, order: usize| measured.value(k, m)[order];
             let group = if matches!(output.source, OutputSource::Measure(_)) { "measure" } else { "point" };
-            self.quantity(&output.name, output.dimension, output.known.orders, group, value)
+            let quantity = self.quantity(&output.name, output.dimension, output.known.orders, group, value);
+            Quantity { wanted: self.wanted(output.source, output.dimension), ..quantity }
         });
         let bodies = if self.detail.origins { self.model.bodies.len() } else { 1 };
         let origins = (1..bodies).flat_map(|b| (0..3).map(move |axis| (b, axis))).map(|(b, axis)| {
@@ -466,7 +467,18 @@ impl Compose<'_> {
             let shown = spans[order].shown(value(k, order), self.round_off.value(kind, order));
             self.units.from_si(kind, shown)
         });
-        Quantity { name: name.into(), unit, rate_unit, accel_unit, group: group.into(), value, rate, accel }
+        let (name, group, wanted) = (name.into(), group.into(), Curve::default());
+        Quantity { name, unit, rate_unit, accel_unit, group, value, rate, accel, wanted }
+    }
+
+    /// The target curve of the first metric that has one for this output.
+    fn wanted(&self, of: OutputSource, kind: Dimension) -> Curve {
+        let (measured, times) = (&self.solution.measured, &self.solution.motion.times);
+        let has = |m: &&Metric| m.of == of && matches!(&m.take, Reduction::Rms(target) if !target.is_empty());
+        let Some(metric) = self.model.metrics.iter().find(has) else { return Curve::default() };
+        let over = metric.over.and_then(|over| measured.outputs.iter().position(|o| o.source == over));
+        let at = |k: usize| over.map_or(times[k], |m| measured.value(k, m)[0]);
+        self.curve(|k| self.units.from_si(kind, metric.target_at(at(k)).unwrap_or(f64::NAN)))
     }
 
     fn variables(&self, facts: &Facts, differences: &[Option<Difference>]) -> Vec<Variable> {

@@ -13,6 +13,7 @@ use crate::course::Course;
 use crate::diagnose::{driver_values, named};
 use crate::facts::{Facts, variable_unit};
 use crate::figures::{order_unit, per, symbol};
+use crate::maps::MapLine;
 use crate::margin::MarginFact;
 use crate::metric::MetricFact;
 use crate::validity::ValidityFact;
@@ -40,6 +41,8 @@ pub struct Summary {
     pub validity: Vec<ValidityFact>,
     /// What the metrics come to.
     pub metrics: Vec<MetricFact>,
+    /// The maps that were written: over which drivers, how many positions were reached, and why not the others.
+    pub maps: Vec<MapLine>,
     /// The largest sensitivities of every measure.
     pub sensitivities: Vec<Ranking>,
     /// Where the time went.
@@ -243,6 +246,7 @@ impl Summary {
             assembly: solution.motion.assembly.as_ref().map(|a| AssemblyFact::new(model, file.units, a)),
             stop: StopFact::of(file, solution),
             validity: Vec::new(),
+            maps: Vec::new(),
             metrics: MetricFact::all(model, file.units, course.curves()),
             sensitivities: rankings(model, file.units, course),
             timings: Timings::default(),

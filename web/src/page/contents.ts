@@ -39,6 +39,7 @@ export function valueContent(state: State, { quantity: index, order, over }: Sub
     const curve = design.quantities[index]?.[order]
     if (curve?.length) content.lines.push({ label: design.name, color: hue(k + 1), curve: quiet(curve, scale), width: 1.8, dash: DOTTED })
   })
+  if (order === 0) content.lines.push({ label: 'wanted', color: css('--good'), curve: quantity.wanted, width: 2.4, dash: DOTTED })
   content.lines = content.lines.filter(({ curve }) => curve.length > 0)
   if (order === 0 && over === undefined) {
     content.wanted = report.values

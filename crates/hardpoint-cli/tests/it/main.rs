@@ -2,5 +2,6 @@
 
 mod bench;
 mod golden;
+mod optimize;
 mod results;
 mod whatif;

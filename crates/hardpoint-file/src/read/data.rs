@@ -1,4 +1,4 @@
-//! Files beside the model file, and two columns of a CSV file, a time and a value.
+//! Files beside the model file, and two columns of a CSV file: times and values, or another abscissa and values.
 
 use std::path::{Component, Path};
 
@@ -17,6 +17,9 @@ pub(super) enum Column {
     /// Counted from 1.
     Number(usize),
 }
+
+/// The columns where none are named.
+pub(super) const FIRST_TWO: [Column; 2] = [Column::Number(1), Column::Number(2)];
 
 /// What is wrong with a data file.
 pub(super) struct DataError {
@@ -40,7 +43,7 @@ impl DataError {
         }
     }
 
-    /// HP0112: what the file holds is no table of times and values.
+    /// HP0112: what the file holds is no curve.
     fn content(message: impl Into<String>, help: &str) -> Self {
         Self {
             code: "HP0112",
@@ -66,9 +69,10 @@ pub(super) fn points(
     folder: Option<&Path>,
     name: &str,
     columns: &[Column; 2],
+    of: &Curve,
 ) -> Result<Vec<[f64; 2]>, DataError> {
-    let text = text_of(folder, name)?;
-    parse(text.strip_prefix('\u{feff}').unwrap_or(&text), &shown(name), columns)
+    let text = text_of(folder, name, of)?;
+    parse(text.strip_prefix('\u{feff}').unwrap_or(&text), &shown(name), columns, of)
 }
 
 /// What messages say of a file that is wanted.
@@ -87,18 +91,50 @@ pub(super) struct Wanted<'a> {
     pub too_large: &'a str,
 }
 
-/// Of a table's file.
-const TABLE: Wanted<'static> = Wanted {
-    purpose: "table",
-    kind: "a CSV file",
-    ending: "csv",
-    example: "data/travel.csv",
-    without_folder: "write the table as `points = [[0, 0], [1, 5]]`, or read the model from a file",
-    too_large: "keep every tenth row, or as few as show the curve",
+/// What messages say of a curve in a file.
+pub(super) struct Curve {
+    wanted: Wanted<'static>,
+    /// What its values are over, and several of these.
+    pub abscissa: &'static str,
+    abscissas: &'static str,
+    /// The unit of that, after a number.
+    unit: &'static str,
+    /// What to write where there is nothing.
+    write: &'static str,
+}
+
+/// The table of a law.
+pub(super) const TABLE: Curve = Curve {
+    wanted: Wanted {
+        purpose: "table",
+        kind: "a CSV file",
+        ending: "csv",
+        example: "data/travel.csv",
+        without_folder: "write the table as `points = [[0, 0], [1, 5]]`, or read the model from a file",
+        too_large: "keep every tenth row, or as few as show the curve",
+    },
+    abscissa: "time",
+    abscissas: "times",
+    unit: " s",
+    write: "write a time in s and a value on each line, like `0.5, 12.5`",
 };
 
-fn text_of(folder: Option<&Path>, name: &str) -> Result<String, DataError> {
-    String::from_utf8(bytes_of(folder, name, &TABLE)?).map_err(|_| {
+/// The target of a metric.
+pub(super) const TARGET: Curve = Curve {
+    wanted: Wanted {
+        purpose: "target",
+        example: "data/target.csv",
+        without_folder: "write the target as `target = [[-50, 0.1], [50, -0.1]]`, or read the model from a file",
+        ..TABLE.wanted
+    },
+    abscissa: "abscissa",
+    abscissas: "abscissas",
+    unit: "",
+    write: "write an abscissa and a value on each line, in the units of the model file, like `-20, 0.15`",
+};
+
+fn text_of(folder: Option<&Path>, name: &str, of: &Curve) -> Result<String, DataError> {
+    String::from_utf8(bytes_of(folder, name, &of.wanted)?).map_err(|_| {
         let message = format!("the file `{}` is not a text in UTF-8", shown(name));
         DataError::unreadable(message, "save it as UTF-8 text")
     })
@@ -173,7 +209,7 @@ fn leaves(name: &str, wanted: &Wanted<'_>) -> DataError {
     )
 }
 
-fn parse(text: &str, name: &str, columns: &[Column; 2]) -> Result<Vec<[f64; 2]>, DataError> {
+fn parse(text: &str, name: &str, columns: &[Column; 2], of: &Curve) -> Result<Vec<[f64; 2]>, DataError> {
     let mut reader = csv::ReaderBuilder::new()
         .has_headers(false)
         .flexible(true)
@@ -185,6 +221,7 @@ fn parse(text: &str, name: &str, columns: &[Column; 2]) -> Result<Vec<[f64; 2]>,
     let mut header: Option<Vec<String>> = None;
     let mut taken = None;
     let mut points: Vec<[f64; 2]> = Vec::new();
+    let unit = of.unit;
     loop {
         match reader.read_record(&mut record) {
             Ok(true) => {}
@@ -203,7 +240,7 @@ fn parse(text: &str, name: &str, columns: &[Column; 2]) -> Result<Vec<[f64; 2]>,
         let places = match taken {
             Some(places) => places,
             None => *taken.insert(
-                found(columns, header.as_deref(), record.len(), name).map_err(DataError::of_columns)?,
+                found(columns, header.as_deref(), record.len(), name, of).map_err(DataError::of_columns)?,
             ),
         };
         let mut point = [0.0; 2];
@@ -214,11 +251,11 @@ fn parse(text: &str, name: &str, columns: &[Column; 2]) -> Result<Vec<[f64; 2]>,
         }
         if let Some(before) = points.last().filter(|before| point[0] <= before[0]) {
             let message = format!(
-                "`{name}`, line {line}: the times of a table must increase, but {} s follows {} s",
-                point[0], before[0]
+                "`{name}`, line {line}: the {} of a {} must increase, but {}{unit} follows {}{unit}",
+                of.abscissas, of.wanted.purpose, point[0], before[0]
             );
-            let help = "sort the rows by time, and keep one for each time";
-            return Err(DataError::content(message, help));
+            let help = format!("sort the rows by {x}, and keep one for each {x}", x = of.abscissa);
+            return Err(DataError::content(message, &help));
         }
         points.push(point);
         if points.len() > MOST_ROWS {
@@ -228,13 +265,10 @@ fn parse(text: &str, name: &str, columns: &[Column; 2]) -> Result<Vec<[f64; 2]>,
     }
     if points.is_empty() {
         if let Some(header) = &header {
-            found(columns, Some(header), header.len(), name).map_err(DataError::of_columns)?;
+            found(columns, Some(header), header.len(), name, of).map_err(DataError::of_columns)?;
         }
         let message = format!("`{name}` has no rows of numbers");
-        return Err(DataError::content(
-            message,
-            "write a time in s and a value on each line, like `0.5, 12.5`",
-        ));
+        return Err(DataError::content(message, of.write));
     }
     Ok(points)
 }
@@ -252,6 +286,7 @@ fn found(
     header: Option<&[String]>,
     width: usize,
     name: &str,
+    of: &Curve,
 ) -> Result<[usize; 2], DataError> {
     let mut places = [0; 2];
     for (place, column) in places.iter_mut().zip(columns) {
@@ -294,9 +329,10 @@ fn found(
         };
     }
     if places[0] == places[1] {
+        let x = of.abscissa;
         let message =
-            format!("`columns` takes column {} of `{name}` for both the time and the value", places[0] + 1);
-        return Err(DataError::content(message, "name two columns, the time first"));
+            format!("`columns` takes column {} of `{name}` for both the {x} and the value", places[0] + 1);
+        return Err(DataError::content(message, &format!("name two columns, the {x} first")));
     }
     Ok(places)
 }

@@ -26,7 +26,8 @@ macro_rules! driven {
             shared: keys! {
                 #[doc = $over_time]
                 #[doc = ", counted from the design configuration."]
-                must "law": law::LAW, "\"30*sin(2*pi*t)\"";
+                #[doc = " It may be left out where every case gives the driver a law or holds it."]
+                may "law": law::LAW, "\"30*sin(2*pi*t)\"";
             },
             ..table! { $($table)* }
         }
@@ -46,8 +47,8 @@ static FORMS: &[(Table, Read)] = &[
         },
         |r, fields, _| {
             let joint = r.name_of(fields, "joint");
-            let coordinate = r.name_of(fields, "coordinate");
-            Some(DrivenDraft::Coordinate { joint: joint?, coordinate })
+            let coordinate = r.name_if(fields, "coordinate");
+            Some(DrivenDraft::Coordinate { joint: joint?, coordinate: coordinate? })
         },
     ),
     (
@@ -111,6 +112,14 @@ impl Reader<'_> {
             let form = self.led_by(&fields, FORMS, says);
             let drives = form.and_then(|(_, read)| read(self, &fields, &mut place));
             let law = self.given(&fields, "law", |r, f| r.law(&fields, f));
+            if fields.get("law").is_none() {
+                if model.get("cases").is_some() {
+                    raw.without_law.push(raw.draft.drivers.len());
+                } else {
+                    self.need(&fields, "law");
+                    self.unread.push("law");
+                }
+            }
             let drives = drives.unwrap_or(DrivenDraft::Unread);
             // The core says what is wrong with a joint or coordinate that is not known.
             let quantity = drives.quantity(|joint| type_of(raw, joint)).unwrap_or(Quantity::Number);

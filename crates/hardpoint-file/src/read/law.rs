@@ -177,7 +177,7 @@ pub(super) const PIECE: Table = table! {
     /// Whether its values count from where the piece before ended.
     or("true") "continued": Shape::Flag, "true";
 };
-const COLUMN: Shape = Shape::Any(
+pub(super) const COLUMN: Shape = Shape::Any(
     "Column",
     "A column's name, or its number from 1.",
     &[Shape::Name("a column"), Shape::Count(u32::MAX)],
@@ -191,7 +191,7 @@ impl Reader<'_> {
     }
 
     /// A law; `of` is what it belongs to.
-    fn law_in(&mut self, of: &str, subject: &Subject, value: &Value<'_>) -> Option<Law> {
+    pub(super) fn law_in(&mut self, of: &str, subject: &Subject, value: &Value<'_>) -> Option<Law> {
         match value.get_ref() {
             DeValue::String(_) => self.law_text(of, value, &[]),
             DeValue::Integer(_) | DeValue::Float(_) => self.number(value, subject).map(Law::constant),
@@ -516,35 +516,51 @@ impl Reader<'_> {
     }
 
     fn points_of_file(&mut self, fields: &Fields<'_>, f: Field<'_>) -> Option<Vec<[f64; 2]>> {
-        let columns = self.columns(fields);
+        self.points_in_file(fields, f, &data::TABLE)
+    }
+
+    /// The points of a file, whose name a field gives and whose columns another.
+    pub(super) fn points_in_file(
+        &mut self,
+        fields: &Fields<'_>,
+        f: Field<'_>,
+        of: &data::Curve,
+    ) -> Option<Vec<[f64; 2]>> {
+        let columns = self.columns(fields, of);
         let name = self.text(fields, f)?;
         let columns = columns?;
-        match data::points(self.folder, &name, &columns) {
+        match data::points(self.folder, &name, &columns, of) {
             Ok(points) => Some(points),
             Err(e) => {
                 let at = fields.get("columns").filter(|_| e.of_columns).unwrap_or(f);
-                let d = self.report(e.code, at.value.span(), e.message);
-                d.notes = e.notes;
-                d.help = e.help;
+                self.data_error(at.value.span(), e);
                 None
             }
         }
     }
 
+    /// What is wrong with a file, at the place that names it.
+    pub(super) fn data_error(&mut self, at: Range<usize>, e: data::DataError) {
+        let d = self.report(e.code, at, e.message);
+        d.notes = e.notes;
+        d.help = e.help;
+    }
+
     /// The two columns of a file, by name or number; the first two where none are named.
-    fn columns(&mut self, fields: &Fields<'_>) -> Option<[data::Column; 2]> {
-        let Some(f) = fields.get("columns") else { return Some([1, 2].map(data::Column::Number)) };
+    fn columns(&mut self, fields: &Fields<'_>, of: &data::Curve) -> Option<[data::Column; 2]> {
+        let Some(f) = fields.get("columns") else { return Some(data::FIRST_TWO) };
         let subject = fields.subject("columns");
-        let expected = "two columns, of the time and of the value, each a name or a number from 1";
+        let expected =
+            format!("two columns, of the {} and of the value, each a name or a number from 1", of.abscissa);
         let list = match f.value.get_ref().as_array() {
             Some(list) if list.len() == 2 => list,
             _ => {
-                self.wrong(f.value, &subject, expected);
+                self.wrong(f.value, &subject, &expected);
                 return None;
             }
         };
         let [time, value] = [0, 1].map(|k| match list[k].get_ref() {
-            DeValue::String(_) => self.name(&list[k], &subject, expected).map(data::Column::Named),
+            DeValue::String(_) => self.name(&list[k], &subject, &expected).map(data::Column::Named),
             _ => {
                 let number = self.number(&list[k], &subject)?;
                 if !((1.0..=1e6).contains(&number) && number.fract() == 0.0) {

@@ -9,16 +9,19 @@ use hardpoint::draft::{
 use hardpoint::model::{AxleMeasure, Reduction, WheelMeasure, WheelNeed};
 use hardpoint::space::Vec3;
 
+use toml::de::DeValue;
+
 use crate::format::{
-    BODY, DRIVER, JOINT, Key, Kinds, NUMBER, Need, OUTPUT, Shape, TWO_NUMBERS, Table, keys, table,
+    BODY, CASE, DRIVER, JOINT, Key, Kinds, NUMBER, Need, OUTPUT, Shape, TWO_NUMBERS, Table, keys, table,
 };
 use crate::places::EntryPlace;
 use crate::tree::{DIRECTION, Field, Fields, LINE, PLACE, Reader, Subject, Value};
 
-use super::{COORDINATE, DRAW, Raw};
+use super::law::COLUMN;
+use super::{COORDINATE, DRAW, Raw, data};
 
 /// More output times than this are surely a slip.
-const MOST_TIMES: u32 = 1_000_000;
+pub(super) const MOST_TIMES: u32 = 1_000_000;
 pub(crate) const POINT: Table = table! {
     /// A point of a body.
     "BodyPoint":
@@ -81,8 +84,21 @@ pub(crate) const METRIC: Table = table! {
     may "at": NUMBER, "0";
     /// The part of the curve that counts, from where to where its abscissa goes. Default: all of it.
     may "window": TWO_NUMBERS, "[-20, 20]";
-    /// For `rms`: points `[abscissa, value]` of the curve to compare with, straight lines between them. Default: zero.
-    may "target": Shape::list(&TWO_NUMBERS), "[[-50, 0.1], [50, -0.1]]";
+    /// For `rms`: points `[abscissa, value]` of the curve to compare with, straight lines between them; or the name of a CSV file that
+    /// holds them. Default: zero.
+    may "target": TARGET, "[[-50, 0.1], [50, -0.1]]";
+    /// The case whose motion it sums up. Default: each, one number for every case.
+    may "case": CASE, "\"bump\"";
+};
+const TARGET: Shape =
+    Shape::Any("Target", "", &[Shape::list(&TWO_NUMBERS), Shape::Text, Shape::Table(&TARGET_FILE)]);
+pub(super) const TARGET_FILE: Table = table! {
+    /// A curve in a CSV file.
+    "TargetFile":
+    /// A CSV file in the model's folder or below it: abscissas and values, in the units of the model file.
+    must "file": Shape::Text, "\"target.csv\"";
+    /// The file's columns of abscissa and value, by name or by number from 1. Default: the first two.
+    may "columns": Shape::exactly(2, &COLUMN), "[1, 2]";
 };
 const TAKE: Shape = Shape::Any(
     "Take",
@@ -343,21 +359,23 @@ impl Reader<'_> {
             let over = self.name_of(&fields, "over");
             let take = self.take(&fields);
             let window = self.list_of::<2>(&fields, "window", "the lower and the upper end");
-            if let (Some(of), Some(take), true) =
-                (of, take, window.is_some() || fields.get("window").is_none())
-            {
-                let (per_metre, per_radian) = (self.units.length.per_metre(), self.units.angle.per_radian());
-                self.push(raw, Section::Metrics, place);
-                raw.draft.metrics.push(MetricDraft {
-                    name: entry.0,
-                    of,
-                    over,
-                    take,
-                    window,
-                    per_metre,
-                    per_radian,
-                });
+            let case = self.name_of(&fields, "case");
+            // What could not be read of it would leave another metric.
+            if of.is_none() || take.is_none() || !self.unread.is_empty() {
+                self.unread.push("");
             }
+            let (per_metre, per_radian) = (self.units.length.per_metre(), self.units.angle.per_radian());
+            self.push(raw, Section::Metrics, place);
+            raw.draft.metrics.push(MetricDraft {
+                name: entry.0,
+                of: of.unwrap_or_default(),
+                over,
+                take: take.unwrap_or(Reduction::Least),
+                window,
+                case,
+                per_metre,
+                per_radian,
+            });
         }
     }
 
@@ -379,7 +397,7 @@ impl Reader<'_> {
             "range" => Reduction::Range,
             "mean" => Reduction::Mean,
             "rms" => Reduction::Rms(match fields.get("target") {
-                Some(f) => self.pairs(f.value, &fields.subject("target"))?,
+                Some(f) => self.target(fields, f)?,
                 None => Vec::new(),
             }),
             "value" => Reduction::Value(self.number_of(fields, "at")?),
@@ -387,9 +405,29 @@ impl Reader<'_> {
         })
     }
 
+    /// The curve that an `rms` compares with, given here or in a file.
+    fn target(&mut self, fields: &Fields<'_>, f: Field<'_>) -> Option<Vec<[f64; 2]>> {
+        let subject = fields.subject(f.key);
+        match f.value.get_ref() {
+            DeValue::Table(table) => {
+                let fields = self.fields(subject.name, f.value.span(), table, TARGET_FILE.keys());
+                let file = self.need(&fields, "file")?;
+                self.points_in_file(&fields, file, &data::TARGET)
+            }
+            DeValue::String(name) => match data::points(self.folder, name, &data::FIRST_TWO, &data::TARGET) {
+                Ok(points) => Some(points),
+                Err(e) => {
+                    self.data_error(f.value.span(), e);
+                    None
+                }
+            },
+            _ => self.pairs(f.value, &subject),
+        }
+    }
+
     /// A list of pairs of numbers.
     fn pairs(&mut self, value: &Value<'_>, subject: &Subject) -> Option<Vec<[f64; 2]>> {
-        let expected = "a list of points `[abscissa, value]`";
+        let expected = "points `[abscissa, value]`, or the name of a CSV file";
         let list = self.list(value, subject, expected)?;
         list.iter().map(|pair| self.numbers::<2>(pair, subject, expected)).collect()
     }
@@ -416,7 +454,7 @@ impl Reader<'_> {
         let Some(f) = model.get("time") else { return };
         self.unread.clear();
         let place = EntryPlace::at(f.value.span());
-        let times = self.times(model, f);
+        let times = self.times("`time`", &model.subject("time"), f);
         if times.is_none() {
             self.unread.push("");
         }
@@ -424,9 +462,10 @@ impl Reader<'_> {
         self.push(raw, Section::Time, place);
     }
 
-    fn times(&mut self, model: &Fields<'_>, f: Field<'_>) -> Option<Vec<f64>> {
-        let table = self.table(f.value, &model.subject("time"), "a table with `end` and `steps`")?;
-        let fields = self.fields("`time`", f.value.span(), table, TIME.keys());
+    /// Output times; `what` says whose they are.
+    pub(super) fn times(&mut self, what: &str, subject: &Subject, f: Field<'_>) -> Option<Vec<f64>> {
+        let table = self.table(f.value, subject, "a table with `end` and `steps`")?;
+        let fields = self.fields(what, f.value.span(), table, TIME.keys());
         if let Some(f) = fields.get("at") {
             for key in ["start", "end", "steps"] {
                 self.out_of_place(&fields, key, "the output times are listed in `at` already");
@@ -455,7 +494,7 @@ impl Reader<'_> {
         let steps = self.given(&fields, "steps", |r, f| {
             let steps = r.number(f.value, &fields.subject("steps"))?;
             if !(steps >= 1.0 && steps <= f64::from(MOST_TIMES) && steps.fract() == 0.0) {
-                let message = format!("`steps` of `time` cannot be {steps}");
+                let message = format!("`steps` of {what} cannot be {steps}");
                 r.senseless(f.value.span(), message).help =
                     Some(format!("give the number of intervals, a whole number from 1 to {MOST_TIMES}"));
                 return None;

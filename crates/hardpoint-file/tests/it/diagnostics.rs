@@ -1,8 +1,8 @@
 //! What a user sees for each kind of mistake: the full texts are in `tests/snapshots`.
 
-use hardpoint_file::{parse, read};
+use hardpoint_file::{Diagnostics, parse, read};
 
-const VALID: &str = r#"name = "four-bar"
+pub(crate) const VALID: &str = r#"name = "four-bar"
 units = { length = "mm", angle = "deg" }
 
 [hardpoints]
@@ -66,9 +66,13 @@ end = 1.0
 steps = 100
 "#;
 
-fn snapshot(name: &str, text: &str) {
+pub(crate) fn snapshot(name: &str, text: &str) {
     let error = parse(text, "four-bar.toml").expect_err(name);
-    let shown = error.to_string();
+    diagnosed(name, &error, error.to_string());
+}
+
+/// Takes a snapshot of what is shown; every diagnostic has to say what to do.
+pub(crate) fn diagnosed(name: &str, error: &Diagnostics, shown: String) {
     assert!(!error.list().is_empty(), "{name}");
     for d in error.list() {
         let help = d.help.as_deref().unwrap_or_default();

@@ -51,6 +51,7 @@ const GALLERY: &[Entry] = &[
     entry("five_link", 1, 0, &[], five_link_rods_keep_their_lengths_to_second_order),
     entry("four_bar", 1, 0, &[], four_bar_obeys_freudenstein),
     entry("four_bar_by_lengths", 1, 0, &[], four_bar_by_lengths_obeys_the_law_of_cosines),
+    entry("four_bar_inverse", 1, 0, &[], four_bar_inverse_carries_its_coupler_on_the_crank),
     entry("front_axle", 3, 0, &[], front_axle_is_steered_and_moves_as_its_wheels_do),
     entry("gear_train", 1, 0, &[], gear_train_keeps_its_ratios),
     entry("hooke", 1, 3, &["in_bearing_y"], hooke_tangents_are_in_proportion),
@@ -598,6 +599,17 @@ fn four_bar_obeys_freudenstein(m: &Solved) {
         m.close("crank", m.value(k, "crank_angle"), TAU * t, EXACT);
         let psi = rocker + m.value(k, "rocker_angle");
         m.close("closure", freudenstein([a, b, c, d], phi, psi), 0.0, EXACT);
+    }
+}
+
+/// Half of the coupler back from its midpoint is the pin of the crank.
+fn four_bar_inverse_carries_its_coupler_on_the_crank(m: &Solved) {
+    let (half, crank) = (0.5 * 0.235_f64.hypot(0.24), 0.11_f64.hypot(0.215));
+    let start = 0.215_f64.atan2(0.11);
+    for (k, t) in m.steps() {
+        let (phi, theta) = (start + TAU * t, m.value(k, "coupler_angle"));
+        m.close("x", m.value(k, "midpoint_x") - half * theta.cos(), -0.045 + crank * phi.cos(), EXACT);
+        m.close("y", m.value(k, "midpoint_y") - half * theta.sin(), 0.045 + crank * phi.sin(), EXACT);
     }
 }
 

@@ -1,19 +1,26 @@
 //! Model files as their authors meet them: what is read, what is refused and how that is said, and the models of the gallery
 //! solved and held against what is known of them.
 
+mod cases;
 mod diagnostics;
 mod docs;
+mod edit;
 mod gallery;
 mod gallery_models;
+mod grids;
 mod measures;
 mod meshes;
 mod metrics;
 mod models;
 mod motions;
+mod optimize;
 mod parameters;
 mod path;
 mod published;
 mod robustness;
+mod searches;
 mod shapes;
+mod studies;
+mod synthesis;
 mod tape;
 mod wheels;

@@ -4,7 +4,7 @@ use hardpoint_file::parse;
 use proptest::prelude::*;
 use toml::de::{DeTable, DeValue};
 
-const MODELS: [&str; 7] = [
+const MODELS: [&str; 8] = [
     include_str!("../../../../models/macpherson.toml"),
     include_str!("../../../../models/slider_crank.toml"),
     include_str!("../../../../models/rssr.toml"),
@@ -12,10 +12,11 @@ const MODELS: [&str; 7] = [
     include_str!("../../../../models/double_wishbone.toml"),
     include_str!("../../../../models/double_wishbone_4x4.toml"),
     include_str!("../models/press.toml"),
+    include_str!("../models/studies.toml"),
 ];
 
 /// Pieces that make a broken file interesting.
-const PIECES: [&str; 46] = [
+const PIECES: [&str; 53] = [
     "[",
     "]",
     "{",
@@ -62,6 +63,13 @@ const PIECES: [&str; 46] = [
     "curve = { points = [] }",
     "kingpin = [\"P\", \"P\"]",
     "measures = \"all\"",
+    "[cases.c]",
+    "laws = { turn = \"t\" }",
+    "rest = \"as_above\"",
+    "[optimize]",
+    "[optimize.goals]",
+    "limits = { l = { between = [\"A\", \"A\"], min = 2, max = 1 } }",
+    "variables = [\"C_x\", \"C_x\"]",
 ];
 
 fn survives(text: &str) {
@@ -200,12 +208,16 @@ proptest! {
         let data: String = pieces.into_iter().map(|k| FIELDS[k]).collect();
         std::fs::write(folder.path().join("travel.csv"), data).unwrap();
         let file = format!("file = \"travel.csv\", columns = {columns}");
-        let model = MODELS[5].replace("points = [[0, 0], [1, 5], [3, 2]]", &file);
-        let path = folder.path().join("press.toml");
-        std::fs::write(&path, model).unwrap();
-        if let Err(error) = hardpoint_file::read(&path) {
-            assert!(!error.diagnostics().list().is_empty());
-            assert!(!error.to_string().chars().any(|c| c.is_control() && c != '\n'), "{error}");
+        let table = ("points = [[0, 0], [1, 5], [3, 2]]", file.clone());
+        let target = ("[[0, 150], [1, 160]]", format!("{{ {file} }}"));
+        for (model, (points, file)) in [(MODELS[6], table), (MODELS[7], target)] {
+            assert!(model.contains(points));
+            let path = folder.path().join("model.toml");
+            std::fs::write(&path, model.replace(points, &file)).unwrap();
+            if let Err(error) = hardpoint_file::read(&path) {
+                assert!(!error.diagnostics().list().is_empty());
+                assert!(!error.to_string().chars().any(|c| c.is_control() && c != '\n'), "{error}");
+            }
         }
     }
 }
@@ -257,6 +269,8 @@ fn large_files_take_no_more_work_than_they_must() {
         ("joints", "{ type = \"ball\", bodies = [\"a\", \"b\"], at = \"nowhere\" }"),
         ("nonsense", "1"),
         ("design", "{ move = \"A\", along = \"xyz\" }"),
+        ("optimize.goals", "{ weight = 2 }"),
+        ("optimize.limits", "{ hardpoint = \"A\", x = [2, 1], z = { max = 1 } }"),
     ] {
         grows_in_proportion(|n| many(table, entry, n));
         survives(&many(table, entry, 200_000));
@@ -270,6 +284,9 @@ fn large_files_take_no_more_work_than_they_must() {
             "{ point = \"p\", along = \"z\", law = { type = \"polynomial\", coefficients = [1] } }",
             n,
         ));
+        survives(&many("cases", "{ laws = { turn = \"t\" } }", n));
+        let names: Vec<String> = (0..n).map(|k| format!("\"v{k}\"")).collect();
+        survives(&format!("{header}[optimize]\nvariables = [{}]\n", names.join(", ")));
         survives(&many("design", "{ driver = \"d\", parameter = \"amplitude\" }", n));
         law(&format!("type = \"polynomial\", coefficients = [{}]", many_of("1", n)));
         law(&format!("type = \"sequence\", pieces = [{}]", many_of("{ duration = 1, law = \"t\" }", n)));

@@ -1,10 +1,13 @@
 //! From a draft to a model: every reference resolved, every fault found.
 
+mod cases;
 mod design;
 mod formulas;
+mod grids;
 mod joints;
 mod measures;
 mod motion;
+mod optimization;
 mod wheels;
 
 pub use formulas::{Nominal, NotConstant};
@@ -58,6 +61,8 @@ impl Model {
         c.couplers();
         c.points();
         c.drivers();
+        c.cases();
+        c.grids();
         c.vehicle();
         c.wheels();
         c.axles();
@@ -66,6 +71,7 @@ impl Model {
         c.variables();
         c.formulas_that_vary();
         c.times();
+        c.optimization();
         c.faults.retain(|f| !draft.unread.has(f.at.section, f.at.index, f.at.key));
         if !c.faults.is_empty() || !draft.unread.is_empty() {
             return Err(c.faults);
@@ -101,6 +107,8 @@ struct Checker<'a> {
     /// The same for wheels, and for axles.
     wheel_ids: Vec<Option<WheelId>>,
     axle_ids: Vec<Option<AxleId>>,
+    /// Which drafted metric became which one of the model.
+    metric_ids: Vec<Option<usize>>,
     /// The hardpoints that curves pass through.
     curve_points: Vec<HardpointId>,
     /// The formulas that are read so far, each after those whose results it uses.
@@ -110,6 +118,8 @@ struct Checker<'a> {
     /// The expressions for the length of joints, and for the parameters of drivers' laws, by name.
     length_formulas: HashMap<&'a str, &'a Expression>,
     law_formulas: HashMap<&'a str, Vec<(&'a str, &'a Expression)>>,
+    /// The same of the laws of cases, by the names of case and driver.
+    case_formulas: HashMap<(&'a str, &'a str), Vec<(&'a str, &'a Expression)>>,
     /// By kind of entry: which number a name has. Only looked up, never walked.
     numbers: HashMap<&'static str, HashMap<&'a str, usize>>,
     /// Which driver prescribes a coordinate of a joint. Only looked up, never walked.
@@ -121,7 +131,7 @@ struct Checker<'a> {
 }
 
 /// The tables that names of a kind stand in.
-const TABLES: [(&str, &str); 10] = [
+const TABLES: [(&str, &str); 13] = [
     ("parameter", "parameters"),
     ("hardpoint", "hardpoints"),
     ("body", "bodies"),
@@ -131,6 +141,9 @@ const TABLES: [(&str, &str); 10] = [
     ("wheel", "wheels"),
     ("axle", "axles"),
     ("measure", "measures"),
+    ("metric", "metrics"),
+    ("case", "cases"),
+    ("design variable", "design"),
     ("vehicle", "vehicle"),
 ];
 
@@ -179,6 +192,9 @@ impl<'a> Checker<'a> {
             metrics: Vec::new(),
             idle: Vec::new(),
             times: draft.times.clone(),
+            cases: Vec::new(),
+            grids: Vec::new(),
+            optimization: None,
         };
         let ground = ["ground"].into_iter();
         let numbers = HashMap::from([
@@ -187,16 +203,25 @@ impl<'a> Checker<'a> {
             ("hardpoint", numbered(draft.hardpoints.iter().map(|h| h.name.as_str()))),
             ("joint", numbered(draft.joints.iter().map(|j| j.name.as_str()))),
             ("point", numbered(draft.points.iter().map(|p| p.name.as_str()))),
+            ("driver", numbered(draft.drivers.iter().map(|d| d.name.as_str()))),
             ("measure", numbered(draft.measures.iter().map(|m| m.name.as_str()))),
+            ("metric", numbered(draft.metrics.iter().map(|m| m.name.as_str()))),
+            ("case", numbered(draft.cases.iter().map(|c| c.name.as_str()))),
+            ("design variable", numbered(draft.design.iter().map(|v| v.name.as_str()))),
         ]);
         let extent = extent_of_joints(draft, &model.hardpoints, &BTreeSet::new());
         let (faults, joint_ids) = (Vec::new(), Vec::new());
         let (mut length_formulas, mut law_formulas) = (HashMap::new(), HashMap::new());
+        let mut case_formulas: HashMap<_, Vec<_>> = HashMap::new();
         for f in &draft.formulas {
             match &f.of {
                 FormulaOf::Length(joint) => drop(length_formulas.insert(joint.as_str(), &f.expression)),
                 FormulaOf::Law(driver, parameter) => {
                     let list: &mut Vec<_> = law_formulas.entry(driver.as_str()).or_default();
+                    list.push((parameter.as_str(), &f.expression));
+                }
+                FormulaOf::CaseLaw(case, driver, parameter) => {
+                    let list = case_formulas.entry((case.as_str(), driver.as_str())).or_default();
                     list.push((parameter.as_str(), &f.expression));
                 }
                 FormulaOf::Parameter(_) | FormulaOf::Coordinate(..) => {}
@@ -209,11 +234,13 @@ impl<'a> Checker<'a> {
             joint_ids,
             wheel_ids: Vec::new(),
             axle_ids: Vec::new(),
+            metric_ids: Vec::new(),
             curve_points: Vec::new(),
             written: Vec::new(),
             spoilt: BTreeSet::new(),
             length_formulas,
             law_formulas,
+            case_formulas,
             numbers,
             driver_of: HashMap::new(),
             comparisons: COMPARISONS,
@@ -229,7 +256,7 @@ impl<'a> Checker<'a> {
     /// HP0201: empty and duplicate names; HP0202: coordinates that are not finite.
     fn names(&mut self) {
         let d = self.draft;
-        let lists: [(Section, &str, Vec<&str>); 12] = [
+        let lists: [(Section, &str, Vec<&str>); 16] = [
             (Section::Parameters, "parameter", d.parameters.iter().map(|x| x.name.as_str()).collect()),
             (Section::Hardpoints, "hardpoint", d.hardpoints.iter().map(|x| x.name.as_str()).collect()),
             (Section::Bodies, "body", d.bodies.iter().map(|x| x.name.as_str()).collect()),
@@ -242,6 +269,18 @@ impl<'a> Checker<'a> {
             (Section::Axles, "axle", d.axles.iter().map(|x| x.name.as_str()).collect()),
             (Section::Measures, "measure", d.measures.iter().map(|x| x.name.as_str()).collect()),
             (Section::Metrics, "metric", d.metrics.iter().map(|x| x.name.as_str()).collect()),
+            (Section::Cases, "case", d.cases.iter().map(|x| x.name.as_str()).collect()),
+            (Section::Grids, "case", d.grids.iter().map(|x| x.name.as_str()).collect()),
+            (
+                Section::Goals,
+                "goal",
+                d.optimization.iter().flat_map(|o| &o.goals).map(|x| x.name.as_str()).collect(),
+            ),
+            (
+                Section::Limits,
+                "limit",
+                d.optimization.iter().flat_map(|o| &o.limits).map(|x| x.name.as_str()).collect(),
+            ),
         ];
         for (section, what, names) in lists {
             let mut first_of = BTreeMap::new();
@@ -529,15 +568,24 @@ impl<'a> Checker<'a> {
     }
 
     fn times(&mut self) {
-        let times = &self.draft.times;
-        let here = Here { section: Section::Time, index: 0 };
+        let cases = &self.draft.cases;
+        if self.draft.times.is_empty() && !cases.is_empty() && cases.iter().all(|c| c.times.is_some()) {
+            // Those of the file would only be a default.
+            self.model.times = cases[0].times.clone().unwrap_or_default();
+            return;
+        }
+        self.times_of(&self.draft.times, Here { section: Section::Time, index: 0 }.key(""));
+    }
+
+    /// HP0219: output times that do not go on.
+    fn times_of(&mut self, times: &[f64], at: Locus) {
         if times.is_empty() {
-            self.fault("HP0219", here.key(""), "there are no output times")
+            self.fault("HP0219", at, "there are no output times")
                 .help("give a `[time]` table with `end` and `steps`");
         } else if let Some(k) =
             (0..times.len()).find(|&k| !times[k].is_finite() || (k > 0 && times[k] <= times[k - 1]))
         {
-            self.fault("HP0219", here.key(""), "output times must be finite and increase").note(format!(
+            self.fault("HP0219", at, "output times must be finite and increase").note(format!(
                 "time number {} is {} s",
                 k + 1,
                 times[k]

@@ -63,6 +63,16 @@ pub enum Section {
     Metrics,
     /// [`super::Draft::times`].
     Time,
+    /// [`super::Draft::cases`].
+    Cases,
+    /// [`super::Draft::grids`].
+    Grids,
+    /// [`super::Draft::optimization`].
+    Optimize,
+    /// [`super::OptimizationDraft::goals`].
+    Goals,
+    /// [`super::OptimizationDraft::limits`].
+    Limits,
 }
 
 /// A place in a draft.
@@ -96,6 +106,10 @@ impl fmt::Display for Section {
             Self::Measures => "measures",
             Self::Metrics => "metrics",
             Self::Time => "time",
+            Self::Cases | Self::Grids => "cases",
+            Self::Optimize => "optimize",
+            Self::Goals => "goals",
+            Self::Limits => "limits",
         })
     }
 }

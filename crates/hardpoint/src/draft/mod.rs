@@ -59,6 +59,12 @@ pub struct Draft {
     pub metrics: Vec<MetricDraft>,
     /// Output times, s.
     pub times: Vec<f64>,
+    /// Several motions, in place of the one that the drivers' own laws and these times make.
+    pub cases: Vec<CaseDraft>,
+    /// Cases that sweep two drivers over a grid.
+    pub grids: Vec<GridDraft>,
+    /// What the design is to be optimised for.
+    pub optimization: Option<OptimizationDraft>,
     /// What of all this could not be read.
     pub unread: Unread,
 }
@@ -83,6 +89,11 @@ impl Unread {
     /// Whether any field of an entry could not be read.
     pub fn any(&self, section: Section, index: usize) -> bool {
         self.0.contains_key(&(section, index))
+    }
+
+    /// Whether any field of any entry of a list could not be read.
+    pub(crate) fn any_of(&self, section: Section) -> bool {
+        self.0.range((section, 0)..=(section, usize::MAX)).next().is_some()
     }
 
     /// Whether that field could not be read of any entry of a list.
@@ -127,6 +138,8 @@ pub enum FormulaOf {
     Length(String),
     /// A parameter of a driver's law, by the names of both: a plain number, as the law's text means it.
     Law(String, String),
+    /// The same of the law that a case gives a driver, by the names of case, driver and parameter.
+    CaseLaw(String, String, String),
 }
 
 /// A named point.
@@ -423,6 +436,8 @@ pub struct MetricDraft {
     pub take: Reduction,
     /// The part of the curve that counts.
     pub window: Option<[f64; 2]>,
+    /// The name of the case whose motion it sums up; each where it is left out.
+    pub case: Option<String>,
     /// How many units of length make a metre.
     pub per_metre: f64,
     /// How many units of angle make a radian.
@@ -441,4 +456,110 @@ pub enum RayDraft {
         /// Where it points in the design configuration.
         axis: LineDraft,
     },
+}
+
+/// One of several motions; see [`Case`](crate::model::Case).
+#[derive(Clone, Debug, Default)]
+pub struct CaseDraft {
+    /// Its name.
+    pub name: String,
+    /// The names of drivers, and the laws that they follow in it, in m or rad.
+    pub laws: Vec<(String, Law)>,
+    /// What all others do.
+    pub rest: Rest,
+    /// Its output times, s; those of the draft where they are left out.
+    pub times: Option<Vec<f64>>,
+}
+
+/// A case that sweeps two drivers over a grid; see [`Grid`](crate::model::Grid).
+#[derive(Clone, Debug, Default)]
+pub struct GridDraft {
+    /// Its name.
+    pub name: String,
+    /// The names of two drivers, and where each of them stands, counted from the drawing, in m or rad.
+    pub sweeps: Vec<(String, Vec<f64>)>,
+}
+
+/// What the drivers do that a case does not name.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Rest {
+    /// They are held as drawn.
+    #[default]
+    Held,
+    /// They follow their own laws.
+    AsAbove,
+}
+
+/// What a design is to be optimised for; see [`Optimization`](crate::model::Optimization).
+#[derive(Clone, Debug)]
+pub struct OptimizationDraft {
+    /// The names of the design variables that may change; all that have bounds where they are left out.
+    pub variables: Option<Vec<String>>,
+    /// What is made as small as possible.
+    pub goals: Vec<GoalDraft>,
+    /// What must hold.
+    pub limits: Vec<LimitDraft>,
+    /// How far every motion stays away from singular positions, between 0 and 1.
+    pub margin: Option<f64>,
+    /// From how many designs the search starts.
+    pub starts: usize,
+    /// After so many iterations a search ends.
+    pub iterations: usize,
+}
+
+impl Default for OptimizationDraft {
+    fn default() -> Self {
+        let (goals, limits) = (Vec::new(), Vec::new());
+        Self { variables: None, goals, limits, margin: None, starts: 1, iterations: 100 }
+    }
+}
+
+/// A goal; see [`Goal`](crate::model::Goal). Its numbers are in units of which so many make a metre or a radian, since what they
+/// measure follows from the metric.
+#[derive(Clone, Debug)]
+pub struct GoalDraft {
+    /// Its name.
+    pub name: String,
+    /// The name of the metric.
+    pub metric: String,
+    /// How much one unit of it counts.
+    pub weight: f64,
+    /// What it is to be.
+    pub target: Option<f64>,
+    /// How many units of length make a metre.
+    pub per_metre: f64,
+    /// How many units of angle make a radian.
+    pub per_radian: f64,
+}
+
+/// A limit; see [`Limit`](crate::model::Limit). Its numbers are in units of which so many make a metre or a radian.
+#[derive(Clone, Debug)]
+pub struct LimitDraft {
+    /// Its name.
+    pub name: String,
+    /// What it is put on.
+    pub of: LimitedDraft,
+    /// It must not be less than this; equal to `most` where it must have one value.
+    pub least: Option<f64>,
+    /// It must not be more than this.
+    pub most: Option<f64>,
+    /// How many units of length make a metre.
+    pub per_metre: f64,
+    /// How many units of angle make a radian.
+    pub per_radian: f64,
+}
+
+/// What a limit is put on; see [`Limited`](crate::model::Limited). References are names.
+#[derive(Clone, Debug, PartialEq)]
+pub enum LimitedDraft {
+    /// It could not be read.
+    Unread,
+    /// A metric.
+    Metric(String),
+    /// A coordinate of a hardpoint: 0 for x, 1 for y, 2 for z.
+    Coordinate(String, usize),
+    /// The distance of two hardpoints.
+    Distance([String; 2]),
+    /// The length of a rod or leg, between its places as drawn or as it is given.
+    Length(String),
 }

@@ -1,6 +1,8 @@
 //! Metrics: one number for a whole curve.
 
-use super::{Dimension, Model, OutputSource};
+use crate::number::Real;
+
+use super::{CaseId, Dimension, Model, OutputSource};
 
 /// One number that sums an output up over the motion.
 #[derive(Clone, Debug, PartialEq)]
@@ -15,6 +17,8 @@ pub struct Metric {
     pub take: Reduction,
     /// The part of the curve that counts: from where to where its abscissa goes, in SI; all of it where there is none.
     pub window: Option<[f64; 2]>,
+    /// Of which motion; of each where there is none.
+    pub case: Option<CaseId>,
 }
 
 /// What of a curve a metric takes. Formulas: `docs/measures.md`.
@@ -52,6 +56,30 @@ impl Reduction {
             Self::Value(_) => 5,
             Self::Slope(_) => 6,
         }]
+    }
+}
+
+impl Metric {
+    /// The target curve at an abscissa, in SI; `None` where the metric has none, or where the abscissa is beyond its window.
+    pub fn target_at(&self, at: f64) -> Option<f64> {
+        let counts = self.window.is_none_or(|[low, high]| low <= at && at <= high);
+        match &self.take {
+            Reduction::Rms(target) if counts && !target.is_empty() => Some(on_target(target, at)),
+            _ => None,
+        }
+    }
+}
+
+/// The target at an abscissa: straight lines between its points and beyond them, zero where there are none.
+pub(crate) fn on_target<T: Real>(target: &[[f64; 2]], at: T) -> T {
+    match target {
+        [] => T::zero(),
+        [[_, only]] => T::constant(*only),
+        _ => {
+            let k = target[1..target.len() - 1].iter().take_while(|p| p[0] < at.value()).count();
+            let ([x0, y0], [x1, y1]) = (target[k], target[k + 1]);
+            T::constant(y0) + (at - T::constant(x0)) * T::constant((y1 - y0) / (x1 - x0))
+        }
     }
 }
 

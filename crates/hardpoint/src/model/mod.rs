@@ -3,14 +3,17 @@
 //! [`Model::from_draft`] makes it of a [`Draft`](crate::draft::Draft). A model never changes; a changed design is a
 //! [`Geometry`](crate::design::Geometry) made from it.
 
+mod case;
 pub mod change;
 mod coupler;
 mod curve;
 mod formula;
 mod measure;
 mod metric;
+mod optimization;
 mod wheel;
 
+pub use case::{Case, Grid};
 pub use change::{Change, ChangeText, End};
 pub use coupler::{Coupler, CouplerTerm, Transmission};
 pub(crate) use curve::Contact;
@@ -18,7 +21,9 @@ pub use curve::{Curve, CurvePoint};
 pub use formula::{Formula, NamedNumber, Source, Target};
 pub(crate) use measure::measures;
 pub use measure::{Combination, Dimension, KnownOrders, Measure, MeasureKind, OutputSource, Ray};
+pub(crate) use metric::on_target;
 pub use metric::{Metric, Reduction};
+pub use optimization::{Goal, Limit, Limited, Optimization};
 pub use wheel::{Axle, AxleMeasure, Side, Vehicle, VehicleEnd, Wheel, WheelMeasure, WheelNeed};
 
 use crate::constraint::MarkerPair;
@@ -55,6 +60,8 @@ ids! {
     AxleId
     /// A measure's place in [`Model::measures`].
     MeasureId
+    /// A case's place in [`Model::cases`].
+    CaseId
 }
 
 /// The body that does not move.
@@ -97,6 +104,12 @@ pub struct Model {
     pub idle: Vec<Idle>,
     /// Output times, s, increasing.
     pub times: Vec<f64>,
+    /// Its motions, in the order of the file; where there are none, that of the drivers' own laws at `times` is the only one.
+    pub cases: Vec<Case>,
+    /// Cases that sweep two drivers over a grid, in the order of the file.
+    pub grids: Vec<Grid>,
+    /// What the design is to be optimised for, if that is known.
+    pub optimization: Option<Optimization>,
 }
 
 /// A named point of the design configuration.

@@ -116,6 +116,25 @@ impl Stop {
         }
     }
 
+    /// What happened, without when: where time means nothing.
+    pub fn happened(&self, model: &Model) -> String {
+        match self.kind {
+            StopKind::Limit => "the mechanism reaches a limit position".into(),
+            StopKind::BranchChange => "the mechanism passes a dead point".into(),
+            StopKind::Locked { joint, .. } if self.closed.is_none() => {
+                format!("the mechanism locks: joint `{}` cannot stay closed", model.joints[joint.0].name)
+            }
+            StopKind::LawNotFinite { driver } => {
+                format!("driver `{}` has no finite place", model.drivers[driver.0].name)
+            }
+            StopKind::TooFar { driver } => {
+                format!("driver `{}` moves too far to be followed", model.drivers[driver.0].name)
+            }
+            StopKind::Interrupted => "interrupted".into(),
+            StopKind::DoesNotAssemble | StopKind::Locked { .. } => self.headline(model),
+        }
+    }
+
     /// What to do.
     pub fn help(&self) -> Option<&'static str> {
         Some(match self.kind {

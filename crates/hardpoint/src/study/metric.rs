@@ -4,7 +4,7 @@
 //! are the polynomials that have their values, rates and accelerations at both ends.
 
 use crate::measure::Measured;
-use crate::model::{Metric, Model, OutputSource, Reduction, VariableId};
+use crate::model::{Metric, Model, OutputSource, Reduction, VariableId, on_target};
 use crate::number::{Dual, Real};
 use crate::run::Solution;
 
@@ -40,7 +40,6 @@ pub fn metrics_beside(model: &Model, today: &Solution, other: &Solution) -> Vec<
 }
 
 fn metric_value(model: &Model, solution: &Solution, metric: &Metric) -> MetricValue {
-    let (measured, times) = (&solution.measured, &solution.motion.times[..]);
     let none = MetricValue {
         value: None,
         time: None,
@@ -48,27 +47,10 @@ fn metric_value(model: &Model, solution: &Solution, metric: &Metric) -> MetricVa
         range: 0.0,
         d: vec![f64::NAN; model.variables.len()],
     };
-    let now = |output: OutputSource| {
-        let (m, orders) = column(measured, output)?;
-        let values = (0..measured.len()).map(|k| measured.value(k, m)).collect();
-        Some(SampledCurve { times, orders, values })
-    };
-    let curves = || Some((now(metric.of)?, abscissa(metric, now)?));
-    let Some((y, x)) = curves() else { return none };
+    let Some((y, x)) = curves(solution, metric) else { return none };
     let Some((value, time)) = take(metric, &y, &x) else { return none };
     let derivative = |v: usize| {
-        if solution.sensitivities.variables == 0 || solution.sensitivities.at(0, v).is_none() {
-            return f64::NAN;
-        }
-        let varied = |output: OutputSource| {
-            let (m, orders) = column(measured, output)?;
-            let number = |k: usize| {
-                let (x, d) = (measured.value(k, m), measured.d(k, VariableId(v), m));
-                [0, 1, 2].map(|order| Dual { v: x[order], d: d[order] })
-            };
-            Some(SampledCurve { times, orders, values: (0..measured.len()).map(number).collect() })
-        };
-        let found = varied(metric.of).zip(abscissa(metric, varied));
+        let found = varied_curves(solution, metric, VariableId(v));
         found.and_then(|(y, x)| take(metric, &y, &x)).map_or(f64::NAN, |(value, _)| value.d)
     };
     let error = interpolation_error(metric, &y, &x, value, time);
@@ -84,6 +66,132 @@ fn metric_value(model: &Model, solution: &Solution, metric: &Metric) -> MetricVa
         range,
         d: (0..model.variables.len()).map(derivative).collect(),
     }
+}
+
+/// The curve that a metric is taken of, and the one that it goes over where that is not time.
+type Curves<'t, T> = (SampledCurve<'t, T>, Option<SampledCurve<'t, T>>);
+
+fn curves<'s>(solution: &'s Solution, metric: &Metric) -> Option<Curves<'s, f64>> {
+    let (measured, times) = (&solution.measured, &solution.motion.times[..]);
+    let now = |output: OutputSource| {
+        let (m, orders) = column(measured, output)?;
+        let values = (0..measured.len()).map(|k| measured.value(k, m)).collect();
+        Some(SampledCurve { times, orders, values })
+    };
+    Some((now(metric.of)?, abscissa(metric, now)?))
+}
+
+/// The same with their derivatives by a variable; `None` where the mechanism cannot follow it or no sensitivities were solved.
+fn varied_curves<'s>(
+    solution: &'s Solution,
+    metric: &Metric,
+    variable: VariableId,
+) -> Option<Curves<'s, Dual<f64>>> {
+    let Solution { motion, measured, sensitivities, .. } = solution;
+    if sensitivities.variables == 0 {
+        return None;
+    }
+    sensitivities.at(0, variable.0)?;
+    let varied = |output: OutputSource| {
+        let (m, orders) = column(measured, output)?;
+        let number = |k: usize| {
+            let (x, d) = (measured.value(k, m), measured.d(k, variable, m));
+            [0, 1, 2].map(|order| Dual { v: x[order], d: d[order] })
+        };
+        let values = (0..measured.len()).map(number).collect();
+        Some(SampledCurve { times: &motion.times[..], orders, values })
+    };
+    Some((varied(metric.of)?, abscissa(metric, varied)?))
+}
+
+/// What a metric is made of, each part with its derivatives: as many for every design at the same output times.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct MetricParts {
+    /// In SI.
+    pub values: Vec<f64>,
+    /// By every design variable; NaN for those that the mechanism cannot follow.
+    pub d: Vec<Vec<f64>>,
+}
+
+impl MetricParts {
+    fn of(
+        model: &Model,
+        solution: &Solution,
+        metric: &Metric,
+        plain: impl Fn(&Curves<'_, f64>) -> Vec<f64>,
+        varied: impl Fn(&Curves<'_, Dual<f64>>) -> Vec<Dual<f64>>,
+    ) -> Option<Self> {
+        let values = plain(&curves(solution, metric)?);
+        let mut d = vec![vec![f64::NAN; model.variables.len()]; values.len()];
+        for v in 0..model.variables.len() {
+            let found = varied_curves(solution, metric, VariableId(v)).map(|curves| varied(&curves));
+            for (row, part) in d.iter_mut().zip(found.into_iter().flatten()) {
+                row[v] = part.d;
+            }
+        }
+        values.iter().all(|x| x.is_finite()).then_some(Self { values, d })
+    }
+}
+
+/// What is left beyond the target of an `rms` metric, one part for each output time, so weighted that the sum of their squares is that of
+/// the metric; `None` for other metrics, and where the metric has no value.
+///
+/// ```text
+/// r_k = sqrt(w_k) (y_k - target(x_k)),    w_k = (abs(x_k - x_k-1) + abs(x_k+1 - x_k)) / 2 / sum abs(x_k - x_k-1)
+/// ```
+pub fn misfits(model: &Model, solution: &Solution, metric: &Metric) -> Option<MetricParts> {
+    let Reduction::Rms(target) = &metric.take else { return None };
+    curves(solution, metric).and_then(|(y, x)| take(metric, &y, &x))?;
+    fn parts<T: Real>((y, x): &Curves<'_, T>, metric: &Metric, target: &[[f64; 2]]) -> Vec<T> {
+        let (weights, way) = weights(metric, y, x);
+        let part = |(k, weight): (usize, T)| {
+            // The root has no derivative where there is no weight.
+            if weight.value() <= 0.0 {
+                return T::zero();
+            }
+            (weight / way).sqrt() * (y.values[k][0] - on_target(target, abscissa_at(y, x, k)))
+        };
+        weights.into_iter().enumerate().map(part).collect()
+    }
+    MetricParts::of(
+        model,
+        solution,
+        metric,
+        |curves| parts(curves, metric, target),
+        |curves| parts(curves, metric, target),
+    )
+}
+
+/// The greatest value (for `sign` 1) or the least (for -1) of the curve of a metric in each interval between output times; in those beyond
+/// its window, the value of the metric's whole curve at the other end, which has no say, and no derivative.
+pub fn peaks(model: &Model, solution: &Solution, metric: &Metric, sign: f64) -> Option<MetricParts> {
+    fn parts<T: Real>((y, x): &Curves<'_, T>, metric: &Metric, sign: f64) -> Vec<T> {
+        let values = y.values.iter().map(|v| v[0].value());
+        let least = values.fold(f64::INFINITY, |least, v| least.min(sign * v));
+        let inside = |k: usize| within_window(metric, abscissa_at(y, x, k).value());
+        let part = |k: usize| {
+            if !(inside(k) && inside(k + 1)) {
+                return T::constant(sign * least);
+            }
+            let mut best = y.values[k][0];
+            let turns = if y.orders == 1 { Vec::new() } else { y.turns(k) };
+            let turns = turns.into_iter().map(|t| y.at(k, T::constant(t))[0]);
+            for other in turns.chain([y.values[k + 1][0]]) {
+                if sign * other.value() > sign * best.value() {
+                    best = other;
+                }
+            }
+            best
+        };
+        (0..y.values.len().saturating_sub(1)).map(part).collect()
+    }
+    MetricParts::of(
+        model,
+        solution,
+        metric,
+        |curves| parts(curves, metric, sign),
+        |curves| parts(curves, metric, sign),
+    )
 }
 
 /// The column of an output, and how many orders of it are known.
@@ -452,35 +560,41 @@ fn mean<T: Real>(
     x: &Option<SampledCurve<'_, T>>,
     of: impl Fn(T, T) -> T,
 ) -> Option<T> {
-    let at = |k: usize| x.as_ref().map_or(T::constant(y.times[k]), |x| x.values[k][0]);
-    let counts = |k: usize| {
-        let x = at(k).value();
-        metric.window.is_none_or(|[low, high]| low <= x && x <= high)
-    };
-    let value = |k: usize| of(at(k), y.values[k][0]);
-    let (mut sum, mut way) = (T::zero(), T::zero());
-    for k in 1..y.values.len() {
-        if counts(k - 1) && counts(k) {
-            let step = (at(k) - at(k - 1)).abs();
-            // sum (y_k + y_k-1) abs(x_k - x_k-1) / 2  over  sum abs(x_k - x_k-1)
-            sum += (value(k - 1) + value(k)) * step * T::constant(0.5);
-            way += step;
+    // sum w_k f_k  over  sum abs(x_k - x_k-1)
+    let (weights, way) = weights(metric, y, x);
+    let mut sum = T::zero();
+    for (k, weight) in weights.into_iter().enumerate() {
+        if weight.value() > 0.0 {
+            sum += of(abscissa_at(y, x, k), y.values[k][0]) * weight;
         }
     }
     (way.value() > 0.0).then(|| sum / way)
 }
 
-/// The target at an abscissa.
-fn on_target<T: Real>(target: &[[f64; 2]], at: T) -> T {
-    match target {
-        [] => T::zero(),
-        [[_, only]] => T::constant(*only),
-        _ => {
-            let k = target[1..target.len() - 1].iter().take_while(|p| p[0] < at.value()).count();
-            let ([x0, y0], [x1, y1]) = (target[k], target[k + 1]);
-            T::constant(y0) + (at - T::constant(x0)) * T::constant((y1 - y0) / (x1 - x0))
+/// The weight of each output time in a mean over the way of the abscissa, and the sum of all of them: half of the way on either side of it,
+/// in the window.
+fn weights<T: Real>(
+    metric: &Metric,
+    y: &SampledCurve<'_, T>,
+    x: &Option<SampledCurve<'_, T>>,
+) -> (Vec<T>, T) {
+    let counts = |k: usize| within_window(metric, abscissa_at(y, x, k).value());
+    let (mut weights, mut way) = (vec![T::zero(); y.values.len()], T::zero());
+    for k in 1..y.values.len() {
+        if counts(k - 1) && counts(k) {
+            let step = (abscissa_at(y, x, k) - abscissa_at(y, x, k - 1)).abs();
+            let half = step * T::constant(0.5);
+            weights[k - 1] += half;
+            weights[k] += half;
+            way += step;
         }
     }
+    (weights, way)
+}
+
+/// The abscissa at an output time.
+fn abscissa_at<T: Real>(y: &SampledCurve<'_, T>, x: &Option<SampledCurve<'_, T>>, k: usize) -> T {
+    x.as_ref().map_or(T::constant(y.times[k]), |x| x.values[k][0])
 }
 
 #[cfg(test)]

@@ -2,11 +2,14 @@
 
 mod comparison;
 mod difference;
+mod evaluation;
 mod gradient;
+mod grid;
 mod jerk;
 mod magnitude;
 mod metric;
 mod nearest;
+mod optimize;
 mod second;
 mod validity;
 mod verify;
@@ -14,11 +17,16 @@ mod whatif;
 
 pub use comparison::{Comparison, StepError};
 pub use difference::{Difference, Scheme, finite_differences};
+pub use evaluation::{Cost, Evaluated, Motions, Rejection};
 pub use gradient::{Gradients, Method};
+pub use grid::{GridMap, GridStop};
 pub use jerk::Jerks;
 pub use magnitude::Magnitude;
-pub use metric::{MetricValue, metrics, metrics_beside};
+pub use metric::{MetricParts, MetricValue, metrics, metrics_beside, misfits, peaks};
 pub use nearest::{NearestAdmissible, nearest_admissible};
+pub use optimize::{
+    Binding, Iteration, Judged, Optimality, Optimized, Progress, Refused, Search, Searching, Status, optimize,
+};
 pub use second::SecondDerivatives;
 pub use validity::{Validity, validity};
 pub use verify::{CheckOutcome, PASS, PASS_ONE_SIDED, Verification, VerifiedValue, VerifyOptions, verify};

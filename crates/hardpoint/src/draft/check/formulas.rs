@@ -8,7 +8,7 @@ use crate::expression::Expression;
 use crate::joint::Quantity;
 use crate::law::Law;
 use crate::model::{
-    DriverId, Formula, Hardpoint, HardpointId, JointId, NamedNumber, ParameterId, Source, Target,
+    CaseId, DriverId, Formula, Hardpoint, HardpointId, JointId, NamedNumber, ParameterId, Source, Target,
 };
 use crate::number::Dual;
 use crate::space::Vec3;
@@ -21,6 +21,8 @@ pub(super) struct Written {
     at: Locus,
     /// What it gives, as messages say it.
     name: String,
+    /// The case to whose laws it belongs.
+    case: Option<CaseId>,
 }
 
 impl<'a> Checker<'a> {
@@ -67,7 +69,7 @@ impl<'a> Checker<'a> {
                     (target, here.item("position", *axis % 3), name)
                 }
                 // Their joints and drivers ask for them.
-                FormulaOf::Length(_) | FormulaOf::Law(..) => continue,
+                FormulaOf::Length(_) | FormulaOf::Law(..) | FormulaOf::CaseLaw(..) => continue,
             };
             let Some(of) = found else {
                 let message = format!("a formula gives `{name}`, which is not in the model");
@@ -75,7 +77,7 @@ impl<'a> Checker<'a> {
                 continue;
             };
             match self.formula(of, &f.expression, &at) {
-                Some(formula) => written.push(Written { formula, at, name }),
+                Some(formula) => written.push(Written { formula, at, name, case: None }),
                 None => self.spoil(of),
             }
         }
@@ -242,8 +244,20 @@ impl<'a> Checker<'a> {
 
     /// The number that an expression gives in the nominal design, which follows the design from now on.
     fn given(&mut self, of: Target, expression: &Expression, at: Locus, name: String) -> Option<f64> {
+        self.given_in(None, of, expression, at, name)
+    }
+
+    /// The same in a case.
+    fn given_in(
+        &mut self,
+        case: Option<CaseId>,
+        of: Target,
+        expression: &Expression,
+        at: Locus,
+        name: String,
+    ) -> Option<f64> {
         let formula = self.formula(of, expression, &at)?;
-        self.take(Written { formula, at, name })
+        self.take(Written { formula, at, name, case })
     }
 
     /// A new unnamed hardpoint at coordinates that expressions give.
@@ -274,17 +288,41 @@ impl<'a> Checker<'a> {
 
     /// A driver's law with the parameters that expressions give.
     pub(super) fn formula_law(&mut self, name: &str, law: &Law, at: &Locus) -> Option<Law> {
-        let mut law = law.clone();
         let driver = DriverId(self.model.drivers.len());
         let given = self.law_formulas.get(name).cloned().unwrap_or_default();
-        for (parameter, expression) in given {
+        self.law_with(&given, None, (driver, name), law, at)
+    }
+
+    /// The law that a case gives a driver, with the parameters that expressions give.
+    pub(super) fn formula_law_in(
+        &mut self,
+        (case, case_name): (CaseId, &str),
+        driver: (DriverId, &str),
+        law: &Law,
+        at: &Locus,
+    ) -> Option<Law> {
+        let given = self.case_formulas.get(&(case_name, driver.1)).cloned().unwrap_or_default();
+        self.law_with(&given, Some(case), driver, law, at)
+    }
+
+    fn law_with(
+        &mut self,
+        given: &[(&str, &Expression)],
+        case: Option<CaseId>,
+        (driver, name): (DriverId, &str),
+        law: &Law,
+        at: &Locus,
+    ) -> Option<Law> {
+        let mut law = law.clone();
+        for &(parameter, expression) in given {
             let Some(p) = law.parameters().iter().position(|p| p.name == parameter) else {
                 let message =
                     format!("a formula gives `{parameter}`, which the law of `{name}` does not have");
                 self.fault("HP0204", at.clone(), message);
                 continue;
             };
-            let value = self.given(Target::Law(driver, p), expression, at.clone(), parameter.to_owned())?;
+            let of = Target::Law(driver, p);
+            let value = self.given_in(case, of, expression, at.clone(), parameter.to_owned())?;
             law = law.with_parameter(p, value);
         }
         Some(law)
@@ -301,7 +339,7 @@ impl<'a> Checker<'a> {
                 varying.extend(moved.map(|axis| Source::Coordinate(hardpoint, axis)));
             }
         }
-        for Written { mut formula, at, name } in std::mem::take(&mut self.written) {
+        for Written { mut formula, at, name, case } in std::mem::take(&mut self.written) {
             let model = &self.model;
             let fixed: Vec<Option<f64>> = formula
                 .inputs
@@ -334,17 +372,20 @@ impl<'a> Checker<'a> {
                     );
             }
             varying.extend(formula.gives());
-            self.model.formulas.push(formula);
+            match case {
+                Some(case) => self.model.cases[case.0].formulas.push(formula),
+                None => self.model.formulas.push(formula),
+            }
         }
     }
 }
 
 /// The coordinates of a hardpoint, as expressions name them.
-const AXES: [&str; 3] = ["x", "y", "z"];
+pub(super) const AXES: [&str; 3] = ["x", "y", "z"];
 
 impl Formula {
     /// What others may use of it.
-    fn gives(&self) -> Option<Source> {
+    pub(super) fn gives(&self) -> Option<Source> {
         match self.of {
             Target::Parameter(p) => Some(Source::Parameter(p)),
             Target::Coordinate(h, axis) => Some(Source::Coordinate(h, axis)),

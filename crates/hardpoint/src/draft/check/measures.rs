@@ -6,7 +6,7 @@ use crate::draft::{
 };
 use crate::expression::Expression;
 use crate::model::{
-    AxleMeasure, BodyId, Combination, Dimension, Direction, DriverId, JointId, KnownOrders, Measure,
+    AxleMeasure, BodyId, CaseId, Combination, Dimension, Direction, DriverId, JointId, KnownOrders, Measure,
     MeasureKind, Metric, OutputSource, PointId, Ray, Reduction, WheelMeasure,
 };
 use crate::space::Vec3;
@@ -49,12 +49,14 @@ impl Checker<'_> {
         let draft = self.draft;
         for (index, m) in draft.metrics.iter().enumerate() {
             let here = Here { section: Section::Metrics, index };
-            let metric = self.one_metric(m, here);
+            let metric = if self.unread(here, "") { None } else { self.one_metric(m, here) };
+            self.metric_ids.push(metric.is_some().then_some(self.model.metrics.len()));
             self.model.metrics.extend(metric);
         }
     }
 
     fn one_metric(&mut self, m: &MetricDraft, here: Here) -> Option<Metric> {
+        let case = m.case.as_ref().map(|case| self.case(case, here.key("case")));
         let of = self.output(&m.of, here.key("of"));
         let over = match &m.over {
             Some(over) => Some(self.output(over, here.key("over"))?),
@@ -116,7 +118,30 @@ impl Checker<'_> {
             return None;
         }
         let window = m.window.map(|w| w.map(|end| si(x, end)));
-        Some(Metric { name: m.name.clone(), of, over, take, window })
+        let case = match case {
+            Some(found) => Some(found?),
+            None => None,
+        };
+        Some(Metric { name: m.name.clone(), of, over, take, window, case })
+    }
+
+    /// The case of that name.
+    fn case(&mut self, name: &str, at: Locus) -> Option<CaseId> {
+        let draft = self.draft;
+        if draft.grids.iter().any(|g| g.name == name) {
+            self.fault("HP0204", at, format!("case `{name}` has a grid, and no motion to take a metric of")).help(
+                "name a case with `laws`; `run` writes every measure of a grid with its derivatives into `maps.json`",
+            );
+            return None;
+        }
+        let found = self.find("case", name, at, draft.cases.iter().map(|c| c.name.as_str()));
+        if found.is_none() && draft.cases.is_empty() && !self.lost("case") {
+            let fault = self.faults.last_mut().expect("just reported");
+            fault.help(format!(
+                "declare it with `[cases.{name}]`, or leave `case` out: without cases there is one motion"
+            ));
+        }
+        found.map(CaseId)
     }
 
     /// A direction that an angle is measured from or to.

@@ -3,6 +3,7 @@
 use crate::draft::{CouplerKindDraft, DrivenDraft, DriverDraft, Locus, Section};
 use crate::joint;
 use crate::joint::{CoordinateType, JointType};
+use crate::law::Law;
 use crate::model::{
     BodyId, BodyPoint, Coupler, CouplerTerm, Direction, Driver, DriverId, GROUND, HardpointId, Joint,
     JointId, Transmission,
@@ -56,24 +57,27 @@ impl Checker<'_> {
         for (index, d) in draft.drivers.iter().enumerate() {
             let here = Here { section: Section::Drivers, index };
             let Some(law) = self.formula_law(&d.name, &d.law, &here.key("law")) else { continue };
-            let all = |t: f64, holds: &dyn Fn(&f64) -> bool| law.at(t).derivatives()[..3].iter().all(holds);
-            if let Some(&t) = draft.times.iter().find(|&&t| !all(t, &|x| x.abs() < LARGEST_RATE)) {
-                let [f, fd, fdd, _] = law.at(t).derivatives();
-                let (what, remedy) = match all(t, &|x| x.is_finite()) {
-                    false => ("has no finite value", "are finite".to_owned()),
-                    true => ("is too fast to be solved", format!("are below {LARGEST_RATE:e}")),
-                };
-                self.fault(
-                    "HP0214",
-                    here.key("law"),
-                    format!("the law of driver `{}` {what} at t = {t} s", d.name),
-                )
-                .note(format!("value {f}, first derivative {fd}, second derivative {fdd} there"))
-                .help(format!("change the law, or the times, so that all three {remedy}"));
+            if draft.cases.is_empty() {
+                self.law_is_defined(&format!("driver `{}`", d.name), &law, &draft.times, here.key("law"));
             }
             let Some((joint, coordinate)) = self.driven(d, here) else { continue };
             self.driver_of.insert((joint, coordinate), DriverId(self.model.drivers.len()));
             self.model.drivers.push(Driver { name: d.name.clone(), joint, coordinate, law });
+        }
+    }
+
+    /// HP0214: a law that is not finite, or too fast, at an output time.
+    pub(super) fn law_is_defined(&mut self, of: &str, law: &Law, times: &[f64], at: Locus) {
+        let all = |t: f64, holds: &dyn Fn(&f64) -> bool| law.at(t).derivatives()[..3].iter().all(holds);
+        if let Some(&t) = times.iter().find(|&&t| !all(t, &|x| x.abs() < LARGEST_RATE)) {
+            let [f, fd, fdd, _] = law.at(t).derivatives();
+            let (what, remedy) = match all(t, &|x| x.is_finite()) {
+                false => ("has no finite value", "are finite".to_owned()),
+                true => ("is too fast to be solved", format!("are below {LARGEST_RATE:e}")),
+            };
+            self.fault("HP0214", at, format!("the law of {of} {what} at t = {t} s"))
+                .note(format!("value {f}, first derivative {fd}, second derivative {fdd} there"))
+                .help(format!("change the law, or the times, so that all three {remedy}"));
         }
     }
 

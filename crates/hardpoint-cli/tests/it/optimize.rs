@@ -1,0 +1,134 @@
+//! `hardpoint optimize`, saving, and commands over the cases of a file.
+
+use std::path::Path;
+
+use crate::bench::Bench;
+
+fn root() -> std::path::PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
+}
+
+/// With these files of `models`.
+fn bench(names: &[&str]) -> Bench {
+    let bench = Bench::with(&[]);
+    for name in names {
+        let path = ["models", "models/studies"].map(|folder| root().join(folder).join(name));
+        let text = path.iter().find_map(|path| std::fs::read_to_string(path).ok());
+        bench.put(name, &text.unwrap_or_else(|| panic!("there is no {name}")));
+    }
+    bench
+}
+
+#[test]
+fn the_tutorial_finds_the_toe_curve_as_it_prints_it() {
+    let bench = bench(&["strut_toe.toml"]);
+    let output = bench.run(&["optimize", "strut_toe.toml", "-o", "out", "--save", "found.toml"]);
+    let text = String::from_utf8(output.stdout).unwrap();
+    assert_eq!(output.status.code(), Some(0), "{text}{}", String::from_utf8_lossy(&output.stderr));
+    let tutorial = std::fs::read_to_string(root().join("docs/tutorial.md")).unwrap();
+    // How long it took is the machine's; what is left of the gradient, and the last steps of a search that is nearly there, are
+    // round-off's.
+    let iteration = |line: &str| line.trim_start().chars().next().is_some_and(|c| ('2'..='9').contains(&c));
+    let varies = ["time taken", "optimality", "looked at", "out/", "saved:"];
+    let told = |line: &&str| !varies.iter().any(|word| line.contains(word)) && !iteration(line);
+    let lines: Vec<&str> = text.lines().filter(told).collect();
+    assert!(lines.len() > 25, "{text}");
+    for line in lines {
+        assert!(tutorial.contains(line.trim_end()), "the tutorial does not have this line: {line}");
+    }
+
+    assert_eq!(bench.list("out"), ["report-bump.html", "report-steer.html", "summary.json"]);
+    let summary = bench.json("out/summary.json");
+    assert_eq!(summary["status"], "optimal");
+    assert!(summary["evaluations"]["designs"].as_u64().unwrap() < 20, "{}", summary["evaluations"]);
+    assert!(summary["kkt"].as_f64().unwrap() <= 1e-8);
+    let variables = summary["variables"].as_array().unwrap();
+    assert_eq!(variables.len(), 5);
+    assert!(variables.iter().all(|v| v["start"] == 0.0 && v["end"].as_f64().unwrap().abs() <= 15.0 + 1e-9));
+
+    // The page opens on toe over travel, with the design found, and with what was wanted of it.
+    let page = bench.page("out/report-bump.html");
+    let quantity =
+        |name: &str| page["quantities"].as_array().unwrap().iter().position(|q| q["name"] == name).unwrap();
+    assert_eq!((&page["first"], &page["over"]), (&quantity("toe").into(), &quantity("wheel_travel").into()));
+    assert_eq!(page["designs"][0]["name"], "found");
+    assert!(!page["quantities"][quantity("toe")]["wanted"].as_array().unwrap().is_empty());
+
+    // The saved file is the design found: its search has nothing left to do.
+    let saved = bench.text("found.toml");
+    assert!(saved.contains("tie_rod_inner = [-200, 215, -35]                # D"), "{saved}");
+    let again = bench.run(&["optimize", "found.toml", "--json"]);
+    let again: serde_json::Value = serde_json::from_slice(&again.stdout).unwrap();
+    let [before, found] =
+        [&again["objective"]["before"], &summary["objective"]["after"]].map(|x| x.as_f64().unwrap());
+    assert!((before / found - 1.0).abs() < 1e-6, "{before} {found}");
+}
+
+#[test]
+fn the_known_four_bar_is_found_and_saved_in_plain_numbers() {
+    let bench = bench(&["four_bar_inverse.toml", "four_bar_inverse.csv"]);
+    let output =
+        bench.run(&["optimize", "four_bar_inverse.toml", "--save", "found.toml", "--starts", "3", "--json"]);
+    assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
+    let summary: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert_eq!(summary["starts"].as_array().unwrap().len(), 3);
+    let saved = bench.text("found.toml");
+    for line in ["A = [0, 0, 0]", "B = [40, 200, 0]", "C = [360, 600, 0]", "D = [400, 0, 0]"] {
+        assert!(saved.contains(line), "{saved}");
+    }
+    // All but the hardpoints and the bounds of the variables stays as it was, to the letter.
+    let drawn = bench.text("four_bar_inverse.toml");
+    let kept = drawn.lines().zip(saved.lines()).filter(|(a, b)| a == b).count();
+    assert_eq!((drawn.lines().count(), kept), (saved.lines().count(), saved.lines().count() - 12));
+}
+
+#[test]
+fn what_cannot_be_searched_or_saved_is_told() {
+    let bench = bench(&["four_bar.toml", "four_bar_inverse.toml", "four_bar_inverse.csv"]);
+    let refused = |arguments: &[&str], code: i32, words: &[&str]| {
+        let output = bench.run(arguments);
+        let text = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert_eq!(output.status.code(), Some(code), "{text}");
+        assert!(words.iter().all(|w| text.contains(w)), "{text}");
+    };
+    refused(&["optimize", "four_bar.toml"], 2, &["`four_bar.toml`", "[optimize.goals]", "bounds"]);
+    let onto_itself = ["optimize", "four_bar_inverse.toml", "--save", "four_bar_inverse.toml"];
+    refused(&onto_itself, 2, &["the model file itself", "another name"]);
+    refused(&["run", "four_bar.toml", "--case", "bump"], 2, &["--case bump", "has no cases"]);
+    let few = bench.run(&["optimize", "four_bar_inverse.toml", "--iterations", "2"]);
+    assert_eq!(few.status.code(), Some(1));
+    assert!(String::from_utf8_lossy(&few.stdout).contains("more `iterations`"));
+}
+
+#[test]
+fn commands_do_all_cases_or_the_one_asked_for() {
+    let bench = bench(&["strut_toe.toml"]);
+    let output = bench.run(&["run", "strut_toe.toml", "-o", "out", "--no-compare"]);
+    assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
+    assert_eq!(bench.list("out"), ["bump", "steer", "summary.json"]);
+    let files = ["motion.csv", "report.html", "sensitivity.csv", "summary.json"];
+    assert_eq!(
+        (bench.list("out/bump"), bench.list("out/steer")),
+        (files.map(String::from).to_vec(), files.map(String::from).to_vec())
+    );
+    assert_eq!(bench.json("out/summary.json")["cases"][1]["folder"], "steer");
+    // 81 and 61 output times, and a head.
+    let rows = |case: &str| bench.text(&format!("out/{case}/motion.csv")).lines().count();
+    assert_eq!((rows("bump"), rows("steer")), (82, 62));
+    let one = bench.run(&["run", "strut_toe.toml", "--case", "steer", "-o", "one", "--no-compare"]);
+    assert_eq!(one.status.code(), Some(0));
+    assert_eq!(bench.text("one/motion.csv"), bench.text("out/steer/motion.csv"));
+    let json = bench.run(&["check", "strut_toe.toml", "--json"]);
+    let json: serde_json::Value = serde_json::from_slice(&json.stdout).unwrap();
+    let cases = json["cases"].as_array().unwrap();
+    let of = |k: usize| (&cases[k]["case"], &cases[k]["result"]["status"]);
+    assert_eq!(
+        (cases.len(), of(0), of(1)),
+        (2, (&"bump".into(), &"complete".into()), (&"steer".into(), &"complete".into()))
+    );
+    let near = bench.run(&["check", "strut_toe.toml", "--case", "ster"]);
+    assert!(String::from_utf8_lossy(&near.stderr).contains("did you mean `steer`?"));
+    let changed = ["whatif", "strut_toe.toml", "--set", "rack_z=+2mm", "--save", "higher.toml"];
+    assert_eq!(bench.run(&changed).status.code(), Some(0));
+    assert!(bench.text("higher.toml").contains("rack_centre = [-200, 0, -48]"));
+}

@@ -1,0 +1,286 @@
+//! Cases: several motions of one mechanism.
+
+use std::collections::{HashMap, HashSet};
+
+use hardpoint::draft::{CaseDraft, FormulaDraft, FormulaOf, GridDraft, Rest, Section};
+use hardpoint::joint::Quantity;
+use hardpoint::law::Law;
+
+use crate::diagnostic::shown;
+use crate::format::{Kinds, NUMBER, Shape, Table, table};
+use crate::places::EntryPlace;
+use crate::tree::{Field, Fields, MOST_ENTRIES, Reader, Subject, Value};
+
+use super::results::{MOST_TIMES, TIME};
+use super::{Raw, law};
+
+/// More cases than this are surely a slip.
+const MOST_CASES: usize = 1000;
+pub(crate) const CASE: Table = table! {
+    /// A motion of the mechanism, with laws and output times of its own.
+    "Case":
+    /// The laws of the drivers that it moves, by the drivers' names; each as the `law` of a driver.
+    or("{}") "laws": Shape::Entries(&law::LAW), "{ bump = \"40*sin(2*pi*t)\" }";
+    /// What all other drivers do.
+    or("\"held\"") "rest": REST, "\"as_above\"";
+    /// Its output times, as `[time]` has them. Default: those of `[time]`.
+    may "time": Shape::Kinds(&TIME), "{ end = 1.0, steps = 100 }";
+    /// In place of all these, two drivers by name and where each of them stands: every position of the one with every position of the
+    /// other. All others are held as drawn.
+    may "grid": Shape::Entries(&Shape::Kinds(&SWEEP)), "{ bump = { from = -80, to = 80, steps = 8 }, steering = { from = -15, to = 15, steps = 6 } }";
+};
+pub(crate) const SWEEP: Kinds = Kinds {
+    name: "Sweep",
+    doc: "Where a driver stands in the rows or columns of a grid, in its unit, counted from the drawing.",
+    typed: false,
+    tables: || vec![&RANGE, &PLACES],
+};
+const RANGE: Table = table! {
+    /// Evenly spaced.
+    "Range":
+    /// The lowest position.
+    must "from": NUMBER, "-80";
+    /// The highest position.
+    must "to": NUMBER, "80";
+    /// How many intervals: there is one position more.
+    must "steps": Shape::Count(MOST_POSITIONS), "8";
+};
+const PLACES: Table = table! {
+    /// One by one.
+    "Positions":
+    /// The positions, increasing.
+    must "at": Shape::some(&NUMBER), "[-80, 0, 80]";
+};
+/// More positions of one driver than this are surely a slip.
+const MOST_POSITIONS: u32 = 10_000;
+const REST: Shape = Shape::Words(&[
+    ("held", "They are held as drawn: their law is 0."),
+    ("as_above", "They follow the laws that they have in `[drivers]`."),
+]);
+const RESTS: [Rest; 2] = [Rest::Held, Rest::AsAbove];
+
+impl Reader<'_> {
+    pub(super) fn cases(&mut self, model: &Fields<'_>, raw: &mut Raw) {
+        let entries = self.entries(model, "cases", "case");
+        if let (Some(f), true) = (model.get("cases"), entries.len() > MOST_CASES) {
+            let message = format!("there are {} cases", entries.len());
+            self.senseless(f.value.span(), message).help = Some(format!("give at most {MOST_CASES}"));
+            raw.draft.unread.note(Section::Model, 0, "cases");
+            return;
+        }
+        let driven = raw.draft.drivers.iter().zip(&raw.driven).map(|(d, q)| (d.name.clone(), *q));
+        let driven: HashMap<String, Quantity> = driven.collect();
+        let mut outputs = 0;
+        for entry in entries {
+            let fields = self.entry("case", &entry, CASE.keys());
+            let mut place = EntryPlace::of(&fields);
+            if fields.get("grid").is_some() {
+                for key in ["laws", "rest", "time"] {
+                    let why = "a `grid` says where two drivers stand; all others are held as drawn, and there is no time in it";
+                    self.out_of_place(&fields, key, why);
+                }
+                let sweeps = self.given(&fields, "grid", |r, f| r.sweeps(&fields, f, &mut place, &driven));
+                self.push(raw, Section::Grids, place);
+                raw.draft.grids.push(GridDraft { name: entry.0, sweeps: sweeps.unwrap_or_default() });
+                continue;
+            }
+            let formulas = &mut raw.draft.formulas;
+            let laws = self.given(&fields, "laws", |r, f| {
+                r.case_laws(&entry.0, &fields, f, &mut place, &driven, formulas)
+            });
+            let rest = self.word_of(&fields, "rest").map(|k| RESTS[k]);
+            let mut times = self.given(&fields, "time", |r, f| {
+                r.times(&format!("`time` of {}", fields.what), &fields.subject("time"), f)
+            });
+            outputs += times.as_ref().unwrap_or(&raw.draft.times).len();
+            if outputs > MOST_TIMES as usize {
+                let message = format!("the cases have more than {MOST_TIMES} output times together");
+                self.senseless(entry.1.clone(), message).help = Some("ask for fewer `steps`".into());
+                self.unread.push("time");
+                times = Some(Vec::new());
+            }
+            let laws = laws.unwrap_or_default();
+            if rest == Some(Rest::AsAbove) && !self.unread.contains(&"laws") {
+                self.laws_of_their_own(&fields, &laws, raw);
+            }
+            self.push(raw, Section::Cases, place);
+            raw.draft.cases.push(CaseDraft { name: entry.0, laws, rest: rest.unwrap_or_default(), times });
+        }
+        self.only_grids(raw);
+    }
+
+    /// HP0104: drivers that leave their laws to cases where no case gives laws.
+    fn only_grids(&mut self, raw: &Raw) {
+        if !raw.draft.cases.is_empty() || raw.draft.grids.is_empty() {
+            return;
+        }
+        for k in &raw.without_law {
+            let name = shown(&raw.draft.drivers[*k].name);
+            let at = raw.places.list(Section::Drivers)[*k].find("name", None);
+            let message = format!("driver `{name}` has no `law`, and no case gives it one");
+            let d = self.report("HP0104", at, message);
+            d.notes.push("cases with a `grid` say where drivers stand, not how they move".into());
+            d.help = Some("add it, for example `law = \"10*t\"`".into());
+        }
+    }
+
+    /// Two drivers and where they stand, in SI.
+    fn sweeps(
+        &mut self,
+        fields: &Fields<'_>,
+        f: Field<'_>,
+        place: &mut EntryPlace,
+        driven: &HashMap<String, Quantity>,
+    ) -> Option<Vec<(String, Vec<f64>)>> {
+        let subject = fields.subject("grid");
+        let table = self.table(f.value, &subject, "a table of two drivers' names and where they stand")?;
+        if table.len() > MOST_ENTRIES {
+            self.too_many(f.value.span(), &subject.name, table.len());
+            return None;
+        }
+        let mut entries: Vec<_> = table.iter().collect();
+        // In the order of the text: the first one goes along the rows.
+        entries.sort_by_key(|(name, _)| name.span().start);
+        let (mut sweeps, mut items, mut complete) = (Vec::new(), Vec::new(), true);
+        for (name, value) in entries {
+            let Some(driver) = self.short(name.get_ref(), name.span(), "the name of a driver") else {
+                complete = false;
+                continue;
+            };
+            let what = format!("driver `{}` in the grid of {}", shown(&driver), fields.what);
+            let subject = Subject {
+                name: format!("the range of {what}"),
+                example: "for example `{ from = -80, to = 80, steps = 8 }`".into(),
+            };
+            let unit = self.units.to_si(driven.get(&driver).copied().unwrap_or(Quantity::Number), 1.0);
+            match self.positions(&what, &subject, value) {
+                Some(values) => {
+                    items.push(name.span());
+                    sweeps.push((driver, values.into_iter().map(|v| v * unit).collect()));
+                }
+                None => complete = false,
+            }
+        }
+        place.items("grid", items);
+        complete.then_some(sweeps)
+    }
+
+    /// Where a driver stands, in its unit.
+    fn positions(&mut self, what: &str, subject: &Subject, value: &Value<'_>) -> Option<Vec<f64>> {
+        let table = self.table(value, subject, "a table with `from`, `to` and `steps`")?;
+        let fields = self.fields(what, value.span(), table, SWEEP.keys());
+        if let Some(f) = fields.get("at") {
+            for key in ["from", "to", "steps"] {
+                self.out_of_place(&fields, key, "the positions are listed in `at` already");
+            }
+            let subject = fields.subject("at");
+            let Some(list) = f.value.get_ref().as_array().filter(|list| list.len() > 1) else {
+                self.wrong(f.value, &subject, "a list of at least two positions");
+                return None;
+            };
+            if list.len() > MOST_POSITIONS as usize {
+                self.too_many(f.value.span(), &subject.name, list.len());
+                return None;
+            }
+            let places: Vec<_> = list.iter().map(|v| self.number(v, &subject)).collect();
+            let places: Vec<f64> = places.into_iter().collect::<Option<_>>()?;
+            if let Some(k) = (1..places.len()).find(|&k| places[k] <= places[k - 1]) {
+                let message = format!("the position {} of {what} comes after {}", places[k], places[k - 1]);
+                self.senseless(list[k].span(), message).help =
+                    Some("list the positions in increasing order".into());
+                return None;
+            }
+            return Some(places);
+        }
+        let ends = ["from", "to", "steps"].map(|key| self.need(&fields, key));
+        let [from, to, steps] = ["from", "to", "steps"].map(|key| {
+            let subject = fields.subject(key);
+            fields.get(key).and_then(|f| self.number(f.value, &subject))
+        });
+        let (Some(from), Some(to), Some(steps), [_, Some(end), Some(count)]) = (from, to, steps, ends) else {
+            return None;
+        };
+        if !(steps >= 1.0 && steps < f64::from(MOST_POSITIONS) && steps.fract() == 0.0) {
+            let message = format!("`steps` of {what} cannot be {steps}");
+            self.senseless(count.value.span(), message).help = Some(format!(
+                "give the number of intervals, a whole number from 1 to {}",
+                MOST_POSITIONS - 1
+            ));
+            return None;
+        }
+        if to <= from {
+            let message = format!("the range of {what} goes from {from} to {to}");
+            self.senseless(end.value.span(), message).help = Some("give a `to` above `from`".into());
+            return None;
+        }
+        // Symmetric ranges meet the drawing exactly: of each place, both ends in proportion.
+        let part = |k: usize| k as f64 / steps;
+        Some((0..=steps as usize).map(|k| from * (1.0 - part(k)) + to * part(k)).collect())
+    }
+
+    /// HP0104: drivers that have no laws to follow in this case.
+    fn laws_of_their_own(&mut self, fields: &Fields<'_>, laws: &[(String, Law)], raw: &Raw) {
+        let named: HashSet<&str> = laws.iter().map(|law| law.0.as_str()).collect();
+        let without = raw.without_law.iter().map(|k| &raw.draft.drivers[*k].name);
+        let without: Vec<&String> = without.filter(|name| !named.contains(name.as_str())).collect();
+        let Some(first) = without.first() else { return };
+        let names: Vec<String> = without.iter().map(|name| format!("`{}`", shown(name))).collect();
+        let names = hardpoint::draft::some_of(&names, ", ", 12);
+        let what = if without.len() == 1 { "driver" } else { "drivers" };
+        let at = fields.get("rest").map_or(fields.at.clone(), |f| f.value.span());
+        let message = format!("{} leaves {what} {names} to a `law` that is not there", fields.what);
+        self.report("HP0104", at, message).help = Some(format!(
+            "give one in the case, like `laws = {{ {first} = \"10*t\" }}`, or in `[drivers.{first}]`, or hold it with `rest = \"held\"`"
+        ));
+    }
+
+    /// The laws of a case, in SI.
+    fn case_laws(
+        &mut self,
+        case: &str,
+        fields: &Fields<'_>,
+        f: Field<'_>,
+        place: &mut EntryPlace,
+        driven: &HashMap<String, Quantity>,
+        formulas: &mut Vec<FormulaDraft>,
+    ) -> Option<Vec<(String, Law)>> {
+        let subject = fields.subject("laws");
+        let table = self.table(f.value, &subject, "a table of drivers' names and laws")?;
+        if table.len() > MOST_ENTRIES {
+            self.too_many(f.value.span(), &subject.name, table.len());
+            return None;
+        }
+        let (mut laws, mut names, mut values) = (Vec::new(), Vec::new(), Vec::new());
+        let mut complete = true;
+        for (name, value) in table {
+            let Some(driver) = self.short(name.get_ref(), name.span(), "the name of a driver") else {
+                complete = false;
+                continue;
+            };
+            let of = format!("driver `{}` in {}", shown(&driver), fields.what);
+            let subject = Subject {
+                name: format!("the law of {of}"),
+                example: "for example `\"30*sin(2*pi*t)\"`".into(),
+            };
+            let law = self.law_in(&of, &subject, value);
+            let quantity = driven.get(&driver).copied().unwrap_or(Quantity::Number);
+            for (parameter, expression) in self.law_formulas.drain(..) {
+                let of = FormulaOf::CaseLaw(case.to_owned(), driver.clone(), parameter);
+                formulas.push(FormulaDraft { of, expression });
+            }
+            complete &= law.is_some();
+            if let Some(law) = law {
+                names.push(name.span());
+                values.push(value.span());
+                laws.push((driver, law.scaled(self.units.to_si(quantity, 1.0))));
+            }
+        }
+        place.items("laws", names);
+        place.items("law", values);
+        if !complete {
+            self.unread.push("laws");
+            self.unread.push("law");
+        }
+        Some(laws)
+    }
+}

@@ -1,0 +1,298 @@
+//! What a design is to be optimised for.
+
+use hardpoint::draft::{GoalDraft, LimitDraft, LimitedDraft, OptimizationDraft, Section};
+
+use crate::format::{
+    HARDPOINT, JOINT, Key, Kinds, METRIC, NUMBER, Shape, TWO_NUMBERS, Table, VARIABLE, keys, table,
+};
+use crate::places::EntryPlace;
+use crate::tree::{Field, Fields, MOST_ENTRIES, Reader};
+
+use super::Raw;
+
+/// More starts, and more iterations, than these are surely a slip.
+const MOST_STARTS: u32 = 100_000;
+const MOST_ITERATIONS: u32 = 100_000;
+/// More variables by name than these are surely a slip.
+const MOST_VARIABLES: usize = 10_000;
+pub(crate) const OPTIMIZE: Table = table! {
+    /// What the design is to be optimised for, and within which limits.
+    "Optimize":
+    /// Names of the design variables that may change, each within its `bounds`. Default: all that have bounds.
+    may "variables": Shape::some(&VARIABLE), "[\"tie_rod_outer_y\"]";
+    /// What is made as small as possible: the sum of all goals.
+    must "goals": Shape::Entries(&Shape::Table(&GOAL)), "{ toe = { metric = \"toe_error\" } }";
+    /// What must hold.
+    may "limits": Shape::Entries(&Shape::Kinds(&LIMIT)), "{ rod = { length = \"tie_rod\", max = 300 } }";
+    /// No motion may come nearer to a singular position than this margin, above 0 and below 1. Default: it may.
+    may "margin": NUMBER, "0.02";
+    /// From how many designs the search starts: that of the file, and others spread within the bounds.
+    or("1") "starts": Shape::Count(MOST_STARTS), "8";
+    /// After so many iterations a search ends.
+    or("100") "iterations": Shape::Count(MOST_ITERATIONS), "100";
+};
+pub(super) const GOAL: Table = table! {
+    /// A metric that is made small, or brought to a target.
+    "Goal":
+    /// The metric's name. Default: the goal's own name.
+    may "metric": METRIC, "\"toe_error\"";
+    /// How much one unit of the metric counts, in the file's units; above zero.
+    or("1.0") "weight": NUMBER, "100";
+    /// What the metric is to be, in its unit. Default: as small as possible. An `rms` has none.
+    may "target": NUMBER, "0.2";
+};
+pub(super) const LIMIT: Kinds = Kinds {
+    name: "Limit",
+    doc: "Something that must stay between two values, given by exactly one of {keys}.",
+    typed: false,
+    tables: || LIMITS.iter().map(|l| &l.0).collect(),
+};
+/// Reads what is limited; of a box there are several.
+type Read = fn(&mut Reader<'_>, &Fields<'_>) -> Option<Vec<One>>;
+/// The axis of a box or nothing, what is limited, and to what.
+type One = (&'static str, LimitedDraft, Bounds);
+/// The least and the most.
+type Bounds = [Option<f64>; 2];
+
+/// Something that is limited: with what every limit has.
+macro_rules! limit {
+    ($($table:tt)*) => { Table { shared: BOUNDS, ..table! { $($table)* } } };
+}
+
+static LIMITS: &[(Table, Read)] = &[
+    (
+        limit! {
+            /// A metric, in its own unit.
+            "LimitOfMetric":
+            /// The metric's name.
+            must "metric": METRIC, "\"ackermann_error\"";
+        },
+        |r, fields| {
+            let name = r.name_of(fields, "metric");
+            let bounds = r.bounds_of_limit(fields);
+            Some(vec![("", LimitedDraft::Metric(name?), bounds?)])
+        },
+    ),
+    (
+        limit! {
+            /// The place of a hardpoint, as drawn: a box, each side in the length unit.
+            "LimitOfHardpoint":
+            /// The hardpoint's name.
+            must "hardpoint": HARDPOINT, "\"A\"";
+            /// Between which values its x may be: two numbers, or `{ min = 10 }`, `{ max = 20 }`.
+            may "x": SIDE, "[10, 20]";
+            /// The same of its y.
+            may "y": SIDE, "[-5, 5]";
+            /// The same of its z.
+            may "z": SIDE, "{ min = 0 }";
+        },
+        |r, fields| r.boxed(fields),
+    ),
+    (
+        limit! {
+            /// The distance of two hardpoints as drawn, in the length unit.
+            "LimitOfDistance":
+            /// The hardpoints' names.
+            must "between": Shape::exactly(2, &HARDPOINT), "[\"A\", \"B\"]";
+        },
+        |r, fields| {
+            let names = r.names_of::<2>(fields, "between");
+            let bounds = r.bounds_of_limit(fields);
+            Some(vec![("", LimitedDraft::Distance(names?), bounds?)])
+        },
+    ),
+    (
+        limit! {
+            /// The length of a rod or leg as drawn, in the length unit.
+            "LimitOfLength":
+            /// The joint's name.
+            must "length": JOINT, "\"rod\"";
+        },
+        |r, fields| {
+            let name = r.name_of(fields, "length");
+            let bounds = r.bounds_of_limit(fields);
+            Some(vec![("", LimitedDraft::Length(name?), bounds?)])
+        },
+    ),
+];
+const BOUNDS: &[Key] = keys! {
+    /// It must not be less than this; not of a hardpoint, of which each axis has its own.
+    may "min": NUMBER, "50";
+    /// It must not be more than this.
+    may "max": NUMBER, "200";
+    /// It must be this, instead of both.
+    may "equal": NUMBER, "100";
+};
+const SIDE: Shape = Shape::Any("Side", "", &[TWO_NUMBERS, Shape::Table(&SIDE_TABLE)]);
+const SIDE_TABLE: Table = Table::new("SideTable", "One side of a box, or where it is open.", BOUNDS);
+
+impl Reader<'_> {
+    pub(super) fn optimize(&mut self, model: &Fields<'_>, raw: &mut Raw) {
+        let Some(f) = model.get("optimize") else { return };
+        self.unread.clear();
+        let mut subject = model.subject("optimize");
+        subject.example = "write `[optimize]`, in single brackets, and `[optimize.goals]` below it".into();
+        let Some(table) = self.table(f.value, &subject, "one table") else {
+            return;
+        };
+        let fields = self.fields("`optimize`", f.at.0..f.at.1, table, OPTIMIZE.keys());
+        let place = EntryPlace::of(&fields);
+        let variables = self.given(&fields, "variables", |r, f| r.variables_of(&fields, f));
+        let margin = self.number_of(&fields, "margin");
+        let starts = self.count_of(&fields, "starts", MOST_STARTS);
+        let iterations = self.count_of(&fields, "iterations", MOST_ITERATIONS);
+        self.need(&fields, "goals");
+        for key in ["goals", "limits"] {
+            let table = fields.get(key).map(|f| f.value.get_ref().as_table());
+            let is_lost = table.map_or(key == "goals", |t| t.is_none_or(|t| t.len() > MOST_ENTRIES));
+            if is_lost {
+                self.unread.push(if key == "goals" { "goals" } else { "limits" });
+            }
+        }
+        self.push(raw, Section::Optimize, place);
+        let goals = self.goals(&fields, raw);
+        let limits = self.limits(&fields, raw);
+        raw.draft.optimization = Some(OptimizationDraft {
+            variables,
+            goals,
+            limits,
+            margin,
+            starts: starts.unwrap_or(1),
+            iterations: iterations.unwrap_or(1),
+        });
+    }
+
+    fn goals(&mut self, optimize: &Fields<'_>, raw: &mut Raw) -> Vec<GoalDraft> {
+        let (per_metre, per_radian) = (self.units.length.per_metre(), self.units.angle.per_radian());
+        let mut goals = Vec::new();
+        for entry in self.entries_below(optimize, "optimize.", "goals", "goal") {
+            let fields = self.entry("goal", &entry, GOAL.keys());
+            let place = EntryPlace::of(&fields);
+            let metric = self.name_of(&fields, "metric");
+            let weight = self.number_of(&fields, "weight");
+            let target = self.number_of(&fields, "target");
+            if !self.unread.is_empty() {
+                self.unread.push("");
+            }
+            self.push(raw, Section::Goals, place);
+            let (metric, weight) = (metric.unwrap_or_else(|| entry.0.clone()), weight.unwrap_or(1.0));
+            goals.push(GoalDraft { name: entry.0, metric, weight, target, per_metre, per_radian });
+        }
+        goals
+    }
+
+    fn limits(&mut self, optimize: &Fields<'_>, raw: &mut Raw) -> Vec<LimitDraft> {
+        let (per_metre, per_radian) = (self.units.length.per_metre(), self.units.angle.per_radian());
+        let mut limits = Vec::new();
+        for entry in self.entries_below(optimize, "optimize.", "limits", "limit") {
+            let fields = self.entry("limit", &entry, LIMIT.keys());
+            let place = EntryPlace::of(&fields);
+            let before = self.found.len();
+            let kind = self.led_by(&fields, LIMITS, ["what it is put on", "what it is put on is given"]);
+            // With keys of several, what else is wrong depends on which is meant.
+            let is_clear = self.found.len() == before;
+            let read = kind.filter(|_| is_clear).and_then(|(_, read)| read(self, &fields));
+            let read = read.unwrap_or_else(|| {
+                self.unread.push("");
+                vec![("", LimitedDraft::Unread, [None; 2])]
+            });
+            let unread = std::mem::take(&mut self.unread);
+            for (axis, of, [least, most]) in read {
+                self.unread.clone_from(&unread);
+                self.push(raw, Section::Limits, place.clone());
+                let name = if axis.is_empty() { entry.0.clone() } else { format!("{}.{axis}", entry.0) };
+                limits.push(LimitDraft { name, of, least, most, per_metre, per_radian });
+            }
+        }
+        limits
+    }
+
+    /// The sides of a box.
+    fn boxed(&mut self, fields: &Fields<'_>) -> Option<Vec<One>> {
+        let before = self.found.len();
+        for key in ["min", "max", "equal"] {
+            let why = "a hardpoint is limited along each axis: `x = [10, 20]`, or `z = { min = 0 }`";
+            self.out_of_place(fields, key, why);
+        }
+        let name = self.name_of(fields, "hardpoint");
+        if self.found.len() > before {
+            return None;
+        }
+        let axes = ["x", "y", "z"];
+        if axes.iter().all(|key| fields.get(key).is_none()) {
+            let message = format!("{} does not say along which axis", fields.what);
+            self.report("HP0104", fields.at.clone(), message).help =
+                Some("give at least one of `x = [10, 20]`, `y = { min = 0 }`, `z = { equal = 5 }`".into());
+            return None;
+        }
+        let sides = axes.map(|key| self.given(fields, key, |r, f| r.side(fields, f)));
+        let complete = axes.iter().zip(&sides).all(|(key, side)| side.is_some() || fields.get(key).is_none());
+        let name = name.filter(|_| complete)?;
+        let sides = (0..3).zip(axes).zip(sides);
+        let limit = |((k, axis), side): ((usize, &'static str), Option<Bounds>)| {
+            side.map(|side| (axis, LimitedDraft::Coordinate(name.clone(), k), side))
+        };
+        Some(sides.filter_map(limit).collect())
+    }
+
+    /// Two numbers, or a table with one of them.
+    fn side(&mut self, fields: &Fields<'_>, f: Field<'_>) -> Option<Bounds> {
+        let subject = fields.subject(f.key);
+        let Some(table) = f.value.get_ref().as_table() else {
+            let expected = "the least and the most, or a table like `{ min = 10 }`";
+            return self.numbers::<2>(f.value, &subject, expected).map(|b| b.map(Some));
+        };
+        let fields = self.fields(subject.name, f.value.span(), table, SIDE_TABLE.keys());
+        self.bounds_of_limit(&fields)
+    }
+
+    /// `min` and `max`, or `equal`. HP0104 where there is none of them.
+    fn bounds_of_limit(&mut self, fields: &Fields<'_>) -> Option<Bounds> {
+        let has = |key: &str| fields.get(key).is_some();
+        if !has("min") && !has("max") && !has("equal") {
+            if !fields.lost {
+                let message = format!("{} does not say between which values", fields.what);
+                self.report("HP0104", fields.at.clone(), message).help =
+                    Some("give `min = 50`, `max = 200`, both of them, or `equal = 100`".into());
+            }
+            return None;
+        }
+        if has("equal") {
+            for key in ["min", "max"] {
+                self.out_of_place(fields, key, "`equal` says both already");
+            }
+        }
+        let [min, max, equal] = ["min", "max", "equal"].map(|key| self.number_of(fields, key));
+        let read = ["min", "max", "equal"].iter().zip([min, max, equal]);
+        if read.clone().any(|(key, x)| x.is_none() && has(key)) {
+            return None;
+        }
+        Some(if equal.is_some() { [equal; 2] } else { [min, max] })
+    }
+
+    /// Names of design variables.
+    fn variables_of(&mut self, fields: &Fields<'_>, f: Field<'_>) -> Option<Vec<String>> {
+        let (subject, expected) = (fields.subject(f.key), "a list of names of design variables");
+        let list = self.list(f.value, &subject, expected)?;
+        if list.len() > MOST_VARIABLES {
+            self.senseless(f.value.span(), format!("{} has {} entries", subject.name, list.len())).help =
+                Some(format!("name at most {MOST_VARIABLES}, or leave it out for all that have bounds"));
+            return None;
+        }
+        let names: Vec<_> = list.into_iter().map(|v| self.name(v, &subject, expected)).collect();
+        names.into_iter().collect()
+    }
+
+    /// A whole number from 1.
+    fn count_of(&mut self, fields: &Fields<'_>, key: &'static str, most: u32) -> Option<usize> {
+        let number = self.number_of(fields, key)?;
+        if number >= 1.0 && number <= f64::from(most) && number.fract() == 0.0 {
+            return Some(number as usize);
+        }
+        let at = fields.get(key).map_or(fields.at.clone(), |f| f.value.span());
+        let message = format!("{} cannot be {number}", fields.subject(key).name);
+        self.senseless(at, message).help = Some(format!("give a whole number from 1 to {most}"));
+        self.unread.push(key);
+        None
+    }
+}

@@ -1,0 +1,196 @@
+//! A changed design saved in its file: the same motion, and no other byte.
+
+use std::path::{Path, PathBuf};
+
+use hardpoint::{Analysis, Run, Solution};
+use hardpoint_file::{ModelFile, parse, read};
+
+/// Positions, rates and second rates of the saved file agree with those of the changed design to this part of the largest of them (or of
+/// the mechanism's size, or 1): round-off of the closure, times how near to singular the models come.
+const SAME_MOTION: f64 = 1e-8;
+/// Such a part of its natural step each variable is changed by.
+const PART: f64 = 0.01;
+
+fn models() -> Vec<PathBuf> {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../models");
+    let files = std::fs::read_dir(folder).unwrap().map(|e| e.unwrap().path());
+    let mut files: Vec<_> = files.filter(|p| p.extension().is_some_and(|e| e == "toml")).collect();
+    files.sort();
+    assert!(files.len() >= 30);
+    files
+}
+
+fn solved(file: &ModelFile, design: &[f64]) -> Solution {
+    let analysis = Analysis::new(&file.model).unwrap();
+    analysis.solve(Run::new().at(design).without_sensitivities())
+}
+
+/// How far apart two motions are, as a part of how large they are; infinite where they are not of the same length.
+fn apart(size: f64, a: &Solution, b: &Solution) -> f64 {
+    if a.motion.len() != b.motion.len() {
+        return f64::INFINITY;
+    }
+    let mut worst = 0.0_f64;
+    for m in 0..a.measured.outputs.len() {
+        for order in 0..3 {
+            let both = |k: usize| [a, b].map(|s| s.measured.value(k, m)[order]);
+            let largest = (0..a.motion.len()).map(|k| both(k)[0].abs()).fold(size.max(1.0), f64::max);
+            let off = (0..a.motion.len()).map(|k| (both(k)[0] - both(k)[1]).abs()).fold(0.0, f64::max);
+            worst = worst.max(off / largest);
+        }
+    }
+    worst
+}
+
+/// The text as a file in a folder of its own, with the data files that lie beside the model.
+fn read_again(path: &Path, text: &str) -> Result<ModelFile, hardpoint_file::ReadError> {
+    let folder = tempfile::tempdir().unwrap();
+    for entry in std::fs::read_dir(path.parent().unwrap()).unwrap() {
+        let data = entry.unwrap().path();
+        if data.extension().is_some_and(|e| e == "csv") {
+            std::fs::copy(&data, folder.path().join(data.file_name().unwrap())).unwrap();
+        }
+    }
+    let saved = folder.path().join("saved.toml");
+    std::fs::write(&saved, text).unwrap();
+    read(&saved)
+}
+
+fn refused(file: &ModelFile, design: &[f64]) -> Option<String> {
+    file.edit(design).err().map(|d| d.list()[0].message.clone())
+}
+
+#[test]
+fn a_saved_design_moves_as_the_changed_one_and_changes_no_other_line() {
+    let (mut saved, mut told) = (0, Vec::new());
+    for path in models() {
+        let file = read(&path).unwrap();
+        let name = path.file_stem().unwrap().to_str().unwrap();
+        for k in 0..file.model.variables.len() {
+            let variable = hardpoint::model::VariableId(k);
+            let mut design = vec![0.0; file.model.variables.len()];
+            design[k] = PART * file.model.natural_step(variable);
+            let what = format!("{name}: {}", file.model.variables[k].name);
+            let text = match file.edit(&design) {
+                Ok(text) => text,
+                Err(why) => {
+                    told.push(format!("{what}: {}", why.list()[0].message));
+                    continue;
+                }
+            };
+            saved += 1;
+            let again = read_again(&path, &text).unwrap_or_else(|e| panic!("{what}: {e}"));
+            let before = solved(&file, &design);
+            // What the changed design cannot move, the saved one need not.
+            if before.stop.is_some() {
+                continue;
+            }
+            let after = solved(&again, &[]);
+            let off = apart(file.model.size(), &before, &after);
+            assert!(off < SAME_MOTION, "{what}: {off:e}");
+            // A rod that keeps its length while its ends move gets a line that says so.
+            let kept = |l: &&str| {
+                let added = l.starts_with("length = ") && !file.text().lines().any(|old| old == *l);
+                !(file.model.variables[k].fixed_length && added)
+            };
+            let after: Vec<&str> = text.lines().filter(kept).collect();
+            assert_eq!(file.text().lines().count(), after.len(), "{what}");
+            let lines: Vec<_> = file.text().lines().zip(after).filter(|(a, b)| a != b).collect();
+            assert_ne!(text, file.text(), "{what}");
+            for (old, new) in lines {
+                let comment = |l: &str| l.split_once('#').map(|(_, c)| c.to_owned());
+                assert_eq!(comment(old), comment(new), "{what}");
+                let words = |l: &str| l.split('=').next().unwrap().to_owned();
+                assert_eq!(words(old), words(new), "{what}");
+            }
+            // What is saved is saved.
+            assert_eq!(again.edit(&[]).unwrap(), text, "{what}");
+        }
+    }
+    insta::assert_snapshot!(format!("{saved} saved\n{}", told.join("\n")));
+}
+
+const ROD: &str = "\
+#:schema hardpoint.schema.json\r
+name = \"all kinds\" # by hand\r
+units = { length = \"mm\", angle = \"deg\" }\r
+[parameters]\r
+reach = { value = 300, unit = \"length\", bounds = [250, 350] }\r
+[hardpoints]\r
+A = [0, 0, 0]\r
+B = [0, 100.0, 0]   # the crank's pin\r
+C = [\"reach\", 250, 0]\r
+D = [400, 0, 0]\r
+[bodies]\r
+crank = {}\r
+rocker = {}\r
+[joints]\r
+bearing = { type = \"revolute\", bodies = [\"ground\", \"crank\"], at = \"A\", axis = \"z\" }\r
+pivot = { type = \"revolute\", bodies = [\"ground\", \"rocker\"], at = \"D\", axis = [0, 0, 2] } # leans\r
+rod = { type = \"distance\", bodies = [\"crank\", \"rocker\"], at = [\"B\", \"C\"] }\r
+[drivers]\r
+motor = { joint = \"bearing\", law = { type = \"harmonic\", amplitude = 10, frequency = 1 } }\r
+[design]\r
+B_y = { move = \"B\", along = \"y\", bounds = [-10, 5.5] } # room\r
+B_kept = { move = \"B\", along = \"x\", fixed_length = true }\r
+C_x = { move = \"C\", along = \"x\" }\r
+lean = { tilt = \"pivot\", about = \"x\" }\r
+swing = { driver = \"motor\", parameter = \"amplitude\" }\r
+off = { markers = [{ joint = \"pivot\", on = \"j\", move = [0, 0, 1] }] }\r
+[points]\r
+C = { body = \"rocker\", at = \"C\" }\r
+[measures]\r
+angle = { type = \"coordinate\", joint = \"pivot\" }\r
+[time]\r
+end = 1\r
+steps = 20\r
+";
+
+fn of(file: &ModelFile, changes: &[(&str, f64)]) -> Vec<f64> {
+    let mut design = vec![0.0; file.model.variables.len()];
+    changes.iter().for_each(|(name, by)| design[file.model.variable(name).unwrap().0] = *by);
+    design
+}
+
+#[test]
+fn numbers_are_those_that_a_person_would_write() {
+    let file = parse(ROD, "rod.toml").unwrap_or_else(|e| panic!("{e}"));
+    let design = of(&file, &[("B_y", 0.0052), ("reach", 0.0001), ("swing", 0.1_f64.to_radians())]);
+    let saved = file.edit(&design).unwrap_or_else(|e| panic!("{e}"));
+    let expected = ROD
+        .replace("[0, 100.0, 0] ", "[0, 105.2, 0] ")
+        .replace("value = 300,", "value = 300.1,")
+        .replace("[-10, 5.5]", "[-15.2, 0.3]")
+        .replace("amplitude = 10,", "amplitude = 10.1,");
+    assert_eq!(saved, expected);
+    let again = parse(&saved, "rod.toml").unwrap();
+    assert!(apart(0.4, &solved(&file, &design), &solved(&again, &[])) < SAME_MOTION);
+    let back =
+        again.edit(&of(&again, &[("B_y", -0.0052), ("reach", -0.0001), ("swing", -0.1_f64.to_radians())]));
+    // A number that had a point keeps it.
+    let points = [
+        ("value = 300,", "value = 300.0,"),
+        ("amplitude = 10,", "amplitude = 10.0,"),
+        ("[-10, 5.5]", "[-10.0, 5.5]"),
+    ];
+    assert_eq!(back.unwrap(), points.iter().fold(ROD.to_owned(), |text, (old, new)| text.replace(old, new)));
+}
+
+#[test]
+fn a_rod_that_is_not_made_anew_is_given_its_length() {
+    let file = parse(ROD, "rod.toml").unwrap();
+    let design = of(&file, &[("B_kept", 0.004)]);
+    let saved = file.edit(&design).unwrap_or_else(|e| panic!("{e}"));
+    assert!(saved.contains("length = 335.41019662496"), "{saved}");
+    let again = parse(&saved, "rod.toml").unwrap();
+    assert!(apart(0.4, &solved(&file, &design), &solved(&again, &[])) < SAME_MOTION);
+}
+
+#[test]
+fn what_a_file_has_no_number_for_is_told_before_anything_is_written() {
+    let file = parse(ROD, "rod.toml").unwrap();
+    let told: Vec<String> = ["C_x", "off"].map(|v| refused(&file, &of(&file, &[(v, 0.001)])).unwrap()).into();
+    insta::assert_snapshot!(told.join("\n"));
+    let beyond = refused(&file, &of(&file, &[("B_y", 0.006)])).unwrap();
+    assert_eq!(beyond, "the change of `B_y` cannot be saved: the changed design is beyond its bounds");
+}

@@ -1,0 +1,311 @@
+//! Maps: every measure over a grid of two drivers, with its sensitivities. `maps.csv`, `map_sensitivity.csv`, `maps.json`.
+
+use std::borrow::Cow;
+use std::io::Write;
+
+use csv::WriterBuilder;
+use hardpoint::measure::Output;
+use hardpoint::model::{Dimension, Model, OutputSource, VariableId};
+use hardpoint::study::{GridMap, GridStop};
+use hardpoint_file::Units;
+use serde::Serialize;
+
+use crate::csv::{no_formula, numbers};
+use crate::facts::variable_unit;
+use crate::figures::{number, per, unit, with_unit};
+use crate::page::Table;
+
+/// A map, as `maps.json` has it. Figures are in the model's units; what has no number is `null`.
+#[derive(Clone, Debug, Serialize)]
+pub struct MapFact {
+    /// The case.
+    pub name: String,
+    /// The two drivers and where each of them stands.
+    pub drivers: [MapDriver; 2],
+    /// How many positions were reached.
+    pub solved: usize,
+    /// How many there are.
+    pub asked: usize,
+    /// Whether the user ended it before all were tried.
+    pub interrupted: bool,
+    /// Why the others were not reached, row by row.
+    pub gaps: Vec<MapGap>,
+    /// Per position, which of these ended its row before; `null` where it was reached or not tried.
+    pub gap: Vec<Vec<Option<usize>>>,
+    /// The measures that follow from positions, or go by a driver; of a model without any measures, its points.
+    pub measures: Vec<MapMeasure>,
+}
+
+/// A map, in `summary.json`.
+#[derive(Clone, Debug, Serialize)]
+pub struct MapLine {
+    /// The case.
+    pub name: String,
+    /// The two drivers.
+    pub drivers: [String; 2],
+    /// How many positions were reached.
+    pub solved: usize,
+    /// How many there are.
+    pub asked: usize,
+    /// Why the others were not reached.
+    pub gaps: Vec<String>,
+}
+
+/// A driver of a map.
+#[derive(Clone, Debug, Serialize)]
+pub struct MapDriver {
+    /// Its name.
+    pub name: String,
+    /// Its unit.
+    pub unit: String,
+    /// Where it stands, counted from the drawing.
+    pub values: Vec<f64>,
+}
+
+/// Why a row of a map has an end.
+#[derive(Clone, Debug, Serialize)]
+pub struct MapGap {
+    /// Where the two drivers stood when the mechanism could not go on.
+    pub drivers: [f64; 2],
+    /// Stable code.
+    pub code: &'static str,
+    /// What happened.
+    pub message: String,
+}
+
+/// A measure over a map. Tables have a row for each value of the second driver, with a number for each value of the first.
+#[derive(Clone, Debug, Serialize)]
+pub struct MapMeasure {
+    /// Its name.
+    pub name: String,
+    /// Its unit.
+    pub unit: String,
+    /// Its values.
+    pub values: Vec<Vec<Option<f64>>>,
+    /// Its derivatives by the design variables.
+    pub sensitivities: Vec<MapSensitivity>,
+}
+
+/// The derivative of a measure by a design variable, over a map.
+#[derive(Clone, Debug, Serialize)]
+pub struct MapSensitivity {
+    /// The variable.
+    pub variable: String,
+    /// Its unit.
+    pub per: String,
+    /// The derivative's unit.
+    pub unit: String,
+    /// The derivatives; `null` where the mechanism cannot follow the variable.
+    pub values: Vec<Vec<Option<f64>>>,
+}
+
+impl MapFact {
+    /// That of a solved grid.
+    pub fn of(model: &Model, units: Units, map: &GridMap) -> Self {
+        let drivers = [0, 1].map(|k| {
+            let driver = &model.drivers[map.grid.drivers[k].0];
+            let dimension = Dimension::from(model.driven(driver).quantity);
+            MapDriver {
+                name: driver.name.clone(),
+                unit: unit(units, dimension),
+                values: map.grid.values[k].iter().map(|v| units.from_si(dimension, *v)).collect(),
+            }
+        });
+        let gap = |stop: &GridStop| MapGap {
+            drivers: [0, 1].map(|k| {
+                let driver = &model.drivers[map.grid.drivers[k].0];
+                units.from_si(model.driven(driver).quantity, stop.stood[k])
+            }),
+            code: stop.stop.code(),
+            message: stop.stop.happened(model),
+        };
+        let measured = |o: &Output| model.measures.is_empty() || matches!(o.source, OutputSource::Measure(_));
+        let outputs = map.outputs.iter().enumerate().filter(|(m, o)| measured(o) && map.has(*m));
+        Self {
+            name: map.grid.name.clone(),
+            drivers,
+            solved: map.solved(),
+            asked: map.places().count(),
+            interrupted: map.interrupted(),
+            gaps: map.stops.iter().map(gap).collect(),
+            gap: table_of(map, &|place| map.why_not(place)),
+            measures: outputs.map(|(m, o)| measure(model, units, map, m, o)).collect(),
+        }
+    }
+
+    /// What `summary.json` has of it.
+    pub fn line(&self) -> MapLine {
+        MapLine {
+            name: self.name.clone(),
+            drivers: [0, 1].map(|k| self.drivers[k].name.clone()),
+            solved: self.solved,
+            asked: self.asked,
+            gaps: self.gaps.iter().map(|gap| self.gap_line(gap)).collect(),
+        }
+    }
+
+    /// What the maps come to, for the terminal.
+    pub fn table(facts: &[Self]) -> Vec<Table> {
+        facts.iter().map(Self::own_table).collect()
+    }
+
+    fn own_table(&self) -> Table {
+        let [first, second] = &self.drivers;
+        let at = |i: usize, j: usize| {
+            format!(
+                "{}, {}",
+                with_unit(first.values[i], &first.unit),
+                with_unit(second.values[j], &second.unit)
+            )
+        };
+        let row = |m: &MapMeasure| {
+            let places =
+                m.values.iter().enumerate().flat_map(|(j, row)| {
+                    row.iter().enumerate().filter_map(move |(i, x)| Some((i, j, (*x)?)))
+                });
+            let ends = [
+                places.clone().min_by(|a, b| a.2.total_cmp(&b.2)),
+                places.max_by(|a, b| a.2.total_cmp(&b.2)),
+            ];
+            let of = |end: Option<(usize, usize, f64)>| match end {
+                Some((i, j, x)) => [with_unit(x, &m.unit), at(i, j)],
+                None => ["-".into(), String::new()],
+            };
+            let [[least, least_at], [most, most_at]] = ends.map(of);
+            vec![m.name.clone(), least, least_at, most, most_at]
+        };
+        let gaps: Vec<String> = self.gaps.iter().map(|gap| self.gap_line(gap)).collect();
+        let some = match &gaps[..] {
+            [] => String::new(),
+            [one] => format!("; {one}"),
+            [one, rest @ ..] => {
+                format!("; {one}, and so in {} more", crate::figures::count(rest.len(), "row"))
+            }
+        };
+        let ended = if self.interrupted { ", interrupted" } else { "" };
+        Table {
+            title: format!("Map `{}` over {} and {}", self.name, first.name, second.name),
+            note: format!("{} of {} positions reached{ended}{some}", self.solved, self.asked),
+            header: ["measure", "least", "there", "most", "there"].map(String::from).to_vec(),
+            rows: self.measures.iter().map(row).collect(),
+        }
+    }
+
+    fn gap_line(&self, gap: &MapGap) -> String {
+        let [first, second] = [0, 1].map(|k| {
+            let driver = &self.drivers[k];
+            format!("{} = {} {}", driver.name, number(gap.drivers[k]), driver.unit)
+        });
+        format!("{} at {first}, {second}", gap.message)
+    }
+}
+
+/// Row by row what is known of each position.
+fn table_of<T>(map: &GridMap, of: &dyn Fn([usize; 2]) -> Option<T>) -> Vec<Vec<Option<T>>> {
+    let [columns, rows] = [0, 1].map(|k| map.grid.values[k].len());
+    (0..rows).map(|j| (0..columns).map(|i| of([i, j])).collect()).collect()
+}
+
+fn measure(model: &Model, units: Units, map: &GridMap, m: usize, output: &Output) -> MapMeasure {
+    let own = unit(units, output.dimension);
+    let sensitivity = |(b, variable): (usize, &hardpoint::model::DesignVariable)| {
+        let by = variable_unit(model, units, variable);
+        let from_si = |d: f64| units.derivative_from_si(output.dimension, variable.quantity, d);
+        MapSensitivity {
+            variable: variable.name.clone(),
+            unit: per(&own, &by),
+            per: by,
+            values: table_of(map, &|place| map.d(place, VariableId(b), m).map(from_si)),
+        }
+    };
+    MapMeasure {
+        name: output.name.clone(),
+        values: table_of(map, &|place| map.value(place, m).map(|x| units.from_si(output.dimension, x))),
+        sensitivities: model.variables.iter().enumerate().map(sensitivity).collect(),
+        unit: own,
+    }
+}
+
+/// `maps.csv`: one row per position of every map, with its measures; in a gap these fields are empty, and `gap` says why.
+///
+/// # Errors
+/// Where `out` cannot be written.
+pub fn write_csv(facts: &[MapFact], out: impl Write) -> csv::Result<()> {
+    let mut writer = WriterBuilder::new().has_headers(false).from_writer(out);
+    let Some(one) = facts.first() else { return Ok(()) };
+    let mut header: Vec<String> = PLACES.map(String::from).to_vec();
+    header.extend(one.measures.iter().map(|m| column(&m.name, &m.unit)));
+    header.push("gap".into());
+    writer.write_record(&header)?;
+    for map in facts {
+        for (j, i) in map.rows() {
+            let row: Vec<f64> = map.measures.iter().map(|m| m.values[j][i].unwrap_or(f64::NAN)).collect();
+            writer.serialize((map.place(j, i), numbers(&row), map.why(j, i)))?;
+        }
+    }
+    writer.flush()?;
+    Ok(())
+}
+
+/// The header of a measure's column.
+fn column(name: &str, unit: &str) -> String {
+    let header = if unit == "1" { name.into() } else { format!("{name} [{unit}]") };
+    no_formula(&header).into_owned()
+}
+
+/// `map_sensitivity.csv`: one row per position and design variable, with the derivatives of the measures by that.
+///
+/// # Errors
+/// Where `out` cannot be written.
+pub fn write_sensitivity_csv(facts: &[MapFact], out: impl Write) -> csv::Result<()> {
+    let mut writer = WriterBuilder::new().has_headers(false).from_writer(out);
+    let Some(one) = facts.first() else { return Ok(()) };
+    let mut header: Vec<String> = PLACES.map(String::from).to_vec();
+    header.extend(["variable", "per"].map(String::from));
+    header.extend(one.measures.iter().map(|m| column(&format!("d {}", m.name), &m.unit)));
+    writer.write_record(&header)?;
+    for map in facts {
+        let Some(of) = map.measures.first() else { continue };
+        for (j, i) in map.rows() {
+            for (b, by) in of.sensitivities.iter().enumerate() {
+                let row: Vec<f64> = map
+                    .measures
+                    .iter()
+                    .map(|m| m.sensitivities[b].values[j][i].unwrap_or(f64::NAN))
+                    .collect();
+                if row.iter().any(|x| x.is_finite()) {
+                    let name = no_formula(&by.variable);
+                    writer.serialize((map.place(j, i), name, &by.per, numbers(&row)))?;
+                }
+            }
+        }
+    }
+    writer.flush()?;
+    Ok(())
+}
+
+/// The columns that say which position a row is of.
+const PLACES: [&str; 7] =
+    ["case", "first driver", "first value", "first unit", "second driver", "second value", "second unit"];
+
+type Place<'a> = (Cow<'a, str>, Cow<'a, str>, f64, &'a str, Cow<'a, str>, f64, &'a str);
+
+impl MapFact {
+    /// Row and column of all positions.
+    fn rows(&self) -> impl Iterator<Item = (usize, usize)> + use<> {
+        let [columns, rows] = [0, 1].map(|k| self.drivers[k].values.len());
+        (0..rows).flat_map(move |j| (0..columns).map(move |i| (j, i)))
+    }
+
+    fn place(&self, j: usize, i: usize) -> Place<'_> {
+        let [first, second] = &self.drivers;
+        let names = [&self.name, &first.name, &second.name].map(|n| no_formula(n));
+        let [name, a, b] = names;
+        (name, a, first.values[i], &first.unit, b, second.values[j], &second.unit)
+    }
+
+    /// Why a position was not reached: what ended its row on that side.
+    fn why(&self, j: usize, i: usize) -> String {
+        self.gap[j][i].map_or(String::new(), |gap| self.gap_line(&self.gaps[gap]))
+    }
+}

@@ -1,0 +1,747 @@
+//! What an optimisation comes to: goals, limits and variables before and after, in the model's units.
+
+use hardpoint::joint::Quantity;
+use hardpoint::measure::Output;
+use hardpoint::model::{Dimension, Limited, Model, Optimization, OutputSource, Reduction};
+use hardpoint::study::{Binding, Iteration, Judged, Optimized, Refused, Search, Status};
+use hardpoint_file::{Diagnostic, ModelFile, Units};
+use serde::Serialize;
+
+use crate::facts::variable_unit;
+use crate::figures::{error, number, seconds, some_of, symbol, unit, with_unit};
+use crate::page::{Payload, Table};
+
+/// What binds by less than this part of the objective per whole range of a variable is not told.
+const SLIGHT: f64 = 1e-9;
+/// So many designs that were refused are told.
+const REFUSED: usize = 20;
+
+/// An optimisation, in the model's units. As JSON it is `summary.json` of `hardpoint optimize`.
+#[derive(Clone, Debug, Serialize)]
+pub struct OptimizeFacts {
+    /// Program and version.
+    pub generator: String,
+    /// The kind of study.
+    pub study: &'static str,
+    /// The model's name.
+    pub model: String,
+    /// The model file.
+    pub file: String,
+    /// How the best search ended: `optimal`, `stuck`, `limits_not_kept`, `iteration_limit`, `interrupted` or `no_start`.
+    pub status: &'static str,
+    /// The same in words, and what to do.
+    pub message: String,
+    /// What is made small, a sum over the goals without a unit: as drawn, and of the best design.
+    pub objective: BeforeAfter,
+    /// By how much the limit is exceeded that is exceeded most, as a part of what the bounds of the variables make of it.
+    pub violation: BeforeAfter,
+    /// What is left of the gradient that neither bounds nor limits take up, as a part of the gradient at the start.
+    pub kkt: Option<f64>,
+    /// The start of the best search: 0 is the design as drawn.
+    pub best_start: Option<usize>,
+    /// What it cost.
+    pub evaluations: Evaluations,
+    /// What it was for.
+    pub goals: Vec<GoalFact>,
+    /// What had to hold.
+    pub limits: Vec<LimitFact>,
+    /// All variables that were searched.
+    pub variables: Vec<SearchedVariable>,
+    /// The hardpoints that the best design has elsewhere.
+    pub hardpoints: Vec<MovedHardpoint>,
+    /// The iterations of the best search.
+    pub iterations: Vec<IterationFact>,
+    /// All searches.
+    pub starts: Vec<StartFact>,
+    /// Designs that could not be judged, the first of them.
+    pub refused: Vec<RefusedFact>,
+    /// How many there were.
+    pub refused_count: usize,
+    /// What is worth knowing besides.
+    pub diagnostics: Vec<Diagnostic>,
+    /// The files that were written.
+    pub files: Vec<String>,
+    /// How long it took, s.
+    pub seconds: f64,
+}
+
+/// A number of the design as drawn, and of the best one.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct BeforeAfter {
+    /// As drawn; `null` where it cannot be judged.
+    pub before: Option<f64>,
+    /// Of the best design; `null` where none was found.
+    pub after: Option<f64>,
+}
+
+/// What an optimisation cost.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+pub struct Evaluations {
+    /// Designs that were looked at.
+    pub designs: usize,
+    /// Motions solved for them.
+    pub motions: usize,
+    /// Output times solved, each with its sensitivities.
+    pub steps: usize,
+}
+
+/// A goal in one motion.
+#[derive(Clone, Debug, Serialize)]
+pub struct GoalFact {
+    /// Its name.
+    pub name: String,
+    /// The metric that it is taken of.
+    pub metric: String,
+    /// In which case; `null` where there are none.
+    pub case: Option<String>,
+    /// The metric's unit.
+    pub unit: String,
+    /// What it should be; `null` for as small as possible.
+    pub target: Option<f64>,
+    /// How much one unit of it counts.
+    pub weight: f64,
+    /// What it is.
+    #[serde(flatten)]
+    pub value: BeforeAfter,
+}
+
+/// A limit, in one motion where it is on a metric.
+#[derive(Clone, Debug, Serialize)]
+pub struct LimitFact {
+    /// Its name.
+    pub name: String,
+    /// What it is on.
+    pub of: String,
+    /// In which case.
+    pub case: Option<String>,
+    /// Its unit.
+    pub unit: String,
+    /// It must not be less.
+    pub min: Option<f64>,
+    /// It must not be more.
+    pub max: Option<f64>,
+    /// What it is.
+    #[serde(flatten)]
+    pub value: BeforeAfter,
+    /// The end that binds: `min` or `max`.
+    pub binds: Option<&'static str>,
+    /// By how much the objective would get less if that end gave way by one unit.
+    pub worth: Option<f64>,
+}
+
+/// A variable that was searched.
+#[derive(Clone, Debug, Serialize)]
+pub struct SearchedVariable {
+    /// Its name.
+    pub name: String,
+    /// Its unit.
+    pub unit: String,
+    /// Where the best search started.
+    pub start: f64,
+    /// Where it ended.
+    pub end: f64,
+    /// Between which values it may lie.
+    pub bounds: [f64; 2],
+    /// The bound that binds: `lower` or `upper`.
+    pub binds: Option<&'static str>,
+    /// By how much the objective would get less if that bound gave way by one unit.
+    pub worth: Option<f64>,
+    /// How much of the change of the objective it brought, along the way of the best search.
+    pub work: f64,
+}
+
+/// A hardpoint that the best design has elsewhere, in the length unit.
+#[derive(Clone, Debug, Serialize)]
+pub struct MovedHardpoint {
+    /// Its name.
+    pub name: String,
+    /// As drawn.
+    pub before: [f64; 3],
+    /// In the best design.
+    pub after: [f64; 3],
+}
+
+/// An iteration.
+#[derive(Clone, Debug, Serialize)]
+pub struct IterationFact {
+    /// Its number; 0 is the start.
+    pub iteration: usize,
+    /// The objective.
+    pub objective: f64,
+    /// As [`OptimizeFacts::violation`].
+    pub violation: f64,
+    /// The step, as the largest part of a variable's bounds.
+    pub step: f64,
+    /// The variable that moved most.
+    pub moved: Option<String>,
+    /// By how much, in its unit.
+    pub by: Option<f64>,
+    /// Its unit.
+    pub unit: Option<String>,
+    /// Designs looked at so far.
+    pub designs: usize,
+}
+
+/// A search.
+#[derive(Clone, Debug, Serialize)]
+pub struct StartFact {
+    /// Its number; 0 starts from the design as drawn.
+    pub start: usize,
+    /// How it ended.
+    pub status: &'static str,
+    /// The objective that it found.
+    pub objective: Option<f64>,
+    /// By how much that exceeds a limit.
+    pub violation: Option<f64>,
+    /// Iterations.
+    pub iterations: usize,
+    /// Designs that it looked at.
+    pub designs: usize,
+    /// Of these, how many could not be judged.
+    pub refused: usize,
+}
+
+/// A design that could not be judged.
+#[derive(Clone, Debug, Serialize)]
+pub struct RefusedFact {
+    /// In which search.
+    pub start: usize,
+    /// In which case.
+    pub case: Option<String>,
+    /// Why.
+    pub why: String,
+    /// The values of the searched variables, in their units.
+    pub values: Vec<f64>,
+}
+
+/// The word for a status in JSON.
+pub fn status_word(status: Status) -> &'static str {
+    match status {
+        Status::Optimal => "optimal",
+        Status::Stuck => "stuck",
+        Status::LimitsNotKept => "limits_not_kept",
+        Status::IterationLimit => "iteration_limit",
+        Status::Interrupted => "interrupted",
+        Status::NoStart => "no_start",
+    }
+}
+
+/// One unit in SI of something that is measured so.
+fn unit_in_si(units: Units, of: impl Into<Dimension>) -> f64 {
+    1.0 / units.from_si(of.into(), 1.0)
+}
+
+/// The name of a motion; `None` where there are no cases.
+pub fn case_name(model: &Model, motion: usize) -> Option<String> {
+    model.cases.get(motion).map(|case| case.name.clone())
+}
+
+/// An iteration as a line of text: what is shown while the search goes on.
+pub fn iteration_line(model: &Model, units: Units, i: &Iteration) -> String {
+    let kept = if i.violation > 0.0 {
+        format!("limits exceeded by {}", error(i.violation))
+    } else {
+        "limits kept".into()
+    };
+    let kept = if model.optimization.as_ref().is_some_and(|o| o.limits.is_empty()) {
+        String::new()
+    } else {
+        format!("  {kept}")
+    };
+    let moved = i.most.map_or(String::new(), |(v, by)| {
+        let variable = &model.variables[v.0];
+        let by = units.from_si(variable.quantity, by);
+        let sign = if by < 0.0 { "" } else { "+" };
+        format!("  {} {sign}{}", variable.name, with_unit(by, &variable_unit(model, units, variable)))
+    });
+    format!("{:>4}  objective {:<12}{kept}{moved}", i.number, number(i.objective))
+}
+
+/// The header-free line of a search that ended.
+pub fn start_line(k: usize, search: &Search) -> String {
+    let from = if k == 0 { "as drawn".into() } else { format!("start {k}") };
+    let found = search.found.as_ref().map_or("-".into(), |f| number(f.objective));
+    let status = in_words(search.status);
+    format!("{from:>9}  objective {found:<12}  {status}, {} designs", search.cost.designs)
+}
+
+/// A status in a few words.
+fn in_words(status: Status) -> &'static str {
+    match status {
+        Status::Optimal => "an optimum",
+        Status::Stuck => "no step goes further",
+        Status::LimitsNotKept => "limits not kept",
+        Status::IterationLimit => "iterations used up",
+        Status::Interrupted => "interrupted",
+        Status::NoStart => "cannot start",
+    }
+}
+
+impl OptimizeFacts {
+    /// Those of an optimisation.
+    pub fn of(file: &ModelFile, asked: &Optimization, found: &Optimized) -> Self {
+        let (model, units) = (&file.model, file.units);
+        let best = found.best.map(|k| &found.searches[k]);
+        let judged = best.and_then(|b| b.found.as_ref());
+        let worst = found.searches.first().map_or(Status::NoStart, |s| s.status);
+        let status = best.map_or(worst, |b| b.status);
+        let before_after = |of: fn(&Judged) -> f64| BeforeAfter {
+            before: found.drawn.as_ref().map(of),
+            after: judged.map(of),
+        };
+        let refused =
+            found.searches.iter().enumerate().flat_map(|(k, s)| s.refused.iter().map(move |r| (k, r)));
+        let refused_fact = |(start, refused): (usize, &Refused)| RefusedFact {
+            start,
+            case: refused.motion.and_then(|m| case_name(model, m)),
+            why: refused.why.clone(),
+            values: asked
+                .variables
+                .iter()
+                .map(|v| units.from_si(model.variables[v.0].quantity, refused.design[v.0]))
+                .collect(),
+        };
+        let mut facts = Self {
+            generator: crate::GENERATOR.into(),
+            study: "optimize",
+            model: model.name.clone(),
+            file: file.file_name().into(),
+            status: status_word(status),
+            message: String::new(),
+            objective: before_after(|j| j.objective),
+            violation: before_after(|j| j.violation),
+            kkt: best.map(|b| b.optimality.residual).filter(|r| r.is_finite()),
+            best_start: found.best,
+            evaluations: Evaluations {
+                designs: found.cost.designs,
+                motions: found.cost.motions,
+                steps: found.cost.steps,
+            },
+            goals: goals(model, units, asked, found, judged),
+            limits: limits(model, units, asked, found, best),
+            variables: best.map_or(Vec::new(), |b| variables(model, units, asked, b)),
+            hardpoints: judged.map_or(Vec::new(), |j| moved(model, units, &j.design)),
+            iterations: best.map_or(Vec::new(), |b| iterations(model, units, b)),
+            starts: found.searches.iter().enumerate().map(|(k, s)| start(k, s)).collect(),
+            refused_count: refused.clone().count(),
+            refused: refused.take(REFUSED).map(refused_fact).collect(),
+            diagnostics: Vec::new(),
+            files: Vec::new(),
+            seconds: 0.0,
+        };
+        facts.message = facts.sentence(status, found);
+        facts
+    }
+
+    /// How it ended, and what to do.
+    fn sentence(&self, status: Status, found: &Optimized) -> String {
+        let exceeded = || {
+            let missed = |l: &&LimitFact| l.missed().is_some();
+            let lines: Vec<String> = self.limits.iter().filter(missed).map(LimitFact::line).collect();
+            if lines.is_empty() { String::new() } else { format!(": {}", some_of(&lines, "; ")) }
+        };
+        let binding: Vec<&str> =
+            self.variables.iter().filter(|v| v.binds.is_some()).map(|v| v.name.as_str()).collect();
+        match status {
+            Status::Optimal if binding.is_empty() => "an optimum: no small change of the design is better".into(),
+            Status::Optimal => format!(
+                "an optimum within the bounds, of which {} hold it; wider ones would do more",
+                some_of(&binding, ", ")
+            ),
+            Status::Stuck => "no step goes further, although it is not quite an optimum: try more `starts`, or more output times \
+                where a metric jumps"
+                .into(),
+            Status::LimitsNotKept => format!(
+                "no design was found that keeps all limits{}; they contradict each other or the bounds: widen one of them, or \
+                 try more `starts`",
+                exceeded()
+            ),
+            Status::IterationLimit => {
+                "the iterations are used up before an optimum was reached: give more `iterations`".into()
+            }
+            Status::Interrupted => "interrupted: the best design so far".into(),
+            Status::NoStart => {
+                let why = found.drawn_refused.as_ref().map_or("", |r| r.why.as_str());
+                format!("no design could be judged, not even the one as drawn: {why}")
+            }
+        }
+    }
+
+    /// What is printed: goals, limits, variables.
+    pub fn tables(&self) -> Vec<Table> {
+        let optional = |x: Option<f64>, unit: &str| x.map_or("-".into(), |x| with_unit(x, unit));
+        let header = |names: &[&str]| names.iter().map(|n| (*n).to_owned()).collect::<Vec<_>>();
+        let has_cases =
+            self.goals.iter().any(|g| g.case.is_some()) || self.limits.iter().any(|l| l.case.is_some());
+        let named = |name: &str, case: &Option<String>| match case {
+            Some(case) if has_cases => format!("{name} ({case})"),
+            _ => name.to_owned(),
+        };
+        let goal = |g: &GoalFact| {
+            let target = g.target.map_or("small".into(), |t| with_unit(t, &g.unit));
+            vec![
+                named(&g.name, &g.case),
+                optional(g.value.before, &g.unit),
+                optional(g.value.after, &g.unit),
+                target,
+            ]
+        };
+        let mut tables = vec![Table {
+            title: "Goals".into(),
+            note: String::new(),
+            header: header(&["goal", "as drawn", "found", "wanted"]),
+            rows: self.goals.iter().map(goal).collect(),
+        }];
+        if !self.limits.is_empty() {
+            let limit = |l: &LimitFact| {
+                let binds = l.binds.map_or(String::new(), |end| match l.worth {
+                    Some(worth) => {
+                        format!("{end}; 1 {} more is worth {}", unit_name(&l.unit), self.worth(worth))
+                    }
+                    None => end.into(),
+                });
+                vec![
+                    named(&l.name, &l.case),
+                    optional(l.value.before, &l.unit),
+                    optional(l.value.after, &l.unit),
+                    l.wanted(),
+                    binds,
+                ]
+            };
+            tables.push(Table {
+                title: "Limits".into(),
+                note: String::new(),
+                header: header(&["limit", "as drawn", "found", "wanted", "binds"]),
+                rows: self.limits.iter().map(limit).collect(),
+            });
+        }
+        let total: f64 = self.variables.iter().map(|v| v.work.abs()).sum();
+        let variable = |v: &SearchedVariable| {
+            let binds = v.binds.map_or(String::new(), |end| match v.worth {
+                Some(worth) => format!("{end}; 1 {} more is worth {}", unit_name(&v.unit), self.worth(worth)),
+                None => end.into(),
+            });
+            let work = if total > 0.0 { format!("{:.0} %", 100.0 * -v.work / total) } else { String::new() };
+            let [low, high] = v.bounds;
+            vec![
+                v.name.clone(),
+                with_unit(v.start, &v.unit),
+                with_unit(v.end, &v.unit),
+                format!("{} to {}", number(low), number(high)),
+                work,
+                binds,
+            ]
+        };
+        if !self.variables.is_empty() {
+            tables.push(Table {
+                title: "Design".into(),
+                note: "as changes of the design as drawn; work is a variable's share of what was gained, along the way".into(),
+                header: header(&["variable", "start", "found", "bounds", "work", "bound that binds"]),
+                rows: self.variables.iter().map(variable).collect(),
+            });
+        }
+        if !self.hardpoints.is_empty() {
+            let row = |h: &MovedHardpoint| {
+                let place = |p: [f64; 3]| p.map(number).join(", ");
+                vec![h.name.clone(), place(h.before), place(h.after)]
+            };
+            tables.push(Table {
+                title: "Hardpoints that move".into(),
+                note: String::new(),
+                header: header(&["hardpoint", "as drawn", "found"]),
+                rows: self.hardpoints.iter().map(row).collect(),
+            });
+        }
+        tables
+    }
+
+    /// What it comes to, line by line.
+    pub fn rows(&self) -> Vec<(&'static str, String)> {
+        let BeforeAfter { before, after } = self.objective;
+        let shown = |x: Option<f64>| x.map_or("-".into(), number);
+        let Evaluations { designs, motions, .. } = self.evaluations;
+        let mut rows = vec![
+            ("result", self.message.clone()),
+            ("objective", format!("{} as drawn, {} found", shown(before), shown(after))),
+        ];
+        rows.extend(
+            self.kkt
+                .map(|kkt| ("optimality", format!("{} of the gradient at the start is left", error(kkt)))),
+        );
+        if self.starts.len() > 1 {
+            let ended = self.starts.iter().filter(|s| s.status == "optimal").count();
+            let best = self.best_start.map_or("none".into(), |k| {
+                if k == 0 { "the design as drawn".into() } else { format!("start {k}") }
+            });
+            rows.push((
+                "starts",
+                format!("{}, {ended} of them ended in an optimum; the best is {best}", self.starts.len()),
+            ));
+        }
+        let refused = match self.refused_count {
+            0 => String::new(),
+            n => format!(", {n} of which could not be judged"),
+        };
+        rows.push(("looked at", format!("{designs} designs{refused}, {motions} motions")));
+        rows
+    }
+
+    /// A multiplier in the unit of the one goal that there is, else in that of the objective.
+    fn worth(&self, worth: f64) -> String {
+        match &self.goals[..] {
+            [goal] => {
+                let value = goal.value.after.unwrap_or(f64::NAN);
+                let miss = (value - goal.target.unwrap_or(0.0)).abs();
+                // f = (w m)^2 or w m:  dm = df / (2 w^2 m) or df / w
+                let squares = self.is_square(goal);
+                let by = if squares { 2.0 * goal.weight * goal.weight * miss } else { goal.weight };
+                if by.abs() > 0.0 { with_unit(worth / by, &goal.unit) } else { number(worth) }
+            }
+            _ => format!("{} of the objective", number(worth)),
+        }
+    }
+
+    fn is_square(&self, goal: &GoalFact) -> bool {
+        let squares = |value: f64, objective: f64| {
+            let miss = goal.weight * (value - goal.target.unwrap_or(0.0));
+            (objective - miss * miss).abs() <= (objective - goal.weight * value).abs()
+        };
+        goal.target.is_some()
+            || goal
+                .value
+                .after
+                .zip(self.objective.after)
+                .is_some_and(|(value, objective)| squares(value, objective))
+    }
+
+    /// The page of the design as drawn becomes that of the search: what is told here comes first among its checks, and it opens on what
+    /// the first goal of this motion is taken of, drawn over its abscissa.
+    pub fn page(&self, mut page: Payload, model: &Model, outputs: &[Output]) -> Payload {
+        let place = |of: OutputSource| outputs.iter().position(|o| o.source == of);
+        let goal = |g: &GoalFact| model.metrics.iter().find(|m| m.name == g.metric);
+        if let Some(metric) = self.goals.iter().find_map(goal) {
+            page.first = place(metric.of).or(page.first);
+            page.over = metric.over.and_then(place);
+        }
+        let rows = self.rows().into_iter().map(|(what, is)| vec![what.into(), is]).collect();
+        let result = Table {
+            title: "The search".into(),
+            note: String::new(),
+            header: ["", "is"].map(String::from).to_vec(),
+            rows,
+        };
+        let mut checks = vec![result];
+        checks.extend(self.tables());
+        checks.extend([self.iteration_table()]);
+        checks.append(&mut page.checks);
+        Payload { checks, ..page }
+    }
+
+    fn iteration_table(&self) -> Table {
+        let row = |i: &IterationFact| {
+            let moved = i.moved.as_ref().zip(i.by).map_or(String::new(), |(name, by)| {
+                format!("{name} {}", with_unit(by, i.unit.as_deref().unwrap_or_default()))
+            });
+            vec![
+                i.iteration.to_string(),
+                number(i.objective),
+                error(i.violation),
+                moved,
+                i.designs.to_string(),
+            ]
+        };
+        Table {
+            title: "Iterations".into(),
+            note: String::new(),
+            header: ["iteration", "objective", "limits exceeded by", "moved most", "designs"]
+                .map(String::from)
+                .to_vec(),
+            rows: self.iterations.iter().map(row).collect(),
+        }
+    }
+
+    /// How long it took, in a line.
+    pub fn time_line(&self) -> String {
+        seconds(self.seconds)
+    }
+}
+
+/// What a unit is called in a sentence.
+fn unit_name(unit: &str) -> &str {
+    if unit.is_empty() || unit == "1" { "unit" } else { unit }
+}
+
+impl LimitFact {
+    /// By how much it is exceeded.
+    fn missed(&self) -> Option<f64> {
+        let value = self.value.after?;
+        let below = self.min.map_or(0.0, |min| min - value);
+        let above = self.max.map_or(0.0, |max| value - max);
+        Some(below.max(above)).filter(|by| *by > MISSED * value.abs().max(1.0))
+    }
+
+    fn wanted(&self) -> String {
+        let shown = |x: f64| with_unit(x, &self.unit);
+        match (self.min, self.max) {
+            (Some(min), Some(max)) if min == max => shown(min),
+            (Some(min), Some(max)) => format!("{} to {}", number(min), shown(max)),
+            (Some(min), None) => format!("{} at least", shown(min)),
+            (None, Some(max)) => format!("{} at most", shown(max)),
+            (None, None) => String::new(),
+        }
+    }
+
+    fn line(&self) -> String {
+        let value = self.value.after.map_or("-".into(), |x| with_unit(x, &self.unit));
+        let case = self.case.as_ref().map_or(String::new(), |case| format!(" in `{case}`"));
+        format!("`{}`{case} is {value} instead of {}", self.name, self.wanted())
+    }
+}
+
+/// A limit that is exceeded by less than this part of its value, in the unit of the file, is told as kept.
+const MISSED: f64 = 1e-7;
+
+fn goals(
+    model: &Model,
+    units: Units,
+    asked: &Optimization,
+    found: &Optimized,
+    judged: Option<&Judged>,
+) -> Vec<GoalFact> {
+    let some = found.drawn.as_ref().or(judged);
+    let taken = some.map_or(&[][..], |j| &j.goals[..]);
+    let fact = |(k, (goal, motion, _)): (usize, &(usize, usize, f64))| {
+        let goal = &asked.goals[*goal];
+        let metric = &model.metrics[goal.metric];
+        let dimension = model.metric_dimension(metric);
+        let shown = |x: f64| units.from_si(dimension, x);
+        let value = |j: Option<&Judged>| j.and_then(|j| j.goals.get(k)).map(|g| shown(g.2));
+        GoalFact {
+            name: goal.name.clone(),
+            metric: metric.name.clone(),
+            case: case_name(model, *motion),
+            unit: unit(units, dimension),
+            target: goal.target.or(matches!(metric.take, Reduction::Rms(_)).then_some(0.0)).map(shown),
+            weight: goal.weight * unit_in_si(units, dimension),
+            value: BeforeAfter { before: value(found.drawn.as_ref()), after: value(judged) },
+        }
+    };
+    taken.iter().enumerate().map(fact).collect()
+}
+
+fn limits(
+    model: &Model,
+    units: Units,
+    asked: &Optimization,
+    found: &Optimized,
+    best: Option<&Search>,
+) -> Vec<LimitFact> {
+    let judged = best.and_then(|b| b.found.as_ref());
+    let some = found.drawn.as_ref().or(judged);
+    let taken = some.map_or(&[][..], |j| &j.limits[..]);
+    let hardpoint = |h: hardpoint::model::HardpointId| model.hardpoints[h.0].name.as_str();
+    let fact = |(k, (limit, motion, _)): (usize, &(usize, Option<usize>, f64))| {
+        let (place, limit) = (*limit, &asked.limits[*limit]);
+        let (dimension, of) = match limit.of {
+            Limited::Metric(m) => {
+                let metric = &model.metrics[m];
+                (model.metric_dimension(metric), format!("metric `{}`", metric.name))
+            }
+            Limited::Coordinate(h, axis) => {
+                (Dimension::LENGTH, format!("`{}.{}`", hardpoint(h), ["x", "y", "z"][axis]))
+            }
+            Limited::Distance(a, b) => {
+                (Dimension::LENGTH, format!("distance of `{}` and `{}`", hardpoint(a), hardpoint(b)))
+            }
+            Limited::Length(j) => (Dimension::LENGTH, format!("length of `{}`", model.joints[j.0].name)),
+        };
+        let shown = |x: f64| units.from_si(dimension, x);
+        let value = |j: Option<&Judged>| j.and_then(|j| j.limits.get(k)).map(|l| shown(l.2));
+        let binding = best.into_iter().flat_map(|b| &b.optimality.binding);
+        let binds = |(what, worth): &(Binding, f64)| match *what {
+            Binding::Least(l, m) if l == place && m == *motion => Some(("min", *worth)),
+            Binding::Most(l, m) if l == place && m == *motion => Some(("max", *worth)),
+            _ => None,
+        };
+        let binds = binding.filter_map(binds).next();
+        LimitFact {
+            name: limit.name.clone(),
+            of,
+            case: motion.and_then(|m| case_name(model, m)),
+            unit: unit(units, dimension),
+            min: limit.least.map(shown),
+            max: limit.most.map(shown),
+            value: BeforeAfter { before: value(found.drawn.as_ref()), after: value(judged) },
+            binds: binds.map(|b| b.0),
+            worth: binds.map(|b| b.1 * unit_in_si(units, dimension)),
+        }
+    };
+    taken.iter().enumerate().map(fact).collect()
+}
+
+fn variables(model: &Model, units: Units, asked: &Optimization, best: &Search) -> Vec<SearchedVariable> {
+    let end = best.found.as_ref().map_or(&best.start, |j| &j.design);
+    let objective = best.found.as_ref().map_or(0.0, |j| j.objective.abs());
+    let fact = |(k, v): (usize, &hardpoint::model::VariableId)| {
+        let variable = &model.variables[v.0];
+        let shown = |x: f64| units.from_si(variable.quantity, x);
+        let bounds = variable.bounds.unwrap_or_default();
+        let binds = |(what, worth): &(Binding, f64)| match *what {
+            Binding::Lower(of) if of == k => Some(("lower", *worth)),
+            Binding::Upper(of) if of == k => Some(("upper", *worth)),
+            _ => None,
+        };
+        let told = |(_, worth): &(&str, f64)| worth * (bounds[1] - bounds[0]) > SLIGHT * objective;
+        let binds = best.optimality.binding.iter().filter_map(binds).find(told);
+        SearchedVariable {
+            name: variable.name.clone(),
+            unit: variable_unit(model, units, variable),
+            start: shown(best.start[v.0]),
+            end: shown(end[v.0]),
+            bounds: bounds.map(shown),
+            binds: binds.map(|b| b.0),
+            worth: binds.map(|b| b.1 * unit_in_si(units, variable.quantity)),
+            work: best.work[k],
+        }
+    };
+    asked.variables.iter().enumerate().map(fact).collect()
+}
+
+fn moved(model: &Model, units: Units, design: &[f64]) -> Vec<MovedHardpoint> {
+    let [before, after] = [&[][..], design].map(|d| model.hardpoint_places(d));
+    let named = model.hardpoints.iter().zip(before.iter().zip(&after)).filter(|(h, _)| !h.unnamed);
+    let shown = |p: hardpoint::space::Vec3| p.to_array().map(|x| units.from_si(Quantity::Length, x));
+    let moved = named.filter(|(_, (a, b))| (**a - **b).norm() > 0.0);
+    moved
+        .map(|(h, (a, b))| MovedHardpoint { name: h.name.clone(), before: shown(*a), after: shown(*b) })
+        .collect()
+}
+
+fn iterations(model: &Model, units: Units, search: &Search) -> Vec<IterationFact> {
+    let fact = |i: &Iteration| {
+        let variable = i.most.map(|(v, by)| (&model.variables[v.0], by));
+        IterationFact {
+            iteration: i.number,
+            objective: i.objective,
+            violation: i.violation,
+            step: i.step,
+            moved: variable.map(|(v, _)| v.name.clone()),
+            by: variable.map(|(v, by)| units.from_si(v.quantity, by)),
+            unit: variable.map(|(v, _)| symbol(units, v.quantity).to_owned()),
+            designs: i.designs,
+        }
+    };
+    search.iterations.iter().map(fact).collect()
+}
+
+fn start(k: usize, search: &Search) -> StartFact {
+    StartFact {
+        start: k,
+        status: status_word(search.status),
+        objective: search.found.as_ref().map(|f| f.objective),
+        violation: search.found.as_ref().map(|f| f.violation),
+        iterations: search.iterations.len().saturating_sub(1),
+        designs: search.cost.designs,
+        refused: search.refused.len(),
+    }
+}

@@ -1,0 +1,100 @@
+//! Checks of cases: what moves in each, by which laws and when.
+
+use std::collections::{BTreeSet, HashMap};
+
+use crate::draft::{CaseDraft, Rest, Section};
+use crate::law::Law;
+use crate::model::{Case, CaseId, DriverId};
+
+use super::{Checker, Here, LISTED_NAMES};
+
+impl Checker<'_> {
+    pub(super) fn cases(&mut self) {
+        let draft = self.draft;
+        // A law of a driver's own is looked at once, whatever cases follow it.
+        let mut seen = BTreeSet::new();
+        let known = self.model.drivers.iter().enumerate().map(|(d, driver)| (driver.name.clone(), d));
+        let known: HashMap<String, usize> = known.collect();
+        for (index, c) in draft.cases.iter().enumerate() {
+            let here = Here { section: Section::Cases, index };
+            let times = c.times.as_ref().unwrap_or(&draft.times);
+            if let Some(times) = &c.times {
+                self.times_of(times, here.key("time"));
+            }
+            let mut laws = vec![(c.rest == Rest::Held).then(|| Law::constant(0.0)); self.model.drivers.len()];
+            // The formulas of its laws are kept with it.
+            let case = CaseId(self.model.cases.len());
+            let times_of_case = times.clone();
+            let (name, formulas) = (c.name.clone(), Vec::new());
+            self.model.cases.push(Case { name, laws: Vec::new(), formulas, times: times_of_case });
+            for (k, (driver, law)) in c.laws.iter().enumerate() {
+                let names = draft.drivers.iter().map(|d| d.name.as_str());
+                let at = here.item("law", k);
+                if self.find("driver", driver, here.item("laws", k), names).is_none() {
+                    continue;
+                }
+                // A faulty driver has been reported.
+                let Some(&d) = known.get(driver) else { continue };
+                let given = self.formula_law_in((case, &c.name), (DriverId(d), driver), law, &at);
+                let Some(law) = given else { continue };
+                self.law_is_defined(&format!("driver `{driver}` in case `{}`", c.name), &law, times, at);
+                laws[d] = Some(law);
+            }
+            for d in (0..laws.len()).filter(|d| laws[*d].is_none()) {
+                let (name, law) = (self.model.drivers[d].name.clone(), self.model.drivers[d].law.clone());
+                let index = self.number_of("driver", &name).unwrap_or(d);
+                let faults = self.faults.len();
+                if !seen.contains(&d) {
+                    let at = Here { section: Section::Drivers, index }.key("law");
+                    self.law_is_defined(&format!("driver `{name}`"), &law, times, at);
+                }
+                if self.faults.len() > faults {
+                    seen.insert(d);
+                }
+            }
+            self.moves(c, &laws, times, here);
+            self.model.cases[case.0].laws = laws;
+        }
+    }
+
+    /// HP0235: a case in which no driver moves, though it has several output times.
+    fn moves(&mut self, c: &CaseDraft, laws: &[Option<Law>], times: &[f64], here: Here) {
+        let draft = self.draft;
+        let faulty = self.model.drivers.len() < draft.drivers.len()
+            || self.lost("driver")
+            || self.unread(here, "laws")
+            || c.laws.iter().any(|(name, _)| self.number_of("driver", name).is_none())
+            || (0..draft.drivers.len())
+                .any(|index| self.unread(Here { section: Section::Drivers, index }, "law"));
+        let [first, .., _] = times else { return };
+        let rests = |law: &Law| {
+            let start = law.at(*first).value();
+            times.iter().all(|t| law.at(*t).value() == start)
+        };
+        let laws = laws.iter().zip(&self.model.drivers);
+        if faulty || !laws.map(|(law, driver)| law.as_ref().unwrap_or(&driver.law)).all(rests) {
+            return;
+        }
+        let message = format!("nothing moves in case `{}`", c.name);
+        let named: BTreeSet<&str> = c.laws.iter().map(|law| law.0.as_str()).collect();
+        let held: Vec<String> = draft
+            .drivers
+            .iter()
+            .filter(|d| !named.contains(d.name.as_str()))
+            .take(LISTED_NAMES)
+            .map(|d| format!("`{}`", d.name))
+            .collect();
+        let fault = self.fault("HP0235", here.key("name"), message);
+        if !held.is_empty() && c.rest == Rest::Held {
+            let [are, them] = if held.len() == 1 { ["is", "it"] } else { ["are", "them"] };
+            fault.note(format!(
+                "{} {are} held as drawn, since the case gives no law for {them}",
+                held.join(", ")
+            ));
+        }
+        let example = draft.drivers.first().map_or("DRIVER", |d| d.name.as_str());
+        fault.help(format!(
+            "give a driver a law in it, like `laws = {{ {example} = \"10*t\" }}`, or write `rest = \"as_above\"` for those in `[drivers]`"
+        ));
+    }
+}

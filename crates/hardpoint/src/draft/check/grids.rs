@@ -1,0 +1,73 @@
+//! Checks of cases that sweep two drivers over a grid.
+
+use crate::draft::Section;
+use crate::model::{DriverId, Grid};
+
+use super::{Checker, Here};
+
+/// More positions than this are surely a slip: each is solved with all its sensitivities, and all are held.
+const MOST_POSITIONS: usize = 100_000;
+
+/// Positions nearer to each other than this part of a driver's way cannot be told apart by the times at which it passes them.
+const APART: f64 = 1e-9;
+
+impl Checker<'_> {
+    /// HP0240: grids that are none, or too large to be solved.
+    pub(super) fn grids(&mut self) {
+        let draft = self.draft;
+        for (index, g) in draft.grids.iter().enumerate() {
+            let here = Here { section: Section::Grids, index };
+            let at = here.key("grid");
+            let mut drivers = Vec::new();
+            for (k, (driver, values)) in g.sweeps.iter().enumerate() {
+                let names = draft.drivers.iter().map(|d| d.name.as_str());
+                if self.find("driver", driver, here.item("grid", k), names).is_none() {
+                    continue;
+                }
+                let way = values.last().zip(values.first()).map_or(0.0, |(last, first)| last - first);
+                let rises = values.windows(2).all(|pair| pair[1] - pair[0] > APART * way);
+                if !(way > 0.0 && way.is_finite() && rises) {
+                    let message = format!("driver `{driver}` has no range in the grid of case `{}`", g.name);
+                    self.fault("HP0240", here.item("grid", k), message)
+                        .help("give at least two finite positions, each above the one before");
+                    continue;
+                }
+                // A faulty driver has been reported.
+                drivers.extend(self.model.drivers.iter().position(|d| d.name == *driver).map(DriverId));
+            }
+            let [(a, first), (b, second)] = &g.sweeps[..] else {
+                let message = match g.sweeps.len() {
+                    0 => format!("the grid of case `{}` names no driver", g.name),
+                    1 => format!("the grid of case `{}` names one driver", g.name),
+                    n => format!("the grid of case `{}` names {n} drivers", g.name),
+                };
+                let [x, y] = [0, 1].map(|k| draft.drivers.get(k).map_or("DRIVER", |d| d.name.as_str()));
+                let fault = self.fault("HP0240", at, message);
+                fault.note("a grid has two drivers; all others are held as drawn");
+                fault.help(match draft.drivers.len() {
+                    0 | 1 => "a mechanism with fewer than two drivers has no grid: give the case `laws` instead".into(),
+                    _ => format!(
+                        "name two, like `grid = {{ {x} = {{ from = -10, to = 10, steps = 8 }}, {y} = {{ from = -10, to = 10, steps = 8 }} }}`"
+                    ),
+                });
+                continue;
+            };
+            if a == b {
+                self.fault("HP0240", at, format!("the grid of case `{}` names driver `{a}` twice", g.name))
+                    .help("name two drivers");
+                continue;
+            }
+            let positions = first.len().saturating_mul(second.len());
+            if positions > MOST_POSITIONS {
+                let message = format!("the grid of case `{}` has {positions} positions", g.name);
+                self.fault("HP0240", at, message)
+                    .help(format!("ask for fewer `steps`: at most {MOST_POSITIONS} positions are solved"));
+                continue;
+            }
+            if let [a, b] = drivers[..] {
+                let values = [first.clone(), second.clone()];
+                self.model.grids.push(Grid { name: g.name.clone(), drivers: [a, b], values });
+            }
+        }
+    }
+}

@@ -1,0 +1,389 @@
+//! Checks of what a design is to be optimised for: what it names, and whether that can hold.
+
+use std::collections::{BTreeMap, BTreeSet, HashMap};
+
+use crate::design::Effect;
+use crate::draft::{
+    ChangeDraft, GoalDraft, LimitDraft, LimitedDraft, Locus, OptimizationDraft, Section, VariableDraft,
+};
+use crate::model::{
+    Dimension, Goal, JointId, Limit, Limited, Optimization, Reduction, Source, Target, VariableId,
+};
+
+use super::formulas::AXES;
+use super::{Checker, Here, LISTED_NAMES};
+
+/// Of each thing that is limited, the highest lower and the lowest upper limit so far: what it is as written, and in which limit.
+type Tightest<'d> = HashMap<Key, [Option<(f64, f64, &'d str)>; 2]>;
+/// What tells what is limited from all else.
+type Key = (u8, usize, usize);
+
+impl Checker<'_> {
+    pub(super) fn optimization(&mut self) {
+        let draft = self.draft;
+        let Some(o) = &draft.optimization else { return };
+        let here = Here { section: Section::Optimize, index: 0 };
+        let variables = self.optimized(o, here);
+        // What can be limited follows from all that is checked before.
+        let sound = self.faults.is_empty() && draft.unread.is_empty();
+        if o.goals.is_empty() {
+            self.fault("HP0236", here.key("goals"), "nothing is to be optimised: there are no goals")
+                .help("name a metric that is to become small, like `goals.toe = { metric = \"toe_error\" }`");
+        }
+        if let Some(margin) = o.margin
+            && !(margin > 0.0 && margin < 1.0)
+        {
+            let message = format!("the margin of the optimisation cannot be {margin}");
+            self.fault("HP0237", here.key("margin"), message)
+                .note("it is 0 at a singular position, and 1 far from any")
+                .help("give a number above 0 and below 1, like `margin = 0.02`, or leave it out");
+        }
+        for (key, count) in [("starts", o.starts), ("iterations", o.iterations)] {
+            if count == 0 {
+                let message = format!("`{key}` of the optimisation cannot be 0");
+                self.fault("HP0237", here.key(key), message).help("give a whole number from 1");
+            }
+        }
+        let goals: Vec<_> = o.goals.iter().enumerate().map(|(index, g)| self.goal(g, index)).collect();
+        let mut tightest = Tightest::new();
+        let mut limits = Vec::new();
+        for (index, limit) in o.limits.iter().enumerate() {
+            let here = Here { section: Section::Limits, index };
+            let found = if self.unread(here, "") { None } else { self.limit(limit, here) };
+            if let Some(limit) = &found {
+                self.contradiction(&o.limits[index], limit, &mut tightest, here);
+            }
+            limits.extend(found.map(|limit| (here, limit)));
+        }
+        let Some(variables) = variables else { return };
+        if sound {
+            self.out_of_reach(&variables, &limits);
+        }
+        let limits = limits.into_iter().map(|(_, limit)| limit).collect();
+        let (margin, starts, iterations) = (o.margin, o.starts, o.iterations);
+        let goals = goals.into_iter().flatten().collect();
+        self.model.optimization = Some(Optimization { variables, goals, limits, margin, starts, iterations });
+    }
+
+    /// HP0236: the variables that may change, each with bounds, each once.
+    fn optimized(&mut self, o: &OptimizationDraft, here: Here) -> Option<Vec<VariableId>> {
+        let draft = self.draft;
+        if self.unread(here, "variables") {
+            return None;
+        }
+        let Some(names) = &o.variables else {
+            let with_bounds = (0..draft.design.len()).filter(|k| draft.design[*k].bounds.is_some());
+            let found: Vec<VariableId> = with_bounds.map(VariableId).collect();
+            let unknown = draft.unread.anywhere(Section::Design, "bounds")
+                || self.lost("design variable")
+                || self.lost("parameter");
+            if found.is_empty() && !unknown {
+                self.fault("HP0236", here.key(""), "no design variable may change: none has bounds").help(
+                    "give bounds to those that may, like `bounds = [-5, 5]` in `[design.NAME]`, or `NAME = { value = 60, bounds = [50, 70] }` in `[parameters]`",
+                );
+            }
+            return Some(found);
+        };
+        if names.is_empty() {
+            self.fault("HP0236", here.key("variables"), "no design variable may change: the list is empty")
+                .help("name those that may change, or leave `variables` out for all that have bounds");
+        }
+        let mut first_of: BTreeMap<&str, usize> = BTreeMap::new();
+        let mut found = Vec::new();
+        for (k, name) in names.iter().enumerate() {
+            let at = here.item("variables", k);
+            let first = *first_of.entry(name).or_insert(k);
+            if first < k {
+                let message = format!("design variable `{name}` is named twice");
+                self.fault("HP0236", at, message)
+                    .note(format!("as number {} and number {} of the list", first + 1, k + 1))
+                    .help("remove one of the two");
+                continue;
+            }
+            let Some(index) = self.optimized_variable(name, at.clone()) else { continue };
+            let v = &draft.design[index];
+            if v.bounds.is_none() && !draft.unread.any(Section::Design, index) {
+                let message = format!("design variable `{name}` has no bounds to be searched within");
+                self.fault("HP0236", at, message).help(bounds_of(v));
+            }
+            found.push(VariableId(index));
+        }
+        Some(found)
+    }
+
+    /// The place of a design variable in the draft.
+    fn optimized_variable(&mut self, name: &str, at: Locus) -> Option<usize> {
+        let draft = self.draft;
+        let known = self.number_of("design variable", name);
+        // What could not be read may be this variable.
+        if known.is_some() || self.lost("parameter") || draft.unread.any_of(Section::Design) {
+            return known;
+        }
+        self.find("design variable", name, at, draft.design.iter().map(|v| v.name.as_str()));
+        let parts: Vec<String> = AXES
+            .iter()
+            .map(|axis| format!("{name}_{axis}"))
+            .filter(|part| self.number_of("design variable", part).is_some())
+            .map(|part| format!("`{part}`"))
+            .collect();
+        let derived = self.number_of("parameter", name).is_some();
+        if let Some(fault) = self.faults.last_mut()
+            && !self.draft.unread.has(Section::Model, 0, "design")
+        {
+            if !parts.is_empty() {
+                fault.help(format!("`[design.{name}]` makes several: {}", parts.join(", ")));
+            } else if derived {
+                fault.help(format!(
+                    "parameter `{name}` is no design variable, since an expression gives it or `design = false` says so; name what it follows"
+                ));
+            }
+        }
+        None
+    }
+
+    /// The place of a metric in the model; `None`, without a second fault, where the metric itself is faulty.
+    fn metric(&mut self, name: &str, at: Locus) -> Option<usize> {
+        let draft = self.draft;
+        let known = self.find("metric", name, at, draft.metrics.iter().map(|m| m.name.as_str()));
+        if known.is_none() && !self.lost("metric") {
+            let is_measure = self.number_of("measure", name).is_some();
+            let fault = self.faults.last_mut().expect("just reported");
+            if is_measure {
+                fault.help(format!(
+                    "`{name}` is a measure, a whole curve; declare a metric of it, like `[metrics.{name}_range]` with `of = \"{name}\"` and `take = \"range\"`"
+                ));
+            } else if draft.metrics.is_empty() {
+                fault.help("declare it in `[metrics.NAME]`: what of which measure is meant");
+            }
+        }
+        self.metric_ids.get(known?).copied().flatten()
+    }
+
+    /// HP0237: a goal whose numbers make none.
+    fn goal(&mut self, g: &GoalDraft, index: usize) -> Option<Goal> {
+        let here = Here { section: Section::Goals, index };
+        if self.unread(here, "") {
+            return None;
+        }
+        if !(g.weight > 0.0 && g.weight.is_finite()) {
+            let message = format!("the weight of goal `{}` cannot be {}", g.name, g.weight);
+            self.fault("HP0237", here.key("weight"), message).help(
+                "give a number above zero, or remove the goal; to make a metric large, give it a `target` that is large",
+            );
+        }
+        if g.target.is_some_and(|target| !target.is_finite()) {
+            let message = format!("the target of goal `{}` is not a finite number", g.name);
+            self.fault("HP0237", here.key("target"), message)
+                .help("give the value that its metric is to have");
+        }
+        let metric = self.metric(&g.metric, here.key("metric"))?;
+        let m = &self.model.metrics[metric];
+        if let (Reduction::Rms(_), Some(_)) = (&m.take, g.target) {
+            let message =
+                format!("goal `{}` cannot have a target: its metric `{}` is an `rms`", g.name, g.metric);
+            let help =
+                format!("remove it; give the curve to be followed as `target` of `[metrics.{}]`", g.metric);
+            self.fault("HP0237", here.key("target"), message)
+                .note("an `rms` says how far a curve is from its target, and is made as small as possible")
+                .help(help);
+            return None;
+        }
+        let unit = per_si(self.model.metric_dimension(m), g.per_metre, g.per_radian);
+        let target = g.target.map(|target| target / unit);
+        Some(Goal { name: g.name.clone(), metric, target, weight: g.weight * unit })
+    }
+
+    /// What is limited, and to what, in SI. HP0238 where no number can be so.
+    fn limit(&mut self, l: &LimitDraft, here: Here) -> Option<Limit> {
+        let of = self.limited(l, here);
+        for (key, bound) in [("min", l.least), ("max", l.most)] {
+            if bound.is_some_and(|x| !x.is_finite()) {
+                let message = format!("the `{key}` of limit `{}` is not a finite number", l.name);
+                self.fault("HP0238", here.key(key), message).help("give a number, or leave it out");
+                return None;
+            }
+        }
+        match (l.least, l.most) {
+            (None, None) => {
+                let message = format!("limit `{}` limits nothing", l.name);
+                self.fault("HP0238", here.key("name"), message)
+                    .help("give `min`, `max`, both of them, or `equal`");
+                return None;
+            }
+            (Some(least), Some(most)) if least > most => {
+                let message = format!("limit `{}` contradicts itself", l.name);
+                self.fault("HP0238", here.key(side_of(&l.of)), message)
+                    .note(format!("it asks for at least {least} and at most {most}"))
+                    .help("give the lower one first, or as `min`");
+                return None;
+            }
+            _ => {}
+        }
+        let is_length = matches!(l.of, LimitedDraft::Distance(_) | LimitedDraft::Length(_));
+        if let Some(most) = l.most.filter(|most| is_length && *most < 0.0) {
+            let message = format!("limit `{}` cannot hold: no length is below zero", l.name);
+            self.fault("HP0238", here.key("max"), message)
+                .note(format!("it asks for at most {most}"))
+                .help("give a length above zero");
+            return None;
+        }
+        let of = of?;
+        let dimension = match of {
+            Limited::Metric(metric) => self.model.metric_dimension(&self.model.metrics[metric]),
+            Limited::Coordinate(..) | Limited::Distance(..) | Limited::Length(_) => Dimension::LENGTH,
+        };
+        let unit = per_si(dimension, l.per_metre, l.per_radian);
+        let [least, most] = [l.least, l.most].map(|bound| bound.map(|x| x / unit));
+        Some(Limit { name: l.name.clone(), of, least, most })
+    }
+
+    fn limited(&mut self, l: &LimitDraft, here: Here) -> Option<Limited> {
+        Some(match &l.of {
+            LimitedDraft::Unread => return None,
+            LimitedDraft::Metric(name) => Limited::Metric(self.metric(name, here.key("metric"))?),
+            LimitedDraft::Coordinate(name, axis) => {
+                Limited::Coordinate(self.hardpoint(name, here.key("hardpoint"))?, *axis % 3)
+            }
+            LimitedDraft::Distance(names) => {
+                let found = [0, 1].map(|k| self.hardpoint(&names[k], here.item("between", k)));
+                let [a, b] = [found[0]?, found[1]?];
+                if a == b {
+                    let message =
+                        format!("limit `{}` is put on the distance of `{}` from itself", l.name, names[0]);
+                    self.fault("HP0216", here.key("between"), message).help("name two different hardpoints");
+                    return None;
+                }
+                Limited::Distance(a, b)
+            }
+            LimitedDraft::Length(name) => {
+                let joint = self.joint(name, here.key("length"))?;
+                let kind = self.model.joints[joint.0].kind;
+                if !kind.is_rod() {
+                    let message =
+                        format!("joint `{name}` has no length that limit `{}` could be put on", l.name);
+                    self.fault("HP0225", here.key("length"), message)
+                        .note(format!("it is a {} joint", kind.name))
+                        .help("name a rod or a leg; for two hardpoints write `between = [\"A\", \"B\"]`");
+                    return None;
+                }
+                Limited::Length(joint)
+            }
+        })
+    }
+
+    /// HP0238: limits of one thing that cannot hold together.
+    fn contradiction<'d>(
+        &mut self,
+        written: &'d LimitDraft,
+        limit: &Limit,
+        tightest: &mut Tightest<'d>,
+        here: Here,
+    ) {
+        let [least, most] = tightest.entry(key(limit.of)).or_default();
+        let lower = limit.least.zip(written.least).map(|(x, w)| (x, w, written.name.as_str()));
+        let upper = limit.most.zip(written.most).map(|(x, w)| (x, w, written.name.as_str()));
+        let apart = match (lower, *most, upper, *least) {
+            (Some(low), Some(high), ..) if low.0 > high.0 => Some((low, high)),
+            (_, _, Some(high), Some(low)) if low.0 > high.0 => Some((low, high)),
+            _ => None,
+        };
+        if lower.is_some_and(|l| least.is_none_or(|known| l.0 > known.0)) {
+            *least = lower;
+        }
+        if upper.is_some_and(|u| most.is_none_or(|known| u.0 < known.0)) {
+            *most = upper;
+        }
+        if let Some(((_, low, of_low), (_, high, of_high))) = apart {
+            let other = if of_low == limit.name { of_high } else { of_low };
+            let message = format!("limits `{other}` and `{}` contradict each other", limit.name);
+            self.fault("HP0238", here.key(side_of(&written.of)), message)
+                .note(format!(
+                    "`{of_low}` asks for at least {low}, and `{of_high}` for at most {high} of the same"
+                ))
+                .help("widen one of the two, or remove it");
+        }
+    }
+
+    /// HP0239: limits on what no variable changes.
+    fn out_of_reach(&mut self, variables: &[VariableId], limits: &[(Here, Limit)]) {
+        let (mut moved, mut joints): (BTreeSet<Source>, BTreeSet<JointId>) = Default::default();
+        let model = &self.model;
+        for change in variables.iter().flat_map(|v| &model.variables[v.0].changes) {
+            moved.extend(change.parameter().map(|(p, _)| Source::Parameter(p)));
+            joints.extend(change.joint());
+            if let Some((h, velocity)) = change.hardpoint() {
+                let axes = (0..3).filter(|axis| velocity[*axis] != 0.0);
+                moved.extend(axes.map(|axis| Source::Coordinate(h, axis)));
+            }
+        }
+        for formula in &model.formulas {
+            if formula.sources().any(|s| moved.contains(&s)) {
+                moved.extend(formula.gives());
+                if let Target::Length(joint) = formula.of {
+                    joints.insert(joint);
+                }
+            }
+        }
+        let moves = |h| (0..3).any(|axis| moved.contains(&Source::Coordinate(h, axis)));
+        let name = |h: crate::model::HardpointId| format!("`{}`", model.hardpoints[h.0].name);
+        let mut fixed = Vec::new();
+        for (here, limit) in limits {
+            let (what, key) = match limit.of {
+                Limited::Coordinate(h, axis) if !moved.contains(&Source::Coordinate(h, axis)) => {
+                    (format!("{} of {}", AXES[axis], name(h)), AXES[axis])
+                }
+                Limited::Distance(a, b) if !moves(a) && !moves(b) => {
+                    (format!("the distance of {} and {}", name(a), name(b)), "between")
+                }
+                Limited::Length(j) => {
+                    let joint = &model.joints[j.0];
+                    let by_ends = joint.length.is_none() && joint.at.iter().any(|h| moves(*h));
+                    if by_ends || joints.contains(&j) {
+                        continue;
+                    }
+                    (format!("the length of `{}`", joint.name), "length")
+                }
+                _ => continue,
+            };
+            fixed.push((here.key(key), limit.name.clone(), what));
+        }
+        let names: Vec<String> =
+            variables.iter().map(|v| format!("`{}`", model.variables[v.0].name)).collect();
+        let names = crate::draft::some_of(&names, ", ", LISTED_NAMES);
+        for (at, limit, what) in fixed {
+            let message = format!("limit `{limit}` is put on {what}, which no variable changes");
+            self.fault("HP0239", at, message)
+                .note(format!("variables that may change: {names}"))
+                .help("add a variable that moves it, with bounds, or remove the limit");
+        }
+    }
+}
+
+/// Where the side of a box stands; of all else, the name.
+fn side_of(of: &LimitedDraft) -> &'static str {
+    if let LimitedDraft::Coordinate(_, axis) = of { AXES[axis % 3] } else { "name" }
+}
+
+fn key(of: Limited) -> Key {
+    match of {
+        Limited::Metric(m) => (0, m, 0),
+        Limited::Coordinate(h, axis) => (1, h.0, axis),
+        Limited::Distance(a, b) => (2, a.0.min(b.0), a.0.max(b.0)),
+        Limited::Length(j) => (3, j.0, 0),
+    }
+}
+
+/// How many units make one SI unit of it.
+fn per_si(of: Dimension, per_metre: f64, per_radian: f64) -> f64 {
+    per_metre.powi(of.length.into()) * per_radian.powi(of.angle.into())
+}
+
+/// How to give a variable bounds.
+fn bounds_of(v: &VariableDraft) -> String {
+    match v.changes.as_slice() {
+        [ChangeDraft::Parameter { parameter, .. }] if *parameter == v.name => format!(
+            "write it in `[parameters]` as `{parameter} = {{ value = ..., bounds = [LOWEST, HIGHEST] }}`, with its value between them"
+        ),
+        _ => format!("give `{}` bounds in `[design]`, like `bounds = [-5, 5]`", v.name),
+    }
+}

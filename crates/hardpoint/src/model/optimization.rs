@@ -1,0 +1,60 @@
+//! What a design is to be optimised for, and within which limits.
+
+use super::{HardpointId, JointId, VariableId};
+
+/// The search for the design that serves some goals best.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Optimization {
+    /// The variables that may change, each within its bounds.
+    pub variables: Vec<VariableId>,
+    /// What is made as small as possible: the sum of all of them.
+    pub goals: Vec<Goal>,
+    /// What must hold.
+    pub limits: Vec<Limit>,
+    /// No motion may come nearer to a singular position than this [`Margin`](crate::motion::Margin).
+    pub margin: Option<f64>,
+    /// From how many designs the search starts: the one as drawn, and others spread within the bounds.
+    pub starts: usize,
+    /// After so many iterations a search ends.
+    pub iterations: usize,
+}
+
+/// A metric that is made small, or brought to a target.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Goal {
+    /// Its name.
+    pub name: String,
+    /// The metric, by its place in [`Model::metrics`](super::Model::metrics). One that names no case counts in each of them.
+    pub metric: usize,
+    /// What it is to be, in SI; as small as possible where there is none.
+    pub target: Option<f64>,
+    /// How much one SI unit of it counts: the goal is `weight x value`, or `(weight x (value - target))^2`. Of an `rms` it is the square
+    /// as well, so that curves are fitted by least squares.
+    pub weight: f64,
+}
+
+/// Something that must stay between two values.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Limit {
+    /// Its name.
+    pub name: String,
+    /// What.
+    pub of: Limited,
+    /// It must not be less than this, m, rad or a plain number; equal to `most` where it must have one value.
+    pub least: Option<f64>,
+    /// It must not be more than this.
+    pub most: Option<f64>,
+}
+
+/// What a limit is put on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Limited {
+    /// A metric, by its place in [`Model::metrics`](super::Model::metrics). One that names no case is limited in each of them.
+    Metric(usize),
+    /// A coordinate of a hardpoint in the design configuration: 0 for x, 1 for y, 2 for z.
+    Coordinate(HardpointId, usize),
+    /// The distance of two hardpoints in the design configuration.
+    Distance(HardpointId, HardpointId),
+    /// The length of a rod.
+    Length(JointId),
+}

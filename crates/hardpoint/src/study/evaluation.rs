@@ -1,0 +1,127 @@
+//! What every search and sweep over designs asks for: the metrics of a design in all motions of the mechanism, with their exact derivatives.
+
+use std::fmt;
+use std::ops::ControlFlow;
+
+use crate::model::Model;
+use crate::motion::{Stop, StopKind};
+use crate::run::{Analysis, Run, Solution};
+use crate::topology::{Formulation, TopologyFault};
+
+use super::metric::{MetricValue, metrics};
+
+/// The motions of a mechanism, ready to be solved for any design.
+#[derive(Clone, Debug)]
+pub struct Motions<'m> {
+    analyses: Vec<Analysis<'m>>,
+}
+
+/// A design as a study sees it.
+#[derive(Clone, Debug, Default)]
+pub struct Evaluated {
+    /// Per motion, what was solved, with sensitivities.
+    pub solutions: Vec<Solution>,
+    /// Per motion, its metrics.
+    pub metrics: Vec<Vec<MetricValue>>,
+}
+
+/// Why a design has no values: in one of its motions it does not assemble, locks, or reaches a dead point.
+#[derive(Clone, Debug)]
+pub struct Rejection {
+    /// In which motion, as [`Model::motions`] counts them.
+    pub motion: usize,
+    /// What happened there.
+    pub stop: Box<Stop>,
+    /// The same in one line.
+    pub why: String,
+}
+
+impl fmt::Display for Rejection {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.why)
+    }
+}
+
+/// What a study has cost.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Cost {
+    /// Designs that were looked at.
+    pub designs: usize,
+    /// Motions solved for them.
+    pub motions: usize,
+    /// Positions solved at output times, each with its sensitivities.
+    pub steps: usize,
+}
+
+impl std::ops::AddAssign for Cost {
+    fn add_assign(&mut self, other: Self) {
+        self.designs += other.designs;
+        self.motions += other.motions;
+        self.steps += other.steps;
+    }
+}
+
+impl<'m> Motions<'m> {
+    /// Plans the solution of the motions of a mechanism, one model each ([`Model::motions`]).
+    ///
+    /// # Errors
+    /// The motion that cannot be driven, and why.
+    pub fn of(motions: &'m [Model], formulation: Formulation) -> Result<Self, (usize, TopologyFault)> {
+        let plan = |(k, model)| Analysis::with(model, formulation).map_err(|fault| (k, fault));
+        Ok(Self { analyses: motions.iter().enumerate().map(plan).collect::<Result<_, _>>()? })
+    }
+
+    /// Their analyses, in order.
+    pub fn analyses(&self) -> &[Analysis<'m>] {
+        &self.analyses
+    }
+
+    /// The model of one of them.
+    pub fn model(&self, motion: usize) -> &'m Model {
+        self.analyses[motion].model()
+    }
+
+    /// How many there are.
+    pub fn len(&self) -> usize {
+        self.analyses.len()
+    }
+
+    /// Whether there is none.
+    pub fn is_empty(&self) -> bool {
+        self.analyses.is_empty()
+    }
+
+    /// The design with variable k at `design[k]` in all motions; `more` is asked at every output time, and may end it.
+    ///
+    /// # Errors
+    /// The first motion that does not come to its end.
+    pub fn evaluate(
+        &self,
+        design: &[f64],
+        cost: &mut Cost,
+        more: &(dyn Fn() -> bool + Sync),
+    ) -> Result<Evaluated, Rejection> {
+        cost.designs += 1;
+        let mut found = Evaluated::default();
+        for (motion, analysis) in self.analyses.iter().enumerate() {
+            let go_on = |_| if more() { ControlFlow::Continue(()) } else { ControlFlow::Break(()) };
+            let solution = analysis.solve(Run::new().at(design).progress(go_on));
+            cost.motions += 1;
+            cost.steps += solution.motion.len();
+            if let Some(stop) = &solution.stop {
+                let why = stop.headline(analysis.model());
+                return Err(Rejection { motion, stop: Box::new(stop.clone()), why });
+            }
+            found.metrics.push(metrics(analysis.model(), &solution));
+            found.solutions.push(solution);
+        }
+        Ok(found)
+    }
+}
+
+impl Rejection {
+    /// Whether it was the caller who ended it.
+    pub fn interrupted(&self) -> bool {
+        matches!(self.stop.kind, StopKind::Interrupted)
+    }
+}

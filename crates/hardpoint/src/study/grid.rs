@@ -1,0 +1,225 @@
+//! Two drivers over a grid: what every measure is wherever both stand, with its sensitivities.
+
+use std::ops::ControlFlow;
+
+use crate::law::Law;
+use crate::measure::Output;
+use crate::model::{Case, CaseId, Grid, Model, OutputSource, VariableId};
+use crate::motion::{Stop, StopKind};
+use crate::run::{Analysis, Run, Solution};
+use crate::topology::{Formulation, TopologyFault};
+
+use super::evaluation::Cost;
+
+/// A solved grid. Positions are counted row by row: in a row the first driver goes from position to position while the second stands.
+#[derive(Clone, Debug)]
+pub struct GridMap {
+    /// The grid.
+    pub grid: Grid,
+    /// What was measured.
+    pub outputs: Vec<Output>,
+    /// Which of them have numbers where nothing moves.
+    still: Vec<bool>,
+    /// Per position, what was found there.
+    positions: Vec<Position>,
+    /// How many design variables there are.
+    variables: usize,
+    /// What stopped the motions that did not come to their end.
+    pub stops: Vec<GridStop>,
+    /// What it cost.
+    pub cost: Cost,
+}
+
+/// Why positions could not be reached.
+#[derive(Clone, Debug)]
+pub struct GridStop {
+    /// The row.
+    pub row: usize,
+    /// What ended the motion.
+    pub stop: Stop,
+    /// Where the two drivers stood then.
+    pub stood: [f64; 2],
+}
+
+#[derive(Clone, Debug)]
+enum Position {
+    /// Values of all outputs, then by each variable theirs.
+    Solved(Vec<f64>),
+    /// The place in the stops of what ended the motion before.
+    NotReached(usize),
+    /// The caller wanted no more.
+    NotTried,
+}
+
+/// The times of the two parts of every motion: the second driver goes to where it stands, then the first one sweeps.
+const BOTH: [f64; 2] = [0.0, 1.0];
+
+impl GridMap {
+    /// Solves a grid at the design with variable k at `design[k]`; `more` is asked at every position, and may end it.
+    ///
+    /// Each row is reached from the drawn position: first the second driver goes to where it stands in that row, then the first one goes up,
+    /// and in a motion of its own down. So a position beyond a limit on one side says nothing of the other side.
+    ///
+    /// # Errors
+    /// A [`TopologyFault`] where the mechanism cannot be driven.
+    pub fn solve(
+        model: &Model,
+        grid: &Grid,
+        formulation: Formulation,
+        design: &[f64],
+        more: &(dyn Fn() -> bool + Sync),
+    ) -> Result<Self, TopologyFault> {
+        let [first, second] = &grid.values;
+        let outputs = crate::measure::outputs(model);
+        let by_driver = |source| matches!(source, OutputSource::Measure(k) if model.goes_by_driver(k));
+        let mut map = Self {
+            grid: grid.clone(),
+            still: outputs.iter().map(|o| o.known.by_position || by_driver(o.source)).collect(),
+            outputs,
+            positions: vec![Position::NotTried; first.len() * second.len()],
+            variables: model.variables.len(),
+            stops: Vec::new(),
+            cost: Cost { designs: 1, ..Cost::default() },
+        };
+        for row in 0..second.len() {
+            for sign in [1.0, -1.0] {
+                // Each side from the middle outwards; where the first driver is as drawn counts as the upper side.
+                let mut places: Vec<usize> =
+                    (0..first.len()).filter(|k| (first[*k] >= 0.0) == (sign > 0.0)).collect();
+                if sign < 0.0 {
+                    places.reverse();
+                }
+                let Some(farthest) = places.last().map(|k| first[*k]) else { continue };
+                if !more() {
+                    return Ok(map);
+                }
+                let moved = row_model(model, grid, row, farthest, places.iter().map(|k| first[*k]));
+                let analysis = Analysis::with(&moved, formulation)?;
+                let go_on = |_| if more() { ControlFlow::Continue(()) } else { ControlFlow::Break(()) };
+                let solution = analysis.solve(Run::new().at(design).progress(go_on));
+                map.cost.motions += 1;
+                map.cost.steps += solution.motion.len();
+                map.take(row, farthest, &places, &moved.times, &solution);
+            }
+        }
+        Ok(map)
+    }
+
+    /// Takes one motion's positions.
+    fn take(&mut self, row: usize, farthest: f64, places: &[usize], times: &[f64], solution: &Solution) {
+        let [first, second] = &self.grid.values;
+        let interrupted = solution.stop.as_ref().is_some_and(|s| matches!(s.kind, StopKind::Interrupted));
+        let stopped = solution.stop.as_ref().filter(|_| !interrupted).map(|stop| {
+            let t = stop.failed_time;
+            let stood = [sweep(farthest, t), second[row] * t.clamp(BOTH[0], BOTH[1])];
+            self.stops.push(GridStop { row, stop: stop.clone(), stood });
+            self.stops.len() - 1
+        });
+        for place in places {
+            // The same number as when the times were made.
+            let time = time_of(first[*place], farthest);
+            let k = times.iter().position(|t| *t == time).expect("every place has its time");
+            let found = if k < solution.motion.len() {
+                Position::Solved(self.row_of(solution, k))
+            } else {
+                stopped.map_or(Position::NotTried, Position::NotReached)
+            };
+            self.positions[row * first.len() + place] = found;
+        }
+    }
+
+    fn row_of(&self, solution: &Solution, k: usize) -> Vec<f64> {
+        let (measured, outputs) = (&solution.measured, 0..self.outputs.len());
+        let known = |m: usize, x: f64| if self.still[m] { x } else { f64::NAN };
+        let mut numbers: Vec<f64> = outputs.clone().map(|m| known(m, measured.value(k, m)[0])).collect();
+        for b in 0..self.variables {
+            let followed = solution.sensitivities.at(k, b).is_some();
+            let d = |m: usize| if followed { known(m, measured.d(k, VariableId(b), m)[0]) } else { f64::NAN };
+            numbers.extend(outputs.clone().map(d));
+        }
+        numbers
+    }
+
+    /// Whether output m has numbers in a map: what follows from positions, or from what happens while one driver alone moves. Velocities,
+    /// accelerations and what follows from them are those of a motion, and there is none.
+    pub fn has(&self, m: usize) -> bool {
+        self.still[m]
+    }
+
+    /// Output m where the first driver stands at its value i, the second at its value j; `None` where that was not reached, or where
+    /// there is no such number.
+    pub fn value(&self, [i, j]: [usize; 2], m: usize) -> Option<f64> {
+        self.number([i, j], m)
+    }
+
+    /// Its derivative by a design variable; `None` also where the mechanism cannot follow that.
+    pub fn d(&self, [i, j]: [usize; 2], variable: VariableId, m: usize) -> Option<f64> {
+        self.number([i, j], (1 + variable.0) * self.outputs.len() + m)
+    }
+
+    fn number(&self, [i, j]: [usize; 2], place: usize) -> Option<f64> {
+        match &self.positions[j * self.grid.values[0].len() + i] {
+            Position::Solved(numbers) => Some(numbers[place]).filter(|x| x.is_finite()),
+            _ => None,
+        }
+    }
+
+    /// Whether a position was reached.
+    pub fn is_solved(&self, [i, j]: [usize; 2]) -> bool {
+        matches!(self.positions[j * self.grid.values[0].len() + i], Position::Solved(_))
+    }
+
+    /// What kept the mechanism from a position, by its place in [`stops`](Self::stops).
+    pub fn why_not(&self, [i, j]: [usize; 2]) -> Option<usize> {
+        match self.positions[j * self.grid.values[0].len() + i] {
+            Position::NotReached(stop) => Some(stop),
+            _ => None,
+        }
+    }
+
+    /// How many positions were reached.
+    pub fn solved(&self) -> usize {
+        self.positions.iter().filter(|p| matches!(p, Position::Solved(_))).count()
+    }
+
+    /// Whether the caller ended it before all positions were tried.
+    pub fn interrupted(&self) -> bool {
+        self.positions.iter().any(|p| matches!(p, Position::NotTried))
+    }
+
+    /// All positions, row by row.
+    pub fn places(&self) -> impl Iterator<Item = [usize; 2]> + use<> {
+        let [first, second] = [0, 1].map(|k| self.grid.values[k].len());
+        (0..second).flat_map(move |j| (0..first).map(move |i| [i, j]))
+    }
+}
+
+/// Where the first driver stands at a time.
+fn sweep(farthest: f64, time: f64) -> f64 {
+    farthest * (time - BOTH[1]).max(0.0)
+}
+
+/// When it stands there, on its way to the farthest place of its side.
+fn time_of(place: f64, farthest: f64) -> f64 {
+    BOTH[1] + if place == 0.0 { 0.0 } else { place / farthest }
+}
+
+/// The mechanism in one half of a row.
+fn row_model(
+    model: &Model,
+    grid: &Grid,
+    row: usize,
+    farthest: f64,
+    places: impl Iterator<Item = f64>,
+) -> Model {
+    let mut laws = vec![Some(Law::constant(0.0)); model.drivers.len()];
+    let law = |text: String| Some(Law::parse(&text).expect("a law that is written here"));
+    let [begin, stands] = BOTH;
+    laws[grid.drivers[0].0] = law(format!("({farthest:?})*max(t - {stands:?}, 0)"));
+    laws[grid.drivers[1].0] = law(format!("({:?})*min(t, {stands:?})", grid.values[1][row]));
+    // The drawn position comes first: the rest is followed from there.
+    let mut times = vec![begin];
+    times.extend(places.map(|place| time_of(place, farthest)));
+    let case = Case { name: grid.name.clone(), laws, formulas: Vec::new(), times };
+    Model { cases: vec![case], ..model.clone() }.in_case(CaseId(0))
+}

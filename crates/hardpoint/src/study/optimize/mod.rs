@@ -1,0 +1,482 @@
+//! The design that serves some goals best, within bounds and limits: from what moves a curve to the hardpoints that give it.
+//!
+//! Goals and limits are metrics of the motions, with exact derivatives. Where all goals are squares (a curve fitted, a target met) and
+//! only bounds limit the design, the search is one of bounded least squares; otherwise sequential programming. Goals that count by
+//! their greatest value (`max` metrics) are searched as `t` with every part of the curve below `t`, so that minimax needs nothing of the
+//! user. A design whose motion does not assemble, locks, or reaches a dead point is a step that was refused: the search steps back and
+//! goes on.
+
+mod optimality;
+mod problem;
+mod solver;
+
+use std::num::NonZero;
+use std::ops::ControlFlow;
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+use sobol_burley::sample;
+
+use crate::model::{Model, Optimization, VariableId};
+
+use super::evaluation::{Cost, Motions};
+pub use optimality::{Binding, Optimality};
+use problem::{Point, Problem, Refusal};
+use solver::{Memory, Sequential, Solver, TrustRegion};
+
+/// A limit that is exceeded by less than this part of its scale is kept.
+const KEPT: f64 = 1e-8;
+/// A design this near to optimal is an optimum.
+const OPTIMAL: f64 = 1e-6;
+/// A search that came to rest short of this starts again where it stands ...
+const SHARP: f64 = 5e-9;
+/// ... as often as this.
+const AGAIN: usize = 3;
+/// A search that finds no less than before, to this part of the objective, has come to rest.
+const NO_LESS: f64 = 1e-14;
+/// ... and so has one whose step is less than this part of the bounds.
+const RESTING: f64 = 1e-13;
+/// Objectives that differ by less than this part are the same but for round-off: of such designs the one nearer to optimal is the better.
+const THE_SAME: f64 = 1e-12;
+/// A run that takes away so much of what kept the design from an optimum was worth it, whatever it did to the objective.
+const NEARER: f64 = 0.5;
+/// The first solver has done its work where a step gains less than this part of the objective: others make an end of it.
+const HARDLY_LESS: f64 = 1e-6;
+/// A start that cannot be judged is drawn nearer so many times.
+const HALVINGS: i32 = 8;
+/// Low-discrepancy points have so many coordinates; further variables start where they are drawn.
+const MOST_DIMENSIONS: usize = 256;
+
+/// What an optimisation found.
+#[derive(Clone, Debug)]
+pub struct Optimized {
+    /// The design as drawn; `None` where it cannot be judged.
+    pub drawn: Option<Judged>,
+    /// Why not.
+    pub drawn_refused: Option<Refused>,
+    /// The searches, one per start, in order; the first starts from the design as drawn.
+    pub searches: Vec<Search>,
+    /// The best of them, by its place there: of those that keep all limits the one with the least objective, of others the one that
+    /// exceeds them least. `None` where none could start.
+    pub best: Option<usize>,
+    /// All that it cost.
+    pub cost: Cost,
+}
+
+/// A design, judged.
+#[derive(Clone, Debug, Default)]
+pub struct Judged {
+    /// The values of all variables of the model, m, rad or plain.
+    pub design: Vec<f64>,
+    /// What is made small: the sum over all goals, in no unit.
+    pub objective: f64,
+    /// By how much the limit is exceeded that is exceeded most, as a part of its scale; 0 where all are kept.
+    pub violation: f64,
+    /// Per goal and motion in which it is taken, its value in SI.
+    pub goals: Vec<(usize, usize, f64)>,
+    /// Per limit, and motion where it is one of a metric, its value in SI.
+    pub limits: Vec<(usize, Option<usize>, f64)>,
+}
+
+/// One search.
+#[derive(Clone, Debug)]
+pub struct Search {
+    /// Where it started: the values of all variables.
+    pub start: Vec<f64>,
+    /// How it ended.
+    pub status: Status,
+    /// What it found; `None` where it could not start.
+    pub found: Option<Judged>,
+    /// How near to optimal that is, and what binds.
+    pub optimality: Optimality,
+    /// Its iterations, in order, the start first.
+    pub iterations: Vec<Iteration>,
+    /// Per searched variable, how much of the change of the objective it brought: along the way, the mean gradient of each step times
+    /// the step.
+    pub work: Vec<f64>,
+    /// Designs that could not be judged.
+    pub refused: Vec<Refused>,
+    /// What it cost.
+    pub cost: Cost,
+}
+
+/// How a search ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Status {
+    /// At an optimum.
+    Optimal,
+    /// Where no step gets any further, although the conditions of an optimum are not fulfilled.
+    Stuck,
+    /// At the design that exceeds the limits least, or as near to it as no step got further: they cannot all be kept there.
+    LimitsNotKept,
+    /// After as many iterations as it was allowed.
+    IterationLimit,
+    /// By the caller.
+    Interrupted,
+    /// It could not start: see [`Search::refused`].
+    NoStart,
+}
+
+/// One iteration of a search.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Iteration {
+    /// Its number; 0 is the start.
+    pub number: usize,
+    /// The objective there.
+    pub objective: f64,
+    /// As [`Judged::violation`].
+    pub violation: f64,
+    /// How far the step went, as the largest part of a variable's bounds.
+    pub step: f64,
+    /// The variable that went farthest, and by how much in its unit.
+    pub most: Option<(VariableId, f64)>,
+    /// Designs looked at so far, in this search.
+    pub designs: usize,
+}
+
+/// A design that could not be judged.
+#[derive(Clone, Debug)]
+pub struct Refused {
+    /// The values of all variables.
+    pub design: Vec<f64>,
+    /// In which motion.
+    pub motion: Option<usize>,
+    /// Why.
+    pub why: String,
+}
+
+/// What is told of a search under way.
+#[derive(Clone, Copy, Debug)]
+pub enum Progress<'s> {
+    /// It did an iteration.
+    Iteration(&'s Iteration),
+    /// It ended.
+    End(&'s Search),
+}
+
+/// How an optimisation is done, besides what is asked for.
+pub struct Searching<'w> {
+    /// Is told of every iteration and of the end of every search, by its number, and may end them all.
+    pub progress: &'w mut (dyn FnMut(usize, Progress<'_>) -> ControlFlow<()> + Send),
+    /// Is asked at every output time of every motion whether to go on.
+    pub more: &'w (dyn Fn() -> bool + Sync),
+    /// Searches run on so many threads; what they find does not depend on it.
+    pub threads: NonZero<usize>,
+}
+
+/// Searches for the design that serves the goals best.
+///
+/// `motions` are those of the model ([`Model::motions`]), in order.
+pub fn optimize(
+    model: &Model,
+    motions: &Motions<'_>,
+    asked: &Optimization,
+    searching: Searching<'_>,
+) -> Optimized {
+    let problem = Problem::new(model, motions, asked);
+    let Searching { progress, more, threads } = searching;
+    let starts: Vec<Vec<f64>> = (0..asked.starts.max(1)).map(|k| start(&problem, k)).collect();
+    let (next, ended) = (AtomicUsize::new(0), std::sync::atomic::AtomicBool::new(false));
+    let progress = Mutex::new(progress);
+    let searches = Mutex::new(starts.iter().map(|_| None).collect::<Vec<Option<Search>>>());
+    let more = || !ended.load(Ordering::Relaxed) && more();
+    let work = || {
+        while let Some(k) = Some(next.fetch_add(1, Ordering::Relaxed)).filter(|k| *k < starts.len()) {
+            let tell = |of: Progress<'_>| {
+                let told = (progress.lock().expect("no telling before has panicked"))(k, of);
+                if told.is_break() {
+                    ended.store(true, Ordering::Relaxed);
+                }
+            };
+            let search = search(&problem, &starts[k], &mut |i| tell(Progress::Iteration(i)), &more);
+            tell(Progress::End(&search));
+            searches.lock().expect("no search before has panicked")[k] = Some(search);
+        }
+    };
+    match threads.get().min(starts.len()) {
+        1 => work(),
+        n => std::thread::scope(|scope| (0..n).for_each(|_| drop(scope.spawn(work)))),
+    }
+    let searches = searches.into_inner().expect("no search has panicked");
+    let searches: Vec<Search> =
+        searches.into_iter().map(|s| s.expect("every start was searched from")).collect();
+    let mut cost = Cost::default();
+    searches.iter().for_each(|s| cost += s.cost);
+    let (drawn, drawn_refused) = match problem.at(vec![0.0; model.variables.len()], &mut cost, &more) {
+        Ok(point) => (Some(judged(&problem, &point, &limit_scales(&problem, &point))), None),
+        Err(refusal) => (None, Some(refused(vec![0.0; model.variables.len()], refusal))),
+    };
+    Optimized { drawn, drawn_refused, best: best(&searches), searches, cost }
+}
+
+/// The k-th start, as parts of the bounds: the design as drawn, then points that fill the bounds evenly.
+fn start(problem: &Problem<'_>, k: usize) -> Vec<f64> {
+    let drawn = problem.parts(&vec![0.0; problem.model.variables.len()]);
+    let dimension = |(d, drawn): (usize, f64)| match k {
+        0 => drawn,
+        _ if d >= MOST_DIMENSIONS => drawn,
+        _ => f64::from(sample(k as u32, d as u32, 0)),
+    };
+    drawn.into_iter().enumerate().map(dimension).collect()
+}
+
+/// The best of some searches.
+fn best(searches: &[Search]) -> Option<usize> {
+    let found = |k: &usize| searches[*k].found.as_ref();
+    let rank = |k: &usize| {
+        let judged = found(k).expect("only those that found something are ranked");
+        let kept = judged.violation <= KEPT;
+        (!kept, if kept { judged.objective } else { judged.violation })
+    };
+    let order = |a: &usize, b: &usize| {
+        let ([a, b], [x, y]) = ([rank(a).0, rank(b).0], [rank(a).1, rank(b).1]);
+        a.cmp(&b).then(x.total_cmp(&y))
+    };
+    let least = (0..searches.len()).filter(|k| found(k).is_some()).min_by(order)?;
+    let (exceeds, value) = rank(&least);
+    let as_good = |k: &usize| {
+        let same = |(e, v): (bool, f64)| e == exceeds && v - value <= THE_SAME * value.abs();
+        found(k).is_some() && same(rank(k))
+    };
+    let residual = |k: &usize| searches[*k].optimality.residual;
+    (0..searches.len()).filter(as_good).min_by(|a, b| residual(a).total_cmp(&residual(b)))
+}
+
+fn refused(design: Vec<f64>, Refusal { motion, why, .. }: Refusal) -> Refused {
+    Refused { design, motion, why }
+}
+
+fn judged(problem: &Problem<'_>, point: &Point, scales: &[f64]) -> Judged {
+    let goals = problem.goals.iter().zip(&point.goal_values).map(|(t, v)| (t.of, t.motion, *v));
+    let limits = problem.limits.iter().zip(&point.limit_values);
+    Judged {
+        design: point.design.clone(),
+        objective: point.objective(),
+        violation: point.violation(|k| scales[k]),
+        goals: goals.collect(),
+        limits: limits.map(|((limit, taken), v)| (*limit, taken.map(|t| t.motion), *v)).collect(),
+    }
+}
+
+/// What the numbers of every limit are compared with: how far the whole bounds of the strongest variable would take them, at first.
+fn limit_scales(problem: &Problem<'_>, point: &Point) -> Vec<f64> {
+    let mut scales = vec![0.0_f64; problem.limits.len()];
+    for row in &point.limits {
+        for (d, [low, high]) in row.d.iter().zip(&problem.bounds) {
+            scales[row.of] = scales[row.of].max((d * (high - low)).abs());
+        }
+    }
+    scales.into_iter().map(|s| if s > 0.0 { s } else { 1.0 }).collect()
+}
+
+/// One search from one start.
+fn search(
+    problem: &Problem<'_>,
+    start: &[f64],
+    tell: &mut dyn FnMut(&Iteration),
+    more: &(dyn Fn() -> bool + Sync),
+) -> Search {
+    let memory = Memory::new(problem, more);
+    let n = start.len();
+    // A start that cannot be judged is drawn nearer to the design as drawn, half of the way each time.
+    let drawn = problem.parts(&vec![0.0; problem.model.variables.len()]);
+    let nearer = |halvings: i32| -> Vec<f64> {
+        let part = 0.5_f64.powi(halvings);
+        drawn.iter().zip(start).map(|(drawn, start)| drawn + part * (start - drawn)).collect()
+    };
+    let tries = if start == drawn { 1 } else { HALVINGS };
+    let starts = (0..tries).map(nearer).take_while(|_| !memory.interrupted());
+    let judged_start =
+        |start: Vec<f64>| memory.at(&start, |found| found.as_ref().ok().cloned()).map(|p| (start, p));
+    let point = starts.into_iter().find_map(judged_start);
+    let mut search = Search {
+        start: problem.design(point.as_ref().map_or(start, |(start, _)| start)),
+        status: if memory.interrupted() { Status::Interrupted } else { Status::NoStart },
+        found: None,
+        optimality: Optimality { residual: f64::INFINITY, binding: Vec::new() },
+        iterations: Vec::new(),
+        work: vec![0.0; n],
+        refused: Vec::new(),
+        cost: Cost::default(),
+    };
+    if let Some((start, point)) = point {
+        let mut run = Descent::new(problem, &memory, &start, point);
+        run.go(&mut search, tell);
+        search.found = Some(judged(problem, &run.best, &run.scales));
+        search.optimality = run.optimality(&run.best);
+        search.status = run.status(&search);
+    }
+    search.refused = memory.refused.take().into_iter().map(|(design, why)| refused(design, why)).collect();
+    search.cost = memory.cost.take();
+    search
+}
+
+/// A search under way.
+struct Descent<'p> {
+    problem: &'p Problem<'p>,
+    memory: &'p Memory<'p>,
+    /// Of limits, and of the gradient at the start.
+    scales: Vec<f64>,
+    steepest: f64,
+    /// Where it stands, as parts of the bounds.
+    at: Vec<f64>,
+    here: Point,
+    best: Point,
+    ran_out: bool,
+}
+
+impl<'p> Descent<'p> {
+    fn new(problem: &'p Problem<'p>, memory: &'p Memory<'p>, start: &[f64], point: Point) -> Self {
+        let gradient = point.gradient(start.len());
+        let by_parts = gradient.iter().zip(&problem.bounds).map(|(g, [low, high])| (g * (high - low)).abs());
+        Self {
+            scales: limit_scales(problem, &point),
+            steepest: by_parts.fold(0.0, f64::max),
+            at: start.to_vec(),
+            here: point.clone(),
+            best: point,
+            ran_out: false,
+            problem,
+            memory,
+        }
+    }
+
+    fn optimality(&self, point: &Point) -> Optimality {
+        Optimality::of(self.problem, point, &self.scales, self.steepest)
+    }
+
+    fn violation(&self, point: &Point) -> f64 {
+        point.violation(|k| self.scales[k])
+    }
+
+    /// Whether one design is better than another: it keeps the limits, and serves the goals better.
+    fn is_better(&self, one: &Point, other: &Point) -> bool {
+        let [a, b] = [one, other].map(|p| self.violation(p));
+        match [a <= KEPT, b <= KEPT] {
+            [true, true] => {
+                let [a, b] = [one, other].map(Point::objective);
+                if (a - b).abs() <= THE_SAME * b.abs() {
+                    self.optimality(one).residual < self.optimality(other).residual
+                } else {
+                    a < b
+                }
+            }
+            [false, false] => a < b,
+            [kept, _] => kept,
+        }
+    }
+
+    /// The solver that is made for goals and limits like these, from where the search stands. Least squares come near to bounds from
+    /// within, slowly: what they leave is left to sequential programming.
+    fn solver(&self, squares: bool) -> Option<Box<dyn Solver + 'p>> {
+        if squares {
+            TrustRegion::new(self.memory, &self.at, &self.here).map(|s| Box::new(s) as Box<dyn Solver + 'p>)
+        } else {
+            let found = Sequential::new(self.memory, &self.at, &self.here, &self.scales);
+            found.map(|s| Box::new(s) as Box<dyn Solver + 'p>)
+        }
+    }
+
+    fn go(&mut self, search: &mut Search, tell: &mut dyn FnMut(&Iteration)) {
+        self.note(search, None, tell);
+        let squares = self.here.is_squares();
+        let mut idle = 0;
+        for run in 0..=AGAIN {
+            let stands = |run: &Self| {
+                (run.best.objective(), run.violation(&run.best), run.optimality(&run.best).residual)
+            };
+            let before = stands(self);
+            self.descend(run, search, tell);
+            let after = stands(self);
+            let less = before.0 - after.0 > THE_SAME * before.0.abs() || after.1 < before.1;
+            let gained = run == 0 || less || after.2 < NEARER * before.2;
+            let sharp = after.2 < SHARP && after.1 <= KEPT;
+            idle = if gained { 0 } else { idle + 1 };
+            // Where there are two solvers, what one cannot improve is left to the other.
+            let at_rest = idle > usize::from(squares);
+            if sharp || at_rest || self.ran_out || self.memory.interrupted() {
+                return;
+            }
+            // From the best that was found, with what is known of the curvature there.
+            self.here = self.best.clone();
+            self.at = self.problem.parts(&self.here.design);
+        }
+    }
+
+    /// Lets a solver run to its end; the first time, least squares only as long as they gain much.
+    fn descend(&mut self, run: usize, search: &mut Search, tell: &mut dyn FnMut(&Iteration)) {
+        let squares = run.is_multiple_of(2) && self.here.is_squares();
+        let Some(mut solver) = self.solver(squares) else { return };
+        loop {
+            if search.iterations.len() > self.problem.asked.iterations {
+                self.ran_out = true;
+                return;
+            }
+            if self.memory.interrupted() {
+                return;
+            }
+            let Some(at) = solver.step() else { return };
+            if at == self.at {
+                continue;
+            }
+            let Some(point) = self.memory.at(&at, |found| found.as_ref().ok().cloned()) else { return };
+            let before = (std::mem::replace(&mut self.at, at), std::mem::replace(&mut self.here, point));
+            if self.is_better(&self.here, &self.best) {
+                self.best = self.here.clone();
+            }
+            self.note(search, Some(before), tell);
+            let Some([former, last]) = search.iterations.last_chunk::<2>() else {
+                continue;
+            };
+            let change = (former.objective - last.objective).abs();
+            let still = change
+                <= if squares && run == 0 { HARDLY_LESS } else { NO_LESS } * last.objective.abs()
+                && last.violation <= KEPT;
+            let sharp = || last.violation <= KEPT && self.optimality(&self.here).residual < SHARP;
+            if last.step <= RESTING || still || sharp() {
+                return;
+            }
+        }
+    }
+
+    /// Notes an iteration, given where it came from.
+    fn note(&self, search: &mut Search, before: Option<(Vec<f64>, Point)>, tell: &mut dyn FnMut(&Iteration)) {
+        let n = self.at.len();
+        let mut step = 0.0;
+        let mut most = None;
+        if let Some((at, point)) = &before {
+            let [g0, g1] = [point, &self.here].map(|p| p.gradient(n));
+            for v in 0..n {
+                let part = (self.at[v] - at[v]).abs();
+                let variable = self.problem.asked.variables[v];
+                let by = self.here.design[variable.0] - point.design[variable.0];
+                // df = grad f . db,  by the trapezoidal rule
+                search.work[v] += 0.5 * (g0[v] + g1[v]) * by;
+                if part > step {
+                    (step, most) = (part, Some((variable, by)));
+                }
+            }
+        }
+        let iteration = Iteration {
+            number: search.iterations.len(),
+            objective: self.here.objective(),
+            violation: self.violation(&self.here),
+            designs: self.memory.cost.borrow().designs,
+            step,
+            most,
+        };
+        tell(&iteration);
+        search.iterations.push(iteration);
+    }
+
+    fn status(&self, search: &Search) -> Status {
+        let kept = self.violation(&self.best) <= KEPT;
+        match () {
+            () if self.memory.interrupted() => Status::Interrupted,
+            () if kept && search.optimality.residual <= OPTIMAL => Status::Optimal,
+            () if self.ran_out => Status::IterationLimit,
+            () if kept => Status::Stuck,
+            () => Status::LimitsNotKept,
+        }
+    }
+}

@@ -1,0 +1,144 @@
+//! How near a design is to satisfying the first-order conditions of an optimum, and what the bounds and limits that bind it are worth.
+//!
+//! ```text
+//! grad f + sum of lambda_i grad c_i = 0,    lambda_i >= 0,    lambda_i c_i = 0                   (Karush, Kuhn and Tucker)
+//! ```
+//!
+//! with goals that count by their greatest value among the `c`: of all that reach it, the weights sum to one. The multipliers are found by
+//! least squares over what binds, whatever the solver that led there.
+
+use crate::linalg::least_squares;
+
+use super::problem::{Point, Problem, Rows};
+
+/// What is nearer than this to its end, as a part of its scale, binds.
+const BINDS: f64 = 1e-7;
+
+/// What keeps a design from getting better.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Binding {
+    /// The lower bound of a searched variable, by its place in [`Optimization::variables`](crate::model::Optimization::variables).
+    Lower(usize),
+    /// Its upper bound.
+    Upper(usize),
+    /// The lower end of a limit, by its place in [`Optimization::limits`](crate::model::Optimization::limits), in a motion.
+    Least(usize, Option<usize>),
+    /// The upper end of a limit.
+    Most(usize, Option<usize>),
+}
+
+/// How near to optimal a design is.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Optimality {
+    /// What is left of the gradient that nothing which binds takes up, as a part of the gradient at the start: 0 at an optimum.
+    pub residual: f64,
+    /// What binds, and by how much the objective would get less if it gave way by one SI unit (its Lagrange multiplier).
+    pub binding: Vec<(Binding, f64)>,
+}
+
+/// A row that may bind: its gradient by the parts of the bounds, and what it is.
+struct Row {
+    d: Vec<f64>,
+    /// The group of peaks that it belongs to.
+    peak: Option<usize>,
+    equal: bool,
+    /// What it is, and how much one SI unit of it is in the unit of its gradient.
+    binding: Option<(Binding, f64)>,
+}
+
+/// The derivatives of those that are greatest.
+fn at_peak(rows: &Rows) -> Vec<&Vec<f64>> {
+    let most = rows.greatest();
+    let least = rows.values.iter().copied().fold(f64::INFINITY, f64::min);
+    let all = rows.values.iter().zip(&rows.d);
+    all.filter(|(value, _)| **value >= most - BINDS * (most - least)).map(|(_, d)| d).collect()
+}
+
+impl Optimality {
+    pub(super) fn of(problem: &Problem<'_>, point: &Point, limit_scales: &[f64], steepest: f64) -> Self {
+        let n = problem.bounds.len();
+        let spans: Vec<f64> = problem.bounds.iter().map(|[low, high]| high - low).collect();
+        let by_parts = |d: &[f64]| d.iter().zip(&spans).map(|(d, span)| d * span).collect::<Vec<f64>>();
+        let smooth = Point { peaks: Vec::new(), ..point.clone() };
+        let gradient = by_parts(&smooth.gradient(n));
+        let peaks = point.peaks.len();
+        let mut rows = Vec::new();
+        for (v, part) in problem.parts(&point.design).into_iter().enumerate() {
+            let unit = |sign: f64| (0..n).map(|i| if i == v { sign } else { 0.0 }).collect();
+            let mut push = |d: Vec<f64>, binding: Binding| {
+                rows.push(Row { d, peak: None, equal: false, binding: Some((binding, spans[v])) });
+            };
+            if part < BINDS {
+                push(unit(-1.0), Binding::Lower(v));
+            } else if part > 1.0 - BINDS {
+                push(unit(1.0), Binding::Upper(v));
+            }
+        }
+        for row in &point.limits {
+            let scale = limit_scales[row.of];
+            if row.equal || row.exceeds > -BINDS * scale {
+                let (limit, taken) = problem.limits[row.of];
+                let motion = taken.map(|t| t.motion);
+                let binding =
+                    if row.upper { Binding::Most(limit, motion) } else { Binding::Least(limit, motion) };
+                let mut push = |d: &[f64]| {
+                    let d = by_parts(d).iter().map(|d| d / scale).collect();
+                    rows.push(Row { d, peak: None, equal: row.equal, binding: Some((binding, scale)) });
+                };
+                let spread = point.spreads.iter().find(|s| row.spread && s.of == row.of);
+                // Of a range, every pair of a highest and a lowest place.
+                let [high, low] =
+                    spread.map_or([Vec::new(), Vec::new()], |s| [&s.ends[0], &s.ends[1]].map(at_peak));
+                for (a, b) in high.iter().flat_map(|a| low.iter().map(move |b| (a, b))) {
+                    push(&a.iter().zip(*b).map(|(a, b)| a + b).collect::<Vec<_>>());
+                }
+                if spread.is_none() {
+                    push(&row.d);
+                }
+            }
+        }
+        for (group, values) in point.peaks.iter().enumerate() {
+            for d in at_peak(values) {
+                rows.push(Row { d: by_parts(d), peak: Some(group), equal: false, binding: None });
+            }
+        }
+        // Rows whose multipliers come out negative do not bind: the most negative one is let go, until none is.
+        let mut active: Vec<usize> = (0..rows.len()).collect();
+        let weight = gradient.iter().fold(steepest, |most, g| most.max(g.abs())).max(f64::MIN_POSITIVE);
+        let solve = |active: &[usize]| {
+            let entry = |r: usize, c: usize| match (r < n, rows[active[c]].peak) {
+                (true, _) => rows[active[c]].d[r],
+                // The weights of the peaks of a group sum to one.
+                (false, Some(group)) if group == r - n => weight,
+                _ => 0.0,
+            };
+            let right = gradient.iter().map(|g| -g).chain((0..peaks).map(|_| weight)).collect();
+            least_squares([n + peaks, active.len()], entry, &[right]).swap_remove(0)
+        };
+        let multipliers = loop {
+            let multipliers = solve(&active);
+            let worst = (0..active.len())
+                .filter(|&c| !rows[active[c]].equal && multipliers[c] < 0.0)
+                .min_by(|a, b| multipliers[*a].total_cmp(&multipliers[*b]));
+            match worst {
+                Some(c) => drop(active.remove(c)),
+                None => break multipliers,
+            }
+        };
+        let left = |i: usize| {
+            let taken: f64 = active.iter().zip(&multipliers).map(|(row, m)| m * rows[*row].d[i]).sum();
+            (gradient[i] + taken).abs()
+        };
+        let residual = (0..n).map(left).fold(0.0, f64::max) / weight;
+        let mut binding: Vec<(Binding, f64)> = Vec::new();
+        for (row, multiplier) in active.iter().zip(multipliers) {
+            let Some((what, scale)) = rows[*row].binding else { continue };
+            // One limit may bind at several places of a curve at once.
+            match binding.iter_mut().find(|(known, _)| *known == what) {
+                Some((_, worth)) => *worth += multiplier / scale,
+                None => binding.push((what, multiplier / scale)),
+            }
+        }
+        Self { residual, binding }
+    }
+}

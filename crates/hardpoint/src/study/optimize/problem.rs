@@ -1,0 +1,541 @@
+//! What a search asks of a design: goals and limits as numbers, with their exact derivatives.
+
+use crate::model::{Limit, Limited, Model, Optimization, Reduction, VariableId};
+use crate::motion::Margin;
+use crate::number::Dual;
+use crate::study::evaluation::{Cost, Evaluated, Motions};
+use crate::study::metric::{MetricParts, misfits, peaks};
+
+/// A search for the best design: goals, limits, and the motions that they are taken of.
+#[derive(Clone, Debug)]
+pub(super) struct Problem<'m> {
+    /// The model with all of its cases.
+    pub model: &'m Model,
+    pub motions: &'m Motions<'m>,
+    pub asked: &'m Optimization,
+    /// Per searched variable, its bounds, in its unit.
+    pub bounds: Vec<[f64; 2]>,
+    /// What every goal is taken of: the goal, the motion, the metric's place there.
+    pub goals: Vec<Taken>,
+    /// The same of every limit, with no metric where it is on the design itself.
+    pub limits: Vec<(usize, Option<Taken>)>,
+}
+
+/// A metric in one motion.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Taken {
+    /// Which goal or limit it is taken for.
+    pub of: usize,
+    pub motion: usize,
+    /// Its place in the metrics of that motion.
+    pub metric: usize,
+}
+
+/// Numbers with their derivatives by the searched variables, in SI and per unit of each.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Rows {
+    pub values: Vec<f64>,
+    pub d: Vec<Vec<f64>>,
+}
+
+impl Rows {
+    pub fn push(&mut self, value: f64, d: Vec<f64>) {
+        self.values.push(value);
+        self.d.push(d);
+    }
+
+    pub fn greatest(&self) -> f64 {
+        self.values.iter().copied().fold(f64::NEG_INFINITY, f64::max)
+    }
+}
+
+/// A design as a search sees it.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Point {
+    /// The values of all variables of the model.
+    pub design: Vec<f64>,
+    /// Of goals that count by their squares: what is left, by weight.
+    pub misfits: Rows,
+    /// Of goals that count as they are, and depend smoothly on the design: by weight.
+    pub plain: Rows,
+    /// Of goals that count by their greatest value: all that may be it, by weight.
+    pub peaks: Vec<Rows>,
+    /// Per row of a limit: which limit it belongs to, and by how much it is exceeded, in its unit.
+    pub limits: Vec<LimitRow>,
+    /// Of limits on how far a curve may range: all that may be its ends.
+    pub spreads: Vec<Spread>,
+    /// Per goal taken, its value; per limit taken, likewise.
+    pub goal_values: Vec<f64>,
+    pub limit_values: Vec<f64>,
+}
+
+/// A limit, or one of several numbers that it holds for.
+#[derive(Clone, Debug)]
+pub(super) struct LimitRow {
+    /// Its place in [`Problem::limits`].
+    pub of: usize,
+    /// At most 0 where the limit is kept; 0 where it asks for one value.
+    pub exceeds: f64,
+    pub d: Vec<f64>,
+    pub equal: bool,
+    /// Whether it is the upper one.
+    pub upper: bool,
+    /// Whether there is a [`Spread`] of it, which says more of how it goes with the design.
+    pub spread: bool,
+}
+
+/// How far a curve ranges, and how far it may: by its greatest value less its least one.
+#[derive(Clone, Debug)]
+pub(super) struct Spread {
+    /// Its place in [`Problem::limits`].
+    pub of: usize,
+    pub most: f64,
+    /// All that may be the greatest value, and all that may be the least one, negative.
+    pub ends: [Rows; 2],
+}
+
+/// A design that cannot be judged.
+#[derive(Clone, Debug)]
+pub(super) struct Refusal {
+    /// In which motion.
+    pub motion: Option<usize>,
+    pub why: String,
+    /// Whether it was the caller who ended it.
+    pub interrupted: bool,
+}
+
+impl Point {
+    /// What is made small.
+    pub fn objective(&self) -> f64 {
+        let squares: f64 = self.misfits.values.iter().map(|r| r * r).sum();
+        let plain: f64 = self.plain.values.iter().sum();
+        squares + plain + self.peaks.iter().map(Rows::greatest).sum::<f64>()
+    }
+
+    /// Whether all goals are squares, and nothing but bounds limits the design.
+    pub fn is_squares(&self) -> bool {
+        self.plain.values.is_empty() && self.peaks.is_empty() && self.limits.is_empty()
+    }
+
+    /// Its derivative by every searched variable, where it has one.
+    pub fn gradient(&self, variables: usize) -> Vec<f64> {
+        let mut g = vec![0.0; variables];
+        let mut add = |by: f64, d: &[f64]| g.iter_mut().zip(d).for_each(|(g, d)| *g += by * d);
+        for (r, d) in self.misfits.values.iter().zip(&self.misfits.d) {
+            add(2.0 * r, d);
+        }
+        self.plain.d.iter().for_each(|d| add(1.0, d));
+        for rows in &self.peaks {
+            let most = rows.greatest();
+            if let Some(k) = rows.values.iter().position(|v| *v == most) {
+                add(1.0, &rows.d[k]);
+            }
+        }
+        g
+    }
+
+    /// By how much the limit is exceeded that is exceeded most, each as a part of its scale; 0 where all are kept.
+    pub fn violation(&self, scale: impl Fn(usize) -> f64) -> f64 {
+        let exceeds = |row: &LimitRow| if row.equal { row.exceeds.abs() } else { row.exceeds.max(0.0) };
+        self.limits.iter().map(|row| exceeds(row) / scale(row.of)).fold(0.0, f64::max)
+    }
+}
+
+impl<'m> Problem<'m> {
+    pub fn new(model: &'m Model, motions: &'m Motions<'m>, asked: &'m Optimization) -> Self {
+        let taken = |of: usize, metric: usize| {
+            let Model { metrics, .. } = model;
+            let wanted = &metrics[metric];
+            let motion = move |motion: usize| {
+                let metric = motions.model(motion).metrics.iter().position(|m| m.name == wanted.name)?;
+                Some(Taken { of, motion, metric })
+            };
+            (0..motions.len()).filter_map(motion)
+        };
+        let goals = asked.goals.iter().enumerate().flat_map(|(k, goal)| taken(k, goal.metric)).collect();
+        let limit = |(k, limit): (usize, &Limit)| match limit.of {
+            Limited::Metric(metric) => taken(k, metric).map(|t| (k, Some(t))).collect::<Vec<_>>(),
+            _ => vec![(k, None)],
+        };
+        let limits = asked.limits.iter().enumerate().flat_map(limit).collect();
+        let bounds = |v: &VariableId| model.variables[v.0].bounds.unwrap_or([0.0; 2]);
+        Self { bounds: asked.variables.iter().map(bounds).collect(), model, motions, asked, goals, limits }
+    }
+
+    /// The values of all variables where the searched ones are so far along their bounds, 0 at the lower one and 1 at the upper one.
+    pub fn design(&self, parts: &[f64]) -> Vec<f64> {
+        let mut design = vec![0.0; self.model.variables.len()];
+        for ((v, [low, high]), part) in self.asked.variables.iter().zip(&self.bounds).zip(parts) {
+            design[v.0] = (low + (high - low) * part).clamp(*low, *high);
+        }
+        design
+    }
+
+    /// How far along their bounds the searched variables are.
+    pub fn parts(&self, design: &[f64]) -> Vec<f64> {
+        let part = |(v, [low, high]): (&VariableId, &[f64; 2])| (design[v.0] - low) / (high - low);
+        self.asked.variables.iter().zip(&self.bounds).map(part).collect()
+    }
+
+    /// How a limit on the design itself goes.
+    fn of_design(&self, limit: &Limit, design: &[f64]) -> (f64, Vec<f64>) {
+        let map = self.motions.analyses()[0].design_map();
+        let derivative = |v: VariableId| {
+            let mut values: Vec<Dual> = design.iter().map(|b| Dual::constant(*b)).collect();
+            values[v.0] = Dual::variable(design[v.0]);
+            match limit.of {
+                Limited::Coordinate(h, axis) => map.places(&values)[h.0][axis],
+                Limited::Distance(a, b) => {
+                    let places = map.places(&values);
+                    (places[a.0] - places[b.0]).norm()
+                }
+                Limited::Length(joint) => map.geometry(&values).kept[joint.0].distance,
+                Limited::Metric(_) => unreachable!("it is taken of a motion"),
+            }
+        };
+        let found: Vec<Dual> = self.asked.variables.iter().map(|v| derivative(*v)).collect();
+        (found.first().map_or(f64::NAN, |x| x.v), found.iter().map(|x| x.d).collect())
+    }
+
+    /// A design, judged.
+    pub fn at(
+        &self,
+        design: Vec<f64>,
+        cost: &mut Cost,
+        more: &(dyn Fn() -> bool + Sync),
+    ) -> Result<Point, Refusal> {
+        let found = self.motions.evaluate(&design, cost, more).map_err(|rejected| Refusal {
+            motion: Some(rejected.motion),
+            interrupted: rejected.interrupted(),
+            why: rejected.why,
+        })?;
+        self.margins(&found)?;
+        let mut point = Point { design, ..Point::default() };
+        for taken in &self.goals {
+            self.add_goal(*taken, &found, &mut point)?;
+        }
+        for (place, (limit, taken)) in self.limits.iter().enumerate() {
+            self.add_limit(place, *limit, *taken, &found, &mut point)?;
+        }
+        Ok(point)
+    }
+
+    /// Whether all motions keep away from singular positions.
+    fn margins(&self, found: &Evaluated) -> Result<(), Refusal> {
+        let Some(limit) = self.asked.margin else { return Ok(()) };
+        for (motion, solution) in found.solutions.iter().enumerate() {
+            let Some((k, Margin { value, .. })) = solution.motion.least_margin() else { continue };
+            if !(value >= limit) {
+                let t = solution.motion.times[k];
+                let why = format!(
+                    "at t = {t:.6} s its margin to a singular position is {value:.3}, less than {limit}"
+                );
+                return Err(Refusal { motion: Some(motion), why, interrupted: false });
+            }
+        }
+        Ok(())
+    }
+
+    fn add_goal(&self, taken: Taken, found: &Evaluated, point: &mut Point) -> Result<(), Refusal> {
+        let goal = &self.asked.goals[taken.of];
+        let (value, d) = self.metric(taken, found)?;
+        point.goal_values.push(value);
+        let metric = &self.motions.model(taken.motion).metrics[taken.metric];
+        let by = |x: f64, d: &[f64]| (goal.weight * x, d.iter().map(|d| goal.weight * d).collect::<Vec<_>>());
+        let parts = |parts: Option<MetricParts>, sign: f64| {
+            let mut rows = Rows::default();
+            for (x, d) in parts.iter().flat_map(|p| p.values.iter().zip(&p.d)) {
+                let (x, d) = by(sign * x, &self.searched(d).iter().map(|d| sign * d).collect::<Vec<_>>());
+                rows.push(x, d);
+            }
+            rows
+        };
+        let (model, solution) = (self.motions.model(taken.motion), &found.solutions[taken.motion]);
+        let peaks = |sign: f64| parts(peaks(model, solution, metric, sign), sign);
+        match (&metric.take, goal.target) {
+            (Reduction::Rms(_), _) => {
+                let Rows { values, d } = parts(misfits(model, solution, metric), 1.0);
+                point.misfits.values.extend(values);
+                point.misfits.d.extend(d);
+            }
+            (_, Some(target)) => {
+                let (x, d) = by(value - target, &d);
+                point.misfits.push(x, d);
+            }
+            (Reduction::Greatest, None) if solution.motion.len() > 1 => point.peaks.push(peaks(1.0)),
+            (Reduction::Range, None) if solution.motion.len() > 1 => {
+                point.peaks.extend([peaks(1.0), peaks(-1.0)]);
+            }
+            _ => {
+                let (x, d) = by(value, &d);
+                point.plain.push(x, d);
+            }
+        }
+        self.finite(taken.motion, &metric.name, point)
+    }
+
+    fn add_limit(
+        &self,
+        place: usize,
+        limit: usize,
+        taken: Option<Taken>,
+        found: &Evaluated,
+        point: &mut Point,
+    ) -> Result<(), Refusal> {
+        let asked = &self.asked.limits[limit];
+        let (value, d) = match taken {
+            Some(taken) => self.metric(taken, found)?,
+            None => self.of_design(asked, &point.design),
+        };
+        point.limit_values.push(value);
+        let negative = |d: &[f64]| d.iter().map(|d| -d).collect::<Vec<_>>();
+        let mut push = |exceeds: f64, d: Vec<f64>, equal: bool, upper: bool| {
+            point.limits.push(LimitRow { of: place, exceeds, d, equal, upper, spread: false });
+        };
+        if let (Some(least), Some(most)) = (asked.least, asked.most)
+            && least == most
+        {
+            push(value - most, d, true, true);
+            return Ok(());
+        }
+        // What is greatest changes its place from design to design: all that may be it are kept within the limit.
+        let parts = |asked: Reduction, sign: f64| {
+            let taken = taken?;
+            let (model, solution) = (self.motions.model(taken.motion), &found.solutions[taken.motion]);
+            let metric = &model.metrics[taken.metric];
+            let has = metric.take == asked && solution.motion.len() > 1;
+            if has { peaks(model, solution, metric, sign) } else { None }
+        };
+        let all = |sign: f64| parts(if sign > 0.0 { Reduction::Greatest } else { Reduction::Least }, sign);
+        for (end, sign) in [(asked.most, 1.0), (asked.least, -1.0)] {
+            let Some(end) = end else { continue };
+            match all(sign) {
+                Some(parts) => {
+                    for (x, d) in parts.values.iter().zip(&parts.d) {
+                        let d = self.searched(d);
+                        let d = if sign < 0.0 { negative(&d) } else { d };
+                        push(sign * (x - end), d, false, sign > 0.0);
+                    }
+                }
+                None => {
+                    let d = if sign < 0.0 { negative(&d) } else { d.clone() };
+                    push(sign * (value - end), d, false, sign > 0.0);
+                }
+            }
+        }
+        let ends = parts(Reduction::Range, 1.0).zip(parts(Reduction::Range, -1.0));
+        if let (Some(most), Some((high, low))) = (asked.most, ends) {
+            let rows = |parts: MetricParts, sign: f64| Rows {
+                values: parts.values.iter().map(|x| sign * x).collect(),
+                d: parts.d.iter().map(|d| self.searched(d).iter().map(|d| sign * d).collect()).collect(),
+            };
+            point.spreads.push(Spread { of: place, most, ends: [rows(high, 1.0), rows(low, -1.0)] });
+            if let Some(row) = point.limits.iter_mut().rfind(|row| row.of == place && row.upper) {
+                row.spread = true;
+            }
+        }
+        Ok(())
+    }
+
+    /// A metric with its derivatives by the searched variables.
+    fn metric(&self, taken: Taken, found: &Evaluated) -> Result<(f64, Vec<f64>), Refusal> {
+        let value = &found.metrics[taken.motion][taken.metric];
+        let name = &self.motions.model(taken.motion).metrics[taken.metric].name;
+        let refusal = |why: String| Refusal { motion: Some(taken.motion), why, interrupted: false };
+        let Some(x) = value.value else {
+            return Err(refusal(format!(
+                "the motion does not reach the place where metric `{name}` is taken"
+            )));
+        };
+        let d = self.searched(&value.d);
+        if let Some(v) = d.iter().position(|d| !d.is_finite()) {
+            let variable = &self.model.variables[self.asked.variables[v].0].name;
+            return Err(refusal(format!(
+                "metric `{name}` has no derivative by `{variable}`, which the mechanism cannot follow"
+            )));
+        }
+        Ok((x, d))
+    }
+
+    fn searched(&self, d: &[f64]) -> Vec<f64> {
+        self.asked.variables.iter().map(|v| d[v.0]).collect()
+    }
+
+    /// That no number is none.
+    fn finite(&self, motion: usize, metric: &str, point: &Point) -> Result<(), Refusal> {
+        let Point { misfits, plain, peaks, .. } = point;
+        let mut all = [misfits, plain].into_iter().chain(peaks);
+        let finite = all.all(|rows| rows.values.iter().chain(rows.d.iter().flatten()).all(|x| x.is_finite()));
+        if finite {
+            return Ok(());
+        }
+        let why = format!("metric `{metric}` has parts without value or derivative");
+        Err(Refusal { motion: Some(motion), why, interrupted: false })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::draft::{Draft, JointDraft};
+    use crate::law::Law;
+    use crate::model::{CaseId, Goal, HardpointId, JointId, Metric, OutputSource, PointId};
+    use crate::topology::Formulation;
+
+    /// Central differences of a smooth function at this step, as a part of the bounds, hold to this part of the largest number:
+    /// `step^2` of the third derivative, and round-off by the step.
+    const STEP: f64 = 1e-5;
+    const AGREES: f64 = 1e-7;
+
+    /// A crank-rocker, its coupler with a point, its rod a distance joint, in two cases, and metrics of every kind.
+    fn four_bar() -> Model {
+        let rod = JointDraft::new("rod", "distance", ["crank", "rocker"]).at("B").at("C");
+        let mut draft = Draft::new("four-bar")
+            .hardpoint("A", [0.0, 0.0, 0.0])
+            .hardpoint("B", [0.04, 0.2, 0.0])
+            .hardpoint("C", [0.36, 0.6, 0.0])
+            .hardpoint("D", [0.5, 0.0, 0.0])
+            .bodies(["crank", "rocker"])
+            .revolute("bearing", ["ground", "crank"], "A", [0.0, 0.0, 1.0])
+            .revolute("pivot", ["ground", "rocker"], "D", [0.0, 0.0, 1.0])
+            .joint(rod)
+            .driver("motor", "bearing", Law::parse("2*t").unwrap())
+            .point("tip", "rocker", [0.3, 0.5, 0.0])
+            .times((0..=40).map(|k| 0.05 * f64::from(k)));
+        for (k, name) in ["A", "B", "C", "D"].into_iter().enumerate() {
+            draft = draft.variable_moving(name, name, [1.0, 0.3 * k as f64, 0.0]);
+        }
+        let mut model = Model::from_draft(&draft).unwrap();
+        model.variables.iter_mut().for_each(|v| v.bounds = Some([-0.02, 0.03]));
+        let of = |k: usize| OutputSource::Point(PointId(0), k);
+        let metric = |name: &str, take: Reduction, over: Option<usize>| Metric {
+            name: name.into(),
+            of: of(0),
+            over: over.map(of),
+            take,
+            window: None,
+            case: None,
+        };
+        model.metrics = vec![
+            metric("fit", Reduction::Rms(vec![[0.0, 0.2], [2.0, 0.4]]), None),
+            metric("path", Reduction::Rms(vec![[0.3, 0.2], [0.6, 0.4]]), Some(1)),
+            metric("most", Reduction::Greatest, None),
+            metric("least", Reduction::Least, None),
+            metric("range", Reduction::Range, None),
+            metric("mean", Reduction::Mean, None),
+            metric("at", Reduction::Value(0.73), None),
+            metric("slope", Reduction::Slope(0.31), None),
+        ];
+        let case = |name: &str, law: &str| crate::model::Case {
+            formulas: Vec::new(),
+            name: name.into(),
+            laws: vec![Some(Law::parse(law).unwrap())],
+            times: model.times.clone(),
+        };
+        model.cases = vec![case("slow", "t"), case("fast", "3*t")];
+        model.metrics[6].case = Some(CaseId(1));
+        model
+    }
+
+    fn everything() -> Optimization {
+        let goal =
+            |metric: usize, target: Option<f64>| Goal { name: String::new(), metric, target, weight: 1.7 };
+        let limit = |of: Limited, least: f64, most: f64| Limit {
+            name: String::new(),
+            of,
+            least: Some(least),
+            most: Some(most),
+        };
+        Optimization {
+            variables: (0..4).map(VariableId).collect(),
+            goals: (0..8)
+                .map(|k| goal(k, None))
+                .chain([goal(2, Some(0.1)), goal(4, Some(0.2)), goal(7, Some(0.3))])
+                .collect(),
+            limits: (2..8)
+                .map(|k| limit(Limited::Metric(k), -0.4, 0.7))
+                .chain([
+                    limit(Limited::Coordinate(HardpointId(1), 0), 0.0, 0.1),
+                    limit(Limited::Distance(HardpointId(1), HardpointId(3)), 0.1, 0.2),
+                    limit(Limited::Length(JointId(2)), 0.4, 0.4),
+                ])
+                .collect(),
+            margin: None,
+            starts: 1,
+            iterations: 1,
+        }
+    }
+
+    /// All numbers of a point with their derivatives.
+    fn numbers(point: &Point) -> Vec<(f64, Vec<f64>)> {
+        let rows = |rows: &Rows| rows.values.iter().copied().zip(rows.d.iter().cloned()).collect::<Vec<_>>();
+        let mut all = rows(&point.misfits);
+        all.extend(rows(&point.plain));
+        all.extend(point.peaks.iter().flat_map(rows));
+        all.extend(point.limits.iter().map(|l| (l.exceeds, l.d.clone())));
+        all.extend(point.spreads.iter().flat_map(|s| &s.ends).flat_map(rows));
+        all
+    }
+
+    #[test]
+    fn every_kind_of_goal_and_limit_has_the_derivatives_of_differences() {
+        let (model, asked) = (four_bar(), everything());
+        let models = model.motions();
+        let motions = Motions::of(&models, Formulation::Relative).unwrap();
+        let problem = Problem::new(&model, &motions, &asked);
+        let at = |parts: &[f64]| problem.at(problem.design(parts), &mut Cost::default(), &|| true).unwrap();
+        let parts = [0.37, 0.52, 0.61, 0.44];
+        let here = numbers(&at(&parts));
+        assert!(here.len() > 300, "{} numbers", here.len());
+        for v in 0..4 {
+            let moved = |sign: f64| {
+                let mut parts = parts;
+                parts[v] += sign * STEP;
+                numbers(&at(&parts))
+            };
+            let (more, less) = (moved(1.0), moved(-1.0));
+            assert_eq!([more.len(), less.len()], [here.len(); 2], "as many numbers for every design");
+            let span = 0.05;
+            let largest = here.iter().map(|(_, d)| (d[v] * span).abs()).fold(0.0, f64::max);
+            for (k, (_, d)) in here.iter().enumerate() {
+                let difference = (more[k].0 - less[k].0) / (2.0 * STEP);
+                let error = (d[v] * span - difference).abs();
+                assert!(
+                    error <= AGREES * largest.max(1.0),
+                    "number {k} by variable {v}: {} and {difference}",
+                    d[v] * span
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn the_parts_of_a_metric_are_all_of_it() {
+        let (model, asked) = (four_bar(), everything());
+        let models = model.motions();
+        let motions = Motions::of(&models, Formulation::Relative).unwrap();
+        let found = motions.evaluate(&[], &mut Cost::default(), &|| true).unwrap();
+        let (solution, one) = (&found.solutions[0], motions.model(0));
+        let value = |name: &str| {
+            let k = one.metrics.iter().position(|m| m.name == name).unwrap();
+            (&one.metrics[k], found.metrics[0][k].value.unwrap())
+        };
+        for name in ["fit", "path"] {
+            let (metric, rms) = value(name);
+            let parts = misfits(one, solution, metric).unwrap();
+            let sum: f64 = parts.values.iter().map(|r| r * r).sum();
+            assert!((sum.sqrt() - rms).abs() <= 4.0 * f64::EPSILON * rms, "{name}");
+        }
+        let (most, greatest) = value("most");
+        let parts = peaks(one, solution, most, 1.0).unwrap();
+        assert_eq!(parts.values.iter().copied().fold(f64::NEG_INFINITY, f64::max), greatest);
+        let (least, lowest) = value("least");
+        let parts = peaks(one, solution, least, -1.0).unwrap();
+        assert_eq!(parts.values.iter().copied().fold(f64::INFINITY, f64::min), lowest);
+        // A metric of one case is taken there alone, any other in each.
+        let problem = Problem::new(&model, &motions, &asked);
+        let taken =
+            |goal: usize| problem.goals.iter().filter(|t| t.of == goal).map(|t| t.motion).collect::<Vec<_>>();
+        assert_eq!((taken(0), taken(6)), (vec![0, 1], vec![1]));
+    }
+}

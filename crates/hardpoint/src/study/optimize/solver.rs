@@ -1,0 +1,467 @@
+//! The solvers of basin, given a problem of Hardpoint's: bounded least squares, and sequential programming under limits.
+//!
+//! Both see the design as parts of its bounds, so that every variable goes from 0 to 1.
+
+use std::cell::RefCell;
+use std::convert::Infallible;
+
+use basin::{
+    ConstraintSolveError, CostFunction, DenseMatrix, Executor, Gradient, Jacobian, PointState, Residual,
+    SelectedFirstOrderState, Slsqp, State, StepOutcome, Stepper, TrustRegionReflective,
+};
+
+use crate::study::evaluation::Cost;
+
+use super::problem::{LimitRow, Point, Problem, Refusal, Rows};
+
+/// The sequential solver takes objective and limits for settled where they change by less than this, with curvatures scaled to the order
+/// of one: the square of how near to stationary a design shall be. What round-off leaves of that is for the search to see.
+const SETTLED: f64 = 1e-30;
+/// So near to stationary, as a part of the gradient at the start, nothing is left to find.
+const STATIONARY: f64 = 1e-13;
+/// The least curvature that is assumed in any direction, as a part of the largest.
+const FLAT: f64 = 1e-4;
+/// A first step without any known curvature goes so far along the bounds.
+const FIRST_STEP: f64 = 0.1;
+
+/// What is found at a design.
+type Found = Result<Point, Refusal>;
+
+/// Designs that a search looked at: the last of them with their values, and all that were refused.
+pub(super) struct Memory<'p> {
+    pub problem: &'p Problem<'p>,
+    more: &'p (dyn Fn() -> bool + Sync),
+    recent: RefCell<Vec<(Vec<f64>, Found)>>,
+    pub refused: RefCell<Vec<(Vec<f64>, Refusal)>>,
+    pub cost: RefCell<Cost>,
+}
+
+/// So many designs are kept: a line search may go back a few.
+const KEPT: usize = 16;
+
+impl<'p> Memory<'p> {
+    pub fn new(problem: &'p Problem<'p>, more: &'p (dyn Fn() -> bool + Sync)) -> Self {
+        Self {
+            problem,
+            more,
+            recent: RefCell::default(),
+            refused: RefCell::default(),
+            cost: RefCell::default(),
+        }
+    }
+
+    /// What is found at a design, given as parts of the bounds.
+    pub fn at<X>(&self, parts: &[f64], of: impl FnOnce(&Found) -> X) -> X {
+        let known = self.recent.borrow().iter().any(|(x, _)| x == parts);
+        if !known {
+            let design = self.problem.design(parts);
+            let found = self.problem.at(design.clone(), &mut self.cost.borrow_mut(), self.more);
+            if let Err(refusal) = &found
+                && !refusal.interrupted
+            {
+                self.refused.borrow_mut().push((design, refusal.clone()));
+            }
+            let mut recent = self.recent.borrow_mut();
+            if recent.len() == KEPT {
+                drop(recent.remove(0));
+            }
+            recent.push((parts.to_vec(), found));
+        }
+        let recent = self.recent.borrow();
+        of(&recent.iter().find(|(x, _)| x == parts).expect("it was just put there").1)
+    }
+
+    pub fn interrupted(&self) -> bool {
+        !(self.more)()
+    }
+
+    /// How far every searched variable may go.
+    fn spans(&self) -> Vec<f64> {
+        self.problem.bounds.iter().map(|[low, high]| high - low).collect()
+    }
+}
+
+/// A solver under way.
+pub(super) trait Solver {
+    /// Does one iteration: where it stands then, as parts of the bounds; `None` where it has come to its end.
+    fn step(&mut self) -> Option<Vec<f64>>;
+}
+
+/// Goals that are all squares, and no limits but bounds.
+pub(super) struct LeastSquares<'p> {
+    memory: &'p Memory<'p>,
+    spans: Vec<f64>,
+    low: Vec<f64>,
+    high: Vec<f64>,
+    /// What residuals are multiplied by, so that they are of the order of one at the start.
+    scale: f64,
+    /// How many residuals there are.
+    rows: usize,
+}
+
+impl basin::Constraints for LeastSquares<'_> {
+    type Set = basin::ConstraintSet<basin::BoxBounds<Vec<f64>>>;
+    fn constraints(&self) -> <Self::Set as basin::ConstraintDescription>::Borrowed<'_> {
+        basin::ConstraintSet::new().with_bounds(basin::BoxBounds::new(Some(&self.low), Some(&self.high)))
+    }
+}
+
+impl CostFunction for LeastSquares<'_> {
+    type Param = Vec<f64>;
+    type Output = f64;
+    type Error = Infallible;
+    fn cost(&self, x: &Vec<f64>) -> Result<f64, Infallible> {
+        self.residual(x).map(|r| 0.5 * r.iter().map(|r| r * r).sum::<f64>())
+    }
+}
+
+impl Residual for LeastSquares<'_> {
+    type Param = Vec<f64>;
+    type Output = Vec<f64>;
+    type Error = Infallible;
+    fn residual(&self, x: &Vec<f64>) -> Result<Vec<f64>, Infallible> {
+        Ok(self.memory.at(x, |found| match found {
+            Ok(point) => point.misfits.values.iter().map(|r| self.scale * r).collect(),
+            // The solver steps back from what is no number.
+            Err(_) => vec![f64::NAN; self.rows],
+        }))
+    }
+}
+
+impl Jacobian for LeastSquares<'_> {
+    type Jacobian = DenseMatrix;
+    fn jacobian(&self, x: &Vec<f64>) -> Result<DenseMatrix, Infallible> {
+        let n = x.len();
+        Ok(self.memory.at(x, |found| match found {
+            Ok(point) => DenseMatrix::from_fn(point.misfits.values.len(), n, |row, v| {
+                self.scale * self.spans[v] * point.misfits.d[row][v]
+            }),
+            Err(_) => DenseMatrix::from_fn(self.rows, n, |_, _| f64::NAN),
+        }))
+    }
+}
+
+type Trf<'p> = Stepper<LeastSquares<'p>, PointState<Vec<f64>, f64>, TrustRegionReflective<f64>>;
+
+/// Bounded least squares by basin's trust region.
+pub(super) struct TrustRegion<'p>(Trf<'p>);
+
+impl<'p> TrustRegion<'p> {
+    pub fn new(memory: &'p Memory<'p>, start: &[f64], point: &Point) -> Option<Self> {
+        let spans = memory.spans();
+        let (low, high) = (vec![0.0; start.len()], vec![1.0; start.len()]);
+        let size = point.misfits.values.iter().map(|r| r * r).sum::<f64>().sqrt();
+        let scale = if size > 0.0 { 1.0 / size } else { 1.0 };
+        let rows = point.misfits.values.len();
+        let problem = LeastSquares { memory, spans, low, high, scale, rows };
+        let solver = TrustRegionReflective::new().with_absolute_scaled_gradient_tolerance(STATIONARY);
+        let run = Executor::new(problem, solver, PointState::new(start.to_vec()));
+        run.into_stepper().ok().map(Self)
+    }
+}
+
+impl Solver for TrustRegion<'_> {
+    fn step(&mut self) -> Option<Vec<f64>> {
+        next(&mut self.0)
+    }
+}
+
+/// One iteration of any of basin's solvers; steps that end no iteration are gone through.
+fn next<P, S, So>(stepper: &mut Stepper<P, S, So>) -> Option<Vec<f64>>
+where
+    S: State<Param = Vec<f64>, Float = f64> + basin::CountsMirror,
+    So: basin::Solver<P, S>,
+{
+    let before = stepper.iter();
+    loop {
+        match stepper.step() {
+            Ok(StepOutcome::Continue) if stepper.iter() == before => (),
+            Ok(StepOutcome::Continue) => return Some(stepper.state().param().clone()),
+            Ok(StepOutcome::Stopped(_)) if stepper.iter() > before => {
+                return Some(stepper.state().param().clone());
+            }
+            _ => return None,
+        }
+    }
+}
+
+/// Any goals and limits, in coordinates in which the squares among the goals are about as curved in every direction.
+///
+/// ```text
+/// x = x0 + T z,   T = (2 J^T J + mu I)^-1/2        J: the misfits by x at the start
+///
+/// min  squares(x) + plain(x) + sum of t    so that    peak_k(x) <= t,  limits(x) <= 0,  0 <= x <= 1,
+///                                                     high_k(x) <= u,  -low_k(x) <= v,  u + v <= most
+/// ```
+///
+/// The last line is a limit on how far a curve ranges.
+pub(super) struct Programming<'p> {
+    memory: &'p Memory<'p>,
+    spans: Vec<f64>,
+    x0: Vec<f64>,
+    /// Columns of T.
+    t: Vec<Vec<f64>>,
+    /// What the objective, and every limit, is multiplied by.
+    scale: f64,
+    limit_scales: Vec<f64>,
+    /// How many groups of peaks and limited ranges there are, and how many rows of each kind: the same for every design.
+    peaks: usize,
+    spreads: usize,
+    equal: usize,
+    inequal: usize,
+}
+
+impl Programming<'_> {
+    fn searched(&self) -> usize {
+        self.x0.len()
+    }
+
+    fn x(&self, y: &[f64]) -> Vec<f64> {
+        let n = self.searched();
+        let along = |i: usize| (0..n).map(|j| self.t[j][i] * y[j]).sum::<f64>();
+        (0..n).map(|i| (self.x0[i] + along(i)).clamp(0.0, 1.0)).collect()
+    }
+
+    /// A gradient by the parts of the bounds, from one by the variables.
+    fn by_parts(&self, d: &[f64]) -> Vec<f64> {
+        d.iter().zip(&self.spans).map(|(d, span)| d * span).collect()
+    }
+
+    /// A gradient by z, and zeros for the peaks.
+    fn by_z(&self, by_parts: &[f64]) -> Vec<f64> {
+        let column = |t: &Vec<f64>| t.iter().zip(by_parts).map(|(t, g)| t * g).sum::<f64>();
+        self.t.iter().map(column).chain(self.none()).collect()
+    }
+
+    /// Zeros for t, u and v.
+    fn none(&self) -> impl Iterator<Item = f64> {
+        std::iter::repeat_n(0.0, self.peaks + 2 * self.spreads)
+    }
+
+    /// The place of u of a limited range; v is the next.
+    fn ends(&self, spread: usize) -> usize {
+        self.searched() + self.peaks + 2 * spread
+    }
+
+    /// The inequalities `c <= 0`, in order: lower bounds, upper bounds, limits, peaks, limited ranges.
+    fn inequalities(&self, y: &[f64], point: &Point) -> Vec<f64> {
+        let n = self.searched();
+        let along = |i: usize| self.x0[i] + (0..n).map(|j| self.t[j][i] * y[j]).sum::<f64>();
+        let mut c: Vec<f64> = (0..n).map(|i| -along(i)).chain((0..n).map(|i| along(i) - 1.0)).collect();
+        for row in point.limits.iter().filter(|row| !row.equal && !row.spread) {
+            c.push(self.limit_scales[row.of] * row.exceeds);
+        }
+        for (group, rows) in point.peaks.iter().enumerate() {
+            c.extend(rows.values.iter().map(|v| self.scale * v - y[n + group]));
+        }
+        for (k, spread) in point.spreads.iter().enumerate() {
+            let (scale, ends) = (self.limit_scales[spread.of], self.ends(k));
+            for (end, rows) in spread.ends.iter().enumerate() {
+                c.extend(rows.values.iter().map(|v| scale * v - y[ends + end]));
+            }
+            c.push(y[ends] + y[ends + 1] - scale * spread.most);
+        }
+        c
+    }
+}
+
+impl basin::Constraints for Programming<'_> {
+    type Set = basin::ConstraintSet<
+        basin::NoBounds,
+        basin::NoLinearConstraints,
+        basin::NonlinearBlocks<basin::NonlinearBlock, basin::NonlinearBlock>,
+    >;
+    fn constraints(&self) -> <Self::Set as basin::ConstraintDescription>::Borrowed<'_> {
+        basin::ConstraintSet::new()
+            .with_nonlinear_equalities(self.equal)
+            .with_nonlinear_inequalities(self.inequal)
+    }
+}
+
+impl CostFunction for Programming<'_> {
+    type Param = Vec<f64>;
+    type Output = f64;
+    type Error = Infallible;
+    fn cost(&self, y: &Vec<f64>) -> Result<f64, Infallible> {
+        let n = self.searched();
+        Ok(self.memory.at(&self.x(y), |found| match found {
+            Ok(Point { misfits, plain, .. }) => {
+                let squares: f64 = misfits.values.iter().map(|r| r * r).sum();
+                let plain: f64 = plain.values.iter().sum();
+                self.scale * (squares + plain) + y[n..n + self.peaks].iter().sum::<f64>()
+            }
+            Err(_) => f64::INFINITY,
+        }))
+    }
+}
+
+impl Gradient for Programming<'_> {
+    type Gradient = Vec<f64>;
+    fn gradient(&self, y: &Vec<f64>) -> Result<Vec<f64>, Infallible> {
+        let n = self.searched();
+        Ok(self.memory.at(&self.x(y), |found| match found {
+            Ok(point) => {
+                let smooth = Point { peaks: Vec::new(), ..point.clone() };
+                let mut g = self.by_z(&self.by_parts(&smooth.gradient(n)));
+                g.iter_mut().for_each(|g| *g *= self.scale);
+                g[n..n + self.peaks].fill(1.0);
+                g
+            }
+            Err(_) => vec![f64::NAN; y.len()],
+        }))
+    }
+}
+
+impl basin::NonlinearInequalityValues for Programming<'_> {
+    type Param = Vec<f64>;
+    type Values = Vec<f64>;
+    type Error = Infallible;
+    fn nonlinear_inequalities(&self, y: &Vec<f64>) -> Result<Vec<f64>, ConstraintSolveError<Infallible>> {
+        Ok(self.memory.at(&self.x(y), |found| match found {
+            Ok(point) => self.inequalities(y, point),
+            Err(_) => vec![f64::NAN; self.inequal],
+        }))
+    }
+}
+
+impl basin::NonlinearEqualityValues for Programming<'_> {
+    type Param = Vec<f64>;
+    type Values = Vec<f64>;
+    type Error = Infallible;
+    fn nonlinear_equalities(&self, y: &Vec<f64>) -> Result<Vec<f64>, ConstraintSolveError<Infallible>> {
+        Ok(self.memory.at(&self.x(y), |found| match found {
+            Ok(point) => {
+                let rows = point.limits.iter().filter(|row| row.equal);
+                rows.map(|row| self.limit_scales[row.of] * row.exceeds).collect()
+            }
+            Err(_) => vec![f64::NAN; self.equal],
+        }))
+    }
+}
+
+impl basin::ConstraintJacobian for Programming<'_> {
+    type Param = Vec<f64>;
+    type Jacobian = DenseMatrix;
+    type Error = Infallible;
+    fn constraint_jacobian(&self, y: &Vec<f64>) -> Result<DenseMatrix, ConstraintSolveError<Infallible>> {
+        let n = self.searched();
+        Ok(self.memory.at(&self.x(y), |found| {
+            let Ok(point) = found else {
+                return DenseMatrix::from_fn(self.equal + self.inequal, y.len(), |_, _| f64::NAN);
+            };
+            let limit = |row: &LimitRow| {
+                let scale = self.limit_scales[row.of];
+                let d: Vec<f64> = self.by_parts(&row.d).iter().map(|d| scale * d).collect();
+                self.by_z(&d)
+            };
+            let mut rows: Vec<Vec<f64>> = point.limits.iter().filter(|r| r.equal).map(limit).collect();
+            for sign in [-1.0, 1.0] {
+                for i in 0..n {
+                    let by_z = (0..n).map(|j| sign * self.t[j][i]);
+                    rows.push(by_z.chain(self.none()).collect());
+                }
+            }
+            rows.extend(point.limits.iter().filter(|r| !r.equal && !r.spread).map(limit));
+            let below = |scale: f64, all: &Rows, end: usize| -> Vec<Vec<f64>> {
+                let row = |d: &Vec<f64>| {
+                    let d: Vec<f64> = self.by_parts(d).iter().map(|d| scale * d).collect();
+                    let mut row = self.by_z(&d);
+                    row[end] = -1.0;
+                    row
+                };
+                all.d.iter().map(row).collect()
+            };
+            for (k, peaks) in point.peaks.iter().enumerate() {
+                rows.extend(below(self.scale, peaks, n + k));
+            }
+            for (k, spread) in point.spreads.iter().enumerate() {
+                let (scale, ends) = (self.limit_scales[spread.of], self.ends(k));
+                for (end, all) in spread.ends.iter().enumerate() {
+                    rows.extend(below(scale, all, ends + end));
+                }
+                let mut row = vec![0.0; y.len()];
+                row[ends..ends + 2].fill(1.0);
+                rows.push(row);
+            }
+            DenseMatrix::from_fn(rows.len(), y.len(), |row, v| rows[row][v])
+        }))
+    }
+}
+
+type Sqp<'p> = Stepper<Programming<'p>, SelectedFirstOrderState<Vec<f64>, f64>, Slsqp<f64>>;
+
+/// Sequential programming by basin's SLSQP.
+pub(super) struct Sequential<'p> {
+    stepper: Sqp<'p>,
+    /// The same map from z to x that the problem has, which the stepper owns.
+    x0: Vec<f64>,
+    t: Vec<Vec<f64>>,
+}
+
+impl<'p> Sequential<'p> {
+    pub fn new(memory: &'p Memory<'p>, start: &[f64], point: &Point, limit_scales: &[f64]) -> Option<Self> {
+        let (n, spans) = (start.len(), memory.spans());
+        let by_parts = |d: &[f64]| d.iter().zip(&spans).map(|(d, span)| d * span).collect::<Vec<f64>>();
+        let gradient = by_parts(&point.gradient(n));
+        let steepest = gradient.iter().fold(0.0, |most: f64, g| most.max(g.abs()));
+        let rows: Vec<Vec<f64>> = point.misfits.d.iter().map(|d| by_parts(d)).collect();
+        // 2 J^T J
+        let curved = |i: usize, j: usize| 2.0 * rows.iter().map(|d| d[i] * d[j]).sum::<f64>();
+        let most = (0..n).map(|i| curved(i, i)).fold(0.0, f64::max);
+        let scale = match (most > 0.0, steepest > 0.0) {
+            (true, _) => 1.0 / most,
+            (false, true) => FIRST_STEP / steepest,
+            _ => 1.0,
+        };
+        let t = match most > 0.0 {
+            true => inverse_root(n, |i, j| scale * curved(i, j) + if i == j { FLAT } else { 0.0 }),
+            false => (0..n).map(|j| (0..n).map(|i| f64::from(u8::from(i == j))).collect()).collect(),
+        };
+        let limit_scales: Vec<f64> = limit_scales.iter().map(|s| 1.0 / s).collect();
+        let mut y = vec![0.0; n];
+        y.extend(point.peaks.iter().map(|rows| scale * rows.greatest()));
+        for spread in &point.spreads {
+            y.extend(spread.ends.iter().map(|rows| limit_scales[spread.of] * rows.greatest()));
+        }
+        let equal = point.limits.iter().filter(|row| row.equal).count();
+        let (x0, t_too) = (start.to_vec(), t.clone());
+        let (peaks, spreads) = (point.peaks.len(), point.spreads.len());
+        let mut problem =
+            Programming { memory, spans, x0, t, scale, limit_scales, peaks, spreads, equal, inequal: 0 };
+        problem.inequal = problem.inequalities(&y, point).len();
+        let solver = Slsqp::new().with_absolute_accuracy_tolerance(SETTLED);
+        let run = Executor::new(problem, solver, SelectedFirstOrderState::new(y));
+        let stepper = run.into_stepper().ok()?;
+        Some(Self { stepper, x0: start.to_vec(), t: t_too })
+    }
+}
+
+impl Solver for Sequential<'_> {
+    fn step(&mut self) -> Option<Vec<f64>> {
+        let y = next(&mut self.stepper)?;
+        let n = self.x0.len();
+        let along = |i: usize| (0..n).map(|j| self.t[j][i] * y[j]).sum::<f64>();
+        Some((0..n).map(|i| (self.x0[i] + along(i)).clamp(0.0, 1.0)).collect())
+    }
+}
+
+/// The columns of `L^-T` for a positive definite matrix `L L^T`.
+fn inverse_root(n: usize, entry: impl Fn(usize, usize) -> f64) -> Vec<Vec<f64>> {
+    let mut l = vec![vec![0.0; n]; n];
+    for i in 0..n {
+        for j in 0..=i {
+            let rest = entry(i, j) - (0..j).map(|k| l[i][k] * l[j][k]).sum::<f64>();
+            l[i][j] = if i == j { rest.max(FLAT * FLAT).sqrt() } else { rest / l[j][j] };
+        }
+    }
+    // L^T t_j = e_j
+    let column = |j: usize| {
+        let mut t = vec![0.0; n];
+        for i in (0..n).rev() {
+            let known: f64 = (i + 1..n).map(|k| l[k][i] * t[k]).sum();
+            t[i] = (f64::from(u8::from(i == j)) - known) / l[i][i];
+        }
+        t
+    };
+    (0..n).map(column).collect()
+}
