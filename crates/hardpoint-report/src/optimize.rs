@@ -330,6 +330,15 @@ impl OptimizeFacts {
             seconds: 0.0,
         };
         facts.message = facts.sentence(status, found);
+        let begun = found.searches.iter().filter(|s| s.status != Status::Interrupted).count();
+        if begun < found.searches.len() && status != Status::Interrupted {
+            let all = found.searches.len();
+            facts.message = format!(
+                "interrupted with {begun} of {all} starts searched; the best so far: {}",
+                facts.message
+            );
+            facts.status = status_word(Status::Interrupted);
+        }
         facts
     }
 

@@ -80,6 +80,25 @@ fn it_is_found_from_everywhere_within_the_bounds_on_any_number_of_threads() {
     assert_eq!(ends(&found), ends(&again));
 }
 
+#[test]
+fn a_search_that_is_interrupted_keeps_the_best_so_far() {
+    let file = model("four_bar_inverse.toml");
+    let models = file.model.motions();
+    let motions = Motions::of(&models, Formulation::Relative).unwrap();
+    let mut told = 0;
+    let mut progress = |_: usize, _: Progress<'_>| {
+        told += 1;
+        if told < 4 { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
+    };
+    let threads = NonZero::<usize>::MIN;
+    let searching = Searching { progress: &mut progress, more: &|| true, threads };
+    let asked = Optimization { starts: 3, ..asked(&file) };
+    let found = optimize(&file.model, &motions, &asked, searching);
+    assert!(found.searches.iter().all(|s| s.status == Status::Interrupted));
+    let judged = best(&found).found.as_ref().unwrap();
+    assert!(judged.objective < 0.1 * found.drawn.unwrap().objective);
+}
+
 /// Between what is found and the target, over the whole travel, rad.
 const WITHIN: f64 = 0.02 * std::f64::consts::PI / 180.0;
 
@@ -106,6 +125,20 @@ fn the_strut_gets_its_toe_curve_and_steers_no_worse() {
         let off = measured.value(k, toe)[0] - wanted;
         assert!(off.abs() <= WITHIN, "{off} rad at step {k}");
     }
+}
+
+/// What is left of the published toe curve, 0.77 deg to either side, at most: root mean square, rad.
+const FOLLOWED: f64 = 0.003 * std::f64::consts::PI / 180.0;
+
+#[test]
+fn the_front_axle_gets_the_toe_curve_of_a_published_example() {
+    let file = model("studies/front_axle_toe.toml");
+    let found = searched(&file, &asked(&file));
+    let search = best(&found);
+    assert_eq!(search.status, Status::Optimal);
+    assert!(search.optimality.residual <= OPTIMAL, "{:e}", search.optimality.residual);
+    let [drawn, left] = [found.drawn.as_ref(), search.found.as_ref()].map(|j| j.unwrap().goals[0].2);
+    assert!(drawn > 500.0 * FOLLOWED && left < FOLLOWED, "{drawn} {left}");
 }
 
 /// A limit on what a goal of the strut is taken of, in SI.

@@ -175,6 +175,11 @@ pub fn optimize(
 ) -> Optimized {
     let problem = Problem::new(model, motions, asked);
     let Searching { progress, more, threads } = searching;
+    let mut cost = Cost::default();
+    let (drawn, drawn_refused) = match problem.at(vec![0.0; model.variables.len()], &mut cost, more) {
+        Ok(point) => (Some(judged(&problem, &point, &limit_scales(&problem, &point))), None),
+        Err(refusal) => (None, Some(refused(vec![0.0; model.variables.len()], refusal))),
+    };
     let starts: Vec<Vec<f64>> = (0..asked.starts.max(1)).map(|k| start(&problem, k)).collect();
     let (next, ended) = (AtomicUsize::new(0), std::sync::atomic::AtomicBool::new(false));
     let progress = Mutex::new(progress);
@@ -200,12 +205,7 @@ pub fn optimize(
     let searches = searches.into_inner().expect("no search has panicked");
     let searches: Vec<Search> =
         searches.into_iter().map(|s| s.expect("every start was searched from")).collect();
-    let mut cost = Cost::default();
     searches.iter().for_each(|s| cost += s.cost);
-    let (drawn, drawn_refused) = match problem.at(vec![0.0; model.variables.len()], &mut cost, &more) {
-        Ok(point) => (Some(judged(&problem, &point, &limit_scales(&problem, &point))), None),
-        Err(refusal) => (None, Some(refused(vec![0.0; model.variables.len()], refusal))),
-    };
     Optimized { drawn, drawn_refused, best: best(&searches), searches, cost }
 }
 
