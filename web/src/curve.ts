@@ -60,21 +60,25 @@ const TURNS = 1e-4
 
 /** Below this part of its largest, a rate is that of a motion about to turn. */
 const TURNING = 0.25
+/** A rate that will be less than this part of its largest where the abscissa turns, turns with it: what is left bends on the way. */
+const WITH_IT = 0.1
 
 /**
  * How much `y` changes per change of `x` along the motion, from the rates and accelerations of both: where `x` turns back, and
  * its rate with that of `y` is nothing, from the accelerations. NaN where neither tells; and where `x` is about to turn while `y` goes
- * on, steeper than anywhere else: there `y` does not follow `x`, and what it is at a certain `x` says nothing.
+ * on: there `y` does not follow `x`, and what it is at a certain `x` says nothing.
  */
 export function slope(y: readonly [Curve, Curve, Curve], x: readonly [Curve, Curve, Curve]): Curve {
-  const [fastest, steepest] = [peak(x[1]), peak(x[2])]
-  const found = Float32Array.from(x[0], (_, k) => {
-    if (Math.abs(x[1][k]) > fastest * TURNS) return y[1][k] / x[1][k]
-    return Math.abs(x[2][k]) > steepest * TURNS && Math.abs(y[1][k]) <= peak(y[1]) * TURNS ? y[2][k] / x[2][k] : NaN
+  const [fastest, steepest, liveliest] = [peak(x[1]), peak(x[2]), peak(y[1])]
+  return Float32Array.from(x[0], (_, k) => {
+    if (Math.abs(x[1][k]) <= fastest * TURNS) {
+      return Math.abs(x[2][k]) > steepest * TURNS && Math.abs(y[1][k]) <= liveliest * TURNS ? y[2][k] / x[2][k] : NaN
+    }
+    // Where x. is nothing, y. will be  y. - y.. x. / x..
+    const left = y[1][k] - (y[2][k] * x[1][k]) / x[2][k]
+    const goesOn = Math.abs(x[1][k]) < fastest * TURNING && Math.abs(left) > liveliest * WITH_IT
+    return goesOn ? NaN : y[1][k] / x[1][k]
   })
-  const turning = (k: number) => Math.abs(x[1][k]) < fastest * TURNING
-  const usual = peak(found.filter((_, k) => !turning(k)))
-  return found.map((value, k) => (turning(k) && Math.abs(value) > usual ? NaN : value))
 }
 
 /** A sensitivity at a fixed abscissa rather than a fixed time: `dy - slope dx`. */

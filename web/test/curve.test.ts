@@ -67,6 +67,17 @@ test('a slope over an abscissa that turns back follows from the accelerations th
   expect(slope(y, [of(() => 1), of(() => 0), of(() => 0)])[1]).toBeNaN()
 })
 
+test('where the abscissa is about to turn and the other goes on, there is a gap in place of a spike', () => {
+  // x = sin t, y = t: the slope 1 / cos t grows beyond all bounds.
+  const times = Array.from({ length: 200 }, (_, k) => k * 0.016)
+  const of = (f: (t: number) => number) => Float32Array.from(times, f)
+  const found = slope([of((t) => t), of(() => 1), of(() => 0)], [of(Math.sin), of(Math.cos), of((t) => -Math.sin(t))])
+  times.forEach((t, k) => {
+    if (Math.abs(Math.cos(t)) < 0.25) expect(found[k]).toBeNaN()
+    else expect(found[k] * Math.cos(t)).toBeCloseTo(1, 5)
+  })
+})
+
 test('a sensitivity at a fixed abscissa leaves out what the abscissa moves', () => {
   // y = (x - b)^2 and x = t + b: at fixed t nothing depends on b, at fixed x dy/db = -2 (x - b).
   expect([...atFixedAbscissa(curve(0, 0), curve(1, 1), curve(0, 4))]).toEqual([0, -4])
