@@ -104,6 +104,10 @@ over: number | null,
  */
 designs: Array<Design>,
 /**
+ * Measures over grids of two drivers.
+ */
+maps: Array<GridMap>,
+/**
  * How far from singular the mechanism is over time, if anything is solved for.
  */
 margin: Margin | null,
@@ -572,6 +576,82 @@ rate: Curve,
  * Its second time derivative.
  */
 accel: Curve, };
+
+/**
+ * A case that sweeps two drivers over a grid. Tables have a row for each place of the second driver, with a number for each of the first.
+ */
+export type GridMap = {
+/**
+ * The case's name.
+ */
+name: string,
+/**
+ * The two drivers.
+ */
+drivers: [GridDriver, GridDriver],
+/**
+ * How many positions were reached, and why others were not.
+ */
+note: string,
+/**
+ * What is measured.
+ */
+quantities: Array<GridQuantity>, };
+
+/**
+ * A driver of a grid.
+ */
+export type GridDriver = {
+/**
+ * Its name.
+ */
+name: string,
+/**
+ * Its unit.
+ */
+unit: string,
+/**
+ * Where it stands, increasing.
+ */
+places: Array<number>, };
+
+/**
+ * A measure over a grid.
+ */
+export type GridQuantity = {
+/**
+ * Its name.
+ */
+name: string,
+/**
+ * Its unit.
+ */
+unit: string,
+/**
+ * Its values, row by row.
+ */
+values: Curve,
+/**
+ * Its derivatives by design variables; none where they would be too many for a page.
+ */
+sensitivities: Array<GridSensitivity>, };
+
+/**
+ * The derivative of a measure by a design variable over a grid.
+ */
+export type GridSensitivity = {
+/**
+ * The variable.
+ */
+variable: string,
+/**
+ * The derivative's unit.
+ */
+unit: string,
+/**
+ * The derivatives, row by row.
+ */
+values: Curve, };
 
 /**
  * How far the mechanism is from singular: 1 is best, 0 is a singular position.

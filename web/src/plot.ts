@@ -1,17 +1,28 @@
 import uPlot from 'uplot'
 import 'uplot/dist/uPlot.min.css'
-import { css, el, keepFocus, prose } from './dom'
+import { css, el, keepFocus, prose, svg } from './dom'
 import { number, pretty, titled } from './format'
 import { decades, nearestStep, padded, positive, stepAt, valueAt, type Curve, withGaps } from './curve'
+import { extent } from './export/axis'
 import type { State } from './state'
+import { atLeast, between, moved, ordinates, type Part, scaled, within, Zoom } from './zoom'
 
-/** What a plot is at least high, and on paper wide and high, px. */
+/** What a plot is wide before it has a place, at least high, and on paper wide and high, px. */
+const USUAL = 400
 const LEAST = 120
 const PAPER = { width: 330, height: 190 }
 /** Wide enough for `−1.234e-5`, and the same for all plots, so that their time axes line up. */
 const AXIS = 66
 /** With more powers of ten than this along an axis, every other one has a number. */
 const MOST_POWERS = 6
+
+/** A magnifying glass with a plus. */
+const GLASS = 'M6.5 2a4.5 4.5 0 1 0 0 9a4.5 4.5 0 1 0 0 -9M10 10l4 4M4.5 6.5h4M6.5 4.5v4'
+/** A press that moves by less than this is a click, px. */
+const CLICK = 4
+/** A step of the zoom, and of moving what is seen, as parts of what is seen. */
+const CLOSER = 0.5
+const ASIDE = 0.25
 
 export interface Line {
   label: string
@@ -33,6 +44,8 @@ export interface Content {
   logarithmic?: boolean
   /** What the curves are drawn over instead of time. */
   over?: { label: string; unit: string; curve: Curve }
+  /** What is seen of the abscissa; all of it where there is none. */
+  part?: Part
   caption?: string
   /** What is wanted of the values: at one abscissa, or everywhere. */
   wanted?: { low: number | null; high: number | null; at?: number }[]
@@ -42,7 +55,8 @@ export interface Content {
 
 /**
  * Curves over time or over another quantity, with a legend above that reads the values under the pointer, or at the moment shown;
- * dragging moves the time.
+ * dragging moves the time. Dragging along the horizontal axis, or with Shift, shows that part of the abscissa: of time in all plots
+ * that share a `Zoom`, of another quantity in this one.
  */
 export class Plot {
   readonly element: HTMLElement
@@ -58,16 +72,33 @@ export class Plot {
   #uplot?: uPlot
   #readings: { curve: Curve; output: HTMLElement }[] = []
   #pointed?: number
+  #band = el('div', { class: 'band', hidden: true })
+  /** Where a drag began that chooses the part that is seen, px. */
+  #from?: number
+  /** The left end of the curves on the screen, px; asked for once where the pointer comes in. */
+  #left?: number
+  /** What is seen where the curves are over another quantity. */
+  #own = new Zoom()
+  #closer = el('button', { type: 'button', class: 'icon', 'data-testid': 'closer', title: 'Closer (+); drag along the axis, or with Shift, to choose what is seen', 'aria-label': 'see closer', onclick: () => this.#scale(CLOSER) }, svg('svg', { viewBox: '0 0 16 16', 'aria-hidden': 'true' }, svg('path', { d: GLASS })))
+  #whole = el('button', { type: 'button', class: 'icon', 'data-testid': 'whole', title: 'The whole (0)', 'aria-label': 'show the whole', onclick: () => this.#see(undefined) }, 'whole')
+  /** Of the area, px, as its observer told. */
+  #extent?: { width: number; height: number }
 
   constructor(
     private readonly state: State,
     testId: string,
     head: HTMLElement[] = [],
+    private readonly time = new Zoom(),
   ) {
     const caption = el('figcaption', {}, this.#title, ...head)
-    this.element = el('figure', { class: 'plot', 'data-testid': testId }, caption, this.#legend, this.area, this.#caption)
-    new ResizeObserver(() => this.#uplot?.setSize(this.#size())).observe(this.area)
+    this.element = el('figure', { class: 'plot', 'data-testid': testId }, caption, el('div', { class: 'above' }, this.#legend, el('span', { class: 'zoom' }, this.#closer, this.#whole)), this.area, this.#caption)
+    new ResizeObserver(([{ contentRect }]) => {
+      this.#extent = { width: Math.round(contentRect.width), height: Math.round(contentRect.height) }
+      this.#uplot?.setSize(this.#size())
+    }).observe(this.area)
+    this.area.addEventListener('keydown', (event) => this.#key(event))
     state.onTime(() => this.#showTime())
+    for (const zoom of [this.time, this.#own]) zoom.onChange(() => this.#zoomed())
   }
 
   /** The canvas of the curves, where there are any. */
@@ -78,24 +109,30 @@ export class Plot {
   show(content: Content): void {
     this.#uplot?.destroy()
     this.#uplot = undefined
-    this.content = content
-    this.#pointed = undefined
+    if (content.over?.label !== this.content.over?.label) this.#own.show(undefined)
+    this.content = { ...content, part: (content.over ? this.#own : this.time).part }
+    this.#pointed = this.#left = this.#from = undefined
     this.#title.textContent = titled(content.title, content.message ? '' : content.unit)
     this.#caption.replaceChildren(...prose(content.caption ?? ''))
     this.area.replaceChildren()
-    this.area.setAttribute('role', 'img')
-    this.area.setAttribute('aria-label', content.message ?? `${titled(content.title, content.unit)} over ${content.over?.label ?? 'time'}`)
     this.#readings = []
+    const [first, last] = this.#all()
+    this.#closer.hidden = content.message !== undefined || first === last
+    this.#whole.hidden = this.content.part === undefined || this.#closer.hidden
     if (content.message) {
+      for (const name of ['role', 'tabindex', 'aria-label']) this.area.removeAttribute(name)
       this.#legend.replaceChildren()
       this.area.append(el('p', { class: 'message' }, ...prose(content.message)))
       return
     }
+    this.area.setAttribute('role', 'application')
+    this.area.tabIndex = 0
+    this.area.setAttribute('aria-label', `${titled(content.title, content.unit)} over ${content.over?.label ?? 'time'}: plus and minus zoom, 0 shows the whole`)
     const entries = content.lines.map((line) => this.#entry(line))
     keepFocus(this.#legend, () => this.#legend.replaceChildren(this.#moment, ...entries))
     const all = content.over ? faceted(content.over.curve, content) : data(this.state, content)
-    this.#uplot = new uPlot(this.#options(content), all, this.area)
-    this.#uplot.over.append(this.#marker, this.#pointer)
+    this.#uplot = new uPlot(this.#options(this.content), all, this.area)
+    this.#uplot.over.append(this.#band, this.#marker, this.#pointer)
     this.#follow(this.#uplot)
     this.#showTime()
   }
@@ -109,8 +146,8 @@ export class Plot {
 
   #size(): { width: number; height: number } {
     if (document.documentElement.classList.contains('printing')) return PAPER
-    const { clientWidth, clientHeight } = this.area
-    return { width: clientWidth || 400, height: Math.max(clientHeight, LEAST) }
+    const { width, height } = (this.#extent ??= { width: this.area.clientWidth, height: this.area.clientHeight })
+    return { width: width || USUAL, height: Math.max(height, LEAST) }
   }
 
   #options(content: Content): uPlot.Options {
@@ -119,7 +156,13 @@ export class Plot {
     const grid = { stroke: css('--rule'), width: 1 }
     const axis = { stroke: ink, grid, ticks: { ...grid, size: 4 }, font: css('--plot-font'), labelFont: css('--plot-font') }
     const values = (_: uPlot, splits: number[]) => splits.map((value) => number(value, 6))
-    const { over } = content
+    const { over, logarithmic } = content
+    const across = (low: number | null, high: number | null) => this.content.part ?? (over ? padded(low, high) : [low, high])
+    // What uPlot finds is that of whole steps, and over another quantity that of all of them.
+    const upright = (low: number | null, high: number | null) => {
+      const [least, most] = (this.content.part && this.#ordinates()) ?? [low, high]
+      return logarithmic ? decades(least, most) : padded(...reaching(least, most, content))
+    }
     const abscissa = over ? titled(over.label, over.unit) : titled('time', units.time)
     return {
       mode: over ? 2 : 1,
@@ -127,12 +170,15 @@ export class Plot {
       ...this.#size(),
       legend: { show: false },
       cursor: { show: false, drag: { x: false, y: false, setScale: false } },
-      scales: { x: { time: false, ...(over && { range: (_: uPlot, low: number, high: number) => padded(low, high) }) }, y: content.logarithmic ? DECADES : { range: (_, low, high) => padded(...reaching(low, high, content)) } },
+      scales: {
+        x: { time: false, range: (_, low, high) => [...across(low, high)] },
+        y: { ...(logarithmic && LOGARITHMIC), range: (_, low, high) => upright(low, high) },
+      },
       axes: [
         { ...axis, values, size: 30, label: abscissa, labelSize: 18, labelGap: 0, gap: 3 },
         {
           ...axis,
-          values: content.logarithmic ? powers : values,
+          values: logarithmic ? powers : values,
           size: AXIS,
           label: pretty(content.unit) || '1',
           labelSize: 18,
@@ -155,22 +201,40 @@ export class Plot {
       : el('span', {}, ...parts))
   }
 
-  /** The pointer reads the curves; pressed, it moves the time. */
-  #follow({ over }: uPlot): void {
-    over.addEventListener('pointerdown', (event) => {
-      over.setPointerCapture(event.pointerId)
-      this.#move(event)
-    })
-    over.addEventListener('pointermove', (event) => this.#move(event))
+  /** The pointer reads the curves; pressed, it moves the time, or chooses what is seen. */
+  #follow({ over, root }: uPlot): void {
+    const axis = root.querySelector<HTMLElement>('.u-axis')!
+    axis.classList.add('abscissa')
+    for (const part of [over, axis]) {
+      part.addEventListener('pointerenter', () => (this.#left = undefined))
+      part.addEventListener('pointerdown', (event) => {
+        part.setPointerCapture(event.pointerId)
+        if (event.button !== 0) return
+        if (part === axis || event.shiftKey) this.#from = this.#across(event)
+        else this.#move(event)
+      })
+      part.addEventListener('pointermove', (event) => {
+        if (this.#from !== undefined) this.#stretch(this.#across(event))
+        else if (part === over) this.#move(event)
+      })
+      part.addEventListener('pointerup', (event) => this.#let(this.#across(event)))
+      part.addEventListener('pointercancel', () => this.#let())
+      part.addEventListener('dblclick', () => this.#see(undefined))
+    }
     over.addEventListener('pointerleave', () => {
       this.#pointed = undefined
       this.#showTime()
     })
   }
 
+  /** Where the pointer is from left to right, px from the left end of the curves. */
+  #across({ clientX }: PointerEvent): number {
+    return clientX - (this.#left ??= this.#uplot?.over.getBoundingClientRect().left ?? 0)
+  }
+
   #move(event: PointerEvent): void {
     if (!this.#uplot) return
-    const x = this.#uplot.posToVal(event.clientX - this.#uplot.over.getBoundingClientRect().left, 'x')
+    const x = this.#uplot.posToVal(this.#across(event), 'x')
     const { over } = this.content
     const { times } = this.state.report
     const step = over ? nearestStep(over.curve, x, this.state.step) : stepAt(times, x)
@@ -181,14 +245,84 @@ export class Plot {
     } else this.#showTime()
   }
 
+  /** Shows what will be seen once the pointer is let go. */
+  #stretch(to: number): void {
+    const [left, right] = between(this.#from!, to)
+    this.#band.hidden = right - left < CLICK
+    Object.assign(this.#band.style, { left: `${left}px`, width: `${right - left}px` })
+  }
+
+  #let(to?: number): void {
+    const from = this.#from
+    this.#from = undefined
+    this.#band.hidden = true
+    if (from === undefined || to === undefined || Math.abs(to - from) < CLICK) return
+    const value = (at: number) => this.#uplot!.posToVal(at, 'x')
+    this.#see(between(value(from), value(to)))
+  }
+
+  #key(event: KeyboardEvent): void {
+    const action = event.ctrlKey || event.metaKey || event.altKey ? undefined : this.#action(event)
+    if (!action || !this.#uplot) return
+    event.preventDefault()
+    action()
+  }
+
+  #action({ key, shiftKey }: KeyboardEvent): (() => void) | undefined {
+    if (key === '+' || key === '=') return () => this.#scale(CLOSER)
+    if (key === '-' || key === '_') return () => this.#scale(1 / CLOSER)
+    if (key === '0') return () => this.#see(undefined)
+    const share = { ArrowLeft: -ASIDE, ArrowRight: ASIDE }[key]
+    return shiftKey && share ? () => this.content.part && this.#see(moved(this.content.part, share)) : undefined
+  }
+
+  /** So many times as much of the abscissa, round the moment shown where it is seen. */
+  #scale(factor: number): void {
+    const part = this.content.part ?? this.#all()
+    const [low, high] = part
+    const now = valueAt(this.content.over?.curve ?? this.state.report.times, this.state.step)
+    this.#see(scaled(part, factor, low <= now && now <= high ? now : (low + high) / 2))
+  }
+
+  /** The whole abscissa. */
+  #all(): Part {
+    const { over } = this.content
+    const [low, high] = extent([over?.curve ?? this.state.report.times]) ?? [0, 0]
+    return over ? padded(low, high) : [low, high]
+  }
+
+  #see(part: Part | undefined): void {
+    const whole = this.#all()
+    const zoom = this.content.over ? this.#own : this.time
+    zoom.show(part && within(atLeast(part, whole), whole))
+  }
+
+  #zoomed(): void {
+    if (!this.#uplot) return
+    this.content.part = (this.content.over ? this.#own : this.time).part
+    // A button that goes takes the focus with it.
+    if (document.activeElement === this.#whole) this.#closer.focus()
+    this.#whole.hidden = this.content.part === undefined
+    this.#uplot.setData(this.#uplot.data)
+  }
+
+  #ordinates(): [number, number] | undefined {
+    const { lines, over, part, logarithmic } = this.content
+    return ordinates(lines.map(({ curve, marks }) => marks ?? curve), over?.curve ?? this.state.report.times, part, logarithmic)
+  }
+
   #showTime(): void {
     if (!this.#uplot) return
     const { over, unit } = this.content
     const at = (step: number) => (over ? valueAt(over.curve, step) : valueAt(this.state.report.times, step))
-    const place = (element: HTMLElement, step: number) => (element.style.left = `${this.#uplot!.valToPos(at(step), 'x')}px`)
+    const [low, high] = this.content.part ?? [-Infinity, Infinity]
+    const place = (element: HTMLElement, step: number | undefined) => {
+      const x = step === undefined ? NaN : at(step)
+      element.hidden = !(low <= x && x <= high)
+      if (!element.hidden) element.style.left = `${this.#uplot!.valToPos(x, 'x')}px`
+    }
     place(this.#marker, this.state.step)
-    this.#pointer.hidden = this.#pointed === undefined
-    if (this.#pointed !== undefined) place(this.#pointer, this.#pointed)
+    place(this.#pointer, this.#pointed)
     const step = this.#pointed ?? this.state.step
     this.#moment.textContent = over ? `${over.label} ${figure4(at(step), over.unit)}` : figure4(at(step), this.state.report.units.time)
     this.#moment.classList.toggle('pointed', this.#pointed !== undefined)
@@ -281,8 +415,7 @@ function faceted(over: Curve, { lines }: Content): uPlot.AlignedData {
   return [null, ...lines.map(pair)] as unknown as uPlot.AlignedData
 }
 
-/** Whole powers of ten around the values. */
-const DECADES: uPlot.Scale = { distr: 3, log: 10, range: (_, low, high) => decades(low, high) }
+const LOGARITHMIC: uPlot.Scale = { distr: 3, log: 10 }
 
 function powers(_: uPlot, splits: number[]): string[] {
   const many = splits.filter(isPower).length > MOST_POWERS

@@ -69,8 +69,18 @@ export interface Design extends Omit<wire.Design, 'poses' | 'quantities' | 'marg
   margin?: Curve
 }
 
+/** Measures over two drivers; tables row by row, a row for each place of the second. */
+export interface GridMap extends Omit<wire.GridMap, 'quantities'> {
+  quantities: {
+    name: string
+    unit: string
+    values: Curve
+    sensitivities: { variable: string; unit: string; values: Curve }[]
+  }[]
+}
+
 /** The payload with its curves decoded. */
-export interface Report extends Omit<wire.Payload, 'times' | 'bodies' | 'drivers' | 'quantities' | 'margin' | 'variables' | 'designs'> {
+export interface Report extends Omit<wire.Payload, 'times' | 'bodies' | 'drivers' | 'quantities' | 'margin' | 'variables' | 'designs' | 'maps'> {
   times: Curve
   bodies: Body[]
   drivers: Driver[]
@@ -78,6 +88,7 @@ export interface Report extends Omit<wire.Payload, 'times' | 'bodies' | 'drivers
   margin?: Margin
   variables: Variable[]
   designs: Design[]
+  maps: GridMap[]
 }
 
 export function read(payload: wire.Payload, decode: Decode): Report {
@@ -94,6 +105,14 @@ export function read(payload: wire.Payload, decode: Decode): Report {
       units: [quantity.unit, quantity.rate_unit, quantity.accel_unit],
       curves: curves(quantity, decode),
       wanted: decode(quantity.wanted),
+    })),
+    maps: payload.maps.map((map) => ({
+      ...map,
+      quantities: map.quantities.map((quantity) => ({
+        ...quantity,
+        values: decode(quantity.values),
+        sensitivities: quantity.sensitivities.map((item) => ({ ...item, values: decode(item.values) })),
+      })),
     })),
     margin: payload.margin ? { curve: decode(payload.margin.value), note: payload.margin.note } : undefined,
     variables: payload.variables.map((variable, index) => {

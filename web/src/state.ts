@@ -13,7 +13,7 @@ export interface Choice {
   selected?: Part
   /** Body and hardpoint whose path is drawn. */
   trace?: [body: number, point: number]
-  /** The measured distance that is selected, an index into the report's distances. */
+  /** The measured distance that is pointed at, else the selected one: an index into the report's distances. */
   distance?: number
   /** Whether hardpoints are named in the view. */
   labels: boolean
@@ -33,6 +33,8 @@ export class State {
   speed = 1
   #onChoice: (() => void)[] = []
   #onTime: (() => void)[] = []
+  #onPoint: (() => void)[] = []
+  #pointed?: number
 
   constructor(readonly report: Report) {
     const quantity = firstQuantity(report)
@@ -107,17 +109,33 @@ export class State {
     this.#onTime.push(listener)
   }
 
+  /** Called when another measured distance is pointed at, or none any more. */
+  onPoint(listener: () => void): void {
+    this.#onPoint.push(listener)
+  }
+
+  /** The quantity that the pointer or the keyboard is at, outside the view; nothing when it leaves. */
+  point(quantity?: number): void {
+    const before = this.choice.distance
+    this.#pointed = quantity
+    this.choice.distance = this.#distance()
+    if (this.choice.distance === before) return
+    for (const listener of this.#onPoint) listener()
+  }
+
   choose(choice: Partial<Choice>): void {
     Object.assign(this.choice, choice)
     this.choice.distance = this.#distance()
     for (const listener of this.#onChoice) listener()
   }
 
-  /** The measured distance that the selected quantity is, where it is one. */
+  /** The measured distance that is pointed at; where there is none, the one that the selected quantity is. */
   #distance(): number | undefined {
-    const { report, choice } = this
-    const found = report.distances.findIndex(({ name }) => name === report.quantities[choice.quantity]?.name)
-    return found < 0 ? undefined : found
+    const { quantities, distances } = this.report
+    const found = [this.#pointed, this.choice.quantity]
+      .map((quantity) => (quantity === undefined ? -1 : distances.findIndex(({ name }) => name === quantities[quantity]?.name)))
+      .find((index) => index >= 0)
+    return found
   }
 
   /** Changes one variable, which thereby is the selected one. */

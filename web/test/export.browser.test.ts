@@ -97,6 +97,18 @@ describe('what a reader takes away', () => {
     }
   })
 
+  test('of plots that show a part, CSV and SVG are of that part', async () => {
+    const { page } = visited
+    const [rows, words] = [table((await taken('export-csv')).toString()).get('time [s]')!.length, await wordsOf(await taken('export-plot-svg'))]
+    await page.getByTestId('plot-0').getByTestId('closer').click()
+    const part = table((await taken('export-csv')).toString()).get('time [s]')!
+    expect(part.length).toBeGreaterThan(rows / 2 - 2)
+    expect(part.length).toBeLessThan(rows / 2 + 3)
+    expect(await wordsOf(await taken('export-plot-svg'))).not.toEqual(words)
+    await page.getByTestId('plot-0').getByTestId('whole').click()
+    expect(table((await taken('export-csv')).toString()).get('time [s]')!.length).toBe(rows)
+  })
+
   test('the picture of the tutorial is a curve as SVG', async () => {
     const tutorial = await visit(browser, inject('samples').tutorial)
     const svg = await taken('export-plot-svg', tutorial.page)

@@ -93,6 +93,17 @@ describe('SVG of a plot', () => {
     }
   })
 
+  test('of a part has the axes of that part', async () => {
+    const whole = await plotSvg(content, times, 's', PAPER).text()
+    const part = await plotSvg({ ...content, part: [0, 1] }, times, 's', PAPER).text()
+    const numbers = (text: string) => [...text.matchAll(/>([\d.−]+)<\/text>/g)].map(([, number]) => Number(number.replace('−', '-')))
+    expect(Math.max(...numbers(whole))).toBe(6)
+    // Up to 1 s and 2 deg; above is only what an axis adds.
+    expect(Math.max(...numbers(part))).toBeLessThan(2.2)
+    expect(numbers(part)).toContain(0.5)
+    expect(part).not.toMatch(/NaN|undefined/)
+  })
+
   test('over another quantity follows it back and forth', async () => {
     const over = { label: 'travel', unit: 'mm', curve: curve(0, 10, 20, 10, 0) }
     const text = await plotSvg({ ...content, over }, times, 's', PAPER).text()

@@ -66,6 +66,26 @@ describe.each([
     }
   })
 
+  test('the keys and the path of a hardpoint are within reach', async () => {
+    const help = page.getByTestId(width < NARROW ? 'nav-help' : 'help')
+    for (const control of [help, page.getByTestId('trace')]) {
+      const { x, y, width: wide, height: tall } = (await control.boundingBox())!
+      expect(x).toBeGreaterThanOrEqual(0)
+      expect(x + wide).toBeLessThanOrEqual(width)
+      expect(y + tall).toBeLessThanOrEqual(height)
+    }
+    await help.click()
+    expect(await page.getByTestId('keys').isVisible()).toBe(true)
+    await page.keyboard.press('Escape')
+  })
+
+  test('the table shows its figures with their units, whole', async () => {
+    if (width < NARROW) await page.getByTestId('nav-tables').click()
+    const cut = await page.locator('.ranking td.figure').evaluateAll((cells) => cells.filter((cell) => cell.scrollWidth > cell.clientWidth).map((cell) => cell.textContent))
+    expect(cut).toEqual([])
+    if (width < NARROW) await page.getByTestId('nav-curves').click()
+  })
+
   test('every area can be brought up', async () => {
     const bring = async (button: string, area: string) => {
       await page.getByTestId(button).click()

@@ -1,18 +1,19 @@
 import { Box3, Group, Matrix4, Vector3 } from 'three'
 import { describe, expect, test } from 'vitest'
+import { number } from '../src/format'
 import type { Drawn } from '../src/scene/drawn'
 import { centreLines } from '../src/scene/centre_lines'
 import { deformed } from '../src/scene/deform'
 import { marks, matter } from '../src/scene/draw'
 import { equalTimes, pieces } from '../src/scene/draw/trace'
 import { Kit } from '../src/scene/kit'
-import { hardpointLabels, partLabels } from '../src/scene/label_layer'
+import { distanceLabels, hardpointLabels, partLabels } from '../src/scene/label_layer'
 import { placeLabels, type Spot } from '../src/scene/labels'
 import { Mechanism } from '../src/scene/mechanism'
 import type { Palette } from '../src/scene/palette'
 import { directions } from '../src/scene/triad'
 import { arcOf, atLeast } from '../src/scene/travel'
-import type { Choice } from '../src/state'
+import { type Choice, State } from '../src/state'
 import { crank } from './mechanisms'
 
 const PALETTE: Palette = {
@@ -179,6 +180,19 @@ describe('design velocities', () => {
     expect(boxOf(mechanism, velocities[0]).max.y).toBeCloseTo(0.055 * mechanism.size, 3)
   })
 
+  test('are no towers over a long low mechanism, and say for which change they are drawn', () => {
+    const skeleton: [number, number, number][] = [[0, 0, 0], [10_000, 0, 0], [0, 250, 0]]
+    const report = crank({ variables: [variable({ arrows: [{ ...arrows[0], v: [0, 2, 0] }] }) as never], drivers: [] })
+    const still = report.bodies[0].poses
+    const bodies = report.bodies.map((body) => ({ ...body, poses: still, skeleton, labels: ['', '', ''], roles: skeleton.map(() => 'joint' as const) }))
+    const mechanism = new Mechanism({ ...report, bodies })
+    const [arrow] = drawn(mechanism)
+    const { y } = boxOf(mechanism, arrow).max
+    expect(y).toBeCloseTo(Math.max(0.75 * 250, 9 * mechanism.unit), 3)
+    expect(y).toBeLessThan(0.11 * mechanism.size)
+    expect(arrow.part.about).toContain(`drawn for ${number(y / 2, 2)} mm`)
+  })
+
   test('of a turn are rings; of none, nothing', () => {
     const turning = { body: 1, at: [200, 0, 0], v: [0, 0, 0], turn: [0, 0, 2] }
     const mechanism = new Mechanism(crank({ variables: [variable({ arrows: [turning] }) as never], drivers: [] }))
@@ -249,6 +263,54 @@ test('a measured distance is a line as long as it, beside it', () => {
   const { min, max } = boxOf(mechanism, line, 0)
   expect(min.x).toBeCloseTo(0, 3)
   expect(max.x).toBeCloseTo(200, 3)
+})
+
+describe('a measured distance that is pointed at', () => {
+  const distances = ['near', 'far'].map((name) => ({ name, from: { body: 0, at: [0, 0, 0] }, to: { body: 1, at: [200, 0, 0] }, draw: null }))
+  const quantities = ['angle', 'far', 'near'].map((name, index) => ({ index, name, group: '', units: ['mm', 'mm/s', 'mm/s^2'], curves: [], wanted: [] }))
+  const report = crank({ drivers: [], distances: distances as never, quantities: quantities as never })
+
+  test('comes before the selected one until the pointer leaves, and listeners hear of changes only', () => {
+    const state = new State(report)
+    let heard = 0
+    state.onPoint(() => heard++)
+    state.choose({ quantity: 0 })
+    expect(state.choice.distance).toBeUndefined()
+    state.point(1)
+    expect(state.choice.distance).toBe(1)
+    state.point(1)
+    state.choose({ quantity: 2 })
+    expect(state.choice.distance).toBe(1)
+    state.point()
+    expect(state.choice.distance).toBe(0)
+    state.point(0)
+    expect([state.choice.distance, heard]).toEqual([0, 2])
+  })
+
+  test('has its value at the middle between its places', () => {
+    const mechanism = new Mechanism(report)
+    const labels = distanceLabels(mechanism, mechanism.frame(1), 1, (quantity) => (quantity === 1 ? 123.456 : NaN))
+    expect(labels.map(({ text }) => text)).toEqual(['far 123.5 mm'])
+    expect(labels[0].at.distanceTo(new Vector3(0, 100, 0))).toBeLessThan(1e-4)
+    expect(distanceLabels(mechanism, mechanism.frame(1), undefined, () => 1)).toEqual([])
+  })
+})
+
+test('the unit stays between what is seen and what is clumsy, and comes back', () => {
+  const mechanism = new Mechanism(crank())
+  const { unit } = mechanism
+  expect(mechanism.sizeTo(5 / unit)).toBe(false)
+  expect(mechanism.sizeTo(200 / unit)).toBe(true)
+  const zoomed = (200 / unit) * mechanism.unit
+  expect(zoomed).toBeLessThanOrEqual(14)
+  expect(zoomed).toBeGreaterThan(14 / 1.25)
+  expect(mechanism.sizeTo(0.1 / unit)).toBe(true)
+  const far = (0.1 / unit) * mechanism.unit
+  expect(far).toBeGreaterThanOrEqual(0.75)
+  expect(far).toBeLessThan(0.75 * 1.25)
+  for (const nothing of [0, NaN, Infinity]) expect(mechanism.sizeTo(nothing)).toBe(false)
+  expect(mechanism.sizeTo(5 / unit)).toBe(true)
+  expect(mechanism.unit).toBe(unit)
 })
 
 test('axes of a vehicle are words that point its way', () => {

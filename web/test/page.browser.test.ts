@@ -20,6 +20,35 @@ const other = (page: Page) => rows(page).and(page.locator(':not([aria-current=tr
 /** The selected variable's slider. */
 const CHANGE = '[data-testid^=variable-][aria-current=true] [data-testid=change]'
 
+test('a measured distance has its dimension line and its value in the view while its curve is pointed at', async () => {
+  const { page, complaints } = await visit(browser, models.bricard)
+  const leading = page.getByTestId('quantity').first()
+  await leading.selectOption({ label: 'angle_1' })
+  const names = page.locator('.view .labels text')
+  await page.getByTestId('add-curve').click()
+  const second = page.getByTestId('quantity').nth(1)
+  await second.selectOption({ label: 'opening' })
+  await page.mouse.move(1, 1)
+  await second.blur()
+  const before = await picture(page)
+  expect(await names.count()).toBe(0)
+
+  await second.hover()
+  await drawn(page)
+  expect(await names.allTextContents()).toEqual([expect.stringMatching(/^opening [\d.]+ m$/)])
+  expect((await picture(page)).equals(before)).toBe(false)
+  await page.mouse.move(1, 1)
+  await drawn(page)
+  expect(await names.count()).toBe(0)
+  expect((await picture(page)).equals(before)).toBe(true)
+
+  await second.focus()
+  await drawn(page)
+  expect(await names.count()).toBe(1)
+  expect(complaints).toEqual([])
+  await page.context().close()
+})
+
 // Both of the paper's examples: a planar mechanism, and a spatial one that belongs to a vehicle.
 describe.each(['slider_crank', 'macpherson'])('a reader of %s', (name) => {
   let visited: Visit
@@ -102,12 +131,85 @@ describe.each(['slider_crank', 'macpherson'])('a reader of %s', (name) => {
     const before = await curve(page, 'plot-0')
     await over.selectOption({ index: 1 })
     expect((await curve(page, 'plot-0')).sum).not.toBe(before.sum)
-    expect(await page.getByTestId('plot-0').getByRole('img').first().getAttribute('aria-label')).toContain(`over ${name}`)
+    expect(await page.getByTestId('plot-0').getByRole('application').getAttribute('aria-label')).toContain(`over ${name}`)
     const time = await text(page, 'time')
     await page.getByTestId('plot-0').locator('.u-over').click({ position: { x: 60, y: 40 } })
     expect(await text(page, 'time')).not.toBe(time)
     await over.selectOption({ index: 0 })
     await scrub(page, 0)
+  })
+
+  test('drags along an axis: that part of the time is seen in all plots, and a double click shows all of it', async () => {
+    const axis = (await page.getByTestId('plot-1').locator('.abscissa').boundingBox())!
+    const seen = async () => [(await curve(page, 'plot-0')).sum, (await curve(page, 'plot-1')).sum]
+    const before = await seen()
+    const drag = async (to: number) => {
+      await page.mouse.move(axis.x + 40, axis.y + 8)
+      await page.mouse.down()
+      await page.mouse.move(axis.x + 40 + to, axis.y + 8, { steps: 3 })
+      await page.mouse.up()
+    }
+    // A press that hardly moves is none.
+    await drag(2)
+    expect(await seen()).toEqual(before)
+    await drag(120)
+    const closer = await seen()
+    for (const k of [0, 1]) expect(closer[k]).not.toBe(before[k])
+    const area = page.getByTestId('plot-0').locator('.u-over')
+    const { width } = (await area.boundingBox())!
+    const last = Number(await page.getByTestId('scrub').getAttribute('max'))
+    // What is at its left and right end now.
+    const ends: number[] = []
+    for (const x of [1, width - 1]) {
+      await area.click({ position: { x, y: 20 } })
+      ends.push(Number(await step(page)) / last)
+    }
+    expect(ends[0]).toBeGreaterThan(40 / width - 0.05)
+    expect(ends[1]).toBeLessThan(160 / width + 0.05)
+    await page.getByTestId('plot-1').locator('.abscissa').dblclick()
+    await scrub(page, 0)
+    expect(await seen()).toEqual(before)
+  })
+
+  test('sees a plot closer by its button and its keys, and with Shift by dragging in it; without, a drag is time', async () => {
+    const plot = page.getByTestId('plot-0')
+    const sum = async () => (await curve(page, 'plot-0')).sum
+    const before = await sum()
+    await plot.getByTestId('closer').click()
+    const closer = await sum()
+    expect(closer).not.toBe(before)
+    await plot.getByTestId('whole').click()
+    expect(await sum()).toBe(before)
+    expect(await plot.getByTestId('whole').isVisible()).toBe(false)
+    // Scrubbing shows no other part.
+    const area = (await plot.locator('.u-over').boundingBox())!
+    const drag = async () => {
+      await page.mouse.move(area.x + 50, area.y + 30)
+      await page.mouse.down()
+      await page.mouse.move(area.x + 150, area.y + 30, { steps: 3 })
+      await page.mouse.up()
+    }
+    await drag()
+    expect(await step(page)).not.toBe('0')
+    expect(await sum()).toBe(before)
+    await scrub(page, 0)
+    await page.keyboard.down('Shift')
+    await drag()
+    await page.keyboard.up('Shift')
+    expect(await step(page)).toBe('0')
+    expect(await sum()).not.toBe(before)
+    await plot.getByRole('application').focus()
+    const press = async (key: string) => {
+      await page.keyboard.press(key)
+      return sum()
+    }
+    expect(await press('0')).toBe(before)
+    expect(await press('+')).toBe(closer)
+    const later = await press('Shift+ArrowRight')
+    expect(later).not.toBe(closer)
+    expect(await press('Shift+ArrowLeft')).toBe(closer)
+    expect(await press('-')).toBe(before)
+    expect(await step(page)).toBe('0')
   })
 
   test('adds a curve and removes it', async () => {

@@ -15,6 +15,10 @@ export interface Samples {
   changed: string
   /** The tutorial's: the strut whose rack is held, with its rack higher. */
   tutorial: string
+  /** The strut over wheel travel and steer: a page with a map. */
+  map: string
+  /** 81 bodies and 240 design variables. */
+  large: string
   /** The report of every model of the repository, by the name of its file. */
   models: Record<string, string>
 }
@@ -35,7 +39,7 @@ const MODELS = join(ROOT, 'models')
 export default function setup(project: TestProject): () => void {
   const folder = mkdtempSync(join(tmpdir(), 'hardpoint-page-'))
   const page = (...names: string[]) => pathToFileURL(join(folder, ...names)).href
-  const { hardpoint, sample_page: sample } = build()
+  const { hardpoint, sample_page: sample, rockers } = build()
   execFileSync(sample, [join(folder, 'sample.html')])
   execFileSync(sample, [join(folder, 'partial.html'), '--partial'])
 
@@ -54,11 +58,19 @@ export default function setup(project: TestProject): () => void {
   const higher = ['--set', 'tie_rod_inner.z=+32mm', '--measure', 'toe', '--measure', 'camber', '--measure', 'half_track']
   execFileSync(hardpoint, ['whatif', ride, ...higher, '--over', 'wheel_travel', '-o', join(folder, 'tutorial')], quietly)
 
+  execFileSync(hardpoint, ['run', join(MODELS, 'studies', 'strut_map.toml'), '-o', join(folder, 'map')], quietly)
+
+  const large = join(folder, 'rockers.toml')
+  execFileSync(rockers, [large])
+  execFileSync(hardpoint, ['run', large, '-o', join(folder, 'large')], quietly)
+
   project.provide('samples', {
     whole: page('sample.html'),
     partial: page('partial.html'),
     changed: page('changed', 'whatif.html'),
     tutorial: page('tutorial', 'whatif.html'),
+    map: page('map', 'ride', 'report.html'),
+    large: page('large', 'report.html'),
     models: Object.fromEntries(models),
   })
   return () => rmSync(folder, { recursive: true })
@@ -72,8 +84,8 @@ function ridden(strut: string): string {
 }
 
 /** The built programs: with the whole workspace, as `cargo test` builds it, so that after that there is nothing left to compile. */
-function build(): Record<'hardpoint' | 'sample_page', string> {
-  const command = ['build', '--workspace', '--bin', 'hardpoint', '--example', 'sample_page', '--message-format', 'json']
+function build(): Record<'hardpoint' | 'sample_page' | 'rockers', string> {
+  const command = ['build', '--workspace', '--bin', 'hardpoint', '--example', 'sample_page', '--example', 'rockers', '--message-format', 'json']
   const stdio: StdioOptions = ['ignore', 'pipe', 'inherit']
   const messages = execFileSync('cargo', command, { cwd: ROOT, maxBuffer: Infinity, stdio }).toString().trim().split('\n')
   const built = messages.map((line) => JSON.parse(line) as { executable?: string | null; target?: { name: string } })
@@ -82,5 +94,5 @@ function build(): Record<'hardpoint' | 'sample_page', string> {
     if (!path) throw new Error(`cargo built no ${name}`)
     return path
   }
-  return { hardpoint: program('hardpoint'), sample_page: program('sample_page') }
+  return { hardpoint: program('hardpoint'), sample_page: program('sample_page'), rockers: program('rockers') }
 }

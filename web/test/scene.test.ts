@@ -1,8 +1,12 @@
 import { BoxGeometry, Group, Mesh, OrthographicCamera, PerspectiveCamera, SphereGeometry, Vector3 } from 'three'
 import { describe, expect, test } from 'vitest'
+import type { Report } from '../src/report'
 import { bounds, outermost } from '../src/scene/bounds'
 import { fit } from '../src/scene/camera'
+import { Mechanism } from '../src/scene/mechanism'
 import { path, poseAt, shifted } from '../src/scene/poses'
+import { Train } from '../src/scene/train'
+import { crank } from './mechanisms'
 
 const QUARTER = Math.SQRT1_2
 /** At the origin, then at (2, 0, 0) and turned by 90° about z, then not solved. */
@@ -74,5 +78,20 @@ describe('the camera', () => {
         }
       }
     }
+  })
+})
+
+describe('wheels of a pair', () => {
+  const bodies = ['ground', 'carrier', 'sun', 'planet'].map((name) => ({ ...crank().bodies[0], name }))
+  const hinge = (name: string, body_i: number, body_j: number, x = 0) => ({ ...crank().joints[0], name, body_i, body_j, at_i: [x, 0, 0], at_j: [x, 0, 0] })
+  const joints = [hinge('carrier', 1, 0), hinge('sun', 1, 2), hinge('planet', 3, 1, 60)] as Report['joints']
+  const term = (joint: number, coefficient: number) => ({ joint, coefficient, turns: true })
+  const coupler = (name: string, terms: ReturnType<typeof term>[]) => ({ name, kind: 'gear', terms, sizes: [20, 60] })
+  const couplers = [coupler('inner', [term(1, 1), term(2, 1)]), coupler('ring', [term(2, 1), term(0, -3)])] as Report['couplers']
+
+  test('of a planetary train are not fixed to the carrier, and the ring is fixed to ground', () => {
+    const train = new Train(new Mechanism({ ...crank(), bodies, joints, couplers, drivers: [] }))
+    const names = [0, 1].map((k) => train.pair(k)!.map(({ body }) => bodies[body].name))
+    expect(names).toEqual([['sun', 'planet'], ['planet', 'ground']])
   })
 })

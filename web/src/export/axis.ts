@@ -33,7 +33,7 @@ export function logarithmicAxis([low, high]: [number, number], from: number, to:
 }
 
 /** The nearest of 1, 2 and 5 times a power of ten that is not below. */
-function roundStep(least: number): number {
+export function roundStep(least: number): number {
   const power = 10 ** Math.floor(Math.log10(least))
   return ([1, 2, 5].find((lead) => lead * power >= least * (1 - 1e-9)) ?? 10) * power
 }

@@ -1,6 +1,7 @@
 import { type Curve, decades, padded } from '../curve'
 import { pretty, titled } from '../format'
 import type { Content, Line } from '../plot'
+import { ordinates } from '../zoom'
 import { type Axis, extent, linearAxis, logarithmicAxis } from './axis'
 import { escaped, round, svgFile, tag } from './markup'
 
@@ -34,8 +35,8 @@ export function plotSvg(content: Content, times: Curve, timeUnit: string, paper:
   const height = HEIGHT + keys.height
   const [first, last] = extent([abscissa]) ?? NOTHING
   const whole = first === null || last === null || content.over || first === last ? padded(first, last) : [first, last] as [number, number]
-  const x = linearAxis(whole, LEFT, WIDTH - RIGHT, 8)
-  const y = vertical(content, bottom)
+  const x = linearAxis(content.part ? [...content.part] : whole, LEFT, WIDTH - RIGHT, 8)
+  const y = vertical(content, abscissa, bottom)
 
   const text = (at: [number, number], words: string, more: Record<string, string | number> = {}) =>
     tag('text', { x: at[0], y: at[1], fill: paper.muted, ...more }, escaped(words))
@@ -71,8 +72,8 @@ export function plotSvg(content: Content, times: Curve, timeUnit: string, paper:
   )
 }
 
-function vertical({ lines, logarithmic }: Content, bottom: number): Axis {
-  const [low, high] = extent(lines.map(({ curve, marks }) => marks ?? curve), logarithmic) ?? NOTHING
+function vertical({ lines, part, logarithmic }: Content, abscissa: Curve, bottom: number): Axis {
+  const [low, high] = ordinates(lines.map(({ curve, marks }) => marks ?? curve), abscissa, part, logarithmic) ?? NOTHING
   if (logarithmic) return logarithmicAxis(decades(low, high), bottom, TOP)
   return linearAxis(padded(low, high), bottom, TOP, 6)
 }

@@ -45,6 +45,7 @@ class HeatMap {
   #cells: Cells
   #scale?: Scale
   #size = { width: 0, height: 0 }
+  /** Both as the browser told: to ask for them would make it lay out the page in the middle of a frame. */
   #scroll = { left: 0, top: 0 }
   #column: number = COLUMN.least
   /** Under the pointer, or where the arrow keys went. */
@@ -66,7 +67,10 @@ class HeatMap {
         tabindex: 0,
         role: 'application',
         'aria-label': 'sensitivity map: arrow keys read cells, Enter chooses',
-        onscroll: () => this.#draw(),
+        onscroll: () => {
+          this.#scroll = { left: this.#window.scrollLeft, top: this.#window.scrollTop }
+          this.#draw()
+        },
         onpointermove: (event: PointerEvent) => this.#point(this.#under(event)),
         onpointerleave: () => this.#point(undefined),
         onclick: (event: PointerEvent) => this.#choose(this.#under(event)),
@@ -132,7 +136,6 @@ class HeatMap {
 
   #paint(): void {
     this.#frame = 0
-    this.#scroll = { left: this.#window.scrollLeft, top: this.#window.scrollTop }
     const { width, height } = this.#size
     const dense = devicePixelRatio
     const [across, down] = [Math.round(width * dense), Math.round(height * dense)]

@@ -30,6 +30,8 @@ export function rankingTable(state: State): HTMLElement {
   const [above, below] = [el('div'), el('div')]
   let rows: Ranking[] = []
   let range = [0, 0]
+  /** Of the window: how far it is scrolled, and its height, px. */
+  let top = 0
   let height = FIRST_ROWS * ROW
   let frame = 0
 
@@ -39,10 +41,10 @@ export function rankingTable(state: State): HTMLElement {
     const words = filter.value.toLowerCase()
     rows = ranked(state).filter(({ variable }) => variable.name.toLowerCase().includes(words))
     range = [0, 0]
-    place(scroll.scrollTop)
+    place()
   }
   /** Makes the rows that a scroll brings into sight. */
-  const place = (top: number) => {
+  const place = () => {
     frame = 0
     const first = Math.max(0, Math.min(Math.floor(top / ROW), rows.length - 1) - SPARE)
     const last = Math.min(rows.length, Math.ceil((top + height) / ROW) + SPARE)
@@ -59,7 +61,10 @@ export function rankingTable(state: State): HTMLElement {
       tabindex: 0,
       role: 'region',
       'aria-label': 'variables by influence',
-      onscroll: () => (frame ||= requestAnimationFrame(() => place(scroll.scrollTop))),
+      onscroll: () => {
+        top = scroll.scrollTop
+        frame ||= requestAnimationFrame(place)
+      },
     },
     above,
     el('table', {}, body),
@@ -67,7 +72,7 @@ export function rankingTable(state: State): HTMLElement {
   )
   new ResizeObserver(([{ contentRect }]) => {
     height = contentRect.height
-    place(scroll.scrollTop)
+    place()
   }).observe(scroll)
   state.onChoice(show)
   show()

@@ -3,6 +3,7 @@ import { number, pretty } from '../format'
 import type { Value } from '../payload'
 import { noise, rounded } from '../rounding'
 import type { State } from '../state'
+import { pointing } from './pointing'
 
 type Target = [low: number | null, high: number | null]
 
@@ -34,6 +35,7 @@ function card(state: State, value: Value, index: number): { element: HTMLElement
     value.target ? scale : undefined,
     verdict,
   )
+  pointing(state, element, () => value.quantity ?? undefined)
   const show = () => {
     const now = state.value(index)
     const before = state.former ? (state.former.values[index] ?? null) : value.value

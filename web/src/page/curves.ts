@@ -2,6 +2,7 @@ import { el } from '../dom'
 import { effects } from '../effect'
 import { groups } from '../report'
 import type { State } from '../state'
+import { Zoom } from '../zoom'
 import { Figure, type Shown } from './figure'
 
 /** Curves one below the other: the selected quantity, and more that can be added and taken away. */
@@ -10,6 +11,8 @@ export class Curves {
   readonly figures: Figure[] = []
   #list = el('div', { class: 'figures' })
   #made = 0
+  /** What is seen of the time, in all of them. */
+  #time = new Zoom()
 
   constructor(private readonly state: State) {
     this.element = el('section', { class: 'curves', 'aria-label': 'Curves', 'data-testid': 'curves' }, this.#list)
@@ -24,7 +27,7 @@ export class Curves {
 
   #add(shown: Shown, quantity?: number): Figure {
     const number = this.#made++
-    const figure = new Figure(this.state, { quantity, shown, testId: `plot-${number}`, leads: number === 0 }, { onRemove: (gone) => this.#remove(gone), onAdd: () => this.#addNext() })
+    const figure = new Figure(this.state, { quantity, shown, testId: `plot-${number}`, leads: number === 0 }, this.#time, { onRemove: (gone) => this.#remove(gone), onAdd: () => this.#addNext() })
     this.figures.push(figure)
     this.#list.append(figure.plot.element)
     return figure

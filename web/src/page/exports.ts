@@ -5,6 +5,7 @@ import { plotSvg } from '../export/plot_svg'
 import { save } from '../export/save'
 import type { View } from '../scene/view'
 import type { State } from '../state'
+import { stepsWithin } from '../zoom'
 import type { Figure } from './figure'
 import type { Item } from './menu'
 
@@ -40,13 +41,16 @@ function paper() {
   return { page: css('--page'), text: css('--ink'), muted: css('--muted'), rule: css('--rule') }
 }
 
-/** Time, what the curves are over, and every curve once. */
+/** Time, what the curves are over, and every curve once, at the steps that some plot shows. */
 function columns({ report }: State, figures: Figure[]): Column[] {
   const contents = figures.map(({ plot }) => plot.content)
   const overs = new Map(contents.flatMap(({ over }) => (over ? [[over.label, over] as const] : [])))
-  return [
+  const columns = [
     { label: 'time', unit: report.units.time, curve: report.times },
     ...[...overs.values()].map(({ label, unit, curve }) => ({ label, unit, curve })),
     ...contents.flatMap(({ title, unit, lines }) => lines.map(({ label, curve }) => ({ label: label === title ? label : `${title}: ${label}`, unit, curve }))),
   ]
+  const seen = contents.map(({ over, part }) => part && stepsWithin(over?.curve ?? report.times, part))
+  if (seen.some((steps) => !steps)) return columns
+  return columns.map((column) => ({ ...column, curve: column.curve.filter((_, k) => seen.some((steps) => steps!.has(k))) }))
 }

@@ -2,7 +2,9 @@ import { el, onSchemeChange } from '../dom'
 import { Plot } from '../plot'
 import { groups, ORDERS, type Order } from '../report'
 import type { State } from '../state'
+import type { Zoom } from '../zoom'
 import { sensitivityContent, valueContent, type Subject } from './contents'
+import { pointing } from './pointing'
 
 export type Shown = 'value' | 'sensitivity'
 
@@ -27,6 +29,7 @@ export class Figure {
   constructor(
     private readonly state: State,
     private readonly wish: Wish,
+    time: Zoom,
     { onRemove, onAdd }: { onRemove: (figure: Figure) => void; onAdd: () => void },
   ) {
     this.#quantity = wish.quantity
@@ -49,8 +52,9 @@ export class Figure {
     const remove = el('button', { type: 'button', class: 'icon', 'data-testid': 'remove', title: 'Take this curve away', 'aria-label': 'Take this curve away', onclick: () => onRemove(this) }, '×')
     const add = el('button', { type: 'button', class: 'icon', 'data-testid': 'add-curve', title: 'Add a curve', 'aria-label': 'Add a curve', onclick: onAdd }, '+')
     const controls = el('div', { class: 'controls' }, quantity, over, order, able ? shown : undefined, wish.leads ? add : remove)
-    this.plot = new Plot(state, wish.testId, [controls])
+    this.plot = new Plot(state, wish.testId, [controls], time)
     this.plot.element.classList.toggle('leads', wish.leads)
+    pointing(state, this.plot.element, () => this.subject.quantity)
     this.show = () => {
       const subject = this.subject
       quantity.value = this.#follows && !wish.leads ? '' : String(subject.quantity)

@@ -1,6 +1,7 @@
 import { el, prose } from '../dom'
 import { heatMap } from '../influence/heatmap'
 import { rankingTable } from '../influence/table'
+import { driverMap } from '../maps/map'
 import type { Report } from '../report'
 import type { State } from '../state'
 import { bar } from './bar'
@@ -29,10 +30,11 @@ export function page(root: HTMLElement, state: State): void {
   const table: Tab[] = hasQuantities && hasVariables
     ? [{ name: 'table', title: 'Table', content: el('div', { class: 'influence' }, rankingTable(state), heatMap(state)) }]
     : []
+  const maps: Tab[] = report.maps.length > 0 ? [{ name: 'maps', title: 'Maps', content: el('div', {}, ...report.maps.map(driverMap)) }] : []
   const sections: [name: string, element: HTMLElement | undefined][] = [
     ['variables', hasVariables ? variables(state) : undefined],
     ['curves', curves?.element],
-    ['tables', tabs('Tables and checks', [...table, { name: 'checks', title: 'Checks', content: checks(state) }])],
+    ['tables', tabs('Tables and checks', [...maps, ...table, { name: 'checks', title: 'Checks', content: checks(state) }])],
   ]
   const shown = sections.flatMap(([name, element]) => (element ? [{ name, element }] : []))
   for (const { name, element } of shown) element.classList.add(`area-${name}`)
@@ -44,7 +46,7 @@ export function page(root: HTMLElement, state: State): void {
     ...(report.values.length > 0 ? [cards(state)] : []),
     el('div', { class: 'scene' }, scene.element, transport(state)),
     ...shown.map(({ element }) => element),
-    navigation(shown.map(({ name, element }) => ({ name, element }))),
+    navigation(shown.map(({ name, element }) => ({ name, element })), () => keys.showModal()),
     keys,
   )
   listenToKeys(state, { fit: scene.view && (() => scene.view?.fit()), look: scene.look, find: search?.focus, help: () => keys.showModal() })

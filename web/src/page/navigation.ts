@@ -1,7 +1,7 @@
 import { el } from '../dom'
 
-/** On a narrow screen one section at a time, chosen by a bar at the bottom. */
-export function navigation(sections: { name: string; element: HTMLElement }[]): HTMLElement {
+/** On a narrow screen one section at a time, chosen by a bar at the bottom, which has the help that the bar at the top has no room for. */
+export function navigation(sections: { name: string; element: HTMLElement }[], help: () => void): HTMLElement {
   const buttons = sections.map(({ name }, index) =>
     el('button', { type: 'button', 'data-testid': `nav-${name}`, onclick: () => show(index) }, name),
   )
@@ -10,5 +10,6 @@ export function navigation(sections: { name: string; element: HTMLElement }[]): 
     buttons.forEach((button, index) => button.setAttribute('aria-pressed', String(index === chosen)))
   }
   show(0)
-  return el('nav', { class: 'navigation', 'aria-label': 'Sections' }, ...buttons)
+  const asked = el('button', { type: 'button', class: 'help-button', 'aria-label': 'keys and lines', 'data-testid': 'nav-help', onclick: help }, '?')
+  return el('nav', { class: 'navigation', 'aria-label': 'Sections' }, ...buttons, asked)
 }

@@ -124,6 +124,8 @@ function row(state: State, variable: Variable): Row {
   element.addEventListener('pointerdown', (event) => {
     if (!(event.target as HTMLElement).closest('button') && state.choice.variable !== index) state.choose({ variable: index })
   })
+  /** What is shown; of many rows, a choice changes two. */
+  let shown = ''
   const digits = step > 0 ? Math.max(0, -Math.floor(Math.log10(step))) : 0
   return {
     variable,
@@ -131,6 +133,8 @@ function row(state: State, variable: Variable): Row {
     sync: () => {
       const chosen = state.choice.variable === index
       const by = state.changes[index]
+      const key = () => `${chosen} ${by} ${field.value}`
+      if (shown === key()) return
       element.setAttribute('aria-current', String(chosen))
       button.tabIndex = chosen ? 0 : -1
       slider.tabIndex = field.tabIndex = reset.tabIndex = chosen ? 0 : -1
@@ -139,6 +143,7 @@ function row(state: State, variable: Variable): Row {
       slider.setAttribute('aria-valuetext', figure(by, unit))
       reset.classList.toggle('away', by === 0)
       element.classList.toggle('changed', by !== 0)
+      shown = key()
     },
     rank: (found, symbol) => {
       bar.style.setProperty('--share', String(found?.share ?? 0))

@@ -1,6 +1,8 @@
 import './labels.css'
 import { type Camera, Vector3 } from 'three'
 import { svg } from '../dom'
+import { number, pretty } from '../format'
+import { rounded } from '../rounding'
 import type { Part, Frame } from './drawn'
 import { type Placed, placeLabels } from './labels'
 import type { Mechanism } from './mechanism'
@@ -15,6 +17,8 @@ export interface Label {
 const TOP = 34
 /** The letters' font, as the style sheet has it. */
 const FONT = '11px system-ui, sans-serif'
+/** Digits of a measured distance. */
+const DIGITS = 4
 /** More labels than this cover the mechanism that they name. */
 const MOST = 60
 
@@ -70,6 +74,16 @@ export function hardpointLabels(mechanism: Mechanism, frame: Frame, only?: numbe
     })
   })
   return labels
+}
+
+/** The value of the dimension line drawn, at the middle of what it measures. */
+export function distanceLabels({ report }: Mechanism, frame: Frame, index: number | undefined, value: (quantity: number) => number): Label[] {
+  if (index === undefined) return []
+  const { name, from, to } = report.distances[index]
+  const quantity = report.quantities.findIndex((one) => one.name === name)
+  const [a, b] = [from, to].map(({ body, at }) => frame.at(body, new Vector3(...at)))
+  if (quantity < 0 || !Number.isFinite(a.distanceTo(b))) return []
+  return [{ at: a.lerp(b, 0.5), text: `${name} ${number(rounded(value(quantity)), DIGITS)} ${pretty(report.quantities[quantity].units[0])}` }]
 }
 
 /** Names for what is hovered or chosen: a body with its hardpoints, a joint at its place. */

@@ -16,6 +16,8 @@ const SAME = 1e-4
 const MANY = 40
 /** The unit as a part of the distance between hardpoints, and its least and largest part of the size. */
 const UNIT = { ofDistance: 0.16, least: 0.0012, most: 0.0125 }
+/** Least and largest unit on the screen, px: half of the thinnest rod that is seen well, and where zooming in no longer thickens. By these steps it changes. */
+const SEEN = { least: 0.75, most: 14, step: 1.25 }
 /** Thickness of a planar link, and from one layer to the next, in units. */
 const THICKNESS = 1
 const PITCH = 1.15
@@ -37,14 +39,15 @@ export class Mechanism {
   readonly centre: Vector3
   /** Diagonal of the box round the sweep. */
   readonly size: number
-  /** What glyphs are measured in: a rod has this radius or so. */
-  readonly unit: number
+  /** What glyphs are measured in: a rod has this radius or so. It stays within what is seen well, see `sizeTo`. */
+  unit: number
   /** Normal of a planar mechanism, towards the reader. */
   readonly plane?: Vector3
   readonly up: Vector3
   readonly vehicle?: { forward: Vector3; up: Vector3 }
   readonly large: boolean
   readonly topLayer: number
+  #natural: number
   #places: Vector3[][]
   #layers: number[]
   #tints: number[]
@@ -70,7 +73,8 @@ export class Mechanism {
     this.centre = this.box.getCenter(new Vector3())
     this.size = base?.size ?? (this.box.getSize(new Vector3()).length() || 1)
     this.#places = joined.map((places) => this.distinct(places))
-    this.unit = base?.unit ?? this.#unit()
+    this.#natural = base ? base.#natural : this.#unit()
+    this.unit = base?.unit ?? this.#natural
     this.plane = base ? base.plane : planeOf(report, this.sweep, this.size)
     const { vehicle } = report
     this.vehicle = vehicle ? { forward: new Vector3(...vehicle.forward), up: new Vector3(...vehicle.up) } : undefined
@@ -80,6 +84,18 @@ export class Mechanism {
     this.#layers = base ? base.#layers : this.plane ? this.#stack() : report.bodies.map(() => 0)
     this.topLayer = Math.max(0, ...this.#layers)
     this.#slides = report.joints.map((joint) => slideOf(this, joint))
+  }
+
+  /** Takes the unit that suits a picture of so many pixels per length; true where what is drawn has to be made anew. */
+  sizeTo(pixelsPerLength: number): boolean {
+    const seen = this.#natural * pixelsPerLength
+    if (!(seen > 0 && Number.isFinite(seen))) return false
+    const steps = (wanted: number) => Math.log(wanted / seen) / Math.log(SEEN.step)
+    const power = Math.max(0, Math.ceil(steps(SEEN.least))) + Math.min(0, Math.floor(steps(SEEN.most)))
+    const unit = this.#natural * SEEN.step ** power
+    const changed = unit !== this.unit
+    this.unit = unit
+    return changed
   }
 
   /** Layer of a body of a planar mechanism; ground's is 0, the lowest. */

@@ -24,6 +24,8 @@ export interface Shaft {
 /** A wheel that a coupler puts on a shaft, in the first position, in the world. */
 export interface Wheel {
   shaft: Shaft
+  /** The body that it is fixed to: of a planetary train not the carrier, so it may be ground. */
+  body: number
   centre: Vector3
   coefficient: number
 }
@@ -80,14 +82,27 @@ export class Train {
     return this.#pairs.get(coupler)
   }
 
+  #bodiesOf({ joint }: Shaft): number[] {
+    const { body_i, body_j } = this.mechanism.report.joints[joint]
+    return [body_i, body_j]
+  }
+
   #pairOf({ kind, terms }: CouplerMark): [Wheel, Wheel] | undefined {
     if ((kind !== 'gear' && kind !== 'belt') || terms.length !== 2) return undefined
     const wheels = terms.flatMap(({ joint, coefficient, turns }): Wheel[] => {
       const shaft = turns ? this.shaftOf(joint) : undefined
-      return shaft ? [{ shaft, centre: shaft.at, coefficient }] : []
+      return shaft ? [{ shaft, body: shaft.body, centre: shaft.at, coefficient }] : []
     })
     if (wheels.length !== 2) return undefined
     const [a, b] = wheels
+    const [ofA, ofB] = wheels.map(({ shaft }) => this.#bodiesOf(shaft))
+    const carriers = ofA.filter((body) => ofB.includes(body))
+    // What both turn in carries them, and neither is fixed to it.
+    if (carriers.length === 1) {
+      const fixed = (bodies: number[]) => bodies.find((body) => body !== carriers[0])!
+      a.body = fixed(ofA)
+      b.body = fixed(ofB)
+    }
     return Math.abs(a.shaft.axis.dot(b.shaft.axis)) > PARALLEL ? [a, b] : undefined
   }
 }

@@ -1,5 +1,6 @@
 import { PCFShadowMap, Scene, Vector3, WebGLRenderer } from 'three'
 import { OrbitControls } from 'three/addons/controls/OrbitControls.js'
+import { valueAt } from '../curve'
 import { el, onSchemeChange } from '../dom'
 import { motionGltf } from '../export/gltf'
 import { viewSvg } from '../export/view_svg'
@@ -8,9 +9,10 @@ import type { State } from '../state'
 import { Assembly } from './assembly'
 import { cameraFor, fit, type Look, looksOf, pixelsPerLength, shapeTo } from './camera'
 import { marks, matter } from './draw'
+import { changeText, shownChange } from './draw/design_velocity'
 import { type Part, samePart } from './drawn'
 import { Floor } from './floor'
-import { hardpointLabels, LabelLayer, partLabels } from './label_layer'
+import { distanceLabels, hardpointLabels, LabelLayer, partLabels } from './label_layer'
 import { Mechanism } from './mechanism'
 import { type Emphasis, Outlines, OVER } from './outlines'
 import { Overview } from './overview'
@@ -48,7 +50,8 @@ export class View {
   #triad: Triad
   #labels = new LabelLayer()
   #paper = el('canvas', { class: 'paper' })
-  #scale = el('span', { class: 'scale' })
+  #grid = el('span')
+  #arrows = el('span', { 'data-testid': 'arrows' })
   #lost = el('p', { class: 'message', hidden: true }, 'The graphics were lost; the view comes back when the browser gives them back.')
   #palette = paletteOf()
   #matter: Assembly
@@ -63,6 +66,10 @@ export class View {
   #stale = false
   #moved = true
   #pending = false
+  /** Of the element, px, as its observer told: to ask the element would make the browser lay out the page in the middle of a frame. */
+  #extent = { width: 0, height: 0 }
+  /** What is drawn no more. It goes once the next picture is drawn, so that this one finds its shaders compiled. */
+  #gone: Assembly[] = []
 
   constructor(private readonly state: State) {
     this.today = new Mechanism(state.report)
@@ -88,7 +95,7 @@ export class View {
       () => this.#emphasise(),
       (selected) => state.choose({ selected }),
     )
-    this.element = el('div', { class: 'view' }, this.canvas, this.#labels.element, this.#paper, this.#lost, this.#pointer.tip, this.#scale)
+    this.element = el('div', { class: 'view' }, this.canvas, this.#labels.element, this.#paper, this.#lost, this.#pointer.tip, el('span', { class: 'scale' }, this.#arrows, this.#grid))
     this.element.append(this.#triad.element)
     this.#overview = Overview.of(this.today, this.#look, (place) => this.#visit(place))
     if (this.#overview) this.element.append(this.#overview.element)
@@ -99,13 +106,18 @@ export class View {
     this.#floor = this.#lay()
     this.#emphasise()
     state.onTime(() => this.#move())
-    state.onChoice(() => {
+    const remark = () => {
       this.#stale = true
       this.#draw()
-    })
+    }
+    state.onChoice(remark)
+    state.onPoint(remark)
     onSchemeChange(() => this.#repaint())
     addEventListener('beforeprint', () => this.#still())
-    new ResizeObserver(() => this.#resize()).observe(this.element)
+    new ResizeObserver(([{ contentRect }]) => {
+      this.#extent = { width: Math.round(contentRect.width), height: Math.round(contentRect.height) }
+      this.#resize()
+    }).observe(this.element)
     this.canvas.addEventListener('webglcontextlost', () => (this.#lost.hidden = false))
     this.canvas.addEventListener('webglcontextrestored', () => {
       this.#lost.hidden = true
@@ -131,9 +143,17 @@ export class View {
 
   /** Fits the whole motion into the picture, seen from the standard view of the moment or from where the reader turned it. */
   fit(): void {
-    const { clientWidth: width, clientHeight: height } = this.element
+    const { width, height } = this.#extent
     if (width === 0 || height === 0) return
     this.#update()
+    this.#frame(width, height)
+    // What the unit is depends on how large all is seen, and the other way round.
+    if (this.#rescale(height)) this.#frame(width, height)
+    this.#turned = false
+    this.#draw()
+  }
+
+  #frame(width: number, height: number): void {
     const room = ROOM * this.today.unit
     const padded = [0, 1, 2].flatMap((k) => [-room, room].map((by) => new Vector3().setComponent(k, by)))
     const swept = this.mechanism === this.today ? this.today.sweep : [...this.today.sweep, ...this.mechanism.sweep]
@@ -146,13 +166,11 @@ export class View {
     const seen = this.#overview?.part(points, this.#focus(), width / height) ?? points
     this.#controls.target.copy(fit(this.camera, seen, this.today.size, this.#look, width, height, this.#overview?.strip(height)))
     this.#controls.update()
-    this.#turned = false
-    this.#draw()
   }
 
   /** The picture as vectors. */
   vectors(): Blob {
-    const { clientWidth: width, clientHeight: height } = this.element
+    const { width, height } = this.#extent
     const { view, ground, outline, label } = this.#palette
     const groups = [...this.#matter.groups, ...this.#marks.groups]
     const title = this.state.report.title
@@ -206,6 +224,9 @@ export class View {
   }
 
   #assembleMarks(): Assembly {
+    const variable = this.today.report.variables[this.state.choice.variable]
+    const change = variable && shownChange(this.today, variable)
+    this.#arrows.textContent = change === undefined ? '' : `arrows for ${changeText(change, variable)}, `
     const assembly = new Assembly(this.#matter.mechanism, this.#palette, this.state.choice, marks, this.#outlines, MARK_NUMBERS)
     this.scene.add(...assembly.groups)
     return assembly
@@ -216,7 +237,7 @@ export class View {
     const heights = [...this.#matter.reach, ...this.today.sweep].map((point) => point.dot(up))
     const floor = new Floor(this.today, this.#palette, heights.length > 0 ? heights.reduce((a, b) => Math.min(a, b)) : 0)
     this.scene.add(floor.object)
-    this.#scale.textContent = `${report.wheels.length > 0 ? 'road, ' : ''}grid ${number(floor.cell)} ${report.units.length}`
+    this.#grid.textContent = `${report.wheels.length > 0 ? 'road, ' : ''}grid ${number(floor.cell)} ${report.units.length}`
     this.#outlines.colour(this.#palette)
     this.#renderer.setClearColor(this.#palette.view)
     return floor
@@ -225,15 +246,26 @@ export class View {
   /** Everything anew: there is nothing whose colour the scheme does not decide. */
   #repaint(): void {
     this.#palette = paletteOf()
-    for (const one of [this.#matter, this.#marks]) one.dispose()
+    this.#assemble()
     this.#floor.object.removeFromParent()
     this.#floor.dispose()
+    this.#floor = this.#lay()
+    this.#render()
+  }
+
+  #assemble(): void {
+    for (const one of [this.#matter, this.#marks]) this.#discard(one)
     this.#matter = this.#assembleMatter()
     this.#marks = this.#assembleMarks()
-    this.#floor = this.#lay()
     this.#emphasise()
     this.#moved = true
-    this.#render()
+  }
+
+  /** Makes all anew where it would be drawn too thin or too thick. */
+  #rescale(height: number): boolean {
+    const changed = this.today.sizeTo(pixelsPerLength(this.camera, this.#controls.target, height))
+    if (changed) this.#assemble()
+    return changed
   }
 
   /** Makes anew what the last choice changed. */
@@ -243,10 +275,10 @@ export class View {
     const design = designOf(this.state)
     if (design !== this.#drawn) {
       this.#drawn = design
-      this.#matter.dispose()
+      this.#discard(this.#matter)
       this.#matter = this.#assembleMatter()
     }
-    this.#marks.dispose()
+    this.#discard(this.#marks)
     this.#marks = this.#assembleMarks()
     this.#moved = true
     this.#emphasise()
@@ -276,7 +308,10 @@ export class View {
   }
 
   #render(): void {
+    const { width, height } = this.#extent
+    if (width === 0 || height === 0) return
     this.#update()
+    this.#rescale(height)
     if (this.#moved) {
       const frame = this.mechanism.frame(this.state.step)
       this.#matter.pose(frame)
@@ -285,7 +320,6 @@ export class View {
       this.#renderer.shadowMap.needsUpdate = true
       this.#moved = false
     }
-    const { clientWidth: width, clientHeight: height } = this.element
     if (this.#matter.refine(pixelsPerLength(this.camera, this.#controls.target, height))) this.#renderer.shadowMap.needsUpdate = true
     const { layers } = this.camera
     layers.set(0)
@@ -296,17 +330,25 @@ export class View {
     this.#renderer.render(this.scene, this.camera)
     layers.set(0)
     this.#overview?.draw(this.#renderer, this.scene, width, height)
+    for (const one of this.#gone.splice(0)) one.dispose()
     this.#triad.update(this.camera)
     this.#label()
   }
 
+  #discard(one: Assembly): void {
+    for (const group of one.groups) group.removeFromParent()
+    this.#gone.push(one)
+  }
+
   #label(): void {
-    const { clientWidth: width, clientHeight: height } = this.element
+    const { width, height } = this.#extent
     const frame = this.mechanism.frame(this.state.step)
     const { selected } = this.state.choice
     const { hovered } = this.#pointer
     const parts = [selected, samePart(selected, hovered) ? undefined : hovered].filter((part) => part !== undefined)
     const labels = this.state.choice.labels ? hardpointLabels(this.mechanism, frame) : parts.flatMap((part) => partLabels(this.mechanism, frame, part))
+    const value = (quantity: number) => valueAt(this.state.curve(quantity, 0), this.state.step)
+    labels.unshift(...distanceLabels(this.mechanism, frame, this.state.choice.distance, value))
     this.#labels.show(labels, this.camera, this.mechanism.centre, width, height)
   }
 
@@ -318,7 +360,7 @@ export class View {
   }
 
   #resize(): void {
-    const { clientWidth: width, clientHeight: height } = this.element
+    const { width, height } = this.#extent
     if (width === 0 || height === 0) return
     this.#size(Math.min(devicePixelRatio, 2))
     if (this.#turned) shapeTo(this.camera, width / height)
@@ -327,7 +369,7 @@ export class View {
   }
 
   #size(ratio: number): void {
-    const { clientWidth: width, clientHeight: height } = this.element
+    const { width, height } = this.#extent
     this.#renderer.setPixelRatio(ratio)
     this.#renderer.setSize(width, height, false)
     this.#outlines.resize(width, height, ratio)

@@ -20,8 +20,7 @@ export const belt: DrawCoupler = ({ mechanism, kit, train, coupler, index }) => 
   const between = b.centre.clone().sub(a.centre)
   const crossed = a.coefficient * b.coefficient * a.shaft.axis.dot(b.shaft.axis) > 0
   const width = mechanism.plane ? mechanism.thickness : train.face
-  const pulleys = pair.map(({ shaft, centre }, k): Omit<Drawn, 'part'> => {
-    const { body } = shaft
+  const pulleys = pair.map(({ shaft, body, centre }, k): Omit<Drawn, 'part'> => {
     const at = mechanism.placeInto(body, centre).add(mechanism.lift(body))
     const axis = mechanism.into(body, shaft.axis)
     const colour = kit.body(body)

@@ -33,7 +33,7 @@ export const gears: DrawCoupler = ({ mechanism, kit, train, coupler, index }) =>
     { wheel: a, teeth: n, radius: radii[0], towards: touchA, phase: 0, ring: internal && sizes[0] > sizes[1] },
     { wheel: b, teeth: m, radius: radii[1], towards: touchB, phase: Math.PI / m, ring: internal && sizes[1] > sizes[0] },
   ].map(({ wheel, teeth, radius, towards, phase, ring }) => {
-    const { body } = wheel.shaft
+    const { body } = wheel
     const into = (direction: Vector3) => mechanism.into(body, direction)
     const centre = mechanism.placeInto(body, wheel.centre).add(mechanism.lift(body))
     const basis = new Basis(centre, into(wheel.shaft.axis), into(towards))

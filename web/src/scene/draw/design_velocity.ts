@@ -1,4 +1,5 @@
 import { Vector3 } from 'three'
+import { number, pretty } from '../../format'
 import type { Arrow } from '../../payload'
 import type { Variable } from '../../report'
 import { rounded } from '../../rounding'
@@ -6,8 +7,8 @@ import { ABOVE, ringArrow, straightArrow } from '../arrow'
 import type { Draw, Drawn } from '../drawn'
 import type { Mechanism } from '../mechanism'
 
-/** The longest arrow as a part of the mechanism's size. */
-const LONGEST = 0.11
+/** The longest arrow as a part of the mechanism's size and of its height across its longest side, but long enough to be seen, in units. */
+const LONGEST = { ofSize: 0.11, ofHeight: 0.75, least: 9 }
 /** Radius of the shaft, length of the head, radius of a ring, in units. */
 const SHAFT = 0.5
 const HEAD = 3.4
@@ -19,10 +20,12 @@ const ONE = 1e-3
 export const designVelocity: Draw = (mechanism, kit, choice) => {
   const variable = mechanism.report.variables[choice.variable]
   if (!variable) return []
-  const part = { kind: 'mark' as const, index: variable.index, name: variable.name, about: 'design velocity' }
+  const change = shownChange(mechanism, variable)
+  const about = change === undefined ? 'design velocity' : `design velocity, drawn for ${changeText(change, variable)}`
+  const part = { kind: 'mark' as const, index: variable.index, name: variable.name, about }
   const { chosen } = kit.palette
   const size = { head: HEAD * kit.unit, shaft: { radius: SHAFT * kit.unit } }
-  const straight = moving(mechanism, variable).map(({ body, from, to }): Drawn => {
+  const straight = moving(mechanism, variable, change ?? 0).map(({ body, from, to }): Drawn => {
     const lift = mechanism.lift(body, mechanism.topLayer + 3)
     return { body, object: straightArrow(kit, from.add(lift), to.add(lift), size, chosen, ABOVE.velocity), part, overlay: true }
   })
@@ -36,13 +39,28 @@ export const designVelocity: Draw = (mechanism, kit, choice) => {
   return [...straight, ...rings]
 }
 
-function moving(mechanism: Mechanism, { arrows }: Variable): { body: number; from: Vector3; to: Vector3 }[] {
+/** The change of a variable for which its arrows are as long as the moves; none where it moves no hardpoint. */
+export function shownChange(mechanism: Mechanism, { arrows }: Variable): number | undefined {
+  const most = longest(arrows.map(({ v }) => v))
+  return most > 0 ? longestArrow(mechanism) / most : undefined
+}
+
+/** A change with its unit, as short as it may be said. */
+export const changeText = (change: number, { unit }: Variable) => `${number(change, 2)} ${pretty(unit)}`.trim()
+
+/** Beside a long chain an arrow in proportion to its length would be a tower. */
+function longestArrow({ base, box, size, unit }: Mechanism): number {
+  const [, height] = (base?.box ?? box).getSize(new Vector3()).toArray().sort((a, b) => b - a)
+  return Math.min(LONGEST.ofSize * size, Math.max(LONGEST.ofHeight * height, LONGEST.least * unit))
+}
+
+function moving(mechanism: Mechanism, { arrows }: Variable, change: number): { body: number; from: Vector3; to: Vector3 }[] {
   const most = longest(arrows.map(({ v }) => v))
   const going = arrows.filter(({ v }) => rounded(Math.hypot(...v), most) > 0)
   return onePerPlace(mechanism, going).map(({ body, at, v }) => {
     const velocity = new Vector3(...v)
     const from = placeOf(mechanism, body, at)
-    return { body, from, to: from.clone().addScaledVector(velocity, (LONGEST * mechanism.size) / most) }
+    return { body, from, to: from.clone().addScaledVector(velocity, change) }
   })
 }
 

@@ -17,6 +17,7 @@ import { pinInSlot } from './joint_slot'
 import { spherical } from './joint_spherical'
 import { translational } from './joint_translational'
 import { universal } from './joint_universal'
+import { weld } from './joint_weld'
 
 /** An object in a body's frame; in the world where there is no body. */
 export type Piece = Omit<Drawn, 'part'>
@@ -39,6 +40,8 @@ const KINDS: Record<string, DrawJoint> = {
   distance: massless,
   leg: massless,
   revolute_spherical: massless,
+  dot2: onPlane,
+  fixed: weld,
 }
 
 /** Every joint by its kind; one of a kind that is not known has a neutral mark. */

@@ -1,9 +1,10 @@
 import { Vector3 } from 'three'
 import { type DrawJoint, piece } from './joint'
 import { hinge } from './joint_hinge'
+import { wayEnds } from './way_ends'
 
-/** Radius and length of the pin, and of the sleeve on it. */
-const PIN = [1, 11]
+/** Radius and length of the pin, and of the sleeve on it. A rod that lies on the pin hides it. */
+const PIN = [0.9, 11]
 const SLEEVE = [1.75, 5]
 
 /** A sleeve on a pin; seen along its axis, a hinge. */
@@ -15,11 +16,12 @@ export const cylindrical: DrawJoint = (mechanism, kit, joint, index) => {
   const r = mechanism.radiusOf(joint)
   if (!slide) return []
   const travel = Math.max(0, slide.high - slide.low)
-  const length = Math.max(PIN[1] * r, travel + SLEEVE[1] * r)
+  const length = Math.max(PIN[1] * r, travel + 2 * SLEEVE[1] * r)
   const middle = slide.place.clone().addScaledVector(slide.axis, travel > 0 ? (slide.low + slide.high) / 2 : 0).add(mechanism.lift(slide.rail))
+  const end = (part: number) => middle.clone().addScaledVector(slide.axis, part * length)
   const own = mechanism.into(slide.block, mechanism.alongAt(slide.rail, slide.axis, 0))
   return [
-    piece(slide.rail, kit.disc(middle, slide.axis, PIN[0] * r, length, kit.palette.steel)),
+    piece(slide.rail, kit.disc(middle, slide.axis, PIN[0] * r, length, kit.palette.steel), ...(slide.rail === 0 ? wayEnds(mechanism, kit, end(-0.5), end(0.5), r) : [])),
     piece(slide.block, kit.disc(slide.blockPlace.clone().add(mechanism.lift(slide.block)), own, SLEEVE[0] * r, SLEEVE[1] * r, kit.body(slide.block))),
   ]
 }

@@ -2,8 +2,8 @@ import { OctahedronGeometry } from 'three'
 import { carried } from '../hinge'
 import { type DrawJoint, piece } from './joint'
 
-/** Radius of the mark. */
-const MARK = 1.6
+/** Radius of the mark: its faces are outside a rod that it is on. */
+const MARK = 2.1
 
 /** A neutral mark for what has no look of its own: angles, headings, orientations held. */
 export const otherJoint: DrawJoint = (mechanism, kit, joint) => {

@@ -2,6 +2,7 @@ import { CylinderGeometry, Quaternion, Vector3 } from 'three'
 import { place } from '../kit'
 import { Helix } from '../shapes/helix'
 import { type DrawJoint, piece } from './joint'
+import { wayEnds } from './way_ends'
 
 /** Radius of the rod and its least length; the thread's line, and from one turn of it to the next. */
 const ROD = { radius: 1.15, length: 26 }
@@ -33,7 +34,12 @@ export const screw: DrawJoint = (mechanism, kit, joint) => {
   const nut = kit.mesh(new CylinderGeometry(NUT[0] * r, NUT[0] * r, NUT[1] * r, 6), kit.body(joint.body_j), { edges: 30, facets: true })
   const own = joint.axis_j ? new Vector3(...joint.axis_j) : mechanism.into(joint.body_j, mechanism.alongAt(joint.body_i, axis, 0))
   return [
-    piece(joint.body_i, kit.cylinder(from, to, ROD.radius * r, ROD.radius * r, steel), kit.line(thread, outline, THREAD.width, { opacity: 0.7 })),
+    piece(
+      joint.body_i,
+      kit.cylinder(from, to, ROD.radius * r, ROD.radius * r, steel),
+      kit.line(thread, outline, THREAD.width, { opacity: 0.7 }),
+      ...(joint.body_i === 0 ? wayEnds(mechanism, kit, from, to, r) : []),
+    ),
     piece(joint.body_j, place(nut, nutAt, own)),
   ]
 }
