@@ -15,6 +15,7 @@ Examples:
   hardpoint verify models/macpherson.toml --sweep
   hardpoint whatif models/macpherson.toml --set tie_rod_outer.z=+2mm --measure toe
   hardpoint optimize models/four_bar_inverse.toml --save found.toml
+  hardpoint tolerance models/studies/strut_tolerances.toml -o results/strut
 
 Exit codes:
     0  done; for verify: every variable passed
@@ -54,8 +55,12 @@ pub enum Command {
     Verify(Verify),
     /// Change the design: today's curves, predicted ones and exact ones; and which variable moves which measure most
     Whatif(Whatif),
+    /// Set two model files beside each other: what differs, and what that does to measures and metrics
+    Compare(Compare),
     /// Search for the design that serves the goals of the model file best, within its bounds and limits
     Optimize(Optimize),
+    /// Say what the tolerances of the design variables come to: spread, yield, what contributes, the loosest that keep the limits
+    Tolerance(Tolerance),
     /// Print the JSON Schema of model files, for editors
     #[command(after_help = "Example:\n  hardpoint schema > hardpoint.schema.json")]
     Schema,
@@ -85,7 +90,7 @@ pub struct Common {
 /// Which motions of a model file a command is done for.
 #[derive(Args, Debug)]
 pub struct Motions {
-    /// Do one case of the model file only [default: all of them, one after the other]
+    /// Do one case of the model file only [default: all of them]
     #[arg(long, value_name = "NAME")]
     pub case: Option<String>,
 }
@@ -288,6 +293,38 @@ pub struct Whatif {
     pub save: Option<PathBuf>,
 }
 
+const AFTER_COMPARE: &str = "\
+Both are solved at the output times of the first. What differs is told in its
+units: hardpoints, parameters, metrics, the curves of measures, and what only
+one of them has. Cases are compared with those of the same name.
+
+With --output it writes into the folder:
+  compare.html  the first design with the second beside it, where both have the same bodies and measures
+  compare.csv   the curves of both
+  compare.json  all that is printed
+
+Examples:
+  hardpoint compare models/macpherson.toml strut_2.toml
+  hardpoint compare models/studies/strut_toe.toml found.toml --case bump --measure toe -o results/found";
+
+/// `hardpoint compare`.
+#[derive(Args, Debug)]
+#[command(after_help = AFTER_COMPARE)]
+pub struct Compare {
+    #[command(flatten)]
+    pub common: Common,
+    /// The model file to compare with
+    pub other: PathBuf,
+    #[command(flatten)]
+    pub motions: Motions,
+    /// Show this measure only; may be given several times
+    #[arg(long, value_name = "NAME")]
+    pub measure: Vec<String>,
+    /// Write compare.html, compare.csv and compare.json into this folder
+    #[arg(short, long, value_name = "DIR")]
+    pub output: Option<PathBuf>,
+}
+
 const AFTER_OPTIMIZE: &str = "\
 The model file says what is wanted: `[optimize.goals]` names metrics that are to
 be small or to meet a target, `[optimize.limits]` what must hold, and every
@@ -311,6 +348,8 @@ Examples:
 pub struct Optimize {
     #[command(flatten)]
     pub common: Common,
+    #[command(flatten)]
+    pub motions: Motions,
     /// Write a report and summary.json into this folder
     #[arg(short, long, value_name = "DIR")]
     pub output: Option<PathBuf>,
@@ -326,6 +365,60 @@ pub struct Optimize {
     /// Search from several starts on so many threads; what is found does not depend on it [default: one for each core]
     #[arg(long, value_name = "N")]
     pub threads: Option<NonZero<usize>>,
+}
+
+const AFTER_TOLERANCE: &str = "\
+Design variables have a `tolerance` in the model file, or one in
+`[tolerance.variables]`; `[tolerance]` says how they scatter, which go together
+and what must hold (docs/tolerance.md). From exact derivatives: worst case, root
+of the sum of squares (RSS), mean and standard deviation to second order, what
+each variable contributes, yield. Beside it designs are drawn and solved exactly.
+Where second derivatives say that the linear answer is off, the result says so.
+Ctrl-C keeps what was drawn.
+
+With --output it writes into the folder:
+  report.html        bands over the curves (report-CASE.html for each case)
+  metrics.csv        a row for each metric
+  contributions.csv  what each variable contributes to each metric
+  bands.csv          mean, standard deviation and worst case along every curve
+  samples.csv        the designs drawn: deviations and metrics
+  summary.json       all that is printed
+
+Examples:
+  hardpoint tolerance models/studies/strut_tolerances.toml
+  hardpoint tolerance models/studies/strut_tolerances.toml --samples 100000 -o results/strut
+  hardpoint tolerance models/studies/strut_tolerances.toml --case bump --json | jq '.metrics[].rss'";
+
+/// `hardpoint tolerance`.
+#[derive(Args, Debug)]
+#[command(after_help = AFTER_TOLERANCE)]
+pub struct Tolerance {
+    #[command(flatten)]
+    pub common: Common,
+    #[command(flatten)]
+    pub motions: Motions,
+    /// Write a report, tables and summary.json into this folder
+    #[arg(short, long, value_name = "DIR")]
+    pub output: Option<PathBuf>,
+    /// Draw so many designs and solve them exactly, 0 for none [default: as the file says, or 10000]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(..=10_000_000))]
+    pub samples: Option<u32>,
+    /// Draw them from this number [default: as the file says, or 1]
+    #[arg(long, value_name = "N")]
+    pub seed: Option<u32>,
+    /// Seek the loosest tolerances that keep the limits, by the root of the sum of squares (rss) or at worst (worst-case)
+    #[arg(long, value_enum, value_name = "RULE")]
+    pub allocate: Option<Allocate>,
+    /// Solve designs on so many threads; what is found does not depend on it [default: one for each core]
+    #[arg(long, value_name = "N")]
+    pub threads: Option<NonZero<usize>>,
+}
+
+/// By which rule tolerances are sought.
+#[derive(Clone, Copy, Debug, ValueEnum)]
+pub enum Allocate {
+    Rss,
+    WorstCase,
 }
 
 fn step(text: &str) -> Result<f64, String> {

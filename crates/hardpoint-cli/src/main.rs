@@ -2,6 +2,7 @@
 
 mod args;
 mod check;
+mod compare;
 mod folder;
 mod maps;
 mod optimize;
@@ -10,6 +11,7 @@ mod run;
 mod session;
 mod tables;
 mod text;
+mod tolerance;
 mod verify;
 mod whatif;
 
@@ -39,7 +41,9 @@ fn main() -> ExitCode {
         Command::Check(options) => check::check(&options),
         Command::Verify(options) => verify::verify(&options),
         Command::Whatif(options) => whatif::whatif(&options),
+        Command::Compare(options) => compare::compare(&options),
         Command::Optimize(options) => optimize::run(&options),
+        Command::Tolerance(options) => tolerance::run(&options),
         Command::Schema => {
             text::print(&hardpoint_file::schema());
             Outcome::Done

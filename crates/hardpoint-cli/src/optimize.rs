@@ -27,7 +27,11 @@ pub fn run(options: &Optimize) -> Outcome {
 }
 
 fn optimize_in(session: &Session, options: &Optimize) -> Result<Outcome, Outcome> {
-    let file = session.read(&options.common.model)?;
+    let mut file = session.read(&options.common.model)?;
+    if let Some(name) = &options.motions.case {
+        let case = session.case(&file, name)?;
+        file.model = file.model.with_case_only(case);
+    }
     let asked = asked(session, &file, options)?;
     session.may_save(&options.common.model, options.save.as_deref())?;
     let models = file.model.motions();
@@ -81,6 +85,10 @@ fn asked(session: &Session, file: &ModelFile, options: &Optimize) -> Result<Opti
         );
         return Err(session.misunderstood(&why));
     };
+    if let Some(case) = options.motions.case.as_ref().filter(|_| asked.goals.is_empty()) {
+        let why = format!("`--case {case}`: no goal of `[optimize]` is of this case; leave `--case` out");
+        return Err(session.misunderstood(&why));
+    }
     let mut asked = asked.clone();
     asked.starts = options.starts.map_or(asked.starts, NonZero::get);
     asked.iterations = options.iterations.map_or(asked.iterations, NonZero::get);

@@ -65,15 +65,28 @@ const FILES: [&str; 11] = [
 pub fn run(options: &Run) -> Outcome {
     let session = Session::begin(options.common.json);
     let whole = options.output.clone().unwrap_or_else(|| default_folder(&options.common.model));
+    if let Some(name) = &options.motions.case {
+        match grid_alone(&session, options, name, &whole) {
+            Ok(None) => {}
+            Ok(Some(outcome)) | Err(outcome) => return outcome,
+        }
+    }
+    let file = match session.read(&options.common.model) {
+        Ok(file) => file,
+        Err(outcome) => return outcome,
+    };
+    // The maps are those of the whole file, and every page has them.
+    let maps = match options.motions.case {
+        None => maps::solved(&session, &file, options.common.formulation()),
+        Some(_) => Vec::new(),
+    };
     let mut done: Vec<CaseDone> = Vec::new();
-    let mut whole_file = None;
     let each = |file: ModelFile, case: Option<&str>| {
         let path = of_case(&whole, case);
-        let outcome = run_in(&session, options, &file, case, &path);
+        let outcome = run_in(&session, options, (&file, &maps), case, &path);
         if let Some(case) = case {
             let (Ok(ended) | Err(ended)) = outcome;
             let folder = path.file_name().map(|name| name.to_string_lossy().into_owned());
-            whole_file.get_or_insert(file);
             done.push(CaseDone {
                 case: case.into(),
                 folder: folder.unwrap_or_default(),
@@ -82,10 +95,11 @@ pub fn run(options: &Run) -> Outcome {
         }
         outcome
     };
-    let outcome = session.for_motions(&options.common.model, &options.motions, each);
-    let outcome = outcome.unwrap_or_else(|outcome| outcome);
-    let Some(file) = whole_file else { return outcome };
-    let maps = maps::solved(&session, &file, options.common.formulation());
+    let several = !file.model.cases.is_empty() && options.motions.case.is_none();
+    let outcome = session.for_motions_of(file, &options.motions, each).unwrap_or_else(|outcome| outcome);
+    if !several {
+        return outcome;
+    }
     if !options.common.json {
         MapFact::table(&maps).iter().for_each(|table| text::print(&format!("\n{}", text::table(table))));
     }
@@ -96,6 +110,34 @@ pub fn run(options: &Run) -> Outcome {
         folder.commit(&[])
     });
     written.map_or_else(|e| session.not_written(&e), |()| outcome)
+}
+
+/// Solves the case of that name if it is a grid, and nothing else.
+fn grid_alone(
+    session: &Session,
+    options: &Run,
+    name: &str,
+    whole: &Path,
+) -> Result<Option<Outcome>, Outcome> {
+    let mut file = session.read(&options.common.model)?;
+    file.model.grids.retain(|grid| grid.name == name);
+    if file.model.grids.is_empty() {
+        return Ok(None);
+    }
+    let mut folder = Folder::open(whole).map_err(|e| session.not_written(&e))?;
+    let maps = maps::solved(session, &file, options.common.formulation());
+    if options.common.json {
+        session.print_json(&serde_json::json!({ "generator": GENERATOR, "maps": maps }));
+    } else {
+        MapFact::table(&maps).iter().for_each(|table| text::print(&text::table(table)));
+    }
+    let names = maps::write(&maps, &mut folder).map_err(|e| session.not_written(&e))?;
+    let written: Vec<String> = names.iter().map(|name| folder.path_of(name).display().to_string()).collect();
+    folder.commit(&FILES).map_err(|e| session.not_written(&e))?;
+    if !options.common.json {
+        text::print(&format!("\nwritten: {}\n", written.join(", ")));
+    }
+    Ok(Some(if session.interrupted() { Outcome::Interrupted } else { Outcome::Done }))
 }
 
 /// How a case went, for the summary of all.
@@ -109,7 +151,7 @@ struct CaseDone {
 fn run_in(
     session: &Session,
     options: &Run,
-    file: &ModelFile,
+    (file, maps): (&ModelFile, &[MapFact]),
     case: Option<&str>,
     path: &Path,
 ) -> Result<Outcome, Outcome> {
@@ -172,13 +214,12 @@ fn run_in(
         }
         // Of a file with cases, the maps are those of the whole.
         if case.is_none() {
-            let maps = maps::solved(session, file, options.common.formulation());
-            maps::note(&maps, &mut summary);
-            let names = maps::write(&maps, &mut folder).map_err(|e| session.not_written(&e))?;
+            maps::note(maps, &mut summary);
+            let names = maps::write(maps, &mut folder).map_err(|e| session.not_written(&e))?;
             summary.files.extend(names.iter().map(|name| folder.path_of(name).display().to_string()));
-            tables_of_maps = MapFact::table(&maps);
+            tables_of_maps = MapFact::table(maps);
         }
-        let results = Results { file, analysis: &analysis, course: &course, differences: &differences };
+        let results = Results { file, analysis: &analysis, course: &course, differences: &differences, maps };
         results.write(&mut folder, &mut summary, session).map_err(|e| session.not_written(&e))?;
         if session.interrupted() && !stopped_before {
             session.ended_while_writing(path);
@@ -310,6 +351,7 @@ struct Results<'a> {
     analysis: &'a Analysis<'a>,
     course: &'a Course,
     differences: &'a [Option<Difference>],
+    maps: &'a [MapFact],
 }
 
 impl Results<'_> {
@@ -317,7 +359,8 @@ impl Results<'_> {
         let started = Instant::now();
         let _working = Meter::working("writing");
         let run = Request::of(self.file, self.analysis, self.course, summary);
-        let html = report(&Request { differences: self.differences, ..run }, &|payload| payload)
+        let finish = |page| MapFact::page(self.maps, page);
+        let html = report(&Request { differences: self.differences, ..run }, &finish)
             .expect("a payload is plain data");
         folder.write("report.html", |out| out.write_all(html.as_bytes()))?;
         let names = ["report.html", "summary.json"];

@@ -110,26 +110,30 @@ impl Session {
         &self,
         path: &Path,
         motions: &Motions,
+        each: impl FnMut(ModelFile, Option<&str>) -> Result<Outcome, Outcome>,
+    ) -> Result<Outcome, Outcome> {
+        self.for_motions_of(self.read(path)?, motions, each)
+    }
+
+    /// The same for a model that was read.
+    ///
+    /// # Errors
+    /// As there.
+    pub fn for_motions_of(
+        &self,
+        file: ModelFile,
+        motions: &Motions,
         mut each: impl FnMut(ModelFile, Option<&str>) -> Result<Outcome, Outcome>,
     ) -> Result<Outcome, Outcome> {
-        let file = self.read(path)?;
         let cases: Vec<&str> = file.model.cases.iter().map(|c| c.name.as_str()).collect();
         let of_case = |id: CaseId| {
             let mut one = file.clone();
             one.model = file.model.in_case(id);
+            one.model.grids.clear();
             one
         };
         if let Some(name) = &motions.case {
-            let Some(id) = file.model.case(name) else {
-                let has = match &cases[..] {
-                    [] => "the model has no cases".to_owned(),
-                    _ => match did_you_mean(name, cases.iter().copied()) {
-                        Some(near) => format!("did you mean `{near}`?"),
-                        None => format!("its cases are {}", some_of(&cases, ", ")),
-                    },
-                };
-                return Err(self.misunderstood(&format!("`--case {name}`: there is no such case; {has}")));
-            };
+            let id = self.case(&file, name)?;
             return each(of_case(id), None);
         }
         if cases.is_empty() {
@@ -152,6 +156,39 @@ impl Session {
             self.print_json(&json!({ "generator": GENERATOR, "cases": documents }));
         }
         Ok(outcome)
+    }
+
+    /// The case of a file that the command line names.
+    ///
+    /// # Errors
+    /// Where it has none of that name, or where that is no motion.
+    pub fn case(&self, file: &ModelFile, name: &str) -> Result<CaseId, Outcome> {
+        if let Some(id) = file.model.case(name) {
+            return Ok(id);
+        }
+        let cases: Vec<&str> = file.model.cases.iter().map(|c| c.name.as_str()).collect();
+        let why = match &cases[..] {
+            _ if file.model.grids.iter().any(|grid| grid.name == name) => {
+                "it is a grid of positions and no motion, which `hardpoint run` solves".to_owned()
+            }
+            [] => "there is no such case; the model has no cases".to_owned(),
+            _ => match did_you_mean(name, cases.iter().copied()) {
+                Some(near) => format!("there is no such case; did you mean `{near}`?"),
+                None => format!("there is no such case; its cases are {}", some_of(&cases, ", ")),
+            },
+        };
+        Err(self.misunderstood(&format!("`--case {name}`: {why}")))
+    }
+
+    /// The motions of a model that a command is done for, by their numbers.
+    ///
+    /// # Errors
+    /// Where it is to be done for a case that there is not.
+    pub fn numbers_of(&self, file: &ModelFile, motions: &Motions) -> Result<Vec<usize>, Outcome> {
+        match &motions.case {
+            Some(name) => Ok(vec![self.case(file, name)?.0]),
+            None => Ok((0..usize::max(file.model.cases.len(), 1)).collect()),
+        }
     }
 
     fn documents(&self) -> MutexGuard<'_, Option<Vec<serde_json::Value>>> {

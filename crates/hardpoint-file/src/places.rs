@@ -68,7 +68,7 @@ impl EntryPlace {
     }
 }
 
-const SECTIONS: [Section; 20] = [
+const SECTIONS: [Section; 24] = [
     Section::Model,
     Section::Parameters,
     Section::Hardpoints,
@@ -89,6 +89,10 @@ const SECTIONS: [Section; 20] = [
     Section::Optimize,
     Section::Goals,
     Section::Limits,
+    Section::Tolerance,
+    Section::Tolerances,
+    Section::Correlations,
+    Section::ToleranceLimits,
 ];
 
 /// The places of all entries, by section and place in the draft's list.

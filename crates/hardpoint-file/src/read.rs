@@ -10,6 +10,7 @@ mod mesh;
 mod optimize;
 mod parameters;
 mod results;
+mod tolerance;
 mod wheels;
 
 use std::collections::HashMap;
@@ -77,6 +78,8 @@ pub(crate) const MODEL: Table = table! {
     may "cases": Shape::Entries(&Shape::Table(&cases::CASE)), "{}";
     /// What the design is to be optimised for, and within which limits.
     may "optimize": Shape::Table(&optimize::OPTIMIZE), "{ goals = { toe = { metric = \"toe_error\" } } }";
+    /// How far off the design may be made, and what that must keep.
+    may "tolerance": Shape::Table(&tolerance::TOLERANCE), "{ variables = { B_x = 0.1 } }";
 };
 const UNITS: Table = table! {
     /// The units of all numbers in the file.
@@ -211,7 +214,7 @@ fn coordinates() -> Vec<(&'static str, String)> {
 
 /// The tables that `docs/file-format.md` shows, by their names there.
 #[cfg(test)]
-pub(crate) fn tables() -> [(&'static str, Shape); 27] {
+pub(crate) fn tables() -> [(&'static str, Shape); 31] {
     [
         ("parameters", Shape::Table(&parameters::PARAMETER_TABLE)),
         ("frames", Shape::Kinds(&FRAME)),
@@ -240,6 +243,10 @@ pub(crate) fn tables() -> [(&'static str, Shape); 27] {
         ("optimize", Shape::Table(&optimize::OPTIMIZE)),
         ("goals", Shape::Table(&optimize::GOAL)),
         ("limits", Shape::Kinds(&optimize::LIMIT)),
+        ("tolerance", Shape::Table(&tolerance::TOLERANCE)),
+        ("tolerances of variables", Shape::Table(&tolerance::ENTRY_TABLE)),
+        ("correlations", Shape::Table(&tolerance::CORRELATION)),
+        ("limits of tolerances", Shape::Table(&tolerance::LIMIT)),
     ]
 }
 
@@ -288,10 +295,10 @@ impl Reader<'_> {
         self.bodies(&fields, &mut raw);
         self.joints(&fields, &mut raw);
         self.couplers(&fields, &mut raw);
+        self.measures(&fields, &mut raw);
         self.drivers(&fields, &mut raw);
         self.design(&fields, &mut raw);
         self.points(&fields, &mut raw);
-        self.measures(&fields, &mut raw);
         self.vehicle(&fields, &mut raw);
         self.wheels(&fields, &mut raw);
         self.axles(&fields, &mut raw);
@@ -299,6 +306,7 @@ impl Reader<'_> {
         self.time(&fields, &mut raw);
         self.cases(&fields, &mut raw);
         self.optimize(&fields, &mut raw);
+        self.tolerance(&fields, &mut raw);
         raw
     }
 

@@ -110,6 +110,10 @@ fn each_curve(payload: &mut Payload, visit: &mut impl FnMut(&mut Curve, Precisio
         }
         design.margin.iter_mut().for_each(|margin| visit(margin, Full, 1));
     }
+    for quantity in payload.maps.iter_mut().flat_map(|map| &mut map.quantities) {
+        visit(&mut quantity.values, Full, 1);
+        quantity.sensitivities.iter_mut().for_each(|s| visit(&mut s.values, Drawn, 1));
+    }
     if let Some(margin) = &mut payload.margin {
         // It is drawn over decades.
         visit(&mut margin.value, Full, 1);

@@ -11,6 +11,9 @@
 //! | [`assembly`] | what was open in the drawing, and how it closed |
 //! | [`verdict`] | `verify.json`: sensitivities against re-solved designs |
 //! | [`whatif`] | `whatif.json`, `.csv` and `.html`: a changed design, foreseen and exact |
+//! | [`compare`] | `compare.json`, `.csv` and `.html`: two model files beside each other |
+//! | [`optimize`] | what a search comes to: `summary.json` and tables |
+//! | [`tolerance`] | what tolerances come to: `summary.json`, `metrics.csv`, `contributions.csv`, `bands.csv`, `samples.csv` |
 //! | [`maps`] | `maps.csv`, `map_sensitivity.csv`, `maps.json`: measures over grids of two drivers |
 //! | [`columns`] | what stands in which column of the files of results |
 //! | [`csv`], [`npy`] | `motion`, `sensitivity` and `jerk` as text, or as arrays |
@@ -20,6 +23,7 @@
 
 pub mod assembly;
 pub mod columns;
+pub mod compare;
 pub mod course;
 pub mod csv;
 pub mod diagnose;
@@ -35,6 +39,7 @@ pub mod page;
 pub mod payload;
 mod shifts;
 pub mod summary;
+pub mod tolerance;
 pub mod validity;
 pub mod verdict;
 pub mod whatif;

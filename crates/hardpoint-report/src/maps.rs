@@ -13,7 +13,10 @@ use serde::Serialize;
 use crate::csv::{no_formula, numbers};
 use crate::facts::variable_unit;
 use crate::figures::{number, per, unit, with_unit};
-use crate::page::Table;
+use crate::page::{Curve, GridDriver, GridMap as GridPage, GridQuantity, GridSensitivity, Payload, Table};
+
+/// Pages hold so many derivatives of a map: about 2 MB.
+const MOST_NUMBERS: usize = 1_000_000;
 
 /// A map, as `maps.json` has it. Figures are in the model's units; what has no number is `null`.
 #[derive(Clone, Debug, Serialize)]
@@ -58,7 +61,7 @@ pub struct MapDriver {
     pub name: String,
     /// Its unit.
     pub unit: String,
-    /// Where it stands, counted from the drawing.
+    /// Where it stands, counted as its laws are.
     pub values: Vec<f64>,
 }
 
@@ -147,6 +150,45 @@ impl MapFact {
     /// What the maps come to, for the terminal.
     pub fn table(facts: &[Self]) -> Vec<Table> {
         facts.iter().map(Self::own_table).collect()
+    }
+
+    /// The page with these maps.
+    pub fn page(facts: &[Self], page: Payload) -> Payload {
+        Payload { maps: facts.iter().map(Self::own_page).collect(), ..page }
+    }
+
+    fn own_page(&self) -> GridPage {
+        let curve = |table: &[Vec<Option<f64>>]| -> Curve {
+            table.iter().flatten().map(|x| x.unwrap_or(f64::NAN)).collect()
+        };
+        let variables = self.measures.first().map_or(0, |m| m.sensitivities.len());
+        let fits = self.asked.saturating_mul(self.measures.len()).saturating_mul(variables) <= MOST_NUMBERS;
+        let sensitivity = |s: &MapSensitivity| GridSensitivity {
+            variable: s.variable.clone(),
+            unit: s.unit.clone(),
+            values: curve(&s.values),
+        };
+        let quantity = |m: &MapMeasure| GridQuantity {
+            name: m.name.clone(),
+            unit: m.unit.clone(),
+            values: curve(&m.values),
+            sensitivities: m.sensitivities.iter().filter(|_| fits).map(sensitivity).collect(),
+        };
+        let left_out = if fits {
+            ""
+        } else {
+            "; the sensitivities are too many for a page and stand in map_sensitivity.csv"
+        };
+        GridPage {
+            name: self.name.clone(),
+            drivers: [0, 1].map(|k| GridDriver {
+                name: self.drivers[k].name.clone(),
+                unit: self.drivers[k].unit.clone(),
+                places: self.drivers[k].values.clone(),
+            }),
+            note: format!("{}{left_out}.", self.own_table().note),
+            quantities: self.measures.iter().map(quantity).collect(),
+        }
     }
 
     fn own_table(&self) -> Table {

@@ -109,6 +109,8 @@ pub struct Payload {
     pub over: Option<usize>,
     /// Other designs over the same motion, to be compared with this one: changed, foreseen, re-solved.
     pub designs: Vec<Design>,
+    /// Measures over grids of two drivers.
+    pub maps: Vec<GridMap>,
     /// How far from singular the mechanism is over time, if anything is solved for.
     pub margin: Option<Margin>,
     /// Design variables with their sensitivities.
@@ -432,6 +434,58 @@ pub struct Quantity {
     pub wanted: Curve,
 }
 
+/// A case that sweeps two drivers over a grid. Tables have a row for each place of the second driver, with a number for each of the first.
+#[derive(Clone, Debug, Serialize)]
+#[cfg_attr(test, derive(TS))]
+pub struct GridMap {
+    /// The case's name.
+    pub name: String,
+    /// The two drivers.
+    pub drivers: [GridDriver; 2],
+    /// How many positions were reached, and why others were not.
+    pub note: String,
+    /// What is measured.
+    pub quantities: Vec<GridQuantity>,
+}
+
+/// A driver of a grid.
+#[derive(Clone, Debug, Serialize)]
+#[cfg_attr(test, derive(TS))]
+pub struct GridDriver {
+    /// Its name.
+    pub name: String,
+    /// Its unit.
+    pub unit: String,
+    /// Where it stands, increasing.
+    pub places: Vec<f64>,
+}
+
+/// A measure over a grid.
+#[derive(Clone, Debug, Serialize)]
+#[cfg_attr(test, derive(TS))]
+pub struct GridQuantity {
+    /// Its name.
+    pub name: String,
+    /// Its unit.
+    pub unit: String,
+    /// Its values, row by row.
+    pub values: Curve,
+    /// Its derivatives by design variables; none where they would be too many for a page.
+    pub sensitivities: Vec<GridSensitivity>,
+}
+
+/// The derivative of a measure by a design variable over a grid.
+#[derive(Clone, Debug, Serialize)]
+#[cfg_attr(test, derive(TS))]
+pub struct GridSensitivity {
+    /// The variable.
+    pub variable: String,
+    /// The derivative's unit.
+    pub unit: String,
+    /// The derivatives, row by row.
+    pub values: Curve,
+}
+
 /// How far the mechanism is from singular: 1 is best, 0 is a singular position.
 #[derive(Clone, Debug, Serialize)]
 #[cfg_attr(test, derive(TS))]
@@ -622,6 +676,7 @@ pub(crate) mod tests {
             first: None,
             over: None,
             designs: vec![],
+            maps: vec![],
             margin: None,
             variables: vec![],
             checks: vec![],
@@ -664,7 +719,7 @@ pub(crate) mod tests {
         declare!(
             Curve Payload Units Status Fact BodyTrack PointRole Mesh JointMark JointCurve CouplerMark CouplerTerm
             DriverMark BodyPlace WheelMark DistanceMark VehicleAxes Quantity Value Design DesignKind DesignCurves
-            Margin Variable Admissibility Arrow Sensitivity FiniteDifference Table
+            GridMap GridDriver GridQuantity GridSensitivity Margin Variable Admissibility Arrow Sensitivity FiniteDifference Table
         );
         let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../web/src/payload.ts");
         if fs::read_to_string(&path).ok().as_deref() != Some(&expected) {

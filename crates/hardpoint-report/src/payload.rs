@@ -171,6 +171,7 @@ fn composed(request: &Request<'_>, detail: Detail) -> Payload {
         first: compose.first(course),
         over: None,
         designs,
+        maps: Vec::new(),
         margin: summary.margin.as_ref().map(|m| Margin {
             value: compose.curve(|k| m.series.get(k).copied().unwrap_or(f64::NAN)),
             note: m.sentence(),

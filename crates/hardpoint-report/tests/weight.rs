@@ -1,7 +1,6 @@
 //! How heavy a page is: light enough to be sent about and to open at once, for a suspension and for a large model.
 
 use std::cell::RefCell;
-use std::fmt::Write;
 use std::path::Path;
 
 use hardpoint::model::{BodyId, VariableId};
@@ -13,6 +12,10 @@ use hardpoint_report::course::Course;
 use hardpoint_report::page::{Payload, html};
 use hardpoint_report::payload::{Request, report};
 use hardpoint_report::summary::Summary;
+use rockers::rockers;
+
+#[path = "support/rockers.rs"]
+mod rockers;
 
 /// The payload of a run's page and the page itself; it compares with differences where `compared`.
 fn page(file: &ModelFile, compared: bool) -> (Payload, String) {
@@ -50,49 +53,6 @@ fn a_struts_page_weighs_two_megabytes_at_most_and_leaves_nothing_out() {
         assert_eq!(variable.shifts.len(), payload.bodies.len());
         assert!(variable.sensitivities.iter().all(|s| s.fd.is_some()));
     }
-}
-
-/// Rockers in a row on pivots 100 mm apart, each coupled to the next one: two bodies and six design variables a stage.
-fn rockers(stages: usize) -> String {
-    let mut text = String::from(
-        "name = \"rockers in a row\"\nunits = { length = \"mm\", angle = \"deg\" }\n[time]\nend = 2\nsteps = 200\n",
-    );
-    let mut points = String::from("[hardpoints]\npivot_0 = [0, 0, 0]\n");
-    let mut bodies = String::from("[bodies]\nrocker_0 = {}\n");
-    let joint = |name: &str, bodies: [&str; 2], at: &str| {
-        let [i, j] = bodies;
-        format!(
-            "{name} = {{ type = \"revolute\", bodies = [\"{i}\", \"{j}\"], at = \"{at}\", axis = \"z\" }}\n"
-        )
-    };
-    let mut joints = String::from("[joints]\n") + &joint("pivot_0", ["ground", "rocker_0"], "pivot_0");
-    let (mut design, mut measures) = (String::from("[design]\n"), String::from("[measures]\n"));
-    for k in 1..=stages {
-        let (x, lean) = (100 * k, k % 3);
-        let (rocker, coupler, before) =
-            (format!("rocker_{k}"), format!("coupler_{k}"), format!("rocker_{}", k - 1));
-        let (near, far, pivot) = (format!("near_{k}"), format!("far_{k}"), format!("pivot_{k}"));
-        writeln!(
-            points,
-            "{pivot} = [{x}, 0, 0]\n{near} = [{}, 80, 0]\n{far} = [{}, {}, 0]",
-            x - 90,
-            x - lean,
-            80 + lean
-        )
-        .unwrap();
-        writeln!(bodies, "{coupler} = {{}}\n{rocker} = {{}}").unwrap();
-        joints += &joint(&near, [&before, &coupler], &near);
-        joints += &joint(&pivot, ["ground", &rocker], &pivot);
-        joints += &joint(&far, [&coupler, &rocker], &far);
-        for point in [&near, &far, &pivot] {
-            for axis in ["x", "y"] {
-                writeln!(design, "{point}_{axis} = {{ move = \"{point}\", along = \"{axis}\" }}").unwrap();
-            }
-        }
-        writeln!(measures, "angle_{k} = {{ type = \"coordinate\", joint = \"{pivot}\" }}").unwrap();
-    }
-    text += &[points, bodies, joints, design, measures].concat();
-    text + "[drivers]\nmotor = { joint = \"pivot_0\", law = \"0.2*sin(pi*t)\" }\n"
 }
 
 #[test]

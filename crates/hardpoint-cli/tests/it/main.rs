@@ -4,4 +4,5 @@ mod bench;
 mod golden;
 mod optimize;
 mod results;
+mod tolerance;
 mod whatif;

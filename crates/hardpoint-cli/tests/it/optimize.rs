@@ -132,3 +132,114 @@ fn commands_do_all_cases_or_the_one_asked_for() {
     assert_eq!(bench.run(&changed).status.code(), Some(0));
     assert!(bench.text("higher.toml").contains("rack_centre = [-200, 0, -48]"));
 }
+
+#[test]
+fn one_case_is_searched_by_itself_with_its_own_goals_and_limits() {
+    let bench = bench(&["strut_toe.toml"]);
+    let output = bench.run(&["optimize", "strut_toe.toml", "--case", "bump", "-o", "out", "--json"]);
+    assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
+    assert_eq!(bench.list("out"), ["report-bump.html", "summary.json"]);
+    let summary: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+    // Ackermann is of the other case, and no longer in the way.
+    assert!(!summary.to_string().contains("ackermann"), "{summary}");
+    let alone = summary["objective"]["after"].as_f64().unwrap();
+    let both = bench.run(&["optimize", "strut_toe.toml", "--json"]);
+    let both: serde_json::Value = serde_json::from_slice(&both.stdout).unwrap();
+    assert!(alone <= both["objective"]["after"].as_f64().unwrap() * (1.0 + 1e-9));
+    let none = bench.run(&["optimize", "strut_toe.toml", "--case", "steer"]);
+    assert_eq!(none.status.code(), Some(2));
+    assert!(String::from_utf8_lossy(&none.stderr).contains("no goal of `[optimize]` is of this case"));
+}
+
+#[test]
+fn a_grid_is_solved_by_itself_and_every_page_of_the_file_has_it() {
+    let bench = bench(&["strut_toe.toml"]);
+    let grid =
+        "grid = { strut_drive = { from = -30, to = 30, steps = 3 }, rack_drive = { at = [-10, 0, 10] } }";
+    let text = bench.text("strut_toe.toml");
+    bench.put("mapped.toml", &format!("{text}\n[cases.map]\n{grid}\n"));
+    let output = bench.run(&["run", "mapped.toml", "--case", "map", "-o", "map"]);
+    assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
+    assert_eq!(bench.list("map"), ["map_sensitivity.csv", "maps.csv", "maps.json"]);
+    let told = String::from_utf8_lossy(&output.stdout).into_owned();
+    assert!(
+        told.contains("Map `map` over strut_drive and rack_drive") && told.contains("maps.csv"),
+        "{told}"
+    );
+    assert_eq!(bench.run(&["run", "mapped.toml", "-o", "all", "--no-compare"]).status.code(), Some(0));
+    assert_eq!(bench.text("all/maps.csv"), bench.text("map/maps.csv"));
+    for case in ["bump", "steer"] {
+        let page = bench.page(&format!("all/{case}/report.html"));
+        assert_eq!((page["maps"].as_array().unwrap().len(), &page["maps"][0]["name"]), (1, &"map".into()));
+        let places = page["maps"][0]["drivers"][0]["places"].as_array().unwrap();
+        for (place, expected) in places.iter().zip([-30.0, -10.0, 10.0, 30.0]) {
+            assert!((place.as_f64().unwrap() - expected).abs() < 1e-12, "{places:?}");
+        }
+        let toe = &page["maps"][0]["quantities"].as_array().unwrap()[1];
+        assert_eq!(
+            (&toe["name"], &toe["unit"], toe["sensitivities"].as_array().unwrap().len()),
+            (&"toe".into(), &"deg".into(), 5)
+        );
+    }
+    // One motion by itself has no map.
+    assert_eq!(
+        bench.run(&["run", "mapped.toml", "--case", "bump", "-o", "one", "--no-compare"]).status.code(),
+        Some(0)
+    );
+    assert!(!bench.list("one").contains(&"maps.csv".to_string()));
+    let check = bench.run(&["check", "mapped.toml", "--case", "map"]);
+    assert_eq!(check.status.code(), Some(2));
+    assert!(String::from_utf8_lossy(&check.stderr).contains("a grid of positions and no motion"));
+}
+
+#[test]
+fn two_files_are_compared_in_every_case_that_both_have() {
+    let bench = bench(&["strut_toe.toml", "four_bar.toml"]);
+    let changed = [
+        "whatif",
+        "strut_toe.toml",
+        "--set",
+        "rack_z=+2mm",
+        "--case",
+        "bump",
+        "-o",
+        "whatif",
+        "--save",
+        "higher.toml",
+    ];
+    assert_eq!(bench.run(&changed).status.code(), Some(0));
+    let output = bench.run(&["compare", "strut_toe.toml", "higher.toml", "-o", "out"]);
+    let told = String::from_utf8_lossy(&output.stdout).into_owned();
+    assert_eq!(output.status.code(), Some(0), "{told}{}", String::from_utf8_lossy(&output.stderr));
+    assert_eq!(bench.list("out/bump"), ["compare.csv", "compare.html", "compare.json"]);
+    for line in ["rack_centre.z", "tie_rod_inner.z", "ackermann", "toe_error", "wheel_travel"] {
+        assert!(told.contains(line), "{line}: {told}");
+    }
+    // The second file is the design that the what-if had solved.
+    let (compared, solved) = (bench.json("out/bump/compare.json"), bench.json("whatif/whatif.json"));
+    let measure = |document: &serde_json::Value, name: &str| {
+        document["measures"].as_array().unwrap().iter().find(|m| m["measure"] == name).unwrap().clone()
+    };
+    for name in ["toe", "camber", "half_track"] {
+        let (a, b) = (measure(&compared, name), measure(&solved, name));
+        let [a, b] = [&a["curves"][1], &b["exact"]].map(|c| c.as_array().unwrap().clone());
+        assert!(
+            a.len() == 81
+                && a.iter().zip(&b).all(|(x, y)| (x.as_f64().unwrap() - y.as_f64().unwrap()).abs() < 1e-9)
+        );
+    }
+    let page = bench.page("out/bump/compare.html");
+    assert_eq!(page["designs"][0]["name"], "higher.toml");
+    assert!(page["checks"].as_array().unwrap()[0]["title"] == "Hardpoints that differ");
+
+    let same = bench.run(&["compare", "strut_toe.toml", "strut_toe.toml", "--case", "steer"]);
+    assert!(
+        String::from_utf8_lossy(&same.stdout).contains("the hardpoints and parameters of both are the same")
+    );
+    let unlike = bench.run(&["compare", "four_bar.toml", "strut_toe.toml"]);
+    assert_eq!(unlike.status.code(), Some(2));
+    assert!(String::from_utf8_lossy(&unlike.stderr).contains("there is no motion to compare"));
+    let no_measure =
+        bench.run(&["compare", "strut_toe.toml", "higher.toml", "--case", "bump", "--measure", "to"]);
+    assert!(String::from_utf8_lossy(&no_measure.stderr).contains("did you mean `toe`?"));
+}

@@ -213,9 +213,8 @@ impl Reader<'_> {
             self.senseless(end.value.span(), message).help = Some("give a `to` above `from`".into());
             return None;
         }
-        // Symmetric ranges meet the drawing exactly: of each place, both ends in proportion.
-        let part = |k: usize| k as f64 / steps;
-        Some((0..=steps as usize).map(|k| from * (1.0 - part(k)) + to * part(k)).collect())
+        // Symmetric ranges meet the drawing exactly, and whole numbers stay whole: of each place, both ends in proportion.
+        Some((0..=steps as usize).map(|k| (from * (steps - k as f64) + to * k as f64) / steps).collect())
     }
 
     /// HP0104: drivers that have no laws to follow in this case.

@@ -4,7 +4,7 @@ use hardpoint::draft::{DrivenDraft, DriverDraft, FormulaDraft, FormulaOf, Sectio
 use hardpoint::joint::Quantity;
 use hardpoint::law::Law;
 
-use crate::format::{BODY, JOINT, Kinds, Table, keys, table};
+use crate::format::{BODY, JOINT, Kinds, OUTPUT, Shape, Table, keys, table};
 use crate::places::EntryPlace;
 use crate::read::results::POINT_REF;
 use crate::tree::{Fields, LINE, Reader};
@@ -21,23 +21,30 @@ type Read = fn(&mut Reader<'_>, &Fields<'_>, &mut EntryPlace) -> Option<DrivenDr
 
 /// What is driven: by a law, said as this over time.
 macro_rules! driven {
-    ($over_time:literal; $($table:tt)*) => {
+    ($over_time:literal, $counted:literal; $($table:tt)*) => {
         Table {
             shared: keys! {
                 #[doc = $over_time]
-                #[doc = ", counted from the design configuration."]
+                #[doc = $counted]
                 #[doc = " It may be left out where every case gives the driver a law or holds it."]
                 may "law": law::LAW, "\"30*sin(2*pi*t)\"";
+                /// What the laws of this driver count from.
+                or("\"drawing\"") "counted_from": COUNTED, "\"zero\"";
             },
             ..table! { $($table)* }
         }
     };
 }
 
+const COUNTED: Shape = Shape::Words(&[
+    ("drawing", "From what it is in the design configuration."),
+    ("zero", "From zero: laws give a whole distance, a position, the length of a rod."),
+]);
+
 static FORMS: &[(Table, Read)] = &[
     (
         driven! {
-            "The coordinate over time, in the file's unit of it";
+            "The coordinate over time, in the file's unit of it", ", counted from the design configuration.";
             /// A joint's coordinate.
             "DrivenCoordinate":
             /// The joint's name; not a rod, whose length is constant.
@@ -53,7 +60,7 @@ static FORMS: &[(Table, Read)] = &[
     ),
     (
         driven! {
-            "The way over time, in the length unit";
+            "The way over time, in the length unit", ", counted from the design configuration.";
             /// The way of a point along a global direction, like wheel travel.
             "DrivenPosition":
             /// The point.
@@ -69,7 +76,7 @@ static FORMS: &[(Table, Read)] = &[
     ),
     (
         driven! {
-            "The change of their distance over time, in the length unit";
+            "The change of their distance over time, in the length unit", ", counted from the design configuration.";
             /// The change of the distance between two points, like the stroke of an actuator.
             "DrivenDistance":
             /// From this point.
@@ -84,7 +91,7 @@ static FORMS: &[(Table, Read)] = &[
     ),
     (
         driven! {
-            "The angle over time, in the angle unit";
+            "The angle over time, in the angle unit", ", counted from the design configuration.";
             /// The angle by which a body has turned, seen along a direction.
             "DrivenOrientation":
             /// The body's name.
@@ -101,6 +108,20 @@ static FORMS: &[(Table, Read)] = &[
             Some(DrivenDraft::Orientation { body: body?, relative_to: relative_to?, about: about? })
         },
     ),
+    (
+        driven! {
+            "The measure's value over time, in its unit", ".";
+            /// The value of a measure, like wheel travel or a steer angle: a `coordinate`, `position`, `distance`, `toe` or `angle` seen
+            /// along `about`; of a wheel its `toe`, `steer_angle`, `wheel_travel` or `wheel_recession`.
+            "DrivenMeasure":
+            /// The measure's name.
+            must "measure": OUTPUT, "\"travel\"";
+        },
+        |r, fields, _| {
+            r.out_of_place(fields, "counted_from", "the law of a measure is the measure's value");
+            r.name_of(fields, "measure").map(DrivenDraft::Measure)
+        },
+    ),
 ];
 
 impl Reader<'_> {
@@ -111,6 +132,7 @@ impl Reader<'_> {
             let says = ["what it prescribes", "what this driver prescribes is given"];
             let form = self.led_by(&fields, FORMS, says);
             let drives = form.and_then(|(_, read)| read(self, &fields, &mut place));
+            let from_zero = self.word_of(&fields, "counted_from") == Some(1);
             let law = self.given(&fields, "law", |r, f| r.law(&fields, f));
             if fields.get("law").is_none() {
                 if model.get("cases").is_some() {
@@ -122,7 +144,8 @@ impl Reader<'_> {
             }
             let drives = drives.unwrap_or(DrivenDraft::Unread);
             // The core says what is wrong with a joint or coordinate that is not known.
-            let quantity = drives.quantity(|joint| type_of(raw, joint)).unwrap_or(Quantity::Number);
+            let quantity = drives.quantity(&raw.draft.measures, |joint| type_of(raw, joint));
+            let quantity = quantity.unwrap_or(Quantity::Number);
             let law = law.unwrap_or_else(|| Law::constant(0.0)).scaled(self.units.to_si(quantity, 1.0));
             self.push(raw, Section::Drivers, place);
             raw.driven.push(quantity);
@@ -131,7 +154,7 @@ impl Reader<'_> {
                     .formulas
                     .push(FormulaDraft { of: FormulaOf::Law(entry.0.clone(), parameter), expression });
             }
-            raw.draft.drivers.push(DriverDraft { name: entry.0, drives, law });
+            raw.draft.drivers.push(DriverDraft { name: entry.0, drives, from_zero, law });
         }
     }
 }

@@ -284,7 +284,7 @@ impl Reader<'_> {
     }
 
     /// A whole number from 1.
-    fn count_of(&mut self, fields: &Fields<'_>, key: &'static str, most: u32) -> Option<usize> {
+    pub(super) fn count_of(&mut self, fields: &Fields<'_>, key: &'static str, most: u32) -> Option<usize> {
         let number = self.number_of(fields, key)?;
         if number >= 1.0 && number <= f64::from(most) && number.fract() == 0.0 {
             return Some(number as usize);

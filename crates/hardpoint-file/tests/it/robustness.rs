@@ -16,7 +16,7 @@ const MODELS: [&str; 8] = [
 ];
 
 /// Pieces that make a broken file interesting.
-const PIECES: [&str; 53] = [
+const PIECES: [&str; 57] = [
     "[",
     "]",
     "{",
@@ -70,6 +70,10 @@ const PIECES: [&str; 53] = [
     "[optimize.goals]",
     "limits = { l = { between = [\"A\", \"A\"], min = 2, max = 1 } }",
     "variables = [\"C_x\", \"C_x\"]",
+    "[tolerance]",
+    "[tolerance.variables]",
+    "correlations = { c = { between = [\"C_x\", \"C_y\"], coefficient = 2 } }",
+    "distribution = \"uniform\"",
 ];
 
 fn survives(text: &str) {
@@ -270,6 +274,9 @@ fn large_files_take_no_more_work_than_they_must() {
         ("nonsense", "1"),
         ("design", "{ move = \"A\", along = \"xyz\" }"),
         ("optimize.goals", "{ weight = 2 }"),
+        ("tolerance.variables", "{ tolerance = 1, cost = 2 }"),
+        ("tolerance.correlations", "{ between = [\"A_x\", \"A_y\"], coefficient = 0.5 }"),
+        ("tolerance.limits", "{ metric = \"m\", max = 1 }"),
         ("optimize.limits", "{ hardpoint = \"A\", x = [2, 1], z = { max = 1 } }"),
     ] {
         grows_in_proportion(|n| many(table, entry, n));

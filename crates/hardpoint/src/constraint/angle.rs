@@ -3,7 +3,7 @@
 //! All are `atan2(s, c)` of two Dot-1 products. As a constraint their residual is `sin(angle - f)`: zero and of unit
 //! slope at the root, and free of branch cuts over any number of turns.
 
-use crate::space::{Real, Wrench};
+use crate::space::{Real, Vec3, Wrench};
 
 use super::{MarkerPair, MarkerPairRates, axis, direction_rates};
 
@@ -81,15 +81,50 @@ pub(super) fn wrench_on_j<T: Real>(ends: &MarkerPair<T>) -> Wrench<T> {
 /// `sin(angle - f)`, the products divided by the length of x_j seen along z_i.
 #[inline(always)]
 pub(super) fn heading_residual<T: Real>(ends: &MarkerPair<T>, target: T) -> T {
-    let [s, c] = about_z_i(ends);
+    residual_seen(about_z_i(ends), target)
+}
+
+/// The wrench of the angle of x_j seen along z_i.
+#[inline(always)]
+pub(super) fn heading_wrench<T: Real>(ends: &MarkerPair<T>) -> Wrench<T> {
+    wrench_seen(ends, axis(&ends.j.rot, 0), about_z_i(ends))
+}
+
+/// s and c of the angle of z_j about z_i: tan(angle) = (y_i . z_j) / (x_i . z_j).
+#[inline(always)]
+fn course_about_z_i<T: Real>(ends: &MarkerPair<T>) -> [T; 2] {
+    let z_j = axis(&ends.j.rot, 2);
+    [axis(&ends.i.rot, 1).dot(z_j), axis(&ends.i.rot, 0).dot(z_j)]
+}
+
+/// The angle of z_j about z_i nearest to `near`.
+#[inline(always)]
+pub(super) fn course<T: Real>(ends: &MarkerPair<T>, near: T) -> T {
+    unwrapped(course_about_z_i(ends), near)
+}
+
+/// `sin(angle - f)` of the angle of z_j seen along z_i.
+#[inline(always)]
+pub(super) fn course_residual<T: Real>(ends: &MarkerPair<T>, target: T) -> T {
+    residual_seen(course_about_z_i(ends), target)
+}
+
+/// The wrench of the angle of z_j seen along z_i.
+#[inline(always)]
+pub(super) fn course_wrench<T: Real>(ends: &MarkerPair<T>) -> Wrench<T> {
+    wrench_seen(ends, axis(&ends.j.rot, 2), course_about_z_i(ends))
+}
+
+/// `sin(angle - f)` of an axis that points anywhere: the products divided by its length seen along z_i.
+#[inline(always)]
+fn residual_seen<T: Real>([s, c]: [T; 2], target: T) -> T {
     sine_of_difference([s, c], target) / (s * s + c * c).sqrt()
 }
 
-/// The moment `x_j x (c y_i - s x_i) / (s^2 + c^2)`, the gradient of atan2(s, c).
+/// The moment `a_j x (c y_i - s x_i) / (s^2 + c^2)`, the gradient of atan2(s, c) for axis a of marker j.
 #[inline(always)]
-pub(super) fn heading_wrench<T: Real>(ends: &MarkerPair<T>) -> Wrench<T> {
-    // d atan2(s, c) = (c ds - s dc) / (s^2 + c^2),  ds = (x_j x y_i) . (w_j - w_i),  dc = (x_j x x_i) . (w_j - w_i)
-    let [s, c] = about_z_i(ends);
+fn wrench_seen<T: Real>(ends: &MarkerPair<T>, a_j: Vec3<T>, [s, c]: [T; 2]) -> Wrench<T> {
+    // d atan2(s, c) = (c ds - s dc) / (s^2 + c^2),  ds = (a_j x y_i) . (w_j - w_i),  dc = (a_j x x_i) . (w_j - w_i)
     let g = axis(&ends.i.rot, 1) * c - axis(&ends.i.rot, 0) * s;
-    Wrench::moment(axis(&ends.j.rot, 0).cross(g) * (T::one() / (s * s + c * c)))
+    Wrench::moment(a_j.cross(g) * (T::one() / (s * s + c * c)))
 }

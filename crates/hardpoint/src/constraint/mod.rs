@@ -41,6 +41,8 @@ pub enum Row {
     AngleOnJ,
     /// Angle of x_j about z_i, seen along z_i, equals f; the axes may point anywhere.
     Heading,
+    /// Angle of z_j about z_i, seen along z_i, equals its design value and f; the axes may point anywhere.
+    Course,
     /// `z_i . z_j` keeps its design value: an angle between two axes (paper Eq. 4.1 with a constant).
     Cosine,
     /// `z_i . d` keeps its design value (paper Eq. 4.4 with a constant).
@@ -108,7 +110,7 @@ impl<T: Real> MarkerPair<T> {
 impl Row {
     /// Whether it holds what it measures at its value in the design configuration, rather than at zero.
     pub fn keeps_design_value(self) -> bool {
-        matches!(self, Self::Distance | Self::Cosine | Self::Offset | Self::Contact)
+        matches!(self, Self::Distance | Self::Course | Self::Cosine | Self::Offset | Self::Contact)
     }
 
     /// What it measures: the residual against a target of zero; angles unwrapped to within half a turn of `near`.
@@ -117,6 +119,7 @@ impl Row {
         match self {
             Self::Angle | Self::Heading => angle::value(ends, near),
             Self::AngleOnJ => angle::value_on_j(ends, near),
+            Self::Course => angle::course(ends, near),
             _ => self.residual(ends, T::zero()),
         }
     }
@@ -156,6 +159,7 @@ impl Row {
         match self {
             Self::AngleOnJ => angle::residual_on_j(ends, target),
             Self::Heading => angle::heading_residual(ends, target),
+            Self::Course => angle::course_residual(ends, target),
             Self::ConstantVelocity => convel::residual(ends, target),
             _ => unreachable!("a common row"),
         }
@@ -180,6 +184,7 @@ impl Row {
         match self {
             Self::AngleOnJ => angle::wrench_on_j(ends),
             Self::Heading => angle::heading_wrench(ends),
+            Self::Course => angle::course_wrench(ends),
             Self::ConstantVelocity => convel::wrench(ends),
             _ => unreachable!("a common row"),
         }
@@ -245,6 +250,7 @@ impl Row {
             Self::Angle => "angle about z_i".into(),
             Self::AngleOnJ => "angle about x_j".into(),
             Self::Heading => "angle seen along z_i".into(),
+            Self::Course => "angle of z_j seen along z_i".into(),
             Self::Cosine => "Dot-1: angle between z_i and z_j".into(),
             Self::Offset => "Dot-2: displacement along z_i".into(),
             Self::Contact => "distance from the curve".into(),
@@ -296,7 +302,7 @@ mod tests {
     use super::*;
 
     /// Every kind of row; a new constraint joins the battery here.
-    const BATTERY: [Row; 21] = [
+    const BATTERY: [Row; 22] = [
         Row::Point(0),
         Row::Point(1),
         Row::Point(2),
@@ -311,6 +317,7 @@ mod tests {
         Row::Angle,
         Row::AngleOnJ,
         Row::Heading,
+        Row::Course,
         Row::Cosine,
         Row::Offset,
         Row::Contact,
@@ -347,7 +354,8 @@ mod tests {
                 let (s, c) = 0.7_f64.sin_cos();
                 j.rot = i.rot.turned(2, s, c);
             }
-            Row::AngleOnJ => {
+            // Where the axes are nearly parallel the angle changes faster than differences can follow.
+            Row::AngleOnJ | Row::Course => {
                 let (s, c) = 0.7_f64.sin_cos();
                 j.rot = i.rot.turned(2, -0.6, 0.8).turned(0, s, c);
             }
@@ -375,7 +383,7 @@ mod tests {
                 }
                 let target = match row {
                     Row::Angle | Row::AngleOnJ => 0.7,
-                    Row::Heading => row.value(&ends, 0.0),
+                    Row::Heading | Row::Course => row.value(&ends, 0.0),
                     _ => 0.1,
                 };
                 let rate = row.wrench(&ends).on(wj - wi);
@@ -402,7 +410,7 @@ mod tests {
     #[test]
     fn angles_are_measured_over_many_turns_and_differ_from_targets_by_their_residual() {
         let mut next = numbers(5);
-        for row in [Row::Angle, Row::AngleOnJ, Row::Heading] {
+        for row in [Row::Angle, Row::AngleOnJ, Row::Heading, Row::Course] {
             for turns in [-3.0, 0.0, 7.0] {
                 let ends = random_ends(row, &mut next);
                 let whole = 2.0 * std::f64::consts::PI * turns;

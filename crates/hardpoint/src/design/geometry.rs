@@ -53,6 +53,8 @@ pub struct JointConstants<T = f64> {
     pub offset: T,
     /// Cosine of the angle between z_i and z_j.
     pub cosine: T,
+    /// Angle of z_j about z_i, seen along z_i, rad.
+    pub course: T,
     /// Distance of marker j from the curve of marker i, positive on its left, m.
     pub contact: T,
 }
@@ -64,6 +66,7 @@ impl<T: Real> JointConstants<T> {
             Row::Distance => self.distance,
             Row::Offset => self.offset,
             Row::Cosine => self.cosine,
+            Row::Course => self.course,
             Row::Contact => self.contact,
             _ => T::zero(),
         }
@@ -74,18 +77,19 @@ impl<T: Real> JointConstants<T> {
             distance: f(self.distance),
             offset: f(self.offset),
             cosine: f(self.cosine),
+            course: f(self.course),
             contact: f(self.contact),
         }
     }
 
     pub(super) fn vanishes(self) -> bool {
-        [self.distance, self.offset, self.cosine, self.contact].into_iter().all(T::vanishes)
+        [self.distance, self.offset, self.cosine, self.course, self.contact].into_iter().all(T::vanishes)
     }
 
     /// The largest of them.
     pub(crate) fn size(&self) -> T {
         let [a, b] =
             [self.distance.abs().larger(self.offset.abs()), self.cosine.abs().larger(self.contact.abs())];
-        a.larger(b)
+        a.larger(b).larger(self.course.abs())
     }
 }

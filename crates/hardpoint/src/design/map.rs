@@ -13,6 +13,7 @@
 //! | `u` of a change | `U_theta` (3.3) | the same as rates of the 3-1-3 Euler angles, rad per unit |
 //! | [`DesignMap::field_along`] | `dD/dtau` (5.5) | `d/db` of all of it, by duals `b + eps` |
 
+use crate::constraint::Row;
 use crate::design::{BodyFixed, DesignVelocity, Geometry, JointConstants, MarkerVelocity};
 use crate::law::Law;
 use crate::model::{
@@ -415,7 +416,11 @@ impl<'e, T: Real> PlacedDesign<'e, T> {
             let sign = || T::constant(f64::signum(drawn.value()));
             given.map_or(drawn, |length| length.abs() * sign())
         });
-        JointConstants { distance, offset: z_i.dot(d), cosine: z_i.dot(z_j), contact }
+        // Axes that point the same way have no course, and it would have no derivative.
+        let has_course = joint.kind.coordinates.iter().any(|c| c.row == Row::Course);
+        let [x_i, y_i] = [0, 1].map(|k| m_i.rot.cols[k]);
+        let course = if has_course { y_i.dot(z_j).atan2(x_i.dot(z_j)) } else { zero };
+        JointConstants { distance, offset: z_i.dot(d), cosine: z_i.dot(z_j), course, contact }
     }
 
     /// A point in its body's frame.

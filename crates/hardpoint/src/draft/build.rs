@@ -200,7 +200,7 @@ impl BodyDraft {
 impl DriverDraft {
     /// A driver. A joint's name stands for its only coordinate, `["joint", "coordinate"]` for one of several.
     pub fn new(name: impl Into<String>, drives: impl Into<DrivenDraft>, law: Law) -> Self {
-        Self { name: name.into(), drives: drives.into(), law }
+        Self { name: name.into(), drives: drives.into(), from_zero: false, law }
     }
 }
 

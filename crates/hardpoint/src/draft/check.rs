@@ -2,12 +2,14 @@
 
 mod cases;
 mod design;
+mod driven;
 mod formulas;
 mod grids;
 mod joints;
 mod measures;
 mod motion;
 mod optimization;
+mod tolerancing;
 mod wheels;
 
 pub use formulas::{Nominal, NotConstant};
@@ -72,6 +74,7 @@ impl Model {
         c.formulas_that_vary();
         c.times();
         c.optimization();
+        c.tolerancing();
         c.faults.retain(|f| !draft.unread.has(f.at.section, f.at.index, f.at.key));
         if !c.faults.is_empty() || !draft.unread.is_empty() {
             return Err(c.faults);
@@ -124,6 +127,8 @@ struct Checker<'a> {
     numbers: HashMap<&'static str, HashMap<&'a str, usize>>,
     /// Which driver prescribes a coordinate of a joint. Only looked up, never walked.
     driver_of: HashMap<(JointId, usize), DriverId>,
+    /// What the drivers whose laws count from zero have as drawn.
+    zeros: HashMap<DriverId, driven::AsDrawn>,
     /// Comparisons of names that guesses may still take.
     comparisons: usize,
     /// The box around the joints' hardpoints, as far as they are known; what no joint uses has no say in what is small.
@@ -195,6 +200,7 @@ impl<'a> Checker<'a> {
             cases: Vec::new(),
             grids: Vec::new(),
             optimization: None,
+            tolerancing: None,
         };
         let ground = ["ground"].into_iter();
         let numbers = HashMap::from([
@@ -243,6 +249,7 @@ impl<'a> Checker<'a> {
             case_formulas,
             numbers,
             driver_of: HashMap::new(),
+            zeros: HashMap::new(),
             comparisons: COMPARISONS,
             extent,
         }
@@ -256,7 +263,7 @@ impl<'a> Checker<'a> {
     /// HP0201: empty and duplicate names; HP0202: coordinates that are not finite.
     fn names(&mut self) {
         let d = self.draft;
-        let lists: [(Section, &str, Vec<&str>); 16] = [
+        let lists: [(Section, &str, Vec<&str>); 19] = [
             (Section::Parameters, "parameter", d.parameters.iter().map(|x| x.name.as_str()).collect()),
             (Section::Hardpoints, "hardpoint", d.hardpoints.iter().map(|x| x.name.as_str()).collect()),
             (Section::Bodies, "body", d.bodies.iter().map(|x| x.name.as_str()).collect()),
@@ -280,6 +287,21 @@ impl<'a> Checker<'a> {
                 Section::Limits,
                 "limit",
                 d.optimization.iter().flat_map(|o| &o.limits).map(|x| x.name.as_str()).collect(),
+            ),
+            (
+                Section::Tolerances,
+                "tolerance",
+                d.tolerancing.iter().flat_map(|t| &t.tolerances).map(|x| x.name.as_str()).collect(),
+            ),
+            (
+                Section::Correlations,
+                "correlation",
+                d.tolerancing.iter().flat_map(|t| &t.correlations).map(|x| x.name.as_str()).collect(),
+            ),
+            (
+                Section::ToleranceLimits,
+                "limit",
+                d.tolerancing.iter().flat_map(|t| &t.limits).map(|x| x.name.as_str()).collect(),
             ),
         ];
         for (section, what, names) in lists {
@@ -419,25 +441,31 @@ impl<'a> Checker<'a> {
         here: Here,
         key: &'static str,
     ) -> Option<(Direction, Vec3)> {
+        self.line_at(line, owner, here.key(key))
+    }
+
+    /// The same, written at a place.
+    fn line_at(&mut self, line: &LineDraft, owner: &str, at: Locus) -> Option<(Direction, Vec3)> {
+        let key = at.key;
         match line {
             LineDraft::Along(v) => match v.unit() {
                 Some(u) => Some((Direction::Along(u), u)),
                 None => {
-                    self.fault("HP0205", here.key(key), format!("the {key} of `{owner}` has no direction"))
+                    self.fault("HP0205", at, format!("the {key} of `{owner}` has no direction"))
                         .note(format!("it is written as [{}, {}, {}]", v.x, v.y, v.z))
                         .help("give a vector of any length but zero, like [0, 0, 1]");
                     None
                 }
             },
             LineDraft::Through(a, b) => {
-                let a_id = self.hardpoint(a, here.item(key, 0));
-                let b_id = self.hardpoint(b, here.item(key, 1));
+                let a_id = self.hardpoint(a, Locus { item: Some(0), ..at.clone() });
+                let b_id = self.hardpoint(b, Locus { item: Some(1), ..at.clone() });
                 let (a_id, b_id) = (a_id?, b_id?);
                 match self.apart(a_id, b_id)?.and_then(Vec3::unit) {
                     Some(u) => Some((Direction::Through(a_id, b_id), u)),
                     None => {
                         let message = format!("the {key} of `{owner}` passes through one point only");
-                        self.fault("HP0205", here.key(key), message)
+                        self.fault("HP0205", at, message)
                             .note(if a == b {
                                 format!("both of its hardpoints are `{a}`")
                             } else {

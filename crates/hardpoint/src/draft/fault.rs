@@ -73,6 +73,14 @@ pub enum Section {
     Goals,
     /// [`super::OptimizationDraft::limits`].
     Limits,
+    /// [`super::Draft::tolerancing`].
+    Tolerance,
+    /// [`super::TolerancingDraft::tolerances`].
+    Tolerances,
+    /// [`super::TolerancingDraft::correlations`].
+    Correlations,
+    /// [`super::TolerancingDraft::limits`].
+    ToleranceLimits,
 }
 
 /// A place in a draft.
@@ -109,7 +117,10 @@ impl fmt::Display for Section {
             Self::Cases | Self::Grids => "cases",
             Self::Optimize => "optimize",
             Self::Goals => "goals",
-            Self::Limits => "limits",
+            Self::Limits | Self::ToleranceLimits => "limits",
+            Self::Tolerance => "tolerance",
+            Self::Tolerances => "variables",
+            Self::Correlations => "correlations",
         })
     }
 }

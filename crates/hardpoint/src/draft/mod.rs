@@ -20,7 +20,9 @@ use std::collections::BTreeMap;
 use crate::expression::Expression;
 use crate::joint::{self, JointType, Quantity};
 use crate::law::Law;
-use crate::model::{Reduction, Side, Transmission, Vehicle, VehicleEnd};
+use crate::model::{
+    AllocationRule, Dimension, Reduction, Side, Tolerancing, Transmission, Vehicle, VehicleEnd,
+};
 use crate::space::{Pose, Vec3};
 
 /// A mechanism as written. Fill it in code, word by word or field by field, or from a file;
@@ -65,6 +67,8 @@ pub struct Draft {
     pub grids: Vec<GridDraft>,
     /// What the design is to be optimised for.
     pub optimization: Option<OptimizationDraft>,
+    /// How far off the design may be made.
+    pub tolerancing: Option<TolerancingDraft>,
     /// What of all this could not be read.
     pub unread: Unread,
 }
@@ -269,11 +273,13 @@ pub struct DriverDraft {
     pub name: String,
     /// What it prescribes.
     pub drives: DrivenDraft,
-    /// That over time, counted from the design configuration, m or rad.
+    /// Whether its laws count from zero, as those of measures do; else they count from the design configuration.
+    pub from_zero: bool,
+    /// What it prescribes over time, m or rad.
     pub law: Law,
 }
 
-/// What a driver prescribes, counted from the design configuration.
+/// What a driver prescribes.
 #[derive(Clone, Debug)]
 pub enum DrivenDraft {
     /// It could not be read.
@@ -308,17 +314,38 @@ pub enum DrivenDraft {
         /// The direction.
         about: LineDraft,
     },
+    /// The value of a measure, like wheel travel or a steer angle.
+    Measure(String),
 }
 
 impl DrivenDraft {
     /// What the driver's values are, as far as that is known; `type_of` gives the type of a joint.
-    pub fn quantity(&self, type_of: impl FnOnce(&str) -> Option<&'static JointType>) -> Option<Quantity> {
+    pub fn quantity(
+        &self,
+        measures: &[MeasureDraft],
+        type_of: impl FnOnce(&str) -> Option<&'static JointType>,
+    ) -> Option<Quantity> {
         match self {
             Self::Unread => None,
             Self::Coordinate { joint, coordinate } => type_of(joint)?.quantity_of(coordinate.as_deref()),
             Self::Position { .. } => joint::TRAVEL.quantity_of(None),
             Self::Distance { .. } => joint::LEG.quantity_of(None),
             Self::Orientation { .. } => joint::HEADING.quantity_of(None),
+            Self::Measure(name) => match &measures.iter().find(|m| m.name == *name)?.kind {
+                MeasureKindDraft::Coordinate { joint, coordinate } => {
+                    type_of(joint)?.quantity_of(coordinate.as_deref())
+                }
+                MeasureKindDraft::Distance { .. } | MeasureKindDraft::Coordinates { .. } => {
+                    Some(Quantity::Length)
+                }
+                MeasureKindDraft::Angle { .. } | MeasureKindDraft::Toe { .. } => Some(Quantity::Angle),
+                MeasureKindDraft::Wheel { what, .. } => match what.dimension() {
+                    Dimension::LENGTH => Some(Quantity::Length),
+                    Dimension::ANGLE => Some(Quantity::Angle),
+                    _ => None,
+                },
+                _ => None,
+            },
         }
     }
 }
@@ -562,4 +589,81 @@ pub enum LimitedDraft {
     Distance([String; 2]),
     /// The length of a rod or leg, between its places as drawn or as it is given.
     Length(String),
+}
+
+/// How far off a design may be made; see [`Tolerancing`](crate::model::Tolerancing).
+#[derive(Clone, Debug)]
+pub struct TolerancingDraft {
+    /// What is said of single variables, by their names or by that of the entry that makes them. All others that have a
+    /// [tolerance](VariableDraft::tolerance) join them.
+    pub tolerances: Vec<ToleranceDraft>,
+    /// Which variables go together.
+    pub correlations: Vec<CorrelationDraft>,
+    /// What must hold of metrics.
+    pub limits: Vec<LimitDraft>,
+    /// The names of the metrics; all of them where they are left out.
+    pub metrics: Option<Vec<String>>,
+    /// The names of the measures; all of them where they are left out.
+    pub curves: Option<Vec<String>>,
+    /// How deviations scatter where a variable says nothing else.
+    pub scatter: ScatterDraft,
+    /// So many designs are drawn.
+    pub samples: usize,
+    /// From this number.
+    pub seed: u64,
+    /// How the loosest tolerances are sought, if they are.
+    pub allocation: Option<AllocationRule>,
+}
+
+impl Default for TolerancingDraft {
+    fn default() -> Self {
+        Self {
+            tolerances: Vec::new(),
+            correlations: Vec::new(),
+            limits: Vec::new(),
+            metrics: None,
+            curves: None,
+            scatter: ScatterDraft::default(),
+            samples: Tolerancing::SAMPLES,
+            seed: Tolerancing::SEED,
+            allocation: None,
+        }
+    }
+}
+
+/// How deviations scatter, as far as that is said; see [`Scatter`](crate::model::Scatter).
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct ScatterDraft {
+    /// Its place in [`Scatter::NAMES`](crate::model::Scatter::NAMES).
+    pub kind: Option<usize>,
+    /// How many standard deviations the tolerance is.
+    pub sigmas: Option<f64>,
+}
+
+/// A tolerance; see [`Tolerance`](crate::model::Tolerance). Its reach is in units of which so many make a metre or a radian.
+#[derive(Clone, Debug)]
+pub struct ToleranceDraft {
+    /// The name of a design variable, or the part before `_x`, `_y`, `_z` of several.
+    pub name: String,
+    /// By how much it may be off; the variable's own tolerance where it is left out.
+    pub reach: Option<f64>,
+    /// How it scatters.
+    pub scatter: ScatterDraft,
+    /// What it costs to hold it.
+    pub cost: Option<f64>,
+    /// How many units of length make a metre.
+    pub per_metre: f64,
+    /// How many units of angle make a radian.
+    pub per_radian: f64,
+}
+
+/// A correlation; see [`Correlation`](crate::model::Correlation).
+#[derive(Clone, Debug)]
+pub struct CorrelationDraft {
+    /// Its name.
+    pub name: String,
+    /// The names of two design variables.
+    pub between: [String; 2],
+    /// Their coefficient.
+    pub coefficient: f64,
 }

@@ -6,6 +6,7 @@
 
 mod angle;
 mod constant_velocity;
+mod course;
 mod cylindrical;
 mod distance;
 mod dot1;
@@ -29,6 +30,7 @@ mod travel;
 mod universal;
 
 use crate::constraint::Row;
+pub(crate) use course::COURSE;
 
 /// Exports and lists the types.
 macro_rules! joints {

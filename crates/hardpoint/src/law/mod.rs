@@ -83,7 +83,12 @@ pub type TimeJet<T = f64> = Jet<T, 4>;
 pub struct Law {
     kind: AnyLaw,
     factor: f64,
+    /// What is prescribed has this value as drawn, in the driver's own unit, and the text counts from zero.
+    as_drawn: Option<f64>,
 }
+
+/// The parameter that a law has when it [counts from zero](Law::from_zero): what is prescribed, as drawn.
+const AS_DRAWN: &str = "as_drawn";
 
 impl Law {
     /// The law that `text` writes, in whatever unit the text's author had in mind.
@@ -140,7 +145,7 @@ impl Law {
     }
 
     fn of(kind: impl Into<AnyLaw>) -> Self {
-        Self { kind: kind.into(), factor: 1.0 }
+        Self { kind: kind.into(), factor: 1.0, as_drawn: None }
     }
 
     /// This law times `factor`, as for a change of unit. The text remains as written.
@@ -157,7 +162,29 @@ impl Law {
     #[must_use]
     pub fn scaled(mut self, factor: f64) -> Self {
         self.factor *= factor;
+        self.as_drawn = self.as_drawn.map(|value| value * factor);
         self
+    }
+
+    /// This law for what has the value `as_drawn` in the drawing, from which drivers count: the text gives the whole value. What it is as
+    /// drawn becomes the last of the [parameters](Self::parameters).
+    ///
+    /// ```
+    /// use hardpoint::law::Law;
+    ///
+    /// let length = Law::parse("0.5 + 0.1*t")?.from_zero(0.45);
+    /// assert!((length.at(1.0).value() - 0.15).abs() < 1e-15);
+    /// # Ok::<(), hardpoint::expression::ExpressionError>(())
+    /// ```
+    #[must_use]
+    pub fn from_zero(mut self, as_drawn: f64) -> Self {
+        self.as_drawn = Some(as_drawn);
+        self
+    }
+
+    /// The parameter that says what is prescribed as drawn, and its value, where the law counts from zero.
+    pub fn as_drawn(&self) -> Option<(usize, f64)> {
+        self.as_drawn.map(|value| (self.kind.parameter_count(), value))
     }
 
     /// The value and the first three time derivatives at time `t`: driver unit per s⁰, s, s², s³; `t` in seconds. Over any
@@ -174,7 +201,7 @@ impl Law {
 
     /// The same with as many derivatives as are wanted.
     pub(crate) fn to_order<T: Real, const N: usize>(&self, t: T) -> Jet<T, N> {
-        self.kind.at(Jet::time(t), None) * self.factor
+        self.evaluate(Jet::time(t), None)
     }
 
     /// The numbers in the law that may be varied: those of its kind in the order that the kind documents; of an expression
@@ -195,6 +222,8 @@ impl Law {
         for parameter in parameters.iter_mut().filter(|parameter| parameter.kind.is_in_driver_unit()) {
             parameter.value *= self.factor;
         }
+        parameters
+            .extend(self.as_drawn.map(|value| parameter::parameter(AS_DRAWN, value, ParameterKind::Value)));
         parameters
     }
 
@@ -241,6 +270,9 @@ impl Law {
     #[must_use]
     pub fn with_parameter(&self, parameter: usize, value: f64) -> Self {
         self.check_index(parameter);
+        if parameter == self.kind.parameter_count() {
+            return self.clone().from_zero(value);
+        }
         let is_in_driver_unit = self.kind.parameter_kind(parameter).is_in_driver_unit();
         let mut law = self.clone();
         law.kind.set(parameter, if is_in_driver_unit { value / self.factor } else { value });
@@ -261,6 +293,7 @@ impl Law {
     /// ```
     pub fn over(&self, from: f64, to: f64) -> Stretch {
         let over = self.kind.over(from, to) * Stretch::constant(self.factor);
+        let over = over - Stretch::constant(self.as_drawn.unwrap_or(0.0));
         over.settled(self.at(0.5 * (from + to)).value(), to - from)
     }
 
@@ -289,16 +322,22 @@ impl Law {
 
     /// The law over a time that may run backwards, with the derivative by a parameter if there is a seed.
     fn evaluate<T: Real, const N: usize>(&self, time: Jet<T, N>, seed: Option<Seed<T>>) -> Jet<T, N> {
+        let own = self.kind.parameter_count();
+        let as_written = seed.filter(|seed| seed.parameter < own);
         let as_written =
-            seed.map(|seed| match self.kind.parameter_kind(seed.parameter).is_in_driver_unit() {
+            as_written.map(|seed| match self.kind.parameter_kind(seed.parameter).is_in_driver_unit() {
                 true => Seed { size: seed.size / T::constant(self.factor), ..seed },
                 false => seed,
             });
-        self.kind.at(time, as_written) * self.factor
+        let value = self.kind.at(time, as_written) * self.factor;
+        match self.as_drawn {
+            Some(as_drawn) => value - Jet::constant(parameter::seeded(as_drawn, own, seed)),
+            None => value,
+        }
     }
 
     fn check_index(&self, parameter: usize) {
-        let count = self.kind.parameter_count();
+        let count = self.kind.parameter_count() + usize::from(self.as_drawn.is_some());
         assert!(parameter < count, "the law has {count} parameters, so none has the index {parameter}");
     }
 }
@@ -320,7 +359,7 @@ impl fmt::Debug for Law {
 
 impl PartialEq for Law {
     fn eq(&self, other: &Self) -> bool {
-        self.kind == other.kind && self.factor == other.factor
+        self.kind == other.kind && self.factor == other.factor && self.as_drawn == other.as_drawn
     }
 }
 

@@ -5,6 +5,7 @@ mod factors;
 mod least_squares;
 mod matrix;
 mod rank;
+pub(crate) mod semidefinite;
 mod sparse;
 mod spline;
 

@@ -850,6 +850,8 @@ impl<'a, T: Real> Instant<'a, T> {
             Row::Angle | Row::Heading => axis(0, 1).dot(axis(1, 0)).atan2(axis(0, 0).dot(axis(1, 0))),
             // atan2(z_i . y_j, z_i . z_j)
             Row::AngleOnJ => axis(0, 2).dot(axis(1, 1)).atan2(axis(0, 2).dot(axis(1, 2))),
+            // atan2(y_i . z_j, x_i . z_j)
+            Row::Course => axis(0, 1).dot(axis(1, 2)).atan2(axis(0, 0).dot(axis(1, 2))),
             // a_i . (P_j - P_i)
             Row::Dot2(k) => axis(0, k).dot(origin(1) - origin(0)),
             // abs(P_j - P_i)

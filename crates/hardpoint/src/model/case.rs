@@ -2,7 +2,7 @@
 
 use crate::law::Law;
 
-use super::{CaseId, Change, DriverId, Formula, Model, Target};
+use super::{CaseId, Change, DriverId, Formula, Limited, Model, Target};
 
 /// A motion of the mechanism under laws and at times of its own: a car in bump with the rack held, or steered at one ride height.
 #[derive(Clone, Debug)]
@@ -27,7 +27,7 @@ pub struct Grid {
     pub name: String,
     /// The two drivers.
     pub drivers: [DriverId; 2],
-    /// Where each of them stands, counted from the drawing, m or rad, increasing.
+    /// Where each of them stands, m or rad, increasing; counted as its laws are.
     pub values: [Vec<f64>; 2],
 }
 
@@ -46,7 +46,13 @@ impl Model {
     /// If there is no such case.
     pub fn in_case(&self, case: CaseId) -> Self {
         let Case { name, laws, formulas, times } = &self.cases[case.0];
-        let mut model = Self { times: times.clone(), cases: Vec::new(), optimization: None, ..self.clone() };
+        let mut model = Self {
+            times: times.clone(),
+            cases: Vec::new(),
+            optimization: None,
+            tolerancing: None,
+            ..self.clone()
+        };
         model.name = format!("{}, {name}", self.name);
         for (driver, law) in model.drivers.iter_mut().zip(laws) {
             if let Some(law) = law {
@@ -60,6 +66,37 @@ impl Model {
         model.variables.iter_mut().for_each(|v| v.changes.retain(|change| !is_replaced(change)));
         model.metrics.retain(|m| m.case.is_none_or(|of| of == case));
         model.metrics.iter_mut().for_each(|m| m.case = None);
+        model
+    }
+
+    /// Where a driver stands as drawn, m or rad: zero, or the whole value of what it prescribes where its laws count from zero.
+    pub fn as_drawn(&self, driver: DriverId) -> f64 {
+        self.drivers[driver.0].law.as_drawn().map_or(0.0, |(_, value)| value)
+    }
+
+    /// The mechanism with one of its cases and no other: of its metrics, and of what it is to be optimised for, what is of that case or of
+    /// all.
+    ///
+    /// # Panics
+    /// If there is no such case.
+    #[must_use]
+    pub fn with_case_only(&self, case: CaseId) -> Self {
+        let cases = vec![self.cases[case.0].clone()];
+        let mut model = Self { cases, grids: Vec::new(), tolerancing: None, ..self.clone() };
+        model.metrics.retain(|m| m.case.is_none_or(|of| of == case));
+        model.metrics.iter_mut().for_each(|m| m.case = m.case.map(|_| CaseId(0)));
+        let stays = |metric: &usize| self.metrics[*metric].case.is_none_or(|of| of == case);
+        let place = |metric: usize| (0..metric).filter(|m| stays(m)).count();
+        if let Some(asked) = &mut model.optimization {
+            asked.goals.retain(|goal| stays(&goal.metric));
+            asked.goals.iter_mut().for_each(|goal| goal.metric = place(goal.metric));
+            asked.limits.retain(|limit| !matches!(&limit.of, Limited::Metric(metric) if !stays(metric)));
+            for limit in &mut asked.limits {
+                if let Limited::Metric(metric) = &mut limit.of {
+                    *metric = place(*metric);
+                }
+            }
+        }
         model
     }
 

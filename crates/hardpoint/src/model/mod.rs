@@ -11,6 +11,7 @@ mod formula;
 mod measure;
 mod metric;
 mod optimization;
+mod tolerancing;
 mod wheel;
 
 pub use case::{Case, Grid};
@@ -24,6 +25,7 @@ pub use measure::{Combination, Dimension, KnownOrders, Measure, MeasureKind, Out
 pub(crate) use metric::on_target;
 pub use metric::{Metric, Reduction};
 pub use optimization::{Goal, Limit, Limited, Optimization};
+pub use tolerancing::{Allocating, AllocationRule, Correlation, Scatter, Tolerance, Tolerancing};
 pub use wheel::{Axle, AxleMeasure, Side, Vehicle, VehicleEnd, Wheel, WheelMeasure, WheelNeed};
 
 use crate::constraint::MarkerPair;
@@ -110,6 +112,8 @@ pub struct Model {
     pub grids: Vec<Grid>,
     /// What the design is to be optimised for, if that is known.
     pub optimization: Option<Optimization>,
+    /// How far off the design may be made, if the file says more of it than its variables.
+    pub tolerancing: Option<Tolerancing>,
 }
 
 /// A named point of the design configuration.

@@ -4,7 +4,7 @@ use std::ops::ControlFlow;
 
 use crate::law::Law;
 use crate::measure::Output;
-use crate::model::{Case, CaseId, Grid, Model, OutputSource, VariableId};
+use crate::model::{Case, CaseId, DriverId, Formula, Grid, Model, OutputSource, Target, VariableId};
 use crate::motion::{Stop, StopKind};
 use crate::run::{Analysis, Run, Solution};
 use crate::topology::{Formulation, TopologyFault};
@@ -69,7 +69,7 @@ impl GridMap {
         design: &[f64],
         more: &(dyn Fn() -> bool + Sync),
     ) -> Result<Self, TopologyFault> {
-        let [first, second] = &grid.values;
+        let [first, second] = &from_drawing(model, grid);
         let outputs = crate::measure::outputs(model);
         let by_driver = |source| matches!(source, OutputSource::Measure(k) if model.goes_by_driver(k));
         let mut map = Self {
@@ -93,25 +93,34 @@ impl GridMap {
                 if !more() {
                     return Ok(map);
                 }
-                let moved = row_model(model, grid, row, farthest, places.iter().map(|k| first[*k]));
+                let moved = row_model(model, grid, [farthest, second[row]], places.iter().map(|k| first[*k]));
                 let analysis = Analysis::with(&moved, formulation)?;
                 let go_on = |_| if more() { ControlFlow::Continue(()) } else { ControlFlow::Break(()) };
                 let solution = analysis.solve(Run::new().at(design).progress(go_on));
                 map.cost.motions += 1;
                 map.cost.steps += solution.motion.len();
-                map.take(row, farthest, &places, &moved.times, &solution);
+                map.take(row, [first, second], farthest, &places, &moved.times, &solution);
             }
         }
         Ok(map)
     }
 
     /// Takes one motion's positions.
-    fn take(&mut self, row: usize, farthest: f64, places: &[usize], times: &[f64], solution: &Solution) {
-        let [first, second] = &self.grid.values;
+    fn take(
+        &mut self,
+        row: usize,
+        [first, second]: [&[f64]; 2],
+        farthest: f64,
+        places: &[usize],
+        times: &[f64],
+        solution: &Solution,
+    ) {
         let interrupted = solution.stop.as_ref().is_some_and(|s| matches!(s.kind, StopKind::Interrupted));
         let stopped = solution.stop.as_ref().filter(|_| !interrupted).map(|stop| {
             let t = stop.failed_time;
-            let stood = [sweep(farthest, t), second[row] * t.clamp(BOTH[0], BOTH[1])];
+            let gone = [sweep(farthest, t), second[row] * t.clamp(BOTH[0], BOTH[1])];
+            let as_drawn = [self.grid.values[0][0] - first[0], self.grid.values[1][0] - second[0]];
+            let stood = [0, 1].map(|k| as_drawn[k] + gone[k]);
             self.stops.push(GridStop { row, stop: stop.clone(), stood });
             self.stops.len() - 1
         });
@@ -204,22 +213,49 @@ fn time_of(place: f64, farthest: f64) -> f64 {
     BOTH[1] + if place == 0.0 { 0.0 } else { place / farthest }
 }
 
-/// The mechanism in one half of a row.
-fn row_model(
-    model: &Model,
-    grid: &Grid,
-    row: usize,
-    farthest: f64,
-    places: impl Iterator<Item = f64>,
-) -> Model {
+/// Where the two drivers stand, counted from the drawing.
+fn from_drawing(model: &Model, grid: &Grid) -> [Vec<f64>; 2] {
+    [0, 1].map(|k| {
+        let as_drawn = model.as_drawn(grid.drivers[k]);
+        grid.values[k].iter().map(|value| value - as_drawn).collect()
+    })
+}
+
+/// The mechanism in one half of a row: the first driver goes as far as the first number, the second as far as the second.
+fn row_model(model: &Model, grid: &Grid, ways: [f64; 2], places: impl Iterator<Item = f64>) -> Model {
     let mut laws = vec![Some(Law::constant(0.0)); model.drivers.len()];
-    let law = |text: String| Some(Law::parse(&text).expect("a law that is written here"));
+    let mut formulas = Vec::new();
     let [begin, stands] = BOTH;
-    laws[grid.drivers[0].0] = law(format!("({farthest:?})*max(t - {stands:?}, 0)"));
-    laws[grid.drivers[1].0] = law(format!("({:?})*min(t, {stands:?})", grid.values[1][row]));
+    let texts =
+        [format!("({:?})*max(t - {stands:?}, 0)", ways[0]), format!("({:?})*min(t, {stands:?})", ways[1])];
+    for (driver, text) in grid.drivers.into_iter().zip(texts) {
+        let (law, formula) = law_of(model, driver, text);
+        laws[driver.0] = Some(law);
+        formulas.extend(formula);
+    }
     // The drawn position comes first: the rest is followed from there.
     let mut times = vec![begin];
-    times.extend(places.map(|place| time_of(place, farthest)));
-    let case = Case { name: grid.name.clone(), laws, formulas: Vec::new(), times };
+    times.extend(places.map(|place| time_of(place, ways[0])));
+    let case = Case { name: grid.name.clone(), laws, formulas, times };
     Model { cases: vec![case], ..model.clone() }.in_case(CaseId(0))
+}
+
+/// A law written here. Where the driver's laws count from zero and the drawing follows the design, the driver has gone back by what the
+/// drawing has moved before the first place is passed, so that it stands where the grid says in every design.
+fn law_of(model: &Model, driver: DriverId, text: String) -> (Law, Option<Formula>) {
+    let [_, stands] = BOTH;
+    let law =
+        |text: &str, with: &[(&str, f64)]| Law::parse_with(text, with).expect("a law that is written here");
+    let zero = model.drivers[driver.0].law.as_drawn();
+    let follows = zero.and_then(|(parameter, value)| {
+        let formula = model.formulas.iter().find(|f| f.of == Target::Law(driver, parameter))?;
+        Some((value, Formula { of: Target::Law(driver, 0), ..formula.clone() }))
+    });
+    match follows {
+        None => (law(&text, &[]), None),
+        Some((value, formula)) => {
+            let text = format!("{text} + ({value:?} - as_drawn)*min(t, {stands:?})");
+            (law(&text, &[("as_drawn", value)]), Some(formula))
+        }
+    }
 }

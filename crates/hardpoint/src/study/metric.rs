@@ -39,6 +39,18 @@ pub fn metrics_beside(model: &Model, today: &Solution, other: &Solution) -> Vec<
     values.map(|(metric, found)| found.value.filter(|_| known(metric))).collect()
 }
 
+/// The same without derivatives, times and errors: what many designs are compared by.
+pub fn metric_numbers<'m>(
+    model: &'m Model,
+    solution: &'m Solution,
+) -> impl Iterator<Item = Option<f64>> + 'm {
+    let number = |metric: &Metric| {
+        let (y, x) = curves(solution, metric)?;
+        take(metric, &y, &x).map(|(value, _)| value)
+    };
+    model.metrics.iter().map(number)
+}
+
 fn metric_value(model: &Model, solution: &Solution, metric: &Metric) -> MetricValue {
     let none = MetricValue {
         value: None,

@@ -10,7 +10,10 @@ mod magnitude;
 mod metric;
 mod nearest;
 mod optimize;
+mod random;
+mod samples;
 mod second;
+mod tolerance;
 mod validity;
 mod verify;
 mod whatif;
@@ -22,12 +25,19 @@ pub use gradient::{Gradients, Method};
 pub use grid::{GridMap, GridStop};
 pub use jerk::Jerks;
 pub use magnitude::Magnitude;
-pub use metric::{MetricParts, MetricValue, metrics, metrics_beside, misfits, peaks};
+pub use metric::{MetricParts, MetricValue, metric_numbers, metrics, metrics_beside, misfits, peaks};
 pub use nearest::{NearestAdmissible, nearest_admissible};
 pub use optimize::{
     Binding, Iteration, Judged, Optimality, Optimized, Progress, Refused, Search, Searching, Status, optimize,
 };
+pub use random::{Moments, design_stream, draw, moments};
+pub use samples::{Gathered, SampleRun};
 pub use second::SecondDerivatives;
+pub use tolerance::{
+    Allocated, Allocation, Band, CurveBands, Examination, Extreme, Failure, Impossible, LimitYield,
+    MetricSpread, MonteCarlo, NONLINEAR, SampledCurve, SampledMetric, SecondOrder, Stage, ToleranceFailure,
+    Tolerated, Yield, tolerance,
+};
 pub use validity::{Validity, validity};
 pub use verify::{CheckOutcome, PASS, PASS_ONE_SIDED, Verification, VerifiedValue, VerifyOptions, verify};
 pub use whatif::{

@@ -305,6 +305,7 @@ impl<'a> Checker<'a> {
         self.law_with(&given, Some(case), driver, law, at)
     }
 
+    /// A law, with the parameters that expressions give, that counts as its driver does.
     fn law_with(
         &mut self,
         given: &[(&str, &Expression)],
@@ -325,7 +326,11 @@ impl<'a> Checker<'a> {
             let value = self.given_in(case, of, expression, at.clone(), parameter.to_owned())?;
             law = law.with_parameter(p, value);
         }
-        Some(law)
+        let Some(zero) = self.zeros.get(&driver) else { return Some(law) };
+        let parameters = law.parameters().len();
+        let formula = zero.formula(Target::Law(driver, parameters));
+        let value = self.take(Written { formula, at: at.clone(), name: name.to_owned(), case })?;
+        Some(law.from_zero(value))
     }
 
     /// Keeps the formulas that follow design variables: HP0228 for those that have no derivative, HP0226 for those that

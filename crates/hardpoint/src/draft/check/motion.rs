@@ -1,16 +1,13 @@
 //! Checks of what moves and is moved together: drivers and couplers, and the coordinates that they name.
 
-use crate::draft::{CouplerKindDraft, DrivenDraft, DriverDraft, Locus, Section};
+use crate::draft::{CouplerKindDraft, Locus, Section};
 use crate::joint;
-use crate::joint::{CoordinateType, JointType};
+use crate::joint::CoordinateType;
 use crate::law::Law;
-use crate::model::{
-    BodyId, BodyPoint, Coupler, CouplerTerm, Direction, Driver, DriverId, GROUND, HardpointId, Joint,
-    JointId, Transmission,
-};
-use crate::space::Mat3;
+use crate::model::{Coupler, CouplerTerm, Driver, DriverId, JointId, Transmission};
 
-use super::{Checker, Here, frame_along};
+use super::driven::Driven;
+use super::{Checker, Here};
 
 /// Accelerations go with the square of a speed, jerks with its cube, and these must have room in a number.
 const LARGEST_RATE: f64 = 1e100;
@@ -56,12 +53,17 @@ impl Checker<'_> {
         let draft = self.draft;
         for (index, d) in draft.drivers.iter().enumerate() {
             let here = Here { section: Section::Drivers, index };
+            let driver = DriverId(self.model.drivers.len());
+            let driven = self.driven(d, here);
+            let zero =
+                driven.filter(|_| d.counts_from_zero()).and_then(|driven| self.as_drawn(d, driven, here));
+            self.zeros.extend(zero.map(|zero| (driver, zero)));
             let Some(law) = self.formula_law(&d.name, &d.law, &here.key("law")) else { continue };
             if draft.cases.is_empty() {
                 self.law_is_defined(&format!("driver `{}`", d.name), &law, &draft.times, here.key("law"));
             }
-            let Some((joint, coordinate)) = self.driven(d, here) else { continue };
-            self.driver_of.insert((joint, coordinate), DriverId(self.model.drivers.len()));
+            let Some(Driven { joint, coordinate, .. }) = driven else { continue };
+            self.driver_of.insert((joint, coordinate), driver);
             self.model.drivers.push(Driver { name: d.name.clone(), joint, coordinate, law });
         }
     }
@@ -79,109 +81,6 @@ impl Checker<'_> {
                 .note(format!("value {f}, first derivative {fd}, second derivative {fdd} there"))
                 .help(format!("change the law, or the times, so that all three {remedy}"));
         }
-    }
-
-    /// The joint coordinate that a driver prescribes; for what is no joint's, an unnamed joint that has it.
-    fn driven(&mut self, d: &DriverDraft, here: Here) -> Option<(JointId, usize)> {
-        match &d.drives {
-            DrivenDraft::Unread => None,
-            DrivenDraft::Coordinate { joint: name, coordinate } => {
-                let joint = self.joint(name, here.key("joint"))?;
-                let coordinate = self.coordinate(joint, coordinate.as_deref(), here)?;
-                self.drivable(d, name, joint, coordinate, here).then_some((joint, coordinate))
-            }
-            DrivenDraft::Position { point, along } => {
-                let point = self.point(point, &d.name, here.key("point"));
-                let along = self.line(along, &d.name, here, "along");
-                let (point, (axis, z)) = (point?, along?);
-                let BodyPoint { body, at, .. } = self.model.points[point.0];
-                let axes = Some((axis, frame_along(z, z.any_square())));
-                Some((self.driven_joint(d, &joint::TRAVEL, [GROUND, body], [at, at], axes, here)?, 0))
-            }
-            DrivenDraft::Distance { from, to } => {
-                let (a, b) =
-                    (self.point(from, &d.name, here.key("from")), self.point(to, &d.name, here.key("to")));
-                let [i, j] = [a?, b?].map(|p| self.model.points[p.0].clone());
-                if self.apart(i.at, j.at) == Some(None) {
-                    let message = format!("the two points of driver `{}` are at the same place", d.name);
-                    self.fault("HP0211", here.key("to"), message)
-                        .help("an actuator needs two points that lie apart");
-                }
-                Some((self.driven_joint(d, &joint::LEG, [i.body, j.body], [i.at, j.at], None, here)?, 0))
-            }
-            DrivenDraft::Orientation { body, relative_to, about } => {
-                let body = self.body(body, here.key("body"));
-                let base = match relative_to {
-                    Some(name) => self.body(name, here.key("relative_to")),
-                    None => Some(GROUND),
-                };
-                let (axis, z) = self.line(about, &d.name, here, "about")?;
-                let (body, base) = (body?, base?);
-                let axes = Some((axis, frame_along(z, z.any_square())));
-                let at = self.model.joints.iter().find(|j| j.bodies.contains(&body)).map(|j| j.at[0])?;
-                Some((self.driven_joint(d, &joint::HEADING, [base, body], [at, at], axes, here)?, 0))
-            }
-        }
-    }
-
-    /// An unnamed joint that has the coordinate that a driver prescribes.
-    fn driven_joint(
-        &mut self,
-        d: &DriverDraft,
-        kind: &'static JointType,
-        bodies: [BodyId; 2],
-        at: [HardpointId; 2],
-        axis: Option<(Direction, Mat3)>,
-        here: Here,
-    ) -> Option<JointId> {
-        if bodies[0] == bodies[1] {
-            let name = &self.model.bodies[bodies[0].0].name;
-            let message = format!("driver `{}` prescribes how `{name}` moves relative to itself", d.name);
-            self.fault("HP0213", here.key("name"), message).help("name two different bodies");
-            return None;
-        }
-        self.model.joints.push(Joint {
-            name: d.name.clone(),
-            kind,
-            bodies,
-            at,
-            axis: axis.map(|a| a.0),
-            axis2: None,
-            frames: [axis.map_or(Mat3::IDENTITY, |a| a.1); 2],
-            length: None,
-            curve: None,
-            cut: false,
-            unnamed: true,
-        });
-        Some(JointId(self.model.joints.len() - 1))
-    }
-
-    /// Whether a joint's coordinate may be prescribed: by one driver, and not where a constraint keeps it.
-    fn drivable(
-        &mut self,
-        d: &DriverDraft,
-        name: &str,
-        joint: JointId,
-        coordinate: usize,
-        here: Here,
-    ) -> bool {
-        let kind = self.model.joints[joint.0].kind;
-        if let Some(other) = self.driver_of.get(&(joint, coordinate)) {
-            let other = &self.model.drivers[other.0];
-            let message = format!("drivers `{}` and `{}` prescribe the same coordinate", other.name, d.name);
-            let c = kind.coordinates[coordinate].name;
-            self.fault("HP0215", here.key("joint"), message)
-                .note(format!("the {c} of joint `{name}`"))
-                .help("remove one of them");
-            return false;
-        }
-        if kind.rows.contains(&kind.coordinates[coordinate].row) {
-            let message = format!("driver `{}` prescribes the length of a rod, which is constant", d.name);
-            self.fault("HP0213", here.key("joint"), message)
-                .help(format!("make `{name}` a `leg`: a rod whose length a driver prescribes"));
-            return false;
-        }
-        true
     }
 
     /// Couplers, then those that screws are.

@@ -112,7 +112,7 @@ impl Checker<'_> {
     }
 
     /// The place of a design variable in the draft.
-    fn optimized_variable(&mut self, name: &str, at: Locus) -> Option<usize> {
+    pub(super) fn optimized_variable(&mut self, name: &str, at: Locus) -> Option<usize> {
         let draft = self.draft;
         let known = self.number_of("design variable", name);
         // What could not be read may be this variable.
@@ -142,7 +142,7 @@ impl Checker<'_> {
     }
 
     /// The place of a metric in the model; `None`, without a second fault, where the metric itself is faulty.
-    fn metric(&mut self, name: &str, at: Locus) -> Option<usize> {
+    pub(super) fn metric(&mut self, name: &str, at: Locus) -> Option<usize> {
         let draft = self.draft;
         let known = self.find("metric", name, at, draft.metrics.iter().map(|m| m.name.as_str()));
         if known.is_none() && !self.lost("metric") {
@@ -194,7 +194,7 @@ impl Checker<'_> {
     }
 
     /// What is limited, and to what, in SI. HP0238 where no number can be so.
-    fn limit(&mut self, l: &LimitDraft, here: Here) -> Option<Limit> {
+    pub(super) fn limit(&mut self, l: &LimitDraft, here: Here) -> Option<Limit> {
         let of = self.limited(l, here);
         for (key, bound) in [("min", l.least), ("max", l.most)] {
             if bound.is_some_and(|x| !x.is_finite()) {
@@ -374,7 +374,7 @@ fn key(of: Limited) -> Key {
 }
 
 /// How many units make one SI unit of it.
-fn per_si(of: Dimension, per_metre: f64, per_radian: f64) -> f64 {
+pub(super) fn per_si(of: Dimension, per_metre: f64, per_radian: f64) -> f64 {
     per_metre.powi(of.length.into()) * per_radian.powi(of.angle.into())
 }
 

@@ -2,8 +2,8 @@
 
 use crate::draft::{AxleDraft, PointRef, Section, WheelDraft, WheelSpinDraft};
 use crate::model::{
-    Axle, AxleId, AxleMeasure, BodyPoint, Direction, DriverId, HardpointId, MeasureKind, PointId, Side,
-    VehicleEnd, Wheel, WheelId, WheelMeasure,
+    Axle, AxleId, AxleMeasure, BodyId, BodyPoint, Direction, DriverId, HardpointId, MeasureKind, PointId,
+    Side, VehicleEnd, Wheel, WheelId, WheelMeasure,
 };
 use crate::space::Vec3;
 
@@ -152,6 +152,22 @@ impl Checker<'_> {
         let (name, radius, end) = (w.name.clone(), w.radius, w.end);
         let wheel = Wheel { name, body, centre, spin_axis, radius, side, kingpin, bump, end };
         (self.faults.len() == faults && !self.draft.unread.any(here.section, here.index)).then_some(wheel)
+    }
+
+    /// How a wheel stands in the design configuration: its body, its centre, its side and its spin axis.
+    pub(super) fn wheel_as_drawn(
+        &mut self,
+        w: &WheelDraft,
+        index: usize,
+    ) -> Option<(BodyId, HardpointId, Side, Direction)> {
+        let here = Here { section: Section::Wheels, index };
+        if ["body", "centre", "spin_axis", "side"].into_iter().any(|key| self.unread(here, key)) {
+            return None;
+        }
+        let body = self.body(&w.body, here.key("body"))?;
+        let centre = self.place(&w.centre, &w.name, here.key("centre"))?;
+        let side = w.side.or_else(|| self.side_of(w, centre, here))?;
+        Some((body, centre, side, self.spin_axis(w, Some(side), here)?))
     }
 
     /// The side of the vehicle that a wheel's centre is on.

@@ -703,7 +703,7 @@ impl<'r> Drawing<'r> {
             }
             DrivenDraft::Position { .. } | DrivenDraft::Distance { .. } => true,
             DrivenDraft::Orientation { .. } => false,
-            DrivenDraft::Unread => unreachable!("nothing here is read"),
+            DrivenDraft::Measure(_) | DrivenDraft::Unread => unreachable!("none is drawn here"),
         };
         let (low, high) = if length { (0.01 * self.size, 0.08 * self.size) } else { (0.05, 0.4) };
         let law = self.law_of(low, high);

@@ -1,0 +1,145 @@
+//! `hardpoint compare`.
+
+use std::io::Write;
+
+use hardpoint::Run;
+use hardpoint::draft::did_you_mean;
+use hardpoint::study::{add_coordinates, variable_named};
+use hardpoint_file::ModelFile;
+use hardpoint_report::compare::{CompareFacts, Solved, are_alike};
+use hardpoint_report::course::Course;
+use hardpoint_report::diagnose;
+use hardpoint_report::figures::some_of;
+use hardpoint_report::payload::{Changed, Request, report};
+use hardpoint_report::summary::Summary;
+
+use crate::args::Compare;
+use crate::folder::{Folder, of_case};
+use crate::outcome::Outcome;
+use crate::session::{Session, json_text};
+use crate::text;
+
+/// All files of a comparison; the last one vouches for the others.
+const FILES: [&str; 3] = ["compare.html", "compare.csv", "compare.json"];
+
+/// Solves both models and prints how they differ.
+pub fn compare(options: &Compare) -> Outcome {
+    let session = Session::begin(options.common.json);
+    let each = |file: ModelFile, case: Option<&str>| compare_in(&session, options, file, case);
+    session.for_motions(&options.common.model, &options.motions, each).unwrap_or_else(|outcome| outcome)
+}
+
+fn compare_in(
+    session: &Session,
+    options: &Compare,
+    mut file: ModelFile,
+    case: Option<&str>,
+) -> Result<Outcome, Outcome> {
+    let mut other = session.read(&options.other)?;
+    match options.motions.case.as_deref().or(case) {
+        Some(name) => other.model = other.model.in_case(session.case(&other, name)?),
+        None if other.model.cases.is_empty() => {}
+        None => {
+            let why = format!(
+                "`{}` has cases and `{}` has none: there is no motion to compare",
+                other.file_name(),
+                file.file_name()
+            );
+            return Err(session.misunderstood(&why));
+        }
+    }
+    add_coordinates(&mut file.model);
+    session.fits(&mut file);
+    other.model.times.clone_from(&file.model.times);
+    let folder = options.output.as_ref().map(|path| Folder::open(&of_case(path, case)));
+    let folder = folder.transpose().map_err(|e| session.not_written(&e))?;
+
+    let formulation = options.common.formulation();
+    let (analysis, of_other) = (session.plan(&file, formulation)?, session.plan(&other, formulation)?);
+    let today = session.solve(&analysis);
+    let exact = of_other.solve(Run::new().without_sensitivities().progress(|_| session.go_on()));
+    let mut outcome = Outcome::Done;
+    for (file, solution) in [(&file, &today), (&other, &exact)] {
+        if let Some(stop) = &solution.stop {
+            let told = diagnose::stop(file, stop, solution.motion.len(), None);
+            if solution.motion.is_empty() || session.interrupted() {
+                session.fail(file, &[told]);
+                return Err(if session.interrupted() { Outcome::Interrupted } else { Outcome::Stopped });
+            }
+            session.tell(file, &[told]);
+            outcome = Outcome::Stopped;
+        }
+    }
+    let both = [Solved { file: &file, solution: &today }, Solved { file: &other, solution: &exact }];
+    let facts = CompareFacts::of(both);
+    let names: Vec<&str> = facts.measures.iter().map(|c| c.measure.as_str()).collect();
+    if let Some(name) = options.measure.iter().find(|name| !names.contains(&name.as_str())) {
+        let hint = match did_you_mean(name, names.iter().copied()) {
+            Some(near) => format!("did you mean `{near}`?"),
+            None => format!("both have: {}", some_of(&names, ", ")),
+        };
+        return Err(session.misunderstood(&format!("`{name}` is no measure of both models; {hint}")));
+    }
+    let measures = &options.measure;
+    let wanted = |name: &str| match measures.is_empty() {
+        true => file.model.measures.is_empty() || file.model.measure(name).is_some(),
+        false => measures.iter().any(|n| n == name),
+    };
+
+    let mut written = Vec::new();
+    if let Some(mut folder) = folder {
+        let page = are_alike(both).then(|| {
+            // The other file's hardpoints, as changes of this one's.
+            let mut change = vec![0.0; file.model.variables.len()];
+            let mut known = file.model.clone();
+            for h in &facts.hardpoints {
+                let moved = h.values[1].zip(h.values[0]).map_or(0.0, |(b, a)| b - a);
+                if let Some(v) = variable_named(&mut known, &h.name).filter(|v| v.0 < change.len()) {
+                    change[v.0] = file.units.to_si(known.variables[v.0].quantity, moved);
+                }
+            }
+            let course = Course::of(&file.model, &today);
+            let mut summary = Summary::new(&file, analysis.topology(), &course);
+            summary.diagnostics = diagnose::all(&file, &summary, &course, None);
+            let changed = Changed {
+                name: other.file_name().into(),
+                note: format!("The design of {}.", other.file_name()),
+                change: &change,
+                today: &today,
+                exact: &exact,
+                foreseen: None,
+            };
+            let request =
+                Request { changed: Some(changed), ..Request::of(&file, &analysis, &course, &summary) };
+            let finish = |payload| facts.page(payload, measures, &wanted);
+            report(&request, &finish).expect("a payload is plain data")
+        });
+        let json = json_text(&facts);
+        let result = page
+            .map_or(Ok(()), |html| folder.write(FILES[0], |out| out.write_all(html.as_bytes())))
+            .and_then(|()| folder.write(FILES[1], |out| facts.write_csv(out).map_err(Into::into)))
+            .and_then(|()| folder.write(FILES[2], |out| out.write_all(json.as_bytes())));
+        let page_is_there = are_alike(both);
+        written.extend(FILES[usize::from(!page_is_there)..].iter().map(|name| folder.path_of(name)));
+        result.and_then(|()| folder.commit(&FILES)).map_err(|e| session.not_written(&e))?;
+        if !page_is_there {
+            session.remark("the two have other bodies or measures: they cannot be drawn beside each other, and there is no page");
+        }
+    }
+    if session.is_json() {
+        session.print_json(&facts);
+    } else {
+        let [a, b] = &facts.names;
+        text::print(&format!("{}\n", text::bold(&format!("{a} - {b}"))));
+        if facts.is_same() {
+            text::print("  the hardpoints and parameters of both are the same\n");
+        }
+        for table in facts.tables(&wanted) {
+            text::print(&format!("\n{}", text::table(&table)));
+        }
+        for path in &written {
+            text::print(&format!("\nwritten: {}\n", path.display()));
+        }
+    }
+    Ok(outcome)
+}

@@ -1,0 +1,123 @@
+//! `hardpoint tolerance`.
+
+use std::path::Path;
+
+use crate::bench::Bench;
+
+/// With these files of `models`.
+fn bench(names: &[&str]) -> Bench {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
+    let bench = Bench::with(&[]);
+    for name in names {
+        let path = ["models", "models/studies"].map(|folder| root.join(folder).join(name));
+        let text = path.iter().find_map(|path| std::fs::read_to_string(path).ok());
+        bench.put(name, &text.unwrap_or_else(|| panic!("there is no {name}")));
+    }
+    bench
+}
+
+#[test]
+fn the_tolerances_of_the_strut_are_told_and_written() {
+    let bench = bench(&["strut_tolerances.toml"]);
+    let output = bench.run(&["tolerance", "strut_tolerances.toml", "--samples", "2000", "-o", "out"]);
+    let text = String::from_utf8(output.stdout).unwrap();
+    assert_eq!(output.status.code(), Some(0), "{text}{}", String::from_utf8_lossy(&output.stderr));
+    for words in [
+        "yield",
+        "2000 designs, seed 1",
+        "Contributions to toe_in_bump (bump)",
+        "the linear answer holds",
+        "loosest",
+    ] {
+        assert!(text.contains(words), "{words}: {text}");
+    }
+    let tables = ["bands.csv", "contributions.csv", "metrics.csv"];
+    let mut files: Vec<&str> = tables.to_vec();
+    files.extend(["report-bump.html", "report-steer.html", "samples.csv", "summary.json"]);
+    assert_eq!(bench.list("out"), files);
+
+    let summary = bench.json("out/summary.json");
+    assert_eq!((&summary["study"], &summary["status"]), (&"tolerance".into(), &"complete".into()));
+    assert_eq!(summary["samples"], 2000);
+    // The tolerance of a point stands at each of its coordinates.
+    let variables = summary["variables"].as_array().unwrap();
+    assert_eq!((variables.len(), &variables[0]["name"]), (10, &"ball_joint_x".into()));
+    assert_eq!((&variables[0]["tolerance"], &variables[0]["start"]), (&"ball_joint".into(), &0.3.into()));
+    assert!(
+        variables[3]["end"].as_f64().unwrap() < 0.5 && summary["allocation"]["kkt"].as_f64().unwrap() < 1e-6
+    );
+    assert!(
+        summary["objective"]["after"].as_f64().unwrap() > summary["objective"]["before"].as_f64().unwrap()
+    );
+    let toe = &summary["metrics"][0];
+    assert_eq!(
+        (&toe["name"], &toe["case"], &toe["unit"]),
+        (&"toe_in_bump".into(), &"bump".into(), &"deg".into())
+    );
+    let shares: f64 =
+        toe["contributions"].as_array().unwrap().iter().map(|c| c["share"].as_f64().unwrap()).sum();
+    assert!((shares - 1.0).abs() < 1e-9, "{shares}");
+
+    // A row for each output time of each curve, and for each design.
+    let rows = |name: &str| bench.text(&format!("out/{name}")).lines().count();
+    assert_eq!((rows("samples.csv"), rows("metrics.csv"), rows("bands.csv")), (2001, 5, 1 + 2 * (81 + 61)));
+    // The page opens on the limited metric's curve, with both edges of its band.
+    let page = bench.page("out/report-bump.html");
+    let toe = page["quantities"].as_array().unwrap().iter().position(|q| q["name"] == "toe").unwrap();
+    assert_eq!(page["first"], toe);
+    let designs = page["designs"].as_array().unwrap();
+    assert_eq!(designs.len(), 2);
+    assert!(designs.iter().all(|d| !d["quantities"][toe].is_null()));
+}
+
+#[test]
+fn one_case_another_seed_and_no_designs_are_done_as_asked() {
+    let bench = bench(&["strut_tolerances.toml"]);
+    let json = |arguments: &[&str]| -> serde_json::Value {
+        let output = bench.run(&[&["tolerance", "strut_tolerances.toml", "--json"], arguments].concat());
+        assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
+        serde_json::from_slice(&output.stdout).unwrap()
+    };
+    let none = json(&["--case", "bump", "--samples", "0"]);
+    assert_eq!((&none["samples"], none["metrics"].as_array().unwrap().len()), (&0.into(), 3));
+    assert!(
+        none["metrics"].as_array().unwrap().iter().all(|m| m["case"] == "bump" && m["sampled"].is_null())
+    );
+    let [one, same, other] = [("7", "1"), ("7", "3"), ("8", "1")].map(|(seed, threads)| {
+        json(&[
+            "--case",
+            "bump",
+            "--samples",
+            "600",
+            "--seed",
+            seed,
+            "--threads",
+            threads,
+            "--allocate",
+            "worst-case",
+        ])
+    });
+    assert_eq!(one["metrics"], same["metrics"]);
+    assert_ne!(one["metrics"][0]["sampled"], other["metrics"][0]["sampled"]);
+    assert_eq!(one["allocation"]["rule"], "worst_case");
+}
+
+#[test]
+fn what_cannot_be_studied_is_told() {
+    let bench = bench(&["four_bar.toml", "strut_tolerances.toml"]);
+    let refused = |arguments: &[&str], words: &[&str]| {
+        let output = bench.run(arguments);
+        let text = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert_eq!(output.status.code(), Some(2), "{text}");
+        assert!(words.iter().all(|w| text.contains(w)), "{text}");
+    };
+    let without = bench
+        .text("four_bar.toml")
+        .lines()
+        .filter(|l| !l.contains("tolerance"))
+        .collect::<Vec<_>>()
+        .join("\n");
+    bench.put("exact.toml", &without);
+    refused(&["tolerance", "exact.toml"], &["`exact.toml`", "tolerance = 0.1"]);
+    refused(&["tolerance", "strut_tolerances.toml", "--case", "bmp"], &["did you mean `bump`?"]);
+}

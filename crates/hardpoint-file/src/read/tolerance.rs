@@ -1,0 +1,239 @@
+//! How far off a design may be made.
+
+use hardpoint::draft::{
+    CorrelationDraft, LimitDraft, LimitedDraft, ScatterDraft, Section, ToleranceDraft, TolerancingDraft,
+};
+use hardpoint::model::{AllocationRule, Tolerancing};
+use toml::de::DeValue;
+
+use crate::diagnostic::shown;
+use crate::format::{METRIC, NUMBER, OUTPUT, Shape, Table, VARIABLE, table};
+use crate::places::EntryPlace;
+use crate::tree::{Field, Fields, MOST_ENTRIES, Reader, Subject};
+
+use super::Raw;
+
+/// More designs than these are surely a slip: their metrics would not fit into memory.
+const MOST_SAMPLES: u32 = 10_000_000;
+/// More names in a list than these are surely a slip.
+const MOST_NAMES: usize = 10_000;
+pub(crate) const TOLERANCE: Table = table! {
+    /// How far off the design may be made, and what that must keep. All design variables with a `tolerance` join in.
+    "Tolerance":
+    /// Tolerances by name of the design variable, in its unit, over those that the variables have themselves. The name of an entry of
+    /// `[design]` that makes several coordinates means the point: it lies within a sphere of that radius (or a disc, of two).
+    may "variables": Shape::Entries(&ENTRY), "{ B = 0.1, C_x = { tolerance = 0.2, distribution = \"uniform\" } }";
+    /// How deviations scatter, where a variable says nothing else.
+    or("\"normal\"") "distribution": DISTRIBUTION, "\"uniform\"";
+    /// A tolerance is so many standard deviations of the normal distribution.
+    or("3.0") "sigmas": NUMBER, "2";
+    /// Which normal variables go together.
+    may "correlations": Shape::Entries(&Shape::Table(&CORRELATION)), "{ jig = { between = [\"left_z\", \"right_z\"], coefficient = 0.9 } }";
+    /// Names of the metrics that are looked at. Default: all.
+    may "metrics": Shape::list(&METRIC), "[\"toe_range\"]";
+    /// Names of the measures whose whole curves are looked at. Default: all.
+    may "curves": Shape::list(&OUTPUT), "[\"toe\"]";
+    /// What must hold of metrics.
+    may "limits": Shape::Entries(&Shape::Table(&LIMIT)), "{ toe = { metric = \"toe_range\", max = 0.5 } }";
+    /// So many designs are drawn and solved exactly.
+    or("10000") "samples": Shape::Count(MOST_SAMPLES), "100000";
+    /// What they are drawn from: the same number gives the same designs.
+    or("1") "seed": Shape::Count(u32::MAX), "7";
+    /// The loosest tolerances are sought that keep the limits, of variables that have a `cost`.
+    may "allocate": Shape::Words(&ALLOCATE), "\"rss\"";
+    /// With `allocate = "rss"`: so many standard deviations have to fit between a metric as drawn and its limit.
+    or("3.0") "keep_sigmas": NUMBER, "4.5";
+};
+const DISTRIBUTION: Shape = Shape::Words(&[
+    ("uniform", "Evenly within the tolerance, and never beyond."),
+    ("normal", "Normal; the tolerance is `sigmas` standard deviations, and some go beyond it."),
+    ("truncated", "The same normal without what is beyond the tolerance."),
+]);
+const ALLOCATE: [(&str, &str); 2] = [
+    ("rss", "`keep_sigmas` standard deviations keep the limits, added by their squares."),
+    ("worst_case", "All deviations at once keep the limits, each at its worst."),
+];
+const ENTRY: Shape = Shape::Any(
+    "VariableTolerance",
+    "By how much it may be off, or a table with that and more.",
+    &[NUMBER, Shape::Table(&ENTRY_TABLE)],
+);
+pub(super) const ENTRY_TABLE: Table = table! {
+    /// By how much a design variable may be off, and how.
+    "VariableToleranceTable":
+    /// By how much, either way, in the variable's unit. Default: the `tolerance` of the variable itself.
+    may "tolerance": NUMBER, "0.1";
+    /// How it scatters. Default: as `[tolerance]` says.
+    may "distribution": DISTRIBUTION, "\"uniform\"";
+    /// The tolerance is so many standard deviations. Default: as `[tolerance]` says.
+    may "sigmas": NUMBER, "2";
+    /// What it costs to hold, relative to others: `cost` over the tolerance. Without it `allocate` leaves the tolerance as it is.
+    may "cost": NUMBER, "5";
+};
+pub(super) const CORRELATION: Table = table! {
+    /// How two normal variables go together, as those do that one jig makes.
+    "Correlation":
+    /// The names of two design variables.
+    must "between": Shape::exactly(2, &VARIABLE), "[\"left_z\", \"right_z\"]";
+    /// Their coefficient of correlation, from -1 to 1.
+    must "coefficient": NUMBER, "0.9";
+};
+pub(super) const LIMIT: Table = table! {
+    /// What must hold of a metric: at least one of `min` and `max`.
+    "ToleranceLimit":
+    /// The metric's name. Default: the limit's own name.
+    may "metric": METRIC, "\"toe_range\"";
+    /// It must not be less than this, in its own unit.
+    may "min": NUMBER, "-0.2";
+    /// It must not be more than this.
+    may "max": NUMBER, "0.2";
+};
+
+impl Reader<'_> {
+    pub(super) fn tolerance(&mut self, model: &Fields<'_>, raw: &mut Raw) {
+        let Some(f) = model.get("tolerance") else { return };
+        self.unread.clear();
+        let mut subject = model.subject("tolerance");
+        subject.example =
+            "write `[tolerance]`, in single brackets, and `[tolerance.variables]` below it".into();
+        let Some(table) = self.table(f.value, &subject, "one table") else { return };
+        let fields = self.fields("`tolerance`", f.at.0..f.at.1, table, TOLERANCE.keys());
+        let place = EntryPlace::of(&fields);
+        let scatter = self.scatter(&fields);
+        let names =
+            |of: &mut Self, key: &str, what| of.given(&fields, key, |r, f| r.names_in(&fields, f, what));
+        let metrics = names(self, "metrics", "a list of names of metrics");
+        let curves = names(self, "curves", "a list of names of measures");
+        let samples = self.count_of(&fields, "samples", MOST_SAMPLES);
+        let seed = self.count_of(&fields, "seed", u32::MAX);
+        let keep = self.number_of(&fields, "keep_sigmas");
+        let rule = fields.get("allocate").and_then(|_| self.word_of(&fields, "allocate"));
+        if fields.get("keep_sigmas").is_some() && rule != Some(0) {
+            self.out_of_place(&fields, "keep_sigmas", "only `allocate = \"rss\"` counts standard deviations");
+        }
+        for key in ["variables", "correlations", "limits"] {
+            let table = fields.get(key).map(|f| f.value.get_ref().as_table());
+            if table.is_some_and(|t| t.is_none_or(|t| t.len() > MOST_ENTRIES)) {
+                self.unread.push(key);
+            }
+        }
+        self.push(raw, Section::Tolerance, place);
+        let tolerances = self.tolerances(&fields, raw);
+        let correlations = self.correlations(&fields, raw);
+        let limits = self.limits_of_tolerances(&fields, raw);
+        let allocation = rule.map(|rule| match rule {
+            0 => AllocationRule::Rss { sigmas: keep.unwrap_or(Tolerancing::SIGMAS) },
+            _ => AllocationRule::Worst,
+        });
+        raw.draft.tolerancing = Some(TolerancingDraft {
+            tolerances,
+            correlations,
+            limits,
+            metrics,
+            curves,
+            scatter,
+            samples: samples.unwrap_or(Tolerancing::SAMPLES),
+            seed: seed.map_or(Tolerancing::SEED, |seed| seed as u64),
+            allocation,
+        });
+    }
+
+    fn scatter(&mut self, fields: &Fields<'_>) -> ScatterDraft {
+        let kind = fields.get("distribution").and_then(|_| self.word_of(fields, "distribution"));
+        ScatterDraft { kind, sigmas: self.number_of(fields, "sigmas") }
+    }
+
+    fn tolerances(&mut self, tolerance: &Fields<'_>, raw: &mut Raw) -> Vec<ToleranceDraft> {
+        let (per_metre, per_radian) = (self.units.length.per_metre(), self.units.angle.per_radian());
+        let mut found = Vec::new();
+        for entry in self.entries_below(tolerance, "tolerance.", "variables", "design variable") {
+            let (name, at, value) = &entry;
+            let (place, reach, scatter, cost) = match value.get_ref() {
+                DeValue::Table(_) => {
+                    let fields = self.entry("the tolerance of", &entry, ENTRY_TABLE.keys());
+                    let place = EntryPlace::of(&fields);
+                    let reach = self.number_of(&fields, "tolerance");
+                    let scatter = self.scatter(&fields);
+                    (place, reach, scatter, self.number_of(&fields, "cost"))
+                }
+                _ => {
+                    self.unread.clear();
+                    let subject = Subject {
+                        name: format!("the tolerance of `{}`", shown(name)),
+                        example: format!(
+                            "for example `{name} = 0.1`, or `{name} = {{ tolerance = 0.1, cost = 5 }}`"
+                        ),
+                    };
+                    let mut place = EntryPlace::at(at.clone());
+                    place.key("tolerance", value);
+                    let reach = self.number(value, &subject);
+                    if reach.is_none() {
+                        self.unread.push("tolerance");
+                    }
+                    (place, reach, ScatterDraft::default(), None)
+                }
+            };
+            if !self.unread.is_empty() {
+                self.unread.push("");
+            }
+            self.push(raw, Section::Tolerances, place);
+            found.push(ToleranceDraft { name: entry.0, reach, scatter, cost, per_metre, per_radian });
+        }
+        found
+    }
+
+    fn correlations(&mut self, tolerance: &Fields<'_>, raw: &mut Raw) -> Vec<CorrelationDraft> {
+        let mut found = Vec::new();
+        for entry in self.entries_below(tolerance, "tolerance.", "correlations", "correlation") {
+            let fields = self.entry("correlation", &entry, CORRELATION.keys());
+            let place = EntryPlace::of(&fields);
+            let between = self.names_of::<2>(&fields, "between");
+            self.need(&fields, "coefficient");
+            let coefficient = self.number_of(&fields, "coefficient");
+            if between.is_none() || coefficient.is_none() {
+                self.unread.push("");
+            }
+            self.push(raw, Section::Correlations, place);
+            let (between, coefficient) = (between.unwrap_or_default(), coefficient.unwrap_or_default());
+            found.push(CorrelationDraft { name: entry.0, between, coefficient });
+        }
+        found
+    }
+
+    fn limits_of_tolerances(&mut self, tolerance: &Fields<'_>, raw: &mut Raw) -> Vec<LimitDraft> {
+        let (per_metre, per_radian) = (self.units.length.per_metre(), self.units.angle.per_radian());
+        let mut found = Vec::new();
+        for entry in self.entries_below(tolerance, "tolerance.", "limits", "limit") {
+            let fields = self.entry("limit", &entry, LIMIT.keys());
+            let place = EntryPlace::of(&fields);
+            let metric = self.name_of(&fields, "metric");
+            let [least, most] = ["min", "max"].map(|key| self.number_of(&fields, key));
+            if !fields.lost && fields.get("min").is_none() && fields.get("max").is_none() {
+                let message = format!("{} does not say between which values", fields.what);
+                self.report("HP0104", fields.at.clone(), message).help =
+                    Some("give `min = 50`, `max = 200`, or both of them".into());
+                self.unread.push("");
+            }
+            if !self.unread.is_empty() {
+                self.unread.push("");
+            }
+            self.push(raw, Section::ToleranceLimits, place);
+            let of = LimitedDraft::Metric(metric.unwrap_or_else(|| entry.0.clone()));
+            found.push(LimitDraft { name: entry.0, of, least, most, per_metre, per_radian });
+        }
+        found
+    }
+
+    /// A list of names.
+    fn names_in(&mut self, fields: &Fields<'_>, f: Field<'_>, expected: &str) -> Option<Vec<String>> {
+        let subject = fields.subject(f.key);
+        let list = self.list(f.value, &subject, expected)?;
+        if list.len() > MOST_NAMES {
+            self.senseless(f.value.span(), format!("{} has {} entries", subject.name, list.len())).help =
+                Some(format!("name at most {MOST_NAMES}, or leave it out for all"));
+            return None;
+        }
+        let names: Vec<_> = list.into_iter().map(|v| self.name(v, &subject, expected)).collect();
+        names.into_iter().collect()
+    }
+}

@@ -1,0 +1,581 @@
+//! What tolerances come to: held against closed forms, against designs that are drawn and solved, and against each other.
+
+use std::num::NonZero;
+use std::ops::ControlFlow;
+use std::path::Path;
+
+use hardpoint::model::{Allocating, AllocationRule, Limit, Limited, Model, Tolerancing};
+use hardpoint::study::{
+    Cost, Examination, Impossible, MetricSpread, MonteCarlo, Motions, Stage, ToleranceFailure, tolerance,
+};
+use hardpoint::topology::Formulation;
+use hardpoint_file::{ModelFile, parse};
+
+const THREADS: NonZero<usize> = NonZero::<usize>::MIN;
+
+/// A slider-crank: the slider's place over the crank's angle is `x = r cos a + sqrt(l^2 - (r sin a - e)^2)`.
+const CRANK: &str = r#"
+name = "slider-crank"
+units = { length = "mm", angle = "deg" }
+parameters.rod = { value = 300, unit = "length" }
+parameters.offset = { value = 20, unit = "length" }
+parameters.radius = { value = 100, unit = "length" }
+hardpoints = { O = [0, 0, 0], A = ["radius*cos(40*pi/180)", "radius*sin(40*pi/180)", 0], B = [300, "offset", 0] }
+bodies = { crank = {}, slider = {} }
+joints.pivot = { type = "revolute", bodies = ["ground", "crank"], at = "O", axis = "z" }
+joints.slide = { type = "translational", bodies = ["ground", "slider"], at = "B", axis = "x" }
+joints.rod = { type = "distance", bodies = ["crank", "slider"], at = ["A", "B"], length = "rod" }
+drivers.motor = { joint = "pivot", law = "20*t" }
+measures.place = { type = "position", point = "B", along = "x" }
+points.B = { body = "slider", at = "B" }
+metrics.first = { of = "place", take = "value", at = 0 }
+metrics.range = { of = "place", take = "range" }
+time = { end = 1.0, steps = 10 }
+"#;
+
+fn model(text: &str) -> ModelFile {
+    parse(text, "tolerances.toml").unwrap_or_else(|e| panic!("{e}"))
+}
+
+fn study(name: &str) -> ModelFile {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../models/studies").join(name);
+    hardpoint_file::read(&path).unwrap_or_else(|e| panic!("{e}"))
+}
+
+fn examined_on(threads: usize, model: &Model, asked: &Tolerancing) -> Result<Examination, ToleranceFailure> {
+    let models = model.motions();
+    let motions = Motions::of(&models, Formulation::Relative).unwrap();
+    let numbers: Vec<usize> = (0..models.len()).collect();
+    let mut tell = |_: Stage| ControlFlow::Continue(());
+    let threads = NonZero::new(threads).unwrap();
+    tolerance(model, &motions, &numbers, asked, threads, &mut tell, &|| true)
+}
+
+fn examined(file: &ModelFile, change: impl FnOnce(&mut Tolerancing)) -> Examination {
+    let mut asked = file.model.tolerancing.clone().expect("the file says what is off");
+    change(&mut asked);
+    examined_on(THREADS.get(), &file.model, &asked).unwrap_or_else(|e| panic!("{e:?}"))
+}
+
+fn spread<'e>(file: &ModelFile, found: &'e Examination, metric: &str) -> &'e MetricSpread {
+    let name = |m: &MetricSpread| file.model.metrics[m.metric].name == metric;
+    found.metrics.iter().find(|m| name(m)).expect("the metric is looked at")
+}
+
+fn near(a: f64, b: f64, relative: f64) {
+    assert!((a - b).abs() <= relative * b.abs(), "{a:e} is not {b:e}: {:e}", a / b - 1.0);
+}
+
+/// As the file says, with other tolerances of the slider-crank.
+fn crank(tolerance: &str) -> ModelFile {
+    model(&format!("{CRANK}\n[tolerance]\nsamples = 20000\n{tolerance}\n"))
+}
+
+fn sampled(found: &Examination) -> &MonteCarlo {
+    found.sampled.as_ref().expect("designs were drawn")
+}
+
+/// First and second derivatives of `x = r cos a + sqrt(l^2 - (r sin a - e)^2)` by l, e and r.
+fn closed_form() -> ([f64; 3], [[f64; 3]; 3]) {
+    let (l, e, r, a) = (0.3, 0.02, 0.1, 40_f64.to_radians());
+    let u = r * a.sin() - e;
+    let c = (l * l - u * u).sqrt();
+    // c^2 = l^2 - u^2:  c c_i = (c^2)_i / 2,  c c_ij = (c^2)_ij / 2 - c_i c_j
+    let first = [l / c, u / c, -u * a.sin() / c];
+    let half = [[1.0, 0.0, 0.0], [0.0, -1.0, a.sin()], [0.0, a.sin(), -a.sin().powi(2)]];
+    let second = |i: usize, j: usize| (half[i][j] - first[i] * first[j]) / c;
+    let h = std::array::from_fn(|i| std::array::from_fn(|j| second(i, j)));
+    ([first[0], first[1], a.cos() + first[2]], h)
+}
+
+/// Differences of gradients hold second derivatives to some 1e-8.
+const DIFFERENCED: f64 = 1e-6;
+
+#[test]
+fn moments_of_a_slider_crank_are_those_of_its_closed_form() {
+    let file = crank(
+        "[tolerance.variables]\nrod = 6\noffset = { tolerance = 4, distribution = \"uniform\" }\nradius = { tolerance = 3, sigmas = 2 }",
+    );
+    let found = examined(&file, |asked| asked.samples = 0);
+    let of = spread(&file, &found, "first");
+    let (g, h) = closed_form();
+    let s = [6e-3 / 3.0, 4e-3 / 3.0_f64.sqrt(), 3e-3 / 2.0];
+    for k in 0..3 {
+        near(of.d[k], g[k], 1e-10);
+        near(found.variables[k].sigma, s[k], 1e-14);
+    }
+    let first: f64 = (0..3).map(|k| (g[k] * s[k]).powi(2)).sum();
+    near(of.sigma, first.sqrt(), 1e-10);
+    (0..3).for_each(|k| near(of.shares[k], (g[k] * s[k]).powi(2) / first, 1e-9));
+    let pair = |i: usize, j: usize| 0.5 * (h[i][j] * s[i] * s[j]).powi(2);
+    let pairs: f64 = (0..3).flat_map(|i| (0..3).map(move |j| (i, j))).map(|(i, j)| pair(i, j)).sum();
+    // An even distribution has kurtosis 9/5.
+    let bend = pairs + 0.25 * (1.8 - 3.0) * (h[1][1] * s[1] * s[1]).powi(2);
+    let second = of.second.unwrap();
+    near(second.shift, 0.5 * (0..3).map(|k| h[k][k] * s[k] * s[k]).sum::<f64>(), DIFFERENCED);
+    near(second.bend, bend.sqrt(), DIFFERENCED);
+    near(second.sigma, (first + bend).sqrt(), DIFFERENCED);
+    let t = [6e-3, 4e-3, 3e-3];
+    let reach: f64 = (0..3).map(|k| (g[k] * t[k]).abs()).sum();
+    for (sign, extreme) in [-1.0, 1.0].into_iter().zip(&of.worst) {
+        near(extreme.first, of.nominal + sign * reach, 1e-10);
+        // Here the corner of the first order is that of the second as well.
+        let d: Vec<f64> = (0..3).map(|k| sign * t[k] * g[k].signum()).collect();
+        let bend: f64 =
+            (0..3).flat_map(|i| (0..3).map(move |j| (i, j))).map(|(i, j)| 0.5 * h[i][j] * d[i] * d[j]).sum();
+        near(extreme.second.unwrap() - extreme.first, bend, 1e-5);
+        assert_eq!(extreme.deviations, d);
+        // The third order is what is left.
+        assert!((extreme.exact.unwrap() - extreme.second.unwrap()).abs() < 0.05 * bend.abs());
+    }
+}
+
+/// Gradients are differenced for metrics, and solved exactly for curves: of the metric that is a point of a curve both must agree.
+#[test]
+fn second_derivatives_of_metrics_are_those_of_their_curves() {
+    let file = crank(
+        "[tolerance.variables]\nrod = 6\noffset = { tolerance = 4, distribution = \"uniform\" }\nradius = 3",
+    );
+    let found = examined(&file, |asked| asked.samples = 0);
+    let (of, band) = (spread(&file, &found, "first"), found.curves[0].bands[0]);
+    near(band.sigma, of.sigma, 1e-12);
+    let (a, b) = (band.second.unwrap(), of.second.unwrap());
+    near(a.shift, b.shift, DIFFERENCED);
+    near(a.bend, b.bend, DIFFERENCED);
+    near(band.worst[0], of.worst[0].first, 1e-12);
+    near(band.worst[1], of.worst[1].first, 1e-12);
+}
+
+/// Squares, worst case and moments against re-solved designs: differences with a sweep of steps.
+#[test]
+fn squares_and_moments_match_re_solved_designs() {
+    let file = study("strut_tolerances.toml");
+    let found = examined(&file, |asked| {
+        (asked.samples, asked.allocation) = (0, None);
+        asked.correlations.clear();
+    });
+    let models = file.model.motions();
+    let motions = Motions::of(&models, Formulation::Relative).unwrap();
+    let value = |of: &MetricSpread, design: &[f64]| {
+        let found = motions.evaluate(design, &mut Cost::default(), &|| true).unwrap();
+        let name = &file.model.metrics[of.metric].name;
+        let place = models[of.motion].metrics.iter().position(|m| m.name == *name).unwrap();
+        found.metrics[of.motion][place].value.unwrap()
+    };
+    assert_eq!(found.metrics.len(), 4);
+    for of in &found.metrics {
+        assert!(of.sigma > 0.0 && of.second.unwrap().bend > 0.0);
+        let mut best = [f64::INFINITY; 2];
+        for step in [4.0, 2.0, 1.0, 0.5] {
+            let moved = |k: usize, by: f64| {
+                let v = found.variables[k];
+                let mut design = vec![0.0; file.model.variables.len()];
+                design[v.variable.0] = by * v.sigma;
+                value(of, &design)
+            };
+            // Uncorrelated: the diagonal of what the sums go over.
+            let (mut first, mut exact) = (0.0, 0.0);
+            let mut curvature = 0.0;
+            for k in 0..found.variables.len() {
+                let [up, down] = [step, -step].map(|by| moved(k, by));
+                first += ((up - down) / (2.0 * step)).powi(2);
+                exact += (of.d[k] * found.variables[k].sigma).powi(2);
+                curvature += 0.5 * (up - 2.0 * of.nominal + down) / (step * step);
+            }
+            best[0] = best[0].min((first / exact - 1.0).abs());
+            best[1] = best[1].min((curvature / of.second.unwrap().shift - 1.0).abs());
+        }
+        assert!(best[0] < 1e-5, "{:?}", best);
+        assert!(best[1] < 1e-3, "{:?} {:?}", best, of.second);
+    }
+}
+
+/// So many standard errors may be between what derivatives say and what is drawn: of all numbers of these tests none is beyond, since
+/// the seeds are fixed.
+const ERRORS: f64 = 4.0;
+/// Of angles, rad.
+const ROUND_OFF: f64 = 1e-12;
+
+#[test]
+fn squares_and_designs_drawn_agree_on_the_strut() {
+    let file = study("strut_tolerances.toml");
+    let found = examined(&file, |asked| (asked.samples, asked.allocation) = (4000, None));
+    let drawn = sampled(&found);
+    assert_eq!((drawn.failed, drawn.samples), (0, 4000), "{:?}", drawn.failures);
+    for (of, drawn) in found.metrics.iter().zip(&drawn.metrics) {
+        assert!(!of.is_nonlinear(), "{:?}", of.nonlinearity());
+        assert!(
+            (drawn.sigma[0] - of.sigma).abs() < ERRORS * drawn.sigma[1],
+            "{:?} {}",
+            drawn.sigma,
+            of.sigma
+        );
+        assert!((drawn.mean[0] - of.mean()).abs() < ERRORS * drawn.mean[1], "{:?} {}", drawn.mean, of.mean());
+        assert!(of.worst[0].first < drawn.quantiles[1] && drawn.quantiles[3] < of.worst[1].first);
+        near(of.shares.iter().sum(), 1.0, 1e-12);
+    }
+    for (limit, drawn) in found.limits.iter().zip(&drawn.limits) {
+        assert!((limit.by_moments - drawn.part()).abs() < ERRORS * drawn.error(), "{limit:?}");
+        assert!(limit.by_moments > 0.5 && limit.by_moments < 1.0, "{limit:?}");
+    }
+    for (curve, drawn) in found.curves.iter().zip(&drawn.curves) {
+        for k in 0..curve.bands.len() {
+            let [mean, sigma] = curve.moments(k);
+            // Where the wheel stands as drawn nothing moves it: what is left is round-off.
+            let error = sigma / 4000_f64.sqrt() + ROUND_OFF;
+            assert!((drawn.mean[k] - mean).abs() < ERRORS * error);
+            assert!((drawn.sigma[k] - sigma).abs() < ERRORS * error);
+        }
+    }
+}
+
+/// Driven by its slider, which stands 0.5 mm short of where the crank and the rod are in line.
+fn near_dead_point(tolerance: f64) -> ModelFile {
+    let text = CRANK
+        .replace("hardpoints = { O = [0, 0, 0], A = [\"radius*cos(40*pi/180)\", \"radius*sin(40*pi/180)\", 0], B = [300, \"offset\", 0] }",
+            "hardpoints = { O = [0, 0, 0], A = [99.6249, 8.6547, 0], B = [399.5, 0, 0] }")
+        .replace("parameters.offset = { value = 20, unit = \"length\" }\nparameters.radius = { value = 100, unit = \"length\" }\n", "")
+        .replace("drivers.motor = { joint = \"pivot\", law = \"20*t\" }", "drivers.motor = { joint = \"slide\", law = \"-t\" }")
+        .replace("type = \"position\", point = \"B\", along = \"x\"", "type = \"coordinate\", joint = \"pivot\"");
+    model(&format!("{text}\n[tolerance]\nsamples = 20000\n[tolerance.variables]\nrod = {tolerance}\n"))
+}
+
+#[test]
+fn near_a_dead_point_squares_are_off_and_the_second_derivatives_say_so() {
+    let file = near_dead_point(0.6);
+    let found = examined(&file, |asked| asked.samples = 100_000);
+    let of = spread(&file, &found, "first");
+    let drawn = &sampled(&found).metrics[0];
+    // cos a = (r^2 + x^2 - l^2) / 2 r x:  a is about sqrt of what is left to the dead point.
+    assert!(of.is_nonlinear() && of.nonlinearity().unwrap() > 0.1, "{:?}", of.nonlinearity());
+    let off = |sigma: f64| (sigma - drawn.sigma[0]).abs() / drawn.sigma[1];
+    assert!(off(of.sigma) > ERRORS, "{} {:?}", of.sigma, drawn.sigma);
+    assert!(off(of.best_sigma()) < off(of.sigma), "{:?} {:?}", of.second, drawn.sigma);
+    let shift = |mean: f64| (mean - drawn.mean[0]).abs();
+    assert!(shift(of.mean()) < 0.3 * shift(of.nominal), "{} {} {:?}", of.mean(), of.nominal, drawn.mean);
+    assert!(drawn.skewness.abs() > 0.2, "{}", drawn.skewness);
+}
+
+#[test]
+fn designs_beyond_the_dead_point_are_counted_with_their_reason() {
+    let file = near_dead_point(0.9);
+    let found = examined(&file, |_| ());
+    let drawn = sampled(&found);
+    // The rod must not be shorter by more than 0.5 mm: 0.5 / 0.3 standard deviations.
+    let expected = 0.5 * 20_000.0 * (1.0 - 0.904_419);
+    assert!((drawn.failed as f64 - expected).abs() < ERRORS * expected.sqrt(), "{}", drawn.failed);
+    assert_eq!(drawn.failures.iter().map(|f| f.count).sum::<usize>(), drawn.failed);
+    assert!(drawn.failures.iter().all(|f| !f.why.is_empty() && f.first < 20_000));
+    assert_eq!(drawn.metrics[0].known + drawn.failed, 20_000);
+    let lowest = &spread(&file, &found, "first").worst[0];
+    assert!(found.metrics.iter().any(|m| m.worst.iter().any(|e| e.why.is_some())), "{lowest:?}");
+}
+
+#[test]
+fn correlated_tolerances_are_those_of_the_closed_form() {
+    let (g, h) = closed_form();
+    let s = [2e-3, 1e-3];
+    for r in [0.8, -0.5, 1.0, -1.0] {
+        let file = crank(&format!(
+            "[tolerance.variables]\nrod = 6\noffset = 3\n[tolerance.correlations]\njig = {{ between = [\"offset\", \"rod\"], coefficient = {r} }}"
+        ));
+        let found = examined(&file, |_| ());
+        let of = spread(&file, &found, "first");
+        let parts = [g[0] * s[0], g[1] * s[1]];
+        let variance = parts[0].powi(2) + parts[1].powi(2) + 2.0 * r * parts[0] * parts[1];
+        near(of.sigma, variance.sqrt(), 1e-8);
+        near(of.shares[0], (parts[0].powi(2) + r * parts[0] * parts[1]) / variance, 1e-7);
+        // tr(H S) / 2 and tr(H S H S) / 2
+        let [a, b, c] = [h[0][0] * s[0] * s[0], h[1][1] * s[1] * s[1], h[0][1] * s[0] * s[1]];
+        let second = of.second.unwrap();
+        near(second.shift, 0.5 * (a + b + 2.0 * r * c), DIFFERENCED);
+        let square =
+            a * a + b * b + 2.0 * c * c * (1.0 + r * r) + 4.0 * r * c * (a + b) + 2.0 * r * r * a * b;
+        near(second.bend, (0.5 * square).sqrt(), 1e-4);
+        let drawn = &sampled(&found).metrics[0];
+        assert!((drawn.sigma[0] - of.best_sigma()).abs() < ERRORS * drawn.sigma[1], "{r}: {:?}", drawn.sigma);
+        // However they go together, each may be at its worst.
+        near(of.worst[1].first - of.nominal, 6e-3 * g[0].abs() + 3e-3 * g[1].abs(), 1e-9);
+    }
+}
+
+#[test]
+fn a_point_lies_in_a_sphere() {
+    let file = study("strut_tolerances.toml");
+    let found = examined(&file, |asked| {
+        asked.tolerances.retain(|t| t.name == "ball_joint");
+        asked.correlations.clear();
+        asked.tolerances[0].scatter = hardpoint::model::Scatter::Uniform;
+        (asked.samples, asked.allocation) = (4000, None);
+    });
+    assert_eq!(found.variables.len(), 3);
+    let of = spread(&file, &found, "toe_range");
+    let norm = of.d.iter().map(|x| x * x).sum::<f64>().sqrt();
+    near(of.worst[1].first - of.nominal, 0.3e-3 * norm, 1e-9);
+    // Evenly in a sphere a coordinate has variance t^2 / 5.
+    near(of.sigma, 0.3e-3 * norm / 5.0_f64.sqrt(), 1e-12);
+    let farthest = of.worst[1].deviations.iter().map(|x| x * x).sum::<f64>().sqrt();
+    near(farthest, 0.3e-3, 1e-12);
+    let place = found.metrics.iter().position(|m| std::ptr::eq(m, of)).unwrap();
+    let drawn = &sampled(&found).metrics[place];
+    assert!((drawn.sigma[0] - of.sigma).abs() < ERRORS * drawn.sigma[1]);
+}
+
+fn limits(asked: &mut Tolerancing, rule: AllocationRule, most: &[(usize, f64)]) {
+    asked.allocation = Some(Allocating { rule });
+    let limit = |(metric, most): &(usize, f64)| Limit {
+        name: format!("limit {metric}"),
+        of: Limited::Metric(*metric),
+        least: None,
+        most: Some(*most),
+    };
+    asked.limits = most.iter().map(limit).collect();
+}
+
+/// The barrier leaves some 1e-8 of the costs.
+const BARRIER: f64 = 1e-6;
+
+const COSTS: &str = "[tolerance.variables]\nrod = { tolerance = 0.6, cost = 2 }\noffset = { tolerance = 0.4, cost = 1 }\nradius = { tolerance = 0.3, cost = 5 }";
+
+#[test]
+fn one_limit_is_allocated_as_the_closed_form_says() {
+    let (g, _) = closed_form();
+    let costs = [2.0, 1.0, 5.0];
+    for (rule, power) in [(AllocationRule::Rss { sigmas: 3.0 }, 3.0), (AllocationRule::Worst, 2.0)] {
+        let file = crank(COSTS);
+        let found = examined(&file, |asked| {
+            asked.samples = 0;
+            limits(asked, rule, &[(0, 0.374)]);
+        });
+        let of = spread(&file, &found, "first");
+        let room = 0.374 - of.nominal;
+        // t = (c / g^2)^(1/3) or (c / |g|)^(1/2), all by one factor.
+        let shape: Vec<f64> = (0..3)
+            .map(|k| {
+                if power == 3.0 { (costs[k] / (g[k] * g[k])).cbrt() } else { (costs[k] / g[k].abs()).sqrt() }
+            })
+            .collect();
+        let used = match rule {
+            AllocationRule::Rss { .. } => (0..3).map(|k| (g[k] * shape[k]).powi(2)).sum::<f64>().sqrt(),
+            AllocationRule::Worst => (0..3).map(|k| (g[k] * shape[k]).abs()).sum::<f64>(),
+        };
+        let allocation = found.allocation.unwrap();
+        assert!(allocation.impossible.is_none() && allocation.residual < 1e-6, "{:e}", allocation.residual);
+        for k in 0..3 {
+            near(allocation.tolerances[k].after.unwrap(), shape[k] * room / used, BARRIER);
+        }
+        // The costs go with 1 / room, so that a unit of room is worth costs / room.
+        near(allocation.worth[0], allocation.cost[1] / room, BARRIER);
+    }
+}
+
+#[test]
+fn several_limits_are_allocated_optimally() {
+    for rule in [AllocationRule::Rss { sigmas: 3.0 }, AllocationRule::Worst] {
+        let file = crank(&format!(
+            "{COSTS}\n[tolerance.correlations]\njig = {{ between = [\"rod\", \"radius\"], coefficient = 0.5 }}"
+        ));
+        let file = &file;
+        let found = examined(file, |asked| {
+            asked.samples = 0;
+            limits(asked, rule, &[(0, 0.374), (1, 0.030_9)]);
+        });
+        let allocation = found.allocation.clone().unwrap();
+        assert!(allocation.residual < 1e-6, "{:e}", allocation.residual);
+        assert!(allocation.worth.iter().all(|w| *w >= 0.0) && allocation.worth.iter().any(|w| *w > 0.0));
+        let best: Vec<f64> = allocation.tolerances.iter().map(|t| t.after.unwrap()).collect();
+        let (costs, correlated) = ([2.0, 1.0, 5.0], 0.5);
+        let cost = |t: &[f64]| (0..3).map(|k| costs[k] / t[k]).sum::<f64>();
+        let used = |t: &[f64], of: &MetricSpread| match rule {
+            AllocationRule::Worst => (0..3).map(|k| (of.d[k] * t[k]).abs()).sum::<f64>(),
+            AllocationRule::Rss { .. } => {
+                let [a, b, c] = [0, 1, 2].map(|k| of.d[k] * t[k]);
+                (a * a + b * b + c * c + 2.0 * correlated * a * c).sqrt()
+            }
+        };
+        let rooms = [0.374 - found.metrics[0].nominal, 0.030_9 - found.metrics[1].nominal];
+        let kept = |t: &[f64]| (0..2).all(|j| used(t, &found.metrics[j]) <= rooms[j] * (1.0 + 1e-9));
+        assert!(kept(&best));
+        // No other way to use the same rooms costs less.
+        let mut tried = 0;
+        for i in -4..=4 {
+            for j in -4..=4 {
+                let mut other = [best[0] * 1.03_f64.powi(i), best[1], best[2] * 1.03_f64.powi(j)];
+                let room = |t: &[f64]| {
+                    (0..2).map(|l| rooms[l] / used(t, &found.metrics[l])).fold(f64::INFINITY, f64::min)
+                };
+                let by = room(&other);
+                other.iter_mut().for_each(|t| *t *= by);
+                assert!(kept(&other) && cost(&other) >= cost(&best) * (1.0 - BARRIER), "{other:?} {best:?}");
+                tried += 1;
+            }
+        }
+        assert_eq!(tried, 81);
+    }
+}
+
+#[test]
+fn the_tolerances_found_keep_the_limits_of_the_strut() {
+    let file = study("strut_tolerances.toml");
+    let found = examined(&file, |asked| asked.samples = 4000);
+    let allocation = found.allocation.as_ref().unwrap();
+    assert!(allocation.impossible.is_none() && allocation.residual < 1e-6, "{:e}", allocation.residual);
+    let all = allocation.sampled.as_ref().unwrap().all.unwrap();
+    // Three standard deviations to the nearer end of the limit that binds most.
+    assert!(all.part() > 0.99 && all.part() > sampled(&found).all.unwrap().part(), "{all:?}");
+    // What has no cost stays.
+    assert!(
+        allocation
+            .tolerances
+            .iter()
+            .all(|t| file.model.tolerancing.as_ref().unwrap().tolerances[t.tolerance].cost.is_some())
+    );
+}
+
+#[test]
+fn what_cannot_be_allocated_is_told() {
+    let impossible = |text: &str, most: f64| {
+        let file = crank(text);
+        let found = examined(&file, |asked| {
+            asked.samples = 0;
+            limits(asked, AllocationRule::Worst, &[(0, most)]);
+        });
+        found.allocation.unwrap().impossible
+    };
+    assert_eq!(impossible(COSTS, 0.37), Some(Impossible::AsDrawn(0)));
+    assert_eq!(
+        impossible(&COSTS.replace("rod = { tolerance = 0.6, cost = 2 }", "rod = 6"), 0.374),
+        Some(Impossible::Fixed(0))
+    );
+    assert_eq!(impossible("[tolerance.variables]\nrod = 6", 0.374), Some(Impossible::NoCosts));
+    assert_eq!(impossible(COSTS, 0.374), None);
+}
+
+#[test]
+fn nothing_depends_on_threads_or_on_how_many_are_drawn() {
+    let file = near_dead_point(0.9);
+    let asked = |samples: usize| Tolerancing { samples, ..file.model.tolerancing.clone().unwrap() };
+    let drawn = |threads: usize, samples: usize| {
+        examined_on(threads, &file.model, &asked(samples)).unwrap().sampled.unwrap()
+    };
+    let bits = |found: &MonteCarlo| -> Vec<u64> {
+        let of =
+            |m: &hardpoint::study::SampledMetric| m.values.iter().map(|x| x.to_bits()).collect::<Vec<_>>();
+        found.metrics.iter().flat_map(of).chain(found.curves[0].mean.iter().map(|x| x.to_bits())).collect()
+    };
+    let one = drawn(1, 2500);
+    assert!(one.failed > 0);
+    for threads in [2, 3, 7] {
+        let several = drawn(threads, 2500);
+        assert_eq!(bits(&one), bits(&several));
+        assert_eq!(one.failures, several.failures);
+    }
+    let few = drawn(2, 1301);
+    assert_eq!(few.samples, 1301);
+    for (few, many) in few.metrics.iter().zip(&one.metrics) {
+        let first: Vec<u64> = many.values[..1301].iter().map(|x| x.to_bits()).collect();
+        assert_eq!(few.values.iter().map(|x| x.to_bits()).collect::<Vec<_>>(), first);
+    }
+}
+
+#[test]
+fn what_was_drawn_before_an_interruption_is_kept() {
+    let file = crank("[tolerance.variables]\nrod = 6");
+    let models = file.model.motions();
+    let motions = Motions::of(&models, Formulation::Relative).unwrap();
+    let mut tell = |stage: Stage| match stage {
+        Stage::Designs(done, _) if done >= 1000 => ControlFlow::Break(()),
+        _ => ControlFlow::Continue(()),
+    };
+    let asked = file.model.tolerancing.as_ref().unwrap();
+    let found = tolerance(&file.model, &motions, &[0], asked, THREADS, &mut tell, &|| true).unwrap();
+    assert!(found.interrupted);
+    assert_eq!(sampled(&found).samples, 1024);
+    assert_eq!(sampled(&found).metrics[0].values.len(), 1024);
+}
+
+#[test]
+fn what_is_asked_is_read_in_si() {
+    let file = study("strut_tolerances.toml");
+    let model = &file.model;
+    let asked = model.tolerancing.as_ref().unwrap();
+    let names: Vec<&str> = asked.tolerances.iter().map(|t| t.name.as_str()).collect();
+    assert_eq!(
+        names,
+        [
+            "ball_joint",
+            "lca_front_z",
+            "lca_rear_z",
+            "tie_rod_outer_y",
+            "tie_rod_outer_z",
+            "tie_rod_inner_z",
+            "strut_top_x",
+            "strut_top_y"
+        ]
+    );
+    assert_eq!(asked.tolerances[0].variables.len(), 3);
+    near(asked.tolerances[0].reach, 0.3e-3, 1e-12);
+    assert_eq!(asked.tolerances[0].scatter, hardpoint::model::Scatter::Truncated { sigmas: 2.0 });
+    near(asked.limits[0].most.unwrap(), 1.85_f64.to_radians(), 1e-12);
+    assert_eq!((asked.samples, asked.seed, asked.curves.len()), (10_000, 1, 2));
+    assert!(model.motions().iter().all(|m| m.tolerancing.is_none()));
+    // Without a table, the variables' own tolerances are asked for.
+    let own = Tolerancing::of_variables(model).unwrap();
+    assert_eq!((own.tolerances.len(), own.metrics.len()), (model.variables.len(), model.metrics.len()));
+}
+
+const TOLERANCES: &str = "\n[metrics.top]\nof = \"height\"\ntake = \"max\"\n\n[tolerance]\nsigmas = 3\n[tolerance.variables]\nB_x = 0.1\nB_y = { tolerance = 0.2, cost = 2 }\nlean = 0.05\n[tolerance.correlations]\njig = { between = [\"B_x\", \"B_y\"], coefficient = 0.9 }\nother = { between = [\"B_y\", \"lean\"], coefficient = 0.2 }\n[tolerance.limits]\ntop = { max = 300 }\n";
+
+#[test]
+fn broken_tolerances() {
+    let whole = |text: &str| format!("{}{text}", crate::diagnostics::VALID);
+    parse(&whole(TOLERANCES), "four-bar.toml").unwrap_or_else(|e| panic!("{e}"));
+    let broken = |name: &str, old: &str, new: &str| {
+        assert!(TOLERANCES.contains(old), "{old}");
+        crate::diagnostics::snapshot(name, &whole(&TOLERANCES.replacen(old, new, 1)));
+    };
+    broken("tolerance_of_unknown_variable", "B_x = 0.1", "C_x = 0.1");
+    broken("tolerance_of_zero", "B_x = 0.1", "B_x = 0");
+    broken("tolerance_that_is_a_text", "B_x = 0.1", "B_x = \"wide\"");
+    broken("tolerance_without_a_size", "tolerance = 0.2, ", "");
+    broken("tolerance_of_a_point_and_of_its_coordinate", "lean = 0.05", "lean = 0.05\nB = 0.3");
+    broken("tolerance_of_unknown_distribution", "cost = 2", "distribution = \"gauss\"");
+    broken("tolerance_uniform_with_sigmas", "cost = 2", "distribution = \"uniform\", sigmas = 2");
+    broken("tolerance_of_negative_cost", "cost = 2", "cost = -2");
+    broken("tolerance_with_no_sigmas", "sigmas = 3", "sigmas = 0");
+    broken("tolerance_with_misspelt_key", "sigmas = 3", "sigma = 3");
+    broken("tolerance_of_no_samples", "sigmas = 3", "samples = 0");
+    broken("tolerance_of_unknown_curve", "sigmas = 3", "curves = [\"hight\"]");
+    let without = TOLERANCES
+        .replace("[tolerance.limits]\ntop = { max = 300 }\n", "")
+        .replace("sigmas = 3", "allocate = \"rss\"");
+    crate::diagnostics::snapshot("tolerance_allocated_without_limits", &whole(&without));
+    broken(
+        "tolerance_allocated_without_costs",
+        "sigmas = 3\n[tolerance.variables]\nB_x = 0.1\nB_y = { tolerance = 0.2, cost = 2 }",
+        "allocate = \"worst_case\"\n[tolerance.variables]\nB_x = 0.1\nB_y = 0.2",
+    );
+    broken("tolerance_with_sigmas_kept_of_nothing", "sigmas = 3", "keep_sigmas = 4");
+    broken("correlation_beyond_one", "coefficient = 0.9", "coefficient = 1.1");
+    broken("correlation_with_itself", "\"B_x\", \"B_y\"", "\"B_x\", \"B_x\"");
+    broken("correlation_twice", "between = [\"B_y\", \"lean\"]", "between = [\"B_y\", \"B_x\"]");
+    broken("correlation_of_what_is_exact", "lean = 0.05\n", "");
+    broken(
+        "correlation_of_what_is_uniform",
+        "lean = 0.05",
+        "lean = { tolerance = 0.05, distribution = \"uniform\" }",
+    );
+    broken(
+        "correlations_that_contradict",
+        "coefficient = 0.2 }",
+        "coefficient = 0.9 }\nthird = { between = [\"B_x\", \"lean\"], coefficient = -0.9 }",
+    );
+    broken("tolerance_limit_of_a_measure", "top = { max = 300 }", "height = { max = 300 }");
+    broken("tolerance_limit_of_nothing", "top = { max = 300 }", "top = {}");
+    broken("tolerance_limit_upside_down", "top = { max = 300 }", "top = { min = 400, max = 300 }");
+    crate::diagnostics::snapshot("tolerance_of_nothing", &whole("\n[tolerance]\nsamples = 100\n"));
+    crate::diagnostics::snapshot(
+        "tolerance_as_a_number",
+        &format!("tolerance = 0.1\n{}", crate::diagnostics::VALID),
+    );
+}

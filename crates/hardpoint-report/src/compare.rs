@@ -1,0 +1,297 @@
+//! `compare.json`, `compare.csv` and `compare.html`: two model files beside each other, what differs and what that does.
+
+use std::collections::BTreeSet;
+use std::io::Write;
+
+use csv::WriterBuilder;
+use hardpoint::Solution;
+use hardpoint::model::{Dimension, Model};
+use hardpoint::study::metrics;
+use hardpoint_file::{Diagnostic, ModelFile, Units};
+use serde::Serialize;
+
+use crate::GENERATOR;
+use crate::columns::Column;
+use crate::csv::{no_formula, numbers};
+use crate::figures::{number, rounded, unit, with_unit};
+use crate::page::{Payload, Table};
+
+/// Hardpoints nearer to each other than this, m, are at the same place: numbers in different units agree to round-off only.
+const SAME_PLACE: f64 = 1e-12;
+
+/// Two designs beside each other. Figures are in the units of the first file, times in s.
+#[derive(Clone, Debug, Serialize)]
+pub struct CompareFacts {
+    /// Program and version.
+    pub generator: &'static str,
+    /// Both model files, as they were given.
+    pub files: [String; 2],
+    /// The names of both mechanisms.
+    pub names: [String; 2],
+    /// The coordinates of hardpoints that differ.
+    pub hardpoints: Vec<Difference>,
+    /// The parameters that differ.
+    pub parameters: Vec<Difference>,
+    /// Per measure (and component of a point) that both have, how its curves differ.
+    pub measures: Vec<CurveDifference>,
+    /// The metrics that both have.
+    pub metrics: Vec<Difference>,
+    /// What only the first file has, and what only the second one.
+    pub only_in: [Vec<String>; 2],
+    /// How many output times each was solved for.
+    pub steps: [usize; 2],
+    /// Output times, s.
+    pub times: Vec<f64>,
+    /// What else there is to tell.
+    pub diagnostics: Vec<Diagnostic>,
+}
+
+/// A number of both files.
+#[derive(Clone, Debug, Serialize)]
+pub struct Difference {
+    /// Its name.
+    pub name: String,
+    /// Its unit; `1` for a plain number.
+    pub unit: String,
+    /// In the first file, and in the second; `null` where a motion does not reach it.
+    pub values: [Option<f64>; 2],
+}
+
+/// Two curves of one name.
+#[derive(Clone, Debug, Serialize)]
+pub struct CurveDifference {
+    /// The measure's name.
+    pub measure: String,
+    /// Its unit.
+    pub unit: String,
+    /// The largest difference, second less first, with its sign.
+    pub difference: Option<f64>,
+    /// Time of that, s.
+    pub time: Option<f64>,
+    /// Over the output times that both were solved for: the first file's curve, and the second's.
+    pub curves: [Vec<f64>; 2],
+}
+
+/// A model file, and its motion.
+#[derive(Clone, Copy, Debug)]
+pub struct Solved<'a> {
+    /// The model, and where it stands.
+    pub file: &'a ModelFile,
+    /// Its solution.
+    pub solution: &'a Solution,
+}
+
+impl CompareFacts {
+    /// Those of two models, solved over the same output times.
+    pub fn of(both: [Solved<'_>; 2]) -> Self {
+        let [a, b] = both;
+        let units = a.file.units;
+        let steps = both.map(|s| s.solution.motion.len());
+        let common = steps[0].min(steps[1]);
+        Self {
+            generator: GENERATOR,
+            files: both.map(|s| s.file.file_name().into()),
+            names: both.map(|s| s.file.model.name.clone()),
+            hardpoints: hardpoints(&a.file.model, &b.file.model, units),
+            parameters: parameters(&a.file.model, &b.file.model, units),
+            measures: curves(both, units, common),
+            metrics: of_metrics(both, units),
+            only_in: [only_in(&a.file.model, &b.file.model), only_in(&b.file.model, &a.file.model)],
+            steps,
+            times: a.solution.motion.times[..common].to_vec(),
+            diagnostics: a.file.remarks.clone(),
+        }
+    }
+
+    /// Whether nothing that both have differs.
+    pub fn is_same(&self) -> bool {
+        self.hardpoints.is_empty() && self.parameters.is_empty() && self.only_in.iter().all(Vec::is_empty)
+    }
+
+    /// What differs, and what it does to those measures that are wanted.
+    pub fn tables(&self, wanted: &dyn Fn(&str) -> bool) -> Vec<Table> {
+        let of = |title: &str, what: &str, list: &[Difference]| {
+            (!list.is_empty()).then(|| Table {
+                title: title.into(),
+                note: String::new(),
+                header: [what, &self.files[0], &self.files[1], "difference"].map(String::from).to_vec(),
+                rows: list.iter().map(Difference::row).collect(),
+            })
+        };
+        let row = |c: &CurveDifference| {
+            let some = |x: Option<f64>| x.map_or("-".into(), |x| format!("{} {}", rounded(x, 4), c.unit));
+            let range = |k: usize| {
+                let low = c.curves[k].iter().copied().fold(f64::INFINITY, f64::min);
+                let high = c.curves[k].iter().copied().fold(f64::NEG_INFINITY, f64::max);
+                if low <= high {
+                    format!("{} to {}", number(low), with_unit(high, &c.unit))
+                } else {
+                    "-".into()
+                }
+            };
+            let time = c.time.map_or("-".into(), |t| format!("{} s", number(t)));
+            vec![c.measure.clone(), range(0), range(1), some(c.difference), time]
+        };
+        let rows: Vec<_> = self.measures.iter().filter(|c| wanted(&c.measure)).map(row).collect();
+        let measures = (!rows.is_empty()).then(|| Table {
+            title: "Measures".into(),
+            note: String::new(),
+            header: ["measure", &self.files[0], &self.files[1], "largest difference", "at t"]
+                .map(String::from)
+                .to_vec(),
+            rows,
+        });
+        let lacking = [0, 1].map(|k| {
+            (!self.only_in[k].is_empty()).then(|| Table {
+                title: format!("Only in {}", self.files[k]),
+                note: String::new(),
+                header: vec!["what".into()],
+                rows: self.only_in[k].iter().map(|name| vec![name.clone()]).collect(),
+            })
+        });
+        let differ = [
+            of("Hardpoints that differ", "hardpoint", &self.hardpoints),
+            of("Parameters that differ", "parameter", &self.parameters),
+            of("Metrics", "metric", &self.metrics),
+            measures,
+        ];
+        differ.into_iter().chain(lacking).flatten().collect()
+    }
+
+    /// The page of the first design, with the second one beside it: what differs comes first among its checks.
+    pub fn page(&self, mut page: Payload, asked: &[String], wanted: &dyn Fn(&str) -> bool) -> Payload {
+        let quantity = |name: &str| page.quantities.iter().position(|q| q.name == name);
+        page.first = asked.first().and_then(|name| quantity(name)).or(page.first);
+        let mut checks = self.tables(wanted);
+        checks.append(&mut page.checks);
+        Payload { checks, ..page }
+    }
+
+    /// The curves that both have, one row per output time.
+    ///
+    /// # Errors
+    /// Where `out` cannot be written.
+    pub fn write_csv(&self, out: impl Write) -> csv::Result<()> {
+        let mut header = vec!["t [s]".to_owned()];
+        for c in &self.measures {
+            for file in ["first", "second"] {
+                let column = Column { name: format!("{} {file}", c.measure), unit: c.unit.clone() };
+                header.push(no_formula(&column.header()).into_owned());
+            }
+        }
+        let mut writer = WriterBuilder::new().has_headers(false).from_writer(out);
+        writer.write_record(&header)?;
+        for (k, t) in self.times.iter().enumerate() {
+            let curves = self.measures.iter().flat_map(|c| c.curves.iter().map(|curve| curve[k]));
+            let row: Vec<f64> = std::iter::once(*t).chain(curves).collect();
+            writer.serialize(numbers(&row))?;
+        }
+        writer.flush()?;
+        Ok(())
+    }
+}
+
+impl Difference {
+    fn row(&self) -> Vec<String> {
+        let shown = |x: Option<f64>| x.map_or("not reached".into(), |x| with_unit(x, &self.unit));
+        let [a, b] = self.values;
+        let difference = a.zip(b).map_or("-".into(), |(a, b)| format!("{} {}", rounded(b - a, 4), self.unit));
+        vec![self.name.clone(), shown(a), shown(b), difference]
+    }
+}
+
+/// Whether two mechanisms have the same bodies and outputs in the same order, so that they can be drawn beside each other.
+pub fn are_alike(both: [Solved<'_>; 2]) -> bool {
+    let bodies = both.map(|s| s.file.model.bodies.iter().map(|b| &b.name).collect::<Vec<_>>());
+    let outputs =
+        both.map(|s| s.solution.measured.outputs.iter().map(|o| (&o.name, o.dimension)).collect::<Vec<_>>());
+    bodies[0] == bodies[1] && outputs[0] == outputs[1]
+}
+
+fn hardpoints(a: &Model, b: &Model, units: Units) -> Vec<Difference> {
+    let named = a.hardpoints.iter().filter(|h| !h.unnamed);
+    let pairs = named.filter_map(|h| {
+        let other = b.hardpoints.iter().find(|o| !o.unnamed && o.name == h.name)?;
+        Some((h, other))
+    });
+    let coordinates = pairs.flat_map(|(h, other)| {
+        [("x", 0), ("y", 1), ("z", 2)]
+            .map(|(axis, k)| (format!("{}.{axis}", h.name), h.position[k], other.position[k]))
+    });
+    let differ = coordinates.filter(|(_, x, y)| (x - y).abs() > SAME_PLACE);
+    differ
+        .map(|(name, x, y)| Difference {
+            name,
+            unit: unit(units, Dimension::LENGTH),
+            values: [x, y].map(|v| Some(units.from_si(Dimension::LENGTH, v))),
+        })
+        .collect()
+}
+
+fn parameters(a: &Model, b: &Model, units: Units) -> Vec<Difference> {
+    let pairs = a.parameters.iter().filter_map(|p| {
+        let other = b.parameters.iter().find(|o| o.name == p.name && o.quantity == p.quantity)?;
+        (other.value != p.value).then_some((p, other))
+    });
+    pairs
+        .map(|(p, other)| Difference {
+            name: p.name.clone(),
+            unit: unit(units, p.quantity),
+            values: [p.value, other.value].map(|v| Some(units.from_si(p.quantity, v))),
+        })
+        .collect()
+}
+
+fn curves([a, b]: [Solved<'_>; 2], units: Units, steps: usize) -> Vec<CurveDifference> {
+    let outputs = |s: &Solved<'_>| s.solution.measured.outputs.clone();
+    let theirs = outputs(&b);
+    let compare = |(m, output): (usize, &hardpoint::measure::Output)| {
+        let other = theirs.iter().position(|o| o.name == output.name && o.dimension == output.dimension)?;
+        let shown = |x: f64| units.from_si(output.dimension, x);
+        let curve = |s: &Solved<'_>, m: usize| -> Vec<f64> {
+            (0..steps).map(|k| shown(s.solution.measured.value(k, m)[0])).collect()
+        };
+        let both = [curve(&a, m), curve(&b, other)];
+        let differences = both[0].iter().zip(&both[1]).map(|(x, y)| y - x).enumerate();
+        let largest =
+            differences.filter(|(_, d)| d.is_finite()).max_by(|x, y| x.1.abs().total_cmp(&y.1.abs()));
+        Some(CurveDifference {
+            measure: output.name.clone(),
+            unit: unit(units, output.dimension),
+            difference: largest.map(|(_, d)| d),
+            time: largest.map(|(k, _)| a.solution.motion.times[k]),
+            curves: both,
+        })
+    };
+    outputs(&a).iter().enumerate().filter_map(compare).collect()
+}
+
+fn of_metrics([a, b]: [Solved<'_>; 2], units: Units) -> Vec<Difference> {
+    let [first, second] = [a, b].map(|s| metrics(&s.file.model, s.solution));
+    let compare = |(k, metric): (usize, &hardpoint::model::Metric)| {
+        let (model, others) = (&a.file.model, &b.file.model);
+        let dimension = model.metric_dimension(metric);
+        let other = others.metrics.iter().position(|m| m.name == metric.name)?;
+        (others.metric_dimension(&others.metrics[other]) == dimension).then(|| Difference {
+            name: metric.name.clone(),
+            unit: unit(units, dimension),
+            values: [first[k].value, second[other].value].map(|v| v.map(|x| units.from_si(dimension, x))),
+        })
+    };
+    a.file.model.metrics.iter().enumerate().filter_map(compare).collect()
+}
+
+/// What a model has and another one has not, by name.
+fn only_in(model: &Model, other: &Model) -> Vec<String> {
+    let names = |m: &Model| -> BTreeSet<(&'static str, String)> {
+        let hardpoints = m.hardpoints.iter().filter(|h| !h.unnamed).map(|h| ("hardpoint", h.name.clone()));
+        let bodies = m.bodies.iter().map(|b| ("body", b.name.clone()));
+        let joints = m.joints.iter().filter(|j| !j.unnamed).map(|j| ("joint", j.name.clone()));
+        let drivers = m.drivers.iter().map(|d| ("driver", d.name.clone()));
+        let measures = m.measures.iter().map(|x| ("measure", x.name.clone()));
+        let metrics = m.metrics.iter().map(|x| ("metric", x.name.clone()));
+        hardpoints.chain(bodies).chain(joints).chain(drivers).chain(measures).chain(metrics).collect()
+    };
+    let (own, theirs) = (names(model), names(other));
+    own.difference(&theirs).map(|(what, name)| format!("{what} {name}")).collect()
+}

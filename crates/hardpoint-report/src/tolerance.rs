@@ -1,0 +1,889 @@
+//! What tolerances come to: spread, yield, contributions and the loosest tolerances, in the model's units.
+
+use std::io::Write;
+
+use hardpoint::measure::Output;
+use hardpoint::model::{AllocationRule, Dimension, Limited, Model, OutputSource, Tolerancing};
+use hardpoint::study::{
+    Allocation, Examination, Extreme, Impossible, MetricSpread, MonteCarlo, NONLINEAR, SampledMetric, Yield,
+};
+use hardpoint_file::{ModelFile, Units};
+use serde::Serialize;
+
+use crate::facts::variable_unit;
+use crate::figures::{count, number, rounded, seconds, some_of, unit, with_unit};
+use crate::optimize::{BeforeAfter, Evaluations, case_name};
+use crate::page::{Curve, Design, DesignCurves, DesignKind, Fact, Payload, Table};
+
+/// A band is drawn so many standard deviations to either side of the mean: 99.73 % of a normal distribution.
+const BAND: f64 = 3.0;
+/// Contributions below this part are not told one by one.
+const SLIGHT: f64 = 1e-3;
+/// What is drawn differs from what derivatives say where so many standard errors are between them.
+const ERRORS: f64 = 3.0;
+/// A whole bar in a table has so many marks.
+const BAR: f64 = 40.0;
+/// A histogram has so many bars.
+const BARS: usize = 24;
+
+/// A study of tolerances, in the model's units. As JSON it is `summary.json` of `hardpoint tolerance`.
+#[derive(Clone, Debug, Serialize)]
+pub struct ToleranceFacts {
+    /// Program and version.
+    pub generator: String,
+    /// The kind of study.
+    pub study: &'static str,
+    /// The model's name.
+    pub model: String,
+    /// The model file.
+    pub file: String,
+    /// `complete`, `interrupted`, or `nonlinear` where second derivatives say that the linear answer is off.
+    pub status: &'static str,
+    /// The same in words, and what to do.
+    pub message: String,
+    /// The part that keeps all limits: with the tolerances as they are, and with those that were found.
+    pub objective: BeforeAfter,
+    /// What it cost.
+    pub evaluations: Evaluations,
+    /// Designs that were drawn and solved.
+    pub samples: usize,
+    /// From which seed.
+    pub seed: u64,
+    /// Variables that may be off.
+    pub variables: Vec<ToleratedFact>,
+    /// Variables with a tolerance that the mechanism cannot follow.
+    pub left_out: Vec<String>,
+    /// Per metric and case.
+    pub metrics: Vec<SpreadFact>,
+    /// Metrics that have no value as drawn.
+    pub unknown: Vec<String>,
+    /// Per limit and case.
+    pub limits: Vec<YieldFact>,
+    /// Designs drawn that do not move to the end.
+    pub failed: usize,
+    /// By what happens to them.
+    pub failures: Vec<FailureFact>,
+    /// The loosest tolerances.
+    pub allocation: Option<AllocationFact>,
+    /// The files that were written.
+    pub files: Vec<String>,
+    /// How long it took, s.
+    pub seconds: f64,
+}
+
+/// A variable that may be off.
+#[derive(Clone, Debug, Serialize)]
+pub struct ToleratedFact {
+    /// Its name.
+    pub name: String,
+    /// The tolerance that it belongs to: its own name, or that of a point.
+    pub tolerance: String,
+    /// Its unit.
+    pub unit: String,
+    /// `uniform`, `normal` or `truncated`.
+    pub distribution: &'static str,
+    /// By how much it may be off.
+    pub start: f64,
+    /// By how much it may be off with the tolerances that were found; the same where none were sought; `null` where no limit has a say.
+    pub end: Option<f64>,
+    /// Its standard deviation.
+    pub sigma: f64,
+    /// What its tolerance costs.
+    pub cost: Option<f64>,
+}
+
+/// A metric in one motion.
+#[derive(Clone, Debug, Serialize)]
+pub struct SpreadFact {
+    /// Its name.
+    pub name: String,
+    /// In which case; `null` where there are none.
+    pub case: Option<String>,
+    /// Its unit.
+    pub unit: String,
+    /// As drawn.
+    pub nominal: f64,
+    /// The mean to second order.
+    pub mean: Option<f64>,
+    /// The standard deviation to first order: the root of the sum of squares.
+    pub rss: f64,
+    /// The standard deviation to second order.
+    pub sigma: Option<f64>,
+    /// The second-order part as a part of the first-order standard deviation.
+    pub nonlinearity: Option<f64>,
+    /// The least value that the tolerances allow.
+    pub least: ExtremeFact,
+    /// The greatest.
+    pub greatest: ExtremeFact,
+    /// The part of the variance that each variable contributes, the largest first.
+    pub contributions: Vec<Contribution>,
+    /// Of the designs drawn.
+    pub sampled: Option<SampledFact>,
+}
+
+/// The least or the greatest value that tolerances allow.
+#[derive(Clone, Debug, Serialize)]
+pub struct ExtremeFact {
+    /// To first order.
+    pub first: f64,
+    /// To second order.
+    pub second: Option<f64>,
+    /// Solved exactly, with all deviations where the second order has them.
+    pub exact: Option<f64>,
+    /// Why that design has no value.
+    pub why: Option<String>,
+}
+
+/// What a variable contributes.
+#[derive(Clone, Debug, Serialize)]
+pub struct Contribution {
+    /// Its name.
+    pub variable: String,
+    /// The part of the variance; negative where it takes away from what a correlated one brings.
+    pub share: f64,
+    /// The derivative of the metric, in its unit per the variable's.
+    pub d: f64,
+}
+
+/// A metric of the designs drawn.
+#[derive(Clone, Debug, Serialize)]
+pub struct SampledFact {
+    /// How many have it.
+    pub known: usize,
+    /// Mean.
+    pub mean: f64,
+    /// Its standard error.
+    pub mean_error: f64,
+    /// Standard deviation.
+    pub sigma: f64,
+    /// Its standard error.
+    pub sigma_error: f64,
+    /// Skewness, 0 where normal.
+    pub skewness: f64,
+    /// Kurtosis, 3 where normal.
+    pub kurtosis: f64,
+    /// The least, 0.135 %, the median, 99.865 %, the greatest.
+    pub quantiles: [f64; 5],
+    /// By which part the first-order standard deviation is off; `null` where that is less than three standard errors.
+    pub rss_off: Option<f64>,
+}
+
+/// A limit in one motion.
+#[derive(Clone, Debug, Serialize)]
+pub struct YieldFact {
+    /// Its name.
+    pub name: String,
+    /// The metric.
+    pub metric: String,
+    /// In which case.
+    pub case: Option<String>,
+    /// Its unit.
+    pub unit: String,
+    /// It must not be less.
+    pub min: Option<f64>,
+    /// It must not be more.
+    pub max: Option<f64>,
+    /// The part that keeps it, if the metric is normal with the moments of derivatives.
+    pub by_moments: f64,
+    /// The part of the designs drawn that keep it.
+    pub sampled: Option<f64>,
+    /// Its standard error.
+    pub error: Option<f64>,
+    /// What it is worth in an allocation: the cost that would be saved if it gave way by one unit.
+    pub worth: Option<f64>,
+}
+
+/// Designs that failed alike.
+#[derive(Clone, Debug, Serialize)]
+pub struct FailureFact {
+    /// In which case.
+    pub case: Option<String>,
+    /// What happened to the first of them.
+    pub why: String,
+    /// Its number.
+    pub first: usize,
+    /// How many there are.
+    pub count: usize,
+}
+
+/// The loosest tolerances.
+#[derive(Clone, Debug, Serialize)]
+pub struct AllocationFact {
+    /// `rss` or `worst_case`.
+    pub rule: &'static str,
+    /// How many standard deviations have to fit.
+    pub sigmas: Option<f64>,
+    /// `found`, or why there are none.
+    pub status: String,
+    /// The sum of `cost / tolerance`, in the file's units; of all that have a cost.
+    pub cost: BeforeAfter,
+    /// What is left of the conditions of optimality.
+    pub kkt: Option<f64>,
+    /// The part of designs drawn from these tolerances that keeps all limits.
+    pub sampled: Option<f64>,
+    /// Its standard error.
+    pub error: Option<f64>,
+}
+
+/// What the facts are made of.
+#[derive(Clone, Copy, Debug)]
+pub struct Studied<'a> {
+    /// The model file.
+    pub file: &'a ModelFile,
+    /// Per motion, its number among those of the model.
+    pub numbers: &'a [usize],
+    /// What was asked.
+    pub asked: &'a Tolerancing,
+    /// What was found.
+    pub found: &'a Examination,
+}
+
+impl Studied<'_> {
+    fn model(&self) -> &Model {
+        &self.file.model
+    }
+
+    fn units(&self) -> Units {
+        self.file.units
+    }
+
+    fn case(&self, motion: usize) -> Option<String> {
+        case_name(self.model(), self.numbers[motion])
+    }
+
+    fn dimension(&self, of: &MetricSpread) -> Dimension {
+        self.model().metric_dimension(&self.model().metrics[of.metric])
+    }
+
+    fn variable_name(&self, k: usize) -> &str {
+        &self.model().variables[self.found.variables[k].variable.0].name
+    }
+
+    /// The name of a metric in its motion, as a column has it.
+    fn column(&self, of: &MetricSpread) -> String {
+        let name = &self.model().metrics[of.metric].name;
+        let case = self.case(of.motion).map_or(String::new(), |case| format!("{case}."));
+        format!("{case}{name} [{}]", unit(self.units(), self.dimension(of)))
+    }
+
+    /// `metrics.csv`: a row for each metric and motion.
+    pub fn write_metrics(&self, out: impl Write) -> csv::Result<()> {
+        let facts = ToleranceFacts::of(self);
+        let mut csv = csv::Writer::from_writer(out);
+        csv.write_record([
+            "metric",
+            "case",
+            "unit",
+            "nominal",
+            "rss",
+            "mean",
+            "sigma",
+            "nonlinearity",
+            "least",
+            "greatest",
+            "least_exact",
+            "greatest_exact",
+            "drawn_mean",
+            "drawn_sigma",
+        ])?;
+        for m in &facts.metrics {
+            let optional = |x: Option<f64>| x.map_or(String::new(), |x| x.to_string());
+            csv.write_record([
+                m.name.clone(),
+                m.case.clone().unwrap_or_default(),
+                m.unit.clone(),
+                m.nominal.to_string(),
+                m.rss.to_string(),
+                optional(m.mean),
+                optional(m.sigma),
+                optional(m.nonlinearity),
+                m.least.second.unwrap_or(m.least.first).to_string(),
+                m.greatest.second.unwrap_or(m.greatest.first).to_string(),
+                optional(m.least.exact),
+                optional(m.greatest.exact),
+                optional(m.sampled.as_ref().map(|s| s.mean)),
+                optional(m.sampled.as_ref().map(|s| s.sigma)),
+            ])?;
+        }
+        csv.flush()?;
+        Ok(())
+    }
+
+    /// `contributions.csv`: a row for each metric, motion and variable.
+    pub fn write_contributions(&self, out: impl Write) -> csv::Result<()> {
+        let facts = ToleranceFacts::of(self);
+        let mut csv = csv::Writer::from_writer(out);
+        csv.write_record(["metric", "case", "variable", "share", "derivative"])?;
+        for m in &facts.metrics {
+            for c in &m.contributions {
+                let case = m.case.clone().unwrap_or_default();
+                csv.write_record([&m.name, &case, &c.variable, &c.share.to_string(), &c.d.to_string()])?;
+            }
+        }
+        csv.flush()?;
+        Ok(())
+    }
+
+    /// `bands.csv`: a row for each measure, motion and output time.
+    pub fn write_bands(&self, out: impl Write) -> csv::Result<()> {
+        let mut csv = csv::Writer::from_writer(out);
+        csv.write_record([
+            "measure",
+            "case",
+            "unit",
+            "time",
+            "nominal",
+            "rss",
+            "mean",
+            "sigma",
+            "least",
+            "greatest",
+            "drawn_mean",
+            "drawn_sigma",
+            "drawn_least",
+            "drawn_greatest",
+        ])?;
+        for (c, curve) in self.found.curves.iter().enumerate() {
+            let of = OutputSource::Measure(curve.measure);
+            let dimension = self.model().dimension(of);
+            let shown = |x: f64| self.units().from_si(dimension, x);
+            let drawn = self.found.sampled.as_ref().map(|s| &s.curves[c]);
+            for (k, band) in curve.bands.iter().enumerate() {
+                let [mean, sigma] = curve.moments(k);
+                let mut row = vec![
+                    self.model().measures[curve.measure].name.clone(),
+                    self.case(curve.motion).unwrap_or_default(),
+                    unit(self.units(), dimension),
+                    curve.times[k].to_string(),
+                ];
+                let numbers = [band.nominal, band.sigma, mean, sigma, band.worst[0], band.worst[1]];
+                row.extend(numbers.map(|x| shown(x).to_string()));
+                let of = |list: Option<&Vec<f64>>| list.map_or(String::new(), |l| shown(l[k]).to_string());
+                row.extend([
+                    of(drawn.map(|d| &d.mean)),
+                    of(drawn.map(|d| &d.sigma)),
+                    of(drawn.map(|d| &d.least)),
+                    of(drawn.map(|d| &d.greatest)),
+                ]);
+                csv.write_record(row)?;
+            }
+        }
+        csv.flush()?;
+        Ok(())
+    }
+
+    /// `samples.csv`: a row for each design drawn, with its deviations and its metrics; empty where there is none.
+    pub fn write_samples(&self, deviations: impl Fn(usize) -> Vec<f64>, out: impl Write) -> csv::Result<()> {
+        let Some(sampled) = &self.found.sampled else { return Ok(()) };
+        let mut csv = csv::Writer::from_writer(out);
+        let variables = self.found.variables.iter().map(|v| &self.model().variables[v.variable.0]);
+        let mut header = vec!["number".to_owned()];
+        header.extend(
+            variables
+                .clone()
+                .map(|v| format!("{} [{}]", v.name, variable_unit(self.model(), self.units(), v))),
+        );
+        header.extend(self.found.metrics.iter().map(|m| self.column(m)));
+        csv.write_record(&header)?;
+        for k in 0..sampled.samples {
+            let mut row = vec![k.to_string()];
+            let of = variables.clone().zip(deviations(k));
+            row.extend(of.map(|(v, d)| self.units().from_si(v.quantity, d).to_string()));
+            for (m, drawn) in self.found.metrics.iter().zip(&sampled.metrics) {
+                let value = Some(drawn.values[k]).filter(|x| x.is_finite());
+                let shown = |x: f64| self.units().from_si(self.dimension(m), x).to_string();
+                row.push(value.map_or(String::new(), shown));
+            }
+            csv.write_record(&row)?;
+        }
+        csv.flush()?;
+        Ok(())
+    }
+
+    /// The page of a motion becomes that of the study: its bands beside the curves, and what is told here first among its checks.
+    pub fn page(
+        &self,
+        facts: &ToleranceFacts,
+        motion: usize,
+        mut page: Payload,
+        outputs: &[Output],
+    ) -> Payload {
+        let place = |of: OutputSource| outputs.iter().position(|o| o.source == of);
+        let of_limit = self.found.limits.iter().map(|l| l.spread).chain(0..self.found.metrics.len());
+        let first = of_limit.map(|s| &self.found.metrics[s]).find(|m| m.motion == motion);
+        if let Some(metric) = first.map(|m| &self.model().metrics[m.metric]) {
+            page.first = place(metric.of).or(page.first);
+            page.over = metric.over.and_then(place);
+        }
+        let designs: Vec<Design> = [(-BAND, "mean - 3 sigma"), (BAND, "mean + 3 sigma")]
+            .map(|(by, name)| self.band(motion, by, name, &page, outputs))
+            .into_iter()
+            .collect();
+        page.designs.extend(designs.into_iter().filter(|d| d.quantities.iter().any(Option::is_some)));
+        let cards = facts.rows().into_iter().filter(|(what, _)| ["yield", "failed"].contains(what));
+        page.summary.splice(0..0, cards.map(|(what, is)| Fact { label: what.into(), value: is }));
+        let rows = facts.rows().into_iter().map(|(what, is)| vec![what.into(), is]).collect();
+        let result =
+            Table { title: "Tolerances".into(), note: String::new(), header: header(&["", "is"]), rows };
+        let mut checks = vec![result];
+        checks.extend(facts.tables());
+        checks.extend(self.histograms(motion));
+        checks.append(&mut page.checks);
+        Payload { checks, ..page }
+    }
+
+    /// One edge of the bands of a motion, as a design whose curves it is.
+    fn band(&self, motion: usize, by: f64, name: &str, page: &Payload, outputs: &[Output]) -> Design {
+        let mut quantities: Vec<Option<DesignCurves>> = page.quantities.iter().map(|_| None).collect();
+        for curve in self.found.curves.iter().filter(|c| c.motion == motion) {
+            let source = OutputSource::Measure(curve.measure);
+            let Some(q) = outputs.iter().position(|o| o.source == source).filter(|q| *q < quantities.len())
+            else {
+                continue;
+            };
+            let dimension = self.model().dimension(source);
+            // The page may have fewer output times.
+            let nearest = |t: f32| {
+                let off = |k: &usize| (curve.times[*k] as f32 - t).abs();
+                (0..curve.times.len()).min_by(|a, b| off(a).total_cmp(&off(b)))
+            };
+            let edge = |t: &f32| {
+                let [mean, sigma] = nearest(*t).map_or([f64::NAN; 2], |k| curve.moments(k));
+                self.units().from_si(dimension, mean + by * sigma)
+            };
+            let value: Curve = page.times.values().iter().map(edge).collect();
+            quantities[q] = Some(DesignCurves { value, rate: Curve::default(), accel: Curve::default() });
+        }
+        Design {
+            name: name.into(),
+            kind: DesignKind::SecondOrder,
+            change: vec![0.0; page.variables.len()],
+            note: "Where 99.73 % of all made will be, if they are normal: from first and second derivatives."
+                .into(),
+            poses: Vec::new(),
+            skeletons: Vec::new(),
+            quantities,
+            values: vec![None; page.values.len()],
+            margin: None,
+        }
+    }
+
+    /// How the metrics of a motion are distributed over the designs drawn.
+    fn histograms(&self, motion: usize) -> Vec<Table> {
+        let Some(sampled) = &self.found.sampled else { return Vec::new() };
+        let of_motion = self.found.metrics.iter().zip(&sampled.metrics).filter(|(m, _)| m.motion == motion);
+        of_motion.filter_map(|(m, drawn)| self.histogram(m, drawn)).collect()
+    }
+
+    fn histogram(&self, of: &MetricSpread, drawn: &SampledMetric) -> Option<Table> {
+        let [least, .., greatest] = drawn.quantiles;
+        let width = (greatest - least) / BARS as f64;
+        if !(width > 0.0) {
+            return None;
+        }
+        let mut counts = [0_usize; BARS];
+        for x in drawn.values.iter().filter(|x| x.is_finite()) {
+            counts[usize::min(((x - least) / width) as usize, BARS - 1)] += 1;
+        }
+        let most = counts.iter().copied().max().unwrap_or(1) as f64;
+        let (units, dimension) = (self.units(), self.dimension(of));
+        let row = |(k, n): (usize, &usize)| {
+            let middle = units.from_si(dimension, least + (k as f64 + 0.5) * width);
+            vec![with_unit(middle, &unit(units, dimension)), n.to_string(), bar(*n as f64 / most)]
+        };
+        Some(Table {
+            title: format!("Histogram of {}", self.model().metrics[of.metric].name),
+            note: format!("Of {} designs drawn from the tolerances.", drawn.known),
+            header: header(&["about", "designs", ""]),
+            rows: counts.iter().enumerate().map(row).collect(),
+        })
+    }
+}
+
+fn header(names: &[&str]) -> Vec<String> {
+    names.iter().map(|n| (*n).to_owned()).collect()
+}
+
+/// A bar as text, as long as the part is large.
+fn bar(part: f64) -> String {
+    "▇".repeat((BAR * part.clamp(0.0, 1.0)).round() as usize)
+}
+
+/// A part as a percentage.
+fn percent(part: f64) -> String {
+    format!("{} %", rounded(100.0 * part, 4))
+}
+
+/// A yield with its standard error.
+fn yield_text(part: f64, error: f64) -> String {
+    format!("{} ± {}", percent(part), percent(error))
+}
+
+impl ToleranceFacts {
+    /// Those of a study.
+    pub fn of(studied: &Studied<'_>) -> Self {
+        let Studied { file, asked, found, .. } = *studied;
+        let part = |of: &MonteCarlo| of.all.map(Yield::part);
+        let loose = found.allocation.as_ref().and_then(|a| a.sampled.as_ref());
+        let mut facts = Self {
+            generator: crate::GENERATOR.into(),
+            study: "tolerance",
+            model: file.model.name.clone(),
+            file: file.file_name().into(),
+            status: "complete",
+            message: String::new(),
+            objective: BeforeAfter {
+                before: found.sampled.as_ref().and_then(part),
+                after: loose.or(found.sampled.as_ref()).and_then(part),
+            },
+            evaluations: Evaluations {
+                designs: found.cost.designs,
+                motions: found.cost.motions,
+                steps: found.cost.steps,
+            },
+            samples: found.sampled.as_ref().map_or(0, |s| s.samples),
+            seed: asked.seed,
+            variables: (0..found.variables.len()).map(|k| tolerated(studied, k)).collect(),
+            left_out: found.left_out.iter().map(|v| file.model.variables[v.0].name.clone()).collect(),
+            metrics: (0..found.metrics.len()).map(|k| spread(studied, k)).collect(),
+            unknown: found.unknown.iter().map(|(m, _)| file.model.metrics[*m].name.clone()).collect(),
+            limits: (0..found.limits.len()).map(|k| limit(studied, k)).collect(),
+            failed: found.sampled.as_ref().map_or(0, |s| s.failed),
+            failures: found.sampled.as_ref().map_or(Vec::new(), |s| failures(studied, s)),
+            allocation: found.allocation.as_ref().map(|a| allocation(studied, a)),
+            files: Vec::new(),
+            seconds: 0.0,
+        };
+        let nonlinear: Vec<String> = found
+            .metrics
+            .iter()
+            .zip(&facts.metrics)
+            .filter(|(m, _)| m.is_nonlinear())
+            .map(|(_, fact)| format!("`{}`", fact.titled()))
+            .collect();
+        facts.message = if nonlinear.is_empty() {
+            format!("the linear answer holds: second derivatives add less than {}", percent(NONLINEAR))
+        } else {
+            format!(
+                "the linear answer is off for {}: within the tolerances they bend by more than {} of their standard deviation, or second \
+                 derivatives are not known; go by the designs drawn",
+                some_of(&nonlinear, ", "),
+                percent(NONLINEAR)
+            )
+        };
+        if !nonlinear.is_empty() {
+            facts.status = "nonlinear";
+        }
+        if found.interrupted {
+            facts.status = "interrupted";
+            facts.message = format!(
+                "interrupted after {} of {} designs; {}",
+                facts.samples, asked.samples, facts.message
+            );
+        }
+        facts
+    }
+
+    /// What it comes to, line by line.
+    pub fn rows(&self) -> Vec<(&'static str, String)> {
+        let mut rows = vec![("result", self.message.clone())];
+        if let Some(part) = self.objective.before {
+            let error = standard_error(part, self.samples);
+            rows.push(("yield", format!("{} keep all limits", yield_text(part, error))));
+        }
+        if self.samples > 0 {
+            rows.push(("drawn", format!("{}, seed {}", count(self.samples, "design"), self.seed)));
+        }
+        if self.failed > 0 {
+            let part = percent(self.failed as f64 / self.samples as f64);
+            rows.push(("failed", format!("{} do not move to the end ({part})", self.failed)));
+        }
+        if !self.left_out.is_empty() {
+            let names = some_of(&self.left_out, ", ");
+            rows.push(("left out", format!("{names}: the mechanism cannot follow")));
+        }
+        if !self.unknown.is_empty() {
+            rows.push(("no value", format!("{}: not reached as drawn", some_of(&self.unknown, ", "))));
+        }
+        if let Some(a) = &self.allocation {
+            let kept = a.sampled.zip(a.error).map_or(String::new(), |(p, e)| {
+                format!("; {} of designs drawn from them keep all limits", yield_text(p, e))
+            });
+            let cost = match (a.cost.before, a.cost.after) {
+                (Some(before), Some(after)) => {
+                    format!(", at {} of the cost", percent(after / before))
+                }
+                _ => String::new(),
+            };
+            rows.push(("loosest", format!("{}{cost}{kept}", a.status)));
+        }
+        let Evaluations { designs, motions, .. } = self.evaluations;
+        rows.push(("looked at", format!("{}, {}", count(designs, "design"), count(motions, "motion"))));
+        rows
+    }
+
+    /// What is printed besides: metrics, contributions, limits, tolerances, failures.
+    pub fn tables(&self) -> Vec<Table> {
+        let optional = |x: Option<f64>, unit: &str| x.map_or("-".into(), |x| with_unit(x, unit));
+        let metric = |m: &SpreadFact| {
+            let off = m.sampled.as_ref().and_then(|s| s.rss_off).map_or("-".into(), percent);
+            let worst = |e: &ExtremeFact| optional(e.exact.or(e.second).or(Some(e.first)), &m.unit);
+            vec![
+                m.titled(),
+                with_unit(m.nominal, &m.unit),
+                optional(m.mean, &m.unit),
+                with_unit(m.rss, &m.unit),
+                optional(m.sigma, &m.unit),
+                optional(m.sampled.as_ref().map(|s| s.sigma), &m.unit),
+                off,
+                m.nonlinearity.map_or("not known".into(), percent),
+                worst(&m.least),
+                worst(&m.greatest),
+            ]
+        };
+        let mut tables = vec![Table {
+            title: "Metrics".into(),
+            note: "Standard deviations: root of the sum of squares, to second order, and of the designs drawn. Worst case: with every \
+                deviation at its worst."
+                .into(),
+            header: header(&[
+                "metric", "as drawn", "mean", "RSS", "2nd order", "drawn", "RSS is off by", "bends by", "least", "greatest",
+            ]),
+            rows: self.metrics.iter().map(metric).collect(),
+        }];
+        for m in &self.metrics {
+            let told = m.contributions.iter().filter(|c| c.share.abs() >= SLIGHT);
+            let rows: Vec<Vec<String>> =
+                told.map(|c| vec![c.variable.clone(), percent(c.share), bar(c.share)]).collect();
+            if !rows.is_empty() {
+                tables.push(Table {
+                    title: format!("Contributions to {}", m.titled()),
+                    note: String::new(),
+                    header: header(&["variable", "of the variance", ""]),
+                    rows,
+                });
+            }
+        }
+        if !self.limits.is_empty() {
+            let row = |l: &YieldFact| {
+                vec![
+                    l.titled(),
+                    optional(l.min, &l.unit),
+                    optional(l.max, &l.unit),
+                    percent(l.by_moments),
+                    l.sampled.zip(l.error).map_or("-".into(), |(p, e)| yield_text(p, e)),
+                ]
+            };
+            tables.push(Table {
+                title: "Limits".into(),
+                note: "The part that keeps them: of a normal distribution with the moments, and of the designs drawn.".into(),
+                header: header(&["limit", "at least", "at most", "by moments", "drawn"]),
+                rows: self.limits.iter().map(row).collect(),
+            });
+        }
+        let row = |v: &ToleratedFact| {
+            let end = if self.allocation.is_some() {
+                v.end.map_or("any".into(), |x| format!("±{}", with_unit(x, &v.unit)))
+            } else {
+                String::new()
+            };
+            vec![
+                v.name.clone(),
+                if v.tolerance == v.name { String::new() } else { v.tolerance.clone() },
+                format!("±{}", with_unit(v.start, &v.unit)),
+                v.distribution.to_owned(),
+                with_unit(v.sigma, &v.unit),
+                v.cost.map_or(String::new(), number),
+                end,
+            ]
+        };
+        let tolerances = Table {
+            title: "Variables".into(),
+            note: String::new(),
+            header: header(&["variable", "within", "tolerance", "distribution", "sigma", "cost", "loosest"]),
+            rows: self.variables.iter().map(row).collect(),
+        };
+        tables.push(tolerances.without_empty_columns());
+        if !self.failures.is_empty() {
+            let row = |f: &FailureFact| {
+                vec![
+                    f.case.clone().unwrap_or_default(),
+                    f.why.clone(),
+                    f.count.to_string(),
+                    f.first.to_string(),
+                ]
+            };
+            let failures = Table {
+                title: "Designs that fail".into(),
+                note: String::new(),
+                header: header(&["case", "what happens to the first", "designs", "first"]),
+                rows: self.failures.iter().map(row).collect(),
+            };
+            tables.push(failures.without_empty_columns());
+        }
+        tables
+    }
+
+    /// How long it took, in a line.
+    pub fn time_line(&self) -> String {
+        seconds(self.seconds)
+    }
+}
+
+impl SpreadFact {
+    fn titled(&self) -> String {
+        titled(&self.name, &self.case)
+    }
+}
+
+impl YieldFact {
+    fn titled(&self) -> String {
+        titled(&self.name, &self.case)
+    }
+}
+
+fn titled(name: &str, case: &Option<String>) -> String {
+    case.as_ref().map_or(name.to_owned(), |case| format!("{name} ({case})"))
+}
+
+/// The standard error of a part of so many designs.
+fn standard_error(part: f64, of: usize) -> f64 {
+    Yield { kept: (part * of as f64).round() as usize, of }.error()
+}
+
+fn tolerated(studied: &Studied<'_>, k: usize) -> ToleratedFact {
+    let (model, of) = (studied.model(), studied.found.variables[k]);
+    let (variable, tolerance) = (&model.variables[of.variable.0], &studied.asked.tolerances[of.tolerance]);
+    let shown = |x: f64| studied.units().from_si(variable.quantity, x);
+    let found = studied.found.allocation.as_ref().filter(|a| a.impossible.is_none());
+    let sought = found.and_then(|a| a.tolerances.iter().find(|t| t.tolerance == of.tolerance));
+    ToleratedFact {
+        name: variable.name.clone(),
+        tolerance: tolerance.name.clone(),
+        unit: variable_unit(model, studied.units(), variable),
+        distribution: tolerance.scatter.name(),
+        start: shown(tolerance.reach),
+        end: sought.map_or(Some(tolerance.reach), |t| t.after).map(shown),
+        sigma: shown(of.sigma),
+        cost: tolerance.cost,
+    }
+}
+
+fn spread(studied: &Studied<'_>, k: usize) -> SpreadFact {
+    let (of, dimension) = (&studied.found.metrics[k], studied.dimension(&studied.found.metrics[k]));
+    let units = studied.units();
+    let shown = |x: f64| units.from_si(dimension, x);
+    let extreme = |e: &Extreme| ExtremeFact {
+        first: shown(e.first),
+        second: e.second.map(shown),
+        exact: e.exact.map(shown),
+        why: e.why.clone(),
+    };
+    let contribution = |v: usize| {
+        let quantity = studied.model().variables[studied.found.variables[v].variable.0].quantity;
+        Contribution {
+            variable: studied.variable_name(v).to_owned(),
+            share: of.shares[v],
+            d: shown(of.d[v]) / units.from_si(quantity, 1.0),
+        }
+    };
+    let mut contributions: Vec<Contribution> = (0..of.d.len()).map(contribution).collect();
+    contributions.sort_by(|a, b| b.share.abs().total_cmp(&a.share.abs()));
+    let sampled = |s: &MonteCarlo| {
+        let drawn = &s.metrics[k];
+        let off = of.sigma - drawn.sigma[0];
+        let differs = off.abs() > ERRORS * drawn.sigma[1];
+        (drawn.known > 1).then(|| SampledFact {
+            known: drawn.known,
+            mean: shown(drawn.mean[0]),
+            mean_error: shown(drawn.mean[1]),
+            sigma: shown(drawn.sigma[0]),
+            sigma_error: shown(drawn.sigma[1]),
+            skewness: drawn.skewness,
+            kurtosis: drawn.kurtosis,
+            quantiles: drawn.quantiles.map(shown),
+            rss_off: differs.then(|| off / drawn.sigma[0]),
+        })
+    };
+    SpreadFact {
+        name: studied.model().metrics[of.metric].name.clone(),
+        case: studied.case(of.motion),
+        unit: unit(units, dimension),
+        nominal: shown(of.nominal),
+        mean: of.second.map(|_| shown(of.mean())),
+        rss: shown(of.sigma),
+        sigma: of.second.map(|s| shown(s.sigma)),
+        nonlinearity: of.nonlinearity().filter(|x| x.is_finite()),
+        least: extreme(&of.worst[0]),
+        greatest: extreme(&of.worst[1]),
+        contributions,
+        sampled: studied.found.sampled.as_ref().and_then(sampled),
+    }
+}
+
+fn limit(studied: &Studied<'_>, k: usize) -> YieldFact {
+    let found = &studied.found.limits[k];
+    let limit = &studied.asked.limits[found.limit];
+    let of = &studied.found.metrics[found.spread];
+    debug_assert_eq!(limit.of, Limited::Metric(of.metric));
+    let (units, dimension) = (studied.units(), studied.dimension(of));
+    let shown = |x: f64| units.from_si(dimension, x);
+    let worth = studied.found.allocation.as_ref().filter(|a| a.impossible.is_none()).map(|a| a.worth[k]);
+    YieldFact {
+        name: limit.name.clone(),
+        metric: studied.model().metrics[of.metric].name.clone(),
+        case: studied.case(of.motion),
+        unit: unit(units, dimension),
+        min: limit.least.map(shown),
+        max: limit.most.map(shown),
+        by_moments: found.by_moments,
+        sampled: found.sampled.map(Yield::part),
+        error: found.sampled.map(Yield::error),
+        worth: worth.map(|w| w / shown(1.0)),
+    }
+}
+
+fn failures(studied: &Studied<'_>, sampled: &MonteCarlo) -> Vec<FailureFact> {
+    let fact = |f: &hardpoint::study::Failure| FailureFact {
+        case: studied.case(f.motion),
+        why: f.why.clone(),
+        first: f.first,
+        count: f.count,
+    };
+    sampled.failures.iter().map(fact).collect()
+}
+
+fn allocation(studied: &Studied<'_>, found: &Allocation) -> AllocationFact {
+    let name = |k: usize| {
+        let limit = &studied.asked.limits[studied.found.limits[k].limit];
+        titled(&limit.name, &studied.case(studied.found.metrics[studied.found.limits[k].spread].motion))
+    };
+    let status = match found.impossible {
+        None => "found".to_owned(),
+        Some(Impossible::NoCosts) => "none of the variables that can be followed has a cost".into(),
+        Some(Impossible::NoLimits) => "there is no limit to keep".into(),
+        Some(Impossible::AsDrawn(k)) => {
+            format!("limit `{}` is not kept by the design as drawn: change the design first", name(k))
+        }
+        Some(Impossible::Fixed(k)) => {
+            format!("tolerances without a cost use up all room of limit `{}`: give them one", name(k))
+        }
+    };
+    let (rule, sigmas) = match found.rule {
+        AllocationRule::Rss { sigmas } => (AllocationRule::NAMES[0], Some(sigmas)),
+        AllocationRule::Worst => (AllocationRule::NAMES[1], None),
+    };
+    let all = found.sampled.as_ref().and_then(|s| s.all);
+    AllocationFact {
+        rule,
+        sigmas,
+        status,
+        cost: BeforeAfter {
+            before: Some(found.cost[0]),
+            after: found.impossible.is_none().then_some(found.cost[1]),
+        },
+        kkt: Some(found.residual).filter(|r| r.is_finite()),
+        sampled: all.map(Yield::part),
+        error: all.map(Yield::error),
+    }
+}

@@ -1,0 +1,426 @@
+//! Checks of what drivers prescribe: a joint's coordinate, or an unnamed joint that has what is asked for.
+
+use crate::constraint::Row;
+use crate::draft::{
+    DrivenDraft, DriverDraft, LineDraft, Locus, MeasureKindDraft, PointRef, RayDraft, Section,
+};
+use crate::expression::Expression;
+use crate::joint;
+use crate::joint::JointType;
+use crate::model::{
+    BodyId, BodyPoint, Direction, Formula, GROUND, HardpointId, Joint, JointId, Source, Target, WheelMeasure,
+};
+use crate::space::{Mat3, Vec3};
+
+use super::{Checker, Here, frame_along};
+
+/// What a driver prescribes, as the model has it.
+#[derive(Clone, Copy)]
+pub(super) struct Driven {
+    pub joint: JointId,
+    pub coordinate: usize,
+    /// What it is as drawn, where that is what laws from zero count from.
+    zero: Zero,
+}
+
+/// What the coordinate of a driver is in the design configuration.
+#[derive(Clone, Copy)]
+enum Zero {
+    /// Nothing: there is nothing else to count from, like a revolute joint's angle.
+    None,
+    /// Zero: what is measured is counted from the design configuration, like wheel travel.
+    AsDrawn,
+    /// The distance of the joint's two hardpoints.
+    Distance,
+    /// Where the joint's hardpoint is along its axis.
+    Position,
+    /// The course of the joint's second axis.
+    Course,
+}
+
+/// The axes of an unnamed joint.
+struct Axes {
+    axis: Direction,
+    axis2: Option<Direction>,
+    frames: [Mat3; 2],
+}
+
+/// A direction nearer to the line of sight than this, as a sine, has no angle.
+const HEADLESS: f64 = 1e-6;
+/// The body that stands.
+const GROUND_NAME: &str = "ground";
+
+/// The value of a driver's coordinate as drawn, over hardpoints.
+pub(super) struct AsDrawn {
+    expression: Expression,
+    sources: Vec<Source>,
+}
+
+impl AsDrawn {
+    /// The same as what gives a number of the model.
+    pub fn formula(&self, of: Target) -> Formula {
+        let inputs = self.sources.iter().map(|s| (*s, 1.0)).collect();
+        Formula { of, expression: self.expression.clone(), inputs, per_unit: 1.0 }
+    }
+}
+
+impl DriverDraft {
+    /// Whether its laws give the whole value of what it prescribes.
+    pub(super) fn counts_from_zero(&self) -> bool {
+        self.from_zero || matches!(self.drives, DrivenDraft::Measure(_))
+    }
+}
+
+impl Checker<'_> {
+    /// The joint coordinate that a driver prescribes; for what is no joint's, an unnamed joint that has it.
+    pub(super) fn driven(&mut self, d: &DriverDraft, here: Here) -> Option<Driven> {
+        match &d.drives {
+            DrivenDraft::Unread => None,
+            DrivenDraft::Coordinate { joint, coordinate } => self.driven_coordinate(
+                d,
+                joint,
+                coordinate.as_deref(),
+                [here.key("joint"), here.key("coordinate")],
+            ),
+            DrivenDraft::Position { point, along } => {
+                self.driven_position(d, point, along, [here.key("point"), here.key("along")])
+            }
+            DrivenDraft::Distance { from, to } => {
+                self.driven_distance(d, [from, to], [here.key("from"), here.key("to")])
+            }
+            DrivenDraft::Orientation { body, relative_to, about } => {
+                let body = self.body(body, here.key("body"));
+                let base = match relative_to {
+                    Some(name) => self.body(name, here.key("relative_to")),
+                    None => Some(GROUND),
+                };
+                let (axis, z) = self.line(about, &d.name, here, "about")?;
+                let (body, base) = (body?, base?);
+                let axes = Axes { axis, axis2: None, frames: [frame_along(z, z.any_square()); 2] };
+                let at = self.place_on(body)?;
+                self.driven_joint(d, &joint::HEADING, [base, body], [at, at], Some(axes), Zero::None)
+            }
+            DrivenDraft::Measure(name) => self.driven_measure(d, name, here),
+        }
+    }
+
+    fn driven_coordinate(
+        &mut self,
+        d: &DriverDraft,
+        name: &str,
+        coordinate: Option<&str>,
+        at: [Locus; 2],
+    ) -> Option<Driven> {
+        let joint = self.joint(name, at[0].clone())?;
+        let coordinate = self.coordinate_at(joint, coordinate, at.clone())?;
+        let row = self.model.joints[joint.0].kind.coordinates[coordinate].row;
+        let zero = if row == Row::Distance { Zero::Distance } else { Zero::None };
+        self.drivable(d, name, joint, coordinate, at[0].clone()).then_some(Driven { joint, coordinate, zero })
+    }
+
+    fn driven_position(
+        &mut self,
+        d: &DriverDraft,
+        point: &PointRef,
+        along: &LineDraft,
+        at: [Locus; 2],
+    ) -> Option<Driven> {
+        let [at_point, at_line] = at;
+        let point = self.point(point, &d.name, at_point);
+        let along = self.line_at(along, &d.name, at_line);
+        let (point, (axis, z)) = (point?, along?);
+        let BodyPoint { body, at, .. } = self.model.points[point.0];
+        let axes = Axes { axis, axis2: None, frames: [frame_along(z, z.any_square()); 2] };
+        self.driven_joint(d, &joint::TRAVEL, [GROUND, body], [at, at], Some(axes), Zero::Position)
+    }
+
+    fn driven_distance(&mut self, d: &DriverDraft, points: [&PointRef; 2], at: [Locus; 2]) -> Option<Driven> {
+        let [from, to] = at;
+        let (a, b) = (self.point(points[0], &d.name, from), self.point(points[1], &d.name, to.clone()));
+        let [i, j] = [a?, b?].map(|p| self.model.points[p.0].clone());
+        if self.apart(i.at, j.at) == Some(None) {
+            let message = format!("the two points of driver `{}` are at the same place", d.name);
+            self.fault("HP0211", to, message).help("an actuator needs two points that lie apart");
+        }
+        self.driven_joint(d, &joint::LEG, [i.body, j.body], [i.at, j.at], None, Zero::Distance)
+    }
+
+    /// What has the value of a measure, in whole or counted from the design configuration as the measure is.
+    fn driven_measure(&mut self, d: &DriverDraft, name: &str, here: Here) -> Option<Driven> {
+        let draft = self.draft;
+        let at = here.key("measure");
+        let names = draft.measures.iter().map(|m| m.name.as_str());
+        let k = self.find("measure", name, at.clone(), names)?;
+        let (up, forward, left) = (Vec3::AXES[2], Vec3::AXES[0], Vec3::AXES[1]);
+        match &draft.measures[k].kind {
+            MeasureKindDraft::Unread => None,
+            MeasureKindDraft::Coordinate { joint, coordinate } => {
+                self.driven_coordinate(d, joint, coordinate.as_deref(), [at.clone(), at])
+            }
+            MeasureKindDraft::Distance { from, to } => self.driven_distance(d, [from, to], [at.clone(), at]),
+            MeasureKindDraft::Coordinates { point, along } => {
+                self.driven_position(d, point, &LineDraft::Along(*along), [at.clone(), at])
+            }
+            MeasureKindDraft::Angle {
+                from: RayDraft::Fixed { body: base, axis: LineDraft::Along(from) },
+                to,
+                about: Some(about),
+            } if base == GROUND_NAME => {
+                let (body, axis2) = self.ray_of_one_body(d, to, name, &at)?;
+                let place = self.place_on(body)?;
+                let z = about.unit()?;
+                let x = (*from - z * z.dot(*from)).unit();
+                let Some(x) = x else {
+                    self.fault(
+                        "HP0213",
+                        at,
+                        format!("measure `{name}` of driver `{}` has no angle to count from", d.name),
+                    )
+                    .help("its `from` must not be along its `about`");
+                    return None;
+                };
+                self.driven_course(d, body, place, [z, x], axis2, Zero::Course, &at)
+            }
+            MeasureKindDraft::Toe { body, spin_axis } => {
+                let body = self.body(body, at.clone())?;
+                let (axis2, _) = self.line_at(spin_axis, &d.name, at.clone())?;
+                let place = self.place_on(body)?;
+                self.driven_course(d, body, place, [-up, left], axis2, Zero::Course, &at)
+            }
+            MeasureKindDraft::Wheel { wheel, what } => {
+                let names = draft.wheels.iter().map(|w| w.name.as_str());
+                let number = self.find("wheel", wheel, at.clone(), names)?;
+                // What is wrong with the wheel itself is said where wheels are looked at.
+                let faults = self.faults.len();
+                let stands = self.wheel_as_drawn(&draft.wheels[number], number);
+                self.faults.truncate(faults);
+                let (body, centre, side, axis2) = stands?;
+                let s = side.sign();
+                let travel = |c: &mut Self, z: Vec3| {
+                    let frames = [frame_along(z, z.any_square()); 2];
+                    let axes = Axes { axis: Direction::Along(z), axis2: None, frames };
+                    c.driven_joint(
+                        d,
+                        &joint::TRAVEL,
+                        [GROUND, body],
+                        [centre, centre],
+                        Some(axes),
+                        Zero::AsDrawn,
+                    )
+                };
+                match what {
+                    WheelMeasure::WheelTravel => travel(self, up),
+                    WheelMeasure::WheelRecession => travel(self, -forward),
+                    // toe = atan2(e_x, s e_y): seen from where z is -s z, from s y
+                    WheelMeasure::Toe => {
+                        self.driven_course(d, body, centre, [up * -s, left * s], axis2, Zero::Course, &at)
+                    }
+                    WheelMeasure::SteerAngle => {
+                        self.driven_course(d, body, centre, [up, left * s], axis2, Zero::AsDrawn, &at)
+                    }
+                    _ => self.no_driver_of(d, name, what.name(), &at),
+                }
+            }
+            MeasureKindDraft::Angle { .. } => self.no_driver_of(d, name, "angle", &at),
+            _ => self.no_driver_of(d, name, "type", &at),
+        }
+    }
+
+    /// HP0213: a measure that no driver can prescribe.
+    fn no_driver_of(&mut self, d: &DriverDraft, name: &str, what: &str, at: &Locus) -> Option<Driven> {
+        let message = format!("driver `{}` cannot prescribe measure `{name}`", d.name);
+        let fault = self.fault("HP0213", at.clone(), message);
+        fault.note(match what {
+            "angle" => {
+                "an angle can be prescribed from a global direction to one of a body, as seen along `about`"
+                    .to_owned()
+            }
+            "type" => "it is not the value of something that one driver can hold".to_owned(),
+            what => format!("`{what}` of a wheel is not the value of something that one driver can hold"),
+        });
+        fault.help("drivers prescribe `coordinate`, `position`, `distance`, `angle`, `toe`, `steer_angle`, `wheel_travel` and `wheel_recession`; drive one of these, and plot over the other");
+        None
+    }
+
+    /// A ray that one body carries: the body, and the direction in it.
+    fn ray_of_one_body(
+        &mut self,
+        d: &DriverDraft,
+        ray: &RayDraft,
+        measure: &str,
+        at: &Locus,
+    ) -> Option<(BodyId, Direction)> {
+        match ray {
+            RayDraft::Fixed { body, axis } => {
+                let body = self.body(body, at.clone());
+                let (axis, _) = self.line_at(axis, &d.name, at.clone())?;
+                Some((body?, axis))
+            }
+            RayDraft::Between(points) => {
+                let [a, b] = [0, 1].map(|k| self.point(&points[k], &d.name, at.clone()));
+                let [a, b] = [a?, b?].map(|p| self.model.points[p.0].clone());
+                if a.body != b.body {
+                    self.no_driver_of(d, measure, "angle", at);
+                    return None;
+                }
+                Some((a.body, Direction::Through(a.at, b.at)))
+            }
+        }
+    }
+
+    /// The course of a direction of a body, seen along z of ground and counted from x.
+    #[expect(clippy::too_many_arguments, reason = "what a joint is made of")]
+    fn driven_course(
+        &mut self,
+        d: &DriverDraft,
+        body: BodyId,
+        place: HardpointId,
+        [z, x]: [Vec3; 2],
+        axis2: Direction,
+        zero: Zero,
+        at: &Locus,
+    ) -> Option<Driven> {
+        let e = self.vector(axis2)?.unit()?;
+        if (e - z * z.dot(e)).norm() < HEADLESS {
+            let message =
+                format!("what driver `{}` prescribes the angle of points along the line of sight", d.name);
+            self.fault("HP0213", at.clone(), message).help("prescribe an angle that is seen from aside");
+            return None;
+        }
+        let frames = [frame_along(z, x), frame_along(e, e.any_square())];
+        let axes = Axes { axis: Direction::Along(z), axis2: Some(axis2), frames };
+        self.driven_joint(d, &joint::COURSE, [GROUND, body], [place, place], Some(axes), zero)
+    }
+
+    /// Where a direction points as drawn.
+    fn vector(&self, direction: Direction) -> Option<Vec3> {
+        match direction {
+            Direction::Along(v) => Some(v),
+            Direction::Through(a, b) => Some(self.position(b)? - self.position(a)?),
+        }
+    }
+
+    /// A hardpoint where a joint holds a body.
+    fn place_on(&self, body: BodyId) -> Option<HardpointId> {
+        self.model.joints.iter().find(|j| j.bodies.contains(&body)).map(|j| j.at[0])
+    }
+
+    /// The value of a driver's coordinate as drawn, if it is another than zero. HP0213 where laws count from a zero that there is not.
+    pub(super) fn as_drawn(&mut self, d: &DriverDraft, driven: Driven, here: Here) -> Option<AsDrawn> {
+        let joint = &self.model.joints[driven.joint.0];
+        let mut sources = Vec::new();
+        let mut coordinates = |h: HardpointId| {
+            [0, 1, 2].map(|axis| {
+                sources.push(Source::Coordinate(h, axis));
+                format!("n{}", sources.len() - 1)
+            })
+        };
+        let along = |v: Vec3, p: &[String; 3]| {
+            let [x, y, z] = p;
+            format!("(({:?})*{x} + ({:?})*{y} + ({:?})*{z})", v.x, v.y, v.z)
+        };
+        let between = |[a, b]: [&[String; 3]; 2]| [0, 1, 2].map(|k| format!("({} - {})", b[k], a[k]));
+        let text = match (driven.zero, joint.axis, joint.axis2) {
+            (Zero::None, ..) if d.from_zero => {
+                let message = format!("what driver `{}` prescribes has no zero of its own", d.name);
+                self.fault("HP0213", here.key("counted_from"), message)
+                    .note("lengths of rods, distances and positions have one; what a joint has turned or slid is counted from the drawing")
+                    .help("leave `counted_from` out, or prescribe a measure with `measure = \"NAME\"`");
+                return None;
+            }
+            (Zero::None | Zero::AsDrawn, ..) => return None,
+            // abs(P_j - P_i)
+            (Zero::Distance, ..) => {
+                let [x, y, z] = between([&coordinates(joint.at[0]), &coordinates(joint.at[1])]);
+                format!("sqrt({x}^2 + {y}^2 + {z}^2)")
+            }
+            // n . P
+            (Zero::Position, Some(Direction::Through(a, b)), _) => {
+                let p = coordinates(joint.at[1]);
+                let n = between([&coordinates(a), &coordinates(b)]);
+                let [x, y, z] = &n;
+                format!("({x}*{} + {y}*{} + {z}*{})/sqrt({x}^2 + {y}^2 + {z}^2)", p[0], p[1], p[2])
+            }
+            (Zero::Position, ..) => along(joint.frames[0].cols[2], &coordinates(joint.at[1])),
+            // atan2(y_i . e, x_i . e)
+            (Zero::Course, _, Some(Direction::Through(a, b))) => {
+                let e = between([&coordinates(a), &coordinates(b)]);
+                let [x, y] = [0, 1].map(|k| along(joint.frames[0].cols[k], &e));
+                format!("atan2({y}, {x})")
+            }
+            (Zero::Course, ..) => {
+                let e = joint.frames[1].cols[2];
+                let [x, y] = [0, 1].map(|k| joint.frames[0].cols[k].dot(e));
+                format!("{:?}", y.atan2(x))
+            }
+        };
+        let expression = Expression::parse(&text).expect("a text that is written here");
+        let sources = expression.names().iter().map(|n| {
+            let k: usize = n[1..].parse().expect("a name that is given here");
+            sources[k]
+        });
+        Some(AsDrawn { sources: sources.collect(), expression: expression.clone() })
+    }
+
+    /// An unnamed joint that has the coordinate that a driver prescribes.
+    fn driven_joint(
+        &mut self,
+        d: &DriverDraft,
+        kind: &'static JointType,
+        bodies: [BodyId; 2],
+        at: [HardpointId; 2],
+        axes: Option<Axes>,
+        zero: Zero,
+    ) -> Option<Driven> {
+        if bodies[0] == bodies[1] {
+            let name = &self.model.bodies[bodies[0].0].name;
+            let message = format!("driver `{}` prescribes how `{name}` moves relative to itself", d.name);
+            let index = self.number_of("driver", &d.name).unwrap_or(0);
+            let at = Here { section: Section::Drivers, index }.key("name");
+            self.fault("HP0213", at, message).help("name two different bodies");
+            return None;
+        }
+        self.model.joints.push(Joint {
+            name: d.name.clone(),
+            kind,
+            bodies,
+            at,
+            axis: axes.as_ref().map(|a| a.axis),
+            axis2: axes.as_ref().and_then(|a| a.axis2),
+            frames: axes.map_or([Mat3::IDENTITY; 2], |a| a.frames),
+            length: None,
+            curve: None,
+            cut: false,
+            unnamed: true,
+        });
+        Some(Driven { joint: JointId(self.model.joints.len() - 1), coordinate: 0, zero })
+    }
+
+    /// Whether a joint's coordinate may be prescribed: by one driver, and not where a constraint keeps it.
+    fn drivable(
+        &mut self,
+        d: &DriverDraft,
+        name: &str,
+        joint: JointId,
+        coordinate: usize,
+        at: Locus,
+    ) -> bool {
+        let kind = self.model.joints[joint.0].kind;
+        if let Some(other) = self.driver_of.get(&(joint, coordinate)) {
+            let other = &self.model.drivers[other.0];
+            let message = format!("drivers `{}` and `{}` prescribe the same coordinate", other.name, d.name);
+            let c = kind.coordinates[coordinate].name;
+            self.fault("HP0215", at, message)
+                .note(format!("the {c} of joint `{name}`"))
+                .help("remove one of them");
+            return false;
+        }
+        if kind.rows.contains(&kind.coordinates[coordinate].row) {
+            let message = format!("driver `{}` prescribes the length of a rod, which is constant", d.name);
+            self.fault("HP0213", at, message)
+                .help(format!("make `{name}` a `leg`: a rod whose length a driver prescribes"));
+            return false;
+        }
+        true
+    }
+}

@@ -1,0 +1,326 @@
+//! Checks of how far off a design may be made: what is named, and whether that can be.
+
+use std::collections::BTreeMap;
+
+use crate::draft::{CorrelationDraft, ScatterDraft, Section, ToleranceDraft, TolerancingDraft};
+use crate::linalg::semidefinite;
+use crate::model::{
+    Allocating, AllocationRule, Correlation, Dimension, Scatter, Tolerance, Tolerancing, VariableId,
+};
+
+use super::formulas::AXES;
+use super::optimization::per_si;
+use super::{Checker, Here};
+
+const HERE: Here = Here { section: Section::Tolerance, index: 0 };
+
+impl Checker<'_> {
+    pub(super) fn tolerancing(&mut self) {
+        let draft = self.draft;
+        let Some(t) = &draft.tolerancing else { return };
+        let default = self.scatter(t.scatter, ScatterDraft::default(), HERE, "the tolerances");
+        let tolerances = self.tolerances(t);
+        let correlations = self.correlations(t, &tolerances);
+        let mut limits = Vec::new();
+        for (index, limit) in t.limits.iter().enumerate() {
+            let here = Here { section: Section::ToleranceLimits, index };
+            if !self.unread(here, "") {
+                limits.extend(self.limit(limit, here));
+            }
+        }
+        let metrics = match &t.metrics {
+            None => (0..self.model.metrics.len()).collect(),
+            Some(names) => {
+                let found =
+                    names.iter().enumerate().map(|(k, name)| self.metric(name, HERE.item("metrics", k)));
+                found.collect::<Vec<_>>().into_iter().flatten().collect()
+            }
+        };
+        let curves = match &t.curves {
+            None => (0..self.model.measures.len()).collect(),
+            Some(names) => {
+                names.iter().enumerate().filter_map(|(k, name)| self.tolerated_curve(name, k)).collect()
+            }
+        };
+        self.allocation_needs(t);
+        if default.is_none() {
+            return;
+        }
+        let (samples, seed) = (t.samples, t.seed);
+        let allocation = t.allocation.map(|rule| Allocating { rule });
+        self.model.tolerancing = Some(Tolerancing {
+            tolerances,
+            correlations,
+            metrics,
+            curves,
+            limits,
+            samples,
+            seed,
+            allocation,
+        });
+    }
+
+    /// HP0241: every tolerance with a reach that can be, and each variable in one of them.
+    fn tolerances(&mut self, t: &TolerancingDraft) -> Vec<Tolerance> {
+        let draft = self.draft;
+        let mut of: BTreeMap<usize, &str> = BTreeMap::new();
+        let mut found = Vec::new();
+        for (index, one) in t.tolerances.iter().enumerate() {
+            let here = Here { section: Section::Tolerances, index };
+            if self.unread(here, "") {
+                continue;
+            }
+            let variables = self.variables_of_tolerance(one, here);
+            if let Some((v, other)) = variables.iter().find_map(|v| Some((*v, *of.get(v)?))) {
+                let message = format!("design variable `{}` has two tolerances", draft.design[v].name);
+                self.fault("HP0241", here.key("name"), message)
+                    .note(format!("by `{other}` and by `{}`", one.name))
+                    .help(
+                        "remove one of the two: that of a point is a sphere, those of its coordinates a box",
+                    );
+                continue;
+            }
+            of.extend(variables.iter().map(|v| (*v, one.name.as_str())));
+            found.extend(self.tolerance(t, one, variables, here));
+        }
+        for (k, variable) in draft.design.iter().enumerate().filter(|(k, _)| !of.contains_key(k)) {
+            let Some(reach) = variable.tolerance.filter(|reach| *reach > 0.0) else { continue };
+            let scatter = self.scatter_of(t.scatter, ScatterDraft::default());
+            let variables = vec![VariableId(k)];
+            found.push(Tolerance { name: variable.name.clone(), variables, reach, scatter, cost: None });
+        }
+        let unknown = !draft.unread.is_empty() || !self.faults.is_empty();
+        if found.is_empty() && !unknown {
+            self.fault("HP0241", HERE.key(""), "nothing may be off: no design variable has a tolerance").help(
+                "give one to each that may, as `tolerance = 0.1` in `[design.NAME]` or as `NAME = 0.1` in `[tolerance.variables]`",
+            );
+        }
+        found
+    }
+
+    /// The variables that a tolerance is of: that of its name, or the coordinates that an entry of that name makes.
+    fn variables_of_tolerance(&mut self, one: &ToleranceDraft, here: Here) -> Vec<usize> {
+        if let Some(known) = self.number_of("design variable", &one.name) {
+            return vec![known];
+        }
+        let parts =
+            AXES.iter().filter_map(|axis| self.number_of("design variable", &format!("{}_{axis}", one.name)));
+        let parts: Vec<usize> = parts.collect();
+        if parts.is_empty() {
+            self.optimized_variable(&one.name, here.key("name"));
+        }
+        parts
+    }
+
+    fn tolerance(
+        &mut self,
+        t: &TolerancingDraft,
+        one: &ToleranceDraft,
+        variables: Vec<usize>,
+        here: Here,
+    ) -> Option<Tolerance> {
+        let draft = self.draft;
+        let first = &draft.design[*variables.first()?];
+        let name = &one.name;
+        let own = draft.unread.any(Section::Design, variables[0]);
+        let quantity = self.model.variables.get(variables[0]).map(|v| v.quantity);
+        let scatter = self.scatter(one.scatter, t.scatter, here, &format!("the tolerance of `{name}`"));
+        if one.cost.is_some_and(|cost| !(cost > 0.0 && cost.is_finite())) {
+            let message =
+                format!("the cost of the tolerance of `{name}` cannot be {}", one.cost.unwrap_or_default());
+            self.fault("HP0241", here.key("cost"), message)
+                .note("a tolerance t costs `cost / t`, relative to the others")
+                .help("give a number above zero, or leave it out for a tolerance that stays as it is");
+        }
+        let reach = match one.reach {
+            Some(reach) if !(reach > 0.0 && reach.is_finite()) => {
+                let message = format!("the tolerance of `{name}` cannot be {reach}");
+                self.fault("HP0241", here.key("tolerance"), message)
+                    .note("it is by how much the variable may be off, either way")
+                    .help("give a number above zero, or leave the variable out if it is exact");
+                return None;
+            }
+            Some(reach) => reach / per_si(Dimension::from(quantity?), one.per_metre, one.per_radian),
+            None => {
+                let Some(reach) = first.tolerance else {
+                    if !own {
+                        let message = format!("the tolerance of `{name}` does not say how large it is");
+                        self.fault("HP0241", here.key("name"), message).help(
+                            "add `tolerance = 0.1` to it, or to the variable in `[design]` or `[parameters]`",
+                        );
+                    }
+                    return None;
+                };
+                reach
+            }
+        };
+        let variables = variables.into_iter().map(VariableId).collect();
+        Some(Tolerance { name: name.clone(), variables, reach, scatter: scatter?, cost: one.cost })
+    }
+
+    /// How a tolerance scatters, given what is said of all. HP0241 where that cannot be.
+    fn scatter(&mut self, own: ScatterDraft, all: ScatterDraft, here: Here, what: &str) -> Option<Scatter> {
+        if let Some(sigmas) = own.sigmas {
+            let even = own.kind.or(all.kind) == Some(0) && here.section == Section::Tolerances;
+            if even {
+                let message = format!("{what} is uniform, and has no `sigmas`");
+                self.fault("HP0241", here.key("sigmas"), message)
+                    .help("remove `sigmas`, or write `distribution = \"truncated\"`");
+                return None;
+            }
+            if !(sigmas > 0.0 && sigmas <= MOST_SIGMAS) {
+                let message = format!("`sigmas` of {what} cannot be {sigmas}");
+                self.fault("HP0241", here.key("sigmas"), message)
+                    .note("it says how many standard deviations a tolerance is")
+                    .help(format!("give a number above zero, up to {MOST_SIGMAS}, like `sigmas = 3`"));
+                return None;
+            }
+        }
+        Some(self.scatter_of(own, all))
+    }
+
+    fn scatter_of(&self, own: ScatterDraft, all: ScatterDraft) -> Scatter {
+        let sigmas = own.sigmas.or(all.sigmas).unwrap_or(Tolerancing::SIGMAS);
+        match own.kind.or(all.kind) {
+            Some(0) => Scatter::Uniform,
+            Some(2) => Scatter::Truncated { sigmas },
+            _ => Scatter::Normal { sigmas },
+        }
+    }
+
+    /// HP0242: correlations of normal variables, of each pair one, that can hold together.
+    fn correlations(&mut self, t: &TolerancingDraft, tolerances: &[Tolerance]) -> Vec<Correlation> {
+        let mut pairs: BTreeMap<[usize; 2], &str> = BTreeMap::new();
+        let mut found = Vec::new();
+        if t.correlations.len() > MOST_CORRELATIONS {
+            let message = format!("{} correlations are too many", t.correlations.len());
+            self.fault("HP0242", HERE.key("correlations"), message).help(format!(
+                "give at most {MOST_CORRELATIONS}, or let one design variable move what goes together"
+            ));
+            return found;
+        }
+        for (index, one) in t.correlations.iter().enumerate() {
+            let here = Here { section: Section::Correlations, index };
+            if self.unread(here, "") {
+                continue;
+            }
+            let between = [0, 1].map(|k| self.optimized_variable(&one.between[k], here.item("between", k)));
+            let [Some(a), Some(b)] = between else { continue };
+            if !(one.coefficient.abs() <= 1.0) {
+                let message = format!("correlation `{}` cannot be {}", one.name, one.coefficient);
+                self.fault("HP0242", here.key("coefficient"), message)
+                    .help("give a number from -1 to 1: 1 where both are always off alike, 0 where they do not know of each other");
+                continue;
+            }
+            let name = &one.name;
+            if a == b {
+                let message = format!("correlation `{name}` is one of `{}` with itself", one.between[0]);
+                self.fault("HP0242", here.key("between"), message)
+                    .help("name two different design variables");
+                continue;
+            }
+            if let Some(other) = pairs.insert([a.min(b), a.max(b)], name) {
+                let message = format!("correlations `{other}` and `{name}` are of the same two variables");
+                self.fault("HP0242", here.key("between"), message).help("remove one of the two");
+                continue;
+            }
+            if self.faults.is_empty() && self.can_correlate(one, [a, b], tolerances, here) {
+                let between = [VariableId(a), VariableId(b)];
+                found.push(Correlation { name: name.clone(), between, coefficient: one.coefficient });
+            }
+        }
+        if !found.is_empty() && semidefinite::root(&matrix(&found)).is_none() {
+            let names: Vec<String> = found.iter().map(|c| format!("`{}`", c.name)).collect();
+            let message = "the correlations contradict each other: no deviations can go together so";
+            self.fault("HP0242", HERE.key("correlations"), message)
+                .note(format!("their matrix is not positive semidefinite: {}", super::super::some_of(&names, ", ", super::LISTED_NAMES)))
+                .help("if a goes with b and b with c, a goes with c too: at least `r_ab r_bc - sqrt((1 - r_ab^2) (1 - r_bc^2))`");
+        }
+        found
+    }
+
+    /// Whether both have a tolerance that is normal.
+    fn can_correlate(
+        &mut self,
+        one: &CorrelationDraft,
+        of: [usize; 2],
+        tolerances: &[Tolerance],
+        here: Here,
+    ) -> bool {
+        for (k, v) in of.into_iter().enumerate() {
+            let name = &one.between[k];
+            let tolerance = tolerances.iter().find(|t| t.variables.contains(&VariableId(v)));
+            let at = here.item("between", k);
+            let Some(tolerance) = tolerance else {
+                // It may be one that could not be read.
+                if self.draft.unread.any_of(Section::Tolerances) || self.draft.unread.any_of(Section::Design)
+                {
+                    return false;
+                }
+                let message = format!("`{name}` of correlation `{}` has no tolerance", one.name);
+                self.fault("HP0242", at, message).help("give it one in `[tolerance.variables]`");
+                return false;
+            };
+            if !matches!(tolerance.scatter, Scatter::Normal { .. }) {
+                let message =
+                    format!("`{name}` of correlation `{}` is {}", one.name, tolerance.scatter.name());
+                self.fault("HP0242", at, message)
+                    .note("what is cut off does not keep its distribution where it goes with something else")
+                    .help("give it `distribution = \"normal\"`, or move both by one design variable");
+                return false;
+            }
+        }
+        true
+    }
+
+    fn tolerated_curve(&mut self, name: &str, k: usize) -> Option<usize> {
+        let draft = self.draft;
+        let at = HERE.item("curves", k);
+        self.find("measure", name, at, draft.measures.iter().map(|m| m.name.as_str()))?;
+        self.model.measures.iter().position(|m| m.name == name)
+    }
+
+    /// HP0243: an allocation without what it is to find or keep.
+    fn allocation_needs(&mut self, t: &TolerancingDraft) {
+        let Some(rule) = t.allocation else { return };
+        if let AllocationRule::Rss { sigmas } = rule
+            && !(sigmas > 0.0 && sigmas <= MOST_SIGMAS)
+        {
+            let message = format!("`keep_sigmas` cannot be {sigmas}");
+            self.fault("HP0243", HERE.key("keep_sigmas"), message)
+                .note("it says how many standard deviations have to fit between a metric as drawn and its limit")
+                .help(format!("give a number above zero, up to {MOST_SIGMAS}, like `keep_sigmas = 3`"));
+        }
+        if t.limits.is_empty() && !self.unread(HERE, "limits") {
+            self.fault(
+                "HP0243",
+                HERE.key("allocate"),
+                "tolerances cannot be sought: there is no limit to keep",
+            )
+            .help("add one, like `[tolerance.limits]` with `toe = { metric = \"toe_range\", max = 0.5 }`");
+        }
+        if t.tolerances.iter().all(|one| one.cost.is_none()) && !self.draft.unread.any_of(Section::Tolerances)
+        {
+            self.fault("HP0243", HERE.key("allocate"), "tolerances cannot be sought: none has a cost")
+                .note("those without a cost stay as they are")
+                .help("give it to those that are sought, like `A_x = { tolerance = 0.1, cost = 1 }` in `[tolerance.variables]`");
+        }
+    }
+}
+
+/// More standard deviations than these are surely a slip, and no normal distribution knows them.
+const MOST_SIGMAS: f64 = 30.0;
+/// Whether they can hold together takes the cube of their number.
+const MOST_CORRELATIONS: usize = 300;
+
+/// Of the variables that are correlated at all.
+fn matrix(of: &[Correlation]) -> Vec<Vec<f64>> {
+    let mut variables: Vec<VariableId> = of.iter().flat_map(|c| c.between).collect();
+    variables.sort_unstable();
+    variables.dedup();
+    let entry = |a: VariableId, b: VariableId| {
+        let given = of.iter().find(|c| c.between == [a, b] || c.between == [b, a]);
+        if a == b { 1.0 } else { given.map_or(0.0, |c| c.coefficient) }
+    };
+    variables.iter().map(|a| variables.iter().map(|b| entry(*a, *b)).collect()).collect()
+}

@@ -1,0 +1,77 @@
+//! Symmetric matrices that are positive semidefinite: correlations, and the curvature of convex functions.
+
+/// A pivot below this part of the diagonal's largest is none: such a matrix of correlations has ones on its diagonal, and its
+/// coefficients are written with few digits.
+const NOTHING: f64 = 1e-12;
+/// Beside such a pivot nothing may be left that is larger than this: by rounding, the root of it.
+const LEFT: f64 = 1e-6;
+
+/// The lower triangle L with L L' = A, row by row; columns without a pivot are zero. `None` where A is not positive semidefinite.
+pub(crate) fn root(a: &[Vec<f64>]) -> Option<Vec<Vec<f64>>> {
+    let n = a.len();
+    let largest = (0..n).map(|k| a[k][k]).fold(0.0, f64::max);
+    let mut l = vec![vec![0.0; n]; n];
+    for k in 0..n {
+        // d = a_kk - sum l_kj^2,  l_ik = (a_ik - sum l_ij l_kj) / sqrt(d)
+        let rest = |i: usize, l: &[Vec<f64>]| a[i][k] - (0..k).map(|j| l[i][j] * l[k][j]).sum::<f64>();
+        let pivot = rest(k, &l);
+        if !(pivot > NOTHING * largest) {
+            let left = (k..n).map(|i| rest(i, &l).abs()).fold(0.0, f64::max);
+            if !(pivot >= -NOTHING * largest && left <= LEFT * largest) {
+                return None;
+            }
+            continue;
+        }
+        for i in k..n {
+            l[i][k] = rest(i, &l) / pivot.sqrt();
+        }
+    }
+    Some(l)
+}
+
+/// The solution of `A x = b` by the root of A, which must have all its pivots.
+pub(crate) fn solve(root: &[Vec<f64>], b: &mut [f64]) {
+    let n = b.len();
+    for k in 0..n {
+        b[k] = (b[k] - (0..k).map(|j| root[k][j] * b[j]).sum::<f64>()) / root[k][k];
+    }
+    for k in (0..n).rev() {
+        b[k] = (b[k] - (k + 1..n).map(|j| root[j][k] * b[j]).sum::<f64>()) / root[k][k];
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_root_squares_to_its_matrix_also_where_two_go_as_one() {
+        let a = vec![vec![1.0, 1.0, 0.5], vec![1.0, 1.0, 0.5], vec![0.5, 0.5, 1.0]];
+        let l = root(&a).unwrap();
+        for i in 0..3 {
+            for j in 0..3 {
+                let square: f64 = (0..3).map(|k| l[i][k] * l[j][k]).sum();
+                assert!((square - a[i][j]).abs() < 1e-15, "{i} {j}: {square}");
+            }
+        }
+        assert_eq!(l[1][1], 0.0);
+    }
+
+    #[test]
+    fn what_cannot_be_together_has_no_root() {
+        // Two that go with a third go against each other.
+        assert!(
+            root(&[vec![1.0, 0.9, 0.9], vec![0.9, 1.0, -0.9], vec![0.9, -0.9, 1.0]].map(|r| r)).is_none()
+        );
+        assert!(root(&[vec![1.0, 1.01], vec![1.01, 1.0]]).is_none());
+        assert!(root(&[vec![f64::NAN]]).is_none());
+    }
+
+    #[test]
+    fn a_system_is_solved_by_the_root() {
+        let a = vec![vec![4.0, 2.0], vec![2.0, 5.0]];
+        let mut x = vec![8.0, 16.0];
+        solve(&root(&a).unwrap(), &mut x);
+        assert!((x[0] - 0.5).abs() < 1e-15 && (x[1] - 3.0).abs() < 1e-15, "{x:?}");
+    }
+}

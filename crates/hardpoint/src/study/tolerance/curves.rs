@@ -1,0 +1,151 @@
+//! Bands along whole curves, from derivatives: exact first and second ones at every output time.
+
+use crate::model::OutputSource;
+
+use super::deviations::Deviations;
+use super::{SecondOrder, Study};
+
+/// Second derivatives of so many bytes are held for bands; of more variables and longer motions, bands are of first order.
+const MOST_BYTES: usize = 256 << 20;
+/// And so many while they are worked out.
+const PART_BYTES: usize = 16 << 20;
+
+/// What tolerances make of a measure along one motion.
+#[derive(Clone, Debug)]
+pub struct CurveBands {
+    /// Its place in [`Model::measures`](crate::model::Model::measures).
+    pub measure: usize,
+    /// The motion, by its place among those studied.
+    pub motion: usize,
+    /// Its column in [`Measured`](crate::measure::Measured).
+    pub column: usize,
+    /// Output times, s.
+    pub times: Vec<f64>,
+    /// One for each of them.
+    pub bands: Vec<Band>,
+}
+
+/// The same at one output time, in SI.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Band {
+    /// As drawn.
+    pub nominal: f64,
+    /// The standard deviation to first order.
+    pub sigma: f64,
+    /// The least and the greatest value to first order.
+    pub worst: [f64; 2],
+    /// To second order, where second derivatives are known: of what follows from positions alone.
+    pub second: Option<SecondOrder>,
+}
+
+impl CurveBands {
+    /// Mean and standard deviation at output time k, to the highest order that is known.
+    pub fn moments(&self, k: usize) -> [f64; 2] {
+        let Band { nominal, sigma, second, .. } = self.bands[k];
+        second.map_or([nominal, sigma], |s| [nominal + s.shift, s.sigma])
+    }
+}
+
+impl Study<'_> {
+    /// The bands of all curves that are asked for, as far as there is `more` time.
+    pub(super) fn curves(&self, more: &(dyn Fn() -> bool + Sync)) -> Vec<CurveBands> {
+        (0..self.motions.len()).flat_map(|motion| self.curves_of(motion, more)).collect()
+    }
+
+    fn curves_of(&self, motion: usize, more: &(dyn Fn() -> bool + Sync)) -> Vec<CurveBands> {
+        let measured = &self.drawn.solutions[motion].measured;
+        let column = |measure: &usize| {
+            measured
+                .outputs
+                .iter()
+                .position(|o| o.source == OutputSource::Measure(*measure))
+                .map(|c| (*measure, c))
+        };
+        let asked: Vec<(usize, usize)> = self.asked.curves.iter().filter_map(column).collect();
+        let bends: Vec<usize> =
+            asked.iter().map(|(_, c)| *c).filter(|c| measured.outputs[*c].known.by_position).collect();
+        let seconds = self.seconds(motion, &bends, more);
+        let deviations = self.deviations;
+        let times = self.drawn.solutions[motion].motion.times.clone();
+        let curve = |&(measure, column): &(usize, usize)| {
+            let bend = bends.iter().position(|c| *c == column);
+            let band = |k: usize| {
+                let nominal = measured.value(k, column)[0];
+                let g: Vec<f64> =
+                    deviations.variables.iter().map(|v| measured.d(k, v.variable, column)[0]).collect();
+                let reach = reach(deviations, &g);
+                let second =
+                    bend.and_then(|m| Some(deviations.second_order(&g, &seconds.as_ref()?.at(k, m))));
+                Band {
+                    nominal,
+                    sigma: deviations.sigma(&g),
+                    worst: [nominal - reach, nominal + reach],
+                    second,
+                }
+            };
+            let bands = (0..times.len()).map(band).collect();
+            CurveBands { measure, motion, column, times: times.clone(), bands }
+        };
+        asked.iter().map(curve).collect()
+    }
+
+    /// Exact second derivatives of some columns by all pairs of variables that may be off; `None` where they are too many, or the time
+    /// is up.
+    fn seconds(&self, motion: usize, columns: &[usize], more: &(dyn Fn() -> bool + Sync)) -> Option<Seconds> {
+        let (analysis, variables) = (&self.motions.analyses()[motion], &self.deviations.variables);
+        let n = variables.len();
+        let (steps, pairs) = (self.drawn.solutions[motion].motion.len(), n * (n + 1) / 2);
+        if columns.is_empty() || steps * pairs * columns.len() * size_of::<f64>() > MOST_BYTES {
+            return None;
+        }
+        let mut values = vec![0.0; steps * pairs * columns.len()];
+        let directions: Vec<Vec<f64>> = variables.iter().map(|v| self.model.alone(v.variable, 1.0)).collect();
+        let all: Vec<[usize; 2]> = (0..n).flat_map(|i| (0..=i).map(move |j| [i, j])).collect();
+        let outputs = self.drawn.solutions[motion].measured.outputs.len();
+        let per_pair = steps * (16 * outputs + 96 * self.model.bodies.len());
+        let part = (PART_BYTES / per_pair.max(1)).max(1);
+        for (chunk, some) in all.chunks(part).enumerate() {
+            if !more() {
+                return None;
+            }
+            let second = analysis.second(&[], &directions, some);
+            if second.times.len() < steps {
+                return None;
+            }
+            for k in 0..steps {
+                for p in 0..some.len() {
+                    for (m, column) in columns.iter().enumerate() {
+                        values[(k * columns.len() + m) * pairs + chunk * part + p] =
+                            second.value(k, p, *column);
+                    }
+                }
+            }
+        }
+        Some(Seconds { variables: n, columns: columns.len(), values })
+    }
+}
+
+/// How far the value goes at worst, to first order: of every tolerance its reach times the gradient's size.
+fn reach(of: &Deviations, g: &[f64]) -> f64 {
+    of.blocks.iter().map(|b| b.reach * g[b.range()].iter().map(|x| x * x).sum::<f64>().sqrt()).sum()
+}
+
+/// Lower triangles of second derivatives, by output time and column.
+struct Seconds {
+    variables: usize,
+    columns: usize,
+    values: Vec<f64>,
+}
+
+impl Seconds {
+    fn at(&self, k: usize, m: usize) -> Vec<Vec<f64>> {
+        let n = self.variables;
+        let pairs = n * (n + 1) / 2;
+        let first = (k * self.columns + m) * pairs;
+        let of = |i: usize, j: usize| {
+            let (low, high) = (i.min(j), i.max(j));
+            self.values[first + high * (high + 1) / 2 + low]
+        };
+        (0..n).map(|i| (0..n).map(|j| of(i, j)).collect()).collect()
+    }
+}

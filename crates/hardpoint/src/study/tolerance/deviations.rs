@@ -1,0 +1,173 @@
+//! Deviations of the design variables: how they scatter, alone and together, and what that makes of a function with known derivatives.
+
+use crate::linalg::semidefinite;
+use crate::model::{Model, Scatter, Tolerancing, VariableId};
+use crate::study::random::{design_stream, draw, moments};
+
+use super::{SecondOrder, Tolerated, dot};
+
+/// The variables that may be off, and how.
+#[derive(Clone, Debug)]
+pub(super) struct Deviations {
+    pub variables: Vec<Tolerated>,
+    /// The coordinates of each tolerance stand together: where, with its reach and its scatter.
+    pub blocks: Vec<Block>,
+    /// The root of the matrix of correlations, row by row; none where nothing is correlated.
+    root: Option<Vec<Vec<f64>>>,
+}
+
+/// Coordinates that are off together.
+#[derive(Clone, Debug)]
+pub(super) struct Block {
+    /// Which of the tolerances.
+    pub tolerance: usize,
+    /// The first of its variables, and how many there are.
+    pub first: usize,
+    pub len: usize,
+    pub reach: f64,
+    scatter: Scatter,
+    kurtosis: f64,
+}
+
+impl Block {
+    pub fn range(&self) -> std::ops::Range<usize> {
+        self.first..self.first + self.len
+    }
+}
+
+impl Deviations {
+    pub fn new(model: &Model, asked: &Tolerancing, left_out: &[VariableId]) -> Self {
+        debug_assert!(
+            asked.tolerances.iter().flat_map(|t| &t.variables).all(|v| v.0 < model.variables.len())
+        );
+        let reaches: Vec<f64> = asked.tolerances.iter().map(|t| t.reach).collect();
+        Self::of(asked, &reaches, |v| !left_out.contains(&v))
+    }
+
+    /// The same variables with other reaches, one for each tolerance.
+    pub fn with_reaches(&self, asked: &Tolerancing, reaches: &[f64]) -> Self {
+        Self::of(asked, reaches, |v| self.variables.iter().any(|of| of.variable == v))
+    }
+
+    fn of(asked: &Tolerancing, reaches: &[f64], varies: impl Fn(VariableId) -> bool) -> Self {
+        let (mut variables, mut blocks) = (Vec::new(), Vec::new());
+        for (tolerance, one) in asked.tolerances.iter().enumerate() {
+            let moved: Vec<VariableId> = one.variables.iter().copied().filter(|v| varies(*v)).collect();
+            if moved.is_empty() {
+                continue;
+            }
+            // A sphere of which a coordinate cannot be off is a disc.
+            let (first, len, reach) = (variables.len(), moved.len(), reaches[tolerance]);
+            let of = moments(one.scatter, len, reach);
+            blocks.push(Block { tolerance, first, len, reach, scatter: one.scatter, kurtosis: of.kurtosis });
+            variables.extend(moved.into_iter().map(|variable| Tolerated {
+                variable,
+                tolerance,
+                sigma: of.sigma,
+                kurtosis: of.kurtosis,
+            }));
+        }
+        let place = |v: VariableId| variables.iter().position(|of: &Tolerated| of.variable == v);
+        let matrix = || {
+            let n = variables.len();
+            let unit = |i: usize| (0..n).map(|j| f64::from(u8::from(i == j))).collect();
+            let mut matrix: Vec<Vec<f64>> = (0..n).map(unit).collect();
+            for one in &asked.correlations {
+                if let [Some(i), Some(j)] = one.between.map(place) {
+                    (matrix[i][j], matrix[j][i]) = (one.coefficient, one.coefficient);
+                }
+            }
+            semidefinite::root(&matrix).expect("the correlations of a model were checked")
+        };
+        let root = (!asked.correlations.is_empty()).then(matrix);
+        Self { variables, blocks, root }
+    }
+
+    /// Row i of the root of the matrix of covariances.
+    fn root_row(&self, i: usize) -> Vec<f64> {
+        let sigma = self.variables[i].sigma;
+        match &self.root {
+            Some(root) => root[i].iter().map(|x| sigma * x).collect(),
+            None => {
+                let mut row = vec![0.0; self.variables.len()];
+                row[i] = sigma;
+                row
+            }
+        }
+    }
+
+    /// A vector in coordinates in which deviations are uncorrelated and have standard deviation 1: `L' g`.
+    pub fn whitened(&self, g: &[f64]) -> Vec<f64> {
+        let mut white = vec![0.0; g.len()];
+        for (i, g) in g.iter().enumerate() {
+            white.iter_mut().zip(self.root_row(i)).for_each(|(w, l)| *w += l * g);
+        }
+        white
+    }
+
+    /// The root of the sum of squares: `sqrt(g' S g)`.
+    pub fn sigma(&self, g: &[f64]) -> f64 {
+        let white = self.whitened(g);
+        dot(&white, &white).sqrt()
+    }
+
+    /// The part of the variance that each variable contributes: `g_i (S g)_i / g' S g`.
+    pub fn shares(&self, g: &[f64]) -> Vec<f64> {
+        let white = self.whitened(g);
+        let variance = dot(&white, &white);
+        let share = |i: usize| {
+            let part = g[i] * dot(&self.root_row(i), &white);
+            if part == 0.0 { 0.0 } else { part / variance }
+        };
+        (0..g.len()).map(share).collect()
+    }
+
+    /// Moments to second order.
+    ///
+    /// ```text
+    /// G = L' H L,  shift = tr(G) / 2,  sigma^2 = |L' g|^2 + tr(G G) / 2 + sum over blocks (k/3 - 1) (tr(G_b G_b) / 2 + tr(G_b)^2 / 4)
+    /// ```
+    pub fn second_order(&self, g: &[f64], h: &[Vec<f64>]) -> SecondOrder {
+        let n = g.len();
+        // Row i of H L, then L' (H L).
+        let half: Vec<Vec<f64>> = h.iter().map(|row| self.whitened(row)).collect();
+        let column = |j: usize| -> Vec<f64> { half.iter().map(|row| row[j]).collect() };
+        let white: Vec<Vec<f64>> = (0..n).map(|j| self.whitened(&column(j))).collect();
+        let trace = |of: std::ops::Range<usize>| of.map(|i| white[i][i]).sum::<f64>();
+        let square = |of: std::ops::Range<usize>| {
+            of.clone()
+                .flat_map(|i| of.clone().map(move |j| (i, j)))
+                .map(|(i, j)| white[i][j].powi(2))
+                .sum::<f64>()
+        };
+        let beyond_normal = |b: &Block| {
+            (b.kurtosis / 3.0 - 1.0) * (0.5 * square(b.range()) + 0.25 * trace(b.range()).powi(2))
+        };
+        let bend = 0.5 * square(0..n) + self.blocks.iter().map(beyond_normal).sum::<f64>();
+        let (first, bend) = (self.sigma(g), bend.max(0.0).sqrt());
+        SecondOrder { shift: 0.5 * trace(0..n), sigma: first.hypot(bend), bend }
+    }
+
+    /// The deviations of the sample of a number.
+    pub fn drawn(&self, seed: u64, number: usize) -> Vec<f64> {
+        let mut stream = design_stream(seed, number as u64);
+        let mut d = vec![0.0; self.variables.len()];
+        for block in &self.blocks {
+            draw(block.scatter, block.reach, &mut stream, &mut d[block.range()]);
+        }
+        if let Some(root) = &self.root {
+            let white: Vec<f64> = d.iter().zip(&self.variables).map(|(d, v)| d / v.sigma).collect();
+            for (i, of) in self.variables.iter().enumerate() {
+                d[i] = of.sigma * dot(&root[i], &white);
+            }
+        }
+        d
+    }
+
+    /// The values of all variables with these deviations.
+    pub fn design(&self, model: &Model, deviations: &[f64]) -> Vec<f64> {
+        let mut design = model.whole(&[]);
+        self.variables.iter().zip(deviations).for_each(|(v, d)| design[v.variable.0] = *d);
+        design
+    }
+}
