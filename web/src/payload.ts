@@ -558,7 +558,7 @@ margin: Curve | null, };
 /**
  * How another design was found.
  */
-export type DesignKind = "exact" | "first_order" | "second_order";
+export type DesignKind = "exact" | "first_order" | "second_order" | "band";
 
 /**
  * A quantity of another design with its two time derivatives; what is not known is empty.

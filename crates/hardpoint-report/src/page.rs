@@ -396,6 +396,8 @@ pub enum DesignKind {
     FirstOrder,
     /// By first and second derivatives.
     SecondOrder,
+    /// No design but one edge of where the curves of many lie.
+    Band,
 }
 
 /// A quantity of another design with its two time derivatives; what is not known is empty.

@@ -420,6 +420,10 @@ impl Studied<'_> {
             .into_iter()
             .collect();
         page.designs.extend(designs.into_iter().filter(|d| d.quantities.iter().any(Option::is_some)));
+        if page.designs.iter().any(|d| d.kind == DesignKind::Band) {
+            // The bands are those at a time.
+            page.over = None;
+        }
         let cards = facts.rows().into_iter().filter(|(what, _)| ["yield", "failed"].contains(what));
         page.summary.splice(0..0, cards.map(|(what, is)| Fact { label: what.into(), value: is }));
         let rows = facts.rows().into_iter().map(|(what, is)| vec![what.into(), is]).collect();
@@ -456,7 +460,7 @@ impl Studied<'_> {
         }
         Design {
             name: name.into(),
-            kind: DesignKind::SecondOrder,
+            kind: DesignKind::Band,
             change: vec![0.0; page.variables.len()],
             note: "Where 99.73 % of all made will be, if they are normal: from first and second derivatives."
                 .into(),

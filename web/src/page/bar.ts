@@ -1,4 +1,5 @@
 import { el } from '../dom'
+import type { Design } from '../report'
 import type { State } from '../state'
 import { menu, type Item } from './menu'
 
@@ -25,15 +26,20 @@ export function bar(state: State, { find, exports, help }: Offers): HTMLElement 
   )
 }
 
+/** Whether it is an edge of where curves lie, which is drawn beside them and compared with nothing. */
+function isBand({ kind }: Design): boolean {
+  return kind === 'band'
+}
+
 /** With which design the present one is compared, where there is a choice. */
 function comparison(state: State): HTMLElement | undefined {
   const { designs } = state.report
-  if (designs.length === 0) return undefined
+  if (designs.every(isBand)) return undefined
   const select = el(
     'select',
     { 'data-testid': 'compare', onchange: () => state.choose({ compared: select.value === '' ? undefined : Number(select.value) }) },
     el('option', { value: '' }, 'as loaded'),
-    ...designs.map(({ name }, index) => el('option', { value: index }, name)),
+    ...designs.flatMap((design, index) => (isBand(design) ? [] : [el('option', { value: index }, design.name)])),
   )
   return el('label', { class: 'compare' }, el('span', { class: 'muted' }, 'Compare with'), select)
 }

@@ -34,7 +34,14 @@ export function valueContent(state: State, { quantity: index, order, over }: Sub
     const curve = former ? (former.quantities[index]?.[order] ?? new Float32Array()) : own
     content.lines.push({ label: former?.name ?? 'as loaded', color: css('--former'), curve: quiet(curve, scale), width: 1.8, dash: DASHED })
   }
-  const foreseen = present ? report.designs.filter((design) => design.kind !== 'exact' && design !== former) : []
+  const bands = report.designs.filter(({ kind, quantities }) => kind === 'band' && quantities[index]?.[order].length)
+  // Over another quantity, which is itself off, they would say something else.
+  if (over !== undefined && bands.length > 0) content.caption = 'How far it may be off is known at a time: choose time to see it.'
+  for (const band of over === undefined ? bands : []) {
+    const curve = quiet(band.quantities[index]![order], scale)
+    content.lines.push({ label: band.name, color: css('--former'), curve, width: 1.3, dash: DOTTED })
+  }
+  const foreseen = present ? report.designs.filter(({ kind }) => kind.endsWith('_order')).filter((design) => design !== former) : []
   foreseen.forEach((design, k) => {
     const curve = design.quantities[index]?.[order]
     if (curve?.length) content.lines.push({ label: design.name, color: hue(k + 1), curve: quiet(curve, scale), width: 1.8, dash: DOTTED })

@@ -19,7 +19,7 @@ const KEYS: [keys: string, meaning: string][] = [
 const MARKS: [mark: string, meaning: string][] = [
   ['solid', 'the present design'],
   ['dashed', 'the design that it is compared with'],
-  ['dotted', 'foreseen to first or second order'],
+  ['dotted', 'foreseen to first or second order, or how far it may be off'],
   ['rings', 'finite differences of re-solved designs'],
 ]
 
