@@ -81,6 +81,15 @@ export function slope(y: readonly [Curve, Curve, Curve], x: readonly [Curve, Cur
   })
 }
 
+/**
+ * How much `y` changes per change of `x` while a driver moves alone, from what both do then; NaN where the driver does next to nothing to
+ * `x`.
+ */
+export function slopeAlone(y: Curve, x: Curve): Curve {
+  const least = peak(x) * TURNS
+  return y.map((value, k) => (Math.abs(x[k]) > least ? value / x[k] : NaN))
+}
+
 /** A sensitivity at a fixed abscissa rather than a fixed time: `dy - slope dx`. */
 export function atFixedAbscissa(dy: Curve, dx: Curve, slope: Curve): Curve {
   return dy.map((value, k) => value - slope[k] * dx[k])

@@ -362,7 +362,12 @@ along: [number, number, number] | null,
 /**
  * The driven coordinate, `n` steps, in the length unit or in radians, counted from the drawing.
  */
-travel: Curve, };
+travel: Curve,
+/**
+ * Where several drivers move: how fast each of the first of [`Payload::quantities`] goes with this one while the others stand, in
+ * its unit per length unit or radian; empty of what does not follow from positions alone.
+ */
+alone: Array<Curve>, };
 
 /**
  * A place on a body.

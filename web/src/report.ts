@@ -1,4 +1,4 @@
-import { type Curve, extreme, spread } from './curve'
+import { type Curve, extreme, quiet, spread } from './curve'
 import { per } from './format'
 import type * as wire from './payload'
 import { rounded } from './rounding'
@@ -24,9 +24,11 @@ export interface Mesh {
   triangles: Curve
 }
 
-export interface Driver extends Omit<wire.DriverMark, 'travel'> {
+export interface Driver extends Omit<wire.DriverMark, 'travel' | 'alone'> {
   /** The driven coordinate, one number per step. */
   travel: Curve
+  /** Where several drivers move: how fast the first quantities go with this one alone; empty of what is not known. */
+  alone: Curve[]
 }
 
 export interface Quantity {
@@ -97,7 +99,7 @@ export function read(payload: wire.Payload, decode: Decode): Report {
     ...payload,
     times: decode(payload.times),
     bodies: payload.bodies.map((body) => ({ ...body, poses: decode(body.poses), mesh: mesh(body.mesh, decode) })),
-    drivers: payload.drivers.map((driver) => ({ ...driver, travel: decode(driver.travel) })),
+    drivers: payload.drivers.map((driver) => ({ ...driver, travel: decode(driver.travel), alone: driver.alone.map(decode) })),
     quantities: payload.quantities.map((quantity, index) => ({
       index,
       name: quantity.name,
@@ -110,8 +112,8 @@ export function read(payload: wire.Payload, decode: Decode): Report {
       ...map,
       quantities: map.quantities.map((quantity) => ({
         ...quantity,
-        values: decode(quantity.values),
-        sensitivities: quantity.sensitivities.map((item) => ({ ...item, values: decode(item.values) })),
+        values: quiet(decode(quantity.values), 1),
+        sensitivities: quantity.sensitivities.map((item) => ({ ...item, values: quiet(decode(item.values), 1) })),
       })),
     })),
     margin: payload.margin ? { curve: decode(payload.margin.value), note: payload.margin.note } : undefined,

@@ -6,6 +6,7 @@ import {
   peak,
   positive,
   slope,
+  slopeAlone,
   spread,
   stepAt,
   valueAt,
@@ -65,6 +66,12 @@ test('a slope over an abscissa that turns back follows from the accelerations th
   times.forEach((t, k) => expect(found[k]).toBeCloseTo(2 * Math.sin(t), 5))
   // Where x rests and y does not, there is none.
   expect(slope(y, [of(() => 1), of(() => 0), of(() => 0)])[1]).toBeNaN()
+})
+
+test('what a driver does alone stays finite where the motion of several turns the abscissa back', () => {
+  // x = a + b, y = 2 a + 3 b with a = t, b = 1 - t^2: along the motion dy/dx = (2 - 6 t) / (1 - 2 t), of the first driver alone 2.
+  const [y, x] = [Float32Array.of(2, 2, 2), Float32Array.of(1, 1, 1e-6)]
+  expect([...slopeAlone(y, x)]).toEqual([2, 2, NaN])
 })
 
 test('where the abscissa is about to turn and the other goes on, there is a gap in place of a spike', () => {

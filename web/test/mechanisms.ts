@@ -51,7 +51,7 @@ export function crank(changes: Partial<Report> = {}): Report {
       { name: 'crank', poses: poses(turn), skeleton: [[0, 0, 0], [200, 0, 0]], labels: ['pivot', 'pin'], roles: ['joint', 'joint'], mesh: null },
     ],
     joints: [{ name: 'hinge', ...hinge, axis2: null, hinge: null, lead: null, curve: null, draw: null, cut: false } as Report['joints'][number]],
-    drivers: [{ name: 'motor', law: 'one turn', joint: 0, turns: true, point: null, along: null, travel }],
+    drivers: [{ name: 'motor', law: 'one turn', joint: 0, turns: true, point: null, along: null, travel, alone: [] }],
     quantities: [],
     designs: [],
     maps: [],

@@ -309,6 +309,7 @@ fn main() -> Result<(), Box<dyn Error>> {
             point: None,
             along: None,
             travel: times.iter().map(|t| TAU * t / DURATION).collect(),
+            alone: vec![],
         }],
         wheels: vec![],
         distances: vec![],

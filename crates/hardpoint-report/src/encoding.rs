@@ -97,6 +97,7 @@ fn each_curve(payload: &mut Payload, visit: &mut impl FnMut(&mut Curve, Precisio
     }
     for driver in &mut payload.drivers {
         visit(&mut driver.travel, Full, 1);
+        driver.alone.iter_mut().for_each(|curve| visit(curve, Full, 1));
     }
     for q in &mut payload.quantities {
         [&mut q.value, &mut q.rate, &mut q.accel, &mut q.wanted]

@@ -287,6 +287,9 @@ pub struct DriverMark {
     pub along: Option<[f64; 3]>,
     /// The driven coordinate, `n` steps, in the length unit or in radians, counted from the drawing.
     pub travel: Curve,
+    /// Where several drivers move: how fast each of the first of [`Payload::quantities`] goes with this one while the others stand, in
+    /// its unit per length unit or radian; empty of what does not follow from positions alone.
+    pub alone: Vec<Curve>,
 }
 
 /// A place on a body.

@@ -15,10 +15,12 @@ pub use designs::Changed;
 use std::path::Path;
 
 use hardpoint::joint::Quantity as Kind;
-use hardpoint::model::{BodyId, Dimension, Metric, Model, OutputSource, Reduction, VariableId};
+use hardpoint::model::{
+    BodyId, Dimension, Driver, DriverId, Metric, Model, OutputSource, Reduction, VariableId,
+};
 use hardpoint::sensitivity::BodySensitivity;
 use hardpoint::space::Vec3;
-use hardpoint::study::{Comparison, Difference};
+use hardpoint::study::{Comparison, Difference, DriverRates};
 use hardpoint::{Analysis, Solution};
 use hardpoint_file::{Drawing, ModelFile, Units};
 
@@ -102,7 +104,8 @@ fn fitted(request: &Request<'_>, finish: &dyn Fn(Payload) -> Payload) -> (Payloa
         compared: request.differences.iter().any(Option::is_some),
         designs: request.changed.as_ref().map_or(0, Changed::designs),
     };
-    let compose = |detail: Detail| finish(composed(request, detail));
+    let alone = driver_rates(request);
+    let compose = |detail: Detail| finish(composed(request, alone.as_ref(), detail));
     let levels = Detail::levels(size, Bodies::of(request.course));
     let (last, levels) = levels.split_last().expect("there is always a least level");
     for level in levels {
@@ -121,8 +124,26 @@ fn fitted(request: &Request<'_>, finish: &dyn Fn(Payload) -> Payload) -> (Payloa
     (compose(*last), None)
 }
 
+/// What each driver does by itself, where several move and there are variables: over another quantity, one of them moves on while a
+/// variable changes. Where one moves alone, the rates say it.
+fn driver_rates(request: &Request<'_>) -> Option<DriverRates> {
+    let (model, times) = (request.analysis.model(), &request.course.kept.motion.times);
+    let moves = |driver: &Driver| {
+        let travel = Span::of(times.iter().map(|t| driver.law.at(*t).value()));
+        travel.range() > 0.0
+    };
+    let several = model.drivers.iter().filter(|d| moves(d)).count() > 1;
+    if !several || model.variables.is_empty() {
+        return None;
+    }
+    let model = Model { times: times.clone(), ..model.clone() };
+    let analysis = Analysis::with(&model, request.analysis.topology().formulation).ok()?;
+    let drivers: Vec<DriverId> = (0..model.drivers.len()).map(DriverId).collect();
+    Some(analysis.driver_rates(&drivers))
+}
+
 /// The page in so much detail.
-fn composed(request: &Request<'_>, detail: Detail) -> Payload {
+fn composed(request: &Request<'_>, alone: Option<&DriverRates>, detail: Detail) -> Payload {
     let &Request { file, analysis, course, summary, differences, ref changed } = request;
     let (model, units, solution) = (&file.model, file.units, &course.kept);
     let steps: Vec<usize> = (0..solution.motion.len()).step_by(detail.stride).collect();
@@ -136,6 +157,7 @@ fn composed(request: &Request<'_>, detail: Detail) -> Payload {
         steps,
         detail,
         round_off: course.round_off(model),
+        alone,
     };
     let (bodies, values) = (compose.bodies(), compose.values(summary));
     let designs = changed
@@ -386,6 +408,8 @@ struct Compose<'a> {
     steps: Vec<usize>,
     detail: Detail,
     round_off: RoundOff,
+    /// What each driver does by itself at the output times that the course keeps, where several move.
+    alone: Option<&'a DriverRates>,
 }
 
 /// From the least to the greatest value of a curve.

@@ -1,9 +1,10 @@
-import { atFixedAbscissa, peak, quiet, slope, withGaps, type Curve } from '../curve'
+import { atFixedAbscissa, peak, quiet, slope, slopeAlone, withGaps, type Curve } from '../curve'
 import { css, hue } from '../dom'
 import { effects } from '../effect'
+import { extent } from '../export/axis'
 import { figure, number } from '../format'
 import type { Content, Line } from '../plot'
-import { derivativeName, derivativeUnit, orderedName, type Order } from '../report'
+import { derivativeName, derivativeUnit, orderedName, type Driver, type Order, type Report } from '../report'
 import type { State } from '../state'
 
 /** What one figure draws. */
@@ -69,8 +70,9 @@ export function sensitivityContent(state: State, subject: Subject): Content {
   const content: Content = { title, unit: derivativeUnit(quantity, order, selected), lines: [] }
   if (quantity.curves[order].length === 0) return { ...content, unit: '', message: unknown(name) }
   if (!own) return { ...content, unit: '', message: selected.note || `How ${selected.name} acts on ${name} is not known.` }
-  const seen = atAbscissa(state, subject)
-  if (typeof seen === 'string') return { ...content, message: seen }
+  const at = atAbscissa(state, subject)
+  if (typeof at === 'string') return { ...content, message: at }
+  const { seen } = at
   const peers = all.filter(({ variable }) => variable.unit === selected.unit)
   const scale = Math.max(...peers.map(({ sensitivity }) => sensitivity.peaks[order]))
   const shown = peers.filter(({ variable, share }, rank) => variable === selected || (rank < FEW && share > 0))
@@ -90,7 +92,7 @@ export function sensitivityContent(state: State, subject: Subject): Content {
   content.lines.push(...content.lines.splice(first, 1))
   const { differences } = own.sensitivity
   const left = peers.length - shown.length
-  const rest = left > 0 ? `${shown.length} of ${peers.length}.` : ''
+  const rest = [at.note, left > 0 ? `${shown.length} of ${peers.length}.` : ''].filter((words) => words !== '').join(' ')
   if (!differences) return overOther(state, subject.over, { ...content, caption: rest })
   const curve = seen(differences.curves[order], selected.index, true)
   content.lines.push({ label: 'finite differences', color: css('--ink'), curve, marks: withGaps(curve) })
@@ -116,18 +118,40 @@ function overOther({ report }: State, over: number | undefined, content: Content
   return { ...content, over: { label: name, unit: units[0], curve: curves[0] } }
 }
 
-/** How the sensitivities of the quantity are shown: as they are, or at a fixed abscissa; or why that cannot be. */
-function atAbscissa({ report }: State, { quantity, order, over }: Subject): ((curve: Curve, variable: number, differences: boolean) => Curve) | string {
-  if (over === undefined) return (curve) => curve
+/** Sensitivities as they are shown, and a sentence on that. */
+interface AtAbscissa {
+  seen: (curve: Curve, variable: number, differences: boolean) => Curve
+  note: string
+}
+
+/**
+ * How the sensitivities of the quantity are shown: as they are, or at a fixed abscissa; or why that cannot be. Where several drivers
+ * move, the one that moves the abscissa most keeps it, and the others stand.
+ */
+function atAbscissa({ report }: State, { quantity, order, over }: Subject): AtAbscissa | string {
+  if (over === undefined) return { seen: (curve) => curve, note: '' }
   const [y, x] = [report.quantities[quantity], report.quantities[over]]
   if (order > 0) return 'Over another quantity, sensitivities are those of values; choose the value, or time.'
-  if ([y, x].some(({ curves }) => curves[1].length === 0 || curves[2].length === 0)) {
+  const keeper = moverOf(report, x.index)
+  const alone = keeper?.alone[y.index]?.length ? slopeAlone(keeper.alone[y.index], keeper.alone[x.index]) : undefined
+  if (!alone && [y, x].some(({ curves }) => curves[1].length === 0 || curves[2].length === 0)) {
     return `How ${y.name} goes with ${x.name} is not known along the motion, for one of them has no rate; choose time.`
   }
-  const along = slope(y.curves, x.curves)
-  return (curve, variable, differences) => {
+  const along = alone ?? slope(y.curves, x.curves)
+  const seen = (curve: Curve, variable: number, differences: boolean) => {
     const of = report.variables[variable].sensitivities.get(x.index)
     const dx = differences ? of?.differences?.curves[0] : of?.curves[0]
     return dx ? atFixedAbscissa(curve, dx, along) : curve
   }
+  return { seen, note: alone && keeper ? `At the same ${x.name}, which ${keeper.name} keeps while other drivers stand.` : '' }
+}
+
+/** Of several drivers that move, the one that moves the quantity most. */
+function moverOf({ drivers }: Report, quantity: number): Driver | undefined {
+  const reach = ({ alone, travel }: Driver) => {
+    const [least, most] = extent([travel]) ?? [0, 0]
+    return alone[quantity]?.length ? peak(alone[quantity]) * (most - least) : 0
+  }
+  const [first] = [...drivers].sort((a, b) => reach(b) - reach(a))
+  return first && reach(first) > 0 ? first : undefined
 }

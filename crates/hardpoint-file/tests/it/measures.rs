@@ -4,7 +4,7 @@
 use std::ops::ControlFlow;
 use std::path::Path;
 
-use hardpoint::model::{Model, VariableId};
+use hardpoint::model::{DriverId, Model, VariableId};
 use hardpoint::motion::Execution;
 use hardpoint::space::Vec3;
 use hardpoint::study::{VerifyOptions, verify};
@@ -301,4 +301,43 @@ fn a_program_of_measures_is_bounded() {
     }
     let [by_formula, all] = on_every_path("long", &crank(140, 49, "end = 1, steps = 100"), 1e-11);
     assert_eq!(by_formula, all);
+}
+
+/// What is left of a rate when the drivers' parts of it are taken away, as a part of the largest of all.
+const PARTS_OF_A_RATE: f64 = 1e-9;
+
+#[test]
+fn what_drivers_do_alone_adds_up_to_the_rates() {
+    for name in ["macpherson", "front_axle", "double_wishbone", "delta", "excavator", "gear_train"] {
+        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("../../models/{name}.toml"));
+        let file = parse(&std::fs::read_to_string(&path).unwrap(), name).unwrap();
+        let model = &file.model;
+        let analysis = Analysis::new(model).unwrap();
+        let run = analysis.run();
+        let drivers: Vec<DriverId> = (0..model.drivers.len()).map(DriverId).collect();
+        let alone = analysis.driver_rates(&drivers);
+        assert_eq!(alone.times, run.motion.times, "{name}");
+        let mut compared = 0;
+        for (m, output) in
+            alone.outputs.iter().enumerate().filter(|(_, o)| o.known.by_position && o.known.orders > 1)
+        {
+            let rate = |k: usize| run.measured.value(k, m)[1];
+            let largest = (0..run.motion.len()).map(|k| rate(k).abs()).fold(1e-3, f64::max);
+            // The Ackermann ratio of wheels that stand straight ahead is none.
+            for k in (0..run.motion.len()).filter(|k| rate(*k).is_finite()) {
+                // y. = sum over the drivers of (dy/dq) q.
+                let speed = |d: usize| model.drivers[d].law.at(alone.times[k]).d();
+                let parts = (0..drivers.len()).map(|d| alone.value(k, d, m).unwrap() * speed(d));
+                let left = (parts.sum::<f64>() - rate(k)).abs() / largest;
+                assert!(
+                    left < PARTS_OF_A_RATE,
+                    "{name}: {:?} at t = {}: {left}",
+                    output.source,
+                    alone.times[k]
+                );
+                compared += 1;
+            }
+        }
+        assert!(compared > run.motion.len(), "{name} has nothing to compare");
+    }
 }

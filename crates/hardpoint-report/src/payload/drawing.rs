@@ -3,19 +3,21 @@
 
 use hardpoint::constraint::Row;
 use hardpoint::joint::{Freedom, Need, Quantity as Kind};
+use hardpoint::measure::Output;
 use hardpoint::model::{
-    BodyId, Change, Coupler, Curve as PlanarCurve, Direction, Driver, HardpointId, Joint, JointId, Measure,
-    MeasureKind, PointId, Transmission, VariableId, Wheel,
+    BodyId, Change, Coupler, Curve as PlanarCurve, Direction, Driver, DriverId, HardpointId, Joint, JointId,
+    Measure, MeasureKind, PointId, Transmission, VariableId, Wheel,
 };
 use hardpoint::space::{Pose, Vec3};
+use hardpoint::study::DriverRates;
 use hardpoint::topology::Role;
 use hardpoint_file::MeshFrame;
 
 use crate::facts::{held_spins, written_kind};
 use crate::figures::symbol;
 use crate::page::{
-    Arrow, BodyPlace, BodyTrack, CouplerMark, CouplerTerm, DistanceMark, DriverMark, JointCurve, JointMark,
-    Mesh, PointRole, VehicleAxes, WheelMark,
+    Arrow, BodyPlace, BodyTrack, CouplerMark, CouplerTerm, Curve, DistanceMark, DriverMark, JointCurve,
+    JointMark, Mesh, PointRole, VehicleAxes, WheelMark,
 };
 
 use super::Compose;
@@ -246,7 +248,7 @@ impl Compose<'_> {
     /// What is driven, and how far.
     pub(super) fn drivers(&self) -> Vec<DriverMark> {
         let geometry = self.model.geometry(&[]);
-        let mark = |driver: &Driver| {
+        let mark = |(d, driver): (usize, &Driver)| {
             let JointId(j) = driver.joint;
             let joint = &self.model.joints[j];
             let coordinate = self.model.driven(driver);
@@ -266,9 +268,25 @@ impl Compose<'_> {
                 point: drawn.is_none().then(|| BodyPlace { body: joint.bodies[1].0, at: self.length(k.r) }),
                 along: drawn.is_none().then(|| in_world().to_array()),
                 travel: self.curve(travel),
+                alone: self.alone.map_or_else(Vec::new, |rates| self.by_driver(rates, d)),
             }
         };
-        self.model.drivers.iter().map(mark).collect()
+        self.model.drivers.iter().enumerate().map(mark).collect()
+    }
+
+    /// How fast outputs go with one driver by itself, per length unit or radian.
+    fn by_driver(&self, rates: &DriverRates, driver: usize) -> Vec<Curve> {
+        let DriverId(of) = rates.drivers[driver];
+        let driven = self.model.driven(&self.model.drivers[of]).quantity;
+        let unit = if driven == Kind::Angle { 1.0 } else { self.units.from_si(driven, 1.0) };
+        let curve = |(m, output): (usize, &Output)| {
+            let rate =
+                |k: usize| if k < rates.times.len() { rates.value(k, driver, m) } else { Some(f64::NAN) };
+            let known = rates.outputs[m].known.by_position;
+            let of_unit = |k: usize| self.units.from_si(output.dimension, rate(k).unwrap_or(f64::NAN)) / unit;
+            if known { self.curve(of_unit) } else { Curve::default() }
+        };
+        rates.outputs.iter().enumerate().map(curve).collect()
     }
 
     /// Where a point of the model is.

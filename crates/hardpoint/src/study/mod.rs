@@ -1,5 +1,6 @@
 //! Studies: questions that take many solutions.
 
+mod alone;
 mod comparison;
 mod difference;
 mod evaluation;
@@ -18,6 +19,7 @@ mod validity;
 mod verify;
 mod whatif;
 
+pub use alone::DriverRates;
 pub use comparison::{Comparison, StepError};
 pub use difference::{Difference, Scheme, finite_differences};
 pub use evaluation::{Cost, Evaluated, Motions, Rejection};
