@@ -34,6 +34,8 @@ pub struct Session {
     patient: Arc<AtomicBool>,
     /// The documents of the cases that were done, while there are several.
     cases: Mutex<Option<Vec<serde_json::Value>>>,
+    /// The one that is being done.
+    case: Mutex<Option<String>>,
 }
 
 /// Results of so many bytes are held at once while a motion is solved: little enough to be written in no time.
@@ -69,7 +71,14 @@ impl Session {
                 std::process::exit(Outcome::Interrupted as i32);
             }
         });
-        Self { json, started: Instant::now(), interrupted, patient, cases: Mutex::new(None) }
+        Self {
+            json,
+            started: Instant::now(),
+            interrupted,
+            patient,
+            cases: Mutex::new(None),
+            case: Mutex::new(None),
+        }
     }
 
     /// Whether what is done now ends by itself soon after a request to stop, and has something to save. What is not patient is
@@ -143,6 +152,7 @@ impl Session {
         let mut outcome = Outcome::Done;
         for (k, case) in cases.iter().enumerate() {
             let before = self.documents().as_ref().map_or(0, Vec::len);
+            *self.under_way() = Some((*case).into());
             outcome = outcome.and(each(of_case(CaseId(k)), Some(case)).unwrap_or_else(|outcome| outcome));
             for document in self.documents().iter_mut().flatten().skip(before) {
                 *document = json!({ "case": case, "result": document });
@@ -151,6 +161,7 @@ impl Session {
                 break;
             }
         }
+        *self.under_way() = None;
         let documents = self.documents().take();
         if self.json {
             self.print_json(&json!({ "generator": GENERATOR, "cases": documents }));
@@ -193,6 +204,10 @@ impl Session {
 
     fn documents(&self) -> MutexGuard<'_, Option<Vec<serde_json::Value>>> {
         self.cases.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    fn under_way(&self) -> MutexGuard<'_, Option<String>> {
+        self.case.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
     /// Writes the model file with a changed design, whole or not at all.
@@ -346,8 +361,13 @@ impl Session {
     pub fn tell(&self, file: &ModelFile, diagnostics: &[Diagnostic]) {
         if !self.json {
             let color = text::stderr_in_color();
+            let case = self.under_way().clone();
             for d in diagnostics {
-                text::complain(&format!("{}\n\n", file.render(d, color)));
+                let mut d = d.clone();
+                if let Some(case) = &case {
+                    d.message = format!("case `{case}`: {}", d.message);
+                }
+                text::complain(&format!("{}\n\n", file.render(&d, color)));
             }
         }
     }

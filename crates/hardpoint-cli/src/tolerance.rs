@@ -126,7 +126,11 @@ fn examine(
         ToleranceFailure::Drawn(rejection) => {
             let mut one = file.clone();
             one.model = Model::clone(motions.model(rejection.motion));
-            session.fail(&one, &[diagnose::stop(&one, &rejection.stop, 0, None)]);
+            let mut diagnostic = diagnose::stop(&one, &rejection.stop, 0, None);
+            if let Some(case) = case_name(&file.model, numbers[rejection.motion]) {
+                diagnostic.message = format!("case `{case}`: {}", diagnostic.message);
+            }
+            session.fail(&one, &[diagnostic]);
             Outcome::Stopped
         }
         ToleranceFailure::NothingVaries => {

@@ -6,12 +6,13 @@ use std::io::Write;
 use csv::WriterBuilder;
 use hardpoint::Solution;
 use hardpoint::model::{Dimension, Model};
-use hardpoint::study::metrics;
+use hardpoint::study::{Magnitude, metrics};
 use hardpoint_file::{Diagnostic, ModelFile, Units};
 use serde::Serialize;
 
 use crate::GENERATOR;
 use crate::columns::Column;
+use crate::course::{RoundOff, settled};
 use crate::csv::{no_formula, numbers};
 use crate::figures::{number, rounded, unit, with_unit};
 use crate::page::{Payload, Table};
@@ -66,7 +67,7 @@ pub struct CurveDifference {
     pub unit: String,
     /// The largest difference, second less first, with its sign.
     pub difference: Option<f64>,
-    /// Time of that, s.
+    /// Time of that, s; none where they are the same.
     pub time: Option<f64>,
     /// Over the output times that both were solved for: the first file's curve, and the second's.
     pub curves: [Vec<f64>; 2],
@@ -119,7 +120,6 @@ impl CompareFacts {
             })
         };
         let row = |c: &CurveDifference| {
-            let some = |x: Option<f64>| x.map_or("-".into(), |x| format!("{} {}", rounded(x, 4), c.unit));
             let range = |k: usize| {
                 let low = c.curves[k].iter().copied().fold(f64::INFINITY, f64::min);
                 let high = c.curves[k].iter().copied().fold(f64::NEG_INFINITY, f64::max);
@@ -130,7 +130,7 @@ impl CompareFacts {
                 }
             };
             let time = c.time.map_or("-".into(), |t| format!("{} s", number(t)));
-            vec![c.measure.clone(), range(0), range(1), some(c.difference), time]
+            vec![c.measure.clone(), range(0), range(1), shown_difference(c.difference, &c.unit), time]
         };
         let rows: Vec<_> = self.measures.iter().filter(|c| wanted(&c.measure)).map(row).collect();
         let measures = (!rows.is_empty()).then(|| Table {
@@ -195,9 +195,15 @@ impl Difference {
     fn row(&self) -> Vec<String> {
         let shown = |x: Option<f64>| x.map_or("not reached".into(), |x| with_unit(x, &self.unit));
         let [a, b] = self.values;
-        let difference = a.zip(b).map_or("-".into(), |(a, b)| format!("{} {}", rounded(b - a, 4), self.unit));
+        let difference = shown_difference(a.zip(b).map(|(a, b)| b - a), &self.unit);
         vec![self.name.clone(), shown(a), shown(b), difference]
     }
+}
+
+/// A difference, to four digits.
+fn shown_difference(by: Option<f64>, unit: &str) -> String {
+    let unit = if unit == "1" { String::new() } else { format!(" {unit}") };
+    by.map_or("-".into(), |by| format!("{}{unit}", rounded(by, 4)))
 }
 
 /// Whether two mechanisms have the same bodies and outputs in the same order, so that they can be drawn beside each other.
@@ -245,6 +251,7 @@ fn parameters(a: &Model, b: &Model, units: Units) -> Vec<Difference> {
 fn curves([a, b]: [Solved<'_>; 2], units: Units, steps: usize) -> Vec<CurveDifference> {
     let outputs = |s: &Solved<'_>| s.solution.measured.outputs.clone();
     let theirs = outputs(&b);
+    let round_off = RoundOff::new(&a.file.model, Magnitude::of_motion(&a.file.model, &a.solution.motion));
     let compare = |(m, output): (usize, &hardpoint::measure::Output)| {
         let other = theirs.iter().position(|o| o.name == output.name && o.dimension == output.dimension)?;
         let shown = |x: f64| units.from_si(output.dimension, x);
@@ -252,14 +259,15 @@ fn curves([a, b]: [Solved<'_>; 2], units: Units, steps: usize) -> Vec<CurveDiffe
             (0..steps).map(|k| shown(s.solution.measured.value(k, m)[0])).collect()
         };
         let both = [curve(&a, m), curve(&b, other)];
-        let differences = both[0].iter().zip(&both[1]).map(|(x, y)| y - x).enumerate();
+        let least = shown(round_off.value(output.dimension, 0));
+        let differences = both[0].iter().zip(&both[1]).map(|(x, y)| settled(y - x, least)).enumerate();
         let largest =
             differences.filter(|(_, d)| d.is_finite()).max_by(|x, y| x.1.abs().total_cmp(&y.1.abs()));
         Some(CurveDifference {
             measure: output.name.clone(),
             unit: unit(units, output.dimension),
             difference: largest.map(|(_, d)| d),
-            time: largest.map(|(k, _)| a.solution.motion.times[k]),
+            time: largest.filter(|(_, d)| *d != 0.0).map(|(k, _)| a.solution.motion.times[k]),
             curves: both,
         })
     };

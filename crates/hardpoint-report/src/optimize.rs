@@ -329,7 +329,7 @@ impl OptimizeFacts {
             files: Vec::new(),
             seconds: 0.0,
         };
-        facts.message = facts.sentence(status, found);
+        facts.message = facts.sentence(model, status, found);
         let begun = found.searches.iter().filter(|s| s.status != Status::Interrupted).count();
         if begun < found.searches.len() && status != Status::Interrupted {
             let all = found.searches.len();
@@ -343,7 +343,7 @@ impl OptimizeFacts {
     }
 
     /// How it ended, and what to do.
-    fn sentence(&self, status: Status, found: &Optimized) -> String {
+    fn sentence(&self, model: &Model, status: Status, found: &Optimized) -> String {
         let exceeded = || {
             let missed = |l: &&LimitFact| l.missed().is_some();
             let lines: Vec<String> = self.limits.iter().filter(missed).map(LimitFact::line).collect();
@@ -370,8 +370,11 @@ impl OptimizeFacts {
             }
             Status::Interrupted => "interrupted: the best design so far".into(),
             Status::NoStart => {
-                let why = found.drawn_refused.as_ref().map_or("", |r| r.why.as_str());
-                format!("no design could be judged, not even the one as drawn: {why}")
+                let drawn = found.drawn_refused.as_ref();
+                let case = drawn.and_then(|r| case_name(model, r.motion?));
+                let case = case.map_or(String::new(), |case| format!("case `{case}`: "));
+                let why = drawn.map_or("", |r| r.why.as_str());
+                format!("no design could be judged, not even the one as drawn: {case}{why}")
             }
         }
     }

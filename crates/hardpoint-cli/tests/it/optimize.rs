@@ -134,6 +134,30 @@ fn commands_do_all_cases_or_the_one_asked_for() {
 }
 
 #[test]
+fn what_happens_in_a_case_is_told_with_its_name() {
+    let bench = bench(&["strut_toe.toml", "strut_tolerances.toml"]);
+    let beyond = |name: &str| {
+        let text = bench.text(name);
+        let text = text.replace("strut_drive = \"40 - 80*t\"", "strut_drive = \"4000 - 80*t\"");
+        bench.put(name, &text);
+        text.contains("4000")
+    };
+    assert!(beyond("strut_toe.toml") && beyond("strut_tolerances.toml"));
+    let told = |command: &str, name: &str| {
+        let output = bench.run(&[command, name]);
+        assert_ne!(output.status.code(), Some(0));
+        [output.stdout, output.stderr].map(|text| String::from_utf8_lossy(&text).into_owned()).concat()
+    };
+    for (command, name) in
+        [("check", "strut_toe.toml"), ("optimize", "strut_toe.toml"), ("tolerance", "strut_tolerances.toml")]
+    {
+        let text = told(command, name);
+        assert!(text.contains("case `bump`: the mechanism"), "{text}");
+        assert!(!text.contains("case `steer`: "), "{text}");
+    }
+}
+
+#[test]
 fn one_case_is_searched_by_itself_with_its_own_goals_and_limits() {
     let bench = bench(&["strut_toe.toml"]);
     let output = bench.run(&["optimize", "strut_toe.toml", "--case", "bump", "-o", "out", "--json"]);
