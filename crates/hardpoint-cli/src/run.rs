@@ -131,7 +131,12 @@ fn grid_alone(
     } else {
         MapFact::table(&maps).iter().for_each(|table| text::print(&text::table(table)));
     }
-    let names = maps::write(&maps, &mut folder).map_err(|e| session.not_written(&e))?;
+    let mut names = maps::write(&maps, &mut folder).map_err(|e| session.not_written(&e))?;
+    if let Some(html) = page_of_maps(&file, options.common.formulation(), &maps) {
+        let page = folder.write("report.html", |out| out.write_all(html.as_bytes()));
+        page.map_err(|e| session.not_written(&e))?;
+        names.push("report.html");
+    }
     let written: Vec<String> = names.iter().map(|name| folder.path_of(name).display().to_string()).collect();
     folder.commit(&FILES).map_err(|e| session.not_written(&e))?;
     if !options.common.json {
@@ -146,6 +151,20 @@ struct CaseDone {
     case: String,
     folder: String,
     exit_code: u8,
+}
+/// The page of the file's first motion with the maps of a grid; `None` where that does not move.
+fn page_of_maps(file: &ModelFile, formulation: Formulation, maps: &[MapFact]) -> Option<String> {
+    let mut file = file.clone();
+    file.model = file.model.motions().into_iter().next()?;
+    let analysis = Analysis::with(&file.model, formulation).ok()?;
+    let solution = analysis.run();
+    if solution.motion.is_empty() {
+        return None;
+    }
+    let course = Course::of(&file.model, &solution);
+    let summary = Summary::new(&file, analysis.topology(), &course);
+    let request = Request::of(&file, &analysis, &course, &summary);
+    Some(report(&request, &|page| MapFact::page(maps, page)).expect("a payload is plain data"))
 }
 
 fn run_in(

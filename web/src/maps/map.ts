@@ -16,9 +16,9 @@ const TICK = 70
 /** More positions than this are not marked one by one. */
 const MOST_MARKED = 600
 
-/** A case over two drivers: a measure, or its derivative by a design variable, as areas between round values. */
-export function driverMap(map: GridMap): HTMLElement {
-  return new DriverMap(map).element
+/** A case over two drivers: a measure, or its derivative by a design variable, as areas between round values; at first the measure of that name. */
+export function driverMap(map: GridMap, first: string): HTMLElement {
+  return new DriverMap(map, first).element
 }
 
 class DriverMap {
@@ -33,10 +33,14 @@ class DriverMap {
   /** Position that the arrow keys went to: column and row. */
   #place?: [number, number]
 
-  constructor(private readonly map: GridMap) {
+  constructor(
+    private readonly map: GridMap,
+    first: string,
+  ) {
     const render = () => this.#render()
     const options = (names: string[]) => names.map((name, k) => el('option', { value: k }, name))
     this.#quantity = el('select', { 'aria-label': 'measure of the map', 'data-testid': 'map-quantity', onchange: () => this.#choose() }, ...options(map.quantities.map(({ name }) => name)))
+    this.#quantity.value = String(Math.max(0, map.quantities.findIndex(({ name }) => name === first)))
     this.#by = el('select', { 'aria-label': 'its value, or its sensitivity by', 'data-testid': 'map-by', onchange: render })
     this.#frame = el(
       'div',

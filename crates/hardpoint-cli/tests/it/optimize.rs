@@ -184,7 +184,7 @@ fn a_grid_is_solved_by_itself_and_every_page_of_the_file_has_it() {
     bench.put("mapped.toml", &format!("{text}\n[cases.map]\n{grid}\n"));
     let output = bench.run(&["run", "mapped.toml", "--case", "map", "-o", "map"]);
     assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
-    assert_eq!(bench.list("map"), ["map_sensitivity.csv", "maps.csv", "maps.json"]);
+    assert_eq!(bench.list("map"), ["map_sensitivity.csv", "maps.csv", "maps.json", "report.html"]);
     let told = String::from_utf8_lossy(&output.stdout).into_owned();
     assert!(
         told.contains("Map `map` over strut_drive and rack_drive") && told.contains("maps.csv"),
@@ -192,8 +192,8 @@ fn a_grid_is_solved_by_itself_and_every_page_of_the_file_has_it() {
     );
     assert_eq!(bench.run(&["run", "mapped.toml", "-o", "all", "--no-compare"]).status.code(), Some(0));
     assert_eq!(bench.text("all/maps.csv"), bench.text("map/maps.csv"));
-    for case in ["bump", "steer"] {
-        let page = bench.page(&format!("all/{case}/report.html"));
+    for page in ["all/bump", "all/steer", "map"] {
+        let page = bench.page(&format!("{page}/report.html"));
         assert_eq!((page["maps"].as_array().unwrap().len(), &page["maps"][0]["name"]), (1, &"map".into()));
         let places = page["maps"][0]["drivers"][0]["places"].as_array().unwrap();
         for (place, expected) in places.iter().zip([-30.0, -10.0, 10.0, 30.0]) {
