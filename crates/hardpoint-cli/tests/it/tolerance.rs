@@ -121,3 +121,44 @@ fn what_cannot_be_studied_is_told() {
     refused(&["tolerance", "exact.toml"], &["`exact.toml`", "tolerance = 0.1"]);
     refused(&["tolerance", "strut_tolerances.toml", "--case", "bmp"], &["did you mean `bump`?"]);
 }
+
+#[cfg(unix)]
+#[test]
+fn an_interrupted_study_keeps_the_designs_that_were_drawn() {
+    use std::process::Stdio;
+    use std::time::Duration;
+    let bench = bench(&["strut_tolerances.toml"]);
+    // How long it takes to draw something depends on the machine, so it is searched for.
+    let mut pause = Duration::from_millis(50);
+    let output = loop {
+        let arguments = ["tolerance", "strut_tolerances.toml", "--samples", "10000000", "-o", "out"];
+        let mut command = bench.command(&arguments);
+        let mut child = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+        // The folder is made after the handler is set.
+        while !bench.path("out").is_dir() {
+            assert_eq!(child.try_wait().unwrap(), None, "it ended without its folder");
+            std::thread::sleep(Duration::from_millis(1));
+        }
+        std::thread::sleep(pause);
+        let killed = std::process::Command::new("kill").args(["-INT", &child.id().to_string()]).status();
+        assert!(killed.unwrap().success());
+        let output = child.wait_with_output().unwrap();
+        match output.status.code() {
+            Some(130) if bench.path("out/samples.csv").is_file() => break output,
+            // Before the first design.
+            Some(130) => pause *= 2,
+            // After the last one.
+            Some(0) => pause /= 2,
+            code => panic!("exit {code:?}: {}", String::from_utf8_lossy(&output.stderr)),
+        }
+        std::fs::remove_dir_all(bench.path("out")).unwrap();
+    };
+    let summary = bench.json("out/summary.json");
+    assert_eq!(summary["status"], "interrupted");
+    let drawn = summary["samples"].as_u64().unwrap() as usize;
+    assert!(0 < drawn && drawn < 10_000_000, "{drawn}");
+    assert_eq!(bench.text("out/samples.csv").lines().count(), drawn + 1);
+    let shown = String::from_utf8(output.stdout).unwrap();
+    assert!(shown.contains(&format!("interrupted after {drawn} of 10000000 designs")), "{shown}");
+    assert!(!shown.contains("NaN") && !shown.contains("\u{2013} %"), "{shown}");
+}

@@ -221,9 +221,12 @@ pub fn tolerance(
     };
     if asked.samples > 0 {
         let sampled = study.sample(&deviations, &found, threads, &mut tell, more);
-        sampled.limits.iter().zip(&mut found.limits).for_each(|(y, limit)| limit.sampled = Some(*y));
         found.cost += sampled.cost;
-        found.sampled = Some(sampled);
+        // Nothing can be said of none, where the time is up before the first of them.
+        if sampled.samples > 0 {
+            sampled.limits.iter().zip(&mut found.limits).for_each(|(y, limit)| limit.sampled = Some(*y));
+            found.sampled = Some(sampled);
+        }
     }
     if let Some(rule) = asked.allocation {
         let mut allocation = allocation::allocate(&study, rule, &found);
@@ -234,7 +237,7 @@ pub fn tolerance(
             let loose = deviations.with_reaches(study.asked, &tolerances);
             let sampled = study.sample(&loose, &found, threads, &mut tell, more);
             found.cost += sampled.cost;
-            allocation.sampled = Some(sampled);
+            allocation.sampled = Some(sampled).filter(|s| s.samples > 0);
         }
         found.allocation = Some(allocation);
     }
