@@ -437,8 +437,7 @@ impl Swept<'_> {
         };
         let count_asked = self.sweep.plan().count();
         let (status, message) = if tally.designs < count_asked {
-            let done = format!("interrupted after {} of {count_asked} designs", tally.designs);
-            ("interrupted", format!("{done}; the same command goes on where it ended"))
+            ("interrupted", format!("interrupted after {} of {count_asked} designs", tally.designs))
         } else if tally.failed == tally.designs {
             ("no_design", "no design moves to its end: narrow the ranges, or see below why".to_owned())
         } else {
