@@ -15,9 +15,10 @@ use hardpoint_report::course::Course;
 use hardpoint_report::diagnose;
 use hardpoint_report::figures::some_of;
 use hardpoint_report::optimize::case_name;
+use hardpoint_report::page::SweepPlot;
 use hardpoint_report::payload::{Request, report};
 use hardpoint_report::summary::Summary;
-use hardpoint_report::sweep::{SweepFacts, SweepPlots, Swept, Tally};
+use hardpoint_report::sweep::{SweepFacts, Swept, Tally};
 use hardpoint_report::table::{TableFormat, TableWriter};
 
 use crate::args::{Method, Sweep, TableForm};
@@ -275,7 +276,7 @@ impl Results<'_> {
                 Some(folder)
             }
         };
-        let (mut facts, plots) = self.swept.facts(&tally, |k| self.journal.column(k)).map_err(not_read)?;
+        let (mut facts, plot) = self.swept.facts(&tally, |k| self.journal.column(k)).map_err(not_read)?;
         if facts.status == "interrupted" {
             facts.message += match &folder {
                 Some(_) => "; the same command goes on where it ended",
@@ -284,7 +285,7 @@ impl Results<'_> {
         }
         facts.files = files;
         let Some(mut folder) = folder else { return Ok((facts, None)) };
-        let written = self.write_pages(&mut folder, &mut facts, &plots);
+        let written = self.write_pages(&mut folder, &mut facts, &plot);
         written.map_err(|e| session.not_written(&e))?;
         let summary = folder.path_of("summary.json").display().to_string();
         facts.files.push(summary.clone());
@@ -328,7 +329,7 @@ impl Results<'_> {
         &self,
         folder: &mut Folder,
         facts: &mut SweepFacts,
-        plots: &SweepPlots,
+        plot: &SweepPlot,
     ) -> Result<(), NotWritten> {
         let Swept { file, numbers, motions, .. } = self.swept;
         for (k, analysis) in motions.analyses().iter().enumerate() {
@@ -336,7 +337,7 @@ impl Results<'_> {
                 Some(case) => format!("report-{}.html", file_name(&case)),
                 None => "report.html".into(),
             };
-            let Some(html) = self.page(analysis, k, facts, plots) else { continue };
+            let Some(html) = self.page(analysis, k, facts, plot) else { continue };
             folder.write(&name, |out| out.write_all(html.as_bytes()))?;
             facts.files.push(folder.path_of(&name).display().to_string());
         }
@@ -349,7 +350,7 @@ impl Results<'_> {
         analysis: &Analysis<'_>,
         motion: usize,
         facts: &SweepFacts,
-        plots: &SweepPlots,
+        plot: &SweepPlot,
     ) -> Option<String> {
         let mut file = self.swept.file.clone();
         file.model = Model::clone(analysis.model());
@@ -361,7 +362,7 @@ impl Results<'_> {
         let mut summary = Summary::new(&file, analysis.topology(), &course);
         summary.diagnostics = diagnose::all(&file, &summary, &course, None);
         let request = Request::of(&file, analysis, &course, &summary);
-        let finish = |page| facts.page(&self.swept, plots, motion, page, &today.measured.outputs);
+        let finish = |page| facts.page(&self.swept, plot, motion, page, &today.measured.outputs);
         Some(report(&request, &finish).expect("a payload is plain data"))
     }
 }

@@ -10,10 +10,11 @@ use hardpoint::study::{
 use hardpoint_file::{ModelFile, Units};
 use serde::Serialize;
 
+use crate::csv::no_formula;
 use crate::facts::variable_unit;
 use crate::figures::{count, number, seconds, unit, with_unit};
 use crate::optimize::{BeforeAfter, Evaluations, case_name};
-use crate::page::{Fact, Payload, Table};
+use crate::page::{Fact, Payload, SweepAxis, SweepIndex, SweepPlot, Table};
 use crate::table::Cells;
 use crate::tolerance::{FailureFact, bar, header, percent, titled};
 
@@ -218,10 +219,10 @@ impl Swept<'_> {
     pub fn columns(&self) -> Vec<(String, Cells)> {
         let variable = |range: &SweepRange| {
             let variable = &self.model().variables[range.variable.0];
-            format!("{} [{}]", variable.name, variable_unit(self.model(), self.units(), variable))
+            with_brackets(&variable.name, &variable_unit(self.model(), self.units(), variable))
         };
         let metric =
-            |of: &SweptMetric| format!("{} [{}]", self.title(*of), unit(self.units(), self.dimension(*of)));
+            |of: &SweptMetric| with_brackets(&self.title(*of), &unit(self.units(), self.dimension(*of)));
         let numbers = self.asked.ranges.iter().map(variable).chain(self.sweep.metrics().iter().map(metric));
         let mut columns = vec![("design".to_owned(), Cells::Whole(Vec::new()))];
         columns.extend(numbers.map(|name| (name, Cells::Numbers(Vec::new()))));
@@ -267,7 +268,7 @@ impl Swept<'_> {
         columns.push(("time [s]".to_owned(), Cells::Numbers(Vec::new())));
         let curve = |m: &usize| {
             let dimension = self.model().dimension(OutputSource::Measure(*m));
-            format!("{} [{}]", self.model().measures[*m].name, unit(self.units(), dimension))
+            with_brackets(&self.model().measures[*m].name, &unit(self.units(), dimension))
         };
         columns.extend(self.asked.curves.iter().map(|m| (curve(m), Cells::Numbers(Vec::new()))));
         columns
@@ -364,7 +365,7 @@ impl Swept<'_> {
         &self,
         tally: &Tally,
         mut column: impl FnMut(usize) -> io::Result<Vec<f64>>,
-    ) -> io::Result<(SweepFacts, SweepPlots)> {
+    ) -> io::Result<(SweepFacts, SweepPlot)> {
         let (file, asked) = (self.file, self.asked);
         let mut drawn = Drawn { numbers: self.drawn_numbers(tally.designs), ..Drawn::default() };
         drawn.variables = vec![Vec::new(); asked.ranges.len()];
@@ -415,8 +416,8 @@ impl Swept<'_> {
             drawn.metrics.push(some);
         }
         let facts = self.assembled(tally, metrics);
-        let plots = SweepPlots { drawn, of: tally.designs };
-        Ok((facts, plots))
+        let plot = plot(&facts, drawn);
+        Ok((facts, plot))
     }
 
     fn assembled(&self, tally: &Tally, metrics: Vec<SweptFact>) -> SweepFacts {
@@ -471,12 +472,41 @@ impl Swept<'_> {
     }
 }
 
-/// The designs that the page draws.
-#[derive(Clone, Debug)]
-pub struct SweepPlots {
-    drawn: Drawn,
-    /// How many designs there are in all.
-    of: usize,
+/// What the page draws.
+fn plot(facts: &SweepFacts, drawn: Drawn) -> SweepPlot {
+    let variable = |(v, values): (&SweptVariable, Vec<f64>)| SweepAxis {
+        name: v.name.clone(),
+        unit: v.unit.clone(),
+        metric: false,
+        values: values.into_iter().collect(),
+    };
+    let metric = |(m, values): (&SweptFact, Vec<f64>)| SweepAxis {
+        name: titled(&m.name, &m.case),
+        unit: m.unit.clone(),
+        metric: true,
+        values: values.into_iter().collect(),
+    };
+    let first = facts.variables.len();
+    let index = |(m, (variable, i)): (usize, (usize, &InfluenceFact))| {
+        let (first_order, total) = (i.first.zip(i.first_error)?, i.total.zip(i.total_error)?);
+        let pair = |(x, error)| [x, error];
+        Some(SweepIndex { metric: first + m, variable, first: pair(first_order), total: pair(total) })
+    };
+    let influences = facts.metrics.iter().enumerate();
+    let influences = influences.flat_map(|(m, fact)| fact.influences.iter().enumerate().map(move |i| (m, i)));
+    let axes = facts.variables.iter().zip(drawn.variables).map(variable);
+    SweepPlot {
+        designs: facts.designs,
+        step: drawn.numbers.get(1).copied().unwrap_or(1),
+        axes: axes.chain(facts.metrics.iter().zip(drawn.metrics).map(metric)).collect(),
+        indices: influences.filter_map(index).collect(),
+    }
+}
+
+/// A column's name with its unit; a plain number has none.
+fn with_brackets(name: &str, unit: &str) -> String {
+    let name = no_formula(name);
+    if unit.is_empty() || unit == "1" { name.into() } else { format!("{name} [{unit}]") }
 }
 
 fn common_divisor(a: usize, b: usize) -> usize {
@@ -652,7 +682,7 @@ impl SweepFacts {
     pub fn page(
         &self,
         swept: &Swept<'_>,
-        _plots: &SweepPlots,
+        plot: &SweepPlot,
         motion: usize,
         mut page: Payload,
         outputs: &[Output],
@@ -671,6 +701,6 @@ impl SweepFacts {
         let mut checks = vec![result];
         checks.extend(self.tables());
         checks.append(&mut page.checks);
-        Payload { checks, ..page }
+        Payload { checks, sweep: Some(plot.clone()), ..page }
     }
 }
