@@ -16,6 +16,7 @@ Examples:
   hardpoint whatif models/macpherson.toml --set tie_rod_outer.z=+2mm --measure toe
   hardpoint optimize models/four_bar_inverse.toml --save found.toml
   hardpoint tolerance models/studies/strut_tolerances.toml -o results/strut
+  hardpoint sweep models/studies/strut_sweep.toml -o results/sweep
 
 Exit codes:
     0  done; for verify: every variable passed
@@ -61,6 +62,8 @@ pub enum Command {
     Optimize(Optimize),
     /// Say what the tolerances of the design variables come to: spread, yield, what contributes, the loosest that keep the limits
     Tolerance(Tolerance),
+    /// Solve many designs over the ranges of the design variables, exactly: a table of their metrics, what is best, what matters
+    Sweep(Sweep),
     /// Print the JSON Schema of model files, for editors
     #[command(after_help = "Example:\n  hardpoint schema > hardpoint.schema.json")]
     Schema,
@@ -412,6 +415,92 @@ pub struct Tolerance {
     /// Solve designs on so many threads; what is found does not depend on it [default: one for each core]
     #[arg(long, value_name = "N")]
     pub threads: Option<NonZero<usize>>,
+}
+
+const AFTER_SWEEP: &str = "\
+Variables that have `bounds` in the model file are swept within them, or those of
+`[sweep.variables]` within the ranges there; `--range` gives others. Ranges are in the
+units of the file: of a parameter its values, of all others changes (docs/sweep.md).
+A design that does not assemble, locks or reaches a dead point keeps its row, with
+the reason.
+
+With --output it writes into the folder:
+  designs.csv   a row for each design: its variables and metrics (or designs.parquet)
+  curves.csv    a row for each output time of each design, with --curves (or curves.parquet)
+  report.html   how metrics go with variables (report-CASE.html for each case)
+  summary.json  all that is printed
+A sweep that is interrupted or killed leaves sweep.partial there: the same command
+goes on where it ended, and the files are the same to the last byte.
+
+Examples:
+  hardpoint sweep models/studies/strut_sweep.toml -o results/sweep
+  hardpoint sweep models/studies/strut_sweep.toml --method indices --samples 2000
+  hardpoint sweep models/macpherson.toml --range B_z=-5..5 --range D_z=-3..3 --method factorial --levels 11
+  hardpoint sweep models/studies/strut_sweep.toml --designs mine.csv --curves toe --format parquet -o results/mine";
+
+/// `hardpoint sweep`.
+#[derive(Args, Debug)]
+#[command(after_help = AFTER_SWEEP)]
+pub struct Sweep {
+    #[command(flatten)]
+    pub common: Common,
+    #[command(flatten)]
+    pub motions: Motions,
+    /// Write tables, a report and summary.json into this folder
+    #[arg(short, long, value_name = "DIR")]
+    pub output: Option<PathBuf>,
+    /// How designs are chosen within the ranges [default: as the file says, or sobol]
+    #[arg(long, value_enum)]
+    pub method: Option<Method>,
+    /// Choose so many designs; with indices so many pairs of them [default: as the file says, or 1000]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1_000_000_000))]
+    pub samples: Option<u32>,
+    /// Choose them from this number [default: as the file says, or 1]
+    #[arg(long, value_name = "N")]
+    pub seed: Option<u32>,
+    /// In a factorial, so many values of every variable [default: as the file says, or 3]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(2..=1_000_000))]
+    pub levels: Option<u32>,
+    /// Solve the designs of a CSV file, whose first line names design variables
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["method", "samples", "seed", "levels", "range"])]
+    pub designs: Option<PathBuf>,
+    /// Sweep this variable from here to there; may be given several times
+    #[arg(long, value_name = "NAME=FROM..TO", allow_hyphen_values = true)]
+    pub range: Vec<String>,
+    /// Keep the curve of this measure too; may be given several times
+    #[arg(long, value_name = "NAME")]
+    pub curves: Vec<String>,
+    /// Write tables as text, or as Parquet
+    #[arg(long, value_enum, default_value_t = TableForm::Csv)]
+    pub format: TableForm,
+    /// Solve designs on so many threads; what is found does not depend on it [default: one for each core]
+    #[arg(long, value_name = "N")]
+    pub threads: Option<NonZero<usize>>,
+    /// Begin anew where the folder holds a sweep that has not ended
+    #[arg(long)]
+    pub restart: bool,
+}
+
+/// How designs are chosen.
+#[derive(Clone, Copy, Debug, ValueEnum)]
+pub enum Method {
+    /// Every combination of evenly spaced values
+    Factorial,
+    /// At random, one in each slice of every range
+    LatinHypercube,
+    /// Evenly, however many there are
+    Sobol,
+    /// As Sobol's indices of sensitivity need them: for v variables, (v + 2) times as many designs as samples
+    Indices,
+}
+
+/// How the tables of a sweep are written.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum TableForm {
+    /// Text
+    Csv,
+    /// Apache Parquet
+    Parquet,
 }
 
 /// By which rule tolerances are sought.

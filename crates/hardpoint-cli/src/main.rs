@@ -4,11 +4,13 @@ mod args;
 mod check;
 mod compare;
 mod folder;
+mod journal;
 mod maps;
 mod optimize;
 mod outcome;
 mod run;
 mod session;
+mod sweep;
 mod tables;
 mod text;
 mod tolerance;
@@ -44,6 +46,7 @@ fn main() -> ExitCode {
         Command::Compare(options) => compare::compare(&options),
         Command::Optimize(options) => optimize::run(&options),
         Command::Tolerance(options) => tolerance::run(&options),
+        Command::Sweep(options) => sweep::run(&options),
         Command::Schema => {
             text::print(&hardpoint_file::schema());
             Outcome::Done

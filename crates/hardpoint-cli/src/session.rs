@@ -14,7 +14,7 @@ use hardpoint::model::CaseId;
 use hardpoint::motion::Execution;
 use hardpoint::topology::{Formulation, TopologyFault};
 use hardpoint::{Analysis, Footprint, Run, Solution};
-use hardpoint_file::{Diagnostic, ModelFile, ReadError};
+use hardpoint_file::{Diagnostic, Diagnostics, ModelFile, ReadError};
 use hardpoint_report::course::{Course, Gathering};
 use hardpoint_report::figures::{bytes, some_of};
 use hardpoint_report::{GENERATOR, diagnose};
@@ -100,14 +100,18 @@ impl Session {
     /// Reads the model, or tells what is wrong with it.
     pub fn read(&self, path: &Path) -> Result<ModelFile, Outcome> {
         hardpoint_file::read(path).map_err(|error: ReadError| {
-            let diagnostics = error.diagnostics();
-            if self.json {
-                self.print_error(diagnostics.list());
-            } else {
-                text::complain(&format!("{}\n", diagnostics.render(text::stderr_in_color())));
-            }
+            self.not_read(error.diagnostics());
             Outcome::BadModel
         })
+    }
+
+    /// Tells what is wrong with a file that was read.
+    pub fn not_read(&self, diagnostics: &Diagnostics) {
+        if self.json {
+            self.print_error(diagnostics.list());
+        } else {
+            text::complain(&format!("{}\n", diagnostics.render(text::stderr_in_color())));
+        }
     }
 
     /// Reads the model and does a command for its motion; of a model with cases, for one case or for each of them, one after the
@@ -466,12 +470,14 @@ pub struct Meter {
     unit: &'static str,
     started: Instant,
     bar: Option<ProgressBar>,
+    /// So much was done before, of work whose rate is shown.
+    rate_after: Option<usize>,
 }
 
 impl Meter {
     /// A meter of this work.
     pub fn new(what: &'static str, unit: &'static str) -> Self {
-        Self { what, unit, started: Instant::now(), bar: None }
+        Self { what, unit, started: Instant::now(), bar: None, rate_after: None }
     }
 
     /// A sign that work of unknown length goes on.
@@ -481,7 +487,13 @@ impl Meter {
             bar.set_style(style);
         }
         bar.enable_steady_tick(Duration::from_millis(200));
-        Self { what, unit: "", started: Instant::now(), bar: Some(bar) }
+        Self { what, unit: "", started: Instant::now(), bar: Some(bar), rate_after: None }
+    }
+
+    /// With its rate, of work of which so much was done before.
+    pub fn with_rate(mut self, done: usize) -> Self {
+        self.rate_after = Some(done);
+        self
     }
 
     /// Shows how far the work is.
@@ -490,10 +502,15 @@ impl Meter {
         if self.bar.is_none() && self.started.elapsed() > PATIENCE {
             let bar = ProgressBar::with_draw_target(Some(total as u64), ProgressDrawTarget::stderr());
             // What is left of the line is the bar.
+            let rate = self.rate_after.map_or("", |_| "{per_sec}, ");
             let template =
-                format!("{} {{wide_bar}} {{pos}} of {{len}} {}, {{eta}} left", self.what, self.unit);
+                format!("{} {{wide_bar}} {{pos}} of {{len}} {}, {rate}{{eta}} left", self.what, self.unit);
             if let Ok(style) = ProgressStyle::with_template(&template) {
                 bar.set_style(style);
+            }
+            if let Some(before) = self.rate_after {
+                bar.set_position(before as u64);
+                bar.reset_eta();
             }
             self.bar = Some(bar);
         }

@@ -45,7 +45,7 @@ use std::path::Path;
 
 use hardpoint::{
     draft::{Fault, Section},
-    model::Model,
+    model::{Model, SweepRange, Sweeping, VariableId},
 };
 use toml::de::DeTable;
 
@@ -105,6 +105,48 @@ impl ModelFile {
         let index = if section == Section::Bodies { index.checked_sub(1)? } else { index };
         let at = hardpoint::draft::Locus { section, index, key: "", item: None };
         self.places.find(&at)
+    }
+
+    /// The designs that a CSV file lists, wherever it lies: its first line names design variables, each line below has their values, in the
+    /// file's units; of a parameter its value, of all others a change. What comes out is changes in SI, as in
+    /// [`Sweeping`](hardpoint::model::Sweeping).
+    ///
+    /// # Errors
+    /// What is wrong with it.
+    pub fn designs(&self, path: &Path) -> Result<(Vec<SweepRange>, Vec<Vec<f64>>), Diagnostics> {
+        let name = path.display().to_string();
+        let source = Source::new(&name, "");
+        let refused = |code, message: String, notes: Vec<String>, help: Option<String>| {
+            let d = source.diagnostic(Severity::Error, code, message, None);
+            let d = notes.into_iter().fold(d, Diagnostic::note);
+            Diagnostics::new(source.clone(), vec![help.into_iter().fold(d, Diagnostic::help)])
+        };
+        let (names, rows) =
+            read::sweep::list_at(path).map_err(|e| refused(e.code, e.message, e.notes, e.help))?;
+        let mut variables = Vec::new();
+        for (column, wanted) in names.iter().enumerate() {
+            let known = self.model.variables.iter().position(|v| v.name == *wanted);
+            let Some(k) = known else {
+                let all = self.model.variables.iter().map(|v| v.name.as_str());
+                let help = closest(wanted, all).map(|c| format!("did you mean `{c}`?"));
+                let message = format!("there is no design variable named `{}`", shown(wanted));
+                let note = format!("it heads column {} of `{}`", column + 1, shown(&name));
+                return Err(refused("HP0247", message, vec![note], help));
+            };
+            if variables.contains(&VariableId(k)) {
+                let message = format!("`{}` heads two columns of `{}`", shown(wanted), shown(&name));
+                return Err(refused("HP0247", message, Vec::new(), Some("remove one of the two".into())));
+            }
+            variables.push(VariableId(k));
+        }
+        let in_si = |row: &Vec<f64>| {
+            let value = |(v, x): (&VariableId, &f64)| {
+                self.units.to_si(self.model.variables[v.0].quantity, *x) - self.model.drawn_value(*v)
+            };
+            variables.iter().zip(row).map(value).collect()
+        };
+        let rows: Vec<Vec<f64>> = rows.iter().map(in_si).collect();
+        Ok((Sweeping::spanned(&variables, &rows), rows))
     }
 
     /// A diagnostic about an entry of the model, or about all of it, for [`render`](Self::render).

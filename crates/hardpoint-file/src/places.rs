@@ -68,7 +68,7 @@ impl EntryPlace {
     }
 }
 
-const SECTIONS: [Section; 24] = [
+const SECTIONS: [Section; 26] = [
     Section::Model,
     Section::Parameters,
     Section::Hardpoints,
@@ -93,6 +93,8 @@ const SECTIONS: [Section; 24] = [
     Section::Tolerances,
     Section::Correlations,
     Section::ToleranceLimits,
+    Section::Sweep,
+    Section::SweepRanges,
 ];
 
 /// The places of all entries, by section and place in the draft's list.

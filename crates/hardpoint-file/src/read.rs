@@ -10,6 +10,7 @@ mod mesh;
 mod optimize;
 mod parameters;
 mod results;
+pub(crate) mod sweep;
 mod tolerance;
 mod wheels;
 
@@ -80,6 +81,8 @@ pub(crate) const MODEL: Table = table! {
     may "optimize": Shape::Table(&optimize::OPTIMIZE), "{ goals = { toe = { metric = \"toe_error\" } } }";
     /// How far off the design may be made, and what that must keep.
     may "tolerance": Shape::Table(&tolerance::TOLERANCE), "{ variables = { B_x = 0.1 } }";
+    /// Which designs are swept over, and what is kept of them.
+    may "sweep": Shape::Table(&sweep::SWEEP), "{ variables = { B_x = [-5, 5] } }";
 };
 const UNITS: Table = table! {
     /// The units of all numbers in the file.
@@ -247,6 +250,8 @@ pub(crate) fn tables() -> [(&'static str, Shape); 31] {
         ("tolerances of variables", Shape::Table(&tolerance::ENTRY_TABLE)),
         ("correlations", Shape::Table(&tolerance::CORRELATION)),
         ("limits of tolerances", Shape::Table(&tolerance::LIMIT)),
+        ("sweep", Shape::Table(&sweep::SWEEP)),
+        ("ranges of variables", Shape::Table(&sweep::RANGE)),
     ]
 }
 
@@ -307,6 +312,7 @@ impl Reader<'_> {
         self.cases(&fields, &mut raw);
         self.optimize(&fields, &mut raw);
         self.tolerance(&fields, &mut raw);
+        self.sweep(&fields, &mut raw);
         raw
     }
 

@@ -320,6 +320,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         over: None,
         designs: vec![],
         maps: vec![],
+        sweep: None,
         margin: Some(Margin {
             value: times.iter().map(|t| 0.2 - 0.15 * (TAU * t / DURATION).cos()).collect(),
             note: "The least margin is 0.05 at t = 0 s: about one of 16 digits is lost there.".into(),

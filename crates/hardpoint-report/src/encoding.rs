@@ -115,6 +115,9 @@ fn each_curve(payload: &mut Payload, visit: &mut impl FnMut(&mut Curve, Precisio
         visit(&mut quantity.values, Full, 1);
         quantity.sensitivities.iter_mut().for_each(|s| visit(&mut s.values, Drawn, 1));
     }
+    for axis in payload.sweep.iter_mut().flat_map(|sweep| &mut sweep.axes) {
+        visit(&mut axis.values, Drawn, 1);
+    }
     if let Some(margin) = &mut payload.margin {
         // It is drawn over decades.
         visit(&mut margin.value, Full, 1);

@@ -111,6 +111,8 @@ pub struct Payload {
     pub designs: Vec<Design>,
     /// Measures over grids of two drivers.
     pub maps: Vec<GridMap>,
+    /// Designs that were swept over.
+    pub sweep: Option<SweepPlot>,
     /// How far from singular the mechanism is over time, if anything is solved for.
     pub margin: Option<Margin>,
     /// Design variables with their sensitivities.
@@ -439,6 +441,48 @@ pub struct Quantity {
     pub wanted: Curve,
 }
 
+/// Designs that were swept over: some of them, each as a point over variables and metrics.
+#[derive(Clone, Debug, Serialize)]
+#[cfg_attr(test, derive(TS))]
+pub struct SweepPlot {
+    /// So many were solved.
+    pub designs: usize,
+    /// Point k is design `k * step`.
+    pub step: usize,
+    /// The swept variables, then the metrics.
+    pub axes: Vec<SweepAxis>,
+    /// Sobol's indices, where they were asked for.
+    pub indices: Vec<SweepIndex>,
+}
+
+/// A variable or a metric of swept designs.
+#[derive(Clone, Debug, Serialize)]
+#[cfg_attr(test, derive(TS))]
+pub struct SweepAxis {
+    /// Its name, and the case where there are several.
+    pub name: String,
+    /// Its unit.
+    pub unit: String,
+    /// Whether it is a metric.
+    pub metric: bool,
+    /// Its value in each point.
+    pub values: Curve,
+}
+
+/// Sobol's indices of a metric by a variable, each with its standard error.
+#[derive(Clone, Debug, Serialize)]
+#[cfg_attr(test, derive(TS))]
+pub struct SweepIndex {
+    /// The metric, an index into [`SweepPlot::axes`].
+    pub metric: usize,
+    /// The variable, an index into [`SweepPlot::axes`].
+    pub variable: usize,
+    /// First order.
+    pub first: [f64; 2],
+    /// Total.
+    pub total: [f64; 2],
+}
+
 /// A case that sweeps two drivers over a grid. Tables have a row for each place of the second driver, with a number for each of the first.
 #[derive(Clone, Debug, Serialize)]
 #[cfg_attr(test, derive(TS))]
@@ -682,6 +726,7 @@ pub(crate) mod tests {
             over: None,
             designs: vec![],
             maps: vec![],
+            sweep: None,
             margin: None,
             variables: vec![],
             checks: vec![],

@@ -194,6 +194,7 @@ fn composed(request: &Request<'_>, alone: Option<&DriverRates>, detail: Detail) 
         over: None,
         designs,
         maps: Vec::new(),
+        sweep: None,
         margin: summary.margin.as_ref().map(|m| Margin {
             value: compose.curve(|k| m.series.get(k).copied().unwrap_or(f64::NAN)),
             note: m.sentence(),

@@ -504,17 +504,17 @@ impl Studied<'_> {
     }
 }
 
-fn header(names: &[&str]) -> Vec<String> {
+pub(crate) fn header(names: &[&str]) -> Vec<String> {
     names.iter().map(|n| (*n).to_owned()).collect()
 }
 
 /// A bar as text, as long as the part is large.
-fn bar(part: f64) -> String {
+pub(crate) fn bar(part: f64) -> String {
     "▇".repeat((BAR * part.clamp(0.0, 1.0)).round() as usize)
 }
 
 /// A part as a percentage.
-fn percent(part: f64) -> String {
+pub(crate) fn percent(part: f64) -> String {
     format!("{} %", rounded(100.0 * part, 4))
 }
 
@@ -746,7 +746,7 @@ impl YieldFact {
     }
 }
 
-fn titled(name: &str, case: &Option<String>) -> String {
+pub(crate) fn titled(name: &str, case: &Option<String>) -> String {
     case.as_ref().map_or(name.to_owned(), |case| format!("{name} ({case})"))
 }
 

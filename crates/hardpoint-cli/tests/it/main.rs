@@ -4,5 +4,6 @@ mod bench;
 mod golden;
 mod optimize;
 mod results;
+mod sweep;
 mod tolerance;
 mod whatif;

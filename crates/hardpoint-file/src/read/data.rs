@@ -22,7 +22,7 @@ pub(super) enum Column {
 pub(super) const FIRST_TWO: [Column; 2] = [Column::Number(1), Column::Number(2)];
 
 /// What is wrong with a data file.
-pub(super) struct DataError {
+pub(crate) struct DataError {
     pub code: &'static str,
     pub message: String,
     pub notes: Vec<String>,
@@ -44,7 +44,7 @@ impl DataError {
     }
 
     /// HP0112: what the file holds is no curve.
-    fn content(message: impl Into<String>, help: &str) -> Self {
+    pub(super) fn content(message: impl Into<String>, help: &str) -> Self {
         Self {
             code: "HP0112",
             message: message.into(),
@@ -134,7 +134,12 @@ pub(super) const TARGET: Curve = Curve {
 };
 
 fn text_of(folder: Option<&Path>, name: &str, of: &Curve) -> Result<String, DataError> {
-    String::from_utf8(bytes_of(folder, name, &of.wanted)?).map_err(|_| {
+    text_from(bytes_of(folder, name, &of.wanted)?, name)
+}
+
+/// What is in a file, as text.
+pub(super) fn text_from(bytes: Vec<u8>, name: &str) -> Result<String, DataError> {
+    String::from_utf8(bytes).map_err(|_| {
         let message = format!("the file `{}` is not a text in UTF-8", shown(name));
         DataError::unreadable(message, "save it as UTF-8 text")
     })
@@ -247,7 +252,7 @@ fn parse(text: &str, name: &str, columns: &[Column; 2], of: &Curve) -> Result<Ve
         for (k, place) in places.into_iter().enumerate() {
             let title = header.as_ref().and_then(|h| h.get(place)).map(|h| format!(" (`{}`)", shown(h)));
             let here = format!("`{name}`, line {line}, column {}{}", place + 1, title.unwrap_or_default());
-            point[k] = number(record.get(place).map(unquoted), &here)?;
+            point[k] = number(record.get(place).map(unquoted), &here, "every row needs both columns")?;
         }
         if let Some(before) = points.last().filter(|before| point[0] <= before[0]) {
             let message = format!(
@@ -274,7 +279,7 @@ fn parse(text: &str, name: &str, columns: &[Column; 2], of: &Curve) -> Result<Ve
 }
 
 /// What stands between the columns: a tab or a semicolon, if the first line has one, or a comma.
-fn delimiter(text: &str) -> u8 {
+pub(super) fn delimiter(text: &str) -> u8 {
     let mut lines = text.lines().filter(|l| !l.trim().is_empty() && !l.starts_with('#'));
     let first = lines.next().unwrap_or_default();
     *b"\t;".iter().find(|c| first.as_bytes().contains(c)).unwrap_or(&b',')
@@ -338,15 +343,15 @@ fn found(
 }
 
 /// A field without quotes that a blank before them has made a part of it.
-fn unquoted(field: &str) -> &str {
+pub(super) fn unquoted(field: &str) -> &str {
     field.strip_prefix('"').and_then(|f| f.strip_suffix('"')).map_or(field, str::trim)
 }
 
-fn number(field: Option<&str>, here: &str) -> Result<f64, DataError> {
+pub(super) fn number(field: Option<&str>, here: &str, needs: &str) -> Result<f64, DataError> {
     let help = "write numbers with a decimal point and without units";
     match field {
-        None => Err(DataError::content(format!("{here} is missing"), "every row needs both columns")),
-        Some("") => Err(DataError::content(format!("{here} is empty"), "every row needs both columns")),
+        None => Err(DataError::content(format!("{here} is missing"), needs)),
+        Some("") => Err(DataError::content(format!("{here} is empty"), needs)),
         Some(field) => match field.parse::<f64>() {
             Ok(x) if x.is_finite() => Ok(x),
             Ok(_) => Err(DataError::content(format!("{here}: `{field}` is not a finite number"), help)),

@@ -225,7 +225,12 @@ impl Reader<'_> {
     }
 
     /// A list of names.
-    fn names_in(&mut self, fields: &Fields<'_>, f: Field<'_>, expected: &str) -> Option<Vec<String>> {
+    pub(super) fn names_in(
+        &mut self,
+        fields: &Fields<'_>,
+        f: Field<'_>,
+        expected: &str,
+    ) -> Option<Vec<String>> {
         let subject = fields.subject(f.key);
         let list = self.list(f.value, &subject, expected)?;
         if list.len() > MOST_NAMES {

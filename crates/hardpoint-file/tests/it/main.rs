@@ -22,6 +22,7 @@ mod robustness;
 mod searches;
 mod shapes;
 mod studies;
+mod sweeps;
 mod synthesis;
 mod tape;
 mod tolerances;

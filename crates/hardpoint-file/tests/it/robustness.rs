@@ -74,6 +74,11 @@ const PIECES: [&str; 57] = [
     "[tolerance.variables]",
     "correlations = { c = { between = [\"C_x\", \"C_y\"], coefficient = 2 } }",
     "distribution = \"uniform\"",
+    "[sweep]",
+    "[sweep.variables]",
+    "method = \"indices\"",
+    "designs = \"../x.csv\"",
+    "C_x = { from = 2, to = 1, levels = 1 }",
 ];
 
 fn survives(text: &str) {
@@ -277,6 +282,7 @@ fn large_files_take_no_more_work_than_they_must() {
         ("tolerance.variables", "{ tolerance = 1, cost = 2 }"),
         ("tolerance.correlations", "{ between = [\"A_x\", \"A_y\"], coefficient = 0.5 }"),
         ("tolerance.limits", "{ metric = \"m\", max = 1 }"),
+        ("sweep.variables", "{ from = -1, to = 1, levels = 3 }"),
         ("optimize.limits", "{ hardpoint = \"A\", x = [2, 1], z = { max = 1 } }"),
     ] {
         grows_in_proportion(|n| many(table, entry, n));

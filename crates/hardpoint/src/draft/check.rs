@@ -9,6 +9,7 @@ mod joints;
 mod measures;
 mod motion;
 mod optimization;
+mod sweeping;
 mod tolerancing;
 mod wheels;
 
@@ -75,6 +76,7 @@ impl Model {
         c.times();
         c.optimization();
         c.tolerancing();
+        c.sweeping();
         c.faults.retain(|f| !draft.unread.has(f.at.section, f.at.index, f.at.key));
         if !c.faults.is_empty() || !draft.unread.is_empty() {
             return Err(c.faults);
@@ -201,6 +203,7 @@ impl<'a> Checker<'a> {
             grids: Vec::new(),
             optimization: None,
             tolerancing: None,
+            sweeping: None,
         };
         let ground = ["ground"].into_iter();
         let numbers = HashMap::from([

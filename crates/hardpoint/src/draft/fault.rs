@@ -81,6 +81,10 @@ pub enum Section {
     Correlations,
     /// [`super::TolerancingDraft::limits`].
     ToleranceLimits,
+    /// [`super::Draft::sweeping`].
+    Sweep,
+    /// [`super::SweepingDraft::ranges`].
+    SweepRanges,
 }
 
 /// A place in a draft.
@@ -119,8 +123,9 @@ impl fmt::Display for Section {
             Self::Goals => "goals",
             Self::Limits | Self::ToleranceLimits => "limits",
             Self::Tolerance => "tolerance",
-            Self::Tolerances => "variables",
+            Self::Tolerances | Self::SweepRanges => "variables",
             Self::Correlations => "correlations",
+            Self::Sweep => "sweep",
         })
     }
 }

@@ -21,7 +21,8 @@ use crate::expression::Expression;
 use crate::joint::{self, JointType, Quantity};
 use crate::law::Law;
 use crate::model::{
-    AllocationRule, Dimension, Reduction, Side, Tolerancing, Transmission, Vehicle, VehicleEnd,
+    AllocationRule, Dimension, Reduction, Side, SweepMethod, Sweeping, Tolerancing, Transmission, Vehicle,
+    VehicleEnd,
 };
 use crate::space::{Pose, Vec3};
 
@@ -69,6 +70,8 @@ pub struct Draft {
     pub optimization: Option<OptimizationDraft>,
     /// How far off the design may be made.
     pub tolerancing: Option<TolerancingDraft>,
+    /// Which designs are swept over, if the file says that.
+    pub sweeping: Option<SweepingDraft>,
     /// What of all this could not be read.
     pub unread: Unread,
 }
@@ -666,4 +669,73 @@ pub struct CorrelationDraft {
     pub between: [String; 2],
     /// Their coefficient.
     pub coefficient: f64,
+}
+
+/// Which designs are swept over; see [`Sweeping`].
+#[derive(Clone, Debug)]
+pub struct SweepingDraft {
+    /// How designs are chosen, where that is said.
+    pub method: Option<SweepMethod>,
+    /// How far variables go; all that have bounds, within these, where it is left out.
+    pub ranges: Option<Vec<SweepRangeDraft>>,
+    /// The designs of a list, in place of all that.
+    pub designs: Option<DesignListDraft>,
+    /// In a factorial, so many values of a variable that says nothing else.
+    pub levels: usize,
+    /// So many designs.
+    pub samples: usize,
+    /// From this number.
+    pub seed: u64,
+    /// The names of the metrics; all of them where they are left out.
+    pub metrics: Option<Vec<String>>,
+    /// The names of the measures whose curves are kept.
+    pub curves: Vec<String>,
+}
+
+impl Default for SweepingDraft {
+    fn default() -> Self {
+        Self {
+            method: None,
+            ranges: None,
+            designs: None,
+            levels: Sweeping::LEVELS,
+            samples: Sweeping::SAMPLES,
+            seed: Sweeping::SEED,
+            metrics: None,
+            curves: Vec::new(),
+        }
+    }
+}
+
+/// A range of a variable; see [`SweepRange`](crate::model::SweepRange). Its ends are in units of which so many make a metre or a radian;
+/// those of a parameter are its values.
+#[derive(Clone, Debug)]
+pub struct SweepRangeDraft {
+    /// The variable's name.
+    pub name: String,
+    /// Where it begins; at the variable's lower bound where it is left out.
+    pub low: Option<f64>,
+    /// Where it ends; at the upper bound where it is left out.
+    pub high: Option<f64>,
+    /// In a factorial, so many values.
+    pub levels: Option<usize>,
+    /// How many units of length make a metre.
+    pub per_metre: f64,
+    /// How many units of angle make a radian.
+    pub per_radian: f64,
+}
+
+/// Designs that are listed in a file, each as it would stand in a range.
+#[derive(Clone, Debug)]
+pub struct DesignListDraft {
+    /// The file.
+    pub file: String,
+    /// Per column, the variable's name.
+    pub names: Vec<String>,
+    /// Per design, its values.
+    pub rows: Vec<Vec<f64>>,
+    /// How many units of length make a metre.
+    pub per_metre: f64,
+    /// How many units of angle make a radian.
+    pub per_radian: f64,
 }

@@ -11,6 +11,7 @@ mod formula;
 mod measure;
 mod metric;
 mod optimization;
+mod sweeping;
 mod tolerancing;
 mod wheel;
 
@@ -25,6 +26,7 @@ pub use measure::{Combination, Dimension, KnownOrders, Measure, MeasureKind, Out
 pub(crate) use metric::on_target;
 pub use metric::{Metric, Reduction};
 pub use optimization::{Goal, Limit, Limited, Optimization};
+pub use sweeping::{SweepMethod, SweepRange, Sweeping};
 pub use tolerancing::{Allocating, AllocationRule, Correlation, Scatter, Tolerance, Tolerancing};
 pub use wheel::{Axle, AxleMeasure, Side, Vehicle, VehicleEnd, Wheel, WheelMeasure, WheelNeed};
 
@@ -114,6 +116,8 @@ pub struct Model {
     pub optimization: Option<Optimization>,
     /// How far off the design may be made, if the file says more of it than its variables.
     pub tolerancing: Option<Tolerancing>,
+    /// Which designs are swept over, if the file says that.
+    pub sweeping: Option<Sweeping>,
 }
 
 /// A named point of the design configuration.

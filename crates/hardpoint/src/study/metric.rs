@@ -44,11 +44,20 @@ pub fn metric_numbers<'m>(
     model: &'m Model,
     solution: &'m Solution,
 ) -> impl Iterator<Item = Option<f64>> + 'm {
-    let number = |metric: &Metric| {
-        let (y, x) = curves(solution, metric)?;
-        take(metric, &y, &x).map(|(value, _)| value)
-    };
-    model.metrics.iter().map(number)
+    model.metrics.iter().map(|metric| metric_number(metric, solution))
+}
+
+/// The same of one metric.
+pub(super) fn metric_number(metric: &Metric, solution: &Solution) -> Option<f64> {
+    let (y, x) = curves(solution, metric)?;
+    take(metric, &y, &x).map(|(value, _)| value)
+}
+
+/// The place that a metric of the whole model has among those of the motion of a number, if it is taken of that.
+pub(super) fn place_of(model: &Model, metric: usize, number: usize) -> Option<usize> {
+    let counts =
+        |m: &usize| model.metrics[*m].case.is_none_or(|case| model.cases.is_empty() || case.0 == number);
+    counts(&metric).then(|| (0..metric).filter(counts).count())
 }
 
 fn metric_value(model: &Model, solution: &Solution, metric: &Metric) -> MetricValue {

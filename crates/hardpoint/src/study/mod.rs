@@ -14,6 +14,7 @@ mod optimize;
 mod random;
 mod samples;
 mod second;
+mod sweep;
 mod tolerance;
 mod validity;
 mod verify;
@@ -33,8 +34,12 @@ pub use optimize::{
     Binding, Iteration, Judged, Optimality, Optimized, Progress, Refused, Search, Searching, Status, optimize,
 };
 pub use random::{Moments, design_stream, draw, moments};
-pub use samples::{Gathered, SampleRun};
+pub use samples::{BLOCK, Gathered, SampleRun};
 pub use second::SecondDerivatives;
+pub use sweep::{
+    Distribution, NoPlan, SobolIndex, Sweep, SweepPlan, SweptBlock, SweptCurves, SweptFailure, SweptMetric,
+    rank_correlation, sobol_indices,
+};
 pub use tolerance::{
     Allocated, Allocation, Band, CurveBands, Examination, Extreme, Failure, Impossible, LimitYield,
     MetricSpread, MonteCarlo, NONLINEAR, SampledCurve, SampledMetric, SecondOrder, Stage, ToleranceFailure,

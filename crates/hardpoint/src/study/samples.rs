@@ -16,7 +16,7 @@ use crate::run::{Run, Solution};
 use super::evaluation::Motions;
 
 /// Designs of one block: enough that what begins a block counts for nothing beside it, few enough that an interruption is soon heard.
-const BLOCK: usize = 512;
+pub const BLOCK: usize = 512;
 
 /// Which designs are solved, and how.
 pub struct SampleRun<'w> {

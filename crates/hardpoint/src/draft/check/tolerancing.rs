@@ -38,9 +38,11 @@ impl Checker<'_> {
         };
         let curves = match &t.curves {
             None => (0..self.model.measures.len()).collect(),
-            Some(names) => {
-                names.iter().enumerate().filter_map(|(k, name)| self.tolerated_curve(name, k)).collect()
-            }
+            Some(names) => names
+                .iter()
+                .enumerate()
+                .filter_map(|(k, name)| self.curve_of(name, HERE.item("curves", k)))
+                .collect(),
         };
         self.allocation_needs(t);
         if default.is_none() {
@@ -271,13 +273,6 @@ impl Checker<'_> {
             }
         }
         true
-    }
-
-    fn tolerated_curve(&mut self, name: &str, k: usize) -> Option<usize> {
-        let draft = self.draft;
-        let at = HERE.item("curves", k);
-        self.find("measure", name, at, draft.measures.iter().map(|m| m.name.as_str()))?;
-        self.model.measures.iter().position(|m| m.name == name)
     }
 
     /// HP0243: an allocation without what it is to find or keep.

@@ -20,7 +20,7 @@ use crate::sensitivity::Admissibility;
 
 use super::evaluation::{Cost, Evaluated, Motions, Rejection};
 use super::magnitude::Magnitude;
-use super::metric::metric_numbers;
+use super::metric::{metric_numbers, place_of};
 pub use allocation::{Allocated, Allocation, Impossible};
 pub use curves::{Band, CurveBands};
 use deviations::Deviations;
@@ -394,13 +394,6 @@ impl Study<'_> {
         }
         found
     }
-}
-
-/// The place of a metric among those of a motion of the model; `None` where it is not taken of it.
-fn place_of(model: &Model, metric: usize, number: usize) -> Option<usize> {
-    let counts =
-        |m: &usize| model.metrics[*m].case.is_none_or(|case| model.cases.is_empty() || case.0 == number);
-    counts(&metric).then(|| (0..metric).filter(counts).count())
 }
 
 /// The part of a normal distribution that is below x.

@@ -8,12 +8,13 @@ use crate::model::Dimension;
 use crate::motion::StopKind;
 use crate::run::Solution;
 use crate::study::evaluation::Cost;
-use crate::study::metric::metric_numbers;
+use crate::study::metric::{metric_numbers, place_of};
 use crate::study::samples::{Gathered, SampleRun};
+use crate::study::sweep::quantile;
 use crate::study::whatif::value_beside;
 
 use super::deviations::Deviations;
-use super::{CurveBands, Examination, MetricSpread, Stage, Study, place_of};
+use super::{CurveBands, Examination, MetricSpread, Stage, Study};
 
 /// What was found of designs that were drawn. All in SI.
 #[derive(Clone, Debug, Default)]
@@ -287,12 +288,6 @@ impl SampledMetric {
         let skewness = if spread { third / second.powf(1.5) } else { 0.0 };
         let sigma = (second * n / (n - 1.0)).sqrt();
         sorted.sort_by(f64::total_cmp);
-        // Between the values on either side, in proportion.
-        let quantile = |part: f64| {
-            let at = part * (n - 1.0);
-            let (k, rest) = (at.floor() as usize, at.fract());
-            sorted[k] + rest * (sorted[usize::min(k + 1, sorted.len() - 1)] - sorted[k])
-        };
         Self {
             known: sorted.len(),
             mean: [mean, sigma / n.sqrt()],
@@ -300,7 +295,7 @@ impl SampledMetric {
             sigma: [sigma, 0.5 * sigma * ((kurtosis - 1.0) / n).sqrt()],
             skewness,
             kurtosis,
-            quantiles: [0.0, BEYOND, 0.5, 1.0 - BEYOND, 1.0].map(quantile),
+            quantiles: [0.0, BEYOND, 0.5, 1.0 - BEYOND, 1.0].map(|part| quantile(&sorted, part)),
             values,
         }
     }

@@ -1,0 +1,398 @@
+//! `hardpoint sweep`.
+
+use std::fmt::Write as _;
+use std::io::{self, Write};
+use std::num::NonZero;
+use std::ops::ControlFlow;
+use std::path::Path;
+
+use hardpoint::Analysis;
+use hardpoint::draft::did_you_mean;
+use hardpoint::model::{Model, SweepMethod, SweepRange, Sweeping, VariableId};
+use hardpoint::study::{Motions, NoPlan, Sweep as Designs};
+use hardpoint_file::ModelFile;
+use hardpoint_report::course::Course;
+use hardpoint_report::diagnose;
+use hardpoint_report::figures::some_of;
+use hardpoint_report::optimize::case_name;
+use hardpoint_report::page::SweepPlot;
+use hardpoint_report::payload::{Request, report};
+use hardpoint_report::summary::Summary;
+use hardpoint_report::sweep::{SweepFacts, Swept, Tally};
+use hardpoint_report::table::{TableFormat, TableWriter};
+
+use crate::args::{Method, Sweep, TableForm};
+use crate::folder::{Folder, NotWritten, file_name};
+use crate::journal::{Checksum, Fingerprint, Journal, NoJournal};
+use crate::outcome::Outcome;
+use crate::session::{Meter, Session, json_text};
+use crate::text;
+
+/// What a sweep that has not ended leaves in its folder.
+const JOURNAL: &str = "sweep.partial";
+/// The tables and the summary; of an earlier sweep none stays beside those of this one.
+const FILES: [&str; 5] = ["designs.csv", "designs.parquet", "curves.csv", "curves.parquet", "summary.json"];
+
+/// Sweeps over designs, writes, and prints what they come to.
+pub fn run(options: &Sweep) -> Outcome {
+    let session = Session::begin(options.common.json);
+    sweep_in(&session, options).unwrap_or_else(|outcome| outcome)
+}
+
+fn sweep_in(session: &Session, options: &Sweep) -> Result<Outcome, Outcome> {
+    let file = session.read(&options.common.model)?;
+    let numbers = session.numbers_of(&file, &options.motions)?;
+    let asked = asked(session, &file, options)?;
+    let models = file.model.motions();
+    let models: Vec<Model> = numbers.iter().map(|k| models[*k].clone()).collect();
+    let motions = Motions::of(&models, options.common.formulation());
+    let motions = motions.map_err(|(_, fault)| session.cannot_be_driven(&file, &fault))?;
+    let designs = Designs::new(&file.model, &motions, &numbers, &asked);
+    let designs = designs.map_err(|why| session.misunderstood(&no_plan(why, &file)))?;
+    let path = options.output.as_ref();
+    let folder = path.map(|path| Folder::open(path)).transpose().map_err(|e| session.not_written(&e))?;
+    let mut journal =
+        journal(session, folder.as_ref(), fingerprint(&file, &numbers, &asked, options), options)?;
+
+    session.patient(true);
+    solve(session, &designs, &mut journal, options)?;
+    let swept = Swept { file: &file, numbers: &numbers, asked: &asked, motions: &motions, sweep: &designs };
+    let results = Results { swept, journal: &journal, format: options.format.of() };
+    let (mut facts, written) = results.finish(session, folder)?;
+    facts.seconds = session.seconds();
+    if facts.status != "interrupted" {
+        journal.remove().map_err(|error| session.not_written(&NotWritten { path: JOURNAL.into(), error }))?;
+    }
+    if session.is_json() {
+        session.print_json(&facts);
+    } else {
+        text::print(&format!("{}\n{}", text::bold(&file.model.name), facts_text(&facts)));
+        text::print(&written.map_or(String::new(), |path| format!("\nwritten: {path}\n")));
+    }
+    Ok(match facts.status {
+        "interrupted" => Outcome::Interrupted,
+        "no_design" => Outcome::Stopped,
+        _ => Outcome::Done,
+    })
+}
+
+/// What is asked for, by the file and by the command line.
+fn asked(session: &Session, file: &ModelFile, options: &Sweep) -> Result<Sweeping, Outcome> {
+    let model = &file.model;
+    let mut asked = model.sweeping.clone().unwrap_or_else(|| Sweeping::of_bounds(model));
+    if let Some(path) = &options.designs {
+        let (ranges, listed) = file.designs(path).map_err(|found| {
+            session.not_read(&found);
+            Outcome::BadModel
+        })?;
+        asked = Sweeping { method: SweepMethod::Listed, ranges, listed, ..asked };
+    }
+    if asked.method == SweepMethod::Listed && options.method.is_some() {
+        let why = "`--method` chooses designs, and those of the list are chosen; leave out one of the two";
+        return Err(session.misunderstood(why));
+    }
+    asked.method = options.method.map_or(asked.method, Method::of);
+    asked.samples = options.samples.map_or(asked.samples, |n| n as usize);
+    asked.seed = options.seed.map_or(asked.seed, u64::from);
+    if let Some(levels) = options.levels {
+        asked.ranges.iter_mut().for_each(|range| range.levels = levels as usize);
+    }
+    let mut given: Vec<SweepRange> = Vec::new();
+    for text in &options.range {
+        given.push(range(session, file, text, asked.ranges.first().map_or(Sweeping::LEVELS, |r| r.levels))?);
+    }
+    if asked.method == SweepMethod::Listed && !given.is_empty() {
+        return Err(session.misunderstood("`--range` has no say over a list of designs; leave it out"));
+    }
+    for one in given {
+        match asked.ranges.iter_mut().find(|r| r.variable == one.variable) {
+            Some(range) => *range = SweepRange { levels: range.levels, ..one },
+            None => asked.ranges.push(one),
+        }
+    }
+    for name in &options.curves {
+        let measures = || model.measures.iter().map(|m| m.name.as_str());
+        let Some(k) = measures().position(|m| m == name) else {
+            let close = did_you_mean(name, measures());
+            let names: Vec<&str> = measures().collect();
+            let help = close.map_or(format!("its measures are {}", some_of(&names, ", ")), |c| {
+                format!("did you mean `{c}`?")
+            });
+            return Err(
+                session.misunderstood(&format!("`--curves {name}`: there is no such measure; {help}"))
+            );
+        };
+        if !asked.curves.contains(&k) {
+            asked.curves.push(k);
+        }
+    }
+    if asked.metrics.is_empty() && asked.curves.is_empty() {
+        let why = format!(
+            "`{}` has no metrics that designs could be told apart by; declare some in `[metrics]`, or keep curves with `--curves NAME`",
+            file.file_name()
+        );
+        return Err(session.misunderstood(&why));
+    }
+    Ok(asked)
+}
+
+/// `NAME=FROM..TO`, in the unit of the variable.
+fn range(session: &Session, file: &ModelFile, text: &str, levels: usize) -> Result<SweepRange, Outcome> {
+    let refuse = |why: &str| session.misunderstood(&format!("`--range {text}`: {why}"));
+    let parts = text.split_once('=').and_then(|(name, ends)| Some((name.trim(), ends.split_once("..")?)));
+    let Some((name, (from, to))) = parts else {
+        return Err(refuse("write it as `NAME=FROM..TO`, for example `lca_front_z=-5..5`"));
+    };
+    let names = || file.model.variables.iter().map(|v| v.name.as_str());
+    let Some(k) = names().position(|n| n == name) else {
+        let close = did_you_mean(name, names()).map_or(String::new(), |c| format!("; did you mean `{c}`?"));
+        return Err(refuse(&format!("there is no design variable named `{name}`{close}")));
+    };
+    let variable = VariableId(k);
+    let number = |text: &str| text.trim().parse::<f64>().ok().filter(|x| x.is_finite());
+    let [Some(from), Some(to)] = [from, to].map(number) else {
+        return Err(refuse("both ends are numbers without units, in the units of the model file"));
+    };
+    if from >= to {
+        return Err(refuse("the range does not rise; give the lower end first"));
+    }
+    let quantity = file.model.variables[k].quantity;
+    let [low, high] = [from, to].map(|x| file.units.to_si(quantity, x) - file.model.drawn_value(variable));
+    Ok(SweepRange { variable, low, high, levels })
+}
+
+fn no_plan(why: NoPlan, file: &ModelFile) -> String {
+    match why {
+        NoPlan::NoRanges => format!(
+            "`{}` does not say which design variables are to change; give them `bounds` in `[design]` or `[parameters]`, ranges in \
+             `[sweep.variables]`, or use `--range NAME=FROM..TO` (docs/sweep.md)",
+            file.file_name()
+        ),
+        NoPlan::NoDesigns => "there is no design to be solved; give at least one with `--samples`".into(),
+        NoPlan::TooMany => format!(
+            "that would be more than {} designs; give fewer levels, fewer variables, or use `--method sobol --samples N`",
+            Sweeping::MOST
+        ),
+        NoPlan::TooManyDimensions(most) => format!(
+            "Sobol's sequence is known for {most} variables, and for indices for {}; sweep over fewer, or use `--method latin-hypercube`",
+            most / 2
+        ),
+    }
+}
+
+/// What makes two sweeps the same: the model in all that it means, the designs, what is kept of them, and the program.
+fn fingerprint(file: &ModelFile, numbers: &[usize], asked: &Sweeping, options: &Sweep) -> Fingerprint {
+    let mut sum = Checksum::default();
+    let of =
+        (hardpoint_report::GENERATOR, &file.model, file.units, numbers, asked, options.common.formulation());
+    write!(sum, "{of:?}").expect("a checksum takes everything");
+    sum.0
+}
+
+fn journal(
+    session: &Session,
+    folder: Option<&Folder>,
+    of: Fingerprint,
+    options: &Sweep,
+) -> Result<Journal, Outcome> {
+    let path = folder.map(|f| f.path_of(JOURNAL));
+    let shown = path.as_deref().unwrap_or(Path::new(JOURNAL)).display().to_string();
+    match Journal::open(path.as_deref(), of, options.restart) {
+        Ok(journal) => {
+            if journal.designs() > 0 {
+                session.remark(&format!("going on after {} designs that `{shown}` has", journal.designs()));
+            }
+            Ok(journal)
+        }
+        Err(NoJournal::Other) => Err(session.misunderstood(&format!(
+            "`{shown}` is of a sweep that has not ended, over another model or other designs; use another folder with `-o`, or begin anew \
+             with `--restart`"
+        ))),
+        Err(NoJournal::Busy) => Err(session.misunderstood(&format!(
+            "`{shown}` is being written by another sweep; wait for its end, or use another folder with `-o`"
+        ))),
+        Err(NoJournal::Failed(error)) => {
+            Err(session.not_written(&NotWritten { path: path.unwrap_or(JOURNAL.into()), error }))
+        }
+    }
+}
+
+/// Solves what the journal does not have yet, showing how far it is.
+fn solve(
+    session: &Session,
+    designs: &Designs<'_>,
+    journal: &mut Journal,
+    options: &Sweep,
+) -> Result<(), Outcome> {
+    let count = designs.plan().count();
+    let from = journal.designs();
+    let mut meter = Meter::new("solving", "designs").with_rate(from);
+    let mut failure = None;
+    let mut done = |block: hardpoint::study::SweptBlock| {
+        if let Err(error) = journal.add(&block) {
+            failure = Some(error);
+            return ControlFlow::Break(());
+        }
+        meter.show(block.numbers.end, count);
+        session.go_on()
+    };
+    let threads = options.threads.or_else(|| std::thread::available_parallelism().ok());
+    let threads = threads.unwrap_or(NonZero::<usize>::MIN);
+    if from < count {
+        designs.run(from, threads, &|| session.go_on().is_continue(), &mut done);
+    }
+    match failure {
+        Some(error) => Err(session.not_written(&NotWritten { path: JOURNAL.into(), error })),
+        None => Ok(()),
+    }
+}
+
+/// What is written, from what the journal has.
+struct Results<'a> {
+    swept: Swept<'a>,
+    journal: &'a Journal,
+    format: TableFormat,
+}
+
+impl Results<'_> {
+    /// Tables, a page for each motion, and the summary last; the last file that was written is named.
+    fn finish(
+        &self,
+        session: &Session,
+        folder: Option<Folder>,
+    ) -> Result<(SweepFacts, Option<String>), Outcome> {
+        let not_read = |error: io::Error| session.not_written(&NotWritten { path: JOURNAL.into(), error });
+        let mut tally = Tally::default();
+        let mut files = Vec::new();
+        let folder = match folder {
+            None => {
+                let see = |block| Ok(self.swept.tally(&mut tally, &block));
+                self.journal.each(see).map_err(not_read)?;
+                None
+            }
+            Some(mut folder) => {
+                self.write_tables(&mut folder, &mut tally, &mut files)
+                    .map_err(|e| session.not_written(&e))?;
+                Some(folder)
+            }
+        };
+        let (mut facts, plot) = self.swept.facts(&tally, |k| self.journal.column(k)).map_err(not_read)?;
+        if facts.status == "interrupted" {
+            facts.message += match &folder {
+                Some(_) => "; the same command goes on where it ended",
+                None => "; with `--output` the same command would go on where it ended",
+            };
+        }
+        facts.files = files;
+        let Some(mut folder) = folder else { return Ok((facts, None)) };
+        let written = self.write_pages(&mut folder, &mut facts, &plot);
+        written.map_err(|e| session.not_written(&e))?;
+        let summary = folder.path_of("summary.json").display().to_string();
+        facts.files.push(summary.clone());
+        facts.seconds = session.seconds();
+        let json = json_text(&facts);
+        let written = folder.write("summary.json", |out| out.write_all(json.as_bytes()));
+        written.and_then(|()| folder.commit(&FILES)).map_err(|e| session.not_written(&e))?;
+        Ok((facts, Some(summary)))
+    }
+
+    fn write_tables(
+        &self,
+        folder: &mut Folder,
+        tally: &mut Tally,
+        files: &mut Vec<String>,
+    ) -> Result<(), NotWritten> {
+        let (swept, suffix) = (self.swept, self.format.suffix());
+        let name = format!("designs.{suffix}");
+        folder.write(&name, |out| {
+            let mut table = TableWriter::new(out, self.format, swept.columns())?;
+            self.journal.each(|block| {
+                swept.tally(tally, &block);
+                table.add(swept.rows(&block))
+            })?;
+            table.end()
+        })?;
+        files.push(folder.path_of(&name).display().to_string());
+        if !swept.asked.curves.is_empty() {
+            let name = format!("curves.{suffix}");
+            folder.write(&name, |out| {
+                let mut table = TableWriter::new(out, self.format, swept.curve_columns())?;
+                self.journal.each(|block| table.add(swept.curve_rows(&block)))?;
+                table.end()
+            })?;
+            files.push(folder.path_of(&name).display().to_string());
+        }
+        Ok(())
+    }
+
+    fn write_pages(
+        &self,
+        folder: &mut Folder,
+        facts: &mut SweepFacts,
+        plot: &SweepPlot,
+    ) -> Result<(), NotWritten> {
+        let Swept { file, numbers, motions, .. } = self.swept;
+        for (k, analysis) in motions.analyses().iter().enumerate() {
+            let name = match case_name(&file.model, numbers[k]) {
+                Some(case) => format!("report-{}.html", file_name(&case)),
+                None => "report.html".into(),
+            };
+            let Some(html) = self.page(analysis, k, facts, plot) else { continue };
+            folder.write(&name, |out| out.write_all(html.as_bytes()))?;
+            facts.files.push(folder.path_of(&name).display().to_string());
+        }
+        Ok(())
+    }
+
+    /// The page of one motion: the design as drawn, with what the sweep found; `None` where that does not move at all.
+    fn page(
+        &self,
+        analysis: &Analysis<'_>,
+        motion: usize,
+        facts: &SweepFacts,
+        plot: &SweepPlot,
+    ) -> Option<String> {
+        let mut file = self.swept.file.clone();
+        file.model = Model::clone(analysis.model());
+        let today = analysis.run();
+        if today.motion.is_empty() {
+            return None;
+        }
+        let course = Course::of(&file.model, &today);
+        let mut summary = Summary::new(&file, analysis.topology(), &course);
+        summary.diagnostics = diagnose::all(&file, &summary, &course, None);
+        let request = Request::of(&file, analysis, &course, &summary);
+        let finish = |page| facts.page(&self.swept, plot, motion, page, &today.measured.outputs);
+        Some(report(&request, &finish).expect("a payload is plain data"))
+    }
+}
+
+fn facts_text(facts: &SweepFacts) -> String {
+    let mut rows = facts.rows();
+    rows.push(("time taken", facts.time_line()));
+    let mut out = format!("\n{}", text::pairs(&rows));
+    for table in facts.tables() {
+        out += &format!("\n{}", text::table(&table));
+    }
+    out
+}
+
+impl Method {
+    fn of(self) -> SweepMethod {
+        match self {
+            Self::Factorial => SweepMethod::Factorial,
+            Self::LatinHypercube => SweepMethod::LatinHypercube,
+            Self::Sobol => SweepMethod::Sobol,
+            Self::Indices => SweepMethod::Indices,
+        }
+    }
+}
+
+impl TableForm {
+    fn of(self) -> TableFormat {
+        match self {
+            Self::Csv => TableFormat::Csv,
+            Self::Parquet => TableFormat::Parquet,
+        }
+    }
+}

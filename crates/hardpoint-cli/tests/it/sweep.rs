@@ -1,0 +1,262 @@
+//! `hardpoint sweep`.
+
+use std::path::Path;
+use std::process::Stdio;
+use std::time::{Duration, Instant};
+
+use crate::bench::Bench;
+
+const STRUT: &str = "strut_sweep.toml";
+/// The designs of a block: what is kept of a sweep that is killed are whole blocks.
+const BLOCK: usize = 512;
+
+fn bench() -> Bench {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../models/studies").join(STRUT);
+    let bench = Bench::with(&[]);
+    bench.put(STRUT, &std::fs::read_to_string(path).unwrap());
+    bench
+}
+
+fn done(bench: &Bench, arguments: &[&str]) -> String {
+    let output = bench.run(&[&["sweep", STRUT], arguments].concat());
+    let [text, errors] = [output.stdout, output.stderr].map(|b| String::from_utf8(b).unwrap());
+    assert_eq!(output.status.code(), Some(0), "{text}{errors}");
+    text + &errors
+}
+
+/// All files of a folder but for the time that it took, which no two runs share.
+fn files(bench: &Bench, folder: &str) -> Vec<(String, Vec<u8>)> {
+    let content = |name: String| {
+        let mut bytes = std::fs::read(bench.path(&format!("{folder}/{name}"))).unwrap();
+        if name == "summary.json" {
+            let text = String::from_utf8(bytes).unwrap().replace(&format!("{folder}/"), "");
+            bytes = text.lines().filter(|l| !l.contains("\"seconds\"")).collect::<Vec<_>>().join("\n").into();
+        }
+        (name, bytes)
+    };
+    bench.list(folder).into_iter().map(content).collect()
+}
+
+fn same(bench: &Bench, a: &str, b: &str) {
+    let [a, b] = [a, b].map(|folder| files(bench, folder));
+    let names = |of: &[(String, Vec<u8>)]| of.iter().map(|f| f.0.clone()).collect::<Vec<_>>();
+    assert_eq!(names(&a), names(&b));
+    a.iter().zip(&b).for_each(|(a, b)| assert!(a.1 == b.1, "{} differs", a.0));
+}
+
+#[test]
+fn the_strut_is_swept_told_and_written() {
+    let bench = bench();
+    let text = done(&bench, &["--samples", "600", "-o", "out"]);
+    for words in [
+        "all 600 designs were solved",
+        "sobol over 6 variables, seed 1",
+        "Rank correlations",
+        "tie_rod_outer_y",
+    ] {
+        assert!(text.contains(words), "{words}: {text}");
+    }
+    assert_eq!(bench.list("out"), ["designs.csv", "report-bump.html", "report-steer.html", "summary.json"]);
+    let summary = bench.json("out/summary.json");
+    assert_eq!((&summary["study"], &summary["status"]), (&"sweep".into(), &"complete".into()));
+    assert_eq!(summary["evaluations"]["steps"], 600 * (81 + 61));
+    // What the summary says of the extremes is what the table has.
+    let mut table = csv::Reader::from_path(bench.path("out/designs.csv")).unwrap();
+    let headers = table.headers().unwrap().clone();
+    assert_eq!(headers.get(1), Some("lca_front_z [mm]"));
+    let column = headers.iter().position(|h| h == "bump.toe_range [deg]").unwrap();
+    let rows: Vec<csv::StringRecord> = table.records().map(Result::unwrap).collect();
+    let values: Vec<f64> = rows.iter().map(|r| r[column].parse().unwrap()).collect();
+    let toe = summary["metrics"].as_array().unwrap().iter().find(|m| m["name"] == "toe_range").unwrap();
+    let least = &toe["distribution"]["least"];
+    let at = least["design"].as_u64().unwrap() as usize;
+    assert_eq!((values[at], values.len()), (least["value"].as_f64().unwrap(), 600));
+    assert!(values.iter().all(|x| *x >= values[at]));
+    for (k, x) in least["variables"].as_array().unwrap().iter().enumerate() {
+        assert_eq!(rows[at][k + 1].parse::<f64>().unwrap(), x.as_f64().unwrap());
+    }
+    assert_eq!(summary["variables"][0]["start"], 0.0);
+}
+
+#[test]
+fn a_sweep_that_is_killed_and_gone_on_with_equals_one_that_was_not() {
+    let bench = bench();
+    for format in ["csv", "parquet"] {
+        let common = ["--samples", "20000", "--curves", "toe", "--format", format];
+        let whole = format!("whole_{format}");
+        done(&bench, &[&common[..], &["-o", &whole, "--threads", "2"]].concat());
+        let broken = format!("broken_{format}");
+        let arguments = [&["sweep", STRUT], &common[..], &["-o", &broken, "--threads", "1"]].concat();
+        // Killed three times, wherever it is, and gone on with on as many threads as it likes.
+        let journal = bench.path(&broken).join("sweep.partial");
+        let length = || std::fs::metadata(&journal).map_or(0, |m| m.len());
+        let mut before = 0;
+        for kill in 0..3 {
+            let mut command = bench.command(&arguments);
+            let mut child = command.stdout(Stdio::null()).stderr(Stdio::null()).spawn().unwrap();
+            let started = Instant::now();
+            while length() <= before + 100_000 && child.try_wait().unwrap().is_none() {
+                assert!(started.elapsed() < Duration::from_secs(120), "nothing is written");
+                std::thread::sleep(Duration::from_millis(1));
+            }
+            child.kill().unwrap();
+            child.wait().unwrap();
+            before = length();
+            assert!(before > 0, "ended before it was killed for time {kill}");
+            assert_eq!(bench.list(&broken), ["sweep.partial"]);
+        }
+        let text = done(&bench, &[&common[..], &["-o", &broken]].concat());
+        assert!(text.contains("note: going on after "), "{text}");
+        same(&bench, &whole, &broken);
+    }
+}
+
+#[test]
+fn wherever_a_journal_was_cut_the_rest_is_the_same() {
+    let bench = bench();
+    let common = ["--samples", "1500", "--method", "latin-hypercube", "--seed", "7"];
+    done(&bench, &[&common[..], &["-o", "whole"]].concat());
+    // A journal of all: from a run that is killed while it writes would do; here the folder cannot take the table.
+    std::fs::create_dir_all(bench.path("full/designs.csv")).unwrap();
+    let output = bench.run(&[&["sweep", STRUT], &common[..], &["-o", "full"]].concat());
+    assert_eq!(output.status.code(), Some(6), "{}", String::from_utf8_lossy(&output.stderr));
+    let journal = std::fs::read(bench.path("full/sweep.partial")).unwrap();
+    for (k, part) in [0.0, 0.2, 0.5, 0.71, 1.0].into_iter().enumerate() {
+        let folder = format!("cut_{k}");
+        std::fs::create_dir(bench.path(&folder)).unwrap();
+        let length = (part * journal.len() as f64) as usize;
+        std::fs::write(bench.path(&folder).join("sweep.partial"), &journal[..length]).unwrap();
+        let text = done(&bench, &[&common[..], &["-o", &folder]].concat());
+        let kept = if part == 1.0 { 1500 } else { (part * 1500.0) as usize / BLOCK * BLOCK };
+        let told = text.contains(&format!("going on after {kept} designs"));
+        assert_eq!(told, kept > 0, "{text}");
+        same(&bench, "whole", &folder);
+    }
+}
+
+#[test]
+fn a_journal_of_another_sweep_is_not_lost_by_mistake() {
+    let bench = bench();
+    std::fs::create_dir_all(bench.path("out/designs.csv")).unwrap();
+    let run = |arguments: &[&str]| {
+        bench.run(&[&["sweep", STRUT, "--samples", "600", "-o", "out"], arguments].concat())
+    };
+    assert_eq!(run(&[]).status.code(), Some(6));
+    let output = run(&["--seed", "2"]);
+    let errors = String::from_utf8(output.stderr).unwrap();
+    assert_eq!(output.status.code(), Some(2), "{errors}");
+    assert!(errors.contains("`out/sweep.partial` is of a sweep that has not ended"), "{errors}");
+    assert!(errors.contains("--restart"), "{errors}");
+    std::fs::remove_dir(bench.path("out/designs.csv")).unwrap();
+    assert_eq!(run(&["--seed", "2", "--restart"]).status.code(), Some(0));
+    assert!(!bench.list("out").contains(&"sweep.partial".to_owned()));
+}
+
+#[test]
+fn designs_that_fail_keep_their_rows_and_their_reasons() {
+    let bench = bench();
+    bench.put("designs.csv", "tie_rod_outer_z [mm], lca_front_z\n0, 0\n0, 5000\n-2, 1\n");
+    let text = done(&bench, &["--designs", "designs.csv", "--curves", "camber", "-o", "out"]);
+    assert!(text.contains("1 do not move to the end"), "{text}");
+    let table = bench.text("out/designs.csv");
+    let rows: Vec<&str> = table.lines().collect();
+    assert_eq!(rows.len(), 4);
+    assert!(
+        rows[0].starts_with("design,tie_rod_outer_z [mm],lca_front_z [mm],bump.toe_in_bump [deg]"),
+        "{table}"
+    );
+    assert!(rows[1].starts_with("0,0,0,-0.44") && rows[1].ends_with(','), "{table}");
+    assert!(rows[2].starts_with("1,0,5000,,,,,") && rows[2].contains("bump: the mechanism"), "{table}");
+    // Curves of a design that moves, at every output time of both cases.
+    let curves = bench.text("out/curves.csv");
+    assert_eq!(curves.lines().next(), Some("design,case,time [s],camber [deg]"));
+    assert_eq!(curves.lines().filter(|l| l.starts_with("2,steer,")).count(), 61);
+    let summary = bench.json("out/summary.json");
+    assert_eq!((&summary["failed"], &summary["failures"][0]["first"]), (&1.into(), &1.into()));
+    assert_eq!((&summary["method"], &summary["metrics"][0]["known"]), (&"listed".into(), &2.into()));
+}
+
+#[test]
+fn a_factorial_and_indices_have_as_many_designs_as_they_must() {
+    let bench = bench();
+    let json = |arguments: &[&str]| -> serde_json::Value {
+        let output = bench.run(&[&["sweep", STRUT, "--json"], arguments].concat());
+        assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
+        serde_json::from_slice(&output.stdout).unwrap()
+    };
+    // Four variables of three values, two of five.
+    let found = json(&["--method", "factorial"]);
+    assert_eq!((&found["designs"], &found["seed"]), (&(81 * 25).into(), &serde_json::Value::Null));
+    let found = json(&["--method", "indices", "--samples", "256"]);
+    assert_eq!(found["designs"], 256 * 8);
+    for metric in found["metrics"].as_array().unwrap() {
+        let of = |key: &str| -> f64 {
+            metric["influences"].as_array().unwrap().iter().map(|i| i[key].as_f64().unwrap()).sum()
+        };
+        // Nearly linear: first orders make up most of it, and totals a little more than all.
+        assert!((0.6..1.1).contains(&of("first")) && (0.9..1.6).contains(&of("total")), "{metric}");
+    }
+}
+
+#[test]
+fn what_cannot_be_swept_is_refused_with_what_to_do() {
+    let bench = bench();
+    let refused = |arguments: &[&str], code: i32, words: &[&str]| {
+        let output = bench.run(&[&["sweep", STRUT], arguments].concat());
+        let errors = String::from_utf8(output.stderr).unwrap();
+        assert_eq!(output.status.code(), Some(code), "{errors}");
+        words.iter().for_each(|w| assert!(errors.contains(w), "{w}: {errors}"));
+    };
+    refused(
+        &["--range", "lca_fron_z=-5..5"],
+        2,
+        &["there is no design variable", "did you mean `lca_front_z`?"],
+    );
+    refused(&["--range", "lca_front_z=5..-5"], 2, &["does not rise"]);
+    refused(&["--range", "lca_front_z=-5mm..5mm"], 2, &["without units"]);
+    refused(&["--range", "lca_front_z"], 2, &["NAME=FROM..TO"]);
+    refused(&["--curves", "tow"], 2, &["there is no such measure", "did you mean `toe`?"]);
+    refused(&["--method", "factorial", "--levels", "1000"], 2, &["more than 1000000000 designs"]);
+    refused(&["--designs", "none.csv"], 3, &["HP0111", "none.csv"]);
+    let list = |text: &str, words: &[&str]| {
+        bench.put("list.csv", text);
+        refused(&["--designs", "list.csv"], 3, words);
+    };
+    list("", &["HP0112", "`list.csv` is empty"]);
+    list("1,2\n3,4\n", &["line 1", "numbers in place of the names"]);
+    list("lca_front_z,camber\n1,2\n", &["HP0247", "no design variable named `camber`", "column 2"]);
+    list("lca_front_z,lca_front_z\n1,2\n", &["HP0247", "heads two columns"]);
+    list("lca_front_z,lca_rear_z\n1,2\n3\n", &["line 3, column 2 (`lca_rear_z`) is missing"]);
+    list("lca_front_z,lca_rear_z\n1,2\n3,x\n", &["line 3, column 2 (`lca_rear_z`): `x` is not a number"]);
+    list("lca_front_z\n1,2\n", &["line 2 has 2 values for 1 variables"]);
+    list("lca_front_z\n", &["has no designs"]);
+}
+
+#[test]
+#[cfg(unix)]
+fn a_sweep_that_is_interrupted_says_so_keeps_what_it_has_and_goes_on() {
+    let bench = bench();
+    let common = ["--samples", "60000", "--threads", "1"];
+    let mut command = bench.command(&[&["sweep", STRUT], &common[..], &["-o", "out"]].concat());
+    let child = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+    let journal = bench.path("out/sweep.partial");
+    let started = Instant::now();
+    while std::fs::metadata(&journal).map_or(0, |m| m.len()) < 100_000 {
+        assert!(started.elapsed() < Duration::from_secs(120), "nothing is written");
+        std::thread::sleep(Duration::from_millis(1));
+    }
+    let interrupted = std::process::Command::new("kill").args(["-INT", &child.id().to_string()]).status();
+    assert!(interrupted.unwrap().success());
+    let output = child.wait_with_output().unwrap();
+    let text = String::from_utf8(output.stdout).unwrap();
+    assert_eq!(output.status.code(), Some(130), "{text}");
+    assert!(text.contains("the same command goes on where it ended"), "{text}");
+    let summary = bench.json("out/summary.json");
+    assert_eq!(summary["status"], "interrupted");
+    let rows = bench.text("out/designs.csv").lines().count() - 1;
+    assert_eq!(summary["designs"], rows);
+    assert!(rows > 0 && rows < 60_000 && rows % BLOCK == 0, "{rows}");
+    done(&bench, &[&common[..], &["-o", "out"]].concat());
+    assert_eq!(bench.text("out/designs.csv").lines().count(), 60_001);
+    assert!(!journal.exists());
+}

@@ -1,0 +1,236 @@
+//! Which designs are swept over.
+
+use std::path::Path;
+
+use hardpoint::draft::{DesignListDraft, Section, SweepRangeDraft, SweepingDraft};
+use hardpoint::model::{SweepMethod, Sweeping};
+use toml::de::DeValue;
+
+use crate::diagnostic::shown;
+use crate::format::{METRIC, NUMBER, OUTPUT, Shape, TWO_NUMBERS, Table, table};
+use crate::places::EntryPlace;
+use crate::tree::{Fields, MOST_ENTRIES, Reader, Subject};
+
+use super::Raw;
+use super::data::{DataError, Wanted, bytes_of, delimiter, number, text_from, unquoted};
+
+/// More designs than these are surely a slip.
+const MOST_SAMPLES: u32 = 1_000_000_000;
+/// More values of one variable than these are surely a slip.
+const MOST_LEVELS: u32 = 1_000_000;
+pub(crate) const SWEEP: Table = table! {
+    /// Which designs are swept over, and what is kept of them.
+    "Sweep":
+    /// How far design variables go, by their names, in their units: of a parameter its values, of all others changes of the design as drawn,
+    /// like `bounds`. All others stay as drawn. Default: all variables with `bounds`, within these.
+    may "variables": Shape::Entries(&ENTRY), "{ lca_front_z = [-5, 5], radius = { from = 90, to = 110, levels = 5 } }";
+    /// How designs are chosen.
+    or("\"sobol\"") "method": METHOD, "\"factorial\"";
+    /// So many designs; with `method = "indices"` so many pairs of designs.
+    or("1000") "samples": Shape::Count(MOST_SAMPLES), "100000";
+    /// What they are drawn from: the same number gives the same designs.
+    or("1") "seed": Shape::Count(u32::MAX), "7";
+    /// With `method = "factorial"`: so many values of every variable that says nothing else.
+    or("3") "levels": Shape::Count(MOST_LEVELS), "5";
+    /// The designs, in place of all of these: a CSV file in the model's folder whose first line names design variables.
+    may "designs": Shape::Text, "\"designs.csv\"";
+    /// Names of the metrics that are kept. Default: all.
+    may "metrics": Shape::list(&METRIC), "[\"toe_range\"]";
+    /// Names of the measures whose whole curves are kept. Default: none.
+    may "curves": Shape::list(&OUTPUT), "[\"toe\"]";
+};
+const METHOD: Shape = Shape::Words(&[
+    ("factorial", "Every combination of `levels` values of each variable."),
+    ("latin_hypercube", "At random, with one design in each of `samples` slices of every range."),
+    ("sobol", "Points that fill the ranges evenly, however many there are."),
+    (
+        "indices",
+        "What Sobol's indices of sensitivity take: for v variables, (v + 2) times `samples` designs.",
+    ),
+]);
+const ENTRY: Shape = Shape::Any(
+    "SweepVariable",
+    "From where to where it goes, or a table with that and more.",
+    &[TWO_NUMBERS, Shape::Table(&RANGE)],
+);
+pub(super) const RANGE: Table = table! {
+    /// From where to where a design variable goes.
+    "SweepRange":
+    /// Where it begins, in its unit. Default: its lower bound.
+    may "from": NUMBER, "-5";
+    /// Where it ends. Default: its upper bound.
+    may "to": NUMBER, "5";
+    /// With `method = "factorial"`: so many values, both ends among them. Default: as `[sweep]` says.
+    may "levels": Shape::Count(MOST_LEVELS), "5";
+};
+/// Lists of designs.
+const LIST: Wanted<'static> = Wanted {
+    purpose: "list of designs",
+    kind: "a CSV file",
+    ending: "csv",
+    example: "data/designs.csv",
+    without_folder: "read the model from a file, or use `--designs`",
+    too_large: "split it, and sweep over its parts one after the other",
+};
+
+impl Reader<'_> {
+    pub(super) fn sweep(&mut self, model: &Fields<'_>, raw: &mut Raw) {
+        let Some(f) = model.get("sweep") else { return };
+        self.unread.clear();
+        let mut subject = model.subject("sweep");
+        subject.example = "write `[sweep]`, in single brackets, and `[sweep.variables]` below it".into();
+        let Some(table) = self.table(f.value, &subject, "one table") else { return };
+        let fields = self.fields("`sweep`", f.at.0..f.at.1, table, SWEEP.keys());
+        let place = EntryPlace::of(&fields);
+        let method = fields.get("method").and_then(|_| self.word_of(&fields, "method"));
+        let samples = self.count_of(&fields, "samples", MOST_SAMPLES);
+        let seed = self.count_of(&fields, "seed", u32::MAX);
+        let levels = self.count_of(&fields, "levels", MOST_LEVELS);
+        let names =
+            |of: &mut Self, key: &str, what| of.given(&fields, key, |r, f| r.names_in(&fields, f, what));
+        let metrics = names(self, "metrics", "a list of names of metrics");
+        let curves = names(self, "curves", "a list of names of measures");
+        let designs = self.given(&fields, "designs", |r, f| {
+            let name = r.name(f.value, &fields.subject(f.key), "the name of a CSV file")?;
+            let found = bytes_of(r.folder, &name, &LIST).and_then(|bytes| list_in(bytes, &name));
+            found.map_err(|e| r.data_error(f.value.span(), e)).ok()
+        });
+        if fields.get("designs").is_some() {
+            for key in ["variables", "method", "samples", "seed", "levels"] {
+                self.out_of_place(&fields, key, "the designs are those of the file that `designs` names");
+            }
+        }
+        let entries = fields.get("variables").map(|f| f.value.get_ref().as_table());
+        if entries.is_some_and(|t| t.is_none_or(|t| t.len() > MOST_ENTRIES)) {
+            self.unread.push("variables");
+        }
+        self.push(raw, Section::Sweep, place);
+        let ranges = self.sweep_ranges(&fields, raw);
+        let units = [self.units.length.per_metre(), self.units.angle.per_radian()];
+        let list = |(names, rows): List| DesignListDraft {
+            file: fields.get("designs").and_then(|f| f.value.get_ref().as_str()).unwrap_or_default().into(),
+            names,
+            rows,
+            per_metre: units[0],
+            per_radian: units[1],
+        };
+        raw.draft.sweeping = Some(SweepingDraft {
+            method: method.map(|k| SweepMethod::NAMED[k]),
+            ranges: fields.get("variables").map(|_| ranges),
+            designs: designs.map(list),
+            levels: levels.unwrap_or(Sweeping::LEVELS),
+            samples: samples.unwrap_or(Sweeping::SAMPLES),
+            seed: seed.map_or(Sweeping::SEED, |seed| seed as u64),
+            metrics,
+            curves: curves.unwrap_or_default(),
+        });
+    }
+
+    fn sweep_ranges(&mut self, sweep: &Fields<'_>, raw: &mut Raw) -> Vec<SweepRangeDraft> {
+        let (per_metre, per_radian) = (self.units.length.per_metre(), self.units.angle.per_radian());
+        let mut found = Vec::new();
+        for entry in self.entries_below(sweep, "sweep.", "variables", "design variable") {
+            let (name, at, value) = &entry;
+            let (place, ends, levels) = match value.get_ref() {
+                DeValue::Table(_) => {
+                    let fields = self.entry("the range of", &entry, RANGE.keys());
+                    let place = EntryPlace::of(&fields);
+                    let ends = ["from", "to"].map(|key| self.number_of(&fields, key));
+                    (place, ends, self.count_of(&fields, "levels", MOST_LEVELS))
+                }
+                _ => {
+                    self.unread.clear();
+                    let subject = Subject {
+                        name: format!("the range of `{}`", shown(name)),
+                        example: format!(
+                            "for example `{name} = [-5, 5]`, or `{name} = {{ from = -5, to = 5, levels = 5 }}`"
+                        ),
+                    };
+                    let mut place = EntryPlace::at(at.clone());
+                    place.key("from", value);
+                    let ends = self.numbers::<2>(value, &subject, "where it begins and where it ends");
+                    if ends.is_none() {
+                        self.unread.push("from");
+                    }
+                    (place, [0, 1].map(|k| ends.map(|e| e[k])), None)
+                }
+            };
+            if !self.unread.is_empty() {
+                self.unread.push("");
+            }
+            self.push(raw, Section::SweepRanges, place);
+            let [low, high] = ends;
+            found.push(SweepRangeDraft { name: entry.0, low, high, levels, per_metre, per_radian });
+        }
+        found
+    }
+}
+
+/// The names of the columns, and the rows.
+pub(crate) type List = (Vec<String>, Vec<Vec<f64>>);
+
+/// The list of designs in a file wherever it lies.
+pub(crate) fn list_at(path: &Path) -> Result<List, DataError> {
+    let name = path.display().to_string();
+    let bytes = std::fs::read(path).map_err(|e| {
+        let message = format!("the file `{}` cannot be read", shown(&name));
+        DataError::unreadable(message, "name a CSV file whose first line names design variables")
+            .note(e.to_string())
+    })?;
+    list_in(bytes, &name)
+}
+
+/// Reads a list of designs: names of variables, then their values, row by row.
+fn list_in(bytes: Vec<u8>, name: &str) -> Result<List, DataError> {
+    let text = text_from(bytes, name)?;
+    let text = text.strip_prefix('\u{feff}').unwrap_or(&text);
+    let name = shown(name);
+    let mut reader = csv::ReaderBuilder::new()
+        .has_headers(false)
+        .flexible(true)
+        .comment(Some(b'#'))
+        .trim(csv::Trim::All)
+        .delimiter(delimiter(text))
+        .from_reader(text.as_bytes());
+    let no_csv = |e: csv::Error| {
+        DataError::content(format!("`{name}` is not a CSV file"), "check its quotes").note(e.to_string())
+    };
+    let mut record = csv::StringRecord::new();
+    let write = "write the names of design variables on the first line, like `B_x, B_z`, and their values on each line below";
+    if !reader.read_record(&mut record).map_err(no_csv)? {
+        return Err(DataError::content(format!("`{name}` is empty"), write));
+    }
+    let names: Vec<String> = record.iter().map(|field| bare(unquoted(field)).to_owned()).collect();
+    if names.iter().all(|n| n.parse::<f64>().is_ok()) {
+        let message =
+            format!("`{name}`, line 1: there are numbers in place of the names of design variables");
+        return Err(DataError::content(message, write));
+    }
+    let mut rows: Vec<Vec<f64>> = Vec::new();
+    while reader.read_record(&mut record).map_err(no_csv)? {
+        let line = record.position().map_or(0, csv::Position::line);
+        if record.len() > names.len() {
+            let message =
+                format!("`{name}`, line {line} has {} values for {} variables", record.len(), names.len());
+            return Err(DataError::content(message, "give one value for each name of the first line"));
+        }
+        let value = |(k, title): (usize, &String)| {
+            let here = format!("`{name}`, line {line}, column {} (`{}`)", k + 1, shown(title));
+            let help = "every design needs a value of every variable; write 0 for no change";
+            number(record.get(k).map(unquoted), &here, help)
+        };
+        rows.push(names.iter().enumerate().map(value).collect::<Result<_, _>>()?);
+    }
+    if rows.is_empty() {
+        return Err(DataError::content(format!("`{name}` has no designs"), write));
+    }
+    Ok((names, rows))
+}
+
+/// A name without the unit behind it, as results are headed: `B_x [mm]`.
+fn bare(title: &str) -> &str {
+    match title.split_once(" [") {
+        Some((name, unit)) if unit.ends_with(']') => name,
+        _ => title,
+    }
+}

@@ -1,0 +1,706 @@
+//! What a sweep comes to: its designs as a table, and how metrics are distributed over them, in the model's units.
+
+use std::io;
+
+use hardpoint::measure::Output;
+use hardpoint::model::{Dimension, Model, OutputSource, SweepMethod, SweepRange, Sweeping, VariableId};
+use hardpoint::study::{
+    Cost, Distribution, Motions, SobolIndex, Sweep, SweptBlock, SweptMetric, rank_correlation, sobol_indices,
+};
+use hardpoint_file::{ModelFile, Units};
+use serde::Serialize;
+
+use crate::csv::no_formula;
+use crate::facts::variable_unit;
+use crate::figures::{count, number, seconds, unit, with_unit};
+use crate::optimize::{BeforeAfter, Evaluations, case_name};
+use crate::page::{Fact, Payload, SweepAxis, SweepIndex, SweepPlot, Table};
+use crate::table::Cells;
+use crate::tolerance::{FailureFact, bar, header, percent, titled};
+
+/// So many designs are drawn at most, and ranked.
+pub const DRAWN: usize = 5000;
+
+/// A sweep, in the model's units. As JSON it is `summary.json` of `hardpoint sweep`.
+#[derive(Clone, Debug, Serialize)]
+pub struct SweepFacts {
+    /// Program and version.
+    pub generator: String,
+    /// The kind of study.
+    pub study: &'static str,
+    /// The model's name.
+    pub model: String,
+    /// The model file.
+    pub file: String,
+    /// `complete`, `interrupted`, or `no_design` where none moves to its end.
+    pub status: &'static str,
+    /// The same in words, and what to do.
+    pub message: String,
+    /// The first metric: as drawn, and the least that was found.
+    pub objective: BeforeAfter,
+    /// What it cost.
+    pub evaluations: Evaluations,
+    /// Designs that were solved.
+    pub designs: usize,
+    /// Designs that were asked for.
+    pub asked: usize,
+    /// How they were chosen.
+    pub method: &'static str,
+    /// From which seed; `null` where nothing is drawn.
+    pub seed: Option<u64>,
+    /// The variables that change.
+    pub variables: Vec<SweptVariable>,
+    /// Per metric and case.
+    pub metrics: Vec<SweptFact>,
+    /// Designs that do not move to the end.
+    pub failed: usize,
+    /// By what happens to them.
+    pub failures: Vec<FailureFact>,
+    /// The files that were written.
+    pub files: Vec<String>,
+    /// How long it took, s.
+    pub seconds: f64,
+}
+
+/// A variable that was swept.
+#[derive(Clone, Debug, Serialize)]
+pub struct SweptVariable {
+    /// Its name.
+    pub name: String,
+    /// Its unit.
+    pub unit: String,
+    /// The least value; of a parameter its own, of all others a change.
+    pub from: f64,
+    /// The greatest.
+    pub to: f64,
+    /// In a factorial, so many values.
+    pub levels: Option<usize>,
+    /// As drawn.
+    pub start: f64,
+    /// In the design with the least value of the first metric.
+    pub end: Option<f64>,
+}
+
+/// A metric in one motion.
+#[derive(Clone, Debug, Serialize)]
+pub struct SweptFact {
+    /// Its name.
+    pub name: String,
+    /// In which case; `null` where there are none.
+    pub case: Option<String>,
+    /// Its unit.
+    pub unit: String,
+    /// As drawn.
+    pub drawn: Option<f64>,
+    /// So many designs have it.
+    pub known: usize,
+    /// How it is distributed over these.
+    pub distribution: Option<DistributionFact>,
+    /// How it goes with each variable.
+    pub influences: Vec<InfluenceFact>,
+}
+
+/// How a metric is distributed over the designs that have it.
+#[derive(Clone, Debug, Serialize)]
+pub struct DistributionFact {
+    /// Mean.
+    pub mean: f64,
+    /// Standard deviation.
+    pub sigma: f64,
+    /// What 5 %, 25 %, 50 %, 75 % and 95 % of the designs are below.
+    pub quantiles: [f64; 5],
+    /// The design with the least value.
+    pub least: ExtremeDesign,
+    /// The design with the greatest.
+    pub greatest: ExtremeDesign,
+}
+
+/// A design with its value of a metric.
+#[derive(Clone, Debug, Serialize)]
+pub struct ExtremeDesign {
+    /// Its number.
+    pub design: usize,
+    /// The metric.
+    pub value: f64,
+    /// Its variables, in the order of [`SweepFacts::variables`].
+    pub variables: Vec<f64>,
+}
+
+/// How a metric goes with a variable.
+#[derive(Clone, Debug, Serialize)]
+pub struct InfluenceFact {
+    /// The variable.
+    pub variable: String,
+    /// Spearman's rank correlation over the designs that are drawn: 1 or -1 where one always rises or falls with the other.
+    pub rank_correlation: Option<f64>,
+    /// First-order index of Sobol: the part of the variance that is gone where the variable is known. With `method = "indices"`.
+    pub first: Option<f64>,
+    /// Its standard error.
+    pub first_error: Option<f64>,
+    /// Total index: the part that is left where all others are known.
+    pub total: Option<f64>,
+    /// Its standard error.
+    pub total_error: Option<f64>,
+    /// Pairs of designs behind both.
+    pub pairs: Option<usize>,
+}
+
+/// What the facts are made of.
+#[derive(Clone, Copy)]
+pub struct Swept<'a> {
+    /// The model file.
+    pub file: &'a ModelFile,
+    /// Per motion, its number among those of the model.
+    pub numbers: &'a [usize],
+    /// What was asked.
+    pub asked: &'a Sweeping,
+    /// The motions.
+    pub motions: &'a Motions<'a>,
+    /// The designs and columns.
+    pub sweep: &'a Sweep<'a>,
+}
+
+/// What blocks come to, one after the other.
+#[derive(Clone, Debug, Default)]
+pub struct Tally {
+    /// Designs so far.
+    pub designs: usize,
+    /// Designs that do not move to the end.
+    pub failed: usize,
+    cost: Cost,
+    failures: Vec<(String, usize, FailureFact)>,
+}
+
+/// The designs that are drawn, and what is known of all.
+#[derive(Clone, Debug, Default)]
+struct Drawn {
+    numbers: Vec<usize>,
+    /// Per variable, per design, as shown.
+    variables: Vec<Vec<f64>>,
+    /// Per metric.
+    metrics: Vec<Vec<f64>>,
+}
+
+impl Swept<'_> {
+    fn model(&self) -> &Model {
+        &self.file.model
+    }
+
+    fn units(&self) -> Units {
+        self.file.units
+    }
+
+    fn case(&self, motion: usize) -> Option<String> {
+        case_name(self.model(), self.numbers[motion])
+    }
+
+    fn dimension(&self, of: SweptMetric) -> Dimension {
+        self.model().metric_dimension(&self.model().metrics[of.metric])
+    }
+
+    /// A change of a variable as the file writes it: of a parameter its value.
+    fn shown(&self, variable: VariableId, change: f64) -> f64 {
+        let quantity = self.model().variables[variable.0].quantity;
+        self.units().from_si(quantity, change + self.model().drawn_value(variable))
+    }
+
+    /// The swept variables of a design, as the file writes them.
+    fn variables_of(&self, number: usize) -> Vec<f64> {
+        let swept = self.sweep.plan().swept(number);
+        self.asked.ranges.iter().zip(swept).map(|(range, x)| self.shown(range.variable, x)).collect()
+    }
+
+    fn title(&self, of: SweptMetric) -> String {
+        let name = &self.model().metrics[of.metric].name;
+        self.case(of.motion).map_or(name.clone(), |case| format!("{case}.{name}"))
+    }
+
+    /// The columns of the table of designs: number, variables, metrics, and why a design failed.
+    pub fn columns(&self) -> Vec<(String, Cells)> {
+        let variable = |range: &SweepRange| {
+            let variable = &self.model().variables[range.variable.0];
+            with_brackets(&variable.name, &variable_unit(self.model(), self.units(), variable))
+        };
+        let metric =
+            |of: &SweptMetric| with_brackets(&self.title(*of), &unit(self.units(), self.dimension(*of)));
+        let numbers = self.asked.ranges.iter().map(variable).chain(self.sweep.metrics().iter().map(metric));
+        let mut columns = vec![("design".to_owned(), Cells::Whole(Vec::new()))];
+        columns.extend(numbers.map(|name| (name, Cells::Numbers(Vec::new()))));
+        columns.push(("failed".to_owned(), Cells::Texts(Vec::new())));
+        columns
+    }
+
+    /// The rows of some designs.
+    pub fn rows(&self, block: &SweptBlock) -> Vec<Cells> {
+        let mut variables = vec![Vec::new(); self.asked.ranges.len()];
+        for number in block.numbers.clone() {
+            variables.iter_mut().zip(self.variables_of(number)).for_each(|(column, x)| column.push(x));
+        }
+        let metric = |(of, values): (&SweptMetric, &Vec<f64>)| {
+            let dimension = self.dimension(*of);
+            values.iter().map(|x| self.units().from_si(dimension, *x)).collect()
+        };
+        let metrics = self.sweep.metrics().iter().zip(&block.metrics).map(metric);
+        let mut failed = vec![String::new(); block.numbers.len()];
+        for failure in &block.failures {
+            let text = &mut failed[failure.number - block.numbers.start];
+            if !text.is_empty() {
+                text.push_str("; ");
+            }
+            if let Some(case) = self.case(failure.motion) {
+                text.push_str(&case);
+                text.push_str(": ");
+            }
+            text.push_str(&failure.why);
+        }
+        let mut rows = vec![Cells::Whole(block.numbers.clone().map(|n| n as i64).collect())];
+        rows.extend(variables.into_iter().chain(metrics).map(Cells::Numbers));
+        rows.push(Cells::Texts(failed));
+        rows
+    }
+
+    /// The columns of the table of curves: a row for each design, motion and output time that was solved.
+    pub fn curve_columns(&self) -> Vec<(String, Cells)> {
+        let mut columns = vec![("design".to_owned(), Cells::Whole(Vec::new()))];
+        if self.case(0).is_some() {
+            columns.push(("case".to_owned(), Cells::Texts(Vec::new())));
+        }
+        columns.push(("time [s]".to_owned(), Cells::Numbers(Vec::new())));
+        let curve = |m: &usize| {
+            let dimension = self.model().dimension(OutputSource::Measure(*m));
+            with_brackets(&self.model().measures[*m].name, &unit(self.units(), dimension))
+        };
+        columns.extend(self.asked.curves.iter().map(|m| (curve(m), Cells::Numbers(Vec::new()))));
+        columns
+    }
+
+    /// The rows of the curves of some designs.
+    pub fn curve_rows(&self, block: &SweptBlock) -> Vec<Cells> {
+        let (mut designs, mut cases, mut times) = (Vec::new(), Vec::new(), Vec::new());
+        let mut values = vec![Vec::new(); self.asked.curves.len()];
+        let of = |m: &usize| self.model().dimension(OutputSource::Measure(*m));
+        let dimensions: Vec<Dimension> = self.asked.curves.iter().map(of).collect();
+        let mut read = vec![0; block.curves.len()];
+        for (k, number) in block.numbers.clone().enumerate() {
+            for (motion, curves) in block.curves.iter().enumerate() {
+                let case = self.case(motion);
+                for step in 0..curves.steps[k] as usize {
+                    designs.push(number as i64);
+                    cases.extend(case.clone());
+                    times.push(self.motions.model(motion).times[step]);
+                    for (column, dimension) in values.iter_mut().zip(&dimensions) {
+                        column.push(self.units().from_si(*dimension, curves.values[read[motion]]));
+                        read[motion] += 1;
+                    }
+                }
+            }
+        }
+        let mut rows = vec![Cells::Whole(designs)];
+        if self.case(0).is_some() {
+            rows.push(Cells::Texts(cases));
+        }
+        rows.push(Cells::Numbers(times));
+        rows.extend(values.into_iter().map(Cells::Numbers));
+        rows
+    }
+
+    /// Takes a block into account.
+    pub fn tally(&self, tally: &mut Tally, block: &SweptBlock) {
+        tally.designs = block.numbers.end;
+        tally.cost += block.cost;
+        let mut last = None;
+        for failure in &block.failures {
+            let known = tally.failures.iter_mut();
+            match known.into_iter().find(|(code, m, _)| *code == failure.code && *m == failure.motion) {
+                Some((_, _, fact)) => {
+                    fact.count += 1;
+                    // A block is told motion by motion.
+                    fact.first = fact.first.min(failure.number);
+                }
+                None => {
+                    let fact = FailureFact {
+                        case: self.case(failure.motion),
+                        why: failure.why.clone(),
+                        first: failure.number,
+                        count: 1,
+                    };
+                    tally.failures.push((failure.code.clone(), failure.motion, fact));
+                }
+            }
+            last = Some(failure.number);
+        }
+        if last.is_some() {
+            let mut failed: Vec<usize> = block.failures.iter().map(|f| f.number).collect();
+            failed.sort_unstable();
+            failed.dedup();
+            tally.failed += failed.len();
+        }
+    }
+
+    /// The designs that are drawn: as many as there are, or some of them that stand a step apart which no level of a factorial repeats
+    /// with.
+    fn drawn_numbers(&self, designs: usize) -> Vec<usize> {
+        let mut step = designs.div_ceil(DRAWN).max(1);
+        let repeats = |step: usize| {
+            let levels = self
+                .asked
+                .ranges
+                .iter()
+                .map(|r| r.levels)
+                .filter(|_| self.asked.method == SweepMethod::Factorial);
+            let width = (self.asked.method == SweepMethod::Indices).then_some(self.asked.ranges.len() + 2);
+            levels.chain(width).any(|n| common_divisor(step, n) > 1)
+        };
+        while step > 1 && repeats(step) {
+            step += 1;
+        }
+        (0..designs).step_by(step).collect()
+    }
+
+    /// All that is known of the designs that were solved; `column` gives the values of a metric in all of them.
+    ///
+    /// # Errors
+    /// Those of `column`.
+    pub fn facts(
+        &self,
+        tally: &Tally,
+        mut column: impl FnMut(usize) -> io::Result<Vec<f64>>,
+    ) -> io::Result<(SweepFacts, SweepPlot)> {
+        let (file, asked) = (self.file, self.asked);
+        let mut drawn = Drawn { numbers: self.drawn_numbers(tally.designs), ..Drawn::default() };
+        drawn.variables = vec![Vec::new(); asked.ranges.len()];
+        for number in &drawn.numbers {
+            drawn.variables.iter_mut().zip(self.variables_of(*number)).for_each(|(c, x)| c.push(x));
+        }
+        let as_drawn = self.sweep.drawn();
+        let mut metrics = Vec::new();
+        for (k, of) in self.sweep.metrics().iter().enumerate() {
+            let values = column(k)?;
+            let dimension = self.dimension(*of);
+            let shown = |x: f64| self.units().from_si(dimension, x);
+            let some: Vec<f64> = drawn.numbers.iter().map(|n| shown(values[*n])).collect();
+            let indices = match asked.method {
+                SweepMethod::Indices => sobol_indices(&values, asked.ranges.len()),
+                _ => vec![None; asked.ranges.len()],
+            };
+            let influence = |(v, index): (usize, &Option<SobolIndex>)| InfluenceFact {
+                variable: file.model.variables[asked.ranges[v].variable.0].name.clone(),
+                rank_correlation: rank_correlation(&drawn.variables[v], &some),
+                first: index.map(|i| i.first[0]),
+                first_error: index.map(|i| i.first[1]),
+                total: index.map(|i| i.total[0]),
+                total_error: index.map(|i| i.total[1]),
+                pairs: index.map(|i| i.pairs),
+            };
+            let extreme = |(design, value): (usize, f64)| ExtremeDesign {
+                design,
+                value: shown(value),
+                variables: self.variables_of(design),
+            };
+            let distribution = Distribution::of(&values);
+            metrics.push(SweptFact {
+                name: file.model.metrics[of.metric].name.clone(),
+                case: self.case(of.motion),
+                unit: unit(self.units(), dimension),
+                drawn: Some(shown(as_drawn.metrics[k][0])).filter(|x| x.is_finite()),
+                known: distribution.as_ref().map_or(0, |d| d.known),
+                distribution: distribution.map(|d| DistributionFact {
+                    mean: shown(d.mean),
+                    sigma: shown(d.sigma),
+                    quantiles: d.quantiles.map(shown),
+                    least: extreme(d.least),
+                    greatest: extreme(d.greatest),
+                }),
+                influences: indices.iter().enumerate().map(influence).collect(),
+            });
+            drawn.metrics.push(some);
+        }
+        let facts = self.assembled(tally, metrics);
+        let plot = plot(&facts, drawn);
+        Ok((facts, plot))
+    }
+
+    fn assembled(&self, tally: &Tally, metrics: Vec<SweptFact>) -> SweepFacts {
+        let (file, asked) = (self.file, self.asked);
+        let first = metrics.first().and_then(|m| m.distribution.as_ref());
+        let best = first.map(|d| &d.least.variables);
+        let variable = |(k, range): (usize, &SweepRange)| {
+            let variable = &file.model.variables[range.variable.0];
+            SweptVariable {
+                name: variable.name.clone(),
+                unit: variable_unit(&file.model, file.units, variable),
+                from: self.shown(range.variable, range.low),
+                to: self.shown(range.variable, range.high),
+                levels: (asked.method == SweepMethod::Factorial).then_some(range.levels),
+                start: self.shown(range.variable, 0.0),
+                end: best.map(|b| b[k]),
+            }
+        };
+        let count_asked = self.sweep.plan().count();
+        let (status, message) = if tally.designs < count_asked {
+            ("interrupted", format!("interrupted after {} of {count_asked} designs", tally.designs))
+        } else if tally.failed == tally.designs {
+            ("no_design", "no design moves to its end: narrow the ranges, or see below why".to_owned())
+        } else {
+            ("complete", format!("all {} were solved", count(tally.designs, "design")))
+        };
+        let Cost { designs, motions, steps } = tally.cost;
+        SweepFacts {
+            generator: crate::GENERATOR.into(),
+            study: "sweep",
+            model: file.model.name.clone(),
+            file: file.file_name().into(),
+            status,
+            message,
+            objective: BeforeAfter {
+                before: metrics.first().and_then(|m| m.drawn),
+                after: first.map(|d| d.least.value),
+            },
+            evaluations: Evaluations { designs, motions, steps },
+            designs: tally.designs,
+            asked: count_asked,
+            method: asked.method.name(),
+            seed: (!matches!(asked.method, SweepMethod::Factorial | SweepMethod::Listed))
+                .then_some(asked.seed),
+            variables: asked.ranges.iter().enumerate().map(variable).collect(),
+            metrics,
+            failed: tally.failed,
+            failures: tally.failures.iter().map(|(_, _, fact)| fact.clone()).collect(),
+            files: Vec::new(),
+            seconds: 0.0,
+        }
+    }
+}
+
+/// What the page draws.
+fn plot(facts: &SweepFacts, drawn: Drawn) -> SweepPlot {
+    let variable = |(v, values): (&SweptVariable, Vec<f64>)| SweepAxis {
+        name: v.name.clone(),
+        unit: v.unit.clone(),
+        metric: false,
+        values: values.into_iter().collect(),
+    };
+    let metric = |(m, values): (&SweptFact, Vec<f64>)| SweepAxis {
+        name: titled(&m.name, &m.case),
+        unit: m.unit.clone(),
+        metric: true,
+        values: values.into_iter().collect(),
+    };
+    let first = facts.variables.len();
+    let index = |(m, (variable, i)): (usize, (usize, &InfluenceFact))| {
+        let (first_order, total) = (i.first.zip(i.first_error)?, i.total.zip(i.total_error)?);
+        let pair = |(x, error)| [x, error];
+        Some(SweepIndex { metric: first + m, variable, first: pair(first_order), total: pair(total) })
+    };
+    let influences = facts.metrics.iter().enumerate();
+    let influences = influences.flat_map(|(m, fact)| fact.influences.iter().enumerate().map(move |i| (m, i)));
+    let axes = facts.variables.iter().zip(drawn.variables).map(variable);
+    SweepPlot {
+        designs: facts.designs,
+        step: drawn.numbers.get(1).copied().unwrap_or(1),
+        axes: axes.chain(facts.metrics.iter().zip(drawn.metrics).map(metric)).collect(),
+        indices: influences.filter_map(index).collect(),
+    }
+}
+
+/// A column's name with its unit; a plain number has none.
+fn with_brackets(name: &str, unit: &str) -> String {
+    let name = no_formula(name);
+    if unit.is_empty() || unit == "1" { name.into() } else { format!("{name} [{unit}]") }
+}
+
+fn common_divisor(a: usize, b: usize) -> usize {
+    if b == 0 { a } else { common_divisor(b, a % b) }
+}
+
+impl SweepFacts {
+    /// What it comes to, line by line.
+    pub fn rows(&self) -> Vec<(&'static str, String)> {
+        let mut rows = vec![("result", self.message.clone())];
+        let seed = self.seed.map_or(String::new(), |seed| format!(", seed {seed}"));
+        rows.push((
+            "designs",
+            format!(
+                "{} over {}{seed}",
+                self.method.replace('_', " "),
+                count(self.variables.len(), "variable")
+            ),
+        ));
+        if self.failed > 0 {
+            let part = percent(self.failed as f64 / self.designs as f64);
+            rows.push(("failed", format!("{} do not move to the end ({part})", self.failed)));
+        }
+        let Evaluations { designs, motions, steps } = self.evaluations;
+        rows.push((
+            "looked at",
+            format!(
+                "{}, {}, {}",
+                count(designs, "design"),
+                count(motions, "motion"),
+                count(steps, "position")
+            ),
+        ));
+        rows
+    }
+
+    /// What is printed besides: metrics, variables, influences, failures.
+    pub fn tables(&self) -> Vec<Table> {
+        let optional = |x: Option<f64>, unit: &str| x.map_or("-".into(), |x| with_unit(x, unit));
+        let metric = |m: &SweptFact| {
+            let of = |f: &dyn Fn(&DistributionFact) -> f64| optional(m.distribution.as_ref().map(f), &m.unit);
+            let design = |f: &dyn Fn(&DistributionFact) -> usize| {
+                m.distribution.as_ref().map_or("-".into(), |d| f(d).to_string())
+            };
+            vec![
+                titled(&m.name, &m.case),
+                optional(m.drawn, &m.unit),
+                of(&|d| d.least.value),
+                design(&|d| d.least.design),
+                of(&|d| d.quantiles[0]),
+                of(&|d| d.quantiles[2]),
+                of(&|d| d.quantiles[4]),
+                of(&|d| d.greatest.value),
+                design(&|d| d.greatest.design),
+                of(&|d| d.mean),
+                of(&|d| d.sigma),
+                if m.known < self.designs { m.known.to_string() } else { String::new() },
+            ]
+        };
+        let metrics = Table {
+            title: "Metrics".into(),
+            note: "Over all designs that have them: which design has the least and the greatest value, and what 5 %, half and 95 % of \
+                them are below."
+                .into(),
+            header: header(&[
+                "metric", "as drawn", "least", "in design", "5 %", "median", "95 %", "greatest", "in design ", "mean", "sigma",
+                "known",
+            ]),
+            rows: self.metrics.iter().map(metric).collect(),
+        };
+        let mut tables = vec![metrics.without_empty_columns()];
+        tables.extend(self.influence_tables());
+        let row = |v: &SweptVariable| {
+            vec![
+                v.name.clone(),
+                format!("{} to {}", number(v.from), with_unit(v.to, &v.unit)),
+                v.levels.map_or(String::new(), |n| n.to_string()),
+                with_unit(v.start, &v.unit),
+                v.end.map_or("-".into(), |x| with_unit(x, &v.unit)),
+            ]
+        };
+        let best = self.metrics.first().map_or("-".into(), |m| format!("least {}", titled(&m.name, &m.case)));
+        let variables = Table {
+            title: "Variables".into(),
+            note: "Of a parameter its value, of all others the change of the design as drawn.".into(),
+            header: vec!["variable".into(), "range".into(), "levels".into(), "as drawn".into(), best],
+            rows: self.variables.iter().map(row).collect(),
+        };
+        tables.push(variables.without_empty_columns());
+        if !self.failures.is_empty() {
+            let row = |f: &FailureFact| {
+                vec![
+                    f.case.clone().unwrap_or_default(),
+                    f.why.clone(),
+                    f.count.to_string(),
+                    f.first.to_string(),
+                ]
+            };
+            let failures = Table {
+                title: "Designs that fail".into(),
+                note: "Their rows are kept, with the reason.".into(),
+                header: header(&["case", "what happens to the first", "designs", "first"]),
+                rows: self.failures.iter().map(row).collect(),
+            };
+            tables.push(failures.without_empty_columns());
+        }
+        tables
+    }
+
+    /// How metrics go with variables: Sobol's indices where they were asked for, else rank correlations.
+    fn influence_tables(&self) -> Vec<Table> {
+        let indices = self.method == SweepMethod::Indices.name();
+        let known = self.metrics.iter().filter(|m| m.distribution.as_ref().is_some_and(|d| d.sigma > 0.0));
+        if !indices {
+            let mut head = vec!["variable".to_owned()];
+            head.extend(known.clone().map(|m| titled(&m.name, &m.case)));
+            let row = |(k, v): (usize, &SweptVariable)| {
+                let mut row = vec![v.name.clone()];
+                let of = |m: &SweptFact| m.influences[k].rank_correlation;
+                row.extend(known.clone().map(|m| of(m).map_or("-".into(), |r| format!("{r:+.2}"))));
+                row
+            };
+            let rows: Vec<_> = self.variables.iter().enumerate().map(row).collect();
+            return Some(Table {
+                title: "Rank correlations".into(),
+                note: "1 where a metric always rises with a variable, -1 where it always falls, near 0 where it does neither.".into(),
+                header: head,
+                rows,
+            })
+            .filter(|t| t.header.len() > 1)
+            .into_iter()
+            .collect();
+        }
+        let table = |m: &SweptFact| {
+            let mut by_total: Vec<&InfluenceFact> = m.influences.iter().collect();
+            by_total.sort_by(|a, b| b.total.unwrap_or(-1.0).total_cmp(&a.total.unwrap_or(-1.0)));
+            let with_error = |x: Option<f64>, e: Option<f64>| {
+                x.zip(e).map_or("-".into(), |(x, e)| format!("{x:.3} ± {e:.3}"))
+            };
+            let row = |i: &&InfluenceFact| {
+                vec![
+                    i.variable.clone(),
+                    with_error(i.first, i.first_error),
+                    with_error(i.total, i.total_error),
+                    bar(i.total.unwrap_or(0.0)),
+                ]
+            };
+            let pairs = m.influences.iter().filter_map(|i| i.pairs).min().unwrap_or(0);
+            let all = self.designs / (self.variables.len() + 2);
+            let missing = if pairs < all {
+                " Where a design failed its pair is left out: they are those over the part of the ranges where the mechanism moves."
+            } else {
+                ""
+            };
+            Table {
+                title: format!("Sobol indices of {}", titled(&m.name, &m.case)),
+                note: format!(
+                    "Part of the variance by the variable alone, and with all it does together with others; from {pairs} pairs of designs.{missing}"
+                ),
+                header: header(&["variable", "first order", "total", ""]),
+                rows: by_total.iter().map(row).collect(),
+            }
+        };
+        known.map(table).collect()
+    }
+
+    /// How long it took, in a line.
+    pub fn time_line(&self) -> String {
+        seconds(self.seconds)
+    }
+
+    /// The page of a motion of the design as drawn becomes that of the sweep: what is told here comes first among its checks.
+    pub fn page(
+        &self,
+        swept: &Swept<'_>,
+        plot: &SweepPlot,
+        motion: usize,
+        mut page: Payload,
+        outputs: &[Output],
+    ) -> Payload {
+        let place = |of: OutputSource| outputs.iter().position(|o| o.source == of);
+        let first = swept.sweep.metrics().iter().find(|m| m.motion == motion);
+        if let Some(metric) = first.map(|m| &swept.model().metrics[m.metric]) {
+            page.first = place(metric.of).or(page.first);
+            page.over = metric.over.and_then(place);
+        }
+        let cards = self.rows().into_iter().filter(|(what, _)| ["failed"].contains(what));
+        page.summary.splice(0..0, cards.map(|(what, is)| Fact { label: what.into(), value: is }));
+        let rows = self.rows().into_iter().map(|(what, is)| vec![what.into(), is]).collect();
+        let result =
+            Table { title: "The sweep".into(), note: String::new(), header: header(&["", "is"]), rows };
+        let mut checks = vec![result];
+        checks.extend(self.tables());
+        checks.append(&mut page.checks);
+        Payload { checks, sweep: Some(plot.clone()), ..page }
+    }
+}

@@ -1,0 +1,161 @@
+//! Checks of which designs are swept over: what is named, and whether there are such designs.
+
+use std::collections::BTreeMap;
+
+use crate::draft::{DesignListDraft, Section, SweepRangeDraft, SweepingDraft};
+use crate::joint::Quantity;
+use crate::model::{Dimension, SweepMethod, SweepRange, Sweeping, VariableId};
+
+use super::optimization::per_si;
+use super::{Checker, Here};
+
+const HERE: Here = Here { section: Section::Sweep, index: 0 };
+
+impl Checker<'_> {
+    pub(super) fn sweeping(&mut self) {
+        let draft = self.draft;
+        let Some(s) = &draft.sweeping else { return };
+        let metrics = match &s.metrics {
+            None => (0..self.model.metrics.len()).collect(),
+            Some(names) => {
+                let found =
+                    names.iter().enumerate().map(|(k, name)| self.metric(name, HERE.item("metrics", k)));
+                found.collect::<Vec<_>>().into_iter().flatten().collect()
+            }
+        };
+        let curves = s.curves.iter().enumerate();
+        let curves = curves.filter_map(|(k, name)| self.curve_of(name, HERE.item("curves", k))).collect();
+        let mut sweeping = Sweeping {
+            metrics,
+            curves,
+            samples: s.samples,
+            seed: s.seed,
+            ..Sweeping::of_bounds(&self.model)
+        };
+        if self.unread(HERE, "designs") {
+            return;
+        }
+        if let Some(list) = &s.designs {
+            let Some((ranges, listed)) = self.design_list(list) else { return };
+            self.model.sweeping = Some(Sweeping { method: SweepMethod::Listed, ranges, listed, ..sweeping });
+            return;
+        }
+        sweeping.method = s.method.unwrap_or(SweepMethod::Sobol);
+        if let Some(ranges) = &s.ranges {
+            sweeping.ranges = self.ranges(s, ranges);
+        } else {
+            sweeping.ranges.iter_mut().for_each(|r| r.levels = s.levels);
+            self.levels(s.levels, HERE);
+        }
+        let unknown = !draft.unread.is_empty() || !self.faults.is_empty();
+        if sweeping.ranges.is_empty() && !unknown {
+            self.fault("HP0246", HERE.key(""), "nothing is swept: no design variable has a range").help(
+                "name those that are to change, like `NAME = { from = -5, to = 5 }` in `[sweep.variables]`, or give them `bounds`",
+            );
+        }
+        if sweeping.count().is_none() && !unknown {
+            let message = format!("the sweep has more than {} designs", Sweeping::MOST);
+            self.fault("HP0246", HERE.key("method"), message)
+                .note("every level of a variable multiplies their number")
+                .help("give fewer `levels`, or use `method = \"sobol\"` with as many `samples` as you have time for");
+        }
+        self.model.sweeping = Some(sweeping);
+    }
+
+    /// HP0246: every range of a variable of its own, that rises.
+    fn ranges(&mut self, s: &SweepingDraft, ranges: &[SweepRangeDraft]) -> Vec<SweepRange> {
+        let draft = self.draft;
+        let mut found = Vec::new();
+        for (index, one) in ranges.iter().enumerate() {
+            let here = Here { section: Section::SweepRanges, index };
+            if self.unread(here, "") {
+                continue;
+            }
+            let name = &one.name;
+            let Some(k) = self.optimized_variable(name, here.key("name")) else { continue };
+            let levels = one.levels.unwrap_or(s.levels);
+            self.levels(levels, if one.levels.is_some() { here } else { HERE });
+            let Some(quantity) = self.model.variables.get(k).map(|v| v.quantity) else { continue };
+            let variable = VariableId(k);
+            let in_si = |x: f64| self.in_si(variable, quantity, x, [one.per_metre, one.per_radian]);
+            let [from, to] = [one.low, one.high].map(|x| x.map(in_si));
+            let bounds = draft.design[k].bounds;
+            let [low, high] = [from.or(bounds.map(|b| b[0])), to.or(bounds.map(|b| b[1]))];
+            let (Some(low), Some(high)) = (low, high) else {
+                if !draft.unread.any(Section::Design, k) {
+                    let missing = if low.is_none() { "from" } else { "to" };
+                    let message = format!("the range of `{name}` does not say `{missing}` where it goes");
+                    self.fault("HP0246", here.key("name"), message)
+                        .help("write `{ from = -5, to = 5 }`, or give the variable `bounds`");
+                }
+                continue;
+            };
+            if !(low < high && low.is_finite() && high.is_finite()) {
+                let message = format!("the range of `{name}` does not rise");
+                let key = if one.low.is_some() { "from" } else { "to" };
+                self.fault("HP0246", here.key(key), message)
+                    .note("it begins with `from` and ends with `to`; what is not given is a bound of the variable")
+                    .help("give the lower one as `from`; leave out a variable that is to stay as drawn");
+                continue;
+            }
+            found.push(SweepRange { variable, low, high, levels });
+        }
+        found
+    }
+
+    fn levels(&mut self, levels: usize, here: Here) {
+        if levels < 2 {
+            self.fault(
+                "HP0246",
+                here.key("levels"),
+                format!("a factorial of {levels} level changes nothing"),
+            )
+            .help("give a whole number from 2: both ends of the range, and what is evenly between them");
+        }
+    }
+
+    /// HP0247: the designs of a list, of variables that there are, each once.
+    fn design_list(&mut self, list: &DesignListDraft) -> Option<(Vec<SweepRange>, Vec<Vec<f64>>)> {
+        let at = HERE.key("designs");
+        let mut first_of: BTreeMap<&str, usize> = BTreeMap::new();
+        let mut variables = Vec::new();
+        for (column, name) in list.names.iter().enumerate() {
+            let first = *first_of.entry(name).or_insert(column);
+            if first < column {
+                let message = format!("`{}`, line 1: `{name}` heads two columns", list.file);
+                self.fault("HP0247", at.clone(), message)
+                    .note(format!("columns {} and {}", first + 1, column + 1))
+                    .help("remove one of the two");
+                return None;
+            }
+            let faults = self.faults.len();
+            let found = self.optimized_variable(name, at.clone());
+            if let Some(fault) = self.faults.get_mut(faults) {
+                fault.note(format!("it heads column {} of `{}`", column + 1, list.file));
+            }
+            variables.push(VariableId(found?));
+        }
+        let quantities: Option<Vec<Quantity>> =
+            variables.iter().map(|v| Some(self.model.variables.get(v.0)?.quantity)).collect();
+        let quantities = quantities?;
+        let units = [list.per_metre, list.per_radian];
+        let in_si = |row: &Vec<f64>| {
+            let of = variables.iter().zip(&quantities).zip(row);
+            of.map(|((v, q), x)| self.in_si(*v, *q, *x, units)).collect()
+        };
+        let rows: Vec<Vec<f64>> = list.rows.iter().map(in_si).collect();
+        Some((Sweeping::spanned(&variables, &rows), rows))
+    }
+
+    /// A value of a variable as a file writes it, as a change in SI: of a parameter from its own value.
+    fn in_si(&self, variable: VariableId, quantity: Quantity, x: f64, per: [f64; 2]) -> f64 {
+        x / per_si(Dimension::from(quantity), per[0], per[1]) - self.model.drawn_value(variable)
+    }
+
+    /// The place of a measure in the model.
+    pub(super) fn curve_of(&mut self, name: &str, at: crate::draft::Locus) -> Option<usize> {
+        let draft = self.draft;
+        self.find("measure", name, at, draft.measures.iter().map(|m| m.name.as_str()))?;
+        self.model.measures.iter().position(|m| m.name == name)
+    }
+}

@@ -1,0 +1,127 @@
+//! Which designs are swept over, and what is kept of them.
+
+use super::{Change, Model, VariableId};
+
+/// Many designs at once, and what is kept of each.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Sweeping {
+    /// How designs are chosen within the ranges.
+    pub method: SweepMethod,
+    /// The variables that change, and how far. All others stay as drawn. Of a list, the variables that it has.
+    pub ranges: Vec<SweepRange>,
+    /// The designs of a list: per design, the values of the variables of `ranges`, as changes.
+    pub listed: Vec<Vec<f64>>,
+    /// So many designs are chosen; for indices so many pairs of them. Grids and lists know their number.
+    pub samples: usize,
+    /// What they are drawn from: the same number gives the same designs.
+    pub seed: u64,
+    /// The metrics that are kept, by their places in [`Model::metrics`]. One that names no case counts in each of them.
+    pub metrics: Vec<usize>,
+    /// The measures whose whole curves are kept, by their places in [`Model::measures`].
+    pub curves: Vec<usize>,
+}
+
+/// How designs are chosen.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum SweepMethod {
+    /// Every combination of evenly spaced values.
+    Factorial,
+    /// At random, so that each of as many slices of every range has one design.
+    LatinHypercube,
+    /// Points that fill the ranges evenly, however many there are: a scrambled Sobol sequence.
+    Sobol,
+    /// Pairs of such points, and for every variable the first of a pair with that variable of the second: what Sobol's indices of
+    /// sensitivity are estimated from.
+    Indices,
+    /// As they are listed.
+    Listed,
+}
+
+/// How far a variable is swept.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SweepRange {
+    /// Which.
+    pub variable: VariableId,
+    /// From this change of it, in its unit.
+    pub low: f64,
+    /// To this one.
+    pub high: f64,
+    /// In a factorial, so many values, both ends among them.
+    pub levels: usize,
+}
+
+impl SweepMethod {
+    /// The names of those that a file can ask for by name, in the order of the variants.
+    pub const NAMES: [&str; 4] = ["factorial", "latin_hypercube", "sobol", "indices"];
+
+    /// Those of these names.
+    pub const NAMED: [Self; 4] = [Self::Factorial, Self::LatinHypercube, Self::Sobol, Self::Indices];
+
+    /// As model files and summaries write it.
+    pub fn name(self) -> &'static str {
+        Self::NAMED.iter().position(|m| *m == self).map_or("listed", |k| Self::NAMES[k])
+    }
+}
+
+impl Sweeping {
+    /// So many designs are chosen where nothing else is said.
+    pub const SAMPLES: usize = 1000;
+    /// What they are drawn from where nothing else is said.
+    pub const SEED: u64 = 1;
+    /// A factorial has so many values of a variable where nothing else is said.
+    pub const LEVELS: usize = 3;
+    /// More designs than these are surely a slip.
+    pub const MOST: usize = 1_000_000_000;
+
+    /// What is asked where the file says nothing: evenly spread designs of all variables that have bounds, and every metric.
+    pub fn of_bounds(model: &Model) -> Self {
+        let ranges = model.variables.iter().enumerate().filter_map(|(k, variable)| {
+            let [low, high] = variable.bounds?;
+            Some(SweepRange { variable: VariableId(k), low, high, levels: Self::LEVELS })
+        });
+        Self {
+            method: SweepMethod::Sobol,
+            ranges: ranges.collect(),
+            listed: Vec::new(),
+            samples: Self::SAMPLES,
+            seed: Self::SEED,
+            metrics: (0..model.metrics.len()).collect(),
+            curves: Vec::new(),
+        }
+    }
+
+    /// What the columns of a list of designs span.
+    pub fn spanned(variables: &[VariableId], rows: &[Vec<f64>]) -> Vec<SweepRange> {
+        let of = |(k, variable): (usize, &VariableId)| {
+            let column = || rows.iter().map(move |row| row[k]);
+            let (low, high) =
+                (column().fold(f64::INFINITY, f64::min), column().fold(f64::NEG_INFINITY, f64::max));
+            SweepRange { variable: *variable, low, high, levels: Self::LEVELS }
+        };
+        variables.iter().enumerate().map(of).collect()
+    }
+
+    /// How many designs that are; `None` where there are more than [`MOST`](Self::MOST).
+    pub fn count(&self) -> Option<usize> {
+        let count = match self.method {
+            SweepMethod::Factorial => self.ranges.iter().try_fold(1_usize, |n, r| n.checked_mul(r.levels)),
+            SweepMethod::LatinHypercube | SweepMethod::Sobol => Some(self.samples),
+            SweepMethod::Indices => self.samples.checked_mul(self.ranges.len() + 2),
+            SweepMethod::Listed => Some(self.listed.len()),
+        };
+        count.filter(|n| *n <= Self::MOST)
+    }
+}
+
+impl Model {
+    /// What the value of a variable is called as drawn, in its unit: a parameter's own value, and 0 for all that is only told by how much it
+    /// changes. Its bounds and ranges are written so.
+    pub fn drawn_value(&self, variable: VariableId) -> f64 {
+        let variable = &self.variables[variable.0];
+        let own = variable.changes.iter().find_map(|change| match change {
+            Change::Parameter(change) => Some(&self.parameters[change.parameter.0]),
+            _ => None,
+        });
+        own.filter(|p| p.name == variable.name).map_or(0.0, |p| p.value)
+    }
+}
