@@ -1,6 +1,7 @@
 //! Model files as their authors meet them: what is read, what is refused and how that is said, and the models of the gallery
 //! solved and held against what is known of them.
 
+mod calibrations;
 mod cases;
 mod diagnostics;
 mod docs;

@@ -8,6 +8,7 @@ mod rank;
 pub(crate) mod semidefinite;
 mod sparse;
 mod spline;
+pub(crate) mod svd;
 
 pub(crate) use factors::{Factors, LARGEST_DENSE};
 pub(crate) use least_squares::least_squares;

@@ -52,7 +52,7 @@ enum Position {
 }
 
 /// The times of the two parts of every motion: the second driver goes to where it stands, then the first one sweeps.
-const BOTH: [f64; 2] = [0.0, 1.0];
+pub(super) const STANDS: [f64; 2] = [0.0, 1.0];
 
 impl GridMap {
     /// Solves a grid at the design with variable k at `design[k]`; `more` is asked at every position, and may end it.
@@ -118,7 +118,7 @@ impl GridMap {
         let interrupted = solution.stop.as_ref().is_some_and(|s| matches!(s.kind, StopKind::Interrupted));
         let stopped = solution.stop.as_ref().filter(|_| !interrupted).map(|stop| {
             let t = stop.failed_time;
-            let gone = [sweep(farthest, t), second[row] * t.clamp(BOTH[0], BOTH[1])];
+            let gone = [sweep(farthest, t), second[row] * t.clamp(STANDS[0], STANDS[1])];
             let as_drawn = [self.grid.values[0][0] - first[0], self.grid.values[1][0] - second[0]];
             let stood = [0, 1].map(|k| as_drawn[k] + gone[k]);
             self.stops.push(GridStop { row, stop: stop.clone(), stood });
@@ -205,12 +205,12 @@ impl GridMap {
 
 /// Where the first driver stands at a time.
 fn sweep(farthest: f64, time: f64) -> f64 {
-    farthest * (time - BOTH[1]).max(0.0)
+    farthest * (time - STANDS[1]).max(0.0)
 }
 
 /// When it stands there, on its way to the farthest place of its side.
 fn time_of(place: f64, farthest: f64) -> f64 {
-    BOTH[1] + if place == 0.0 { 0.0 } else { place / farthest }
+    STANDS[1] + if place == 0.0 { 0.0 } else { place / farthest }
 }
 
 /// Where the two drivers stand, counted from the drawing.
@@ -225,7 +225,7 @@ fn from_drawing(model: &Model, grid: &Grid) -> [Vec<f64>; 2] {
 fn row_model(model: &Model, grid: &Grid, ways: [f64; 2], places: impl Iterator<Item = f64>) -> Model {
     let mut laws = vec![Some(Law::constant(0.0)); model.drivers.len()];
     let mut formulas = Vec::new();
-    let [begin, stands] = BOTH;
+    let [begin, stands] = STANDS;
     let texts =
         [format!("({:?})*max(t - {stands:?}, 0)", ways[0]), format!("({:?})*min(t, {stands:?})", ways[1])];
     for (driver, text) in grid.drivers.into_iter().zip(texts) {
@@ -242,8 +242,8 @@ fn row_model(model: &Model, grid: &Grid, ways: [f64; 2], places: impl Iterator<I
 
 /// A law written here. Where the driver's laws count from zero and the drawing follows the design, the driver has gone back by what the
 /// drawing has moved before the first place is passed, so that it stands where the grid says in every design.
-fn law_of(model: &Model, driver: DriverId, text: String) -> (Law, Option<Formula>) {
-    let [_, stands] = BOTH;
+pub(super) fn law_of(model: &Model, driver: DriverId, text: String) -> (Law, Option<Formula>) {
+    let [_, stands] = STANDS;
     let law =
         |text: &str, with: &[(&str, f64)]| Law::parse_with(text, with).expect("a law that is written here");
     let zero = model.drivers[driver.0].law.as_drawn();

@@ -1,6 +1,7 @@
 //! Studies: questions that take many solutions.
 
 mod alone;
+mod calibrate;
 mod comparison;
 mod difference;
 mod evaluation;
@@ -21,6 +22,10 @@ mod verify;
 mod whatif;
 
 pub use alone::DriverRates;
+pub use calibrate::{
+    Calibrating, Calibration, CannotCalibrate, Certainty, FitStatus, Fitted, Loss, Measurements, Next,
+    NotReached, Reading, Untold, calibrate, values_in_postures,
+};
 pub use comparison::{Comparison, StepError};
 pub use difference::{Difference, Scheme, finite_differences};
 pub use evaluation::{Cost, Evaluated, Motions, Rejection};

@@ -1,0 +1,376 @@
+//! What measurements tell of a geometry: held against the normal equations, against hidden designs over many seeds, and against fits with the
+//! readings that were proposed.
+
+use std::path::Path;
+
+use hardpoint::model::{Model, Scatter, VariableId};
+use hardpoint::study::{
+    Calibrating, Calibration, CannotCalibrate, FitStatus, Loss, Measurements, Reading, calibrate,
+    design_stream, draw, values_in_postures,
+};
+use hardpoint::topology::Formulation;
+use hardpoint_file::parse;
+
+/// A slider-crank: `x = r cos a + sqrt(l^2 - (r sin a - e)^2)`.
+const CRANK: &str = r#"
+name = "slider-crank"
+units = { length = "mm", angle = "deg" }
+parameters.rod = { value = 300, unit = "length", design = true }
+parameters.offset = { value = 20, unit = "length", design = true }
+parameters.radius = { value = 100, unit = "length", design = true }
+hardpoints = { O = [0, 0, 0], A = ["radius*cos(40*pi/180)", "radius*sin(40*pi/180)", 0], B = [300, "offset", 0] }
+bodies = { crank = {}, slider = {} }
+joints.pivot = { type = "revolute", bodies = ["ground", "crank"], at = "O", axis = "z" }
+joints.slide = { type = "translational", bodies = ["ground", "slider"], at = "B", axis = "x" }
+joints.rod = { type = "distance", bodies = ["crank", "slider"], at = ["A", "B"], length = "rod" }
+drivers.motor = { joint = "pivot", law = "20*t" }
+measures.place = { type = "position", point = "B", along = "x" }
+points.B = { body = "slider", at = "B" }
+time = { end = 1.0, steps = 10 }
+"#;
+
+/// The closed form, m, with the crank so far from the drawing, rad.
+fn place([rod, offset, radius]: [f64; 3], crank: f64) -> f64 {
+    let a = crank + 40_f64.to_radians();
+    radius * a.cos() + (rod * rod - (radius * a.sin() - offset).powi(2)).sqrt()
+}
+
+fn gallery(name: &str) -> Model {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("../../models/{name}.toml"));
+    hardpoint_file::read(&path).unwrap_or_else(|e| panic!("{e}")).model
+}
+
+fn crank() -> Model {
+    parse(CRANK, "crank.toml").unwrap_or_else(|e| panic!("{e}")).model
+}
+
+fn all(model: &Model) -> Vec<VariableId> {
+    (0..model.variables.len()).map(VariableId).collect()
+}
+
+fn fitted_by(
+    model: &Model,
+    measured: &Measurements,
+    variables: &[VariableId],
+    loss: Loss,
+) -> Result<Calibration, CannotCalibrate> {
+    let asked = Calibrating { measured, variables, loss, formulation: Formulation::Relative, iterations: 50 };
+    calibrate(model, &asked, &mut |_, _| {}, &|| true)
+}
+
+fn fitted(model: &Model, measured: &Measurements) -> Calibration {
+    fitted_by(model, measured, &all(model), Loss::Squares).unwrap_or_else(|e| panic!("{e:?}"))
+}
+
+/// Numbers of the standard normal distribution.
+fn noise(seed: u64) -> impl FnMut() -> f64 {
+    let mut stream = design_stream(seed, 1);
+    move || {
+        let mut one = [0.0];
+        draw(Scatter::Normal { sigmas: 1.0 }, 1.0, &mut stream, &mut one);
+        one[0]
+    }
+}
+
+/// Readings of some outputs of a hidden design, with noise of standard deviation `sigma`, m or rad.
+fn readings(
+    model: &Model,
+    hidden: &[f64],
+    postures: &[Vec<f64>],
+    outputs: &[usize],
+    sigma: f64,
+    noise: &mut impl FnMut() -> f64,
+) -> Measurements {
+    let values = values_in_postures(model, hidden, postures, Formulation::Relative).unwrap();
+    let mut measured = Measurements { postures: postures.to_vec(), readings: Vec::new() };
+    for (posture, values) in values.iter().enumerate() {
+        let values = values.as_ref().unwrap_or_else(|why| panic!("{why}"));
+        for &output in outputs {
+            let value = values[output] + sigma * noise();
+            measured.readings.push(Reading { posture, output, value, sigma: Some(sigma) });
+        }
+    }
+    measured
+}
+
+#[test]
+fn the_fit_of_a_slider_crank_is_that_of_its_closed_form() {
+    let model = crank();
+    let hidden = [0.301, 0.0195, 0.1004];
+    let sigma = 2e-5;
+    let mut noise = noise(3);
+    let cranks: Vec<f64> = (0..24).map(|k| f64::from(k) * 0.25).collect();
+    let mut measured = Measurements::default();
+    for (posture, crank) in cranks.iter().enumerate() {
+        measured.postures.push(vec![*crank]);
+        let value = place(hidden, *crank) + sigma * noise();
+        measured.readings.push(Reading { posture, output: 0, value, sigma: Some(sigma) });
+    }
+    let found = fitted(&model, &measured);
+    assert_eq!(found.status, FitStatus::Found);
+    let drawn = [0.3, 0.02, 0.1];
+    let values: Vec<f64> = (0..3).map(|k| drawn[k] + found.design[k]).collect();
+    // The gradient of the sum of squares of the closed form is nothing there, and the covariance is that of its normal equations.
+    let at = |b: [f64; 3]| cranks.iter().map(|a| place(b, *a)).collect::<Vec<_>>();
+    let b = [values[0], values[1], values[2]];
+    let step = 1e-6;
+    let columns: Vec<Vec<f64>> = (0..3)
+        .map(|k| {
+            let moved = |by: f64| at(std::array::from_fn(|i| b[i] + if i == k { by } else { 0.0 }));
+            moved(step).iter().zip(moved(-step)).map(|(p, m)| (p - m) / (2.0 * step * sigma)).collect()
+        })
+        .collect();
+    let residuals: Vec<f64> =
+        at(b).iter().zip(&measured.readings).map(|(x, r)| (x - r.value) / sigma).collect();
+    let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
+    for column in &columns {
+        let cosine = dot(column, &residuals) / (dot(column, column) * dot(&residuals, &residuals)).sqrt();
+        /// Differences of the closed form are as exact as this.
+        const STATIONARY: f64 = 1e-7;
+        assert!(cosine.abs() < STATIONARY, "{cosine}");
+    }
+    for i in 0..3 {
+        for j in 0..3 {
+            // (J' J) C = 1
+            let product: f64 =
+                (0..3).map(|k| dot(&columns[i], &columns[k]) * found.certainty.covariance[k][j]).sum();
+            assert!((product - f64::from(u8::from(i == j))).abs() < 1e-5, "{i} {j}: {product}");
+        }
+    }
+    assert_eq!(found.certainty.freedom, 21);
+    let chi: f64 = residuals.iter().map(|r| r * r).sum();
+    assert!((found.certainty.chi_square - chi).abs() < 1e-6 * chi);
+    for k in 0..3 {
+        let off = (values[k] - hidden[k]).abs() / found.certainty.sigmas[k].unwrap();
+        assert!(off < 3.5, "variable {k}: {off} standard deviations");
+    }
+}
+
+#[test]
+fn nothing_depends_on_the_order_of_postures_and_readings() {
+    let model = crank();
+    let postures: Vec<Vec<f64>> = (0..9).map(|k| vec![f64::from(k) * 0.6]).collect();
+    let mut noise = noise(5);
+    let measured = readings(&model, &[1e-3, -5e-4, 3e-4], &postures, &[0], 1e-5, &mut noise);
+    let one = fitted(&model, &measured);
+    let mut other = measured.clone();
+    other.postures.reverse();
+    other.readings.reverse();
+    other.readings.iter_mut().for_each(|r| r.posture = 8 - r.posture);
+    other.readings.rotate_left(4);
+    let other = fitted(&model, &other);
+    for k in 0..3 {
+        assert!((one.design[k] - other.design[k]).abs() < 1e-9, "{:?} {:?}", one.design, other.design);
+        let [a, b] = [&one, &other].map(|c| c.certainty.sigmas[k].unwrap());
+        assert!((a - b).abs() < 1e-7 * a);
+    }
+}
+
+#[test]
+fn what_cannot_be_told_apart_is_named_and_stays() {
+    // In one posture nothing but one sum of the three is told; of a rod between two points that both move along it, their difference.
+    let model = crank();
+    let measured = readings(&model, &[1e-3, 0.0, 0.0], &[vec![0.3]], &[0], 1e-5, &mut || 0.0);
+    let found = fitted(&model, &measured);
+    assert_eq!((found.certainty.untold.len(), found.status), (2, FitStatus::Found));
+    assert!(found.certainty.sigmas.iter().all(Option::is_none));
+    assert!(found.objective[1] < 1e-12, "{:?}", found.objective);
+    // To first order no untold direction changes what was read.
+    for untold in &found.certainty.untold {
+        let change =
+            |by: f64| -> Vec<f64> { (0..3).map(|k| found.design[k] + by * untold.direction[k]).collect() };
+        let value = |by: f64| {
+            values_in_postures(&model, &change(by), &[vec![0.3]], Formulation::Relative).unwrap()[0]
+                .as_ref()
+                .unwrap()[0]
+        };
+        let slope = (value(1e-6) - value(-1e-6)) / 2e-6;
+        let size = untold.direction.iter().map(|x| x.abs()).fold(0.0, f64::max);
+        assert!(slope.abs() < 1e-6 * size, "{slope}");
+    }
+    // And a reading that tells them comes first among those proposed.
+    assert!(found.next[0].tells.is_some(), "{:?}", found.next);
+}
+
+#[test]
+fn a_robust_loss_resists_what_is_far_off() {
+    let model = crank();
+    let postures: Vec<Vec<f64>> = (0..30).map(|k| vec![f64::from(k) * 0.2]).collect();
+    let hidden = [1e-3, -5e-4, 3e-4];
+    let mut noise = noise(7);
+    let mut measured = readings(&model, &hidden, &postures, &[0], 1e-5, &mut noise);
+    for k in [3, 11, 20, 26] {
+        measured.readings[k].value += 2e-3;
+    }
+    let worst = |c: &Calibration| (0..3).map(|k| (c.design[k] - hidden[k]).abs()).fold(0.0, f64::max);
+    let squares = fitted(&model, &measured);
+    let [huber, cauchy] = [Loss::Huber, Loss::Cauchy]
+        .map(|loss| fitted_by(&model, &measured, &all(&model), loss).unwrap_or_else(|e| panic!("{e:?}")));
+    assert!(worst(&squares) > 2e-4, "{}", worst(&squares));
+    assert!(worst(&huber) < 4e-5, "{}", worst(&huber));
+    assert!(worst(&cauchy) < 4e-5, "{}", worst(&cauchy));
+    // Those far off are known by what they count.
+    let light: Vec<usize> = (0..30).filter(|k| cauchy.fitted[*k].unwrap().weight < 0.01).collect();
+    assert_eq!(light, [3, 11, 20, 26]);
+    assert_eq!((huber.status, cauchy.status), (FitStatus::Found, FitStatus::Found));
+}
+
+#[test]
+fn a_reading_that_is_proposed_does_what_it_says() {
+    let model = crank();
+    let postures: Vec<Vec<f64>> = (0..6).map(|k| vec![f64::from(k) * 0.1]).collect();
+    let hidden = [1e-3, -5e-4, 3e-4];
+    let measured = readings(&model, &hidden, &postures, &[0], 1e-5, &mut || 0.0);
+    let found = fitted(&model, &measured);
+    let next = &found.next[0];
+    let improves = next.improves.expect("all three are told");
+    let mut more = measured.clone();
+    more.postures.push(next.drivers.clone());
+    let value = values_in_postures(&model, &hidden, &[next.drivers.clone()], Formulation::Relative).unwrap();
+    let value = value[0].as_ref().unwrap()[next.output];
+    more.readings.push(Reading { posture: 6, output: next.output, value, sigma: Some(next.sigma) });
+    let with = fitted(&model, &more);
+    let [before, after] = [&found, &with].map(|c| c.certainty.sigmas[improves.variable].unwrap());
+    assert!((before - improves.before).abs() < 1e-6 * before);
+    assert!((after - improves.after).abs() < 1e-4 * after, "{after} instead of {}", improves.after);
+    assert!(after < 0.9 * before);
+}
+
+#[test]
+fn without_standard_deviations_they_come_from_the_residuals() {
+    let model = crank();
+    let postures: Vec<Vec<f64>> = (0..40).map(|k| vec![f64::from(k) * 0.15]).collect();
+    let mut noise = noise(9);
+    let mut measured = readings(&model, &[1e-3, 0.0, 0.0], &postures, &[0], 2e-5, &mut noise);
+    let given = fitted(&model, &measured);
+    measured.readings.iter_mut().for_each(|r| r.sigma = None);
+    let found = fitted(&model, &measured);
+    let scatter = found.certainty.scatter.unwrap();
+    // Of 37 degrees of freedom, within four standard deviations of its own.
+    assert!((scatter / 2e-5 - 1.0).abs() < 4.0 / (2.0 * 37.0_f64).sqrt(), "{scatter}");
+    for k in 0..3 {
+        assert!((found.design[k] - given.design[k]).abs() < 1e-9);
+        let [a, b] = [&found, &given].map(|c| c.certainty.sigmas[k].unwrap());
+        assert!((a / b - scatter / 2e-5).abs() < 1e-6);
+    }
+    measured.readings.truncate(3);
+    let few = fitted_by(&model, &measured, &all(&model), Loss::Squares);
+    assert!(matches!(few, Err(CannotCalibrate::TooFewReadings { readings: 3, variables: 3 })));
+}
+
+#[test]
+fn a_posture_out_of_reach_is_left_out_and_told() {
+    let model = crank();
+    let text = CRANK
+        .replace("value = 300, unit", "value = 90, unit")
+        .replace("[300, \"offset\"", "[150, \"offset\"");
+    let short = parse(&text, "short.toml").unwrap_or_else(|e| panic!("{e}")).model;
+    let postures = [vec![0.1], vec![0.2], vec![1.2], vec![0.05]];
+    let mut measured = Measurements { postures: postures.to_vec(), readings: Vec::new() };
+    for posture in 0..4 {
+        measured.readings.push(Reading { posture, output: 0, value: 0.15, sigma: Some(1e-3) });
+    }
+    let found = fitted_by(&short, &measured, &all(&short)[..1], Loss::Squares).unwrap();
+    assert_eq!(found.not_reached.len(), 1);
+    assert!(
+        found.not_reached[0].posture == 2 && !found.not_reached[0].why.is_empty(),
+        "{:?}",
+        found.not_reached
+    );
+    assert!(found.fitted[2].is_none() && found.fitted[3].is_some());
+    assert!(fitted_by(&model, &measured, &[], Loss::Squares).is_err());
+}
+
+/// Over so many seeds.
+const SEEDS: u64 = 100;
+
+/// A hidden design, drawn anew for every seed: fits over all seeds, as errors in standard deviations and as chi squares of the error.
+fn recovered(
+    model: &Model,
+    variables: &[VariableId],
+    postures: &[Vec<f64>],
+    outputs: &[usize],
+    sigma: f64,
+    hidden_by: f64,
+) -> (Vec<f64>, Vec<f64>) {
+    let (mut errors, mut chis) = (Vec::new(), Vec::new());
+    for seed in 0..SEEDS {
+        let mut noise = noise(seed);
+        let mut hidden = vec![0.0; model.variables.len()];
+        variables.iter().for_each(|v| hidden[v.0] = hidden_by * noise());
+        let measured = readings(model, &hidden, postures, outputs, sigma, &mut noise);
+        let found = fitted_by(model, &measured, variables, Loss::Squares).unwrap_or_else(|e| panic!("{e:?}"));
+        assert_eq!((found.status, found.certainty.untold.len()), (FitStatus::Found, 0), "seed {seed}");
+        let off: Vec<f64> = variables.iter().map(|v| found.design[v.0] - hidden[v.0]).collect();
+        errors.extend(off.iter().zip(&found.certainty.sigmas).map(|(e, s)| e / s.unwrap()));
+        chis.push(mahalanobis(&found.certainty.covariance, &off));
+    }
+    (errors, chis)
+}
+
+/// `e' C^-1 e` by Cholesky's factors of C with its diagonal scaled to ones.
+fn mahalanobis(c: &[Vec<f64>], e: &[f64]) -> f64 {
+    let n = e.len();
+    let s: Vec<f64> = (0..n).map(|k| c[k][k].sqrt()).collect();
+    let mut l = vec![vec![0.0; n]; n];
+    let mut y = vec![0.0; n];
+    for i in 0..n {
+        for j in 0..=i {
+            let left = c[i][j] / (s[i] * s[j]) - (0..j).map(|k| l[i][k] * l[j][k]).sum::<f64>();
+            l[i][j] = if i == j { left.sqrt() } else { left / l[j][j] };
+        }
+        y[i] = (e[i] / s[i] - (0..i).map(|k| l[i][k] * y[k]).sum::<f64>()) / l[i][i];
+    }
+    y.iter().map(|y| y * y).sum()
+}
+
+/// Errors are those that the covariance states: chi squares have their mean and variance, and intervals cover what they should.
+fn assert_covered(name: &str, variables: usize, (errors, chis): (Vec<f64>, Vec<f64>)) {
+    let (n, v) = (chis.len() as f64, variables as f64);
+    let mean = chis.iter().sum::<f64>() / n;
+    // Four standard deviations of the mean of n chi squares of v degrees of freedom.
+    assert!((mean - v).abs() < 4.0 * (2.0 * v / n).sqrt(), "{name}: mean chi square {mean} of {v}");
+    for (within, part) in [(1.0, 0.6827), (2.0, 0.9545), (3.0, 0.9973)] {
+        let covered = errors.iter().filter(|e| e.abs() <= within).count() as f64 / errors.len() as f64;
+        // Of one seed all errors may go together: seeds are what is independent, four standard deviations of them.
+        let slack = 4.0 * (part * (1.0 - part) / n).sqrt();
+        println!("{name}: within {within} standard deviations {covered:.4}, expected {part}");
+        assert!((covered - part).abs() < slack, "{name}: {covered} within {within} standard deviations");
+    }
+}
+
+#[test]
+fn a_hidden_stewart_platform_is_recovered_within_its_covariance() {
+    // Every joint may be anywhere, with the legs as they were: 36 coordinates.
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../models/stewart.toml");
+    let text = std::fs::read_to_string(path).unwrap();
+    let (start, end) = (text.find("# A leg whose end moves").unwrap(), text.find("[points]").unwrap());
+    let joint = |of: &str, k: usize| {
+        format!("{of}_{k} = {{ move = \"{of}_{k}\", along = \"xyz\", fixed_length = true }}\n")
+    };
+    let design: String = (1..=6).flat_map(|k| [joint("base", k), joint("top", k)]).collect();
+    let text = format!("{}[design]\n{design}\n{}", &text[..start], &text[end..]);
+    let model = parse(&text, "hidden.toml").unwrap_or_else(|e| panic!("{e}")).model;
+    assert_eq!(model.variables.len(), 36);
+    // Legs anywhere within 70 mm of the drawing; three points of the platform are measured in all coordinates.
+    let mut noise = noise(1000);
+    let mut place = || 0.07 * (2.0 * (0.5 + 0.5 * (noise() / 2.0).tanh()) - 1.0);
+    let postures: Vec<Vec<f64>> = (0..9).map(|_| (0..6).map(|_| place()).collect()).collect();
+    let measures = model.measures.len();
+    let outputs: Vec<usize> = (measures..measures + 9).collect();
+    let found = recovered(&model, &all(&model), &postures, &outputs, 2e-5, 1e-3);
+    assert_covered("stewart", 36, found);
+}
+
+#[test]
+fn a_hidden_five_link_is_recovered_within_its_covariance() {
+    let model = gallery("five_link");
+    let named = |name: &str| model.variable(name).unwrap();
+    let variables =
+        ["tie_rod_inner_z", "camber_rod_inner_z", "camber_rod_inner_y", "tie_rod_longer"].map(named);
+    let postures: Vec<Vec<f64>> = (-5..=5).map(|k| vec![f64::from(k) * 0.01]).collect();
+    // Toe and camber to 0.002 deg over the strut's travel.
+    let outputs = ["toe", "camber"].map(|name| model.measure(name).unwrap().0);
+    let found = recovered(&model, &variables, &postures, &outputs, 0.002_f64.to_radians(), 1e-3);
+    assert_covered("five-link", 4, found);
+}

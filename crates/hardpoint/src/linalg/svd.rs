@@ -1,0 +1,82 @@
+//! Singular values by one-sided rotations: small ones come out as exactly as large ones.
+
+/// Columns are as good as perpendicular where their cosine is below this.
+const PERPENDICULAR: f64 = 1e-15;
+/// Rotations converge in a handful of sweeps over all pairs; more are never needed.
+const MOST_SWEEPS: usize = 60;
+
+/// Singular values, the largest first, and the direction that belongs to each.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Singular {
+    pub values: Vec<f64>,
+    /// Unit vectors, in the same order.
+    pub directions: Vec<Vec<f64>>,
+}
+
+/// Of a matrix given by its rows, each of n numbers.
+pub(crate) fn singular(rows: &[Vec<f64>], n: usize) -> Singular {
+    let mut columns: Vec<Vec<f64>> = (0..n).map(|j| rows.iter().map(|row| row[j]).collect()).collect();
+    let mut v: Vec<Vec<f64>> =
+        (0..n).map(|j| (0..n).map(|i| f64::from(u8::from(i == j))).collect()).collect();
+    for _ in 0..MOST_SWEEPS {
+        let mut turned = false;
+        for p in 0..n {
+            for q in p + 1..n {
+                // A rotation of columns p and q that makes them perpendicular
+                let [a, b, c] = [
+                    dot(&columns[p], &columns[p]),
+                    dot(&columns[q], &columns[q]),
+                    dot(&columns[p], &columns[q]),
+                ];
+                if c.abs() <= PERPENDICULAR * (a * b).sqrt() {
+                    continue;
+                }
+                turned = true;
+                let zeta = (b - a) / (2.0 * c);
+                let t = zeta.signum() / (zeta.abs() + zeta.hypot(1.0));
+                let cos = 1.0 / t.hypot(1.0);
+                rotate(&mut columns, [p, q], cos, cos * t);
+                rotate(&mut v, [p, q], cos, cos * t);
+            }
+        }
+        if !turned {
+            break;
+        }
+    }
+    let sizes: Vec<f64> = columns.iter().map(|c| dot(c, c).sqrt()).collect();
+    let mut order: Vec<usize> = (0..n).collect();
+    order.sort_by(|a, b| sizes[*b].total_cmp(&sizes[*a]));
+    Singular {
+        values: order.iter().map(|k| sizes[*k]).collect(),
+        directions: order.iter().map(|k| v[*k].clone()).collect(),
+    }
+}
+
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
+}
+
+fn rotate(columns: &mut [Vec<f64>], [p, q]: [usize; 2], cos: f64, sin: f64) {
+    for k in 0..columns[p].len() {
+        let (a, b) = (columns[p][k], columns[q][k]);
+        columns[p][k] = cos * a - sin * b;
+        columns[q][k] = sin * a + cos * b;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn small_singular_values_are_as_exact_as_large_ones() {
+        // Columns along perpendicular directions of sizes 3, 1e-9 and 0, turned by a rotation.
+        let (c, s) = (0.6, 0.8);
+        let rows =
+            vec![vec![3.0 * c, 3.0 * s, 0.0], vec![-1e-9 * s, 1e-9 * c, 0.0], vec![0.0; 3], vec![0.0; 3]];
+        let found = singular(&rows, 3);
+        assert!((found.values[0] - 3.0).abs() < 1e-14 && (found.values[1] - 1e-9).abs() < 1e-22);
+        assert!(found.values[2] == 0.0 && found.directions[2][2].abs() == 1.0);
+        assert!((found.directions[0][0].abs() - c).abs() < 1e-15, "{found:?}");
+    }
+}

@@ -1,0 +1,137 @@
+//! How well readings tell the variables: covariance, and what cannot be told apart.
+
+use crate::linalg::svd::singular;
+
+use super::fit::{Bench, Search, weighted};
+
+/// A singular value below this part of the largest is round-off.
+const ROUND_OFF: f64 = 1e-9;
+/// A direction whose standard deviation is more natural steps than this, about the mechanism's size, is not told.
+const VAGUE: f64 = 1.0;
+/// A variable with no more than this part in what is not told is not touched by it.
+const PART: f64 = 1e-6;
+
+/// How well the variables are known. In SI.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Certainty {
+    /// Standard deviation of each variable that was sought; `None` where the readings do not tell it.
+    pub sigmas: Vec<Option<f64>>,
+    /// Their covariance, over the directions that are told.
+    pub covariance: Vec<Vec<f64>>,
+    /// What the readings do not tell.
+    pub untold: Vec<Untold>,
+    /// Readings that were compared, less the directions that they tell.
+    pub freedom: usize,
+    /// The standard deviation of the residuals: in the standard deviations that were given, where 1 is expected; in SI where none were
+    /// given. `None` where there are no more readings than directions.
+    pub scatter: Option<f64>,
+    /// Sum of squared residuals, in standard deviations.
+    pub chi_square: f64,
+}
+
+/// A change of the design that changes nothing that was read, or next to nothing.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Untold {
+    /// How far each variable goes; the one that goes farthest goes by a natural step.
+    pub direction: Vec<f64>,
+    /// Its standard deviation as a multiple of that; `None` where the readings tell nothing of it.
+    pub sigma: Option<f64>,
+}
+
+/// The same in natural steps.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Known {
+    /// Directions that are told, with their standard deviations.
+    pub told: Vec<(Vec<f64>, f64)>,
+    /// Those that are not, and theirs where they have any.
+    pub untold: Vec<(Vec<f64>, Option<f64>)>,
+}
+
+impl Known {
+    pub fn covariance(&self, n: usize) -> Vec<Vec<f64>> {
+        let entry = |i: usize, j: usize| self.told.iter().map(|(v, s)| v[i] * v[j] * s * s).sum();
+        (0..n).map(|i| (0..n).map(|j| entry(i, j)).collect()).collect()
+    }
+}
+
+impl Bench<'_> {
+    /// What is known of each direction where a search ended.
+    pub(super) fn known(&self, search: &Search) -> Known {
+        let n = self.variables.len();
+        let found = singular(&weighted(&search.at.d, &search.weights), n);
+        let least = ROUND_OFF * found.values.first().copied().unwrap_or_default();
+        let mut known = Known::default();
+        let mut nothing = Vec::new();
+        for (s, v) in found.values.into_iter().zip(found.directions) {
+            let sigma = search.scale / s;
+            if !(s > least) {
+                nothing.push(v);
+            } else if self.has_sigmas && sigma > VAGUE {
+                known.untold.push((v, Some(sigma)));
+            } else {
+                known.told.push((v, sigma));
+            }
+        }
+        known.untold.extend(few_at_a_time(nothing).into_iter().map(|v| (v, None)));
+        known
+    }
+
+    /// How well the variables are known where a search ended.
+    pub fn certainty(&self, search: &Search) -> Certainty {
+        let n = self.variables.len();
+        let known = self.known(search);
+        let untold_part = |k: usize| known.untold.iter().map(|(v, _)| v[k].abs()).fold(0.0, f64::max);
+        let in_steps = known.covariance(n);
+        let covariance = (0..n)
+            .map(|i| (0..n).map(|j| in_steps[i][j] * self.steps[i] * self.steps[j]).collect::<Vec<f64>>())
+            .collect::<Vec<_>>();
+        let sigma = |k: usize| (untold_part(k) <= PART).then(|| covariance[k][k].sqrt());
+        let sigmas = (0..n).map(sigma).collect();
+        let untold = |(v, sigma): &(Vec<f64>, Option<f64>)| {
+            let most = v.iter().map(|x| x.abs()).fold(0.0, f64::max);
+            let direction = v.iter().zip(&self.steps).map(|(x, step)| x / most * step).collect();
+            Untold { direction, sigma: sigma.map(|s| s * most) }
+        };
+        let told = known.told.len();
+        let freedom = search.at.r.len().saturating_sub(told);
+        let chi_square = search.at.r.iter().map(|r| (r / search.scale).powi(2)).sum::<f64>();
+        let own = if self.has_sigmas { 1.0 } else { search.scale };
+        let scatter = (freedom > 0).then(|| own * (chi_square / freedom as f64).sqrt());
+        Certainty {
+            sigmas,
+            untold: known.untold.iter().map(untold).collect(),
+            covariance,
+            freedom,
+            scatter,
+            chi_square,
+        }
+    }
+}
+
+/// Other vectors that span the same, each with as few variables as can be: reduced row by row.
+fn few_at_a_time(mut rows: Vec<Vec<f64>>) -> Vec<Vec<f64>> {
+    let mut pivots: Vec<usize> = Vec::new();
+    for k in 0..rows.len() {
+        let free = (0..rows[k].len()).filter(|j| !pivots.contains(j));
+        let Some((row, pivot)) = free
+            .flat_map(|j| (k..rows.len()).map(move |i| (i, j)))
+            .max_by(|a, b| rows[a.0][a.1].abs().total_cmp(&rows[b.0][b.1].abs()))
+        else {
+            break;
+        };
+        rows.swap(k, row);
+        pivots.push(pivot);
+        let by = rows[k][pivot];
+        rows[k].iter_mut().for_each(|x| *x /= by);
+        let own = rows[k].clone();
+        for (_, other) in rows.iter_mut().enumerate().filter(|(i, _)| *i != k) {
+            let by = other[pivot];
+            other.iter_mut().zip(&own).for_each(|(x, y)| *x -= by * y);
+        }
+    }
+    for row in &mut rows {
+        let size = row.iter().map(|x| x * x).sum::<f64>().sqrt();
+        row.iter_mut().for_each(|x| *x = if x.abs() < PART * size { 0.0 } else { *x / size });
+    }
+    rows
+}

@@ -1,0 +1,413 @@
+//! The fit: bounded steps of basin's trust region over the directions that the readings tell of.
+
+use std::cell::RefCell;
+use std::convert::Infallible;
+
+use basin::{
+    CostFunction, DenseMatrix, Executor, Jacobian, PointState, Residual, State, StepOutcome,
+    TrustRegionReflective,
+};
+
+use crate::linalg::svd::singular;
+use crate::measure::Output;
+use crate::model::{Model, VariableId};
+use crate::run::Analysis;
+use crate::sensitivity::Admissibility;
+use crate::study::evaluation::Cost;
+
+use super::posture::{Stand, stand};
+use super::{
+    Calibrating, Calibration, CannotCalibrate, Certainty, FitStatus, Fitted, Loss, Next, NotReached, Reading,
+};
+
+/// Natural steps, about the mechanism's size or a radian, that a fit may go from the drawing: what is measured is near what was meant.
+const FARTHEST: f64 = 10.0;
+/// So near to stationary, as a part of the gradient at the start, nothing is left to find.
+const STATIONARY: f64 = 1e-13;
+/// A singular value below this part of the largest is round-off: the readings tell nothing of its direction.
+const ROUND_OFF: f64 = 1e-9;
+/// The objective has settled where an iteration lowers it by less than this part of itself.
+const SETTLED: f64 = 1e-12;
+/// Median of the sizes of normal residuals, as a part of their standard deviation.
+const MEDIAN_OF_NORMAL: f64 = 0.6745;
+
+/// What is needed again and again.
+pub(super) struct Bench<'b> {
+    pub model: &'b Model,
+    pub analyses: &'b [Analysis<'b>],
+    pub asked: &'b Calibrating<'b>,
+    /// The variables that are sought, without those that cannot be followed.
+    pub variables: Vec<VariableId>,
+    left_out: Vec<VariableId>,
+    /// A natural step of each.
+    pub steps: Vec<f64>,
+    not_reached: Vec<NotReached>,
+    /// The readings that are compared, by their place among all.
+    pub compared: Vec<usize>,
+    /// Whether standard deviations were given.
+    pub has_sigmas: bool,
+    drawn: Vec<Option<Stand>>,
+    pub cost: RefCell<Cost>,
+}
+
+/// Where a search has come to.
+pub(super) struct Search {
+    pub status: FitStatus,
+    /// Natural steps from the drawing.
+    pub x: Vec<f64>,
+    /// Residuals in the standard deviations given, or in SI, and their derivatives by natural steps.
+    pub at: Rows,
+    /// What each counts.
+    pub weights: Vec<f64>,
+    /// The standard deviation that was found of residuals; 1 where they were given.
+    pub scale: f64,
+    pub objective: [f64; 2],
+    iterations: Vec<f64>,
+}
+
+/// Residuals and their derivatives.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Rows {
+    pub r: Vec<f64>,
+    pub d: Vec<Vec<f64>>,
+}
+
+impl<'b> Bench<'b> {
+    pub fn new(model: &'b Model, analyses: &'b [Analysis<'b>], asked: &'b Calibrating<'b>) -> Self {
+        Self {
+            model,
+            analyses,
+            asked,
+            variables: asked.variables.to_vec(),
+            left_out: Vec::new(),
+            steps: Vec::new(),
+            not_reached: Vec::new(),
+            compared: Vec::new(),
+            has_sigmas: asked.measured.readings.iter().all(|r| r.sigma.is_some()),
+            drawn: Vec::new(),
+            cost: RefCell::new(Cost { designs: 1, ..Cost::default() }),
+        }
+    }
+
+    fn readings(&self) -> &'b [Reading] {
+        &self.asked.measured.readings
+    }
+
+    /// Which postures are reached, and which variables can be followed.
+    pub fn look_at_drawing(&mut self) -> Result<(), CannotCalibrate> {
+        let follows = |v: &VariableId| {
+            self.analyses.iter().all(|a| {
+                let mut change = vec![0.0; self.model.variables.len()];
+                change[v.0] = 1.0;
+                !matches!(a.admissibility_of(&change), Admissibility::CannotFollow { .. })
+            })
+        };
+        let (variables, left_out) = self.variables.iter().partition(|v| follows(v));
+        (self.variables, self.left_out) = (variables, left_out);
+        if self.variables.is_empty() {
+            return Err(CannotCalibrate::NothingVaries);
+        }
+        self.steps = self.variables.iter().map(|v| self.model.natural_step(*v)).collect();
+        for (posture, analysis) in self.analyses.iter().enumerate() {
+            let found = stand(analysis, &[], &self.variables, &mut self.cost.borrow_mut());
+            if let Err(stop) = &found {
+                self.not_reached.push(NotReached { posture, why: stop.headline(analysis.model()) });
+            }
+            self.drawn.push(found.ok());
+        }
+        let is_known =
+            |r: &Reading| self.drawn[r.posture].as_ref().is_some_and(|s| s.values[r.output].is_finite());
+        self.compared = (0..self.readings().len()).filter(|k| is_known(&self.readings()[*k])).collect();
+        if self.compared.is_empty() {
+            let why = self.not_reached.first().map_or(String::new(), |n| n.why.clone());
+            return Err(CannotCalibrate::NothingReached(why));
+        }
+        let (readings, variables) = (self.compared.len(), self.variables.len());
+        if !self.has_sigmas && readings <= variables {
+            return Err(CannotCalibrate::TooFewReadings { readings, variables });
+        }
+        Ok(())
+    }
+
+    /// The design so many natural steps from the drawing.
+    pub fn design(&self, x: &[f64]) -> Vec<f64> {
+        let mut design = vec![0.0; self.model.variables.len()];
+        for ((v, step), x) in self.variables.iter().zip(&self.steps).zip(x) {
+            design[v.0] = step * x;
+        }
+        design
+    }
+
+    /// All postures that are reached as drawn, of a design; `None` where one is not, or the caller wants no more.
+    fn stands(&self, x: &[f64], more: &dyn Fn() -> bool) -> Option<Vec<Option<Stand>>> {
+        let design = self.design(x);
+        self.cost.borrow_mut().designs += 1;
+        let of = |(analysis, drawn): (&Analysis<'_>, &Option<Stand>)| {
+            if drawn.is_none() {
+                return Some(None);
+            }
+            if !more() {
+                return None;
+            }
+            stand(analysis, &design, &self.variables, &mut self.cost.borrow_mut()).ok().map(Some)
+        };
+        self.analyses.iter().zip(&self.drawn).map(of).collect()
+    }
+
+    fn rows(&self, stands: &[Option<Stand>]) -> Rows {
+        let mut rows = Rows::default();
+        for k in &self.compared {
+            let reading = &self.readings()[*k];
+            let stand =
+                stands[reading.posture].as_ref().expect("only postures that are reached are compared");
+            let sigma = reading.sigma.filter(|_| self.has_sigmas).unwrap_or(1.0);
+            let by = |(d, step): (&f64, &f64)| d * step / sigma;
+            rows.r.push((stand.values[reading.output] - reading.value) / sigma);
+            rows.d.push(stand.d[reading.output].iter().zip(&self.steps).map(by).collect());
+        }
+        rows
+    }
+
+    pub fn rows_at(&self, x: &[f64], more: &dyn Fn() -> bool) -> Option<Rows> {
+        let rows = self.rows(&self.stands(x, more)?);
+        rows.r.iter().all(|r| r.is_finite()).then_some(rows)
+    }
+
+    /// The standard deviation of residuals: found where none were given.
+    fn scale_of(&self, r: &[f64], told: usize) -> f64 {
+        if self.has_sigmas {
+            return 1.0;
+        }
+        let found = if self.asked.loss == Loss::Squares {
+            let free = r.len().saturating_sub(told).max(1) as f64;
+            (r.iter().map(|r| r * r).sum::<f64>() / free).sqrt()
+        } else {
+            let mut sizes: Vec<f64> = r.iter().map(|r| r.abs()).collect();
+            sizes.sort_by(f64::total_cmp);
+            sizes[sizes.len() / 2] / MEDIAN_OF_NORMAL
+        };
+        if found > 0.0 { found } else { 1.0 }
+    }
+
+    fn weights(&self, r: &[f64], scale: f64) -> Vec<f64> {
+        r.iter().map(|r| self.asked.loss.weight(r / scale)).collect()
+    }
+
+    /// From the drawing to where no small change fits better.
+    pub fn search(&self, progress: &mut dyn FnMut(usize, f64), more: &dyn Fn() -> bool) -> Search {
+        let n = self.variables.len();
+        let mut x = vec![0.0; n];
+        let mut at = self.rows(&self.drawn);
+        let told = |at: &Rows, weights: &[f64]| told_directions(&weighted(&at.d, weights), n);
+        let mut scale = self.scale_of(&at.r, n);
+        let mut weights = self.weights(&at.r, scale);
+        let squares = |at: &Rows, w: &[f64]| at.r.iter().zip(w).map(|(r, w)| w * r * r).sum::<f64>();
+        let mut status = FitStatus::IterationLimit;
+        let mut iterations = Vec::new();
+        let first = at.clone();
+        progress(0, squares(&at, &weights) / (scale * scale));
+        while iterations.len() < self.asked.iterations {
+            let before = squares(&at, &weights);
+            let directions = told(&at, &weights);
+            let step = self.step(&x, &at, &weights, &directions, more);
+            if !more() {
+                status = FitStatus::Interrupted;
+                break;
+            }
+            let Some((next, rows)) = step.filter(|(_, rows)| squares(rows, &weights) < before) else {
+                status = FitStatus::Found;
+                break;
+            };
+            let after = squares(&rows, &weights);
+            (x, at) = (next, rows);
+            let scaled_before = scale;
+            scale = self.scale_of(&at.r, directions.len());
+            let old = std::mem::replace(&mut weights, self.weights(&at.r, scale));
+            let settled = weights.iter().zip(&old).all(|(a, b)| (a - b).abs() <= SETTLED.sqrt());
+            iterations.push(squares(&at, &weights) / (scale * scale));
+            progress(iterations.len(), *iterations.last().expect("it was just put there"));
+            if before - after <= SETTLED * before
+                && settled
+                && (scale - scaled_before).abs() <= SETTLED.sqrt() * scale
+            {
+                status = FitStatus::Found;
+                break;
+            }
+        }
+        let of = |at: &Rows| self.loss_of(&at.r, scale);
+        let objective = [of(&first), of(&at)];
+        Search { status, x, at, weights, scale, objective, iterations }
+    }
+
+    /// The sum of the loss over all residuals.
+    fn loss_of(&self, r: &[f64], scale: f64) -> f64 {
+        let weight = |r: f64| self.asked.loss.weight(r);
+        r.iter().map(|r| r / scale).map(|r| weight(r) * r * r).sum()
+    }
+
+    /// The best fit with these weights over some directions, from x on; `None` where there is no way.
+    fn step(
+        &self,
+        x: &[f64],
+        at: &Rows,
+        weights: &[f64],
+        directions: &[Vec<f64>],
+        more: &dyn Fn() -> bool,
+    ) -> Option<(Vec<f64>, Rows)> {
+        if directions.is_empty() {
+            return None;
+        }
+        let roots: Vec<f64> = weights.iter().map(|w| w.sqrt()).collect();
+        let size = at.r.iter().zip(&roots).map(|(r, w)| (w * r).powi(2)).sum::<f64>().sqrt();
+        let scale = if size > 0.0 { 1.0 / size } else { 1.0 };
+        let n = directions.len();
+        let (low, high) = (vec![-FARTHEST; n], vec![FARTHEST; n]);
+        let known = RefCell::new(vec![(vec![0.0; n], Some(at.clone()))]);
+        let problem = Weighted { bench: self, x, roots: &roots, directions, scale, low, high, known, more };
+        let solver = TrustRegionReflective::new().with_absolute_scaled_gradient_tolerance(STATIONARY);
+        let mut stepper =
+            Executor::new(problem, solver, PointState::new(vec![0.0; n])).into_stepper().ok()?;
+        // Weights are looked at anew after every iteration of a robust fit; of squares they stay.
+        let most = if self.asked.loss == Loss::Squares { self.asked.iterations } else { 1 };
+        while (stepper.iter() as usize) < most {
+            match stepper.step() {
+                Ok(StepOutcome::Continue) => {}
+                _ => break,
+            }
+        }
+        let z: Vec<f64> = stepper.state().param().clone();
+        let x = along(x, directions, &z);
+        let rows = self.rows_at(&x, more)?;
+        Some((x, rows))
+    }
+
+    /// All of it.
+    pub fn calibration(
+        self,
+        search: Search,
+        certainty: Certainty,
+        next: Vec<Next>,
+        outputs: Vec<Output>,
+    ) -> Calibration {
+        let mut fitted = vec![None; self.readings().len()];
+        for (row, k) in self.compared.iter().enumerate() {
+            let reading = &self.readings()[*k];
+            let sigma = reading.sigma.filter(|_| self.has_sigmas).unwrap_or(1.0);
+            let drawn = self.drawn[reading.posture].as_ref().map_or(f64::NAN, |s| s.values[reading.output]);
+            fitted[*k] = Some(Fitted {
+                before: drawn,
+                value: reading.value + sigma * search.at.r[row],
+                residual: search.at.r[row] / search.scale,
+                weight: search.weights[row],
+            });
+        }
+        Calibration {
+            status: search.status,
+            design: self.design(&search.x),
+            variables: self.variables,
+            left_out: self.left_out,
+            outputs,
+            fitted,
+            not_reached: self.not_reached,
+            objective: search.objective,
+            iterations: search.iterations,
+            certainty,
+            next,
+            cost: self.cost.into_inner(),
+        }
+    }
+}
+
+/// Rows times the roots of their weights.
+pub(super) fn weighted(rows: &[Vec<f64>], weights: &[f64]) -> Vec<Vec<f64>> {
+    rows.iter().zip(weights).map(|(row, w)| row.iter().map(|x| w.sqrt() * x).collect()).collect()
+}
+
+/// The directions that rows tell anything of.
+fn told_directions(rows: &[Vec<f64>], n: usize) -> Vec<Vec<f64>> {
+    let found = singular(rows, n);
+    let least = ROUND_OFF * found.values.first().copied().unwrap_or_default();
+    let told = found.values.iter().filter(|s| **s > least).count();
+    found.directions.into_iter().take(told).collect()
+}
+
+fn along(x: &[f64], directions: &[Vec<f64>], z: &[f64]) -> Vec<f64> {
+    let by = |k: usize| directions.iter().zip(z).map(|(v, z)| v[k] * z).sum::<f64>();
+    x.iter().enumerate().map(|(k, x)| x + by(k)).collect()
+}
+
+/// Weighted squares as a function of how far the design goes along some directions.
+struct Weighted<'p, 'b> {
+    bench: &'p Bench<'b>,
+    x: &'p [f64],
+    roots: &'p [f64],
+    directions: &'p [Vec<f64>],
+    /// What residuals are multiplied by, so that they are of the order of one at the start.
+    scale: f64,
+    low: Vec<f64>,
+    high: Vec<f64>,
+    known: RefCell<Vec<(Vec<f64>, Option<Rows>)>>,
+    more: &'p dyn Fn() -> bool,
+}
+
+/// So many designs are kept: a step may be taken back.
+const KEPT: usize = 8;
+
+impl Weighted<'_, '_> {
+    fn at<X>(&self, z: &[f64], of: impl FnOnce(Option<&Rows>) -> X) -> X {
+        let is_known = self.known.borrow().iter().any(|(k, _)| k == z);
+        if !is_known {
+            let found = self.bench.rows_at(&along(self.x, self.directions, z), self.more);
+            let mut known = self.known.borrow_mut();
+            if known.len() == KEPT {
+                drop(known.remove(0));
+            }
+            known.push((z.to_vec(), found));
+        }
+        let known = self.known.borrow();
+        of(known.iter().find(|(k, _)| k == z).and_then(|(_, rows)| rows.as_ref()))
+    }
+}
+
+impl basin::Constraints for Weighted<'_, '_> {
+    type Set = basin::ConstraintSet<basin::BoxBounds<Vec<f64>>>;
+    fn constraints(&self) -> <Self::Set as basin::ConstraintDescription>::Borrowed<'_> {
+        basin::ConstraintSet::new().with_bounds(basin::BoxBounds::new(Some(&self.low), Some(&self.high)))
+    }
+}
+
+impl CostFunction for Weighted<'_, '_> {
+    type Param = Vec<f64>;
+    type Output = f64;
+    type Error = Infallible;
+    fn cost(&self, z: &Vec<f64>) -> Result<f64, Infallible> {
+        self.residual(z).map(|r| 0.5 * r.iter().map(|r| r * r).sum::<f64>())
+    }
+}
+
+impl Residual for Weighted<'_, '_> {
+    type Param = Vec<f64>;
+    type Output = Vec<f64>;
+    type Error = Infallible;
+    fn residual(&self, z: &Vec<f64>) -> Result<Vec<f64>, Infallible> {
+        Ok(self.at(z, |rows| match rows {
+            Some(rows) => rows.r.iter().zip(self.roots).map(|(r, w)| self.scale * w * r).collect(),
+            // The solver steps back from what is no number.
+            None => vec![f64::NAN; self.roots.len()],
+        }))
+    }
+}
+
+impl Jacobian for Weighted<'_, '_> {
+    type Jacobian = DenseMatrix;
+    fn jacobian(&self, z: &Vec<f64>) -> Result<DenseMatrix, Infallible> {
+        let (m, n) = (self.roots.len(), z.len());
+        Ok(self.at(z, |rows| match rows {
+            Some(rows) => DenseMatrix::from_fn(m, n, |i, j| {
+                let along: f64 = rows.d[i].iter().zip(&self.directions[j]).map(|(d, v)| d * v).sum();
+                self.scale * self.roots[i] * along
+            }),
+            None => DenseMatrix::from_fn(m, n, |_, _| f64::NAN),
+        }))
+    }
+}

@@ -1,0 +1,209 @@
+//! Which geometry explains what was measured: best fit, how well it is known, what cannot be told, what to measure next.
+//!
+//! A reading i of an output y in a posture with standard deviation s_i has the residual `r_i = (y(b) - m_i) / s_i`; the fit makes the sum
+//! of their squares least, or that of a robust loss. With the exact Jacobian `J = dr/db` of what was read,
+//!
+//! ```text
+//! covariance = (J' W J)^-1,    W = the weights of the loss
+//! ```
+//!
+//! over the directions that the readings tell anything of; the others are named and stay as drawn (`docs/theory.md`, section 13).
+
+mod certainty;
+mod fit;
+mod next;
+mod posture;
+
+use crate::measure::{Output, outputs};
+use crate::model::{Model, VariableId};
+use crate::run::Analysis;
+use crate::topology::{Formulation, TopologyFault};
+
+use super::evaluation::Cost;
+
+pub use certainty::{Certainty, Untold};
+pub use next::Next;
+
+/// One value that was read in a posture. In SI.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Reading {
+    /// The posture, by its place in [`Measurements::postures`].
+    pub posture: usize,
+    /// The column of [`outputs`](crate::measure::outputs).
+    pub output: usize,
+    /// What was read.
+    pub value: f64,
+    /// Its standard deviation; none where that is to be found from the residuals, the same for all.
+    pub sigma: Option<f64>,
+}
+
+/// What was measured of a mechanism.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Measurements {
+    /// Where each driver stood, as its laws count, m or rad.
+    pub postures: Vec<Vec<f64>>,
+    /// What was read there.
+    pub readings: Vec<Reading>,
+}
+
+/// What a residual far from the others counts.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Loss {
+    /// Its square.
+    #[default]
+    Squares,
+    /// Its square up to 1.345 standard deviations, beyond that its size.
+    Huber,
+    /// The logarithm of its square: beyond some standard deviations next to nothing.
+    Cauchy,
+}
+
+impl Loss {
+    /// By how much a residual counts less than its square would, from 0 to 1.
+    pub fn weight(self, r: f64) -> f64 {
+        // 95 % efficient where all is normal (Holland and Welsch 1977)
+        const HUBER: f64 = 1.345;
+        const CAUCHY: f64 = 2.385;
+        match self {
+            Self::Squares => 1.0,
+            Self::Huber => HUBER / r.abs().max(HUBER),
+            Self::Cauchy => 1.0 / (1.0 + (r / CAUCHY).powi(2)),
+        }
+    }
+}
+
+/// How a fit ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum FitStatus {
+    /// No small change of the design fits better.
+    Found,
+    /// The iterations were used up.
+    IterationLimit,
+    /// The caller ended it.
+    Interrupted,
+}
+
+/// A posture that the mechanism as drawn does not reach, whose readings are left out.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct NotReached {
+    /// The posture.
+    pub posture: usize,
+    /// What happened on the way.
+    pub why: String,
+}
+
+/// A reading beside what the design found gives.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Fitted {
+    /// As drawn, SI.
+    pub before: f64,
+    /// Of the design found.
+    pub value: f64,
+    /// That less what was read, in standard deviations; those that were found where none were given.
+    pub residual: f64,
+    /// What it counted, from 0 to 1.
+    pub weight: f64,
+}
+
+/// What a calibration comes to. All in SI.
+#[derive(Clone, Debug)]
+pub struct Calibration {
+    /// How it ended.
+    pub status: FitStatus,
+    /// The variables that were sought.
+    pub variables: Vec<VariableId>,
+    /// Those that the mechanism cannot follow, and that were left as they are.
+    pub left_out: Vec<VariableId>,
+    /// The design found: the change of every variable of the model.
+    pub design: Vec<f64>,
+    /// The columns.
+    pub outputs: Vec<Output>,
+    /// Of every reading; `None` where its posture is not reached.
+    pub fitted: Vec<Option<Fitted>>,
+    /// Postures whose readings were left out.
+    pub not_reached: Vec<NotReached>,
+    /// The sum that was made least, of the design as drawn and of the one found: of squared residuals in standard deviations, or of the
+    /// loss. Where no standard deviations were given, in those that were found.
+    pub objective: [f64; 2],
+    /// Objective after each iteration.
+    pub iterations: Vec<f64>,
+    /// How well the variables are known.
+    pub certainty: Certainty,
+    /// Which further readings would tell most, the best first.
+    pub next: Vec<Next>,
+    /// What it cost.
+    pub cost: Cost,
+}
+
+/// Why nothing can be fitted.
+#[derive(Clone, Debug)]
+pub enum CannotCalibrate {
+    /// The mechanism cannot be driven.
+    Topology(TopologyFault),
+    /// The mechanism as drawn reaches none of the postures; what happens on the way to the first.
+    NothingReached(String),
+    /// The mechanism can follow none of the variables.
+    NothingVaries,
+    /// No more readings than variables that they tell of, and no standard deviations: how sure anything is cannot be known.
+    TooFewReadings {
+        /// Readings that were reached.
+        readings: usize,
+        /// Variables.
+        variables: usize,
+    },
+}
+
+/// What is asked for.
+#[derive(Clone, Copy, Debug)]
+pub struct Calibrating<'a> {
+    /// What was measured.
+    pub measured: &'a Measurements,
+    /// The variables that are sought.
+    pub variables: &'a [VariableId],
+    /// What residuals count.
+    pub loss: Loss,
+    /// In which formulation the mechanism is solved.
+    pub formulation: Formulation,
+    /// At most so many iterations.
+    pub iterations: usize,
+}
+
+/// Finds the design that explains measurements best. `progress` is told the objective after every iteration, and `more` is asked at every
+/// posture whether to go on.
+///
+/// # Errors
+/// Where nothing can be fitted.
+pub fn calibrate(
+    model: &Model,
+    asked: &Calibrating<'_>,
+    progress: &mut dyn FnMut(usize, f64),
+    more: &dyn Fn() -> bool,
+) -> Result<Calibration, CannotCalibrate> {
+    let models: Vec<Model> = asked.measured.postures.iter().map(|p| posture::standing(model, p)).collect();
+    let analyses = posture::planned(&models, asked.formulation).map_err(CannotCalibrate::Topology)?;
+    let mut bench = fit::Bench::new(model, &analyses, asked);
+    bench.look_at_drawing()?;
+    let search = bench.search(progress, more);
+    let certainty = bench.certainty(&search);
+    let next = if search.status == FitStatus::Found { bench.next(&search, &certainty) } else { Vec::new() };
+    Ok(bench.calibration(search, certainty, next, outputs(model)))
+}
+
+/// What all outputs are where the drivers stand in each of some postures, as [`Measurements::postures`], of a design; or why one is not
+/// reached. In SI.
+///
+/// # Errors
+/// A [`TopologyFault`] where the mechanism cannot be driven.
+pub fn values_in_postures(
+    model: &Model,
+    design: &[f64],
+    postures: &[Vec<f64>],
+    formulation: Formulation,
+) -> Result<Vec<Result<Vec<f64>, String>>, TopologyFault> {
+    let models: Vec<Model> = postures.iter().map(|p| posture::standing(model, p)).collect();
+    let values = |analysis: &Analysis<'_>| {
+        let found = posture::stand(analysis, design, &[], &mut Cost::default());
+        found.map(|stand| stand.values).map_err(|stop| stop.headline(analysis.model()))
+    };
+    Ok(posture::planned(&models, formulation)?.iter().map(values).collect())
+}
