@@ -16,7 +16,7 @@ const MODELS: [&str; 8] = [
 ];
 
 /// Pieces that make a broken file interesting.
-const PIECES: [&str; 57] = [
+const PIECES: [&str; 62] = [
     "[",
     "]",
     "{",
