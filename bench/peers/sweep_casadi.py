@@ -66,18 +66,16 @@ DRIVER = r"""
 #include "sweep_g.h"
 static double W[%(nw)d]; static long long IW[16];
 enum { TOE, CAMBER, Z, HALF, DTOE, DCAMBER, DZ, N };
-/* one motion: f = f0 + f1 t, g = g0 + g1 t over t in 0..1; N numbers per output time; 0 where it does not close */
-static int motion(int steps, double f0, double f1, double g0, double g1, const double *p, double O[][N]) {
+/* one motion: f = f1 sin 2 pi t, g = g1 sin 2 pi t over t in 0..1; N numbers per output time; 0 where it does not close */
+static int motion(int steps, double f1, double g1, const double *p, double O[][N]) {
   double x[4] = {0}, v[4] = {0}, F[4], dx[4];
-  const int lead = 8;                          /* from the drawing to the first output time */
-  for (int k = -lead; k <= steps; k++) {
-    double part = k < 0 ? (double)(k + lead)/lead : 1, t = k < 0 ? 0 : (double)k/steps, h = k > 0 ? 1.0/steps : 0;
-    double d[4] = {part*(f0 + f1*t), part*(g0 + g1*t), f1, g1};
+  for (int k = 0; k <= steps; k++) {
+    const double w = 2*M_PI; double t = (double)k/steps, h = k > 0 ? 1.0/steps : 0, s = sin(w*t), c = w*cos(w*t);
+    double d[4] = {f1*s, g1*s, f1*c, g1*c};
     for (int i = 0; i < 4; i++) x[i] += h*v[i];
     const double *a[3] = {x, d, p}; double *r[2] = {F, dx}; double e; int it = 0;
     for (;;) { fPJ(a, r, IW, W, 0); e = 0; for (int i = 0; i < 4; i++) e = fmax(e, fabs(F[i])); if (!(e < 1e30) || it > 20) return 0; if (e < 1e-8) break;
       for (int i = 0; i < 4; i++) x[i] -= dx[i]; it++; }
-    if (k < 0) continue;
     double *rv[1] = {v}; fV(a, rv, IW, W, 0);
     const double *b[4] = {x, v, d, p}; double *ro[1] = {O[k]}; fO(b, ro, IW, W, 0);
   }
@@ -106,13 +104,15 @@ long sweep(long n, const double *P, double *M) {
   static double B[81][N], S[61][N]; long failed = 0;
   for (long k = 0; k < n; k++) {
     double *m = M + 6*k; const double *p = P + 21*k; double unused;
-    if (!motion(80, 40, -80, 0, 0, p, B) || !motion(60, 0, 0, -30, 60, p, S)) { failed++; for (int i = 0; i < 6; i++) m[i] = NAN; continue; }
+    if (!motion(80, -40, 0, p, B) || !motion(60, 0, 30, p, S)) { failed++; for (int i = 0; i < 6; i++) m[i] = NAN; continue; }
     where(80, B, 0, 30, TOE, m, &unused);
     where(80, B, 0, 0, TOE, &unused, m + 1);
     where(80, B, 0, 0, CAMBER, &unused, m + 4);
     double lo = B[0][TOE], hi = lo, l = B[0][HALF], r = l, sum = 0;
     for (int i = 1; i < 81; i++) { lo = fmin(lo, B[i][TOE]); hi = fmax(hi, B[i][TOE]); l = fmin(l, B[i][HALF]); r = fmax(r, B[i][HALF]); }
-    for (int i = 0; i < 60; i++) sum += 0.5*(S[i][TOE] + S[i+1][TOE])/60;
+    double way = 0;                            /* the mean of toe over the way of the rack, to and fro */
+    for (int i = 0; i < 60; i++) { double by = fabs(sin(2*M_PI*(i+1)/60) - sin(2*M_PI*i/60)); way += by; sum += 0.5*by*(S[i][TOE] + S[i+1][TOE]); }
+    sum /= way;
     m[2] = hi - lo; m[3] = sum; m[5] = r - l;
   }
   return failed;

@@ -108,6 +108,10 @@ designs: Array<Design>,
  */
 maps: Array<GridMap>,
 /**
+ * Designs that were swept over.
+ */
+sweep: SweepPlot | null,
+/**
  * How far from singular the mechanism is over time, if anything is solved for.
  */
 margin: Margin | null,
@@ -657,6 +661,69 @@ unit: string,
  * The derivatives, row by row.
  */
 values: Curve, };
+
+/**
+ * Designs that were swept over: some of them, each as a point over variables and metrics.
+ */
+export type SweepPlot = {
+/**
+ * So many were solved.
+ */
+designs: number,
+/**
+ * Point k is design `k * step`.
+ */
+step: number,
+/**
+ * The swept variables, then the metrics.
+ */
+axes: Array<SweepAxis>,
+/**
+ * Sobol's indices, where they were asked for.
+ */
+indices: Array<SweepIndex>, };
+
+/**
+ * A variable or a metric of swept designs.
+ */
+export type SweepAxis = {
+/**
+ * Its name, and the case where there are several.
+ */
+name: string,
+/**
+ * Its unit.
+ */
+unit: string,
+/**
+ * Whether it is a metric.
+ */
+metric: boolean,
+/**
+ * Its value in each point.
+ */
+values: Curve, };
+
+/**
+ * Sobol's indices of a metric by a variable, each with its standard error.
+ */
+export type SweepIndex = {
+/**
+ * The metric, an index into [`SweepPlot::axes`].
+ */
+metric: number,
+/**
+ * The variable, an index into [`SweepPlot::axes`].
+ */
+variable: number,
+/**
+ * First order.
+ */
+first: [number, number],
+/**
+ * Total.
+ */
+total: [number, number], };
 
 /**
  * How far the mechanism is from singular: 1 is best, 0 is a singular position.

@@ -81,8 +81,17 @@ export interface GridMap extends Omit<wire.GridMap, 'quantities'> {
   }[]
 }
 
+/** Designs that were swept over; point k of every axis is design `k * step`. */
+export interface Sweep extends Omit<wire.SweepPlot, 'axes'> {
+  axes: SweepAxis[]
+}
+
+export interface SweepAxis extends Omit<wire.SweepAxis, 'values'> {
+  values: Curve
+}
+
 /** The payload with its curves decoded. */
-export interface Report extends Omit<wire.Payload, 'times' | 'bodies' | 'drivers' | 'quantities' | 'margin' | 'variables' | 'designs' | 'maps'> {
+export interface Report extends Omit<wire.Payload, 'times' | 'bodies' | 'drivers' | 'quantities' | 'margin' | 'variables' | 'designs' | 'maps' | 'sweep'> {
   times: Curve
   bodies: Body[]
   drivers: Driver[]
@@ -91,6 +100,7 @@ export interface Report extends Omit<wire.Payload, 'times' | 'bodies' | 'drivers
   variables: Variable[]
   designs: Design[]
   maps: GridMap[]
+  sweep?: Sweep
 }
 
 export function read(payload: wire.Payload, decode: Decode): Report {
@@ -116,6 +126,7 @@ export function read(payload: wire.Payload, decode: Decode): Report {
         sensitivities: quantity.sensitivities.map((item) => ({ ...item, values: quiet(decode(item.values), 1) })),
       })),
     })),
+    sweep: payload.sweep ? { ...payload.sweep, axes: payload.sweep.axes.map((axis) => ({ ...axis, values: decode(axis.values) })) } : undefined,
     margin: payload.margin ? { curve: decode(payload.margin.value), note: payload.margin.note } : undefined,
     variables: payload.variables.map((variable, index) => {
       const shifts = once(() => variable.shifts.map(decode))

@@ -217,7 +217,7 @@ fn coordinates() -> Vec<(&'static str, String)> {
 
 /// The tables that `docs/file-format.md` shows, by their names there.
 #[cfg(test)]
-pub(crate) fn tables() -> [(&'static str, Shape); 31] {
+pub(crate) fn tables() -> [(&'static str, Shape); 33] {
     [
         ("parameters", Shape::Table(&parameters::PARAMETER_TABLE)),
         ("frames", Shape::Kinds(&FRAME)),

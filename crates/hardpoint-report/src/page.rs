@@ -769,7 +769,7 @@ pub(crate) mod tests {
         declare!(
             Curve Payload Units Status Fact BodyTrack PointRole Mesh JointMark JointCurve CouplerMark CouplerTerm
             DriverMark BodyPlace WheelMark DistanceMark VehicleAxes Quantity Value Design DesignKind DesignCurves
-            GridMap GridDriver GridQuantity GridSensitivity Margin Variable Admissibility Arrow Sensitivity FiniteDifference Table
+            GridMap GridDriver GridQuantity GridSensitivity SweepPlot SweepAxis SweepIndex Margin Variable Admissibility Arrow Sensitivity FiniteDifference Table
         );
         let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../web/src/payload.ts");
         if fs::read_to_string(&path).ok().as_deref() != Some(&expected) {

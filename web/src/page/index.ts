@@ -4,6 +4,7 @@ import { rankingTable } from '../influence/table'
 import { driverMap } from '../maps/map'
 import type { Report } from '../report'
 import type { State } from '../state'
+import { sweepPlot } from '../sweep/scatter'
 import { bar } from './bar'
 import { cards } from './cards'
 import { checks } from './checks'
@@ -31,10 +32,11 @@ export function page(root: HTMLElement, state: State): void {
     ? [{ name: 'table', title: 'Table', content: el('div', { class: 'influence' }, rankingTable(state), heatMap(state)) }]
     : []
   const maps: Tab[] = report.maps.length > 0 ? [{ name: 'maps', title: 'Maps', content: el('div', {}, ...report.maps.map((map) => driverMap(map, report.quantities[state.choice.quantity]?.name ?? ''))) }] : []
+  const sweep: Tab[] = report.sweep ? [{ name: 'designs', title: 'Designs', content: sweepPlot(report.sweep) }] : []
   const sections: [name: string, element: HTMLElement | undefined][] = [
     ['variables', hasVariables ? variables(state) : undefined],
     ['curves', curves?.element],
-    ['tables', tabs('Tables and checks', [...maps, ...table, { name: 'checks', title: 'Checks', content: checks(state) }])],
+    ['tables', tabs('Tables and checks', [...sweep, ...maps, ...table, { name: 'checks', title: 'Checks', content: checks(state) }])],
   ]
   const shown = sections.flatMap(([name, element]) => (element ? [{ name, element }] : []))
   for (const { name, element } of shown) element.classList.add(`area-${name}`)

@@ -262,7 +262,7 @@ fn without_standard_deviations_they_come_from_the_residuals() {
 fn a_posture_out_of_reach_is_left_out_and_told() {
     let model = crank();
     let text = CRANK
-        .replace("value = 300, unit", "value = 90, unit")
+        .replace("value = 300, unit", "value = 70, unit")
         .replace("[300, \"offset\"", "[150, \"offset\"");
     let short = parse(&text, "short.toml").unwrap_or_else(|e| panic!("{e}")).model;
     let postures = [vec![0.1], vec![0.2], vec![1.2], vec![0.05]];

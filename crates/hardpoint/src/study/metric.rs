@@ -280,6 +280,28 @@ impl<T: Real> SampledCurve<'_, T> {
         roots(&rate).into_iter().map(|s| from + s * h).collect()
     }
 
+    /// What the polynomial of interval k nowhere exceeds, times `sign`: the greatest of its coefficients in Bernstein's form.
+    fn bound(&self, k: usize, sign: f64) -> f64 {
+        let h = self.times[k + 1] - self.times[k];
+        let [a, b] = [k, k + 1].map(|k| self.values[k].map(|x| x.value()));
+        let coefficients = match self.orders {
+            1 => [a[0], b[0], a[0], b[0], a[0], b[0]],
+            2 => {
+                let [inner, outer] = [a[0] + h * a[1] / 3.0, b[0] - h * b[1] / 3.0];
+                [a[0], inner, inner, outer, outer, b[0]]
+            }
+            _ => [
+                a[0],
+                a[0] + h * a[1] / 5.0,
+                a[0] + h * (2.0 * a[1] / 5.0 + h * a[2] / 20.0),
+                b[0] - h * (2.0 * b[1] / 5.0 - h * b[2] / 20.0),
+                b[0] - h * b[1] / 5.0,
+                b[0],
+            ],
+        };
+        coefficients.into_iter().fold(f64::NEG_INFINITY, |most, c| most.max(sign * c))
+    }
+
     /// A time of interval k without its round-off.
     fn within(&self, k: usize, t: T) -> f64 {
         let (t, [low, high]) = (t.value(), [self.times[k], self.times[k + 1]]);
@@ -550,12 +572,16 @@ fn extreme<T: Real>(
         }
     };
     let last = y.values.len() - 1;
+    let counts = |k: usize| inside(x.as_ref().map_or(y.times[k], |x| x.values[k][0].value()));
+    let at_times = (0..=last).filter(|k| counts(*k)).map(|k| sign * y.values[k][0].value());
+    let most = at_times.fold(f64::NEG_INFINITY, f64::max);
     for k in 0..=last {
         let t = y.times[k];
-        if inside(x.as_ref().map_or(t, |x| x.values[k][0].value())) {
+        if counts(k) {
             offer(y.values[k][0], t);
         }
-        if k == last || y.orders == 1 {
+        // Where a curve bends by less than it rises elsewhere, no turn of it is the greatest.
+        if k == last || y.orders == 1 || y.bound(k, sign) <= most {
             continue;
         }
         for turn in y.turns(k) {
@@ -630,6 +656,28 @@ mod tests {
             values: times.iter().map(|t| f(*t)).collect(),
         };
         [of(|t| [t.sin(), t.cos(), -t.sin()]), of(|t| [t.powi(5), 5.0 * t.powi(4), 20.0 * t.powi(3)])]
+    }
+
+    #[test]
+    fn no_polynomial_exceeds_its_bound_and_bounds_are_near() {
+        let times = [0.0, 0.3, 1.1, 1.4];
+        for curve in curves(&times) {
+            for orders in [2, 3] {
+                let curve = SampledCurve { orders, times: &times, values: curve.values.clone() };
+                for k in 0..3 {
+                    for sign in [1.0, -1.0] {
+                        let h = times[k + 1] - times[k];
+                        let at = |j: u32| sign * curve.number(k, times[k] + h * f64::from(j) / 64.0);
+                        let most = (0..=64).map(at).fold(f64::NEG_INFINITY, f64::max);
+                        let bound = curve.bound(k, sign);
+                        assert!(
+                            bound > most - 1e-14 && bound < most + 0.3,
+                            "{orders} {k} {sign}: {bound} {most}"
+                        );
+                    }
+                }
+            }
+        }
     }
 
     #[test]
