@@ -4,7 +4,7 @@ import type { JointMark } from '../../payload'
 import type { Kit } from '../kit'
 import type { Mechanism } from '../mechanism'
 import { bodyPart } from '../part'
-import { hingePlaces } from '../hinge'
+import { foldAxis, hingePlaces } from '../hinge'
 import { shaftJoints } from '../shafts'
 import { planarFoot } from './ground_planar'
 import { ballFoot, hingeFoot } from './ground_spatial'
@@ -18,6 +18,8 @@ export interface Foot {
   /** Where to the rest of what is held is, in the world. */
   towards: Vector3
   radius: number
+  /** One of the two of a hinge between hardpoints, which are lugs; a plate that folds has its cheeks outside its eye. */
+  form?: 'lug' | 'fold'
   /** In front of a cam that would cover it. */
   front: boolean
 }
@@ -59,7 +61,8 @@ function feet(mechanism: Mechanism): Foot[] {
       .shapePoints(body)
       .map((point) => mechanism.worldAt(body, point, 0))
       .filter((point) => !axis || point.clone().sub(at).cross(axis).length() > 2e-3 * mechanism.size)
-    return spots.map((spot) => ({ at: spot, axis, radius, front: front(body), towards: rod ? mechanism.worldAt(body, held, 0) : mean(aside, spot) }))
+    const form = joint.hinge ? 'lug' as const : foldAxis(mechanism, body) ? 'fold' as const : undefined
+    return spots.map((spot) => ({ at: spot, axis, radius, form, front: front(body), towards: rod ? mechanism.worldAt(body, held, 0) : mean(aside, spot) }))
   })
   const distances = report.wheels.length === 0 ? [] : report.distances.flatMap(({ from, to }): Foot[] => {
     if (from.body !== 0 && to.body !== 0) return []
