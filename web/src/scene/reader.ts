@@ -9,22 +9,30 @@ const BETTER = 0.85
 /** Joints nearer to one another in the picture than this part of the mechanism's size cover one another. */
 const COVERED = 0.04
 
-/** The corner from which joints cover one another least; `moments` has the places of the joints at several times. */
-export function readerOf(moments: Vector3[][], size: number): Vector3 {
-  const usual = crowding(moments, READER, size)
-  const costs = OTHERS.map((corner) => crowding(moments, corner, size))
+/** By how much a wheel seen from behind, its teeth away from the reader, makes a corner worse. */
+const BEHIND = 0.5
+
+/**
+ * The corner from which joints cover one another least, and wheels with teeth on one face show it; `moments` has the places of
+ * the joints at several times, `backs` the directions in which those wheels turn their backs.
+ */
+export function readerOf(moments: Vector3[][], size: number, backs: Vector3[] = []): Vector3 {
+  const cost = (corner: Vector3) => (1 + crowding(moments, corner, size)) * (1 + BEHIND * backs.filter((back) => back.dot(corner) > 0).length)
+  const usual = cost(READER)
+  const costs = OTHERS.map(cost)
   const least = Math.min(...costs)
   return (least < BETTER * usual ? OTHERS[costs.indexOf(least)] : READER).clone()
 }
 
-/** Large where many joints lie close to one another as seen along a direction. */
+/** Large where many joints lie closer to one another as seen along a direction than they are. */
 function crowding(moments: Vector3[][], direction: Vector3, size: number): number {
   const line = direction.clone().normalize()
   const near = COVERED * size
   let sum = 0
   for (const places of moments) {
     const seen = places.map((place) => place.clone().addScaledVector(line, -place.dot(line)))
-    seen.forEach((a, k) => seen.slice(k + 1).forEach((b) => (sum += 1 / (1 + a.distanceToSquared(b) / near ** 2))))
+    const closeness = (a: Vector3, b: Vector3) => 1 / (1 + a.distanceToSquared(b) / near ** 2)
+    for (let k = 1; k < places.length; k++) for (let l = 0; l < k; l++) sum += closeness(seen[k], seen[l]) - closeness(places[k], places[l])
   }
   return sum
 }
