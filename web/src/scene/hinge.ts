@@ -10,8 +10,14 @@ const SHY = ['universal', 'constant_velocity']
 const PARALLEL = 0.999
 const SQUARE = 0.05
 
-/** A link that folds, as Sarrus' plates do: the axis of its two parallel hinges, both square to it, in its frame. */
+/** A link that folds on another such link, as Sarrus' plates do: the axis of its two parallel hinges, both square to it, in its frame. */
 export function foldAxis(mechanism: Mechanism, body: number): Vector3 | undefined {
+  const axis = parallelHinges(mechanism, body)
+  const mates = axis ? mechanism.jointsOf(body).map(({ joint }) => (joint.body_i === body ? joint.body_j : joint.body_i)) : []
+  return mates.some((mate) => parallelHinges(mechanism, mate)) ? axis : undefined
+}
+
+function parallelHinges(mechanism: Mechanism, body: number): Vector3 | undefined {
   if (body === 0 || mechanism.plane || mechanism.vehicle || mechanism.large || mechanism.report.wheels.length > 0) return undefined
   const held = mechanism.jointsOf(body)
   if (held.length !== 2 || mechanism.shapePoints(body).length !== 2 || held.some(({ joint, axis }) => joint.kind !== 'revolute' || joint.hinge || !axis)) return undefined

@@ -7,7 +7,7 @@ import { type DrawJoint, type Piece, piece } from './joint'
 const PIN = { radius: 0.75, half: 2.6 }
 /** Of a yoke: radius and thickness of its eyes, radius of its arms, and how far behind the cross they meet. */
 const YOKE = { eye: 1.15, thickness: 0.9, arm: 0.7, behind: 3.6 }
-/** The cross is what tells the joint from a ball: so much larger than other glyphs, where it leaves other joints this part of the way to it. */
+/** The cross is what tells the joint from a ball: so much larger than other glyphs, where it leaves other joints this part of the way to it and stands on no block. */
 const LARGE = { units: 1.8, part: 0.09 }
 /** From above: radius of the circle, and its lines in px. */
 const FLAT = { circle: 1.9, line: 2 }
@@ -29,7 +29,8 @@ export const universal: DrawJoint = (mechanism, kit, joint) => {
     const cross = [1, 5, 3, 7].map((eighth) => on((eighth * Math.PI) / 4))
     return [piece(body, kit.disc(middle, normal, FLAT.circle * r, 1.2 * kit.unit, steel), kit.line(circle, outline, FLAT.line), kit.lines(cross, outline, FLAT.line))]
   }
-  const large = Math.max(r, Math.min(LARGE.units * kit.unit, LARGE.part * mechanism.roomOf(joint)))
+  const onBlock = [joint.body_i, joint.body_j].some((body) => mechanism.report.joints.some((_, k) => mechanism.slideOf(k)?.block === body))
+  const large = onBlock ? r : Math.max(r, Math.min(LARGE.units * kit.unit, LARGE.part * mechanism.roomOf(joint)))
   const first = joint.axis ? new Vector3(...joint.axis) : new Vector3(0, 0, 1)
   const second = joint.axis2 ? new Vector3(...joint.axis2) : mechanism.into(joint.body_j, across(mechanism.alongAt(joint.body_i, first, 0)))
   const half = (body: number, middle: Vector3, axis: Vector3): Piece => {
