@@ -12,8 +12,10 @@ const FLAT = 0.03
 const POINT = 2.4
 /** Radii of a rod at its ends, and the greatest as a part of its length. */
 const ROD = { thick: 1.15, thin: 0.98, slender: 0.12 }
-/** A flat bar: half width, half thickness, how much narrower in the middle, its eyes. */
-const BAR = { width: 1.45, thickness: 0.62, waist: 0.28, eye: 1.75, height: 1.9, end: 1.3, sections: 16 }
+/** A flat bar: half width, that of one whose hinges are across one another, half thickness, how much narrower in the middle, its eyes. */
+const BAR = { width: 1.45, twisted: 2.3, thickness: 0.62, waist: 0.28, eye: 1.75, height: 1.9, end: 1.3, sections: 16 }
+/** Cosine of the least angle between hinges that are across one another. */
+const TWISTED = 0.98
 /** A plate that folds: its thickness, its eyes' radius, and how far from the pins it ends. */
 const FOLDED = { thickness: 0.9, eye: 1.5, clear: 2 }
 /** Tubes of a plate: at free corners, at the hinge, along the hinge; how opaque its web is with three corners and with more. */
@@ -115,12 +117,15 @@ function straight(mechanism: Mechanism, kit: Kit, body: number, a: Vector3, b: V
   const to = (last ?? first!).clone()
   // A bar turns by less than a quarter either way: an axis has no sense.
   if (from.dot(to) < 0) to.negate()
+  // Between two links the eyes lie beside one another on the pin, and the bars with them.
+  const [low, high] = [a, b].map((at) => (first && last ? eyeOf(mechanism, body, at, s) : at))
+  const width = first && last && from.dot(to) < TWISTED ? BAR.twisted : BAR.width
   const section = (t: number) => {
     const thick = from.clone().lerp(to, t).normalize()
     const wide = thick.clone().cross(unit)
-    const waist = BAR.width * s * (1 - BAR.waist * Math.sin(Math.PI * t))
+    const waist = width * s * (1 - BAR.waist * Math.sin(Math.PI * t))
     return [[-1, -1], [1, -1], [1, 1], [-1, 1]].map(([x, y]) =>
-      a.clone().addScaledVector(unit, t * length).addScaledVector(wide, x * waist).addScaledVector(thick, y * BAR.thickness * s),
+      low.clone().lerp(high, t).addScaledVector(wide, x * waist).addScaledVector(thick, y * BAR.thickness * s),
     )
   }
   const sections = Array.from({ length: BAR.sections + 1 }, (_, k) => section(k / BAR.sections))
@@ -133,7 +138,15 @@ function straight(mechanism: Mechanism, kit: Kit, body: number, a: Vector3, b: V
   const eye = (at: Vector3, axis: Vector3 | undefined) =>
     axis ? kit.disc(at, axis, BAR.eye * s, BAR.height * s, colour) : kit.ball(at, BAR.end * s, colour)
   const edges = [0, 1, 2, 3].map((i) => kit.line(sections.map((corners) => corners[i]), kit.palette.outline, 0.9, { opacity: 0.45 }))
-  return [kit.triangles(faces, colour, { open: true, facets: true }), ...edges, eye(a, axisAt(mechanism, body, a)), eye(b, axisAt(mechanism, body, b))]
+  return [kit.triangles(faces, colour, { open: true, facets: true }), ...edges, eye(low, axisAt(mechanism, body, a)), eye(high, axisAt(mechanism, body, b))]
+}
+
+/** Middle of a link's eye on the hinge at a place: beside the other link's; between cheeks that are ground's. */
+function eyeOf(mechanism: Mechanism, body: number, at: Vector3, s: number): Vector3 {
+  const hinge = mechanism.jointsOf(body).find(({ joint, at: own }) => joint.kind === 'revolute' && mechanism.same(own, at))
+  if (!hinge?.axis || hinge.joint.body_i === 0 || hinge.joint.body_j === 0 || hinge.joint.hinge) return at
+  const side = hinge.joint.body_i === body ? -1 : 1
+  return at.clone().addScaledVector(hinge.axis.clone().normalize(), (side * BAR.height * s) / 2)
 }
 
 /** Tubes round a web; the edge on a hinge is straight, the others taper away from it. */

@@ -7,7 +7,7 @@ import { shaftJoints } from '../shafts'
 import { type DrawJoint, piece } from './joint'
 
 /** A pin's radius and length, and a bush's, in radii of the glyph. */
-const PIN = [1, 3.9]
+const PIN = [1, 5.2]
 const BUSH = [1.65, 2]
 /** The dashed line of a hinge's axis: how far to either side in radii, and its width in px. */
 const AXIS = { reach: 7, line: 1.3 }
