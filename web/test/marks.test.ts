@@ -1,10 +1,12 @@
 import { Box3, Group, Matrix4, Vector3 } from 'three'
 import { describe, expect, test } from 'vitest'
 import { number } from '../src/format'
+import type { Report } from '../src/report'
 import type { Drawn } from '../src/scene/drawn'
 import { centreLines } from '../src/scene/centre_lines'
 import { deformed } from '../src/scene/deform'
 import { marks, matter } from '../src/scene/draw'
+import { paths } from '../src/scene/draw/paths'
 import { equalTimes, pieces } from '../src/scene/draw/trace'
 import { Kit } from '../src/scene/kit'
 import { distanceLabels, hardpointLabels, partLabels } from '../src/scene/label_layer'
@@ -317,4 +319,28 @@ test('axes of a vehicle are words that point its way', () => {
   const vehicle = { forward: new Vector3(-1, 0, 0), up: new Vector3(0, 0, 1) }
   expect(directions(vehicle).map(({ name, unit }) => [name, unit.x, unit.y + 0, unit.z])).toEqual([['front', -1, 0, 0], ['left', 0, -1, 0], ['up', 0, 0, 1]])
   expect(directions().map(({ name }) => name)).toEqual(['x', 'y', 'z'])
+})
+
+describe('the path of a point', () => {
+  const shown = (role: 'joint' | 'measured', changes: Partial<Report> = {}) => {
+    const report = crank(changes)
+    report.bodies[1].roles = ['joint', role]
+    const mechanism = new Mechanism(report)
+    return paths(mechanism, new Kit(mechanism, PALETTE), CHOICE).map((one) => boxOf(mechanism, one).getSize(new Vector3()))
+  }
+
+  test('that is measured and that no joint holds is as large as its way', () => {
+    const [size, ...others] = shown('measured')
+    expect(others).toEqual([])
+    // The corners of a square: the motion's only steps.
+    expect(size.x).toBeCloseTo(400)
+    expect(size.y).toBeCloseTo(400)
+  })
+
+  test('that is a joint, or stands still, or belongs to a vehicle is not drawn', () => {
+    expect(shown('joint')).toEqual([])
+    expect(shown('measured', { vehicle: { forward: [1, 0, 0], up: [0, 0, 1] } })).toEqual([])
+    const still = crank().bodies.map((body) => ({ ...body, poses: crank().bodies[0].poses }))
+    expect(shown('measured', { bodies: still })).toEqual([])
+  })
 })

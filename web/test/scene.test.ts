@@ -3,8 +3,11 @@ import { describe, expect, test } from 'vitest'
 import type { Report } from '../src/report'
 import { bounds, outermost } from '../src/scene/bounds'
 import { fit } from '../src/scene/camera'
+import { shownChange } from '../src/scene/draw/design_velocity'
+import { foldAxis } from '../src/scene/hinge'
 import { Mechanism } from '../src/scene/mechanism'
 import { path, poseAt, shifted } from '../src/scene/poses'
+import { READER, readerOf } from '../src/scene/reader'
 import { Train } from '../src/scene/train'
 import { crank } from './mechanisms'
 
@@ -93,5 +96,84 @@ describe('wheels of a pair', () => {
     const train = new Train(new Mechanism({ ...crank(), bodies, joints, couplers, drivers: [] }))
     const names = [0, 1].map((k) => train.pair(k)!.map(({ body }) => bodies[body].name))
     expect(names).toEqual([['sun', 'planet'], ['planet', 'ground']])
+  })
+
+  // A planar train, where both pairs lie in one plane.
+  const mechanism = new Mechanism({ ...crank(), bodies, joints, couplers, drivers: [] })
+
+  test('are in front of the carrier nowhere', () => {
+    const heights = bodies.map((_, body) => mechanism.layerOf(body))
+    expect(mechanism.carriers).toEqual(new Set([1]))
+    expect(heights[1]).toBeGreaterThan(Math.max(heights[2], heights[3]))
+  })
+
+  test('are known again by another coupler, by the direction that it counts from', () => {
+    const train = new Train(mechanism)
+    const [[, planet], [again]] = [train.pair(0)!, train.pair(1)!]
+    const inwards = new Vector3(-1, 0, 0)
+    expect(train.toothing(again, 20, 30, inwards)).toBeUndefined()
+    train.tooth(planet, 20, 30, inwards, 0.1)
+    expect(train.toothing(again, 20, 30, inwards)).toBeCloseTo(0.1)
+    // A quarter turn about z on, the same tooth is a quarter turn back.
+    expect(train.toothing(again, 20, 30, new Vector3(0, -1, 0))).toBeCloseTo(0.1 - Math.PI / 2)
+    expect(train.toothing(again, 24, 30, inwards)).toBeUndefined()
+    expect(train.toothing(again, 20, 36, inwards)).toBeUndefined()
+  })
+})
+
+describe('the corner that a mechanism is seen from', () => {
+  const size = 100
+  const behind = (corner: Vector3) => [[new Vector3(), corner.clone().setLength(40), new Vector3(0, 0, 60)]]
+
+  test('is the usual one where nothing is covered', () => {
+    expect(readerOf([[new Vector3(), new Vector3(60, 0, 0), new Vector3(0, 0, 60)]], size)).toEqual(READER)
+  })
+
+  test('is another where one joint stands before another', () => {
+    const reader = readerOf(behind(READER), size)
+    expect(reader.clone().normalize().dot(READER.clone().normalize())).toBeLessThan(0.9)
+  })
+
+  test('does not change for joints that are in one place from everywhere', () => {
+    expect(readerOf([[new Vector3(), new Vector3(), new Vector3(0, 0, 60)]], size)).toEqual(READER)
+  })
+
+  test('shows the teeth of a wheel that has them on its face', () => {
+    expect(readerOf([[]], size, [new Vector3(0, -1, 0)]).y).toBeGreaterThan(0)
+  })
+})
+
+describe('a link', () => {
+  const link = { ...crank().bodies[1], poses: crank().bodies[0].poses, roles: ['joint', 'joint'] as const }
+  const pin = (body_i: number, body_j: number, x: number, axis: [number, number, number]) =>
+    ({ ...crank().joints[0], body_i, body_j, at_i: [x, 0, 0], at_j: [x, 0, 0], axis, axis_j: axis })
+  const at = (...places: number[]) => ({ ...link, skeleton: places.map((x) => [x, 0, 0]) }) as unknown as Report['bodies'][number]
+  /** Two links in a row and a platform, hinged about y but for the last hinge, which makes it a mechanism in space. */
+  const chain = (middle: [number, number, number]) => {
+    const joints = [pin(0, 1, 0, [0, 1, 0]), pin(1, 2, 100, middle), pin(2, 3, 200, [0, 1, 0]), pin(3, 0, 300, [0, 0, 1])] as Report['joints']
+    return new Mechanism({ ...crank(), bodies: [at(0), at(0, 100), at(100, 200), at(200, 300)], joints, drivers: [] })
+  }
+
+  test('between parallel hinges folds on another such link', () => {
+    expect([1, 2, 3].map((body) => foldAxis(chain([0, 1, 0]), body)?.toArray())).toEqual([[0, 1, 0], [0, 1, 0], undefined])
+  })
+
+  test('between hinges across one another does not', () => {
+    expect([1, 2, 3].map((body) => foldAxis(chain([0, 0, 1]), body))).toEqual([undefined, undefined, undefined])
+  })
+})
+
+describe('arrows of a variable', () => {
+  const arrow = (v: number, turn: number) => ({ body: 1, at: [200, 0, 0], v: [v, 0, 0], turn: [0, 0, turn] })
+  const shown = (v: number, turn: number) => shownChange(new Mechanism(crank()), { arrows: [arrow(v, turn)] } as unknown as Report['variables'][number])
+
+  test('stand for no change where a turn leaves its place but for rounding', () => {
+    expect(shown(1e-15, 1)).toBeUndefined()
+    expect(shown(0, 0)).toBeUndefined()
+  })
+
+  test('are as long for a small move alone as for a large one', () => {
+    expect(shown(1e-15, 0)! * 1e-15).toBeCloseTo(shown(1, 0)!)
+    expect(shown(1, 1)).toBeCloseTo(shown(1, 0)!)
   })
 })

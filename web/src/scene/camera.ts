@@ -11,8 +11,6 @@ export interface Look {
   direction: Vector3
 }
 
-/** From where mechanisms in space that are no vehicles are first seen. */
-export const READER = new Vector3(0.75, -1, 0.55)
 /** Vertical opening of the perspective, in degrees. */
 const OPENING = 22
 /** Air round the picture, and what the buttons at its top take, in pixels. */
@@ -49,7 +47,7 @@ export function looksOf(mechanism: Mechanism): Look[] {
     ]
   }
   return [
-    look('corner', 'seen from the corner', READER.clone()),
+    look('corner', 'seen from the corner', mechanism.reader.clone()),
     look('front', 'seen along y', new Vector3(0, -1, HAIR)),
     look('side', 'seen against x', new Vector3(1, 0, HAIR)),
     look('top', 'seen from above', new Vector3(0, -HAIR, 1)),

@@ -6,6 +6,36 @@ import type { Mechanism } from './mechanism'
 const ASIDE = { units: 14, part: 0.5 }
 /** Joints with glyphs that a bearing in the same place would hide. */
 const SHY = ['universal', 'constant_velocity']
+/** Cosines of the angles within which hinges are parallel and beyond which they are square to a link. */
+const PARALLEL = 0.999
+const SQUARE = 0.05
+
+/** A link that folds on another such link, as Sarrus' plates do: the axis of its two parallel hinges, both square to it, in its frame. */
+export function foldAxis(mechanism: Mechanism, body: number): Vector3 | undefined {
+  const axis = parallelHinges(mechanism, body)
+  const mates = axis ? mechanism.jointsOf(body).map(({ joint }) => (joint.body_i === body ? joint.body_j : joint.body_i)) : []
+  return mates.some((mate) => parallelHinges(mechanism, mate)) ? axis : undefined
+}
+
+function parallelHinges(mechanism: Mechanism, body: number): Vector3 | undefined {
+  if (body === 0 || mechanism.plane || mechanism.vehicle || mechanism.large || mechanism.report.wheels.length > 0) return undefined
+  const held = mechanism.jointsOf(body)
+  if (held.length !== 2 || mechanism.shapePoints(body).length !== 2 || held.some(({ joint, axis }) => joint.kind !== 'revolute' || joint.hinge || !axis)) return undefined
+  const [first, second] = held.map(({ axis }) => axis!.clone().normalize())
+  const along = held[1].at.clone().sub(held[0].at).normalize()
+  return Math.abs(first.dot(second)) > PARALLEL && Math.abs(first.dot(along)) < SQUARE ? first : undefined
+}
+
+/** Half the width of a link that folds, and of the part of it that its pin goes through between the eyes of another body, in units. */
+export const FOLD = { half: 3.4, inner: 1.5 }
+
+/** Axis in the body's frame of the shaft that a body without another place is: where its bearing is drawn aside of the joint there. */
+export function shaftAxis(mechanism: Mechanism, body: number): Vector3 | undefined {
+  const bearing = mechanism.jointsOf(body).find(({ joint }) => joint.kind === 'revolute' && (joint.body_i === 0 || joint.body_j === 0) && !joint.hinge)
+  if (!bearing?.axis || mechanism.placesOf(body).length !== 1) return undefined
+  const place = hingePlaces(mechanism, bearing.joint)[0]
+  return mechanism.same(place, new Vector3(...bearing.joint.at_i)) ? undefined : bearing.axis.clone().normalize()
+}
 
 /** Whether one is ground's: then the other body, its place and axis in its frame; otherwise those of body i. */
 export function carried(mechanism: Mechanism, { body_i, body_j, at_i, at_j, axis, axis_j }: JointMark) {
@@ -41,5 +71,7 @@ export function restOf(mechanism: Mechanism, body: number, at: Vector3): Vector3
 /** Unit vector in a body's frame from a place on it to the rest of it; `otherwise` where there is no rest. */
 export function towardsRest(mechanism: Mechanism, body: number, at: Vector3, otherwise: Vector3): Vector3 {
   const way = restOf(mechanism, body, at).sub(at)
+  const shaft = shaftAxis(mechanism, body)
+  if (shaft) return shaft.multiplyScalar(Math.sign(shaft.dot(way)) || 1)
   return way.length() > 1e-6 * mechanism.size ? way.normalize() : otherwise.clone()
 }

@@ -5,13 +5,18 @@ import type { Frame } from './drawn'
 import { layers } from './layers'
 import { planeOf } from './plane'
 import { placed, type Pose, poseAt, turned } from './poses'
+import { READER, readerOf } from './reader'
 import { type Slide, slideOf } from './slide'
+import { bevelsOf } from './shapes/bevel'
 import { tints } from './tints'
+import { Train } from './train'
 
 /** Enough moments to bound the motion without walking through every one of a long run. */
 const SAMPLES = 64
 /** Two places nearer to one another than this part of the size are one. */
 const SAME = 1e-4
+/** Moments at which it is judged from where joints are seen best. */
+const JUDGED = 5
 /** More bodies than this are drawn without details. */
 const MANY = 40
 /** The unit as a part of the distance between hardpoints, and its least and largest part of the size. */
@@ -44,8 +49,12 @@ export class Mechanism {
   /** Normal of a planar mechanism, towards the reader. */
   readonly plane?: Vector3
   readonly up: Vector3
+  /** Towards the eye in the first view of a mechanism in space that is no vehicle. */
+  readonly reader: Vector3
   readonly vehicle?: { forward: Vector3; up: Vector3 }
   readonly large: boolean
+  /** Moving bodies that carry both wheels of a pair. */
+  readonly carriers: Set<number>
   readonly topLayer: number
   #natural: number
   #places: Vector3[][]
@@ -80,6 +89,8 @@ export class Mechanism {
     this.vehicle = vehicle ? { forward: new Vector3(...vehicle.forward), up: new Vector3(...vehicle.up) } : undefined
     this.up = this.plane && Math.abs(this.plane.z) > 0.5 ? new Vector3(0, 1, 0) : (this.vehicle?.up ?? new Vector3(0, 0, 1))
     this.large = report.bodies.length > MANY + 1
+    this.carriers = base ? base.carriers : carriersOf(report)
+    this.reader = base ? base.reader : this.plane || this.vehicle || this.large ? READER : this.#seenFrom()
     this.#tints = base ? base.#tints : tints(this)
     this.#layers = base ? base.#layers : this.plane ? this.#stack() : report.bodies.map(() => 0)
     this.topLayer = Math.max(0, ...this.#layers)
@@ -171,6 +182,12 @@ export class Mechanism {
     )
   }
 
+  /** Distance to the nearest other joint of both bodies of a joint. */
+  roomOf({ body_i, body_j, at_i, at_j }: JointMark): number {
+    const near = (body: number, at: Vector3) => this.#places[body].filter((other) => !this.same(other, at)).map((other) => other.distanceTo(at))
+    return Math.min(...near(body_i, new Vector3(...at_i)), ...near(body_j, new Vector3(...at_j)), this.size)
+  }
+
   /** A body's pose, or nothing where the motion was not solved. */
   poseAt(body: number, step: number): Pose | undefined {
     return poseAt(this.report.bodies[body].poses, step)
@@ -228,6 +245,16 @@ export class Mechanism {
     })
   }
 
+  /** Where all joints stand out from one another. */
+  #seenFrom(): Vector3 {
+    const { moments } = this
+    const judged = Array.from({ length: JUDGED }, (_, k) => moments[Math.floor((k * (moments.length - 1)) / (JUDGED - 1))])
+    const places = (step: number) => this.distinct(this.#places.flatMap((own, body) => own.map((place) => this.worldAt(body, place, step))))
+    const solved = judged.map(places).filter((all) => all.every(({ x, y, z }) => Number.isFinite(x + y + z)))
+    const backs = this.report.couplers.flatMap((coupler) => (coupler.kind === 'bevel' ? (bevelsOf(new Train(this), coupler)?.gears ?? []) : []))
+    return readerOf(solved, this.size, backs.map(({ axis }) => axis))
+  }
+
   /** From the lower quartile of the distances from a moving body's joints to its nearest other hardpoint. */
   #unit(): number {
     const distances = this.#places.slice(1).flatMap((places, k) => {
@@ -254,8 +281,20 @@ export class Mechanism {
     ])
     const massless = (joint: JointMark) => joint.kind === 'distance' || joint.kind === 'leg'
     const held = pins.filter((_, k) => !massless(report.joints[Math.floor(k / 2)]))
-    return layers(lengths, held, 1e-3 * this.size)
+    const stacked = layers(lengths, held, 1e-3 * this.size)
+    const top = Math.max(0, ...stacked)
+    // In front of the wheels that it carries a carrier is seen.
+    for (const body of this.carriers) stacked[body] = top + 1
+    return stacked
   }
+}
+
+function carriersOf({ couplers, joints }: Report): Set<number> {
+  const found = couplers.flatMap(({ terms }) => {
+    const [first, ...others] = terms.filter(({ turns }) => turns).map(({ joint }) => [joints[joint].body_i, joints[joint].body_j])
+    return others.length > 0 ? first.filter((body) => body > 0 && others.every((pair) => pair.includes(body))) : []
+  })
+  return new Set(found)
 }
 
 const ends = ({ place, axis, low, high }: Slide) => (low <= high ? [low, high].map((t) => place.clone().addScaledVector(axis, t)) : [])

@@ -8,6 +8,8 @@ const FIRST = 7
 const NEXT = 2.2
 /** Cosine of the least angle at which axes are no longer parallel. */
 const PARALLEL = 0.999
+/** Wheels on one shaft that differ by less than this part of their radius are one. */
+const SAME = 1e-3
 
 /** A shaft: a hinge that couplers turn, in the first position, in the world. */
 export interface Shaft {
@@ -35,6 +37,7 @@ export class Train {
   readonly face: number
   #shafts = new Map<number, Shaft>()
   #pairs = new Map<number, [Wheel, Wheel]>()
+  #toothed: { body: number; centre: Vector3; teeth: number; radius: number; towards: Vector3; phase: number }[] = []
 
   constructor(private readonly mechanism: Mechanism) {
     this.face = FACE * mechanism.unit
@@ -80,6 +83,22 @@ export class Train {
   /** The two wheels of a pair on parallel shafts, in one plane. */
   pair(coupler: number): [Wheel, Wheel] | undefined {
     return this.#pairs.get(coupler)
+  }
+
+  /** The angle from a direction to the middle of a tooth of a wheel, if another coupler has drawn it. */
+  toothing(wheel: Wheel, teeth: number, radius: number, towards: Vector3): number | undefined {
+    const known = this.#toothed.find(
+      (one) => one.body === wheel.body && one.teeth === teeth && Math.abs(one.radius - radius) < SAME * radius && one.centre.distanceTo(wheel.centre) < SAME * radius,
+    )
+    if (!known) return undefined
+    const from = towards.clone().normalize()
+    const to = known.towards.clone().normalize()
+    return known.phase + Math.atan2(from.clone().cross(to).dot(wheel.shaft.axis), from.dot(to))
+  }
+
+  /** Notes how a wheel is drawn: the middle of a tooth is at the angle `phase` from a direction. */
+  tooth({ body, centre }: Wheel, teeth: number, radius: number, towards: Vector3, phase: number): void {
+    this.#toothed.push({ body, centre, teeth, radius, towards, phase })
   }
 
   #bodiesOf({ joint }: Shaft): number[] {

@@ -3,9 +3,10 @@ import { area, Basis, farthest, type Flat, hull, inset, round } from '../flat'
 import type { Kit } from '../kit'
 import type { Mechanism } from '../mechanism'
 
-/** Radius of a link's ends, of those of a link with a slot, of a disc, and of a link in a large model. */
+/** Radius of a link's ends, of those of a link with a slot, of what carries wheels, of a disc, and of a link in a large model. */
 const END = 1.55
 const SLOTTED = 2.6
+const CARRIER = 3.2
 const DISC = 2.4
 const THIN = 0.95
 /** Half widths of a slot for a block and for a pin. */
@@ -38,7 +39,7 @@ export function flatLink(mechanism: Mechanism, kit: Kit, body: number): Object3D
       const ends = [slide.low, slide.high].map((t) => basis.to(slide.place.clone().addScaledVector(slide.axis, t)))
       return round(ends.map(([x, y]) => [x, y, half]))
     })
-  const radius = (holes.length > 0 ? SLOTTED : END) * s
+  const radius = (holes.length > 0 ? SLOTTED : mechanism.carriers.has(body) ? CARRIER : END) * s
   const corners = hull(points)
   const ends = farthest(points, apart)
   const length = apart(...ends)

@@ -1,6 +1,7 @@
 import { EdgesGeometry, type Object3D, ShapeGeometry, Shape, Vector2, Vector3 } from 'three'
 import { ConvexGeometry } from 'three/addons/geometries/ConvexGeometry.js'
 import { Basis, farthest, hull, square } from '../flat'
+import { FOLD, foldAxis, shaftAxis } from '../hinge'
 import type { Kit } from '../kit'
 import type { Mechanism } from '../mechanism'
 
@@ -11,8 +12,12 @@ const FLAT = 0.03
 const POINT = 2.4
 /** Radii of a rod at its ends, and the greatest as a part of its length. */
 const ROD = { thick: 1.15, thin: 0.98, slender: 0.12 }
-/** A flat bar: half width, half thickness, how much narrower in the middle, its eyes. */
-const BAR = { width: 1.45, thickness: 0.62, waist: 0.28, eye: 1.75, height: 1.9, end: 1.3, sections: 16 }
+/** A flat bar: half width, that of one whose hinges are across one another, half thickness, how much narrower in the middle, its eyes. */
+const BAR = { width: 1.45, twisted: 2.3, thickness: 0.62, waist: 0.28, eye: 1.75, height: 1.9, end: 1.3, sections: 16 }
+/** Cosine of the least angle between hinges that are across one another. */
+const TWISTED = 0.98
+/** A plate that folds: its thickness, its eyes' radius, and how far from the pins it ends. */
+const FOLDED = { thickness: 0.9, eye: 1.5, clear: 2 }
 /** Tubes of a plate: at free corners, at the hinge, along the hinge; how opaque its web is with three corners and with more. */
 const PLATE = { corner: 0.85, hinge: 1.15, along: 0.75, web: 0.38, platform: 0.6 }
 /** Edges and corners of a hull, and how opaque it is. */
@@ -24,6 +29,10 @@ export function spatialBody(mechanism: Mechanism, kit: Kit, body: number): Objec
   if (points.length === 0) return []
   if (points.length === 1) return single(mechanism, kit, body, points[0])
   const [a, b] = farthest(points, (p, q) => p.distanceTo(q))
+  const shaft = shaftAxis(mechanism, body)
+  if (shaft) return onShaft(mechanism, kit, body, points, shaft)
+  const fold = foldAxis(mechanism, body)
+  if (fold) return folding(mechanism, kit, body, a, b, fold)
   const along = b.clone().sub(a)
   const length = along.length()
   along.divideScalar(length)
@@ -33,6 +42,44 @@ export function spatialBody(mechanism: Mechanism, kit: Kit, body: number): Objec
   const normal = aside(widest).normalize()
   if (points.every((p) => Math.abs(p.clone().sub(a).dot(normal)) < FLAT * length)) return plate(mechanism, kit, body, points, normal)
   return solid(kit, body, points)
+}
+
+/** A shaft as far as the body's points reach along it, and an arm to each of them that is off it. */
+function onShaft(mechanism: Mechanism, kit: Kit, body: number, points: Vector3[], axis: Vector3): Object3D[] {
+  const s = kit.unit
+  const colour = kit.body(body)
+  const [at] = mechanism.placesOf(body)
+  const on = (point: Vector3) => at.clone().addScaledVector(axis, point.clone().sub(at).dot(axis))
+  const away = points.filter((point) => !mechanism.same(point, at))
+  return away.flatMap((point) => {
+    const foot = on(point)
+    const arm = foot.distanceTo(point) > s ? [kit.cylinder(foot, point, ROD.thin * s, ROD.thin * s, colour), kit.ball(point, ROD.thick * s, colour)] : []
+    return [kit.cylinder(at, foot, ROD.thick * s, ROD.thick * s, colour), kit.ball(foot, 1.5 * ROD.thick * s, colour), ...arm]
+  })
+}
+
+/** A plate between two parallel hinges; where both bodies of a hinge are plates or one is ground, their eyes take turns along the pin. */
+function folding(mechanism: Mechanism, kit: Kit, body: number, a: Vector3, b: Vector3, axis: Vector3): Object3D[] {
+  const s = kit.unit
+  const colour = kit.body(body)
+  const unit = b.clone().sub(a).normalize()
+  const middle = a.clone().lerp(b, 0.5)
+  const plate = kit.brick(middle, unit, axis, [Math.max(s, a.distanceTo(b) - 2 * FOLDED.clear * s), 2 * FOLD.half * s, FOLDED.thickness * s], colour)
+  const eyes = mechanism.jointsOf(body).flatMap(({ joint, at }) => {
+    const inner = joint.body_i === 0 || joint.body_j === 0 || joint.body_i === body
+    const outer = (FOLD.half + FOLD.inner) / 2
+    const spans = inner ? [[0, 2 * FOLD.inner]] : [[-outer, FOLD.half - FOLD.inner], [outer, FOLD.half - FOLD.inner]]
+    const inwards = middle.clone().sub(at).normalize()
+    return spans.flatMap(([aside, width]) => {
+      const eye = at.clone().addScaledVector(axis, aside * s)
+      const tab = eye.clone().addScaledVector(inwards, (FOLDED.clear / 2) * s)
+      return [
+        kit.disc(eye, axis, FOLDED.eye * s, 0.94 * width * s, colour),
+        kit.brick(tab, inwards, axis, [FOLDED.clear * s, 0.94 * width * s, FOLDED.thickness * s], colour, {}),
+      ]
+    })
+  })
+  return [plate, ...eyes]
 }
 
 function single(mechanism: Mechanism, kit: Kit, body: number, point: Vector3): Object3D[] {
@@ -70,12 +117,15 @@ function straight(mechanism: Mechanism, kit: Kit, body: number, a: Vector3, b: V
   const to = (last ?? first!).clone()
   // A bar turns by less than a quarter either way: an axis has no sense.
   if (from.dot(to) < 0) to.negate()
+  // Between two links the eyes lie beside one another on the pin, and the bars with them.
+  const [low, high] = [a, b].map((at) => (first && last ? eyeOf(mechanism, body, at, s) : at))
+  const width = first && last && from.dot(to) < TWISTED ? BAR.twisted : BAR.width
   const section = (t: number) => {
     const thick = from.clone().lerp(to, t).normalize()
     const wide = thick.clone().cross(unit)
-    const waist = BAR.width * s * (1 - BAR.waist * Math.sin(Math.PI * t))
+    const waist = width * s * (1 - BAR.waist * Math.sin(Math.PI * t))
     return [[-1, -1], [1, -1], [1, 1], [-1, 1]].map(([x, y]) =>
-      a.clone().addScaledVector(unit, t * length).addScaledVector(wide, x * waist).addScaledVector(thick, y * BAR.thickness * s),
+      low.clone().lerp(high, t).addScaledVector(wide, x * waist).addScaledVector(thick, y * BAR.thickness * s),
     )
   }
   const sections = Array.from({ length: BAR.sections + 1 }, (_, k) => section(k / BAR.sections))
@@ -88,7 +138,15 @@ function straight(mechanism: Mechanism, kit: Kit, body: number, a: Vector3, b: V
   const eye = (at: Vector3, axis: Vector3 | undefined) =>
     axis ? kit.disc(at, axis, BAR.eye * s, BAR.height * s, colour) : kit.ball(at, BAR.end * s, colour)
   const edges = [0, 1, 2, 3].map((i) => kit.line(sections.map((corners) => corners[i]), kit.palette.outline, 0.9, { opacity: 0.45 }))
-  return [kit.triangles(faces, colour, { open: true, facets: true }), ...edges, eye(a, axisAt(mechanism, body, a)), eye(b, axisAt(mechanism, body, b))]
+  return [kit.triangles(faces, colour, { open: true, facets: true }), ...edges, eye(low, axisAt(mechanism, body, a)), eye(high, axisAt(mechanism, body, b))]
+}
+
+/** Middle of a link's eye on the hinge at a place: beside the other link's; between cheeks that are ground's. */
+function eyeOf(mechanism: Mechanism, body: number, at: Vector3, s: number): Vector3 {
+  const hinge = mechanism.jointsOf(body).find(({ joint, at: own }) => joint.kind === 'revolute' && mechanism.same(own, at))
+  if (!hinge?.axis || hinge.joint.body_i === 0 || hinge.joint.body_j === 0 || hinge.joint.hinge) return at
+  const side = hinge.joint.body_i === body ? -1 : 1
+  return at.clone().addScaledVector(hinge.axis.clone().normalize(), (side * BAR.height * s) / 2)
 }
 
 /** Tubes round a web; the edge on a hinge is straight, the others taper away from it. */

@@ -1,5 +1,5 @@
 import { Vector3 } from 'three'
-import { bevelCorners, bevelPair } from '../shapes/bevel'
+import { bevelCorners, bevelsOf } from '../shapes/bevel'
 import { drawnTeeth, toothHeight } from '../shapes/toothing'
 import { reach } from '../train'
 import type { DrawCoupler } from './coupler'
@@ -11,8 +11,7 @@ const WIDTH = { ofLength: 0.35, faces: 1.3 }
 export const bevels: DrawCoupler = ({ mechanism, kit, train, coupler }) => {
   const shafts = coupler.terms.flatMap(({ joint, turns }) => (turns ? (train.shaftOf(joint) ?? []) : []))
   if (shafts.length !== 2 || coupler.sizes.length < 2) return []
-  const [a, b] = shafts.map(({ at, axis }, k) => ({ at, axis, coefficient: coupler.terms[k].coefficient }))
-  const pair = bevelPair(a, b)
+  const pair = bevelsOf(train, coupler)
   if (!pair) return []
   const teeth = drawnTeeth([Math.abs(coupler.sizes[0]), Math.abs(coupler.sizes[1])])
   const height = Math.min(...pair.gears.map(({ radius }, k) => toothHeight(teeth[k], radius)))

@@ -29,10 +29,17 @@ export const gears: DrawCoupler = ({ mechanism, kit, train, coupler, index }) =>
   // From a's centre to where they touch, and from b's.
   const touchA = between.clone().multiplyScalar(internal && sizes[0] < sizes[1] ? -1 : 1)
   const touchB = between.clone().multiplyScalar(internal && sizes[0] < sizes[1] ? -1 : internal ? 1 : -1)
+  // A wheel that another coupler has drawn stays as it is, and its mate's teeth go into its gaps.
+  const [atA, atB] = [train.toothing(a, n, radii[0], touchA), train.toothing(b, m, radii[1], touchB)]
+  const turned = (internal ? 1 : -1) * Math.sign(a.shaft.axis.dot(b.shaft.axis))
+  const phaseA = atA ?? (atB === undefined ? 0 : (turned * m * (atB - Math.PI / m)) / n)
+  const phaseB = atB ?? (turned * n * phaseA) / m + Math.PI / m
+  if (atA === undefined) train.tooth(a, n, radii[0], touchA, phaseA)
+  if (atB === undefined) train.tooth(b, m, radii[1], touchB, phaseB)
   return [
-    { wheel: a, teeth: n, radius: radii[0], towards: touchA, phase: 0, ring: internal && sizes[0] > sizes[1] },
-    { wheel: b, teeth: m, radius: radii[1], towards: touchB, phase: Math.PI / m, ring: internal && sizes[1] > sizes[0] },
-  ].map(({ wheel, teeth, radius, towards, phase, ring }) => {
+    { wheel: a, teeth: n, radius: radii[0], towards: touchA, phase: phaseA, ring: internal && sizes[0] > sizes[1], known: atA !== undefined },
+    { wheel: b, teeth: m, radius: radii[1], towards: touchB, phase: phaseB, ring: internal && sizes[1] > sizes[0], known: atB !== undefined },
+  ].filter(({ known }) => !known).map(({ wheel, teeth, radius, towards, phase, ring }) => {
     const { body } = wheel
     const into = (direction: Vector3) => mechanism.into(body, direction)
     const centre = mechanism.placeInto(body, wheel.centre).add(mechanism.lift(body))

@@ -5,6 +5,7 @@ import type { Variable } from '../../report'
 import { rounded } from '../../rounding'
 import { ABOVE, ringArrow, straightArrow } from '../arrow'
 import type { Draw, Drawn } from '../drawn'
+import { hingePlaces } from '../hinge'
 import type { Mechanism } from '../mechanism'
 
 /** The longest arrow as a part of the mechanism's size and of its height across its longest side, but long enough to be seen, in units. */
@@ -13,6 +14,8 @@ const LONGEST = { ofSize: 0.11, ofHeight: 0.75, least: 9 }
 const SHAFT = 0.5
 const HEAD = 3.4
 const RING = 5
+/** Places that a turn moves by less than this part of the size per radian are where it turns about. */
+const STILL = 1e-9
 /** Two places nearer than this part of the size show one arrow. */
 const ONE = 1e-3
 
@@ -32,7 +35,7 @@ export const designVelocity: Draw = (mechanism, kit, choice) => {
   const most = longest(variable.arrows.map(({ turn }) => turn))
   const turning = variable.arrows.filter(({ turn }) => rounded(Math.hypot(...turn), most) > 0)
   const rings = onePerPlace(mechanism, turning).map(({ body, at, turn }): Drawn => {
-    const place = placeOf(mechanism, body, at).add(mechanism.lift(body, mechanism.topLayer + 3))
+    const place = turnedAt(mechanism, body, placeOf(mechanism, body, at)).add(mechanism.lift(body, mechanism.topLayer + 3))
     const ring = ringArrow(kit, place, new Vector3(...turn), RING * kit.unit, HEAD * kit.unit, SHAFT * kit.unit, chosen, ABOVE.velocity)
     return { body, object: ring, part, overlay: true }
   })
@@ -42,7 +45,7 @@ export const designVelocity: Draw = (mechanism, kit, choice) => {
 /** The change of a variable for which its arrows are as long as the moves; none where it moves no hardpoint. */
 export function shownChange(mechanism: Mechanism, { arrows }: Variable): number | undefined {
   const most = longest(arrows.map(({ v }) => v))
-  return most > 0 ? longestArrow(mechanism) / most : undefined
+  return most > STILL * mechanism.size * longest(arrows.map(({ turn }) => turn)) ? longestArrow(mechanism) / most : undefined
 }
 
 /** A change with its unit, as short as it may be said. */
@@ -55,6 +58,7 @@ function longestArrow({ base, box, size, unit }: Mechanism): number {
 }
 
 function moving(mechanism: Mechanism, { arrows }: Variable, change: number): { body: number; from: Vector3; to: Vector3 }[] {
+  if (change === 0) return []
   const most = longest(arrows.map(({ v }) => v))
   const going = arrows.filter(({ v }) => rounded(Math.hypot(...v), most) > 0)
   return onePerPlace(mechanism, going).map(({ body, at, v }) => {
@@ -70,6 +74,16 @@ function placeOf({ base, report }: Mechanism, body: number, at: Arrow['at']): Ve
   if (!base) return place
   const point = base.report.bodies[body].skeleton.findIndex((one) => base.same(new Vector3(...one), place))
   return point < 0 ? place : new Vector3(...report.bodies[body].skeleton[point])
+}
+
+/** Where a turn is shown: on the bearing that is drawn aside of another joint, which the ring would hide. */
+function turnedAt(mechanism: Mechanism, body: number, at: Vector3): Vector3 {
+  const aside = mechanism.report.joints.flatMap((joint) => {
+    const own = joint.body_i === body ? joint.at_i : joint.body_j === body ? joint.at_j : undefined
+    if (!own || joint.kind !== 'revolute' || joint.hinge || !mechanism.same(new Vector3(...own), at)) return []
+    return hingePlaces(mechanism, joint).map((place) => mechanism.placeInto(body, mechanism.worldAt(joint.body_i, place, 0)))
+  })
+  return aside[0]?.clone() ?? at
 }
 
 function longest(vectors: [number, number, number][]): number {

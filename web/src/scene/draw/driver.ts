@@ -3,7 +3,6 @@ import { valueAt } from '../../curve'
 import type { JointMark } from '../../payload'
 import type { Driver } from '../../report'
 import { above, ABOVE, arcHead, arcPoints, straightArrow } from '../arrow'
-import { READER } from '../camera'
 import type { Draw, Drawn, Frame } from '../drawn'
 import { across, Basis, square } from '../flat'
 import { type Kit, place } from '../kit'
@@ -77,7 +76,7 @@ function hingeArrow(mechanism: Mechanism, kit: Kit, joint: JointMark, { curve, l
 /** In front of the hinge, on the reader's side. */
 function before(mechanism: Mechanism, body: number, axis: Vector3): Vector3 {
   if (mechanism.plane) return mechanism.lift(body, mechanism.topLayer + 2)
-  const towards = mechanism.into(body, READER).dot(axis) < 0 ? -1 : 1
+  const towards = mechanism.into(body, mechanism.reader).dot(axis) < 0 ? -1 : 1
   return axis.clone().multiplyScalar(towards * BESIDE.hinge * mechanism.unit)
 }
 
@@ -108,7 +107,7 @@ function legArrow(mechanism: Mechanism, kit: Kit, joint: JointMark, { low, high 
     const middle = from.clone().lerp(to, ALONG_LEG)
     // On the outside of the whole.
     const outwards = middle.clone().sub(mechanism.centre)
-    const plane = mechanism.plane ?? (mechanism.vehicle ? mechanism.vehicle.forward : READER)
+    const plane = mechanism.plane ?? (mechanism.vehicle ? mechanism.vehicle.forward : mechanism.reader)
     const side = plane.clone().cross(along).normalize()
     if (side.dot(outwards) < 0) side.negate()
     object.visible = frame.visible(joint.body_i) && frame.visible(joint.body_j)

@@ -4,7 +4,7 @@ import type { JointMark } from '../../payload'
 import type { Kit } from '../kit'
 import type { Mechanism } from '../mechanism'
 import { bodyPart } from '../part'
-import { hingePlaces } from '../hinge'
+import { foldAxis, hingePlaces } from '../hinge'
 import { shaftJoints } from '../shafts'
 import { planarFoot } from './ground_planar'
 import { ballFoot, hingeFoot } from './ground_spatial'
@@ -18,6 +18,10 @@ export interface Foot {
   /** Where to the rest of what is held is, in the world. */
   towards: Vector3
   radius: number
+  /** How far the mesh of what is held reaches towards the plate, at least; 0 where there is none. */
+  clear?: (down: Vector3, half: number) => number
+  /** One of the two of a hinge between hardpoints, which are lugs; a plate that folds has its cheeks outside its eye. */
+  form?: 'lug' | 'fold'
   /** In front of a cam that would cover it. */
   front: boolean
 }
@@ -59,7 +63,8 @@ function feet(mechanism: Mechanism): Foot[] {
       .shapePoints(body)
       .map((point) => mechanism.worldAt(body, point, 0))
       .filter((point) => !axis || point.clone().sub(at).cross(axis).length() > 2e-3 * mechanism.size)
-    return spots.map((spot) => ({ at: spot, axis, radius, front: front(body), towards: rod ? mechanism.worldAt(body, held, 0) : mean(aside, spot) }))
+    const form = joint.hinge ? 'lug' as const : foldAxis(mechanism, body) ? 'fold' as const : undefined
+    return spots.map((spot) => ({ at: spot, axis, radius, form, clear: clearance(mechanism, body, spot), front: front(body), towards: rod ? mechanism.worldAt(body, held, 0) : mean(aside, spot) }))
   })
   const distances = report.wheels.length === 0 ? [] : report.distances.flatMap(({ from, to }): Foot[] => {
     if (from.body !== 0 && to.body !== 0) return []
@@ -90,4 +95,22 @@ export function downwards(mechanism: Mechanism, { at, axis, towards }: Foot): Ve
   const free = ways.filter((way) => !axis || Math.abs(way.dot(axis)) < 0.6)
   const best = free.reduce((a, b) => (worth(b) > worth(a) ? b : a))
   return axis ? best.addScaledVector(axis, -best.dot(axis)).normalize() : best
+}
+
+/** Vertices of a mesh that are looked at, at most, and every how many moments. */
+const VERTICES = 3000
+const EVERY = 8
+
+/** How far a body's own shape reaches from a place in some direction, within so much to the sides, over the whole motion. */
+function clearance(mechanism: Mechanism, body: number, at: Vector3): Foot['clear'] {
+  const { mesh } = mechanism.report.bodies[body]
+  if (!mesh) return undefined
+  const stride = 3 * Math.max(1, Math.ceil(mesh.positions.length / 3 / VERTICES))
+  const vertices = Array.from({ length: Math.floor(mesh.positions.length / stride) }, (_, k) => new Vector3().fromArray(mesh.positions, k * stride))
+  return (down, half) => {
+    const reach = mechanism.moments.filter((_, k) => k % EVERY === 0).flatMap((step) =>
+      vertices.map((vertex) => mechanism.worldAt(body, vertex, step).sub(at)).map((from) => [from.dot(down), from.clone().cross(down).length()] as const),
+    )
+    return reach.reduce((most, [along, aside]) => (aside < half && along > most ? along : most), 0)
+  }
 }

@@ -1,6 +1,7 @@
 import { Group, Vector3 } from 'three'
 import type { Drawn } from '../drawn'
 import { Basis, hull, round } from '../flat'
+import { FOLD, foldAxis } from '../hinge'
 import type { Kit } from '../kit'
 import type { Mechanism } from '../mechanism'
 import { bodyPart } from '../part'
@@ -14,7 +15,7 @@ const PLATE = { round: 2.5, thickness: 0.6, opacity: 0.28 }
 export function fixedLink(mechanism: Mechanism, kit: Kit): Drawn[] {
   const { report, plane, vehicle } = mechanism
   if (plane || vehicle || report.wheels.length > 0 || report.couplers.length > 0) return []
-  const places = mechanism.placesOf(0)
+  const places = mechanism.placesOf(0).flatMap((place) => acrossFold(mechanism, place))
   if (places.length < 2) return []
   const { ground } = kit.palette
   const drawn = (...pieces: Parameters<Group['add']>): Drawn => ({ body: 0, object: new Group().add(...pieces), part: bodyPart(mechanism, 0) })
@@ -33,4 +34,11 @@ export function fixedLink(mechanism: Mechanism, kit: Kit): Drawn[] {
       kit.line(edge, ground, 1.5, { dashed: true }),
     ),
   ]
+}
+
+/** The ends of a hinge at a place of ground that a plate folds about; of others the place alone. */
+function acrossFold(mechanism: Mechanism, place: Vector3): Vector3[] {
+  const fold = mechanism.jointsOf(0).find(({ joint, at }) => mechanism.same(at, place) && foldAxis(mechanism, joint.body_i || joint.body_j))
+  if (!fold?.axis) return [place]
+  return [-1, 1].map((side) => place.clone().addScaledVector(fold.axis!.clone().normalize(), side * FOLD.half * mechanism.unit))
 }

@@ -11,11 +11,12 @@ import { fixedLink } from './ground_link'
 import { joints } from './joint'
 import { meshes } from './mesh'
 import { motors } from './motor'
+import { paths } from './paths'
 import { trace } from './trace'
 import { wheels } from './wheel'
 
 /** Every kind of thing that a mechanism is made of, one file each. */
-export const matter: Draw[] = [bodies, meshes, ground, fixedLink, joints, couplers, wheels, distances, motors]
+export const matter: Draw[] = [bodies, meshes, ground, fixedLink, joints, couplers, wheels, distances, motors, paths]
 
 /** What is drawn to say something about it; made anew with every choice. `mechanism.former` is the design drawn dashed. */
 export const marks: Draw[] = [formerDesign, trace, drivers, dimension, designVelocity]

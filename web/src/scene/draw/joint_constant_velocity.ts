@@ -11,8 +11,8 @@ const OPENING = 0.52
 /** Rings of the boot: how many, the first's radius, by how much each is smaller, their thickness and distance. */
 const BOOT = { rings: 4, radius: 2.75, less: 0.45, thickness: 0.75, apart: 1.15, from: 0.9 }
 /** Of a drive shaft: the bell's radius as a part of the wheel's, and at most this part of the distance to the next joint. */
-const OF_WHEEL = 0.15
-const OF_DISTANCE = 0.45
+const OF_WHEEL = 0.17
+const OF_DISTANCE = 0.62
 
 /** A bell on body i and a boot on body j. */
 export const constantVelocity: DrawJoint = (mechanism, kit, joint) => {
@@ -36,7 +36,5 @@ function glyph(mechanism: Mechanism, joint: JointMark): number {
   const least = mechanism.radiusOf(joint)
   const wheel = Math.min(...mechanism.report.wheels.map(({ radius }) => radius))
   if (!Number.isFinite(wheel)) return least
-  const near = ([body, at]: [number, Vector3]) => mechanism.placesOf(body).filter((other) => !mechanism.same(other, at)).map((other) => other.distanceTo(at))
-  const room = Math.min(...near([joint.body_i, new Vector3(...joint.at_i)]), ...near([joint.body_j, new Vector3(...joint.at_j)]))
-  return Math.max(least, Math.min(OF_WHEEL * wheel, OF_DISTANCE * room) / BELL)
+  return Math.max(least, Math.min(OF_WHEEL * wheel, OF_DISTANCE * mechanism.roomOf(joint)) / BELL)
 }

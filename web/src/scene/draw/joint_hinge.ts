@@ -1,14 +1,20 @@
 import type { Vector3 } from 'three'
-import { carried, hingePlaces } from '../hinge'
+import type { JointMark } from '../../payload'
+import { carried, FOLD, foldAxis, hingePlaces } from '../hinge'
 import type { Kit } from '../kit'
+import type { Mechanism } from '../mechanism'
 import { shaftJoints } from '../shafts'
 import { type DrawJoint, piece } from './joint'
 
 /** A pin's radius and length, and a bush's, in radii of the glyph. */
-const PIN = [1, 3.9]
+const PIN = [1, 5.2]
 const BUSH = [1.65, 2]
+/** The dashed line of a hinge's axis: how far to either side in radii, and its width in px. */
+const AXIS = { reach: 7, line: 1.3 }
 /** Radius of a shaft to a bearing that is drawn aside of another joint. */
 const SHAFT = 1.1
+/** A pin through links that fold, in units. */
+const WIDE = 2 * FOLD.half + 0.8
 /** From above: the ring's radius, the dot's, and by how many layers the pin is longer than its links are thick. */
 const FLAT = { ring: 0.85, dot: 0.28, longer: 1.2 }
 /** A pin in a large model, in units. */
@@ -42,8 +48,16 @@ export const hinge: DrawJoint = (mechanism, kit, joint, index) => {
   const places = hingePlaces(mechanism, joint).map((place) => mechanism.placeInto(body, mechanism.worldAt(joint.body_i, place, 0)))
   const held = joint.body_j > 0 ? joint.body_j : joint.body_i
   const bushes = joint.hinge ? places.map((place) => kit.disc(place, axis, BUSH[0] * r, BUSH[1] * r, kit.body(held))) : []
-  const pins = places.map((place) => kit.disc(place, axis, PIN[0] * r, PIN[1] * r, steel))
-  return [piece(body, ...pins, ...bushes, ...places.filter((place) => !joint.hinge && !mechanism.same(place, at)).map((place) => shaft(kit, at, place, r, kit.body(body))))]
+  const wide = [joint.body_i, joint.body_j].some((one) => foldAxis(mechanism, one))
+  const pins = places.map((place) => kit.disc(place, axis, PIN[0] * r, wide ? WIDE * kit.unit : PIN[1] * r, steel))
+  return [piece(body, ...pins, ...axisLine(mechanism, kit, joint, places, axis, r), ...bushes, ...places.filter((place) => !joint.hinge && !mechanism.same(place, at)).map((place) => shaft(kit, at, place, r, kit.body(body))))]
+}
+
+/** The axis itself, where hinges lie across one another and the eye must find how. */
+function axisLine({ vehicle, report }: Mechanism, kit: Kit, { hinge }: JointMark, places: Vector3[], axis: Vector3, r: number) {
+  if (hinge || vehicle || report.wheels.length > 0) return []
+  const end = (place: Vector3, side: number) => place.clone().addScaledVector(axis, side * AXIS.reach * r)
+  return places.map((place) => kit.line([end(place, -1), end(place, 1)], kit.palette.label, AXIS.line, { dashed: true, opacity: 0.75 }))
 }
 
 /** From a joint in the bearing's place to the bearing and a little through it. */

@@ -1,6 +1,7 @@
-import { Vector3 } from 'three'
+import { type Object3D, Vector3 } from 'three'
 import { Basis, type Flat } from '../flat'
 import type { JointMark } from '../../payload'
+import type { Kit } from '../kit'
 import type { Mechanism } from '../mechanism'
 import { type DrawJoint, piece } from './joint'
 import { slottedPin } from './joint_slot'
@@ -31,7 +32,17 @@ export const onPlane: DrawJoint = (mechanism, kit, joint, index) => {
   const plate = kit.slab(outline, basis, PLATE.thickness * r, kit.body(joint.body_i), [], { opacity: PLATE.opacity, edges: 20 })
   const own = joint.axis_j ? new Vector3(...joint.axis_j) : mechanism.into(joint.body_j, mechanism.alongAt(joint.body_i, normal, 0))
   const rider = flat ? kit.disc(place, own, FOOT[0] * r, FOOT[1] * r, kit.body(joint.body_j)) : kit.ball(place, BALL * r, kit.palette.steel)
-  return [piece(joint.body_i, plate), piece(joint.body_j, rider)]
+  const hatch = joint.body_i === 0 ? hatched(mechanism, kit, basis, outline, r) : []
+  return [piece(joint.body_i, plate, ...hatch), piece(joint.body_j, rider)]
+}
+
+/** Ground's strokes: below a surface seen from its side, round one seen from above. */
+function hatched({ plane }: Mechanism, kit: Kit, basis: Basis, outline: Flat[], r: number): Object3D[] {
+  const corners = outline.map((corner) => basis.from(corner))
+  const sides = corners.map((corner, k) => [corner, corners[(k + 1) % corners.length]] as const)
+  if (!plane) return sides.map(([a, b]) => kit.hatchLine(a, b, b.clone().sub(a).cross(basis.normal), r))
+  const seen = sides.find(([a, b]) => Math.abs(b.clone().sub(a).normalize().dot(plane)) < 0.1)
+  return seen ? [kit.hatchLine(seen[0], seen[1], basis.normal.clone().negate(), r)] : []
 }
 
 /** Where a point of body j comes to on body i. */

@@ -7,6 +7,8 @@ import { type DrawJoint, type Piece, piece } from './joint'
 const PIN = { radius: 0.75, half: 2.6 }
 /** Of a yoke: radius and thickness of its eyes, radius of its arms, and how far behind the cross they meet. */
 const YOKE = { eye: 1.15, thickness: 0.9, arm: 0.7, behind: 3.6 }
+/** The cross is what tells the joint from a ball: so much larger than other glyphs, where it leaves other joints this part of the way to it and stands on no block. */
+const LARGE = { units: 1.8, part: 0.09 }
 /** From above: radius of the circle, and its lines in px. */
 const FLAT = { circle: 1.9, line: 2 }
 
@@ -27,25 +29,27 @@ export const universal: DrawJoint = (mechanism, kit, joint) => {
     const cross = [1, 5, 3, 7].map((eighth) => on((eighth * Math.PI) / 4))
     return [piece(body, kit.disc(middle, normal, FLAT.circle * r, 1.2 * kit.unit, steel), kit.line(circle, outline, FLAT.line), kit.lines(cross, outline, FLAT.line))]
   }
+  const onBlock = [joint.body_i, joint.body_j].some((body) => mechanism.report.joints.some((_, k) => mechanism.slideOf(k)?.block === body))
+  const large = onBlock ? r : Math.max(r, Math.min(LARGE.units * kit.unit, LARGE.part * mechanism.roomOf(joint)))
   const first = joint.axis ? new Vector3(...joint.axis) : new Vector3(0, 0, 1)
   const second = joint.axis2 ? new Vector3(...joint.axis2) : mechanism.into(joint.body_j, across(mechanism.alongAt(joint.body_i, first, 0)))
   const half = (body: number, middle: Vector3, axis: Vector3): Piece => {
     const pin = axis.clone().normalize()
-    const end = (side: number, reach = PIN.half) => middle.clone().addScaledVector(pin, side * reach * r)
+    const end = (side: number, reach = PIN.half) => middle.clone().addScaledVector(pin, side * reach * large)
     const back = square(towardsRest(mechanism, body, middle, across(pin)), pin)
-    const root = middle.clone().addScaledVector(back, YOKE.behind * r)
+    const root = middle.clone().addScaledVector(back, YOKE.behind * large)
     const colour = kit.body(body)
     const sides = [-1, 1].flatMap((side) => {
       const eye = end(side, PIN.half - YOKE.thickness / 2)
-      const corner = eye.clone().addScaledVector(back, 0.55 * YOKE.behind * r)
+      const corner = eye.clone().addScaledVector(back, 0.55 * YOKE.behind * large)
       return [
-        kit.disc(eye, pin, YOKE.eye * r, YOKE.thickness * r, colour),
-        kit.cylinder(eye, corner, YOKE.arm * r, YOKE.arm * r, colour),
-        kit.ball(corner, YOKE.arm * r, colour),
-        kit.cylinder(corner, root, YOKE.arm * r, YOKE.arm * r, colour),
+        kit.disc(eye, pin, YOKE.eye * large, YOKE.thickness * large, colour),
+        kit.cylinder(eye, corner, YOKE.arm * large, YOKE.arm * large, colour),
+        kit.ball(corner, YOKE.arm * large, colour),
+        kit.cylinder(corner, root, YOKE.arm * large, YOKE.arm * large, colour),
       ]
     })
-    return piece(body, kit.cylinder(end(-1), end(1), PIN.radius * r, PIN.radius * r, steel), ...sides)
+    return piece(body, kit.cylinder(end(-1), end(1), PIN.radius * large, PIN.radius * large, steel), ...sides)
   }
   return [half(joint.body_i, at[0], first), half(joint.body_j, at[1], second)]
 }

@@ -1,5 +1,4 @@
 import { Group } from 'three'
-import { READER } from '../camera'
 import type { Drawn } from '../drawn'
 import { carried, hingePlaces, restOf } from '../hinge'
 import type { Kit } from '../kit'
@@ -24,7 +23,7 @@ export function motors(mechanism: Mechanism, kit: Kit): Drawn[] {
     const out = mechanism.alongAt(body, axis, 0)
     // Away from what the hinge carries, else from the reader.
     const beyond = at.clone().sub(restOf(mechanism, body, at)).dot(axis)
-    const side = Math.abs(beyond) > kit.unit ? Math.sign(beyond) : -Math.sign(out.dot(READER)) || 1
+    const side = Math.abs(beyond) > kit.unit ? Math.sign(beyond) : -Math.sign(out.dot(mechanism.reader)) || 1
     out.multiplyScalar(side)
     const s = Math.min(kit.unit, 1.4 * mechanism.radiusOf(mark))
     const places = hingePlaces(mechanism, mark).map((place) => mechanism.worldAt(mark.body_i, place, 0))

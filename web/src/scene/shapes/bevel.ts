@@ -1,5 +1,7 @@
 import { Vector3 } from 'three'
+import type { CouplerMark } from '../../payload'
 import { Basis } from '../flat'
+import type { Train } from '../train'
 import { gearOutline } from './toothing'
 
 /** Two bevel gears: cones with one tip, rolling on one line. */
@@ -62,6 +64,15 @@ export function bevelPair(a: Shaft, b: Shaft): BevelPair | undefined {
     return { axis: axis.clone().multiplyScalar(Math.sign(along) || 1), radius: length * Math.sqrt(1 - along * along), distance: length * Math.abs(along) }
   }
   return { tip, line, length, gears: [gear(u), gear(v)] }
+}
+
+/** The pair that a coupler is, where both its shafts are hinges. */
+export function bevelsOf(train: Train, { terms }: CouplerMark): BevelPair | undefined {
+  const shafts = terms.flatMap(({ joint, turns, coefficient }) => {
+    const shaft = turns ? train.shaftOf(joint) : undefined
+    return shaft ? [{ at: shaft.at, axis: shaft.axis, coefficient }] : []
+  })
+  return shafts.length === 2 ? bevelPair(shafts[0], shafts[1]) : undefined
 }
 
 /**

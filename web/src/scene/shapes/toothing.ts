@@ -3,6 +3,8 @@ import type { Flat } from '../flat'
 /** Fewest and most teeth that are still told apart; real counts between them are drawn as they are. */
 const FEWEST = 12
 const MOST = 48
+/** Most teeth of a gear whose mate has few enough: its teeth are as large as that one's. */
+const MATE = 144
 /** How far drawn teeth may be from the true ratio: by the end of a turn they are less than a tenth of a tooth apart. */
 const RATIO_ERROR = 1e-3
 /** Height of a tooth as a part of the pitch, and its most as a part of the smaller gear's radius. */
@@ -13,9 +15,8 @@ const TIP = 0.1
 
 /** How many teeth are drawn on two gears: in their ratio, so that they mesh while they turn. */
 export function drawnTeeth([a, b]: [number, number]): [number, number] {
-  const drawable = (n: number) => Number.isInteger(n) && n >= FEWEST && n <= MOST
-  if (drawable(a) && drawable(b)) return [a, b]
   const [few, many] = a < b ? [a, b] : [b, a]
+  if (Number.isInteger(a) && Number.isInteger(b) && few >= FEWEST && few <= MOST && many <= MATE) return [a, b]
   const error = (n: number) => Math.abs((n * many) / few - Math.round((n * many) / few)) / ((n * many) / few)
   const counts = Array.from({ length: MOST - FEWEST + 1 }, (_, k) => FEWEST + k)
   const fewer = counts.find((n) => error(n) < RATIO_ERROR) ?? counts.reduce((best, n) => (error(n) < error(best) ? n : best))
