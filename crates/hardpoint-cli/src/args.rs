@@ -16,6 +16,7 @@ Examples:
   hardpoint whatif models/macpherson.toml --set tie_rod_outer.z=+2mm --measure toe
   hardpoint optimize models/four_bar_inverse.toml --save found.toml
   hardpoint tolerance models/studies/strut_tolerances.toml -o results/strut
+  hardpoint calibrate models/studies/strut_calibrate.toml models/studies/strut_measured.csv
   hardpoint sweep models/studies/strut_sweep.toml -o results/sweep
 
 Exit codes:
@@ -62,6 +63,8 @@ pub enum Command {
     Optimize(Optimize),
     /// Say what the tolerances of the design variables come to: spread, yield, what contributes, the loosest that keep the limits
     Tolerance(Tolerance),
+    /// Find the design that explains what was measured, how well it is known, and what to measure next
+    Calibrate(Calibrate),
     /// Solve many designs over the ranges of the design variables, exactly: a table of their metrics, what is best, what matters
     Sweep(Sweep),
     /// Print the JSON Schema of model files, for editors
@@ -415,6 +418,65 @@ pub struct Tolerance {
     /// Solve designs on so many threads; what is found does not depend on it [default: one for each core]
     #[arg(long, value_name = "N")]
     pub threads: Option<NonZero<usize>>,
+}
+
+const AFTER_CALIBRATE: &str = "\
+The measured file is a CSV table. Its first line names drivers, what was measured
+(measures, and points as P.x) and, for each, how exactly (`sigma toe`); each line below
+is a posture, in the units of the model file. Empty cells were not measured; a name that
+begins with # leaves its column out. Drivers count as their laws do; those that the table
+does not name stood as drawn. Readings of one kind may go without standard deviations:
+then these come from the residuals (docs/calibration.md).
+
+With --output it writes into the folder:
+  residuals.csv    a row for each reading: measured, as drawn, found, the difference
+  covariance.csv   the covariance of the variables
+  report.html      the mechanism as drawn and as found, residuals as points
+  summary.json     all that is printed
+
+Examples:
+  hardpoint calibrate models/studies/strut_calibrate.toml models/studies/strut_measured.csv -o results/strut
+  hardpoint calibrate models/five_link.toml measured.csv --sigma toe=0.02 --sigma camber=0.02 --loss huber
+  hardpoint calibrate models/stewart.toml poses.csv --variable base_1_x --variable base_1_y --save as_built.toml";
+
+/// `hardpoint calibrate`.
+#[derive(Args, Debug)]
+#[command(after_help = AFTER_CALIBRATE)]
+pub struct Calibrate {
+    #[command(flatten)]
+    pub common: Common,
+    /// What was measured: a CSV table of readings over where the drivers stood
+    #[arg(value_name = "MEASURED.csv")]
+    pub measured: PathBuf,
+    /// Write tables, a report and summary.json into this folder
+    #[arg(short, long, value_name = "DIR")]
+    pub output: Option<PathBuf>,
+    /// Seek this design variable; may be given several times [default: all]
+    #[arg(long, value_name = "NAME")]
+    pub variable: Vec<String>,
+    /// Standard deviation of readings whose cells have none, in their unit; may be given several times
+    #[arg(long, value_name = "NAME=SIGMA")]
+    pub sigma: Vec<String>,
+    /// What a residual far from the others counts
+    #[arg(long, value_enum, default_value_t = LossWord::Squares)]
+    pub loss: LossWord,
+    /// End after so many iterations
+    #[arg(long, value_name = "N", default_value = "100")]
+    pub iterations: NonZero<usize>,
+    /// Write the model with the design found into this file, with its comments and layout
+    #[arg(long, value_name = "FILE")]
+    pub save: Option<PathBuf>,
+}
+
+/// What a residual counts.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum LossWord {
+    /// Its square: best where errors are normal
+    Squares,
+    /// Less than its square beyond 1.345 standard deviations: where some readings are off
+    Huber,
+    /// Next to nothing far out: where some readings are wrong
+    Cauchy,
 }
 
 const AFTER_SWEEP: &str = "\

@@ -1,6 +1,7 @@
 //! The `hardpoint` command: arguments, progress, exit codes and printing. It computes nothing itself.
 
 mod args;
+mod calibrate;
 mod check;
 mod compare;
 mod folder;
@@ -46,6 +47,7 @@ fn main() -> ExitCode {
         Command::Compare(options) => compare::compare(&options),
         Command::Optimize(options) => optimize::run(&options),
         Command::Tolerance(options) => tolerance::run(&options),
+        Command::Calibrate(options) => calibrate::run(&options),
         Command::Sweep(options) => sweep::run(&options),
         Command::Schema => {
             text::print(&hardpoint_file::schema());

@@ -35,6 +35,7 @@ mod diagnostic;
 mod drawing;
 mod edit;
 mod format;
+mod measured;
 mod places;
 mod read;
 mod schema;
@@ -51,6 +52,7 @@ use toml::de::DeTable;
 
 pub use diagnostic::{Diagnostic, Diagnostics, Severity};
 pub use drawing::{Drawing, Form, Mesh, MeshFrame};
+pub use measured::Measured;
 pub use schema::schema;
 pub use units::{AngleUnit, LengthUnit, Units};
 

@@ -1,34 +1,54 @@
-//! Measurements of a model: names of a table found among drivers and outputs, values in SI.
+//! Measurements of a model: the names of a table found among drivers and outputs, values in SI.
 
 use std::path::Path;
 
-use hardpoint::draft::some_of;
 use hardpoint::measure::outputs;
-use hardpoint::model::{Dimension, DriverId};
+use hardpoint::model::{Dimension, DriverId, OutputSource};
 use hardpoint::study::{Measurements, Reading};
 
+use crate::ModelFile;
 use crate::diagnostic::{Diagnostic, Diagnostics, Severity, Source, closest, shown};
 use crate::read::measured::{Readings, readings_at};
-use crate::{ModelFile, Units};
 
-/// What a measured file holds.
+/// What a file of measurements holds.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Measured {
     /// Postures and readings, in SI.
     pub measurements: Measurements,
     /// The line of the file that each posture is on.
     pub lines: Vec<u64>,
-    /// Drivers that the file does not name, which stand as drawn.
+    /// Drivers that the file does not name: they stand as drawn.
     pub as_drawn: Vec<DriverId>,
 }
 
 /// What a column holds.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, PartialEq, Eq)]
 enum Holds {
+    /// Where a driver stood.
     Driver(usize),
+    /// What was read of an output.
     Output(usize),
+    /// Standard deviations of an output's readings.
     Sigma(usize),
-    Nothing,
+}
+
+/// Why measurements cannot be used.
+struct Refusal {
+    code: &'static str,
+    message: String,
+    notes: Vec<String>,
+    help: Option<String>,
+}
+
+impl Refusal {
+    fn new(code: &'static str, message: String, help: impl Into<String>) -> Self {
+        Self { code, message, notes: Vec::new(), help: Some(help.into()) }
+    }
+
+    fn note(mut self, note: impl Into<String>) -> Self {
+        self.notes.push(note.into());
+        self
+    }
 }
 
 impl ModelFile {
@@ -41,60 +61,57 @@ impl ModelFile {
     pub fn measured(&self, path: &Path, sigmas: &[(String, f64)]) -> Result<Measured, Diagnostics> {
         let name = path.display().to_string();
         let source = Source::new(&name, "");
-        let of = |d: Refusal| {
-            let mut found = source.diagnostic(Severity::Error, d.code, d.message, None);
-            found = d.notes.into_iter().fold(found, Diagnostic::note);
-            Diagnostics::new(source.clone(), vec![d.help.into_iter().fold(found, Diagnostic::help)])
+        let told = |r: Refusal| {
+            let d = source.diagnostic(Severity::Error, r.code, r.message, None);
+            let d = r.notes.into_iter().fold(d, Diagnostic::note);
+            Diagnostics::new(source.clone(), vec![r.help.into_iter().fold(d, Diagnostic::help)])
         };
-        let table = readings_at(path).map_err(|e| {
-            of(Refusal { code: e.code, message: e.message, notes: e.notes, help: e.help })
-        })?;
-        self.read_off(&table, &shown(&name), sigmas).map_err(of)
+        let table = readings_at(path)
+            .map_err(|e| told(Refusal { code: e.code, message: e.message, notes: e.notes, help: e.help }))?;
+        self.measurements(&table, &shown(&name), sigmas).map_err(told)
     }
 
-    fn read_off(&self, table: &Readings, file: &str, sigmas: &[(String, f64)]) -> Result<Measured, Refusal> {
-        let outputs = outputs(&self.model);
+    fn measurements(
+        &self,
+        table: &Readings,
+        file: &str,
+        sigmas: &[(String, f64)],
+    ) -> Result<Measured, Refusal> {
         let holds = self.columns(table, file)?;
-        let given = self.given(sigmas)?;
-        let in_si = |m: usize, x: f64| x / self.units.from_si(outputs[m].dimension, 1.0);
-        let mut found = Measured {
-            measurements: Measurements::default(),
-            lines: Vec::new(),
-            as_drawn: (0..self.model.drivers.len())
-                .filter(|d| !holds.iter().any(|h| matches!(h, Holds::Driver(k) if k == d)))
-                .map(DriverId)
-                .collect(),
-        };
+        let given = self.sigmas_given(sigmas)?;
+        let drivers = &self.model.drivers;
+        let has = |wanted: Holds| holds.iter().position(|h| *h == Some(wanted));
+        let as_drawn =
+            (0..drivers.len()).filter(|d| has(Holds::Driver(*d)).is_none()).map(DriverId).collect();
+        let mut found = Measured { measurements: Measurements::default(), lines: Vec::new(), as_drawn };
+        let drawn: Vec<f64> = (0..drivers.len()).map(|d| self.model.as_drawn(DriverId(d))).collect();
+        let outputs = outputs(&self.model);
         for (line, cells) in &table.rows {
+            let here = |column: usize| {
+                format!("`{file}`, line {line}, column {} (`{}`)", column + 1, shown(&table.names[column].0))
+            };
+            let mut stands = drawn.clone();
             let posture = found.lines.len();
-            let mut stands: Vec<f64> =
-                (0..self.model.drivers.len()).map(|d| self.model.as_drawn(DriverId(d))).collect();
-            for (column, holds) in holds.iter().enumerate() {
-                let here = || format!("`{file}`, line {line}, column {} (`{}`)", column + 1, shown(&table.names[column].0));
-                match (*holds, cells[column]) {
-                    (Holds::Driver(d), Some(x)) => {
-                        let quantity = self.model.driven(&self.model.drivers[d]).quantity;
-                        stands[d] = self.units.to_si(quantity, x);
+            for (column, (holds, cell)) in holds.iter().zip(cells).enumerate() {
+                match (holds, cell) {
+                    (Some(Holds::Driver(d)), Some(x)) => {
+                        stands[*d] = self.units.to_si(self.model.driven(&drivers[*d]).quantity, *x);
                     }
-                    (Holds::Driver(_), None) => {
-                        return Err(Refusal::new("HP0112", format!("{} is missing", here()))
-                            .help("say where every driver of the first line stood"));
+                    (Some(Holds::Driver(_)), None) => {
+                        let help = "say where every driver of the first line stood";
+                        return Err(Refusal::new("HP0112", format!("{} is missing", here(column)), help));
                     }
-                    (Holds::Output(m), Some(x)) => {
-                        let own = holds_sigma(&holds_of(&holds_list(holds), m), m).map(|k| k);
-                        let _ = own;
-                        let sigma = self.sigma_of(&holds_list(holds), table, cells, m).or(given[m]);
-                        found.measurements.readings.push(Reading {
-                            posture,
-                            output: m,
-                            value: in_si(m, x),
-                            sigma: sigma.map(|s| in_si(m, s)),
-                        });
+                    (Some(Holds::Sigma(_)), Some(x)) if !(*x > 0.0) => {
+                        let help = "give a number above zero, or leave the cell empty";
+                        return Err(Refusal::new("HP0249", format!("{} cannot be {x}", here(column)), help)
+                            .note("it is the standard deviation of a reading"));
                     }
-                    (Holds::Sigma(_), Some(x)) if !(x > 0.0 && x.is_finite()) => {
-                        return Err(Refusal::new("HP0249", format!("{} cannot be {x}", here()))
-                            .note("it is the standard deviation of a reading")
-                            .help("give a number above zero, or leave the cell empty"));
+                    (Some(Holds::Output(m)), Some(x)) => {
+                        let in_si = |x: f64| x / self.units.from_si(outputs[*m].dimension, 1.0);
+                        let own = has(Holds::Sigma(*m)).and_then(|column| cells[column]);
+                        let (output, value) = (*m, in_si(*x));
+                        let sigma = own.or(given[*m]).map(in_si);
+                        found.measurements.readings.push(Reading { posture, output, value, sigma });
                     }
                     _ => {}
                 }
@@ -102,6 +119,142 @@ impl ModelFile {
             found.measurements.postures.push(stands);
             found.lines.push(*line);
         }
+        self.can_be_compared(&found, file)?;
         Ok(found)
+    }
+
+    /// What every column holds; `None` of those that begin with `#`.
+    fn columns(&self, table: &Readings, file: &str) -> Result<Vec<Option<Holds>>, Refusal> {
+        let mut found: Vec<Option<Holds>> = Vec::new();
+        for (column, (name, unit)) in table.names.iter().enumerate() {
+            let note = format!("it heads column {} of `{file}`", column + 1);
+            if name.starts_with('#') {
+                found.push(None);
+                continue;
+            }
+            let holds = self.held(name).map_err(|help| {
+                let message = format!("`{}` is neither a driver nor anything that is measured", shown(name));
+                Refusal::new("HP0248", message, help).note(note.clone())
+            })?;
+            if let Some((unit, expected)) = unit.as_deref().zip(self.unit_of(holds)).filter(|(a, b)| a != b) {
+                let message =
+                    format!("`{}` is in `{}`, and the model file has {expected}", shown(name), shown(unit));
+                let help = format!("write it in {expected}, or change `units` of the model file");
+                return Err(Refusal::new("HP0248", message, help).note(note));
+            }
+            if found.contains(&Some(holds)) {
+                let message = format!("`{}` heads two columns of `{file}`", shown(name));
+                return Err(Refusal::new("HP0248", message, "remove one of the two"));
+            }
+            found.push(Some(holds));
+        }
+        if !found.iter().any(|h| matches!(h, Some(Holds::Output(_)))) {
+            let message = format!("`{file}` has nothing that was measured");
+            let help =
+                "add a column that is headed by a measure, or by a point's component, like `wheel_centre.z`";
+            return Err(Refusal::new("HP0248", message, help));
+        }
+        for (column, holds) in found.iter().enumerate() {
+            if let Some(Holds::Sigma(m)) = holds
+                && !found.contains(&Some(Holds::Output(*m)))
+            {
+                let message = format!("`{}` is of nothing that was measured", shown(&table.names[column].0));
+                let help = "add the column of its readings, or remove this one";
+                return Err(
+                    Refusal::new("HP0248", message, help).note(format!("it heads column {}", column + 1))
+                );
+            }
+        }
+        Ok(found)
+    }
+
+    /// What a name means; the error is what may have been meant.
+    fn held(&self, name: &str) -> Result<Holds, String> {
+        let outputs = outputs(&self.model);
+        let of = |name: &str| outputs.iter().position(|o| o.name == name);
+        if let Some(m) = name.strip_prefix("sigma ").and_then(|name| of(name.trim())) {
+            return Ok(Holds::Sigma(m));
+        }
+        // A name that both have is the driver's: the reading is what the driver prescribes.
+        if let Some(d) = self.model.drivers.iter().position(|d| d.name == name) {
+            return Ok(Holds::Driver(d));
+        }
+        let all = self.model.drivers.iter().map(|d| d.name.as_str());
+        let known = all.chain(outputs.iter().map(|o| o.name.as_str()));
+        of(name).map(Holds::Output).ok_or_else(|| match closest(name, known) {
+            Some(near) => format!("did you mean `{near}`?"),
+            None => "name a driver, a measure, a point's component like `P.x`, or a standard deviation like `sigma toe`; \
+                     a name that begins with `#` leaves its column out"
+                .into(),
+        })
+    }
+
+    /// The unit of a length or an angle.
+    fn unit_of(&self, holds: Holds) -> Option<&'static str> {
+        let dimension = match holds {
+            Holds::Driver(d) => self.model.driven(&self.model.drivers[d]).quantity.into(),
+            Holds::Output(m) | Holds::Sigma(m) => outputs(&self.model)[m].dimension,
+        };
+        match dimension {
+            Dimension::LENGTH => Some(self.units.length.symbol()),
+            Dimension::ANGLE => Some(self.units.angle.symbol()),
+            _ => None,
+        }
+    }
+
+    /// Per output, the standard deviation that the command line gives, in its unit.
+    fn sigmas_given(&self, sigmas: &[(String, f64)]) -> Result<Vec<Option<f64>>, Refusal> {
+        let outputs = outputs(&self.model);
+        let mut given = vec![None; outputs.len()];
+        for (name, sigma) in sigmas {
+            let Some(m) = outputs.iter().position(|o| o.name == *name) else {
+                let near = closest(name, outputs.iter().map(|o| o.name.as_str()));
+                let help = near.map_or("name a measure, or a point's component like `P.x`".into(), |near| {
+                    format!("did you mean `{near}`?")
+                });
+                let message =
+                    format!("`--sigma` names `{}`, and nothing is measured by that name", shown(name));
+                return Err(Refusal::new("HP0249", message, help));
+            };
+            if !(*sigma > 0.0 && sigma.is_finite()) {
+                let message = format!("the standard deviation of `{name}` cannot be {sigma}");
+                return Err(Refusal::new("HP0249", message, "give a number above zero"));
+            }
+            given[m] = Some(*sigma);
+        }
+        Ok(given)
+    }
+
+    /// HP0248, HP0249: readings of what stands still, all with standard deviations or all alike.
+    fn can_be_compared(&self, found: &Measured, file: &str) -> Result<(), Refusal> {
+        let outputs = outputs(&self.model);
+        let readings = &found.measurements.readings;
+        let by_driver = |source| matches!(source, OutputSource::Measure(k) if self.model.goes_by_driver(k));
+        let moving = readings.iter().map(|r| &outputs[r.output]);
+        if let Some(output) = moving.clone().find(|o| !o.known.by_position && !by_driver(o.source)) {
+            let message = format!(
+                "`{}` cannot be compared: it is nothing of a mechanism that stands still",
+                output.name
+            );
+            return Err(Refusal::new("HP0248", message, "remove its column, or let `#` head it")
+                .note("every line is a posture, in which all drivers stand"));
+        }
+        let Some(without) = readings.iter().find(|r| r.sigma.is_none()) else { return Ok(()) };
+        let (name, line) = (&outputs[without.output].name, found.lines[without.posture]);
+        let like = format!("add a column `sigma {name}`, or `--sigma {name}=0.01`, in its unit");
+        if readings.iter().any(|r| r.sigma.is_some()) {
+            let message =
+                format!("`{file}`, line {line}: `{name}` has no standard deviation, and others have one");
+            return Err(Refusal::new("HP0249", message, like));
+        }
+        if let Some(other) = moving.clone().find(|o| o.dimension != outputs[without.output].dimension) {
+            let message = format!(
+                "`{name}` and `{}` cannot be weighed against each other without standard deviations",
+                other.name
+            );
+            return Err(Refusal::new("HP0249", message, like)
+                .note("they have different units; what is all of one unit may go without"));
+        }
+        Ok(())
     }
 }

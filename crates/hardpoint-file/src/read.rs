@@ -6,6 +6,7 @@ mod data;
 mod design;
 mod drivers;
 mod law;
+pub(crate) mod measured;
 mod mesh;
 mod optimize;
 mod parameters;

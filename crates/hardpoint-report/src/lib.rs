@@ -23,6 +23,7 @@
 //! | [`figures`] | numbers and units as text |
 
 pub mod assembly;
+pub mod calibrate;
 pub mod columns;
 pub mod compare;
 pub mod course;

@@ -719,7 +719,7 @@ fn variables(model: &Model, units: Units, asked: &Optimization, best: &Search) -
     asked.variables.iter().enumerate().map(fact).collect()
 }
 
-fn moved(model: &Model, units: Units, design: &[f64]) -> Vec<MovedHardpoint> {
+pub(crate) fn moved(model: &Model, units: Units, design: &[f64]) -> Vec<MovedHardpoint> {
     let [before, after] = [&[][..], design].map(|d| model.hardpoint_places(d));
     let named = model.hardpoints.iter().zip(before.iter().zip(&after)).filter(|(h, _)| !h.unnamed);
     let shown = |p: hardpoint::space::Vec3| p.to_array().map(|x| units.from_si(Quantity::Length, x));

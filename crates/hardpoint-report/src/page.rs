@@ -445,6 +445,8 @@ pub struct Quantity {
 #[derive(Clone, Debug, Serialize)]
 #[cfg_attr(test, derive(TS))]
 pub struct SweepPlot {
+    /// What a point is: `design`, or `posture`.
+    pub what: String,
     /// So many were solved.
     pub designs: usize,
     /// Point k is design `k * step`.

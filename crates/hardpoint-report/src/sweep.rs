@@ -496,6 +496,7 @@ fn plot(facts: &SweepFacts, drawn: Drawn) -> SweepPlot {
     let influences = influences.flat_map(|(m, fact)| fact.influences.iter().enumerate().map(move |i| (m, i)));
     let axes = facts.variables.iter().zip(drawn.variables).map(variable);
     SweepPlot {
+        what: "design".into(),
         designs: facts.designs,
         step: drawn.numbers.get(1).copied().unwrap_or(1),
         axes: axes.chain(facts.metrics.iter().zip(drawn.metrics).map(metric)).collect(),

@@ -32,7 +32,7 @@ export function page(root: HTMLElement, state: State): void {
     ? [{ name: 'table', title: 'Table', content: el('div', { class: 'influence' }, rankingTable(state), heatMap(state)) }]
     : []
   const maps: Tab[] = report.maps.length > 0 ? [{ name: 'maps', title: 'Maps', content: el('div', {}, ...report.maps.map((map) => driverMap(map, report.quantities[state.choice.quantity]?.name ?? ''))) }] : []
-  const sweep: Tab[] = report.sweep ? [{ name: 'designs', title: 'Designs', content: sweepPlot(report.sweep) }] : []
+  const sweep: Tab[] = report.sweep ? [{ name: 'designs', title: report.sweep.what === 'design' ? 'Designs' : 'Residuals', content: sweepPlot(report.sweep) }] : []
   const sections: [name: string, element: HTMLElement | undefined][] = [
     ['variables', hasVariables ? variables(state) : undefined],
     ['curves', curves?.element],

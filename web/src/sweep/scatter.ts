@@ -44,14 +44,14 @@ class Scatter {
         class: 'picture',
         tabindex: 0,
         role: 'application',
-        'aria-label': 'designs: left and right arrow read one after the other, in the order of the x axis',
+        'aria-label': `${sweep.what}s: left and right arrow read one after the other, in the order of the x axis`,
         onpointermove: (event: PointerEvent) => this.#point(event),
         onkeydown: (event: KeyboardEvent) => this.#key(event),
       },
       this.#picture,
     )
     const drawn = sweep.axes[0]?.values.length ?? 0
-    const note = drawn < sweep.designs ? `${number(drawn)} of ${number(sweep.designs, 10)} designs are drawn: every ${sweep.step}th.` : `${number(drawn)} designs.`
+    const note = drawn < sweep.designs ? `${number(drawn)} of ${number(sweep.designs, 10)} ${sweep.what}s are drawn: every ${sweep.step}th.` : `${number(drawn)} ${sweep.what}s.`
     const axes = el('p', { class: 'choice' }, el('label', {}, 'Up ', this.#y), el('label', {}, 'to the right ', this.#x))
     this.element = el('section', { class: 'sweep', 'data-testid': 'sweep' }, axes, this.#frame, this.#reading, el('p', { class: 'note' }, note), this.#bars)
     render()
@@ -107,13 +107,13 @@ class Scatter {
     const { x: over, y: of } = this.#shown()
     if (this.#chosen === undefined || !this.#axes) {
       const [known, all] = [this.#points.length, over.values.length]
-      this.#reading.textContent = known < all ? `${number(all - known)} of the designs drawn have no ${of.name}.` : ''
+      this.#reading.textContent = known < all ? `${number(all - known)} of the ${this.sweep.what}s drawn have no ${of.name}.` : ''
       return
     }
     const k = this.#chosen
     this.#picture.append(svg('circle', { class: 'pointed', cx: this.#axes.x.at(over.values[k]), cy: this.#axes.y.at(of.values[k]), r: 6 }))
     const all = this.sweep.axes.map(({ name, unit, values }) => `${name} ${Number.isFinite(values[k]) ? figure(Number(values[k].toPrecision(5)), unit) : 'no value'}`)
-    this.#reading.textContent = `design ${k * this.sweep.step}: ${all.join(', ')}`
+    this.#reading.textContent = `${this.sweep.what} ${k * this.sweep.step}: ${all.join(', ')}`
   }
 
   #point(event: PointerEvent): void {

@@ -1,6 +1,7 @@
 //! The command as its users meet it: output, files and exit codes.
 
 mod bench;
+mod calibrate;
 mod golden;
 mod optimize;
 mod results;

@@ -20,7 +20,7 @@ const MOST_SAMPLES: u32 = 1_000_000_000;
 const MOST_LEVELS: u32 = 1_000_000;
 pub(crate) const SWEEP: Table = table! {
     /// Which designs are swept over, and what is kept of them.
-    "Sweep":
+    "SweepStudy":
     /// How far design variables go, by their names, in their units: of a parameter its values, of all others changes of the design as drawn,
     /// like `bounds`. All others stay as drawn. Default: all variables with `bounds`, within these.
     may "variables": Shape::Entries(&ENTRY), "{ lca_front_z = [-5, 5], radius = { from = 90, to = 110, levels = 5 } }";
@@ -228,7 +228,7 @@ fn list_in(bytes: Vec<u8>, name: &str) -> Result<List, DataError> {
 }
 
 /// A name without the unit behind it, as results are headed: `B_x [mm]`.
-fn bare(title: &str) -> &str {
+pub(super) fn bare(title: &str) -> &str {
     match title.split_once(" [") {
         Some((name, unit)) if unit.ends_with(']') => name,
         _ => title,

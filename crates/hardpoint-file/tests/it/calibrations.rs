@@ -374,3 +374,72 @@ fn a_hidden_five_link_is_recovered_within_its_covariance() {
     let found = recovered(&model, &variables, &postures, &outputs, 0.002_f64.to_radians(), 1e-3);
     assert_covered("five-link", 4, found);
 }
+
+const BROKEN: &[(&str, &str, &str, &[&str])] = &[
+    ("empty", "", "HP0112", &["is empty", "write names"]),
+    ("no names", "1,2\n3,4\n", "HP0112", &["line 1: there are numbers in place of names"]),
+    ("no rows", "spring_strut,toe\n", "HP0112", &["has no readings"]),
+    ("words", "spring_strut,toe\n0,much\n", "HP0112", &["line 2, column 2 (`toe`)", "much"]),
+    ("comma", "spring_strut;toe\n0;0,5\n", "HP0112", &["line 2, column 2 (`toe`)", "decimal point"]),
+    ("too many cells", "spring_strut,toe\n0,1,2\n", "HP0112", &["line 2 has 3 cells for 2 columns"]),
+    (
+        "misspelt",
+        "spring_strut,tow\n0,1\n",
+        "HP0248",
+        &["`tow` is neither", "column 2", "did you mean `toe`?"],
+    ),
+    ("unknown", "spring_strut,temperature\n0,1\n", "HP0248", &["`temperature`", "`#` leaves its column out"]),
+    ("twice", "spring_strut,toe,toe\n0,1,1\n", "HP0248", &["`toe` heads two columns"]),
+    ("unit", "spring_strut,toe [rad]\n0,1\n", "HP0248", &["`toe` is in `rad`, and the model file has deg"]),
+    ("nothing measured", "spring_strut\n0\n", "HP0248", &["nothing that was measured", "wheel_centre.z"]),
+    (
+        "sigma of nothing",
+        "spring_strut,toe,sigma camber\n0,1,1\n",
+        "HP0248",
+        &["`sigma camber` is of nothing"],
+    ),
+    ("no place", "spring_strut,toe\n,1\n", "HP0112", &["line 2, column 1 (`spring_strut`) is missing"]),
+    ("sigma of zero", "spring_strut,toe,sigma toe\n0,1,0\n", "HP0249", &["line 2, column 3", "cannot be 0"]),
+    (
+        "one sigma",
+        "spring_strut,toe,sigma toe\n0,1,0.1\n5,1,\n",
+        "HP0249",
+        &["line 3: `toe` has no standard"],
+    ),
+    (
+        "units without",
+        "spring_strut,toe,half_track\n0,1,2\n",
+        "HP0249",
+        &["`toe` and `half_track` cannot be weighed"],
+    ),
+];
+
+#[test]
+fn tables_that_cannot_be_used_are_told_with_line_and_column() {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../models/five_link.toml");
+    let file = hardpoint_file::read(&path).unwrap_or_else(|e| panic!("{e}"));
+    let folder = tempfile::tempdir().unwrap();
+    for (name, text, code, words) in BROKEN {
+        let path = folder.path().join("measured.csv");
+        std::fs::write(&path, text).unwrap();
+        let told = file.measured(&path, &[]).expect_err(name);
+        let shown = told.render(false);
+        assert_eq!(told.list()[0].code, *code, "{name}: {shown}");
+        assert!(words.iter().all(|w| shown.contains(w)), "{name}: {shown}");
+    }
+    let path = folder.path().join("good.csv");
+    std::fs::write(&path, "# bench 3\nspring_strut [mm];toe [deg];#note;sigma toe\n10;0.5;7;\n-10;;8;\n")
+        .unwrap();
+    let sigma = |name: &str, x: f64| file.measured(&path, &[(name.into(), x)]);
+    let good = sigma("toe", 0.01).unwrap_or_else(|e| panic!("{e}"));
+    assert_eq!((good.lines.clone(), good.measurements.readings.len()), (vec![3, 4], 1));
+    assert!((good.measurements.postures[1][0] + 0.01).abs() < 1e-15);
+    let reading = good.measurements.readings[0];
+    assert!((reading.sigma.unwrap() - 0.01_f64.to_radians()).abs() < 1e-15 && reading.posture == 0);
+    for (name, x, words) in [("tow", 0.1, "did you mean `toe`?"), ("toe", -1.0, "cannot be -1")] {
+        assert!(sigma(name, x).unwrap_err().render(false).contains(words), "{name}");
+    }
+    assert!(
+        file.measured(Path::new("nowhere.csv"), &[]).unwrap_err().render(false).contains("cannot be read")
+    );
+}

@@ -23,8 +23,8 @@ mod whatif;
 
 pub use alone::DriverRates;
 pub use calibrate::{
-    Calibrating, Calibration, CannotCalibrate, Certainty, FitStatus, Fitted, Loss, Measurements, Next,
-    NotReached, Reading, Untold, calibrate, values_in_postures,
+    Calibrating, Calibration, CannotCalibrate, Certainty, FitStatus, Fitted, Improvement, Loss, Measurements,
+    Next, NotReached, Reading, Untold, calibrate, values_in_postures,
 };
 pub use comparison::{Comparison, StepError};
 pub use difference::{Difference, Scheme, finite_differences};

@@ -25,7 +25,7 @@ pub struct Certainty {
     /// The standard deviation of the residuals: in the standard deviations that were given, where 1 is expected; in SI where none were
     /// given. `None` where there are no more readings than directions.
     pub scatter: Option<f64>,
-    /// Sum of squared residuals, in standard deviations.
+    /// Sum of squared residuals, in standard deviations, each by what it counts.
     pub chi_square: f64,
 }
 
@@ -94,7 +94,8 @@ impl Bench<'_> {
         };
         let told = known.told.len();
         let freedom = search.at.r.len().saturating_sub(told);
-        let chi_square = search.at.r.iter().map(|r| (r / search.scale).powi(2)).sum::<f64>();
+        let rows = search.at.r.iter().zip(&search.weights);
+        let chi_square = rows.map(|(r, w)| w * (r / search.scale).powi(2)).sum::<f64>();
         let own = if self.has_sigmas { 1.0 } else { search.scale };
         let scatter = (freedom > 0).then(|| own * (chi_square / freedom as f64).sqrt());
         Certainty {

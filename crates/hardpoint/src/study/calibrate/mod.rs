@@ -22,7 +22,7 @@ use crate::topology::{Formulation, TopologyFault};
 use super::evaluation::Cost;
 
 pub use certainty::{Certainty, Untold};
-pub use next::Next;
+pub use next::{Improvement, Next};
 
 /// One value that was read in a posture. In SI.
 #[derive(Clone, Copy, Debug, PartialEq)]

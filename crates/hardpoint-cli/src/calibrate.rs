@@ -1,0 +1,213 @@
+//! `hardpoint calibrate`.
+
+use std::io::Write;
+
+use hardpoint::model::{Model, VariableId};
+use hardpoint::study::{Calibrating, Calibration, CannotCalibrate, FitStatus, Loss, calibrate};
+use hardpoint::{Analysis, Run};
+use hardpoint_file::ModelFile;
+use hardpoint_report::calibrate::{CalibrateFacts, Calibrated};
+use hardpoint_report::course::Course;
+use hardpoint_report::diagnose;
+use hardpoint_report::figures::{number, some_of};
+use hardpoint_report::payload::{Changed, Request, report};
+use hardpoint_report::summary::Summary;
+
+use crate::args::{Calibrate, LossWord};
+use crate::folder::{Folder, NotWritten};
+use crate::outcome::Outcome;
+use crate::session::{Session, json_text};
+use crate::text;
+
+/// Fits, writes, and prints what was found.
+pub fn run(options: &Calibrate) -> Outcome {
+    let session = Session::begin(options.common.json);
+    calibrate_in(&session, options).unwrap_or_else(|outcome| outcome)
+}
+
+/// The tables that are written, and the summary, which vouches for them.
+const FILES: [&str; 4] = ["residuals.csv", "covariance.csv", "report.html", "summary.json"];
+
+fn calibrate_in(session: &Session, options: &Calibrate) -> Result<Outcome, Outcome> {
+    let file = session.read(&options.common.model)?;
+    let variables = variables(session, &file, &options.variable)?;
+    let sigmas = sigmas(session, &options.sigma)?;
+    let measured = file.measured(&options.measured, &sigmas).map_err(|found| {
+        session.not_read(&found);
+        Outcome::BadModel
+    })?;
+    session.may_save(&options.common.model, options.save.as_deref())?;
+    let path = options.output.as_ref();
+    let folder = path.map(|path| Folder::open(path)).transpose().map_err(|e| session.not_written(&e))?;
+
+    session.patient(true);
+    let loss = match options.loss {
+        LossWord::Squares => Loss::Squares,
+        LossWord::Huber => Loss::Huber,
+        LossWord::Cauchy => Loss::Cauchy,
+    };
+    let asked = Calibrating {
+        measured: &measured.measurements,
+        variables: &variables,
+        loss,
+        formulation: options.common.formulation(),
+        iterations: options.iterations.get(),
+    };
+    let found = search(session, &file, &asked)?;
+    let data = options.measured.display().to_string();
+    let calibrated = Calibrated { file: &file, measured: &measured, data: &data, loss, found: &found };
+    let mut facts = CalibrateFacts::of(&calibrated);
+    facts.seconds = session.seconds();
+    let mut saved = None;
+    if let Some(to) = &options.save {
+        session.save(&file, &found.design, to)?;
+        facts.files.push(to.display().to_string());
+        saved = Some(to);
+    }
+    let mut written = None;
+    if let Some(mut folder) = folder {
+        let results = Results { calibrated, options };
+        results.write(&mut folder, &mut facts).map_err(|e| session.not_written(&e))?;
+        written = Some(folder.path_of("summary.json"));
+        folder.commit(&FILES).map_err(|e| session.not_written(&e))?;
+    }
+    if session.is_json() {
+        session.print_json(&facts);
+    } else {
+        let mut out = format!("\n{}", text::pairs(&facts.rows()));
+        for table in facts.tables() {
+            out += &format!("\n{}", text::table(&table));
+        }
+        text::print(&out);
+        text::print(&written.map_or(String::new(), |path| format!("\nwritten: {}\n", path.display())));
+        text::print(&saved.map_or(String::new(), |path| format!("saved: {}\n", path.display())));
+    }
+    Ok(match found.status {
+        FitStatus::Interrupted => Outcome::Interrupted,
+        FitStatus::IterationLimit => Outcome::FellShort,
+        FitStatus::Found => Outcome::Done,
+    })
+}
+
+/// The variables of these names, or all.
+fn variables(session: &Session, file: &ModelFile, names: &[String]) -> Result<Vec<VariableId>, Outcome> {
+    let model = &file.model;
+    if model.variables.is_empty() {
+        let why = format!("`{}` has no design variables that could be off; add `[design]`", file.file_name());
+        return Err(session.misunderstood(&why));
+    }
+    if names.is_empty() {
+        return Ok((0..model.variables.len()).map(VariableId).collect());
+    }
+    let mut found = Vec::new();
+    for name in names {
+        let Some(variable) = model.variable(name) else {
+            let all: Vec<&str> = model.variables.iter().map(|v| v.name.as_str()).collect();
+            let near = hardpoint::draft::did_you_mean(name, all.iter().copied());
+            let help = near.map_or(format!("there are {}", some_of(&all, ", ")), |near| {
+                format!("did you mean `{near}`?")
+            });
+            return Err(session
+                .misunderstood(&format!("`--variable {name}`: there is no such design variable; {help}")));
+        };
+        if !found.contains(&variable) {
+            found.push(variable);
+        }
+    }
+    Ok(found)
+}
+
+/// Names with their standard deviations.
+fn sigmas(session: &Session, given: &[String]) -> Result<Vec<(String, f64)>, Outcome> {
+    let of = |text: &String| {
+        let (name, sigma) = text.split_once('=')?;
+        Some((name.trim().to_owned(), sigma.trim().parse::<f64>().ok()?))
+    };
+    given
+        .iter()
+        .map(|text| {
+            of(text).ok_or_else(|| {
+                session.misunderstood(&format!(
+                    "`--sigma {text}`: write a name and a number, like `--sigma toe=0.02`"
+                ))
+            })
+        })
+        .collect()
+}
+
+/// Fits, telling of every iteration.
+fn search(session: &Session, file: &ModelFile, asked: &Calibrating<'_>) -> Result<Calibration, Outcome> {
+    if !session.is_json() {
+        text::print(&format!("{}\n", text::bold(&file.model.name)));
+    }
+    let mut progress = |k: usize, objective: f64| {
+        if !session.is_json() {
+            text::print(&format!("{k:>4}  objective {}\n", number(objective)));
+        }
+    };
+    let more = || session.go_on().is_continue();
+    calibrate(&file.model, asked, &mut progress, &more).map_err(|why| match why {
+        CannotCalibrate::Topology(fault) => session.cannot_be_driven(file, &fault),
+        CannotCalibrate::NothingReached(why) => {
+            session.misunderstood(&format!("no posture of the table can be compared; on the way to the first: {why}"))
+        }
+        CannotCalibrate::NothingVaries => {
+            session.misunderstood("the mechanism can follow none of the variables that are sought")
+        }
+        CannotCalibrate::TooFewReadings { readings, variables } => session.misunderstood(&format!(
+            "{readings} readings without standard deviations cannot tell {variables} variables and how exact they are; give `--sigma`, seek fewer \
+             with `--variable`, or measure more"
+        )),
+    })
+}
+
+/// What is written.
+struct Results<'a> {
+    calibrated: Calibrated<'a>,
+    options: &'a Calibrate,
+}
+
+impl Results<'_> {
+    /// Tables, the page, and the summary last.
+    fn write(&self, folder: &mut Folder, facts: &mut CalibrateFacts) -> Result<(), NotWritten> {
+        let of = &self.calibrated;
+        folder.write("residuals.csv", |out| Ok(of.write_residuals(out)?))?;
+        folder.write("covariance.csv", |out| Ok(of.write_covariance(out)?))?;
+        let mut names = vec!["residuals.csv", "covariance.csv"];
+        if let Some(html) = self.page(facts) {
+            folder.write("report.html", |out| out.write_all(html.as_bytes()))?;
+            names.push("report.html");
+        }
+        names.push("summary.json");
+        facts.files.extend(names.iter().map(|name| folder.path_of(name).display().to_string()));
+        let json = json_text(facts);
+        folder.write("summary.json", |out| out.write_all(json.as_bytes()))
+    }
+
+    /// The design found beside the one as drawn, in the model's first motion; `None` where that does not move at all.
+    fn page(&self, facts: &CalibrateFacts) -> Option<String> {
+        let mut file = self.calibrated.file.clone();
+        file.model = Model::clone(file.model.motions().first()?);
+        let analysis = Analysis::with(&file.model, self.options.common.formulation()).ok()?;
+        let today = analysis.run();
+        if today.motion.is_empty() {
+            return None;
+        }
+        let design = &self.calibrated.found.design;
+        let exact = analysis.solve(Run::new().at(design).without_sensitivities());
+        let course = Course::of(&file.model, &today);
+        let mut summary = Summary::new(&file, analysis.topology(), &course);
+        summary.diagnostics = diagnose::all(&file, &summary, &course, None);
+        let changed = Changed {
+            name: "found".into(),
+            note: "The design that explains what was measured.".into(),
+            change: design,
+            today: &today,
+            exact: &exact,
+            foreseen: None,
+        };
+        let request = Request { changed: Some(changed), ..Request::of(&file, &analysis, &course, &summary) };
+        let finish = |page| facts.page(&self.calibrated, page, &today.measured.outputs);
+        Some(report(&request, &finish).expect("a payload is plain data"))
+    }
+}

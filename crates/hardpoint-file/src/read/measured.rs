@@ -1,0 +1,80 @@
+//! What was measured of a mechanism: a CSV file of readings over where the drivers stood.
+
+use std::path::Path;
+
+use super::data::{DataError, delimiter, number, text_from, unquoted};
+use super::sweep::bare;
+use crate::diagnostic::shown;
+
+/// More rows than these are surely a slip: each is a posture that is solved by itself.
+const MOST_ROWS: usize = 100_000;
+
+/// The first line's names without units, each with its unit where one is written, and the numbers below; empty cells are none.
+pub(crate) struct Readings {
+    pub names: Vec<(String, Option<String>)>,
+    /// With the line of each.
+    pub rows: Vec<(u64, Vec<Option<f64>>)>,
+}
+
+/// Reads the table of a file wherever it lies.
+pub(crate) fn readings_at(path: &Path) -> Result<Readings, DataError> {
+    let name = path.display().to_string();
+    let bytes = std::fs::read(path).map_err(|e| {
+        let message = format!("the file `{}` cannot be read", shown(&name));
+        DataError::unreadable(message, "name a CSV file whose first line names drivers and what was measured")
+            .note(e.to_string())
+    })?;
+    let text = text_from(bytes, &name)?;
+    let text = text.strip_prefix('\u{feff}').unwrap_or(&text);
+    let name = shown(&name);
+    let mut reader = csv::ReaderBuilder::new()
+        .has_headers(false)
+        .flexible(true)
+        .comment(Some(b'#'))
+        .trim(csv::Trim::All)
+        .delimiter(delimiter(text))
+        .from_reader(text.as_bytes());
+    let no_csv = |e: csv::Error| {
+        DataError::content(format!("`{name}` is not a CSV file"), "check its quotes").note(e.to_string())
+    };
+    let mut record = csv::StringRecord::new();
+    let write = "write names on the first line, like `crank, slider.x, sigma slider.x`, and numbers on each line below";
+    if !reader.read_record(&mut record).map_err(no_csv)? {
+        return Err(DataError::content(format!("`{name}` is empty"), write));
+    }
+    let names: Vec<(String, Option<String>)> = record.iter().map(|field| named(unquoted(field))).collect();
+    if names.iter().all(|(n, _)| n.parse::<f64>().is_ok()) {
+        let message = format!("`{name}`, line 1: there are numbers in place of names");
+        return Err(DataError::content(message, write));
+    }
+    let mut rows = Vec::new();
+    while reader.read_record(&mut record).map_err(no_csv)? {
+        let line = record.position().map_or(0, csv::Position::line);
+        if record.len() > names.len() {
+            let message =
+                format!("`{name}`, line {line} has {} cells for {} columns", record.len(), names.len());
+            return Err(DataError::content(message, "give one cell for each name of the first line"));
+        }
+        let cell = |(k, (title, _)): (usize, &(String, Option<String>))| {
+            let text = record.get(k).map(unquoted).filter(|text| !text.is_empty());
+            let here = format!("`{name}`, line {line}, column {} (`{}`)", k + 1, shown(title));
+            text.map(|text| number(Some(text), &here, "")).transpose()
+        };
+        rows.push((line, names.iter().enumerate().map(cell).collect::<Result<_, _>>()?));
+        if rows.len() > MOST_ROWS {
+            let message = format!("`{name}` has more than {MOST_ROWS} rows");
+            return Err(DataError::content(message, "keep those that were measured in different postures"));
+        }
+    }
+    if rows.is_empty() {
+        return Err(DataError::content(format!("`{name}` has no readings"), write));
+    }
+    Ok(Readings { names, rows })
+}
+
+/// A name and the unit behind it, as results are headed: `toe [deg]`.
+fn named(title: &str) -> (String, Option<String>) {
+    let name = bare(title);
+    let unit = title[name.len()..].trim().strip_prefix('[').and_then(|u| u.strip_suffix(']'));
+    (name.to_owned(), unit.map(str::to_owned))
+}
