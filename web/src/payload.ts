@@ -667,6 +667,10 @@ values: Curve, };
  */
 export type SweepPlot = {
 /**
+ * What a point is: `design`, or `posture`.
+ */
+what: string,
+/**
  * So many were solved.
  */
 designs: number,
