@@ -309,7 +309,12 @@ mod tests {
 
     fn blocks(journal: &Journal) -> Vec<SweptBlock> {
         let mut found = Vec::new();
-        journal.each(|b| Ok(found.push(b))).unwrap();
+        journal
+            .each(|b| {
+                found.push(b);
+                Ok(())
+            })
+            .unwrap();
         found
     }
 

@@ -266,7 +266,10 @@ impl Results<'_> {
         let mut files = Vec::new();
         let folder = match folder {
             None => {
-                let see = |block| Ok(self.swept.tally(&mut tally, &block));
+                let see = |block| {
+                    self.swept.tally(&mut tally, &block);
+                    Ok(())
+                };
                 self.journal.each(see).map_err(not_read)?;
                 None
             }

@@ -226,7 +226,9 @@ fn a_reading_that_is_proposed_does_what_it_says() {
     let improves = next.improves.expect("all three are told");
     let mut more = measured.clone();
     more.postures.push(next.drivers.clone());
-    let value = values_in_postures(&model, &hidden, &[next.drivers.clone()], Formulation::Relative).unwrap();
+    let value =
+        values_in_postures(&model, &hidden, std::slice::from_ref(&next.drivers), Formulation::Relative)
+            .unwrap();
     let value = value[0].as_ref().unwrap()[next.output];
     more.readings.push(Reading { posture: 6, output: next.output, value, sigma: Some(next.sigma) });
     let with = fitted(&model, &more);
