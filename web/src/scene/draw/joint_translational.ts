@@ -98,9 +98,8 @@ function onRail(mechanism: Mechanism, kit: Kit, slide: Slide): Piece[] {
 }
 
 /** A member between the far ends of the two bodies. */
-function slidingStrut(mechanism: Mechanism, kit: Kit, joint: JointMark, { rail, block, place, blockPlace, axis }: Slide, form: Form): Piece {
-  const along = mechanism.into(block, mechanism.alongAt(rail, axis, 0))
-  const [one, other] = farthest(mechanism, endsOf(mechanism, joint, rail, place, axis), endsOf(mechanism, joint, block, blockPlace, along))
+function slidingStrut(mechanism: Mechanism, kit: Kit, joint: JointMark, slide: Slide, form: Form): Piece {
+  const [one, other] = farthest(mechanism, endsOf(mechanism, joint, slide.rail, slide), endsOf(mechanism, joint, slide.block, slide))
   const high = ({ body, at }: End) => mechanism.worldAt(body, at, 0).dot(mechanism.up)
   const [upper, lower] = high(one) > high(other) ? [one, other] : [other, one]
   const length = mechanism.worldAt(upper.body, upper.at, 0).distanceTo(mechanism.worldAt(lower.body, lower.at, 0))
@@ -119,11 +118,17 @@ interface End {
 /** So near to the axis a hardpoint is on it, as a part of the mechanism's size. */
 const ON_AXIS = 1e-3
 
-function endsOf(mechanism: Mechanism, joint: JointMark, body: number, place: Vector3, axis: Vector3): End[] {
+/** Of a changed design, those that were on the axis as loaded: they take it with them. */
+function endsOf(mechanism: Mechanism, joint: JointMark, body: number, own: Slide): End[] {
+  const today = mechanism.base ?? mechanism
+  const slide = today.slideOf(mechanism.report.joints.indexOf(joint)) ?? own
+  const onBlock = body === slide.block
+  const [place, axis] = onBlock ? [slide.blockPlace, today.into(body, today.alongAt(slide.rail, slide.axis, 0))] : [slide.place, slide.axis]
+  const isOnAxis = (point: [number, number, number]) => new Vector3(...point).sub(place).cross(axis).length() < ON_AXIS * today.size
+  const onAxis = today.report.bodies[body].skeleton.flatMap((point, k) => (isOnAxis(point) ? [new Vector3(...mechanism.report.bodies[body].skeleton[k])] : []))
   const others = mechanism.jointsOf(body).filter((other) => other.joint !== joint)
-  const points = mechanism.report.bodies[body].skeleton.map((point) => new Vector3(...point))
-  const onAxis = points.filter((point) => point.clone().sub(place).cross(axis).length() < ON_AXIS * mechanism.size)
-  return (onAxis.length > 0 ? onAxis : [place]).map((at) => ({ body, at, held: others.some((other) => mechanism.same(other.at, at)) }))
+  const ends = onAxis.length > 0 ? onAxis : [onBlock ? own.blockPlace : own.place]
+  return ends.map((at) => ({ body, at, held: others.some((other) => mechanism.same(other.at, at)) }))
 }
 
 /** The two ends that other joints hold; where that leaves a choice, those farthest apart. */
