@@ -2,8 +2,8 @@
 this strut. Four relative coordinates are left after the ball joint and the tie rod are cut; residual, Jacobian, velocities and outputs are
 generated straight-line C, Newton's loop and the metrics are C around it, one thread, `gcc -O3 -march=native`.
 
-    hardpoint sweep models/studies/strut_sweep.toml --samples 100000 --threads 1 -o /tmp/sweep
-    python sweep_casadi.py /tmp/sweep/designs.csv
+    hardpoint sweep models/studies/strut_sweep.toml --samples 100000 --threads 1 -o DIR
+    python sweep_casadi.py DIR/designs.csv
 
 It reads the designs from that table, solves both cases of each (81 and 61 output times), and holds its metrics against those of the table. What it
 computes at every output time: position and velocity of the mechanism, toe, camber, height of the wheel centre, half track, and
