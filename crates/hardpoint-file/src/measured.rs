@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use hardpoint::measure::outputs;
-use hardpoint::model::{Dimension, DriverId, OutputSource};
+use hardpoint::model::{Dimension, DriverId};
 use hardpoint::study::{Measurements, Reading};
 
 use crate::ModelFile;
@@ -229,9 +229,8 @@ impl ModelFile {
     fn can_be_compared(&self, found: &Measured, file: &str) -> Result<(), Refusal> {
         let outputs = outputs(&self.model);
         let readings = &found.measurements.readings;
-        let by_driver = |source| matches!(source, OutputSource::Measure(k) if self.model.goes_by_driver(k));
         let moving = readings.iter().map(|r| &outputs[r.output]);
-        if let Some(output) = moving.clone().find(|o| !o.known.by_position && !by_driver(o.source)) {
+        if let Some(output) = moving.clone().find(|o| !self.model.is_known_at_rest(o.source)) {
             let message = format!(
                 "`{}` cannot be compared: it is nothing of a mechanism that stands still",
                 output.name

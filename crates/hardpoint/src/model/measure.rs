@@ -497,6 +497,13 @@ impl Model {
         }
     }
 
+    /// Whether an output has a number where nothing moves: what follows from positions alone, or from what happens while one driver alone
+    /// moves. Velocities, accelerations and what follows from them are those of a motion.
+    pub fn is_known_at_rest(&self, output: OutputSource) -> bool {
+        let by_driver = matches!(output, OutputSource::Measure(k) if self.goes_by_driver(k));
+        by_driver || self.known(output).by_position
+    }
+
     /// The directions fixed in bodies that a measure goes by.
     pub(crate) fn directions(&self, measure: &Measure) -> [Option<(BodyId, Direction)>; 2] {
         let of_wheel = |wheel: WheelId| {

@@ -4,7 +4,7 @@ use std::ops::ControlFlow;
 
 use crate::law::Law;
 use crate::measure::Output;
-use crate::model::{Case, CaseId, DriverId, Formula, Grid, Model, OutputSource, Target, VariableId};
+use crate::model::{Case, CaseId, DriverId, Formula, Grid, Model, Target, VariableId};
 use crate::motion::{Stop, StopKind};
 use crate::run::{Analysis, Run, Solution};
 use crate::topology::{Formulation, TopologyFault};
@@ -71,10 +71,9 @@ impl GridMap {
     ) -> Result<Self, TopologyFault> {
         let [first, second] = &from_drawing(model, grid);
         let outputs = crate::measure::outputs(model);
-        let by_driver = |source| matches!(source, OutputSource::Measure(k) if model.goes_by_driver(k));
         let mut map = Self {
             grid: grid.clone(),
-            still: outputs.iter().map(|o| o.known.by_position || by_driver(o.source)).collect(),
+            still: outputs.iter().map(|o| model.is_known_at_rest(o.source)).collect(),
             outputs,
             positions: vec![Position::NotTried; first.len() * second.len()],
             variables: model.variables.len(),

@@ -17,6 +17,7 @@ mod samples;
 mod second;
 mod sweep;
 mod tolerance;
+mod trust_region;
 mod validity;
 mod verify;
 mod whatif;

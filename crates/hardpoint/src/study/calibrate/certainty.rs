@@ -1,11 +1,7 @@
 //! How well readings tell the variables: covariance, and what cannot be told apart.
 
-use crate::linalg::svd::singular;
+use super::fit::{Bench, Search, weighed};
 
-use super::fit::{Bench, Search, weighted};
-
-/// A singular value below this part of the largest is round-off.
-const ROUND_OFF: f64 = 1e-9;
 /// A direction whose standard deviation is more natural steps than this, about the mechanism's size, is not told.
 const VAGUE: f64 = 1.0;
 /// A variable with no more than this part in what is not told is not touched by it.
@@ -57,14 +53,12 @@ impl Known {
 impl Bench<'_> {
     /// What is known of each direction where a search ended.
     pub(super) fn known(&self, search: &Search) -> Known {
-        let n = self.variables.len();
-        let found = singular(&weighted(&search.at.d, &search.weights), n);
-        let least = ROUND_OFF * found.values.first().copied().unwrap_or_default();
+        let (found, told) = weighed(&search.at.d, &search.weights, self.variables.len());
         let mut known = Known::default();
         let mut nothing = Vec::new();
-        for (s, v) in found.values.into_iter().zip(found.directions) {
+        for (k, (s, v)) in found.values.into_iter().zip(found.directions).enumerate() {
             let sigma = search.scale / s;
-            if !(s > least) {
+            if k >= told {
                 nothing.push(v);
             } else if self.has_sigmas && sigma > VAGUE {
                 known.untold.push((v, Some(sigma)));
@@ -77,9 +71,8 @@ impl Bench<'_> {
     }
 
     /// How well the variables are known where a search ended.
-    pub fn certainty(&self, search: &Search) -> Certainty {
+    pub(super) fn certainty(&self, search: &Search, known: &Known) -> Certainty {
         let n = self.variables.len();
-        let known = self.known(search);
         let untold_part = |k: usize| known.untold.iter().map(|(v, _)| v[k].abs()).fold(0.0, f64::max);
         let in_steps = known.covariance(n);
         let covariance = (0..n)

@@ -1,19 +1,15 @@
 //! The fit: bounded steps of basin's trust region over the directions that the readings tell of.
 
 use std::cell::RefCell;
-use std::convert::Infallible;
 
-use basin::{
-    CostFunction, DenseMatrix, Executor, Jacobian, PointState, Residual, State, StepOutcome,
-    TrustRegionReflective,
-};
+use basin::DenseMatrix;
 
-use crate::linalg::svd::singular;
+use crate::linalg::svd::{Singular, singular};
 use crate::measure::Output;
 use crate::model::{Model, VariableId};
 use crate::run::Analysis;
-use crate::sensitivity::Admissibility;
 use crate::study::evaluation::Cost;
+use crate::study::trust_region::{Recent, TrustRegion};
 
 use super::posture::{Stand, stand};
 use super::{
@@ -22,8 +18,6 @@ use super::{
 
 /// Natural steps, about the mechanism's size or a radian, that a fit may go from the drawing: what is measured is near what was meant.
 const FARTHEST: f64 = 10.0;
-/// So near to stationary, as a part of the gradient at the start, nothing is left to find.
-const STATIONARY: f64 = 1e-13;
 /// A singular value below this part of the largest is round-off: the readings tell nothing of its direction.
 const ROUND_OFF: f64 = 1e-9;
 /// The objective has settled where an iteration lowers it by less than this part of itself.
@@ -93,30 +87,24 @@ impl<'b> Bench<'b> {
         &self.asked.measured.readings
     }
 
-    /// Which postures are reached, and which variables can be followed.
+    /// Which postures are reached, and which variables can be followed in them.
     pub fn look_at_drawing(&mut self) -> Result<(), CannotCalibrate> {
-        let follows = |v: &VariableId| {
-            self.analyses.iter().all(|a| {
-                let mut change = vec![0.0; self.model.variables.len()];
-                change[v.0] = 1.0;
-                !matches!(a.admissibility_of(&change), Admissibility::CannotFollow { .. })
-            })
-        };
-        let (variables, left_out) = self.variables.iter().partition(|v| follows(v));
-        (self.variables, self.left_out) = (variables, left_out);
-        if self.variables.is_empty() {
-            return Err(CannotCalibrate::NothingVaries);
-        }
-        self.steps = self.variables.iter().map(|v| self.model.natural_step(*v)).collect();
         for (posture, analysis) in self.analyses.iter().enumerate() {
-            let found = stand(analysis, &[], &self.variables, &mut self.cost.borrow_mut());
+            let found = stand(analysis, &[], &mut self.cost.borrow_mut());
             if let Err(stop) = &found {
                 self.not_reached.push(NotReached { posture, why: stop.headline(analysis.model()) });
             }
             self.drawn.push(found.ok());
         }
+        let stands = || self.drawn.iter().flatten();
+        let follows = |v: &VariableId| stands().all(|stand| stand.follows(*v));
+        (self.variables, self.left_out) = self.variables.iter().partition(|v| follows(v));
+        if self.variables.is_empty() {
+            return Err(CannotCalibrate::NothingVaries);
+        }
+        self.steps = self.variables.iter().map(|v| self.model.natural_step(*v)).collect();
         let is_known =
-            |r: &Reading| self.drawn[r.posture].as_ref().is_some_and(|s| s.values[r.output].is_finite());
+            |r: &Reading| self.drawn[r.posture].as_ref().is_some_and(|s| s.value(r.output).is_finite());
         self.compared = (0..self.readings().len()).filter(|k| is_known(&self.readings()[*k])).collect();
         if self.compared.is_empty() {
             let why = self.not_reached.first().map_or(String::new(), |n| n.why.clone());
@@ -149,7 +137,7 @@ impl<'b> Bench<'b> {
             if !more() {
                 return None;
             }
-            stand(analysis, &design, &self.variables, &mut self.cost.borrow_mut()).ok().map(Some)
+            stand(analysis, &design, &mut self.cost.borrow_mut()).ok().map(Some)
         };
         self.analyses.iter().zip(&self.drawn).map(of).collect()
     }
@@ -160,17 +148,23 @@ impl<'b> Bench<'b> {
             let reading = &self.readings()[*k];
             let stand =
                 stands[reading.posture].as_ref().expect("only postures that are reached are compared");
-            let sigma = reading.sigma.filter(|_| self.has_sigmas).unwrap_or(1.0);
-            let by = |(d, step): (&f64, &f64)| d * step / sigma;
-            rows.r.push((stand.values[reading.output] - reading.value) / sigma);
-            rows.d.push(stand.d[reading.output].iter().zip(&self.steps).map(by).collect());
+            let sigma = self.unit(reading);
+            let by = |(v, step): (&VariableId, &f64)| stand.d(reading.output, *v) * step / sigma;
+            rows.r.push((stand.value(reading.output) - reading.value) / sigma);
+            rows.d.push(self.variables.iter().zip(&self.steps).map(by).collect());
         }
         rows
     }
 
-    pub fn rows_at(&self, x: &[f64], more: &dyn Fn() -> bool) -> Option<Rows> {
+    /// What a reading's residual is a multiple of: its standard deviation, or one of SI.
+    fn unit(&self, reading: &Reading) -> f64 {
+        reading.sigma.filter(|_| self.has_sigmas).unwrap_or(1.0)
+    }
+
+    /// `None` where a posture is not reached, or where the mechanism does not follow all variables.
+    fn rows_at(&self, x: &[f64], more: &dyn Fn() -> bool) -> Option<Rows> {
         let rows = self.rows(&self.stands(x, more)?);
-        rows.r.iter().all(|r| r.is_finite()).then_some(rows)
+        rows.r.iter().chain(rows.d.iter().flatten()).all(|x| x.is_finite()).then_some(rows)
     }
 
     /// The standard deviation of residuals: found where none were given.
@@ -198,7 +192,6 @@ impl<'b> Bench<'b> {
         let n = self.variables.len();
         let mut x = vec![0.0; n];
         let mut at = self.rows(&self.drawn);
-        let told = |at: &Rows, weights: &[f64]| told_directions(&weighted(&at.d, weights), n);
         let mut scale = self.scale_of(&at.r, n);
         let mut weights = self.weights(&at.r, scale);
         let squares = |at: &Rows, w: &[f64]| at.r.iter().zip(w).map(|(r, w)| w * r * r).sum::<f64>();
@@ -208,7 +201,8 @@ impl<'b> Bench<'b> {
         progress(0, squares(&at, &weights) / (scale * scale));
         while iterations.len() < self.asked.iterations {
             let before = squares(&at, &weights);
-            let directions = told(&at, &weights);
+            let (Singular { mut directions, .. }, told) = weighed(&at.d, &weights, n);
+            directions.truncate(told);
             let step = self.step(&x, &at, &weights, &directions, more);
             if !more() {
                 status = FitStatus::Interrupted;
@@ -261,24 +255,43 @@ impl<'b> Bench<'b> {
         let size = at.r.iter().zip(&roots).map(|(r, w)| (w * r).powi(2)).sum::<f64>().sqrt();
         let scale = if size > 0.0 { 1.0 / size } else { 1.0 };
         let n = directions.len();
-        let (low, high) = (vec![-FARTHEST; n], vec![FARTHEST; n]);
-        let known = RefCell::new(vec![(vec![0.0; n], Some(at.clone()))]);
-        let problem = Weighted { bench: self, x, roots: &roots, directions, scale, low, high, known, more };
-        let solver = TrustRegionReflective::new().with_absolute_scaled_gradient_tolerance(STATIONARY);
-        let mut stepper =
-            Executor::new(problem, solver, PointState::new(vec![0.0; n])).into_stepper().ok()?;
+        let place = |z: &[f64]| along(x, directions, z);
+        let recent = Recent::default();
+        let find = |z: &[f64]| self.rows_at(&place(z), more);
+        let none = vec![0.0; n];
+        recent.at(&none, || Some(at.clone()), |_| ());
+        let residual = |(r, w): (&f64, &f64)| scale * w * r;
+        let residuals = |z: &[f64]| {
+            recent.at(
+                z,
+                || find(z),
+                |rows| match rows {
+                    Some(rows) => rows.r.iter().zip(&roots).map(residual).collect(),
+                    None => vec![f64::NAN; roots.len()],
+                },
+            )
+        };
+        let derivatives = |z: &[f64]| {
+            recent.at(
+                z,
+                || find(z),
+                |rows| {
+                    DenseMatrix::from_fn(roots.len(), n, |i, j| {
+                        let by = |rows: &Rows| {
+                            rows.d[i].iter().zip(&directions[j]).map(|(d, v)| d * v).sum::<f64>()
+                        };
+                        rows.as_ref().map_or(f64::NAN, |rows| scale * roots[i] * by(rows))
+                    })
+                },
+            )
+        };
+        let bounds = [-FARTHEST, FARTHEST];
+        let mut solver = TrustRegion::new(none.clone(), bounds, Box::new(residuals), Box::new(derivatives))?;
         // Weights are looked at anew after every iteration of a robust fit; of squares they stay.
         let most = if self.asked.loss == Loss::Squares { self.asked.iterations } else { 1 };
-        while (stepper.iter() as usize) < most {
-            match stepper.step() {
-                Ok(StepOutcome::Continue) => {}
-                _ => break,
-            }
-        }
-        let z: Vec<f64> = stepper.state().param().clone();
-        let x = along(x, directions, &z);
-        let rows = self.rows_at(&x, more)?;
-        Some((x, rows))
+        let z = (0..most).map_while(|_| solver.step()).last().unwrap_or(none);
+        let rows = recent.at(&z, || find(&z), Option::clone)?;
+        Some((place(&z), rows))
     }
 
     /// All of it.
@@ -292,8 +305,8 @@ impl<'b> Bench<'b> {
         let mut fitted = vec![None; self.readings().len()];
         for (row, k) in self.compared.iter().enumerate() {
             let reading = &self.readings()[*k];
-            let sigma = reading.sigma.filter(|_| self.has_sigmas).unwrap_or(1.0);
-            let drawn = self.drawn[reading.posture].as_ref().map_or(f64::NAN, |s| s.values[reading.output]);
+            let sigma = self.unit(reading);
+            let drawn = self.drawn[reading.posture].as_ref().map_or(f64::NAN, |s| s.value(reading.output));
             fitted[*k] = Some(Fitted {
                 before: drawn,
                 value: reading.value + sigma * search.at.r[row],
@@ -318,96 +331,17 @@ impl<'b> Bench<'b> {
     }
 }
 
-/// Rows times the roots of their weights.
-pub(super) fn weighted(rows: &[Vec<f64>], weights: &[f64]) -> Vec<Vec<f64>> {
-    rows.iter().zip(weights).map(|(row, w)| row.iter().map(|x| w.sqrt() * x).collect()).collect()
-}
-
-/// The directions that rows tell anything of.
-fn told_directions(rows: &[Vec<f64>], n: usize) -> Vec<Vec<f64>> {
-    let found = singular(rows, n);
+/// What rows tell of directions, each row by what it counts: those that are told, and how many singular values are above round-off.
+pub(super) fn weighed(rows: &[Vec<f64>], weights: &[f64], n: usize) -> (Singular, usize) {
+    let weighted: Vec<Vec<f64>> =
+        rows.iter().zip(weights).map(|(row, w)| row.iter().map(|x| w.sqrt() * x).collect()).collect();
+    let found = singular(&weighted, n);
     let least = ROUND_OFF * found.values.first().copied().unwrap_or_default();
     let told = found.values.iter().filter(|s| **s > least).count();
-    found.directions.into_iter().take(told).collect()
+    (found, told)
 }
 
 fn along(x: &[f64], directions: &[Vec<f64>], z: &[f64]) -> Vec<f64> {
     let by = |k: usize| directions.iter().zip(z).map(|(v, z)| v[k] * z).sum::<f64>();
     x.iter().enumerate().map(|(k, x)| x + by(k)).collect()
-}
-
-/// Weighted squares as a function of how far the design goes along some directions.
-struct Weighted<'p, 'b> {
-    bench: &'p Bench<'b>,
-    x: &'p [f64],
-    roots: &'p [f64],
-    directions: &'p [Vec<f64>],
-    /// What residuals are multiplied by, so that they are of the order of one at the start.
-    scale: f64,
-    low: Vec<f64>,
-    high: Vec<f64>,
-    known: RefCell<Vec<(Vec<f64>, Option<Rows>)>>,
-    more: &'p dyn Fn() -> bool,
-}
-
-/// So many designs are kept: a step may be taken back.
-const KEPT: usize = 8;
-
-impl Weighted<'_, '_> {
-    fn at<X>(&self, z: &[f64], of: impl FnOnce(Option<&Rows>) -> X) -> X {
-        let is_known = self.known.borrow().iter().any(|(k, _)| k == z);
-        if !is_known {
-            let found = self.bench.rows_at(&along(self.x, self.directions, z), self.more);
-            let mut known = self.known.borrow_mut();
-            if known.len() == KEPT {
-                drop(known.remove(0));
-            }
-            known.push((z.to_vec(), found));
-        }
-        let known = self.known.borrow();
-        of(known.iter().find(|(k, _)| k == z).and_then(|(_, rows)| rows.as_ref()))
-    }
-}
-
-impl basin::Constraints for Weighted<'_, '_> {
-    type Set = basin::ConstraintSet<basin::BoxBounds<Vec<f64>>>;
-    fn constraints(&self) -> <Self::Set as basin::ConstraintDescription>::Borrowed<'_> {
-        basin::ConstraintSet::new().with_bounds(basin::BoxBounds::new(Some(&self.low), Some(&self.high)))
-    }
-}
-
-impl CostFunction for Weighted<'_, '_> {
-    type Param = Vec<f64>;
-    type Output = f64;
-    type Error = Infallible;
-    fn cost(&self, z: &Vec<f64>) -> Result<f64, Infallible> {
-        self.residual(z).map(|r| 0.5 * r.iter().map(|r| r * r).sum::<f64>())
-    }
-}
-
-impl Residual for Weighted<'_, '_> {
-    type Param = Vec<f64>;
-    type Output = Vec<f64>;
-    type Error = Infallible;
-    fn residual(&self, z: &Vec<f64>) -> Result<Vec<f64>, Infallible> {
-        Ok(self.at(z, |rows| match rows {
-            Some(rows) => rows.r.iter().zip(self.roots).map(|(r, w)| self.scale * w * r).collect(),
-            // The solver steps back from what is no number.
-            None => vec![f64::NAN; self.roots.len()],
-        }))
-    }
-}
-
-impl Jacobian for Weighted<'_, '_> {
-    type Jacobian = DenseMatrix;
-    fn jacobian(&self, z: &Vec<f64>) -> Result<DenseMatrix, Infallible> {
-        let (m, n) = (self.roots.len(), z.len());
-        Ok(self.at(z, |rows| match rows {
-            Some(rows) => DenseMatrix::from_fn(m, n, |i, j| {
-                let along: f64 = rows.d[i].iter().zip(&self.directions[j]).map(|(d, v)| d * v).sum();
-                self.scale * self.roots[i] * along
-            }),
-            None => DenseMatrix::from_fn(m, n, |_, _| f64::NAN),
-        }))
-    }
 }

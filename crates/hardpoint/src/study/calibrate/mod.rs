@@ -184,8 +184,12 @@ pub fn calibrate(
     let mut bench = fit::Bench::new(model, &analyses, asked);
     bench.look_at_drawing()?;
     let search = bench.search(progress, more);
-    let certainty = bench.certainty(&search);
-    let next = if search.status == FitStatus::Found { bench.next(&search, &certainty) } else { Vec::new() };
+    let known = bench.known(&search);
+    let certainty = bench.certainty(&search, &known);
+    let next = match search.status {
+        FitStatus::Found => bench.next(&search, &known, &certainty),
+        _ => Vec::new(),
+    };
     Ok(bench.calibration(search, certainty, next, outputs(model)))
 }
 
@@ -202,8 +206,9 @@ pub fn values_in_postures(
 ) -> Result<Vec<Result<Vec<f64>, String>>, TopologyFault> {
     let models: Vec<Model> = postures.iter().map(|p| posture::standing(model, p)).collect();
     let values = |analysis: &Analysis<'_>| {
-        let found = posture::stand(analysis, design, &[], &mut Cost::default());
-        found.map(|stand| stand.values).map_err(|stop| stop.headline(analysis.model()))
+        let stand = posture::stand(analysis, design, &mut Cost::default());
+        let values = |stand: posture::Stand| (0..outputs(model).len()).map(|m| stand.value(m)).collect();
+        stand.map(values).map_err(|stop| stop.headline(analysis.model()))
     };
     Ok(posture::planned(&models, formulation)?.iter().map(values).collect())
 }

@@ -7,7 +7,7 @@ use crate::run::{Analysis, Run};
 use super::Certainty;
 use super::certainty::Known;
 use super::fit::{Bench, Search};
-use super::posture::is_still;
+use super::posture::derivative;
 
 /// So many readings are proposed.
 const PROPOSED: usize = 5;
@@ -52,12 +52,11 @@ struct Candidate {
 
 impl Bench<'_> {
     /// The best reading of each output, the best first.
-    pub fn next(&self, search: &Search, certainty: &Certainty) -> Vec<Next> {
-        let known = self.known(search);
+    pub(super) fn next(&self, search: &Search, known: &Known, certainty: &Certainty) -> Vec<Next> {
         let covariance = known.covariance(self.variables.len());
         let mut best: Vec<Option<(f64, Next)>> = vec![None; outputs(self.model).len()];
         for candidate in self.candidates(search) {
-            let (worth, next) = self.judged(candidate, &known, &covariance, certainty);
+            let (worth, next) = self.judged(candidate, known, &covariance, certainty);
             let best = &mut best[next.output];
             if worth > 0.0 && best.as_ref().is_none_or(|(w, _)| worth > *w) {
                 *best = Some((worth, next));
@@ -114,8 +113,9 @@ impl Bench<'_> {
             let like = all.iter().find(|(o, _)| known[*o].dimension == known[output].dimension);
             all.iter().find(|(o, _)| *o == output).or(like).map(|(_, s)| *s)
         };
-        let sigmas: Vec<Option<f64>> =
-            (0..known.len()).map(|m| sigma_of(m).filter(|_| is_still(self.model, &known[m]))).collect();
+        let sigmas: Vec<Option<f64>> = (0..known.len())
+            .map(|m| sigma_of(m).filter(|_| self.model.is_known_at_rest(known[m].source)))
+            .collect();
         let mut found = Vec::new();
         let design = self.design(&search.x);
         let mut at = |analysis: &Analysis<'_>, places: &dyn Fn(usize) -> Option<Vec<f64>>| {
@@ -124,10 +124,8 @@ impl Bench<'_> {
                 let Some(drivers) = places(k) else { continue };
                 for (output, sigma) in sigmas.iter().enumerate() {
                     let Some(sigma) = *sigma else { continue };
-                    let by = |(v, step): (&VariableId, &f64)| {
-                        let followed = solution.sensitivities.at(k, v.0).is_some();
-                        if followed { solution.measured.d(k, *v, output)[0] * step / sigma } else { 0.0 }
-                    };
+                    let by =
+                        |(v, step): (&VariableId, &f64)| derivative(&solution, k, output, *v) * step / sigma;
                     let g: Vec<f64> = self.variables.iter().zip(&self.steps).map(by).collect();
                     if g.iter().all(|g| g.is_finite()) {
                         let next =

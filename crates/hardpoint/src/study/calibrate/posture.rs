@@ -1,20 +1,41 @@
 //! Where a mechanism was measured: its drivers stand, and every posture is reached from the drawing by itself.
 
-use crate::measure::Output;
 use crate::model::{Case, CaseId, DriverId, Model, VariableId};
 use crate::motion::Stop;
-use crate::run::{Analysis, Run};
+use crate::run::{Analysis, Run, Solution};
 use crate::study::evaluation::Cost;
 use crate::study::grid::{STANDS, law_of};
 use crate::topology::{Formulation, TopologyFault};
 
-/// Values and derivatives of all outputs in one posture.
+/// A posture that was reached, the last of its motion.
 #[derive(Clone, Debug)]
-pub(super) struct Stand {
-    /// Per output.
-    pub values: Vec<f64>,
-    /// Per output, by each of the variables asked for; zero where the mechanism cannot follow one.
-    pub d: Vec<Vec<f64>>,
+pub(super) struct Stand(Solution);
+
+impl Stand {
+    fn last(&self) -> usize {
+        self.0.motion.len() - 1
+    }
+
+    /// What an output is.
+    pub fn value(&self, output: usize) -> f64 {
+        self.0.measured.value(self.last(), output)[0]
+    }
+
+    /// Whether the mechanism follows a variable there.
+    pub fn follows(&self, variable: VariableId) -> bool {
+        self.0.sensitivities.at(self.last(), variable.0).is_some()
+    }
+
+    /// The derivative of an output by a variable that it follows.
+    pub fn d(&self, output: usize, variable: VariableId) -> f64 {
+        derivative(&self.0, self.last(), output, variable)
+    }
+}
+
+/// The derivative of an output at an output time; NaN where the mechanism cannot follow the variable.
+pub(super) fn derivative(solution: &Solution, k: usize, output: usize, variable: VariableId) -> f64 {
+    let followed = solution.sensitivities.at(k, variable.0).is_some();
+    if followed { solution.measured.d(k, variable, output)[0] } else { f64::NAN }
 }
 
 /// The model in which every driver goes from where it is drawn to where it stood.
@@ -28,38 +49,22 @@ pub(super) fn standing(model: &Model, places: &[f64]) -> Model {
         laws.push(Some(law));
         formulas.extend(formula);
     }
-    let case = Case { name: String::new(), laws, formulas, times: vec![begin, end] };
-    let mut model = Model { cases: vec![case], ..model.clone() }.in_case(CaseId(0));
-    model.name.truncate(model.name.len() - ", ".len());
-    model
+    let case = Case { name: "posture".into(), laws, formulas, times: vec![begin, end] };
+    Model { cases: vec![case], ..model.clone() }.in_case(CaseId(0))
 }
 
-/// What the outputs are in one posture of a design, with derivatives by some variables.
+/// A posture of a design.
 ///
 /// # Errors
 /// What kept the mechanism from it.
-pub(super) fn stand(
-    analysis: &Analysis<'_>,
-    design: &[f64],
-    variables: &[VariableId],
-    cost: &mut Cost,
-) -> Result<Stand, Box<Stop>> {
+pub(super) fn stand(analysis: &Analysis<'_>, design: &[f64], cost: &mut Cost) -> Result<Stand, Box<Stop>> {
     let solution = analysis.solve(Run::new().at(design));
     cost.motions += 1;
     cost.steps += solution.motion.len();
-    if let Some(stop) = solution.stop {
-        return Err(Box::new(stop));
+    match solution.stop {
+        Some(stop) => Err(Box::new(stop)),
+        None => Ok(Stand(solution)),
     }
-    let last = solution.motion.len() - 1;
-    let measured = &solution.measured;
-    let outputs = 0..measured.outputs.len();
-    let by = |m: usize, v: &VariableId| {
-        if solution.sensitivities.at(last, v.0).is_some() { measured.d(last, *v, m)[0] } else { 0.0 }
-    };
-    Ok(Stand {
-        values: outputs.clone().map(|m| measured.value(last, m)[0]).collect(),
-        d: outputs.map(|m| variables.iter().map(|v| by(m, v)).collect()).collect(),
-    })
 }
 
 /// Analyses of several models.
@@ -68,11 +73,4 @@ pub(super) fn planned(
     formulation: Formulation,
 ) -> Result<Vec<Analysis<'_>>, TopologyFault> {
     models.iter().map(|model| Analysis::with(model, formulation)).collect()
-}
-
-/// Whether an output can be compared with what was measured of a mechanism that stands still.
-pub(super) fn is_still(model: &Model, output: &Output) -> bool {
-    let by_driver =
-        matches!(output.source, crate::model::OutputSource::Measure(k) if model.goes_by_driver(k));
-    output.known.by_position || by_driver
 }

@@ -22,7 +22,7 @@ use crate::model::{Model, Optimization, VariableId};
 use super::evaluation::{Cost, Motions};
 pub use optimality::{Binding, Optimality};
 use problem::{Point, Problem, Refusal};
-use solver::{Memory, Sequential, Solver, TrustRegion};
+use solver::{Memory, Sequential, Solver, least_squares};
 
 /// A limit that is exceeded by less than this part of its scale is kept.
 const KEPT: f64 = 1e-8;
@@ -370,7 +370,7 @@ impl<'p> Descent<'p> {
     /// within, slowly: what they leave is left to sequential programming.
     fn solver(&self, squares: bool) -> Option<Box<dyn Solver + 'p>> {
         if squares {
-            TrustRegion::new(self.memory, &self.at, &self.here).map(|s| Box::new(s) as Box<dyn Solver + 'p>)
+            least_squares(self.memory, &self.at, &self.here).map(|s| Box::new(s) as Box<dyn Solver + 'p>)
         } else {
             let found = Sequential::new(self.memory, &self.at, &self.here, &self.scales);
             found.map(|s| Box::new(s) as Box<dyn Solver + 'p>)

@@ -6,19 +6,18 @@ use std::cell::RefCell;
 use std::convert::Infallible;
 
 use basin::{
-    ConstraintSolveError, CostFunction, DenseMatrix, Executor, Gradient, Jacobian, PointState, Residual,
-    SelectedFirstOrderState, Slsqp, State, StepOutcome, Stepper, TrustRegionReflective,
+    ConstraintSolveError, CostFunction, DenseMatrix, Executor, Gradient, SelectedFirstOrderState, Slsqp,
+    Stepper,
 };
 
 use crate::study::evaluation::Cost;
+use crate::study::trust_region::{Recent, TrustRegion, next};
 
 use super::problem::{LimitRow, Point, Problem, Refusal, Rows};
 
 /// The sequential solver takes objective and limits for settled where they change by less than this, with curvatures scaled to the order
 /// of one: the square of how near to stationary a design shall be. What round-off leaves of that is for the search to see.
 const SETTLED: f64 = 1e-30;
-/// So near to stationary, as a part of the gradient at the start, nothing is left to find.
-const STATIONARY: f64 = 1e-13;
 /// The least curvature that is assumed in any direction, as a part of the largest.
 const FLAT: f64 = 1e-4;
 /// A first step without any known curvature goes so far along the bounds.
@@ -31,20 +30,17 @@ type Found = Result<Point, Refusal>;
 pub(super) struct Memory<'p> {
     pub problem: &'p Problem<'p>,
     more: &'p (dyn Fn() -> bool + Sync),
-    recent: RefCell<Vec<(Vec<f64>, Found)>>,
+    recent: Recent<Found>,
     pub refused: RefCell<Vec<(Vec<f64>, Refusal)>>,
     pub cost: RefCell<Cost>,
 }
-
-/// So many designs are kept: a line search may go back a few.
-const KEPT: usize = 16;
 
 impl<'p> Memory<'p> {
     pub fn new(problem: &'p Problem<'p>, more: &'p (dyn Fn() -> bool + Sync)) -> Self {
         Self {
             problem,
             more,
-            recent: RefCell::default(),
+            recent: Recent::default(),
             refused: RefCell::default(),
             cost: RefCell::default(),
         }
@@ -52,8 +48,7 @@ impl<'p> Memory<'p> {
 
     /// What is found at a design, given as parts of the bounds.
     pub fn at<X>(&self, parts: &[f64], of: impl FnOnce(&Found) -> X) -> X {
-        let known = self.recent.borrow().iter().any(|(x, _)| x == parts);
-        if !known {
+        let find = || {
             let design = self.problem.design(parts);
             let found = self.problem.at(design.clone(), &mut self.cost.borrow_mut(), self.more);
             if let Err(refusal) = &found
@@ -61,14 +56,9 @@ impl<'p> Memory<'p> {
             {
                 self.refused.borrow_mut().push((design, refusal.clone()));
             }
-            let mut recent = self.recent.borrow_mut();
-            if recent.len() == KEPT {
-                drop(recent.remove(0));
-            }
-            recent.push((parts.to_vec(), found));
-        }
-        let recent = self.recent.borrow();
-        of(&recent.iter().find(|(x, _)| x == parts).expect("it was just put there").1)
+            found
+        };
+        self.recent.at(parts, find, of)
     }
 
     pub fn interrupted(&self) -> bool {
@@ -88,100 +78,34 @@ pub(super) trait Solver {
 }
 
 /// Goals that are all squares, and no limits but bounds.
-pub(super) struct LeastSquares<'p> {
+pub(super) fn least_squares<'p>(
     memory: &'p Memory<'p>,
-    spans: Vec<f64>,
-    low: Vec<f64>,
-    high: Vec<f64>,
-    /// What residuals are multiplied by, so that they are of the order of one at the start.
-    scale: f64,
-    /// How many residuals there are.
-    rows: usize,
-}
-
-impl basin::Constraints for LeastSquares<'_> {
-    type Set = basin::ConstraintSet<basin::BoxBounds<Vec<f64>>>;
-    fn constraints(&self) -> <Self::Set as basin::ConstraintDescription>::Borrowed<'_> {
-        basin::ConstraintSet::new().with_bounds(basin::BoxBounds::new(Some(&self.low), Some(&self.high)))
-    }
-}
-
-impl CostFunction for LeastSquares<'_> {
-    type Param = Vec<f64>;
-    type Output = f64;
-    type Error = Infallible;
-    fn cost(&self, x: &Vec<f64>) -> Result<f64, Infallible> {
-        self.residual(x).map(|r| 0.5 * r.iter().map(|r| r * r).sum::<f64>())
-    }
-}
-
-impl Residual for LeastSquares<'_> {
-    type Param = Vec<f64>;
-    type Output = Vec<f64>;
-    type Error = Infallible;
-    fn residual(&self, x: &Vec<f64>) -> Result<Vec<f64>, Infallible> {
-        Ok(self.memory.at(x, |found| match found {
-            Ok(point) => point.misfits.values.iter().map(|r| self.scale * r).collect(),
-            // The solver steps back from what is no number.
-            Err(_) => vec![f64::NAN; self.rows],
-        }))
-    }
-}
-
-impl Jacobian for LeastSquares<'_> {
-    type Jacobian = DenseMatrix;
-    fn jacobian(&self, x: &Vec<f64>) -> Result<DenseMatrix, Infallible> {
-        let n = x.len();
-        Ok(self.memory.at(x, |found| match found {
-            Ok(point) => DenseMatrix::from_fn(point.misfits.values.len(), n, |row, v| {
-                self.scale * self.spans[v] * point.misfits.d[row][v]
-            }),
-            Err(_) => DenseMatrix::from_fn(self.rows, n, |_, _| f64::NAN),
-        }))
-    }
-}
-
-type Trf<'p> = Stepper<LeastSquares<'p>, PointState<Vec<f64>, f64>, TrustRegionReflective<f64>>;
-
-/// Bounded least squares by basin's trust region.
-pub(super) struct TrustRegion<'p>(Trf<'p>);
-
-impl<'p> TrustRegion<'p> {
-    pub fn new(memory: &'p Memory<'p>, start: &[f64], point: &Point) -> Option<Self> {
-        let spans = memory.spans();
-        let (low, high) = (vec![0.0; start.len()], vec![1.0; start.len()]);
-        let size = point.misfits.values.iter().map(|r| r * r).sum::<f64>().sqrt();
-        let scale = if size > 0.0 { 1.0 / size } else { 1.0 };
-        let rows = point.misfits.values.len();
-        let problem = LeastSquares { memory, spans, low, high, scale, rows };
-        let solver = TrustRegionReflective::new().with_absolute_scaled_gradient_tolerance(STATIONARY);
-        let run = Executor::new(problem, solver, PointState::new(start.to_vec()));
-        run.into_stepper().ok().map(Self)
-    }
+    start: &[f64],
+    point: &Point,
+) -> Option<TrustRegion<'p>> {
+    let spans = memory.spans();
+    let size = point.misfits.values.iter().map(|r| r * r).sum::<f64>().sqrt();
+    let scale = if size > 0.0 { 1.0 / size } else { 1.0 };
+    let rows = point.misfits.values.len();
+    let residuals = move |x: &[f64]| {
+        memory.at(x, |found| match found {
+            Ok(point) => point.misfits.values.iter().map(|r| scale * r).collect(),
+            Err(_) => vec![f64::NAN; rows],
+        })
+    };
+    let derivatives = move |x: &[f64]| {
+        memory.at(x, |found| {
+            DenseMatrix::from_fn(rows, x.len(), |row, v| {
+                found.as_ref().map_or(f64::NAN, |point| scale * spans[v] * point.misfits.d[row][v])
+            })
+        })
+    };
+    TrustRegion::new(start.to_vec(), [0.0, 1.0], Box::new(residuals), Box::new(derivatives))
 }
 
 impl Solver for TrustRegion<'_> {
     fn step(&mut self) -> Option<Vec<f64>> {
-        next(&mut self.0)
-    }
-}
-
-/// One iteration of any of basin's solvers; steps that end no iteration are gone through.
-fn next<P, S, So>(stepper: &mut Stepper<P, S, So>) -> Option<Vec<f64>>
-where
-    S: State<Param = Vec<f64>, Float = f64> + basin::CountsMirror,
-    So: basin::Solver<P, S>,
-{
-    let before = stepper.iter();
-    loop {
-        match stepper.step() {
-            Ok(StepOutcome::Continue) if stepper.iter() == before => (),
-            Ok(StepOutcome::Continue) => return Some(stepper.state().param().clone()),
-            Ok(StepOutcome::Stopped(_)) if stepper.iter() > before => {
-                return Some(stepper.state().param().clone());
-            }
-            _ => return None,
-        }
+        self.step()
     }
 }
 
