@@ -20,7 +20,7 @@ const COUNTS = 4
 const SCALED = 8
 const BITS = 16
 
-function bytesOf(base64: string): Uint8Array<ArrayBuffer> {
+export function bytesOf(base64: string): Uint8Array<ArrayBuffer> {
   const text = atob(base64.trim())
   // A plain loop: Uint8Array.from is ten times slower.
   const bytes = new Uint8Array(text.length)

@@ -46,7 +46,7 @@ use std::path::Path;
 
 use hardpoint::{
     draft::{Fault, Section},
-    model::{Model, SweepRange, Sweeping, VariableId},
+    model::{CaseId, Model, SweepRange, Sweeping, VariableId},
 };
 use toml::de::DeTable;
 
@@ -83,11 +83,20 @@ pub struct ModelFile {
     pub remarks: Vec<Diagnostic>,
     /// The texts that the model names files of: tables of laws, curves that are wanted, lists of designs.
     pub texts: Texts,
+    /// The case that the model was made of, where the file has cases and only one of them is meant.
+    pub case: Option<String>,
     source: Source,
     places: Places,
 }
 
 impl ModelFile {
+    /// The file with the motion of one of its cases alone.
+    pub fn in_case(&self, case: CaseId) -> Self {
+        let mut model = self.model.in_case(case);
+        model.grids.clear();
+        Self { model, case: Some(self.model.cases[case.0].name.clone()), ..self.clone() }
+    }
+
     /// The name of the file as it was given.
     pub fn file_name(&self) -> &str {
         &self.source.file
@@ -363,7 +372,7 @@ fn parse_in(folder: Folder<'_>, text: &str, file_name: &str) -> Result<ModelFile
     match model {
         Some(model) if found.is_empty() => {
             let (description, drawing, places) = (raw.description, raw.drawing, raw.places);
-            Ok(ModelFile { model, units, description, drawing, remarks, texts, source, places })
+            Ok(ModelFile { model, units, description, drawing, remarks, texts, case: None, source, places })
         }
         _ => Err(Diagnostics::new(source, found)),
     }
