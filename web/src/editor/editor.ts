@@ -4,7 +4,7 @@ import { bracketMatching, indentUnit } from '@codemirror/language'
 import { lintGutter, nextDiagnostic, previousDiagnostic, setDiagnostics } from '@codemirror/lint'
 import { highlightSelectionMatches, openSearchPanel, search, searchKeymap } from '@codemirror/search'
 import { Annotation, EditorState, type Transaction } from '@codemirror/state'
-import { drawSelection, dropCursor, EditorView, highlightActiveLine, highlightActiveLineGutter, highlightSpecialChars, keymap, lineNumbers } from '@codemirror/view'
+import { drawSelection, dropCursor, EditorView, highlightActiveLine, highlightActiveLineGutter, highlightSpecialChars, keymap, lineNumbers, type Rect } from '@codemirror/view'
 import { el, prose } from '../dom'
 import type { Checker, Diagnostic } from '../engine/engine'
 import { changes } from './changes'
@@ -90,7 +90,7 @@ export function editor({ text, check, onValid, schema }: Options): Editor {
         EditorState.allowMultipleSelections.of(true),
         history({ newGroupDelay: Infinity, joinToEvent: joins }),
         indentUnit.of('  '), bracketMatching(), closeBrackets(), highlightSelectionMatches(), search({ top: true }),
-        autocompletion({ override: [(context) => complete(context, schema)], icons: false }),
+        autocompletion({ override: [(context) => complete(context, schema)], icons: false, positionInfo: beside }),
         toml(), theme(),
         keymap.of([
           { key: 'F8', run: nextDiagnostic, shift: previousDiagnostic },
@@ -212,4 +212,10 @@ function complete({ state, pos, explicit }: CompletionContext, schema?: Schema):
   if (!found || (!explicit && found.from === pos && state.sliceDoc(pos - 1, pos) !== '"')) return null
   const options = found.suggestions.map(({ label, insert, detail, about }) => ({ label, apply: insert, detail, info: about === undefined ? undefined : () => el('p', {}, ...prose(about)) }))
   return { from: found.from, options, validFor: /^[\w-]*$/ }
+}
+
+/** What is said of a word stands below the list of words, or above it, so that it hides none of them. */
+function beside(_: EditorView, list: Rect, __: Rect, info: Rect, space: Rect): { style: string } {
+  const fits = list.bottom + info.bottom - info.top <= space.bottom
+  return { style: `left: 0; ${fits ? 'top' : 'bottom'}: calc(100% + 2px)` }
 }
