@@ -207,7 +207,11 @@ function failure(error: unknown): Diagnostic {
   return { severity: 'error', code: '', message, line: null, column: null, length: null, label: null, notes: [], help: null }
 }
 
+/** Longer texts are read through for a completion only when it is asked for, characters. */
+const LONG = 200_000
+
 function complete({ state, pos, explicit }: CompletionContext, schema?: Schema): CompletionResult | null {
+  if (state.doc.length > LONG && !explicit) return null
   const found = suggest(state.doc.toString(), pos, schema)
   if (!found || (!explicit && found.from === pos && state.sliceDoc(pos - 1, pos) !== '"')) return null
   const options = found.suggestions.map(({ label, insert, detail, about }) => ({ label, apply: insert, detail, info: about === undefined ? undefined : () => el('p', {}, ...prose(about)) }))
