@@ -53,6 +53,16 @@ export interface Content {
   message?: string
 }
 
+/** What lies over the curves of a plot and moves with them. */
+export interface Overlay {
+  /** The plot is drawn anew, and has a place for it. */
+  onto(plot: uPlot): void
+  /** The curves were drawn, and may have moved. */
+  drawn(): void
+  /** What the vertical axis shows, of what it would. */
+  reach(low: number, high: number): [low: number, high: number]
+}
+
 /**
  * Curves over time or over another quantity, with a legend above that reads the values under the pointer, or at the moment shown;
  * dragging moves the time. Dragging along the horizontal axis, or with Shift, shows that part of the abscissa: of time in all plots
@@ -61,6 +71,8 @@ export interface Content {
 export class Plot {
   readonly element: HTMLElement
   readonly area = el('div', { class: 'area' })
+  /** What lies over the curves, if anything. */
+  overlay?: Overlay
   /** What is shown. */
   content: Content = { title: '', unit: '', lines: [] }
   #title = el('h3')
@@ -134,7 +146,16 @@ export class Plot {
     this.#uplot = new uPlot(this.#options(this.content), all, this.area)
     this.#uplot.over.append(this.#band, this.#marker, this.#pointer)
     this.#follow(this.#uplot)
+    this.overlay?.onto(this.#uplot)
     this.#showTime()
+  }
+
+  /** Puts something over the curves, or takes it away. */
+  lay(overlay: Overlay | undefined): void {
+    this.overlay = overlay
+    if (!this.#uplot) return
+    overlay?.onto(this.#uplot)
+    this.#uplot.setData(this.#uplot.data)
   }
 
   /** Takes no further part in the page. */
@@ -161,12 +182,14 @@ export class Plot {
     // What uPlot finds is that of whole steps, and over another quantity that of all of them.
     const upright = (low: number | null, high: number | null) => {
       const [least, most] = (this.content.part && this.#ordinates()) ?? [low, high]
-      return logarithmic ? decades(least, most) : padded(...reaching(least, most, content))
+      if (logarithmic) return decades(least, most)
+      const range = padded(...reaching(least, most, content))
+      return this.overlay?.reach(...range) ?? range
     }
     const abscissa = over ? titled(over.label, over.unit) : titled('time', units.time)
     return {
       mode: over ? 2 : 1,
-      hooks: { drawClear: [(u: uPlot) => drawWanted(u, content)], draw: [() => this.#showTime()] },
+      hooks: { drawClear: [(u: uPlot) => drawWanted(u, content)], draw: [() => (this.#showTime(), this.overlay?.drawn())] },
       ...this.#size(),
       legend: { show: false },
       cursor: { show: false, drag: { x: false, y: false, setScale: false } },

@@ -45,7 +45,8 @@ function marginPlot(state: State): HTMLElement {
   return plot.element
 }
 
-function factTable(table: Table): HTMLElement {
+/** Facts about the model in rows; long ones are opened by a press. */
+export function factTable(table: Table): HTMLElement {
   return el(
     'details',
     { open: table.rows.length <= SHORT },

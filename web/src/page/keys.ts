@@ -14,7 +14,7 @@ export function listenToKeys(state: State, targets: Targets): void {
   document.addEventListener('keydown', (event) => {
     const target = event.target as HTMLElement
     if (event.ctrlKey || event.metaKey || event.altKey || event.defaultPrevented) return
-    if (target.closest('select, textarea, input:not([type=range]), dialog, [role=menu]')) return
+    if (target.closest('select, textarea, input:not([type=range]), [contenteditable=true], dialog, [role=menu]')) return
     const action = actionOf(event, target, state, targets)
     if (!action) return
     event.preventDefault()

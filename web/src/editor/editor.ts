@@ -1,0 +1,225 @@
+import { autocompletion, closeBrackets, closeBracketsKeymap, type CompletionContext, type CompletionResult, completionKeymap } from '@codemirror/autocomplete'
+import { defaultKeymap, history, historyKeymap, indentWithTab, redo, redoDepth, toggleComment, undo, undoDepth } from '@codemirror/commands'
+import { bracketMatching, indentUnit } from '@codemirror/language'
+import { lintGutter, nextDiagnostic, previousDiagnostic, setDiagnostics } from '@codemirror/lint'
+import { highlightSelectionMatches, openSearchPanel, search, searchKeymap } from '@codemirror/search'
+import { Annotation, EditorState, type Transaction } from '@codemirror/state'
+import { drawSelection, dropCursor, EditorView, highlightActiveLine, highlightActiveLineGutter, highlightSpecialChars, keymap, lineNumbers, type Rect } from '@codemirror/view'
+import { el, prose } from '../dom'
+import type { Checker, Diagnostic } from '../engine/engine'
+import { changes } from './changes'
+import { type Schema, suggest } from './complete'
+import './editor.css'
+import { toml } from './language'
+import { counted, mark, placeOf, said } from './messages'
+import { theme } from './theme'
+
+/** Milliseconds without a change after which a text is checked. */
+const PAUSE = 250
+/** Milliseconds within which typing on is one step of undo. */
+const STEP = 500
+
+export interface Options {
+  text: string
+  check: Checker
+  /** A text that was typed is valid: the page can show it. */
+  onValid: (text: string) => void
+  /** What the file may hold, from which keys and words are completed. */
+  schema?: Schema
+}
+
+/** The model's text, checked while it is typed. */
+export interface Editor {
+  readonly element: HTMLElement
+  /** As it stands, valid or not. */
+  readonly text: string
+  /**
+   * Puts another text in its place, valid and shown by the page already, by the smallest change: the cursor, what is seen and the steps of
+   * undo stay. It is one step, or part of the one before where that came from outside too (`sameStep`), as in a drag.
+   */
+  setText(text: string, sameStep?: boolean): void
+  /** Adds what solving the text told to what checking it told; until it changes. */
+  tell(messages: Diagnostic[]): void
+  /** Puts the cursor at a line and column, both from 1, the column in characters, and shows it. */
+  reveal(line: number, column: number): void
+  focus(): void
+  /** Takes it away for good. */
+  destroy(): void
+}
+
+/** Where a change comes from that was not typed, and whether it goes on with the one before. */
+const outside = Annotation.define<{ sameStep: boolean }>()
+
+/** Makes the pane of the model's text; put its element into the page before it is given the focus. */
+export function editor({ text, check, onValid, schema }: Options): Editor {
+  let lineBreak = lineBreakOf(text)
+  /** The text that the page shows: the last valid one. */
+  let shown = ''
+  /** Of the present text: what the check told, and what solving it did. */
+  let checked: Diagnostic[] = []
+  let solved: Diagnostic[] = []
+  let waiting: ReturnType<typeof setTimeout> | undefined
+  /** Counts the changes, so that a check of what has changed since is passed over. */
+  let version = 0
+
+  const status = el('p', { class: 'model-status', role: 'status', 'data-testid': 'model-status' })
+  const list = el('ul', { class: 'model-messages', 'aria-label': 'Messages about the model', 'data-testid': 'model-messages' })
+  const button = (name: string, title: string, run: (view: EditorView) => void) =>
+    el('button', { type: 'button', title, 'data-testid': `model-${name.toLowerCase()}`, onclick: () => (run(view), view.focus()) }, name)
+  const back = button('Undo', 'Undo typing (Ctrl+Z)', undo)
+  const forth = button('Redo', 'Redo typing (Ctrl+Y)', redo)
+  const tools = el('div', { class: 'model-tools', role: 'toolbar', 'aria-label': 'Model text' },
+    back, forth,
+    button('Comment', 'Comment lines, or take the comment away (Ctrl+/)', toggleComment),
+    button('Next', 'Next message (F8)', nextDiagnostic),
+    el('button', { type: 'button', title: 'Find and replace (Ctrl+F)', 'data-testid': 'model-find', onclick: () => openSearchPanel(view) }, 'Find'),
+    status)
+
+  /** Typing within a while joins the step before where it is beside it; what comes from outside joins where it is told to. */
+  let before: { outside: boolean; time: number } = { outside: false, time: -Infinity }
+  const joins = (transaction: Transaction, beside: boolean): boolean => {
+    const foreign = transaction.annotation(outside)
+    return foreign ? foreign.sameStep && before.outside : beside && !before.outside && Date.now() - before.time < STEP
+  }
+
+  const view = new EditorView({
+    state: EditorState.create({
+      doc: text,
+      extensions: [
+        lineNumbers(), highlightActiveLineGutter(), lintGutter(), highlightSpecialChars(), drawSelection(), dropCursor(), highlightActiveLine(),
+        EditorState.allowMultipleSelections.of(true),
+        history({ newGroupDelay: Infinity, joinToEvent: joins }),
+        indentUnit.of('  '), bracketMatching(), closeBrackets(), highlightSelectionMatches(), search({ top: true }),
+        autocompletion({ override: [(context) => complete(context, schema)], icons: false, positionInfo: beside }),
+        toml(), theme(),
+        keymap.of([
+          { key: 'F8', run: nextDiagnostic, shift: previousDiagnostic },
+          ...closeBracketsKeymap, ...completionKeymap, ...searchKeymap, ...historyKeymap, ...defaultKeymap, indentWithTab,
+          // Only where it closes nothing.
+          { key: 'Escape', run: () => (view.setTabFocusMode(true), false) },
+        ]),
+        EditorView.contentAttributes.of({ 'aria-label': 'Model, TOML. Escape, then Tab leaves the text.', 'data-testid': 'model-text', spellcheck: 'false' }),
+        // Who comes by Tab goes on by Tab; who types, or presses into the text, means the text.
+        EditorView.domEventHandlers({
+          focus: () => view.setTabFocusMode(true),
+          pointerup: () => view.setTabFocusMode(false),
+          keydown: ({ key }) => {
+            if (!['Escape', 'Tab', 'Shift'].includes(key)) view.setTabFocusMode(false)
+          },
+        }),
+        EditorView.updateListener.of(({ docChanged, transactions }) => {
+          back.disabled = undoDepth(view.state) === 0
+          forth.disabled = redoDepth(view.state) === 0
+          if (!docChanged) return
+          before = { outside: transactions.some((one) => one.annotation(outside)), time: Date.now() }
+          later()
+        }),
+      ],
+    }),
+  })
+  const present = () => view.state.doc.toString().replaceAll('\n', lineBreak)
+
+  const later = () => {
+    version++
+    solved = []
+    element.setAttribute('aria-busy', 'true')
+    clearTimeout(waiting)
+    waiting = setTimeout(examine, PAUSE)
+  }
+  const examine = async () => {
+    const [mine, text] = [version, present()]
+    try {
+      const found = await check.check(text)
+      if (mine !== version) return
+      checked = found
+    } catch (error) {
+      if (mine !== version) return
+      checked = [failure(error)]
+    }
+    element.setAttribute('aria-busy', 'false')
+    const valid = !checked.some(isError)
+    const other = valid && text !== shown
+    if (valid) shown = text
+    tell()
+    if (other) onValid(text)
+  }
+  const tell = () => {
+    const messages = [...checked, ...solved]
+    view.dispatch(setDiagnostics(view.state, messages.map((message) => mark(view.state.doc, message))))
+    const count = counted(messages)
+    const stale = checked.some(isError)
+    status.classList.toggle('stale', stale)
+    status.textContent = stale ? `${count}. The page shows the last valid model.` : count
+    list.replaceChildren(...messages.map((message) => el('li', { class: message.severity }, entry(message))))
+    list.hidden = messages.length === 0
+  }
+  const entry = (message: Diagnostic) => {
+    const { line, column } = message
+    if (line === null) return el('div', {}, ...said(message))
+    return el('button', { type: 'button', class: 'plain', onclick: () => reveal(line, column ?? 1) }, el('span', { class: 'line' }, `line ${line}`), el('span', {}, ...said(message)))
+  }
+  const reveal = (line: number, column: number) => {
+    const at = placeOf(view.state.doc, line, column)
+    view.dispatch({ selection: { anchor: at }, effects: EditorView.scrollIntoView(at, { y: 'center' }) })
+    view.focus()
+  }
+
+  const element = el('section', { class: 'model', 'aria-label': 'Model', 'data-testid': 'model' }, tools, el('div', { class: 'model-text' }, view.dom), list)
+  shown = present()
+  back.disabled = forth.disabled = true
+  list.hidden = true
+  void examine()
+  return {
+    element,
+    get text() {
+      return present()
+    },
+    setText: (text, sameStep = false) => {
+      lineBreak = lineBreakOf(text)
+      const made = changes(view.state.doc.toString().split('\n'), text.split(/\r\n?|\n/))
+      if (made.length > 0) view.dispatch({ changes: made, annotations: outside.of({ sameStep }) })
+      shown = present()
+    },
+    tell: (messages) => {
+      solved = messages
+      tell()
+    },
+    reveal,
+    focus: () => view.focus(),
+    destroy: () => {
+      clearTimeout(waiting)
+      version++
+      view.destroy()
+      element.remove()
+    },
+  }
+}
+
+const isError = ({ severity }: Diagnostic) => severity === 'error'
+
+function lineBreakOf(text: string): string {
+  return text.includes('\r\n') ? '\r\n' : '\n'
+}
+
+/** What is said where the check itself fails. */
+function failure(error: unknown): Diagnostic {
+  const message = `the text could not be checked: ${error instanceof Error ? error.message : String(error)}`
+  return { severity: 'error', code: '', message, line: null, column: null, length: null, label: null, notes: [], help: null }
+}
+
+/** Longer texts are read through for a completion only when it is asked for, characters. */
+const LONG = 200_000
+
+function complete({ state, pos, explicit }: CompletionContext, schema?: Schema): CompletionResult | null {
+  if (state.doc.length > LONG && !explicit) return null
+  const found = suggest(state.doc.toString(), pos, schema)
+  if (!found || (!explicit && found.from === pos && state.sliceDoc(pos - 1, pos) !== '"')) return null
+  const options = found.suggestions.map(({ label, insert, detail, about }) => ({ label, apply: insert, detail, info: about === undefined ? undefined : () => el('p', {}, ...prose(about)) }))
+  return { from: found.from, options, validFor: /^[\w-]*$/ }
+}
+
+/** What is said of a word stands below the list of words, or above it, so that it hides none of them. */
+function beside(_: EditorView, list: Rect, __: Rect, info: Rect, space: Rect): { style: string } {
+  const fits = list.bottom + info.bottom - info.top <= space.bottom
+  return { style: `left: 0; ${fits ? 'top' : 'bottom'}: calc(100% + 2px)` }
+}

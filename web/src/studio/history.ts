@@ -1,0 +1,162 @@
+/** A design, as it can be come back to. */
+export interface Step {
+  /** The model's text that the changes count from. */
+  text: string
+  /** Of the design variables, in their units. */
+  changes: readonly number[]
+  /** What made it of the one before: `tie_rod_outer_z`, `typed`, `optimised`. */
+  label: string
+}
+
+/** A design that was given a name. */
+export interface Snapshot {
+  readonly id: number
+  name: string
+  readonly step: Step
+}
+
+/** Steps that are kept; earlier ones are forgotten, but for the first. */
+const MOST = 200
+
+/** The designs that a reader has been through, to go back and forth, and those that were given a name. */
+export class History {
+  readonly #steps: Step[]
+  readonly #snapshots: Snapshot[] = []
+  readonly #listeners: (() => void)[] = []
+  #at = 0
+  /** What the last step came from, as long as it may go on. */
+  #hand?: string
+  #named = 0
+
+  constructor(
+    readonly first: Step,
+    private readonly most = MOST,
+  ) {
+    this.#steps = [first]
+  }
+
+  /** The design that is shown. */
+  get present(): Step {
+    return this.#steps[this.#at]
+  }
+
+  /** What undoing takes back, and what redoing makes again; nothing where there is nothing. */
+  get undoable(): string | undefined {
+    return this.#at > 0 ? this.present.label : undefined
+  }
+
+  get redoable(): string | undefined {
+    return this.#steps[this.#at + 1]?.label
+  }
+
+  /** Whether the present design is another than the first. */
+  get changed(): boolean {
+    return !same(this.present, this.first)
+  }
+
+  get snapshots(): readonly Snapshot[] {
+    return this.#snapshots
+  }
+
+  /** Called whenever anything of it is another. */
+  onChange(listener: () => void): void {
+    this.#listeners.push(listener)
+  }
+
+  /**
+   * Goes on to a design. What the same `hand` does without a pause, such as all of a drag, is one step; `rest` ends it. A step that
+   * comes back to where it began is none.
+   */
+  go(step: Step, hand?: string): void {
+    const goesOn = hand !== undefined && hand === this.#hand
+    if (same(step, this.present)) {
+      if (!goesOn) this.#hand = undefined
+      return
+    }
+    this.#hand = hand
+    this.#steps.length = this.#at + 1
+    if (goesOn) this.#steps.length = this.#at
+    this.#steps.push(step)
+    this.#at = this.#steps.length - 1
+    if (goesOn && same(step, this.#steps[this.#at - 1])) {
+      this.#steps.length = this.#at
+      this.#at--
+      this.#hand = undefined
+    }
+    // Of the first there is no step to be undone: it is what all comes back to.
+    if (this.#steps.length > this.most) {
+      this.#steps.splice(1, this.#steps.length - this.most)
+      this.#at = this.#steps.length - 1
+    }
+    this.#tell()
+  }
+
+  /** Ends what a hand does: it has let go. */
+  rest(): void {
+    this.#hand = undefined
+  }
+
+  /** Goes one step back; nothing where there is none. */
+  undo(): Step | undefined {
+    return this.#move(-1)
+  }
+
+  redo(): Step | undefined {
+    return this.#move(1)
+  }
+
+  /** Goes to the first design, as a step that can be undone. */
+  reset(): Step {
+    this.go({ ...this.first, label: 'reset' })
+    return this.present
+  }
+
+  /** Gives the present design a name; `design 1` and so on where none is given. */
+  keep(name = ''): Snapshot {
+    this.#named++
+    const snapshot = { id: this.#named, name: name.trim() || this.#free(), step: this.present }
+    this.#snapshots.push(snapshot)
+    this.#tell()
+    return snapshot
+  }
+
+  /** Goes to a design that was given a name, as a step that can be undone. */
+  take(snapshot: Snapshot): Step {
+    this.go({ ...snapshot.step, label: snapshot.name })
+    return this.present
+  }
+
+  /** Without a name it keeps the one that it has. */
+  rename(snapshot: Snapshot, name: string): void {
+    snapshot.name = name.trim() || snapshot.name
+    this.#tell()
+  }
+
+  forget(snapshot: Snapshot): void {
+    const at = this.#snapshots.indexOf(snapshot)
+    if (at >= 0) this.#snapshots.splice(at, 1)
+    this.#tell()
+  }
+
+  #free(): string {
+    const taken = new Set(this.#snapshots.map(({ name }) => name))
+    for (let k = 1; ; k++) if (!taken.has(`design ${k}`)) return `design ${k}`
+  }
+
+  #move(by: number): Step | undefined {
+    this.#hand = undefined
+    if (!this.#steps[this.#at + by]) return undefined
+    this.#at += by
+    this.#tell()
+    return this.present
+  }
+
+  #tell(): void {
+    for (const listener of this.#listeners) listener()
+  }
+}
+
+function same(a: Step, b: Step): boolean {
+  const longest = Math.max(a.changes.length, b.changes.length)
+  return a.text === b.text && Array.from({ length: longest }).every((_, k) => (a.changes[k] ?? 0) === (b.changes[k] ?? 0))
+}

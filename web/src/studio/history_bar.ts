@@ -1,0 +1,132 @@
+import { el, svg } from '../dom'
+import type { History, Snapshot, Step } from './history'
+import './studio.css'
+
+/** What the page does when the bar is used. */
+export interface Shows {
+  /** Shows another design. */
+  show: (step: Step) => void
+  /** Compares with a design that was given a name, or with none of them any more. */
+  compare: (snapshot: Snapshot | undefined) => void
+}
+
+/** An arrow that turns back, and the same that turns forth. */
+const BACK = 'M3.5 6.5h6a3.5 3.5 0 0 1 0 7h-3M6.5 3.5l-3 3l3 3'
+const FORTH = 'M12.5 6.5h-6a3.5 3.5 0 0 0 0 7h3M9.5 3.5l3 3l-3 3'
+
+/** Buttons for undo, redo, reset and the designs that were given a name; and their keys, wherever the focus is but in a text. */
+export function historyBar(history: History, { show, compare }: Shows): HTMLElement {
+  const icon = (path: string) => svg('svg', { viewBox: '0 0 16 16', 'aria-hidden': 'true' }, svg('path', { d: path }))
+  const undo = () => history.undo()
+  const redo = () => history.redo()
+  const move = (by: () => Step | undefined) => {
+    const step = by()
+    if (step) show(step)
+  }
+  const back = el('button', { type: 'button', class: 'icon', 'data-testid': 'undo', onclick: () => move(undo) }, icon(BACK))
+  const forth = el('button', { type: 'button', class: 'icon', 'data-testid': 'redo', onclick: () => move(redo) }, icon(FORTH))
+  const reset = el('button', { type: 'button', title: 'Back to the design as opened', 'data-testid': 'reset-design', onclick: () => show(history.reset()) }, 'Reset')
+  const sync = () => {
+    for (const [button, what, keys, of] of [[back, 'Undo', 'Ctrl+Z', history.undoable], [forth, 'Redo', 'Ctrl+Y', history.redoable]] as const) {
+      button.disabled = of === undefined
+      button.title = of === undefined ? `${what} (${keys})` : `${what}: ${of} (${keys})`
+      button.setAttribute('aria-label', button.title)
+    }
+    reset.disabled = !history.changed
+  }
+  history.onChange(sync)
+  sync()
+  document.addEventListener('keydown', (event) => {
+    const by = stepOf(event)
+    if (!by || event.defaultPrevented || (event.target as HTMLElement).closest('input:not([type=range]), textarea, [contenteditable=true], dialog')) return
+    event.preventDefault()
+    move(by === 'undo' ? undo : redo)
+  })
+  return el('div', { class: 'history', role: 'group', 'aria-label': 'Designs' }, back, forth, reset, snapshots(history, { show, compare }))
+}
+
+/** What a key with Ctrl, or with the command key, asks for. */
+function stepOf({ key, ctrlKey, metaKey, altKey, shiftKey }: KeyboardEvent): 'undo' | 'redo' | undefined {
+  if (ctrlKey === metaKey || altKey) return undefined
+  const letter = key.toLowerCase()
+  if (letter === 'z') return shiftKey ? 'redo' : 'undo'
+  return letter === 'y' && !shiftKey ? 'redo' : undefined
+}
+
+/** A button that opens the designs with names: keep this one, take another, compare with it, rename and delete it. */
+function snapshots(history: History, { show, compare }: Shows): HTMLElement {
+  let compared: Snapshot | undefined
+  const name = el('input', { type: 'text', placeholder: 'name of this design', 'aria-label': 'Name of this design', 'data-testid': 'snapshot-name' })
+  const form = el('form', { class: 'keep' }, name, el('button', { 'data-testid': 'snapshot-keep' }, 'Keep'))
+  const list = el('ul', { 'aria-label': 'Designs with names', 'data-testid': 'snapshots' })
+  const panel = el('div', { class: 'menu designs', hidden: true }, form, list)
+  const button = el('button', { type: 'button', 'aria-expanded': 'false', 'data-testid': 'designs', onclick: () => open(!!panel.hidden) })
+  const element = el('div', { class: 'dropdown' }, button, panel)
+  const open = (wanted: boolean) => {
+    panel.hidden = !wanted
+    button.setAttribute('aria-expanded', String(wanted))
+    if (wanted) name.focus()
+  }
+  const choose = (snapshot: Snapshot | undefined) => {
+    compared = snapshot
+    compare(snapshot)
+    render()
+  }
+  const row = (snapshot: Snapshot): HTMLElement => {
+    const field = el('input', { type: 'text', value: snapshot.name, 'data-testid': 'snapshot-rename', onchange: () => {
+      history.rename(snapshot, field.value)
+      label()
+    } })
+    const action = (title: string, name: string, run: () => void) => el('button', { type: 'button', name: `${name} ${snapshot.id}`, title, 'data-testid': `snapshot-${name.toLowerCase()}`, onclick: run }, name)
+    const actions = [
+      action('Take this design again', 'Take', () => (show(history.take(snapshot)), open(false), button.focus())),
+      action('Compare the present design with it', 'Compare', () => choose(compared === snapshot ? undefined : snapshot)),
+      action('Delete this design', 'Delete', () => {
+        if (compared === snapshot) choose(undefined)
+        history.forget(snapshot)
+        name.focus()
+      }),
+    ]
+    actions[1].setAttribute('aria-pressed', String(compared === snapshot))
+    const label = () => {
+      field.value = snapshot.name
+      field.setAttribute('aria-label', `Name of ${snapshot.name}`)
+      for (const one of actions) one.setAttribute('aria-label', `${one.title}: ${snapshot.name}`)
+    }
+    label()
+    return el('li', {}, field, ...actions)
+  }
+  let shown = ''
+  const render = () => {
+    const key = [compared?.id, ...history.snapshots.map(({ id }) => id)].join()
+    if (key === shown) return
+    shown = key
+    const focused = (document.activeElement as HTMLButtonElement | null)?.name
+    list.replaceChildren(...history.snapshots.map(row))
+    list.hidden = history.snapshots.length === 0
+    button.textContent = `Designs${history.snapshots.length > 0 ? ` ${history.snapshots.length}` : ''} ▾`
+    for (const one of list.querySelectorAll('button')) if (focused && one.name === focused) one.focus()
+  }
+  form.addEventListener('submit', (event) => {
+    event.preventDefault()
+    history.keep(name.value)
+    name.value = ''
+  })
+  element.addEventListener('keydown', (event) => {
+    if (event.key !== 'Escape' || panel.hidden) return
+    event.preventDefault()
+    open(false)
+    button.focus()
+  })
+  // Only where the focus goes elsewhere: a list that is made anew loses it to nothing.
+  element.addEventListener('focusout', ({ relatedTarget }) => {
+    if (relatedTarget && !element.contains(relatedTarget as Node)) open(false)
+  })
+  document.addEventListener('pointerdown', ({ target }) => {
+    if (!panel.hidden && !element.contains(target as Node)) open(false)
+  })
+  history.onChange(render)
+  shown = '-'
+  render()
+  return element
+}

@@ -1,0 +1,283 @@
+import { el, prose } from '../dom'
+import type { OptimizeOffer, OptimizeRequest, Running, SearchGoal, SearchVariable, Studies, StudyResult, ToleranceOffer, ToleranceRequest } from '../engine/engine'
+import { figure, pretty } from '../format'
+import { factTable } from '../page/checks'
+import './studio.css'
+
+/** Lines of a study under way that are shown. */
+const LINES = 5
+
+/** What the panes need of the page. */
+export interface StudyHost {
+  studies: Studies
+  /** The text of the present design. */
+  text: () => string
+  /** Shows the design that a study found; its changes count from the text that was studied. */
+  take: (result: StudyResult, studied: string) => void
+}
+
+/** A study with its form, its progress and its result. */
+export interface StudyPane {
+  readonly element: HTMLElement
+  /** To be called when the pane is opened, and when the text changes while it is: what can be chosen is read again, but for what was changed by hand. */
+  refresh(): void
+}
+
+/** Searches for the best design. */
+export function optimizePane(host: StudyHost): StudyPane {
+  return pane(host, {
+    name: 'Optimise',
+    offer: (text) => host.studies.optimizeOffer(text),
+    form: optimizeForm,
+    start: (text, request) => host.studies.optimize(text, request),
+  })
+}
+
+/** Studies how exactly the design must be made. */
+export function tolerancePane(host: StudyHost): StudyPane {
+  return pane(host, {
+    name: 'Tolerance',
+    offer: (text) => host.studies.toleranceOffer(text),
+    form: toleranceForm,
+    start: (text, request) => host.studies.tolerance(text, request),
+  })
+}
+
+interface Form<Request> {
+  elements: HTMLElement[]
+  /** What is asked for; in words, why that cannot be. */
+  request: () => Request | string
+}
+
+/** What is particular to a study. */
+interface Kind<Offer, Request> {
+  name: string
+  offer: (text: string) => Promise<Offer>
+  form: (offer: Offer) => Form<Request>
+  start: (text: string, request: Request) => Running<StudyResult>
+}
+
+function pane<Offer, Request>(host: StudyHost, { name, offer, form, start }: Kind<Offer, Request>): StudyPane {
+  const testId = name.toLowerCase()
+  const element = el('section', { class: 'study', 'aria-label': name, 'data-testid': testId })
+  const announced = el('p', { class: 'hidden', role: 'status' })
+  /** The text that the form is of. */
+  let read: string | undefined
+  let touched = false
+  let shown: 'nothing' | 'form' | 'progress' | 'result' = 'nothing'
+
+  const show = (...parts: HTMLElement[]) => {
+    const focused = element.contains(document.activeElement)
+    element.replaceChildren(...parts, announced)
+    // What had the focus is gone with what was there.
+    if (focused) element.querySelector<HTMLElement>('.acts button:not(:disabled)')?.focus()
+  }
+  const refused = (error: unknown) => el('p', { class: 'refused', role: 'alert', 'data-testid': `${testId}-refused` }, ...prose(error instanceof Error ? error.message : String(error)))
+
+  const showForm = (made: Form<Request>, refusal?: HTMLElement) => {
+    shown = 'form'
+    const why = el('span', { class: 'muted', 'data-testid': `${testId}-why` })
+    const run = el('button', { type: 'submit', class: 'first', 'data-testid': `${testId}-run` }, name)
+    const again = el('button', { type: 'button', hidden: true, 'data-testid': `${testId}-again`, onclick: () => void load() }, 'Read the changed model')
+    const sync = () => {
+      const request = made.request()
+      run.disabled = typeof request === 'string'
+      why.replaceChildren(...prose(typeof request === 'string' ? request : ''))
+      again.hidden = read === host.text()
+    }
+    const whole = el('form', { class: 'study', novalidate: true, oninput: () => ((touched = true), sync()) }, ...(refusal ? [refusal] : []), ...made.elements, el('div', { class: 'acts' }, run, again, why))
+    whole.addEventListener('submit', (event) => {
+      event.preventDefault()
+      const request = made.request()
+      if (typeof request !== 'string') void work(made, request)
+    })
+    stale = sync
+    sync()
+    show(whole)
+  }
+  let stale = () => {}
+
+  const load = async () => {
+    const text = host.text()
+    ;[read, touched] = [text, false]
+    try {
+      const offered = await offer(text)
+      if (read === text && shown !== 'progress') showForm(form(offered))
+    } catch (error) {
+      if (read !== text || shown === 'progress') return
+      shown = 'nothing'
+      show(refused(error))
+    }
+  }
+
+  const work = async (made: Form<Request>, request: Request) => {
+    shown = 'progress'
+    const text = host.text()
+    const bar = el('progress', { 'aria-label': `Progress of ${name.toLowerCase()}`, 'data-testid': `${testId}-progress` })
+    const told = el('pre', { class: 'told', 'data-testid': `${testId}-lines` })
+    const cancel = el('button', { type: 'button', 'data-testid': `${testId}-cancel`, onclick: () => {
+      cancel.disabled = true
+      cancel.textContent = 'Ending …'
+      running.cancel()
+    } }, 'Cancel')
+    const lines: string[] = []
+    show(bar, told, el('div', { class: 'acts' }, cancel, el('span', { class: 'muted' }, 'Cancel keeps the best so far.')))
+    let running: Running<StudyResult>
+    try {
+      running = start(text, request)
+      running.onProgress((done, total, line) => {
+        if (total === null) bar.removeAttribute('value')
+        else Object.assign(bar, { max: Math.max(total, 1), value: done })
+        if (line === '' || line === lines.at(-1)) return
+        lines.push(line)
+        told.textContent = lines.slice(-LINES).join('\n')
+      })
+      showResult(made, await running.result, text)
+    } catch (error) {
+      showForm(made, refused(error))
+      announced.textContent = `${name} failed.`
+    }
+  }
+
+  const showResult = (made: Form<Request>, result: StudyResult, text: string) => {
+    shown = 'result'
+    const found = result.change !== null || result.text !== null
+    const away = () => {
+      showForm(made)
+      if (!touched) refresh()
+    }
+    const take = el('button', { type: 'button', class: 'first', 'data-testid': `${testId}-take`, onclick: () => (host.take(result, text), away()) }, 'Take this design')
+    const discard = el('button', { type: 'button', 'data-testid': `${testId}-discard`, onclick: away }, found ? 'Discard' : 'Back')
+    const outcome = el('p', { class: 'outcome', 'data-testid': `${testId}-outcome` }, ...prose(result.message))
+    const since = el('p', { class: 'outcome stale', 'data-testid': `${testId}-stale` }, 'The design has changed since: this is of the design as it was. To take it leaves out what has changed.')
+    stale = () => (since.hidden = host.text() === text)
+    stale()
+    show(outcome, since, el('div', { class: 'acts' }, ...(found ? [take] : []), discard), el('div', { class: 'checks' }, ...result.tables.map(factTable)))
+    announced.textContent = result.message
+  }
+
+  const refresh = () => {
+    if (read !== host.text() && (shown === 'nothing' || (shown === 'form' && !touched))) void load()
+    else stale()
+  }
+  return { element, refresh }
+}
+
+function optimizeForm({ variables, goals, limits, starts, iterations }: OptimizeOffer): Form<OptimizeRequest> {
+  const searched = variables.map(variableRow)
+  const wanted = goals.map(goalRow)
+  const from = whole('Starts', starts, 1, 100_000, 'optimise-starts')
+  const most = whole('Iterations at most', iterations, 1, 100_000, 'optimise-iterations')
+  return {
+    elements: [
+      group('Variables', 'within what they may change', table(['variable', 'lowest', 'highest', ''], searched.map(({ row }) => row))),
+      goals.length > 0
+        ? group('Goals', 'made as small as possible, or brought to their targets', table(['metric', 'now', 'weight', 'target'], wanted.map(({ row }) => row)))
+        : group('Goals', '', el('p', { class: 'muted' }, ...prose('The model has no metrics, such as a target curve that is drawn over a plot: add `[metrics]` to its text.'))),
+      ...(limits.length > 0 ? [group('Limits', 'kept as the text has them', el('ul', { class: 'limits' }, ...limits.map((limit) => el('li', {}, ...prose(limit)))))] : []),
+      el('div', { class: 'settings' }, from.element, most.element),
+    ],
+    request: () => {
+      const [chosen, aims] = [searched.filter(({ chosen }) => chosen()), wanted.filter(({ chosen }) => chosen())]
+      if (chosen.length === 0) return 'Choose a variable that may change.'
+      if (aims.length === 0) return goals.length > 0 ? 'Choose a goal.' : ''
+      const asked = {
+        variables: chosen.map(({ value }) => value()),
+        goals: aims.map(({ value }) => value()),
+        starts: from.value(),
+        iterations: most.value(),
+      }
+      return [...asked.variables, ...asked.goals, asked.starts, asked.iterations].find((part) => typeof part === 'string') ?? (asked as OptimizeRequest)
+    },
+  }
+}
+
+/** A row of a form: whether it is chosen, and what it says; in words, why that cannot be. */
+interface Row<T> {
+  row: HTMLElement
+  chosen: () => boolean
+  value: () => T | string
+}
+
+function variableRow({ name, unit, bounds, chosen }: SearchVariable): Row<OptimizeRequest['variables'][number]> {
+  const [low, high] = [0, 1].map((end) => field(`${end ? 'highest' : 'lowest'} of ${name}`, bounds?.[end]))
+  const choice = choose(name, chosen && bounds !== null, [low, high])
+  return {
+    row: el('tr', { 'data-testid': `search-${name}` }, el('td', {}, choice.element), el('td', {}, low), el('td', {}, high), el('td', { class: 'unit' }, pretty(unit))),
+    chosen: choice.chosen,
+    value: () => {
+      const ends: [number, number] = [low.valueAsNumber, high.valueAsNumber]
+      if (!ends.every(Number.isFinite)) return `\`${name}\` needs a lowest and a highest value.`
+      return ends[0] < ends[1] ? { name, bounds: ends } : `The lowest value of \`${name}\` is not below its highest.`
+    },
+  }
+}
+
+function goalRow({ metric, unit, value, weight, target, curve, chosen }: SearchGoal): Row<OptimizeRequest['goals'][number]> {
+  const counts = field(`weight of ${metric}`, weight)
+  const wanted = field(`target of ${metric}`, target ?? undefined)
+  wanted.placeholder = 'least'
+  const choice = choose(metric, chosen, curve ? [counts] : [counts, wanted])
+  const aim = curve ? el('span', { class: 'muted' }, 'its curve') : el('span', {}, wanted, ' ', el('span', { class: 'unit' }, pretty(unit)))
+  return {
+    row: el('tr', { 'data-testid': `goal-${metric}` }, el('td', {}, choice.element), el('td', { class: 'figure' }, value === null ? '–' : figure(value, unit)), el('td', {}, counts), el('td', {}, aim)),
+    chosen: choice.chosen,
+    value: () => {
+      if (!(counts.valueAsNumber > 0)) return `The weight of \`${metric}\` must be above zero.`
+      if (wanted.validity.badInput) return `The target of \`${metric}\` is no number.`
+      return { metric, weight: counts.valueAsNumber, target: curve || wanted.value === '' ? null : wanted.valueAsNumber }
+    },
+  }
+}
+
+function toleranceForm({ tolerances, metrics, samples, seed }: ToleranceOffer): Form<ToleranceRequest> {
+  const drawn = whole('Designs drawn', samples, 0, 10_000_000, 'tolerance-samples')
+  const from = whole('Seed', seed, 1, 4_294_967_295, 'tolerance-seed')
+  const rows = tolerances.map(({ name, tolerance, unit, distribution }) => el('tr', {}, el('td', {}, name), el('td', {}, `±${figure(tolerance, unit)}`), el('td', { class: 'muted' }, distribution)))
+  return {
+    elements: [
+      group('Tolerances', 'as the text has them', rows.length > 0
+        ? table(['variable', 'tolerance', 'distribution'], rows)
+        : el('p', { class: 'muted' }, ...prose('The model does not say how far its design variables may be off: add `tolerance = 0.1` to those in `[design]` or `[parameters]`.'))),
+      ...(metrics.length > 0 ? [el('p', { class: 'muted' }, ...prose(`Looked at: ${metrics.map((metric) => `\`${metric}\``).join(', ')}, and all curves.`))] : []),
+      el('div', { class: 'settings' }, drawn.element, from.element),
+    ],
+    request: () => {
+      if (tolerances.length === 0) return ' '
+      const asked = { samples: drawn.value(), seed: from.value() }
+      return Object.values(asked).find((part) => typeof part === 'string') ?? (asked as ToleranceRequest)
+    },
+  }
+}
+
+function group(title: string, about: string, content: HTMLElement): HTMLElement {
+  return el('fieldset', {}, el('legend', {}, title, ' ', el('span', { class: 'muted' }, about)), content)
+}
+
+function table(header: string[], rows: HTMLElement[]): HTMLElement {
+  return el('div', { class: 'scroll' }, el('table', {}, el('thead', {}, el('tr', {}, ...header.map((cell) => el('th', { scope: 'col' }, cell)))), el('tbody', {}, ...rows)))
+}
+
+/** A field for a number. */
+function field(label: string, value: number | undefined): HTMLInputElement {
+  return el('input', { type: 'number', step: 'any', 'aria-label': label, value })
+}
+
+/** A box to choose something by, whose fields are of use only then. */
+function choose(name: string, chosen: boolean, fields: HTMLInputElement[]): { element: HTMLElement; chosen: () => boolean } {
+  const box = el('input', { type: 'checkbox', checked: chosen, onchange: () => sync() })
+  const sync = () => {
+    for (const one of fields) one.disabled = !box.checked
+  }
+  sync()
+  return { element: el('label', {}, box, name), chosen: () => box.checked }
+}
+
+/** A field for a whole number. */
+function whole(title: string, value: number, least: number, most: number, testId: string): { element: HTMLElement; value: () => number | string } {
+  const input = el('input', { type: 'number', min: least, max: most, step: 1, value, required: true, 'data-testid': testId })
+  return {
+    element: el('label', {}, title, ' ', input),
+    value: () => (input.checkValidity() ? input.valueAsNumber : `${title}: a whole number from ${least} to ${most}.`),
+  }
+}

@@ -1,0 +1,18 @@
+import { mkdtempSync, writeFileSync } from 'node:fs'
+import { tmpdir } from 'node:os'
+import { join } from 'node:path'
+import { pathToFileURL } from 'node:url'
+import { build, type Rollup } from 'vite'
+
+/** Builds a page of one part of the page, `NAME.ts` beside this file, and gives its address. */
+export async function harness(name: string): Promise<string> {
+  const made = (await build({
+    configFile: false,
+    logLevel: 'silent',
+    build: { write: false, target: 'es2022', modulePreload: false, rolldownOptions: { input: join(import.meta.dirname, `${name}.ts`), output: { codeSplitting: false } } },
+  })) as Rollup.RollupOutput
+  const parts = made.output.map((part) => (part.type === 'chunk' ? `<script type="module">${part.code.replaceAll('</script', '<\\/script')}</script>` : `<style>${part.source}</style>`))
+  const path = join(mkdtempSync(join(tmpdir(), 'hardpoint-harness-')), `${name}.html`)
+  writeFileSync(path, `<!doctype html><html lang="en"><meta charset="utf-8"><meta name="viewport" content="width=device-width, initial-scale=1"><title>${name}</title><body>${parts.reverse().join('\n')}</body></html>`)
+  return pathToFileURL(path).href
+}

@@ -1,0 +1,106 @@
+import '../../src/style.css'
+import '../../src/scene/palette.css'
+import { el } from '../../src/dom'
+import type { OptimizeOffer, OptimizeRequest, Running, StudyResult, ToleranceOffer, ToleranceRequest } from '../../src/engine/engine'
+import { Plot } from '../../src/plot'
+import { read } from '../../src/report'
+import { State } from '../../src/state'
+import { History, type Step } from '../../src/studio/history'
+import { historyBar } from '../../src/studio/history_bar'
+import { Sketch } from '../../src/studio/sketch'
+import type { Point } from '../../src/studio/stroke'
+import { optimizePane, tolerancePane } from '../../src/studio/studies'
+import { EMPTY } from '../mechanisms'
+
+declare global {
+  interface Window {
+    designs: History
+    shown: Step[]
+    compared: (string | undefined)[]
+    /** The studies that were begun; the tests end them. */
+    studies: Study[]
+    taken: { change: number[] | null; studied: string }[]
+    /** The text of the present design. */
+    model: string
+    refresh: () => void
+    drawn?: Point[] | 'cancelled'
+    plot: Plot
+    show: () => void
+  }
+}
+
+/** A study that goes as a test wants it to. */
+interface Study {
+  text: string
+  request: OptimizeRequest | ToleranceRequest
+  cancelled: boolean
+  tell: (done: number, total: number | null, line: string) => void
+  end: (result: StudyResult) => void
+  fail: (message: string) => void
+}
+
+function begin(text: string, request: Study['request']): Running<StudyResult> {
+  const listeners: ((done: number, total: number | null, line: string) => void)[] = []
+  let end!: Study['end']
+  let fail!: (error: Error) => void
+  const result = new Promise<StudyResult>((resolve, reject) => ((end = resolve), (fail = reject)))
+  const study: Study = { text, request, cancelled: false, tell: (...told) => listeners.forEach((listener) => listener(...told)), end, fail: (message) => fail(new Error(message)) }
+  window.studies.push(study)
+  return { result, cancel: () => (study.cancelled = true), onProgress: (listener) => listeners.push(listener) }
+}
+
+const variable = (name: string, chosen: boolean): OptimizeOffer['variables'][number] => ({ name, unit: 'mm', bounds: chosen ? [-15, 15] : null, chosen })
+const optimizeOffer: OptimizeOffer = {
+  variables: [variable('outer_x', true), variable('outer_z', true), variable('rack_z', true), variable('top_x', false)],
+  goals: [
+    { metric: 'toe_error (bump)', unit: 'deg', value: 0.40243, weight: 1, target: null, curve: true, chosen: true },
+    { metric: 'camber_range', unit: 'deg', value: 2.113, weight: 1, target: null, curve: false, chosen: false },
+  ],
+  limits: ['`ackermann` (steer): 0.1335 deg at least, 0.13356 deg now'],
+  starts: 1,
+  iterations: 100,
+}
+const toleranceOffer: ToleranceOffer = {
+  tolerances: [{ name: 'ball_joint', tolerance: 0.3, unit: 'mm', distribution: 'truncated' }, { name: 'lca_front_z', tolerance: 0.5, unit: 'mm', distribution: 'normal' }],
+  metrics: ['toe_range', 'camber_range'],
+  samples: 10_000,
+  seed: 1,
+}
+
+Object.assign(window, { shown: [], compared: [], studies: [], taken: [], model: 'name = "strut"' })
+const first: Step = { text: window.model, changes: [0, 0], label: 'opened' }
+window.designs = new History(first)
+const bar = historyBar(window.designs, { show: (step) => window.shown.push(step), compare: (snapshot) => window.compared.push(snapshot?.name) })
+
+const host = {
+  studies: {
+    optimizeOffer: async () => {
+      if (window.model === 'broken') throw new Error('the mechanism does not move: `rack_drive` has no law')
+      return optimizeOffer
+    },
+    optimize: begin,
+    toleranceOffer: async () => toleranceOffer,
+    tolerance: begin,
+  },
+  text: () => window.model,
+  take: ({ change }: StudyResult, studied: string) => window.taken.push({ change, studied }),
+}
+const panes = [optimizePane(host), tolerancePane(host)]
+window.refresh = () => panes.forEach((pane) => pane.refresh())
+
+const times = Float32Array.from({ length: 101 }, (_, k) => k / 10)
+const state = new State(read({ ...EMPTY, times: [0] }, () => times))
+const plot = new Plot(state, 'plot')
+window.plot = plot
+window.show = () => plot.show({ title: 'toe', unit: 'deg', lines: [{ label: 'toe', color: '#0b61bd', curve: times.map((t) => Math.sin(t)) }] })
+const sketch = el('button', { type: 'button', id: 'sketch', onclick: () => new Sketch(plot, { done: (points) => (window.drawn = points), cancel: () => (window.drawn = 'cancelled') }) }, 'Draw a target')
+document.body.append(
+  el('header', { class: 'topbar' }, el('h1', {}, 'A strut'), el('span', { class: 'space' }), bar, sketch),
+  el('div', { id: 'curves', style: 'height: 330px; display: flex; padding: 0 14px' }, plot.element),
+  el('div', { class: 'panel' }, panes[0].element),
+  el('div', { class: 'panel' }, panes[1].element),
+  el('input', { type: 'text', 'aria-label': 'any text', id: 'text' }),
+)
+window.show()
+window.refresh()
+requestAnimationFrame(() => requestAnimationFrame(() => performance.mark('ready')))
