@@ -50,6 +50,18 @@ export class State {
   #solved?: Design
   #sensed?: { report: Report; settings: string }
   #edition = 0
+  #ending = new AbortController()
+
+  /** Ends what listens beyond the page's own elements, when the page is made anew. */
+  get ended(): AbortSignal {
+    return this.#ending.signal
+  }
+
+  /** Nothing of it is shown any more. */
+  end(): void {
+    this.pause()
+    this.#ending.abort()
+  }
 
   constructor(readonly report: Report) {
     const quantity = firstQuantity(report)

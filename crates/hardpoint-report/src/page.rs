@@ -778,7 +778,11 @@ pub(crate) mod tests {
         let page = html(&payload("</script><b>{{code}}")).unwrap();
         assert!(page.contains("<title>&lt;/script&gt;&lt;b&gt;{{code}}</title>"));
         assert!(!page.contains("<b>"));
-        assert_eq!(page.matches("</script").count(), 4, "ends of the payload, the engine, the code and what starts it");
+        assert_eq!(
+            page.matches("</script").count(),
+            4,
+            "ends of the payload, the engine, the code and what starts it"
+        );
     }
 
     #[test]

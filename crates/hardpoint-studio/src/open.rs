@@ -72,7 +72,12 @@ impl Open {
         let opened = Opened {
             cases: whole.model.cases.iter().map(|case| case.name.clone()).collect(),
             grips: grips(&file),
-            frames: file.model.bodies.iter().map(|body| Quat::from_rotation(body.frame.rot).to_array()).collect(),
+            frames: file
+                .model
+                .bodies
+                .iter()
+                .map(|body| Quat::from_rotation(body.frame.rot).to_array())
+                .collect(),
             stop,
         };
         Ok((Self { whole, file, analysis, today, bare, summary, shown, memory: Solution::default() }, opened))

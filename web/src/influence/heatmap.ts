@@ -102,7 +102,7 @@ class HeatMap {
     onSchemeChange(() => {
       this.#scale = undefined
       this.#draw()
-    })
+    }, state.ended)
     this.#layOut()
   }
 

@@ -113,8 +113,8 @@ export class View {
     }
     state.onChoice(remark)
     state.onPoint(remark)
-    onSchemeChange(() => this.#repaint())
-    addEventListener('beforeprint', () => this.#still())
+    onSchemeChange(() => this.#repaint(), state.ended)
+    addEventListener('beforeprint', () => this.#still(), { signal: state.ended })
     new ResizeObserver(([{ contentRect }]) => {
       this.#extent = { width: Math.round(contentRect.width), height: Math.round(contentRect.height) }
       this.#resize()
@@ -333,7 +333,7 @@ export class View {
     this.#pending = true
     requestAnimationFrame(() => {
       this.#pending = false
-      this.#render()
+      if (!this.state.ended.aborted) this.#render()
     })
   }
 

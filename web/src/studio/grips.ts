@@ -66,6 +66,11 @@ export class Grips {
     this.#show()
   }
 
+  /** Whether a hand holds one. */
+  get holding(): boolean {
+    return this.#hold !== undefined
+  }
+
   get on(): boolean {
     return !this.element.hidden
   }
