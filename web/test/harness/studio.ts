@@ -95,7 +95,7 @@ window.plot = plot
 window.show = () => plot.show({ title: 'toe', unit: 'deg', lines: [{ label: 'toe', color: '#0b61bd', curve: times.map((t) => Math.sin(t)) }] })
 const sketch = el('button', { type: 'button', id: 'sketch', onclick: () => new Sketch(plot, { done: (points) => (window.drawn = points), cancel: () => (window.drawn = 'cancelled') }) }, 'Draw a target')
 document.body.append(
-  el('header', { class: 'topbar' }, el('h1', {}, 'A strut'), el('span', { class: 'space' }), bar, sketch),
+  el('header', { class: 'topbar', style: 'flex-wrap: wrap' }, el('h1', {}, 'A strut'), el('span', { class: 'space' }), bar, sketch),
   el('div', { id: 'curves', style: 'height: 330px; display: flex; padding: 0 14px' }, plot.element),
   el('div', { class: 'panel' }, panes[0].element),
   el('div', { class: 'panel' }, panes[1].element),
