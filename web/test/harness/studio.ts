@@ -53,7 +53,7 @@ const variable = (name: string, chosen: boolean): OptimizeOffer['variables'][num
 const optimizeOffer: OptimizeOffer = {
   variables: [variable('outer_x', true), variable('outer_z', true), variable('rack_z', true), variable('top_x', false)],
   goals: [
-    { metric: 'toe_error (bump)', unit: 'deg', value: 0.40243, weight: 1, target: null, curve: true, chosen: true },
+    { metric: 'toe_error', unit: 'deg', value: 0.40243, weight: 1, target: null, curve: true, chosen: true },
     { metric: 'camber_range', unit: 'deg', value: 2.113, weight: 1, target: null, curve: false, chosen: false },
   ],
   limits: ['`ackermann` (steer): 0.1335 deg at least, 0.13356 deg now'],
