@@ -1,4 +1,5 @@
 import { defineConfig } from 'vitest/config'
+import { packed } from './packed'
 
 /**
  * Milliseconds after which a test counts as hung: a quarter of an hour, where the slowest takes seconds. No result may depend on
@@ -9,6 +10,7 @@ const HANG = 900_000
 // The built files are committed in the Rust crate that embeds them, so their names are fixed
 // and nothing in them depends on the folder or on the time of the build.
 export default defineConfig({
+  plugins: [packed()],
   build: {
     outDir: '../crates/hardpoint-report/page',
     emptyOutDir: false,

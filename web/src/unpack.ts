@@ -6,8 +6,7 @@ export type Decode = (curve: wire.Curve) => Curve
 
 /** What the report's file holds, as `crates/hardpoint-report/src/encoding.rs` packs it. */
 export async function unpack(base64: string): Promise<{ payload: wire.Payload; decode: Decode }> {
-  const inflated = new Blob([bytesOf(base64)]).stream().pipeThrough(new DecompressionStream('deflate-raw'))
-  const block = new Uint8Array(await new Response(inflated).arrayBuffer())
+  const block = await inflated(base64)
   const [json, tracks, gaps, residuals] = new Uint32Array(block.buffer, 0, COUNTS)
   const start = COUNTS * 4 + json
   const payload: wire.Payload = JSON.parse(new TextDecoder().decode(block.subarray(COUNTS * 4, start)))
@@ -15,12 +14,18 @@ export async function unpack(base64: string): Promise<{ payload: wire.Payload; d
   return { payload, decode: (curve) => interleaved(curve.map((index) => values.track(index))) }
 }
 
+/** The bytes that were deflated and written in base64. */
+export async function inflated(base64: string): Promise<Uint8Array<ArrayBuffer>> {
+  const plain = new Blob([bytesOf(base64)]).stream().pipeThrough(new DecompressionStream('deflate-raw'))
+  return new Uint8Array(await new Response(plain).arrayBuffer())
+}
+
 /** Numbers at the head of the block. */
 const COUNTS = 4
 const SCALED = 8
 const BITS = 16
 
-export function bytesOf(base64: string): Uint8Array<ArrayBuffer> {
+function bytesOf(base64: string): Uint8Array<ArrayBuffer> {
   const text = atob(base64.trim())
   // A plain loop: Uint8Array.from is ten times slower.
   const bytes = new Uint8Array(text.length)

@@ -32,6 +32,10 @@ describe.each(Object.entries(schemes))('in the %s scheme', (_, palette) => {
     for (const name of MARKS) expect(contrast(palette[name], palette.view), name).toBeGreaterThan(3)
   })
 
+  test('the model can be read on the page', () => {
+    for (const name of ['code-text', 'code-number', 'accent', 'muted', 'ink']) expect(contrast(palette[name], palette.page), name).toBeGreaterThan(4.5)
+  })
+
   test('labels can be read on the view', () => {
     expect(contrast(palette.label, palette.view)).toBeGreaterThan(4.5)
   })

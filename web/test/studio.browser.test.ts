@@ -98,7 +98,7 @@ describe('a study', () => {
     await page.getByTestId('optimise-run').click()
     expect((await last()).request).toEqual({
       variables: [{ name: 'outer_x', bounds: [-15, 15] }, { name: 'rack_z', bounds: [-15, 20.5] }],
-      goals: [{ metric: 'toe_error (bump)', weight: 1, target: null }, { metric: 'camber_range', weight: 0.5, target: 2 }],
+      goals: [{ metric: 'toe_error', weight: 1, target: null }, { metric: 'camber_range', weight: 0.5, target: 2 }],
       starts: 8,
       iterations: 100,
     })

@@ -9,7 +9,6 @@ import { el, prose } from '../dom'
 import type { Checker, Diagnostic } from '../engine/engine'
 import { changes } from './changes'
 import { type Schema, suggest } from './complete'
-import './editor.css'
 import { toml } from './language'
 import { counted, mark, placeOf, said } from './messages'
 import { theme } from './theme'
@@ -18,6 +17,8 @@ import { theme } from './theme'
 const PAUSE = 250
 /** Milliseconds within which typing on is one step of undo. */
 const STEP = 500
+/** Messages that are listed; the status counts all. */
+const LISTED = 100
 
 export interface Options {
   text: string
@@ -150,7 +151,10 @@ export function editor({ text, check, onValid, schema }: Options): Editor {
     const stale = checked.some(isError)
     status.classList.toggle('stale', stale)
     status.textContent = stale ? `${count}. The page shows the last valid model.` : count
-    list.replaceChildren(...messages.map((message) => el('li', { class: message.severity }, entry(message))))
+    list.replaceChildren(
+      ...messages.slice(0, LISTED).map((message) => el('li', { class: message.severity }, entry(message))),
+      ...(messages.length > LISTED ? [el('li', {}, `and ${messages.length - LISTED} more`)] : []),
+    )
     list.hidden = messages.length === 0
   }
   const entry = (message: Diagnostic) => {

@@ -1,6 +1,6 @@
 import type { Curve } from '../curve'
 import type * as wire from '../payload'
-import { bytesOf, type Decode } from '../unpack'
+import { type Decode, inflated } from '../unpack'
 import type { Failed, Message, Request, Told } from './protocol'
 import type { Order, Report } from './worker'
 import EngineWorker from './worker?worker&inline'
@@ -88,7 +88,5 @@ function isFailed(json: unknown): json is Failed {
 /** The engine's binary that a page carries; none where it carries none. */
 export async function binary(): Promise<WebAssembly.Module | undefined> {
   const text = document.getElementById('engine')?.textContent?.trim()
-  if (!text) return undefined
-  const inflated = new Blob([bytesOf(text)]).stream().pipeThrough(new DecompressionStream('deflate-raw'))
-  return WebAssembly.compile(await new Response(inflated).arrayBuffer())
+  return text ? WebAssembly.compile(await inflated(text)) : undefined
 }

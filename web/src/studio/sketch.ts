@@ -5,8 +5,9 @@ import type { Overlay, Plot } from '../plot'
 import { at, type Point, replaced, roundedIn, smoothed, thinned, upright, written } from './stroke'
 import './studio.css'
 
-/** How near to a point a press takes hold of it, and by how much a press moves at least to be a stroke, px. */
+/** How near to a point a press takes hold of it, a finger from farther; and by how much a press moves at least to be a stroke, px. */
 const NEAR = 10
+const FINGER = 22
 const CLICK = 4
 /** Of what is seen, about how far an arrow key moves the cross, in round numbers: as it is, and with Shift. */
 const STRIDE = 1 / 40
@@ -150,7 +151,7 @@ export class Sketch implements Overlay {
     const here = this.#where(event)
     this.#cross = undefined
     const held = this.#nearest((point) => Math.hypot(...sub(this.#placed(point), here)))
-    if (held && held.away <= NEAR) this.#held = held.index
+    if (held && held.away <= (event.pointerType === 'touch' ? FINGER : NEAR)) this.#held = held.index
     else this.#stroke = [here]
     this.drawn()
   }

@@ -5,7 +5,7 @@ export type Point = readonly [x: number, y: number]
 const BLEND = 0.03
 /** How far a hand trembles, and how far a thinned curve may be from the one drawn, px. */
 const TREMBLE = 7
-const OFF = 1.5
+const OFF = 2
 /** Steps of the numbers across what is seen, at least. */
 const STEPS = 500
 

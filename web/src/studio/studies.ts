@@ -27,6 +27,7 @@ export interface StudyPane {
 export function optimizePane(host: StudyHost): StudyPane {
   return pane(host, {
     name: 'Optimise',
+    verb: 'Optimise',
     offer: (text) => host.studies.optimizeOffer(text),
     form: optimizeForm,
     start: (text, request) => host.studies.optimize(text, request),
@@ -37,6 +38,7 @@ export function optimizePane(host: StudyHost): StudyPane {
 export function tolerancePane(host: StudyHost): StudyPane {
   return pane(host, {
     name: 'Tolerance',
+    verb: 'Study tolerances',
     offer: (text) => host.studies.toleranceOffer(text),
     form: toleranceForm,
     start: (text, request) => host.studies.tolerance(text, request),
@@ -52,12 +54,14 @@ interface Form<Request> {
 /** What is particular to a study. */
 interface Kind<Offer, Request> {
   name: string
+  /** On the button that begins it. */
+  verb: string
   offer: (text: string) => Promise<Offer>
   form: (offer: Offer) => Form<Request>
   start: (text: string, request: Request) => Running<StudyResult>
 }
 
-function pane<Offer, Request>(host: StudyHost, { name, offer, form, start }: Kind<Offer, Request>): StudyPane {
+function pane<Offer, Request>(host: StudyHost, { name, verb, offer, form, start }: Kind<Offer, Request>): StudyPane {
   const testId = name.toLowerCase()
   const element = el('section', { class: 'study', 'aria-label': name, 'data-testid': testId })
   const announced = el('p', { class: 'hidden', role: 'status' })
@@ -77,7 +81,7 @@ function pane<Offer, Request>(host: StudyHost, { name, offer, form, start }: Kin
   const showForm = (made: Form<Request>, refusal?: HTMLElement) => {
     shown = 'form'
     const why = el('span', { class: 'muted', 'data-testid': `${testId}-why` })
-    const run = el('button', { type: 'submit', class: 'first', 'data-testid': `${testId}-run` }, name)
+    const run = el('button', { type: 'submit', class: 'first', 'data-testid': `${testId}-run` }, verb)
     const again = el('button', { type: 'button', hidden: true, 'data-testid': `${testId}-again`, onclick: () => void load() }, 'Read the changed model')
     const sync = () => {
       const request = made.request()

@@ -1,7 +1,8 @@
 import './studio.css'
 import './drawer.css'
 import { el } from '../dom'
-import { editor, type Editor } from '../editor/editor'
+import type { Editor } from '../editor/editor'
+import { openEditor } from '../editor/open'
 import type { Checked, Opened, Setting, Solved, Text } from '../engine/protocol'
 import { type Answer, Refused, Solver } from '../engine/solver'
 import { save } from '../export/save'
@@ -56,7 +57,7 @@ export class Studio {
     this.#text = model.text
     this.history = new History({ text: model.text, settings: [], label: 'as opened' })
     const bar = historyBar(this.history, { show: (step) => void this.#go(step), compare: (snapshot) => void this.#compare(snapshot) })
-    const pane = el('button', { type: 'button', title: 'The text of the model', 'aria-expanded': 'false', 'data-testid': 'model', onclick: () => this.#toggle(pane) }, 'Model')
+    const pane = el('button', { type: 'button', title: 'The text of the model', 'aria-expanded': 'false', 'data-testid': 'model', onclick: () => void this.#toggle(pane) }, 'Model')
     this.#tools.append(bar, this.#cases, pane, this.#status)
     document.body.append(this.#drawer)
     slot(made.bar, this.#tools)
@@ -312,14 +313,14 @@ export class Studio {
     }
   }
 
-  #toggle(button: HTMLElement): void {
+  async #toggle(button: HTMLElement): Promise<void> {
     const open = this.#drawer.hidden !== false
     this.#drawer.hidden = !open
     document.body.classList.toggle('with-drawer', open)
     button.setAttribute('aria-expanded', String(open))
     if (!open) return button.focus()
     if (!this.#editor) {
-      this.#editor = editor({
+      this.#editor = await openEditor({
         text: this.#text,
         check: { check: async (text) => (await this.#sensing.ask<Checked>({ ask: 'check', model: { ...this.model, text } })).json.messages },
         onValid: (text) => void this.replace(text, 'typed'),

@@ -1,7 +1,8 @@
 import '../../src/style.css'
 import '../../src/scene/palette.css'
 import { el } from '../../src/dom'
-import { type Editor, editor } from '../../src/editor/editor'
+import type { Editor } from '../../src/editor/editor'
+import { openEditor } from '../../src/editor/open'
 import type { Diagnostic } from '../../src/engine/engine'
 import schema from '../../../models/hardpoint.schema.json'
 import strut from '../../../models/macpherson.toml?raw'
@@ -37,7 +38,7 @@ async function check(text: string): Promise<Diagnostic[]> {
 
 window.valid = []
 window.asked = 0
-window.pane = editor({ text: strut, check: { check }, onValid: (text) => window.valid.push(text), schema: schema as never })
+window.pane = await openEditor({ text: strut, check: { check }, onValid: (text) => window.valid.push(text), schema: schema as never })
 document.body.append(
   el('main', { style: 'display: grid; grid-template: auto minmax(0, 1fr) auto / minmax(0, 1fr); height: 100vh; min-height: 0' },
     el('button', { id: 'before' }, 'before'), window.pane.element, el('button', { id: 'after' }, 'after')),

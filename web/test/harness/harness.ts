@@ -3,12 +3,14 @@ import { tmpdir } from 'node:os'
 import { join } from 'node:path'
 import { pathToFileURL } from 'node:url'
 import { build, type Rollup } from 'vite'
+import { packed } from '../../packed'
 
 /** Builds a page of one part of the page, `NAME.ts` beside this file, and gives its address. */
 export async function harness(name: string): Promise<string> {
   const made = (await build({
     configFile: false,
     logLevel: 'silent',
+    plugins: [packed()],
     build: { write: false, target: 'es2022', modulePreload: false, rolldownOptions: { input: join(import.meta.dirname, `${name}.ts`), output: { codeSplitting: false } } },
   })) as Rollup.RollupOutput
   const parts = made.output.map((part) => (part.type === 'chunk' ? `<script type="module">${part.code.replaceAll('</script', '<\\/script')}</script>` : `<style>${part.source}</style>`))

@@ -53,7 +53,7 @@ const variable = (name: string, chosen: boolean): OptimizeOffer['variables'][num
 const optimizeOffer: OptimizeOffer = {
   variables: [variable('outer_x', true), variable('outer_z', true), variable('rack_z', true), variable('top_x', false)],
   goals: [
-    { metric: 'toe_error (bump)', unit: 'deg', value: 0.40243, weight: 1, target: null, curve: true, chosen: true },
+    { metric: 'toe_error', unit: 'deg', value: 0.40243, weight: 1, target: null, curve: true, chosen: true },
     { metric: 'camber_range', unit: 'deg', value: 2.113, weight: 1, target: null, curve: false, chosen: false },
   ],
   limits: ['`ackermann` (steer): 0.1335 deg at least, 0.13356 deg now'],
@@ -95,7 +95,7 @@ window.plot = plot
 window.show = () => plot.show({ title: 'toe', unit: 'deg', lines: [{ label: 'toe', color: '#0b61bd', curve: times.map((t) => Math.sin(t)) }] })
 const sketch = el('button', { type: 'button', id: 'sketch', onclick: () => new Sketch(plot, { done: (points) => (window.drawn = points), cancel: () => (window.drawn = 'cancelled') }) }, 'Draw a target')
 document.body.append(
-  el('header', { class: 'topbar' }, el('h1', {}, 'A strut'), el('span', { class: 'space' }), bar, sketch),
+  el('header', { class: 'topbar', style: 'flex-wrap: wrap' }, el('h1', {}, 'A strut'), el('span', { class: 'space' }), bar, sketch),
   el('div', { id: 'curves', style: 'height: 330px; display: flex; padding: 0 14px' }, plot.element),
   el('div', { class: 'panel' }, panes[0].element),
   el('div', { class: 'panel' }, panes[1].element),
