@@ -7,6 +7,7 @@
 //! An answer is a block of bytes: the length of its JSON as four bytes, the JSON, zeros up to a multiple of four, then the numbers of its
 //! curves, `f32`, all little-endian. A curve stands in the JSON as the place of its first number and how many it has.
 
+mod offer;
 mod open;
 mod protocol;
 mod study;
@@ -19,7 +20,9 @@ use hardpoint_report::page::ModelText;
 use serde::Serialize;
 
 pub use protocol::{
-    Checked, Coordinate, Failed, Grip, Message, Opened, Request, Setting, Solved, Studied, Text, Told,
+    Checked, Coordinate, Failed, Grip, Message, Opened, OptimizeOffer, OptimizeRequest, Request, Scattered,
+    SearchGoal, SearchVariable, Searched, Setting, Solved, Studied, Text, Told, ToleranceOffer,
+    ToleranceRequest, Wanted,
 };
 
 use open::Open;
@@ -80,12 +83,14 @@ impl Engine {
             }
             Request::Text { change } => Ok(json(&Text { text: self.opened()?.text(&change)? })),
             Request::Page { model } => Ok(block(&mut study::page(&model)?)),
-            Request::Optimize { model, starts, iterations } => {
-                study::optimized(&model, starts, iterations, tell).map(|found| json(&found))
+            Request::Optimize { model, asked } => {
+                study::optimized(&model, &asked, tell).map(|found| json(&found))
             }
-            Request::Tolerance { model, samples, seed } => {
-                study::toleranced(&model, samples, seed, tell).map(|found| json(&found))
+            Request::Tolerance { model, asked } => {
+                study::toleranced(&model, &asked, tell).map(|found| json(&found))
             }
+            Request::OptimizeOffer { model } => offer::optimize(&whole(&model)?).map(|offer| json(&offer)),
+            Request::ToleranceOffer { model } => offer::tolerance(&whole(&model)?).map(|offer| json(&offer)),
         }
     }
 

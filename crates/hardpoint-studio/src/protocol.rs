@@ -54,21 +54,154 @@ pub enum Request {
         /// The model.
         #[cfg_attr(test, ts(type = "ModelText"))]
         model: ModelText,
-        /// Searches from so many starts; as many as the model says where there is no number.
-        starts: Option<usize>,
-        /// Iterations of each at most; as many as the model says where there is no number.
-        iterations: Option<usize>,
+        /// What is asked besides what the text says.
+        asked: OptimizeRequest,
+    },
+    /// What a search may choose. Answered by [`OptimizeOffer`].
+    OptimizeOffer {
+        /// The model.
+        #[cfg_attr(test, ts(type = "ModelText"))]
+        model: ModelText,
+    },
+    /// What a study of tolerances may choose. Answered by [`ToleranceOffer`].
+    ToleranceOffer {
+        /// The model.
+        #[cfg_attr(test, ts(type = "ModelText"))]
+        model: ModelText,
     },
     /// What the tolerances of a model come to. Answered by [`Studied`].
     Tolerance {
         /// The model.
         #[cfg_attr(test, ts(type = "ModelText"))]
         model: ModelText,
-        /// Designs that are drawn; as many as the model says where there is no number.
-        samples: Option<usize>,
-        /// The seed of these.
-        seed: Option<u32>,
+        /// What is asked besides what the text says.
+        asked: ToleranceRequest,
     },
+}
+
+/// What is asked of an optimisation; all else is as the text has it.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[cfg_attr(test, derive(TS))]
+pub struct OptimizeRequest {
+    /// What may change, and within what.
+    pub variables: Vec<Searched>,
+    /// What is to be small.
+    pub goals: Vec<Wanted>,
+    /// From how many designs it starts.
+    pub starts: usize,
+    /// After so many iterations a search ends.
+    pub iterations: usize,
+}
+
+/// A variable that is searched over.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[cfg_attr(test, derive(TS))]
+pub struct Searched {
+    /// Its name.
+    pub name: String,
+    /// Lowest and highest change, or value of a parameter.
+    pub bounds: [f64; 2],
+}
+
+/// A metric that is made small.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[cfg_attr(test, derive(TS))]
+pub struct Wanted {
+    /// Its name.
+    pub metric: String,
+    /// How much its unit counts.
+    pub weight: f64,
+    /// Where it is to be; as small as possible where there is none.
+    pub target: Option<f64>,
+}
+
+/// What an optimisation of a text may choose, and what the text chooses: `[optimize]`, and what could stand there.
+#[derive(Clone, Debug, Serialize)]
+#[cfg_attr(test, derive(TS))]
+pub struct OptimizeOffer {
+    /// All design variables.
+    pub variables: Vec<SearchVariable>,
+    /// All metrics.
+    pub goals: Vec<SearchGoal>,
+    /// What must hold, a sentence each.
+    pub limits: Vec<String>,
+    /// From how many designs it starts.
+    pub starts: usize,
+    /// After so many iterations a search ends.
+    pub iterations: usize,
+}
+
+/// A design variable that an optimisation may change.
+#[derive(Clone, Debug, Serialize)]
+#[cfg_attr(test, derive(TS))]
+pub struct SearchVariable {
+    /// Its name.
+    pub name: String,
+    /// Its unit.
+    pub unit: String,
+    /// Lowest and highest change, or value of a parameter; none where the text has no bounds.
+    pub bounds: Option<[f64; 2]>,
+    /// Whether the search of the text changes it.
+    pub chosen: bool,
+}
+
+/// A metric that an optimisation may make small, or bring to a target.
+#[derive(Clone, Debug, Serialize)]
+#[cfg_attr(test, derive(TS))]
+pub struct SearchGoal {
+    /// Its name.
+    pub metric: String,
+    /// Its unit.
+    pub unit: String,
+    /// The value of the design of the text, in the first case that it is taken in, where it is known.
+    pub value: Option<f64>,
+    /// How much its unit counts.
+    pub weight: f64,
+    /// Where it is to be; as small as possible where there is none.
+    pub target: Option<f64>,
+    /// Whether its target is a curve, which the text has: then it has none of its own.
+    pub curve: bool,
+    /// Whether it is a goal of the text.
+    pub chosen: bool,
+}
+
+/// What a tolerance study of a text may choose, and what the text chooses: `[tolerance]`.
+#[derive(Clone, Debug, Serialize)]
+#[cfg_attr(test, derive(TS))]
+pub struct ToleranceOffer {
+    /// What may be off, by how much.
+    pub tolerances: Vec<Scattered>,
+    /// What is looked at.
+    pub metrics: Vec<String>,
+    /// So many designs are drawn.
+    pub samples: usize,
+    /// What they are drawn from.
+    #[cfg_attr(test, ts(type = "number"))]
+    pub seed: u64,
+}
+
+/// Something that may be off.
+#[derive(Clone, Debug, Serialize)]
+#[cfg_attr(test, derive(TS))]
+pub struct Scattered {
+    /// Its name.
+    pub name: String,
+    /// By so much either way.
+    pub tolerance: f64,
+    /// Its unit.
+    pub unit: String,
+    /// How it scatters.
+    pub distribution: String,
+}
+
+/// What is asked of a tolerance study; all else is as the text has it.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[cfg_attr(test, derive(TS))]
+pub struct ToleranceRequest {
+    /// So many designs are drawn and solved exactly.
+    pub samples: usize,
+    /// What they are drawn from: the same number gives the same designs.
+    pub seed: u32,
 }
 
 /// A variable and its change.
@@ -261,7 +394,7 @@ mod tests {
                 expected += &format!("export {}\n", <$name as TS>::decl(&config)).replace(" \n", "\n");
             )* };
         }
-        declare!(Request Setting Message Checked Opened Grip Coordinate Solved Text Studied Failed Told);
+        declare!(Request OptimizeRequest Searched Wanted OptimizeOffer SearchVariable SearchGoal ToleranceOffer Scattered ToleranceRequest Setting Message Checked Opened Grip Coordinate Solved Text Studied Failed Told);
         let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../web/src/engine/protocol.ts");
         if fs::read_to_string(&path).ok().as_deref() != Some(&expected) {
             fs::write(&path, expected).unwrap();

@@ -19,8 +19,8 @@ use hardpoint_report::summary::Summary;
 use hardpoint_report::tolerance::{Studied as Toleranced, ToleranceFacts};
 use hardpoint_report::validity::ValidityFact;
 
-use crate::protocol::{Message, Setting, Studied, Told};
-use crate::{Refusal, Tell, read, whole};
+use crate::protocol::{Message, OptimizeRequest, Setting, Studied, Told, ToleranceRequest};
+use crate::{Refusal, Tell, offer, read, whole};
 
 /// Everything that the page of a model shows.
 pub(crate) fn page(model: &ModelText) -> Result<Payload, Refusal> {
@@ -55,18 +55,11 @@ fn changes(file: &ModelFile, design: &[f64]) -> Vec<Setting> {
 /// A search for the best design.
 pub(crate) fn optimized(
     model: &ModelText,
-    starts: Option<usize>,
-    iterations: Option<usize>,
+    request: &OptimizeRequest,
     tell: &mut Tell<'_>,
 ) -> Result<Studied, Refusal> {
-    let file = whole(model)?;
-    let Some(mut asked) = file.model.optimization.clone() else {
-        let message = "the model does not say what to optimise".into();
-        let help = "add `[optimize.goals]` with the metrics that are to be small, and `bounds` to the design variables that may change";
-        return Err(vec![Message::plain("HP0602", message, help)]);
-    };
-    asked.starts = starts.unwrap_or(asked.starts).max(1);
-    asked.iterations = iterations.unwrap_or(asked.iterations).max(1);
+    let mut file = whole(model)?;
+    let asked = offer::asked(&mut file, request)?;
     let models = file.model.motions();
     let motions = motions(&file, &models, model)?;
     let (units, many, mut done) = (file.units, asked.starts > 1, 0);
@@ -111,8 +104,7 @@ pub(crate) fn optimized(
 /// What the tolerances of a model come to.
 pub(crate) fn toleranced(
     model: &ModelText,
-    samples: Option<usize>,
-    seed: Option<u32>,
+    request: &ToleranceRequest,
     tell: &mut Tell<'_>,
 ) -> Result<Studied, Refusal> {
     let file = whole(model)?;
@@ -122,8 +114,8 @@ pub(crate) fn toleranced(
         let help = "add `tolerance = 0.1` to those in `[design]` or `[parameters]` that may";
         return Err(vec![Message::plain("HP0602", message, help)]);
     };
-    asked.samples = samples.unwrap_or(asked.samples);
-    asked.seed = seed.map_or(asked.seed, u64::from);
+    asked.samples = request.samples;
+    asked.seed = request.seed.into();
     let models = file.model.motions();
     let motions = motions(&file, &models, model)?;
     let numbers: Vec<usize> = (0..models.len()).collect();

@@ -40,25 +40,210 @@ model: ModelText, } | { "ask": "optimize",
  */
 model: ModelText,
 /**
- * Searches from so many starts; as many as the model says where there is no number.
+ * What is asked besides what the text says.
  */
-starts: number | null,
+asked: OptimizeRequest, } | { "ask": "optimize_offer",
 /**
- * Iterations of each at most; as many as the model says where there is no number.
+ * The model.
  */
-iterations: number | null, } | { "ask": "tolerance",
+model: ModelText, } | { "ask": "tolerance_offer",
+/**
+ * The model.
+ */
+model: ModelText, } | { "ask": "tolerance",
 /**
  * The model.
  */
 model: ModelText,
 /**
- * Designs that are drawn; as many as the model says where there is no number.
+ * What is asked besides what the text says.
  */
-samples: number | null,
+asked: ToleranceRequest, };
+
 /**
- * The seed of these.
+ * What is asked of an optimisation; all else is as the text has it.
  */
-seed: number | null, };
+export type OptimizeRequest = {
+/**
+ * What may change, and within what.
+ */
+variables: Array<Searched>,
+/**
+ * What is to be small.
+ */
+goals: Array<Wanted>,
+/**
+ * From how many designs it starts.
+ */
+starts: number,
+/**
+ * After so many iterations a search ends.
+ */
+iterations: number, };
+
+/**
+ * A variable that is searched over.
+ */
+export type Searched = {
+/**
+ * Its name.
+ */
+name: string,
+/**
+ * Lowest and highest change, or value of a parameter.
+ */
+bounds: [number, number], };
+
+/**
+ * A metric that is made small.
+ */
+export type Wanted = {
+/**
+ * Its name.
+ */
+metric: string,
+/**
+ * How much its unit counts.
+ */
+weight: number,
+/**
+ * Where it is to be; as small as possible where there is none.
+ */
+target: number | null, };
+
+/**
+ * What an optimisation of a text may choose, and what the text chooses: `[optimize]`, and what could stand there.
+ */
+export type OptimizeOffer = {
+/**
+ * All design variables.
+ */
+variables: Array<SearchVariable>,
+/**
+ * All metrics.
+ */
+goals: Array<SearchGoal>,
+/**
+ * What must hold, a sentence each.
+ */
+limits: Array<string>,
+/**
+ * From how many designs it starts.
+ */
+starts: number,
+/**
+ * After so many iterations a search ends.
+ */
+iterations: number, };
+
+/**
+ * A design variable that an optimisation may change.
+ */
+export type SearchVariable = {
+/**
+ * Its name.
+ */
+name: string,
+/**
+ * Its unit.
+ */
+unit: string,
+/**
+ * Lowest and highest change, or value of a parameter; none where the text has no bounds.
+ */
+bounds: [number, number] | null,
+/**
+ * Whether the search of the text changes it.
+ */
+chosen: boolean, };
+
+/**
+ * A metric that an optimisation may make small, or bring to a target.
+ */
+export type SearchGoal = {
+/**
+ * Its name.
+ */
+metric: string,
+/**
+ * Its unit.
+ */
+unit: string,
+/**
+ * The value of the design of the text, in the first case that it is taken in, where it is known.
+ */
+value: number | null,
+/**
+ * How much its unit counts.
+ */
+weight: number,
+/**
+ * Where it is to be; as small as possible where there is none.
+ */
+target: number | null,
+/**
+ * Whether its target is a curve, which the text has: then it has none of its own.
+ */
+curve: boolean,
+/**
+ * Whether it is a goal of the text.
+ */
+chosen: boolean, };
+
+/**
+ * What a tolerance study of a text may choose, and what the text chooses: `[tolerance]`.
+ */
+export type ToleranceOffer = {
+/**
+ * What may be off, by how much.
+ */
+tolerances: Array<Scattered>,
+/**
+ * What is looked at.
+ */
+metrics: Array<string>,
+/**
+ * So many designs are drawn.
+ */
+samples: number,
+/**
+ * What they are drawn from.
+ */
+seed: number, };
+
+/**
+ * Something that may be off.
+ */
+export type Scattered = {
+/**
+ * Its name.
+ */
+name: string,
+/**
+ * By so much either way.
+ */
+tolerance: number,
+/**
+ * Its unit.
+ */
+unit: string,
+/**
+ * How it scatters.
+ */
+distribution: string, };
+
+/**
+ * What is asked of a tolerance study; all else is as the text has it.
+ */
+export type ToleranceRequest = {
+/**
+ * So many designs are drawn and solved exactly.
+ */
+samples: number,
+/**
+ * What they are drawn from: the same number gives the same designs.
+ */
+seed: number, };
 
 /**
  * A variable and its change.

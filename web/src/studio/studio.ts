@@ -1,8 +1,8 @@
 import './studio.css'
-import './drawer.css'
 import { el } from '../dom'
 import type { Editor } from '../editor/editor'
 import { openEditor } from '../editor/open'
+import type { StudyResult } from '../engine/engine'
 import type { Checked, Opened, Setting, Solved, Text } from '../engine/protocol'
 import { type Answer, Refused, Solver } from '../engine/solver'
 import { save } from '../export/save'
@@ -11,9 +11,12 @@ import type { Item } from '../page/menu'
 import type { Design as WireDesign, ModelText, Payload } from '../payload'
 import { design, read, type Design, type Report } from '../report'
 import { State } from '../state'
+import { Drawer } from './drawer'
 import { Grips } from './grips'
 import { History, type Snapshot, type Step } from './history'
 import { historyBar } from './history_bar'
+import { optimizePane, type StudyPane, tolerancePane } from './studies'
+import { Workers } from './workers'
 
 /** Milliseconds without a change after which text and sensitivities follow the design. */
 const REST = 200
@@ -27,10 +30,11 @@ export class Studio {
   /** One is free for what the hand does while the other works out sensitivities. */
   readonly #drags: Solver
   readonly #sensing: Solver
+  readonly #checks: Solver
   readonly #tools = el('div', { class: 'studio-tools' })
   readonly #status = el('span', { class: 'studio-status', role: 'status', 'data-testid': 'studio-status' })
   readonly #cases = el('span')
-  readonly #drawer = el('aside', { class: 'drawer', hidden: true, 'aria-label': 'Model', 'data-testid': 'drawer' })
+  readonly #drawer: Drawer
   readonly #listeners: (() => void)[] = []
   #editor?: Editor
   #grips?: Grips
@@ -54,12 +58,22 @@ export class Studio {
   ) {
     this.#drags = new Solver(module)
     this.#sensing = new Solver(module)
+    this.#checks = new Solver(module)
     this.#text = model.text
     this.history = new History({ text: model.text, settings: [], label: 'as opened' })
     const bar = historyBar(this.history, { show: (step) => void this.#go(step), compare: (snapshot) => void this.#compare(snapshot) })
-    const pane = el('button', { type: 'button', title: 'The text of the model', 'aria-expanded': 'false', 'data-testid': 'model', onclick: () => void this.#toggle(pane) }, 'Model')
-    this.#tools.append(bar, this.#cases, pane, this.#status)
-    document.body.append(this.#drawer)
+    const host = {
+      studies: new Workers(module, (text) => ({ ...this.model, text })),
+      text: () => this.#text,
+      take: ({ change, text }: StudyResult, studied: string) => void this.#take(change, text, studied),
+    }
+    this.#drawer = new Drawer([
+      { name: 'Model', title: 'The text of the model', open: () => this.#openEditor() },
+      { name: 'Optimise', title: 'Search for the design that serves goals best', open: studyPane(() => optimizePane(host), this) },
+      { name: 'Tolerance', title: 'How exactly the design must be made', open: studyPane(() => tolerancePane(host), this) },
+    ])
+    this.#tools.append(bar, this.#cases, ...this.#drawer.buttons, this.#status)
+    document.body.append(this.#drawer.element)
     slot(made.bar, this.#tools)
     this.#attach()
     void this.#open()
@@ -313,21 +327,33 @@ export class Studio {
     }
   }
 
-  async #toggle(button: HTMLElement): Promise<void> {
-    const open = this.#drawer.hidden !== false
-    this.#drawer.hidden = !open
-    document.body.classList.toggle('with-drawer', open)
-    button.setAttribute('aria-expanded', String(open))
-    if (!open) return button.focus()
-    if (!this.#editor) {
-      this.#editor = await openEditor({
-        text: this.#text,
-        check: { check: async (text) => (await this.#sensing.ask<Checked>({ ask: 'check', model: { ...this.model, text } })).json.messages },
-        onValid: (text) => void this.replace(text, 'typed'),
-      })
-      this.#drawer.append(this.#editor.element)
+  /** Makes the design that a study found the present one. */
+  async #take(change: Setting[] | null, text: string | null, studied: string): Promise<void> {
+    if (text !== null) await this.replace(text, 'found')
+    else if (studied !== this.#text) await this.replace(studied, 'studied')
+    if (text === null && change) this.state.become(change)
+  }
+
+  async #openEditor(): Promise<HTMLElement> {
+    this.#editor ??= await openEditor({
+      text: this.#text,
+      check: { check: async (text) => (await this.#checks.ask<Checked>({ ask: 'check', model: { ...this.model, text } })).json.messages },
+      onValid: (text) => void this.replace(text, 'typed'),
+    })
+    return this.#editor.element
+  }
+}
+
+/** A pane of a study, which reads the text again whenever that changes. */
+function studyPane(make: () => StudyPane, studio: Studio): () => Promise<HTMLElement> {
+  let pane: StudyPane | undefined
+  return async () => {
+    if (!pane) {
+      pane = make()
+      studio.onText(() => pane!.refresh())
     }
-    this.#editor.focus()
+    pane.refresh()
+    return pane.element
   }
 }
 

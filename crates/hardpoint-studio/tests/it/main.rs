@@ -140,7 +140,10 @@ fn what_is_asked_in_vain_is_told() {
     for (request, code) in [
         (json!({ "ask": "sing" }), "HP0701"),
         (json!({ "ask": "text", "change": [] }), "HP0702"),
-        (json!({ "ask": "optimize", "model": strut, "starts": null, "iterations": null }), "HP0602"),
+        (
+            json!({ "ask": "tolerance", "model": named("rssr.toml"), "asked": { "samples": 10, "seed": 1 } }),
+            "HP0602",
+        ),
         (json!({ "ask": "page", "model": { "file": "x", "text": "name = ", "files": {} } }), "HP0102"),
     ] {
         assert_eq!(ask(&mut engine, request.clone())["failed"][0]["code"], code, "{request}");

@@ -1,0 +1,171 @@
+//! What a study may choose, and what the text chooses.
+
+use hardpoint::model::{
+    Dimension, Goal, Limit, Limited, Model, Optimization, Reduction, Tolerancing, VariableId,
+};
+use hardpoint::study::{Motions, metrics};
+use hardpoint::topology::Formulation;
+use hardpoint_file::{ModelFile, Units};
+use hardpoint_report::facts::variable_unit;
+use hardpoint_report::figures::{number, order_unit, with_unit};
+
+use crate::Refusal;
+use crate::protocol::{
+    Message, OptimizeOffer, OptimizeRequest, Scattered, SearchGoal, SearchVariable, ToleranceOffer,
+};
+
+/// A search has so many starts and iterations where the text does not say.
+const STARTS: usize = 1;
+const ITERATIONS: usize = 100;
+
+/// What a search may choose.
+pub(crate) fn optimize(file: &ModelFile) -> Result<OptimizeOffer, Refusal> {
+    let (model, units, asked) = (&file.model, file.units, file.model.optimization.as_ref());
+    let values = values(file);
+    let variable = |(k, v): (usize, &hardpoint::model::DesignVariable)| SearchVariable {
+        name: v.name.clone(),
+        unit: variable_unit(model, units, v),
+        bounds: v.bounds.map(|b| b.map(|x| units.from_si(v.quantity, x + model.drawn_value(VariableId(k))))),
+        chosen: asked.is_some_and(|asked| asked.variables.contains(&VariableId(k))),
+    };
+    let goal = |(k, metric): (usize, &hardpoint::model::Metric)| {
+        let goal = asked.and_then(|asked| asked.goals.iter().find(|goal| goal.metric == k));
+        let dimension = model.metric_dimension(metric);
+        SearchGoal {
+            metric: metric.name.clone(),
+            unit: order_unit(units, dimension, 0),
+            value: values.get(k).copied().flatten().map(|x| units.from_si(dimension, x)),
+            weight: goal.map_or(1.0, |goal| goal.weight / units.from_si(dimension, 1.0)),
+            target: goal.and_then(|goal| goal.target).map(|x| units.from_si(dimension, x)),
+            curve: matches!(&metric.take, Reduction::Rms(target) if !target.is_empty()),
+            chosen: goal.is_some(),
+        }
+    };
+    Ok(OptimizeOffer {
+        variables: model.variables.iter().enumerate().map(variable).collect(),
+        goals: model.metrics.iter().enumerate().map(goal).collect(),
+        limits: asked
+            .map_or(Vec::new(), |asked| asked.limits.iter().map(|l| sentence(model, units, l)).collect()),
+        starts: asked.map_or(STARTS, |asked| asked.starts),
+        iterations: asked.map_or(ITERATIONS, |asked| asked.iterations),
+    })
+}
+
+/// Per metric its value, in SI, in the first motion that it is taken in.
+fn values(file: &ModelFile) -> Vec<Option<f64>> {
+    let models = file.model.motions();
+    let Ok(motions) = Motions::of(&models, Formulation::Relative) else { return Vec::new() };
+    let mut found: Vec<Option<f64>> = vec![None; file.model.metrics.len()];
+    for analysis in motions.analyses() {
+        let solution = analysis.solve(hardpoint::Run::new().without_sensitivities());
+        for (metric, value) in analysis.model().metrics.iter().zip(metrics(analysis.model(), &solution)) {
+            let place = file.model.metrics.iter().position(|m| m.name == metric.name);
+            if let Some(place) = place.filter(|place| found[*place].is_none()) {
+                found[place] = value.value.filter(|x| x.is_finite());
+            }
+        }
+    }
+    found
+}
+
+fn sentence(model: &Model, units: Units, limit: &Limit) -> String {
+    let (dimension, of) = match limit.of {
+        Limited::Metric(k) => (model.metric_dimension(&model.metrics[k]), model.metrics[k].name.clone()),
+        Limited::Coordinate(h, axis) => {
+            (Dimension::LENGTH, format!("{}.{}", model.hardpoints[h.0].name, ["x", "y", "z"][axis]))
+        }
+        Limited::Distance(a, b) => {
+            let [a, b] = [a, b].map(|h| &model.hardpoints[h.0].name);
+            (Dimension::LENGTH, format!("distance of {a} and {b}"))
+        }
+        Limited::Length(j) => (Dimension::LENGTH, format!("length of {}", model.joints[j.0].name)),
+    };
+    let unit = order_unit(units, dimension, 0);
+    let shown = |x: f64| with_unit(units.from_si(dimension, x), &unit);
+    match (limit.least, limit.most) {
+        (Some(least), Some(most)) if least == most => format!("`{of}`: {}", shown(least)),
+        (Some(least), Some(most)) => {
+            format!("`{of}`: {} to {}", number(units.from_si(dimension, least)), shown(most))
+        }
+        (Some(least), None) => format!("`{of}`: at least {}", shown(least)),
+        (_, most) => format!("`{of}`: at most {}", most.map_or(String::new(), shown)),
+    }
+}
+
+/// What is asked, on top of what the text says; the model has the bounds that are asked for.
+pub(crate) fn asked(file: &mut ModelFile, request: &OptimizeRequest) -> Result<Optimization, Refusal> {
+    let units = file.units;
+    let unknown = |what: &str, name: &str| {
+        vec![Message::plain("HP0704", format!("the model has no {what} `{name}`"), "open the pane again")]
+    };
+    let mut asked = file.model.optimization.clone().unwrap_or(Optimization {
+        variables: Vec::new(),
+        goals: Vec::new(),
+        limits: Vec::new(),
+        margin: None,
+        starts: STARTS,
+        iterations: ITERATIONS,
+    });
+    asked.variables.clear();
+    for searched in &request.variables {
+        let v =
+            file.model.variable(&searched.name).ok_or_else(|| unknown("design variable", &searched.name))?;
+        let drawn = file.model.drawn_value(v);
+        let variable = &mut file.model.variables[v.0];
+        variable.bounds = Some(searched.bounds.map(|x| units.to_si(variable.quantity, x) - drawn));
+        asked.variables.push(v);
+    }
+    let before = std::mem::take(&mut asked.goals);
+    for wanted in &request.goals {
+        let metric = file.model.metrics.iter().position(|m| m.name == wanted.metric);
+        let metric = metric.ok_or_else(|| unknown("metric", &wanted.metric))?;
+        let dimension = file.model.metric_dimension(&file.model.metrics[metric]);
+        let name = before.iter().find(|goal| goal.metric == metric).map_or(&wanted.metric, |goal| &goal.name);
+        asked.goals.push(Goal {
+            name: name.clone(),
+            metric,
+            target: wanted.target.map(|x| x / units.from_si(dimension, 1.0)),
+            weight: wanted.weight * units.from_si(dimension, 1.0),
+        });
+    }
+    if asked.variables.is_empty() || asked.goals.is_empty() {
+        let message = "a search needs a variable that may change and a goal".into();
+        return Err(vec![Message::plain(
+            "HP0602",
+            message,
+            "choose them in the pane, or add `[optimize.goals]` and `bounds`",
+        )]);
+    }
+    asked.starts = request.starts.max(1);
+    asked.iterations = request.iterations.max(1);
+    Ok(asked)
+}
+
+/// What a study of tolerances may choose.
+pub(crate) fn tolerance(file: &ModelFile) -> Result<ToleranceOffer, Refusal> {
+    let (model, units) = (&file.model, file.units);
+    let asked = model.tolerancing.clone().or_else(|| Tolerancing::of_variables(model));
+    let scattered = |t: &hardpoint::model::Tolerance| {
+        let first = &model.variables[t.variables[0].0];
+        Scattered {
+            name: t.name.clone(),
+            tolerance: units.from_si(first.quantity, t.reach),
+            unit: variable_unit(model, units, first),
+            distribution: t.scatter.name().into(),
+        }
+    };
+    Ok(match asked {
+        Some(asked) => ToleranceOffer {
+            tolerances: asked.tolerances.iter().map(scattered).collect(),
+            metrics: asked.metrics.iter().map(|k| model.metrics[*k].name.clone()).collect(),
+            samples: asked.samples,
+            seed: asked.seed,
+        },
+        None => ToleranceOffer {
+            tolerances: Vec::new(),
+            metrics: Vec::new(),
+            samples: Tolerancing::SAMPLES,
+            seed: Tolerancing::SEED,
+        },
+    })
+}

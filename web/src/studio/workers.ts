@@ -1,0 +1,60 @@
+import type { OptimizeRequest, Running, Studies, StudyResult, ToleranceRequest } from '../engine/engine'
+import type { OptimizeOffer, Request, Setting, Studied, Told, ToleranceOffer } from '../engine/protocol'
+import { Solver } from '../engine/solver'
+import type { ModelText } from '../payload'
+
+/** The studies of a model, each run by an engine of its own in the page. */
+export class Workers implements Studies {
+  constructor(
+    private readonly module: WebAssembly.Module,
+    /** A text with all that is read besides it. */
+    private readonly model: (text: string) => ModelText,
+  ) {}
+
+  optimizeOffer(text: string): Promise<OptimizeOffer> {
+    return this.#once({ ask: 'optimize_offer', model: this.model(text) })
+  }
+
+  toleranceOffer(text: string): Promise<ToleranceOffer> {
+    return this.#once({ ask: 'tolerance_offer', model: this.model(text) })
+  }
+
+  optimize(text: string, asked: OptimizeRequest): Running<StudyResult> {
+    return this.#run({ ask: 'optimize', model: this.model(text), asked })
+  }
+
+  tolerance(text: string, asked: ToleranceRequest): Running<StudyResult> {
+    return this.#run({ ask: 'tolerance', model: this.model(text), asked })
+  }
+
+  async #once<T>(request: Request): Promise<T> {
+    const solver = new Solver(this.module)
+    try {
+      return (await solver.ask<T>(request)).json
+    } finally {
+      solver.stop()
+    }
+  }
+
+  /** An engine that is at work hears nothing: to cancel ends it, and what it told last is the best so far. */
+  #run(request: Request): Running<StudyResult> {
+    const solver = new Solver(this.module)
+    const listeners: ((told: Told) => void)[] = []
+    let best: Setting[] | null = null
+    let ended: (result: StudyResult) => void
+    const cancelled = new Promise<StudyResult>((done) => (ended = done))
+    const told = (news: Told) => {
+      best = news.change ?? best
+      for (const listener of listeners) listener(news)
+    }
+    const whole = solver.ask<Studied>(request, told).then(({ json }) => json)
+    return {
+      onProgress: (listener) => listeners.push(({ done, total, line }) => listener(done, total, line)),
+      cancel: () => {
+        ended({ tables: [], change: best, text: null, message: best ? 'Cancelled: this is the best design so far.' : 'Cancelled before anything was found.' })
+        solver.stop()
+      },
+      result: Promise.race([cancelled, whole]).finally(() => solver.stop()),
+    }
+  }
+}
