@@ -273,3 +273,24 @@ describe('a target that is drawn', () => {
     expect(await page.getByTestId('sketch').count()).toBe(0)
   })
 })
+
+test('a finger sets points, and draws with touch as a mouse does', async () => {
+  const { page, complaints } = await visit(browser, url, { viewport: { width: 700, height: 900 }, hasTouch: true })
+  await page.locator('#sketch').tap()
+  await drawn(page)
+  const { x, y, width, height } = (await page.getByTestId('sketch').boundingBox())!
+  await page.touchscreen.tap(x + 0.25 * width, y + 0.5 * height)
+  await page.touchscreen.tap(x + 0.75 * width, y + 0.25 * height)
+  const points = () => page.locator('.sketch .point').count()
+  await expect.poll(points).toBe(2)
+  const devtools = await page.context().newCDPSession(page)
+  const touch = (type: 'touchStart' | 'touchMove' | 'touchEnd', across?: number) =>
+    devtools.send('Input.dispatchTouchEvent', { type, touchPoints: across === undefined ? [] : [{ x: x + across * width, y: y + 0.4 * height }] })
+  await touch('touchStart', 0.4)
+  for (let k = 1; k <= 10; k++) await touch('touchMove', 0.4 + 0.02 * k)
+  await touch('touchEnd')
+  // Both ends of the new part, and beside them where the old one is left and come back to.
+  await expect.poll(points).toBe(6)
+  expect(complaints).toEqual([])
+  await page.context().close()
+})
