@@ -46,14 +46,14 @@ export function css(name: string): string {
   return getComputedStyle(document.documentElement).getPropertyValue(name).trim()
 }
 
-/** Calls back when what is drawn on a canvas needs other colours; paper is light, whatever the screen. */
-export function onSchemeChange(callback: () => void): void {
-  matchMedia('(prefers-color-scheme: dark)').addEventListener('change', callback)
+/** Calls back when what is drawn on a canvas needs other colours, until the signal; paper is light, whatever the screen. */
+export function onSchemeChange(callback: () => void, signal?: AbortSignal): void {
+  matchMedia('(prefers-color-scheme: dark)').addEventListener('change', callback, { signal })
   for (const [event, printing] of [['beforeprint', true], ['afterprint', false]] as const) {
     addEventListener(event, () => {
       document.documentElement.classList.toggle('printing', printing)
       callback()
-    })
+    }, { signal })
   }
 }
 

@@ -122,7 +122,61 @@ variables: Array<Variable>,
 /**
  * Facts about the model: bodies, joints, constraints, redundancy, admissibility.
  */
-checks: Array<Table>, };
+checks: Array<Table>,
+/**
+ * The model's text: from it the page solves what the reader changes.
+ */
+model: ModelText | null, };
+
+/**
+ * The text of a model, with all that is read besides it.
+ */
+export type ModelText = {
+/**
+ * Name of the file.
+ */
+file: string,
+/**
+ * The text.
+ */
+text: string,
+/**
+ * The files that it names, but for meshes.
+ */
+files: { [key in string]: string },
+/**
+ * The case whose motion this is, where the model has cases.
+ */
+case: string | null,
+/**
+ * How much of the motion the page shows; as much as there is room for where it does not say.
+ */
+shown: Detail | null, };
+
+/**
+ * How much of a motion the page shows.
+ */
+export type Detail = {
+/**
+ * Every so many steps of those that are kept.
+ */
+stride: number,
+/**
+ * Curves of body origins.
+ */
+origins: boolean,
+/**
+ * How bodies move with the variables, and with that the sensitivities of their origins.
+ */
+bodies: boolean,
+/**
+ * Sensitivities of the velocities and accelerations of body origins.
+ */
+body_rates: boolean,
+/**
+ * Comparison of the sensitivities of body origins with differences.
+ */
+body_differences: boolean, };
 
 /**
  * Unit symbols as the user writes them.

@@ -139,12 +139,17 @@ export function read(payload: wire.Payload, decode: Decode): Report {
         sensitivities: new Map(variable.sensitivities.map((item) => [item.quantity, sensitivity(item, steps, decode)])),
       }
     }),
-    designs: payload.designs.map((design) => ({
-      ...design,
-      poses: design.poses.map(decode),
-      quantities: design.quantities.map((item) => (item ? curves(item, decode) : undefined)),
-      margin: design.margin ? decode(design.margin) : undefined,
-    })),
+    designs: payload.designs.map((item) => design(item, decode)),
+  }
+}
+
+/** Another design with its curves decoded. */
+export function design(item: wire.Design, decode: Decode): Design {
+  return {
+    ...item,
+    poses: item.poses.map(decode),
+    quantities: item.quantities.map((item) => (item ? curves(item, decode) : undefined)),
+    margin: item.margin ? decode(item.margin) : undefined,
   }
 }
 

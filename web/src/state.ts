@@ -1,5 +1,6 @@
 import { valueAt, stepAt, type Curve } from './curve'
 import { effects, firstQuantity } from './effect'
+import type { Setting } from './engine/protocol'
 import type { Design, Order, Report } from './report'
 import type { Part } from './scene/drawn'
 
@@ -26,6 +27,16 @@ export class State {
   choice: Choice
   /** By how much each variable is changed from the model as loaded, in its unit. */
   readonly changes: number[]
+  /** The same of coordinates of hardpoints that no variable is, by name. */
+  readonly moves = new Map<string, number>()
+  /** Solves the design that the changes make, and tells it by `solved`. Without it changes are foreseen to first order. */
+  solver?: () => void
+  /** The bound that keeps the design from going as far as was asked for. */
+  bound = ''
+  /** Why the design does not go as far as was asked for. */
+  refusal = ''
+  /** Designs that were kept to be compared with. */
+  readonly kept: Design[] = []
   /** Fractional index into the times. */
   step = 0
   playing = false
@@ -34,7 +45,23 @@ export class State {
   #onChoice: (() => void)[] = []
   #onTime: (() => void)[] = []
   #onPoint: (() => void)[] = []
+  #onChange: (() => void)[] = []
   #pointed?: number
+  #solved?: Design
+  #sensed?: { report: Report; settings: string }
+  #edition = 0
+  #ending = new AbortController()
+
+  /** Ends what listens beyond the page's own elements, when the page is made anew. */
+  get ended(): AbortSignal {
+    return this.#ending.signal
+  }
+
+  /** Nothing of it is shown any more. */
+  end(): void {
+    this.pause()
+    this.#ending.abort()
+  }
 
   constructor(readonly report: Report) {
     const quantity = firstQuantity(report)
@@ -52,14 +79,42 @@ export class State {
     return valueAt(this.report.times, this.step)
   }
 
+  /** Designs that the present one can be compared with: those of the report, then those that were kept. */
+  get designs(): readonly Design[] {
+    return [...this.report.designs, ...this.kept]
+  }
+
+  /** What is changed, by name. */
+  get settings(): Setting[] {
+    const changed = this.report.variables.flatMap(({ name }, index) => (this.changes[index] === 0 ? [] : [{ name, by: this.changes[index] }]))
+    return [...changed, ...[...this.moves].map(([name, by]) => ({ name, by }))]
+  }
+
+  /** Tells one drawn design from another. */
+  get edition(): string {
+    return `${this.#edition} ${this.choice.compared}`
+  }
+
+  /** The report whose sensitivities are shown: that of the present design, as soon as it is there. */
+  get senses(): Report {
+    return this.#sensed?.report ?? this.report
+  }
+
+  /** Whether the sensitivities shown are those of the present design. */
+  get sensed(): boolean {
+    return (this.#sensed?.settings ?? '[]') === JSON.stringify(this.settings)
+  }
+
   /** The solved design that the changes make; none where they are foreseen, or there are none. */
   get present(): Design | undefined {
+    if (this.#solved) return this.#solved
+    if (this.moves.size > 0) return undefined
     return this.report.designs.find(({ kind, change }) => kind === 'exact' && this.changes.every((by, index) => by === (change[index] ?? 0)))
   }
 
   /** The design that the present one is compared with; the one as loaded where there is none. */
   get former(): Design | undefined {
-    return this.choice.compared === undefined ? undefined : this.report.designs[this.choice.compared]
+    return this.choice.compared === undefined ? undefined : this.designs[this.choice.compared]
   }
 
   /** Whether the present design differs from the one that it is compared with. */
@@ -69,7 +124,7 @@ export class State {
 
   /** Whether any variable is changed from the model as loaded. */
   get changed(): boolean {
-    return this.changes.some((by) => by !== 0)
+    return this.moves.size > 0 || this.changes.some((by) => by !== 0)
   }
 
   /** Whether the present design is foreseen to first order instead of solved. */
@@ -138,16 +193,81 @@ export class State {
     return found
   }
 
+  /** Called when the reader changed the design. */
+  onChange(listener: () => void): void {
+    this.#onChange.push(listener)
+  }
+
   /** Changes one variable, which thereby is the selected one. */
   change(variable: number, change: number): void {
     this.changes[variable] = change
-    this.choose({ variable })
+    this.#changed(variable)
+  }
+
+  /** Changes coordinates and variables by name; others stay. */
+  adjust(settings: Setting[]): void {
+    this.#put(settings)
+    this.#changed()
+  }
+
+  /** Makes the design that has these changes and no others. */
+  become(settings: Setting[]): void {
+    this.#clear()
+    this.adjust(settings)
   }
 
   /** Takes every change back. */
   reset(): void {
-    this.changes.fill(0)
+    this.#clear()
+    this.#changed()
+  }
+
+  /** The design with these changes was solved: it is the present one. Later changes may be on their way already. */
+  solved(design: Design | undefined, settings: Setting[], refusal: string, last: boolean): void {
+    if (last) {
+      this.#clear()
+      this.#put(settings)
+    }
+    this.#solved = settings.length > 0 ? design : undefined
+    this.refusal = refusal
+    this.#edition++
     this.choose({})
+  }
+
+  /** The report of the present design, with its own sensitivities. */
+  sense(report: Report | undefined, settings: Setting[]): void {
+    this.#sensed = report && { report, settings: JSON.stringify(settings) }
+    this.choose({})
+  }
+
+  /** Keeps a design to be compared with. */
+  keep(design: Design): void {
+    this.kept.push(design)
+    this.choose({})
+  }
+
+  #clear(): void {
+    this.changes.fill(0)
+    this.moves.clear()
+  }
+
+  #put(settings: Setting[]): void {
+    for (const { name, by } of settings) {
+      const variable = this.report.variables.find((variable) => variable.name === name)
+      if (variable) this.changes[variable.index] = by
+      else if (by === 0) this.moves.delete(name)
+      else this.moves.set(name, by)
+    }
+  }
+
+  #changed(variable = this.choice.variable): void {
+    const other = variable !== this.choice.variable
+    this.choice.variable = variable
+    // What is solved is shown when it is; what is foreseen, at once.
+    if (!this.solver) this.#edition++
+    if (!this.solver || other) this.choose({})
+    this.solver?.()
+    for (const listener of this.#onChange) listener()
   }
 
   goToStep(step: number): void {

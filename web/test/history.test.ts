@@ -1,8 +1,8 @@
 import { expect, test } from 'vitest'
 import { History, type Step } from '../src/studio/history'
 
-const step = (by: number, label = `by ${by}`, text = 'model'): Step => ({ text, changes: [by, 0], label })
-const first = (): Step => ({ text: 'model', changes: [0, 0], label: 'opened' })
+const step = (by: number, label = `by ${by}`, text = 'model'): Step => ({ text, settings: [{ name: 'rack_z', by }], label })
+const first = (): Step => ({ text: 'model', settings: [], label: 'opened' })
 
 test('steps are gone back and forth, and named', () => {
   const history = new History(first())
@@ -53,7 +53,7 @@ test('a drag that comes back is no step, nor is a step to where one is', () => {
   history.rest()
   history.go(step(1, 'again'))
   expect(history.undo()).toEqual(first())
-  history.go({ text: 'model', changes: [], label: 'as it was' })
+  history.go({ text: 'model', settings: [{ name: 'rack_z', by: 0 }], label: 'as it was' })
   expect(history.changed).toBe(false)
 })
 
@@ -84,7 +84,7 @@ test('reset and a design with a name are steps that can be undone', () => {
   const kept = history.keep('  stiff ')
   expect(kept.name).toBe('stiff')
   history.go(step(2))
-  expect(history.reset().changes).toEqual([0, 0])
+  expect(history.reset().settings).toEqual([])
   expect(history.undo()).toEqual(step(2))
   expect(history.take(kept)).toEqual({ ...step(1), label: 'stiff' })
   expect(history.undo()).toEqual(step(2))

@@ -29,6 +29,7 @@ export const EMPTY: Payload = {
   margin: null,
   variables: [],
   checks: [],
+  model: null,
 }
 
 /** Turns about z by which the crank goes on from one step to the next. */

@@ -28,8 +28,8 @@ const press = async (...keys: string[]) => {
 }
 
 describe('the designs that were gone through', () => {
-  const go = (by: number) => page.evaluate((by) => window.designs.go({ text: window.model, changes: [by, 0], label: `rack_z ${by}` }), by)
-  const shown = () => page.evaluate(() => window.shown.map(({ changes }) => changes[0]))
+  const go = (by: number) => page.evaluate((by) => window.designs.go({ text: window.model, settings: [{ name: 'rack_z', by }], label: `rack_z ${by}` }), by)
+  const shown = () => page.evaluate(() => window.shown.map(({ settings }) => settings[0]?.by ?? 0))
 
   test('are undone and done again by buttons that say what, and by keys', async () => {
     expect(await page.getByTestId('undo').isDisabled()).toBe(true)

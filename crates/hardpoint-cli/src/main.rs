@@ -6,6 +6,7 @@ mod check;
 mod compare;
 mod folder;
 mod journal;
+mod long_table;
 mod maps;
 mod optimize;
 mod outcome;

@@ -10,7 +10,7 @@ use hardpoint::{Analysis, Run};
 use hardpoint_file::ModelFile;
 use hardpoint_report::course::Course;
 use hardpoint_report::diagnose;
-use hardpoint_report::optimize::{OptimizeFacts, case_name, iteration_line, start_line};
+use hardpoint_report::optimize::{OptimizeFacts, case_name, iteration_line, rounded, start_line};
 use hardpoint_report::payload::{Changed, Request, report};
 use hardpoint_report::summary::Summary;
 
@@ -126,23 +126,6 @@ fn search(
         threads: threads.unwrap_or(NonZero::<usize>::MIN),
     };
     optimize(model, motions, asked, searching)
-}
-
-/// A design is saved to this part of its variables' bounds: what is finer is the search's, and no hand's.
-const FINEST: f64 = 1e-9;
-
-/// A design with the searched variables at numbers of few digits in the file's units.
-fn rounded(file: &ModelFile, asked: &Optimization, design: &[f64]) -> Vec<f64> {
-    let mut design = design.to_vec();
-    for v in &asked.variables {
-        let variable = &file.model.variables[v.0];
-        let Some([low, high]) = variable.bounds else { continue };
-        let [value, span] = [design[v.0], high - low].map(|x| file.units.from_si(variable.quantity, x));
-        let step = 10.0_f64.powf((FINEST * span).log10().floor());
-        let value = (value / step).round() * step;
-        design[v.0] = file.units.to_si(variable.quantity, value).clamp(low, high);
-    }
-    design
 }
 
 /// What is written.

@@ -139,15 +139,9 @@ impl Session {
         mut each: impl FnMut(ModelFile, Option<&str>) -> Result<Outcome, Outcome>,
     ) -> Result<Outcome, Outcome> {
         let cases: Vec<&str> = file.model.cases.iter().map(|c| c.name.as_str()).collect();
-        let of_case = |id: CaseId| {
-            let mut one = file.clone();
-            one.model = file.model.in_case(id);
-            one.model.grids.clear();
-            one
-        };
         if let Some(name) = &motions.case {
             let id = self.case(&file, name)?;
-            return each(of_case(id), None);
+            return each(file.in_case(id), None);
         }
         if cases.is_empty() {
             return each(file, None);
@@ -157,7 +151,8 @@ impl Session {
         for (k, case) in cases.iter().enumerate() {
             let before = self.documents().as_ref().map_or(0, Vec::len);
             *self.under_way() = Some((*case).into());
-            outcome = outcome.and(each(of_case(CaseId(k)), Some(case)).unwrap_or_else(|outcome| outcome));
+            outcome =
+                outcome.and(each(file.in_case(CaseId(k)), Some(case)).unwrap_or_else(|outcome| outcome));
             for document in self.documents().iter_mut().flatten().skip(before) {
                 *document = json!({ "case": case, "result": document });
             }

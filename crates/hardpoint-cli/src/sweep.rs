@@ -19,11 +19,11 @@ use hardpoint_report::page::SweepPlot;
 use hardpoint_report::payload::{Request, report};
 use hardpoint_report::summary::Summary;
 use hardpoint_report::sweep::{SweepFacts, Swept, Tally};
-use hardpoint_report::table::{TableFormat, TableWriter};
 
 use crate::args::{Method, Sweep, TableForm};
 use crate::folder::{Folder, NotWritten, file_name};
 use crate::journal::{Checksum, Fingerprint, Journal, NoJournal};
+use crate::long_table::{TableFormat, TableWriter};
 use crate::outcome::Outcome;
 use crate::session::{Meter, Session, json_text};
 use crate::text;

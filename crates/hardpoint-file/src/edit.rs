@@ -1,7 +1,5 @@
 //! A model file with a changed design: the same text, with other numbers where the change is.
 
-use std::path::Path;
-
 use hardpoint::joint::Quantity;
 use hardpoint::law::ParameterKind;
 use hardpoint::model::{Change, Direction, Model};
@@ -10,7 +8,7 @@ use toml_edit::{DocumentMut, Item, Value};
 
 use crate::diagnostic::{Diagnostic, Diagnostics, Severity};
 use crate::units::Units;
-use crate::{ModelFile, parse_in};
+use crate::{Folder, ModelFile, parse_in};
 
 /// A number is written with as few digits as bring it back to this many units of round-off: what the sums, products and roots between
 /// a file's number and a changed design's leave. 5.200000000000001 is written 5.2.
@@ -74,7 +72,7 @@ impl ModelFile {
 
     /// Whether the new text says the changed design.
     fn read_back(&self, text: &str, values: &[f64]) -> Result<(), Diagnostics> {
-        let saved = parse_in(Path::new(self.file_name()).parent(), text, self.file_name())?;
+        let saved = parse_in(Folder::Given(&self.texts), text, self.file_name())?;
         let Some(what) = difference(&self.model, values, &saved.model) else { return Ok(()) };
         let d = self
             .diagnostic(Severity::Error, CODE, "the changed design cannot be saved in this file", None)

@@ -46,7 +46,7 @@ use std::path::Path;
 
 use hardpoint::{
     draft::{Fault, Section},
-    model::{Model, SweepRange, Sweeping, VariableId},
+    model::{CaseId, Model, SweepRange, Sweeping, VariableId},
 };
 use toml::de::DeTable;
 
@@ -58,7 +58,8 @@ pub use units::{AngleUnit, LengthUnit, Units};
 
 use diagnostic::{Source, closest, shown};
 use places::Places;
-use tree::Reader;
+pub use tree::Texts;
+use tree::{Folder, Reader};
 
 /// Files larger than this are not read, bytes.
 const LARGEST_FILE: u64 = 64 << 20;
@@ -80,11 +81,22 @@ pub struct ModelFile {
     pub drawing: Drawing,
     /// What the reader has to tell although nothing is wrong: warnings and notes, in the order of the text.
     pub remarks: Vec<Diagnostic>,
+    /// The texts that the model names files of: tables of laws, curves that are wanted, lists of designs.
+    pub texts: Texts,
+    /// The case that the model was made of, where the file has cases and only one of them is meant.
+    pub case: Option<String>,
     source: Source,
     places: Places,
 }
 
 impl ModelFile {
+    /// The file with the motion of one of its cases alone.
+    pub fn in_case(&self, case: CaseId) -> Self {
+        let mut model = self.model.in_case(case);
+        model.grids.clear();
+        Self { model, case: Some(self.model.cases[case.0].name.clone()), ..self.clone() }
+    }
+
     /// The name of the file as it was given.
     pub fn file_name(&self) -> &str {
         &self.source.file
@@ -228,7 +240,9 @@ pub fn read(path: &Path) -> Result<ModelFile, ReadError> {
         ReadError::Unreadable(Diagnostics::new(source, vec![d]))
     })?;
     match String::from_utf8(bytes) {
-        Ok(text) => parse_in(path.parent(), &text, &name).map_err(ReadError::Invalid),
+        Ok(text) => {
+            parse_in(path.parent().map_or(Folder::None, Folder::On), &text, &name).map_err(ReadError::Invalid)
+        }
         Err(error) => {
             let valid = error.utf8_error().valid_up_to();
             let bytes = error.into_bytes();
@@ -317,11 +331,19 @@ fn neighbours(path: &Path, extension: &str) -> (Option<String>, Option<String>) 
 /// assert_eq!((first.code, first.line), ("HP0104", None));
 /// ```
 pub fn parse(text: &str, file_name: &str) -> Result<ModelFile, Diagnostics> {
-    parse_in(None, text, file_name)
+    parse_in(Folder::None, text, file_name)
 }
 
-/// As [`parse`], of a model whose file lies in `folder`, so that it may name files there.
-fn parse_in(folder: Option<&Path>, text: &str, file_name: &str) -> Result<ModelFile, Diagnostics> {
+/// As [`parse`], of a text with the files that it names ([`ModelFile::texts`]); bodies stay without their meshes.
+///
+/// # Errors
+/// As [`parse`].
+pub fn parse_with(text: &str, file_name: &str, files: &Texts) -> Result<ModelFile, Diagnostics> {
+    parse_in(Folder::Given(files), text, file_name)
+}
+
+/// As [`parse`], of a model that may name files.
+fn parse_in(folder: Folder<'_>, text: &str, file_name: &str) -> Result<ModelFile, Diagnostics> {
     let source = Source::new(file_name, text);
     if text.trim().is_empty() {
         let d = source
@@ -337,7 +359,8 @@ fn parse_in(folder: Option<&Path>, text: &str, file_name: &str) -> Result<ModelF
     }
     let mut reader = Reader::new(&source, folder);
     let raw = reader.model(document.get_ref());
-    let (units, mut found, remarks) = (reader.units, reader.found, diagnostic::in_order(reader.remarks));
+    let (units, texts) = (reader.units, reader.texts);
+    let (mut found, remarks) = (reader.found, diagnostic::in_order(reader.remarks));
     let model = match Model::from_draft(&raw.draft) {
         Ok(model) => Some(model),
         Err(faults) => {
@@ -349,7 +372,7 @@ fn parse_in(folder: Option<&Path>, text: &str, file_name: &str) -> Result<ModelF
     match model {
         Some(model) if found.is_empty() => {
             let (description, drawing, places) = (raw.description, raw.drawing, raw.places);
-            Ok(ModelFile { model, units, description, drawing, remarks, source, places })
+            Ok(ModelFile { model, units, description, drawing, remarks, texts, case: None, source, places })
         }
         _ => Err(Diagnostics::new(source, found)),
     }

@@ -2,6 +2,7 @@
 //!
 //! Nothing here stops at the first problem: a value that cannot be read is reported and left out.
 
+use std::collections::BTreeMap;
 use std::ops::Range;
 use std::path::Path;
 
@@ -112,11 +113,27 @@ impl Subject {
     }
 }
 
+/// Texts of files, by the names that a model has for them.
+pub type Texts = BTreeMap<String, String>;
+
+/// Where the files are that a model names.
+#[derive(Clone, Copy)]
+pub(crate) enum Folder<'f> {
+    /// Nowhere: the model is a mere text.
+    None,
+    /// In this folder or below it.
+    On(&'f Path),
+    /// They came with the text: all but meshes, which change no result.
+    Given(&'f Texts),
+}
+
 /// The text being read and what was found wrong with it.
 pub(crate) struct Reader<'s> {
     pub source: &'s Source,
-    /// Where the model file lies, for files that it names; none for a mere text.
-    pub folder: Option<&'s Path>,
+    /// Where the files are that it names.
+    pub folder: Folder<'s>,
+    /// The texts among these that were read, by the names that the model has for them.
+    pub texts: Texts,
     pub units: Units,
     /// What the file's parameters are, as soon as they are read.
     pub nominal: Nominal,
@@ -130,10 +147,10 @@ pub(crate) struct Reader<'s> {
 }
 
 impl<'s> Reader<'s> {
-    pub fn new(source: &'s Source, folder: Option<&'s Path>) -> Self {
+    pub fn new(source: &'s Source, folder: Folder<'s>) -> Self {
         let (units, nominal) = (Units::default(), Nominal::default());
-        let (law_formulas, found, unread, remarks) = Default::default();
-        Self { source, folder, units, nominal, law_formulas, found, unread, remarks }
+        let (texts, law_formulas, found, unread, remarks) = Default::default();
+        Self { source, folder, texts, units, nominal, law_formulas, found, unread, remarks }
     }
 }
 

@@ -327,6 +327,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         }),
         variables: variables(&times),
         checks: checks(),
+        model: None,
         times: times.into_iter().collect(),
     };
     fs::write(path, html(&payload)?)?;

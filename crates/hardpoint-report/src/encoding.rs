@@ -25,7 +25,9 @@ use std::io::Write;
 use base64::{Engine, prelude::BASE64_STANDARD};
 use flate2::{Compression, write::DeflateEncoder};
 
-use crate::page::{Curve, Payload};
+use serde::Serialize;
+
+use crate::page::{Curve, Design, Payload};
 
 /// How far a value that is only drawn may be from its own, in parts of the range of its track.
 pub const ERROR: f64 = 1e-5;
@@ -104,13 +106,7 @@ fn each_curve(payload: &mut Payload, visit: &mut impl FnMut(&mut Curve, Precisio
             .into_iter()
             .for_each(|curve| visit(curve, Full, 1));
     }
-    for design in &mut payload.designs {
-        design.poses.iter_mut().for_each(|poses| visit(poses, Full, 7));
-        for q in design.quantities.iter_mut().flatten() {
-            [&mut q.value, &mut q.rate, &mut q.accel].into_iter().for_each(|curve| visit(curve, Full, 1));
-        }
-        design.margin.iter_mut().for_each(|margin| visit(margin, Full, 1));
-    }
+    payload.designs.iter_mut().for_each(|design| each_curve_of(design, visit));
     for quantity in payload.maps.iter_mut().flat_map(|map| &mut map.quantities) {
         visit(&mut quantity.values, Full, 1);
         quantity.sensitivities.iter_mut().for_each(|s| visit(&mut s.values, Drawn, 1));
@@ -132,6 +128,42 @@ fn each_curve(payload: &mut Payload, visit: &mut impl FnMut(&mut Curve, Precisio
                     .for_each(|curve| visit(curve, Drawn, 1));
             }
         }
+    }
+}
+
+fn each_curve_of(design: &mut Design, visit: &mut impl FnMut(&mut Curve, Precision, usize)) {
+    use Precision::Full;
+    design.poses.iter_mut().for_each(|poses| visit(poses, Full, 7));
+    for q in design.quantities.iter_mut().flatten() {
+        [&mut q.value, &mut q.rate, &mut q.accel].into_iter().for_each(|curve| visit(curve, Full, 1));
+    }
+    design.margin.iter_mut().for_each(|margin| visit(margin, Full, 1));
+}
+
+/// What has curves, and can be handed on with them laid out plainly, one number after the other: a curve is then its first number's place
+/// and how many it has. For whoever is in the same program, where nothing has to be packed.
+pub trait Plain: Serialize + Sized {
+    /// Lays the curves out, and says in their place where they are.
+    fn lay_out(&mut self, numbers: &mut Vec<f32>);
+}
+
+fn laid_out(numbers: &mut Vec<f32>) -> impl FnMut(&mut Curve, Precision, usize) {
+    |curve, _, _| {
+        let place = [numbers.len(), curve.values().len()].map(|n| n as u32);
+        numbers.extend_from_slice(curve.values());
+        *curve = std::mem::take(curve).in_tracks(place.to_vec());
+    }
+}
+
+impl Plain for Payload {
+    fn lay_out(&mut self, numbers: &mut Vec<f32>) {
+        each_curve(self, &mut laid_out(numbers));
+    }
+}
+
+impl Plain for Design {
+    fn lay_out(&mut self, numbers: &mut Vec<f32>) {
+        each_curve_of(self, &mut laid_out(numbers));
     }
 }
 

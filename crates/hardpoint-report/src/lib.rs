@@ -14,7 +14,7 @@
 //! | [`compare`] | `compare.json`, `.csv` and `.html`: two model files beside each other |
 //! | [`optimize`] | what a search comes to: `summary.json` and tables |
 //! | [`tolerance`] | what tolerances come to: `summary.json`, `metrics.csv`, `contributions.csv`, `bands.csv`, `samples.csv` |
-//! | [`sweep`], [`table`] | what a sweep comes to: `summary.json`, `designs` and `curves` as CSV or Parquet |
+//! | [`sweep`], [`cells`] | what a sweep comes to: `summary.json`, and the columns of `designs` and `curves` |
 //! | [`maps`] | `maps.csv`, `map_sensitivity.csv`, `maps.json`: measures over grids of two drivers |
 //! | [`columns`] | what stands in which column of the files of results |
 //! | [`csv`], [`npy`] | `motion`, `sensitivity` and `jerk` as text, or as arrays |
@@ -24,6 +24,7 @@
 
 pub mod assembly;
 pub mod calibrate;
+pub mod cells;
 pub mod columns;
 pub mod compare;
 pub mod course;
@@ -42,7 +43,6 @@ pub mod payload;
 mod shifts;
 pub mod summary;
 pub mod sweep;
-pub mod table;
 pub mod tolerance;
 pub mod validity;
 pub mod verdict;

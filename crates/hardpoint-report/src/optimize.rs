@@ -257,6 +257,23 @@ pub fn iteration_line(model: &Model, units: Units, i: &Iteration) -> String {
     format!("{:>4}  objective {:<12}{kept}{moved}", i.number, number(i.objective))
 }
 
+/// A design is saved to this part of its variables' bounds: what is finer is the search's, and no hand's.
+const FINEST: f64 = 1e-9;
+
+/// A design with the searched variables at numbers of few digits in the file's units.
+pub fn rounded(file: &ModelFile, asked: &Optimization, design: &[f64]) -> Vec<f64> {
+    let mut design = design.to_vec();
+    for v in &asked.variables {
+        let variable = &file.model.variables[v.0];
+        let Some([low, high]) = variable.bounds else { continue };
+        let [value, span] = [design[v.0], high - low].map(|x| file.units.from_si(variable.quantity, x));
+        let step = 10.0_f64.powf((FINEST * span).log10().floor());
+        let value = (value / step).round() * step;
+        design[v.0] = file.units.to_si(variable.quantity, value).clamp(low, high);
+    }
+    design
+}
+
 /// The header-free line of a search that ended.
 pub fn start_line(k: usize, search: &Search) -> String {
     let from = if k == 0 { "as drawn".into() } else { format!("start {k}") };

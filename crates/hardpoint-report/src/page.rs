@@ -5,7 +5,9 @@
 //! The page itself is TypeScript under `web/`; its built bundle is kept in this crate's `page/` folder, so
 //! building the crate needs no JavaScript tools. `web/src/payload.ts` is written by a test in this file.
 
-use serde::{Serialize, Serializer, ser::Error as _};
+use std::collections::BTreeMap;
+
+use serde::{Deserialize, Serialize, Serializer, ser::Error as _};
 
 use crate::encoding::{base64, packed};
 
@@ -119,6 +121,40 @@ pub struct Payload {
     pub variables: Vec<Variable>,
     /// Facts about the model: bodies, joints, constraints, redundancy, admissibility.
     pub checks: Vec<Table>,
+    /// The model's text: from it the page solves what the reader changes.
+    pub model: Option<ModelText>,
+}
+
+/// The text of a model, with all that is read besides it.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(TS))]
+pub struct ModelText {
+    /// Name of the file.
+    pub file: String,
+    /// The text.
+    pub text: String,
+    /// The files that it names, but for meshes.
+    pub files: BTreeMap<String, String>,
+    /// The case whose motion this is, where the model has cases.
+    pub case: Option<String>,
+    /// How much of the motion the page shows; as much as there is room for where it does not say.
+    pub shown: Option<Detail>,
+}
+
+/// How much of a motion the page shows.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(TS))]
+pub struct Detail {
+    /// Every so many steps of those that are kept.
+    pub stride: usize,
+    /// Curves of body origins.
+    pub origins: bool,
+    /// How bodies move with the variables, and with that the sensitivities of their origins.
+    pub bodies: bool,
+    /// Sensitivities of the velocities and accelerations of body origins.
+    pub body_rates: bool,
+    /// Comparison of the sensitivities of body origins with differences.
+    pub body_differences: bool,
 }
 
 /// Unit symbols as the user writes them.
@@ -677,6 +713,7 @@ pub(crate) fn file(title: &str, packed: &[u8]) -> String {
         "title" => escape_text(title),
         "style" => include_str!("../page/app.css").to_owned(),
         "payload" => base64(packed),
+        "engine" => include_str!(concat!(env!("OUT_DIR"), "/engine.wasm.txt")).to_owned(),
         "code" => include_str!(concat!(env!("OUT_DIR"), "/app.js.txt")).to_owned(),
         _ => panic!("the report template names an unknown slot `{slot}`"),
     })
@@ -732,6 +769,7 @@ pub(crate) mod tests {
             margin: None,
             variables: vec![],
             checks: vec![],
+            model: None,
         }
     }
 
@@ -740,7 +778,11 @@ pub(crate) mod tests {
         let page = html(&payload("</script><b>{{code}}")).unwrap();
         assert!(page.contains("<title>&lt;/script&gt;&lt;b&gt;{{code}}</title>"));
         assert!(!page.contains("<b>"));
-        assert_eq!(page.matches("</script").count(), 3, "ends of the payload, the code and what starts it");
+        assert_eq!(
+            page.matches("</script").count(),
+            4,
+            "ends of the payload, the engine, the code and what starts it"
+        );
     }
 
     #[test]
@@ -769,7 +811,7 @@ pub(crate) mod tests {
             )* };
         }
         declare!(
-            Curve Payload Units Status Fact BodyTrack PointRole Mesh JointMark JointCurve CouplerMark CouplerTerm
+            Curve Payload ModelText Detail Units Status Fact BodyTrack PointRole Mesh JointMark JointCurve CouplerMark CouplerTerm
             DriverMark BodyPlace WheelMark DistanceMark VehicleAxes Quantity Value Design DesignKind DesignCurves
             GridMap GridDriver GridQuantity GridSensitivity SweepPlot SweepAxis SweepIndex Margin Variable Admissibility Arrow Sensitivity FiniteDifference Table
         );

@@ -30,8 +30,8 @@ use crate::facts::{Answer, Facts};
 use crate::figures::{error, number, order_unit, rounded, seconds, symbol};
 use crate::metric::MetricFact;
 use crate::page::{
-    self, Admissibility, Curve, Fact, FiniteDifference, Margin, Payload, Quantity, Sensitivity, Status,
-    Units as PageUnits, Variable,
+    self, Admissibility, Curve, Design, Detail, Fact, FiniteDifference, Margin, ModelText, Payload, Quantity,
+    Sensitivity, Status, Units as PageUnits, Variable,
 };
 use crate::summary::{RunStatus, Summary};
 use crate::validity::ValidityFact;
@@ -78,6 +78,13 @@ impl<'a> Request<'a> {
 /// Everything that the page shows of a run.
 pub fn payload(request: &Request<'_>) -> Payload {
     fitted(request, &|payload| payload).0
+}
+
+/// A changed design as it stands on the page of today's, which shows so much; `request` is of today's.
+pub fn design(request: &Request<'_>, changed: &Changed<'_>, shown: Detail) -> Design {
+    let compose = Compose::new(request, None, shown);
+    let (bodies, values) = (compose.bodies(), compose.values(request.summary));
+    compose.exact(changed, request.course.stride, &bodies, &values)
 }
 
 /// The page as one self-contained HTML file; `finish` is what a study makes of the payload.
@@ -144,21 +151,9 @@ fn driver_rates(request: &Request<'_>) -> Option<DriverRates> {
 
 /// The page in so much detail.
 fn composed(request: &Request<'_>, alone: Option<&DriverRates>, detail: Detail) -> Payload {
-    let &Request { file, analysis, course, summary, differences, ref changed } = request;
+    let &Request { file, course, summary, differences, ref changed, .. } = request;
     let (model, units, solution) = (&file.model, file.units, &course.kept);
-    let steps: Vec<usize> = (0..solution.motion.len()).step_by(detail.stride).collect();
-    let compose = Compose {
-        model,
-        looks: &file.drawing,
-        units,
-        analysis,
-        course,
-        solution,
-        steps,
-        detail,
-        round_off: course.round_off(model),
-        alone,
-    };
+    let compose = Compose::new(request, alone, detail);
     let (bodies, values) = (compose.bodies(), compose.values(summary));
     let designs = changed
         .as_ref()
@@ -206,22 +201,14 @@ fn composed(request: &Request<'_>, alone: Option<&DriverRates>, detail: Detail) 
             .chain(ValidityFact::table(summary))
             .chain(summary.model.tables())
             .collect(),
+        model: Some(ModelText {
+            file: file_name(file.file_name()),
+            text: file.text().to_owned(),
+            files: file.texts.clone(),
+            case: file.case.clone(),
+            shown: Some(detail),
+        }),
     }
-}
-
-/// How much the page shows.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-struct Detail {
-    /// Every so many steps.
-    stride: usize,
-    /// Curves of body origins.
-    origins: bool,
-    /// How bodies move with the variables, and with that the sensitivities of their origins.
-    bodies: bool,
-    /// Sensitivities of the velocities and accelerations of body origins.
-    body_rates: bool,
-    /// Comparison of the sensitivities of body origins with differences.
-    body_differences: bool,
 }
 
 /// What was kept of how bodies move with the variables.
@@ -443,7 +430,23 @@ impl Span {
 type Orders = [fn(&BodySensitivity) -> Vec3; 3];
 const ORIGIN: Orders = [|s| s.dr, |s| s.dv, |s| s.da];
 
-impl Compose<'_> {
+impl<'a> Compose<'a> {
+    fn new(request: &Request<'a>, alone: Option<&'a DriverRates>, detail: Detail) -> Self {
+        let &Request { file, analysis, course, .. } = request;
+        Self {
+            model: &file.model,
+            looks: &file.drawing,
+            units: file.units,
+            analysis,
+            course,
+            solution: &course.kept,
+            steps: (0..course.kept.motion.len()).step_by(detail.stride).collect(),
+            detail,
+            round_off: course.round_off(&file.model),
+            alone,
+        }
+    }
+
     fn curve(&self, value: impl Fn(usize) -> f64) -> Curve {
         self.steps.iter().map(|&k| value(k)).collect()
     }

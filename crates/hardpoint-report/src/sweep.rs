@@ -10,12 +10,12 @@ use hardpoint::study::{
 use hardpoint_file::{ModelFile, Units};
 use serde::Serialize;
 
+use crate::cells::Cells;
 use crate::csv::no_formula;
 use crate::facts::variable_unit;
 use crate::figures::{count, number, seconds, unit, with_unit};
 use crate::optimize::{BeforeAfter, Evaluations, case_name};
 use crate::page::{Fact, Payload, SweepAxis, SweepIndex, SweepPlot, Table};
-use crate::table::Cells;
 use crate::tolerance::{FailureFact, bar, header, percent, titled};
 
 /// So many designs are drawn at most, and ranked.

@@ -44,23 +44,24 @@ export function grid(report: Report, offered: Quantity[], words: string): Grid {
 
 /** The cells of one order, ranked once per quantity. */
 export class Cells {
-  readonly #columns = new Map<Quantity, Map<Variable, Cell>>()
+  /** By the indices of quantity and variable: those of a design changed since are the same. */
+  readonly #columns = new Map<number, Map<number, Cell>>()
 
   constructor(
-    private readonly report: Report,
+    readonly report: Report,
     readonly order: Order,
   ) {}
 
   /** Nothing where the sensitivity is not known. */
   at(quantity: Quantity, variable: Variable): Cell | undefined {
-    return this.#column(quantity).get(variable)
+    return this.#column(quantity).get(variable.index)
   }
 
   /** The largest magnitude of a column among variables of a unit. */
   largest(quantity: Quantity, unit: string): number {
     let largest = 0
     for (const [variable, { extreme }] of this.#column(quantity)) {
-      if (variable.unit === unit) largest = Math.max(largest, Math.abs(extreme))
+      if (this.report.variables[variable].unit === unit) largest = Math.max(largest, Math.abs(extreme))
     }
     return largest
   }
@@ -73,17 +74,17 @@ export class Cells {
     return `${name}: ${cell.share === 0 ? '≈ 0' : figure(cell.extreme, derivativeUnit(quantity, this.order, variable))}`
   }
 
-  #column(quantity: Quantity): Map<Variable, Cell> {
-    const known = this.#columns.get(quantity)
+  #column({ index }: Quantity): Map<number, Cell> {
+    const known = this.#columns.get(index)
     if (known) return known
-    const column = new Map<Variable, Cell>()
-    for (const peers of ranking(this.report, quantity, this.order).values()) {
+    const column = new Map<number, Cell>()
+    for (const peers of ranking(this.report, this.report.quantities[index], this.order).values()) {
       for (const { variable, sensitivity, share } of peers) {
         const extreme = sensitivity.extremes[this.order]
-        column.set(variable, { extreme: share === 0 ? 0 : extreme, share: Math.sign(extreme) * share })
+        column.set(variable.index, { extreme: share === 0 ? 0 : extreme, share: Math.sign(extreme) * share })
       }
     }
-    this.#columns.set(quantity, column)
+    this.#columns.set(index, column)
     return column
   }
 }

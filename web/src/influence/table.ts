@@ -87,7 +87,7 @@ export function rankingTable(state: State): HTMLElement {
 }
 
 /** Within each unit the largest first; then those that cannot be followed. */
-function ranked({ report, choice }: State): Ranking[] {
+function ranked({ senses: report, choice }: State): Ranking[] {
   const quantity = report.quantities[choice.quantity]
   if (!quantity) return []
   const followed = [...ranking(report, quantity, choice.order)].flatMap(([unit, peers]) =>

@@ -59,7 +59,7 @@ export function valueContent(state: State, { quantity: index, order, over }: Sub
 
 /** The sensitivities of the quantity: the largest of the selected variable's unit, its own, and finite differences of it. */
 export function sensitivityContent(state: State, subject: Subject): Content {
-  const { report, choice } = state
+  const { senses: report, choice } = state
   const { order } = subject
   const quantity = report.quantities[subject.quantity]
   const selected = report.variables[choice.variable]
@@ -128,7 +128,7 @@ interface AtAbscissa {
  * How the sensitivities of the quantity are shown: as they are, or at a fixed abscissa; or why that cannot be. Where several drivers
  * move, the one that moves the abscissa most keeps it, and the others stand.
  */
-function atAbscissa({ report }: State, { quantity, order, over }: Subject): AtAbscissa | string {
+function atAbscissa({ senses: report }: State, { quantity, order, over }: Subject): AtAbscissa | string {
   if (over === undefined) return { seen: (curve) => curve, note: '' }
   const [y, x] = [report.quantities[quantity], report.quantities[over]]
   if (order > 0) return 'Over another quantity, sensitivities are those of values; choose the value, or time.'

@@ -65,7 +65,7 @@ export class Figure {
       shown.setAttribute('aria-pressed', String(this.#shown === 'sensitivity'))
       this.plot.show(this.#shown === 'value' ? valueContent(state, subject) : sensitivityContent(state, subject))
     }
-    onSchemeChange(() => this.show())
+    onSchemeChange(() => this.show(), state.ended)
   }
 
   readonly show: () => void

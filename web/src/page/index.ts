@@ -1,6 +1,7 @@
 import { el, prose } from '../dom'
 import { heatMap } from '../influence/heatmap'
 import { rankingTable } from '../influence/table'
+import type { View } from '../scene/view'
 import { driverMap } from '../maps/map'
 import type { Report } from '../report'
 import type { State } from '../state'
@@ -12,6 +13,7 @@ import { Curves } from './curves'
 import { exports } from './exports'
 import { find } from './find'
 import { help } from './help'
+import type { Item } from './menu'
 import { listenToKeys } from './keys'
 import { navigation } from './navigation'
 import { stage } from './stage'
@@ -19,8 +21,23 @@ import { tabs, type Tab } from './tabs'
 import { transport } from './transport'
 import { variables } from './variables'
 
+/** What the page is given to show besides the report. */
+export interface Tools {
+  /** Stands in the bar. */
+  bar?: HTMLElement
+  /** More that can be exported. */
+  exports?: () => Item[]
+  grips?: () => void
+}
+
+/** What was built, for what is added to it later. */
+export interface Made {
+  view?: View
+  bar: HTMLElement
+}
+
 /** Builds the page: bar, values, view and time, curves, variables, and tables behind tabs. */
-export function page(root: HTMLElement, state: State): void {
+export function page(root: HTMLElement, state: State, tools: Tools = {}): Made {
   const { report } = state
   const hasQuantities = report.quantities.length > 0
   const hasVariables = report.variables.length > 0
@@ -42,8 +59,10 @@ export function page(root: HTMLElement, state: State): void {
   for (const { name, element } of shown) element.classList.add(`area-${name}`)
   root.classList.toggle('no-variables', !hasVariables)
   root.classList.toggle('no-curves', !hasQuantities)
+  const head = bar(state, { find: search?.element, exports: () => [...(tools.exports?.() ?? []), ...exports(state, curves?.figures ?? [], scene.view)], help: () => keys.showModal() })
+  if (tools.bar) slot(head, tools.bar)
   root.append(
-    bar(state, { find: search?.element, exports: () => exports(state, curves?.figures ?? [], scene.view), help: () => keys.showModal() }),
+    head,
     ...(report.status.complete ? [] : [banner(report)]),
     ...(report.values.length > 0 ? [cards(state)] : []),
     el('div', { class: 'scene' }, scene.element, transport(state)),
@@ -51,7 +70,13 @@ export function page(root: HTMLElement, state: State): void {
     navigation(shown.map(({ name, element }) => ({ name, element })), () => keys.showModal()),
     keys,
   )
-  listenToKeys(state, { fit: scene.view && (() => scene.view?.fit()), look: scene.look, find: search?.focus, help: () => keys.showModal() })
+  listenToKeys(state, { fit: scene.view && (() => scene.view?.fit()), look: scene.look, find: search?.focus, help: () => keys.showModal(), grips: () => tools.grips?.() })
+  return { view: scene.view, bar: head }
+}
+
+/** Puts tools into the bar, before what is there for the report alone. */
+export function slot(head: HTMLElement, tools: HTMLElement): void {
+  head.querySelector('.space')!.after(tools)
 }
 
 function banner({ status }: Report): HTMLElement {

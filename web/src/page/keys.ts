@@ -7,6 +7,8 @@ interface Targets {
   look?: (index: number) => void
   find?: () => void
   help: () => void
+  /** Takes hold of hardpoints, or lets go. */
+  grips?: () => void
 }
 
 /** Keys that work wherever the focus is, but for controls to which they mean something else. */
@@ -19,7 +21,7 @@ export function listenToKeys(state: State, targets: Targets): void {
     if (!action) return
     event.preventDefault()
     action()
-  })
+  }, { signal: state.ended })
 }
 
 function actionOf({ key }: KeyboardEvent, target: HTMLElement, state: State, targets: Targets): (() => void) | undefined {
@@ -34,6 +36,9 @@ function actionOf({ key }: KeyboardEvent, target: HTMLElement, state: State, tar
     case 'l':
     case 'L':
       return () => state.choose({ labels: !state.choice.labels })
+    case 'm':
+    case 'M':
+      return targets.grips
     case '/':
       return targets.find
     case '?':

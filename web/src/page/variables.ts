@@ -40,18 +40,22 @@ export function variables(state: State): HTMLElement {
     }
   }
   let ranked = ''
+  let senses = state.senses
   const arrange = () => {
     const key = `${choice.quantity} ${choice.order}`
-    if (key === ranked) return
-    ranked = key
+    const again = key === ranked
+    if (again && senses === state.senses) return
+    ;[ranked, senses] = [key, state.senses]
     const quantity = report.quantities[choice.quantity]
-    const all = quantity ? effects(report, choice.quantity, choice.order) : []
+    const all = quantity ? effects(state.senses, choice.quantity, choice.order) : []
     about.textContent = quantity ? `by effect on ${orderedName(quantity, choice.order)}` : ''
     const place = new Map(all.map(({ variable }, rank) => [variable.index, rank]))
     for (const item of rows) {
       const effect = all[place.get(item.variable.index) ?? -1]
       item.rank(effect, quantity ? derivativeUnit(quantity, choice.order, item.variable) : '')
     }
+    // Under the hand that changes one of them, they keep their places.
+    if (again) return
     const rank = ({ variable }: Row) => place.get(variable.index) ?? rows.length + Number(variable.admissibility === 'cannot_follow')
     order = [...rows].sort((a, b) => rank(a) - rank(b) || a.variable.index - b.variable.index)
     list.replaceChildren(...order.map(({ element }) => element))
@@ -63,7 +67,7 @@ export function variables(state: State): HTMLElement {
     for (const item of rows) item.sync()
     resetAll.hidden = !state.changed
     const variable = report.variables[choice.variable]
-    const foreseen = state.foreseen ? 'Changes are foreseen to first order. ' : ''
+    const foreseen = state.foreseen ? 'Changes are foreseen to first order. ' : state.sensed ? '' : 'Sensitivities are those before the last change. '
     note.replaceChildren(...prose(foreseen + (variable?.note || variable?.description || '')))
     if (choice.variable === shown) return
     shown = choice.variable

@@ -1,4 +1,4 @@
-import { PCFShadowMap, Scene, Vector3, WebGLRenderer } from 'three'
+import { PCFShadowMap, type Ray, Raycaster, Scene, Vector2, Vector3, WebGLRenderer } from 'three'
 import { OrbitControls } from 'three/addons/controls/OrbitControls.js'
 import { valueAt } from '../curve'
 import { el, onSchemeChange } from '../dom'
@@ -70,6 +70,7 @@ export class View {
   #extent = { width: 0, height: 0 }
   /** What is drawn no more. It goes once the next picture is drawn, so that this one finds its shaders compiled. */
   #gone: Assembly[] = []
+  #onDrawn: (() => void)[] = []
 
   constructor(private readonly state: State) {
     this.today = new Mechanism(state.report)
@@ -100,7 +101,7 @@ export class View {
     this.#overview = Overview.of(this.today, this.#look, (place) => this.#visit(place))
     if (this.#overview) this.element.append(this.#overview.element)
 
-    this.#drawn = designOf(state)
+    this.#drawn = state.edition
     this.#matter = this.#assembleMatter()
     this.#marks = this.#assembleMarks()
     this.#floor = this.#lay()
@@ -112,8 +113,8 @@ export class View {
     }
     state.onChoice(remark)
     state.onPoint(remark)
-    onSchemeChange(() => this.#repaint())
-    addEventListener('beforeprint', () => this.#still())
+    onSchemeChange(() => this.#repaint(), state.ended)
+    addEventListener('beforeprint', () => this.#still(), { signal: state.ended })
     new ResizeObserver(([{ contentRect }]) => {
       this.#extent = { width: Math.round(contentRect.width), height: Math.round(contentRect.height) }
       this.#resize()
@@ -133,6 +134,35 @@ export class View {
   /** What is drawn of the mechanism itself, in groups that move with the bodies. */
   get assembly(): Assembly {
     return this.#matter
+  }
+
+  /** Called after each picture, when places on the screen may be others. */
+  onDrawn(listener: () => void): void {
+    this.#onDrawn.push(listener)
+  }
+
+  /** Where a place of the world is on the screen, px from the corner of the view. */
+  project(place: Vector3): { x: number; y: number; seen: boolean } {
+    const { width, height } = this.#extent
+    const { x, y, z } = place.clone().project(this.camera)
+    return { x: ((x + 1) * width) / 2, y: ((1 - y) * height) / 2, seen: Math.abs(z) <= 1 && Math.abs(x) <= 1 && Math.abs(y) <= 1 }
+  }
+
+  /** The line of sight through a point of the screen, px from the corner of the view. */
+  sight(x: number, y: number): Ray {
+    const { width, height } = this.#extent
+    const ray = new Raycaster()
+    ray.setFromCamera(new Vector2((2 * x) / width - 1, 1 - (2 * y) / height), this.camera)
+    return ray.ray
+  }
+
+  /** Lets go of all that the graphics hold, for a page that is made anew. */
+  dispose(): void {
+    this.#gone.push(this.#matter, this.#marks)
+    for (const one of this.#gone.splice(0)) one.dispose()
+    this.#controls.dispose()
+    this.#renderer.dispose()
+    this.#renderer.forceContextLoss()
   }
 
   /** Shows a standard view by its name. */
@@ -272,7 +302,7 @@ export class View {
   #update(): void {
     if (!this.#stale) return
     this.#stale = false
-    const design = designOf(this.state)
+    const design = this.state.edition
     if (design !== this.#drawn) {
       this.#drawn = design
       this.#discard(this.#matter)
@@ -303,7 +333,7 @@ export class View {
     this.#pending = true
     requestAnimationFrame(() => {
       this.#pending = false
-      this.#render()
+      if (!this.state.ended.aborted) this.#render()
     })
   }
 
@@ -333,6 +363,7 @@ export class View {
     for (const one of this.#gone.splice(0)) one.dispose()
     this.#triad.update(this.camera)
     this.#label()
+    for (const listener of this.#onDrawn) listener()
   }
 
   #discard(one: Assembly): void {
@@ -374,9 +405,4 @@ export class View {
     this.#renderer.setSize(width, height, false)
     this.#outlines.resize(width, height, ratio)
   }
-}
-
-/** What tells the design drawn, and the one that it is compared with, from others. */
-function designOf({ changes, choice }: State): string {
-  return JSON.stringify([changes, choice.compared])
 }

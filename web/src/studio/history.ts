@@ -1,9 +1,11 @@
+import type { Setting } from '../engine/protocol'
+
 /** A design, as it can be come back to. */
 export interface Step {
   /** The model's text that the changes count from. */
   text: string
-  /** Of the design variables, in their units. */
-  changes: readonly number[]
+  /** Of design variables and coordinates of hardpoints, by name. */
+  settings: readonly Setting[]
   /** What made it of the one before: `tie_rod_outer_z`, `typed`, `optimised`. */
   label: string
 }
@@ -157,6 +159,6 @@ export class History {
 }
 
 function same(a: Step, b: Step): boolean {
-  const longest = Math.max(a.changes.length, b.changes.length)
-  return a.text === b.text && Array.from({ length: longest }).every((_, k) => (a.changes[k] ?? 0) === (b.changes[k] ?? 0))
+  const changes = ({ settings }: Step) => JSON.stringify(settings.filter(({ by }) => by !== 0).map(({ name, by }) => [name, by]).sort())
+  return a.text === b.text && changes(a) === changes(b)
 }

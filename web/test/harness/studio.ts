@@ -68,7 +68,7 @@ const toleranceOffer: ToleranceOffer = {
 }
 
 Object.assign(window, { shown: [], compared: [], studies: [], taken: [], model: 'name = "strut"' })
-const first: Step = { text: window.model, changes: [0, 0], label: 'opened' }
+const first: Step = { text: window.model, settings: [], label: 'opened' }
 window.designs = new History(first)
 const bar = historyBar(window.designs, { show: (step) => window.shown.push(step), compare: (snapshot) => window.compared.push(snapshot?.name) })
 

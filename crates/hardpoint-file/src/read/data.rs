@@ -3,6 +3,7 @@
 use std::path::{Component, Path};
 
 use crate::diagnostic::{closest, shown};
+use crate::tree::{Folder, Reader};
 use crate::{LARGEST_FILE, neighbours};
 
 /// More rows than this are surely a slip.
@@ -64,15 +65,23 @@ impl DataError {
     }
 }
 
-/// The points of a file that lies in the model's folder or below it.
-pub(super) fn points(
-    folder: Option<&Path>,
-    name: &str,
-    columns: &[Column; 2],
-    of: &Curve,
-) -> Result<Vec<[f64; 2]>, DataError> {
-    let text = text_of(folder, name, of)?;
-    parse(text.strip_prefix('\u{feff}').unwrap_or(&text), &shown(name), columns, of)
+impl Reader<'_> {
+    /// The points of a file that lies in the model's folder or below it.
+    pub(super) fn points_of_text(
+        &mut self,
+        name: &str,
+        columns: &[Column; 2],
+        of: &Curve,
+    ) -> Result<Vec<[f64; 2]>, DataError> {
+        let text = self.text_of_file(name, &of.wanted)?;
+        parse(text.strip_prefix('\u{feff}').unwrap_or(text), &shown(name), columns, of)
+    }
+
+    /// What is in a file that lies in the model's folder or below it, as text, which stays with the model.
+    pub(super) fn text_of_file(&mut self, name: &str, wanted: &Wanted<'_>) -> Result<&str, DataError> {
+        let text = text_from(bytes_of(self.folder, name, wanted)?, name)?;
+        Ok(self.texts.entry(name.to_owned()).insert_entry(text).into_mut())
+    }
 }
 
 /// What messages say of a file that is wanted.
@@ -133,10 +142,6 @@ pub(super) const TARGET: Curve = Curve {
     write: "write an abscissa and a value on each line, in the units of the model file, like `-20, 0.15`",
 };
 
-fn text_of(folder: Option<&Path>, name: &str, of: &Curve) -> Result<String, DataError> {
-    text_from(bytes_of(folder, name, &of.wanted)?, name)
-}
-
 /// What is in a file, as text.
 pub(super) fn text_from(bytes: Vec<u8>, name: &str) -> Result<String, DataError> {
     String::from_utf8(bytes).map_err(|_| {
@@ -146,14 +151,23 @@ pub(super) fn text_from(bytes: Vec<u8>, name: &str) -> Result<String, DataError>
 }
 
 /// What is in a file that lies in the model's folder or below it.
-pub(super) fn bytes_of(folder: Option<&Path>, name: &str, wanted: &Wanted<'_>) -> Result<Vec<u8>, DataError> {
+pub(super) fn bytes_of(folder: Folder<'_>, name: &str, wanted: &Wanted<'_>) -> Result<Vec<u8>, DataError> {
     let path = inside(name, wanted)?;
+    let known = name;
     let name = shown(name);
-    let Some(folder) = folder else {
-        return Err(DataError::unreadable(
-            format!("the file `{name}` cannot be read: this model is a text without a folder"),
-            wanted.without_folder,
-        ));
+    let folder = match folder {
+        Folder::On(folder) => folder,
+        Folder::Given(texts) => match texts.get(known) {
+            Some(text) => return Ok(text.clone().into_bytes()),
+            None => {
+                let message = format!("the file `{name}` did not come with this model");
+                return Err(DataError::unreadable(message, wanted.without_folder));
+            }
+        },
+        Folder::None => {
+            let message = format!("the file `{name}` cannot be read: this model is a text without a folder");
+            return Err(DataError::unreadable(message, wanted.without_folder));
+        }
     };
     let folder = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
     let failed = |e: std::io::Error| match e.kind() {

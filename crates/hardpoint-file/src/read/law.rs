@@ -529,7 +529,7 @@ impl Reader<'_> {
         let columns = self.columns(fields, of);
         let name = self.text(fields, f)?;
         let columns = columns?;
-        match data::points(self.folder, &name, &columns, of) {
+        match self.points_of_text(&name, &columns, of) {
             Ok(points) => Some(points),
             Err(e) => {
                 let at = fields.get("columns").filter(|_| e.of_columns).unwrap_or(f);

@@ -12,7 +12,7 @@ use hardpoint::space::Vec3;
 use crate::diagnostic::shown;
 use crate::drawing::{MESH_FRAMES, Mesh, MeshFrame};
 use crate::format::{NUMBER, Shape, Table, table};
-use crate::tree::{Field, Fields, Reader};
+use crate::tree::{Field, Fields, Folder, Reader};
 
 use super::data::{DataError, Wanted, bytes_of};
 
@@ -87,7 +87,7 @@ fn unfit(message: String, help: &str) -> DataError {
 }
 
 /// The triangles of a file that lies in the model's folder or below it.
-fn triangles_of(folder: Option<&Path>, name: &str) -> Result<Triangles, DataError> {
+fn triangles_of(folder: Folder<'_>, name: &str) -> Result<Triangles, DataError> {
     let ending = Path::new(name).extension().and_then(|e| e.to_str()).unwrap_or_default();
     let kind = KINDS.iter().find(|kind| kind.0.eq_ignore_ascii_case(ending));
     let wanted = Wanted {
@@ -144,6 +144,10 @@ impl Reader<'_> {
             }
             (name?, file?.value.span(), frame?, scale?)
         };
+        if matches!(self.folder, Folder::Given(_)) {
+            // It changes no result, and whoever gives the text has drawn it already.
+            return None;
+        }
         match triangles_of(self.folder, &name) {
             Ok(found) => {
                 let metres = |x: f64| self.units.length.metres(x * scale);

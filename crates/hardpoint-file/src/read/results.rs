@@ -414,7 +414,7 @@ impl Reader<'_> {
                 let file = self.need(&fields, "file")?;
                 self.points_in_file(&fields, file, &data::TARGET)
             }
-            DeValue::String(name) => match data::points(self.folder, name, &data::FIRST_TWO, &data::TARGET) {
+            DeValue::String(name) => match self.points_of_text(name, &data::FIRST_TWO, &data::TARGET) {
                 Ok(points) => Some(points),
                 Err(e) => {
                     self.data_error(f.value.span(), e);

@@ -12,7 +12,7 @@ use crate::places::EntryPlace;
 use crate::tree::{Fields, MOST_ENTRIES, Reader, Subject};
 
 use super::Raw;
-use super::data::{DataError, Wanted, bytes_of, delimiter, number, text_from, unquoted};
+use super::data::{DataError, Wanted, delimiter, number, text_from, unquoted};
 
 /// More designs than these are surely a slip.
 const MOST_SAMPLES: u32 = 1_000_000_000;
@@ -92,7 +92,7 @@ impl Reader<'_> {
         let curves = names(self, "curves", "a list of names of measures");
         let designs = self.given(&fields, "designs", |r, f| {
             let name = r.name(f.value, &fields.subject(f.key), "the name of a CSV file")?;
-            let found = bytes_of(r.folder, &name, &LIST).and_then(|bytes| list_in(bytes, &name));
+            let found = r.text_of_file(&name, &LIST).and_then(|text| list_in(text, &name));
             found.map_err(|e| r.data_error(f.value.span(), e)).ok()
         });
         if fields.get("designs").is_some() {
@@ -177,13 +177,12 @@ pub(crate) fn list_at(path: &Path) -> Result<List, DataError> {
         DataError::unreadable(message, "name a CSV file whose first line names design variables")
             .note(e.to_string())
     })?;
-    list_in(bytes, &name)
+    list_in(&text_from(bytes, &name)?, &name)
 }
 
 /// Reads a list of designs: names of variables, then their values, row by row.
-fn list_in(bytes: Vec<u8>, name: &str) -> Result<List, DataError> {
-    let text = text_from(bytes, name)?;
-    let text = text.strip_prefix('\u{feff}').unwrap_or(&text);
+fn list_in(text: &str, name: &str) -> Result<List, DataError> {
+    let text = text.strip_prefix('\u{feff}').unwrap_or(text);
     let name = shown(name);
     let mut reader = csv::ReaderBuilder::new()
         .has_headers(false)

@@ -96,6 +96,17 @@ impl Compose<'_> {
         }
         designs
     }
+
+    /// The changed design, solved.
+    pub(super) fn exact(
+        &self,
+        changed: &Changed<'_>,
+        stride: usize,
+        bodies: &[BodyTrack],
+        values: &[Value],
+    ) -> Design {
+        Beside { today: self, changed, stride }.exact(bodies, values)
+    }
 }
 
 struct Beside<'a> {

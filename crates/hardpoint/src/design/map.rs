@@ -17,8 +17,8 @@ use crate::constraint::Row;
 use crate::design::{BodyFixed, DesignVelocity, Geometry, JointConstants, MarkerVelocity};
 use crate::law::Law;
 use crate::model::{
-    BodyId, Change, DesignVariable, Direction, DriverId, HardpointId, Joint, JointId, Measure, MeasureKind,
-    Model, PointId, Source, Target, VariableId,
+    BodyId, Change, DesignVariable, Direction, DriverId, HardpointId, Held, Joint, JointId, Measure,
+    MeasureKind, Model, PointId, Source, Target, VariableId,
 };
 use crate::number::{Dual, Real};
 use crate::space::{Mat3, Pose, Vec3};
@@ -29,11 +29,11 @@ use super::formulas::Formulas;
 /// What the variables of a model change, by what they change: found once for many designs.
 #[derive(Clone, Debug)]
 pub(crate) struct DesignMap<'m> {
-    pub model: &'m Model,
+    held: Held<'m>,
     /// Per hardpoint: the variables that move it, and its velocity by each.
     moves: Vec<Vec<(usize, Vec3)>>,
-    /// Per joint: the variables that change the joint itself.
-    changes: Vec<Vec<(usize, &'m Change)>>,
+    /// Per joint: the variables that change the joint itself, and by which of their changes.
+    changes: Vec<Vec<(usize, usize)>>,
     /// Per hardpoint: the joints and points that follow it.
     joints: Vec<Vec<usize>>,
     points: Vec<Vec<usize>>,
@@ -42,49 +42,52 @@ pub(crate) struct DesignMap<'m> {
 }
 
 impl<'m> DesignMap<'m> {
-    pub fn of(model: &'m Model) -> Self {
+    pub fn of(held: impl Into<Held<'m>>) -> Self {
+        let held = held.into();
+        let model: &Model = &held;
         let hardpoints = model.hardpoints.len();
-        let mut design_map = Self {
-            model,
-            formulas: Formulas::of(model),
-            moves: vec![Vec::new(); hardpoints],
-            changes: vec![Vec::new(); model.joints.len()],
-            joints: vec![Vec::new(); hardpoints],
-            points: vec![Vec::new(); hardpoints],
-        };
+        let mut moves = vec![Vec::new(); hardpoints];
+        let mut changes = vec![Vec::new(); model.joints.len()];
+        let mut joints = vec![Vec::new(); hardpoints];
+        let mut points = vec![Vec::new(); hardpoints];
         for (k, variable) in model.variables.iter().enumerate() {
-            for change in &variable.changes {
+            for (c, change) in variable.changes.iter().enumerate() {
                 if let Some((hardpoint, velocity)) = change.hardpoint() {
                     // dP/db = V, constant: P = P_o + V b at any b
-                    design_map.moves[hardpoint.0].push((k, velocity));
+                    moves[hardpoint.0].push((k, velocity));
                 }
                 if let Some(joint) = change.joint() {
-                    design_map.changes[joint.0].push((k, change));
+                    changes[joint.0].push((k, c));
                 }
             }
         }
         // A joint follows the hardpoints that it is at, and those that its axes pass through.
         for (j, joint) in model.joints.iter().enumerate() {
-            joint.at.iter().for_each(|h| design_map.joints[h.0].push(j));
+            joint.at.iter().for_each(|h| joints[h.0].push(j));
             for axis in [joint.axis, joint.axis2].into_iter().flatten() {
-                axis.hardpoints().into_iter().flatten().for_each(|h| design_map.joints[h.0].push(j));
+                axis.hardpoints().into_iter().flatten().for_each(|h| joints[h.0].push(j));
             }
         }
         for (k, point) in model.points.iter().enumerate() {
-            design_map.points[point.at.0].push(k);
+            points[point.at.0].push(k);
         }
-        design_map
+        Self { formulas: Formulas::of(model), moves, changes, joints, points, held }
+    }
+
+    /// The model.
+    pub fn model(&self) -> &Model {
+        &self.held
     }
 
     /// Whether a variable changes the law of a driver.
     pub fn laws_change(&self) -> bool {
-        self.model.variables.iter().flat_map(|v| &v.changes).any(|c| c.law().is_some())
-            || self.model.formulas.iter().any(|f| matches!(f.of, Target::Law(..)))
+        self.model().variables.iter().flat_map(|v| &v.changes).any(|c| c.law().is_some())
+            || self.model().formulas.iter().any(|f| matches!(f.of, Target::Law(..)))
     }
 
     /// The geometry of the designs whose values these are, variable by variable.
     pub fn geometry<T: Real>(&self, values: &[T]) -> Geometry<T> {
-        let model = self.model;
+        let model = self.model();
         let design = PlacedDesign::new(self, values.to_vec());
         Geometry {
             markers: (0..model.joints.len()).map(|j| [0, 1].map(|e| design.marker(j, e))).collect(),
@@ -96,12 +99,12 @@ impl<'m> DesignMap<'m> {
     /// Where the hardpoints of the designs whose values these are stand, global.
     pub fn places<T: Real>(&self, values: &[T]) -> Vec<Vec3<T>> {
         let design = PlacedDesign::new(self, values.to_vec());
-        (0..self.model.hardpoints.len()).map(|h| design.place(HardpointId(h), &design.values)).collect()
+        (0..self.model().hardpoints.len()).map(|h| design.place(HardpointId(h), &design.values)).collect()
     }
 
     /// What the measures of these designs go by.
     pub fn fixed<T: Real>(&self, values: &[T]) -> BodyFixed<T> {
-        let (model, design) = (self.model, PlacedDesign::new(self, values.to_vec()));
+        let (model, design) = (self.model(), PlacedDesign::new(self, values.to_vec()));
         let markers = |m: &Measure| match m.kind {
             MeasureKind::Coordinate { joint, .. } => Some([0, 1].map(|e| design.marker(joint.0, e))),
             _ => None,
@@ -154,7 +157,7 @@ impl<'m> DesignMap<'m> {
     pub(super) fn affected(&self, along: &[(VariableId, f64)]) -> Affected {
         let mut affected = Affected::default();
         for (variable, by) in along {
-            for change in &self.model.variables[variable.0].changes {
+            for change in &self.model().variables[variable.0].changes {
                 affected.hardpoints.extend(change.hardpoint().map(|(h, _)| h.0));
                 affected.joints.extend(change.joint().map(|j| j.0));
                 // dp/db, times how fast b goes
@@ -163,9 +166,9 @@ impl<'m> DesignMap<'m> {
                     .extend(change.law().map(|(driver, parameter, rate)| (driver, parameter, by * rate)));
             }
             // ... and by formulas, directly or through others
-            let following = self.formulas.as_ref().map(|f| f.following(self.model, *variable));
+            let following = self.formulas.as_ref().map(|f| f.following(self.model(), *variable));
             for k in following.unwrap_or_default() {
-                match self.model.formulas[k].of {
+                match self.model().formulas[k].of {
                     Target::Parameter(_) => {}
                     Target::Coordinate(h, _) => affected.hardpoints.push(h.0),
                     Target::Length(j) => affected.joints.push(j.0),
@@ -193,7 +196,7 @@ impl<'m> DesignMap<'m> {
         let mut rates: Vec<_> =
             affected.laws.iter().map(|(d, p, rate)| (*d, *p, T::constant(*rate))).collect();
         for &k in &affected.law_formulas {
-            if let Target::Law(driver, parameter) = self.model.formulas[k].of {
+            if let Target::Law(driver, parameter) = self.model().formulas[k].of {
                 // dp/db of a parameter of a law that a formula gives
                 let rate = design.values.formulas[k].d;
                 match rates.iter_mut().find(|r| (r.0, r.1) == (driver, parameter)) {
@@ -207,7 +210,7 @@ impl<'m> DesignMap<'m> {
 
     /// The drivers' laws in the design with these values.
     pub fn laws(&self, values: &[f64]) -> Vec<Law> {
-        let model = self.model;
+        let model = self.model();
         let mut laws: Vec<Law> = model.drivers.iter().map(|d| d.law.clone()).collect();
         if model.formulas.iter().any(|f| matches!(f.of, Target::Law(..))) {
             let results = PlacedDesign::new(self, values.to_vec()).values.formulas;
@@ -271,7 +274,7 @@ struct Values<T> {
 impl<'e, T: Real> PlacedDesign<'e, T> {
     /// Variables at 0 are left out, unless it is differentiated by them.
     fn new(design_map: &'e DesignMap<'_>, values: Vec<T>) -> Self {
-        let variables = &design_map.model.variables;
+        let variables = &design_map.model().variables;
         let counts = values.iter().map(|v| !v.vanishes()).collect();
         // With b = 0 for the variables that keep lengths L = abs(d) does not follow them: L' = 0, and the mechanism re-assembles.
         let follows = |(value, v): (&T, &DesignVariable)| if v.fixed_length { T::zero() } else { *value };
@@ -293,7 +296,7 @@ impl<'e, T: Real> PlacedDesign<'e, T> {
 
     /// What all formulas give, one after the other.
     fn solved(&self, formulas: &Formulas, variables: &[T]) -> Vec<T> {
-        let model = self.design_map.model;
+        let model = self.design_map.model();
         let mut results: Vec<T> = Vec::with_capacity(model.formulas.len());
         for formula in &model.formulas {
             let result = formula.at(|source| {
@@ -324,7 +327,7 @@ impl<'e, T: Real> PlacedDesign<'e, T> {
 
     /// Global position of a hardpoint.
     fn place(&self, h: HardpointId, values: &Values<T>) -> Vec3<T> {
-        let mut place = self.design_map.model.position(h).spread();
+        let mut place = self.design_map.model().position(h).spread();
         if let (Some(f), false) = (&self.design_map.formulas, values.formulas.is_empty()) {
             // P_o, or component by component what its formula gives
             let given = |axis: usize| f.of_hardpoint[h.0][axis].map_or(place[axis], |k| values.formulas[k]);
@@ -351,24 +354,30 @@ impl<'e, T: Real> PlacedDesign<'e, T> {
 
     /// A body's frame, which the design leaves where it is.
     fn frame(&self, body: BodyId) -> Pose<T> {
-        self.design_map.model.bodies[body.0].frame.spread()
+        self.design_map.model().bodies[body.0].frame.spread()
     }
 
     /// Marker e of joint j in its body's frame.
     fn marker(&self, j: usize, e: usize) -> Pose<T> {
-        let body = self.design_map.model.joints[j].bodies[e];
+        let body = self.design_map.model().joints[j].bodies[e];
         // (s, C) = X_body^-1 X_marker; the body's frame stays where it is (paper, section 2).
         self.frame(body).inverse().compose(self.marker_in_world(j, e, &self.values))
     }
 
     /// Marker e of joint j in the design configuration.
     fn marker_in_world(&self, j: usize, e: usize, values: &Values<T>) -> Pose<T> {
-        let model = self.design_map.model;
+        let model = self.design_map.model();
         let joint = &model.joints[j];
         // The hardpoint and the axes that it follows, then what changes this joint alone (paper 3.1, 3.4; `design/change.rs`).
         let drawn = Pose { rot: self.followed_frame(joint, e, values), r: self.place(joint.at[e], values) };
-        let changes = self.design_map.changes[j].iter().filter(|(k, _)| self.counts[*k]);
-        changes.fold(drawn, |marker, &(k, change)| change.marker(model, marker, e, values.variables[k]))
+        self.changes_of(j)
+            .fold(drawn, |marker, (k, change)| change.marker(model, marker, e, values.variables[k]))
+    }
+
+    /// The changes of joint j itself by the variables that count, with these.
+    fn changes_of(&self, j: usize) -> impl Iterator<Item = (usize, &'e Change)> {
+        let of = move |&(k, c): &(usize, usize)| (k, &self.design_map.model().variables[k].changes[c]);
+        self.design_map.changes[j].iter().filter(|(k, _)| self.counts[*k]).map(of)
     }
 
     /// The frame of marker e of a joint whose axes follow the hardpoints they pass through.
@@ -396,7 +405,7 @@ impl<'e, T: Real> PlacedDesign<'e, T> {
 
     /// What joint j keeps.
     fn kept(&self, j: usize) -> JointConstants<T> {
-        let (joint, zero) = (&self.design_map.model.joints[j], T::zero());
+        let (joint, zero) = (&self.design_map.model().joints[j], T::zero());
         let [m_i, m_j] = [0, 1].map(|e| self.marker_in_world(j, e, &self.for_lengths));
         // d = P_j - P_i of the design; what a joint keeps is measured on it: L = abs(d), z_i . d, z_i . z_j, the distance from a curve.
         let (d, z_i, z_j) = (m_j.r - m_i.r, m_i.rot.cols[2], m_j.rot.cols[2]);
@@ -404,8 +413,8 @@ impl<'e, T: Real> PlacedDesign<'e, T> {
             let formula = self.design_map.formulas.as_ref().and_then(|f| f.of_length[j]);
             let given = formula.and_then(|k| self.values.formulas.get(k)).copied();
             let given = given.unwrap_or_else(|| T::constant(length));
-            let changes = self.design_map.changes[j].iter().filter(|(k, _)| self.counts[*k]);
-            changes.fold(given, |length, &(k, change)| change.length(length, self.values.variables[k]))
+            self.changes_of(j)
+                .fold(given, |length, (k, change)| change.length(length, self.values.variables[k]))
         });
         // Markers at one place keep no distance, and it would have no derivative.
         let keeps = joint.kind.is_rod() && d.dot(d).decisive() > 0.0;
@@ -425,7 +434,7 @@ impl<'e, T: Real> PlacedDesign<'e, T> {
 
     /// A point in its body's frame.
     fn point(&self, k: usize) -> Vec3<T> {
-        let point = &self.design_map.model.points[k];
+        let point = &self.design_map.model().points[k];
         self.frame(point.body).inverse().point(self.place(point.at, &self.values))
     }
 
@@ -435,7 +444,7 @@ impl<'e, T: Real> PlacedDesign<'e, T> {
             // A^T h
             self.frame(body).rot.transpose_mul(self.direction(axis, &self.values))
         };
-        self.design_map.model.directions(measure).map(|d| d.map(in_body))
+        self.design_map.model().directions(measure).map(|d| d.map(in_body))
     }
 }
 

@@ -89,7 +89,7 @@ pub(crate) struct MeasureProgram {
 impl MeasureProgram {
     /// What is asked for, if it can be recorded.
     pub fn record(design_map: &DesignMap<'_>, asked: &ProgramKey, execution: Execution) -> Option<Self> {
-        let model = design_map.model;
+        let model = design_map.model();
         let (outputs, bodies) = (super::outputs(model), moving_bodies(model));
         let nominal = model.whole(&[]);
         let depends = dependences(design_map, &nominal, &bodies, &outputs);
@@ -374,7 +374,7 @@ pub(crate) fn dependences(
     bodies: &[usize],
     outputs: &[Output],
 ) -> Vec<[Vec<usize>; 2]> {
-    let model = design_map.model;
+    let model = design_map.model();
     let unknown = |x: Dual<Rates>| Dual { v: x.v, d: Jet([f64::NAN; 3]) };
     let mut values: Vec<Dual> = values.iter().map(|v| Dual::constant(*v)).collect();
     let mut poses: Vec<Pose<Dual<Rates>>> = model.bodies.iter().map(|b| b.frame.spread()).collect();

@@ -60,12 +60,12 @@ impl<'a> Slopes<'a> {
     /// For the design with these values, with derivatives by the variables if they are wanted; `None` for a model without
     /// such measures.
     pub fn new(
-        design_map: &DesignMap<'a>,
+        design_map: &'a DesignMap<'a>,
         topology: &Topology,
         values: &[f64],
         sensitivities: bool,
     ) -> Option<Self> {
-        let model = design_map.model;
+        let model = design_map.model();
         let mut drivers: Vec<DriverId> =
             (0..model.measures.len()).flat_map(|k| driver_of(model, k)).flatten().collect();
         drivers.sort_unstable();

@@ -8,7 +8,7 @@ use hardpoint_tape::Number;
 use crate::design::DesignMap;
 use crate::law::Law;
 use crate::measure::{self, Measured, PreviousStep, SlopeValues};
-use crate::model::{BodyId, Model};
+use crate::model::{BodyId, Held, Model};
 use crate::motion::execution::{Cache, Runnable};
 use crate::motion::kinematics::State;
 use crate::motion::parts::PlanGeometry;
@@ -45,8 +45,8 @@ use super::walk::{PreparedDesign, Scope, Walk};
 /// ```
 #[derive(Clone, Debug)]
 pub struct Analysis<'m> {
-    model: &'m Model,
     topology: Topology,
+    /// With the model.
     design_map: DesignMap<'m>,
     /// Per variable, the joints that it opens in the nominal design: worked out when first asked for.
     opens: OnceLock<Vec<Vec<JointDefect>>>,
@@ -61,7 +61,7 @@ impl<'m> Analysis<'m> {
     ///
     /// # Errors
     /// A [`TopologyFault`] where the drivers leave motions free or contradict the joints.
-    pub fn new(model: &'m Model) -> Result<Self, TopologyFault> {
+    pub fn new(model: impl Into<Held<'m>>) -> Result<Self, TopologyFault> {
         Self::with(model, Formulation::Relative)
     }
 
@@ -69,11 +69,11 @@ impl<'m> Analysis<'m> {
     ///
     /// # Errors
     /// As [`Analysis::new`].
-    pub fn with(model: &'m Model, formulation: Formulation) -> Result<Self, TopologyFault> {
-        let topology = Topology::of(model, formulation)?;
+    pub fn with(model: impl Into<Held<'m>>, formulation: Formulation) -> Result<Self, TopologyFault> {
+        let model = model.into();
+        let topology = Topology::of(&model, formulation)?;
         let programs = Arc::new(Programs::new(Execution::default()));
         Ok(Self {
-            model,
             topology,
             design_map: DesignMap::of(model),
             opens: OnceLock::new(),
@@ -88,8 +88,8 @@ impl<'m> Analysis<'m> {
     }
 
     /// The model.
-    pub fn model(&self) -> &'m Model {
-        self.model
+    pub fn model(&self) -> &Model {
+        self.design_map.model()
     }
 
     /// The plan.
@@ -106,7 +106,7 @@ impl<'m> Analysis<'m> {
     /// was solved is there.
     pub fn solve(&self, mut run: Run<'_>) -> Solution {
         let (design, mut solution) = (self.prepare(run.design, run.scope), std::mem::take(&mut run.memory));
-        self.walk(&design, self.model.times.len(), &mut *run.progress, &mut solution, &mut |_, _| ());
+        self.walk(&design, self.model().times.len(), &mut *run.progress, &mut solution, &mut |_, _| ());
         solution
     }
 
@@ -126,11 +126,11 @@ impl<'m> Analysis<'m> {
     /// together, variables may be followed that are not one by one.
     pub fn admissibility_of(&self, change: &[f64]) -> Admissibility {
         let mut design = self.design(&[]);
-        let along = along(&self.model.whole(change));
+        let along = along(&self.model().whole(change));
         let field = self.design_map.field_along(&along, &design.values);
-        design.opens = vec![admissibility_at_design(self.model, &field)];
+        design.opens = vec![admissibility_at_design(self.model(), &field)];
         design.fields = vec![field];
-        let mut walk = Walk::new(self, &design, vec![false; self.model.bodies.len()]);
+        let mut walk = Walk::new(self, &design, vec![false; self.model().bodies.len()]);
         walk.each(|_| ());
         walk.admissibility(&design.opens).pop().expect("that of the one field")
     }
@@ -138,7 +138,7 @@ impl<'m> Analysis<'m> {
     /// A design that is ready, at all output times.
     pub(super) fn solve_prepared(&self, design: &PreparedDesign, solution: &mut Solution) {
         let progress = &mut |_| ControlFlow::Continue(());
-        self.walk(design, self.model.times.len(), progress, solution, &mut |_, _| ());
+        self.walk(design, self.model().times.len(), progress, solution, &mut |_, _| ());
     }
 
     /// The design with variable k at `design[k]`, without sensitivities.
@@ -148,7 +148,7 @@ impl<'m> Analysis<'m> {
 
     /// The design with variable k at `design[k]`, and what is asked for of it.
     pub(super) fn prepare(&self, design: &[f64], scope: Scope) -> PreparedDesign {
-        let values = self.model.whole(design);
+        let values = self.model().whole(design);
         let sensitivities = scope.sensitivities;
         PreparedDesign {
             geometry: self.design_map.geometry(&values),
@@ -167,8 +167,8 @@ impl<'m> Analysis<'m> {
     /// Per variable, the joints that it opens in the nominal design.
     pub(crate) fn opens(&self) -> &[Vec<JointDefect>] {
         self.opens.get_or_init(|| {
-            let nominal = self.design_map.fields(&self.model.whole(&[]));
-            nominal.iter().map(|field| admissibility_at_design(self.model, field)).collect()
+            let nominal = self.design_map.fields(&self.model().whole(&[]));
+            nominal.iter().map(|field| admissibility_at_design(self.model(), field)).collect()
         })
     }
 
@@ -178,29 +178,29 @@ impl<'m> Analysis<'m> {
         let hindrance = StepProgram::hindrance(&self.topology, measures);
         match hindrance.or((measures && self.goes_by_driver()).then_some(by_driver)) {
             Some(why) => SolvedBy::Kernel(why.into()),
-            None => self.programs.solved_by(self.model.times.len()),
+            None => self.programs.solved_by(self.model().times.len()),
         }
     }
 
     /// Whether measures go by a driver that moves alone, and need more of a step than programs hand out.
     pub(super) fn goes_by_driver(&self) -> bool {
-        (0..self.model.measures.len()).any(|k| self.model.goes_by_driver(k))
+        (0..self.model().measures.len()).any(|k| self.model().goes_by_driver(k))
     }
 
     /// What evaluates these laws at many times, if they are those of the nominal design and it pays.
     pub(super) fn laws_program(&self, laws: &[Law]) -> Option<Arc<Runnable>> {
-        let nominal = self.model.drivers.iter().zip(laws).all(|(driver, law)| driver.law == *law);
-        if nominal { self.programs.laws(self.model) } else { None }
+        let nominal = self.model().drivers.iter().zip(laws).all(|(driver, law)| driver.law == *law);
+        if nominal { self.programs.laws(self.model()) } else { None }
     }
 
     /// Whether steps of so many designs are worth a program.
     pub(super) fn programs_pay(&self, designs: usize) -> bool {
-        self.programs.pay(designs * self.model.times.len())
+        self.programs.pay(designs * self.model().times.len())
     }
 
     /// Per body, whether any sink wants its results.
     pub(super) fn wanted<S: Sink>(&self, sinks: &[S]) -> Vec<bool> {
-        (0..self.model.bodies.len()).map(|b| sinks.iter().any(|s| s.wants(BodyId(b)))).collect()
+        (0..self.model().bodies.len()).map(|b| sinks.iter().any(|s| s.wants(BodyId(b)))).collect()
     }
 
     /// The stop of a run that was told to end after time t.
@@ -209,7 +209,7 @@ impl<'m> Analysis<'m> {
             kind: StopKind::Interrupted,
             last_time: Some(t),
             failed_time: t,
-            drivers: self.model.drivers.iter().map(|d| d.law.at(t).value()).collect(),
+            drivers: self.model().drivers.iter().map(|d| d.law.at(t).value()).collect(),
             block: None,
             pivot_ratio: 1.0,
             joints: Vec::new(),
@@ -220,7 +220,7 @@ impl<'m> Analysis<'m> {
 
     /// Empties a motion, with room for so many output times.
     pub(super) fn make_room(&self, motion: &mut Motion, steps: usize) {
-        motion.bodies = self.model.bodies.len();
+        motion.bodies = self.model().bodies.len();
         motion.states.shape(BodyState::NUMBERS * (motion.bodies - 1), steps);
         motion.coordinates.shape(self.topology.coordinates.len(), steps);
         motion.times.clear();
@@ -246,9 +246,9 @@ impl<'m> Analysis<'m> {
             return;
         }
         let PreparedDesign { values, laws, scope: Scope { of_many, .. }, .. } = design;
-        let at = measure::MeasuredDesign { model: self.model, design_map: &self.design_map, values, laws };
+        let at = measure::MeasuredDesign { model: self.model(), design_map: &self.design_map, values, laws };
         let program = self.programs_pay(*of_many).then(|| {
-            let asked = measure::ProgramKey::of(self.model, values, sensitivities);
+            let asked = measure::ProgramKey::of(self.model(), values, sensitivities);
             let execution = self.programs.execution();
             self.formulas
                 .get(asked, |asked| measure::MeasureProgram::record(&self.design_map, asked, execution))
@@ -269,18 +269,18 @@ impl<'m> Analysis<'m> {
                     return Some(RecordedExtras::default());
                 }
                 let fields = recording::strictly(|| self.design_map.fields(values));
-                record_derivatives(self.model, &fields, plan, state)
+                record_derivatives(self.model(), &fields, plan, state)
             };
             StepProgram::record(&one, &self.design_map, purpose, besides, execution)
         })
     }
 
     /// The nominal design where its motion begins.
-    pub(super) fn started(&self) -> Option<Stepper<'m>> {
+    pub(super) fn started(&self) -> Option<Stepper<'_>> {
         let PreparedDesign { geometry, laws, .. } = self.design(&[]);
-        let parts = PlanGeometry::same(self.model, &self.topology, &geometry, &laws);
-        let mut one = Stepper::new(self.model, &self.topology, parts);
-        one.start(*self.model.times.first()?).ok()?;
+        let parts = PlanGeometry::same(self.model(), &self.topology, &geometry, &laws);
+        let mut one = Stepper::new(self.model(), &self.topology, parts);
+        one.start(*self.model().times.first()?).ok()?;
         Some(one)
     }
 }

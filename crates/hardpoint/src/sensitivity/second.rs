@@ -156,7 +156,7 @@ impl Seconds {
         directions: &[PairDirection],
         pairs: &[[usize; 2]],
     ) -> Self {
-        let model = design_map.model;
+        let model = design_map.model();
         let firsts = directions.iter().map(|d| {
             let field = d.field(design_map, values);
             FirstOrder::new(model, topology, PlanVelocity::new(topology, &field.with_laws_in_order()))

@@ -77,7 +77,7 @@ impl<'m> Motions<'m> {
     }
 
     /// The model of one of them.
-    pub fn model(&self, motion: usize) -> &'m Model {
+    pub fn model(&self, motion: usize) -> &Model {
         self.analyses[motion].model()
     }
 

@@ -54,6 +54,6 @@ pub use tolerance::{
 pub use validity::{Validity, validity};
 pub use verify::{CheckOutcome, PASS, PASS_ONE_SIDED, Verification, VerifiedValue, VerifyOptions, verify};
 pub use whatif::{
-    Foresight, WhatIf, add_coordinates, add_tilts, repeats_coordinate, value_beside, variable_named,
-    variable_names, what_if,
+    Foresight, WhatIf, add_coordinates, add_tilts, coordinate, repeats_coordinate, value_beside,
+    variable_named, variable_names, what_if,
 };

@@ -200,6 +200,17 @@ fn coordinate_of(variable: &DesignVariable) -> Option<(HardpointId, usize, f64)>
     Some((hardpoint, axis, part(axis)))
 }
 
+/// The variable that a coordinate of a hardpoint is, and by how much the coordinate goes with a unit of it: 1 or -1 where the variable is
+/// plainly that coordinate.
+pub fn coordinate(model: &Model, hardpoint: HardpointId, axis: usize) -> Option<(VariableId, f64)> {
+    let of = |(k, v): (usize, &DesignVariable)| {
+        coordinate_of(v)
+            .filter(|(h, a, _)| (*h, *a) == (hardpoint, axis))
+            .map(|(_, _, by)| (VariableId(k), by))
+    };
+    model.variables.iter().enumerate().find_map(of)
+}
+
 /// Whether a variable is a hardpoint's coordinate under the hardpoint's name, and an earlier variable is the same coordinate, up
 /// to sign and unit.
 pub fn repeats_coordinate(model: &Model, variable: VariableId) -> bool {

@@ -132,6 +132,8 @@ pub struct Iteration {
     pub most: Option<(VariableId, f64)>,
     /// Designs looked at so far, in this search.
     pub designs: usize,
+    /// The best design so far: the values of all variables of the model, m, rad or plain.
+    pub best: Vec<f64>,
 }
 
 /// A design that could not be judged.
@@ -464,6 +466,7 @@ impl<'p> Descent<'p> {
             designs: self.memory.cost.borrow().designs,
             step,
             most,
+            best: self.best.design.clone(),
         };
         tell(&iteration);
         search.iterations.push(iteration);

@@ -9,47 +9,11 @@ use parquet::file::properties::WriterProperties;
 use parquet::file::writer::SerializedFileWriter;
 use parquet::schema::types::{Type, TypePtr};
 
+use hardpoint_report::GENERATOR;
+use hardpoint_report::cells::Cells;
+
 /// A row group of Parquet has at least so many rows, so that the table need not fit into memory.
 const GROUP_ROWS: usize = 1 << 16;
-
-/// The cells of a column, in some rows that follow each other.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Cells {
-    /// Whole numbers.
-    Whole(Vec<i64>),
-    /// Numbers; NaN where there is none.
-    Numbers(Vec<f64>),
-    /// Texts; empty where there is none.
-    Texts(Vec<String>),
-}
-
-impl Cells {
-    fn len(&self) -> usize {
-        match self {
-            Self::Whole(cells) => cells.len(),
-            Self::Numbers(cells) => cells.len(),
-            Self::Texts(cells) => cells.len(),
-        }
-    }
-
-    fn append(&mut self, more: Self) {
-        match (self, more) {
-            (Self::Whole(cells), Self::Whole(more)) => cells.extend(more),
-            (Self::Numbers(cells), Self::Numbers(more)) => cells.extend(more),
-            (Self::Texts(cells), Self::Texts(more)) => cells.extend(more),
-            _ => panic!("a column keeps its kind"),
-        }
-    }
-
-    fn text(&self, row: usize) -> String {
-        match self {
-            Self::Whole(cells) => cells[row].to_string(),
-            Self::Numbers(cells) if cells[row].is_finite() => cells[row].to_string(),
-            Self::Numbers(_) => String::new(),
-            Self::Texts(cells) => cells[row].clone(),
-        }
-    }
-}
 
 /// How a table is written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -94,7 +58,7 @@ impl<W: Write + Send> TableWriter<W> {
             }
             TableFormat::Parquet => {
                 let properties = WriterProperties::builder()
-                    .set_created_by(crate::GENERATOR.into())
+                    .set_created_by(GENERATOR.into())
                     .set_compression(Compression::UNCOMPRESSED)
                     .set_dictionary_enabled(false);
                 let schema = schema(&columns).map_err(io::Error::other)?;
@@ -123,7 +87,7 @@ impl<W: Write + Send> TableWriter<W> {
                 let mut rest = rows;
                 loop {
                     let room = GROUP_ROWS - pending.first().map_or(0, Cells::len);
-                    let later: Vec<Cells> = rest.iter_mut().map(|cells| split(cells, room)).collect();
+                    let later: Vec<Cells> = rest.iter_mut().map(|cells| cells.split_off(room)).collect();
                     pending.iter_mut().zip(rest).for_each(|(cells, more)| cells.append(more));
                     if pending.first().map_or(0, Cells::len) < GROUP_ROWS {
                         return Ok(());
@@ -143,21 +107,12 @@ impl<W: Write + Send> TableWriter<W> {
         match self.sink {
             Sink::Csv(mut csv) => csv.flush(),
             Sink::Parquet(mut writer, mut pending) => {
-                if pending.first().is_some_and(|cells| cells.len() > 0) {
+                if pending.first().is_some_and(|cells| !cells.is_empty()) {
                     write_group(&mut writer, &mut pending)?;
                 }
                 writer.close().map(drop).map_err(io::Error::other)
             }
         }
-    }
-}
-
-/// What goes beyond so many cells.
-fn split(cells: &mut Cells, at: usize) -> Cells {
-    match cells {
-        Cells::Whole(cells) => Cells::Whole(cells.split_off(at.min(cells.len()))),
-        Cells::Numbers(cells) => Cells::Numbers(cells.split_off(at.min(cells.len()))),
-        Cells::Texts(cells) => Cells::Texts(cells.split_off(at.min(cells.len()))),
     }
 }
 

@@ -1,0 +1,232 @@
+//! A model that is kept open: its designs, solved as the reader makes them.
+
+use std::sync::Arc;
+
+use hardpoint::model::{HardpointId, Model};
+use hardpoint::space::Quat;
+use hardpoint::study::{add_coordinates, coordinate, variable_named};
+use hardpoint::topology::TopologyFault;
+use hardpoint::{Analysis, Run, Solution};
+use hardpoint_file::ModelFile;
+use hardpoint_report::course::Course;
+use hardpoint_report::diagnose;
+use hardpoint_report::page::{Design, Detail, ModelText};
+use hardpoint_report::payload::{self, Changed, Request};
+use hardpoint_report::summary::Summary;
+
+use crate::protocol::{Coordinate, Grip, Message, Opened, Setting, Solved};
+use crate::{Refusal, first_case, read, whole};
+
+/// Where a design cannot be reached, so many times the way to it is halved: the last step is a thousandth of it.
+const HALVINGS: usize = 10;
+
+/// A model that is open.
+#[derive(Debug)]
+pub(crate) struct Open {
+    /// The file with all its cases, and a variable for every coordinate.
+    whole: ModelFile,
+    /// The file in the case that is shown, with the same variables.
+    file: ModelFile,
+    analysis: Analysis<'static>,
+    /// The design as it stands in the text.
+    today: Course,
+    /// As the page shows it, without variables.
+    bare: ModelFile,
+    summary: Summary,
+    shown: Detail,
+    /// Memory of the last design.
+    memory: Solution,
+}
+
+impl Open {
+    /// Opens a model, and says what can be done with it.
+    pub fn new(model: &ModelText) -> Result<(Self, Opened), Refusal> {
+        let mut whole = whole(model)?;
+        add_coordinates(&mut whole.model);
+        let file = match whole.model.cases.iter().position(|c| Some(&c.name) == model.case.as_ref()) {
+            Some(case) => whole.in_case(hardpoint::model::CaseId(case)),
+            None => first_case(whole.clone()),
+        };
+        let analysis = planned(&file, model)?;
+        let solution = analysis.solve(Run::new().without_sensitivities());
+        let mut bare = file.clone();
+        bare.model.variables.clear();
+        let stop = solution.stop.as_ref();
+        let stop = stop.map(|stop| diagnose::stop(&bare, stop, solution.motion.len(), None));
+        let stop = stop.map(|d| Message::of(&model.text, &d));
+        if let Some(stop) = stop.as_ref().filter(|_| solution.motion.is_empty()) {
+            return Err(vec![stop.clone()]);
+        }
+        let today = Course::of(&bare.model, &solution);
+        let summary = Summary::new(&bare, analysis.topology(), &today);
+        let shown = model.shown.unwrap_or_else(|| {
+            let request = Request::of(&bare, &analysis, &today, &summary);
+            payload::payload(&request).model.and_then(|m| m.shown).unwrap_or(Detail {
+                stride: 1,
+                origins: true,
+                bodies: true,
+                body_rates: true,
+                body_differences: true,
+            })
+        });
+        let opened = Opened {
+            cases: whole.model.cases.iter().map(|case| case.name.clone()).collect(),
+            grips: grips(&file),
+            frames: file
+                .model
+                .bodies
+                .iter()
+                .map(|body| Quat::from_rotation(body.frame.rot).to_array())
+                .collect(),
+            stop,
+        };
+        Ok((Self { whole, file, analysis, today, bare, summary, shown, memory: Solution::default() }, opened))
+    }
+
+    /// The design with these changes, or as near to it as can be on the way from a solved one.
+    pub fn design(&mut self, change: &[Setting], from: Option<&[Setting]>) -> Result<Solved, Refusal> {
+        let wanted = self.values(change)?;
+        let start = from.map(|from| self.values(from)).transpose()?;
+        let (mut solution, mut why) = self.solved(&wanted);
+        let mut part = 1.0;
+        let mut design = wanted.clone();
+        if let (Some(start), Some(_)) = (start, &why) {
+            // The way is halved towards where it ends.
+            let (mut low, mut high) = (0.0, 1.0);
+            let on_the_way = |part: f64| -> Vec<f64> {
+                start.iter().zip(&wanted).map(|(a, b)| a + part * (b - a)).collect()
+            };
+            let mut reached = None;
+            for _ in 0..HALVINGS {
+                let middle = 0.5 * (low + high);
+                self.memory = solution;
+                let (found, stop) = self.solved(&on_the_way(middle));
+                solution = found;
+                match stop {
+                    None => {
+                        low = middle;
+                        reached = Some(std::mem::take(&mut solution));
+                    }
+                    Some(stop) => (high, why) = (middle, Some(stop)),
+                }
+            }
+            (part, design) = (low, on_the_way(low));
+            solution = match reached {
+                Some(reached) => reached,
+                None => self.solved(&design).0,
+            };
+        }
+        let shown = self.shown(&solution, &design);
+        self.memory = solution;
+        Ok(Solved { part, design: shown, why })
+    }
+
+    /// Another model's motion beside this one's, where the two have the same bodies and measures.
+    pub fn beside(&mut self, model: &ModelText) -> Result<Solved, Refusal> {
+        let other = read(model)?;
+        let same = |a: &Model, b: &Model| {
+            let bodies = |m: &Model| m.bodies.iter().map(|b| b.name.clone()).collect::<Vec<_>>();
+            let outputs = |m: &Model| {
+                let outputs = hardpoint::measure::outputs(m);
+                outputs.into_iter().map(|o| (o.name, o.dimension)).collect::<Vec<_>>()
+            };
+            bodies(a) == bodies(b)
+                && outputs(a) == outputs(b)
+                && a.times == b.times
+                && a.metrics.len() == b.metrics.len()
+        };
+        if !same(&other.model, &self.file.model) {
+            let help = "compare designs of the same mechanism over the same output times";
+            let message = "the two models have different bodies, measures, metrics or output times".into();
+            return Err(vec![Message::plain("HP0703", message, help)]);
+        }
+        let analysis = planned(&other, model)?;
+        let solution = analysis.solve(Run::new().without_sensitivities());
+        let stop = solution.stop.as_ref();
+        let why = stop.map(|stop| diagnose::stop(&other, stop, solution.motion.len(), None));
+        let why = why.map(|d| Message::of(&model.text, &d));
+        Ok(Solved { part: 1.0, design: self.shown(&solution, &[]), why })
+    }
+
+    /// The text with these changes.
+    pub fn text(&self, change: &[Setting]) -> Result<String, Refusal> {
+        let values = self.values(change)?;
+        self.whole
+            .edit(&values)
+            .map_err(|all| all.list().iter().map(|d| Message::of(self.whole.text(), d)).collect())
+    }
+
+    /// The values of all variables, SI.
+    fn values(&self, change: &[Setting]) -> Result<Vec<f64>, Refusal> {
+        let model = &self.file.model;
+        let mut values = vec![0.0; model.variables.len()];
+        for Setting { name, by } in change {
+            let Some(v) = model.variable(name).or_else(|| variable_named(&mut model.clone(), name)) else {
+                let message = format!("`{name}` is no design variable or hardpoint coordinate of the model");
+                return Err(vec![Message::plain("HP0704", message, "open the model again")]);
+            };
+            let Some(value) = values.get_mut(v.0) else {
+                let message = format!("`{name}` is a joint's tilt, which the page does not vary");
+                return Err(vec![Message::plain(
+                    "HP0704",
+                    message,
+                    "add it to `[design]` in the model's text",
+                )]);
+            };
+            *value += self.file.units.to_si(model.variables[v.0].quantity, *by);
+        }
+        Ok(values)
+    }
+
+    /// A design's motion, and why it ends before that of the design as it stands does.
+    fn solved(&mut self, values: &[f64]) -> (Solution, Option<Message>) {
+        let memory = std::mem::take(&mut self.memory);
+        let run = Run::new().at(values).without_sensitivities().reusing(memory);
+        let solution = self.analysis.solve(run);
+        let stop = solution.stop.as_ref().filter(|_| solution.motion.len() < self.today.steps);
+        let stop = stop.map(|stop| diagnose::stop_of_changed(&self.bare, stop, solution.motion.len()));
+        let stop = stop.map(|d| Message::of(self.whole.text(), &d));
+        (solution, stop)
+    }
+
+    /// A design as the page shows it; `None` where nothing of it could be solved.
+    fn shown(&self, exact: &Solution, values: &[f64]) -> Option<Design> {
+        if exact.motion.is_empty() {
+            return None;
+        }
+        let request = Request::of(&self.bare, &self.analysis, &self.today, &self.summary);
+        let changed = Changed {
+            name: "changed".into(),
+            note: String::new(),
+            change: values,
+            today: &self.today.kept,
+            exact,
+            foreseen: None,
+        };
+        Some(payload::design(&request, &changed, self.shown))
+    }
+}
+
+/// The plan of a model that outlives the call.
+fn planned(file: &ModelFile, model: &ModelText) -> Result<Analysis<'static>, Refusal> {
+    Analysis::new(Arc::new(file.model.clone())).map_err(|fault: TopologyFault| {
+        vec![Message::of(&model.text, &diagnose::topology_fault(file, &fault))]
+    })
+}
+
+/// The hardpoints that have a name, with what their coordinates are varied by.
+fn grips(file: &ModelFile) -> Vec<Grip> {
+    let (model, units) = (&file.model, file.units);
+    let grip = |(h, hardpoint): (usize, &hardpoint::model::Hardpoint)| {
+        let of = |axis: usize| -> Option<Coordinate> {
+            let (v, sign) = coordinate(model, HardpointId(h), axis)?;
+            let variable = &model.variables[v.0];
+            let bounds = variable.bounds.map(|b| b.map(|x| units.from_si(variable.quantity, x)));
+            Some(Coordinate { variable: variable.name.clone(), sign, bounds })
+        };
+        let place =
+            hardpoint.position.to_array().map(|x| units.from_si(hardpoint::joint::Quantity::Length, x));
+        Some(Grip { name: hardpoint.name.clone(), place, coordinates: [of(0)?, of(1)?, of(2)?] })
+    };
+    model.hardpoints.iter().enumerate().filter(|(_, h)| !h.unnamed).filter_map(grip).collect()
+}

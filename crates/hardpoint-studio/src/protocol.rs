@@ -1,0 +1,273 @@
+//! What a page asks, and what it is answered.
+
+use hardpoint_file::Diagnostic;
+use hardpoint_report::page::{Design, ModelText, Table};
+use serde::{Deserialize, Serialize};
+
+#[cfg(test)]
+use ts_rs::TS;
+
+/// What is asked of the engine.
+#[derive(Clone, Debug, Deserialize)]
+#[cfg_attr(test, derive(TS))]
+#[serde(tag = "ask", rename_all = "snake_case")]
+pub enum Request {
+    /// Whether a text is a model. Answered by [`Checked`]; nothing that is open changes.
+    Check {
+        /// The text.
+        #[cfg_attr(test, ts(type = "ModelText"))]
+        model: ModelText,
+    },
+    /// To solve the designs of this model from now on. Answered by [`Opened`].
+    Open {
+        /// The model.
+        #[cfg_attr(test, ts(type = "ModelText"))]
+        model: ModelText,
+    },
+    /// A design of the open model. Answered by [`Solved`].
+    Design {
+        /// What is changed.
+        change: Vec<Setting>,
+        /// A design that is solved already: where the changed one cannot be, what is given is as far on the way from this one to it
+        /// as can be.
+        from: Option<Vec<Setting>>,
+    },
+    /// The text of the open model with a changed design. Answered by [`Text`].
+    Text {
+        /// What is changed.
+        change: Vec<Setting>,
+    },
+    /// Everything that the page of a model shows, which need not be open. Answered by a payload.
+    Page {
+        /// The model.
+        #[cfg_attr(test, ts(type = "ModelText"))]
+        model: ModelText,
+    },
+    /// Another model's motion beside that of the open one. Answered by [`Solved`].
+    Beside {
+        /// The other model.
+        #[cfg_attr(test, ts(type = "ModelText"))]
+        model: ModelText,
+    },
+    /// A search for the design that serves the goals of a model best. Answered by [`Studied`].
+    Optimize {
+        /// The model.
+        #[cfg_attr(test, ts(type = "ModelText"))]
+        model: ModelText,
+        /// Searches from so many starts; as many as the model says where there is no number.
+        starts: Option<usize>,
+        /// Iterations of each at most; as many as the model says where there is no number.
+        iterations: Option<usize>,
+    },
+    /// What the tolerances of a model come to. Answered by [`Studied`].
+    Tolerance {
+        /// The model.
+        #[cfg_attr(test, ts(type = "ModelText"))]
+        model: ModelText,
+        /// Designs that are drawn; as many as the model says where there is no number.
+        samples: Option<usize>,
+        /// The seed of these.
+        seed: Option<u32>,
+    },
+}
+
+/// A variable and its change.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(TS))]
+pub struct Setting {
+    /// A design variable of the model, or a coordinate of a hardpoint like `tie_rod_outer.z`.
+    pub name: String,
+    /// By how much it is changed, in the model's unit.
+    pub by: f64,
+}
+
+/// A diagnostic of the text, in the words of the command line.
+#[derive(Clone, Debug, Serialize)]
+#[cfg_attr(test, derive(TS))]
+pub struct Message {
+    /// `error`, `warning` or `note`.
+    #[cfg_attr(test, ts(type = "'error' | 'warning' | 'note'"))]
+    pub severity: String,
+    /// Its stable code.
+    pub code: String,
+    /// The headline, enough alone.
+    pub message: String,
+    /// Line of the text, from 1; none where the text as a whole is meant.
+    pub line: Option<usize>,
+    /// Column of the line in characters, from 1.
+    pub column: Option<usize>,
+    /// How many characters are meant.
+    pub length: Option<usize>,
+    /// What to write at that place.
+    pub label: Option<String>,
+    /// Facts.
+    pub notes: Vec<String>,
+    /// What to do.
+    pub help: Option<String>,
+}
+
+impl Message {
+    /// A diagnostic of this text.
+    pub(crate) fn of(text: &str, d: &Diagnostic) -> Self {
+        let length = d.span.as_ref().and_then(|span| text.get(span.clone())).map(|part| part.chars().count());
+        Self {
+            severity: format!("{:?}", d.severity).to_lowercase(),
+            code: d.code.into(),
+            message: d.message.clone(),
+            line: d.line,
+            column: d.column,
+            length,
+            label: d.label.clone(),
+            notes: d.notes.clone(),
+            help: d.help.clone(),
+        }
+    }
+
+    /// Something that has no place in the text.
+    pub(crate) fn plain(code: &str, message: String, help: &str) -> Self {
+        Self {
+            severity: "error".into(),
+            code: code.into(),
+            message,
+            line: None,
+            column: None,
+            length: None,
+            label: None,
+            notes: Vec::new(),
+            help: Some(help.into()),
+        }
+    }
+}
+
+/// What is wrong or worth knowing about a text.
+#[derive(Clone, Debug, Serialize)]
+#[cfg_attr(test, derive(TS))]
+pub struct Checked {
+    /// Errors, warnings and notes, in the order of the text.
+    pub messages: Vec<Message>,
+}
+
+/// What can be done with a model that was opened.
+#[derive(Clone, Debug, Serialize)]
+#[cfg_attr(test, derive(TS))]
+pub struct Opened {
+    /// The cases of the file, of which one is open.
+    pub cases: Vec<String>,
+    /// The hardpoints that can be taken hold of.
+    pub grips: Vec<Grip>,
+    /// How the frames of the bodies are turned in the drawing, quaternions w x y z, ground first.
+    pub frames: Vec<[f64; 4]>,
+    /// Why its motion ends early, where it does.
+    pub stop: Option<Message>,
+}
+
+/// A hardpoint that can be moved.
+#[derive(Clone, Debug, Serialize)]
+#[cfg_attr(test, derive(TS))]
+pub struct Grip {
+    /// Its name.
+    pub name: String,
+    /// Where it is in the drawing, in the model's unit.
+    pub place: [f64; 3],
+    /// What its coordinates are varied by.
+    pub coordinates: [Coordinate; 3],
+}
+
+/// What a coordinate of a hardpoint is varied by.
+#[derive(Clone, Debug, Serialize)]
+#[cfg_attr(test, derive(TS))]
+pub struct Coordinate {
+    /// The variable.
+    pub variable: String,
+    /// By how much the coordinate goes with one unit of it: 1 or -1.
+    pub sign: f64,
+    /// The bounds of the variable, where the model has it and gives them.
+    pub bounds: Option<[f64; 2]>,
+}
+
+/// A design that was solved.
+#[derive(Clone, Debug, Serialize)]
+#[cfg_attr(test, derive(TS))]
+pub struct Solved {
+    /// The part of the way to the design that was asked for, 0 to 1: 1 where it is that one.
+    pub part: f64,
+    /// The design; `None` where nothing of its motion could be solved.
+    #[cfg_attr(test, ts(type = "Design | null"))]
+    pub design: Option<Design>,
+    /// Why it is not the one asked for, or why its motion ends early.
+    pub why: Option<Message>,
+}
+
+/// A text.
+#[derive(Clone, Debug, Serialize)]
+#[cfg_attr(test, derive(TS))]
+pub struct Text {
+    /// The text.
+    pub text: String,
+}
+
+/// What a study came to.
+#[derive(Clone, Debug, Serialize)]
+#[cfg_attr(test, derive(TS))]
+pub struct Studied {
+    /// How it ended, in a sentence.
+    pub message: String,
+    /// What was found.
+    #[cfg_attr(test, ts(type = "Array<Table>"))]
+    pub tables: Vec<Table>,
+    /// The design found, where one was searched for.
+    pub change: Option<Vec<Setting>>,
+    /// The model's text with it.
+    pub text: Option<String>,
+}
+
+/// Why there is no answer.
+#[derive(Clone, Debug, Serialize)]
+#[cfg_attr(test, derive(TS))]
+pub struct Failed {
+    /// Never none.
+    pub failed: Vec<Message>,
+}
+
+/// How far a study is.
+#[derive(Clone, Debug, Serialize)]
+#[cfg_attr(test, derive(TS))]
+pub struct Told {
+    /// So much is done ...
+    pub done: usize,
+    /// ... of so much, where that is known.
+    pub total: Option<usize>,
+    /// What has happened, in a line.
+    pub line: String,
+    /// The design that the study stands at.
+    pub change: Option<Vec<Setting>>,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::{fs, path::Path};
+
+    #[test]
+    fn typescript_types_are_those_of_the_protocol() {
+        let config = ts_rs::Config::default();
+        let mut expected = String::from(
+            "// Written by the tests of `crates/hardpoint-studio/src/protocol.rs`; change the structs there.\n\nimport type { Design, ModelText, Table } from '../payload'\n",
+        );
+        macro_rules! declare {
+            ($($name:ident)*) => { $(
+                expected += "\n";
+                expected += &<$name as TS>::docs().unwrap_or_default();
+                expected += &format!("export {}\n", <$name as TS>::decl(&config)).replace(" \n", "\n");
+            )* };
+        }
+        declare!(Request Setting Message Checked Opened Grip Coordinate Solved Text Studied Failed Told);
+        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../web/src/engine/protocol.ts");
+        if fs::read_to_string(&path).ok().as_deref() != Some(&expected) {
+            fs::write(&path, expected).unwrap();
+            panic!(
+                "web/src/engine/protocol.ts was out of date and has been rewritten: rebuild the page and commit both"
+            );
+        }
+    }
+}

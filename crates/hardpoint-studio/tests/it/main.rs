@@ -1,0 +1,181 @@
+//! What a page is answered is what the command gives for the same text.
+
+use std::fs;
+use std::ops::ControlFlow;
+use std::path::{Path, PathBuf};
+
+use hardpoint::Analysis;
+use hardpoint_studio::Engine;
+use serde_json::{Value, json};
+
+/// Curves of the page are `f32`, and a design found by changes is that of the edited text but for the round-off of its digits.
+const SAME: f64 = 1e-5;
+/// What is less than this part of the largest of all quantities is its round-off.
+const NOTHING: f64 = 1e-9;
+
+fn models() -> Vec<PathBuf> {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../models");
+    let mut files: Vec<PathBuf> = fs::read_dir(folder).unwrap().map(|e| e.unwrap().path()).collect();
+    files.retain(|path| path.extension().is_some_and(|e| e == "toml"));
+    files.sort();
+    files
+}
+
+fn model(path: &Path) -> Value {
+    let file = hardpoint_file::read(path).unwrap();
+    json!({ "file": path.file_name().unwrap().to_str(), "text": file.text(), "files": file.texts, "case": null, "shown": null })
+}
+
+fn named(name: &str) -> Value {
+    model(&Path::new(env!("CARGO_MANIFEST_DIR")).join("../../models").join(name))
+}
+
+/// An answer, its curves put in their places.
+fn ask(engine: &mut Engine, request: Value) -> Value {
+    let block = engine.answer(&serde_json::to_vec(&request).unwrap(), &mut |_| ControlFlow::Continue(()));
+    let length = u32::from_le_bytes(block[..4].try_into().unwrap()) as usize;
+    let start = (4 + length).next_multiple_of(4);
+    let numbers: Vec<f32> =
+        block[start..].chunks_exact(4).map(|b| f32::from_le_bytes(b.try_into().unwrap())).collect();
+    let mut answer: Value = serde_json::from_slice(&block[4..4 + length]).unwrap();
+    if answer.get("design").is_some_and(|d| d.is_object()) {
+        for quantity in answer["design"]["quantities"].as_array_mut().unwrap() {
+            for order in ["value", "rate", "accel"] {
+                let Some([first, count]) = quantity.get(order).and_then(place) else { continue };
+                quantity[order] = json!(numbers[first..first + count]);
+            }
+        }
+    }
+    answer
+}
+
+fn place(curve: &Value) -> Option<[usize; 2]> {
+    let list = curve.as_array()?;
+    Some([list.first()?.as_u64()? as usize, list.get(1)?.as_u64()? as usize])
+}
+
+/// The first values, rates and accelerations of a text's outputs as the core has them, in its units.
+fn solved(text: &str, model: &Value) -> Vec<(f64, Vec<f64>)> {
+    let texts = serde_json::from_value(model["files"].clone()).unwrap();
+    let mut file = hardpoint_file::parse_with(text, "model.toml", &texts).unwrap();
+    if !file.model.cases.is_empty() {
+        file = file.in_case(hardpoint::model::CaseId(0));
+    }
+    let analysis = Analysis::new(&file.model).unwrap();
+    let solution = analysis.solve(hardpoint::Run::new().without_sensitivities());
+    let outputs = solution.measured.outputs.iter().enumerate();
+    outputs
+        .map(|(m, output)| {
+            let of = |k: usize| file.units.from_si(output.dimension, solution.measured.value(k, m)[0]);
+            let values: Vec<f64> = (0..solution.motion.len()).map(of).collect();
+            (values.iter().fold(0.0_f64, |most, x| most.max(x.abs())), values)
+        })
+        .collect()
+}
+
+#[test]
+fn a_design_is_that_of_the_text_with_its_changes() {
+    let mut moved = 0;
+    for path in models() {
+        let (model, mut engine) = (model(&path), Engine::default());
+        let opened = ask(&mut engine, json!({ "ask": "open", "model": model }));
+        let grips = opened["grips"].as_array().unwrap_or_else(|| panic!("{}: {opened}", path.display()));
+        // Of every model, hardpoints that can go a little without anything having to break.
+        for grip in grips.iter().step_by(3) {
+            let size = grips.iter().flat_map(|g| g["place"].as_array().unwrap()).filter_map(Value::as_f64);
+            let by = 1e-3 * size.fold(0.0_f64, |most, x| most.max(x.abs()));
+            for coordinate in grip["coordinates"].as_array().unwrap() {
+                let change = json!([{ "name": coordinate["variable"], "by": by }]);
+                let design = ask(&mut engine, json!({ "ask": "design", "change": change, "from": null }));
+                let text = ask(&mut engine, json!({ "ask": "text", "change": change }));
+                let (Some(text), true) = (text["text"].as_str(), design["why"].is_null()) else { continue };
+                let expected = solved(text, &model);
+                let steps = expected[0].1.len();
+                let largest = expected.iter().map(|(most, _)| *most).fold(0.0, f64::max);
+                for (quantity, (most, values)) in
+                    design["design"]["quantities"].as_array().unwrap().iter().zip(&expected)
+                {
+                    let Some(curve) = quantity["value"].as_array() else { continue };
+                    let stride = steps.div_ceil(curve.len());
+                    for (k, found) in curve.iter().enumerate() {
+                        let found = found.as_f64().unwrap_or(f64::NAN);
+                        let wanted = values[k * stride];
+                        let turns = ((found - wanted) / 360.0).round() * 360.0;
+                        assert!(
+                            (found - wanted - turns).abs() <= (SAME * most).max(NOTHING * largest)
+                                || !wanted.is_finite(),
+                            "{}: {change}: {found} for {wanted}",
+                            path.display()
+                        );
+                    }
+                }
+                moved += 1;
+            }
+        }
+    }
+    assert!(moved > 100, "{moved}");
+}
+
+#[test]
+fn a_drag_stops_where_the_mechanism_locks_and_says_why() {
+    let mut engine = Engine::default();
+    let opened = ask(&mut engine, json!({ "ask": "open", "model": named("rssr.toml") }));
+    let variable = opened["grips"][0]["coordinates"][0]["variable"].clone();
+    let far = json!([{ "name": variable, "by": 1e4 }]);
+    let stopped = ask(&mut engine, json!({ "ask": "design", "change": far, "from": [] }));
+    let part = stopped["part"].as_f64().unwrap();
+    assert!(part < 1.0, "{}", stopped["part"]);
+    assert!(stopped["why"]["code"].as_str().unwrap().starts_with("HP04"), "{}", stopped["why"]);
+    // There it can be, and is as the text there says.
+    let reached = json!([{ "name": variable, "by": 1e4 * part }]);
+    let again = ask(&mut engine, json!({ "ask": "design", "change": reached, "from": null }));
+    assert!(again["why"].is_null() && again["part"] == 1.0);
+    assert_eq!(again["design"]["quantities"], stopped["design"]["quantities"]);
+}
+
+#[test]
+fn what_is_asked_in_vain_is_told() {
+    let mut engine = Engine::default();
+    let strut = named("macpherson.toml");
+    for (request, code) in [
+        (json!({ "ask": "sing" }), "HP0701"),
+        (json!({ "ask": "text", "change": [] }), "HP0702"),
+        (json!({ "ask": "optimize", "model": strut, "starts": null, "iterations": null }), "HP0602"),
+        (json!({ "ask": "page", "model": { "file": "x", "text": "name = ", "files": {} } }), "HP0102"),
+    ] {
+        assert_eq!(ask(&mut engine, request.clone())["failed"][0]["code"], code, "{request}");
+    }
+    ask(&mut engine, json!({ "ask": "open", "model": strut }));
+    let change = json!([{ "name": "nobody.x", "by": 1 }]);
+    let answer = ask(&mut engine, json!({ "ask": "design", "change": change, "from": null }));
+    assert_eq!(answer["failed"][0]["code"], "HP0704");
+    let beside = ask(&mut engine, json!({ "ask": "beside", "model": named("rssr.toml") }));
+    assert_eq!(beside["failed"][0]["code"], "HP0703");
+}
+
+#[test]
+fn messages_stand_at_their_places() {
+    let mut strut = named("macpherson.toml");
+    let text = strut["text"].as_str().unwrap().replace("type = \"spherical\"", "type = \"spherica\"");
+    let line = 1 + text[..text.find("spherica\"").unwrap()].matches('\n').count();
+    strut["text"] = json!(text);
+    let checked = ask(&mut Engine::default(), json!({ "ask": "check", "model": strut }));
+    let first = &checked["messages"][0];
+    assert_eq!((first["line"].as_u64(), first["severity"].as_str()), (Some(line as u64), Some("error")));
+    assert!(first["length"].as_u64() > Some(3), "{first}");
+}
+
+#[test]
+fn another_design_of_the_mechanism_stands_beside_it() {
+    let mut engine = Engine::default();
+    let strut = named("macpherson.toml");
+    ask(&mut engine, json!({ "ask": "open", "model": strut }));
+    let change = json!([{ "name": "tie_rod_outer.z", "by": 2.0 }]);
+    let text = ask(&mut engine, json!({ "ask": "text", "change": change }))["text"].clone();
+    let mut other = strut.clone();
+    other["text"] = text;
+    let beside = ask(&mut engine, json!({ "ask": "beside", "model": other }));
+    let design = ask(&mut engine, json!({ "ask": "design", "change": change, "from": null }));
+    assert_eq!(beside["design"]["quantities"], design["design"]["quantities"]);
+    assert_eq!(beside["design"]["values"], design["design"]["values"]);
+}

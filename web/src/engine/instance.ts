@@ -1,0 +1,35 @@
+import type { Request, Told } from './protocol'
+
+/** What the engine's binary offers: see `crates/hardpoint-wasm`. */
+interface Exports {
+  memory: WebAssembly.Memory
+  room(length: number): number
+  answer(): number
+  answered(): number
+}
+
+/** Answers a request with a block of bytes, at once. */
+export type Ask = (request: Request) => ArrayBuffer
+
+/** An engine of its own; `tell` hears how far a study is. */
+export async function instantiate(module: WebAssembly.Module, tell: (told: Told) => void): Promise<Ask> {
+  let why = ''
+  const text = (place: number, length: number) => new TextDecoder().decode(new Uint8Array(exports.memory.buffer, place, length))
+  const page = {
+    tell: (place: number, length: number) => tell(JSON.parse(text(place, length))),
+    panicked: (place: number, length: number) => (why = text(place, length)),
+  }
+  const { exports: found } = await WebAssembly.instantiate(module, { page })
+  const exports = found as unknown as Exports
+  return (request) => {
+    const bytes = new TextEncoder().encode(JSON.stringify(request))
+    const place = exports.room(bytes.length)
+    new Uint8Array(exports.memory.buffer, place, bytes.length).set(bytes)
+    try {
+      const length = exports.answer()
+      return exports.memory.buffer.slice(exports.answered(), exports.answered() + length) as ArrayBuffer
+    } catch (error) {
+      throw new Error(why || String(error))
+    }
+  }
+}

@@ -1,0 +1,323 @@
+import './grips.css'
+import { Quaternion, Vector3 } from 'three'
+import { el, prose, svg } from '../dom'
+import type { Grip, Opened } from '../engine/protocol'
+import { poseAt } from '../scene/poses'
+import type { View } from '../scene/view'
+import type { State } from '../state'
+import { AXES, followed, lengthOf, mirrors, placeOf, settingsFor, snapped, turnOf, type Way, WAYS } from './moves'
+
+/** Snaps that are offered, in the model's unit. */
+const SNAPS = [0, 0.1, 0.5, 1, 5, 10]
+/** An arrow key moves by this part of the size, where there is no snap; with Shift by ten times that. */
+const NUDGE = 1e-3
+/** Where an axis is drawn through a hardpoint, so far to either side, in parts of the size. */
+const GUIDE = 0.25
+
+interface Shown {
+  grip: Grip
+  body: number
+  point: number
+  button: HTMLButtonElement
+}
+
+/** A drag under way. */
+interface Hold {
+  shown: Shown
+  /** Of the world and of the drawing, at its start. */
+  from: Vector3
+  drawn: Vector3
+  turn: Quaternion
+  /** From the hardpoint to where it was taken hold of. */
+  offset: Vector3
+}
+
+/** Hardpoints that can be taken hold of in the view, and the pane of the one that is chosen. */
+export class Grips {
+  readonly element = el('div', { class: 'grips', hidden: true })
+  readonly pane = el('section', { class: 'grip-pane', hidden: true, 'aria-label': 'Hardpoint', 'data-testid': 'grip-pane' })
+  readonly button = el('button', { type: 'button', title: 'Take hold of hardpoints (M)', 'data-testid': 'grips', 'aria-pressed': 'false', onclick: () => this.toggle() }, 'move')
+  #guide = svg('svg', { class: 'guide', 'aria-hidden': 'true' })
+  #shown: Shown[]
+  #chosen?: Shown
+  #hold?: Hold
+  #way: Way = 'free'
+  #snap = 0
+  #mirror?: { axis: number; partner: Map<string, Grip>; on: boolean }
+  #fields: HTMLInputElement[] = []
+  #size: number
+  #pending?: PointerEvent
+
+  constructor(
+    private readonly view: View,
+    private readonly state: State,
+    private readonly opened: Opened,
+    /** Called when a hand lets go. */
+    private readonly rest: () => void,
+  ) {
+    this.#size = view.today.size
+    this.#shown = opened.grips.flatMap((grip) => this.#place(grip))
+    const found = mirrors(opened.grips)
+    this.#mirror = found && { ...found, on: true }
+    this.element.append(this.#guide, ...this.#shown.map(({ button }) => button))
+    this.#makePane()
+    view.onDrawn(() => this.#follow())
+    state.onChoice(() => this.#show())
+    this.#show()
+  }
+
+  /** Whether a hand holds one. */
+  get holding(): boolean {
+    return this.#hold !== undefined
+  }
+
+  get on(): boolean {
+    return !this.element.hidden
+  }
+
+  toggle(): void {
+    this.element.hidden = this.on
+    this.button.setAttribute('aria-pressed', String(this.on))
+    if (!this.on) this.choose(undefined)
+    this.#follow()
+    this.#show()
+  }
+
+  /** Chooses a hardpoint by its name. */
+  choose(name: string | undefined): void {
+    this.#chosen = this.#shown.find(({ grip }) => grip.name === name)
+    for (const { grip, button } of this.#shown) button.setAttribute('aria-pressed', String(grip.name === name))
+    this.#show()
+    this.#follow()
+  }
+
+  /** Where a hardpoint is drawn: of the bodies that it is fixed in, ground first. */
+  #place(grip: Grip): Shown[] {
+    const { bodies } = this.state.report
+    for (const [body, { labels }] of bodies.entries()) {
+      const point = labels.findIndex((label) => label.split(', ').includes(grip.name))
+      if (point < 0) continue
+      const button = el('button', {
+        type: 'button',
+        class: 'grip',
+        title: grip.name,
+        'aria-label': `hardpoint ${grip.name}`,
+        'data-testid': `grip-${grip.name}`,
+        onclick: () => this.choose(grip.name),
+        onkeydown: (event: KeyboardEvent) => this.#key(event, shown),
+        onpointerdown: (event: PointerEvent) => this.#take(event, shown),
+        onpointermove: (event: PointerEvent) => this.#drag(event),
+        onpointerup: () => this.#let(),
+        onpointercancel: () => this.#let(),
+      })
+      const shown: Shown = { grip, body, point, button }
+      return [shown]
+    }
+    return []
+  }
+
+  #world({ body, point }: Shown): Vector3 {
+    const { mechanism } = this.view
+    return mechanism.frame(this.state.step).at(body, new Vector3(...mechanism.report.bodies[body].skeleton[point]))
+  }
+
+  #turn({ body }: Shown): Quaternion {
+    const pose = poseAt(this.view.mechanism.report.bodies[body].poses, this.state.step)
+    return pose ? turnOf(this.opened.frames[body] ?? [1, 0, 0, 0], pose.turn) : new Quaternion()
+  }
+
+  /** Puts the buttons where their hardpoints are in the picture. */
+  #follow(): void {
+    if (!this.on) return
+    for (const shown of this.#shown) {
+      const { x, y, seen } = this.view.project(this.#world(shown))
+      shown.button.hidden = !seen || !Number.isFinite(x + y)
+      shown.button.style.transform = `translate(${x.toFixed(1)}px, ${y.toFixed(1)}px)`
+    }
+    this.#guide.replaceChildren()
+    if (!this.#chosen || this.#way === 'free') return
+    const at = this.#world(this.#chosen)
+    const turn = this.#turn(this.#chosen)
+    for (const axis of this.#way) {
+      const along = new Vector3().setComponent(AXES.indexOf(axis as 'x'), GUIDE * this.#size).applyQuaternion(turn)
+      const [a, b] = [1, -1].map((side) => this.view.project(at.clone().addScaledVector(along, side)))
+      this.#guide.append(svg('line', { x1: a.x, y1: a.y, x2: b.x, y2: b.y, class: `axis-${axis}` }))
+    }
+  }
+
+  #take(event: PointerEvent, shown: Shown): void {
+    if (event.button !== 0) return
+    this.choose(shown.grip.name)
+    shown.button.setPointerCapture(event.pointerId)
+    this.state.pause()
+    const from = this.#world(shown)
+    const turn = this.#turn(shown)
+    const sight = this.#sight(event)
+    const offset = followed(sight, from, 'free', turn, this.#facing()) ?? new Vector3()
+    this.#hold = { shown, from, turn, drawn: placeOf(shown.grip, this.state.settings), offset }
+    // A grip that is left lying keeps the keys.
+    shown.button.focus({ preventScroll: true })
+    event.preventDefault()
+  }
+
+  #drag(event: PointerEvent): void {
+    if (!this.#hold) return
+    const first = this.#pending === undefined
+    this.#pending = event
+    // A pointer reports more often than a frame can be drawn.
+    if (first) requestAnimationFrame(() => this.#dragged())
+  }
+
+  #dragged(): void {
+    const [event, hold] = [this.#pending, this.#hold]
+    this.#pending = undefined
+    if (!event || !hold) return
+    const sight = this.#sight(event)
+    sight.origin.sub(hold.offset)
+    const way = followed(sight, hold.from, this.#way, hold.turn, this.#facing())
+    if (!way) return
+    const place = hold.drawn.clone().add(way.applyQuaternion(hold.turn.clone().invert()))
+    this.#put(hold.shown, place, event.ctrlKey || event.metaKey ? this.#snap || this.#coarse : this.#snap, hold.drawn)
+  }
+
+  #let(): void {
+    if (!this.#hold) return
+    this.#dragged()
+    this.#hold = undefined
+    this.rest()
+  }
+
+  /** A round step that is seen. */
+  get #coarse(): number {
+    return 10 ** Math.round(Math.log10(this.#size * 0.005))
+  }
+
+  #sight({ clientX, clientY }: PointerEvent) {
+    const { left, top } = this.view.element.getBoundingClientRect()
+    return this.view.sight(clientX - left, clientY - top)
+  }
+
+  /** Towards the eye; of a planar mechanism its normal, so that it stays in its plane. */
+  #facing(): Vector3 {
+    return this.view.today.plane?.clone() ?? new Vector3().setFromMatrixColumn(this.view.camera.matrixWorld, 2)
+  }
+
+  /** Puts a hardpoint, and its mirror image, at a place of the drawing; coordinates that stay keep their numbers. */
+  #put({ grip }: Shown, place: Vector3, snap: number, before: Vector3): void {
+    const still = 1e-9 * this.#size
+    AXES.forEach((_, k) => {
+      const moved = Math.abs(place.getComponent(k) - before.getComponent(k)) > still
+      place.setComponent(k, moved ? snapped(place.getComponent(k), snap) : before.getComponent(k))
+    })
+    const own = settingsFor(grip, place)
+    const partner = this.#mirror?.on ? this.#mirror.partner.get(grip.name) : undefined
+    let other: ReturnType<typeof settingsFor> | undefined
+    if (partner) {
+      const mirrored = place.clone()
+      mirrored.setComponent(this.#mirror!.axis, -mirrored.getComponent(this.#mirror!.axis))
+      other = settingsFor(partner, mirrored)
+    }
+    const bound = own.bound ?? other?.bound
+    this.state.bound = bound ? `\`${bound}\` is at its bound` : ''
+    this.state.adjust([...own.settings, ...(other?.settings ?? [])])
+  }
+
+  #key(event: KeyboardEvent, shown: Shown): void {
+    const key = event.key.toLowerCase()
+    if (key === 'x' || key === 'y' || key === 'z') {
+      this.#go(this.#way === key ? 'free' : key)
+    } else {
+      const by = { arrowleft: [-1, 0], arrowright: [1, 0], arrowup: [0, 1], arrowdown: [0, -1] }[key]
+      if (!by) return
+      const step = (this.#snap || NUDGE * this.#size) * (event.shiftKey ? 10 : 1)
+      const before = placeOf(shown.grip, this.state.settings)
+      const way = new Vector3()
+      if (this.#way.length === 1) way.setComponent(AXES.indexOf(this.#way as 'x'), step * (by[0] + by[1]))
+      else {
+        // The axis that is seen most in the direction of the key.
+        const turn = this.#turn(shown)
+        const screen = new Vector3().setFromMatrixColumn(this.view.camera.matrixWorld, by[0] ? 0 : 1)
+        const parts = AXES.map((_, k) => new Vector3().setComponent(k, 1).applyQuaternion(turn).dot(screen))
+        const allowed = (k: number) => this.#way === 'free' || this.#way.includes(AXES[k])
+        const axis = [0, 1, 2].filter(allowed).sort((a, b) => Math.abs(parts[b]) - Math.abs(parts[a]))[0]
+        way.setComponent(axis, step * Math.sign(parts[axis]) * (by[0] + by[1]))
+      }
+      this.#put(shown, before.clone().add(way), 0, before)
+      this.rest()
+    }
+    event.preventDefault()
+    event.stopPropagation()
+  }
+
+  #go(way: Way): void {
+    this.#way = way
+    this.#follow()
+    this.#show()
+  }
+
+  #ways: HTMLButtonElement[] = []
+  #name = el('h3')
+  #why = el('p', { class: 'refusal', role: 'status', 'data-testid': 'refusal' })
+  #mirrorField?: HTMLInputElement
+
+  #makePane(): void {
+    const { length } = this.state.report.units
+    this.#fields = AXES.map((axis, k) =>
+      el('input', {
+        type: 'text',
+        inputmode: 'decimal',
+        'aria-label': `${axis} in ${length}`,
+        'data-testid': `grip-${axis}`,
+        onchange: () => this.#typed(k),
+      }),
+    )
+    const label = (text: string, field: HTMLElement, after = '') => el('label', {}, el('span', {}, text), field, el('span', { class: 'unit' }, after))
+    this.#ways = WAYS.map((way) => el('button', { type: 'button', 'data-testid': `way-${way}`, title: way === 'free' ? 'In the plane of the picture' : `Along ${[...way].join(' and ')}`, onclick: () => this.#go(way) }, way))
+    const snap = el('select', { 'aria-label': 'Snap', 'data-testid': 'snap', onchange: () => (this.#snap = Number(snap.value)) }, ...SNAPS.map((by) => el('option', { value: by }, by === 0 ? 'no snap' : `snap ${by} ${length}`)))
+    this.#mirrorField = this.#mirror && el('input', { type: 'checkbox', checked: true, 'data-testid': 'mirror', onchange: () => (this.#mirror!.on = this.#mirrorField!.checked) })
+    const reset = el('button', { type: 'button', class: 'plain', 'data-testid': 'grip-reset', onclick: () => this.#reset() }, 'reset')
+    this.pane.append(
+      el('div', { class: 'head' }, this.#name, reset, el('button', { type: 'button', class: 'icon', 'aria-label': 'Close', onclick: () => this.choose(undefined) }, '×')),
+      el('div', { class: 'coordinates' }, ...AXES.map((axis, k) => label(axis, this.#fields[k], length))),
+      el('div', { class: 'ways', role: 'toolbar', 'aria-label': 'Way' }, ...this.#ways),
+      el('div', { class: 'ways' }, snap, this.#mirrorField && el('label', { class: 'mirror' }, this.#mirrorField, 'mirror image follows')),
+      this.#why,
+    )
+  }
+
+  #typed(k: number): void {
+    const chosen = this.#chosen
+    const value = chosen && lengthOf(this.#fields[k].value, this.state.report.units.length)
+    if (chosen && value !== undefined) {
+      const before = placeOf(chosen.grip, this.state.settings)
+      this.#put(chosen, before.clone().setComponent(k, value), 0, before)
+      this.rest()
+    }
+    this.#show(true)
+  }
+
+  #reset(): void {
+    if (!this.#chosen) return
+    const before = placeOf(this.#chosen.grip, this.state.settings)
+    this.#put(this.#chosen, new Vector3(...this.#chosen.grip.place), 0, before)
+    this.rest()
+  }
+
+  #show(all = false): void {
+    this.pane.hidden = !this.on
+    this.element.classList.toggle('refused', this.state.refusal !== '')
+    this.#why.replaceChildren(...prose(this.state.refusal || this.state.bound))
+    const chosen = this.#chosen
+    this.pane.classList.toggle('idle', !chosen)
+    this.#name.textContent = chosen?.grip.name ?? 'Take hold of a hardpoint'
+    this.#ways.forEach((button, k) => button.setAttribute('aria-pressed', String(WAYS[k] === this.#way)))
+    for (const field of this.#fields) field.disabled = !chosen
+    if (!chosen) return
+    const place = placeOf(chosen.grip, this.state.settings)
+    this.#fields.forEach((field, k) => {
+      if (all || document.activeElement !== field) field.value = String(Number(place.getComponent(k).toPrecision(7)))
+      field.classList.toggle('changed', Math.abs(place.getComponent(k) - chosen.grip.place[k]) > 1e-9 * this.#size)
+    })
+    if (this.#mirrorField) this.#mirrorField.disabled = !this.#mirror!.partner.has(chosen.grip.name)
+  }
+}

@@ -1,0 +1,356 @@
+import './studio.css'
+import './drawer.css'
+import { el } from '../dom'
+import type { Editor } from '../editor/editor'
+import { openEditor } from '../editor/open'
+import type { Checked, Opened, Setting, Solved, Text } from '../engine/protocol'
+import { type Answer, Refused, Solver } from '../engine/solver'
+import { save } from '../export/save'
+import { page, type Made, slot } from '../page'
+import type { Item } from '../page/menu'
+import type { Design as WireDesign, ModelText, Payload } from '../payload'
+import { design, read, type Design, type Report } from '../report'
+import { State } from '../state'
+import { Grips } from './grips'
+import { History, type Snapshot, type Step } from './history'
+import { historyBar } from './history_bar'
+
+/** Milliseconds without a change after which text and sensitivities follow the design. */
+const REST = 200
+
+/**
+ * The page as a studio: designs are solved by the engine as the reader makes them. What is shown is the model's text that was opened or
+ * typed and the changes made since; both go into the text that is shown, exported and saved.
+ */
+export class Studio {
+  readonly history: History
+  /** One is free for what the hand does while the other works out sensitivities. */
+  readonly #drags: Solver
+  readonly #sensing: Solver
+  readonly #tools = el('div', { class: 'studio-tools' })
+  readonly #status = el('span', { class: 'studio-status', role: 'status', 'data-testid': 'studio-status' })
+  readonly #cases = el('span')
+  readonly #drawer = el('aside', { class: 'drawer', hidden: true, 'aria-label': 'Model', 'data-testid': 'drawer' })
+  readonly #listeners: (() => void)[] = []
+  #editor?: Editor
+  #grips?: Grips
+  #opened?: Opened
+  #accepted: Setting[] = []
+  #wanted?: Setting[]
+  #busy = false
+  #resting?: ReturnType<typeof setTimeout>
+  #hand = 0
+  /** The text of the present design. */
+  #text: string
+  /** Counts what was asked for, so that an answer to what is no longer wanted is passed over. */
+  #version = 0
+
+  constructor(
+    module: WebAssembly.Module,
+    private readonly root: HTMLElement,
+    private model: ModelText,
+    private state: State,
+    private made: Made,
+  ) {
+    this.#drags = new Solver(module)
+    this.#sensing = new Solver(module)
+    this.#text = model.text
+    this.history = new History({ text: model.text, settings: [], label: 'as opened' })
+    const bar = historyBar(this.history, { show: (step) => void this.#go(step), compare: (snapshot) => void this.#compare(snapshot) })
+    const pane = el('button', { type: 'button', title: 'The text of the model', 'aria-expanded': 'false', 'data-testid': 'model', onclick: () => void this.#toggle(pane) }, 'Model')
+    this.#tools.append(bar, this.#cases, pane, this.#status)
+    document.body.append(this.#drawer)
+    slot(made.bar, this.#tools)
+    this.#attach()
+    void this.#open()
+  }
+
+  /** The text of the present design. */
+  get text(): string {
+    return this.#text
+  }
+
+  /** Called when the text is another. */
+  onText(listener: () => void): void {
+    this.#listeners.push(listener)
+  }
+
+  /** Shows another text. */
+  async replace(text: string, label: string): Promise<void> {
+    if (text === this.#text) return
+    this.history.go({ text, settings: [], label })
+    await this.#become({ ...this.model, text }, [])
+  }
+
+  /** What can be exported besides what the report has. */
+  readonly exports = (): Item[] => [
+    { name: 'Model as TOML', testId: 'export-toml', run: async () => save(new Blob([await this.#settled()], { type: 'application/toml' }), this.model.file) },
+  ]
+
+  /** Takes hold of hardpoints, or lets go. */
+  grips(): void {
+    this.#grips?.toggle()
+  }
+
+  #say(words: string): void {
+    this.#status.textContent = words
+  }
+
+  /** Listens to the reader's changes of what is shown now. */
+  #attach(): void {
+    const { state } = this
+    state.onChange(() => {
+      this.#note()
+      this.#wait()
+    })
+  }
+
+  /** Opens the model in the engine; from then on changes are solved. */
+  async #open(): Promise<void> {
+    const version = ++this.#version
+    const { state } = this
+    try {
+      const { json } = await this.#drags.ask<Opened>({ ask: 'open', model: this.model })
+      if (version !== this.#version) return
+      this.#opened = json
+      this.#accepted = []
+      state.solver = () => this.#solve()
+      this.#offerGrips()
+      this.#offerCases(json.cases)
+      this.#say('')
+      this.root.dataset.engine = 'ready'
+      if (state.changed) this.#solve()
+    } catch (error) {
+      this.#say(`Changes are foreseen, not solved: ${words(error)}`)
+      this.root.dataset.engine = 'failed'
+    }
+  }
+
+  #offerGrips(): void {
+    const { view } = this.made
+    if (!view || !this.#opened) return
+    const grips = new Grips(view, this.state, this.#opened, () => this.#wait())
+    this.#grips = grips
+    view.element.append(grips.element, grips.pane)
+    view.element.querySelector('.looks')?.append(grips.button)
+  }
+
+  #offerCases(cases: string[]): void {
+    if (cases.length < 2) return this.#cases.replaceChildren()
+    const select = el('select', { 'aria-label': 'Case', title: 'Case', 'data-testid': 'case', onchange: () => void this.#become({ ...this.model, text: this.#text, case: select.value }, []) },
+      ...cases.map((name) => el('option', { value: name, selected: name === (this.model.case ?? cases[0]) }, name)))
+    this.#cases.replaceChildren(select)
+  }
+
+  /** Notes the design as a step of the history, or as part of what the hand does. */
+  #note(): void {
+    const { settings } = this.state
+    this.history.go({ text: this.model.text, settings, label: settings.at(-1)?.name ?? 'reset' }, `${this.#hand}`)
+  }
+
+  /** Solves what is changed; while the engine is at work, only the last change waits. */
+  #solve(): void {
+    this.#wanted = this.state.settings
+    if (!this.#busy) void this.#work()
+  }
+
+  async #work(): Promise<void> {
+    this.#busy = true
+    const version = this.#version
+    while (this.#wanted && version === this.#version) {
+      const wanted = this.#wanted
+      this.#wanted = undefined
+      await this.#step(wanted, version)
+    }
+    this.#busy = false
+    this.#wait()
+  }
+
+  async #step(wanted: Setting[], version: number): Promise<void> {
+    const { state } = this
+    if (wanted.length === 0) {
+      this.#accepted = []
+      return state.solved(undefined, [], '', !this.#wanted)
+    }
+    try {
+      const answer = await this.#drags.ask<Solved>({ ask: 'design', change: wanted, from: this.#accepted })
+      if (version !== this.#version) return
+      const { part, why } = answer.json
+      const reached = part === 1 ? wanted : between(this.#accepted, wanted, part)
+      this.#accepted = reached
+      state.solved(this.#read(answer.json.design, answer, reached), reached, why?.message ?? '', !this.#wanted)
+    } catch (error) {
+      if (version !== this.#version) return
+      this.#say(words(error))
+      // After a failure the engine has nothing open.
+      if (!(error instanceof Refused)) void this.#open()
+    }
+  }
+
+  #read(found: WireDesign | null, { decode }: Answer<unknown>, settings: Setting[]): Design | undefined {
+    if (!found) return undefined
+    const by = new Map(settings.map(({ name, by }) => [name, by]))
+    return { ...design(found, decode), change: this.state.report.variables.map(({ name }) => by.get(name) ?? 0) }
+  }
+
+  #wait(): void {
+    clearTimeout(this.#resting)
+    this.root.dataset.settled = 'no'
+    this.#resting = setTimeout(() => void this.#rest(), REST)
+  }
+
+  /** Text and sensitivities follow the design. */
+  async #rest(): Promise<void> {
+    if (this.#busy || this.#grips?.holding) return
+    const { state } = this
+    // The hand has let go: what comes next is another step. Where the design stopped, it is noted as it is.
+    this.#note()
+    this.#hand++
+    this.history.rest()
+    const [settings, version] = [state.settings, this.#version]
+    const same = () => version === this.#version && JSON.stringify(settings) === JSON.stringify(state.settings)
+    try {
+      const text = await this.#settled()
+      if (!same()) return
+      this.#tell(text)
+      if (settings.length === 0) state.sense(undefined, [])
+      else if (!state.sensed) {
+        this.#sensing.stop()
+        const found = await this.#sensing.ask<Payload>({ ask: 'page', model: { ...this.model, text } })
+        const report = read(found.json, found.decode)
+        if (!same() || report.quantities.length !== state.report.quantities.length) return
+        state.sense(report, settings)
+      }
+      this.#say('')
+      this.root.dataset.settled = 'yes'
+    } catch (error) {
+      if (same()) this.#say(words(error))
+    }
+  }
+
+  /** The text with the changes. */
+  async #settled(): Promise<string> {
+    const { settings } = this.state
+    if (settings.length === 0) return this.model.text
+    return (await this.#drags.ask<Text>({ ask: 'text', change: settings })).json.text
+  }
+
+  #tell(text: string): void {
+    if (text === this.#text) return
+    this.#text = text
+    this.#editor?.setText(text, true)
+    for (const listener of this.#listeners) listener()
+  }
+
+  /** Shows a step of the history. */
+  async #go({ text, settings }: Step): Promise<void> {
+    this.#hand++
+    if (text === this.model.text) this.state.become([...settings])
+    else await this.#become({ ...this.model, text }, [...settings])
+  }
+
+  /** Shows another model, solved anew. */
+  async #become(model: ModelText, settings: Setting[]): Promise<void> {
+    this.#say('solving')
+    this.#version++
+    this.#sensing.stop()
+    try {
+      const { json, decode } = await this.#sensing.ask<Payload>({ ask: 'page', model: { ...model, shown: null } })
+      this.model = json.model ?? model
+      this.#show(read(json, decode))
+      this.#tell(this.model.text)
+      await this.#open()
+      if (settings.length > 0) this.state.become(settings)
+      else this.root.dataset.settled = 'yes'
+    } catch (error) {
+      this.#say(words(error))
+      if (error instanceof Refused) this.#editor?.tell(error.messages)
+    }
+  }
+
+  /** Makes the page anew, with what was chosen. */
+  #show(report: Report): void {
+    const before = this.state
+    const { view } = this.made
+    const on = this.#grips?.on ?? false
+    before.end()
+    view?.dispose()
+    keepMeshes(before.report, report)
+    const state = new State(report)
+    state.choice.quantity = named(report.quantities, before.report.quantities[before.choice.quantity]) ?? state.choice.quantity
+    state.choice.variable = named(report.variables, before.report.variables[before.choice.variable]) ?? state.choice.variable
+    state.choice.order = before.choice.order
+    state.choice.labels = before.choice.labels
+    const time = before.time
+    this.root.replaceChildren()
+    this.state = state
+    this.made = page(this.root, state, { bar: this.#tools, exports: this.exports, grips: () => this.grips() })
+    state.goToTime(time)
+    this.#grips = undefined
+    this.#attach()
+    if (on) queueMicrotask(() => (this.#grips as Grips | undefined)?.toggle())
+  }
+
+  /** Draws a design that was given a name beside the present one. */
+  async #compare(snapshot: Snapshot | undefined): Promise<void> {
+    if (!snapshot) return this.state.choose({ compared: undefined })
+    const { text, settings } = snapshot.step
+    try {
+      let answer: Answer<Solved>
+      if (text === this.model.text) {
+        answer = await this.#drags.ask<Solved>({ ask: 'design', change: [...settings], from: null })
+      } else {
+        await this.#sensing.ask<Opened>({ ask: 'open', model: { ...this.model, text } })
+        const { json } = await this.#sensing.ask<Text>({ ask: 'text', change: [...settings] })
+        answer = await this.#drags.ask<Solved>({ ask: 'beside', model: { ...this.model, text: json.text } })
+      }
+      const found = this.#read(answer.json.design, answer, [...settings])
+      if (!found) return
+      this.state.keep({ ...found, name: snapshot.name })
+      this.state.choose({ compared: this.state.designs.length - 1 })
+    } catch (error) {
+      this.#say(words(error))
+    }
+  }
+
+  async #toggle(button: HTMLElement): Promise<void> {
+    const open = this.#drawer.hidden !== false
+    this.#drawer.hidden = !open
+    document.body.classList.toggle('with-drawer', open)
+    button.setAttribute('aria-expanded', String(open))
+    if (!open) return button.focus()
+    if (!this.#editor) {
+      this.#editor = await openEditor({
+        text: this.#text,
+        check: { check: async (text) => (await this.#sensing.ask<Checked>({ ask: 'check', model: { ...this.model, text } })).json.messages },
+        onValid: (text) => void this.replace(text, 'typed'),
+      })
+      this.#drawer.append(this.#editor.element)
+    }
+    this.#editor.focus()
+  }
+}
+
+/** A part of the way from some changes to others. */
+export function between(from: readonly Setting[], to: readonly Setting[], part: number): Setting[] {
+  const before = new Map(from.map(({ name, by }) => [name, by]))
+  const after = new Map(to.map(({ name, by }) => [name, by]))
+  const names = [...new Set([...before.keys(), ...after.keys()])]
+  return names
+    .map((name) => ({ name, by: (before.get(name) ?? 0) + part * ((after.get(name) ?? 0) - (before.get(name) ?? 0)) }))
+    .filter(({ by }) => by !== 0)
+}
+
+function named<T extends { name: string }>(list: readonly T[], wanted: T | undefined): number | undefined {
+  const found = list.findIndex(({ name }) => name === wanted?.name)
+  return found < 0 ? undefined : found
+}
+
+/** The engine solves and draws nothing: bodies keep the shapes that the page has of them. */
+function keepMeshes(before: Report, after: Report): void {
+  for (const body of after.bodies) body.mesh ??= before.bodies.find(({ name }) => name === body.name)?.mesh ?? null
+}
+
+function words(error: unknown): string {
+  return error instanceof Error ? error.message : String(error)
+}
