@@ -26,7 +26,7 @@ const messages = () => page.getByTestId('model-messages').locator('li')
 const status = () => page.getByTestId('model-status').innerText()
 const text = () => page.evaluate(() => window.pane.text)
 const valid = () => page.evaluate(() => window.valid)
-const checked = () => expect.poll(() => page.getByTestId('model').getAttribute('aria-busy')).toBe('false')
+const checked = () => expect.poll(() => page.getByTestId('model-pane').getAttribute('aria-busy')).toBe('false')
 const reveal = (line: number, column: number) => page.evaluate(([line, column]) => window.pane.reveal(line, column), [line, column])
 const press = async (...keys: string[]) => {
   for (const key of keys) await page.keyboard.press(key)
@@ -78,6 +78,20 @@ describe('a text that is typed', () => {
     })
     await checked()
     expect(await page.evaluate(() => window.asked)).toBe(asked + 1)
+  })
+
+  test('is checked again where a check fails, and says so where it goes on failing', async () => {
+    const fail = (times: number) => page.evaluate((times) => (window.failing = times), times)
+    await reveal(1, 1)
+    await fail(2)
+    await page.keyboard.insertText('# one\n')
+    await checked()
+    expect(await valid()).toHaveLength(1)
+    await fail(9)
+    await page.keyboard.insertText('# two\n')
+    await checked()
+    expect(await messages().first().innerText()).toContain('the text could not be checked: the engine has ended')
+    expect(await valid()).toHaveLength(1)
   })
 
   test('has its message under the pointer too', async () => {
@@ -214,7 +228,7 @@ test('a finger writes, and goes from a message to its place', async () => {
   expect(await page.evaluate(() => document.documentElement.scrollWidth)).toBe(390)
   await page.locator('.cm-line').first().tap({ position: { x: 1, y: 8 } })
   await page.keyboard.insertText('x =\n')
-  await expect.poll(() => page.getByTestId('model').getAttribute('aria-busy')).toBe('false')
+  await expect.poll(() => page.getByTestId('model-pane').getAttribute('aria-busy')).toBe('false')
   const message = page.getByTestId('model-messages').locator('.error button')
   expect((await message.boundingBox())!.height).toBeGreaterThanOrEqual(44)
   await message.tap()

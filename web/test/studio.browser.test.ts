@@ -274,6 +274,19 @@ describe('a target that is drawn', () => {
   })
 })
 
+test('a target that is drawn becomes a metric of the text', async () => {
+  const button = page.getByTestId('draw-target')
+  await button.click()
+  await press('Enter', 'ArrowRight', 'Enter')
+  await page.getByTestId('sketch-take').click()
+  expect(await page.evaluate(() => window.model)).toBe('name = "strut"\n\n[metrics.wheel_z_target]\nof = "wheel.z"\nover = "travel"\ntake = "rms"\nwindow = [5, 5.2]\ntarget = [[5, 0], [5.2, 0]]\n')
+  expect(await button.evaluate((one) => one === document.activeElement)).toBe(true)
+  await button.click()
+  await button.click()
+  expect(await page.getByTestId('sketch').count()).toBe(0)
+  expect(await button.getAttribute('aria-pressed')).toBe('false')
+})
+
 test('a finger sets points, and draws with touch as a mouse does', async () => {
   const { page, complaints } = await visit(browser, url, { viewport: { width: 700, height: 900 }, hasTouch: true })
   await page.locator('#sketch').tap()
