@@ -1,14 +1,17 @@
 import type { Browser, Page } from 'playwright-core'
 import { afterAll, beforeAll, beforeEach, afterEach, describe, expect, test } from 'vitest'
 import { launch, visit, type Visit } from './browser'
-import { harness } from './harness/harness'
+import { cleared, harness } from './harness/harness'
 
 let browser: Browser
 let url: string
 beforeAll(async () => {
   ;[browser, url] = await Promise.all([launch(), harness('editor')])
 })
-afterAll(() => browser?.close())
+afterAll(async () => {
+  await browser?.close()
+  cleared(url)
+})
 
 let visited: Visit
 let page: Page

@@ -1,7 +1,7 @@
 import type { Browser, Page } from 'playwright-core'
 import { afterAll, afterEach, beforeAll, beforeEach, describe, expect, test } from 'vitest'
 import { launch, visit, type Visit } from './browser'
-import { harness } from './harness/harness'
+import { cleared, harness } from './harness/harness'
 import { drawn } from './person'
 import type {} from './harness/studio'
 
@@ -10,7 +10,10 @@ let url: string
 beforeAll(async () => {
   ;[browser, url] = await Promise.all([launch(), harness('studio')])
 })
-afterAll(() => browser?.close())
+afterAll(async () => {
+  await browser?.close()
+  cleared(url)
+})
 
 let visited: Visit
 let page: Page

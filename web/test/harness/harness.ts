@@ -15,8 +15,12 @@ export async function harness(name: string): Promise<string> {
   })) as Rollup.RollupOutput
   const parts = made.output.map((part) => (part.type === 'chunk' ? `<script type="module">${part.code.replaceAll('</script', '<\\/script')}</script>` : `<style>${part.source}</style>`))
   const folder = mkdtempSync(join(tmpdir(), 'hardpoint-harness-'))
-  process.on('exit', () => rmSync(folder, { recursive: true }))
   const path = join(folder, `${name}.html`)
   writeFileSync(path, `<!doctype html><html lang="en"><meta charset="utf-8"><meta name="viewport" content="width=device-width, initial-scale=1"><title>${name}</title><body>${parts.reverse().join('\n')}</body></html>`)
   return pathToFileURL(path).href
+}
+
+/** Deletes a page that was built. */
+export function cleared(url: string): void {
+  rmSync(new URL('.', url), { recursive: true })
 }
