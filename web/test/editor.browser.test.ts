@@ -1,14 +1,17 @@
 import type { Browser, Page } from 'playwright-core'
 import { afterAll, beforeAll, beforeEach, afterEach, describe, expect, test } from 'vitest'
 import { launch, visit, type Visit } from './browser'
-import { harness } from './harness/harness'
+import { cleared, harness } from './harness/harness'
 
 let browser: Browser
 let url: string
 beforeAll(async () => {
   ;[browser, url] = await Promise.all([launch(), harness('editor')])
 })
-afterAll(() => browser?.close())
+afterAll(async () => {
+  await browser?.close()
+  cleared(url)
+})
 
 let visited: Visit
 let page: Page
@@ -26,7 +29,7 @@ const messages = () => page.getByTestId('model-messages').locator('li')
 const status = () => page.getByTestId('model-status').innerText()
 const text = () => page.evaluate(() => window.pane.text)
 const valid = () => page.evaluate(() => window.valid)
-const checked = () => expect.poll(() => page.getByTestId('model').getAttribute('aria-busy')).toBe('false')
+const checked = () => expect.poll(() => page.getByTestId('model-pane').getAttribute('aria-busy')).toBe('false')
 const reveal = (line: number, column: number) => page.evaluate(([line, column]) => window.pane.reveal(line, column), [line, column])
 const press = async (...keys: string[]) => {
   for (const key of keys) await page.keyboard.press(key)
@@ -78,6 +81,20 @@ describe('a text that is typed', () => {
     })
     await checked()
     expect(await page.evaluate(() => window.asked)).toBe(asked + 1)
+  })
+
+  test('is checked again where a check fails, and says so where it goes on failing', async () => {
+    const fail = (times: number) => page.evaluate((times) => (window.failing = times), times)
+    await reveal(1, 1)
+    await fail(2)
+    await page.keyboard.insertText('# one\n')
+    await checked()
+    expect(await valid()).toHaveLength(1)
+    await fail(9)
+    await page.keyboard.insertText('# two\n')
+    await checked()
+    expect(await messages().first().innerText()).toContain('the text could not be checked: the engine has ended')
+    expect(await valid()).toHaveLength(1)
   })
 
   test('has its message under the pointer too', async () => {
@@ -207,4 +224,20 @@ test('buttons undo and find without a keyboard', async () => {
   expect(await text()).toBe(`# x${before}`)
   await page.getByTestId('model-find').click()
   expect(await page.locator('.cm-search').isVisible()).toBe(true)
+})
+
+test('a finger writes, and goes from a message to its place', async () => {
+  const { page, complaints } = await visit(browser, url, { viewport: { width: 390, height: 760 }, hasTouch: true, isMobile: true })
+  expect(await page.evaluate(() => document.documentElement.scrollWidth)).toBe(390)
+  await page.locator('.cm-line').first().tap({ position: { x: 1, y: 8 } })
+  await page.keyboard.insertText('x =\n')
+  await expect.poll(() => page.getByTestId('model-pane').getAttribute('aria-busy')).toBe('false')
+  const message = page.getByTestId('model-messages').locator('.error button')
+  expect((await message.boundingBox())!.height).toBeGreaterThanOrEqual(44)
+  await message.tap()
+  expect(await page.getByTestId('model-text').evaluate((one) => one === document.activeElement)).toBe(true)
+  await page.getByTestId('model-undo').tap()
+  await expect.poll(() => page.getByTestId('model-status').innerText()).toBe('1 note')
+  expect(complaints).toEqual([])
+  await page.context().close()
 })

@@ -1,7 +1,7 @@
 import type { Browser, Page } from 'playwright-core'
 import { afterAll, afterEach, beforeAll, beforeEach, describe, expect, test } from 'vitest'
 import { launch, visit, type Visit } from './browser'
-import { harness } from './harness/harness'
+import { cleared, harness } from './harness/harness'
 import { drawn } from './person'
 import type {} from './harness/studio'
 
@@ -10,7 +10,10 @@ let url: string
 beforeAll(async () => {
   ;[browser, url] = await Promise.all([launch(), harness('studio')])
 })
-afterAll(() => browser?.close())
+afterAll(async () => {
+  await browser?.close()
+  cleared(url)
+})
 
 let visited: Visit
 let page: Page
@@ -272,4 +275,38 @@ describe('a target that is drawn', () => {
     expect(await page.evaluate(() => window.drawn)).toBe('cancelled')
     expect(await page.getByTestId('sketch').count()).toBe(0)
   })
+})
+
+test('a target that is drawn becomes a metric of the text', async () => {
+  const button = page.getByTestId('draw-target')
+  await button.click()
+  await press('Enter', 'ArrowRight', 'Enter')
+  await page.getByTestId('sketch-take').click()
+  expect(await page.evaluate(() => window.model)).toBe('name = "strut"\n\n[metrics.wheel_z_target]\nof = "wheel.z"\nover = "travel"\ntake = "rms"\nwindow = [5, 5.2]\ntarget = [[5, 0], [5.2, 0]]\n')
+  expect(await button.evaluate((one) => one === document.activeElement)).toBe(true)
+  await button.click()
+  await button.click()
+  expect(await page.getByTestId('sketch').count()).toBe(0)
+  expect(await button.getAttribute('aria-pressed')).toBe('false')
+})
+
+test('a finger sets points, and draws with touch as a mouse does', async () => {
+  const { page, complaints } = await visit(browser, url, { viewport: { width: 700, height: 900 }, hasTouch: true })
+  await page.locator('#sketch').tap()
+  await drawn(page)
+  const { x, y, width, height } = (await page.getByTestId('sketch').boundingBox())!
+  await page.touchscreen.tap(x + 0.25 * width, y + 0.5 * height)
+  await page.touchscreen.tap(x + 0.75 * width, y + 0.25 * height)
+  const points = () => page.locator('.sketch .point').count()
+  await expect.poll(points).toBe(2)
+  const devtools = await page.context().newCDPSession(page)
+  const touch = (type: 'touchStart' | 'touchMove' | 'touchEnd', across?: number) =>
+    devtools.send('Input.dispatchTouchEvent', { type, touchPoints: across === undefined ? [] : [{ x: x + across * width, y: y + 0.4 * height }] })
+  await touch('touchStart', 0.4)
+  for (let k = 1; k <= 10; k++) await touch('touchMove', 0.4 + 0.02 * k)
+  await touch('touchEnd')
+  // Both ends of the new part, and beside them where the old one is left and come back to.
+  await expect.poll(points).toBe(6)
+  expect(complaints).toEqual([])
+  await page.context().close()
 })

@@ -17,6 +17,8 @@ import { theme } from './theme'
 const PAUSE = 250
 /** Milliseconds within which typing on is one step of undo. */
 const STEP = 500
+/** A check that fails is asked for so often: what checks may have been ended for something else. */
+const TRIES = 3
 /** Messages that are listed; the status counts all. */
 const LISTED = 100
 
@@ -125,9 +127,9 @@ export function editor({ text, check, onValid, schema }: Options): Editor {
     solved = []
     element.setAttribute('aria-busy', 'true')
     clearTimeout(waiting)
-    waiting = setTimeout(examine, PAUSE)
+    waiting = setTimeout(() => void examine(), PAUSE)
   }
-  const examine = async () => {
+  const examine = async (tries = TRIES) => {
     const [mine, text] = [version, present()]
     try {
       const found = await check.check(text)
@@ -135,6 +137,10 @@ export function editor({ text, check, onValid, schema }: Options): Editor {
       checked = found
     } catch (error) {
       if (mine !== version) return
+      if (tries > 1) {
+        waiting = setTimeout(() => void examine(tries - 1), PAUSE)
+        return
+      }
       checked = [failure(error)]
     }
     element.setAttribute('aria-busy', 'false')
@@ -168,7 +174,7 @@ export function editor({ text, check, onValid, schema }: Options): Editor {
     view.focus()
   }
 
-  const element = el('section', { class: 'model', 'aria-label': 'Model', 'data-testid': 'model' }, tools, el('div', { class: 'model-text' }, view.dom), list)
+  const element = el('section', { class: 'model', 'aria-label': 'Model', 'data-testid': 'model-pane' }, tools, el('div', { class: 'model-text' }, view.dom), list)
   shown = present()
   back.disabled = forth.disabled = true
   list.hidden = true

@@ -1,4 +1,4 @@
-import { mkdtempSync, writeFileSync } from 'node:fs'
+import { mkdtempSync, rmSync, writeFileSync } from 'node:fs'
 import { tmpdir } from 'node:os'
 import { join } from 'node:path'
 import { pathToFileURL } from 'node:url'
@@ -14,7 +14,13 @@ export async function harness(name: string): Promise<string> {
     build: { write: false, target: 'es2022', modulePreload: false, rolldownOptions: { input: join(import.meta.dirname, `${name}.ts`), output: { codeSplitting: false } } },
   })) as Rollup.RollupOutput
   const parts = made.output.map((part) => (part.type === 'chunk' ? `<script type="module">${part.code.replaceAll('</script', '<\\/script')}</script>` : `<style>${part.source}</style>`))
-  const path = join(mkdtempSync(join(tmpdir(), 'hardpoint-harness-')), `${name}.html`)
+  const folder = mkdtempSync(join(tmpdir(), 'hardpoint-harness-'))
+  const path = join(folder, `${name}.html`)
   writeFileSync(path, `<!doctype html><html lang="en"><meta charset="utf-8"><meta name="viewport" content="width=device-width, initial-scale=1"><title>${name}</title><body>${parts.reverse().join('\n')}</body></html>`)
   return pathToFileURL(path).href
+}
+
+/** Deletes a page that was built. */
+export function cleared(url: string): void {
+  rmSync(new URL('.', url), { recursive: true })
 }

@@ -7,6 +7,7 @@ import { read } from '../../src/report'
 import { State } from '../../src/state'
 import { History, type Step } from '../../src/studio/history'
 import { historyBar } from '../../src/studio/history_bar'
+import { targetButton } from '../../src/studio/draw_target'
 import { Sketch } from '../../src/studio/sketch'
 import type { Point } from '../../src/studio/stroke'
 import { optimizePane, tolerancePane } from '../../src/studio/studies'
@@ -94,8 +95,9 @@ const plot = new Plot(state, 'plot')
 window.plot = plot
 window.show = () => plot.show({ title: 'toe', unit: 'deg', lines: [{ label: 'toe', color: '#0b61bd', curve: times.map((t) => Math.sin(t)) }] })
 const sketch = el('button', { type: 'button', id: 'sketch', onclick: () => new Sketch(plot, { done: (points) => (window.drawn = points), cancel: () => (window.drawn = 'cancelled') }) }, 'Draw a target')
+const target = targetButton(plot, () => ({ of: 'wheel.z', over: 'travel' }), { text: host.text, replace: (text) => (window.model = text) })
 document.body.append(
-  el('header', { class: 'topbar', style: 'flex-wrap: wrap' }, el('h1', {}, 'A strut'), el('span', { class: 'space' }), bar, sketch),
+  el('header', { class: 'topbar', style: 'flex-wrap: wrap' }, el('h1', {}, 'A strut'), el('span', { class: 'space' }), bar, sketch, target),
   el('div', { id: 'curves', style: 'height: 330px; display: flex; padding: 0 14px' }, plot.element),
   el('div', { class: 'panel' }, panes[0].element),
   el('div', { class: 'panel' }, panes[1].element),
