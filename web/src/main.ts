@@ -9,7 +9,7 @@ import { unpack } from './unpack'
 const root = document.getElementById('page')!
 const { payload, decode } = await unpack(document.getElementById('payload')!.textContent!)
 const state = new State(read(payload, decode))
-const tools: Parameters<typeof page>[2] = { exports: () => studio?.exports() ?? [], grips: () => studio?.grips() }
+const tools: Parameters<typeof page>[2] = { exports: () => studio?.exports() ?? [], grips: () => studio?.grips(), figure: (figure) => studio?.target(figure) }
 const made = page(root, state, tools)
 let studio: Studio | undefined
 

@@ -87,7 +87,7 @@ describe('the designs that were gone through', () => {
 
 describe('a study', () => {
   const table = { title: 'Goals', note: '', header: ['goal', 'as drawn', 'found', 'wanted'], rows: [['toe_error (bump)', '0.40243 deg', '0.0058794 deg', '0 deg']] }
-  const found = { tables: [table], change: [1, 2], text: 'name = "found"', message: 'an optimum within the bounds' }
+  const found = { tables: [table], change: [{ name: 'rack_z', by: 2 }], text: 'name = "found"', message: 'an optimum within the bounds' }
   const last = () => page.evaluate(() => ({ ...window.studies.at(-1)! }))
   const end = (result: typeof found | { tables: never[]; change: null; text: null; message: string }) => page.evaluate((result) => window.studies.at(-1)!.end(result), result)
 
@@ -110,7 +110,7 @@ describe('a study', () => {
     expect(await page.getByTestId('optimise-progress').evaluate((bar: HTMLProgressElement) => [bar.value, bar.max])).toEqual([3, 100])
     await end(found)
     await page.getByTestId('optimise-take').click()
-    expect(await page.evaluate(() => window.taken)).toEqual([{ change: [1, 2], studied: 'name = "strut"' }])
+    expect(await page.evaluate(() => window.taken)).toEqual([{ change: [{ name: 'rack_z', by: 2 }], studied: 'name = "strut"' }])
     // What was chosen is still there.
     expect(await page.getByLabel('highest of rack_z').inputValue()).toBe('20.5')
   })

@@ -14,7 +14,11 @@ export class Curves {
   /** What is seen of the time, in all of them. */
   #time = new Zoom()
 
-  constructor(private readonly state: State) {
+  /** `tool` makes what stands beside the controls of a figure, as soon as there is something. */
+  constructor(
+    private readonly state: State,
+    private readonly tool?: (figure: Figure) => HTMLElement | undefined,
+  ) {
     this.element = el('section', { class: 'curves', 'aria-label': 'Curves', 'data-testid': 'curves' }, this.#list)
     this.#add('value')
     const { quantity } = state.choice
@@ -27,7 +31,7 @@ export class Curves {
 
   #add(shown: Shown, quantity?: number): Figure {
     const number = this.#made++
-    const figure = new Figure(this.state, { quantity, shown, testId: `plot-${number}`, leads: number === 0 }, this.#time, { onRemove: (gone) => this.#remove(gone), onAdd: () => this.#addNext() })
+    const figure = new Figure(this.state, { quantity, shown, testId: `plot-${number}`, leads: number === 0 }, this.#time, { onRemove: (gone) => this.#remove(gone), onAdd: () => this.#addNext(), tool: this.tool })
     this.figures.push(figure)
     this.#list.append(figure.plot.element)
     return figure

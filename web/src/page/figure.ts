@@ -30,7 +30,7 @@ export class Figure {
     private readonly state: State,
     private readonly wish: Wish,
     time: Zoom,
-    { onRemove, onAdd }: { onRemove: (figure: Figure) => void; onAdd: () => void },
+    { onRemove, onAdd, tool }: { onRemove: (figure: Figure) => void; onAdd: () => void; tool?: (figure: Figure) => HTMLElement | undefined },
   ) {
     this.#quantity = wish.quantity
     this.#shown = wish.shown
@@ -55,8 +55,11 @@ export class Figure {
     this.plot = new Plot(state, wish.testId, [controls], time)
     this.plot.element.classList.toggle('leads', wish.leads)
     pointing(state, this.plot.element, () => this.subject.quantity)
+    let extra: HTMLElement | undefined
     this.show = () => {
       const subject = this.subject
+      // What the studio adds is there as soon as the studio is.
+      if (!extra && (extra = tool?.(this))) controls.lastElementChild!.before(extra)
       quantity.value = this.#follows && !wish.leads ? '' : String(subject.quantity)
       over.value = subject.over === undefined ? '' : String(subject.over)
       order.value = String(subject.order)

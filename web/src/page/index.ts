@@ -11,6 +11,7 @@ import { cards } from './cards'
 import { checks } from './checks'
 import { Curves } from './curves'
 import { exports } from './exports'
+import type { Figure } from './figure'
 import { find } from './find'
 import { help } from './help'
 import type { Item } from './menu'
@@ -28,6 +29,8 @@ export interface Tools {
   /** More that can be exported. */
   exports?: () => Item[]
   grips?: () => void
+  /** What stands beside the controls of a figure. */
+  figure?: (figure: Figure) => HTMLElement | undefined
 }
 
 /** What was built, for what is added to it later. */
@@ -44,7 +47,7 @@ export function page(root: HTMLElement, state: State, tools: Tools = {}): Made {
   const search = hasQuantities ? find(state) : undefined
   const keys = help()
   const scene = stage(state)
-  const curves = hasQuantities ? new Curves(state) : undefined
+  const curves = hasQuantities ? new Curves(state, tools.figure) : undefined
   const table: Tab[] = hasQuantities && hasVariables
     ? [{ name: 'table', title: 'Table', content: el('div', { class: 'influence' }, rankingTable(state), heatMap(state)) }]
     : []

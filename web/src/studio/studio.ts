@@ -11,6 +11,8 @@ import type { Item } from '../page/menu'
 import type { Design as WireDesign, ModelText, Payload } from '../payload'
 import { design, read, type Design, type Report } from '../report'
 import { State } from '../state'
+import type { Figure } from '../page/figure'
+import { targetButton } from './draw_target'
 import { Drawer } from './drawer'
 import { Grips } from './grips'
 import { History, type Snapshot, type Step } from './history'
@@ -101,6 +103,18 @@ export class Studio {
     { name: 'Model as TOML', testId: 'export-toml', run: async () => save(new Blob([await this.#settled()], { type: 'application/toml' }), this.model.file) },
   ]
 
+  /** Draws the curve that the quantity of a figure is to have. */
+  target(figure: Figure): HTMLElement | undefined {
+    if (!this.#opened) return undefined
+    const { quantities } = this.state.report
+    const drawn = () => {
+      const { quantity, over } = figure.subject
+      const several = (this.#opened?.cases.length ?? 0) > 1
+      return { of: quantities[quantity].name, over: over === undefined ? undefined : quantities[over].name, case: several ? (this.model.case ?? this.#opened?.cases[0]) : undefined }
+    }
+    return targetButton(figure.plot, drawn, { text: () => this.#text, replace: (text) => void this.replace(text, 'target') })
+  }
+
   /** Takes hold of hardpoints, or lets go. */
   grips(): void {
     this.#grips?.toggle()
@@ -133,6 +147,7 @@ export class Studio {
       this.#offerCases(json.cases)
       this.#say('')
       this.root.dataset.engine = 'ready'
+      state.choose({})
       if (state.changed) this.#solve()
     } catch (error) {
       this.#say(`Changes are foreseen, not solved: ${words(error)}`)
@@ -252,7 +267,7 @@ export class Studio {
   #tell(text: string): void {
     if (text === this.#text) return
     this.#text = text
-    this.#editor?.setText(text, true)
+    this.#editor?.setText(text)
     for (const listener of this.#listeners) listener()
   }
 
@@ -298,7 +313,7 @@ export class Studio {
     const time = before.time
     this.root.replaceChildren()
     this.state = state
-    this.made = page(this.root, state, { bar: this.#tools, exports: this.exports, grips: () => this.grips() })
+    this.made = page(this.root, state, { bar: this.#tools, exports: this.exports, grips: () => this.grips(), figure: (figure) => this.target(figure) })
     state.goToTime(time)
     this.#grips = undefined
     this.#attach()

@@ -20,7 +20,7 @@ declare global {
     compared: (string | undefined)[]
     /** The studies that were begun; the tests end them. */
     studies: Study[]
-    taken: { change: number[] | null; studied: string }[]
+    taken: { change: StudyResult['change']; studied: string }[]
     /** The text of the present design. */
     model: string
     refresh: () => void

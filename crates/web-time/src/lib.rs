@@ -1,0 +1,26 @@
+//! A clock for the engine in a page, in place of the crate of the same name, which brings a machinery of imports from JavaScript that
+//! the page would have to serve (`Cargo.toml`, `[patch]`). Whoever asks for a limit in time finds that none has passed.
+
+pub use std::time::Duration;
+
+/// A moment; on machines with a clock that of the standard library.
+#[cfg(not(target_family = "wasm"))]
+pub use std::time::Instant;
+
+/// A moment: they are all the same.
+#[cfg(target_family = "wasm")]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub struct Instant;
+
+#[cfg(target_family = "wasm")]
+impl Instant {
+    /// This moment.
+    pub fn now() -> Self {
+        Self
+    }
+
+    /// The time since then: none.
+    pub fn elapsed(&self) -> Duration {
+        Duration::ZERO
+    }
+}
