@@ -41,7 +41,9 @@ export async function visit(browser: Browser, url: string, options: BrowserConte
   const complaints: string[] = []
   page.on('console', (message) => complaints.push(`console: ${message.text()}`))
   page.on('pageerror', (error) => complaints.push(`exception: ${error.message}`))
-  page.on('request', (request) => request.url() !== url && complaints.push(`request: ${request.url()}`))
+  // A worker's code comes out of the page itself.
+  const own = (asked: string) => asked === url || asked.startsWith('blob:')
+  page.on('request', (request) => own(request.url()) || complaints.push(`request: ${request.url()}`))
   await page.goto(url)
   await page.waitForFunction(() => performance.getEntriesByName('ready').length > 0)
   return { page, complaints }

@@ -19,6 +19,8 @@ export interface Samples {
   map: string
   /** 81 bodies and 240 design variables. */
   large: string
+  /** The program that answers as the page's engine does. */
+  answers: string
   /** The report of every model of the repository, by the name of its file. */
   models: Record<string, string>
 }
@@ -39,7 +41,7 @@ const MODELS = join(ROOT, 'models')
 export default function setup(project: TestProject): () => void {
   const folder = mkdtempSync(join(tmpdir(), 'hardpoint-page-'))
   const page = (...names: string[]) => pathToFileURL(join(folder, ...names)).href
-  const { hardpoint, sample_page: sample, rockers } = build()
+  const { hardpoint, sample_page: sample, rockers, answers } = build()
   execFileSync(sample, [join(folder, 'sample.html')])
   execFileSync(sample, [join(folder, 'partial.html'), '--partial'])
 
@@ -65,6 +67,7 @@ export default function setup(project: TestProject): () => void {
   execFileSync(hardpoint, ['run', large, '-o', join(folder, 'large')], quietly)
 
   project.provide('samples', {
+    answers,
     whole: page('sample.html'),
     partial: page('partial.html'),
     changed: page('changed', 'whatif.html'),
@@ -84,8 +87,8 @@ function ridden(strut: string): string {
 }
 
 /** The built programs: with the whole workspace, as `cargo test` builds it, so that after that there is nothing left to compile. */
-function build(): Record<'hardpoint' | 'sample_page' | 'rockers', string> {
-  const command = ['build', '--workspace', '--bin', 'hardpoint', '--example', 'sample_page', '--example', 'rockers', '--message-format', 'json']
+function build(): Record<'hardpoint' | 'sample_page' | 'rockers' | 'answers', string> {
+  const command = ['build', '--workspace', '--bin', 'hardpoint', '--example', 'sample_page', '--example', 'rockers', '--example', 'answers', '--message-format', 'json']
   const stdio: StdioOptions = ['ignore', 'pipe', 'inherit']
   const messages = execFileSync('cargo', command, { cwd: ROOT, maxBuffer: Infinity, stdio }).toString().trim().split('\n')
   const built = messages.map((line) => JSON.parse(line) as { executable?: string | null; target?: { name: string } })
@@ -94,5 +97,5 @@ function build(): Record<'hardpoint' | 'sample_page' | 'rockers', string> {
     if (!path) throw new Error(`cargo built no ${name}`)
     return path
   }
-  return { hardpoint: program('hardpoint'), sample_page: program('sample_page'), rockers: program('rockers') }
+  return { hardpoint: program('hardpoint'), sample_page: program('sample_page'), rockers: program('rockers'), answers: program('answers') }
 }

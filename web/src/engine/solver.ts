@@ -1,22 +1,8 @@
-import type { Curve } from '../curve'
-import type * as wire from '../payload'
-import { type Decode, inflated } from '../unpack'
-import type { Failed, Message, Request, Told } from './protocol'
+import { inflated } from '../unpack'
+import { type Answer, answer } from './answer'
+import type { Request, Told } from './protocol'
 import type { Order, Report } from './worker'
 import EngineWorker from './worker?worker&inline'
-
-/** An answer with its curves. */
-export interface Answer<T> {
-  json: T
-  decode: Decode
-}
-
-/** Why there is no answer, in the words of the command line. */
-export class Refused extends Error {
-  constructor(readonly messages: Message[]) {
-    super(messages[0]?.message ?? 'there is no answer')
-  }
-}
 
 interface Waiting {
   done: (block: ArrayBuffer) => void
@@ -69,20 +55,6 @@ export class Solver {
     })
     return worker
   }
-}
-
-/** Reads a block as `crates/hardpoint-studio` lays it out; a refusal is thrown. */
-export function answer<T>(block: ArrayBuffer): Answer<T> {
-  const length = new DataView(block).getUint32(0, true)
-  const json: T | Failed = JSON.parse(new TextDecoder().decode(new Uint8Array(block, 4, length)))
-  if (isFailed(json)) throw new Refused(json.failed)
-  const start = Math.ceil((4 + length) / 4) * 4
-  const decode = ([first, count]: wire.Curve): Curve => (count ? new Float32Array(block, start + 4 * first, count) : new Float32Array())
-  return { json, decode }
-}
-
-function isFailed(json: unknown): json is Failed {
-  return typeof json === 'object' && json !== null && 'failed' in json
 }
 
 /** The engine's binary that a page carries; none where it carries none. */

@@ -1,0 +1,31 @@
+import type { Curve } from '../curve'
+import type * as wire from '../payload'
+import type { Decode } from '../unpack'
+import type { Failed, Message } from './protocol'
+
+/** An answer with its curves. */
+export interface Answer<T> {
+  json: T
+  decode: Decode
+}
+
+/** Why there is no answer, in the words of the command line. */
+export class Refused extends Error {
+  constructor(readonly messages: Message[]) {
+    super(messages[0]?.message ?? 'there is no answer')
+  }
+}
+
+/** Reads a block as `crates/hardpoint-studio` lays it out; a refusal is thrown. */
+export function answer<T>(block: ArrayBuffer): Answer<T> {
+  const length = new DataView(block).getUint32(0, true)
+  const json: T | Failed = JSON.parse(new TextDecoder().decode(new Uint8Array(block, 4, length)))
+  if (isFailed(json)) throw new Refused(json.failed)
+  const start = Math.ceil((4 + length) / 4) * 4
+  const decode = ([first, count]: wire.Curve): Curve => (count ? new Float32Array(block, start + 4 * first, count) : new Float32Array())
+  return { json, decode }
+}
+
+function isFailed(json: unknown): json is Failed {
+  return typeof json === 'object' && json !== null && 'failed' in json
+}

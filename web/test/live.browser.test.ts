@@ -1,0 +1,176 @@
+import { execFileSync } from 'node:child_process'
+import { mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs'
+import { tmpdir } from 'node:os'
+import { join } from 'node:path'
+import type { Browser, Page } from 'playwright-core'
+import { afterAll, beforeAll, beforeEach, describe, expect, inject, test } from 'vitest'
+import { launch, visit, type Visit } from './browser'
+import { frames, slide } from './person'
+
+const { models, answers } = inject('samples')
+const MODELS = join(import.meta.dirname, '../../models')
+
+let browser: Browser
+let visited: Visit
+let page: Page
+beforeAll(async () => {
+  browser = await launch()
+})
+afterAll(() => browser?.close())
+
+const ready = () => page.waitForFunction(() => document.getElementById('page')!.dataset.engine === 'ready')
+/** Waits until text and sensitivities have followed the design. */
+const settled = async () => {
+  await frames(page, 3)
+  await page.waitForFunction(() => document.getElementById('page')!.dataset.settled === 'yes')
+}
+const open = async (name: string) => {
+  visited = await visit(browser, models[name])
+  page = visited.page
+  await ready()
+}
+const card = async (name: string) => Number((await page.getByTestId(`card-${name}`).getByTestId('card-value').innerText()).replace('−', '-'))
+const grip = (name: string) => page.getByTestId(`grip-${name}`)
+/** What the command says of a measure of the strut's at the start, with a change. */
+const coordinate = async (axis: string) => Number((await page.getByTestId(`grip-${axis}`).inputValue()).replace('−', '-'))
+
+/** The value of every card as the native engine has it with these changes. */
+function native(file: string, change: { name: string; by: number }[]): number[] {
+  const model = { file, text: readFileSync(join(MODELS, file), 'utf8'), files: {}, case: null, shown: null }
+  const requests = [{ ask: 'open', model }, { ask: 'design', change, from: null }]
+  const lines = execFileSync(answers, { input: requests.map((r) => JSON.stringify(r)).join('\n'), encoding: 'utf8', maxBuffer: 2 ** 28 }).trim().split('\n')
+  const block = Buffer.from(lines[1], 'base64')
+  return JSON.parse(block.subarray(4, 4 + block.readUInt32LE(0)).toString()).design.values
+}
+
+describe('a hardpoint of the strut in the hand', () => {
+  beforeEach(async () => {
+    await open('macpherson')
+    await page.getByTestId('grips').click()
+  })
+
+  test('is dragged, and every value becomes the one that the command gives for that design', async () => {
+    const box = (await grip('tie_rod_outer').boundingBox())!
+    const before = await card('toe')
+    await page.mouse.move(box.x + 9, box.y + 9)
+    await page.mouse.down()
+    await page.mouse.move(box.x + 9, box.y - 2, { steps: 5 })
+    await page.mouse.up()
+    await settled()
+    expect(await card('toe')).not.toBe(before)
+    const by = await page.evaluate(() => [...document.querySelectorAll<HTMLInputElement>('.coordinates input')].map(({ value }) => Number(value)))
+    expect(by.every(Number.isFinite)).toBe(true)
+    const names = await page.getByTestId('values').locator('.card-name b').allInnerTexts()
+    const text = await toml()
+    // Read from the page's own text, the command's engine gives the same cards.
+    const model = { file: 'x.toml', text, files: {}, case: null, shown: null }
+    const lines = execFileSync(answers, { input: JSON.stringify({ ask: 'page', model }), encoding: 'utf8', maxBuffer: 2 ** 28 })
+    const block = Buffer.from(lines, 'base64')
+    const values: { name: string; value: number }[] = JSON.parse(block.subarray(4, 4 + block.readUInt32LE(0)).toString()).values
+    for (const name of new Set(names)) expect(await card(name), name).toBeCloseTo(Number(values.find((value) => value.name === name)!.value.toPrecision(4)), 6)
+  })
+
+  test('is typed with a unit, reset, undone and done again', async () => {
+    await grip('tie_rod_outer').click()
+    const z = await coordinate('z')
+    await page.getByTestId('grip-z').fill(`${(z + 2) / 10} cm`)
+    await page.getByTestId('grip-z').press('Enter')
+    await settled()
+    expect(await coordinate('z')).toBeCloseTo(z + 2, 4)
+    expect(await page.getByTestId('variable-tie_rod_outer_z').getByTestId('change-value').inputValue()).toBe('2')
+    const wanted = native('macpherson.toml', [{ name: 'tie_rod_outer_z', by: 2 }])
+    expect(await card('toe')).toBeCloseTo(Number(wanted[0].toPrecision(4)), 6)
+    await page.getByTestId('undo').click()
+    await settled()
+    expect(await coordinate('z')).toBeCloseTo(z, 6)
+    await page.keyboard.press('Control+y')
+    await settled()
+    expect(await coordinate('z')).toBeCloseTo(z + 2, 4)
+    await page.getByTestId('grip-reset').click()
+    await settled()
+    expect(await coordinate('z')).toBeCloseTo(z, 6)
+  })
+
+  test('goes by the arrow keys along an axis', async () => {
+    await grip('strut_top').focus()
+    await page.keyboard.press('Enter')
+    const before = await coordinate('y')
+    await page.keyboard.press('y')
+    expect(await page.getByTestId('way-y').getAttribute('aria-pressed')).toBe('true')
+    await page.keyboard.press('ArrowRight')
+    await page.keyboard.press('ArrowRight')
+    await settled()
+    expect(await coordinate('y')).not.toBe(before)
+    expect(await page.getByTestId('undo').isDisabled()).toBe(false)
+  })
+
+  test('stops where the mechanism locks, and says why', async () => {
+    await grip('tie_rod_outer').click()
+    await page.getByTestId('grip-y').fill('4000')
+    await page.getByTestId('grip-y').press('Enter')
+    await page.waitForFunction(() => document.querySelector('[data-testid=refusal]')!.textContent !== '')
+    expect(Math.abs(await coordinate('y'))).toBeLessThan(3999)
+    expect(await page.getByTestId('refusal').innerText()).toMatch(/assemble|position|lock/)
+  })
+})
+
+describe('the model in the page', () => {
+  beforeEach(() => open('macpherson'))
+
+  test('follows a slider: solved, not foreseen', async () => {
+    await slide(page, '[data-testid=variable-tie_rod_outer_z] [data-testid=change]', 5)
+    await settled()
+    expect(await page.getByTestId('plot-0').innerText()).toContain('changed')
+    const by = Number(await page.getByTestId('variable-tie_rod_outer_z').getByTestId('change-value').inputValue())
+    expect(await card('toe')).toBeCloseTo(Number(native('macpherson.toml', [{ name: 'tie_rod_outer_z', by }])[0].toPrecision(4)), 6)
+    expect(await toml()).not.toBe(readFileSync(join(MODELS, 'macpherson.toml'), 'utf8'))
+  })
+
+  test('is typed: a slip is shown at its place, mended, and the page solves it', async () => {
+    await page.getByTestId('open-model').click()
+    const text = page.locator('.cm-content')
+    await text.click()
+    await page.keyboard.press('Control+Home')
+    await page.keyboard.type('nonsense = 1\n')
+    await expect.poll(() => page.getByTestId('model-messages').innerText()).toContain('nonsense')
+    expect(await page.getByTestId('title').innerText()).toContain('strut')
+    await page.keyboard.press('Control+z')
+    await expect.poll(() => page.getByTestId('model-messages').innerText()).not.toContain('nonsense')
+  })
+
+  test('is exported with its comments and the changes', async () => {
+    await slide(page, '[data-testid=variable-tie_rod_outer_z] [data-testid=change]', 5)
+    await settled()
+    const original = readFileSync(join(MODELS, 'macpherson.toml'), 'utf8')
+    const found = await toml()
+    const comments = (text: string) => [...text.matchAll(/#.*/g)].map(([line]) => line)
+    expect(comments(found)).toEqual(comments(original))
+    const folder = mkdtempSync(join(tmpdir(), 'hardpoint-live-'))
+    writeFileSync(join(folder, 'x.toml'), found)
+    rmSync(folder, { recursive: true })
+  })
+
+  test('is compared with a design that was kept', async () => {
+    await slide(page, '[data-testid=variable-tie_rod_outer_z] [data-testid=change]', 5)
+    await settled()
+    await page.getByTestId('designs').click()
+    await page.getByTestId('snapshot-name').fill('higher')
+    await page.getByTestId('snapshot-keep').click()
+    await page.getByTestId('snapshot-compare').click()
+    await page.getByTestId('designs').click()
+    await page.getByTestId('reset-design').click()
+    await settled()
+    expect(await page.getByTestId('plot-0').innerText()).toContain('higher')
+  })
+
+  test('asks for nothing outside the page', () => {
+    expect(visited.complaints).toEqual([])
+  })
+})
+
+/** The text that the page exports. */
+async function toml(): Promise<string> {
+  await page.getByTestId('export').click()
+  const [download] = await Promise.all([page.waitForEvent('download'), page.getByTestId('export-toml').click()])
+  return readFileSync(await download.path(), 'utf8')
+}
