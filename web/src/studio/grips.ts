@@ -177,7 +177,7 @@ export class Grips {
     const way = followed(sight, hold.from, this.#way, hold.turn, this.#facing())
     if (!way) return
     const place = hold.drawn.clone().add(way.applyQuaternion(hold.turn.clone().invert()))
-    this.#put(hold.shown, place, event.ctrlKey || event.metaKey ? this.#snap || this.#coarse : this.#snap, hold.drawn)
+    this.#put(hold.shown, place, event.ctrlKey || event.metaKey ? this.#snap || this.#coarse : this.#snap || this.#fine, hold.drawn)
   }
 
   #let(): void {
@@ -185,6 +185,11 @@ export class Grips {
     this.#dragged()
     this.#hold = undefined
     this.rest()
+  }
+
+  /** A hand is no finer than this: a drag leaves no digits that nobody meant. */
+  get #fine(): number {
+    return 10 ** Math.floor(Math.log10(this.#size * 1e-4))
   }
 
   /** A round step that is seen. */
