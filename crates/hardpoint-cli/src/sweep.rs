@@ -2,30 +2,25 @@
 
 use std::fmt::Write as _;
 use std::io::{self, Write};
-use std::num::NonZero;
 use std::ops::ControlFlow;
 use std::path::Path;
 
-use hardpoint::Analysis;
+use hardpoint::Solution;
 use hardpoint::draft::did_you_mean;
 use hardpoint::model::{Model, SweepMethod, SweepRange, Sweeping, VariableId};
 use hardpoint::study::{Motions, NoPlan, Sweep as Designs};
 use hardpoint_file::ModelFile;
-use hardpoint_report::course::Course;
-use hardpoint_report::diagnose;
 use hardpoint_report::figures::some_of;
-use hardpoint_report::optimize::case_name;
 use hardpoint_report::page::SweepPlot;
-use hardpoint_report::payload::{Request, report};
-use hardpoint_report::summary::Summary;
 use hardpoint_report::sweep::{SweepFacts, Swept, Tally};
 use hardpoint_report::table::{TableFormat, TableWriter};
 
 use crate::args::{Method, Sweep, TableForm};
-use crate::folder::{Folder, NotWritten, file_name};
+use crate::folder::{Folder, NotWritten};
 use crate::journal::{Checksum, Fingerprint, Journal, NoJournal};
 use crate::outcome::Outcome;
-use crate::session::{Meter, Session, json_text};
+use crate::pages::{Study, page, threads};
+use crate::session::{Session, json_text};
 use crate::text;
 
 /// What a sweep that has not ended leaves in its folder.
@@ -49,8 +44,7 @@ fn sweep_in(session: &Session, options: &Sweep) -> Result<Outcome, Outcome> {
     let motions = motions.map_err(|(_, fault)| session.cannot_be_driven(&file, &fault))?;
     let designs = Designs::new(&file.model, &motions, &numbers, &asked);
     let designs = designs.map_err(|why| session.misunderstood(&no_plan(why, &file)))?;
-    let path = options.output.as_ref();
-    let folder = path.map(|path| Folder::open(path)).transpose().map_err(|e| session.not_written(&e))?;
+    let folder = session.folder(options.output.as_deref())?;
     let mut journal =
         journal(session, folder.as_ref(), fingerprint(&file, &numbers, &asked, options), options)?;
 
@@ -226,7 +220,7 @@ fn solve(
 ) -> Result<(), Outcome> {
     let count = designs.plan().count();
     let from = journal.designs();
-    let mut meter = Meter::new("solving", "designs").with_rate(from);
+    let mut meter = session.meter("solving", "designs").with_rate(from);
     let mut failure = None;
     let mut done = |block: hardpoint::study::SweptBlock| {
         if let Err(error) = journal.add(&block) {
@@ -236,10 +230,8 @@ fn solve(
         meter.show(block.numbers.end, count);
         session.go_on()
     };
-    let threads = options.threads.or_else(|| std::thread::available_parallelism().ok());
-    let threads = threads.unwrap_or(NonZero::<usize>::MIN);
     if from < count {
-        designs.run(from, threads, &|| session.go_on().is_continue(), &mut done);
+        designs.run(from, threads(options.threads), &|| session.go_on().is_continue(), &mut done);
     }
     match failure {
         Some(error) => Err(session.not_written(&NotWritten { path: JOURNAL.into(), error })),
@@ -288,8 +280,8 @@ impl Results<'_> {
         }
         facts.files = files;
         let Some(mut folder) = folder else { return Ok((facts, None)) };
-        let written = self.write_pages(&mut folder, &mut facts, &plot);
-        written.map_err(|e| session.not_written(&e))?;
+        let pages = Pages { swept: self.swept, facts: &facts, plot: &plot }.write_pages(&mut folder);
+        facts.files.extend(pages.map_err(|e| session.not_written(&e))?);
         let summary = folder.path_of("summary.json").display().to_string();
         facts.files.push(summary.clone());
         facts.seconds = session.seconds();
@@ -327,46 +319,34 @@ impl Results<'_> {
         }
         Ok(())
     }
+}
 
-    fn write_pages(
-        &self,
-        folder: &mut Folder,
-        facts: &mut SweepFacts,
-        plot: &SweepPlot,
-    ) -> Result<(), NotWritten> {
-        let Swept { file, numbers, motions, .. } = self.swept;
-        for (k, analysis) in motions.analyses().iter().enumerate() {
-            let name = match case_name(&file.model, numbers[k]) {
-                Some(case) => format!("report-{}.html", file_name(&case)),
-                None => "report.html".into(),
-            };
-            let Some(html) = self.page(analysis, k, facts, plot) else { continue };
-            folder.write(&name, |out| out.write_all(html.as_bytes()))?;
-            facts.files.push(folder.path_of(&name).display().to_string());
-        }
-        Ok(())
+/// What the pages of a sweep are made of.
+struct Pages<'a> {
+    swept: Swept<'a>,
+    facts: &'a SweepFacts,
+    plot: &'a SweepPlot,
+}
+
+impl Study for Pages<'_> {
+    fn file(&self) -> &ModelFile {
+        self.swept.file
     }
 
-    /// The page of one motion: the design as drawn, with what the sweep found; `None` where that does not move at all.
-    fn page(
-        &self,
-        analysis: &Analysis<'_>,
-        motion: usize,
-        facts: &SweepFacts,
-        plot: &SweepPlot,
-    ) -> Option<String> {
-        let mut file = self.swept.file.clone();
-        file.model = Model::clone(analysis.model());
-        let today = analysis.run();
-        if today.motion.is_empty() {
-            return None;
-        }
-        let course = Course::of(&file.model, &today);
-        let mut summary = Summary::new(&file, analysis.topology(), &course);
-        summary.diagnostics = diagnose::all(&file, &summary, &course, None);
-        let request = Request::of(&file, analysis, &course, &summary);
-        let finish = |page| facts.page(&self.swept, plot, motion, page, &today.measured.outputs);
-        Some(report(&request, &finish).expect("a payload is plain data"))
+    fn motions(&self) -> &Motions<'_> {
+        self.swept.motions
+    }
+
+    fn number(&self, motion: usize) -> usize {
+        self.swept.numbers[motion]
+    }
+
+    /// The design as drawn, with what the sweep found.
+    fn page(&self, motion: usize) -> Option<String> {
+        let finish = |page, today: &Solution| {
+            self.facts.page(&self.swept, self.plot, motion, page, &today.measured.outputs)
+        };
+        page(self.swept.file, &self.swept.motions.analyses()[motion], None, finish)
     }
 }
 
