@@ -13,6 +13,8 @@ mod outcome;
 mod pages;
 mod run;
 mod session;
+mod site;
+mod studio;
 mod sweep;
 mod tables;
 mod text;
@@ -51,6 +53,8 @@ fn main() -> ExitCode {
         Command::Tolerance(options) => tolerance::run(&options),
         Command::Calibrate(options) => calibrate::run(&options),
         Command::Sweep(options) => sweep::run(&options),
+        Command::Studio(options) => studio::run(&options),
+        Command::Site(options) => site::run(&options),
         Command::Schema => {
             text::print(&hardpoint_file::schema());
             Outcome::Done

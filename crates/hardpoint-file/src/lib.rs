@@ -61,7 +61,7 @@ use places::Places;
 use tree::Reader;
 
 /// Files larger than this are not read, bytes.
-const LARGEST_FILE: u64 = 64 << 20;
+pub const LARGEST_FILE: u64 = 64 << 20;
 /// How many syntax errors are shown: after a few, they follow from the ones before.
 const SYNTAX_ERRORS: usize = 5;
 /// So many files of a folder are named where the one asked for is not there.
@@ -321,7 +321,10 @@ pub fn parse(text: &str, file_name: &str) -> Result<ModelFile, Diagnostics> {
 }
 
 /// As [`parse`], of a model whose file lies in `folder`, so that it may name files there.
-fn parse_in(folder: Option<&Path>, text: &str, file_name: &str) -> Result<ModelFile, Diagnostics> {
+///
+/// # Errors
+/// As there.
+pub fn parse_in(folder: Option<&Path>, text: &str, file_name: &str) -> Result<ModelFile, Diagnostics> {
     let source = Source::new(file_name, text);
     if text.trim().is_empty() {
         let d = source
