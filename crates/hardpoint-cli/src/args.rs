@@ -8,6 +8,10 @@ use clap_complete::Shell;
 use hardpoint::study::Scheme;
 use hardpoint::topology::Formulation;
 
+/// So many designs at most are drawn from tolerances, and swept over.
+pub const MOST_DRAWN: u32 = 10_000_000;
+pub const MOST_SWEPT: u32 = 1_000_000_000;
+
 const AFTER: &str = "\
 Examples:
   hardpoint check models/macpherson.toml
@@ -88,7 +92,7 @@ pub enum Command {
 }
 
 /// What all analyses take.
-#[derive(Args, Debug)]
+#[derive(Args, Debug, Default)]
 pub struct Common {
     /// The model file (TOML)
     pub model: PathBuf,
@@ -101,7 +105,7 @@ pub struct Common {
 }
 
 /// Which motions of a model file a command is done for.
-#[derive(Args, Debug)]
+#[derive(Args, Debug, Default)]
 pub struct Motions {
     /// Do one case of the model file only [default: all of them]
     #[arg(long, value_name = "NAME")]
@@ -414,7 +418,7 @@ pub struct Tolerance {
     #[arg(short, long, value_name = "DIR")]
     pub output: Option<PathBuf>,
     /// Draw so many designs and solve them exactly, 0 for none [default: as the file says, or 10000]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(..=10_000_000))]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(..=i64::from(MOST_DRAWN)))]
     pub samples: Option<u32>,
     /// Draw them from this number [default: as the file says, or 1]
     #[arg(long, value_name = "N")]
@@ -508,7 +512,7 @@ Examples:
   hardpoint sweep models/studies/strut_sweep.toml --designs mine.csv --curves toe --format parquet -o results/mine";
 
 /// `hardpoint sweep`.
-#[derive(Args, Debug)]
+#[derive(Args, Debug, Default)]
 #[command(after_help = AFTER_SWEEP)]
 pub struct Sweep {
     #[command(flatten)]
@@ -522,7 +526,7 @@ pub struct Sweep {
     #[arg(long, value_enum)]
     pub method: Option<Method>,
     /// Choose so many designs; with indices so many pairs of them [default: as the file says, or 1000]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1_000_000_000))]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=i64::from(MOST_SWEPT)))]
     pub samples: Option<u32>,
     /// Choose them from this number [default: as the file says, or 1]
     #[arg(long, value_name = "N")]
@@ -617,9 +621,10 @@ pub enum Method {
 }
 
 /// How the tables of a sweep are written.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
 pub enum TableForm {
     /// Text
+    #[default]
     Csv,
     /// Apache Parquet
     Parquet,

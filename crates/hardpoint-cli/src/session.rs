@@ -457,6 +457,12 @@ impl Session {
         Outcome::Misunderstood
     }
 
+    /// Tells that a server cannot do its work.
+    pub fn not_served(&self, what: &str, why: &str, help: &str) -> Outcome {
+        self.refuse("HP0604", what, None, why, help);
+        Outcome::Misunderstood
+    }
+
     /// Says what is worth knowing before the work; not where stdout is a document for machines.
     pub fn remark(&self, what: &str) {
         if self.is_for_reading() {

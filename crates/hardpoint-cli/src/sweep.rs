@@ -36,27 +36,9 @@ pub fn run(options: &Sweep) -> Outcome {
 
 fn sweep_in(session: &Session, options: &Sweep) -> Result<Outcome, Outcome> {
     let file = session.read(&options.common.model)?;
-    let numbers = session.numbers_of(&file, &options.motions)?;
-    let asked = asked(session, &file, options)?;
-    let models = file.model.motions();
-    let models: Vec<Model> = numbers.iter().map(|k| models[*k].clone()).collect();
-    let motions = Motions::of(&models, options.common.formulation());
-    let motions = motions.map_err(|(_, fault)| session.cannot_be_driven(&file, &fault))?;
-    let designs = Designs::new(&file.model, &motions, &numbers, &asked);
-    let designs = designs.map_err(|why| session.misunderstood(&no_plan(why, &file)))?;
-    let folder = session.folder(options.output.as_deref())?;
-    let mut journal =
-        journal(session, folder.as_ref(), fingerprint(&file, &numbers, &asked, options), options)?;
-
-    session.patient(true);
-    solve(session, &designs, &mut journal, options)?;
-    let swept = Swept { file: &file, numbers: &numbers, asked: &asked, motions: &motions, sweep: &designs };
-    let results = Results { swept, journal: &journal, format: options.format.of() };
-    let (mut facts, written) = results.finish(session, folder)?;
+    let finish = |results: &Results<'_>, folder| results.finish(session, folder);
+    let (mut facts, written) = swept(session, &file, options, finish)?;
     facts.seconds = session.seconds();
-    if facts.status != "interrupted" {
-        journal.remove().map_err(|error| session.not_written(&NotWritten { path: JOURNAL.into(), error }))?;
-    }
     if session.is_json() {
         session.print_json(&facts);
     } else {
@@ -68,6 +50,49 @@ fn sweep_in(session: &Session, options: &Sweep) -> Result<Outcome, Outcome> {
         "no_design" => Outcome::Stopped,
         _ => Outcome::Done,
     })
+}
+
+/// Sweeps over designs for a page; nothing is written, and all pages come back, each with its case.
+pub fn for_page(
+    session: &Session,
+    file: &ModelFile,
+    options: &Sweep,
+) -> Result<(SweepFacts, Vec<(Option<String>, String)>), Outcome> {
+    swept(session, file, options, |results, _| {
+        let (facts, plot) = results.facts(session, &results.tally(session)?)?;
+        let pages = Pages { swept: results.swept, facts: &facts, plot: &plot }.pages().collect();
+        Ok((facts, pages))
+    })
+}
+
+/// Solves the designs; `end` makes of them what is to be made.
+fn swept<X>(
+    session: &Session,
+    file: &ModelFile,
+    options: &Sweep,
+    end: impl FnOnce(&Results<'_>, Option<Folder>) -> Result<(SweepFacts, X), Outcome>,
+) -> Result<(SweepFacts, X), Outcome> {
+    let numbers = session.numbers_of(file, &options.motions)?;
+    let asked = asked(session, file, options)?;
+    let models = file.model.motions();
+    let models: Vec<Model> = numbers.iter().map(|k| models[*k].clone()).collect();
+    let motions = Motions::of(&models, options.common.formulation());
+    let motions = motions.map_err(|(_, fault)| session.cannot_be_driven(file, &fault))?;
+    let designs = Designs::new(&file.model, &motions, &numbers, &asked);
+    let designs = designs.map_err(|why| session.misunderstood(&no_plan(why, file)))?;
+    let folder = session.folder(options.output.as_deref())?;
+    let mut journal =
+        journal(session, folder.as_ref(), fingerprint(file, &numbers, &asked, options), options)?;
+
+    session.patient(true);
+    solve(session, &designs, &mut journal, options)?;
+    let swept = Swept { file, numbers: &numbers, asked: &asked, motions: &motions, sweep: &designs };
+    let results = Results { swept, journal: &journal, format: options.format.of() };
+    let (facts, made) = end(&results, folder)?;
+    if facts.status != "interrupted" {
+        journal.remove().map_err(|error| session.not_written(&NotWritten { path: JOURNAL.into(), error }))?;
+    }
+    Ok((facts, made))
 }
 
 /// What is asked for, by the file and by the command line.
@@ -253,25 +278,17 @@ impl Results<'_> {
         session: &Session,
         folder: Option<Folder>,
     ) -> Result<(SweepFacts, Option<String>), Outcome> {
-        let not_read = |error: io::Error| session.not_written(&NotWritten { path: JOURNAL.into(), error });
-        let mut tally = Tally::default();
         let mut files = Vec::new();
-        let folder = match folder {
-            None => {
-                let see = |block| {
-                    self.swept.tally(&mut tally, &block);
-                    Ok(())
-                };
-                self.journal.each(see).map_err(not_read)?;
-                None
-            }
+        let (folder, tally) = match folder {
+            None => (None, self.tally(session)?),
             Some(mut folder) => {
-                self.write_tables(&mut folder, &mut tally, &mut files)
-                    .map_err(|e| session.not_written(&e))?;
-                Some(folder)
+                let mut tally = Tally::default();
+                let written = self.write_tables(&mut folder, &mut tally, &mut files);
+                written.map_err(|e| session.not_written(&e))?;
+                (Some(folder), tally)
             }
         };
-        let (mut facts, plot) = self.swept.facts(&tally, |k| self.journal.column(k)).map_err(not_read)?;
+        let (mut facts, plot) = self.facts(session, &tally)?;
         if facts.status == "interrupted" {
             facts.message += match &folder {
                 Some(_) => "; the same command goes on where it ended",
@@ -289,6 +306,21 @@ impl Results<'_> {
         let written = folder.write("summary.json", |out| out.write_all(json.as_bytes()));
         written.and_then(|()| folder.commit(&FILES)).map_err(|e| session.not_written(&e))?;
         Ok((facts, Some(summary)))
+    }
+
+    /// All blocks counted.
+    fn tally(&self, session: &Session) -> Result<Tally, Outcome> {
+        let mut tally = Tally::default();
+        let see = |block| {
+            self.swept.tally(&mut tally, &block);
+            Ok(())
+        };
+        self.journal.each(see).map_err(|e| not_read(session, e))?;
+        Ok(tally)
+    }
+
+    fn facts(&self, session: &Session, tally: &Tally) -> Result<(SweepFacts, SweepPlot), Outcome> {
+        self.swept.facts(tally, |k| self.journal.column(k)).map_err(|e| not_read(session, e))
     }
 
     fn write_tables(
@@ -319,6 +351,10 @@ impl Results<'_> {
         }
         Ok(())
     }
+}
+
+fn not_read(session: &Session, error: io::Error) -> Outcome {
+    session.not_written(&NotWritten { path: JOURNAL.into(), error })
 }
 
 /// What the pages of a sweep are made of.

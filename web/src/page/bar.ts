@@ -6,12 +6,14 @@ import { menu, type Item } from './menu'
 /** What the bar offers beside the title. */
 export interface Offers {
   find?: HTMLElement
+  /** What a server adds, where the page comes from one. */
+  server?: HTMLElement
   exports: () => Item[]
   help: () => void
 }
 
 /** Title and file, what is compared, search, export and help. */
-export function bar(state: State, { find, exports, help }: Offers): HTMLElement {
+export function bar(state: State, { find, server, exports, help }: Offers): HTMLElement {
   const { title, file } = state.report
   return el(
     'header',
@@ -20,6 +22,7 @@ export function bar(state: State, { find, exports, help }: Offers): HTMLElement 
     el('span', { class: 'file muted' }, file),
     el('span', { class: 'space' }),
     find,
+    server,
     comparison(state),
     menu('Export', 'export', exports),
     el('button', { type: 'button', class: 'help-button', 'aria-label': 'keys and lines', title: 'Keys and lines (?)', 'data-testid': 'help', onclick: help }, '?'),

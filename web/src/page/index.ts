@@ -4,6 +4,8 @@ import { rankingTable } from '../influence/table'
 import { driverMap } from '../maps/map'
 import type { Report } from '../report'
 import type { State } from '../state'
+import { connect } from '../studio/server'
+import { LoadedText, serverBar } from '../studio/server_bar'
 import { sweepPlot } from '../sweep/scatter'
 import { bar } from './bar'
 import { cards } from './cards'
@@ -27,6 +29,7 @@ export function page(root: HTMLElement, state: State): void {
   const search = hasQuantities ? find(state) : undefined
   const keys = help()
   const scene = stage(state)
+  const server = connect(document)
   const curves = hasQuantities ? new Curves(state) : undefined
   const table: Tab[] = hasQuantities && hasVariables
     ? [{ name: 'table', title: 'Table', content: el('div', { class: 'influence' }, rankingTable(state), heatMap(state)) }]
@@ -43,7 +46,7 @@ export function page(root: HTMLElement, state: State): void {
   root.classList.toggle('no-variables', !hasVariables)
   root.classList.toggle('no-curves', !hasQuantities)
   root.append(
-    bar(state, { find: search?.element, exports: () => exports(state, curves?.figures ?? [], scene.view), help: () => keys.showModal() }),
+    bar(state, { find: search?.element, server: server?.file ? serverBar(server, new LoadedText(server)) : undefined, exports: () => exports(state, curves?.figures ?? [], scene.view), help: () => keys.showModal() }),
     ...(report.status.complete ? [] : [banner(report)]),
     ...(report.values.length > 0 ? [cards(state)] : []),
     el('div', { class: 'scene' }, scene.element, transport(state)),

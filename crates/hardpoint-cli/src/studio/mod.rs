@@ -56,27 +56,25 @@ fn studio_in(session: &Session, options: &args::Studio) -> Result<Outcome, Outco
         Some(model) => of_model(session, model)?,
         None => (of_gallery(), None),
     };
-    let models = folder::Models::of(&path).map_err(|e| {
-        session.misunderstood(&format!("the folder `{}` cannot be read: {e}", path.display()))
-    })?;
+    let failed = |what: String, why: &dyn std::fmt::Display| {
+        session.not_served(&what, &why.to_string(), "see `docs/studio.md`")
+    };
+    let models = folder::Models::of(&path)
+        .map_err(|e| failed(format!("the folder `{}` cannot be read", path.display()), &e))?;
     if let Some(name) = opened.as_ref().filter(|name| !models.is_name(name)) {
         let why = format!(
             "`{name}` is no name of a model file: those end with `.toml`, and lie in the folder itself"
         );
         return Err(session.misunderstood(&why));
     }
-    let random = || {
-        address::random_token().map_err(|e| session.misunderstood(&format!("there is no random number: {e}")))
-    };
+    let random =
+        || address::random_token().map_err(|e| failed("this system has no random numbers".into(), &e));
     let token = options.token.clone().map_or_else(random, Ok)?;
-    let listening =
-        TcpListener::bind((Ipv4Addr::LOCALHOST, options.port)).and_then(|l| Ok((l.local_addr()?.port(), l)));
+    let listening = TcpListener::bind((Ipv4Addr::LOCALHOST, options.port))
+        .and_then(|listener| Ok((listener.local_addr()?.port(), listener)));
     let (port, listener) = listening.map_err(|e| {
-        let why = format!(
-            "port {} of this machine cannot be listened on: {e}; name another with `--port`",
-            options.port
-        );
-        session.misunderstood(&why)
+        let what = format!("port {} of this machine cannot be listened on", options.port);
+        session.not_served(&what, &e.to_string(), "name another with `--port`, or end what has this one")
     })?;
     let address = address::Address::new(port, token);
     let to_open = address.to_open();
@@ -100,10 +98,8 @@ fn studio_in(session: &Session, options: &args::Studio) -> Result<Outcome, Outco
     if std::io::stderr().is_terminal() {
         text::complain("Ctrl-C ends it.\n");
     }
-    match server::serve(listener, &studio, session) {
-        Ok(()) => Ok(Outcome::Done),
-        Err(error) => Err(session.misunderstood(&format!("the server could not go on: {error}"))),
-    }
+    let served = server::serve(listener, &studio, session);
+    served.map(|()| Outcome::Done).map_err(|e| failed("the server could not go on".into(), &e))
 }
 
 /// The folder of a model, and its name in it. The model may be wrong in any way, but it is there.

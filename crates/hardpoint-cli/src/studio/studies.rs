@@ -22,7 +22,7 @@ use crate::meter::Listener;
 use crate::outcome::Outcome;
 use crate::pages::Study as _;
 use crate::session::Session;
-use crate::{optimize, tolerance};
+use crate::{args, optimize, sweep, tolerance};
 
 /// Each of them takes all cores; another waits for its turn at the user's hand, not at ours.
 const AT_ONCE: usize = 2;
@@ -59,6 +59,8 @@ pub enum What {
     Optimize,
     /// As `hardpoint tolerance`.
     Tolerance,
+    /// As `hardpoint sweep`.
+    Sweep,
 }
 
 /// As the options of the command line of the same name.
@@ -260,6 +262,7 @@ impl Study {
         let done = catch_unwind(AssertUnwindSafe(|| match asked.what {
             What::Optimize => optimized(&session, file, asked),
             What::Tolerance => examined(&session, file, asked),
+            What::Sweep => swept(&session, file, asked),
         }));
         self.end(match done {
             Ok(Ok(end)) => end,
@@ -328,12 +331,13 @@ fn optimized(session: &Session, file: &ModelFile, asked: &Asked) -> Result<End, 
 }
 
 fn examined(session: &Session, file: &ModelFile, asked: &Asked) -> Result<End, Outcome> {
-    let numbers = session.numbers_of(file, &crate::args::Motions { case: asked.case.clone() })?;
+    let numbers = session.numbers_of(file, &args::Motions { case: asked.case.clone() })?;
     let Options { samples, seed, allocate, .. } = asked.options;
     let allocate = allocate.map(|rule| match rule {
         Rule::Rss => Allocate::Rss,
         Rule::WorstCase => Allocate::WorstCase,
     });
+    at_most(session, samples, args::MOST_DRAWN)?;
     let wanted = tolerance::asked(session, file, &tolerance::Asking { samples, seed, allocate })?;
     let models = file.model.motions();
     let models: Vec<Model> = numbers.iter().map(|k| models[*k].clone()).collect();
@@ -350,4 +354,30 @@ fn examined(session: &Session, file: &ModelFile, asked: &Asked) -> Result<End, O
         tables: results.facts.tables(),
         pages: results.pages().collect(),
     })
+}
+
+fn swept(session: &Session, file: &ModelFile, asked: &Asked) -> Result<End, Outcome> {
+    let Options { samples, seed, .. } = asked.options;
+    at_most(session, samples, args::MOST_SWEPT)?;
+    let motions = args::Motions { case: asked.case.clone() };
+    let (facts, pages) =
+        sweep::for_page(session, file, &args::Sweep { motions, samples, seed, ..args::Sweep::default() })?;
+    Ok(End {
+        state: if facts.status == "interrupted" { "cancelled" } else { "done" },
+        message: facts.message.clone(),
+        diagnostics: json!([]),
+        text: None,
+        tables: facts.tables(),
+        pages,
+    })
+}
+
+/// As the command line has it.
+fn at_most(session: &Session, samples: Option<u32>, most: u32) -> Result<(), Outcome> {
+    match samples {
+        Some(n) if n > most => {
+            Err(session.misunderstood(&format!("{n} samples are too many: {most} at most")))
+        }
+        _ => Ok(()),
+    }
 }

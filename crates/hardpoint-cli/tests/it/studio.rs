@@ -554,7 +554,8 @@ fn a_server_that_was_killed_is_found_again_on_its_port_with_its_token() {
 
     let taken = bench.run(&["studio", "--no-browser", "--port", &port]);
     assert_eq!(taken.status.code(), Some(2));
-    assert!(String::from_utf8_lossy(&taken.stderr).contains("--port"));
+    let told = String::from_utf8_lossy(&taken.stderr);
+    assert!(told.contains("HP0604") && told.contains("--port"), "{told}");
     assert_eq!(bench.run(&["studio", "--no-browser", "--token", "short"]).status.code(), Some(2));
     assert_eq!(bench.run(&["studio", "--no-browser", "none.toml"]).status.code(), Some(3));
 }
