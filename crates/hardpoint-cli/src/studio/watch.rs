@@ -29,7 +29,7 @@ pub fn events(studio: Arc<Studio>, file: Option<&str>, client: String) -> Answer
 
 async fn watch(studio: Arc<Studio>, file: Option<String>, client: String, mut to: Sender<Bytes, Infallible>) {
     let mut studies = studio.studies.events();
-    let mut known = revision(&studio, file.as_deref()).await;
+    let Look { revision: mut known, .. } = look(&studio, file.as_deref(), &client).await;
     let hello = json!({ "server": studio.id, "file": file, "revision": known });
     if send(&mut to, "hello", &hello.to_string()).await.is_err() {
         return;
@@ -45,20 +45,15 @@ async fn watch(studio: Arc<Studio>, file: Option<String>, client: String, mut to
             Err(_) => {
                 next = Instant::now() + POLL;
                 looks += 1;
-                let now = revision(&studio, file.as_deref()).await;
-                let own = match (&now, &file) {
-                    (Some(now), Some(file)) => studio.models.was_saved_by(file, now, &client),
-                    _ => false,
-                };
-                if now != known && !own {
-                    let changed = json!({ "file": file, "revision": now });
-                    known = now;
-                    send(&mut to, "changed", &changed.to_string()).await
+                let now = look(&studio, file.as_deref(), &client).await;
+                let changed = now.revision != known && !now.is_own;
+                known = now.revision;
+                if changed {
+                    let event = json!({ "file": file, "revision": known });
+                    send(&mut to, "changed", &event.to_string()).await
                 } else if looks % ALIVE == 0 {
-                    known = now;
                     send(&mut to, "alive", "{}").await
                 } else {
-                    known = now;
                     Ok(())
                 }
             }
@@ -73,9 +68,22 @@ async fn send(to: &mut Sender<Bytes, Infallible>, name: &str, data: &str) -> Res
     to.send_data(format!("event: {name}\ndata: {data}\n\n").into()).await.map_err(drop)
 }
 
-/// The revision of a file; none where there is no such file.
-async fn revision(studio: &Arc<Studio>, file: Option<&str>) -> Option<String> {
-    let (studio, file) = (Arc::clone(studio), file?.to_owned());
-    let read = tokio::task::spawn_blocking(move || studio.models.read(&file).ok().map(|t| t.revision));
-    read.await.ok().flatten()
+/// What is on disk.
+#[derive(Default)]
+struct Look {
+    /// None where there is no such file.
+    revision: Option<String>,
+    /// It was saved by the page itself.
+    is_own: bool,
+}
+
+async fn look(studio: &Arc<Studio>, file: Option<&str>, client: &str) -> Look {
+    let Some(file) = file.map(str::to_owned) else { return Look::default() };
+    let (studio, client) = (Arc::clone(studio), client.to_owned());
+    let read = tokio::task::spawn_blocking(move || {
+        let revision = studio.models.read(&file).ok().map(|t| t.revision);
+        let is_own = revision.as_ref().is_some_and(|r| studio.models.was_saved_by(&file, r, &client));
+        Look { revision, is_own }
+    });
+    read.await.unwrap_or_default()
 }
