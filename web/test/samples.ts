@@ -23,6 +23,8 @@ export interface Samples {
   answers: string
   /** The report of every model of the repository, by the name of its file. */
   models: Record<string, string>
+  /** The command itself. */
+  hardpoint: string
 }
 
 declare module 'vitest' {
@@ -75,6 +77,7 @@ export default function setup(project: TestProject): () => void {
     map: page('map', 'ride', 'report.html'),
     large: page('large', 'report.html'),
     models: Object.fromEntries(models),
+    hardpoint,
   })
   return () => rmSync(folder, { recursive: true })
 }

@@ -8,6 +8,10 @@ use clap_complete::Shell;
 use hardpoint::study::Scheme;
 use hardpoint::topology::Formulation;
 
+/// So many designs at most are drawn from tolerances, and swept over.
+pub const MOST_DRAWN: u32 = 10_000_000;
+pub const MOST_SWEPT: u32 = 1_000_000_000;
+
 const AFTER: &str = "\
 Examples:
   hardpoint check models/macpherson.toml
@@ -18,6 +22,8 @@ Examples:
   hardpoint tolerance models/studies/strut_tolerances.toml -o results/strut
   hardpoint calibrate models/studies/strut_calibrate.toml models/studies/strut_measured.csv
   hardpoint sweep models/studies/strut_sweep.toml -o results/sweep
+  hardpoint studio models/macpherson.toml
+  hardpoint site public
 
 Exit codes:
     0  done; for verify: every variable passed
@@ -29,7 +35,8 @@ Exit codes:
     5  the mechanism does not assemble, or its motion ends early (limit position, dead point, lock);
        run writes the part that was solved
     6  a result could not be written, to a file or to stdout
-  130  interrupted; run writes the part that was solved, unless it was writing already
+  130  interrupted; run writes the part that was solved, unless it was writing already;
+       studio ends with 0 then, as it is meant to
 
 A closed pipe (as by `| head`) is no failure to write.
 
@@ -67,6 +74,10 @@ pub enum Command {
     Calibrate(Calibrate),
     /// Solve many designs over the ranges of the design variables, exactly: a table of their metrics, what is best, what matters
     Sweep(Sweep),
+    /// Open a model in the browser, from a server on this machine: save in place, follow the file, run long studies
+    Studio(Studio),
+    /// Write the gallery as a static site: a page for each model
+    Site(Site),
     /// Print the JSON Schema of model files, for editors
     #[command(after_help = "Example:\n  hardpoint schema > hardpoint.schema.json")]
     Schema,
@@ -81,7 +92,7 @@ pub enum Command {
 }
 
 /// What all analyses take.
-#[derive(Args, Debug)]
+#[derive(Args, Debug, Default)]
 pub struct Common {
     /// The model file (TOML)
     pub model: PathBuf,
@@ -94,7 +105,7 @@ pub struct Common {
 }
 
 /// Which motions of a model file a command is done for.
-#[derive(Args, Debug)]
+#[derive(Args, Debug, Default)]
 pub struct Motions {
     /// Do one case of the model file only [default: all of them]
     #[arg(long, value_name = "NAME")]
@@ -407,7 +418,7 @@ pub struct Tolerance {
     #[arg(short, long, value_name = "DIR")]
     pub output: Option<PathBuf>,
     /// Draw so many designs and solve them exactly, 0 for none [default: as the file says, or 10000]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(..=10_000_000))]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(..=i64::from(MOST_DRAWN)))]
     pub samples: Option<u32>,
     /// Draw them from this number [default: as the file says, or 1]
     #[arg(long, value_name = "N")]
@@ -501,7 +512,7 @@ Examples:
   hardpoint sweep models/studies/strut_sweep.toml --designs mine.csv --curves toe --format parquet -o results/mine";
 
 /// `hardpoint sweep`.
-#[derive(Args, Debug)]
+#[derive(Args, Debug, Default)]
 #[command(after_help = AFTER_SWEEP)]
 pub struct Sweep {
     #[command(flatten)]
@@ -515,7 +526,7 @@ pub struct Sweep {
     #[arg(long, value_enum)]
     pub method: Option<Method>,
     /// Choose so many designs; with indices so many pairs of them [default: as the file says, or 1000]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1_000_000_000))]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=i64::from(MOST_SWEPT)))]
     pub samples: Option<u32>,
     /// Choose them from this number [default: as the file says, or 1]
     #[arg(long, value_name = "N")]
@@ -543,6 +554,59 @@ pub struct Sweep {
     pub restart: bool,
 }
 
+const AFTER_STUDIO: &str = "\
+The page is the one that `run` writes. The server adds what a page cannot do: it
+saves the model in place, tells the page when the file changes on disk, opens other
+models of the folder, and runs long studies natively. It listens on this machine
+only, and answers who has the token of the address that it prints. Ctrl-C ends it.
+
+Without a model it shows all models of the current folder, or of `models` in it.
+With --port and --token a server that is started anew is found by its pages again.
+
+Examples:
+  hardpoint studio models/macpherson.toml
+  hardpoint studio
+  hardpoint studio models/macpherson.toml --no-browser --port 4711 --token my-own-long-token";
+
+/// `hardpoint studio`.
+#[derive(Args, Debug)]
+#[command(after_help = AFTER_STUDIO)]
+pub struct Studio {
+    /// The model file (TOML), or a folder of them
+    pub model: Option<PathBuf>,
+    /// Listen on this port [default: one that is free]
+    #[arg(long, value_name = "N", default_value_t = 0, hide_default_value = true)]
+    pub port: u16,
+    /// Let in who has this token: at least 16 letters, digits, - and _ [default: a random one]
+    #[arg(long, value_name = "TOKEN", value_parser = crate::studio::given_token)]
+    pub token: Option<String>,
+    /// Print the address and open no browser
+    #[arg(long)]
+    pub no_browser: bool,
+}
+
+const AFTER_SITE: &str = "\
+Writes into the folder, each file whole or not at all:
+  index.html  all models, with what they say about themselves
+  NAME.html   the report of NAME.toml (NAME-CASE.html for each further case)
+Any static host serves it, and it opens from disk. A model that cannot be shown is left
+out, with the reason.
+
+Examples:
+  hardpoint site public
+  hardpoint site public models/macpherson.toml models/five_link.toml";
+
+/// `hardpoint site`.
+#[derive(Args, Debug)]
+#[command(after_help = AFTER_SITE)]
+pub struct Site {
+    /// The folder for the site
+    #[arg(value_name = "DIR")]
+    pub folder: PathBuf,
+    /// The model files [default: models/*.toml]
+    pub models: Vec<PathBuf>,
+}
+
 /// How designs are chosen.
 #[derive(Clone, Copy, Debug, ValueEnum)]
 pub enum Method {
@@ -557,9 +621,10 @@ pub enum Method {
 }
 
 /// How the tables of a sweep are written.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
 pub enum TableForm {
     /// Text
+    #[default]
     Csv,
     /// Apache Parquet
     Parquet,

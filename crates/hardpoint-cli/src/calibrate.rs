@@ -2,20 +2,17 @@
 
 use std::io::Write;
 
-use hardpoint::model::{Model, VariableId};
+use hardpoint::model::VariableId;
 use hardpoint::study::{Calibrating, Calibration, CannotCalibrate, FitStatus, Loss, calibrate};
-use hardpoint::{Analysis, Run};
+use hardpoint::{Analysis, Solution};
 use hardpoint_file::ModelFile;
 use hardpoint_report::calibrate::{CalibrateFacts, Calibrated};
-use hardpoint_report::course::Course;
-use hardpoint_report::diagnose;
 use hardpoint_report::figures::{number, some_of};
-use hardpoint_report::payload::{Changed, Request, report};
-use hardpoint_report::summary::Summary;
 
 use crate::args::{Calibrate, LossWord};
 use crate::folder::{Folder, NotWritten};
 use crate::outcome::Outcome;
+use crate::pages::{Found, page};
 use crate::session::{Session, json_text};
 use crate::text;
 
@@ -37,8 +34,7 @@ fn calibrate_in(session: &Session, options: &Calibrate) -> Result<Outcome, Outco
         Outcome::BadModel
     })?;
     session.may_save(&options.common.model, options.save.as_deref())?;
-    let path = options.output.as_ref();
-    let folder = path.map(|path| Folder::open(path)).transpose().map_err(|e| session.not_written(&e))?;
+    let folder = session.folder(options.output.as_deref())?;
 
     session.patient(true);
     let loss = match options.loss {
@@ -137,13 +133,9 @@ fn sigmas(session: &Session, given: &[String]) -> Result<Vec<(String, f64)>, Out
 
 /// Fits, telling of every iteration.
 fn search(session: &Session, file: &ModelFile, asked: &Calibrating<'_>) -> Result<Calibration, Outcome> {
-    if !session.is_json() {
-        text::print(&format!("{}\n", text::bold(&file.model.name)));
-    }
+    session.line(&text::bold(&file.model.name));
     let mut progress = |k: usize, objective: f64| {
-        if !session.is_json() {
-            text::print(&format!("{k:>4}  objective {}\n", number(objective)));
-        }
+        session.line(&format!("{k:>4}  objective {}", number(objective)));
     };
     let more = || session.go_on().is_continue();
     calibrate(&file.model, asked, &mut progress, &more).map_err(|why| match why {
@@ -186,28 +178,11 @@ impl Results<'_> {
 
     /// The design found beside the one as drawn, in the model's first motion; `None` where that does not move at all.
     fn page(&self, facts: &CalibrateFacts) -> Option<String> {
-        let mut file = self.calibrated.file.clone();
-        file.model = Model::clone(file.model.motions().first()?);
-        let analysis = Analysis::with(&file.model, self.options.common.formulation()).ok()?;
-        let today = analysis.run();
-        if today.motion.is_empty() {
-            return None;
-        }
+        let model = self.calibrated.file.model.motions().into_iter().next()?;
+        let analysis = Analysis::with(&model, self.options.common.formulation()).ok()?;
         let design = &self.calibrated.found.design;
-        let exact = analysis.solve(Run::new().at(design).without_sensitivities());
-        let course = Course::of(&file.model, &today);
-        let mut summary = Summary::new(&file, analysis.topology(), &course);
-        summary.diagnostics = diagnose::all(&file, &summary, &course, None);
-        let changed = Changed {
-            name: "found".into(),
-            note: "The design that explains what was measured.".into(),
-            change: design,
-            today: &today,
-            exact: &exact,
-            foreseen: None,
-        };
-        let request = Request { changed: Some(changed), ..Request::of(&file, &analysis, &course, &summary) };
-        let finish = |page| facts.page(&self.calibrated, page, &today.measured.outputs);
-        Some(report(&request, &finish).expect("a payload is plain data"))
+        let found = Found { design, note: "The design that explains what was measured." };
+        let finish = |page, today: &Solution| facts.page(&self.calibrated, page, &today.measured.outputs);
+        page(self.calibrated.file, &analysis, Some(&found), finish)
     }
 }

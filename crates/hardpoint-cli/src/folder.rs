@@ -101,6 +101,14 @@ impl Folder {
         Ok(())
     }
 
+    /// Puts all files in their places, where there are none yet.
+    pub fn commit_new(mut self) -> Result<(), NotWritten> {
+        for (file, path) in std::mem::take(&mut self.pending) {
+            file.persist_noclobber(&path).map_err(|e| NotWritten { path, error: e.error })?;
+        }
+        Ok(())
+    }
+
     /// The place of a file.
     pub fn path_of(&self, name: &str) -> PathBuf {
         self.path.join(name)

@@ -8,10 +8,14 @@ mod folder;
 mod journal;
 mod long_table;
 mod maps;
+mod meter;
 mod optimize;
 mod outcome;
+mod pages;
 mod run;
 mod session;
+mod site;
+mod studio;
 mod sweep;
 mod tables;
 mod text;
@@ -50,6 +54,8 @@ fn main() -> ExitCode {
         Command::Tolerance(options) => tolerance::run(&options),
         Command::Calibrate(options) => calibrate::run(&options),
         Command::Sweep(options) => sweep::run(&options),
+        Command::Studio(options) => studio::run(&options),
+        Command::Site(options) => site::run(&options),
         Command::Schema => {
             text::print(&hardpoint_file::schema());
             Outcome::Done

@@ -10,14 +10,14 @@ use hardpoint_report::maps::{MapFact, write_csv, write_sensitivity_csv};
 use hardpoint_report::summary::Summary;
 
 use crate::folder::{Folder, NotWritten};
-use crate::session::{Meter, Session, json_text};
+use crate::session::{Session, json_text};
 
 /// Solves all maps of a file, as far as the user has patience.
 pub fn solved(session: &Session, file: &ModelFile, formulation: Formulation) -> Vec<MapFact> {
     if file.model.grids.is_empty() {
         return Vec::new();
     }
-    let _working = Meter::working("maps");
+    let _working = session.working("maps");
     let more = || !session.interrupted();
     let map = |grid| GridMap::solve(&file.model, grid, formulation, &[], &more).ok();
     let maps = file.model.grids.iter().filter_map(map);

@@ -4,19 +4,16 @@ use std::io::Write;
 use std::num::NonZero;
 use std::ops::ControlFlow;
 
-use hardpoint::model::{Model, Optimization};
+use hardpoint::Solution;
+use hardpoint::model::Optimization;
 use hardpoint::study::{Motions, Optimized, Progress, Searching, optimize};
-use hardpoint::{Analysis, Run};
 use hardpoint_file::ModelFile;
-use hardpoint_report::course::Course;
-use hardpoint_report::diagnose;
-use hardpoint_report::optimize::{OptimizeFacts, case_name, iteration_line, rounded, start_line};
-use hardpoint_report::payload::{Changed, Request, report};
-use hardpoint_report::summary::Summary;
+use hardpoint_report::optimize::{OptimizeFacts, iteration_line, rounded, start_line};
 
 use crate::args::Optimize;
-use crate::folder::{Folder, NotWritten, file_name};
+use crate::folder::{Folder, NotWritten};
 use crate::outcome::Outcome;
+use crate::pages::{Found, Study, page, threads};
 use crate::session::{Session, json_text};
 use crate::text;
 
@@ -32,37 +29,34 @@ fn optimize_in(session: &Session, options: &Optimize) -> Result<Outcome, Outcome
         let case = session.case(&file, name)?;
         file.model = file.model.with_case_only(case);
     }
-    let asked = asked(session, &file, options)?;
+    let [starts, iterations] = [options.starts, options.iterations].map(|n| n.map(NonZero::get));
+    let asked = asked(session, &file, options.motions.case.as_deref(), [starts, iterations])?;
     session.may_save(&options.common.model, options.save.as_deref())?;
     let models = file.model.motions();
     let motions = Motions::of(&models, options.common.formulation());
     let motions = motions.map_err(|(_, fault)| session.cannot_be_driven(&file, &fault))?;
-    let path = options.output.as_ref();
-    let folder = path.map(|path| Folder::open(path)).transpose().map_err(|e| session.not_written(&e))?;
+    let folder = session.folder(options.output.as_deref())?;
 
     session.patient(true);
-    let found = search(session, &file, &motions, &asked, options);
-    let mut facts = OptimizeFacts::of(&file, &asked, &found);
-    facts.seconds = session.seconds();
-    let best = found.best.and_then(|k| found.searches[k].found.as_ref());
+    let mut search = Search::run(session, &file, &motions, &asked, options.threads);
 
     let mut saved = None;
-    if let (Some(to), Some(best)) = (&options.save, best) {
-        session.save(&file, &rounded(&file, &asked, &best.design), to)?;
-        facts.files.push(to.display().to_string());
+    if let (Some(to), Some(design)) = (&options.save, search.rounded()) {
+        session.save(&file, &design, to)?;
+        search.facts.files.push(to.display().to_string());
         saved = Some(to);
     }
     let mut written = None;
-    if let (Some(mut folder), Some(best)) = (folder, best) {
-        let study = Study { file: &file, motions: &motions, design: &best.design };
-        let result = study.write(&mut folder, &mut facts);
+    if let Some(mut folder) = folder.filter(|_| search.best().is_some()) {
+        let result = search.write(&mut folder);
         written = Some(folder.path_of("summary.json"));
         result.and_then(|()| folder.commit(&[])).map_err(|e| session.not_written(&e))?;
     }
+    let facts = &search.facts;
     if session.is_json() {
-        session.print_json(&facts);
+        session.print_json(facts);
     } else {
-        text::print(&facts_text(&facts));
+        text::print(&facts_text(facts));
         let written = written.map_or(String::new(), |path| format!("\nwritten: {}\n", path.display()));
         text::print(&written);
         text::print(&saved.map_or(String::new(), |path| format!("saved: {}\n", path.display())));
@@ -75,8 +69,13 @@ fn optimize_in(session: &Session, options: &Optimize) -> Result<Outcome, Outcome
     })
 }
 
-/// What is asked for, by the file and by the command line.
-fn asked(session: &Session, file: &ModelFile, options: &Optimize) -> Result<Optimization, Outcome> {
+/// What is asked for, by the file and besides: one case of it, so many starts and iterations.
+pub fn asked(
+    session: &Session,
+    file: &ModelFile,
+    case: Option<&str>,
+    [starts, iterations]: [Option<usize>; 2],
+) -> Result<Optimization, Outcome> {
     let Some(asked) = &file.model.optimization else {
         let why = format!(
             "`{}` does not say what to optimise; add `[optimize.goals]` with the metrics that are to be small, and `bounds` to the \
@@ -85,98 +84,97 @@ fn asked(session: &Session, file: &ModelFile, options: &Optimize) -> Result<Opti
         );
         return Err(session.misunderstood(&why));
     };
-    if let Some(case) = options.motions.case.as_ref().filter(|_| asked.goals.is_empty()) {
+    if let Some(case) = case.filter(|_| asked.goals.is_empty()) {
         let why = format!("`--case {case}`: no goal of `[optimize]` is of this case; leave `--case` out");
         return Err(session.misunderstood(&why));
     }
     let mut asked = asked.clone();
-    asked.starts = options.starts.map_or(asked.starts, NonZero::get);
-    asked.iterations = options.iterations.map_or(asked.iterations, NonZero::get);
+    asked.starts = starts.unwrap_or(asked.starts);
+    asked.iterations = iterations.unwrap_or(asked.iterations);
     Ok(asked)
 }
 
-/// Searches, telling of every iteration; of several searches, of the end of each.
-fn search(
-    session: &Session,
-    file: &ModelFile,
-    motions: &Motions<'_>,
-    asked: &Optimization,
-    options: &Optimize,
-) -> Optimized {
-    let (model, units) = (&file.model, file.units);
-    let many = asked.starts > 1;
-    if !session.is_json() {
-        text::print(&format!("{}\n", text::bold(&model.name)));
-    }
-    let mut progress = |k: usize, told: Progress<'_>| {
-        let line = match told {
-            Progress::Iteration(iteration) if !many => Some(iteration_line(model, units, iteration)),
-            Progress::End(search) if many => Some(start_line(k, search)),
-            _ => None,
-        };
-        if let Some(line) = line.filter(|_| !session.is_json()) {
-            text::print(&format!("{line}\n"));
-        }
-        session.go_on()
-    };
-    let threads = options.threads.or_else(|| std::thread::available_parallelism().ok());
-    let searching = Searching {
-        progress: &mut progress,
-        more: &|| session.go_on() == ControlFlow::Continue(()),
-        threads: threads.unwrap_or(NonZero::<usize>::MIN),
-    };
-    optimize(model, motions, asked, searching)
-}
-
-/// What is written.
-struct Study<'a> {
+/// A search that has ended.
+pub struct Search<'a> {
     file: &'a ModelFile,
     motions: &'a Motions<'a>,
-    design: &'a [f64],
+    asked: &'a Optimization,
+    found: Optimized,
+    /// What it comes to.
+    pub facts: OptimizeFacts,
 }
 
-impl Study<'_> {
-    /// A page for each motion, and the summary last.
-    fn write(&self, folder: &mut Folder, facts: &mut OptimizeFacts) -> Result<(), NotWritten> {
-        for (k, analysis) in self.motions.analyses().iter().enumerate() {
-            let name = match case_name(&self.file.model, k) {
-                Some(case) => format!("report-{}.html", file_name(&case)),
-                None => "report.html".into(),
+impl<'a> Search<'a> {
+    /// Searches, telling of every iteration; of several searches, of the end of each.
+    pub fn run(
+        session: &Session,
+        file: &'a ModelFile,
+        motions: &'a Motions<'a>,
+        asked: &'a Optimization,
+        most_threads: Option<NonZero<usize>>,
+    ) -> Self {
+        let (model, units) = (&file.model, file.units);
+        let many = asked.starts > 1;
+        session.line(&text::bold(&model.name));
+        let mut progress = |k: usize, told: Progress<'_>| {
+            let line = match told {
+                Progress::Iteration(iteration) if !many => Some(iteration_line(model, units, iteration)),
+                Progress::End(search) if many => Some(start_line(k, search)),
+                _ => None,
             };
-            let Some(html) = self.page(analysis, facts) else { continue };
-            folder.write(&name, |out| out.write_all(html.as_bytes()))?;
-            facts.files.push(folder.path_of(&name).display().to_string());
-        }
-        facts.files.push(folder.path_of("summary.json").display().to_string());
-        let json = json_text(facts);
-        folder.write("summary.json", |out| out.write_all(json.as_bytes()))
+            line.iter().for_each(|line| session.line(line));
+            session.go_on()
+        };
+        let searching = Searching {
+            progress: &mut progress,
+            more: &|| session.go_on() == ControlFlow::Continue(()),
+            threads: threads(most_threads),
+        };
+        let found = optimize(model, motions, asked, searching);
+        let mut facts = OptimizeFacts::of(file, asked, &found);
+        facts.seconds = session.seconds();
+        Self { file, motions, asked, found, facts }
     }
 
-    /// The page of one motion: the design found beside the one as drawn; `None` where that does not move at all.
-    fn page(&self, analysis: &Analysis<'_>, facts: &OptimizeFacts) -> Option<String> {
-        let mut file = self.file.clone();
-        file.model = Model::clone(analysis.model());
-        let today = analysis.run();
-        if today.motion.is_empty() {
-            return None;
-        }
-        let exact = analysis.solve(Run::new().at(self.design).without_sensitivities());
-        let course = Course::of(&file.model, &today);
-        let mut summary = Summary::new(&file, analysis.topology(), &course);
-        summary.diagnostics = diagnose::all(&file, &summary, &course, None);
-        let changed = Changed {
-            name: "found".into(),
-            note: "The design that the search found.".into(),
-            change: self.design,
-            today: &today,
-            exact: &exact,
-            foreseen: None,
-        };
-        let request = Request { changed: Some(changed), ..Request::of(&file, analysis, &course, &summary) };
-        Some(
-            report(&request, &|page| facts.page(page, &file.model, &today.measured.outputs))
-                .expect("a payload is plain data"),
-        )
+    /// The best design, if one moves at all.
+    fn best(&self) -> Option<&[f64]> {
+        self.found.best.and_then(|k| Some(&*self.found.searches[k].found.as_ref()?.design))
+    }
+
+    /// The same with the searched variables at numbers of few digits in the file's units.
+    pub fn rounded(&self) -> Option<Vec<f64>> {
+        Some(rounded(self.file, self.asked, self.best()?))
+    }
+
+    /// A page for each motion, and the summary last.
+    fn write(&mut self, folder: &mut Folder) -> Result<(), NotWritten> {
+        let pages = self.write_pages(folder)?;
+        self.facts.files.extend(pages);
+        self.facts.files.push(folder.path_of("summary.json").display().to_string());
+        let json = json_text(&self.facts);
+        folder.write("summary.json", |out| out.write_all(json.as_bytes()))
+    }
+}
+
+impl Study for Search<'_> {
+    fn file(&self) -> &ModelFile {
+        self.file
+    }
+
+    fn motions(&self) -> &Motions<'_> {
+        self.motions
+    }
+
+    fn number(&self, motion: usize) -> usize {
+        motion
+    }
+
+    fn page(&self, motion: usize) -> Option<String> {
+        let found = Found { design: self.best()?, note: "The design that the search found." };
+        let analysis = &self.motions.analyses()[motion];
+        let finish =
+            |page, today: &Solution| self.facts.page(page, analysis.model(), &today.measured.outputs);
+        page(self.file, analysis, Some(&found), finish)
     }
 }
 

@@ -27,7 +27,8 @@ use crate::args::Run;
 use crate::folder::{Folder, NotWritten, of_case};
 use crate::maps;
 use crate::outcome::Outcome;
-use crate::session::{Meter, Session, json_text};
+use crate::pages;
+use crate::session::{Session, json_text};
 use crate::tables::Plan;
 use crate::text;
 
@@ -152,19 +153,39 @@ struct CaseDone {
     folder: String,
     exit_code: u8,
 }
+
 /// The page of the file's first motion with the maps of a grid; `None` where that does not move.
 fn page_of_maps(file: &ModelFile, formulation: Formulation, maps: &[MapFact]) -> Option<String> {
-    let mut file = file.clone();
-    file.model = file.model.motions().into_iter().next()?;
-    let analysis = Analysis::with(&file.model, formulation).ok()?;
-    let solution = analysis.run();
-    if solution.motion.is_empty() {
-        return None;
+    let model = file.model.motions().into_iter().next()?;
+    let analysis = Analysis::with(&model, formulation).ok()?;
+    pages::page(file, &analysis, None, |page, _| MapFact::page(maps, page))
+}
+
+/// The page that is written of a motion, without writing it.
+///
+/// # Errors
+/// Where there is nothing to be shown: it cannot be driven, or does not assemble.
+pub fn page(
+    session: &Session,
+    file: &ModelFile,
+    maps: &[MapFact],
+    formulation: Formulation,
+) -> Result<String, Outcome> {
+    let analysis = session.plan(file, formulation)?;
+    let (read, started) = (session.seconds(), Instant::now());
+    let course = session.solve_in_windows(&analysis, true, |_| true)?;
+    let mut summary = Summary::new(file, analysis.topology(), &course);
+    (summary.timings.read, summary.timings.solve) = (read, started.elapsed().as_secs_f64());
+    summary.diagnostics = diagnose::all(file, &summary, &course, None);
+    if course.kept.motion.is_empty() {
+        session.fail(file, &summary.diagnostics);
+        return Err(Outcome::Stopped);
     }
-    let course = Course::of(&file.model, &solution);
-    let summary = Summary::new(&file, analysis.topology(), &course);
-    let request = Request::of(&file, &analysis, &course, &summary);
-    Some(report(&request, &|page| MapFact::page(maps, page)).expect("a payload is plain data"))
+    let mut results = Results { file, analysis: &analysis, course: &course, differences: Vec::new(), maps };
+    results.study(session, formulation, true, &mut summary);
+    maps::note(maps, &mut summary);
+    summary.timings.total = session.seconds();
+    Ok(results.page(&summary))
 }
 
 fn run_in(
@@ -198,24 +219,8 @@ fn run_in(
     summary.left_out.extend(plan.left_out());
     summary.left_out.extend(written.left_out);
 
-    let mut differences = Vec::new();
-    if !session.interrupted() && !solution.motion.is_empty() {
-        let started = Instant::now();
-        let sample = Sample::of(file, options.common.formulation(), &course);
-        let studied = sample.analysis(&analysis, &course);
-        if let Some(studied) = studied.as_ref().filter(|_| !options.no_compare && course.has_bodies()) {
-            differences = compare(session, studied, solution);
-        }
-        summary.timings.compare = started.elapsed().as_secs_f64();
-        if let Some(studied) = &studied {
-            summary.validity = trusted(session, file, studied, solution);
-        } else {
-            summary.left_out.push(NOT_THE_SAME.into());
-        }
-        if !options.no_compare && !course.has_bodies() {
-            summary.left_out.push(TOO_MANY.into());
-        }
-    }
+    let mut results = Results { file, analysis: &analysis, course: &course, differences: Vec::new(), maps };
+    results.study(session, options.common.formulation(), !options.no_compare, &mut summary);
 
     let report = folder.path_of("report.html");
     let mut tables_of_maps = Vec::new();
@@ -238,7 +243,6 @@ fn run_in(
             summary.files.extend(names.iter().map(|name| folder.path_of(name).display().to_string()));
             tables_of_maps = MapFact::table(maps);
         }
-        let results = Results { file, analysis: &analysis, course: &course, differences: &differences, maps };
         results.write(&mut folder, &mut summary, session).map_err(|e| session.not_written(&e))?;
         if session.interrupted() && !stopped_before {
             session.ended_while_writing(path);
@@ -309,7 +313,7 @@ pub fn trusted(
     if nothing || session.interrupted() {
         return Vec::new();
     }
-    let _working = Meter::working("second derivatives");
+    let _working = session.working("second derivatives");
     let found = validity(analysis, solution, |_| !session.interrupted());
     ValidityFact::all(&file.model, file.units, solution, &found)
 }
@@ -325,7 +329,7 @@ fn compare(session: &Session, analysis: &Analysis<'_>, solution: &Solution) -> V
         .filter(|b| solution.sensitivities.at(0, *b).is_some())
         .map(VariableId)
         .collect();
-    let mut meter = Meter::new("comparing with re-solved designs", "variables");
+    let mut meter = session.meter("comparing with re-solved designs", "variables");
     // Four at a time fill the lanes of the core.
     for (k, group) in variables.chunks(4).enumerate() {
         if session.interrupted() {
@@ -348,7 +352,7 @@ fn write_jerk(
     analysis: &Analysis<'_>,
     folder: &mut Folder,
 ) -> Result<(), NotWritten> {
-    let _working = Meter::working("third derivatives");
+    let _working = session.working("third derivatives");
     let columns = Columns { model: &file.model, units: file.units, bodies: true };
     folder.write("jerk.csv", |out| {
         // Nothing can end this part of the work but the end of the program; nothing is in its place yet.
@@ -369,18 +373,44 @@ struct Results<'a> {
     file: &'a ModelFile,
     analysis: &'a Analysis<'a>,
     course: &'a Course,
-    differences: &'a [Option<Difference>],
+    differences: Vec<Option<Difference>>,
     maps: &'a [MapFact],
 }
 
 impl Results<'_> {
-    fn write(&self, folder: &mut Folder, summary: &mut Summary, session: &Session) -> Result<(), NotWritten> {
+    /// Compares the sensitivities with re-solved designs and says how far they can be trusted, as far as the user has patience.
+    fn study(&mut self, session: &Session, formulation: Formulation, comparing: bool, summary: &mut Summary) {
+        let (course, solution) = (self.course, &self.course.kept);
+        if session.interrupted() || solution.motion.is_empty() {
+            return;
+        }
         let started = Instant::now();
-        let _working = Meter::working("writing");
+        let sample = Sample::of(self.file, formulation, course);
+        let studied = sample.analysis(self.analysis, course);
+        if let Some(studied) = studied.as_ref().filter(|_| comparing && course.has_bodies()) {
+            self.differences = compare(session, studied, solution);
+        }
+        summary.timings.compare = started.elapsed().as_secs_f64();
+        if let Some(studied) = &studied {
+            summary.validity = trusted(session, self.file, studied, solution);
+        } else {
+            summary.left_out.push(NOT_THE_SAME.into());
+        }
+        if comparing && !course.has_bodies() {
+            summary.left_out.push(TOO_MANY.into());
+        }
+    }
+
+    fn page(&self, summary: &Summary) -> String {
         let run = Request::of(self.file, self.analysis, self.course, summary);
         let finish = |page| MapFact::page(self.maps, page);
-        let html = report(&Request { differences: self.differences, ..run }, &finish)
-            .expect("a payload is plain data");
+        report(&Request { differences: &self.differences, ..run }, &finish).expect("a payload is plain data")
+    }
+
+    fn write(&self, folder: &mut Folder, summary: &mut Summary, session: &Session) -> Result<(), NotWritten> {
+        let started = Instant::now();
+        let _working = session.working("writing");
+        let html = self.page(summary);
         folder.write("report.html", |out| out.write_all(html.as_bytes()))?;
         let names = ["report.html", "summary.json"];
         summary.files.extend(names.map(|name| folder.path_of(name).display().to_string()));

@@ -18,17 +18,27 @@ use hardpoint_file::{Diagnostic, Diagnostics, ModelFile, ReadError};
 use hardpoint_report::course::{Course, Gathering};
 use hardpoint_report::figures::{bytes, some_of};
 use hardpoint_report::{GENERATOR, diagnose};
-use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use serde_json::json;
 
 use crate::args::Motions;
 use crate::folder::{self, Folder, NotWritten};
+use crate::meter::{Listener, Meter};
 use crate::outcome::Outcome;
 use crate::text;
 
+/// Whom a session tells what it does.
+enum Audience {
+    /// Somebody who reads.
+    Terminal,
+    /// A program, which gets one JSON document.
+    Program,
+    /// A page.
+    Page(Arc<dyn Listener>),
+}
+
 /// A command under way.
 pub struct Session {
-    json: bool,
+    audience: Audience,
     started: Instant,
     interrupted: Arc<AtomicBool>,
     patient: Arc<AtomicBool>,
@@ -71,13 +81,53 @@ impl Session {
                 std::process::exit(Outcome::Interrupted as i32);
             }
         });
+        let audience = if json { Audience::Program } else { Audience::Terminal };
+        Self::of(audience, interrupted, patient)
+    }
+
+    /// What is done for a page, which may end it by this flag.
+    pub fn for_page(listener: Arc<dyn Listener>, interrupted: Arc<AtomicBool>) -> Self {
+        Self::of(Audience::Page(listener), interrupted, Arc::new(AtomicBool::new(true)))
+    }
+
+    fn of(audience: Audience, interrupted: Arc<AtomicBool>, patient: Arc<AtomicBool>) -> Self {
         Self {
-            json,
+            audience,
             started: Instant::now(),
             interrupted,
             patient,
             cases: Mutex::new(None),
             case: Mutex::new(None),
+        }
+    }
+
+    fn listener(&self) -> Option<&Arc<dyn Listener>> {
+        match &self.audience {
+            Audience::Page(listener) => Some(listener),
+            Audience::Terminal | Audience::Program => None,
+        }
+    }
+
+    fn is_for_reading(&self) -> bool {
+        matches!(self.audience, Audience::Terminal)
+    }
+
+    /// A meter of this work.
+    pub fn meter(&self, what: &'static str, unit: &'static str) -> Meter {
+        Meter::new(what, unit, self.listener().cloned())
+    }
+
+    /// A sign that work of unknown length goes on.
+    pub fn working(&self, what: &'static str) -> Meter {
+        Meter::working(what, self.listener().cloned())
+    }
+
+    /// A line on what the work came to on its way.
+    pub fn line(&self, line: &str) {
+        match &self.audience {
+            Audience::Terminal => text::print(&format!("{line}\n")),
+            Audience::Page(listener) => listener.line(line),
+            Audience::Program => {}
         }
     }
 
@@ -107,10 +157,12 @@ impl Session {
 
     /// Tells what is wrong with a file that was read.
     pub fn not_read(&self, diagnostics: &Diagnostics) {
-        if self.json {
-            self.print_error(diagnostics.list());
-        } else {
-            text::complain(&format!("{}\n", diagnostics.render(text::stderr_in_color())));
+        match &self.audience {
+            Audience::Program => self.print_error(diagnostics.list()),
+            Audience::Terminal => {
+                text::complain(&format!("{}\n", diagnostics.render(text::stderr_in_color())));
+            }
+            Audience::Page(listener) => listener.refused(json!(diagnostics), &diagnostics.render(false)),
         }
     }
 
@@ -162,7 +214,7 @@ impl Session {
         }
         *self.under_way() = None;
         let documents = self.documents().take();
-        if self.json {
+        if self.is_json() {
             self.print_json(&json!({ "generator": GENERATOR, "cases": documents }));
         }
         Ok(outcome)
@@ -214,10 +266,7 @@ impl Session {
     /// # Errors
     /// Where the text cannot say the changed design, or the file cannot be written.
     pub fn save(&self, file: &ModelFile, design: &[f64], to: &Path) -> Result<(), Outcome> {
-        let text = file.edit(design).map_err(|diagnostics| {
-            self.fail(file, diagnostics.list());
-            Outcome::Misunderstood
-        })?;
+        let text = self.edited(file, design)?;
         let parent = to.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
         let name = to.file_name().map(|n| n.to_string_lossy().into_owned());
         let written = Folder::open(parent).and_then(|mut folder| {
@@ -225,6 +274,25 @@ impl Session {
             folder.commit(&[])
         });
         written.map_err(|e| self.not_written(&e))
+    }
+
+    /// The model's text with a changed design.
+    ///
+    /// # Errors
+    /// Where the text cannot say it.
+    pub fn edited(&self, file: &ModelFile, design: &[f64]) -> Result<String, Outcome> {
+        file.edit(design).map_err(|diagnostics| {
+            self.fail(file, diagnostics.list());
+            Outcome::Misunderstood
+        })
+    }
+
+    /// The folder for results, where one is asked for.
+    ///
+    /// # Errors
+    /// Where nothing can be written there.
+    pub fn folder(&self, path: Option<&Path>) -> Result<Option<Folder>, Outcome> {
+        path.map(Folder::open).transpose().map_err(|e| self.not_written(&e))
     }
 
     /// That a file to save to is not the model that it is made from.
@@ -270,12 +338,12 @@ impl Session {
 
     /// Whether the result is one JSON document.
     pub fn is_json(&self) -> bool {
-        self.json
+        matches!(self.audience, Audience::Program)
     }
 
     /// Solves motion and sensitivities, showing progress; a motion that is studied as a whole ([`Session::fits`]).
     pub fn solve(&self, analysis: &Analysis<'_>) -> Solution {
-        let mut meter = Meter::new("solving", "steps");
+        let mut meter = self.meter("solving", "steps");
         analysis.solve(Run::new().progress(|progress| {
             meter.show(progress.done, progress.total);
             self.go_on()
@@ -310,7 +378,7 @@ impl Session {
             );
             return Err(Outcome::Misunderstood);
         }
-        let mut meter = Meter::new("solving", "steps");
+        let mut meter = self.meter("solving", "steps");
         let mut gathering = Gathering::new(model);
         let goes_on = Cell::new(true);
         let run = Run::new().progress(|progress| {
@@ -358,7 +426,7 @@ impl Session {
 
     /// Shows diagnostics of the model file as text; as JSON they are part of the result.
     pub fn tell(&self, file: &ModelFile, diagnostics: &[Diagnostic]) {
-        if !self.json {
+        if self.is_for_reading() {
             let color = text::stderr_in_color();
             let case = self.under_way().clone();
             for d in diagnostics {
@@ -373,10 +441,13 @@ impl Session {
 
     /// Tells why there is no result.
     pub fn fail(&self, file: &ModelFile, diagnostics: &[Diagnostic]) {
-        if self.json {
-            self.print_error(diagnostics);
-        } else {
-            self.tell(file, diagnostics);
+        match &self.audience {
+            Audience::Program => self.print_error(diagnostics),
+            Audience::Terminal => self.tell(file, diagnostics),
+            Audience::Page(listener) => {
+                let text: Vec<String> = diagnostics.iter().map(|d| file.render(d, false)).collect();
+                listener.refused(json!(diagnostics), &text.join("\n\n"));
+            }
         }
     }
 
@@ -386,9 +457,15 @@ impl Session {
         Outcome::Misunderstood
     }
 
+    /// Tells that a server cannot do its work.
+    pub fn not_served(&self, what: &str, why: &str, help: &str) -> Outcome {
+        self.refuse("HP0604", what, None, why, help);
+        Outcome::Misunderstood
+    }
+
     /// Says what is worth knowing before the work; not where stdout is a document for machines.
     pub fn remark(&self, what: &str) {
-        if !self.json {
+        if self.is_for_reading() {
             text::complain(&format!("note: {what}\n\n"));
         }
     }
@@ -422,14 +499,23 @@ impl Session {
 
     /// Tells what is wrong but not in the model's file.
     fn refuse(&self, code: &str, message: &str, file: Option<&Path>, note: &str, help: &str) {
-        if self.json {
-            let d = json!({
+        let diagnostics = || {
+            json!([{
                 "severity": "error", "code": code, "message": message, "file": file,
                 "line": null, "column": null, "label": null, "notes": [note], "help": help,
-            });
-            self.print_json(&json!({ "generator": GENERATOR, "status": "error", "diagnostics": [d] }));
-        } else {
-            text::complain(&text::error(code, message, note, help));
+            }])
+        };
+        let text = || text::error(code, message, note, help);
+        match &self.audience {
+            Audience::Program => {
+                self.print_json(
+                    &json!({ "generator": GENERATOR, "status": "error", "diagnostics": diagnostics() }),
+                );
+            }
+            Audience::Terminal => text::complain(&text()),
+            Audience::Page(listener) => {
+                listener.refused(diagnostics(), &anstream::adapter::strip_str(&text()).to_string());
+            }
         }
     }
 
@@ -457,68 +543,4 @@ pub fn json_text(document: &impl serde::Serialize) -> String {
     let mut text = serde_json::to_string_pretty(document).expect("results are plain data");
     text.push('\n');
     text
-}
-
-/// A progress bar that appears only where something takes its time, and only on a terminal.
-pub struct Meter {
-    what: &'static str,
-    unit: &'static str,
-    started: Instant,
-    bar: Option<ProgressBar>,
-    /// So much was done before, of work whose rate is shown.
-    rate_after: Option<usize>,
-}
-
-impl Meter {
-    /// A meter of this work.
-    pub fn new(what: &'static str, unit: &'static str) -> Self {
-        Self { what, unit, started: Instant::now(), bar: None, rate_after: None }
-    }
-
-    /// A sign that work of unknown length goes on.
-    pub fn working(what: &'static str) -> Self {
-        let bar = ProgressBar::with_draw_target(None, ProgressDrawTarget::stderr()).with_message(what);
-        if let Ok(style) = ProgressStyle::with_template("{spinner} {wide_msg}") {
-            bar.set_style(style);
-        }
-        bar.enable_steady_tick(Duration::from_millis(200));
-        Self { what, unit: "", started: Instant::now(), bar: Some(bar), rate_after: None }
-    }
-
-    /// With its rate, of work of which so much was done before.
-    pub fn with_rate(mut self, done: usize) -> Self {
-        self.rate_after = Some(done);
-        self
-    }
-
-    /// Shows how far the work is.
-    pub fn show(&mut self, done: usize, total: usize) {
-        const PATIENCE: Duration = Duration::from_millis(300);
-        if self.bar.is_none() && self.started.elapsed() > PATIENCE {
-            let bar = ProgressBar::with_draw_target(Some(total as u64), ProgressDrawTarget::stderr());
-            // What is left of the line is the bar.
-            let rate = self.rate_after.map_or("", |_| "{per_sec}, ");
-            let template =
-                format!("{} {{wide_bar}} {{pos}} of {{len}} {}, {rate}{{eta}} left", self.what, self.unit);
-            if let Ok(style) = ProgressStyle::with_template(&template) {
-                bar.set_style(style);
-            }
-            if let Some(before) = self.rate_after {
-                bar.set_position(before as u64);
-                bar.reset_eta();
-            }
-            self.bar = Some(bar);
-        }
-        if let Some(bar) = &self.bar {
-            bar.set_position(done as u64);
-        }
-    }
-}
-
-impl Drop for Meter {
-    fn drop(&mut self) {
-        if let Some(bar) = &self.bar {
-            bar.finish_and_clear();
-        }
-    }
 }

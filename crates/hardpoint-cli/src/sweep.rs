@@ -2,30 +2,25 @@
 
 use std::fmt::Write as _;
 use std::io::{self, Write};
-use std::num::NonZero;
 use std::ops::ControlFlow;
 use std::path::Path;
 
-use hardpoint::Analysis;
+use hardpoint::Solution;
 use hardpoint::draft::did_you_mean;
 use hardpoint::model::{Model, SweepMethod, SweepRange, Sweeping, VariableId};
 use hardpoint::study::{Motions, NoPlan, Sweep as Designs};
 use hardpoint_file::ModelFile;
-use hardpoint_report::course::Course;
-use hardpoint_report::diagnose;
 use hardpoint_report::figures::some_of;
-use hardpoint_report::optimize::case_name;
 use hardpoint_report::page::SweepPlot;
-use hardpoint_report::payload::{Request, report};
-use hardpoint_report::summary::Summary;
 use hardpoint_report::sweep::{SweepFacts, Swept, Tally};
 
 use crate::args::{Method, Sweep, TableForm};
-use crate::folder::{Folder, NotWritten, file_name};
+use crate::folder::{Folder, NotWritten};
 use crate::journal::{Checksum, Fingerprint, Journal, NoJournal};
 use crate::long_table::{TableFormat, TableWriter};
 use crate::outcome::Outcome;
-use crate::session::{Meter, Session, json_text};
+use crate::pages::{Study, page, threads};
+use crate::session::{Session, json_text};
 use crate::text;
 
 /// What a sweep that has not ended leaves in its folder.
@@ -41,28 +36,9 @@ pub fn run(options: &Sweep) -> Outcome {
 
 fn sweep_in(session: &Session, options: &Sweep) -> Result<Outcome, Outcome> {
     let file = session.read(&options.common.model)?;
-    let numbers = session.numbers_of(&file, &options.motions)?;
-    let asked = asked(session, &file, options)?;
-    let models = file.model.motions();
-    let models: Vec<Model> = numbers.iter().map(|k| models[*k].clone()).collect();
-    let motions = Motions::of(&models, options.common.formulation());
-    let motions = motions.map_err(|(_, fault)| session.cannot_be_driven(&file, &fault))?;
-    let designs = Designs::new(&file.model, &motions, &numbers, &asked);
-    let designs = designs.map_err(|why| session.misunderstood(&no_plan(why, &file)))?;
-    let path = options.output.as_ref();
-    let folder = path.map(|path| Folder::open(path)).transpose().map_err(|e| session.not_written(&e))?;
-    let mut journal =
-        journal(session, folder.as_ref(), fingerprint(&file, &numbers, &asked, options), options)?;
-
-    session.patient(true);
-    solve(session, &designs, &mut journal, options)?;
-    let swept = Swept { file: &file, numbers: &numbers, asked: &asked, motions: &motions, sweep: &designs };
-    let results = Results { swept, journal: &journal, format: options.format.of() };
-    let (mut facts, written) = results.finish(session, folder)?;
+    let finish = |results: &Results<'_>, folder| results.finish(session, folder);
+    let (mut facts, written) = swept(session, &file, options, finish)?;
     facts.seconds = session.seconds();
-    if facts.status != "interrupted" {
-        journal.remove().map_err(|error| session.not_written(&NotWritten { path: JOURNAL.into(), error }))?;
-    }
     if session.is_json() {
         session.print_json(&facts);
     } else {
@@ -74,6 +50,49 @@ fn sweep_in(session: &Session, options: &Sweep) -> Result<Outcome, Outcome> {
         "no_design" => Outcome::Stopped,
         _ => Outcome::Done,
     })
+}
+
+/// Sweeps over designs for a page; nothing is written, and all pages come back, each with its case.
+pub fn for_page(
+    session: &Session,
+    file: &ModelFile,
+    options: &Sweep,
+) -> Result<(SweepFacts, Vec<(Option<String>, String)>), Outcome> {
+    swept(session, file, options, |results, _| {
+        let (facts, plot) = results.facts(session, &results.tally(session)?)?;
+        let pages = Pages { swept: results.swept, facts: &facts, plot: &plot }.pages().collect();
+        Ok((facts, pages))
+    })
+}
+
+/// Solves the designs; `end` makes of them what is to be made.
+fn swept<X>(
+    session: &Session,
+    file: &ModelFile,
+    options: &Sweep,
+    end: impl FnOnce(&Results<'_>, Option<Folder>) -> Result<(SweepFacts, X), Outcome>,
+) -> Result<(SweepFacts, X), Outcome> {
+    let numbers = session.numbers_of(file, &options.motions)?;
+    let asked = asked(session, file, options)?;
+    let models = file.model.motions();
+    let models: Vec<Model> = numbers.iter().map(|k| models[*k].clone()).collect();
+    let motions = Motions::of(&models, options.common.formulation());
+    let motions = motions.map_err(|(_, fault)| session.cannot_be_driven(file, &fault))?;
+    let designs = Designs::new(&file.model, &motions, &numbers, &asked);
+    let designs = designs.map_err(|why| session.misunderstood(&no_plan(why, file)))?;
+    let folder = session.folder(options.output.as_deref())?;
+    let mut journal =
+        journal(session, folder.as_ref(), fingerprint(file, &numbers, &asked, options), options)?;
+
+    session.patient(true);
+    solve(session, &designs, &mut journal, options)?;
+    let swept = Swept { file, numbers: &numbers, asked: &asked, motions: &motions, sweep: &designs };
+    let results = Results { swept, journal: &journal, format: options.format.of() };
+    let (facts, made) = end(&results, folder)?;
+    if facts.status != "interrupted" {
+        journal.remove().map_err(|error| session.not_written(&NotWritten { path: JOURNAL.into(), error }))?;
+    }
+    Ok((facts, made))
 }
 
 /// What is asked for, by the file and by the command line.
@@ -226,7 +245,7 @@ fn solve(
 ) -> Result<(), Outcome> {
     let count = designs.plan().count();
     let from = journal.designs();
-    let mut meter = Meter::new("solving", "designs").with_rate(from);
+    let mut meter = session.meter("solving", "designs").with_rate(from);
     let mut failure = None;
     let mut done = |block: hardpoint::study::SweptBlock| {
         if let Err(error) = journal.add(&block) {
@@ -236,10 +255,8 @@ fn solve(
         meter.show(block.numbers.end, count);
         session.go_on()
     };
-    let threads = options.threads.or_else(|| std::thread::available_parallelism().ok());
-    let threads = threads.unwrap_or(NonZero::<usize>::MIN);
     if from < count {
-        designs.run(from, threads, &|| session.go_on().is_continue(), &mut done);
+        designs.run(from, threads(options.threads), &|| session.go_on().is_continue(), &mut done);
     }
     match failure {
         Some(error) => Err(session.not_written(&NotWritten { path: JOURNAL.into(), error })),
@@ -261,25 +278,17 @@ impl Results<'_> {
         session: &Session,
         folder: Option<Folder>,
     ) -> Result<(SweepFacts, Option<String>), Outcome> {
-        let not_read = |error: io::Error| session.not_written(&NotWritten { path: JOURNAL.into(), error });
-        let mut tally = Tally::default();
         let mut files = Vec::new();
-        let folder = match folder {
-            None => {
-                let see = |block| {
-                    self.swept.tally(&mut tally, &block);
-                    Ok(())
-                };
-                self.journal.each(see).map_err(not_read)?;
-                None
-            }
+        let (folder, tally) = match folder {
+            None => (None, self.tally(session)?),
             Some(mut folder) => {
-                self.write_tables(&mut folder, &mut tally, &mut files)
-                    .map_err(|e| session.not_written(&e))?;
-                Some(folder)
+                let mut tally = Tally::default();
+                let written = self.write_tables(&mut folder, &mut tally, &mut files);
+                written.map_err(|e| session.not_written(&e))?;
+                (Some(folder), tally)
             }
         };
-        let (mut facts, plot) = self.swept.facts(&tally, |k| self.journal.column(k)).map_err(not_read)?;
+        let (mut facts, plot) = self.facts(session, &tally)?;
         if facts.status == "interrupted" {
             facts.message += match &folder {
                 Some(_) => "; the same command goes on where it ended",
@@ -288,8 +297,8 @@ impl Results<'_> {
         }
         facts.files = files;
         let Some(mut folder) = folder else { return Ok((facts, None)) };
-        let written = self.write_pages(&mut folder, &mut facts, &plot);
-        written.map_err(|e| session.not_written(&e))?;
+        let pages = Pages { swept: self.swept, facts: &facts, plot: &plot }.write_pages(&mut folder);
+        facts.files.extend(pages.map_err(|e| session.not_written(&e))?);
         let summary = folder.path_of("summary.json").display().to_string();
         facts.files.push(summary.clone());
         facts.seconds = session.seconds();
@@ -297,6 +306,21 @@ impl Results<'_> {
         let written = folder.write("summary.json", |out| out.write_all(json.as_bytes()));
         written.and_then(|()| folder.commit(&FILES)).map_err(|e| session.not_written(&e))?;
         Ok((facts, Some(summary)))
+    }
+
+    /// All blocks counted.
+    fn tally(&self, session: &Session) -> Result<Tally, Outcome> {
+        let mut tally = Tally::default();
+        let see = |block| {
+            self.swept.tally(&mut tally, &block);
+            Ok(())
+        };
+        self.journal.each(see).map_err(|e| not_read(session, e))?;
+        Ok(tally)
+    }
+
+    fn facts(&self, session: &Session, tally: &Tally) -> Result<(SweepFacts, SweepPlot), Outcome> {
+        self.swept.facts(tally, |k| self.journal.column(k)).map_err(|e| not_read(session, e))
     }
 
     fn write_tables(
@@ -327,46 +351,38 @@ impl Results<'_> {
         }
         Ok(())
     }
+}
 
-    fn write_pages(
-        &self,
-        folder: &mut Folder,
-        facts: &mut SweepFacts,
-        plot: &SweepPlot,
-    ) -> Result<(), NotWritten> {
-        let Swept { file, numbers, motions, .. } = self.swept;
-        for (k, analysis) in motions.analyses().iter().enumerate() {
-            let name = match case_name(&file.model, numbers[k]) {
-                Some(case) => format!("report-{}.html", file_name(&case)),
-                None => "report.html".into(),
-            };
-            let Some(html) = self.page(analysis, k, facts, plot) else { continue };
-            folder.write(&name, |out| out.write_all(html.as_bytes()))?;
-            facts.files.push(folder.path_of(&name).display().to_string());
-        }
-        Ok(())
+fn not_read(session: &Session, error: io::Error) -> Outcome {
+    session.not_written(&NotWritten { path: JOURNAL.into(), error })
+}
+
+/// What the pages of a sweep are made of.
+struct Pages<'a> {
+    swept: Swept<'a>,
+    facts: &'a SweepFacts,
+    plot: &'a SweepPlot,
+}
+
+impl Study for Pages<'_> {
+    fn file(&self) -> &ModelFile {
+        self.swept.file
     }
 
-    /// The page of one motion: the design as drawn, with what the sweep found; `None` where that does not move at all.
-    fn page(
-        &self,
-        analysis: &Analysis<'_>,
-        motion: usize,
-        facts: &SweepFacts,
-        plot: &SweepPlot,
-    ) -> Option<String> {
-        let mut file = self.swept.file.clone();
-        file.model = Model::clone(analysis.model());
-        let today = analysis.run();
-        if today.motion.is_empty() {
-            return None;
-        }
-        let course = Course::of(&file.model, &today);
-        let mut summary = Summary::new(&file, analysis.topology(), &course);
-        summary.diagnostics = diagnose::all(&file, &summary, &course, None);
-        let request = Request::of(&file, analysis, &course, &summary);
-        let finish = |page| facts.page(&self.swept, plot, motion, page, &today.measured.outputs);
-        Some(report(&request, &finish).expect("a payload is plain data"))
+    fn motions(&self) -> &Motions<'_> {
+        self.swept.motions
+    }
+
+    fn number(&self, motion: usize) -> usize {
+        self.swept.numbers[motion]
+    }
+
+    /// The design as drawn, with what the sweep found.
+    fn page(&self, motion: usize) -> Option<String> {
+        let finish = |page, today: &Solution| {
+            self.facts.page(&self.swept, self.plot, motion, page, &today.measured.outputs)
+        };
+        page(self.swept.file, &self.swept.motions.analyses()[motion], None, finish)
     }
 }
 

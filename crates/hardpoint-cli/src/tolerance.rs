@@ -3,22 +3,20 @@
 use std::io::Write;
 use std::num::NonZero;
 
-use hardpoint::Analysis;
+use hardpoint::Solution;
 use hardpoint::model::{Allocating, AllocationRule, Limited, Model, Tolerancing};
 use hardpoint::study::{Examination, Motions, Stage, ToleranceFailure, tolerance};
 use hardpoint_file::ModelFile;
-use hardpoint_report::course::Course;
 use hardpoint_report::diagnose;
 use hardpoint_report::figures::some_of;
 use hardpoint_report::optimize::case_name;
-use hardpoint_report::payload::{Request, report};
-use hardpoint_report::summary::Summary;
 use hardpoint_report::tolerance::{Studied, ToleranceFacts};
 
 use crate::args::{Allocate, Tolerance};
-use crate::folder::{Folder, NotWritten, file_name};
+use crate::folder::{Folder, NotWritten};
 use crate::outcome::Outcome;
-use crate::session::{Meter, Session, json_text};
+use crate::pages::{Study, page, threads};
+use crate::session::{Session, json_text};
 use crate::text;
 
 /// Studies the tolerances of a model, writes, and prints what they come to.
@@ -30,30 +28,29 @@ pub fn run(options: &Tolerance) -> Outcome {
 fn tolerance_in(session: &Session, options: &Tolerance) -> Result<Outcome, Outcome> {
     let file = session.read(&options.common.model)?;
     let numbers = session.numbers_of(&file, &options.motions)?;
-    let asked = asked(session, &file, options)?;
+    let asking = Asking { samples: options.samples, seed: options.seed, allocate: options.allocate };
+    let asked = asked(session, &file, &asking)?;
     let models = file.model.motions();
     let models: Vec<Model> = numbers.iter().map(|k| models[*k].clone()).collect();
     let motions = Motions::of(&models, options.common.formulation());
     let motions = motions.map_err(|(_, fault)| session.cannot_be_driven(&file, &fault))?;
-    let path = options.output.as_ref();
-    let folder = path.map(|path| Folder::open(path)).transpose().map_err(|e| session.not_written(&e))?;
+    let folder = session.folder(options.output.as_deref())?;
 
     session.patient(true);
-    let found = examine(session, &file, &motions, &numbers, &asked, options)?;
+    let found = examine(session, &file, &motions, &numbers, &asked, options.threads)?;
     let studied = Studied { file: &file, numbers: &numbers, asked: &asked, found: &found };
-    let mut facts = ToleranceFacts::of(&studied);
-    facts.seconds = session.seconds();
+    let mut results = Results::of(session, studied, &motions);
     let mut written = None;
     if let Some(mut folder) = folder {
-        let results = Results { studied, motions: &motions };
-        results.write(&mut folder, &mut facts).map_err(|e| session.not_written(&e))?;
+        results.write(&mut folder).map_err(|e| session.not_written(&e))?;
         written = Some(folder.path_of("summary.json"));
         folder.commit(&FILES).map_err(|e| session.not_written(&e))?;
     }
+    let facts = &results.facts;
     if session.is_json() {
-        session.print_json(&facts);
+        session.print_json(facts);
     } else {
-        text::print(&format!("{}\n{}", text::bold(&file.model.name), facts_text(&facts)));
+        text::print(&format!("{}\n{}", text::bold(&file.model.name), facts_text(facts)));
         text::print(&written.map_or(String::new(), |path| format!("\nwritten: {}\n", path.display())));
     }
     Ok(if found.interrupted { Outcome::Interrupted } else { Outcome::Done })
@@ -62,8 +59,19 @@ fn tolerance_in(session: &Session, options: &Tolerance) -> Result<Outcome, Outco
 /// The tables that are written, and the summary, which vouches for them.
 const FILES: [&str; 5] = ["metrics.csv", "contributions.csv", "bands.csv", "samples.csv", "summary.json"];
 
-/// What is asked for, by the file and by the command line.
-fn asked(session: &Session, file: &ModelFile, options: &Tolerance) -> Result<Tolerancing, Outcome> {
+/// What is asked for besides what the file says.
+#[derive(Default)]
+pub struct Asking {
+    /// So many designs are drawn.
+    pub samples: Option<u32>,
+    /// From this number.
+    pub seed: Option<u32>,
+    /// The loosest tolerances are sought by this rule.
+    pub allocate: Option<Allocate>,
+}
+
+/// What is asked for, by the file and besides.
+pub fn asked(session: &Session, file: &ModelFile, options: &Asking) -> Result<Tolerancing, Outcome> {
     let asked = file.model.tolerancing.clone().or_else(|| Tolerancing::of_variables(&file.model));
     let Some(mut asked) = asked else {
         let why = format!(
@@ -97,16 +105,16 @@ fn has_metric_limits(asked: &Tolerancing) -> bool {
 }
 
 /// Studies, showing how far it is.
-fn examine(
+pub fn examine(
     session: &Session,
     file: &ModelFile,
     motions: &Motions<'_>,
     numbers: &[usize],
     asked: &Tolerancing,
-    options: &Tolerance,
+    most_threads: Option<NonZero<usize>>,
 ) -> Result<Examination, Outcome> {
-    let mut derivatives = Meter::new("differentiating", "variables");
-    let mut designs = Meter::new("solving", "designs");
+    let mut derivatives = session.meter("differentiating", "variables");
+    let mut designs = session.meter("solving", "designs");
     let mut tell = |stage: Stage| {
         match stage {
             Stage::Derivatives(done, of) => derivatives.show(done, of),
@@ -114,10 +122,8 @@ fn examine(
         }
         session.go_on()
     };
-    let threads = options.threads.or_else(|| std::thread::available_parallelism().ok());
-    let threads = threads.unwrap_or(NonZero::<usize>::MIN);
     let more = || session.go_on().is_continue();
-    let found = tolerance(&file.model, motions, numbers, asked, threads, &mut tell, &more);
+    let found = tolerance(&file.model, motions, numbers, asked, threads(most_threads), &mut tell, &more);
     found.map_err(|failure| match failure {
         ToleranceFailure::Drawn(rejection) if rejection.interrupted() => {
             session.misunderstood("interrupted before the design as drawn was solved");
@@ -143,26 +149,28 @@ fn examine(
     })
 }
 
-/// What is written.
-struct Results<'a> {
+/// A study that has ended.
+pub struct Results<'a> {
     studied: Studied<'a>,
     motions: &'a Motions<'a>,
+    /// What it comes to.
+    pub facts: ToleranceFacts,
 }
 
-impl Results<'_> {
+impl<'a> Results<'a> {
+    /// Of what was found just now.
+    pub fn of(session: &Session, studied: Studied<'a>, motions: &'a Motions<'a>) -> Self {
+        let mut facts = ToleranceFacts::of(&studied);
+        facts.seconds = session.seconds();
+        Self { studied, motions, facts }
+    }
+
     /// Tables, a page for each motion, and the summary last.
-    fn write(&self, folder: &mut Folder, facts: &mut ToleranceFacts) -> Result<(), NotWritten> {
-        let Studied { file, asked, found, numbers } = self.studied;
-        for (k, analysis) in self.motions.analyses().iter().enumerate() {
-            let name = match case_name(&file.model, numbers[k]) {
-                Some(case) => format!("report-{}.html", file_name(&case)),
-                None => "report.html".into(),
-            };
-            let Some(html) = self.page(analysis, k, facts) else { continue };
-            folder.write(&name, |out| out.write_all(html.as_bytes()))?;
-            facts.files.push(folder.path_of(&name).display().to_string());
-        }
+    fn write(&mut self, folder: &mut Folder) -> Result<(), NotWritten> {
+        let pages = self.write_pages(folder)?;
+        self.facts.files.extend(pages);
         let studied = &self.studied;
+        let Studied { file, asked, found, .. } = *studied;
         folder.write("metrics.csv", |out| studied.write_metrics(out).map_err(Into::into))?;
         folder.write("contributions.csv", |out| studied.write_contributions(out).map_err(Into::into))?;
         folder.write("bands.csv", |out| studied.write_bands(out).map_err(Into::into))?;
@@ -173,26 +181,30 @@ impl Results<'_> {
             names.push("samples.csv");
         }
         names.push("summary.json");
-        facts.files.extend(names.iter().map(|name| folder.path_of(name).display().to_string()));
-        let json = json_text(facts);
+        self.facts.files.extend(names.iter().map(|name| folder.path_of(name).display().to_string()));
+        let json = json_text(&self.facts);
         folder.write("summary.json", |out| out.write_all(json.as_bytes()))
     }
+}
 
-    /// The page of one motion: the design as drawn, with the bands beside its curves.
-    fn page(&self, analysis: &Analysis<'_>, motion: usize, facts: &ToleranceFacts) -> Option<String> {
-        let mut file = self.studied.file.clone();
-        file.model = Model::clone(analysis.model());
-        let today = analysis.run();
-        if today.motion.is_empty() {
-            return None;
-        }
-        let course = Course::of(&file.model, &today);
-        let mut summary = Summary::new(&file, analysis.topology(), &course);
-        summary.diagnostics = diagnose::all(&file, &summary, &course, None);
-        let request = Request::of(&file, analysis, &course, &summary);
-        let outputs = &today.measured.outputs;
-        let finish = |page| self.studied.page(facts, motion, page, outputs);
-        Some(report(&request, &finish).expect("a payload is plain data"))
+impl Study for Results<'_> {
+    fn file(&self) -> &ModelFile {
+        self.studied.file
+    }
+
+    fn motions(&self) -> &Motions<'_> {
+        self.motions
+    }
+
+    fn number(&self, motion: usize) -> usize {
+        self.studied.numbers[motion]
+    }
+
+    /// The design as drawn, with the bands beside its curves.
+    fn page(&self, motion: usize) -> Option<String> {
+        let finish =
+            |page, today: &Solution| self.studied.page(&self.facts, motion, page, &today.measured.outputs);
+        page(self.studied.file, &self.motions.analyses()[motion], None, finish)
     }
 }
 

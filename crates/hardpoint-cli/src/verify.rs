@@ -13,7 +13,7 @@ use hardpoint_report::verdict::{Differences, Outcome as Agrees, Verdict};
 use crate::args::Verify;
 use crate::folder::{Folder, of_case};
 use crate::outcome::Outcome;
-use crate::session::{Meter, Session, json_text};
+use crate::session::{Session, json_text};
 use crate::text;
 
 /// Re-solves moved designs and prints how well they agree.
@@ -49,7 +49,7 @@ fn verify_in(
     if let Some(steps) = &options.steps {
         sweep.steps.clone_from(steps);
     }
-    let mut meter = Meter::new("re-solving designs", "variables");
+    let mut meter = session.meter("re-solving designs", "variables");
     let verification = verify_designs(&analysis, &solution, &sweep, |done| {
         meter.show(done, file.model.variables.len());
         session.go_on()

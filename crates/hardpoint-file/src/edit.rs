@@ -8,7 +8,7 @@ use toml_edit::{DocumentMut, Item, Value};
 
 use crate::diagnostic::{Diagnostic, Diagnostics, Severity};
 use crate::units::Units;
-use crate::{Folder, ModelFile, parse_in};
+use crate::{Folder, ModelFile, parsed};
 
 /// A number is written with as few digits as bring it back to this many units of round-off: what the sums, products and roots between
 /// a file's number and a changed design's leave. 5.200000000000001 is written 5.2.
@@ -72,7 +72,7 @@ impl ModelFile {
 
     /// Whether the new text says the changed design.
     fn read_back(&self, text: &str, values: &[f64]) -> Result<(), Diagnostics> {
-        let saved = parse_in(Folder::Given(&self.texts), text, self.file_name())?;
+        let saved = parsed(Folder::Given(&self.texts), text, self.file_name())?;
         let Some(what) = difference(&self.model, values, &saved.model) else { return Ok(()) };
         let d = self
             .diagnostic(Severity::Error, CODE, "the changed design cannot be saved in this file", None)

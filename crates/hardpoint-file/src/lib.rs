@@ -62,7 +62,7 @@ pub use tree::Texts;
 use tree::{Folder, Reader};
 
 /// Files larger than this are not read, bytes.
-const LARGEST_FILE: u64 = 64 << 20;
+pub const LARGEST_FILE: u64 = 64 << 20;
 /// How many syntax errors are shown: after a few, they follow from the ones before.
 const SYNTAX_ERRORS: usize = 5;
 /// So many files of a folder are named where the one asked for is not there.
@@ -240,9 +240,7 @@ pub fn read(path: &Path) -> Result<ModelFile, ReadError> {
         ReadError::Unreadable(Diagnostics::new(source, vec![d]))
     })?;
     match String::from_utf8(bytes) {
-        Ok(text) => {
-            parse_in(path.parent().map_or(Folder::None, Folder::On), &text, &name).map_err(ReadError::Invalid)
-        }
+        Ok(text) => parse_in(path.parent(), &text, &name).map_err(ReadError::Invalid),
         Err(error) => {
             let valid = error.utf8_error().valid_up_to();
             let bytes = error.into_bytes();
@@ -331,7 +329,7 @@ fn neighbours(path: &Path, extension: &str) -> (Option<String>, Option<String>) 
 /// assert_eq!((first.code, first.line), ("HP0104", None));
 /// ```
 pub fn parse(text: &str, file_name: &str) -> Result<ModelFile, Diagnostics> {
-    parse_in(Folder::None, text, file_name)
+    parsed(Folder::None, text, file_name)
 }
 
 /// As [`parse`], of a text with the files that it names ([`ModelFile::texts`]); bodies stay without their meshes.
@@ -339,11 +337,18 @@ pub fn parse(text: &str, file_name: &str) -> Result<ModelFile, Diagnostics> {
 /// # Errors
 /// As [`parse`].
 pub fn parse_with(text: &str, file_name: &str, files: &Texts) -> Result<ModelFile, Diagnostics> {
-    parse_in(Folder::Given(files), text, file_name)
+    parsed(Folder::Given(files), text, file_name)
 }
 
-/// As [`parse`], of a model that may name files.
-fn parse_in(folder: Folder<'_>, text: &str, file_name: &str) -> Result<ModelFile, Diagnostics> {
+/// As [`parse`], of a model whose file lies in `folder`, so that it may name files there.
+///
+/// # Errors
+/// As there.
+pub fn parse_in(folder: Option<&Path>, text: &str, file_name: &str) -> Result<ModelFile, Diagnostics> {
+    parsed(folder.map_or(Folder::None, Folder::On), text, file_name)
+}
+
+fn parsed(folder: Folder<'_>, text: &str, file_name: &str) -> Result<ModelFile, Diagnostics> {
     let source = Source::new(file_name, text);
     if text.trim().is_empty() {
         let d = source

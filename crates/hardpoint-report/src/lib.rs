@@ -19,6 +19,7 @@
 //! | [`columns`] | what stands in which column of the files of results |
 //! | [`csv`], [`npy`] | `motion`, `sensitivity` and `jerk` as text, or as arrays |
 //! | [`payload`], [`page`], [`encoding`] | `report.html` |
+//! | [`gallery`] | the page of all models, and that of one that cannot be shown |
 //! | [`diagnose`] | why a run is impossible or ended early, as diagnostics of the model file |
 //! | [`figures`] | numbers and units as text |
 
@@ -33,6 +34,7 @@ pub mod diagnose;
 pub mod encoding;
 pub mod facts;
 pub mod figures;
+pub mod gallery;
 pub mod maps;
 pub mod margin;
 pub mod metric;

@@ -719,8 +719,20 @@ pub(crate) fn file(title: &str, packed: &[u8]) -> String {
     })
 }
 
+/// Where a page hears of the server that it comes from: empty in a file.
+const SERVER: &str = "<script type=\"application/json\" id=\"server\">";
+
+/// A page as a server sends it, told `about` the server. Pages are those of this crate.
+///
+/// # Errors
+/// When that does not serialise.
+pub fn served(page: &str, about: &impl Serialize) -> Result<String, serde_json::Error> {
+    let about = serde_json::to_string(about)?.replace('<', "\\u003c");
+    Ok(page.replacen(SERVER, &format!("{SERVER}{about}"), 1))
+}
+
 /// Replaces every `{{slot}}` of the template; what is put in is never searched for slots again.
-fn fill(template: &str, content: impl Fn(&str) -> String) -> String {
+pub(crate) fn fill(template: &str, content: impl Fn(&str) -> String) -> String {
     let mut pieces = template.split("{{");
     let mut page = pieces.next().unwrap_or_default().to_owned();
     for piece in pieces {
@@ -780,9 +792,17 @@ pub(crate) mod tests {
         assert!(!page.contains("<b>"));
         assert_eq!(
             page.matches("</script").count(),
-            4,
-            "ends of the payload, the engine, the code and what starts it"
+            5,
+            "ends of the server, the payload, the engine, the code and what starts it"
         );
+    }
+
+    #[test]
+    fn a_page_hears_of_its_server_and_of_nothing_else() {
+        let page = html(&payload("sample")).unwrap();
+        let served = served(&page, &["</script>"]).unwrap();
+        assert!(served.contains(r#"id="server">["\u003c/script>"]</script>"#));
+        assert_eq!(served.matches("</script").count(), page.matches("</script").count());
     }
 
     #[test]

@@ -18,6 +18,8 @@ import { Drawer } from './drawer'
 import { Grips } from './grips'
 import { History, type Snapshot, type Step } from './history'
 import { historyBar } from './history_bar'
+import { connect } from './server'
+import { serverBar } from './server_bar'
 import { optimizePane, type StudyPane, tolerancePane } from './studies'
 import { Workers } from './workers'
 
@@ -75,7 +77,9 @@ export class Studio {
       { name: 'Optimise', title: 'Search for the design that serves goals best', open: studyPane(() => optimizePane(host), this) },
       { name: 'Tolerance', title: 'How exactly the design must be made', open: studyPane(() => tolerancePane(host), this) },
     ])
-    this.#tools.append(bar, this.#cases, ...this.#drawer.buttons, this.#status)
+    const server = connect(document)
+    const own = { text: async () => this.#text, replace: (text: string) => void this.replace(text, 'from disk'), onChange: (listener: () => void) => this.onText(listener) }
+    this.#tools.append(bar, this.#cases, ...this.#drawer.buttons, ...(server?.file ? [serverBar(server, own)] : []), this.#status)
     document.body.append(this.#drawer.element)
     slot(made.bar, this.#tools)
     this.#attach()

@@ -22,7 +22,19 @@ macro_rules! assert_shown {
 #[test]
 fn help_has_examples_and_exit_codes() {
     let bench = Bench::with(&[]);
-    for command in ["", "run", "check", "verify", "optimize", "tolerance", "sweep", "schema", "completions"] {
+    for command in [
+        "",
+        "run",
+        "check",
+        "verify",
+        "optimize",
+        "tolerance",
+        "sweep",
+        "studio",
+        "site",
+        "schema",
+        "completions",
+    ] {
         let arguments: Vec<&str> = [command, "--help"].into_iter().filter(|a| !a.is_empty()).collect();
         let name = if command.is_empty() { "help".into() } else { format!("help_{command}") };
         assert_shown!(name, bench.shown(&arguments));

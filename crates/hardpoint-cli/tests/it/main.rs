@@ -2,9 +2,11 @@
 
 mod bench;
 mod calibrate;
+mod client;
 mod golden;
 mod optimize;
 mod results;
+mod studio;
 mod sweep;
 mod tolerance;
 mod whatif;

@@ -1,0 +1,93 @@
+//! How far work is, shown to whoever waits for it.
+
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+
+/// Somebody who is no terminal and waits for work: a page.
+pub trait Listener: Send + Sync {
+    /// So much of a part of the work is done.
+    fn progress(&self, what: &'static str, unit: &'static str, done: usize, of: usize);
+    /// A line on what the work came to on its way.
+    fn line(&self, line: &str);
+    /// Why there is no result: the diagnostics as a document, and as text.
+    fn refused(&self, diagnostics: serde_json::Value, text: &str);
+}
+
+/// A progress bar that appears only where something takes its time, and only on a terminal; what a listener hears of.
+pub struct Meter {
+    what: &'static str,
+    unit: &'static str,
+    started: Instant,
+    bar: Option<ProgressBar>,
+    listener: Option<Arc<dyn Listener>>,
+    /// So much was done before, of work whose rate is shown.
+    rate_after: Option<usize>,
+}
+
+impl Meter {
+    /// A meter of this work.
+    pub fn new(what: &'static str, unit: &'static str, listener: Option<Arc<dyn Listener>>) -> Self {
+        Self { what, unit, started: Instant::now(), bar: None, listener, rate_after: None }
+    }
+
+    /// A sign that work of unknown length goes on.
+    pub fn working(what: &'static str, listener: Option<Arc<dyn Listener>>) -> Self {
+        let mut meter = Self::new(what, "", listener);
+        match &meter.listener {
+            Some(listener) => listener.progress(what, "", 0, 0),
+            None => {
+                let bar =
+                    ProgressBar::with_draw_target(None, ProgressDrawTarget::stderr()).with_message(what);
+                if let Ok(style) = ProgressStyle::with_template("{spinner} {wide_msg}") {
+                    bar.set_style(style);
+                }
+                bar.enable_steady_tick(Duration::from_millis(200));
+                meter.bar = Some(bar);
+            }
+        }
+        meter
+    }
+
+    /// With its rate, of work of which so much was done before.
+    pub fn with_rate(mut self, done: usize) -> Self {
+        self.rate_after = Some(done);
+        self
+    }
+
+    /// Shows how far the work is.
+    pub fn show(&mut self, done: usize, total: usize) {
+        const PATIENCE: Duration = Duration::from_millis(300);
+        if let Some(listener) = &self.listener {
+            listener.progress(self.what, self.unit, done, total);
+            return;
+        }
+        if self.bar.is_none() && self.started.elapsed() > PATIENCE {
+            let bar = ProgressBar::with_draw_target(Some(total as u64), ProgressDrawTarget::stderr());
+            // What is left of the line is the bar.
+            let rate = self.rate_after.map_or("", |_| "{per_sec}, ");
+            let template =
+                format!("{} {{wide_bar}} {{pos}} of {{len}} {}, {rate}{{eta}} left", self.what, self.unit);
+            if let Ok(style) = ProgressStyle::with_template(&template) {
+                bar.set_style(style);
+            }
+            if let Some(before) = self.rate_after {
+                bar.set_position(before as u64);
+                bar.reset_eta();
+            }
+            self.bar = Some(bar);
+        }
+        if let Some(bar) = &self.bar {
+            bar.set_position(done as u64);
+        }
+    }
+}
+
+impl Drop for Meter {
+    fn drop(&mut self) {
+        if let Some(bar) = &self.bar {
+            bar.finish_and_clear();
+        }
+    }
+}

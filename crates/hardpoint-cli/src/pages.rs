@@ -1,0 +1,88 @@
+//! The pages of studies: one for each motion, with what the study found beside the design as drawn.
+
+use std::io::Write;
+use std::num::NonZero;
+
+use hardpoint::model::Model;
+use hardpoint::study::Motions;
+use hardpoint::{Analysis, Run, Solution};
+use hardpoint_file::ModelFile;
+use hardpoint_report::course::Course;
+use hardpoint_report::diagnose;
+use hardpoint_report::optimize::case_name;
+use hardpoint_report::page::Payload;
+use hardpoint_report::payload::{Changed, Request, report};
+use hardpoint_report::summary::Summary;
+
+use crate::folder::{Folder, NotWritten, file_name};
+
+/// A study of several motions that has ended.
+pub trait Study {
+    /// The model that was studied.
+    fn file(&self) -> &ModelFile;
+    /// Its motions that were.
+    fn motions(&self) -> &Motions<'_>;
+    /// Of one of them, its number among all of the model.
+    fn number(&self, motion: usize) -> usize;
+    /// The page of a motion; `None` where that does not move at all.
+    fn page(&self, motion: usize) -> Option<String>;
+
+    /// All pages, each with its case, where there are cases.
+    fn pages(&self) -> impl Iterator<Item = (Option<String>, String)> {
+        let case = |k| case_name(&self.file().model, self.number(k));
+        (0..self.motions().analyses().len()).filter_map(move |k| Some((case(k), self.page(k)?)))
+    }
+
+    /// Writes them, and names what was written.
+    fn write_pages(&self, folder: &mut Folder) -> Result<Vec<String>, NotWritten> {
+        let mut written = Vec::new();
+        for (case, html) in self.pages() {
+            let name = case.map_or("report.html".into(), |case| format!("report-{}.html", file_name(&case)));
+            folder.write(&name, |out| out.write_all(html.as_bytes()))?;
+            written.push(folder.path_of(&name).display().to_string());
+        }
+        Ok(written)
+    }
+}
+
+/// The design that a study found.
+pub struct Found<'a> {
+    /// Its change of every variable, in SI.
+    pub design: &'a [f64],
+    /// What it is, in a sentence.
+    pub note: &'a str,
+}
+
+/// The page of one motion as drawn, and as found; `finish` adds what the study has to say. `None` where it does not move at all.
+pub fn page(
+    file: &ModelFile,
+    analysis: &Analysis<'_>,
+    found: Option<&Found<'_>>,
+    finish: impl Fn(Payload, &Solution) -> Payload,
+) -> Option<String> {
+    let mut file = file.clone();
+    file.model = Model::clone(analysis.model());
+    let today = analysis.run();
+    if today.motion.is_empty() {
+        return None;
+    }
+    let course = Course::of(&file.model, &today);
+    let mut summary = Summary::new(&file, analysis.topology(), &course);
+    summary.diagnostics = diagnose::all(&file, &summary, &course, None);
+    let exact = found.map(|f| analysis.solve(Run::new().at(f.design).without_sensitivities()));
+    let changed = found.zip(exact.as_ref()).map(|(found, exact)| Changed {
+        name: "found".into(),
+        note: found.note.into(),
+        change: found.design,
+        today: &today,
+        exact,
+        foreseen: None,
+    });
+    let request = Request { changed, ..Request::of(&file, analysis, &course, &summary) };
+    Some(report(&request, &|page| finish(page, &today)).expect("a payload is plain data"))
+}
+
+/// So many threads as are asked for, or one for each core.
+pub fn threads(asked: Option<NonZero<usize>>) -> NonZero<usize> {
+    asked.or_else(|| std::thread::available_parallelism().ok()).unwrap_or(NonZero::<usize>::MIN)
+}

@@ -1,0 +1,115 @@
+//! `hardpoint site`: the gallery as a static site.
+
+use std::collections::HashSet;
+use std::io::Write;
+use std::path::{Path, PathBuf};
+
+use hardpoint::topology::Formulation;
+use hardpoint_file::ModelFile;
+use hardpoint_report::gallery::{Card, gallery};
+
+use crate::args::Site;
+use crate::folder::{Folder, file_name};
+use crate::outcome::Outcome;
+use crate::session::Session;
+use crate::{maps, run, text};
+
+/// Where models are, where none are named.
+const MODELS: &str = "models";
+
+/// Writes the site; what cannot be shown is left out and told.
+pub fn run(options: &Site) -> Outcome {
+    let session = Session::begin(false);
+    site_in(&session, options).unwrap_or_else(|outcome| outcome)
+}
+
+fn site_in(session: &Session, options: &Site) -> Result<Outcome, Outcome> {
+    let models = if options.models.is_empty() { all_models() } else { options.models.clone() };
+    if models.is_empty() {
+        let why = format!("there are no model files in `{MODELS}`; name those that are to be shown");
+        return Err(session.misunderstood(&why));
+    }
+    let mut taken = HashSet::from(["index".to_owned()]);
+    for model in &models {
+        if !taken.insert(stem(model)) {
+            let why = format!(
+                "`{}` would be the second `{}.html`; name it otherwise",
+                model.display(),
+                stem(model)
+            );
+            return Err(session.misunderstood(&why));
+        }
+    }
+    let mut folder = Folder::open(&options.folder).map_err(|e| session.not_written(&e))?;
+    session.patient(true);
+    let mut meter = session.meter("making pages", "models");
+    let (mut cards, mut outcome) = (Vec::new(), Outcome::Done);
+    for (k, model) in models.iter().enumerate() {
+        match card(session, model, &mut folder) {
+            Ok(card) => cards.push(card),
+            Err(failed) => outcome = outcome.and(failed),
+        }
+        if session.interrupted() {
+            session.ended_while_writing(&options.folder);
+            return Err(Outcome::Interrupted);
+        }
+        meter.show(k + 1, models.len());
+    }
+    drop(meter);
+    if cards.is_empty() {
+        return Err(outcome);
+    }
+    let lead = "Mechanisms with their motion and exact design sensitivities. Each page is the report of one model: open one and play.";
+    let index = gallery("Hardpoint", lead, &cards);
+    let written = folder.write("index.html", |out| out.write_all(index.as_bytes()));
+    written.and_then(|()| folder.commit(&[])).map_err(|e| session.not_written(&e))?;
+    text::print(&format!("{} models: {}\n", cards.len(), options.folder.join("index.html").display()));
+    Ok(outcome)
+}
+
+/// All model files of the usual folder, by name.
+fn all_models() -> Vec<PathBuf> {
+    let entries = std::fs::read_dir(MODELS).into_iter().flatten().flatten().map(|e| e.path());
+    let mut models: Vec<PathBuf> = entries.filter(|p| p.extension().is_some_and(|e| e == "toml")).collect();
+    models.sort();
+    models
+}
+
+fn stem(model: &Path) -> String {
+    model.file_stem().unwrap_or_default().to_string_lossy().into_owned()
+}
+
+/// The pages of a model, and its card.
+fn card(session: &Session, model: &Path, folder: &mut Folder) -> Result<Card, Outcome> {
+    let file = session.read(model)?;
+    let maps = maps::solved(session, &file, Formulation::Relative);
+    let mut write = |name: &str, one: &ModelFile| {
+        let html = run::page(session, one, &maps, Formulation::Relative)?;
+        folder.write(name, |out| out.write_all(html.as_bytes())).map_err(|e| session.not_written(&e))
+    };
+    let stem = file_name(&stem(model));
+    let mut pages: Vec<(String, String)> = Vec::new();
+    for (k, case) in file.model.cases.iter().enumerate() {
+        let name =
+            if k == 0 { format!("{stem}.html") } else { format!("{stem}-{}.html", file_name(&case.name)) };
+        write(&name, &file.in_case(hardpoint::model::CaseId(k)))?;
+        pages.push((case.name.clone(), link(&name)));
+    }
+    let name = format!("{stem}.html");
+    if pages.is_empty() {
+        write(&name, &file)?;
+    }
+    Ok(Card {
+        title: file.model.name.clone(),
+        description: file.description.clone(),
+        file: model.file_name().unwrap_or_default().to_string_lossy().into_owned(),
+        wrong: None,
+        link: link(&name),
+        more: pages,
+    })
+}
+
+/// The address of a file beside the page: what is written `%` in its name is none of an address.
+fn link(name: &str) -> String {
+    name.replace('%', "%25")
+}

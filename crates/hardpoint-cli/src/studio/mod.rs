@@ -1,0 +1,136 @@
+//! `hardpoint studio`: the page of a model from a server on this machine, which saves, watches files and runs long studies.
+//!
+//! | file | what |
+//! |---|---|
+//! | `address.rs` | who may ask |
+//! | `server.rs` | connections, limits, how answers go out |
+//! | `routes.rs` | what can be asked for |
+//! | `folder.rs` | the model files of the folder, read and saved |
+//! | `page.rs` | pages of models, the gallery |
+//! | `watch.rs` | what a page hears of without asking |
+//! | `studies.rs` | studies in threads of their own |
+
+mod address;
+mod folder;
+mod page;
+mod routes;
+mod server;
+mod studies;
+mod watch;
+
+use std::io::IsTerminal;
+use std::net::{Ipv4Addr, TcpListener};
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
+
+use crate::args;
+use crate::outcome::Outcome;
+use crate::session::Session;
+use crate::text;
+
+pub use address::given_token;
+
+/// What a server serves.
+struct Studio {
+    /// What tells it from the one that was here before.
+    id: String,
+    address: address::Address,
+    models: folder::Models,
+    /// The model that the server was started with.
+    opened: Option<String>,
+    pages: page::Pages,
+    studies: studies::Studies,
+    /// Set when the server is to end.
+    ending: Arc<AtomicBool>,
+}
+
+/// Serves until the user ends it.
+pub fn run(options: &args::Studio) -> Outcome {
+    let session = Session::begin(false);
+    studio_in(&session, options).unwrap_or_else(|outcome| outcome)
+}
+
+fn studio_in(session: &Session, options: &args::Studio) -> Result<Outcome, Outcome> {
+    let (path, opened) = match &options.model {
+        Some(model) => of_model(session, model)?,
+        None => (of_gallery(), None),
+    };
+    let failed = |what: String, why: &dyn std::fmt::Display| {
+        session.not_served(&what, &why.to_string(), "see `docs/studio.md`")
+    };
+    let models = folder::Models::of(&path)
+        .map_err(|e| failed(format!("the folder `{}` cannot be read", path.display()), &e))?;
+    if let Some(name) = opened.as_ref().filter(|name| !models.is_name(name)) {
+        let why = format!(
+            "`{name}` is no name of a model file: those end with `.toml`, and lie in the folder itself"
+        );
+        return Err(session.misunderstood(&why));
+    }
+    let random =
+        || address::random_token().map_err(|e| failed("this system has no random numbers".into(), &e));
+    let token = options.token.clone().map_or_else(random, Ok)?;
+    let listening = TcpListener::bind((Ipv4Addr::LOCALHOST, options.port))
+        .and_then(|listener| Ok((listener.local_addr()?.port(), listener)));
+    let (port, listener) = listening.map_err(|e| {
+        let what = format!("port {} of this machine cannot be listened on", options.port);
+        session.not_served(&what, &e.to_string(), "name another with `--port`, or end what has this one")
+    })?;
+    let address = address::Address::new(port, token);
+    let to_open = address.to_open();
+    let studio = Arc::new(Studio {
+        id: random()?,
+        address,
+        models,
+        opened,
+        pages: page::Pages::default(),
+        studies: studies::Studies::default(),
+        ending: Arc::default(),
+    });
+    session.patient(true);
+    text::print(&format!("{to_open}\n"));
+    if !options.no_browser && can_be_seen() {
+        // Whoever sees no browser open has the address.
+        if let Err(error) = open::that_detached(&to_open) {
+            session.remark(&format!("no browser could be opened ({error}); open the address above"));
+        }
+    }
+    if std::io::stderr().is_terminal() {
+        text::complain("Ctrl-C ends it.\n");
+    }
+    let served = server::serve(listener, &studio, session);
+    served.map(|()| Outcome::Done).map_err(|e| failed("the server could not go on".into(), &e))
+}
+
+/// The folder of a model, and its name in it. The model may be wrong in any way, but it is there.
+fn of_model(session: &Session, model: &Path) -> Result<(PathBuf, Option<String>), Outcome> {
+    if model.is_dir() {
+        return Ok((model.into(), None));
+    }
+    if let Err(error) = hardpoint_file::read(model)
+        && matches!(error, hardpoint_file::ReadError::Unreadable(_))
+    {
+        session.not_read(error.diagnostics());
+        return Err(Outcome::BadModel);
+    }
+    let folder = model.parent().unwrap_or(Path::new(""));
+    let name = model.file_name().map(|n| n.to_string_lossy().into_owned());
+    Ok((folder.into(), name))
+}
+
+/// The current folder if it has models, or `models` in it.
+fn of_gallery() -> PathBuf {
+    let has_models = |path: &Path| folder::Models::of(path).is_ok_and(|models| !models.list().is_empty());
+    let beside = Path::new("models");
+    let here = Path::new("");
+    if !has_models(here) && has_models(beside) { beside.into() } else { here.into() }
+}
+
+/// Whether a browser could be seen.
+fn can_be_seen() -> bool {
+    let given = |name| std::env::var_os(name).is_some_and(|v| !v.is_empty());
+    !cfg!(any(target_os = "linux", target_os = "freebsd"))
+        || given("DISPLAY")
+        || given("WAYLAND_DISPLAY")
+        || given("BROWSER")
+}

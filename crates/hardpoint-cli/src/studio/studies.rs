@@ -1,0 +1,383 @@
+//! Studies that take long, each in a thread of its own: asked for, watched, cancelled, kept until others have been done.
+
+use std::collections::VecDeque;
+use std::num::NonZero;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::time::{Duration, Instant};
+
+use hardpoint::model::Model;
+use hardpoint::study::Motions;
+use hardpoint::topology::Formulation;
+use hardpoint_file::ModelFile;
+use hardpoint_report::page::Table;
+use hardpoint_report::tolerance::Studied;
+use serde::{Deserialize, Serialize};
+use serde_json::{Value, json};
+use tokio::sync::broadcast;
+
+use crate::args::Allocate;
+use crate::meter::Listener;
+use crate::outcome::Outcome;
+use crate::pages::Study as _;
+use crate::session::Session;
+use crate::{args, optimize, sweep, tolerance};
+
+/// Each of them takes all cores; another waits for its turn at the user's hand, not at ours.
+const AT_ONCE: usize = 2;
+/// So many that have ended are kept with their pages.
+const KEPT: usize = 8;
+/// Pages hear of progress no more often than this.
+const PACE: Duration = Duration::from_millis(100);
+/// A page that is behind by so many events misses some, and asks for the state.
+const EVENTS: usize = 256;
+
+/// What a page asks for.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Asked {
+    /// The kind of study.
+    pub what: What,
+    /// Name of the model file, for what it names beside it.
+    pub file: String,
+    /// The model as the page has it.
+    pub text: String,
+    /// One case of it only.
+    #[serde(default)]
+    pub case: Option<String>,
+    /// What is asked for besides what the text says.
+    #[serde(default)]
+    pub options: Options,
+}
+
+/// The kinds of studies.
+#[derive(Clone, Copy, Deserialize, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum What {
+    /// As `hardpoint optimize`.
+    Optimize,
+    /// As `hardpoint tolerance`.
+    Tolerance,
+    /// As `hardpoint sweep`.
+    Sweep,
+}
+
+/// As the options of the command line of the same name.
+#[derive(Default, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct Options {
+    starts: Option<NonZero<u16>>,
+    iterations: Option<NonZero<u16>>,
+    samples: Option<u32>,
+    seed: Option<u32>,
+    allocate: Option<Rule>,
+}
+
+#[derive(Clone, Copy, Deserialize)]
+#[serde(rename_all = "snake_case")]
+enum Rule {
+    Rss,
+    WorstCase,
+}
+
+/// A study under way, or ended.
+pub struct Study {
+    id: u64,
+    what: What,
+    cancelled: Arc<AtomicBool>,
+    state: Mutex<State>,
+    events: broadcast::Sender<Arc<str>>,
+}
+
+#[derive(Default)]
+struct State {
+    progress: Value,
+    told: Option<Instant>,
+    lines: Vec<String>,
+    end: Option<End>,
+}
+
+/// What a study came to.
+struct End {
+    /// `done`, `cancelled` or `failed`.
+    state: &'static str,
+    message: String,
+    diagnostics: Value,
+    /// The model's text with the design found.
+    text: Option<String>,
+    tables: Vec<Table>,
+    pages: Vec<(Option<String>, String)>,
+}
+
+impl End {
+    fn failed(message: impl Into<String>) -> Self {
+        let nothing = (None, Vec::new(), Vec::new());
+        Self {
+            state: "failed",
+            message: message.into(),
+            diagnostics: json!([]),
+            text: nothing.0,
+            tables: nothing.1,
+            pages: nothing.2,
+        }
+    }
+}
+
+/// All studies of a server.
+pub struct Studies {
+    last: AtomicU64,
+    list: Mutex<VecDeque<Arc<Study>>>,
+    events: broadcast::Sender<Arc<str>>,
+}
+
+impl Default for Studies {
+    fn default() -> Self {
+        Self { last: AtomicU64::new(0), list: Mutex::default(), events: broadcast::channel(EVENTS).0 }
+    }
+}
+
+impl Studies {
+    /// What happens to them from now on.
+    pub fn events(&self) -> broadcast::Receiver<Arc<str>> {
+        self.events.subscribe()
+    }
+
+    /// One of them.
+    pub fn get(&self, id: &str) -> Option<Arc<Study>> {
+        let id: u64 = id.parse().ok()?;
+        self.list().iter().find(|s| s.id == id).cloned()
+    }
+
+    /// Begins one; `None` where too many are under way.
+    pub fn begin(&self, file: ModelFile, asked: Asked) -> Option<Arc<Study>> {
+        let study = {
+            let mut list = self.list();
+            if list.iter().filter(|s| !s.has_ended()).count() >= AT_ONCE {
+                return None;
+            }
+            while list.len() >= KEPT {
+                let oldest = list.iter().position(|s| s.has_ended())?;
+                list.remove(oldest);
+            }
+            let study = Arc::new(Study {
+                id: 1 + self.last.fetch_add(1, Ordering::SeqCst),
+                what: asked.what,
+                cancelled: Arc::default(),
+                state: Mutex::default(),
+                events: self.events.clone(),
+            });
+            list.push_back(Arc::clone(&study));
+            study
+        };
+        let working = Arc::clone(&study);
+        let begun = std::thread::Builder::new()
+            .name(format!("study {}", study.id))
+            .spawn(move || working.work(&file, &asked));
+        if let Err(error) = begun {
+            study.end(End::failed(format!("the study could not be begun: {error}")));
+        }
+        Some(study)
+    }
+
+    /// Asks all to end.
+    pub fn cancel_all(&self) {
+        self.list().iter().for_each(|s| s.cancel());
+    }
+
+    fn list(&self) -> MutexGuard<'_, VecDeque<Arc<Study>>> {
+        self.list.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+impl Study {
+    /// Asks it to end: soon, and with what it has found.
+    pub fn cancel(&self) {
+        self.cancelled.store(true, Ordering::SeqCst);
+    }
+
+    fn has_ended(&self) -> bool {
+        self.state().end.is_some()
+    }
+
+    /// Everything about it but its pages, which are named.
+    pub fn document(&self) -> Value {
+        let state = self.state();
+        let Some(end) = &state.end else {
+            return json!({ "id": self.id, "what": self.what, "state": "running", "progress": state.progress, "lines": state.lines });
+        };
+        let page = |case: &Option<String>| {
+            let query = form_urlencoded::Serializer::new(String::new())
+                .extend_pairs(case.iter().map(|c| ("case", c)))
+                .finish();
+            json!({ "case": case, "link": format!("/api/study/{}/report.html?{query}", self.id).trim_end_matches('?') })
+        };
+        json!({
+            "id": self.id,
+            "what": self.what,
+            "state": end.state,
+            "message": end.message,
+            "diagnostics": end.diagnostics,
+            "lines": state.lines,
+            "text": end.text,
+            "tables": end.tables,
+            "reports": end.pages.iter().map(|(case, _)| page(case)).collect::<Vec<_>>(),
+        })
+    }
+
+    /// The page of a case, or the first one.
+    pub fn report(&self, case: Option<&str>) -> Option<String> {
+        let state = self.state();
+        let pages = &state.end.as_ref()?.pages;
+        let page = match case {
+            None => pages.first(),
+            Some(case) => pages.iter().find(|(of, _)| of.as_deref() == Some(case)),
+        };
+        page.map(|(_, html)| html.clone())
+    }
+
+    fn state(&self) -> MutexGuard<'_, State> {
+        self.state.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    fn tell(&self, mut event: Value) {
+        event["id"] = self.id.into();
+        // Nobody may be listening.
+        let _ = self.events.send(event.to_string().into());
+    }
+
+    fn end(&self, end: End) {
+        self.state().end.get_or_insert(end);
+        let mut document = self.document();
+        // The whole is fetched by whoever wants it.
+        for heavy in ["text", "tables", "lines"] {
+            document.as_object_mut().map(|d| d.remove(heavy));
+        }
+        self.tell(document);
+    }
+
+    fn work(self: &Arc<Self>, file: &ModelFile, asked: &Asked) {
+        let heard = Arc::new(Heard { study: Arc::clone(self), refusal: Mutex::default() });
+        let session = Session::for_page(Arc::clone(&heard) as Arc<dyn Listener>, Arc::clone(&self.cancelled));
+        let done = catch_unwind(AssertUnwindSafe(|| match asked.what {
+            What::Optimize => optimized(&session, file, asked),
+            What::Tolerance => examined(&session, file, asked),
+            What::Sweep => swept(&session, file, asked),
+        }));
+        self.end(match done {
+            Ok(Ok(end)) => end,
+            Ok(Err(outcome)) => {
+                let (diagnostics, message) =
+                    heard.refusal.lock().unwrap_or_else(PoisonError::into_inner).take().unwrap_or_default();
+                let state = if outcome == Outcome::Interrupted { "cancelled" } else { "failed" };
+                End { state, diagnostics, ..End::failed(message) }
+            }
+            Err(_) => End::failed("the study ended by a fault of the program; the terminal says more"),
+        });
+    }
+}
+
+/// What a study says while it works.
+struct Heard {
+    study: Arc<Study>,
+    refusal: Mutex<Option<(Value, String)>>,
+}
+
+impl Listener for Heard {
+    fn progress(&self, what: &'static str, unit: &'static str, done: usize, of: usize) {
+        let progress = json!({ "what": what, "unit": unit, "done": done, "of": of });
+        let mut state = self.study.state();
+        state.progress = progress.clone();
+        if state.told.is_some_and(|at| at.elapsed() < PACE) && done < of {
+            return;
+        }
+        state.told = Some(Instant::now());
+        drop(state);
+        self.study.tell(json!({ "state": "running", "progress": progress }));
+    }
+
+    fn line(&self, line: &str) {
+        let line = anstream::adapter::strip_str(line).to_string();
+        self.study.state().lines.push(line.clone());
+        self.study.tell(json!({ "state": "running", "line": line }));
+    }
+
+    fn refused(&self, diagnostics: Value, text: &str) {
+        *self.refusal.lock().unwrap_or_else(PoisonError::into_inner) = Some((diagnostics, text.into()));
+    }
+}
+
+fn optimized(session: &Session, file: &ModelFile, asked: &Asked) -> Result<End, Outcome> {
+    let mut file = file.clone();
+    if let Some(name) = &asked.case {
+        let case = session.case(&file, name)?;
+        file.model = file.model.with_case_only(case);
+    }
+    let numbers = [asked.options.starts, asked.options.iterations].map(|n| n.map(|n| usize::from(n.get())));
+    let wanted = optimize::asked(session, &file, asked.case.as_deref(), numbers)?;
+    let models = file.model.motions();
+    let motions = Motions::of(&models, Formulation::Relative);
+    let motions = motions.map_err(|(_, fault)| session.cannot_be_driven(&file, &fault))?;
+    let search = optimize::Search::run(session, &file, &motions, &wanted, None);
+    let text = search.rounded().map(|design| session.edited(&file, &design)).transpose()?;
+    Ok(End {
+        state: if search.facts.status == "interrupted" { "cancelled" } else { "done" },
+        message: search.facts.message.clone(),
+        diagnostics: json!([]),
+        text,
+        tables: search.facts.tables(),
+        pages: search.pages().collect(),
+    })
+}
+
+fn examined(session: &Session, file: &ModelFile, asked: &Asked) -> Result<End, Outcome> {
+    let numbers = session.numbers_of(file, &args::Motions { case: asked.case.clone() })?;
+    let Options { samples, seed, allocate, .. } = asked.options;
+    let allocate = allocate.map(|rule| match rule {
+        Rule::Rss => Allocate::Rss,
+        Rule::WorstCase => Allocate::WorstCase,
+    });
+    at_most(session, samples, args::MOST_DRAWN)?;
+    let wanted = tolerance::asked(session, file, &tolerance::Asking { samples, seed, allocate })?;
+    let models = file.model.motions();
+    let models: Vec<Model> = numbers.iter().map(|k| models[*k].clone()).collect();
+    let motions = Motions::of(&models, Formulation::Relative);
+    let motions = motions.map_err(|(_, fault)| session.cannot_be_driven(file, &fault))?;
+    let found = tolerance::examine(session, file, &motions, &numbers, &wanted, None)?;
+    let studied = Studied { file, numbers: &numbers, asked: &wanted, found: &found };
+    let results = tolerance::Results::of(session, studied, &motions);
+    Ok(End {
+        state: if found.interrupted { "cancelled" } else { "done" },
+        message: results.facts.message.clone(),
+        diagnostics: json!([]),
+        text: None,
+        tables: results.facts.tables(),
+        pages: results.pages().collect(),
+    })
+}
+
+fn swept(session: &Session, file: &ModelFile, asked: &Asked) -> Result<End, Outcome> {
+    let Options { samples, seed, .. } = asked.options;
+    at_most(session, samples, args::MOST_SWEPT)?;
+    let motions = args::Motions { case: asked.case.clone() };
+    let (facts, pages) =
+        sweep::for_page(session, file, &args::Sweep { motions, samples, seed, ..args::Sweep::default() })?;
+    Ok(End {
+        state: if facts.status == "interrupted" { "cancelled" } else { "done" },
+        message: facts.message.clone(),
+        diagnostics: json!([]),
+        text: None,
+        tables: facts.tables(),
+        pages,
+    })
+}
+
+/// As the command line has it.
+fn at_most(session: &Session, samples: Option<u32>, most: u32) -> Result<(), Outcome> {
+    match samples {
+        Some(n) if n > most => {
+            Err(session.misunderstood(&format!("{n} samples are too many: {most} at most")))
+        }
+        _ => Ok(()),
+    }
+}

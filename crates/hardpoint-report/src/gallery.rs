@@ -1,0 +1,102 @@
+//! Pages without a mechanism: the gallery of models, and a model that cannot be shown.
+
+use std::fmt::Write;
+
+use crate::page::{escape_text, fill};
+
+/// A model in the gallery.
+pub struct Card {
+    /// Its name.
+    pub title: String,
+    /// What it says about itself.
+    pub description: Option<String>,
+    /// Name of its file.
+    pub file: String,
+    /// What keeps it from being shown, in a few words.
+    pub wrong: Option<String>,
+    /// Where its page is.
+    pub link: String,
+    /// Further pages of it, each with its name: its cases.
+    pub more: Vec<(String, String)>,
+}
+
+/// The page of all models; `lead` says what they are.
+///
+/// ```
+/// use hardpoint_report::gallery::{Card, gallery};
+/// let card = Card {
+///     title: "a < b".into(),
+///     description: None,
+///     file: "ab.toml".into(),
+///     wrong: None,
+///     link: "ab.html".into(),
+///     more: Vec::new(),
+/// };
+/// assert!(gallery("Models", "Two bodies.", &[card]).contains(r#"<a href="ab.html">a &lt; b</a>"#));
+/// ```
+pub fn gallery(title: &str, lead: &str, cards: &[Card]) -> String {
+    let mut body = format!(
+        "<h1>{}</h1>\n<p class=\"lead\">{}</p>\n<div class=\"gallery\">\n",
+        escape_text(title),
+        escape_text(lead)
+    );
+    cards.iter().for_each(|card| body += &card.html());
+    sheet(title, &(body + "</div>"))
+}
+
+impl Card {
+    fn html(&self) -> String {
+        let link =
+            |to: &str, name: &str| format!("<a href=\"{}\">{}</a>", escape_text(to), escape_text(name));
+        let mut html = format!("<article class=\"model\"><h2>{}</h2>\n", link(&self.link, &self.title));
+        if let Some(text) = &self.description {
+            _ = writeln!(html, "<p>{}</p>", escape_text(text));
+        }
+        _ = write!(html, "<p class=\"foot\"><code>{}</code>", escape_text(&self.file));
+        if let Some(text) = &self.wrong {
+            _ = write!(html, "<span class=\"wrong\">{}</span>", escape_text(text));
+        }
+        self.more.iter().for_each(|(name, to)| html += &link(to, name));
+        html + "</p></article>\n"
+    }
+}
+
+/// The page of a model that cannot be shown: why, and its text, with the lines marked where something is wrong.
+pub fn trouble(file: &str, why: &str, text: &str, lines: &[usize]) -> String {
+    let mut body = format!(
+        "<h1>{}</h1>\n<p class=\"lead\">This model cannot be shown as it is.</p>\n",
+        escape_text(file)
+    );
+    _ = write!(
+        body,
+        "<pre class=\"trouble\" data-testid=\"trouble\">{}</pre>\n<pre class=\"text\">",
+        escape_text(why)
+    );
+    for (k, line) in text.lines().enumerate() {
+        let class = if lines.contains(&(k + 1)) { " class=\"at\"" } else { "" };
+        _ = write!(body, "<span{class}>{}</span>", escape_text(line));
+    }
+    sheet(file, &(body + "</pre>"))
+}
+
+fn sheet(title: &str, body: &str) -> String {
+    fill(include_str!("../page/sheet.html"), |slot| match slot {
+        "title" => escape_text(title),
+        "style" => include_str!("../page/app.css").to_owned(),
+        "sheet" => include_str!("../page/sheet.css").to_owned(),
+        "body" => body.to_owned(),
+        _ => panic!("the template of sheets names an unknown slot `{slot}`"),
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn text_of_a_model_is_no_markup() {
+        let page = trouble("<x>.toml", "error: `<b>`", "a = \"<script>\"\nb", &[2]);
+        assert!(!page.contains("<script>") && !page.contains("<b>") && !page.contains("<x>"));
+        assert!(page.contains("<span class=\"at\">b</span>"));
+    }
+}

@@ -1,0 +1,284 @@
+/** What the page is told of the server that it comes from; nothing in a file. */
+interface About {
+  token: string
+  /** The model file that the page shows. */
+  file: string | null
+  /** The revision of its text. */
+  revision: string | null
+  case: string | null
+  cases: string[]
+}
+
+/** A model file of the folder. */
+export interface Entry {
+  file: string
+  title: string
+  description: string | null
+  cases: string[]
+  problems: number
+  /** Seconds since 1970. */
+  changed: number | null
+}
+
+/** A text on disk. */
+export interface OnDisk {
+  text: string
+  revision: string
+}
+
+/** As `hardpoint check --json` has it. */
+export interface Diagnostic {
+  severity: 'error' | 'warning' | 'note'
+  code: string
+  message: string
+  line: number | null
+  column: number | null
+  span: { start: number; end: number } | null
+  label: string | null
+  notes: string[]
+  help: string | null
+}
+
+/** What saving came to. */
+export type Saved =
+  | { outcome: 'saved'; revision: string }
+  | ({ outcome: 'changed' } & OnDisk)
+  | { outcome: 'exists' }
+  | { outcome: 'invalid'; diagnostics: Diagnostic[]; text: string }
+  | { outcome: 'refused'; why: string }
+
+export type What = 'optimize' | 'tolerance' | 'sweep'
+
+export interface Asked {
+  what: What
+  text: string
+  case?: string
+  options?: { starts?: number; iterations?: number; samples?: number; seed?: number; allocate?: 'rss' | 'worst_case' }
+}
+
+/** How a study is going, or how it went. */
+export interface Study {
+  id: number
+  what: What
+  state: 'running' | 'done' | 'cancelled' | 'failed'
+  progress?: { what: string; unit: string; done: number; of: number } | null
+  lines: string[]
+  message?: string
+  diagnostics?: Diagnostic[]
+  /** The model with the design found, where the study seeks one. */
+  text?: string | null
+  reports?: { case: string | null; link: string }[]
+}
+
+/** `gone`: nobody answers. `stranger`: somebody else does, with another token. */
+export type State = 'there' | 'gone' | 'stranger'
+
+/** What may happen without being asked for. */
+interface Events {
+  /** Whether the server answers. */
+  state: State
+  /** The file has another text, or (without a revision) is there no more. */
+  changed: { revision: string | null }
+  /** A study goes on; only what is new. */
+  study: Partial<Study> & { id: number; line?: string }
+  /** Something was missed: what is known of studies has to be asked for. */
+  missed: undefined
+}
+
+/** That nobody has answered, or a stranger. */
+export class NoAnswer extends Error {}
+
+/** Seconds between attempts to reach a server that is gone. */
+const FIRST_PAUSE = 0.5
+const LONGEST_PAUSE = 5
+/** The server gives a sign of life every two seconds. */
+const SILENCE = 20
+
+/** The server that the page comes from; `undefined` of a page from a file. */
+export function connect(document: Document): Server | undefined {
+  const told = document.getElementById('server')?.textContent
+  return told ? new Server(JSON.parse(told) as About) : undefined
+}
+
+/** The studio's server, as `hardpoint studio` runs it. */
+export class Server {
+  readonly file: string | null
+  readonly case: string | null
+  readonly cases: string[]
+  state: State = 'there'
+  /** Of the text on disk that the present one was made from. */
+  private revision: string | null
+  private readonly token: string
+  /** What this page saves is no news to it. */
+  private readonly client = crypto.randomUUID()
+  private readonly listeners: { [K in keyof Events]: Set<(event: Events[K]) => void> } = { state: new Set(), changed: new Set(), study: new Set(), missed: new Set() }
+  /** Which run of the server this is. */
+  private run?: string
+  private leaving = false
+
+  constructor({ token, file, revision, case: shown, cases }: About) {
+    this.token = token
+    this.file = file
+    this.case = shown
+    this.cases = cases
+    this.revision = revision
+    addEventListener('pagehide', () => (this.leaving = true))
+    addEventListener('pageshow', () => (this.leaving = false))
+    void this.listen()
+  }
+
+  /** Hears of something from now on. */
+  on<K extends keyof Events>(name: K, listener: (event: Events[K]) => void): void {
+    this.listeners[name].add(listener)
+  }
+
+  /** The command by which this page finds a server again. */
+  get command(): string {
+    return `hardpoint studio ${this.file ?? ''} --port ${location.port} --token ${this.token}`
+  }
+
+  /** All models of the folder. */
+  async models(): Promise<{ folder: string; models: Entry[] }> {
+    return (await this.request('GET', '/api/models')).json()
+  }
+
+  /** Where the page of a model is. */
+  link(file: string, shown?: string): string {
+    return `/?${new URLSearchParams({ file, ...(shown === undefined ? {} : { case: shown }) })}`
+  }
+
+  /** The text on disk now, `undefined` where there is none. */
+  async read(file: string): Promise<OnDisk | undefined> {
+    const response = await this.request('GET', `/api/model?${new URLSearchParams({ file })}`)
+    return response.ok ? response.json() : undefined
+  }
+
+  /** The present text was made from that one: it may be saved over it. */
+  base({ revision }: OnDisk): void {
+    this.revision = revision
+  }
+
+  /** Whether a text on disk is the one that the present text was made from. */
+  isBase({ revision }: { revision: string | null }): boolean {
+    return revision === this.revision
+  }
+
+  /** Saves in place, over the text that this one was made from; with `anyway` also what is no valid model. */
+  async save(text: string, anyway = false): Promise<Saved> {
+    const response = await this.request('PUT', this.target(this.file!, anyway), { body: text, headers: { 'if-match': `"${this.revision}"` } })
+    const saved = await outcome(response)
+    if (saved.outcome === 'saved') this.revision = saved.revision
+    return saved
+  }
+
+  /** Saves under a name that no file has. */
+  async saveAs(file: string, text: string, anyway = false): Promise<Saved> {
+    return outcome(await this.request('POST', this.target(file, anyway), { body: text }))
+  }
+
+  private target(file: string, anyway: boolean): string {
+    return `/api/model?${new URLSearchParams({ file, client: this.client, ...(anyway ? { anyway: '1' } : {}) })}`
+  }
+
+  /** Begins a study of a text; what comes of it is heard as `study`. */
+  async begin(asked: Asked): Promise<Study> {
+    const body = JSON.stringify({ file: this.file, ...asked })
+    const response = await this.request('POST', '/api/study', { body, headers: { 'content-type': 'application/json' } })
+    if (!response.ok) throw new Error(await why(response))
+    return response.json()
+  }
+
+  /** How a study is going; `undefined` where the server knows of none. */
+  async study(id: number): Promise<Study | undefined> {
+    const response = await this.request('GET', `/api/study/${id}`)
+    return response.ok ? response.json() : undefined
+  }
+
+  /** Asks a study to end, with what it has found. */
+  async cancel(id: number): Promise<void> {
+    await this.request('DELETE', `/api/study/${id}`)
+  }
+
+  private async request(method: string, path: string, { headers, ...options }: RequestInit = {}): Promise<Response> {
+    const response = await fetch(path, { method, cache: 'no-store', headers: { 'x-hardpoint-token': this.token, ...headers }, ...options }).catch(() => undefined)
+    this.become(response ? (response.status === 403 ? 'stranger' : 'there') : 'gone')
+    if (!response) throw new NoAnswer('The server does not answer.')
+    if (response.status === 403) throw new NoAnswer('Another server answers at this address.')
+    return response
+  }
+
+  private become(state: State): void {
+    if (state === this.state || this.leaving) return
+    this.state = state
+    this.tell('state', state)
+  }
+
+  private tell<K extends keyof Events>(name: K, event: Events[K]): void {
+    for (const listener of this.listeners[name]) listener(event)
+  }
+
+  /** Hears what the server tells, and seeks it again when it is gone. */
+  private async listen(): Promise<never> {
+    const query = new URLSearchParams({ client: this.client, ...(this.file === null ? {} : { file: this.file }) })
+    for (let pause = FIRST_PAUSE; ; pause = Math.min(2 * pause, LONGEST_PAUSE)) {
+      const silence = new AbortController()
+      let timer = setTimeout(() => silence.abort(), 1000 * SILENCE)
+      try {
+        const response = await this.request('GET', `/api/events?${query}`, { signal: silence.signal })
+        for await (const { name, data } of events(response.body!)) {
+          clearTimeout(timer)
+          timer = setTimeout(() => silence.abort(), 1000 * SILENCE)
+          pause = FIRST_PAUSE
+          this.hear(name, data)
+        }
+      } catch {
+        // The next attempt shows whether it is there.
+      }
+      clearTimeout(timer)
+      if (this.state === 'there') this.become('gone')
+      await new Promise((resolve) => setTimeout(resolve, 1000 * pause))
+    }
+  }
+
+  private hear(name: string, data: string): void {
+    if (name === 'alive') return
+    const event = JSON.parse(data)
+    if (name === 'study') this.tell('study', event)
+    else if (name === 'missed') this.tell('missed', undefined)
+    else if (name === 'hello') {
+      if (this.run !== undefined) this.tell('missed', undefined)
+      this.run = event.server
+    }
+    if ((name === 'changed' || name === 'hello') && this.file !== null && event.revision !== this.revision) this.tell('changed', { revision: event.revision })
+  }
+}
+
+async function outcome(response: Response): Promise<Saved> {
+  const { status } = response
+  if (response.ok) return { outcome: 'saved', revision: (await response.json()).revision }
+  if (status === 422) return { outcome: 'invalid', ...(await response.json()) }
+  if (status === 409) {
+    const found = await response.json()
+    return 'revision' in found ? { outcome: 'changed', text: found.text, revision: found.revision } : { outcome: 'exists' }
+  }
+  return { outcome: 'refused', why: await why(response) }
+}
+
+/** Why a request was refused, in the server's words. */
+async function why(response: Response): Promise<string> {
+  const { error, text } = await response.json().catch(() => ({}))
+  return text ?? error ?? `the server answers ${response.status}`
+}
+
+/** The events of a stream, as they come. */
+export async function* events(stream: ReadableStream<Uint8Array>): AsyncGenerator<{ name: string; data: string }> {
+  let rest = ''
+  for await (const part of stream.pipeThrough(new TextDecoderStream() as ReadableWritablePair<string, Uint8Array>)) {
+    const blocks = (rest + part).split('\n\n')
+    rest = blocks.pop()!
+    for (const block of blocks) {
+      const fields = new Map(block.split('\n').map((line) => line.split(/: ?(.*)/s, 2) as [string, string]))
+      yield { name: fields.get('event') ?? 'message', data: fields.get('data') ?? '' }
+    }
+  }
+}

@@ -1,0 +1,119 @@
+import { type ChildProcess, spawn } from 'node:child_process'
+import { copyFileSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs'
+import { tmpdir } from 'node:os'
+import { join } from 'node:path'
+import type { Browser, Page } from 'playwright-core'
+import { afterAll, afterEach, beforeAll, beforeEach, expect, inject, test } from 'vitest'
+import { launch, visit } from './browser'
+import { drawn } from './person'
+
+const { hardpoint, models } = inject('samples')
+const STUDIES = join(import.meta.dirname, '../../models/studies')
+const TOKEN = 'a-token-of-this-test'
+
+let browser: Browser
+let folder: string
+let file: string
+let text: string
+let server: ChildProcess | undefined
+
+/** Starts the studio; the address that it prints. */
+function start(port = 0): Promise<string> {
+  const options = ['--no-browser', '--token', TOKEN, '--port', String(port)]
+  const child = spawn(hardpoint, ['studio', 'strut.toml', ...options], { cwd: folder, stdio: ['ignore', 'pipe', 'inherit'] })
+  server = child
+  return new Promise((resolve) => child.stdout.once('data', (line) => resolve(String(line).trim())))
+}
+
+function stop(): Promise<void> {
+  const child = server
+  server = undefined
+  return new Promise((resolve) => (child ? (child.once('exit', () => resolve()), child.kill('SIGKILL')) : resolve()))
+}
+
+/** The page behind an address, and what has gone wrong in it besides requests that nobody answered. */
+async function open(address: string): Promise<Page> {
+  const page = await browser.newPage({ viewport: { width: 1400, height: 900 } })
+  page.setDefaultTimeout(0)
+  page.on('pageerror', (error) => faults.push(error.message))
+  page.on('request', (request) => new URL(request.url()).hostname === '127.0.0.1' || /^(data|blob):/.test(request.url()) || faults.push(request.url()))
+  await page.goto(address)
+  await page.waitForFunction(() => performance.getEntriesByName('ready').length > 0)
+  return page
+}
+const faults: string[] = []
+
+beforeAll(async () => {
+  browser = await launch()
+})
+afterAll(() => browser?.close())
+beforeEach(() => {
+  folder = mkdtempSync(join(tmpdir(), 'hardpoint-studio-'))
+  file = join(folder, 'strut.toml')
+  copyFileSync(join(STUDIES, 'strut_toe.toml'), file)
+  text = readFileSync(file, 'utf8')
+  faults.length = 0
+})
+afterEach(async () => {
+  await stop()
+  rmSync(folder, { recursive: true })
+  expect(faults).toEqual([])
+})
+
+test('a page from a file has nothing that only a server can do', async () => {
+  const { page, complaints } = await visit(browser, models.macpherson)
+  await drawn(page)
+  expect(await page.getByTestId('server').count()).toBe(0)
+  expect(complaints).toEqual([])
+  await page.context().close()
+})
+
+test('the token is not in the address, and the page knows its model and its cases', async () => {
+  const page = await open(await start())
+  expect(page.url()).not.toContain('token')
+  expect(await page.getByTestId('save').isDisabled()).toBe(true)
+  await page.getByTestId('case').selectOption('steer')
+  await page.waitForFunction(() => document.querySelector('[data-testid=title]')!.textContent!.includes('steer'))
+})
+
+test('what is found on this machine is taken, saved in place, and no news to the page', async () => {
+  const page = await open(await start())
+  await page.getByTestId('server-menu').click()
+  await page.getByTestId('study-optimize').click()
+  await page.getByRole('button', { name: 'Take the design' }).click()
+  await page.keyboard.press('Control+s')
+  await page.getByText('Saved').waitFor()
+  const saved = readFileSync(file, 'utf8')
+  expect(saved).not.toBe(text)
+  expect(saved.length).toBeGreaterThan(0.9 * text.length)
+  expect(await page.getByTestId('save').isDisabled()).toBe(true)
+  expect(await page.getByTestId('note-changed').count()).toBe(0)
+})
+
+test('a file that changed on disk is told: mine is kept and saved over it, or theirs is loaded', async () => {
+  const page = await open(await start())
+  const theirs = `${text}# theirs\n`
+  writeFileSync(file, theirs)
+  await page.getByRole('button', { name: 'Keep mine' }).click()
+  await page.locator('[data-testid=save]:enabled').click()
+  await page.getByText('Saved').waitFor()
+  expect(readFileSync(file, 'utf8')).toBe(text)
+
+  writeFileSync(file, theirs.replace('MacPherson', 'Other'))
+  await page.getByRole('button', { name: 'Reload' }).click()
+  await page.waitForFunction(() => document.querySelector('[data-testid=title]')?.textContent?.includes('Other'))
+})
+
+test('a server that was killed is missed, and found again when it is back', async () => {
+  const address = await start()
+  const page = await open(address)
+  await stop()
+  const note = page.getByTestId('note-server')
+  await note.waitFor()
+  expect(await note.innerText()).toContain('your changes are kept in the page')
+  expect(await note.innerText()).toContain(`--token ${TOKEN}`)
+  await start(Number(new URL(address).port))
+  await note.waitFor({ state: 'detached' })
+  writeFileSync(file, `${text}# theirs\n`)
+  await page.getByTestId('note-changed').waitFor()
+})
