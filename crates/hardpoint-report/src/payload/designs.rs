@@ -109,6 +109,11 @@ impl Compose<'_> {
     }
 }
 
+/// The other number; today's, where the two differ by round-off, and 0 where it is no more than that.
+fn same_or_other(round_off: f64, today: f64, other: f64) -> f64 {
+    settled(if (other - today).abs() <= round_off { today } else { other }, round_off)
+}
+
 struct Beside<'a> {
     today: &'a Compose<'a>,
     changed: &'a Changed<'a>,
@@ -136,8 +141,29 @@ impl Beside<'_> {
 
     /// The other design's number; today's, where the two differ by round-off, and 0 where it is no more than that.
     fn beside(&self, of: impl Into<Dimension>, order: usize, today: f64, other: f64) -> f64 {
-        let round_off = self.today.round_off.value(of.into(), order);
-        settled(if (other - today).abs() <= round_off { today } else { other }, round_off)
+        same_or_other(self.today.round_off.value(of.into(), order), today, other)
+    }
+
+    /// Per body that moves and output time that is shown, place, velocity and acceleration of its origin in the changed design.
+    fn origins(&self) -> Vec<Vec<[[f64; 3]; 3]>> {
+        let (units, solved) = (self.today.units, self.changed.solved());
+        let round_off = [0, 1, 2].map(|order| self.today.round_off.value(Dimension::LENGTH, order));
+        let at = |b: usize, k: usize| {
+            if k >= solved {
+                return [[f64::NAN; 3]; 3];
+            }
+            let [now, other] = [self.changed.today, self.changed.exact].map(|s| {
+                let state = s.body(k, BodyId(b));
+                [state.r, state.v, state.a].map(Vec3::to_array)
+            });
+            let shown = |order: usize, axis: usize| {
+                let found = same_or_other(round_off[order], now[order][axis], other[order][axis]);
+                units.from_si(Kind::Length, found)
+            };
+            [0, 1, 2].map(|order| [0, 1, 2].map(|axis| shown(order, axis)))
+        };
+        let bodies = if self.today.detail.origins { self.today.model.bodies.len() } else { 1 };
+        (1..bodies).map(|b| self.whole_steps().map(|k| at(b, k)).collect()).collect()
     }
 
     /// The curves of all quantities: those of the outputs, then x, y and z of every body's origin.
@@ -184,20 +210,18 @@ impl Beside<'_> {
         let (today, exact) = (changed.today, changed.exact);
         let output = |m: usize| {
             let output = &today.measured.outputs[m];
+            let round_off = [0, 1, 2].map(|order| self.today.round_off.value(output.dimension, order));
             let value = |k: usize, order: usize| {
                 let now = today.measured.value(k, m)[order];
                 let other = if order == 0 { changed.value(k, m) } else { exact.measured.value(k, m)[order] };
-                units.from_si(output.dimension, self.beside(output.dimension, order, now, other))
+                units.from_si(output.dimension, same_or_other(round_off[order], now, other))
             };
             Some(self.curves(output.known.orders, value))
         };
+        let origins = self.origins();
         let origin = |b: usize, axis: usize| {
-            let value = |k: usize, order: usize| {
-                let [now, other] = [today, exact].map(|s| s.body(k, BodyId(b)));
-                let [now, other] = [now, other].map(|s| [s.r, s.v, s.a][order].to_array()[axis]);
-                units.from_si(Kind::Length, self.beside(Kind::Length, order, now, other))
-            };
-            Some(self.curves(3, value))
+            let curve = |order: usize| origins[b - 1].iter().map(|at| at[order][axis]).collect();
+            Some(DesignCurves { value: curve(0), rate: curve(1), accel: curve(2) })
         };
         let margins = &exact.motion.margins;
         let found = metrics_beside(self.today.model, today, exact);
