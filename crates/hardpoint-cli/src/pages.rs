@@ -16,6 +16,9 @@ use hardpoint_report::summary::Summary;
 
 use crate::folder::{Folder, NotWritten, file_name};
 
+/// A page as HTML, with its case, where there are cases.
+pub type Page = (Option<String>, String);
+
 /// A study of several motions that has ended.
 pub trait Study {
     /// The model that was studied.
@@ -27,8 +30,8 @@ pub trait Study {
     /// The page of a motion; `None` where that does not move at all.
     fn page(&self, motion: usize) -> Option<String>;
 
-    /// All pages, each with its case, where there are cases.
-    fn pages(&self) -> impl Iterator<Item = (Option<String>, String)> {
+    /// All pages.
+    fn pages(&self) -> impl Iterator<Item = Page> {
         let case = |k| case_name(&self.file().model, self.number(k));
         (0..self.motions().analyses().len()).filter_map(move |k| Some((case(k), self.page(k)?)))
     }

@@ -19,7 +19,7 @@ use crate::folder::{Folder, NotWritten};
 use crate::journal::{Checksum, Fingerprint, Journal, NoJournal};
 use crate::long_table::{TableFormat, TableWriter};
 use crate::outcome::Outcome;
-use crate::pages::{Study, page, threads};
+use crate::pages::{Page, Study, page, threads};
 use crate::session::{Session, json_text};
 use crate::text;
 
@@ -57,7 +57,7 @@ pub fn for_page(
     session: &Session,
     file: &ModelFile,
     options: &Sweep,
-) -> Result<(SweepFacts, Vec<(Option<String>, String)>), Outcome> {
+) -> Result<(SweepFacts, Vec<Page>), Outcome> {
     swept(session, file, options, |results, _| {
         let (facts, plot) = results.facts(session, &results.tally(session)?)?;
         let pages = Pages { swept: results.swept, facts: &facts, plot: &plot }.pages().collect();

@@ -206,9 +206,9 @@ fn names_are_text_whatever_they_hold() {
         assert_eq!(page.title, name);
         assert!(page.quantities.iter().any(|q| q.name == name) && page.values.iter().any(|v| v.name == name));
         let html = html(&page).unwrap();
-        // The page's own three, whatever the model says.
-        assert_eq!(html.matches("<script").count(), 3, "{name}");
-        assert_eq!(html.matches("</script>").count(), 3, "{name}");
+        // The page's own four, whatever the model says.
+        assert_eq!(html.matches("<script").count(), 4, "{name}");
+        assert_eq!(html.matches("</script>").count(), 4, "{name}");
     }
 }
 

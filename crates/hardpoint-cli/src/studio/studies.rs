@@ -20,7 +20,7 @@ use tokio::sync::broadcast;
 use crate::args::Allocate;
 use crate::meter::Listener;
 use crate::outcome::Outcome;
-use crate::pages::Study as _;
+use crate::pages::{Page, Study as _};
 use crate::session::Session;
 use crate::{args, optimize, sweep, tolerance};
 
@@ -107,7 +107,7 @@ struct End {
     /// The model's text with the design found.
     text: Option<String>,
     tables: Vec<Table>,
-    pages: Vec<(Option<String>, String)>,
+    pages: Vec<Page>,
 }
 
 impl End {

@@ -501,6 +501,27 @@ fn a_search_tells_how_it_goes_and_gives_a_report_and_the_text_of_what_it_found()
 }
 
 #[test]
+fn a_sweep_leaves_its_designs_on_the_page_and_nothing_on_disk() {
+    let bench = slider();
+    let server = Server::start(&bench, &["slider.toml"]);
+    let mut events = server.events("");
+    let asked = serde_json::json!({
+        "what": "sweep", "file": "sweep.toml", "text": study_file("strut_sweep.toml"), "case": "bump", "options": { "samples": 16 },
+    });
+    assert_eq!(server.ask("POST", "/api/study", "", &asked.to_string()).status, 202);
+    let end = loop {
+        let event = events.next_of("study");
+        if event["state"] != "running" {
+            break event;
+        }
+    };
+    assert_eq!(end["state"], "done", "{end}");
+    let report = server.get(end["reports"][0]["link"].as_str().unwrap());
+    assert_eq!(payload(&bench, &report.body)["sweep"]["what"], "design");
+    assert_eq!(bench.list(""), ["slider.toml"]);
+}
+
+#[test]
 fn a_study_is_cancelled_with_what_it_has_found_and_no_more_than_two_go_on() {
     let bench = slider();
     let text = study_file("strut_tolerances.toml");
