@@ -45,6 +45,8 @@ export class Grips {
   #snap = 0
   #mirror?: { axis: number; partner: Map<string, Grip>; on: boolean }
   #fields: HTMLInputElement[] = []
+  /** Whether a field is being written in. */
+  #typing = false
   #size: number
   #pending?: PointerEvent
 
@@ -273,6 +275,7 @@ export class Grips {
         inputmode: 'decimal',
         'aria-label': `${axis} in ${length}`,
         'data-testid': `grip-${axis}`,
+        oninput: () => (this.#typing = true),
         onchange: () => this.#typed(k),
       }),
     )
@@ -291,6 +294,7 @@ export class Grips {
   }
 
   #typed(k: number): void {
+    this.#typing = false
     const chosen = this.#chosen
     const value = chosen && lengthOf(this.#fields[k].value, this.state.report.units.length)
     if (chosen && value !== undefined) {
@@ -320,7 +324,7 @@ export class Grips {
     if (!chosen) return
     const place = placeOf(chosen.grip, this.state.settings)
     this.#fields.forEach((field, k) => {
-      if (all || document.activeElement !== field) field.value = String(Number(place.getComponent(k).toPrecision(7)))
+      if (all || !this.#typing || document.activeElement !== field) field.value = String(Number(place.getComponent(k).toPrecision(7)))
       field.classList.toggle('changed', Math.abs(place.getComponent(k) - chosen.grip.place[k]) > 1e-9 * this.#size)
     })
     if (this.#mirrorField) this.#mirrorField.disabled = !this.#mirror!.partner.has(chosen.grip.name)

@@ -51,6 +51,8 @@ export class Studio {
   #hand = 0
   /** The text of the present design. */
   #text: string
+  /** A text that is being solved. */
+  #next?: string
   /** Counts what was asked for, so that an answer to what is no longer wanted is passed over. */
   #version = 0
 
@@ -78,7 +80,7 @@ export class Studio {
       { name: 'Tolerance', title: 'How exactly the design must be made', open: studyPane(() => tolerancePane(host), this) },
     ])
     const server = connect(document)
-    const own = { text: async () => this.#text, replace: (text: string) => void this.replace(text, 'from disk'), onChange: (listener: () => void) => this.onText(listener) }
+    const own = { text: () => this.#settled(), replace: (text: string) => void this.replace(text, 'from disk'), onChange: (listener: () => void) => this.onText(listener) }
     this.#tools.append(bar, this.#cases, ...this.#drawer.buttons, ...(server?.file ? [serverBar(server, own)] : []), this.#status)
     document.body.append(this.#drawer.element)
     slot(made.bar, this.#tools)
@@ -100,7 +102,9 @@ export class Studio {
   async replace(text: string, label: string): Promise<void> {
     if (text === this.#text) return
     this.history.go({ text, settings: [], label })
-    await this.#become({ ...this.model, text }, [])
+    const solved = this.#become({ ...this.model, text }, [])
+    this.#tell(text)
+    await solved
   }
 
   /** What can be exported besides what the report has. */
@@ -265,7 +269,7 @@ export class Studio {
   /** The text with the changes. */
   async #settled(): Promise<string> {
     const { settings } = this.state
-    if (settings.length === 0) return this.model.text
+    if (settings.length === 0) return this.#next ?? this.model.text
     return (await this.#drags.ask<Text>({ ask: 'text', change: settings })).json.text
   }
 
@@ -286,11 +290,13 @@ export class Studio {
   /** Shows another model, solved anew. */
   async #become(model: ModelText, settings: Setting[]): Promise<void> {
     this.#say('solving')
+    this.#next = model.text
     this.#version++
     this.#sensing.stop()
     try {
       const { json, decode } = await this.#sensing.ask<Payload>({ ask: 'page', model: { ...model, shown: null } })
       this.model = json.model ?? model
+      this.#next = undefined
       this.#show(read(json, decode))
       this.#tell(this.model.text)
       await this.#open()
