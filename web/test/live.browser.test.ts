@@ -1,14 +1,16 @@
 import { execFileSync } from 'node:child_process'
-import { mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs'
-import { tmpdir } from 'node:os'
+import { readFileSync, writeFileSync } from 'node:fs'
 import { join } from 'node:path'
 import type { Browser, Page } from 'playwright-core'
 import { afterAll, beforeAll, beforeEach, describe, expect, inject, test } from 'vitest'
+import { animation } from './animation'
 import { launch, visit, type Visit } from './browser'
 import { frames, slide } from './person'
 
 const { models, answers } = inject('samples')
 const MODELS = join(import.meta.dirname, '../../models')
+/** Where pictures for readers go, when the tests are asked to make them anew: `UPDATE_DOCS=1 npm test`. */
+const IMAGES = process.env.UPDATE_DOCS && join(import.meta.dirname, '../../docs/images')
 
 let browser: Browser
 let visited: Visit
@@ -162,9 +164,6 @@ describe('the model in the page', () => {
     const found = await toml()
     const comments = (text: string) => [...text.matchAll(/#.*/g)].map(([line]) => line)
     expect(comments(found)).toEqual(comments(original))
-    const folder = mkdtempSync(join(tmpdir(), 'hardpoint-live-'))
-    writeFileSync(join(folder, 'x.toml'), found)
-    rmSync(folder, { recursive: true })
   })
 
   test('is compared with a design that was kept', async () => {
@@ -242,3 +241,26 @@ async function openText(file: string): Promise<void> {
   await ready()
   await page.getByTestId('drawer-close').click()
 }
+
+test.skipIf(!IMAGES)('a hardpoint in the hand is the picture of the studio', async () => {
+  visited = await visit(browser, models.macpherson, { viewport: { width: 1280, height: 800 } })
+  page = visited.page
+  await ready()
+  await page.getByTestId('grips').click()
+  await page.getByTestId('quantity').first().selectOption({ label: 'toe' })
+  const { x, y } = (await grip('tie_rod_outer').boundingBox())!
+  const pictures: Buffer[] = []
+  await page.mouse.move(x + 9, y + 9)
+  await page.mouse.down()
+  const STEPS = 20
+  for (let k = 0; k < STEPS; k++) {
+    await page.mouse.move(x + 9, y + 9 - 26 * Math.sin((2 * Math.PI * k) / STEPS))
+    await frames(page, 6)
+    pictures.push(await page.screenshot())
+  }
+  await page.mouse.up()
+  const desk = await browser.newPage()
+  const made = await animation(desk, pictures, 110, 900)
+  expect(made.length, 'bytes of a picture that readers load').toBeLessThan(1_500_000)
+  writeFileSync(join(IMAGES!, 'studio.webp'), made)
+})

@@ -42,12 +42,12 @@ fn differences(file: &ModelFile, analysis: &Analysis<'_>, solution: &Solution) -
 }
 
 #[test]
-fn a_struts_page_weighs_two_megabytes_at_most_and_leaves_nothing_out() {
+fn a_struts_page_weighs_three_megabytes_with_its_engine_and_leaves_nothing_out() {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../models/macpherson.toml");
     let file = hardpoint_file::read(&path).unwrap();
     let (payload, report) = page(&file, true);
     let weight = report.len();
-    assert!(weight <= 2_200_000, "{weight}");
+    assert!(weight <= 3_200_000, "{weight}");
     assert_eq!(payload.times.values().len(), file.model.times.len());
     for variable in payload.variables.iter().filter(|v| !v.sensitivities.is_empty()) {
         assert_eq!(variable.shifts.len(), payload.bodies.len());
