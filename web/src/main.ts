@@ -18,4 +18,5 @@ requestAnimationFrame(() => requestAnimationFrame(async () => {
   performance.mark('ready')
   const module = payload.model ? await binary() : undefined
   if (module && payload.model) studio = new Studio(module, root, payload.model, state, made)
+  else root.dataset.engine = 'none'
 }))

@@ -35,8 +35,10 @@ export interface Visit {
   complaints: string[]
 }
 
-export async function visit(browser: Browser, url: string, options: BrowserContextOptions = {}): Promise<Visit> {
+/** `engine: false` is a browser that runs no WebAssembly: the page stays the report that it was made as. */
+export async function visit(browser: Browser, url: string, { engine = true, ...options }: BrowserContextOptions & { engine?: boolean } = {}): Promise<Visit> {
   const page = await browser.newPage({ viewport: { width: 1400, height: 900 }, ...options })
+  if (!engine) await page.addInitScript(() => Reflect.deleteProperty(globalThis, 'WebAssembly'))
   page.setDefaultTimeout(NO_LIMIT)
   const complaints: string[] = []
   page.on('console', (message) => complaints.push(`console: ${message.text()}`))
@@ -46,5 +48,7 @@ export async function visit(browser: Browser, url: string, options: BrowserConte
   page.on('request', (request) => own(request.url()) || complaints.push(`request: ${request.url()}`))
   await page.goto(url)
   await page.waitForFunction(() => performance.getEntriesByName('ready').length > 0)
+  // Harnesses of single parts have no engine to wait for.
+  await page.waitForFunction(() => !document.getElementById('engine') || document.getElementById('page')!.dataset.engine !== undefined)
   return { page, complaints }
 }

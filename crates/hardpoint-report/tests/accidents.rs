@@ -184,7 +184,7 @@ fn one_output_time_or_ten_thousand_are_a_page() {
 
 #[test]
 fn names_are_text_whatever_they_hold() {
-    /// The loader, the code, the data, the engine and the server's address.
+    /// The address of a server, the data, the engine, the code and its loader.
     const SCRIPTS: usize = 5;
     for name in [
         "a b",

@@ -57,8 +57,9 @@ export class Solver {
   }
 }
 
-/** The engine's binary that a page carries; none where it carries none. */
+/** The engine's binary that a page carries; none where it carries none, or the browser runs no WebAssembly. */
 export async function binary(): Promise<WebAssembly.Module | undefined> {
   const text = document.getElementById('engine')?.textContent?.trim()
-  return text ? WebAssembly.compile(await inflated(text)) : undefined
+  if (!text || typeof WebAssembly === 'undefined') return undefined
+  return WebAssembly.compile(await inflated(text)).catch(() => undefined)
 }

@@ -256,8 +256,8 @@ export class Studio {
         this.#sensing.stop()
         const found = await this.#sensing.ask<Payload>({ ask: 'page', model: { ...this.model, text } })
         const report = read(found.json, found.decode)
-        if (!same() || report.quantities.length !== state.report.quantities.length) return
-        state.sense(report, settings)
+        if (!same()) return
+        if (alike(report, state.report)) state.sense(report, settings)
       }
       this.#say('')
       this.root.dataset.settled = 'yes'
@@ -401,6 +401,12 @@ function named<T extends { name: string }>(list: readonly T[], wanted: T | undef
 /** The engine solves and draws nothing: bodies keep the shapes that the page has of them. */
 function keepMeshes(before: Report, after: Report): void {
   for (const body of after.bodies) body.mesh ??= before.bodies.find(({ name }) => name === body.name)?.mesh ?? null
+}
+
+/** Whether two reports have the same quantities and variables: the page of a what-if has variables that its text has not. */
+function alike(a: Report, b: Report): boolean {
+  const same = (a: readonly { name: string }[], b: readonly { name: string }[]) => a.length === b.length && a.every(({ name }, k) => name === b[k].name)
+  return same(a.quantities, b.quantities) && same(a.variables, b.variables)
 }
 
 function words(error: unknown): string {

@@ -356,7 +356,8 @@ impl Beside<'_> {
 
     /// The hardpoints of the changed design in its bodies' frames, in the order of today's.
     fn skeletons(&self, bodies: &[BodyTrack]) -> Vec<Vec<[f64; 3]>> {
-        let model = self.today.model;
+        // A page that shows no variables is asked for designs all the same.
+        let model = self.today.analysis.model();
         let same = self.today.units.from_si(Kind::Length, SAME * model.size());
         let mut moved: Vec<Vec<[Vec3; 2]>> = vec![Vec::new(); model.bodies.len()];
         let [today, changed] = [&[][..], self.changed.change].map(|design| model.geometry(design));

@@ -74,6 +74,33 @@ fn solved(text: &str, model: &Value) -> Vec<(f64, Vec<f64>)> {
 }
 
 #[test]
+fn hardpoints_are_drawn_where_the_changes_put_them() {
+    let (model, mut engine) = (named("macpherson.toml"), Engine::default());
+    ask(&mut engine, json!({ "ask": "open", "model": model }));
+    let change = json!([{ "name": "tie_rod_outer_z", "by": 20.0 }, { "name": "strut_top.x", "by": -8.0 }]);
+    let design = ask(&mut engine, json!({ "ask": "design", "change": change, "from": null }));
+    let text = ask(&mut engine, json!({ "ask": "text", "change": change }))["text"].clone();
+    let mut edited = model.clone();
+    edited["text"] = text;
+    let [page, before] = [&edited, &model].map(|m| ask(&mut engine, json!({ "ask": "page", "model": m })));
+    let skeletons = |bodies: &Value| -> Vec<Value> {
+        bodies.as_array().unwrap().iter().map(|body| body["skeleton"].clone()).collect()
+    };
+    let found = design["design"]["skeletons"].as_array().unwrap();
+    let expected = skeletons(&page["bodies"]);
+    assert_ne!(expected, skeletons(&before["bodies"]));
+    let numbers = |skeleton: &Value| -> Vec<f64> {
+        let points = skeleton.as_array().unwrap().iter();
+        points.flat_map(|p| p.as_array().unwrap()).map(|x| x.as_f64().unwrap()).collect()
+    };
+    for (found, expected) in found.iter().zip(&expected) {
+        for (a, b) in numbers(found).into_iter().zip(numbers(expected)) {
+            assert!((a - b).abs() < SAME * 1000.0, "{found} {expected}");
+        }
+    }
+}
+
+#[test]
 fn a_design_is_that_of_the_text_with_its_changes() {
     let mut moved = 0;
     for path in models() {
