@@ -129,6 +129,7 @@ impl<'a> Search<'a> {
             progress: &mut progress,
             more: &|| session.go_on() == ControlFlow::Continue(()),
             threads: threads(most_threads),
+            first: 0,
         };
         let found = optimize(model, motions, asked, searching);
         let mut facts = OptimizeFacts::of(file, asked, &found);

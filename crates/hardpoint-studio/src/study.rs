@@ -80,7 +80,8 @@ pub(crate) fn optimized(
         };
         tell(&told)
     };
-    let searching = Searching { progress: &mut progress, more: &|| true, threads: NonZero::<usize>::MIN };
+    let searching =
+        Searching { progress: &mut progress, more: &|| true, threads: NonZero::<usize>::MIN, first: 0 };
     let found = optimize(&file.model, &motions, &asked, searching);
     let facts = OptimizeFacts::of(&file, &asked, &found);
     let best = found.best.and_then(|k| found.searches[k].found.as_ref());

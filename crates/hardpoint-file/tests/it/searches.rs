@@ -22,7 +22,12 @@ fn searched_on(threads: usize, file: &ModelFile, asked: &Optimization) -> Optimi
     let motions = Motions::of(&models, Formulation::Relative).unwrap();
     let mut progress = |_: usize, _: Progress<'_>| ControlFlow::Continue(());
     let threads = NonZero::new(threads).unwrap();
-    optimize(&file.model, &motions, asked, Searching { progress: &mut progress, more: &|| true, threads })
+    optimize(
+        &file.model,
+        &motions,
+        asked,
+        Searching { progress: &mut progress, more: &|| true, threads, first: 0 },
+    )
 }
 
 fn searched(file: &ModelFile, asked: &Optimization) -> Optimized {
@@ -91,7 +96,7 @@ fn a_search_that_is_interrupted_keeps_the_best_so_far() {
         if told < 4 { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
     };
     let threads = NonZero::<usize>::MIN;
-    let searching = Searching { progress: &mut progress, more: &|| true, threads };
+    let searching = Searching { progress: &mut progress, more: &|| true, threads, first: 0 };
     let asked = Optimization { starts: 3, ..asked(&file) };
     let found = optimize(&file.model, &motions, &asked, searching);
     assert!(found.searches.iter().all(|s| s.status == Status::Interrupted));

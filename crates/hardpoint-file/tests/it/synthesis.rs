@@ -46,6 +46,7 @@ fn search(file: &ModelFile, asked: &Optimization) -> Optimized {
         progress: &mut |_, _| ControlFlow::Continue(()),
         more: &|| true,
         threads: NonZero::<usize>::MIN,
+        first: 0,
     };
     optimize(&file.model, &motions, asked, searching)
 }

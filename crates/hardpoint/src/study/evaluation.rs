@@ -3,7 +3,7 @@
 use std::fmt;
 use std::ops::ControlFlow;
 
-use crate::model::Model;
+use crate::model::{Held, Model};
 use crate::motion::{Stop, StopKind};
 use crate::run::{Analysis, Run, Solution};
 use crate::topology::{Formulation, TopologyFault};
@@ -66,9 +66,12 @@ impl<'m> Motions<'m> {
     ///
     /// # Errors
     /// The motion that cannot be driven, and why.
-    pub fn of(motions: &'m [Model], formulation: Formulation) -> Result<Self, (usize, TopologyFault)> {
+    pub fn of<M: Into<Held<'m>>>(
+        motions: impl IntoIterator<Item = M>,
+        formulation: Formulation,
+    ) -> Result<Self, (usize, TopologyFault)> {
         let plan = |(k, model)| Analysis::with(model, formulation).map_err(|fault| (k, fault));
-        Ok(Self { analyses: motions.iter().enumerate().map(plan).collect::<Result<_, _>>()? })
+        Ok(Self { analyses: motions.into_iter().enumerate().map(plan).collect::<Result<_, _>>()? })
     }
 
     /// Their analyses, in order.
@@ -116,6 +119,12 @@ impl<'m> Motions<'m> {
             found.solutions.push(solution);
         }
         Ok(found)
+    }
+}
+
+impl<'m> From<Vec<Analysis<'m>>> for Motions<'m> {
+    fn from(analyses: Vec<Analysis<'m>>) -> Self {
+        Self { analyses }
     }
 }
 

@@ -49,7 +49,7 @@ pub use sweep::{
 pub use tolerance::{
     Allocated, Allocation, Band, CurveBands, Examination, Extreme, Failure, Impossible, LimitYield,
     MetricSpread, MonteCarlo, NONLINEAR, SampledCurve, SampledMetric, SecondOrder, Stage, ToleranceFailure,
-    Tolerated, Yield, tolerance,
+    Tolerated, Yield, tolerance, toleranced_designs,
 };
 pub use validity::{Validity, validity};
 pub use verify::{CheckOutcome, PASS, PASS_ONE_SIDED, Verification, VerifiedValue, VerifyOptions, verify};

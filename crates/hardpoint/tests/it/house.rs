@@ -25,7 +25,7 @@ const ROOMS: [&str; 17] = [
 ];
 
 /// Which of our own crates each crate may depend on.
-const CRATES: [(&str, &[&str]); 10] = [
+const CRATES: [(&str, &[&str]); 11] = [
     ("hardpoint-tape", &[]),
     ("hardpoint-code", &["hardpoint-tape"]),
     ("hardpoint", &["hardpoint-tape", "hardpoint-code"]),
@@ -33,6 +33,7 @@ const CRATES: [(&str, &[&str]); 10] = [
     ("hardpoint-report", &["hardpoint", "hardpoint-file"]),
     ("hardpoint-cli", &["hardpoint", "hardpoint-file", "hardpoint-report"]),
     ("hardpoint-bench", &["hardpoint", "hardpoint-file"]),
+    ("hardpoint-python", &["hardpoint", "hardpoint-file", "hardpoint-report"]),
     ("hardpoint-studio", &["hardpoint", "hardpoint-file", "hardpoint-report"]),
     ("hardpoint-wasm", &["hardpoint-studio"]),
     ("web-time", &[]),

@@ -54,7 +54,7 @@ pub struct Optimized {
     pub drawn: Option<Judged>,
     /// Why not.
     pub drawn_refused: Option<Refused>,
-    /// The searches, one per start, in order; the first starts from the design as drawn.
+    /// The searches, one per start, in order; that of number 0 starts from the design as drawn.
     pub searches: Vec<Search>,
     /// The best of them, by its place there: of those that keep all limits the one with the least objective, of others the one that
     /// exceeds them least. `None` where none could start.
@@ -164,6 +164,8 @@ pub struct Searching<'w> {
     pub more: &'w (dyn Fn() -> bool + Sync),
     /// Searches run on so many threads; what they find does not depend on it.
     pub threads: NonZero<usize>,
+    /// The number of the first start: 0 is the design as drawn. Searches from other numbers can be done elsewhere.
+    pub first: usize,
 }
 
 /// Searches for the design that serves the goals best.
@@ -176,13 +178,13 @@ pub fn optimize(
     searching: Searching<'_>,
 ) -> Optimized {
     let problem = Problem::new(model, motions, asked);
-    let Searching { progress, more, threads } = searching;
+    let Searching { progress, more, threads, first } = searching;
     let mut cost = Cost::default();
     let (drawn, drawn_refused) = match problem.at(vec![0.0; model.variables.len()], &mut cost, more) {
         Ok(point) => (Some(judged(&problem, &point, &limit_scales(&problem, &point))), None),
         Err(refusal) => (None, Some(refused(vec![0.0; model.variables.len()], refusal))),
     };
-    let starts: Vec<Vec<f64>> = (0..asked.starts.max(1)).map(|k| start(&problem, k)).collect();
+    let starts: Vec<Vec<f64>> = (0..asked.starts.max(1)).map(|k| start(&problem, first + k)).collect();
     let (next, ended) = (AtomicUsize::new(0), std::sync::atomic::AtomicBool::new(false));
     let progress = Mutex::new(progress);
     let searches = Mutex::new(starts.iter().map(|_| None).collect::<Vec<Option<Search>>>());

@@ -129,6 +129,17 @@ impl Examination {
     }
 }
 
+/// The designs that are drawn within tolerances, by their numbers: all variables, in SI. Those that are left out stay as drawn.
+pub fn toleranced_designs(
+    model: &Model,
+    asked: &Tolerancing,
+    left_out: &[VariableId],
+) -> impl Fn(usize) -> Vec<f64> + use<> {
+    let (deviations, seed, variables) =
+        (Deviations::new(model, asked, left_out), asked.seed, model.variables.len());
+    move |number| deviations.design(variables, &deviations.drawn(seed, number))
+}
+
 /// Why nothing can be said.
 #[derive(Clone, Debug)]
 pub enum ToleranceFailure {
@@ -354,7 +365,7 @@ impl Study<'_> {
         let second = hessian.map(|h| self.deviations.second_order(&d, h));
         let worst = [-1.0, 1.0].map(|sign| {
             let mut extreme = worst::extreme(self.deviations, nominal, &d, hessian, sign);
-            let design = self.deviations.design(self.model, &extreme.deviations);
+            let design = self.deviations.design(self.model.variables.len(), &extreme.deviations);
             let analysis = &self.motions.analyses()[one.motion];
             let solution = analysis.solve(Run::new().at(&design).without_sensitivities());
             *cost += Cost { designs: 1, motions: 1, steps: solution.motion.len() };

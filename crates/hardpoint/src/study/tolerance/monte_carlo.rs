@@ -159,7 +159,8 @@ impl Study<'_> {
         more: &(dyn Fn() -> bool + Sync),
     ) -> MonteCarlo {
         let (seed, asked) = (self.asked.seed, self.asked.samples);
-        let design = |number: usize| deviations.design(self.model, &deviations.drawn(seed, number));
+        let design =
+            |number: usize| deviations.design(self.model.variables.len(), &deviations.drawn(seed, number));
         let places: Vec<usize> = found.metrics.iter().map(|m| self.place(m)).collect();
         let see = |block: &mut Block, number: usize, motion: usize, solution: &Solution| {
             block.metrics.resize(found.metrics.len(), Vec::new());

@@ -1,0 +1,86 @@
+"""Many designs, solved at once."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from .errors import Diagnostic, UsageError, diagnostics, unknown
+
+if TYPE_CHECKING:
+    from .model import Model
+
+
+class Designs:
+    """What was kept of many designs. Where a design cannot be moved to its end (`stops`), and by variables that the mechanism cannot
+    follow, numbers are NaN."""
+
+    def __init__(self, model: Model, case: int, rows: np.ndarray, outputs: list[str], order: int, at: np.ndarray, found: dict, with_d: bool):
+        self.model = model
+        self._with_d = with_d
+        self.variables: tuple[str, ...] = tuple(model.variables)
+        drawn = np.array([v.drawn for v in model.variables.values()])
+        self.designs: np.ndarray = np.where(np.isnan(rows), drawn, rows)
+        """`[design, variable]`: the value of every design variable."""
+        self.outputs: tuple[str, ...] = tuple(outputs)
+        self.order = order
+        self.times: np.ndarray = np.array(model._info["motions"][case]["times"])[at]
+        """The output times that were kept, s."""
+        self.values: np.ndarray = found["values"]
+        """`[design, output, time]`."""
+        self._sensitivities: np.ndarray = found["sensitivities"]
+        self.metric_names: tuple[str, ...] = tuple(m["name"] for m in model._info["motions"][case]["metrics"])
+        self.metrics: np.ndarray = found["metrics"]
+        """`[design, metric]`."""
+        self._metric_sensitivities: np.ndarray = found["metric_sensitivities"]
+        self.stops: dict[int, Diagnostic] = {number: diagnostics(why)[0] for number, why in found["stops"]}
+        """Designs whose motion ends early, and why."""
+
+    @property
+    def sensitivities(self) -> np.ndarray:
+        """`[design, output, variable, time]`."""
+        return self._asked(self._sensitivities)
+
+    @property
+    def metric_sensitivities(self) -> np.ndarray:
+        """`[design, metric, variable]`."""
+        return self._asked(self._metric_sensitivities)
+
+    def _asked(self, array: np.ndarray) -> np.ndarray:
+        if not self._with_d:
+            raise UsageError.saying("the designs were asked for no sensitivities; leave `sensitivities=False` out")
+        return array
+
+    def __len__(self) -> int:
+        return len(self.designs)
+
+    def __repr__(self) -> str:
+        stopped = f", {len(self.stops)} of them stopped" if self.stops else ""
+        return f"<hardpoint.Designs of {self.model.name!r}: {len(self)}{stopped}>"
+
+    def metric(self, name: str) -> np.ndarray:
+        """A metric of all designs."""
+        if name not in self.metric_names:
+            raise unknown("metric", name, self.metric_names)
+        return self.metrics[:, self.metric_names.index(name)]
+
+    def to_xarray(self):
+        """All of it, with labels."""
+        import xarray
+
+        data = {"values": (("design", "output", "time"), self.values), "metrics": (("design", "metric"), self.metrics)}
+        if self._with_d:
+            data["sensitivities"] = (("design", "output", "variable", "time"), self._sensitivities)
+            data["metric_sensitivities"] = (("design", "metric", "variable"), self._metric_sensitivities)
+        names = {"output": list(self.outputs), "metric": list(self.metric_names), "variable": list(self.variables)}
+        data["designs"] = (("design", "variable"), self.designs)
+        return xarray.Dataset(data, {**names, "time": self.times})
+
+    def to_pandas(self):
+        """Variables and metrics, a row for each design."""
+        import pandas
+
+        columns = dict(zip(self.variables, self.designs.T))
+        columns.update(zip(self.metric_names, self.metrics.T))
+        return pandas.DataFrame(columns)

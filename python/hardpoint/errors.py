@@ -1,0 +1,121 @@
+"""What can go wrong: one class for each kind, all of them with the diagnostics of the command line."""
+
+from __future__ import annotations
+
+import json
+import re
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from .run import Run
+
+
+@dataclass(frozen=True)
+class Diagnostic:
+    """One finding of the engine."""
+
+    severity: str
+    """`error`, `warning` or `note`."""
+    code: str | None
+    """Its code, `HP0501`; docs/diagnostics.md lists them all."""
+    message: str
+    element: str | None
+    """The name of the element that it is about."""
+    file: str | None
+    line: int | None
+    column: int | None
+    notes: tuple[str, ...]
+    help: str | None
+    """What to do about it."""
+    rendered: str
+    """As the command line shows it, with its place in the text."""
+
+    @classmethod
+    def of(cls, found: dict) -> Diagnostic:
+        named = re.search(r"`([^`]+)`", found["message"])
+        element = found.get("element") or (named and named[1])
+        return cls(**{**found, "element": element, "notes": tuple(found["notes"])})
+
+
+def _plain(message: str) -> dict:
+    nothing = dict.fromkeys(("code", "file", "line", "column", "help"))
+    return {**nothing, "severity": "error", "message": message, "notes": (), "rendered": f"error: {message}"}
+
+
+def diagnostics(text: str) -> tuple[Diagnostic, ...]:
+    """Those of a JSON text, one or a list."""
+    found = json.loads(text)
+    return tuple(Diagnostic.of(one) for one in (found if isinstance(found, list) else [found]))
+
+
+class HardpointError(Exception):
+    """Anything that the engine refuses. `code`, `element`, `file`, `line`, `column`, `help` and `rendered` are those of the first of
+    its `diagnostics`."""
+
+    diagnostics: tuple[Diagnostic, ...]
+
+    def __init__(self, found: tuple[Diagnostic, ...]):
+        super().__init__("\n".join(one.rendered or one.message for one in found if one.rendered) or found[0].message)
+        self.diagnostics = tuple(found)
+
+    @classmethod
+    def of(cls, text: str):
+        return cls(diagnostics(text))
+
+    @classmethod
+    def saying(cls, message: str):
+        return cls((Diagnostic.of(_plain(message)),))
+
+    def __reduce__(self):
+        return type(self), (self.diagnostics,)
+
+    def __getattr__(self, name: str):
+        if name in ("code", "element", "file", "line", "column", "help", "rendered", "message"):
+            return getattr(self.diagnostics[0], name)
+        raise AttributeError(name)
+
+
+class ModelError(HardpointError):
+    """The file cannot be read, or the text is no valid model."""
+
+
+class TopologyError(HardpointError):
+    """The mechanism cannot be driven: too few or too many drivers, or constraints that contradict each other."""
+
+
+class MotionStopped(HardpointError):
+    """A motion ends before its last output time: it locks, cannot be assembled, leaves its laws. `run` has what was solved."""
+
+    run: Run | None = None
+
+
+class CannotFollow(HardpointError):
+    """The mechanism cannot follow a design variable: redundant constraints would contradict each other, so there is no sensitivity."""
+
+
+class StudyError(HardpointError):
+    """A study cannot be done."""
+
+
+class UsageError(HardpointError, ValueError):
+    """What was asked makes no sense: a name that does not exist, an array of the wrong shape."""
+
+
+class HardpointWarning(UserWarning):
+    """What the engine has to tell although nothing is wrong."""
+
+
+def unknown(what: str, name: str, known) -> UsageError:
+    """A name that does not exist, with the nearest one that does."""
+    from difflib import get_close_matches
+
+    known = list(known)
+    near = get_close_matches(str(name), known, 1)
+    if near:
+        help = f"did you mean `{near[0]}`?"
+    elif known:
+        help = "there are " + ", ".join(f"`{one}`" for one in known[:12]) + (", ..." if len(known) > 12 else "")
+    else:
+        help = "the model has none"
+    return UsageError.saying(f"there is no {what} named `{name}`; {help}")

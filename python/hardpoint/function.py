@@ -1,0 +1,182 @@
+"""A mechanism as a function of its design, with exact derivatives: what optimisers and other programs take."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+import numpy as np
+
+from .errors import CannotFollow, StudyError, UsageError, unknown
+from .model import Model
+
+
+STEP = 1e-5
+"""Of differences, as a part of the size of the mechanism or of a radian: the cube root of round-off."""
+
+
+@dataclass(frozen=True)
+class Part:
+    """One of the things that a function comes to."""
+
+    name: str
+    """`toe`, or `bump.toe` of a model with cases."""
+    case: int
+    of: str
+    is_metric: bool
+    unit: str
+    place: slice
+    """Its numbers among those of the function."""
+
+
+class Function:
+    """Metrics and curves of a mechanism, one after the other, as a function of the values of some design variables.
+
+        >>> f = hardpoint.Function(model, ["tie_rod_outer_y", "tie_rod_outer_z"], ["toe"])
+        >>> scipy.optimize.least_squares(lambda x: f(x) - wanted, f.start, jac=f.jacobian, bounds=f.bounds)
+
+    `of` names metrics (a number each) and measures or point coordinates (a number for each output time); of a model with cases,
+    `case.name`, or a name alone for all cases that have it. A function remembers its last design, so that value and derivatives of the
+    same design are solved once.
+
+    Raises `MotionStopped` where a design does not move to its end, `CannotFollow` by a variable that the mechanism cannot follow,
+    `StudyError` where a metric has no number.
+    """
+
+    def __init__(self, model: Model, variables: Iterable[str] | None = None, of: str | Iterable[str] | None = None):
+        self.model = model
+        chosen = [v.name for v in model.variables.values() if v.bounds] if variables is None else list(variables)
+        if not chosen:
+            raise UsageError.saying("the model has no design variables with bounds; name the variables")
+        self.variables: tuple[str, ...] = tuple(chosen)
+        self._columns = [model._variable(name) for name in chosen]
+        cases = [model._case or 0] if model._case is not None or not model.cases else list(range(len(model.cases)))
+        self._names = {k: model.cases[k] if model.cases else None for k in cases}
+        metrics = {k: model.metrics(self._names[k]) for k in cases}
+        wanted = [m for k in cases for m in self._known(k, metrics[k])] if of is None else [of] if isinstance(of, str) else list(of)
+        self.parts: tuple[Part, ...] = tuple(self._parts(wanted, cases, metrics))
+        self.size: int = self.parts[-1].place.stop if self.parts else 0
+        if not self.parts:
+            raise UsageError.saying("the model has no metrics; name measures")
+        self._last: tuple[bytes, bool, np.ndarray, np.ndarray | None] | None = None
+
+    def _known(self, case: int, metrics: dict[str, str]) -> list[str]:
+        return [self._title(case, name) for name in metrics]
+
+    def _title(self, case: int, name: str) -> str:
+        return f"{self._names[case]}.{name}" if self._names[case] is not None and len(self._names) > 1 else name
+
+    def _parts(self, wanted, cases, metrics):
+        first = 0
+        known = [self._title(k, name) for k in cases for name in [*metrics[k], *self.model.outputs]]
+        for asked in wanted:
+            found = False
+            for k in cases:
+                for name, unit in [*metrics[k].items(), *((o.name, o.units[0]) for o in self.model.outputs.values())]:
+                    if asked not in (name, self._title(k, name)):
+                        continue
+                    is_metric = name in metrics[k]
+                    size = 1 if is_metric else len(self.model._info["motions"][k]["times"])
+                    yield Part(self._title(k, name), k, name, is_metric, unit, slice(first, first + size))
+                    first, found = first + size, True
+                    break
+            if not found:
+                raise unknown("metric or measure", asked, known)
+
+    @property
+    def start(self) -> np.ndarray:
+        """The values of the variables as drawn."""
+        return np.array([self.model.variables[name].drawn for name in self.variables])
+
+    @property
+    def bounds(self) -> tuple[np.ndarray, np.ndarray]:
+        """Least and greatest values, infinite where the model has none."""
+        bounds = [self.model.variables[name].bounds or (-np.inf, np.inf) for name in self.variables]
+        return np.array([b[0] for b in bounds]), np.array([b[1] for b in bounds])
+
+    @property
+    def steps(self) -> np.ndarray:
+        """Changes of the variables that central differences are well taken with: round-off and curvature are both small."""
+        places = np.array(list(self.model.hardpoints.values()) or [[0.0], [1.0]])
+        size = float((places.max(axis=0) - places.min(axis=0)).max()) or 1.0
+        radian = 1.0 if self.model.units["angle"] == "rad" else 180 / np.pi
+        kinds = {self.model.units["length"]: size, self.model.units["angle"]: radian}
+        return np.array([STEP * kinds.get(self.model.variables[name].unit, 1.0) for name in self.variables])
+
+    def design(self, x) -> dict[str, float]:
+        """The design of these values."""
+        return dict(zip(self.variables, np.asarray(x, dtype=float).ravel()))
+
+    def __call__(self, x) -> np.ndarray:
+        """All numbers, `[size]`."""
+        return self._solved(x, False)[0].copy()
+
+    def jacobian(self, x) -> np.ndarray:
+        """Their derivatives, `[size, variable]`."""
+        return self._solved(x, True)[1].copy()
+
+    def value(self, x) -> float:
+        """Of a function of one number, that."""
+        return float(self._one(self(x))[0])
+
+    def gradient(self, x) -> np.ndarray:
+        """Of a function of one number, its gradient."""
+        return self._one(self.jacobian(x))[0]
+
+    def _one(self, found: np.ndarray) -> np.ndarray:
+        if self.size != 1:
+            raise UsageError.saying(f"the function has {self.size} numbers; name one metric for a value and its gradient")
+        return found
+
+    def part(self, name: str, numbers: np.ndarray) -> np.ndarray:
+        """The numbers of one of its parts."""
+        for part in self.parts:
+            if part.name == name:
+                return numbers[part.place]
+        raise unknown("part", name, [part.name for part in self.parts])
+
+    def _solved(self, x, derivatives: bool) -> tuple[np.ndarray, np.ndarray | None]:
+        x = np.ascontiguousarray(x, dtype=float).ravel()
+        if x.shape != (len(self.variables),) or not np.isfinite(x).all():
+            raise UsageError.saying(f"the function takes {len(self.variables)} finite numbers, one for each variable; given are {x.shape}")
+        key = x.tobytes()
+        if self._last and self._last[0] == key and (self._last[1] or not derivatives):
+            return self._last[2], self._last[3]
+        values = np.empty(self.size)
+        jacobian = np.empty((self.size, len(self.variables))) if derivatives else None
+        design = np.full(len(self.model.variables), np.nan)
+        design[self._columns] = x
+        for case in {part.case for part in self.parts}:
+            parts = [part for part in self.parts if part.case == case]
+            curves = [part for part in parts if not part.is_metric]
+            found = self.model.designs(
+                design[None],
+                [part.of for part in curves],
+                case=self._names[case],
+                sensitivities=derivatives,
+                metrics=any(part.is_metric for part in parts),
+                workers=1,
+            )
+            for part in parts:
+                if part.is_metric:
+                    k = found.metric_names.index(part.of)
+                    values[part.place] = found.metrics[0, k]
+                    if derivatives:
+                        jacobian[part.place] = found.metric_sensitivities[0, k][self._columns]
+                else:
+                    k = curves.index(part)
+                    values[part.place] = found.values[0, k]
+                    if derivatives:
+                        jacobian[part.place] = found.sensitivities[0, k][self._columns].T
+                self._check(part, values, jacobian)
+        self._last = (key, derivatives, values, jacobian)
+        return values, jacobian
+
+    def _check(self, part: Part, values: np.ndarray, jacobian: np.ndarray | None) -> None:
+        if np.isnan(values[part.place]).any():
+            raise StudyError.saying(f"`{part.name}` has no number in this design" + ("" if part.is_metric else " at some output times"))
+        if jacobian is None:
+            return
+        for column, name in enumerate(self.variables):
+            if np.isnan(jacobian[part.place, column]).any():
+                raise CannotFollow.saying(f"there is no derivative of `{part.name}` by `{name}`: the mechanism cannot follow it")

@@ -1,0 +1,446 @@
+"""Models: read, parsed, or built in code."""
+
+from __future__ import annotations
+
+import json
+import os
+import warnings
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from functools import lru_cache
+from typing import TYPE_CHECKING, Any, Union
+
+import numpy as np
+
+from . import _native, display, files
+from .designs import Designs
+from .errors import Diagnostic, HardpointWarning, MotionStopped, UsageError, unknown
+from .run import Run
+from .studies import Study, SweepResult, outcome
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike
+
+Design = Union[Mapping[str, float], "ArrayLike", None]
+"""A design: values by the names of design variables, or all of them in order. What is left out, and NaN, stays as drawn."""
+Progress = Union[Callable[[int, int], Any], bool, None]
+"""Is told how much is done of how much; `True` writes it to the standard error."""
+
+ORDERS = {0: 0, 1: 1, 2: 2, "value": 0, "rate": 1, "acceleration": 2}
+
+
+@dataclass(frozen=True)
+class Variable:
+    """A design variable. Of a parameter its value is the parameter's own, of all others it is a change: zero as drawn."""
+
+    name: str
+    unit: str
+    drawn: float
+    """Its value as drawn."""
+    bounds: tuple[float, float] | None
+    """Between which values it may lie."""
+    typical: float | None
+    """How large a change of it is usual."""
+    tolerance: float | None
+    """By how much it may be off when it is made, either way."""
+    is_parameter: bool
+
+
+@dataclass(frozen=True)
+class Output:
+    """A measure, or a coordinate of a point, that is solved at every output time."""
+
+    name: str
+    kind: str
+    """`measure` or `point`."""
+    columns: tuple[str, ...]
+    """The names of value, rate and acceleration, as many as are known."""
+    units: tuple[str, ...]
+    """Their units."""
+    by_position: bool
+    """Whether it follows from the position alone: then it has second derivatives by the design."""
+
+
+class Model:
+    """A mechanism that has been read, checked and planned.
+
+    A model never changes; all methods may be called from several threads at once, and long ones leave the interpreter free.
+    Models pickle. A model with cases is asked for one of them, `model.case("bump").run()` or `model.run(case="bump")`; studies take
+    all of them.
+    """
+
+    def __init__(self, native: _native.Model, case: int | None = None, variables: tuple[bool, bool] = (False, False)):
+        self._native = native
+        self._case = case
+        self._added = variables
+        info = self._info = json.loads(native.info())
+        self.name: str = info["name"]
+        self.description: str | None = info["description"]
+        self.units: dict[str, str] = {"length": info["length"], "angle": info["angle"], "time": "s"}
+        self.bodies: tuple[str, ...] = tuple(info["bodies"])
+        self.joints: tuple[dict, ...] = tuple(info["joints"])
+        self.drivers: tuple[dict, ...] = tuple(info["drivers"])
+        self.hardpoints: dict[str, np.ndarray] = {h["name"]: np.array(h["place"]) for h in info["hardpoints"]}
+        self.variables: dict[str, Variable] = {
+            v["name"]: Variable(**{**v, "bounds": v["bounds"] and tuple(v["bounds"])}) for v in info["variables"]
+        }
+        self.outputs: dict[str, Output] = {
+            o["name"]: Output(**{**o, "columns": tuple(o["columns"]), "units": tuple(o["units"])}) for o in info["outputs"]
+        }
+        self.cases: tuple[str, ...] = tuple(m["case"] for m in info["motions"] if m["case"] is not None)
+        self.grids: tuple[str, ...] = tuple(info["grids"])
+        self.remarks: tuple[Diagnostic, ...] = tuple(Diagnostic.of(d) for d in info["remarks"])
+        self._variable_index = {name: k for k, name in enumerate(self.variables)}
+        self._output_index = {name: k for k, name in enumerate(self.outputs)}
+
+    # What it is
+
+    @property
+    def text(self) -> str:
+        """The text of the model file."""
+        return self._native.text
+
+    @property
+    def file(self) -> str:
+        """The name of the model file."""
+        return self._native.file
+
+    @property
+    def measures(self) -> tuple[str, ...]:
+        """The names of the measures."""
+        return tuple(o.name for o in self.outputs.values() if o.kind == "measure")
+
+    def times(self, case: str | None = None) -> np.ndarray:
+        """The output times of a case, s."""
+        return np.array(self._info["motions"][self._index(case)]["times"])
+
+    def metrics(self, case: str | None = None) -> dict[str, str]:
+        """The metrics of a case, with their units."""
+        return {m["name"]: m["unit"] for m in self._info["motions"][self._index(case)]["metrics"]}
+
+    def case(self, name: str) -> Model:
+        """The model in one of its cases."""
+        return Model(self._native, self._named(name), self._added)
+
+    def with_coordinates(self, tilts: bool = False) -> Model:
+        """The model with a design variable for every coordinate of its hardpoints (`A.x`), and with `tilts` for every tilt of the axes of
+        its joints (`hinge.tilt_x`), besides its own."""
+        return Model(self._native.with_variables(True, tilts), self._case, (True, tilts or self._added[1]))
+
+    def __repr__(self) -> str:
+        case = f", case {self.cases[self._case]!r}" if self._case is not None and self.cases else ""
+        return f"<hardpoint.Model {self.name!r}{case}: {len(self.bodies)} bodies, {len(self.joints)} joints, {len(self.variables)} design variables>"
+
+    def _repr_html_(self) -> str:
+        return display.model(self)
+
+    def __reduce__(self):
+        named = tuple(sorted(self._native.files.items()))
+        return _restored, (self.text, self.file, named, self._added, self._case)
+
+    # Motions
+
+    def run(self, design: Design = None, *, case: str | None = None, sensitivities: bool = True, partial: bool = False) -> Run:
+        """Solves the motion of a design: position, velocity, acceleration, and their sensitivities by all design variables.
+
+        Raises `MotionStopped` where the motion ends before its last output time; with `partial`, what was solved is returned, and
+        `run.stop` says why it ends.
+        """
+        index = self._index(case)
+        run = Run(self, index, self._native.run(index, self._values(design), sensitivities))
+        if run.stop and not partial:
+            error = MotionStopped((run.stop,))
+            error.run = run
+            raise error
+        return run
+
+    def runs(self, design: Design = None, **options) -> dict[str, Run]:
+        """`run` in every case."""
+        return {case: self.run(design, case=case, **options) for case in self.cases}
+
+    def designs(
+        self,
+        designs: ArrayLike | Sequence[Mapping[str, float]],
+        outputs: str | Iterable[str] = (),
+        *,
+        variables: Sequence[str] | None = None,
+        case: str | None = None,
+        order: int | str = 0,
+        at: ArrayLike | slice | None = None,
+        sensitivities: bool = True,
+        metrics: bool = True,
+        partial: bool = False,
+        workers: int | None = None,
+        progress: Progress = None,
+    ) -> Designs:
+        """Solves many designs at once, without a Python object per design or step.
+
+        `designs` has a row for each, with values of `variables`, or of all design variables; or it is a list of dictionaries. Of each
+        are kept: `outputs` of an `order` at the output times of the numbers `at` (all), the `metrics`, and the `sensitivities` of
+        both. Raises `MotionStopped` if one of them ends early; with `partial` its numbers are NaN, and `stops` says why.
+        """
+        index = self._index(case)
+        rows = self._rows(designs, variables)
+        names = [outputs] if isinstance(outputs, str) else list(outputs)
+        order = self._order(order, names)
+        numbers = np.arange(len(self._info["motions"][index]["times"]))
+        numbers = numbers if at is None else np.atleast_1d(numbers[at])
+        found = self._native.designs(
+            index, rows, [self._output(name) for name in names], order, numbers.tolist(), sensitivities, metrics, workers, listener(progress)
+        )
+        found = Designs(self, index, rows, names, order, numbers, found, sensitivities)
+        if found.stops and not partial:
+            number, why = next(iter(found.stops.items()))
+            error = MotionStopped((why,))
+            error.add_note(f"design {number} of {len(rows)}; `partial=True` keeps the others") if hasattr(error, "add_note") else None
+            raise error
+        return found
+
+    def gradients(
+        self, outputs: str | Iterable[str], design: Design = None, *, case: str | None = None, order: int | str = 0, method: str = "auto"
+    ) -> np.ndarray:
+        """Derivatives of some outputs by all design variables, `[time, output, variable]`: by direct differentiation, adjoint, or
+        (`auto`) whichever is shorter. NaN by variables that the mechanism cannot follow."""
+        names = [outputs] if isinstance(outputs, str) else list(outputs)
+        order = self._order(order, names)
+        found = self._native.gradients(self._index(case), self._values(design), [self._output(name) for name in names], method)
+        gradients = found["gradients"][..., order]
+        gradients[:, :, ~np.array(found["followed"], dtype=bool)] = np.nan
+        return gradients
+
+    def second_derivatives(
+        self, outputs: str | Iterable[str], variables: str | Iterable[str] | None = None, design: Design = None, *, case: str | None = None
+    ) -> np.ndarray:
+        """Second derivatives of the values of some outputs by some design variables (all): `[time, output, variable, variable]`."""
+        names = [outputs] if isinstance(outputs, str) else list(outputs)
+        chosen = list(self.variables) if variables is None else [variables] if isinstance(variables, str) else list(variables)
+        for name in names:
+            if not self._declared(name).by_position:
+                raise UsageError.saying(f"`{name}` does not follow from the position alone: there are no second derivatives of it")
+        return self._native.second(
+            self._index(case), self._values(design), [self._output(n) for n in names], [self._variable(v) for v in chosen]
+        )
+
+    def jerk(self, design: Design = None, *, case: str | None = None) -> dict[str, np.ndarray]:
+        """The third time derivatives of all bodies: per body `[time, 6]`, of the position and the angular one."""
+        found = self._native.jerk(self._index(case), self._values(design))
+        return {body: found["jerk"][:, k] for k, body in enumerate(self.bodies)}
+
+    def maps(self, *, progress: Progress = None) -> list[dict]:
+        """The cases that sweep two drivers over a grid, solved, as `maps.json` of the command line has them."""
+        return json.loads(self._native.maps(listener(progress)))
+
+    # Studies
+
+    def what_if(self, design: Design, *, case: str | None = None) -> Study:
+        """What a changed design does to every measure and metric: exactly, and as foreseen to first and second order."""
+        return outcome(self, self._native.what_if(self._index(case), self._values(design)))
+
+    def verify(self, *, case: str | None = None, progress: Progress = None) -> Study:
+        """Compares all sensitivities with designs that are solved anew."""
+        return outcome(self, self._native.verify(self._index(case), listener(progress)))
+
+    def validity(self, *, case: str | None = None) -> list[dict]:
+        """How far each sensitivity can be trusted: up to which change the design follows it."""
+        return json.loads(self._native.validity(self._index(case)))
+
+    def optimize(
+        self, *, starts: int | None = None, iterations: int | None = None, workers: int | None = None, progress: Progress = None
+    ) -> Study:
+        """Searches for the design that serves `[optimize]` of the model best, in all cases."""
+        text, design, exact = self._native.optimize(0, starts, iterations, workers, listener(progress))
+        return outcome(self, text, design, exact)
+
+    def tolerance(
+        self,
+        *,
+        samples: int | None = None,
+        seed: int | None = None,
+        allocate: str | None = None,
+        workers: int | None = None,
+        progress: Progress = None,
+    ) -> Study:
+        """What the tolerances of the design variables come to; `allocate` (`rss`, `worst_case`) seeks the loosest that keep the limits."""
+        return outcome(self, self._native.tolerance(samples, seed, allocate, workers, listener(progress)))
+
+    def calibrate(
+        self,
+        measured: Any,
+        *,
+        sigma: Mapping[str, float] | None = None,
+        variables: Iterable[str] = (),
+        loss: str = "squares",
+        iterations: int = 100,
+        progress: Progress = None,
+    ) -> Study:
+        """Finds the design that explains what was measured: a CSV file (docs/calibrate.md has its columns), or a pandas table of the same."""
+        path, temporary = measured, None
+        if not isinstance(measured, (str, os.PathLike)):
+            import tempfile
+
+            handle, temporary = tempfile.mkstemp(suffix=".csv")
+            with os.fdopen(handle, "w", encoding="utf-8", newline="") as out:
+                measured.to_csv(out, index=False)
+            path = temporary
+        try:
+            text, design = self._native.calibrate(
+                os.fspath(path), list((sigma or {}).items()), list(variables), loss, iterations, listener(progress)
+            )
+        finally:
+            if temporary:
+                os.unlink(temporary)
+        return outcome(self, text, design, design)
+
+    def sweep(self, *, workers: int | None = None, progress: Progress = None, **asked) -> SweepResult:
+        """Solves many designs in all cases, as `hardpoint sweep` does: `method` (`sobol`, `latin_hypercube`, `factorial`, `indices`),
+        `samples`, `seed`, `levels`, `ranges` (`{"lca_front_z": (-5, 5)}`), `curves` (names of measures whose whole curves are kept),
+        `designs` (a CSV file that lists them)."""
+        columns, curves, text = self.sweep_plan(**asked).run(workers, listener(progress))
+        return SweepResult(self, dict(columns), dict(curves), json.loads(text))
+
+    def sweep_plan(self, **asked) -> _native.Sweep:
+        """The sweep, to be solved by parts."""
+        if "designs" in asked:
+            asked["designs"] = os.fspath(asked["designs"])
+        asked["ranges"] = {name: [float(a), float(b)] for name, (a, b) in dict(asked.get("ranges") or {}).items()}
+        if self._case is not None and self.cases:
+            asked["cases"] = [self._case]
+        return self._native.sweep(json.dumps({key: value for key, value in asked.items() if value is not None}))
+
+    # Designs
+
+    def edited(self, design: Design) -> str:
+        """The text of the model file with a design written into it, comments and layout kept."""
+        return self._native.edited(self._values(design))
+
+    def save(self, path: str | os.PathLike, design: Design = None) -> None:
+        """Writes the model file with a design in it, whole or not at all."""
+        files.write(path, self.text if design is None else self.edited(design))
+
+    def _values(self, design: Design) -> list[float]:
+        if design is None:
+            return []
+        if isinstance(design, Mapping):
+            values = np.full(len(self.variables), np.nan)
+            for name, value in design.items():
+                values[self._variable(name)] = value
+            return values.tolist()
+        values = np.asarray(design, dtype=float)
+        if values.shape != (len(self.variables),):
+            raise UsageError.saying(
+                f"a design is one value for each of the {len(self.variables)} design variables, or a dictionary; the shape given is {values.shape}"
+            )
+        return values.tolist()
+
+    def _rows(self, designs, variables: Sequence[str] | None) -> np.ndarray:
+        designs = list(designs) if not hasattr(designs, "shape") else designs
+        if isinstance(designs, list) and designs and isinstance(designs[0], Mapping):
+            return np.array([self._values(design) for design in designs])
+        given = np.atleast_2d(np.asarray(designs, dtype=float))
+        chosen = range(len(self.variables)) if variables is None else [self._variable(name) for name in variables]
+        if given.ndim != 2 or given.shape[1] != len(chosen):
+            raise UsageError.saying(f"designs have a column for each of {len(chosen)} variables; the shape given is {given.shape}")
+        rows = np.full((len(given), len(self.variables)), np.nan)
+        rows[:, list(chosen)] = given
+        return rows
+
+    # Names
+
+    def _index(self, case: str | None) -> int:
+        if case is not None:
+            return self._named(case)
+        if self._case is not None:
+            return self._case
+        if len(self.cases) > 1:
+            names = ", ".join(f"`{name}`" for name in self.cases)
+            raise UsageError.saying(f"the model has the cases {names}; name one, `model.run(case={self.cases[0]!r})`")
+        return 0
+
+    def _named(self, case: str) -> int:
+        if case not in self.cases:
+            raise unknown("case", case, self.cases)
+        return self.cases.index(case)
+
+    def _variable(self, name: str) -> int:
+        if name not in self._variable_index:
+            raise unknown("design variable", name, self.variables)
+        return self._variable_index[name]
+
+    def _declared(self, name: str) -> Output:
+        return self.outputs[list(self.outputs)[self._output(name)]]
+
+    def _output(self, name: str) -> int:
+        if name not in self._output_index:
+            raise unknown("measure or point", name, self.outputs)
+        return self._output_index[name]
+
+    def _order(self, order: int | str, names: Iterable[str]) -> int:
+        if order not in ORDERS:
+            raise UsageError.saying(f"`{order}` is no order; there are value (0), rate (1), acceleration (2)")
+        for name in names:
+            if ORDERS[order] >= len(self._declared(name).columns):
+                raise UsageError.saying(f"of `{name}` there is no {('value', 'rate', 'acceleration')[ORDERS[order]]}")
+        return ORDERS[order]
+
+
+def listener(progress: Progress) -> Callable[[int, int], Any] | None:
+    """What is told of progress."""
+    return display.counter() if progress is True else progress or None
+
+
+def _opened(native: _native.Model) -> Model:
+    native.plan()
+    model = Model(native)
+    for remark in model.remarks:
+        if remark.severity == "warning":
+            warnings.warn(remark.rendered, HardpointWarning, stacklevel=3)
+    return model
+
+
+def read(path: str | os.PathLike) -> Model:
+    """Reads a model file. Raises `ModelError` with everything that is wrong with it, `TopologyError` if it cannot be driven."""
+    return _opened(_native.read(os.fspath(path)))
+
+
+def parse(text: str, name: str = "model.toml", folder: str | os.PathLike | None = None) -> Model:
+    """Reads a model from a text; files that it names lie in `folder`."""
+    return _opened(_native.parse(text, name, folder=None if folder is None else os.fspath(folder)))
+
+
+def build(folder: str | os.PathLike | None = None, **sections) -> Model:
+    """Builds a model in code; the names are those of the file (docs/file-format.md).
+
+        >>> hardpoint.build(
+        ...     name="pendulum",
+        ...     units={"length": "mm", "angle": "deg"},
+        ...     hardpoints={"pivot": [0, 0, 500], "bob": [0, 0, 0]},
+        ...     bodies={"arm": {}},
+        ...     joints={"hinge": {"type": "revolute", "bodies": ["ground", "arm"], "at": "pivot", "axis": "y"}},
+        ...     drivers={"swing": {"joint": "hinge", "law": "30 * sin(t)"}},
+        ...     points={"bob": {"body": "arm", "at": "bob"}},
+        ...     design={"bob_z": {"move": "bob", "along": "z"}},
+        ...     time={"end": 6.0, "steps": 100},
+        ... )
+
+    `model.text` is the file that says the same; diagnostics show their places in it.
+    """
+    name = str(sections.get("name", "model"))
+    text = json.dumps(sections, default=_plain)
+    return _opened(_native.parse(text, f"{name}.toml", folder=None if folder is None else os.fspath(folder), is_json=True))
+
+
+def _plain(value: Any) -> Any:
+    if hasattr(value, "tolist"):
+        return value.tolist()
+    if hasattr(value, "__fspath__"):
+        return os.fspath(value)
+    raise UsageError.saying(f"a model is made of numbers, texts, lists and dictionaries; {value!r} is none of them")
+
+
+@lru_cache(maxsize=16)
+def _restored(text: str, file: str, files: tuple, added: tuple[bool, bool], case: int | None) -> Model:
+    """A model that was pickled; one that is sent again is the same, with its plan."""
+    if case is not None:
+        return Model(_restored(text, file, files, added, None)._native, case, added)
+    native = _native.parse(text, file, files=dict(files))
+    return Model(native.with_variables(*added) if any(added) else native, None, added)

@@ -1,0 +1,256 @@
+"""Motions that have been solved."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterable
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from . import _native, display
+from .errors import CannotFollow, Diagnostic, UsageError, diagnostics, unknown
+
+if TYPE_CHECKING:
+    from .model import Model
+
+
+@dataclass(frozen=True)
+class Metric:
+    """A number that a motion comes to."""
+
+    name: str
+    unit: str
+    value: float
+    """NaN where the motion does not reach what it is taken of."""
+    time: float | None
+    """When it is taken, s; `None` for what is taken of the whole curve."""
+    error: float | None
+    """How far interpolation between output times may be off."""
+    sensitivities: dict[str, float]
+    """Its derivatives by the design variables that the mechanism follows."""
+
+
+class Body:
+    """The motion of a body's frame in the world, `[time, ...]`, in the model's units."""
+
+    def __init__(self, name: str, numbers: np.ndarray):
+        self.name = name
+        self.position = numbers[:, 0:3]
+        """`[time, 3]`, length."""
+        self.quaternion = numbers[:, 3:7]
+        """`[time, 4]`, w x y z, unit, continuous in time."""
+        self.velocity = numbers[:, 7:10]
+        self.angular_velocity = numbers[:, 10:13]
+        self.acceleration = numbers[:, 13:16]
+        self.angular_acceleration = numbers[:, 16:19]
+
+
+class BodySensitivity:
+    """Derivatives of a body's motion by a design variable at fixed time, `[time, 3]` each, in the model's units per unit of it."""
+
+    def __init__(self, name: str, numbers: np.ndarray):
+        self.name = name
+        self.position = numbers[:, 0:3]
+        self.rotation = numbers[:, 3:6]
+        """Of the orientation, as a rotation vector: dA/db = skew(rotation) A."""
+        self.velocity = numbers[:, 6:9]
+        self.angular_velocity = numbers[:, 9:12]
+        self.acceleration = numbers[:, 12:15]
+        self.angular_acceleration = numbers[:, 15:18]
+
+
+class Run:
+    """The motion of one design in one case. Arrays go over the output times that were solved; they are made once, when first asked
+    for, and slices of them are views."""
+
+    def __init__(self, model: Model, case: int, native: _native.Run):
+        self.model = model
+        self._index = case
+        self._native = native
+        self._by_order: dict[int, np.ndarray] = {}
+        stop = native.stop
+        self.stop: Diagnostic | None = diagnostics(stop)[0] if stop else None
+        """Why the motion ends before the last output time."""
+
+    @property
+    def case(self) -> str | None:
+        """The case."""
+        return self.model.cases[self._index] if self.model.cases else None
+
+    @cached_property
+    def times(self) -> np.ndarray:
+        """Output times that were solved, s."""
+        return self._native.times
+
+    @cached_property
+    def design(self) -> dict[str, float]:
+        """The value of every design variable."""
+        return dict(zip(self.model.variables, self._native.design))
+
+    def __len__(self) -> int:
+        return len(self.times)
+
+    def __repr__(self) -> str:
+        end = f", stopped: {self.stop.message}" if self.stop else ""
+        return f"<hardpoint.Run of {self.model.name!r}: {len(self)} output times{end}>"
+
+    # Measures and points
+
+    @cached_property
+    def _values(self) -> np.ndarray:
+        return self._native.values()
+
+    def values(self, name: str, order: int | str = 0) -> np.ndarray:
+        """A measure, or a coordinate of a point (`wheel.x`), over the output times; `order` 1 is its rate, 2 its acceleration. NaN
+        where it has no number at that time: the curvature of a path whose point rests."""
+        index = self.model._output(name)
+        return self._values[index, self.model._order(order, [name])]
+
+    def _derivatives(self, order: int) -> np.ndarray:
+        if not self._followed:
+            raise UsageError.saying("the run was asked for no sensitivities; leave `sensitivities=False` out")
+        if order not in self._by_order:
+            self._by_order[order] = self._native.sensitivities(order)
+        return self._by_order[order]
+
+    @cached_property
+    def _followed(self) -> list[tuple[bool, str | None]]:
+        return self._native.followed
+
+    @property
+    def followed(self) -> tuple[str, ...]:
+        """The design variables that the mechanism can follow: those that there are sensitivities by."""
+        return tuple(name for name, (yes, _) in zip(self.model.variables, self._followed) if yes)
+
+    def _follow(self, variable: str) -> int:
+        index = self.model._variable(variable)
+        if self._followed:
+            yes, why = self._followed[index]
+            if not yes:
+                raise CannotFollow(diagnostics(why)) if why else CannotFollow.saying(f"the mechanism cannot follow `{variable}`")
+        return index
+
+    def sensitivity(self, name: str, variable: str, order: int | str = 0) -> np.ndarray:
+        """The derivative of a measure or point coordinate by a design variable over the output times, at fixed time: exact, in the unit
+        of the one per unit of the other. Raises `CannotFollow` where there is none."""
+        index, order = self.model._output(name), self.model._order(order, [name])
+        by = self._follow(variable)
+        return self._derivatives(order)[index, by]
+
+    def sensitivities(self, name: str | None = None, variables: Iterable[str] | None = None, order: int | str = 0) -> np.ndarray:
+        """The derivatives of one output, `[variable, time]`, or of all, `[output, variable, time]`, by some design variables: by all
+        in `followed`, if none are named."""
+        chosen = list(self.followed) if variables is None else list(variables)
+        by = [self._follow(variable) for variable in chosen]
+        order = self.model._order(order, [name] if name else [])
+        found = self._derivatives(order)
+        # Where all are followed, nothing is copied.
+        found = found if by == list(range(found.shape[1])) else found[:, by]
+        return found if name is None else found[self.model._output(name)]
+
+    # Bodies
+
+    def _body(self, name: str) -> int:
+        if name not in self.model.bodies:
+            raise unknown("body", name, self.model.bodies)
+        return 1 + self.model.bodies.index(name)
+
+    def body(self, name: str) -> Body:
+        """The motion of a body."""
+        return Body(name, self._native.body(self._body(name)))
+
+    def body_sensitivity(self, name: str, variable: str) -> BodySensitivity:
+        """Its derivatives by a design variable."""
+        by = self._follow(variable)
+        if not self._followed:
+            raise UsageError.saying("the run was asked for no sensitivities; leave `sensitivities=False` out")
+        return BodySensitivity(name, self._native.body_sensitivity(self._body(name), by))
+
+    # What it comes to
+
+    @cached_property
+    def metrics(self) -> dict[str, Metric]:
+        """The metrics of the case, with their exact derivatives."""
+        values, d = self._native.metrics()
+        followed = [k for k, (yes, _) in enumerate(self._followed) if yes]
+        names = list(self.model.variables)
+        return {
+            name: Metric(
+                name,
+                unit,
+                float(values[k, 0]),
+                None if np.isnan(values[k, 1]) else float(values[k, 1]),
+                None if np.isnan(values[k, 2]) else float(values[k, 2]),
+                {names[b]: float(d[k, b]) for b in followed},
+            )
+            for k, (name, unit) in enumerate(self.model.metrics(self.case).items())
+        }
+
+    def metric(self, name: str) -> float:
+        """The value of a metric."""
+        if name not in self.metrics:
+            raise unknown("metric", name, self.metrics)
+        return self.metrics[name].value
+
+    @cached_property
+    def diagnostics(self) -> tuple[Diagnostic, ...]:
+        """What there is to tell of the motion: variables that cannot be followed or change nothing, positions close to a dead point."""
+        return diagnostics(self._native.diagnostics())
+
+    def summary(self) -> dict:
+        """What `summary.json` of the command line has."""
+        return json.loads(self._native.summary())
+
+    def page(self) -> display.Page:
+        """The page that `hardpoint run` writes: a studio, with the engine in it. Shown in a notebook, or saved."""
+        return display.Page(self._native.page())
+
+    def _repr_html_(self) -> str:
+        return display.run(self)
+
+    # Tables
+
+    def _columns(self) -> dict[str, np.ndarray]:
+        columns = {"time [s]": self.times}
+        for name, output in self.model.outputs.items():
+            for order, (column, unit) in enumerate(zip(output.columns, output.units)):
+                columns[column if unit == "1" else f"{column} [{unit}]"] = self.values(name, order)
+        return columns
+
+    def to_pandas(self):
+        """Measures and points with their rates, a column each, over time."""
+        import pandas
+
+        return pandas.DataFrame(self._columns())
+
+    def to_arrow(self):
+        """The same as a table of Arrow, the unit of each column in its metadata."""
+        import pyarrow
+
+        fields, arrays = [pyarrow.field("time", pyarrow.float64(), metadata={"unit": "s"})], [pyarrow.array(self.times)]
+        for name, output in self.model.outputs.items():
+            for order, (column, unit) in enumerate(zip(output.columns, output.units)):
+                fields.append(pyarrow.field(column, pyarrow.float64(), metadata={"unit": unit}))
+                arrays.append(pyarrow.array(self.values(name, order)))
+        return pyarrow.Table.from_arrays(arrays, schema=pyarrow.schema(fields))
+
+    def to_xarray(self):
+        """Values `[time]` and sensitivities `[variable, time]` of every measure and point, with their labels and units."""
+        import xarray
+
+        data = {}
+        for name, output in self.model.outputs.items():
+            for order, (column, unit) in enumerate(zip(output.columns, output.units)):
+                data[column] = ("time", self.values(name, order), {"units": unit})
+                if self._followed:
+                    slope = self.sensitivities(name, order=order)
+                    data[f"d {column}"] = (("variable", "time"), slope, {"units": f"{unit} per unit of the variable"})
+        coordinates = {"time": ("time", self.times, {"units": "s"})}
+        if self._followed:
+            units = [self.model.variables[v].unit for v in self.followed]
+            coordinates["variable"] = ("variable", list(self.followed))
+            coordinates["variable_unit"] = ("variable", units)
+        return xarray.Dataset(data, coordinates, {"model": self.model.name, "case": self.case or ""})

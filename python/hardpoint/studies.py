@@ -1,0 +1,89 @@
+"""What studies come to."""
+
+from __future__ import annotations
+
+import json
+import os
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from . import display
+from .errors import UsageError
+
+if TYPE_CHECKING:
+    from .model import Model
+
+
+class Study:
+    """A study that has ended: `facts` are those that the command line writes as JSON (docs/results.md), `tables` those that it prints."""
+
+    def __init__(self, model: Model, facts: dict[str, Any], tables: list[dict], rounded: list[float] | None, exact: list[float] | None):
+        self.model = model
+        self.facts = facts
+        self.tables = tables
+        names = list(model.variables)
+        self.design: dict[str, float] | None = dict(zip(names, exact)) if exact else None
+        """The design that was found: the value of every design variable."""
+        self.rounded: dict[str, float] | None = dict(zip(names, rounded)) if rounded else None
+        """The same with numbers of few digits, as it is saved."""
+
+    @property
+    def status(self) -> str | None:
+        """How it ended."""
+        return self.facts.get("status")
+
+    @property
+    def message(self) -> str | None:
+        """The same in words, and what to do."""
+        return self.facts.get("message")
+
+    def text(self) -> str:
+        """The text of the model file with the design that was found."""
+        return self.model.edited(self._found())
+
+    def save(self, path: str | os.PathLike) -> None:
+        """Writes it, whole or not at all."""
+        self.model.save(path, self._found())
+
+    def _found(self) -> dict[str, float]:
+        if self.rounded is None:
+            raise UsageError.saying("the study has found no design")
+        return self.rounded
+
+    def __repr__(self) -> str:
+        return f"<hardpoint.Study of {self.model.name!r}: {self.message or self.facts.get('study', 'done')}>"
+
+    def _repr_html_(self) -> str:
+        return display.study(self)
+
+
+def outcome(model: Model, text: str, rounded: list[float] | None = None, exact: list[float] | None = None) -> Study:
+    found = json.loads(text)
+    return Study(model, found["facts"], found["tables"], rounded, exact)
+
+
+class SweepResult(Study):
+    """A sweep that has ended."""
+
+    def __init__(self, model: Model, columns: dict[str, Any], curves: dict[str, Any], found: dict):
+        super().__init__(model, found["facts"], found["tables"], None, None)
+        self.columns: dict[str, np.ndarray | list[str]] = columns
+        """The table of designs: number, variables, metrics, and why a design failed (docs/sweep.md). NaN where there is no number."""
+        self.curves: dict[str, np.ndarray | list[str]] = curves
+        """The table of curves; empty where none were asked for."""
+
+    def __len__(self) -> int:
+        return len(self.columns["design"])
+
+    def to_pandas(self):
+        """The table of designs."""
+        import pandas
+
+        return pandas.DataFrame(self.columns)
+
+    def to_arrow(self):
+        """The table of designs."""
+        import pyarrow
+
+        return pyarrow.table(self.columns)

@@ -1,0 +1,116 @@
+//! Why there is no answer, as exceptions of the package.
+
+use hardpoint_file::{Diagnostic, Diagnostics, ModelFile};
+use pyo3::prelude::*;
+use serde_json::{Value, json};
+
+/// Classes of `hardpoint.errors`.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Kind {
+    /// The file or text is no model.
+    Model,
+    /// The model cannot be driven.
+    Topology,
+    /// A motion ends before its last output time.
+    Stopped,
+    /// A study cannot be done.
+    Study,
+}
+
+/// Why there is no answer.
+#[derive(Debug)]
+pub(crate) enum Failure {
+    /// What was found, each diagnostic as JSON.
+    Found(Kind, Vec<Value>),
+    /// What was asked makes no sense.
+    Misunderstood(String),
+    /// An exception of a callback, or an interruption.
+    Raised(PyErr),
+}
+
+impl Failure {
+    /// What a reader of files found.
+    pub fn of_text(found: &Diagnostics) -> Self {
+        let rendered = found.render(false);
+        let mut list: Vec<Value> = found.list().iter().map(|d| diagnostic(d, "", String::new())).collect();
+        // All of them are rendered together, with their places in the text.
+        if let Some(first) = list.first_mut() {
+            first["rendered"] = rendered.into();
+        }
+        Self::Found(Kind::Model, list)
+    }
+
+    /// What was found in a model.
+    pub fn of_model(kind: Kind, file: &ModelFile, found: &Diagnostic) -> Self {
+        Self::Found(kind, vec![told(file, found)])
+    }
+
+    /// A study that cannot be done, and what to do.
+    pub fn of_study(message: impl Into<String>) -> Self {
+        let message = message.into();
+        let rendered = format!("error: {message}");
+        Self::Found(
+            Kind::Study,
+            vec![json!({ "severity": "error", "code": null, "message": message, "file": null, "line": null,
+            "column": null, "notes": [], "help": null, "rendered": rendered })],
+        )
+    }
+}
+
+/// A diagnostic about a model as the package reads it.
+pub(crate) fn told(file: &ModelFile, d: &Diagnostic) -> Value {
+    diagnostic(d, file.text(), file.render(d, false))
+}
+
+/// A diagnostic of a text; its element is the entry that it points at.
+fn diagnostic(d: &Diagnostic, text: &str, rendered: String) -> Value {
+    let at = d.span.clone().and_then(|span| text.get(span));
+    // The name of `[joints.hinge]` is its last part.
+    let element = at.map(|at| at.rsplit('.').next().unwrap_or(at).trim_matches('"'));
+    json!({
+        "severity": format!("{:?}", d.severity).to_lowercase(),
+        "code": d.code,
+        "message": d.message,
+        "element": element.filter(|name| !name.contains(['\n', '='])),
+        "file": d.file,
+        "line": d.line,
+        "column": d.column,
+        "notes": d.notes,
+        "help": d.help,
+        "rendered": rendered,
+    })
+}
+
+impl From<PyErr> for Failure {
+    fn from(error: PyErr) -> Self {
+        Self::Raised(error)
+    }
+}
+
+impl From<Failure> for PyErr {
+    fn from(failure: Failure) -> Self {
+        let (class, text) = match failure {
+            Failure::Raised(error) => return error,
+            Failure::Misunderstood(message) => (
+                "UsageError",
+                json!([{ "severity": "error", "code": null, "message": message,
+                "file": null, "line": null, "column": null, "notes": [], "help": null, "rendered": format!("error: {message}") }]),
+            ),
+            Failure::Found(kind, list) => (
+                match kind {
+                    Kind::Model => "ModelError",
+                    Kind::Topology => "TopologyError",
+                    Kind::Stopped => "MotionStopped",
+                    Kind::Study => "StudyError",
+                },
+                Value::Array(list),
+            ),
+        };
+        Python::attach(|py| {
+            let made = py
+                .import("hardpoint.errors")
+                .and_then(|errors| errors.getattr(class)?.call_method1("of", (text.to_string(),)));
+            made.map_or_else(|error| error, |made| PyErr::from_value(made))
+        })
+    }
+}

@@ -1,0 +1,33 @@
+//! The engine as `hardpoint._native`: arrays in and out, everything else as JSON. What users see is the package around it
+//! (`python/hardpoint`).
+//!
+//! Numbers are in the units of the model file. Designs are values of all design variables, NaN for what stays as drawn: of a parameter
+//! its own value, of all others a change.
+
+mod design;
+mod designs;
+mod failure;
+mod model;
+mod run;
+mod studies;
+mod sweep;
+mod watch;
+
+use pyo3::prelude::*;
+
+/// The engine.
+#[pymodule]
+mod _native {
+    #[pymodule_export]
+    use crate::model::{Model, parse, read};
+    #[pymodule_export]
+    use crate::run::Run;
+    #[pymodule_export]
+    use crate::sweep::Sweep;
+
+    #[pymodule_init]
+    fn init(module: &pyo3::Bound<'_, pyo3::types::PyModule>) -> pyo3::PyResult<()> {
+        use pyo3::types::PyModuleMethods;
+        module.add("version", env!("CARGO_PKG_VERSION"))
+    }
+}

@@ -1,0 +1,330 @@
+//! One motion, solved.
+
+use std::sync::Arc;
+
+use hardpoint::joint::Quantity::{Angle, Length};
+use hardpoint::measure::Measured;
+use hardpoint::model::{BodyId, VariableId};
+use hardpoint::sensitivity::Admissibility;
+use hardpoint::space::Vec3;
+use hardpoint::study::{MetricValue, metrics};
+use hardpoint::{Run as Asked, Solution};
+use hardpoint_file::{ModelFile, Units};
+use hardpoint_report::course::Course;
+use hardpoint_report::diagnose;
+use hardpoint_report::facts::Facts;
+use hardpoint_report::payload::{Changed, Request, report};
+use hardpoint_report::summary::Summary;
+use numpy::{PyArray1, PyArray2, PyArray3, PyArrayMethods};
+use pyo3::prelude::*;
+use serde_json::Value;
+
+use crate::design::shown;
+use crate::failure::{Failure, Kind, told};
+use crate::model::Model;
+use crate::watch::Quick;
+
+/// A motion that has been solved.
+#[pyclass(frozen, module = "hardpoint._native")]
+pub(crate) struct Run {
+    model: Py<Model>,
+    case: usize,
+    changes: Vec<f64>,
+    solution: Arc<Solution>,
+}
+
+/// A vector of numbers as an array, without a copy.
+pub(crate) fn array2(
+    py: Python<'_>,
+    numbers: Vec<f64>,
+    shape: [usize; 2],
+) -> PyResult<Bound<'_, PyArray2<f64>>> {
+    PyArray1::from_vec(py, numbers).reshape(shape)
+}
+
+/// The same with three dimensions.
+pub(crate) fn array3(
+    py: Python<'_>,
+    numbers: Vec<f64>,
+    shape: [usize; 3],
+) -> PyResult<Bound<'_, PyArray3<f64>>> {
+    PyArray1::from_vec(py, numbers).reshape(shape)
+}
+
+impl Model {
+    /// The motion of one design in one case.
+    fn solved(
+        &self,
+        py: Python<'_>,
+        case: usize,
+        changes: &[f64],
+        sensitivities: bool,
+    ) -> Result<Solution, Failure> {
+        let analysis = self.analysis(case)?;
+        let mut quick = Quick::new();
+        let solution = py.detach(|| {
+            let asked = Asked::new().at(changes).progress(|_| quick.go_on());
+            analysis.solve(if sensitivities { asked } else { asked.without_sensitivities() })
+        });
+        quick.end()?;
+        Ok(solution)
+    }
+}
+
+#[pymethods]
+impl Model {
+    /// Solves the motion of a design in a case.
+    #[pyo3(signature = (case, design, sensitivities=true))]
+    fn run(this: Bound<'_, Self>, case: usize, design: Vec<f64>, sensitivities: bool) -> PyResult<Run> {
+        let model = this.get();
+        let changes = model.changes(&design)?;
+        let solution = Arc::new(model.solved(this.py(), case, &changes, sensitivities)?);
+        Ok(Run { model: this.unbind(), case, changes, solution })
+    }
+}
+
+impl Run {
+    fn file(&self) -> &ModelFile {
+        &self.model.get().cases[self.case]
+    }
+
+    fn units(&self) -> Units {
+        self.file().units
+    }
+
+    fn follows(&self, b: usize) -> bool {
+        let known = self.solution.sensitivities.admissibility.get(b);
+        known.is_some_and(|a| !matches!(a, Admissibility::CannotFollow { .. }))
+    }
+
+    fn metric_values(&self) -> Vec<MetricValue> {
+        metrics(&self.file().model, &self.solution)
+    }
+
+    /// The motion as pages and summaries have it.
+    fn course(&self) -> Course {
+        Course::of(&self.file().model, &self.solution)
+    }
+}
+
+#[pymethods]
+impl Run {
+    /// Output times that were solved, s.
+    #[getter]
+    fn times<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+        PyArray1::from_slice(py, &self.solution.motion.times)
+    }
+
+    /// The values of all design variables.
+    #[getter]
+    fn design(&self) -> Vec<f64> {
+        let file = self.file();
+        (0..file.model.variables.len())
+            .map(|k| shown(file, VariableId(k), self.changes.get(k).copied().unwrap_or(0.0)))
+            .collect()
+    }
+
+    /// Why the motion ended before its last output time, as the JSON of a diagnostic.
+    #[getter]
+    fn stop(&self) -> Option<String> {
+        let (file, solution) = (self.file(), &self.solution);
+        let stop = solution.stop.as_ref()?;
+        let found = match self.changes.iter().any(|b| *b != 0.0) {
+            true => diagnose::stop_of_changed(file, stop, solution.motion.len()),
+            false => diagnose::stop(file, stop, solution.motion.len(), None),
+        };
+        Some(told(file, &found).to_string())
+    }
+
+    /// Per variable, whether the mechanism follows it: true, or why not as the JSON of a diagnostic; nothing where no sensitivities were
+    /// solved.
+    #[getter]
+    fn followed(&self) -> PyResult<Vec<(bool, Option<String>)>> {
+        let (file, model) = (self.file(), self.model.get());
+        if self.solution.sensitivities.variables == 0 {
+            return Ok(Vec::new());
+        }
+        let facts = Facts::new(file, model.analysis(self.case)?.topology(), Some(&self.solution));
+        let all = diagnose::variables(file, &facts);
+        let why = |b: usize| {
+            let name = format!("`{}`", file.model.variables[b].name);
+            let found = all.iter().find(|d| d.code == "HP0501" && d.message.contains(&name))?;
+            Some(told(file, found).to_string())
+        };
+        let variables = 0..file.model.variables.len();
+        Ok(variables.map(|b| if self.follows(b) { (true, None) } else { (false, why(b)) }).collect())
+    }
+
+    /// All outputs: `[output, order, time]`, NaN where there is no number.
+    fn values<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray3<f64>>> {
+        let (measured, units) = (&self.solution.measured, self.units());
+        let (outputs, steps) = (measured.outputs.len(), measured.len());
+        let mut numbers = vec![f64::NAN; outputs * 3 * steps];
+        py.detach(|| {
+            for (m, output) in measured.outputs.iter().enumerate() {
+                let factor = units.per_si(output.dimension);
+                let rows = &mut numbers[3 * m * steps..3 * (m + 1) * steps];
+                for k in 0..steps {
+                    let [x, v, a] = measured.value(k, m);
+                    [rows[k], rows[steps + k], rows[2 * steps + k]] = [x, v, a].map(|x| x * factor);
+                }
+            }
+        });
+        array3(py, numbers, [outputs, 3, steps])
+    }
+
+    /// Derivatives of an order of all outputs: `[output, variable, time]`; NaN by variables that the mechanism cannot follow.
+    fn sensitivities<'py>(&self, py: Python<'py>, order: usize) -> PyResult<Bound<'py, PyArray3<f64>>> {
+        let measured = &self.solution.measured;
+        let (outputs, steps, file) = (measured.outputs.len(), measured.len(), self.file());
+        let variables = file.model.variables.len();
+        let mut numbers = vec![f64::NAN; outputs * variables * steps];
+        py.detach(|| {
+            for m in 0..outputs {
+                let rows = &mut numbers[m * variables * steps..(m + 1) * variables * steps];
+                derivatives(measured, file, m, order, |b| self.follows(b), 0..steps, rows);
+            }
+        });
+        array3(py, numbers, [outputs, variables, steps])
+    }
+
+    /// The motion of a body: `[time, 19]`, position, quaternion, velocity, angular velocity, acceleration, angular acceleration.
+    fn body<'py>(&self, py: Python<'py>, body: usize) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        let (units, steps) = (self.units(), self.solution.motion.len());
+        let mut numbers = Vec::with_capacity(19 * steps);
+        let mut push = |of, v: Vec3| numbers.extend(v.to_array().map(|x| units.from_si(of, x)));
+        let mut all = Vec::with_capacity(19 * steps);
+        for k in 0..steps {
+            let s = self.solution.body(k, BodyId(body));
+            push(Length, s.r);
+            push(Length, s.v);
+            push(Angle, s.omega);
+            push(Length, s.a);
+            push(Angle, s.alpha);
+            all.push(s.quaternion());
+        }
+        let rows = numbers.chunks_exact(15).zip(all);
+        let whole: Vec<f64> = rows.flat_map(|(n, q)| [&n[..3], &q[..], &n[3..]].concat()).collect();
+        array2(py, whole, [steps, 19])
+    }
+
+    /// Its derivatives by a variable: `[time, 18]`, position, rotation vector, velocity, angular velocity, acceleration, angular
+    /// acceleration.
+    fn body_sensitivity<'py>(
+        &self,
+        py: Python<'py>,
+        body: usize,
+        variable: usize,
+    ) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        let (units, steps) = (self.units(), self.solution.motion.len());
+        let by = self.file().model.variables[variable].quantity;
+        let mut numbers = Vec::with_capacity(18 * steps);
+        for k in 0..steps {
+            let Some(all) = self.solution.sensitivities.at(k, variable) else { break };
+            let d = all.body(body);
+            let parts = [
+                (Length, d.dr),
+                (Angle, d.dpi),
+                (Length, d.dv),
+                (Angle, d.domega),
+                (Length, d.da),
+                (Angle, d.dalpha),
+            ];
+            for (of, v) in parts {
+                numbers.extend(v.to_array().map(|x| units.derivative_from_si(of, by, x)));
+            }
+        }
+        numbers.resize(18 * steps, f64::NAN);
+        array2(py, numbers, [steps, 18])
+    }
+
+    /// The metrics: value, time and error each, `NaN` where there is none, and their derivatives `[metric, variable]`.
+    fn metrics<'py>(&self, py: Python<'py>) -> PyResult<[Bound<'py, PyArray2<f64>>; 2]> {
+        let (model, units) = (&self.file().model, self.units());
+        let mut values = Vec::new();
+        let mut d = Vec::new();
+        let found = self.metric_values();
+        for (metric, found) in model.metrics.iter().zip(&found) {
+            let dimension = model.metric_dimension(metric);
+            let shown = |x: Option<f64>| x.map_or(f64::NAN, |x| units.from_si(dimension, x));
+            values.extend([shown(found.value), found.time.unwrap_or(f64::NAN), shown(found.error)]);
+            let by = model.variables.iter().zip(&found.d);
+            d.extend(by.map(|(v, x)| units.derivative_from_si(dimension, v.quantity, *x)));
+        }
+        let (metrics, variables) = (found.len(), model.variables.len());
+        Ok([array2(py, values, [metrics, 3])?, array2(py, d, [metrics, variables])?])
+    }
+
+    /// The summary that the command line writes, as JSON.
+    fn summary(&self) -> PyResult<String> {
+        let (file, model) = (self.file(), self.model.get());
+        let course = self.course();
+        let mut summary = Summary::new(file, model.analysis(self.case)?.topology(), &course);
+        summary.diagnostics = diagnose::all(file, &summary, &course, None);
+        Ok(json(&summary))
+    }
+
+    /// What there is to tell of the motion, as the JSON of diagnostics.
+    fn diagnostics(&self) -> PyResult<String> {
+        let (file, model) = (self.file(), self.model.get());
+        let course = self.course();
+        let summary = Summary::new(file, model.analysis(self.case)?.topology(), &course);
+        let all = diagnose::all(file, &summary, &course, None);
+        Ok(Value::Array(all.iter().map(|d| told(file, d)).collect()).to_string())
+    }
+
+    /// The page of the motion.
+    fn page(&self, py: Python<'_>) -> PyResult<String> {
+        let (file, model) = (self.file(), self.model.get());
+        let analysis = model.analysis(self.case)?;
+        let is_changed = self.changes.iter().any(|b| *b != 0.0);
+        // The page is that of the drawing, with the changed design beside it.
+        let today = match is_changed {
+            true => Arc::new(model.solved(py, self.case, &[], true)?),
+            false => self.solution.clone(),
+        };
+        if let Some(stop) = today.stop.as_ref().filter(|_| today.motion.is_empty()) {
+            return Err(Failure::of_model(Kind::Stopped, file, &diagnose::stop(file, stop, 0, None)).into());
+        }
+        Ok(py.detach(|| {
+            let course = Course::of(&file.model, &today);
+            let mut summary = Summary::new(file, analysis.topology(), &course);
+            summary.diagnostics = diagnose::all(file, &summary, &course, None);
+            let changed = is_changed.then(|| Changed {
+                name: "changed".into(),
+                note: "The design of this run.".into(),
+                change: &self.changes,
+                today: &today,
+                exact: &self.solution,
+                foreseen: None,
+            });
+            let request = Request { changed, ..Request::of(file, analysis, &course, &summary) };
+            report(&request, &|page| page).expect("a payload is plain data")
+        }))
+    }
+}
+
+/// The derivatives of an order of output m by all variables at some output times: `[variable, time]`.
+pub(crate) fn derivatives(
+    measured: &Measured,
+    file: &ModelFile,
+    m: usize,
+    order: usize,
+    follows: impl Fn(usize) -> bool,
+    times: impl ExactSizeIterator<Item = usize> + Clone,
+    rows: &mut [f64],
+) {
+    let of = measured.outputs[m].dimension;
+    for (b, variable) in file.model.variables.iter().enumerate().filter(|(b, _)| follows(*b)) {
+        let factor = file.units.derivative_from_si(of, variable.quantity, 1.0);
+        let row = &mut rows[b * times.len()..(b + 1) * times.len()];
+        for (cell, k) in row.iter_mut().zip(times.clone()) {
+            *cell = measured.d(k, VariableId(b), m)[order] * factor;
+        }
+    }
+}
+
+/// Facts as JSON.
+pub(crate) fn json(facts: &impl serde::Serialize) -> String {
+    serde_json::to_string(facts).expect("facts are plain data")
+}

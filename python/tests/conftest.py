@@ -1,0 +1,39 @@
+"""What the tests share."""
+
+import json
+import os
+import subprocess
+from pathlib import Path
+
+import pytest
+
+import hardpoint
+
+ROOT = Path(__file__).resolve().parents[2]
+MODELS = ROOT / "models"
+REFERENCE = json.loads((ROOT / "crates/hardpoint-file/tests/reference.json").read_text())
+"""In SI: the cases that the Rust tests are held against, too."""
+
+
+@pytest.fixture(scope="session")
+def command():
+    """Runs the command line; without it the tests that compare with it are skipped."""
+    program = Path(os.environ.get("HARDPOINT", ROOT / "target/debug/hardpoint"))
+    if not program.exists():
+        pytest.skip(f"there is no program {program}: `cargo build -p hardpoint-cli`, or name it in HARDPOINT")
+
+    def run(*arguments):
+        return subprocess.run([program, *map(str, arguments)], capture_output=True, text=True)
+
+    return run
+
+
+@pytest.fixture(scope="session")
+def strut():
+    return hardpoint.read(MODELS / "macpherson.toml")
+
+
+@pytest.fixture(scope="session")
+def toe():
+    """The strut with variables, metrics, and two cases."""
+    return hardpoint.read(MODELS / "studies/strut_toe.toml")

@@ -1,0 +1,473 @@
+"""Sweeps on several workers come to what one machine comes to, whatever becomes of the workers."""
+
+import json
+import os
+import shutil
+import signal
+from pathlib import Path
+
+import numpy as np
+import pyarrow
+import pytest
+
+import hardpoint
+
+pytest.importorskip("distributed")
+
+import hardpoint.dask  # noqa: E402
+from distributed import Client, LocalCluster  # noqa: E402
+
+MODELS = Path(__file__).resolve().parents[2] / "models"
+PART = 512
+SAMPLES = 3000
+"""Six parts, the last of them shorter."""
+FAILING = {"ranges": {"tie_rod_outer_y": (-200, 200), "strut_top_x": (-300, 300)}, "samples": 1100}
+"""Some of these struts lock."""
+
+
+@pytest.fixture(scope="module")
+def cluster(tmp_path_factory):
+    """Three processes that die with what they do."""
+    space = tmp_path_factory.mktemp("workers")
+    with LocalCluster(
+        n_workers=3, threads_per_worker=1, dashboard_address=None, host="127.0.0.1", memory_limit=None, local_directory=str(space)
+    ) as cluster:
+        yield cluster
+
+
+@pytest.fixture(scope="module")
+def client(cluster):
+    with Client(cluster) as client:
+        yield client
+
+
+@pytest.fixture(scope="module")
+def here(tmp_path_factory):
+    """Three workers in this process, which see what is patched in it."""
+    space = tmp_path_factory.mktemp("threads")
+    with LocalCluster(
+        n_workers=3, threads_per_worker=1, processes=False, dashboard_address=None, memory_limit=None, local_directory=str(space)
+    ) as cluster, Client(cluster) as client:
+        yield client
+
+
+@pytest.fixture(scope="module")
+def model():
+    return hardpoint.read(MODELS / "studies/strut_sweep.toml")
+
+
+@pytest.fixture(scope="module")
+def alone(model):
+    """The sweep of one machine."""
+    return model.sweep(samples=SAMPLES)
+
+
+def same(table, columns):
+    """Every bit of every column, in order."""
+    assert table.column_names == list(columns)
+    for name, cells in columns.items():
+        ours = table[name].combine_chunks()
+        if isinstance(cells, list):
+            assert ours.to_pylist() == cells, name
+        else:
+            assert ours.to_numpy(zero_copy_only=False).tobytes() == np.asarray(cells).tobytes(), name
+
+
+def files(store):
+    """The parts that are there: what tells whether one was touched."""
+    return {path.name: (path.stat().st_ino, path.stat().st_mtime_ns, path.read_bytes()) for path in Path(store).glob("*.parquet")}
+
+
+def untouched(before, store):
+    after = files(store)
+    assert before and all(after[name] == known for name, known in before.items())
+
+
+# Numbers
+
+
+def mirrored(model):
+    return model.with_coordinates(), {"ranges": {"tie_rod_inner.x": (-2, 2)}, "samples": 700}
+
+
+@pytest.mark.parametrize(
+    "of",
+    [
+        lambda model: (model, {"samples": 1100, "curves": ["toe", "camber"]}),
+        lambda model: (model, {"method": "latin_hypercube", "samples": np.int64(1100), "seed": 3}),
+        lambda model: (model, {"method": "indices", "samples": 100}),
+        lambda model: (model.case("bump"), {"samples": 600, "curves": ["toe"]}),
+        lambda model: (model, FAILING),
+        lambda model: (model, {**FAILING, "curves": ["toe"]}),
+        mirrored,
+    ],
+    ids=["curves", "hypercube", "indices", "case", "failing", "curves of failing", "coordinates"],
+)
+def test_numbers_are_those_of_one_machine(of, model, client, tmp_path):
+    model, asked = of(model)
+    local = model.sweep(**{**asked, "samples": int(asked["samples"])})
+    done = hardpoint.dask.sweep(model, client, tmp_path / "store", part=PART, **asked)
+    same(done.read(), local.columns)
+    if local.curves:
+        same(done.read("curves"), local.curves)
+    assert len(done) == len(local) and done.failed == local.facts["failed"]
+    assert done.dataset().count_rows() == len(local)
+
+
+def test_some_struts_do_lock(model):
+    assert model.sweep(**FAILING).facts["failed"] > 50
+
+
+def test_a_list_of_designs_goes_to_the_workers(model, client, tmp_path):
+    rows = np.linspace(-5, 5, 600)
+    listed = tmp_path / "designs.csv"
+    listed.write_text("lca_front_z,tie_rod_outer_z\n" + "".join(f"{x},{x / 2}\n" for x in rows))
+    done = hardpoint.dask.sweep(model, client, tmp_path / "store", part=PART, designs=listed)
+    same(done.read(), model.sweep(designs=listed).columns)
+    listed.write_text("lca_front_z\n1\n")
+    with pytest.raises(hardpoint.StudyError, match="the list of designs"):
+        hardpoint.dask.sweep(model, client, tmp_path / "store", part=PART, designs=listed)
+
+
+def test_units_are_in_the_metadata(model, client, tmp_path):
+    done = hardpoint.dask.sweep(model, client, tmp_path, part=PART, samples=20)
+    schema = done.read().schema
+    assert schema.field("lca_front_z [mm]").metadata == {b"unit": b"mm"}
+    assert schema.field("bump.bump_steer [deg/mm]").metadata == {b"unit": b"deg/mm"}
+    assert schema.field("failed").metadata is None
+    file = pyarrow.parquet.ParquetFile(tmp_path / "designs-00000000.parquet")
+    assert file.metadata.row_group(0).column(1).compression == "ZSTD"
+
+
+def test_progress_is_told(model, client, tmp_path):
+    told = []
+    hardpoint.dask.sweep(model, client, tmp_path, part=PART, samples=1100, progress=lambda *of: told.append(of))
+    assert len(told) == 3 and told[-1] == (1100, 1100) and told == sorted(told)
+
+
+# Losses
+
+
+def dies_writing(flag):
+    """Once, where a whole part is there, a worker writes half of one and is killed."""
+    from fsspec.implementations.local import LocalFileSystem
+
+    whole = LocalFileSystem.pipe_file
+
+    def half(self, path, value, **more):
+        if any(Path(path).parent.glob("designs-*.parquet")):
+            try:
+                with open(flag, "x") as out:
+                    out.write(str(os.getpid()))
+            except FileExistsError:
+                pass
+            else:
+                Path(path).write_bytes(value[: len(value) // 2])
+                os.kill(os.getpid(), signal.SIGKILL)
+        return whole(self, path, value, **more)
+
+    LocalFileSystem.pipe_file = half
+
+
+def test_a_worker_is_killed_in_the_middle(model, alone, client, tmp_path):
+    store, flag = tmp_path / "store", tmp_path / "killed"
+    before = set(client.run(os.getpid).values())
+    client.run(dies_writing, str(flag))
+    done = hardpoint.dask.sweep(model, client, store, part=PART, samples=SAMPLES)
+    killed = int(flag.read_text())
+    assert len(before) == 3 and killed in before
+    assert killed not in client.run(os.getpid).values()
+    same(done.read(), alone.columns)
+    # The half part is gone.
+    assert sorted(path.name for path in store.iterdir()) == sorted([*files(store), "sweep.json"])
+    assert len(files(store)) == 6
+
+
+def test_a_part_that_kills_its_workers_is_told(model, tmp_path):
+    def dies(flag):
+        from fsspec.implementations.local import LocalFileSystem
+
+        LocalFileSystem.pipe_file = lambda *given, **more: os.kill(os.getpid(), signal.SIGKILL)
+
+    with LocalCluster(
+        n_workers=1, threads_per_worker=1, dashboard_address=None, host="127.0.0.1", memory_limit=None, local_directory=str(tmp_path / "space")
+    ) as cluster, Client(cluster) as client:
+        cluster.scheduler.allowed_failures = 0
+        client.run(dies, None)
+        with pytest.raises(hardpoint.StudyError, match="designs 0 to 511: 1 workers were lost over it, the last at tcp://127"):
+            hardpoint.dask.sweep(model, client, tmp_path / "store", part=PART, samples=PART)
+    record = json.loads((tmp_path / "store/sweep.json").read_text())
+    assert not record["complete"]
+
+
+class Enough(Exception):
+    pass
+
+
+def enough(done, total):
+    raise Enough
+
+
+def test_an_interrupted_sweep_goes_on(model, alone, client, tmp_path):
+    with pytest.raises(Enough):
+        hardpoint.dask.sweep(model, client, tmp_path, part=PART, samples=SAMPLES, progress=enough)
+    before = files(tmp_path)
+    with pytest.raises(hardpoint.StudyError, match="is not complete"):
+        hardpoint.dask.opened(tmp_path)
+    done = hardpoint.dask.sweep(model, client, tmp_path, part=PART, samples=SAMPLES)
+    untouched(before, tmp_path)
+    same(done.read(), alone.columns)
+    # Once more there is nothing left to do.
+    before = files(tmp_path)
+    hardpoint.dask.sweep(model, client, tmp_path, part=PART, samples=SAMPLES)
+    assert len(before) == 6
+    untouched(before, tmp_path)
+    again = hardpoint.dask.opened(tmp_path)
+    assert again.parts == done.parts and again.store == done.store
+    same(again.read(), alone.columns)
+
+
+def test_what_is_not_whole_is_solved_again(model, alone, client, tmp_path):
+    asked = {"part": PART, "samples": SAMPLES}
+    hardpoint.dask.sweep(model, client, tmp_path, **asked)
+    whole = files(tmp_path)
+    torn, empty, gone, other = (tmp_path / f"designs-{first:08}.parquet" for first in (512, 1024, 1536, 2048))
+    torn.write_bytes(torn.read_bytes()[:1000])
+    empty.write_bytes(b"")
+    gone.unlink()
+    hardpoint.dask.sweep(model, client, tmp_path / "other", part=PART, samples=SAMPLES, seed=5)
+    shutil.copy(tmp_path / "other" / other.name, other)
+    left = tmp_path / f".designs-00000512.parquet.{'0' * 32}.partial"
+    left.write_bytes(b"PAR1")
+    with pytest.raises(hardpoint.StudyError, match="designs-00002048.parquet` is of another sweep"):
+        hardpoint.dask.Stored.read(_without(hardpoint.dask.opened(tmp_path), torn, empty, gone))
+    done = hardpoint.dask.sweep(model, client, tmp_path, **asked)
+    same(done.read(), alone.columns)
+    assert not left.exists()
+    now = files(tmp_path)
+    assert {name: content for name, (_, _, content) in now.items()} == {name: content for name, (_, _, content) in whole.items()}
+    untouched({name: whole[name] for name in ("designs-00000000.parquet", "designs-00002560.parquet")}, tmp_path)
+
+
+def _without(stored, *paths):
+    stored._files = {"designs": tuple(path for path in stored.parts if Path(path) not in paths)}
+    return stored
+
+
+# Stores
+
+
+def test_another_sweep_at_the_store_is_refused(model, client, tmp_path):
+    hardpoint.dask.sweep(model, client, tmp_path, part=PART, samples=600, curves=["toe"])
+    before = files(tmp_path)
+    changed = hardpoint.parse(model.text.replace("-40*sin", "-41*sin"))
+    for other, asked, why in [
+        (model, {"samples": 700, "curves": ["toe"]}, "`samples` is 600 there, 700 here"),
+        (model, {"samples": 600}, r'`curves` is \["toe"\] there, null here'),
+        (model, {"samples": 600, "curves": ["toe"], "part": 1024}, "`part` is 512 there, 1024 here"),
+        (model.case("bump"), {"samples": 600, "curves": ["toe"]}, '`case` is null there, "bump" here'),
+        (model.with_coordinates(), {"samples": 600, "curves": ["toe"]}, "`added` is"),
+        (changed, {"samples": 600, "curves": ["toe"]}, "the text of the model"),
+    ]:
+        with pytest.raises(hardpoint.StudyError, match=f"holds designs of another sweep .*{why}.*overwrite=True"):
+            hardpoint.dask.sweep(other, client, tmp_path, **{"part": PART, **asked})
+    untouched(before, tmp_path)
+    done = hardpoint.dask.sweep(model, client, tmp_path, part=PART, samples=100, overwrite=True)
+    same(done.read(), model.sweep(samples=100).columns)
+    assert list(files(tmp_path)) == ["designs-00000000.parquet"]
+
+
+def test_designs_of_nobody_are_not_removed(model, client, tmp_path):
+    hardpoint.dask.sweep(model, client, tmp_path, part=PART, samples=100)
+    before = files(tmp_path)
+    for spoiled in ("", '{"sweep": 1}', "[]"):
+        (tmp_path / "sweep.json").write_text(spoiled)
+        with pytest.raises(hardpoint.StudyError, match="nobody knows of which"):
+            hardpoint.dask.sweep(model, client, tmp_path, part=PART, samples=100)
+    (tmp_path / "sweep.json").unlink()
+    with pytest.raises(hardpoint.StudyError, match="nobody knows of which"):
+        hardpoint.dask.sweep(model, client, tmp_path, part=PART, samples=100)
+    with pytest.raises(hardpoint.StudyError, match="there is no sweep"):
+        hardpoint.dask.opened(tmp_path)
+    untouched(before, tmp_path)
+
+
+def test_any_file_system_will_do(model, here, client, tmp_path):
+    local = model.sweep(samples=1100, curves=["toe"])
+    for with_, store in [(here, "memory://sweeps/strut"), (client, f"file://{tmp_path}/strut")]:
+        done = hardpoint.dask.sweep(model, with_, store, part=PART, samples=1100, curves=["toe"])
+        assert done.store.rstrip("/").endswith("strut") and done.store.startswith(store.split(":")[0])
+        for one in (done, hardpoint.dask.opened(store)):
+            same(one.read(), local.columns)
+            same(one.read("curves"), local.curves)
+            same(one.dataset("curves").to_table(), local.curves)
+    assert (tmp_path / "strut/sweep.json").exists()
+
+
+def test_a_store_that_the_client_does_not_share_is_told(model, here, monkeypatch, tmp_path):
+    """Workers write, and the client finds nothing."""
+    known = hardpoint.dask._listing
+    monkeypatch.setattr(hardpoint.dask, "_listing", lambda fs, root: [n for n in known(fs, root) if "parquet" not in n])
+    with pytest.raises(hardpoint.StudyError, match="one place for all of them"):
+        hardpoint.dask.sweep(model, here, tmp_path, part=PART, samples=10)
+
+
+def test_a_store_that_cannot_be_written_is_told(model, client, tmp_path):
+    (tmp_path / "file").write_text("")
+    with pytest.raises(hardpoint.StudyError, match="is no store"):
+        hardpoint.dask.sweep(model, client, tmp_path / "file", part=PART, samples=10)
+
+
+# Errors
+
+
+def test_what_makes_no_sense_is_refused_before_anything_is_written(model, client, tmp_path):
+    store = tmp_path / "store"
+    for asked, why in [
+        ({"part": 1000}, "give `part=1024`"),
+        ({"part": 100}, "give `part=512`"),
+        ({"ranges": {"tie_rod": (0, 1)}}, "there is no design variable named `tie_rod`"),
+        ({"curves": ["to"]}, "did you mean `toe`"),
+        ({"sample": 3}, "sample"),
+    ]:
+        with pytest.raises(hardpoint.UsageError, match=why):
+            hardpoint.dask.sweep(model, client, store, **asked)
+    with pytest.raises(hardpoint.UsageError, match="at least one sample"):
+        hardpoint.dask.monte_carlo(model, client, store, 0)
+    with pytest.raises(hardpoint.UsageError, match="at least one start"):
+        hardpoint.dask.multi_start(model, client, 0)
+    assert not store.exists()
+    done = hardpoint.dask.sweep(model, client, store, part=PART, samples=10)
+    with pytest.raises(hardpoint.UsageError, match="no table of curves"):
+        done.read("curves")
+
+
+def test_errors_of_workers_are_those_of_the_package(client):
+    with pytest.raises(hardpoint.ModelError) as local:
+        hardpoint.parse("name = 3")
+    with pytest.raises(hardpoint.ModelError) as remote:
+        client.submit(hardpoint.parse, "name = 3").result()
+    assert remote.value.diagnostics == local.value.diagnostics and remote.value.diagnostics[-1].line == 1
+
+
+def version(text):
+    hardpoint.dask.__version__ = text
+
+
+def test_a_worker_with_another_version_is_refused(model, client, tmp_path):
+    client.run(version, "0.0.1")
+    try:
+        with pytest.raises(hardpoint.UsageError, match="a worker has hardpoint 0.0.1, the client"):
+            hardpoint.dask.sweep(model, client, tmp_path, part=PART, samples=11)
+    finally:
+        client.run(version, hardpoint.__version__)
+    assert not files(tmp_path)
+
+
+# What is sent
+
+
+def counts_plans():
+    planned, hardpoint.Model.plans = hardpoint.Model.sweep_plan, 0
+
+    def sweep_plan(self, **asked):
+        hardpoint.Model.plans += 1
+        return planned(self, **asked)
+
+    hardpoint.Model.sweep_plan = sweep_plan
+
+
+def test_a_worker_plans_once(model, client, tmp_path):
+    client.run(counts_plans)
+    hardpoint.dask.sweep(model, client, tmp_path, part=PART, samples=12 * PART, ranges={"strut_top_x": (0, 1)})
+    plans = client.run(lambda: hardpoint.Model.plans).values()
+    assert 1 <= sum(plans) and max(plans) == 1
+
+
+def test_few_parts_are_under_way(here):
+    asked = []
+
+    def numbers():
+        for number in range(100):
+            asked.append(number)
+            yield number
+
+    found = {}
+    for number, twice in hardpoint.dask._each(here, lambda shared, number: shared * number, 2, numbers(), str):
+        assert len(asked) - len(found) <= 3 * hardpoint.dask.AHEAD
+        found[number] = twice
+    assert found == {number: 2 * number for number in range(100)}
+
+
+# Monte Carlo and searches
+
+
+@pytest.fixture
+def toleranced(monkeypatch):
+    model = hardpoint.read(MODELS / "studies/strut_tolerances.toml")
+    if not hasattr(model._native, "drawn_designs"):
+        spread = np.array([v.tolerance for v in model.variables.values()])
+
+        def drawn(model, numbers, seed):
+            return np.array([np.random.default_rng([seed or 0, n]).normal(0, 10 * spread) for n in numbers])
+
+        monkeypatch.setattr(hardpoint.dask, "_drawn", drawn)
+    return model
+
+
+def test_monte_carlo(toleranced, here, tmp_path):
+    done = hardpoint.dask.monte_carlo(toleranced, here, tmp_path, 1100, seed=4, part=PART)
+    rows = hardpoint.dask._drawn(toleranced, list(range(1100)), 4)
+    table = done.read()
+    assert len(done) == table.num_rows == 1100
+    assert table["design"].to_pylist() == list(range(1100))
+    assert table.column_names[1] == "ball_joint_x [mm]" and table.column_names[-1] == "failed"
+    same(table.select(range(1, 1 + rows.shape[1])), dict(zip(table.column_names[1:], rows.T)))
+    for case in toleranced.cases:
+        found = toleranced.designs(rows, case=case, sensitivities=False, partial=True)
+        for name, unit in toleranced.metrics(case).items():
+            same(table.select([f"{case}.{name} [{unit}]"]), {f"{case}.{name} [{unit}]": found.metric(name)})
+    assert done.failed == sum(1 for why in table["failed"].to_pylist() if why)
+    with pytest.raises(hardpoint.StudyError, match="`seed` is 4 there, 5 here"):
+        hardpoint.dask.monte_carlo(toleranced, here, tmp_path, 1100, seed=5, part=PART)
+
+
+def test_monte_carlo_tells_why_a_design_fails(model, here, monkeypatch, tmp_path):
+    rows = np.zeros((20, len(model.variables)))
+    rows[[3, 7], list(model.variables).index("strut_top_x")] = -600, 5
+    monkeypatch.setattr(hardpoint.dask, "_drawn", lambda model, numbers, seed: rows[numbers])
+    table = hardpoint.dask.monte_carlo(model, here, tmp_path, 20, part=PART).read()
+    failed = table["failed"].to_pylist()
+    assert [k for k, why in enumerate(failed) if why] == [3]
+    assert failed[3].startswith("bump: ")
+    assert np.isnan(table["bump.toe_in_bump [deg]"][3].as_py()) and np.isfinite(table["bump.toe_in_bump [deg]"][7].as_py())
+
+
+def test_searches_from_many_starts(here, monkeypatch):
+    model = hardpoint.read(MODELS / "studies/strut_toe.toml")
+    if "first" not in model._native.optimize.__text_signature__:
+        monkeypatch.setattr(
+            hardpoint.dask, "_search", lambda asked, first: asked.model._native.optimize(first + 1, asked.iterations, 1, None)
+        )
+    told = []
+    best, studies = hardpoint.dask.multi_start(model, here, 3, progress=lambda *of: told.append(of))
+    local = hardpoint.dask.outcome(model, *optimized(model, 3))
+    assert best.design == local.design and best.rounded == local.rounded
+    assert best.facts["objective"]["after"] == local.facts["objective"]["after"]
+    assert len(studies) == 3 and best in studies and told == [(1, 3), (2, 3), (3, 3)]
+    assert studies[0].design == hardpoint.dask.outcome(model, *optimized(model, 1)).design
+
+
+def optimized(model, starts):
+    first = (0,) if "first" in model._native.optimize.__text_signature__ else ()
+    return model._native.optimize(*first, starts, None, 1, None)
+
+
+def test_the_best_search():
+    facts = lambda objective, violation, kkt: {"objective": {"after": objective}, "violation": {"after": violation}, "kkt": kkt}  # noqa: E731
+    best = hardpoint.dask._best
+    none = facts(None, None, None)
+    assert best([facts(1.0, 0.1, 0.0), facts(3.0, 0.0, 0.5), facts(2.0, 1e-9, 0.5), none]) == 2
+    assert best([none, facts(1.0, 0.2, 0.0), facts(3.0, 0.1, 0.0)]) == 2
+    assert best([facts(1.0 + 1e-14, 0.0, 1e-9), facts(1.0, 0.0, 1e-3), facts(1.0 + 1e-9, 0.0, 0.0)]) == 0
+    assert best([none, none]) == 0

@@ -1,0 +1,35 @@
+"""What the documents show is run."""
+
+import re
+
+import pytest
+
+from conftest import ROOT
+
+PAGES = [ROOT / "docs/python.md"]
+
+
+def blocks(page):
+    return re.findall(r"^```python\n(.*?)^```", page.read_text(), re.M | re.S)
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
+def test_every_block_of_the_page_runs(page, monkeypatch):
+    for package in ("scipy", "openmdao", "jax", "pandas"):
+        pytest.importorskip(package)
+    monkeypatch.chdir(ROOT)
+    found, names = blocks(page), {"__name__": page.stem}
+    assert len(found) > 8
+    for k, block in enumerate(found):
+        exec(compile(block, f"{page.name}, block {k + 1}", "exec"), names)
+
+
+@pytest.mark.parametrize("notebook", sorted((ROOT / "python/examples").glob("*.ipynb")), ids=lambda path: path.name)
+def test_every_notebook_runs(notebook):
+    nbformat = pytest.importorskip("nbformat")
+    nbclient = pytest.importorskip("nbclient")
+    read = nbformat.read(notebook, as_version=4)
+    assert not any(cell.get("outputs") for cell in read.cells), "notebooks are kept without their outputs"
+    nbclient.NotebookClient(read, timeout=None, resources={"metadata": {"path": str(notebook.parent)}}).execute()
+    shown = [out["data"] for cell in read.cells for out in cell.get("outputs", []) if "data" in out]
+    assert any("<iframe" in data.get("text/html", "") for data in shown)

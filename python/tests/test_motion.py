@@ -1,0 +1,192 @@
+"""Motions and sensitivities: the reference cases of the Rust tests, and the command line's numbers to the last bit."""
+
+import json
+import pickle
+import threading
+
+import numpy as np
+import pytest
+
+import hardpoint
+from conftest import MODELS, REFERENCE
+
+NEAR = 1e-9
+"""As in the Rust tests: the output time itself is off by rounding, and accelerations change with it."""
+LENGTHS = {"mm": 1e-3, "cm": 1e-2, "m": 1.0, "in": 0.0254}
+ANGLES = {"deg": np.pi / 180, "rad": 1.0}
+BODY = {"": "position", "v": "velocity", "omega_": "angular_velocity", "a": "acceleration", "alpha_": "angular_acceleration"}
+"""Letters of the columns of a body."""
+
+
+def si(model, unit):
+    """How many SI units a unit of a model is."""
+    factor = 1.0
+    over = 1
+    for part in unit.replace("/", " / ").split():
+        if part == "/":
+            over = -1
+            continue
+        name, _, power = part.partition("^")
+        factor *= {**LENGTHS, **ANGLES, "s": 1.0, "1": 1.0}[name] ** (over * int(power or 1))
+    return factor
+
+
+@pytest.mark.parametrize("name", REFERENCE)
+def test_reference(name):
+    model = hardpoint.read(MODELS / name)
+    run, expected = model.run(), REFERENCE[name]
+    k = int(np.argmin(abs(run.times - expected["time"])))
+    for measure, of in expected["measures"].items():
+        value, _, acceleration = (si(model, unit) for unit in model.outputs[measure].units)
+        assert run.values(measure)[k] * value == pytest.approx(of["value"], rel=NEAR, abs=NEAR)
+        assert run.values(measure, "acceleration")[k] * acceleration == pytest.approx(of["acceleration"], rel=NEAR, abs=NEAR)
+        for variable, d in of["sensitivities"].items():
+            found = run.sensitivity(measure, variable, order=2)[k] * acceleration / si(model, model.variables[variable].unit)
+            assert found == pytest.approx(d, rel=NEAR, abs=NEAR), (measure, variable)
+
+
+@pytest.mark.parametrize("name", sorted(path.name for path in MODELS.glob("*.toml")))
+def test_numbers_are_those_of_the_command_line_to_the_last_bit(name, command, tmp_path):
+    done = command("run", MODELS / name, "-o", tmp_path, "--format", "npy", "--no-compare")
+    assert done.returncode == 0, done.stderr
+    model = hardpoint.read(MODELS / name)
+    for case in model.cases or [None]:
+        folder = tmp_path / case if case else tmp_path
+        columns = json.loads((folder / "columns.json").read_text())
+        motion = np.load(folder / "motion.npy")
+        run = model.run(case=case)
+        names = [column["name"] for column in columns["motion"]]
+        assert (motion[:, names.index("t")] == run.times).all()
+        for output in model.outputs.values():
+            for order, column in enumerate(output.columns):
+                assert np.array_equal(motion[:, names.index(column)], run.values(output.name, order), equal_nan=True), column
+        for body in model.bodies:
+            for letters, of in BODY.items():
+                found = np.stack([motion[:, names.index(f"{body}.{letters}{c}")] for c in "xyz"], axis=1)
+                assert np.array_equal(found, getattr(run.body(body), of)), (body, of)
+        if not model.variables:
+            continue
+        d, of_d = np.load(folder / "sensitivity.npy"), [column["name"] for column in columns["sensitivity"]["columns"]]
+        for b, variable in enumerate(v["name"] for v in columns["sensitivity"]["variables"]):
+            if variable not in run.followed:
+                with pytest.raises(hardpoint.CannotFollow) as raised:
+                    run.sensitivity(next(iter(model.outputs)), variable)
+                assert raised.value.code == "HP0501" and raised.value.element == variable
+                continue
+            for output in model.outputs.values():
+                for order, column in enumerate(output.columns):
+                    found = d[:, b, of_d.index(f"d {column}")]
+                    assert np.array_equal(found, run.sensitivity(output.name, variable, order), equal_nan=True), (variable, column)
+
+
+def test_arrays_are_made_once_and_slices_are_views(strut):
+    run = strut.run()
+    assert run.values("toe").base is run.values("camber").base is not None
+    assert run.sensitivity("toe", "ball_joint_z").base is run.sensitivities("toe").base
+
+
+def test_a_design_is_the_drawing_moved(strut):
+    by = 1e-3
+    there, back, here = (strut.run({"tie_rod_outer_z": x}) for x in (by, -by, 0.0))
+    slope = (there.values("toe") - back.values("toe")) / (2 * by)
+    assert slope == pytest.approx(here.sensitivity("toe", "tie_rod_outer_z"), abs=1e-8)
+    assert there.design["tie_rod_outer_z"] == by
+    whole = np.zeros(len(strut.variables))
+    whole[list(strut.variables).index("tie_rod_outer_z")] = by
+    assert (strut.run(whole).values("toe") == there.values("toe")).all()
+
+
+def test_second_derivatives_are_differences_of_first(strut):
+    by, names = 1e-3, ["tie_rod_outer_z", "ball_joint_y", "lca_tilt"]
+    second = strut.second_derivatives("toe", names)[:, 0]
+    for k, name in enumerate(names):
+        there, back = (strut.run({name: x}).sensitivities("toe", names) for x in (by, -by))
+        assert second[:, :, k].T == pytest.approx((there - back) / (2 * by), abs=1e-8)
+
+
+def test_gradients_either_way_are_those_of_the_run(strut):
+    run = strut.run()
+    for method in ("direct", "adjoint", "auto"):
+        found = strut.gradients(["toe", "camber"], order="rate", method=method)
+        for k, name in enumerate(["toe", "camber"]):
+            assert found[:, k].T == pytest.approx(run.sensitivities(name, order=1), rel=1e-9, abs=1e-9)
+
+
+def test_many_designs_are_single_ones(strut):
+    rng = np.random.default_rng(7)
+    designs = rng.normal(scale=0.5, size=(30, 3))
+    names = ["tie_rod_outer_z", "ball_joint_y", "lca_tilt"]
+    seen = []
+    found = strut.designs(designs, ["toe", "camber"], variables=names, at=slice(0, None, 50), progress=lambda done, of: seen.append((done, of)))
+    assert found.values.shape == (30, 2, 11) and found.sensitivities.shape == (30, 2, 14, 11)
+    assert seen[-1] == (30, 30)
+    for k in (0, 17, 29):
+        run = strut.run(dict(zip(names, designs[k])))
+        assert found.values[k, 1] == pytest.approx(run.values("camber")[::50], rel=1e-11)
+        assert found.sensitivities[k, 0] == pytest.approx(run.sensitivities("toe")[:, ::50], rel=1e-9, abs=1e-12)
+
+
+def test_metrics_have_their_gradients(toe):
+    by = 1e-4
+    for case in toe.cases:
+        run = toe.run(case=case)
+        for metric in run.metrics.values():
+            for name in run.followed:
+                there, back = (toe.run({name: x}, case=case).metric(metric.name) for x in (by, -by))
+                assert (there - back) / (2 * by) == pytest.approx(metric.sensitivities[name], rel=1e-4, abs=1e-6), (metric.name, name)
+
+
+def test_models_pickle_with_their_case_and_added_variables(toe):
+    model = toe.case(toe.cases[1]).with_coordinates(tilts=True)
+    again = pickle.loads(pickle.dumps(model))
+    assert list(again.variables) == list(model.variables) and len(again.variables) > len(toe.variables)
+    name = model.measures[0]
+    assert (again.run().values(name) == model.run().values(name)).all()
+
+
+def test_threads_run_models_side_by_side(strut):
+    expected, found = strut.run().values("toe"), {}
+    threads = [threading.Thread(target=lambda k=k: found.__setitem__(k, strut.run().values("toe"))) for k in range(8)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    assert all((values == expected).all() for values in found.values()) and len(found) == 8
+
+
+def test_tables_have_labels_and_units(strut):
+    run = strut.run()
+    frame = run.to_pandas()
+    assert (frame["toe [deg]"] == run.values("toe")).all() and (frame["time [s]"] == run.times).all()
+    arrow = run.to_arrow()
+    assert arrow.schema.field("toe").metadata == {b"unit": b"deg"}
+    labelled = run.to_xarray()
+    slope = labelled["d toe"].sel(variable="tie_rod_outer_z")
+    assert (slope.values == run.sensitivity("toe", "tie_rod_outer_z")).all()
+    assert labelled["toe"].attrs["units"] == "deg"
+
+
+def test_a_model_built_in_code_is_that_of_the_file():
+    built = hardpoint.build(
+        name="slider-crank",
+        units={"length": "mm", "angle": "deg"},
+        hardpoints={"O": np.zeros(3), "A": np.array([0.0, 30.0, 0.0]), "B": [40, 0, 0]},
+        bodies={"crank": {}, "rod": {}, "slider": {}},
+        joints={
+            "O": {"type": "revolute", "bodies": ["ground", "crank"], "at": "O", "axis": "z"},
+            "A": {"type": "revolute", "bodies": ["crank", "rod"], "at": "A", "axis": "z"},
+            "B": {"type": "revolute", "bodies": ["rod", "slider"], "at": "B", "axis": "z"},
+            "slide": {"type": "translational", "bodies": ["ground", "slider"], "at": "B", "axis": "x"},
+        },
+        drivers={"motor": {"joint": "O", "law": "-360 * t"}},
+        measures={"stroke": {"type": "coordinate", "joint": "slide"}},
+        design={"O_y": {"move": "O", "along": "y"}},
+        time={"end": 1.0, "steps": 100},
+    )
+    assert built.hardpoints["A"].tolist() == [0, 30, 0]
+    again = hardpoint.parse(built.text)
+    run = built.run()
+    assert (again.run().values("stroke") == run.values("stroke")).all()
+    # The pin's height makes the slider's speed: 2 pi rad/s * 30 mm upright.
+    assert run.values("stroke", "rate")[0] == pytest.approx(2 * np.pi * 30, rel=1e-12)
+    assert run.sensitivity("stroke", "O_y", order=1)[0] == pytest.approx(-2 * np.pi, rel=1e-12)

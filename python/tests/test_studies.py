@@ -1,0 +1,129 @@
+"""Studies come to what the command line writes."""
+
+import json
+
+import numpy as np
+import pytest
+
+import hardpoint
+from conftest import MODELS
+
+TIMES = ("seconds", "files", "timings")
+"""What differs from run to run."""
+
+
+def told(done):
+    facts = json.loads(done.stdout)
+    return {key: value for key, value in facts.items() if key not in TIMES}
+
+
+def same(study, facts):
+    """The files are named as they were given."""
+    ours = json.loads(json.dumps({key: value for key, value in study.facts.items() if key not in TIMES}))
+    assert ours == facts
+
+
+def test_optimize(command):
+    path = MODELS / "studies/strut_toe.toml"
+    model = hardpoint.read(path)
+    study = model.optimize()
+    same(study, told(command("optimize", path, "--json")))
+    assert study.status == "optimal"
+    better = hardpoint.parse(study.text(), folder=path.parent)
+    saved = {name: v for name, v in study.rounded.items()}
+    for case in model.cases:
+        a, b = better.run(case=case), model.run(saved, case=case)
+        for name in a.metrics:
+            assert a.metric(name) == pytest.approx(b.metric(name), rel=1e-9, abs=1e-9)
+
+
+def test_tolerance(command):
+    path = MODELS / "studies/strut_tolerances.toml"
+    study = hardpoint.read(path).tolerance(samples=1000)
+    same(study, told(command("tolerance", path, "--samples", 1000, "--json")))
+
+
+def test_designs_drawn_are_those_of_the_tolerance_study(command, tmp_path):
+    path = MODELS / "studies/strut_tolerances.toml"
+    model = hardpoint.read(path)
+    command("tolerance", path, "--samples", 600, "-o", tmp_path)
+    lines = (tmp_path / "samples.csv").read_text().splitlines()
+    head = [name.split(" [")[0] for name in lines[0].split(",")]
+    drawn = model._native.drawn_designs([0, 1, 599], None)
+    for row, number in zip(drawn, (0, 1, 599)):
+        cells = lines[1 + number].split(",")
+        for name, value in zip(model.variables, row):
+            if name in head:
+                assert float(cells[head.index(name)]) == pytest.approx(value, rel=1e-12, abs=1e-12)
+
+
+def test_calibrate(command, tmp_path):
+    path, data = MODELS / "studies/strut_calibrate.toml", MODELS / "studies/strut_measured.csv"
+    model = hardpoint.read(path)
+    study = model.calibrate(data)
+    same(study, told(command("calibrate", path, data, "--json")))
+    pandas = pytest.importorskip("pandas")
+    again = model.calibrate(pandas.read_csv(data, comment="#"))
+    assert again.design == study.design
+
+
+def test_sweep(command, tmp_path):
+    path = MODELS / "studies/strut_sweep.toml"
+    model = hardpoint.read(path)
+    found = model.sweep(samples=600)
+    done = command("sweep", path, "--samples", 600, "-o", tmp_path, "--json")
+    facts = told(done)
+    same(found, facts)
+    lines = (tmp_path / "designs.csv").read_text().splitlines()
+    assert lines[0].split(",") == list(found.columns)
+    for k in (0, 311, 599):
+        for cell, column in zip(lines[1 + k].split(","), found.columns.values()):
+            value = column[k]
+            assert cell == "" if isinstance(value, float) and np.isnan(value) else (cell == value or float(cell) == value)
+
+
+def test_a_sweep_by_parts_is_the_whole():
+    model = hardpoint.read(MODELS / "studies/strut_sweep.toml")
+    plan = model.sweep_plan(samples=2000, curves=["toe"])
+    whole, whole_curves, _ = plan.run()
+    parts = [plan.part(first, first + 1024) for first in range(0, plan.count, 1024)]
+    for k, (name, column) in enumerate(whole):
+        joined = sum((list(designs[k][1]) for designs, _ in parts), [])
+        assert np.array_equal(np.array(joined), np.array(column), equal_nan=joined and isinstance(joined[0], float)), name
+    for k, (name, column) in enumerate(whole_curves):
+        joined = np.concatenate([np.asarray(curves[k][1]) for _, curves in parts])
+        assert (joined == np.asarray(column)).all(), name
+
+
+def test_what_if_and_verify(strut, command):
+    study = strut.what_if({"tie_rod_outer_z": 2.0})
+    facts = told(command("whatif", MODELS / "macpherson.toml", "--set", "tie_rod_outer_z=2", "--json"))
+    # The command ranks the coordinates of all hardpoints beside it.
+    for key in ("change", "follows", "measures", "metrics", "margins", "times"):
+        assert json.loads(json.dumps(study.facts[key])) == facts[key], key
+    assert strut.verify().facts["passed"] is True
+
+
+def test_maps(command, tmp_path):
+    path = MODELS / "studies/strut_map.toml"
+    model = hardpoint.read(path)
+    assert model.grids
+    command("run", path, "-o", tmp_path)
+    assert model.maps() == json.loads((tmp_path / "maps.json").read_text())
+
+
+def test_what_a_notebook_shows(strut, toe):
+    page = strut.run().page()
+    assert page.startswith("<!") and "<iframe" in page._repr_html_()
+    assert "polyline" in strut.run()._repr_html_() and "toe" in strut._repr_html_()
+    assert "<table>" in toe.optimize()._repr_html_()
+
+
+def test_the_page_is_that_of_the_command_line(strut, command, tmp_path):
+    command("run", MODELS / "macpherson.toml", "-o", tmp_path, "--no-compare")
+    theirs = (tmp_path / "report.html").read_text()
+    ours = strut.run().page()
+    slots = lambda html: [html.split(f'id="{name}">')[1].split("</script>")[0] for name in ("engine", "code")]  # noqa: E731
+    assert slots(ours) == slots(theirs)
+    ours.save(tmp_path / "ours.html")
+    assert (tmp_path / "ours.html").read_text() == ours
