@@ -7,7 +7,7 @@ import os
 import warnings
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from functools import lru_cache
+from functools import cached_property, lru_cache
 from typing import TYPE_CHECKING, Any, Union
 
 import numpy as np
@@ -25,6 +25,9 @@ Design = Union[Mapping[str, float], "ArrayLike", None]
 """A design: values by the names of design variables, or all of them in order. What is left out, and NaN, stays as drawn."""
 Progress = Union[Callable[[int, int], Any], bool, None]
 """Is told how much is done of how much; `True` writes it to the standard error."""
+
+MOST_RANKED = 200
+"""Of more hardpoints than these the coordinates are no variables of a what-if."""
 
 ORDERS = {0: 0, 1: 1, 2: 2, "value": 0, "rate": 1, "acceleration": 2}
 
@@ -233,8 +236,18 @@ class Model:
     # Studies
 
     def what_if(self, design: Design, *, case: str | None = None) -> Study:
-        """What a changed design does to every measure and metric: exactly, and as foreseen to first and second order."""
-        return outcome(self, self._native.what_if(self._index(case), self._values(design)))
+        """What a changed design does to every measure and metric: exactly, and as foreseen to first and second order.
+
+        As on the command line, coordinates of hardpoints are variables too: `{"tie_rod_outer.z": 2.0}`.
+        """
+        whole = self._whole
+        named = design if design is None or isinstance(design, Mapping) else dict(zip(self.variables, self._values(design)))
+        return outcome(whole, whole._native.what_if(self._index(case), whole._values(named)))
+
+    @cached_property
+    def _whole(self) -> Model:
+        """The model with a variable for every coordinate, unless there are so many that nobody reads what each does."""
+        return self.with_coordinates() if len(self.hardpoints) <= MOST_RANKED else self
 
     def verify(self, *, case: str | None = None, progress: Progress = None) -> Study:
         """Compares all sensitivities with designs that are solved anew."""
