@@ -1,22 +1,26 @@
 #!/usr/bin/env bash
 # Passes all the tests, from a fresh clone on a fresh machine with a Rust toolchain: format, lints, Rust tests,
-# instruction counts, and the page: its own tests, and the report of every model in a real browser.
+# instruction counts, the Python package as a wheel in an environment of its own, and the page: its own tests, and the report of
+# every model in a real browser.
 set -euo pipefail
 cd "$(dirname "$0")"
 
-need() { # command, Debian package
-    command -v "$1" >/dev/null && return
+install() { # Debian package
     local sudo=""
     [ "$(id -u)" = 0 ] || sudo=sudo
-    echo "installing $2 ..."
+    echo "installing $1 ..."
     $sudo apt-get update -qq
-    $sudo apt-get install -y -qq --no-install-recommends "$2" >/dev/null
+    $sudo apt-get install -y -qq --no-install-recommends "$1" >/dev/null
+}
+need() { # command, Debian package
+    command -v "$1" >/dev/null || install "$2"
 }
 need node nodejs
 need npm npm
 need chromium chromium
 need valgrind valgrind
 need python3 python3
+python3 -c 'import ensurepip' 2>/dev/null || install python3-venv
 
 echo "== format and lints"
 cargo fmt --all --check
@@ -27,6 +31,19 @@ cargo test --workspace
 
 echo "== instruction counts"
 bench/instructions
+
+echo "== Python"
+work=target/python
+rm -rf "$work"
+python3 -m venv "$work"
+python="$PWD/$work/bin/python"
+pip() { "$python" -m pip install --quiet --disable-pip-version-check "$@"; }
+pip 'maturin>=1.16,<2'
+"$work/bin/maturin" build --quiet --profile dev --manifest-path python/Cargo.toml --out "$work/wheel"
+# The wheel alone: nothing of the sources is beside it, and no toolchain is at hand.
+wheel=$(echo "$work"/wheel/*.whl)
+PATH="$PWD/$work/bin:/usr/bin:/bin" pip "$PWD/$wheel[test]"
+PATH="$PWD/$work/bin:/usr/bin:/bin" HARDPOINT="$PWD/target/debug/hardpoint" "$python" -m pytest -q -p no:cacheprovider python/tests
 
 echo "== the page"
 cd web

@@ -1,17 +1,19 @@
 //! Runs one model again and again, for profilers and instruction counters:
-//! `repeat MODEL motion|sensitivities|designs TIMES`.
+//! `repeat MODEL motion|sensitivities|designs|values|all|sweep TIMES`. The first three are of bodies alone, the others of measures too:
+//! their values, all their sensitivities as well, and the values of 1,000 designs.
 
 use hardpoint::{Run, Solution};
 
 fn main() {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     let [name, what, times] = arguments.as_slice() else {
-        panic!("usage: repeat MODEL motion|sensitivities|designs TIMES");
+        panic!("usage: repeat MODEL motion|sensitivities|designs|values|all|sweep TIMES");
     };
     let model = hardpoint_bench::model(name);
     let analysis = hardpoint_bench::analysis(&model);
     let bodies = || Run::new().without_measures();
     let designs = vec![vec![1e-5]; 8];
+    let many: Vec<Vec<f64>> = (0..1000).map(|k| vec![1e-6 * f64::from(k)]).collect();
     let mut steps = 0;
     let mut solution = Solution::default();
     let before = std::time::Instant::now();
@@ -24,6 +26,15 @@ fn main() {
             "sensitivities" => {
                 solution = analysis.solve(bodies().reusing(solution));
                 solution.motion.len()
+            }
+            // What one call from Python comes to: nothing is used again.
+            "values" => analysis.solve(Run::new().without_sensitivities()).motion.len(),
+            "all" => analysis.run().motion.len(),
+            "sweep" => {
+                let mut solved = 0;
+                let run = Run::new().without_sensitivities();
+                analysis.solve_designs(run, &many, |_, solution| solved += solution.motion.len());
+                solved
             }
             _ => {
                 let mut solved = 0;

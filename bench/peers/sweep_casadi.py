@@ -157,4 +157,5 @@ def main():
         print(f"  {name}: largest difference {np.nanmax(np.abs(M[:, k] - theirs)):.1e} of {np.nanmax(np.abs(theirs)):.3g}")
 
 
-main()
+if __name__ == "__main__":
+    main()

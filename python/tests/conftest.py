@@ -17,9 +17,10 @@ REFERENCE = json.loads((ROOT / "crates/hardpoint-file/tests/reference.json").rea
 
 @pytest.fixture(scope="session")
 def command():
-    """Runs the command line; without it the tests that compare with it are skipped."""
-    program = Path(os.environ.get("HARDPOINT", ROOT / "target/debug/hardpoint"))
-    if not program.exists():
+    """Runs the command line. The tests that compare with it are skipped where it is neither built nor named."""
+    named = os.environ.get("HARDPOINT")
+    program = Path(named or ROOT / "target/debug/hardpoint")
+    if not named and not program.exists():
         pytest.skip(f"there is no program {program}: `cargo build -p hardpoint-cli`, or name it in HARDPOINT")
 
     def run(*arguments):
