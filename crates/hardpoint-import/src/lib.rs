@@ -19,8 +19,13 @@
 
 mod adams;
 mod asmt;
+mod chrono;
+mod corner;
+mod explorer;
 mod finish;
+mod freecad;
 mod law;
+mod lotus;
 mod markers;
 pub mod mechanism;
 mod mjcf;
@@ -28,6 +33,8 @@ mod report;
 mod sdf;
 mod series;
 mod shapes;
+mod teimorbit;
+mod tree;
 mod turn;
 mod urdf;
 mod write;
@@ -95,7 +102,18 @@ impl std::fmt::Debug for Format {
 }
 
 /// All formats.
-pub const FORMATS: &[Format] = &[asmt::FORMAT, adams::FORMAT, urdf::FORMAT, sdf::FORMAT, mjcf::FORMAT];
+pub const FORMATS: &[Format] = &[
+    asmt::FORMAT,
+    adams::FORMAT,
+    urdf::FORMAT,
+    sdf::FORMAT,
+    mjcf::FORMAT,
+    explorer::FORMAT,
+    chrono::FORMAT,
+    lotus::FORMAT,
+    teimorbit::FORMAT,
+    freecad::FORMAT,
+];
 
 impl Format {
     /// The format of that name.

@@ -80,6 +80,8 @@ pub struct Joint {
     pub at: Vec<Vec3>,
     /// Its axis.
     pub axis: Option<Vec3>,
+    /// Two places that its axis goes through, where the source has it so: it follows them.
+    pub through: Option<[Vec3; 2]>,
     /// Its second axis.
     pub axis2: Option<Vec3>,
     /// Advance of a screw per turn.
@@ -181,6 +183,8 @@ pub struct Wheel {
     pub centre: Vec3,
     /// Its spin axis, outboard.
     pub spin_axis: Vec3,
+    /// Whether that comes from this place to the centre.
+    pub spindle: Option<Vec3>,
     /// From the centre to the ground.
     pub radius: f64,
     /// Two points of its steering axis, lower and upper, each on a body.
@@ -274,6 +278,7 @@ impl Joint {
             bodies,
             at: vec![at],
             axis: None,
+            through: None,
             axis2: None,
             lead: None,
             limits: None,
@@ -285,6 +290,13 @@ impl Joint {
     #[must_use]
     pub fn along(mut self, axis: Vec3) -> Self {
         self.axis = Some(axis);
+        self
+    }
+
+    /// With an axis through two places.
+    #[must_use]
+    pub fn through(mut self, from: Vec3, to: Vec3) -> Self {
+        (self.axis, self.through) = (Some(to - from), Some([from, to]));
         self
     }
 

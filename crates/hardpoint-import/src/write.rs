@@ -137,8 +137,10 @@ impl<'m> Writer<'m> {
                     _ => {}
                 }
             }
-            if let Some(axis) = joint.axis {
-                t["axis"] = direction(axis);
+            match (joint.through, joint.axis) {
+                (Some(ends), _) => t["axis"] = value(self.through(&joint.name, ends)),
+                (None, Some(axis)) => t["axis"] = direction(axis),
+                (None, None) => {}
             }
             if let Some(axis) = joint.axis2 {
                 t["axis2"] = direction(axis);
@@ -153,6 +155,14 @@ impl<'m> Writer<'m> {
             table[&joint.name] = Item::Table(t);
         }
         table
+    }
+
+    /// A direction from one hardpoint to another.
+    fn through(&mut self, name: &str, [from, to]: [Vec3; 2]) -> InlineTable {
+        let ends = [("from", from), ("to", to)].map(|(end, at)| self.hardpoint(&format!("{name}_{end}"), at));
+        let mut axis = InlineTable::new();
+        axis.insert("through", ends.into_iter().collect::<Array>().into());
+        axis
     }
 
     fn couplers(&self) -> Table {
@@ -233,8 +243,8 @@ impl<'m> Writer<'m> {
         }
         for (name, at) in &self.hardpoints {
             // What nothing is at moves nothing.
-            let used = self.m.joints.iter().flat_map(|j| &j.at);
-            if used.clone().any(|p| (*p - *at).norm() <= SAME_PLACE * self.size) {
+            let mut used = self.m.joints.iter().flat_map(|j| j.at.iter().chain(j.through.iter().flatten()));
+            if used.any(|p| (*p - *at).norm() <= SAME_PLACE * self.size) {
                 let mut entry = InlineTable::new();
                 entry.insert("move", name.as_str().into());
                 entry.insert("along", "xyz".into());
@@ -262,7 +272,12 @@ impl<'m> Writer<'m> {
             let mut t = Table::new();
             t["body"] = value(m.bodies[wheel.body].name.as_str());
             t["centre"] = value(self.hardpoint(&format!("{}_centre", wheel.name), wheel.centre));
-            t["spin_axis"] = direction(wheel.spin_axis);
+            t["spin_axis"] = match wheel.spindle {
+                Some(spindle) => {
+                    value(self.through(&format!("{}_spindle", wheel.name), [spindle, wheel.centre]))
+                }
+                None => direction(wheel.spin_axis),
+            };
             t["radius"] = value(wheel.radius);
             if let Some(kingpin) = wheel.kingpin {
                 let points = [("lower", kingpin[0]), ("upper", kingpin[1])].map(|(end, (body, at))| {
